@@ -1,0 +1,68 @@
+#include "core/integrator.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <complex>
+#include <numbers>
+
+namespace dinal {
+
+namespace {
+
+/// |R(z)| - 1 for RK4's R(z) = 1 + z + z^2/2 + z^3/6 + z^4/24, written so that small z keep their digits:
+/// |R|^2 - 1 = 2 Re(w) + |w|^2 with w = R - 1.
+double amplification_excess(std::complex<double> z) {
+    const std::complex<double> w = z * (1.0 + z / 2.0 * (1.0 + z / 3.0 * (1.0 + z / 4.0)));
+    return 2 * w.real() + std::norm(w);
+}
+
+/// The radius at which RK4's stability region ends in the direction of `lambda` (a unit vector, left half-plane).
+double stable_radius(std::complex<double> lambda) {
+    if (lambda.real() == 0) return 2 * std::numbers::sqrt2;  // the excess is r^6 (r^2/8 - 1)/72 there
+    double inside = 0;
+    double outside = 4;  // the region ends before |z| = 3.4 in every direction
+    // The region is star-shaped about 0 in the left half-plane, so bisection finds its only edge.
+    for (int i = 0; i < 60; ++i) {
+        const double r = (inside + outside) / 2;
+        (amplification_excess(r * lambda) <= 0 ? inside : outside) = r;
+    }
+    return inside;
+}
+
+std::string wrong_step(double h) {
+    return fmt::format("h = {:.6g} must be positive and finite", h);
+}
+
+}  // namespace
+
+double rk4_stability_limit(const Oscillator& system) {
+    const double w0 = system.natural_frequency();
+    const double zeta = system.damping_ratio();
+    if (zeta < 1) {
+        return stable_radius({-zeta, std::sqrt((1 - zeta) * (1 + zeta))}) / w0;
+    }
+    // Both roots real: the fast one decides.
+    return stable_radius({-1, 0}) / (w0 * (zeta + std::sqrt((zeta - 1) * (zeta + 1))));
+}
+
+Integrator default_integrator(const Oscillator& system) {
+    return Rk4{std::min(system.natural_period() / 1000, rk4_stability_limit(system) / 10)};
+}
+
+Expected<Integrator> validated(const Integrator& integrator, const Oscillator& system) {
+    const double h = std::visit([](const auto& options) { return options.h; }, integrator);
+    if (!(h > 0) || !std::isfinite(h)) return Error{wrong_step(h)};
+    if (std::holds_alternative<Rk4>(integrator)) {
+        const double limit = rk4_stability_limit(system);
+        // The limit is itself rounded; a step that equals it to the digits shown is let through.
+        if (h > limit * (1 + 1e-12)) {
+            return Error{fmt::format(
+                "h = {:.6g} exceeds the stability limit {:.6g} of rk4 (w0 = {:.6g}, zeta = {:.4g}): use h <= {:.3g}", h,
+                limit, system.natural_frequency(), system.damping_ratio(), 0.999 * limit)};
+        }
+    }
+    return integrator;
+}
+
+}  // namespace dinal

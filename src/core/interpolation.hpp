@@ -1,0 +1,66 @@
+// The motion inside one smooth step, from position, velocity and acceleration at its two ends; and the roots in it.
+#pragma once
+
+#include <optional>
+#include <utility>
+
+#include "core/oscillator.hpp"
+
+namespace dinal {
+
+/// The quintic through theta, velocity and acceleration at both ends of a step of length h: theta to O(h^6), velocity
+/// to O(h^5), so rows between the steps of a fourth-order method lose nothing.
+class StepInterpolant {
+public:
+    StepInterpolant(double h, const State& y0, double a0, const State& y1, double a1) : h_(h), y0_(y0), a0_(a0) {
+        const double p = y1.theta - y0.theta - h * (y0.velocity + h * a0 / 2);
+        const double q = h * (y1.velocity - y0.velocity - h * a0);
+        const double r = h * h * (a1 - a0);
+        c3_ = 10 * p - 4 * q + r / 2;
+        c4_ = -15 * p + 7 * q - r;
+        c5_ = 6 * p - 3 * q + r / 2;
+    }
+    /// theta and velocity a time x after the step's beginning.
+    [[nodiscard]] State operator()(double x) const {
+        const double s = x / h_;
+        return {y0_.theta + x * (y0_.velocity + x * a0_ / 2) + s * s * s * (c3_ + s * (c4_ + s * c5_)),
+                y0_.velocity + x * a0_ + s * s * (3 * c3_ + s * (4 * c4_ + s * 5 * c5_)) / h_};
+    }
+
+private:
+    double h_;
+    State y0_;
+    double a0_;
+    double c3_, c4_, c5_;
+};
+
+/// Neighbours a < b, at most `width` or one unit of the last place apart, with f(a) <= 0 < f(b), from a bracket that
+/// has this property. Secant steps (Illinois), every third one a bisection so that a jump costs no more than that.
+template <class F>
+std::pair<double, double> first_positive(F&& f, double a, double fa, double b, double fb, double width = 0) {
+    int same_side = 0;
+    for (int i = 0; i < 250 && b - a > width; ++i) {
+        const double middle = a + (b - a) / 2;
+        if (middle <= a || middle >= b) break;
+        double x = (a * fb - b * fa) / (fb - fa);
+        if (i % 3 == 2 || !(x > a && x < b)) x = middle;
+        const double fx = f(x);
+        if (fx > 0) {
+            b = x, fb = fx;
+            if (same_side == 1) fa /= 2;
+            same_side = 1;
+        } else {
+            a = x, fa = fx;
+            if (same_side == -1) fb /= 2;
+            same_side = -1;
+        }
+    }
+    return {a, b};
+}
+
+/// The first time x in (0, h] at which a velocity that goes in `direction` (+1, -1) is down to zero, by the cubic
+/// through velocity and acceleration at both ends. A velocity of exactly 0 at the beginning is not one; but 0 is
+/// returned when the velocity leaves it the wrong way. None if the cubic stays on its side.
+std::optional<double> first_velocity_zero(double direction, double h, double v0, double a0, double v1, double a1);
+
+}  // namespace dinal

@@ -1,0 +1,11 @@
+// The integrators' entry points, for simulate() only.
+#pragma once
+
+#include "core/simulate.hpp"
+
+namespace dinal {
+
+Trajectory run(const Problem& problem, const Rk4& options);
+Trajectory run(const Problem& problem, const Dinal1989& options);
+
+}  // namespace dinal

@@ -1,0 +1,106 @@
+#include "core/oscillator.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <numbers>
+
+namespace dinal {
+
+std::string_view name(Regime regime) {
+    switch (regime) {
+        case Regime::undamped:
+            return "undamped";
+        case Regime::underdamped:
+            return "underdamped";
+        case Regime::critical:
+            return "critical";
+        case Regime::overdamped:
+            return "overdamped";
+    }
+    return "";
+}
+
+Expected<Oscillator> Oscillator::make(const OscillatorParameters& p) {
+    const double breakaway = p.breakaway.value_or(p.kinetic_friction);
+    struct Limit {
+        const char* name;
+        double value;
+        bool positive;
+    };
+    for (const Limit& x : {Limit{"I", p.inertia, true}, Limit{"k", p.stiffness, true}, Limit{"C", p.damping, false},
+                           Limit{"Rd", p.kinetic_friction, false}, Limit{"Re", breakaway, false}}) {
+        if (!std::isfinite(x.value)) {
+            return Error{fmt::format("{} = {} must be a finite number", x.name, x.value)};
+        }
+        if (x.positive ? x.value <= 0 : x.value < 0) {
+            return Error{
+                fmt::format("{} = {:.6g} must {}", x.name, x.value, x.positive ? "be positive" : "not be negative")};
+        }
+    }
+    if (breakaway < p.kinetic_friction) {
+        return Error{
+            fmt::format("Re = {:.6g} must be at least Rd = {:.6g}: breakaway takes no less than kinetic friction",
+                        breakaway, p.kinetic_friction)};
+    }
+    Oscillator o;
+    o.inertia_ = p.inertia;
+    o.stiffness_ = p.stiffness;
+    o.damping_ = p.damping;
+    o.kinetic_friction_ = p.kinetic_friction;
+    o.breakaway_ = breakaway;
+    if (!std::isnormal(o.natural_frequency()) || !std::isnormal(o.natural_period()) ||
+        !std::isfinite(o.damping() / o.inertia()) || !std::isfinite(o.dead_zone()) ||
+        !std::isfinite(o.damping_ratio())) {
+        return Error{fmt::format("I = {:.6g} and k = {:.6g} are too far apart for double precision: choose other units",
+                                 p.inertia, p.stiffness)};
+    }
+    return o;
+}
+
+double Oscillator::natural_frequency() const {
+    return std::sqrt(stiffness_ / inertia_);
+}
+
+double Oscillator::natural_period() const {
+    return 2 * std::numbers::pi / natural_frequency();
+}
+
+// sqrt(I) sqrt(k) and not sqrt(I k): the product may overflow where its root does not. When I k is a square that
+// doubles hold, the single root is exact, and a critical system shows zeta = 1.
+double Oscillator::damping_ratio() const {
+    const double product = inertia_ * stiffness_;
+    const double root = std::isnormal(product) ? std::sqrt(product) : std::sqrt(inertia_) * std::sqrt(stiffness_);
+    return damping_ / 2 / root;
+}
+
+std::optional<double> Oscillator::damped_frequency() const {
+    const double zeta = damping_ratio();
+    if (regime() == Regime::critical || regime() == Regime::overdamped) return {};
+    return natural_frequency() * std::sqrt((1 - zeta) * (1 + zeta));
+}
+
+Regime Oscillator::regime() const {
+    if (damping_ == 0) return Regime::undamped;
+    // C/2 against I (k/(C/2)): the squares could overflow or vanish, these quotients do not where it matters.
+    const double half = damping_ / 2;
+    const double square = half * half;
+    const double product = inertia_ * stiffness_;
+    if (std::isnormal(square) && std::isnormal(product)) {
+        if (square == product) return Regime::critical;
+        return square < product ? Regime::underdamped : Regime::overdamped;
+    }
+    const double zeta = damping_ratio();
+    if (zeta == 1) return Regime::critical;
+    return zeta < 1 ? Regime::underdamped : Regime::overdamped;
+}
+
+double Oscillator::friction_ratio(double characteristic_torque) const {
+    return kinetic_friction_ / std::fabs(characteristic_torque);
+}
+
+double Oscillator::characteristic_torque(const State& initial) const {
+    return stiffness_ * std::hypot(initial.theta, initial.velocity / natural_frequency());
+}
+
+}  // namespace dinal

@@ -1,0 +1,76 @@
+// OPEN FIRST: the equation, its symbols, and the way from a user's parameters to a valid Oscillator.
+//
+//     I theta'' + C theta' + Rd sgn(theta') + k theta = M(t)    while moving, or at theta' = 0 when |M - k theta| > Re
+//     theta' = 0                                                while theta' = 0 and |M - k theta| <= Re
+//
+// theta in rad, time and torque in any consistent units. docs/theory.md has the derivations.
+#pragma once
+
+#include <optional>
+#include <string_view>
+
+#include "core/expected.hpp"
+
+namespace dinal {
+
+/// What a user says about a system. Ranges: I > 0, k > 0, C >= 0, Rd >= 0, Re >= Rd, all finite.
+struct OscillatorParameters {
+    double inertia = 0;                    ///< I, moment of inertia
+    double stiffness = 0;                  ///< k, torque per rad
+    double damping = 0;                    ///< C, torque per rad/time
+    double kinetic_friction = 0;           ///< Rd, torque of dry friction while moving
+    std::optional<double> breakaway = {};  ///< Re, torque that sticking can hold; Rd when not given
+};
+
+/// Position and speed of the mass: rad, rad per time unit.
+struct State {
+    double theta = 0;
+    double velocity = 0;
+};
+
+/// How the free system without dry friction would move.
+enum class Regime { undamped, underdamped, critical, overdamped };
+std::string_view name(Regime regime);
+
+/// A valid system: immutable, cheap to copy, safe to share between threads.
+class Oscillator {
+public:
+    /// Fails with a sentence that names the parameter, its value and its range.
+    static Expected<Oscillator> make(const OscillatorParameters& parameters);
+
+    [[nodiscard]] double inertia() const { return inertia_; }
+    [[nodiscard]] double stiffness() const { return stiffness_; }
+    [[nodiscard]] double damping() const { return damping_; }
+    [[nodiscard]] double kinetic_friction() const { return kinetic_friction_; }
+    [[nodiscard]] double breakaway() const { return breakaway_; }
+
+    /// w0 = sqrt(k / I), rad per time unit.
+    [[nodiscard]] double natural_frequency() const;
+    /// T0 = 2 pi / w0.
+    [[nodiscard]] double natural_period() const;
+    /// zeta = C / (2 I w0) = C / (2 sqrt(I k)): viscous, never dry.
+    [[nodiscard]] double damping_ratio() const;
+    /// w1 = w0 sqrt(1 - zeta^2); none unless the system swings (zeta < 1).
+    [[nodiscard]] std::optional<double> damped_frequency() const;
+    /// Decided on C^2 against 4 I k, so that an exactly critical system is called so.
+    [[nodiscard]] Regime regime() const;
+    /// Re / k: without excitation the mass can stay anywhere with |theta| <= this.
+    [[nodiscard]] double dead_zone() const { return breakaway_ / stiffness_; }
+    /// gamma = Rd / |Mc| for the characteristic torque Mc.
+    [[nodiscard]] double friction_ratio(double characteristic_torque) const;
+    /// Mc of a free motion: k sqrt(theta0^2 + (velocity0 / w0)^2) (report, section 5).
+    [[nodiscard]] double characteristic_torque(const State& initial) const;
+    /// No dry friction at all: turns are recorded, but nothing ever sticks or restarts.
+    [[nodiscard]] bool frictionless() const { return breakaway_ == 0; }
+
+private:
+    Oscillator() = default;
+
+    double inertia_ = 1;
+    double stiffness_ = 1;
+    double damping_ = 0;
+    double kinetic_friction_ = 0;
+    double breakaway_ = 0;
+};
+
+}  // namespace dinal

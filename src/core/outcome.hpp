@@ -1,0 +1,33 @@
+// How a run ended. One list holds the outcomes and their sentences, so that neither can be forgotten.
+#pragma once
+
+#include <string_view>
+
+namespace dinal {
+
+#define DINAL_OUTCOMES(X)                                                                    \
+    X(reached_end, "reached the end")                                                        \
+    X(at_rest, "at rest")                                                                    \
+    X(interrupted, "interrupted")                                                            \
+    X(state_not_finite, "the state stopped being finite: unstable system, feedback or step") \
+    X(excitation_not_finite, "the excitation stopped being finite")                          \
+    X(chattering, "stuck and slipped without end in no time: the feedback chatters")
+
+enum class Outcome {
+#define DINAL_OUTCOME(id, sentence) id,
+    DINAL_OUTCOMES(DINAL_OUTCOME)
+#undef DINAL_OUTCOME
+};
+
+constexpr std::string_view sentence(Outcome outcome) {
+    switch (outcome) {
+#define DINAL_OUTCOME(id, text) \
+    case Outcome::id:           \
+        return text;
+        DINAL_OUTCOMES(DINAL_OUTCOME)
+#undef DINAL_OUTCOME
+    }
+    return "";
+}
+
+}  // namespace dinal

@@ -1,0 +1,254 @@
+// The careful steps of the Runge-Kutta engine: pieces between events and breaks of M, and what happens at velocity 0.
+#include <algorithm>
+#include <cmath>
+
+#include "core/rk4_engine.hpp"
+
+namespace dinal {
+
+namespace {
+
+/// More events than this in one step are a feedback that chatters, not a motion.
+constexpr int most_events_in_a_piece = 200;
+
+/// Where f is greatest in [a, b], by golden sections, as soon as it is positive; f may be any unimodal function.
+template <class F>
+std::pair<double, double> positive_peak(F&& f, double a, double b) {
+    constexpr double golden = 0.6180339887498949;
+    double x1 = b - golden * (b - a), x2 = a + golden * (b - a);
+    double f1 = f(x1), f2 = f(x2);
+    for (int i = 0; i < 60 && f1 <= 0 && f2 <= 0 && x1 < x2; ++i) {
+        if (f1 < f2) {
+            a = x1, x1 = x2, f1 = f2;
+            x2 = a + golden * (b - a), f2 = f(x2);
+        } else {
+            b = x2, x2 = x1, f2 = f1;
+            x1 = b - golden * (b - a), f1 = f(x1);
+        }
+    }
+    return f1 > f2 ? std::pair{x1, f1} : std::pair{x2, f2};
+}
+
+}  // namespace
+
+bool Rk4Engine::careful_step(double end, const Sampled* known) {
+    while (t_ < end) {
+        const double next_break = excitation_.next_break(t_);
+        const bool breaks = next_break <= end;
+        if (!piece(breaks ? next_break : end, breaks, breaks ? nullptr : known)) return false;
+        if (breaks) M_ = excitation_.value_after(t_, y_);
+        if (!finite()) return false;
+        known = nullptr;
+    }
+    return true;
+}
+
+bool Rk4Engine::piece(double end, bool break_at_end, const Sampled* known) {
+    for (int events = 0; t_ < end; ++events) {
+        if (events > most_events_in_a_piece) return fail(Outcome::chattering);
+        if (standstill_) leave_standstill();
+        if (!system_.frictionless() && motion_ == Motion::stuck) {
+            if (!stay(end, break_at_end)) return false;
+            continue;
+        }
+        const double length = end - t_;
+        const Stepped s = step(length, end, break_at_end, known);
+        if (!std::isfinite(s.M)) return fail(Outcome::excitation_not_finite);
+        if (!std::isfinite(s.y.theta) || !std::isfinite(s.y.velocity)) return fail(Outcome::state_not_finite);
+
+        const double direction = sign_of(motion_);
+        const bool crosses = !(direction * s.y.velocity > 0) || (direction * s.a0 < 0 && direction * s.a1 > 0);
+        if (system_.frictionless()) {
+            if (crosses) record_turns(t_, length, direction, y_, s.a0, s.y, s.a1);
+        } else if (crosses) {
+            const auto zero = first_velocity_zero(direction, length, y_.velocity, s.a0, s.y.velocity, s.a1);
+            if (zero) {
+                if (!reach_zero(s, *zero, end, break_at_end, known)) return false;
+                continue;
+            }
+        }
+        rows_until(end, StepInterpolant(length, y_, s.a0, s.y, s.a1));
+        t_ = end, y_ = s.y, M_ = s.M;
+        at_start_ = false;
+    }
+    return finite();
+}
+
+Rk4Engine::Stepped Rk4Engine::step(double length, double end, bool break_at_end, const Sampled* known) const {
+    if (feedback_) return feedback_step(length, end, break_at_end);
+    // Only the whole step has its samples ready; its end serves every piece that reaches it.
+    const bool whole = known != nullptr && length > full_.h * (1 - 1e-9);
+    const double middle = whole ? known->middle : excitation_.value(t_ + length / 2);
+    const double M1 = known != nullptr ? known->end : M_at(t_ + length, end, break_at_end, {});
+    const double f0 = forcing(M_), f1 = forcing(M1);
+    const State y =
+        whole ? full_(y_, f0, forcing(middle), f1) : AffineStep(system_, length)(y_, f0, forcing(middle), f1);
+    // A middle that is not a number must be seen, also when the step is too short to show it in y.
+    return {y, std::isfinite(middle) ? M1 : middle, acceleration(f0, y_), acceleration(f1, y)};
+}
+
+Rk4Engine::Stepped Rk4Engine::feedback_step(double length, double end, bool break_at_end) const {
+    const double half = t_ + length / 2, t1 = t_ + length;
+    const auto along = [&](double h, double v, double a) { return State{y_.theta + h * v, y_.velocity + h * a}; };
+    const double a0 = acceleration(forcing(M_), y_);
+    const State y2 = along(length / 2, y_.velocity, a0);
+    const double a2 = acceleration(forcing(excitation_.value(half, y2)), y2);
+    const State y3 = along(length / 2, y2.velocity, a2);
+    const double a3 = acceleration(forcing(excitation_.value(half, y3)), y3);
+    const State y4 = along(length, y3.velocity, a3);
+    const double a4 = acceleration(forcing(M_at(t1, end, break_at_end, y4)), y4);
+    const State y1{y_.theta + length / 6 * (y_.velocity + 2 * y2.velocity + 2 * y3.velocity + y4.velocity),
+                   y_.velocity + length / 6 * (a0 + 2 * a2 + 2 * a3 + a4)};
+    const double M1 = M_at(t1, end, break_at_end, y1);
+    return {y1, std::isfinite(a2 + a3 + a4) ? M1 : a2 + a3 + a4, a0, acceleration(forcing(M1), y1)};
+}
+
+/// The velocity is down to zero a time `zero` into the piece: goes there, and leaves the rest to the friction law.
+bool Rk4Engine::reach_zero(const Stepped& whole, double zero, double end, bool break_at_end, const Sampled* known) {
+    if (zero <= 0 || t_ + zero <= t_) {
+        if (y_.velocity != 0) {  // so close to zero that no time passes
+            y_.velocity = 0;
+            standstill_ = true;
+        } else {
+            hold_still(end, whole.M);
+        }
+        return finite();
+    }
+    const bool at_end = t_ + zero >= end;
+    const double length = at_end ? end - t_ : zero;
+    const Stepped s = at_end ? whole : step(length, end, break_at_end, nullptr);
+    if (!std::isfinite(s.M)) return fail(Outcome::excitation_not_finite);
+    // The velocity left over by the cubic is of fourth order: one Newton step in time takes it away, unless the
+    // contact is so flat that there is nothing to divide by.
+    double shift = at_end || s.a1 == 0 ? 0 : -s.y.velocity / s.a1;
+    if (!(std::fabs(shift) <= 0.1 * length) || t_ + length + shift > end) shift = 0;
+    const double t = at_end ? end : t_ + length + shift;
+    rows_until(t, StepInterpolant(length, y_, s.a0, s.y, s.a1));
+    y_ = {s.y.theta + s.y.velocity * shift / 2, 0};
+    t_ = t;
+    M_ = at_end ? s.M : (known != nullptr && t == end ? known->end : M_at(t, end, break_at_end, y_));
+    at_start_ = false;
+    standstill_ = true;
+    return finite();
+}
+
+void Rk4Engine::leave_standstill() {
+    const Motion before = motion_;
+    motion_ = motion_from_standstill(system_, M_, y_.theta);
+    friction_ = system_.kinetic_friction() * sign_of(motion_);
+    standstill_ = false;
+    if (!at_start_) {
+        if (motion_ == Motion::stuck) {
+            record(EventKind::stick);
+        } else if (motion_ != before) {
+            record(EventKind::turn);  // the same direction again: it only touched zero, which is no event
+        }
+    }
+}
+
+/// A motion that did not get under way: the excitation only touched the limit. The mass stays where it is.
+void Rk4Engine::hold_still(double end, double M_end) {
+    if (events_ != nullptr && !events_->empty() && events_->back().t == t_) {
+        Event& last = events_->back();
+        if (last.kind == EventKind::slip) {
+            events_->pop_back();
+        } else if (last.kind == EventKind::turn) {
+            last.kind = EventKind::stick;
+        }
+    }
+    motion_ = Motion::stuck;
+    friction_ = 0;
+    rows_standing_until(end);
+    t_ = end, M_ = M_end;
+}
+
+/// Stuck, up to the end of the piece or the first time that |M - k theta| > Re.
+bool Rk4Engine::stay(double end, bool break_at_end) {
+    Motion next = motion_from_standstill(system_, M_, y_.theta);
+    if (next == Motion::stuck) {
+        double M_end = M_;
+        const auto release = release_time(end, break_at_end, M_end);
+        if (!std::isfinite(M_end)) return fail(Outcome::excitation_not_finite);
+        rows_standing_until(release.value_or(end));
+        t_ = release.value_or(end), M_ = M_end;
+        at_start_ = false;
+        if (!release) return finite();
+        next = motion_from_standstill(system_, M_, y_.theta);
+    }
+    record(EventKind::slip);
+    at_start_ = false;
+    motion_ = next;
+    friction_ = system_.kinetic_friction() * sign_of(motion_);
+    return finite();
+}
+
+std::optional<double> Rk4Engine::release_time(double end, bool break_at_end, double& M_end) const {
+    const auto M = [&](double t) { return M_at(t, end, break_at_end, y_); };
+    // Positive exactly when the friction law lets go.
+    const auto excess = [&](double t) {
+        const double torque = M(t);
+        if (motion_from_standstill(system_, torque, y_.theta) == Motion::stuck) {
+            return std::min(breakaway_excess(system_, torque, y_.theta), 0.0);
+        }
+        return breakaway_excess(system_, torque, y_.theta);
+    };
+    const double middle = t_ + (end - t_) / 2;
+    const double e0 = std::min(breakaway_excess(system_, M_, y_.theta), 0.0), em = excess(middle), e1 = excess(end);
+    M_end = M(end);
+    if (!std::isfinite(em) || !std::isfinite(e1)) {
+        M_end = em + e1;
+        return {};
+    }
+    double left = t_, e_left = e0, right = end, e_right = e1;
+    if (!(em > 0)) {
+        // A peak between the samples: the parabola through them says whether it can reach the limit.
+        const double a = (e0 - 2 * em + e1) / 2, b = (e1 - e0) / 2;
+        const bool peak = a < 0 && std::fabs(b) < -2 * a;
+        if (peak && em - b * b / (4 * a) - a / 4 > 0) {
+            const auto [where, height] = positive_peak(excess, t_, end);
+            if (height > 0) right = where, e_right = height;
+        }
+        if (!(e_right > 0)) return {};
+        if (middle < right) left = middle, e_left = em;
+    } else {
+        right = middle, e_right = em;
+    }
+    const double release = first_positive(excess, left, e_left, right, e_right).second;
+    M_end = M(release);
+    return release;
+}
+
+void Rk4Engine::record_turns(double t, double h, double direction, const State& y0, double a0, const State& y1,
+                             double a1) {
+    const StepInterpolant motion(h, y0, a0, y1, a1);
+    if (direction == 0) direction = sign_of(motion_of(y0.velocity != 0 ? y0.velocity : a0 != 0 ? a0 : y1.velocity));
+    double from = 0;
+    State y = y0;
+    double a = a0;
+    while (direction != 0) {
+        const auto zero = first_velocity_zero(direction, h - from, y.velocity, a, y1.velocity, a1);
+        if (!zero || (*zero <= 0 && y.velocity == 0)) break;
+        double x = from + *zero;
+        // The interpolant knows the velocity better than the cubic: a secant step towards its own zero.
+        const double e = 1e-4 * h;
+        const double slope = (motion(std::min(x + e, h)).velocity - motion(std::max(x - e, 0.0)).velocity) / (2 * e);
+        const double better = slope != 0 ? x - motion(x).velocity / slope : x;
+        if (std::fabs(better - x) < 0.1 * h && better > from && better <= h) x = better;
+        y = {motion(x).theta, 0};
+        a = slope;
+        direction = -direction;
+        if (events_ != nullptr) {
+            const double time = t + x;
+            events_->push_back({time, EventKind::turn, y.theta, excitation_.value(time, y)});
+        }
+        if (x >= h) break;
+        from = x;
+    }
+    motion_ = direction > 0 ? Motion::forward : direction < 0 ? Motion::backward : Motion::stuck;
+}
+
+void Rk4Engine::record(EventKind kind) {
+    if (events_ != nullptr) events_->push_back({t_, kind, y_.theta, M_});
+}
+
+}  // namespace dinal

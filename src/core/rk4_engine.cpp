@@ -1,0 +1,258 @@
+#include "core/rk4_engine.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace dinal {
+
+namespace {
+
+/// How many steps of h cover the window. A remainder within the rounding of the division is none.
+std::size_t step_count(const Window& window, double h) {
+    const double ratio = (window.end - window.start) / h;
+    const double whole = std::round(ratio);
+    const double count = std::fabs(ratio - whole) <= 4e-16 * whole ? whole : std::ceil(ratio);
+    return static_cast<std::size_t>(std::clamp(count, 1.0, 9e18));
+}
+
+}  // namespace
+
+Rk4Engine::Rk4Engine(const Problem& problem, const Rk4& options, RowWriter& rows, std::vector<Event>* events,
+                     Checkpoints<Rk4Checkpoint>* checkpoints)
+    : system_(problem.system),
+      excitation_(problem.excitation),
+      monitor_(problem.monitor),
+      initial_(problem.initial),
+      window_(problem.window),
+      rows_(rows),
+      events_(events),
+      checkpoints_(checkpoints),
+      full_(problem.system, options.h),
+      steps_(step_count(problem.window, options.h)),
+      steps_per_row_(rows.steps_per_row(options.h)),
+      inverse_inertia_(1 / problem.system.inertia()),
+      feedback_(problem.excitation.has_feedback()),
+      constant_from_(problem.excitation.constant_from()) {}
+
+Outcome Rk4Engine::run() {
+    at_start_ = true;
+    return run({0, initial_, motion_of(initial_.velocity), initial_.velocity == 0}, steps_);
+}
+
+Outcome Rk4Engine::run(const Rk4Checkpoint& from, std::size_t last_step) {
+    begin_at(from);
+    std::size_t n = from.step;
+    bool alive = finite();
+    while (alive && n < last_step) {
+        if (checkpoints_ != nullptr && checkpoints_->due(n)) checkpoints_->add(here(n));
+        if (monitor_ && !monitor_(t_)) {
+            outcome_ = Outcome::interrupted;
+            break;
+        }
+        if (!standstill_ && motion_ == Motion::stuck && constant_from_ <= t_ && !system_.frictionless()) {
+            rows_standing_until(never);  // nothing will ever move it again
+            t_ = window_.end;
+            break;
+        }
+        const std::size_t stop =
+            checkpoints_ != nullptr ? std::min(last_step, std::max(checkpoints_->next(), n + 1)) : last_step;
+        const std::size_t count = standstill_ ? 0 : sample_block(n, stop);
+        if (count > 0) {
+            alive = run_block(n, count);
+            n += count;
+        } else {
+            alive = careful_step(time(n + 1), nullptr);
+            ++n;
+        }
+    }
+    if (outcome_ == Outcome::reached_end && last_step == steps_) {
+        rows_standing_until(never);
+        if (motion_ == Motion::stuck && !system_.frictionless()) {
+            if (events_ != nullptr && !events_->empty()) events_->back().kind = EventKind::rest;
+            outcome_ = Outcome::at_rest;
+        }
+    }
+    return outcome_;
+}
+
+void Rk4Engine::begin_at(const Rk4Checkpoint& from) {
+    t_ = time(from.step);
+    y_ = from.state;
+    motion_ = from.motion;
+    standstill_ = from.standstill && !system_.frictionless();
+    friction_ = system_.kinetic_friction() * sign_of(motion_);
+    M_ = excitation_.value_after(t_, y_);
+}
+
+std::size_t Rk4Engine::sample_block(std::size_t n, std::size_t last_step) {
+    if (feedback_) return 0;
+    std::size_t count = std::min(block_steps, last_step - n);
+    // The last step of the window may be shorter than h, and its end is t_end to the letter.
+    if (n + count == steps_) --count;
+    const double next_break = excitation_.next_break(t_);
+    while (count > 0 && time(n + count) >= next_break) count /= 2;
+    for (std::size_t i = 0; i < count; ++i) {
+        times_[2 * i] = time(n + i) + full_.h / 2;
+        times_[2 * i + 1] = time(n + i + 1);
+    }
+    const std::size_t good = excitation_.fill({times_.data(), 2 * count}, {samples_.data(), 2 * count});
+    if (good < 2 * count) {
+        // Up to the bad one; the careful step that follows meets it and ends the run.
+        count = good / 2;
+    }
+    return count;
+}
+
+bool Rk4Engine::run_block(std::size_t n, std::size_t count) {
+    std::size_t i = 0;
+    while (i < count) {
+        if (!standstill_) {
+            if (system_.frictionless()) {
+                i = move_freely(n, i, count);
+            } else {
+                i = motion_ == Motion::stuck ? rest(n, i, count) : move(n, i, count);
+            }
+            if (!finite()) return false;
+        }
+        if (i < count) {
+            const Sampled known{samples_[2 * i], samples_[2 * i + 1]};
+            if (!careful_step(time(n + i + 1), &known)) return false;
+            ++i;
+        }
+    }
+    return true;
+}
+
+// The plain loops: from step i of the block at n on, until something happens; the index of that step is returned with
+// the present at its beginning. A step is left to the careful way when the velocity changes sign in it, or dips
+// towards zero and comes back, since then it may have done both.
+
+/// What the samples mean for the present direction of motion; apart from the chain of steps, so that it vectorises.
+void Rk4Engine::begin_block(std::size_t i, std::size_t count) {
+    const AffineStep full = full_;
+    M_at_step_[i] = M_;
+    for (std::size_t j = i; j < count; ++j) M_at_step_[j + 1] = samples_[2 * j + 1];
+    for (std::size_t j = i; j <= count; ++j) forcing_[j] = forcing(M_at_step_[j]);
+    for (std::size_t j = i; j < count; ++j) {
+        const double middle = forcing(samples_[2 * j]);
+        push_theta_[j] = full.push_theta(forcing_[j], middle);
+        push_velocity_[j] = full.push_velocity(forcing_[j], middle, forcing_[j + 1]);
+    }
+    theta_[i] = y_.theta;
+    velocity_[i] = y_.velocity;
+}
+
+/// Steps while the velocity keeps its direction for certain.
+// NOTE: plain local doubles; with a State in the loop g++ 12 carries the motion through memory, at twice the time.
+std::size_t Rk4Engine::plain_steps(std::size_t i, std::size_t stop, double direction) {
+    const AffineStep m = full_;
+    double theta = theta_[i], velocity = velocity_[i];
+    double uphill = direction * ((forcing_[i] - m.c * velocity) - m.w * theta);  // acceleration along the motion
+    for (; i < stop; ++i) {
+        const double theta1 = (theta + push_theta_[i]) + (m.r11 * theta + m.r12 * velocity);
+        const double velocity1 = (velocity + push_velocity_[i]) + (m.r21 * theta + m.r22 * velocity);
+        const double uphill1 = direction * ((forcing_[i + 1] - m.c * velocity1) - m.w * theta1);
+        if (!(direction * velocity1 > 0) || (uphill < 0 && uphill1 > 0)) break;
+        theta_[i + 1] = theta = theta1;
+        velocity_[i + 1] = velocity = velocity1;
+        uphill = uphill1;
+    }
+    return i;
+}
+
+std::size_t Rk4Engine::move(std::size_t n, std::size_t i, std::size_t count) {
+    begin_block(i, count);
+    const std::size_t first = i;
+    i = plain_steps(i, count, sign_of(motion_));
+    end_block(n, first, i);
+    return i;
+}
+
+std::size_t Rk4Engine::move_freely(std::size_t n, std::size_t i, std::size_t count) {
+    begin_block(i, count);
+    const std::size_t first = i;
+    while (i < count) {
+        i = plain_steps(i, count, sign_of(motion_));
+        if (i == count) break;
+        // The step in which the velocity changes sign is a step like the others, only noted.
+        const State y{theta_[i], velocity_[i]};
+        const State y1 = full_(y, push_theta_[i], push_velocity_[i]);
+        const double a = acceleration(forcing_[i], y), a1 = acceleration(forcing_[i + 1], y1);
+        record_turns(time(n + i), full_.h, sign_of(motion_), y, a, y1, a1);
+        theta_[i + 1] = y1.theta;
+        velocity_[i + 1] = y1.velocity;
+        ++i;
+    }
+    end_block(n, first, i);
+    return i;
+}
+
+/// The state at step i becomes the present, and the rows since step `first` are written.
+void Rk4Engine::end_block(std::size_t n, std::size_t first, std::size_t i) {
+    std::size_t good = i;
+    while (good > first && !(std::isfinite(theta_[good]) && std::isfinite(velocity_[good]))) --good;
+    block_rows(n, first, good);
+    t_ = time(n + i), y_ = {theta_[i], velocity_[i]}, M_ = M_at_step_[i];
+}
+
+void Rk4Engine::block_rows(std::size_t n, std::size_t first, std::size_t last) {
+    const double friction = 0.0 - friction_;
+    if (steps_per_row_ == 1 && rows_.next_row() == n + first) {
+        rows_.put_block(last - first, &theta_[first], &velocity_[first], &M_at_step_[first], friction);
+        return;
+    }
+    for (std::size_t i = first; i < last && rows_.next_time() < never; ++i) {
+        const double end = time(n + i + 1);
+        if (steps_per_row_ != 0) {
+            // Rows that fall on steps: from row to row without looking at the steps between.
+            i = std::max(i, rows_.next_row() * steps_per_row_ - n);
+            if (i >= last) return;
+            rows_.put({theta_[i], velocity_[i]}, M_at_step_[i], friction);
+        } else if (rows_.next_time() < end) {
+            const State y{theta_[i], velocity_[i]}, y1{theta_[i + 1], velocity_[i + 1]};
+            t_ = time(n + i), y_ = y, M_ = M_at_step_[i];
+            rows_until(
+                end, StepInterpolant(full_.h, y, acceleration(forcing_[i], y), y1, acceleration(forcing_[i + 1], y1)));
+        }
+    }
+}
+
+std::size_t Rk4Engine::rest(std::size_t n, std::size_t i, std::size_t count) {
+    // Well within the limit, also between the samples: a parabola through three of them rises above the highest by
+    // no more than an eighth of their second difference; a quarter is the careful side.
+    const double limit = system_.breakaway() * (1 - 1e-9);
+    const double k_theta = system_.stiffness() * y_.theta;
+    double e = std::fabs(M_ - k_theta);
+    for (; i < count; ++i) {
+        const double em = std::fabs(samples_[2 * i] - k_theta), e1 = std::fabs(samples_[2 * i + 1] - k_theta);
+        if (!(std::max({e, em, e1}) + std::fabs(e - 2 * em + e1) / 4 < limit)) break;
+        if (rows_.next_time() < time(n + i + 1)) {
+            t_ = time(n + i);
+            rows_standing_until(time(n + i + 1));
+        }
+        M_ = samples_[2 * i + 1], e = e1;
+    }
+    t_ = time(n + i);
+    return i;
+}
+
+void Rk4Engine::rows_until(double end, const StepInterpolant& motion) {
+    while (rows_.next_time() < end && !failed_) {
+        const double t = rows_.next_time();
+        if (t <= t_) {
+            put_row(y_, M_);
+        } else {
+            const State y = motion(t - t_);
+            put_row(y, excitation_.value(t, y));
+        }
+    }
+}
+
+void Rk4Engine::rows_standing_until(double end) {
+    while (rows_.next_time() < end && !failed_) {
+        const double t = rows_.next_time();
+        put_row(y_, t <= t_ ? M_ : excitation_.value(t, y_));
+    }
+}
+
+}  // namespace dinal

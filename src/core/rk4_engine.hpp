@@ -1,0 +1,148 @@
+// Runge-Kutta through dry friction: whole blocks of plain steps while nothing happens, single careful steps where
+// something does. The steps lie on the grid t_start + n h; events and breaks of M cut a step in pieces, and the
+// rows asked for never do, so they do not change the motion.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "core/checkpoints.hpp"
+#include "core/friction.hpp"
+#include "core/interpolation.hpp"
+#include "core/rk4_step.hpp"
+#include "core/rows.hpp"
+#include "core/simulate.hpp"
+
+namespace dinal {
+
+struct Rk4Checkpoint {
+    std::size_t step = 0;
+    State state;
+    Motion motion = Motion::stuck;
+    bool standstill = false;  ///< velocity 0 and the friction law not yet asked
+};
+
+class Rk4Engine {
+public:
+    /// `events` and `checkpoints` may be null: a replay keeps neither.
+    Rk4Engine(const Problem& problem, const Rk4& options, RowWriter& rows, std::vector<Event>* events,
+              Checkpoints<Rk4Checkpoint>* checkpoints);
+
+    /// From a checkpoint to the end of the given step; by default from the beginning to the end of the window.
+    Outcome run();
+    Outcome run(const Rk4Checkpoint& from, std::size_t last_step);
+
+    [[nodiscard]] std::size_t steps() const { return steps_; }
+    /// The time at which step n begins.
+    [[nodiscard]] double time(std::size_t n) const {
+        return n == steps_ ? window_.end : window_.start + static_cast<double>(n) * full_.h;
+    }
+    [[nodiscard]] double now() const { return t_; }
+    [[nodiscard]] Rk4Checkpoint here(std::size_t step) const { return {step, y_, motion_, standstill_}; }
+
+private:
+    static constexpr std::size_t block_steps = 128;
+    /// M in the middle and at the end of a step, when known.
+    struct Sampled {
+        double middle, end;
+    };
+    /// What one smooth step brought.
+    struct Stepped {
+        State y;
+        double M;       ///< M at its end
+        double a0, a1;  ///< accelerations at both ends
+    };
+
+    void begin_at(const Rk4Checkpoint& from);
+    /// Fills the samples of the steps n, n + 1, ... that end before the next break; returns for how many.
+    std::size_t sample_block(std::size_t n, std::size_t last_step);
+    bool run_block(std::size_t n, std::size_t count);
+    void begin_block(std::size_t i, std::size_t count);
+    std::size_t plain_steps(std::size_t i, std::size_t stop, double direction);
+    std::size_t move(std::size_t n, std::size_t i, std::size_t count);
+    std::size_t move_freely(std::size_t n, std::size_t i, std::size_t count);
+    void end_block(std::size_t n, std::size_t first, std::size_t i);
+    void block_rows(std::size_t n, std::size_t first, std::size_t last);
+    std::size_t rest(std::size_t n, std::size_t i, std::size_t count);
+
+    // The careful way, for one step or a part of it:
+    bool careful_step(double end, const Sampled* known);
+    bool piece(double end, bool break_at_end, const Sampled* known);
+    bool stay(double end, bool break_at_end);
+    void hold_still(double end, double M_end);
+    void leave_standstill();
+    bool reach_zero(const Stepped& step, double zero, double end, bool break_at_end, const Sampled* known);
+    [[nodiscard]] Stepped step(double length, double end, bool break_at_end, const Sampled* known) const;
+    [[nodiscard]] Stepped feedback_step(double length, double end, bool break_at_end) const;
+    void record_turns(double t, double h, double direction, const State& y0, double a0, const State& y1, double a1);
+    [[nodiscard]] std::optional<double> release_time(double end, bool break_at_end, double& M_end) const;
+
+    void rows_until(double end, const StepInterpolant& motion);
+    void rows_standing_until(double end);
+    void put_row(const State& y, double M) {
+        if (std::isfinite(M) && std::isfinite(y.theta) && std::isfinite(y.velocity)) {
+            rows_.put(y, M, friction_torque(system_, system_.frictionless() ? Motion::forward : motion_, M, y.theta));
+        } else {
+            failed_ = true;
+        }
+    }
+    void record(EventKind kind);
+    bool fail(Outcome outcome) {
+        outcome_ = outcome;
+        return false;
+    }
+    [[nodiscard]] bool finite() {
+        if (!std::isfinite(M_)) return fail(Outcome::excitation_not_finite);
+        if (!std::isfinite(y_.theta) || !std::isfinite(y_.velocity)) return fail(Outcome::state_not_finite);
+        return !failed_ || fail(Outcome::excitation_not_finite);
+    }
+    [[nodiscard]] double M_at(double t, double end, bool break_at_end, const State& y) const {
+        return break_at_end && t == end ? excitation_.value_before(t, y) : excitation_.value(t, y);
+    }
+    /// F/I for the torque M and the present direction of motion.
+    [[nodiscard]] double forcing(double M) const { return (M - friction_) * inverse_inertia_; }
+    [[nodiscard]] double acceleration(double f, const State& y) const {
+        return f - full_.c * y.velocity - full_.w * y.theta;
+    }
+
+    const Oscillator& system_;
+    const Excitation& excitation_;
+    const Monitor& monitor_;
+    State initial_;
+    Window window_;
+    RowWriter& rows_;
+    std::vector<Event>* events_;
+    Checkpoints<Rk4Checkpoint>* checkpoints_;
+
+    AffineStep full_;
+    std::size_t steps_;
+    std::size_t steps_per_row_;
+    double inverse_inertia_;
+    bool feedback_;
+    double constant_from_;
+
+    double t_ = 0;  // the present: time, state, M (from the right), motion
+    State y_;
+    double M_ = 0;
+    Motion motion_ = Motion::stuck;
+    bool standstill_ = false;  // velocity 0: the law must be asked before the next piece
+    bool at_start_ = false;    // ... and nothing that it says is an event
+    double friction_ = 0;      // Rd sgn(velocity) of the present motion
+    bool failed_ = false;      // M between the steps, at a row, was not finite
+    Outcome outcome_ = Outcome::reached_end;
+
+    // One block: M in the middle and at the end of each step, what follows from it for the present motion, and the
+    // states at the steps.
+    template <std::size_t n>
+    using Block = std::array<double, n>;
+    Block<2 * block_steps> times_{};
+    Block<2 * block_steps> samples_{};
+    Block<block_steps + 1> M_at_step_{};
+    Block<block_steps + 1> forcing_{};
+    Block<block_steps> push_theta_{};
+    Block<block_steps> push_velocity_{};
+    Block<block_steps + 1> theta_{};
+    Block<block_steps + 1> velocity_{};
+};
+
+}  // namespace dinal

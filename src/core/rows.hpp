@@ -1,0 +1,80 @@
+// Puts the rows of a run into its trajectory, each exactly at its time on the grid that the user asked for.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+
+#include "core/friction.hpp"
+#include "core/simulate.hpp"
+
+namespace dinal {
+
+class RowWriter {
+public:
+    /// The grid went through Grid::within; the columns get room for all of it.
+    RowWriter(const Oscillator& system, const Grid& grid, Trajectory& trajectory)
+        : grid_(grid), trajectory_(trajectory), damping_(system.damping()) {
+        trajectory.names = column_names();
+        trajectory.rows.resize(static_cast<Eigen::Index>(grid.count()), column_count);
+        column_ = trajectory.rows.data();
+        set_next();
+    }
+    RowWriter(const RowWriter&) = delete;
+    RowWriter& operator=(const RowWriter&) = delete;
+
+    /// The time of the row to be written next; `never` when all are.
+    [[nodiscard]] double next_time() const { return next_time_; }
+    [[nodiscard]] std::size_t next_row() const { return next_; }
+
+    void put(const State& y, double M, double friction) {
+        double* row = column_ + next_;
+        const std::size_t stride = grid_.count();
+        row[0] = next_time_;
+        row[stride] = y.theta;
+        row[2 * stride] = y.velocity;
+        row[3 * stride] = M;
+        row[4 * stride] = friction;
+        row[5 * stride] = 0.0 - damping_ * y.velocity;  // 0 - x: never -0
+        ++next_;
+        set_next();
+    }
+    /// Consecutive rows of one motion: the same, column by column.
+    void put_block(std::size_t count, const double* theta, const double* velocity, const double* M, double friction) {
+        count = std::min(count, grid_.count() - next_);
+        double* row = column_ + next_;
+        const std::size_t stride = grid_.count();
+        for (std::size_t i = 0; i < count; ++i) row[i] = grid_.time(next_ + i);
+        std::copy_n(theta, count, row + stride);
+        std::copy_n(velocity, count, row + 2 * stride);
+        std::copy_n(M, count, row + 3 * stride);
+        std::fill_n(row + 4 * stride, count, friction);
+        for (std::size_t i = 0; i < count; ++i) row[5 * stride + i] = 0.0 - damping_ * velocity[i];
+        next_ += count;
+        set_next();
+    }
+    /// A run that ended early keeps only the rows it wrote.
+    void finish() {
+        if (next_ < grid_.count()) {
+            trajectory_.rows.conservativeResize(static_cast<Eigen::Index>(next_), column_count);
+        }
+    }
+    /// How many steps of length h lie between two rows, when rows and steps coincide to rounding; else 0.
+    [[nodiscard]] std::size_t steps_per_row(double h) const {
+        const double ratio = grid_.dt() / h;
+        const double whole = std::round(ratio);
+        return whole >= 1 && std::fabs(ratio - whole) <= 4e-16 * whole ? static_cast<std::size_t>(whole) : 0;
+    }
+
+private:
+    void set_next() { next_time_ = next_ < grid_.count() ? grid_.time(next_) : never; }
+
+    const Grid& grid_;
+    Trajectory& trajectory_;
+    double damping_;
+    double* column_ = nullptr;
+    std::size_t next_ = 0;
+    double next_time_ = never;
+};
+
+}  // namespace dinal

@@ -1,0 +1,86 @@
+#include "core/simulate.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "core/methods.hpp"
+
+namespace dinal {
+
+namespace {
+
+/// One sentence about the first wrong entry of a list of times, or none.
+std::optional<Error> wrong_times(const std::vector<double>& times, const Window& window) {
+    for (std::size_t i = 0; i < times.size(); ++i) {
+        const double t = times[i];
+        if (!std::isfinite(t)) return Error{fmt::format("times[{}] = {} must be a finite number", i + 1, t)};
+        if (i > 0 && !(t > times[i - 1])) {
+            return Error{fmt::format("times[{}] = {:.17g} is not after times[{}] = {:.17g}: times must increase", i + 1,
+                                     t, i, times[i - 1])};
+        }
+        if (t < window.start || t > window.end) {
+            return Error{fmt::format("times[{}] = {:.17g} is outside the run from t_start = {:.6g} to t_end = {:.6g}",
+                                     i + 1, t, window.start, window.end)};
+        }
+    }
+    return {};
+}
+
+/// Rows that stay within memory, told in the user's options.
+std::optional<Error> too_many_rows(double count, const Grid& grid, const Window& window, const Limits& limits) {
+    const double bytes = count * column_count * sizeof(double);
+    if (bytes <= static_cast<double>(limits.memory)) return {};
+    const double most = static_cast<double>(limits.memory) / (column_count * sizeof(double));
+    return Error{
+        fmt::format("{:.3g} rows need {:.3g} GB and {:.3g} GB are allowed: use dt >= {:.2g}, or times = {{...}}", count,
+                    bytes / 1e9, static_cast<double>(limits.memory) / 1e9,
+                    std::max(grid.dt(), (window.end - window.start) / most))};
+}
+
+/// Rows of the grid with spacing dt: start + i dt before the end, and the end. As a double, because it may be too many.
+double row_count(const Window& window, double dt) {
+    const double ratio = (window.end - window.start) / dt;
+    const double whole = std::round(ratio);
+    // A last interval shorter than the rounding of the division is no interval.
+    return std::fabs(ratio - whole) <= 4e-16 * whole ? whole + 1 : std::floor(ratio) + 2;
+}
+
+}  // namespace
+
+Expected<Grid> Grid::within(const Window& window) const {
+    Grid grid = *this;
+    grid.window_ = window;
+    grid.count_ = times_.size();
+    if (dt_ != 0) {
+        if (!(dt_ > 0) || !std::isfinite(dt_))
+            return Error{fmt::format("dt = {:.6g} must be positive and finite", dt_)};
+        grid.count_ = static_cast<std::size_t>(std::min(row_count(window, dt_), 1e18));
+    } else if (auto wrong = wrong_times(times_, window)) {
+        return *wrong;
+    }
+    return grid;
+}
+
+Expected<Trajectory> simulate(const Oscillator& system, const Excitation& excitation, const State& initial,
+                              const Window& window, const Grid& rows, const Integrator& integrator,
+                              const Monitor& monitor, const Limits& limits) {
+    if (!std::isfinite(initial.theta)) return Error{fmt::format("theta0 = {} must be a finite number", initial.theta)};
+    if (!std::isfinite(initial.velocity))
+        return Error{fmt::format("velocity0 = {} must be a finite number", initial.velocity)};
+    if (!std::isfinite(window.start)) return Error{fmt::format("t_start = {} must be a finite number", window.start)};
+    if (!std::isfinite(window.end)) return Error{fmt::format("t_end = {} must be a finite number", window.end)};
+    if (!(window.end > window.start)) {
+        return Error{fmt::format("t_end = {:.6g} must be after t_start = {:.6g}", window.end, window.start)};
+    }
+    auto grid = rows.within(window);
+    if (!grid) return grid.error();
+    if (auto wrong = too_many_rows(static_cast<double>(grid->count()), *grid, window, limits)) return *wrong;
+    auto method = validated(integrator, system);
+    if (!method) return method.error();
+
+    const Problem problem{system, excitation, initial, window, *grid, monitor};
+    return std::visit([&](const auto& options) { return run(problem, options); }, *method);
+}
+
+}  // namespace dinal

@@ -1,0 +1,75 @@
+// The one entry point of the core: a system, an excitation and an integrator go in, a trajectory comes out.
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <vector>
+
+#include "core/excitation.hpp"
+#include "core/expected.hpp"
+#include "core/integrator.hpp"
+#include "core/oscillator.hpp"
+#include "core/trajectory.hpp"
+
+namespace dinal {
+
+/// The span of time of a run; start < end, both finite.
+struct Window {
+    double start = 0;
+    double end = 0;
+};
+
+/// The times at which rows are wanted.
+class Grid {
+public:
+    /// start, start + dt, ... and always end as the last row, exactly.
+    static Grid every(double dt) { return Grid(dt, {}); }
+    /// These times, strictly increasing and within the window; none at all is fine.
+    static Grid at(std::vector<double> times) { return Grid(0, std::move(times)); }
+    static Grid none() { return Grid(0, {}); }
+
+    /// Fails when dt is not positive, the times do not increase or leave the window.
+    [[nodiscard]] Expected<Grid> within(const Window& window) const;
+    [[nodiscard]] double dt() const { return dt_; }
+    [[nodiscard]] const std::vector<double>& times() const { return times_; }
+
+    // Of a grid that went through within():
+    [[nodiscard]] std::size_t count() const { return count_; }
+    [[nodiscard]] double time(std::size_t row) const {
+        if (dt_ == 0) return times_[row];
+        return row + 1 == count_ ? window_.end : window_.start + static_cast<double>(row) * dt_;
+    }
+
+private:
+    Grid(double dt, std::vector<double> times) : dt_(dt), times_(std::move(times)) {}
+
+    double dt_;
+    std::vector<double> times_;
+    Window window_;
+    std::size_t count_ = 0;
+};
+
+/// Called now and then with the time reached; false stops the run, which keeps what it has (Outcome::interrupted).
+using Monitor = std::function<bool(double t)>;
+
+struct Limits {
+    std::size_t memory = std::size_t{4} << 30;  ///< bytes that the rows may take
+};
+
+/// One run as its integrator sees it: all of it checked.
+struct Problem {
+    const Oscillator& system;
+    const Excitation& excitation;
+    State initial;
+    Window window;
+    const Grid& rows;
+    const Monitor& monitor;
+};
+
+/// Runs from `initial` at window.start. Fails (before the first step) when the window, the grid or the integrator's
+/// options are wrong or the rows would not fit; whatever happens later is told by the outcome of the trajectory.
+Expected<Trajectory> simulate(const Oscillator& system, const Excitation& excitation, const State& initial,
+                              const Window& window, const Grid& rows, const Integrator& integrator,
+                              const Monitor& monitor = {}, const Limits& limits = {});
+
+}  // namespace dinal

@@ -1,0 +1,20 @@
+// Did-you-mean: the known names that a misspelt word probably stands for.
+#pragma once
+
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace dinal {
+
+/// The best matches for a word that is not among the known ones: two at most, none when nothing is close or too much
+/// is. Close is one slip (a letter wrong, missing, too many, two swapped) in words of up to four letters, two in longer
+/// ones; different case counts as one slip, and as none when nothing else differs. The beginning of a longer name
+/// (three letters or more) is close, too.
+std::vector<std::string> suggestions(std::string_view word, std::span<const std::string_view> known);
+
+/// The same as the end of a sentence: "", "; did you mean 'theta'?" or "; did you mean 'Rd' or 'Re'?".
+std::string did_you_mean(std::string_view word, std::span<const std::string_view> known);
+
+}  // namespace dinal

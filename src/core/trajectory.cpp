@@ -1,0 +1,100 @@
+#include "core/trajectory.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace dinal {
+
+const std::vector<std::string>& column_names() {
+    static const std::vector<std::string> names{"t", "theta", "velocity", "M", "friction", "damping"};
+    return names;
+}
+
+std::optional<Eigen::Index> Trajectory::find(std::string_view name) const {
+    const auto it = std::find(names.begin(), names.end(), name);
+    if (it == names.end()) return {};
+    return static_cast<Eigen::Index>(it - names.begin());
+}
+
+namespace {
+
+/// Cubic interpolation between the rows of a trajectory that has no integrator behind it.
+Expected<State> between_rows(const Trajectory& trajectory, double t) {
+    const auto time = trajectory.find("t"), theta = trajectory.find("theta"), velocity = trajectory.find("velocity");
+    if (!time || !theta || !velocity) return Error{"at() needs the columns t, theta and velocity"};
+    const auto& rows = trajectory.rows;
+    const Eigen::Index n = rows.rows();
+    const double* begin = rows.col(*time).data();
+    if (n == 0 || !(t >= begin[0]) || !(t <= begin[n - 1])) {
+        return Error{
+            n == 0 ? "at() needs rows and there are none"
+                   : fmt::format("t = {:.6g} is outside the rows from {:.6g} to {:.6g}", t, begin[0], begin[n - 1])};
+    }
+    const Eigen::Index i =
+        std::min<Eigen::Index>(std::max<Eigen::Index>(std::upper_bound(begin, begin + n, t) - begin, 1), n - 1);
+    if (n == 1 || begin[i - 1] == t) {
+        const Eigen::Index row = n == 1 ? 0 : i - 1;
+        return State{rows(row, *theta), rows(row, *velocity)};
+    }
+    const double h = begin[i] - begin[i - 1];
+    const double s = (t - begin[i - 1]) / h;
+    const double y0 = rows(i - 1, *theta), y1 = rows(i, *theta);
+    const double v0 = h * rows(i - 1, *velocity), v1 = h * rows(i, *velocity);
+    const double c2 = 3 * (y1 - y0) - 2 * v0 - v1, c3 = 2 * (y0 - y1) + v0 + v1;
+    return State{y0 + s * (v0 + s * (c2 + s * c3)), (v0 + s * (2 * c2 + s * 3 * c3)) / h};
+}
+
+std::string events_text(const std::vector<Event>& events) {
+    if (events.empty()) return "no events";
+    std::array<int, 4> counts{};
+    for (const Event& event : events) ++counts.at(static_cast<std::size_t>(event.kind));
+    std::string parts;
+    for (const EventKind kind : {EventKind::turn, EventKind::stick, EventKind::slip, EventKind::rest}) {
+        const int n = counts.at(static_cast<std::size_t>(kind));
+        if (n == 0) continue;
+        if (!parts.empty()) parts += ", ";
+        parts += fmt::format("{} {}{}", n, name(kind), n == 1 || kind == EventKind::rest ? "" : "s");
+    }
+    return fmt::format("{} event{} ({})", events.size(), events.size() == 1 ? "" : "s", parts);
+}
+
+}  // namespace
+
+Expected<State> Trajectory::at(double t) const {
+    if (!dense) return between_rows(*this, t);
+    if (!(t >= t_start) || !(t <= t_stop)) {
+        return Error{fmt::format("t = {:.6g} is outside the run from {:.6g} to {:.6g}", t, t_start, t_stop)};
+    }
+    return dense(t);
+}
+
+std::string summary(const Trajectory& trajectory) {
+    const auto& rows = trajectory.rows;
+    std::string text = fmt::format("{} row{}", rows.rows(), rows.rows() == 1 ? "" : "s");
+    if (!trajectory.dense) {
+        for (std::size_t i = 0; i < trajectory.names.size(); ++i)
+            text += (i == 0 ? " of " : ", ") + trajectory.names[i];
+        return text;
+    }
+    text +=
+        fmt::format(", t {:.6g} … {:.6g}; {}; ", trajectory.t_start, trajectory.t_stop, events_text(trajectory.events));
+    switch (trajectory.outcome) {
+        case Outcome::reached_end:
+            text += "moving at the end";
+            break;
+        case Outcome::at_rest:
+            text += "at rest";
+            break;
+        default:
+            text += sentence(trajectory.outcome);
+    }
+    if (const auto theta = trajectory.find("theta"); theta && rows.rows() > 0) {
+        text += fmt::format("; peak |theta| {:.3g}", rows.col(*theta).cwiseAbs().maxCoeff());
+    }
+    return text;
+}
+
+}  // namespace dinal

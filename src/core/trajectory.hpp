@@ -1,0 +1,48 @@
+// What a run leaves behind: named columns, events, how it ended, and the motion between the rows.
+#pragma once
+
+#include <Eigen/Core>
+#include <functional>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/event.hpp"
+#include "core/expected.hpp"
+#include "core/oscillator.hpp"
+#include "core/outcome.hpp"
+
+namespace dinal {
+
+/// The columns of a computed run, in this order: theta rad, velocity rad per time unit, the rest torques on the mass.
+enum class Column : int { t, theta, velocity, M, friction, damping };
+inline constexpr int column_count = 6;
+const std::vector<std::string>& column_names();
+
+/// theta and velocity at any time the run covers, at the accuracy of its integrator.
+using DenseOutput = std::function<Expected<State>(double t)>;
+
+struct Trajectory {
+    std::vector<std::string> names;  ///< one for each column of `rows`
+    Eigen::MatrixXd rows;            ///< column-major: a column is contiguous. Never NaN.
+    std::vector<Event> events;       ///< in order of time
+    Outcome outcome = Outcome::reached_end;
+    double t_start = 0;
+    double t_stop = 0;  ///< how far it came: t_end unless the outcome says otherwise
+    DenseOutput dense;  ///< empty for a trajectory that was read from a file
+
+    [[nodiscard]] Eigen::Index size() const { return rows.rows(); }
+    [[nodiscard]] std::optional<Eigen::Index> find(std::string_view name) const;
+    [[nodiscard]] auto column(Column which) const { return rows.col(static_cast<Eigen::Index>(which)); }
+
+    /// theta and velocity at t: from the integrator when it can, else by cubic interpolation of the rows.
+    /// Fails when t is outside the run or there are no such columns.
+    [[nodiscard]] Expected<State> at(double t) const;
+};
+
+/// The one-line summary: "2001 rows, t 0 … 20; 41 events (39 turns, 1 stick, 1 slip); moving at the end; peak
+/// |theta| 1.96".
+std::string summary(const Trajectory& trajectory);
+
+}  // namespace dinal
