@@ -2,6 +2,8 @@
 
 #include <array>
 
+#include <array>
+
 #include "core/terms.hpp"
 
 namespace dinal {
@@ -115,15 +117,31 @@ std::size_t add(const Harmonic& h, const Component& c, std::span<const double> t
     return n;
 }
 
+/// In blocks, which are short enough for the stack.
 std::size_t add(const Scripted& script, const Component& c, std::span<const double> times, std::span<double> out) {
-    for (std::size_t i = 0; i < times.size(); ++i) {
-        if (times[i] < c.from || times[i] >= c.to) {
+    constexpr std::size_t block = 128;
+    std::array<double, block> own_times;
+    std::array<double, block> values;
+    const auto outside = [&c](double t) { return t < c.from || t >= c.to; };
+    std::size_t i = 0;
+    while (i < times.size()) {
+        if (outside(times[i])) {
+            ++i;
             continue;
         }
-        out[i] += c.gain * ask(script, times[i], {}, Side::at);
-        if (!std::isfinite(out[i])) {
-            return i;
+        std::size_t n = 0;
+        for (; n < block && i + n < times.size() && !outside(times[i + n]); ++n) {
+            own_times[n] = times[i + n] - script.delay;
         }
+        const std::size_t good = script.function->fill({own_times.data(), n}, {values.data(), n});
+        for (std::size_t j = 0; j < good; ++j) {
+            out[i + j] += c.gain * values[j];
+        }
+        if (good < n) {
+            out[i + good] = values[good];
+            return i + good;
+        }
+        i += n;
     }
     return times.size();
 }

@@ -3,6 +3,8 @@
 // Every term is continuous from the right: at a break, value(t) is already the new level.
 #pragma once
 
+#include <cmath>
+#include <cstddef>
 #include <limits>
 #include <memory>
 #include <span>
@@ -84,6 +86,17 @@ public:
     virtual ~UserFunction() = default;
     /// NaN says that the function failed (and that its owner knows why): the run ends there.
     virtual double value(double t, const State& state) = 0;
+    /// out[i] = value(times[i]) in this order, up to and including the first that is not finite; returns how many are.
+    // Virtual, too: the way into the user's language is paid once for a block.
+    virtual std::size_t fill(std::span<const double> times, std::span<double> out) {
+        for (std::size_t i = 0; i < times.size(); ++i) {
+            out[i] = value(times[i], State{});
+            if (!std::isfinite(out[i])) {
+                return i;
+            }
+        }
+        return times.size();
+    }
 };
 /// A user's function, delayed by `delay`, with what he says about it.
 // Shared ownership: every excitation and every trajectory that contains the function keeps it alive.

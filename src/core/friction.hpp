@@ -20,9 +20,16 @@ inline Motion motion_of(double velocity) {
 }
 
 /// How far the torque on a mass at velocity zero is past what sticking can hold: |M - k theta| - Re.
-/// Computed as if in exact arithmetic and rounded once per operation, because the limit is a razor's edge.
+/// The limit is a razor's edge, so M -+ Re is kept in two parts and the product is fused: what is left near the limit
+/// is the exact difference, rounded once.
 inline double breakaway_excess(const Oscillator& system, double M, double theta) {
-    return std::fabs(std::fma(-system.stiffness(), theta, M)) - system.breakaway();
+    const double k = system.stiffness();
+    const double side = std::fma(-k, theta, M) < 0 ? -1 : 1;
+    const double m = side * M;
+    const double sum = m - system.breakaway();
+    const double part = sum - m;
+    const double rest = (m - (sum - part)) - (system.breakaway() + part);
+    return std::fma(-k, side * theta, sum) + rest;
 }
 
 /// What a mass at velocity zero does under the torque M: stay (|M - k theta| <= Re), or move off towards M - k theta.

@@ -1,6 +1,7 @@
 // The careful steps of the Runge-Kutta engine: pieces between events and breaks of M, and what happens at velocity 0.
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "core/rk4_engine.hpp"
 
@@ -48,7 +49,7 @@ bool Rk4Engine::piece(double end, bool break_at_end, const Sampled* known) {
         if (events > most_events_in_a_piece) return fail(Outcome::chattering);
         if (standstill_) leave_standstill();
         if (!system_.frictionless() && motion_ == Motion::stuck) {
-            if (!stay(end, break_at_end)) return false;
+            if (!stay(end, break_at_end, known)) return false;
             continue;
         }
         const double length = end - t_;
@@ -163,11 +164,11 @@ void Rk4Engine::hold_still(double end, double M_end) {
 }
 
 /// Stuck, up to the end of the piece or the first time that |M - k theta| > Re.
-bool Rk4Engine::stay(double end, bool break_at_end) {
+bool Rk4Engine::stay(double end, bool break_at_end, const Sampled* known) {
     Motion next = motion_from_standstill(system_, M_, y_.theta);
     if (next == Motion::stuck) {
         double M_end = M_;
-        const auto release = release_time(end, break_at_end, M_end);
+        const auto release = release_time(end, break_at_end, known, M_end);
         if (!std::isfinite(M_end)) return fail(Outcome::excitation_not_finite);
         rows_standing_until(release.value_or(end));
         t_ = release.value_or(end), M_ = M_end;
@@ -182,23 +183,25 @@ bool Rk4Engine::stay(double end, bool break_at_end) {
     return finite();
 }
 
-std::optional<double> Rk4Engine::release_time(double end, bool break_at_end, double& M_end) const {
+std::optional<double> Rk4Engine::release_time(double end, bool break_at_end, const Sampled* known,
+                                              double& M_end) const {
     const auto M = [&](double t) { return M_at(t, end, break_at_end, y_); };
     // Positive exactly when the friction law lets go.
-    const auto excess = [&](double t) {
-        const double torque = M(t);
-        if (motion_from_standstill(system_, torque, y_.theta) == Motion::stuck) {
-            return std::min(breakaway_excess(system_, torque, y_.theta), 0.0);
-        }
-        return breakaway_excess(system_, torque, y_.theta);
+    const auto excess_of = [&](double torque) {
+        const double excess = breakaway_excess(system_, torque, y_.theta);
+        const bool holds = motion_from_standstill(system_, torque, y_.theta) == Motion::stuck;
+        return holds ? std::min(excess, 0.0) : excess;
     };
+    const auto excess = [&](double t) { return excess_of(M(t)); };
+    const bool whole = known != nullptr && end - t_ > full_.h * (1 - 1e-9);
     const double middle = t_ + (end - t_) / 2;
-    const double e0 = std::min(breakaway_excess(system_, M_, y_.theta), 0.0), em = excess(middle), e1 = excess(end);
-    M_end = M(end);
-    if (!std::isfinite(em) || !std::isfinite(e1)) {
-        M_end = em + e1;
+    const double M_middle = whole ? known->middle : M(middle);
+    M_end = known != nullptr ? known->end : M(end);
+    if (!std::isfinite(M_middle) || !std::isfinite(M_end)) {
+        M_end = M_middle + M_end;
         return {};
     }
+    const double e0 = std::min(excess_of(M_), 0.0), em = excess_of(M_middle), e1 = excess_of(M_end);
     double left = t_, e_left = e0, right = end, e_right = e1;
     if (!(em > 0)) {
         // A peak between the samples: the parabola through them says whether it can reach the limit.
@@ -218,10 +221,20 @@ std::optional<double> Rk4Engine::release_time(double end, bool break_at_end, dou
     return release;
 }
 
+/// Whether this is a system at its equilibrium, whose velocity changes sign by rounding alone.
+bool Rk4Engine::lost_in_rounding(const State& y, double a) const {
+    constexpr double few_ulps = 32 * std::numeric_limits<double>::epsilon();
+    constexpr double nothing = 1e-290;  // products of smaller numbers lose their digits to underflow
+    return std::fabs(a) <= few_ulps * full_.w * std::fabs(y.theta) ||
+           (std::fabs(y.velocity) < nothing && std::fabs(y.theta) < nothing);
+}
+
 void Rk4Engine::record_turns(double t, double h, double direction, const State& y0, double a0, const State& y1,
                              double a1) {
+    if (!std::isfinite(y1.theta) || !std::isfinite(y1.velocity)) return;  // no events on the way out of the numbers
     const StepInterpolant motion(h, y0, a0, y1, a1);
     if (direction == 0) direction = sign_of(motion_of(y0.velocity != 0 ? y0.velocity : a0 != 0 ? a0 : y1.velocity));
+    if (lost_in_rounding(y0, a0) && lost_in_rounding(y1, a1)) direction = 0;
     double from = 0;
     State y = y0;
     double a = a0;
@@ -244,7 +257,8 @@ void Rk4Engine::record_turns(double t, double h, double direction, const State& 
         if (x >= h) break;
         from = x;
     }
-    motion_ = direction > 0 ? Motion::forward : direction < 0 ? Motion::backward : Motion::stuck;
+    // Whatever was found, the next step begins with the velocity that this one ended with.
+    motion_ = motion_of(y1.velocity != 0 ? y1.velocity : direction);
 }
 
 void Rk4Engine::record(EventKind kind) {

@@ -36,7 +36,10 @@ Rk4Engine::Rk4Engine(const Problem& problem, const Rk4& options, RowWriter& rows
 
 Outcome Rk4Engine::run() {
     at_start_ = true;
-    return run({0, initial_, motion_of(initial_.velocity), initial_.velocity == 0}, steps_);
+    const double t = window_.start;
+    const bool at_break = excitation_.next_break(std::nextafter(t, -never)) == t;
+    const double M = at_break ? excitation_.value_after(t, initial_) : excitation_.value(t, initial_);
+    return run({0, initial_, M, motion_of(initial_.velocity), initial_.velocity == 0}, steps_);
 }
 
 Outcome Rk4Engine::run(const Rk4Checkpoint& from, std::size_t last_step) {
@@ -49,7 +52,7 @@ Outcome Rk4Engine::run(const Rk4Checkpoint& from, std::size_t last_step) {
             outcome_ = Outcome::interrupted;
             break;
         }
-        if (!standstill_ && motion_ == Motion::stuck && constant_from_ <= t_ && !system_.frictionless()) {
+        if (stuck_for_good()) {
             rows_standing_until(never);  // nothing will ever move it again
             t_ = window_.end;
             break;
@@ -75,13 +78,18 @@ Outcome Rk4Engine::run(const Rk4Checkpoint& from, std::size_t last_step) {
     return outcome_;
 }
 
+bool Rk4Engine::stuck_for_good() const {
+    return !system_.frictionless() && !standstill_ && motion_ == Motion::stuck && constant_from_ <= t_ &&
+           motion_from_standstill(system_, M_, y_.theta) == Motion::stuck;
+}
+
 void Rk4Engine::begin_at(const Rk4Checkpoint& from) {
     t_ = time(from.step);
     y_ = from.state;
     motion_ = from.motion;
     standstill_ = from.standstill && !system_.frictionless();
     friction_ = system_.kinetic_friction() * sign_of(motion_);
-    M_ = excitation_.value_after(t_, y_);
+    M_ = from.M;
 }
 
 std::size_t Rk4Engine::sample_block(std::size_t n, std::size_t last_step) {

@@ -18,6 +18,7 @@ namespace dinal {
 struct Rk4Checkpoint {
     std::size_t step = 0;
     State state;
+    double M = 0;
     Motion motion = Motion::stuck;
     bool standstill = false;  ///< velocity 0 and the friction law not yet asked
 };
@@ -38,7 +39,7 @@ public:
         return n == steps_ ? window_.end : window_.start + static_cast<double>(n) * full_.h;
     }
     [[nodiscard]] double now() const { return t_; }
-    [[nodiscard]] Rk4Checkpoint here(std::size_t step) const { return {step, y_, motion_, standstill_}; }
+    [[nodiscard]] Rk4Checkpoint here(std::size_t step) const { return {step, y_, M_, motion_, standstill_}; }
 
 private:
     static constexpr std::size_t block_steps = 128;
@@ -53,6 +54,7 @@ private:
         double a0, a1;  ///< accelerations at both ends
     };
 
+    [[nodiscard]] bool stuck_for_good() const;
     void begin_at(const Rk4Checkpoint& from);
     /// Fills the samples of the steps n, n + 1, ... that end before the next break; returns for how many.
     std::size_t sample_block(std::size_t n, std::size_t last_step);
@@ -68,14 +70,16 @@ private:
     // The careful way, for one step or a part of it:
     bool careful_step(double end, const Sampled* known);
     bool piece(double end, bool break_at_end, const Sampled* known);
-    bool stay(double end, bool break_at_end);
+    bool stay(double end, bool break_at_end, const Sampled* known);
     void hold_still(double end, double M_end);
     void leave_standstill();
     bool reach_zero(const Stepped& step, double zero, double end, bool break_at_end, const Sampled* known);
     [[nodiscard]] Stepped step(double length, double end, bool break_at_end, const Sampled* known) const;
     [[nodiscard]] Stepped feedback_step(double length, double end, bool break_at_end) const;
+    [[nodiscard]] bool lost_in_rounding(const State& y, double a) const;
     void record_turns(double t, double h, double direction, const State& y0, double a0, const State& y1, double a1);
-    [[nodiscard]] std::optional<double> release_time(double end, bool break_at_end, double& M_end) const;
+    [[nodiscard]] std::optional<double> release_time(double end, bool break_at_end, const Sampled* known,
+                                                     double& M_end) const;
 
     void rows_until(double end, const StepInterpolant& motion);
     void rows_standing_until(double end);
