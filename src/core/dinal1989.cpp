@@ -214,15 +214,17 @@ State between(const Dinal& dinal, const Present& a, const Present& b, double t) 
                            dinal.acceleration(b))(t - t0);
 }
 
-/// Whether the next row is that of this very step: the listing's own numbers.
-bool on_step(const RowWriter& rows, std::size_t step, std::size_t steps_per_row) {
-    return steps_per_row != 0 && rows.next_row() * steps_per_row == step && rows.next_time() < never;
+/// Whether the next row is that of this very step: the listing's own numbers. (The last row, at t_end, need not be.)
+bool on_step(const RowWriter& rows, double t_start, double h, std::size_t step, std::size_t steps_per_row) {
+    if (steps_per_row == 0 || rows.next_row() * steps_per_row != step) return false;
+    return std::fabs(rows.next_time() - (t_start + static_cast<double>(step) * h)) < 0.5e-9 * h;
 }
 
 /// A step up to which no row is due; not the last such one where rows and steps do not coincide.
 std::size_t step_before_row(const RowWriter& rows, double t_start, double h, std::size_t steps_per_row) {
     if (rows.next_time() == never) return std::numeric_limits<std::size_t>::max();
-    if (steps_per_row != 0) return rows.next_row() * steps_per_row;
+    const std::size_t row_step = rows.next_row() * steps_per_row;
+    if (on_step(rows, t_start, h, row_step, steps_per_row)) return row_step;
     return static_cast<std::size_t>(std::max((rows.next_time() - t_start) / h - 2, 0.0));
 }
 
@@ -299,7 +301,8 @@ Trajectory run(const Problem& problem, const Dinal1989& options) {
         static_cast<std::size_t>(std::ceil(std::min((window.end - window.start) / options.h, 1e18) - 1e-9));
     std::size_t block = 0, block_end = 0, sampled = 0;
     while (finite(now)) {
-        if (on_step(rows, now.step, steps_per_row)) rows.put(dinal.state(now), dinal.M(now), dinal.friction(now));
+        if (on_step(rows, window.start, options.h, now.step, steps_per_row))
+            rows.put(dinal.state(now), dinal.M(now), dinal.friction(now));
         if (now.step == steps) break;
         if (now.step == block_end) {
             record->checkpoints.add(now);
@@ -318,7 +321,8 @@ Trajectory run(const Problem& problem, const Dinal1989& options) {
 
         const Present next = i < sampled ? dinal.step(now, i) : dinal.step(now);
         if (finite(next)) {
-            if (!on_step(rows, next.step, steps_per_row) && !rows_between(rows, dinal, now, next)) {
+            if (!on_step(rows, window.start, options.h, next.step, steps_per_row) &&
+                !rows_between(rows, dinal, now, next)) {
                 trajectory.outcome = Outcome::excitation_not_finite;
                 break;
             }

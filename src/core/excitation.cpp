@@ -94,6 +94,7 @@ bool evenly_spaced(std::span<const double> times, double spacing) {
 
 /// At evenly spaced times, as a stepping loop has them, a sine costs two products by the addition theorem:
 /// sin(a + b) with `a` at every sixteenth time and `b` from a table of sixteen. Good to the rounding of the times.
+// NOTE: but never above the amplitude, as sin() itself: a load of amplitude Re that rounding lifted would end a stick.
 std::size_t add(const Harmonic& h, const Component& c, std::span<const double> times, std::span<double> out) {
     constexpr std::size_t stride = 16;
     const std::size_t n = times.size();
@@ -106,12 +107,13 @@ std::size_t add(const Harmonic& h, const Component& c, std::span<const double> t
         sine[j] = std::sin(h.omega * (static_cast<double>(j) * spacing));
         cosine[j] = std::cos(h.omega * (static_cast<double>(j) * spacing));
     }
+    const double peak = std::fabs(c.gain * h.amplitude);
     for (std::size_t i = 0; i < n; i += stride) {
         const double angle = h.omega * times[i] + h.phase;
         const double s = c.gain * h.amplitude * std::sin(angle), k = c.gain * h.amplitude * std::cos(angle);
         const std::size_t count = std::min(stride, n - i);
         for (std::size_t j = 0; j < count; ++j) {
-            out[i + j] += s * cosine[j] + k * sine[j];
+            out[i + j] += std::clamp(s * cosine[j] + k * sine[j], -peak, peak);
         }
     }
     return n;

@@ -50,8 +50,12 @@ Integrator default_integrator(const Oscillator& system) {
     return Rk4{std::min(system.natural_period() / 1000, rk4_stability_limit(system) / 10)};
 }
 
+double step_length(const Integrator& integrator) {
+    return std::visit([](const auto& options) { return options.h; }, integrator);
+}
+
 Expected<Integrator> validated(const Integrator& integrator, const Oscillator& system) {
-    const double h = std::visit([](const auto& options) { return options.h; }, integrator);
+    const double h = step_length(integrator);
     if (!(h > 0) || !std::isfinite(h)) return Error{wrong_step(h)};
     if (std::holds_alternative<Rk4>(integrator)) {
         const double limit = rk4_stability_limit(system);

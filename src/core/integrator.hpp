@@ -33,6 +33,9 @@ double rk4_stability_limit(const Oscillator& system);
 /// What a run uses when none is asked for: rk4 with h = T0/1000, or a tenth of its stability limit if that is less.
 Integrator default_integrator(const Oscillator& system);
 
+/// h, whichever integrator it is.
+double step_length(const Integrator& integrator);
+
 /// Fails when h is not positive and finite, or rk4 could not be stable with it.
 Expected<Integrator> validated(const Integrator& integrator, const Oscillator& system);
 

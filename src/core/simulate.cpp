@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <limits>
 
 #include "core/methods.hpp"
 
@@ -46,13 +47,23 @@ double row_count(const Window& window, double dt) {
     return std::fabs(ratio - whole) <= 4e-16 * whole ? whole + 1 : std::floor(ratio) + 2;
 }
 
+/// Times that doubles can tell apart: a spacing well above the rounding of the largest time in the window.
+std::optional<Error> lost_in_time(const char* name, double spacing, const Window& window) {
+    const double latest = std::max(std::fabs(window.start), std::fabs(window.end));
+    const double least = 16 * std::numeric_limits<double>::epsilon() * latest;
+    if (spacing >= least) return {};
+    return Error{fmt::format(
+        "{} = {:.6g} is lost in the rounding of times near {:.6g}: use at least {:.2g}, or start nearer to t = 0", name,
+        spacing, latest, 1.1 * least)};
+}
+
 }  // namespace
 
 Expected<Grid> Grid::within(const Window& window) const {
     Grid grid = *this;
     grid.window_ = window;
     grid.count_ = times_.size();
-    if (dt_ != 0) {
+    if (spaced_) {
         if (!(dt_ > 0) || !std::isfinite(dt_))
             return Error{fmt::format("dt = {:.6g} must be positive and finite", dt_)};
         grid.count_ = static_cast<std::size_t>(std::min(row_count(window, dt_), 1e18));
@@ -76,8 +87,12 @@ Expected<Trajectory> simulate(const Oscillator& system, const Excitation& excita
     auto grid = rows.within(window);
     if (!grid) return grid.error();
     if (auto wrong = too_many_rows(static_cast<double>(grid->count()), *grid, window, limits)) return *wrong;
+    if (grid->dt() > 0) {
+        if (auto lost = lost_in_time("dt", grid->dt(), window)) return *lost;
+    }
     auto method = validated(integrator, system);
     if (!method) return method.error();
+    if (auto lost = lost_in_time("h", step_length(*method), window)) return *lost;
 
     const Problem problem{system, excitation, initial, window, *grid, monitor};
     return std::visit([&](const auto& options) { return run(problem, options); }, *method);

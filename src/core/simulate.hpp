@@ -23,10 +23,10 @@ struct Window {
 class Grid {
 public:
     /// start, start + dt, ... and always end as the last row, exactly.
-    static Grid every(double dt) { return Grid(dt, {}); }
+    static Grid every(double dt) { return Grid(true, dt, {}); }
     /// These times, strictly increasing and within the window; none at all is fine.
-    static Grid at(std::vector<double> times) { return Grid(0, std::move(times)); }
-    static Grid none() { return Grid(0, {}); }
+    static Grid at(std::vector<double> times) { return Grid(false, 0, std::move(times)); }
+    static Grid none() { return Grid(false, 0, {}); }
 
     /// Fails when dt is not positive, the times do not increase or leave the window.
     [[nodiscard]] Expected<Grid> within(const Window& window) const;
@@ -36,13 +36,14 @@ public:
     // Of a grid that went through within():
     [[nodiscard]] std::size_t count() const { return count_; }
     [[nodiscard]] double time(std::size_t row) const {
-        if (dt_ == 0) return times_[row];
+        if (!spaced_) return times_[row];
         return row + 1 == count_ ? window_.end : window_.start + static_cast<double>(row) * dt_;
     }
 
 private:
-    Grid(double dt, std::vector<double> times) : dt_(dt), times_(std::move(times)) {}
+    Grid(bool spaced, double dt, std::vector<double> times) : spaced_(spaced), dt_(dt), times_(std::move(times)) {}
 
+    bool spaced_;
     double dt_;
     std::vector<double> times_;
     Window window_;

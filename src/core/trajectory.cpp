@@ -80,7 +80,7 @@ std::string summary(const Trajectory& trajectory) {
         return text;
     }
     text +=
-        fmt::format(", t {:.6g} … {:.6g}; {}; ", trajectory.t_start, trajectory.t_stop, events_text(trajectory.events));
+        fmt::format(", t {:.9g} … {:.9g}; {}; ", trajectory.t_start, trajectory.t_stop, events_text(trajectory.events));
     switch (trajectory.outcome) {
         case Outcome::reached_end:
             text += "moving at the end";
