@@ -1,0 +1,199 @@
+#include "io/csv.hpp"
+
+#include <algorithm>
+#include <optional>
+#include <utility>
+
+#include "io/text_input.hpp"
+
+namespace dinal {
+namespace {
+
+enum class Separator : char { comma = ',', semicolon = ';', tab = '\t', blanks = ' ' };
+
+/// The first of these that stands in the line outside of quotes; nothing in a line of one field.
+std::optional<Separator> separator_in(std::string_view line) {
+    std::string bare;
+    bool inside = false;
+    for (const char c : trimmed(line)) {
+        inside = inside != (c == '"');
+        if (!inside) {
+            bare += c;
+        }
+    }
+    for (const Separator candidate : {Separator::semicolon, Separator::comma, Separator::tab, Separator::blanks}) {
+        if (bare.find(static_cast<char>(candidate)) != std::string::npos) {
+            return candidate;
+        }
+    }
+    return std::nullopt;
+}
+
+/// The end of the field at the front of `line`: the place of the separator, or the length of the line.
+std::size_t field_end(std::string_view line, Separator separator) {
+    bool inside = false;
+    for (std::size_t i = 0; i < line.size(); ++i) {
+        const char c = line[i];
+        if (c == '"') {
+            inside = !inside;
+        } else if (!inside && (c == static_cast<char>(separator) || (separator == Separator::blanks && c == '\t'))) {
+            return i;
+        }
+    }
+    return line.size();
+}
+
+void split(std::string_view line, Separator separator, std::vector<std::string_view>& fields) {
+    fields.clear();
+    if (separator == Separator::blanks) {
+        line = trimmed(line);
+    }
+    for (;;) {
+        const std::size_t end = field_end(line, separator);
+        fields.push_back(trimmed(line.substr(0, end)));
+        if (end == line.size()) {
+            return;
+        }
+        line.remove_prefix(end + 1);
+        if (separator == Separator::blanks) {
+            line = trimmed(line);  // any number of them is one
+        }
+    }
+}
+
+/// The name in a field of the header: without its quotes, doubled quotes inside made single.
+std::string name_in(std::string_view field, std::size_t number) {
+    const bool quoted = field.size() >= 2 && field.front() == '"' && field.back() == '"';
+    std::string name;
+    bool pending = false;
+    for (const char c : quoted ? field.substr(1, field.size() - 2) : field) {
+        pending = quoted && c == '"' && !pending;
+        if (!pending) {
+            name += c;
+        }
+    }
+    return name.empty() ? std::to_string(number) : name;
+}
+
+class CsvReader {
+public:
+    CsvReader(std::string_view text, const std::string& file) : lines_(text), file_(file) {}
+
+    Expected<Table> read() {
+        if (!next_line()) {
+            return Error{file_ + ": the file is empty, it has neither names nor numbers"};
+        }
+        std::optional<Error> fault = head();
+        while (!fault && more_) {
+            fault = row();
+        }
+        if (fault) {
+            return *fault;
+        }
+        using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+        const auto columns = static_cast<Eigen::Index>(table_.names.size());
+        table_.values =
+            Eigen::Map<const RowMajor>(numbers_.data(), static_cast<Eigen::Index>(numbers_.size()) / columns, columns);
+        return std::move(table_);
+    }
+
+private:
+    /// Goes to the next line that is neither blank nor a comment.
+    bool next_line() {
+        more_ = false;
+        while (!more_ && lines_.next()) {
+            const std::string_view line = trimmed(lines_.text());
+            if (line.starts_with('#')) {
+                keep_comment(lines_.text());
+            } else {
+                more_ = !line.empty();
+            }
+        }
+        return more_;
+    }
+
+    void keep_comment(std::string_view line) {
+        line.remove_prefix(line.find('#') + 1);
+        table_.comments.emplace_back(line.starts_with(' ') ? line.substr(1) : line);
+    }
+
+    /// Takes the line of names when the first line is one; else makes names and leaves the line for row().
+    std::optional<Error> head() {
+        const std::string_view first = lines_.text();
+        const std::size_t number = lines_.number();
+        const std::optional<Separator> of_first = separator_in(first);
+        separator_ = of_first.value_or(Separator::blanks);
+        split(first, separator_, fields_);
+        const auto is_number = [](std::string_view field) { return parse_number(field).has_value(); };
+        const auto numeric = std::count_if(fields_.begin(), fields_.end(), is_number);
+        if (numeric == 0) {
+            if (next_line()) {
+                separator_ = separator_in(lines_.text()).value_or(separator_);
+            }
+            split(first, separator_, fields_);
+            width_source_ = "as in the line of names";
+            for (const std::string_view field : fields_) {
+                table_.names.push_back(name_in(field, table_.names.size() + 1));
+            }
+            return std::nullopt;
+        }
+        if (numeric < static_cast<std::ptrdiff_t>(fields_.size())) {
+            const auto bad = std::find_if_not(fields_.begin(), fields_.end(), is_number);
+            return error_at(file_, number,
+                            "column " + std::to_string(bad - fields_.begin() + 1) + " " + number_fault(*bad) +
+                                ", but the line has numbers, too (in a line of names they must be in double quotes)");
+        }
+        width_source_ = "as in the first row";
+        for (std::size_t i = 1; i <= fields_.size(); ++i) {
+            table_.names.push_back(std::to_string(i));
+        }
+        return std::nullopt;
+    }
+
+    std::optional<Error> row() {
+        split(lines_.text(), separator_, fields_);
+        if (fields_.size() != table_.names.size()) {
+            return error_at(file_, lines_.number(),
+                            "found " + std::to_string(fields_.size()) + (fields_.size() == 1 ? " field" : " fields") +
+                                ", expected " + std::to_string(table_.names.size()) + " " + width_source_);
+        }
+        for (std::size_t i = 0; i < fields_.size(); ++i) {
+            const std::optional<double> number = parse_number(fields_[i]);
+            if (!number) {
+                std::string column = std::to_string(i + 1);
+                if (table_.names[i] != column) {
+                    column += " (" + table_.names[i] + ")";
+                }
+                return error_at(file_, lines_.number(), "column " + column + " " + number_fault(fields_[i]));
+            }
+            numbers_.push_back(*number);
+        }
+        next_line();
+        return std::nullopt;
+    }
+
+    Lines lines_;
+    const std::string& file_;
+    Table table_;
+    Separator separator_ = Separator::blanks;
+    std::string width_source_;
+    bool more_ = false;
+    std::vector<std::string_view> fields_;
+    std::vector<double> numbers_;  // row after row
+};
+
+}  // namespace
+
+Expected<Table> parse_csv(std::string_view text, const std::string& name) {
+    if (std::optional<Error> fault = binary_fault(text, name)) {
+        return *fault;
+    }
+    return CsvReader(text, name).read();
+}
+
+Expected<Table> read_csv(const std::string& path) {
+    const Expected<std::string> text = read_file(path);
+    return text ? parse_csv(*text, path) : Expected<Table>(text.error());
+}
+
+}  // namespace dinal

@@ -1,0 +1,70 @@
+// Whole files: read at once into memory; written so that a failure never leaves half a file or loses the old one.
+#pragma once
+
+#include <sys/stat.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/expected.hpp"
+
+namespace dinal {
+
+/// The bytes of a file, a pipe or a device. Fails for a folder, and for what is missing, unreadable or over 4 GiB.
+Expected<std::string> read_file(const std::string& path);
+
+/// What a finished file holds.
+struct Written {
+    std::uintmax_t bytes = 0;
+};
+
+/// A file being written. Until commit() the text goes to a temporary file in the same folder, which commit() renames;
+/// without a successful commit() the temporary is removed and an old file stays as it was. Symbolic links are followed.
+/// What exists and is no regular file (/dev/stdout, a pipe, a device) can not be renamed to and is written directly.
+// NOTE: there is no fsync: it would cost more than all the rest, and only a power cut could tell the difference.
+class OutputFile {
+public:
+    /// Fails when the place can not be written: better said before a long computation than after it.
+    static Expected<OutputFile> create(const std::string& path);
+
+    OutputFile(OutputFile&& other) noexcept;
+    OutputFile& operator=(OutputFile&&) = delete;
+    OutputFile(const OutputFile&) = delete;
+    OutputFile& operator=(const OutputFile&) = delete;
+    ~OutputFile();
+
+    /// A failure is remembered and told by commit(), so that writers need not ask after every piece.
+    void write(std::string_view text);
+
+    /// For formatting in place: at least `count` bytes to be filled from the front, then closed by used(end of text).
+    char* room(std::size_t count);
+    void used(const char* end);
+
+    /// Writes what is left and makes it the file; only now the old file is gone. To be called once.
+    Expected<Written> commit();
+
+private:
+    OutputFile(int descriptor, std::string path);
+    static Expected<OutputFile> directly(int descriptor, const std::string& path);
+    static Expected<OutputFile> beside(const std::string& target, const struct stat* old, const std::string& path);
+    void flush();
+    void abandon();
+
+    int descriptor_;
+    std::string path_;       // as the user wrote it, for the sentence
+    std::string target_;     // with links followed
+    std::string temporary_;  // empty when written directly, and after the rename
+    bool replaces_ = false;
+    std::vector<char> buffer_;
+    std::size_t filled_ = 0;
+    std::uintmax_t written_ = 0;
+    int failure_ = 0;  // the errno of the first failure
+};
+
+/// All of `text` as one file, in the way of OutputFile.
+Expected<Written> write_file(const std::string& path, std::string_view text);
+
+}  // namespace dinal

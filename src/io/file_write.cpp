@@ -1,0 +1,255 @@
+#include "io/file.hpp"
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cerrno>
+#include <charconv>
+#include <cstdio>
+#include <optional>
+#include <system_error>
+#include <utility>
+
+namespace dinal {
+namespace {
+
+constexpr std::size_t buffer_size = std::size_t{1} << 18;  // stays in the second-level cache
+constexpr int most_links = 40;                             // as the kernel has it
+
+std::string reason(int error) {
+    return std::generic_category().message(error);
+}
+
+Error can_not_write(const std::string& path, const std::string& why) {
+    return {"can not write '" + path + "': " + why};
+}
+
+/// The system would silently take the part before the NUL for the whole name.
+bool has_nul(const std::string& path) {
+    return path.find('\0') != std::string::npos;
+}
+
+std::string folder_of(const std::string& path) {
+    const std::size_t slash = path.rfind('/');
+    return slash == std::string::npos ? std::string() : path.substr(0, slash + 1);
+}
+
+/// 1 for /dev/stdout and its like. Opening these by name would start again at the beginning of a redirected file.
+std::optional<int> open_descriptor(std::string_view path) {
+    if (path == "/dev/stdout") {
+        return STDOUT_FILENO;
+    }
+    if (path == "/dev/stderr") {
+        return STDERR_FILENO;
+    }
+    for (const std::string_view folder : {"/dev/fd/", "/proc/self/fd/"}) {
+        if (path.starts_with(folder)) {
+            int number = 0;
+            const char* const end = path.data() + path.size();
+            const auto parsed = std::from_chars(path.data() + folder.size(), end, number);
+            if (parsed.ec == std::errc() && parsed.ptr == end) {
+                return number;
+            }
+        }
+    }
+    return std::nullopt;
+}
+
+/// Where a symbolic link points, relative targets seen from the link; nothing when the path is no link.
+std::optional<std::string> link_target(const std::string& path) {
+    struct stat status {};
+    if (::lstat(path.c_str(), &status) != 0 || !S_ISLNK(status.st_mode)) {
+        return std::nullopt;
+    }
+    std::string target(4096, '\0');  // PATH_MAX
+    const ssize_t length = ::readlink(path.c_str(), target.data(), target.size());
+    if (length <= 0) {
+        return std::nullopt;
+    }
+    target.resize(static_cast<std::size_t>(length));
+    return target.front() == '/' ? target : folder_of(path) + target;
+}
+
+/// A new file for the text to wait in, in the folder where it will end. NOTE: open() rather than mkstemp(), so that the
+/// umask and the folder's default rights apply as to any new file.
+int create_temporary(const std::string& folder, std::string& name) {
+    static std::atomic<unsigned> serial{0};
+    for (int attempt = 0; attempt < 100; ++attempt) {
+        name = folder + ".dinal-" + std::to_string(::getpid()) + "-" + std::to_string(++serial) + ".tmp";
+        const int descriptor = ::open(name.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+        if (descriptor >= 0 || errno != EEXIST) {
+            return descriptor;
+        }
+    }
+    return -1;
+}
+
+}  // namespace
+
+Expected<OutputFile> OutputFile::create(const std::string& path) {
+    if (has_nul(path)) {
+        return can_not_write(path.substr(0, path.find('\0')), "its name goes on after a NUL byte");
+    }
+    std::string target = path;
+    for (int link = 0; link < most_links; ++link) {
+        if (const std::optional<int> number = open_descriptor(target)) {
+            // What was printed before shall stand before.
+            if (std::fflush(*number == STDERR_FILENO ? stderr : stdout) != 0) {
+                return can_not_write(path, reason(errno));
+            }
+            return directly(::fcntl(*number, F_DUPFD_CLOEXEC, 3), path);
+        }
+        const std::optional<std::string> next = link_target(target);
+        if (!next) {
+            break;
+        }
+        target = *next;
+    }
+    struct stat status {};
+    if (::stat(target.c_str(), &status) != 0) {
+        return errno == ENOENT ? beside(target, nullptr, path) : can_not_write(path, reason(errno));
+    }
+    if (S_ISDIR(status.st_mode)) {
+        return can_not_write(path, "it is a folder, not a file");
+    }
+    if (!S_ISREG(status.st_mode)) {
+        return directly(::open(target.c_str(), O_WRONLY | O_NOCTTY | O_CLOEXEC), path);
+    }
+    return beside(target, &status, path);
+}
+
+Expected<OutputFile> OutputFile::directly(int descriptor, const std::string& path) {
+    if (descriptor < 0) {
+        return can_not_write(path, reason(errno));
+    }
+    return OutputFile(descriptor, path);
+}
+
+Expected<OutputFile> OutputFile::beside(const std::string& target, const struct stat* old, const std::string& path) {
+    const std::string folder = folder_of(target);
+    if (target.empty() || folder.size() == target.size()) {
+        return can_not_write(path, "there is no file name");
+    }
+    // A rename needs no right to write the old file, but a write-protected one is meant to stay.
+    if (old != nullptr && ::faccessat(AT_FDCWD, target.c_str(), W_OK, AT_EACCESS) != 0) {
+        return can_not_write(path, reason(errno));
+    }
+    std::string temporary;
+    const int descriptor = create_temporary(folder, temporary);
+    if (descriptor < 0) {
+        const int error = errno;
+        return can_not_write(
+            path, error == ENOENT ? "there is no folder '" + folder.substr(0, folder.rfind('/')) + "'" : reason(error));
+    }
+    OutputFile file(descriptor, path);
+    file.target_ = target;
+    file.temporary_ = temporary;
+    file.replaces_ = old != nullptr;
+    if (old != nullptr) {
+        // Only root can give a file away; for anyone else the new file is his own, as with every editor.
+        [[maybe_unused]] const int owner = ::fchown(descriptor, old->st_uid, old->st_gid);
+        if (::fchmod(descriptor, old->st_mode & 0777U) != 0) {
+            return can_not_write(path, reason(errno));
+        }
+    }
+    return file;
+}
+
+OutputFile::OutputFile(int descriptor, std::string path)
+    : descriptor_(descriptor), path_(std::move(path)), buffer_(buffer_size) {}
+
+OutputFile::OutputFile(OutputFile&& other) noexcept
+    : descriptor_(std::exchange(other.descriptor_, -1)),
+      path_(std::move(other.path_)),
+      target_(std::move(other.target_)),
+      temporary_(std::exchange(other.temporary_, {})),
+      replaces_(other.replaces_),
+      buffer_(std::move(other.buffer_)),
+      filled_(other.filled_),
+      written_(other.written_),
+      failure_(other.failure_) {}
+
+OutputFile::~OutputFile() {
+    abandon();
+}
+
+void OutputFile::abandon() {
+    if (descriptor_ >= 0) {
+        ::close(std::exchange(descriptor_, -1));
+    }
+    if (!temporary_.empty()) {
+        ::unlink(temporary_.c_str());
+        temporary_.clear();
+    }
+}
+
+void OutputFile::write(std::string_view text) {
+    while (!text.empty()) {
+        char* const place = room(1);
+        const std::size_t count = std::min(text.size(), buffer_.size() - filled_);
+        used(std::copy_n(text.data(), count, place));
+        text.remove_prefix(count);
+    }
+}
+
+char* OutputFile::room(std::size_t count) {
+    if (buffer_.size() - filled_ < count) {
+        flush();
+        if (buffer_.size() < count) {
+            buffer_.resize(count);
+        }
+    }
+    return buffer_.data() + filled_;
+}
+
+void OutputFile::used(const char* end) {
+    filled_ = static_cast<std::size_t>(end - buffer_.data());
+}
+
+void OutputFile::flush() {
+    std::size_t done = 0;
+    // EINTR is a failure like any other: it is Ctrl-C while a pipe's reader sleeps.
+    while (failure_ == 0 && done < filled_) {
+        const ssize_t count = ::write(descriptor_, buffer_.data() + done, filled_ - done);
+        if (count <= 0) {
+            failure_ = count == 0 ? EIO : errno;
+        } else {
+            done += static_cast<std::size_t>(count);
+        }
+    }
+    written_ += done;
+    filled_ = 0;
+}
+
+Expected<Written> OutputFile::commit() {
+    flush();
+    if (::close(std::exchange(descriptor_, -1)) != 0 && failure_ == 0) {
+        failure_ = errno;
+    }
+    if (failure_ == 0 && !temporary_.empty()) {
+        if (::rename(temporary_.c_str(), target_.c_str()) == 0) {
+            temporary_.clear();
+        } else {
+            failure_ = errno;
+        }
+    }
+    abandon();
+    if (failure_ != 0) {
+        return can_not_write(path_, reason(failure_) + (replaces_ ? " (the old file is kept)" : ""));
+    }
+    return Written{written_};
+}
+
+Expected<Written> write_file(const std::string& path, std::string_view text) {
+    Expected<OutputFile> opened = OutputFile::create(path);
+    if (!opened) {
+        return opened.error();
+    }
+    OutputFile file = std::move(opened).value();
+    file.write(text);
+    return file.commit();
+}
+
+}  // namespace dinal

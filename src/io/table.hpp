@@ -1,0 +1,37 @@
+// Named columns of numbers, as they come from a file and go to one.
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/expected.hpp"
+
+namespace dinal {
+
+struct Table {
+    std::vector<std::string> names;     ///< one for each column of `values`
+    Eigen::MatrixXd values;             ///< column-major: a column is contiguous
+    std::vector<std::string> comments;  ///< lines, without the sign that makes them comments
+};
+
+/// A column to be written; it refers to its name and its numbers.
+struct NamedColumn {
+    std::string_view name;
+    std::span<const double> values;
+};
+
+/// All columns of a matrix in their order (to write some of them, pick from the result).
+std::vector<NamedColumn> named_columns(const std::vector<std::string>& names, const Eigen::MatrixXd& values);
+
+/// The index (from 0) of the column with that name, or with that number (from 1, as users count).
+/// Fails with the list of the columns there are, and a suggestion when one is spelt like it.
+Expected<Eigen::Index> find_column(std::span<const std::string> names, std::string_view name);
+Expected<Eigen::Index> find_column(std::span<const std::string> names, std::int64_t number);
+Expected<Eigen::Index> find_column(const Table& table, std::string_view name);
+Expected<Eigen::Index> find_column(const Table& table, std::int64_t number);
+
+}  // namespace dinal

@@ -1,0 +1,51 @@
+// Lines and numbers of a text file, for the readers of this folder.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "core/expected.hpp"
+
+namespace dinal {
+
+/// Walks over the lines of a text: line ends are LF, CRLF or a lone CR, and a UTF-8 byte order mark is skipped.
+class Lines {
+public:
+    explicit Lines(std::string_view text);
+
+    /// Goes to the next line; false at the end of the text.
+    bool next();
+    [[nodiscard]] std::string_view text() const { return line_; }
+    [[nodiscard]] std::size_t number() const { return number_; }
+
+private:
+    std::string_view rest_;
+    std::string_view line_;
+    std::size_t number_ = 0;
+    bool has_lone_cr_;
+};
+
+/// Without blanks and tabs at both ends.
+std::string_view trimmed(std::string_view text);
+
+/// The error at a place of a file: "run.csv:7: ...".
+Error error_at(const std::string& file, std::size_t line, const std::string& what);
+
+/// Why this can not be a text file: the line of its first NUL byte (UTF-16 is full of them).
+std::optional<Error> binary_fault(std::string_view text, const std::string& file);
+
+/// A finite number that is all of the field, without blanks around; a leading + is allowed, nan and inf are not.
+std::optional<double> parse_number(std::string_view field);
+
+/// The same as Fortran writes it: 1.5D+00, 1.5d0, 1.5+300 too.
+std::optional<double> parse_fortran_number(std::string_view field);
+
+/// A field in quotes as it can stand in a sentence: short and printable.
+std::string shown(std::string_view field);
+
+/// What is wrong with a field that parse_number refused: "'abc' is not a number", "is empty", ...
+std::string number_fault(std::string_view field);
+
+}  // namespace dinal
