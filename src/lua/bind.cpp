@@ -1,0 +1,277 @@
+#include "lua/bind.hpp"
+
+#include <cmath>
+
+namespace dinal {
+
+namespace {
+
+// Registry key of the table that leads from a function or a module table to its documentation.
+const char documentation_key = 0;
+// Key, within a metatable, of the Class that made it.
+const char class_key = 0;
+
+void push_documentation(lua_State* L) {
+    if (lua_rawgetp(L, LUA_REGISTRYINDEX, &documentation_key) != LUA_TTABLE) {
+        lua_pop(L, 1);
+        lua_newtable(L);
+        lua_pushvalue(L, -1);
+        lua_rawsetp(L, LUA_REGISTRYINDEX, &documentation_key);
+    }
+}
+
+// documentation[value on the top] = { owner, member }; the value stays.
+void document(lua_State* L, const Class& owner, const Member* member) {
+    push_documentation(L);
+    lua_pushvalue(L, -2);
+    lua_createtable(L, 2, 0);
+    lua_pushlightuserdata(L, const_cast<Class*>(&owner));  // never written through
+    lua_rawseti(L, -2, 1);
+    lua_pushlightuserdata(L, const_cast<Member*>(member));
+    lua_rawseti(L, -2, 2);
+    lua_rawset(L, -3);
+    lua_pop(L, 1);
+}
+
+std::string with_article(std::string_view name) {
+    const bool vowel = std::string_view("aeiou").find(name.front()) != std::string_view::npos;
+    return (vowel ? "an " : "a ") + std::string(name);
+}
+
+std::string key_text(lua_State* L, int index) {
+    if (lua_type(L, index) == LUA_TSTRING) {
+        return "'" + std::string(lua_tostring(L, index)) + "'";
+    }
+    return "[" + describe(L, index) + "]";
+}
+
+std::vector<std::string_view> visible_names(const Class& description) {
+    std::vector<std::string_view> names;
+    for (const Member& member : description.members) {
+        if (member.kind != Kind::metamethod) {
+            names.emplace_back(member.name);
+        }
+    }
+    return names;
+}
+
+std::string suggestion_for_key(lua_State* L, int index, const Class& description) {
+    return lua_type(L, index) == LUA_TSTRING ? did_you_mean(lua_tostring(L, index), visible_names(description)) : "";
+}
+
+const Class& class_of_closure(lua_State* L, int upvalue) {
+    return *static_cast<const Class*>(lua_touserdata(L, lua_upvalueindex(upvalue)));
+}
+
+// Upvalues: methods by name, getters by name, the Class.
+int index_object(lua_State* L) {
+    const Class& description = class_of_closure(L, 3);
+    if (lua_type(L, 2) == LUA_TSTRING) {
+        lua_pushvalue(L, 2);
+        if (lua_rawget(L, lua_upvalueindex(1)) != LUA_TNIL) {
+            return 1;
+        }
+        lua_pushvalue(L, 2);
+        if (lua_rawget(L, lua_upvalueindex(2)) != LUA_TNIL) {
+            lua_pushvalue(L, 1);
+            lua_call(L, 1, 1);
+            return 1;
+        }
+        lua_settop(L, 2);
+    }
+    if (description.other_keys != nullptr && description.other_keys(L) == 1) {
+        return 1;
+    }
+    raise(L,
+          with_article(description.name) + " has no field " + key_text(L, 2) + suggestion_for_key(L, 2, description));
+}
+
+int refuse_assignment(lua_State* L) {
+    const Class& description = class_of_closure(L, 1);
+    raise(L, with_article(description.name) + " can not be changed; make a new one");
+}
+
+int index_module(lua_State* L) {
+    const Class& module = class_of_closure(L, 1);
+    raise(L,
+          "there is no " + std::string(module.name) +
+              (lua_type(L, 2) == LUA_TSTRING ? "." + std::string(lua_tostring(L, 2)) : key_text(L, 2)) +
+              suggestion_for_key(L, 2, module) +
+              (suggestion_for_key(L, 2, module).empty() ? "; help(" + std::string(module.name) + ") lists what there is"
+                                                        : ""));
+}
+
+void set_metamethods(lua_State* L, const Class& description) {
+    for (const Member& member : description.members) {
+        if (member.kind == Kind::metamethod) {
+            lua_pushcfunction(L, member.call);
+            lua_setfield(L, -2, member.name);
+        }
+    }
+    lua_pushstring(L, description.name);
+    lua_setfield(L, -2, "__name");
+}
+
+void push_members(lua_State* L, const Class& description, Kind kind) {
+    lua_newtable(L);
+    for (const Member& member : description.members) {
+        if (member.kind == kind) {
+            lua_pushcfunction(L, member.call);
+            document(L, description, &member);
+            lua_setfield(L, -2, member.name);
+        }
+    }
+}
+
+}  // namespace
+
+std::string where(lua_State* L) {
+    lua_Debug frame{};
+    for (int level = 0; lua_getstack(L, level, &frame) != 0; ++level) {
+        lua_getinfo(L, "Sl", &frame);
+        if (frame.currentline > 0) {
+            return std::string(frame.short_src) + ":" + std::to_string(frame.currentline) + ": ";
+        }
+    }
+    return "";
+}
+
+void raise(lua_State* L, std::string_view sentence) {
+    {
+        const std::string message = where(L) + std::string(sentence);
+        lua_settop(L, 0);  // arguments are of no more use, and make room
+        lua_pushlstring(L, message.data(), message.size());
+    }
+    lua_error(L);
+    std::terminate();  // not reached: lua_error does not return, but its declaration does not say so
+}
+
+std::string describe(lua_State* L, int index) {
+    switch (lua_type(L, index)) {
+        case LUA_TNONE:
+        case LUA_TNIL:
+            return "nil";
+        case LUA_TBOOLEAN:
+            return lua_toboolean(L, index) != 0 ? "true" : "false";
+        case LUA_TNUMBER: {
+            lua_pushvalue(L, index);  // lua_tostring changes the value it converts
+            std::string text = lua_tostring(L, -1);
+            lua_pop(L, 1);
+            return text;
+        }
+        case LUA_TSTRING: {
+            const std::string_view text = lua_tostring(L, index);
+            return "the string \"" + std::string(text.substr(0, 40)) + (text.size() > 40 ? "..." : "") + "\"";
+        }
+        case LUA_TUSERDATA:
+            if (const Documented found = documented(L, index); found.owner != nullptr) {
+                return with_article(found.owner->name);
+            }
+            break;
+        default:
+            break;
+    }
+    return "a " + std::string(luaL_typename(L, index));
+}
+
+double finite_argument(lua_State* L, int index, std::string_view what) {
+    if (lua_type(L, index) != LUA_TNUMBER || !std::isfinite(lua_tonumber(L, index))) {
+        raise(L, std::string(what) + " must be a finite number, got " + describe(L, index));
+    }
+    return lua_tonumber(L, index);
+}
+
+void add_module(lua_State* L, const Class& module) {
+    push_members(L, module, Kind::function);
+    document(L, module, nullptr);
+    lua_newtable(L);
+    set_metamethods(L, module);
+    lua_pushlightuserdata(L, const_cast<Class*>(&module));  // never written through
+    lua_pushcclosure(L, guarded<index_module>, 1);
+    lua_setfield(L, -2, "__index");
+    lua_setmetatable(L, -2);
+    lua_setfield(L, -2, module.name);
+}
+
+void add_functions(lua_State* L, const Class& functions) {
+    for (const Member& member : functions.members) {
+        lua_pushcfunction(L, member.call);
+        document(L, functions, &member);
+        lua_setfield(L, -2, member.name);
+    }
+}
+
+Documented documented(lua_State* L, int index) {
+    Documented found;
+    if (lua_isuserdata(L, index) != 0 && lua_getmetatable(L, index) != 0) {
+        lua_rawgetp(L, -1, &class_key);
+        found.owner = static_cast<const Class*>(lua_touserdata(L, -1));
+        lua_pop(L, 2);
+        return found;
+    }
+    if (lua_isnoneornil(L, index)) {
+        return found;
+    }
+    lua_pushvalue(L, index);
+    push_documentation(L);
+    lua_insert(L, -2);
+    if (lua_rawget(L, -2) == LUA_TTABLE) {
+        lua_rawgeti(L, -1, 1);
+        lua_rawgeti(L, -2, 2);
+        found = {static_cast<const Class*>(lua_touserdata(L, -2)), static_cast<const Member*>(lua_touserdata(L, -1))};
+        lua_pop(L, 2);
+    }
+    lua_pop(L, 2);
+    return found;
+}
+
+namespace detail {
+
+void push_message(lua_State* L, const char* text) {
+    const std::string message = where(L) + text;
+    lua_settop(L, 0);
+    lua_pushlstring(L, message.data(), message.size());
+}
+
+int raise_message_on_top(lua_State* L) {
+    return lua_error(L);
+}
+
+void push_metatable(lua_State* L, const void* key) {
+    lua_rawgetp(L, LUA_REGISTRYINDEX, key);
+}
+
+void* test(lua_State* L, int index, const void* key) {
+    if (lua_type(L, index) != LUA_TUSERDATA || lua_getmetatable(L, index) == 0) {
+        return nullptr;
+    }
+    lua_rawgetp(L, LUA_REGISTRYINDEX, key);
+    const bool same = lua_rawequal(L, -1, -2) != 0;
+    lua_pop(L, 2);
+    return same ? lua_touserdata(L, index) : nullptr;
+}
+
+void add_class(lua_State* L, const Class& description, const void* key, lua_CFunction collect) {
+    auto* upvalue = const_cast<Class*>(&description);  // never written through
+    lua_newtable(L);
+    set_metamethods(L, description);
+    push_members(L, description, Kind::method);
+    push_members(L, description, Kind::field);
+    lua_pushlightuserdata(L, upvalue);
+    lua_pushcclosure(L, guarded<index_object>, 3);
+    lua_setfield(L, -2, "__index");
+    lua_pushlightuserdata(L, upvalue);
+    lua_pushcclosure(L, guarded<refuse_assignment>, 1);
+    lua_setfield(L, -2, "__newindex");
+    lua_pushcfunction(L, collect);
+    lua_setfield(L, -2, "__gc");
+    lua_pushstring(L, description.name);
+    lua_setfield(L, -2, "__metatable");
+    lua_pushlightuserdata(L, upvalue);
+    lua_rawsetp(L, -2, &class_key);
+    lua_rawsetp(L, LUA_REGISTRYINDEX, key);
+}
+
+}  // namespace detail
+
+}  // namespace dinal

@@ -1,0 +1,156 @@
+// How C++ becomes Lua: classes and modules as tables of documented members, typed userdata, errors at the user's line.
+//
+// One Lua class is one file bind_x.cpp with one `Class`: name, documentation, members. add_class(), add_module() and
+// add_functions() turn it into metatables and tables; help() and docs/manual.md read the very same tables.
+#pragma once
+
+#include <cstddef>
+#include <exception>
+#include <lua.hpp>
+#include <memory>
+#include <new>
+#include <span>
+#include <string>
+#include <string_view>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include "core/suggest.hpp"  // did_you_mean, for every unknown name
+
+namespace dinal {
+
+/// The only place where something that Lua can see is described.
+struct Doc {
+    const char* signature;  ///< how it is called: "sys:simulate{ t_end, dt, ... } -> run"
+    const char* summary;    ///< one or more sentences, units included
+    const char* example;    ///< Lua that runs on its own; `-->` is followed by what the line prints
+};
+
+enum class Kind {
+    function,    ///< called with a dot: integrator.rk4{...}
+    method,      ///< called with a colon: run:at(t)
+    field,       ///< read like a variable; `call` gets the object and pushes one value
+    metamethod,  ///< __add, __len, __call ...: of the objects of a class, or of the table of a module
+};
+
+struct Member {
+    const char* name;
+    lua_CFunction call;  ///< always guarded<...>
+    Kind kind;
+    Doc doc;
+};
+
+/// A Lua class or a Lua module.
+struct Class {
+    const char* name;  ///< in sentences: "a system has no field ..."
+    Doc doc;
+    std::span<const Member> members;
+    /// Called with (object, key) for a number key and for a string that names no member: pushes one value and returns
+    /// 1, or returns 0 for "no such field", which then becomes an error with a suggestion.
+    lua_CFunction other_keys = nullptr;
+};
+
+/// Raises `sentence` as a Lua error, headed by the file and line of the user's code that led here.
+[[noreturn]] void raise(lua_State* L, std::string_view sentence);
+
+/// "FILE:LINE: " of the nearest Lua function in the call stack, or "".
+std::string where(lua_State* L);
+
+/// What a value is, for a sentence: "nil", "a table", "the string "1"", "a system", "nan".
+std::string describe(lua_State* L, int index);
+
+namespace detail {
+int raise_message_on_top(lua_State* L);
+void push_message(lua_State* L, const char* text);
+}  // namespace detail
+
+/// Every C++ function that Lua calls goes through here: a C++ exception becomes a Lua error at the user's line.
+// NOTE: never catch (...): Lua's own errors are C++ exceptions of a private type and must pass.
+template <lua_CFunction function>
+int guarded(lua_State* L) {
+    try {
+        return function(L);
+    } catch (const std::bad_alloc&) {
+        detail::push_message(L, "not enough memory");
+    } catch (const std::exception& problem) {
+        detail::push_message(L, problem.what());
+    }
+    return detail::raise_message_on_top(L);
+}
+
+namespace detail {
+// The address is the key of the metatable of T in the registry.
+template <class T>
+inline char type_key = 0;
+
+void push_metatable(lua_State* L, const void* key);
+void* test(lua_State* L, int index, const void* key);
+void add_class(lua_State* L, const Class& description, const void* key, lua_CFunction collect);
+
+template <class T>
+int collect(lua_State* L) {
+    if (auto* object = static_cast<T*>(test(L, 1, &type_key<T>))) {
+        std::destroy_at(object);
+        // A finalizer called by hand (debug.getmetatable) must not leave a dead object behind.
+        lua_pushnil(L);
+        lua_setmetatable(L, 1);
+    }
+    return 0;
+}
+}  // namespace detail
+
+/// Gives Lua a new object of a class that add_class<T> has registered. It has one user value.
+template <class T>
+T& push(lua_State* L, T value) {
+    static_assert(alignof(T) <= alignof(std::max_align_t));
+    static_assert(std::is_nothrow_move_constructible_v<T>);
+    luaL_checkstack(L, 3, "too many values");
+    T* object = std::construct_at(static_cast<T*>(lua_newuserdatauv(L, sizeof(T), 1)), std::move(value));
+    detail::push_metatable(L, &detail::type_key<T>);
+    lua_setmetatable(L, -2);
+    return *object;
+}
+
+/// The object at `index`, or nullptr when something else stands there.
+template <class T>
+[[nodiscard]] T* test(lua_State* L, int index) {
+    return static_cast<T*>(detail::test(L, index, &detail::type_key<T>));
+}
+
+/// The object a method was called on. `call` shows the right way: "sys:simulate{ t_end = 20, dt = 0.01 }".
+template <class T>
+[[nodiscard]] T& self(lua_State* L, int index, std::string_view call) {
+    T* object = test<T>(L, index);
+    if (object == nullptr) {
+        raise(L, "use a colon: " + std::string(call));
+    }
+    return *object;
+}
+
+/// A finite number at `index`; `what` heads the sentence when there is none: "run:at(t): t".
+double finite_argument(lua_State* L, int index, std::string_view what);
+
+/// Registers T: its objects look up methods, then fields, then `other_keys`; an unknown name is an error with a
+/// suggestion, and so is any assignment. Leaves the stack as it was.
+template <class T>
+void add_class(lua_State* L, const Class& description) {
+    detail::add_class(L, description, &detail::type_key<T>, detail::collect<T>);
+}
+
+/// The library table must be on the top of the stack: sets library[module.name] to a table of the module's functions.
+/// A metamethod "__call" makes the table callable; it gets the table as its first argument. An unknown name is an
+/// error.
+void add_module(lua_State* L, const Class& module);
+
+/// The library table must be on the top of the stack: sets the functions themselves.
+void add_functions(lua_State* L, const Class& functions);
+
+/// What is documented about a value, or nullptrs: a function (the member and its owner) or a module or an object.
+struct Documented {
+    const Class* owner = nullptr;
+    const Member* member = nullptr;
+};
+Documented documented(lua_State* L, int index);
+
+}  // namespace dinal

@@ -1,0 +1,300 @@
+// The run object: columns as vectors, events, the motion between the rows. run:save is in save_run.cpp.
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "io/table.hpp"
+#include "lua/external_memory.hpp"
+#include "lua/library.hpp"
+#include "lua/run.hpp"
+#include "lua/user_function.hpp"
+#include "lua/vector.hpp"
+
+namespace dinal {
+
+namespace {
+
+const RunHandle& run_self(lua_State* L, const char* call) {
+    return self<RunHandle>(L, 1, call);
+}
+
+void push_column(lua_State* L, const RunHandle& run, Eigen::Index column) {
+    const auto values = run->trajectory.rows.col(column);
+    push(L, Vector(run, values.data(), static_cast<std::size_t>(values.size())));
+}
+
+/// Members and columns: what a misspelt name may have meant.
+[[noreturn]] void raise_unknown(lua_State* L, const Trajectory& trajectory, std::string_view wrong) {
+    std::vector<std::string_view> names(trajectory.names.begin(), trajectory.names.end());
+    for (const Member& member : run_class.members) {
+        const bool column =
+            member.kind == Kind::field && trajectory.find(member.name) == std::nullopt &&
+            std::find(column_names().begin(), column_names().end(), member.name) != column_names().end();
+        if (member.kind != Kind::metamethod && !column) {
+            names.emplace_back(member.name);
+        }
+    }
+    raise(L, fmt::format("this run has no field '{}'{}; its columns are {}", wrong, did_you_mean(wrong, names),
+                         fmt::join(trajectory.names, ", ")));
+}
+
+int column_by_name(lua_State* L, const char* name) {
+    const RunHandle& run = run_self(L, "run.theta");
+    const auto column = run->trajectory.find(name);
+    if (!column) {
+        raise_unknown(L, run->trajectory, name);
+    }
+    push_column(L, run, *column);
+    return 1;
+}
+
+template <Column column>
+int column_field(lua_State* L) {
+    return column_by_name(L, column_names()[static_cast<std::size_t>(column)].c_str());
+}
+
+int other_column(lua_State* L) {
+    if (lua_type(L, 2) != LUA_TSTRING) {
+        return 0;
+    }
+    return column_by_name(L, lua_tostring(L, 2));
+}
+
+int columns(lua_State* L) {
+    const RunHandle run = run_self(L, "run:columns(\"t\", \"theta\")");
+    const auto& names = run->trajectory.names;
+    const int asked = lua_gettop(L) - 1;
+    if (asked == 0) {
+        luaL_checkstack(L, static_cast<int>(names.size()) + 5, "too many columns");
+        for (std::size_t i = 0; i < names.size(); ++i) {
+            push_column(L, run, static_cast<Eigen::Index>(i));
+        }
+        return static_cast<int>(names.size());
+    }
+    luaL_checkstack(L, asked + 5, "too many columns");
+    for (int i = 2; i <= asked + 1; ++i) {
+        if (lua_type(L, i) != LUA_TSTRING && lua_isinteger(L, i) == 0) {
+            raise(L, "run:columns takes names or numbers of columns, got " + describe(L, i));
+        }
+        const auto column = lua_type(L, i) == LUA_TSTRING ? find_column(names, std::string_view(lua_tostring(L, i)))
+                                                          : find_column(names, std::int64_t{lua_tointeger(L, i)});
+        if (!column) {
+            raise(L, "run:columns: " + column.error().sentence);
+        }
+        push_column(L, run, *column);
+    }
+    return asked;
+}
+
+int names(lua_State* L) {
+    const auto& names = run_self(L, "run.names")->trajectory.names;
+    lua_createtable(L, static_cast<int>(names.size()), 0);
+    for (std::size_t i = 0; i < names.size(); ++i) {
+        lua_pushlstring(L, names[i].data(), names[i].size());
+        lua_rawseti(L, -2, static_cast<lua_Integer>(i) + 1);
+    }
+    return 1;
+}
+
+void push_event(lua_State* L, const Event& event) {
+    lua_createtable(L, 0, 4);
+    lua_pushnumber(L, event.t);
+    lua_setfield(L, -2, "t");
+    const std::string_view kind = name(event.kind);
+    lua_pushlstring(L, kind.data(), kind.size());
+    lua_setfield(L, -2, "kind");
+    lua_pushnumber(L, event.theta);
+    lua_setfield(L, -2, "theta");
+    lua_pushnumber(L, event.M);
+    lua_setfield(L, -2, "M");
+}
+
+// Made when first asked for and then kept as the user value of the run, so that a loop over run.events[i] is no trap.
+int events(lua_State* L) {
+    const auto& events = run_self(L, "run.events")->trajectory.events;
+    if (lua_getiuservalue(L, 1, 1) == LUA_TTABLE) {
+        return 1;
+    }
+    lua_createtable(L, static_cast<int>(events.size()), 0);
+    for (std::size_t i = 0; i < events.size(); ++i) {
+        push_event(L, events[i]);
+        lua_rawseti(L, -2, static_cast<lua_Integer>(i) + 1);
+    }
+    lua_pushvalue(L, -1);
+    lua_setiuservalue(L, 1, 1);
+    return 1;
+}
+
+int outcome(lua_State* L) {
+    const Run& run = *run_self(L, "run.outcome");
+    const std::string_view text = run.origin ? sentence(run.trajectory.outcome) : "read from a file";
+    lua_pushlstring(L, text.data(), text.size());
+    return 1;
+}
+
+template <auto member>
+int origin_field(lua_State* L) {
+    const Run& run = *run_self(L, "run.system");
+    run.origin ? static_cast<void>(push(L, (*run.origin).*member)) : lua_pushnil(L);
+    return 1;
+}
+
+int at(lua_State* L) {
+    const RunHandle run = run_self(L, "run:at(t)");  // kept: the user's function may drop the last reference
+    const double t = finite_argument(L, 2, "run:at(t): t");
+    CallState call(L);  // between rows the integrator asks the excitation again
+    const auto state = run->trajectory.at(t);
+    if (call.failed()) {
+        call.raise_error();
+    }
+    if (!state) {
+        raise(L, "run:at(t): " + state.error().sentence);
+    }
+    lua_pushnumber(L, state->theta);
+    lua_pushnumber(L, state->velocity);
+    return 2;
+}
+
+int length(lua_State* L) {
+    lua_pushinteger(L, run_self(L, "#run")->trajectory.size());
+    return 1;
+}
+
+int to_string(lua_State* L) {
+    const std::string text = summary(run_self(L, "tostring(run)")->trajectory);
+    lua_pushlstring(L, text.data(), text.size());
+    return 1;
+}
+
+#define DINAL_RUN "run = nondimensional{}:simulate{ M = 3, theta0 = 1, t_end = 2, dt = 0.5 }\n"
+
+constexpr Member members[] = {
+    {"at",
+     guarded<at>,
+     Kind::method,
+     {"run:at(t) -> theta, velocity",
+      "Angle (rad) and velocity (rad per time unit) at any time of the run, between rows at the accuracy of the "
+      "integrator. In a run that was read from a file: by cubic interpolation.",
+      DINAL_RUN "print(string.format(\"%.6f %.6f\", run:at(0.75)))  --> 3.000000 -12.566371"}},
+    {"columns",
+     guarded<columns>,
+     Kind::method,
+     {"run:columns(name, ...) -> vector, ...",
+      "The columns of these names or numbers (t is 1); without arguments all of them. READDIN of 1989 did this.",
+      DINAL_RUN "t, M = run:columns(\"t\", \"M\")\nprint(t, M[5])  --> vector{ 0, 0.5, 1, 1.5, 2 }\t3.0"}},
+    {"save",
+     guarded<save_run>,
+     Kind::method,
+     {"run:save(file, { columns })",
+      "Writes the rows: file.csv gets a comment block with the Lua text that repeats the run, a line of names and the "
+      "rows, and with columns = { \"t\", \"theta\" } only these; file.dat gets the record of 1989 (NPUNT, then t, "
+      "theta, "
+      "velocity/omega0, M/k, friction/k, damping/k). Both read back exactly with trajectory.load.",
+      DINAL_RUN "file = os.tmpname() .. \".csv\"\n"
+                "run:save(file, { columns = { \"t\", \"theta\" } })\n"
+                "print(#trajectory.load(file))  --> 5\n"
+                "os.remove(file)"}},
+    {"t",
+     guarded<column_field<Column::t>>,
+     Kind::field,
+     {"run.t -> vector", "The times of the rows, time units.", DINAL_RUN "print(run.t[2])  --> 0.5"}},
+    {"theta",
+     guarded<column_field<Column::theta>>,
+     Kind::field,
+     {"run.theta -> vector", "The angle, rad.", DINAL_RUN "print(run.theta[1])  --> 1.0"}},
+    {"velocity",
+     guarded<column_field<Column::velocity>>,
+     Kind::field,
+     {"run.velocity -> vector", "The velocity, rad per time unit; exactly 0 while the mass sticks.",
+      DINAL_RUN "print(run.velocity[1])  --> 0.0"}},
+    {"M",
+     guarded<column_field<Column::M>>,
+     Kind::field,
+     {"run.M -> vector", "The excitation: the torque M on the mass.", DINAL_RUN "print(run.M:max())  --> 3.0"}},
+    {"friction",
+     guarded<column_field<Column::friction>>,
+     Kind::field,
+     {"run.friction -> vector",
+      "The torque of dry friction on the mass: -Rd sgn(velocity) while it moves, -(M - k theta) while it sticks.",
+      "run = system{ I = 1, k = 1, Rd = 2 }:simulate{ theta0 = 1, t_end = 1, dt = 1 }\n"
+      "print(run.friction)  --> vector{ 1, 1 }"}},
+    {"damping",
+     guarded<column_field<Column::damping>>,
+     Kind::field,
+     {"run.damping -> vector", "The torque of viscous damping on the mass, -C velocity.",
+      "run = system{ I = 1, k = 1, C = 3 }:simulate{ velocity0 = 1, t_end = 1, dt = 1 }\n"
+      "print(run.damping[1])  --> -3.0"}},
+    {"events",
+     guarded<events>,
+     Kind::field,
+     {"run.events -> table",
+      "What happened at velocity zero, in order of time: a list of { t, kind, theta, M }. kind is \"turn\" (goes on "
+      "the "
+      "other way), \"stick\" (stays), \"slip\" (breaks away) or \"rest\" (sticks to the end of the run). Nothing is "
+      "recorded at t_start. Empty in a run that was read from a file.",
+      "run = nondimensional{}:simulate{ theta0 = 1, t_end = 1.2, dt = 0.1 }\n"
+      "for _, e in ipairs(run.events) do print(e.kind, string.format(\"%.4f %.4f\", e.t, e.theta)) end\n"
+      "--> turn\t0.5000 -1.0000\n"
+      "--> turn\t1.0000 1.0000"}},
+    {"outcome",
+     guarded<outcome>,
+     Kind::field,
+     {"run.outcome -> string", "How it ended: \"reached the end\", \"at rest\", \"interrupted\", or what went wrong.",
+      DINAL_RUN "print(run.outcome)  --> reached the end"}},
+    {"names",
+     guarded<names>,
+     Kind::field,
+     {"run.names -> table", "The names of the columns.",
+      DINAL_RUN "print(table.concat(run.names, \" \"))  --> t theta velocity M friction damping"}},
+    {"system",
+     guarded<origin_field<&Origin::system>>,
+     Kind::field,
+     {"run.system -> system or nil", "The system that was simulated; nil in a run that was read from a file.",
+      DINAL_RUN "print(run.system.T0)  --> 1.0"}},
+    {"excitation",
+     guarded<origin_field<&Origin::excitation>>,
+     Kind::field,
+     {"run.excitation -> excitation or nil", "The excitation M of the run; nil in a run that was read from a file.",
+      DINAL_RUN "print(run.excitation)  --> excitation.constant{ level = 3 }"}},
+    {"integrator",
+     guarded<origin_field<&Origin::integrator>>,
+     Kind::field,
+     {"run.integrator -> integrator or nil",
+      "The integrator that was used, also when none was asked for; nil in a run that was read from a file.",
+      DINAL_RUN "print(run.integrator)  --> integrator.rk4{ h = 0.001 }"}},
+    {"__len",
+     guarded<length>,
+     Kind::metamethod,
+     {"#run -> number", "The number of rows.", DINAL_RUN "print(#run)  --> 5"}},
+    {"__tostring",
+     guarded<to_string>,
+     Kind::metamethod,
+     {"tostring(run) -> string", "A summary in one line.",
+      "print(nondimensional{}:simulate{ theta0 = 1, t_end = 1.2, dt = 0.1 })\n"
+      "--> 13 rows, t 0 … 1.2; 2 events (2 turns); moving at the end; peak |theta| 1"}},
+};
+
+}  // namespace
+
+const Class run_class = {
+    "run",
+    {"sys:simulate{ ... } or trajectory.load(file) -> run",
+     "What a simulation leaves behind: columns that are vectors, events, the outcome, and the motion between the rows. "
+     "It can not be changed. A trajectory that was read from a file has the columns of its file as fields.",
+     DINAL_RUN "print(run.theta:max() < 5.001)  --> true"},
+    members,
+    other_column};
+
+#undef DINAL_RUN
+
+void push_run(lua_State* L, Run run) {
+    const auto bytes = static_cast<std::size_t>(run.trajectory.rows.size()) * sizeof(double);
+    push<RunHandle>(L, std::make_shared<const Run>(std::move(run)));
+    note_external_memory(L, bytes);
+}
+
+void register_run(lua_State* L) {
+    add_class<RunHandle>(L, run_class);
+}
+
+}  // namespace dinal

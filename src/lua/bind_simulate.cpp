@@ -1,0 +1,113 @@
+#include "lua/bind_simulate.hpp"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+
+#include "core/simulate.hpp"
+#include "lua/bind_excitation.hpp"
+#include "lua/dinal_table.hpp"
+#include "lua/interrupt.hpp"
+#include "lua/options.hpp"
+#include "lua/origin.hpp"
+#include "lua/run.hpp"
+#include "lua/user_function.hpp"
+
+namespace dinal {
+
+namespace {
+
+constexpr std::string_view example = "sys:simulate{ M = M, theta0 = 1, t_end = 20, dt = 0.01 }";
+
+/// Rows may take half of the memory of the machine.
+Limits memory_limit() {
+    Limits limits;
+    const long pages = sysconf(_SC_PHYS_PAGES);
+    const long page_size = sysconf(_SC_PAGESIZE);
+    if (pages > 0 && page_size > 0) {
+        limits.memory = static_cast<std::size_t>(pages) * static_cast<std::size_t>(page_size) / 2;
+    }
+    return limits;
+}
+
+Grid asked_rows(const Options& options) {
+    if (options.has("dt") == options.has("times")) {
+        options.fail(options.has("dt") ? "dt and times exclude each other; give one of them"
+                                       : fmt::format("dt or times is needed, for example {}", example));
+    }
+    if (options.has("times")) {
+        return Grid::at(options.numbers("times"));
+    }
+    const double dt = options.number("dt");
+    if (dt <= 0) {
+        options.fail(fmt::format("dt = {:.6g} must be positive", dt));
+    }
+    return Grid::every(dt);
+}
+
+Integrator asked_integrator(lua_State* L, const Options& options, const Oscillator& system) {
+    if (!options.has("integrator")) {
+        return default_integrator(system);
+    }
+    options.push("integrator");
+    const auto* integrator = test<Integrator>(L, -1);
+    if (integrator == nullptr) {
+        options.wrong("integrator", "an integrator such as integrator.rk4{ h = 0.001 }");
+    }
+    lua_pop(L, 1);  // the table of options holds it on
+    return *integrator;
+}
+
+Task asked_task(lua_State* L, const Options& options, const Oscillator& system) {
+    const Grid rows = asked_rows(options);
+    options.push("M");
+    Task task{.system = system,
+              .excitation = to_excitation(L, -1, "sys:simulate: M"),
+              .initial = {.theta = options.number("theta0", 0), .velocity = options.number("velocity0", 0)},
+              .window = {.start = options.number("t_start", 0)},
+              .rows = rows,
+              .integrator = asked_integrator(L, options, system)};
+    lua_pop(L, 1);
+    const std::vector<double>& times = rows.times();
+    // The latest time and not the last one: times that do not increase are an error of their own.
+    task.window.end =
+        options.has("t_end") || times.empty() ? options.number("t_end") : *std::max_element(times.begin(), times.end());
+    return task;
+}
+
+void set_partial(lua_State* L) {
+    push_dinal_table(L);
+    lua_insert(L, -2);
+    lua_setfield(L, -2, "partial");
+    lua_pop(L, 1);
+}
+
+}  // namespace
+
+int simulate_system(lua_State* L) {
+    const Oscillator& system = self<Oscillator>(L, 1, example);
+    const Options options(L, 2, "sys:simulate", example,
+                          {"M", "theta0", "velocity0", "t_start", "t_end", "dt", "times", "integrator"});
+    const Task task = asked_task(L, options, system);
+    // What M refers to is written down before M runs, because it may change that.
+    Run run{.trajectory = {}, .origin = origin_of(L, task)};
+
+    CallState call(L);
+    auto result = simulate(
+        task.system, task.excitation, task.initial, task.window, task.rows, task.integrator,
+        [](double) { return !interrupt_requested(); }, memory_limit());
+    if (!result) {
+        options.fail(result.error().sentence);
+    }
+    run.trajectory = std::move(result).value();
+    const bool interrupted = run.trajectory.outcome == Outcome::interrupted;
+    push_run(L, std::move(run));
+    if (call.failed() || interrupted) {
+        set_partial(L);
+        call.failed() ? call.raise_error() : raise_interrupted(L);
+    }
+    return 1;
+}
+
+}  // namespace dinal

@@ -1,0 +1,79 @@
+// trajectory.load(file): what run:save has written, or any other table of numbers, as a run.
+#include <algorithm>
+#include <cctype>
+
+#include "io/csv.hpp"
+#include "io/record1989.hpp"
+#include "lua/library.hpp"
+#include "lua/run.hpp"
+
+namespace dinal {
+
+namespace {
+
+bool ends_in(std::string_view text, std::string_view ending) {
+    return text.size() >= ending.size() &&
+           std::equal(ending.begin(), ending.end(), text.end() - static_cast<std::ptrdiff_t>(ending.size()),
+                      [](char a, char b) { return a == std::tolower(static_cast<unsigned char>(b)); });
+}
+
+Expected<Table> read(const std::string& file) {
+    if (ends_in(file, ".dat")) {
+        return read_record1989(file);
+    }
+    if (ends_in(file, ".csv")) {
+        return read_csv(file);
+    }
+    return Error{"the name '" + file + "' must end in .csv (names and numbers) or .dat (the record of 1989)"};
+}
+
+int load(lua_State* L) {
+    if (lua_type(L, 1) != LUA_TSTRING) {
+        raise(L, "trajectory.load: the name of the file must be a string, got " + describe(L, 1));
+    }
+    auto table = read(lua_tostring(L, 1));
+    if (!table) {
+        raise(L, "trajectory.load: " + table.error().sentence);
+    }
+    Table content = std::move(table).value();
+    Run run;
+    run.comments = std::move(content.comments);
+    Trajectory& trajectory = run.trajectory;
+    trajectory.names = std::move(content.names);
+    trajectory.rows = std::move(content.values);
+    if (const auto time = trajectory.find("t"); time && trajectory.size() > 0) {
+        trajectory.t_start = trajectory.rows(0, *time);
+        trajectory.t_stop = trajectory.rows(trajectory.size() - 1, *time);
+    }
+    push_run(L, std::move(run));
+    return 1;
+}
+
+constexpr Member functions[] = {
+    {"load",
+     guarded<load>,
+     Kind::function,
+     {"trajectory.load(file) -> run",
+      "Reads file.csv or file.dat (the record of 1989) back: the same numbers to the last bit, with the columns of the "
+      "file as fields. Those of a .dat file are t, theta, velocity_over_omega0, M_over_k, friction_over_k, "
+      "damping_over_k.",
+      "run = nondimensional{}:simulate{ theta0 = 1, t_end = 1, dt = 0.25 }\n"
+      "file = os.tmpname() .. \".dat\"\n"
+      "run:save(file)\n"
+      "old = trajectory.load(file)\n"
+      "print(#old, old.theta == run.theta)  --> 5\ttrue\n"
+      "os.remove(file)"}},
+};
+
+}  // namespace
+
+const Class trajectory_module = {"trajectory",
+                                 {"trajectory.load(file) -> run", "Runs that were saved.",
+                                  "print(select(2, pcall(trajectory.load, \"missing.csv\")) ~= nil)  --> true"},
+                                 functions};
+
+void register_trajectory(lua_State* L) {
+    add_module(L, trajectory_module);
+}
+
+}  // namespace dinal

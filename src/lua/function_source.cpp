@@ -1,0 +1,188 @@
+#include "lua/function_source.hpp"
+
+#include <algorithm>
+#include <vector>
+
+#include "io/file.hpp"
+#include "lua/lua_text.hpp"
+#include "lua/lua_words.hpp"
+
+namespace dinal {
+namespace {
+
+const char kept_key = 0;  // registry key of the table of kept texts: name -> list of texts
+
+int append(lua_State*, const void* piece, std::size_t size, void* text) {
+    static_cast<std::string*>(text)->append(static_cast<const char*>(piece), size);
+    return 0;
+}
+
+/// What tells one function from another: its lines and names, and the bytes of its code.
+struct Shape {
+    lua_Debug about{};
+    std::vector<std::string> upvalues;
+    std::string code;
+
+    Shape(lua_State* L, int index) {
+        index = lua_absindex(L, index);
+        lua_pushvalue(L, index);
+        lua_getinfo(L, ">Su", &about);
+        for (int i = 1; const char* name = lua_getupvalue(L, index, i); ++i) {
+            upvalues.emplace_back(name);
+            lua_pop(L, 1);
+        }
+        lua_pushvalue(L, index);
+        lua_dump(L, append, &code, 1);
+        lua_pop(L, 1);
+    }
+    [[nodiscard]] bool like(const Shape& other) const {
+        return about.linedefined == other.about.linedefined && about.lastlinedefined == other.about.lastlinedefined &&
+               about.nparams == other.about.nparams && about.isvararg == other.about.isvararg &&
+               upvalues == other.upvalues;
+    }
+};
+
+/// "function(t) ... end" out of "function M(t) ... end"; empty for a method, whose self is not in its text.
+std::string without_name(std::string_view function) {
+    const std::size_t parameters = function.find('(');
+    if (parameters == std::string_view::npos || function.substr(0, parameters).find(':') != std::string_view::npos) {
+        return "";
+    }
+    return "function" + std::string(function.substr(parameters));
+}
+
+enum class Likeness { none, shape, code };
+
+/// Compiles the text on the same line and with the same variables around it, and compares.
+Likeness likeness(lua_State* L, const std::string& source, const Shape& wanted) {
+    std::string chunk;
+    for (const std::string& name : wanted.upvalues) {
+        chunk += name == "_ENV" ? "" : "local " + name + " ";
+    }
+    chunk.append(static_cast<std::size_t>(std::max(wanted.about.linedefined - 1, 0)), '\n');
+    chunk += "return " + source;
+    const int top = lua_gettop(L);
+    Likeness result = Likeness::none;
+    // Calling it only makes the function: the chunk is a list of variables and one function.
+    if (luaL_loadbufferx(L, chunk.data(), chunk.size(), "=source", "t") == LUA_OK && lua_pcall(L, 0, 1, 0) == LUA_OK &&
+        lua_isfunction(L, -1)) {
+        const Shape found(L, -1);
+        if (found.like(wanted)) {
+            result = found.code == wanted.code ? Likeness::code : Likeness::shape;
+        }
+    }
+    lua_settop(L, top);
+    return result;
+}
+
+/// The texts that may be the wanted function, as expressions, each once.
+// NOTE: the code of a function inside of another also numbers the variables of that one, which its own text does not
+// show. So the shape must do where no code is equal, if only one text has it.
+struct Found {
+    std::vector<std::string> by_shape;
+    std::vector<std::string> by_code;
+
+    [[nodiscard]] std::optional<std::string> only() const {
+        const auto& best = by_code.empty() ? by_shape : by_code;
+        return best.size() == 1 ? std::optional(best.front()) : std::nullopt;
+    }
+};
+
+void find_in(lua_State* L, std::string_view text, const Shape& wanted, Found& found) {
+    for (const auto function : functions_between(text, wanted.about.linedefined, wanted.about.lastlinedefined)) {
+        const std::string source = without_name(function);
+        const Likeness like = source.empty() ? Likeness::none : likeness(L, source, wanted);
+        if (like != Likeness::none) {
+            auto& list = like == Likeness::code ? found.by_code : found.by_shape;
+            if (std::find(list.begin(), list.end(), source) == list.end()) {
+                list.push_back(source);
+            }
+        }
+    }
+}
+
+void find_in_kept(lua_State* L, const Shape& wanted, Found& found) {
+    if (lua_rawgetp(L, LUA_REGISTRYINDEX, &kept_key) == LUA_TTABLE &&
+        lua_getfield(L, -1, wanted.about.source) == LUA_TTABLE) {
+        for (auto i = static_cast<lua_Integer>(lua_rawlen(L, -1)); i > 0; --i) {
+            lua_rawgeti(L, -1, i);
+            find_in(L, lua_tostring(L, -1), wanted, found);
+            lua_pop(L, 1);
+        }
+    }
+}
+
+/// "math.sin" for the C function at `index`, when a loaded module has it under that name.
+std::optional<std::string> library_name(lua_State* L, int index) {
+    const int top = lua_gettop(L);
+    std::optional<std::string> name;
+    lua_getfield(L, LUA_REGISTRYINDEX, LUA_LOADED_TABLE);
+    lua_pushnil(L);
+    while (!name && lua_next(L, top + 1) != 0) {
+        if (lua_type(L, top + 2) == LUA_TSTRING && lua_istable(L, top + 3)) {
+            const std::string module = lua_tostring(L, top + 2);
+            lua_pushnil(L);
+            while (!name && lua_next(L, top + 3) != 0) {
+                if (lua_type(L, -2) == LUA_TSTRING && lua_rawequal(L, -1, index) != 0) {
+                    name = (module == LUA_GNAME ? "" : module + ".") + lua_tostring(L, -2);
+                }
+                lua_pop(L, 1);
+            }
+        }
+        lua_settop(L, top + 2);
+    }
+    lua_settop(L, top);
+    return name;
+}
+
+/// A whole chunk is loaded again: from its file, or from its text, which is its name when load("...") made it.
+std::optional<std::string> whole_chunk(std::string_view source) {
+    if (source.starts_with('=')) {
+        return std::nullopt;
+    }
+    return source.starts_with('@') ? "loadfile(" + quoted(source.substr(1)) + ")" : "load(" + quoted(source) + ")";
+}
+
+}  // namespace
+
+std::optional<std::string> function_source(lua_State* L, int index) {
+    luaL_checkstack(L, LUA_MINSTACK, "for the text of a function");
+    index = lua_absindex(L, index);
+    if (lua_type(L, index) != LUA_TFUNCTION) {
+        return std::nullopt;
+    }
+    if (lua_iscfunction(L, index) != 0) {
+        return library_name(L, index);
+    }
+    const Shape wanted(L, index);
+    const std::string_view source = wanted.about.source;
+    if (wanted.about.what == std::string_view("main")) {
+        return whole_chunk(source);
+    }
+    const int top = lua_gettop(L);
+    Found found;
+    if (source.starts_with('=')) {
+        find_in_kept(L, wanted, found);
+    } else if (!source.starts_with('@')) {
+        find_in(L, source, wanted, found);
+    } else if (const auto text = read_file(std::string(source.substr(1)))) {
+        find_in(L, *text, wanted, found);
+    }
+    lua_settop(L, top);
+    return found.only();
+}
+
+void keep_source(lua_State* L, const char* chunk_name, std::string_view text) {
+    const int top = lua_gettop(L);
+    if (lua_rawgetp(L, LUA_REGISTRYINDEX, &kept_key) != LUA_TTABLE) {
+        lua_newtable(L);
+        lua_pushvalue(L, -1);
+        lua_rawsetp(L, LUA_REGISTRYINDEX, &kept_key);
+    }
+    luaL_getsubtable(L, -1, chunk_name);
+    lua_pushlstring(L, text.data(), text.size());
+    lua_rawseti(L, -2, static_cast<lua_Integer>(lua_rawlen(L, -2)) + 1);
+    lua_settop(L, top);
+}
+
+}  // namespace dinal

@@ -1,0 +1,112 @@
+#include "lua/interrupt.hpp"
+
+#include <unistd.h>
+#include <csignal>
+#include <ctime>
+
+#include <atomic>
+
+#include "lua/running_thread.hpp"
+
+namespace dinal {
+
+namespace {
+
+static_assert(std::atomic<lua_State*>::is_always_lock_free && std::atomic<bool>::is_always_lock_free &&
+                  std::atomic<long>::is_always_lock_free,
+              "a signal handler may use lock-free atomics only");
+
+std::atomic<bool> requested = false;
+std::atomic<bool> armed = false;
+std::atomic<lua_State*> running = nullptr;
+std::atomic<long> first_signal_ms = 0;  // 0: none in this chunk
+
+constexpr long patience_ms = 1000;
+
+void interrupt_hook(lua_State* L, lua_Debug*) {
+    if (requested && armed) {
+        raise_interrupted(L);
+    }
+    lua_sethook(L, nullptr, 0, 0);  // left over from a chunk that has ended
+}
+
+void set_hook(lua_State* L) {
+    // Count 1, and never taken away before the chunk ends: a loop around pcall is stopped at its next instruction.
+    // Not for calls and returns: a message handler written in C (traceback) must be able to do its work.
+    lua_sethook(L, interrupt_hook, LUA_MASKCOUNT, 1);
+}
+
+long now_ms() {
+    timespec now{};
+    clock_gettime(CLOCK_MONOTONIC, &now);  // allowed in a signal handler
+    return static_cast<long>(now.tv_sec) * 1000 + now.tv_nsec / 1'000'000 + 1;
+}
+
+extern "C" void on_signal(int) {
+    requested = true;
+    if (!armed) {
+        return;
+    }
+    const long now = now_ms();
+    const long first = first_signal_ms.exchange(now);
+    if (first != 0 && now - first < patience_ms) {
+        _exit(130);  // the only cure for C code that never returns
+    }
+    if (lua_State* L = running) {
+        set_hook(L);
+    }
+}
+
+}  // namespace
+
+void install_interrupt_handler() {
+    struct sigaction action {};
+    action.sa_handler = on_signal;
+    sigemptyset(&action.sa_mask);
+    action.sa_flags = 0;  // no SA_RESTART: a script that waits in io.read() must wake up
+    sigaction(SIGINT, &action, nullptr);
+}
+
+bool interrupt_requested() noexcept {
+    return requested.load(std::memory_order_relaxed);
+}
+
+void raise_interrupted(lua_State* L) {
+    lua_pushliteral(L, "interrupted!");
+    lua_error(L);
+    std::terminate();  // not reached: lua_error does not return, but its declaration does not say so
+}
+
+InterruptScope::InterruptScope(lua_State* L) : L_(L) {
+    requested = false;
+    first_signal_ms = 0;
+    running = L;
+    armed = true;
+}
+
+InterruptScope::~InterruptScope() {
+    armed = false;
+    running = nullptr;
+    if (lua_gethook(L_) == interrupt_hook) {
+        lua_sethook(L_, nullptr, 0, 0);
+    }
+}
+
+RunningThread::RunningThread(lua_State* caller, lua_State* callee) : caller_(caller) {
+    if (lua_gethook(callee) == interrupt_hook && !requested) {
+        lua_sethook(callee, nullptr, 0, 0);  // it was created or stopped while an earlier chunk was being interrupted
+    }
+    running = callee;
+    if (requested && armed) {
+        set_hook(callee);
+    }
+}
+
+RunningThread::~RunningThread() {
+    running = caller_;
+    if (requested && armed) {
+        set_hook(caller_);  // the coroutine died of the interruption: its caller must, too
+    }
+}
+
+}  // namespace dinal

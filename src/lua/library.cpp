@@ -1,0 +1,123 @@
+// The list of all that Lua can see. A new class is a bind_*.cpp, a line in each of the two lists here, and its tests.
+#include "lua/library.hpp"
+
+#include "lua/dinal_table.hpp"
+#include "lua/interrupt.hpp"
+#include "lua/value_text.hpp"
+
+namespace dinal {
+
+namespace {
+
+constexpr void (*register_functions[])(lua_State*) = {
+    register_system,     register_excitation, register_integrator, register_run,
+    register_trajectory, register_vector,     register_help,
+};
+
+// Plain fields of the table: documented here, set by open_library() and sys:simulate.
+constexpr Member library_members[] = {
+    {"partial",
+     nullptr,
+     Kind::field,
+     {"dinal.partial -> run or nil",
+      "What was done of the last run that M broke off with an error, or Ctrl-C: a run like any other.",
+      "pcall(function()\n"
+      "    nondimensional{}:simulate{ M = function(t) assert(t < 0.5) return 1 end, t_end = 1, dt = 0.1 }\n"
+      "end)\n"
+      "print(#dinal.partial)  --> 5"}},
+    {"version",
+     nullptr,
+     Kind::field,
+     {"dinal.version -> string", "The version of the program.",
+      "print(dinal.version == \"" DINAL_VERSION "\")  --> true"}},
+};
+
+const Class library_class = {"dinal",
+                             {"dinal.NAME, or NAME alone",
+                              "The table in which all of this lives. Its members are plain globals, too, which a user "
+                              "may overwrite; what is below "
+                              "is not.",
+                              "print(dinal.system == system)  --> true"},
+                             library_members};
+
+const Section all_sections[] = {
+    {"Systems", "", &system_functions},
+    {"A system", "sys", &system_class},
+    {"Excitations", "excitation", &excitation_module},
+    {"An excitation", "e", &excitation_class},
+    {"Integrators", "integrator", &integrator_module},
+    {"An integrator", "integrator", &integrator_class},
+    {"A run", "run", &run_class},
+    {"Trajectories from files", "trajectory", &trajectory_module},
+    {"Vectors", "vector", &vector_module},
+    {"A vector", "v", &vector_class},
+    {"Help", "", &help_functions},
+    {"The table dinal", "dinal", &library_class},
+};
+
+const char library_key = 0;  // registry key of the table `dinal`, which a user's `dinal = nil` does not touch
+
+// dinal.partial is nil until a run fails, so a name that is not there can not simply be an error.
+int unknown_name(lua_State* L) {
+    if (lua_type(L, 2) != LUA_TSTRING || std::string_view(lua_tostring(L, 2)) == "partial") {
+        return 0;
+    }
+    std::vector<std::string>
+        owned;  // the strings in the table move nowhere, but a view must not outlive its stack slot
+    lua_pushnil(L);
+    while (lua_next(L, 1) != 0) {
+        if (lua_type(L, -2) == LUA_TSTRING) {
+            owned.emplace_back(lua_tostring(L, -2));
+        }
+        lua_pop(L, 1);
+    }
+    const std::vector<std::string_view> names(owned.begin(), owned.end());
+    const std::string_view wrong = lua_tostring(L, 2);
+    raise(L, "there is no dinal." + std::string(wrong) + did_you_mean(wrong, names));
+}
+
+void copy_into_globals(lua_State* L) {
+    lua_pushglobaltable(L);
+    lua_pushnil(L);
+    while (lua_next(L, -3) != 0) {
+        lua_pushvalue(L, -2);
+        lua_insert(L, -2);
+        lua_rawset(L, -4);
+    }
+    lua_pop(L, 1);
+}
+
+}  // namespace
+
+std::span<const Section> sections() {
+    return all_sections;
+}
+
+void push_dinal_table(lua_State* L) {
+    lua_rawgetp(L, LUA_REGISTRYINDEX, &library_key);
+}
+
+void open_library(lua_State* L) {
+    open_coroutines(L);
+    lua_newtable(L);
+    lua_pushvalue(L, -1);
+    lua_rawsetp(L, LUA_REGISTRYINDEX, &library_key);
+    for (const auto add : register_functions) {
+        add(L);
+    }
+    copy_into_globals(L);
+    note_standard_globals(L);
+    lua_newtable(L);
+    lua_pushcfunction(L, guarded<unknown_name>);
+    lua_setfield(L, -2, "__index");
+    lua_setmetatable(L, -2);
+    lua_pushliteral(L, DINAL_VERSION);
+    lua_setfield(L, -2, "version");
+    luaL_getsubtable(L, LUA_REGISTRYINDEX, LUA_LOADED_TABLE);
+    lua_pushvalue(L, -2);
+    lua_setfield(L, -2, "dinal");
+    lua_pop(L, 1);
+    lua_setglobal(L, "dinal");
+}
+
+}  // namespace dinal

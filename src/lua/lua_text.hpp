@@ -1,0 +1,22 @@
+// Small pieces of Lua text: names, strings, numbers.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace dinal {
+
+/// A name as in `t.name = 1`, and no keyword.
+bool is_name(std::string_view text);
+
+/// The names in a piece of Lua text that may be variables (no fields, no words in strings or comments), each once.
+std::vector<std::string> free_names(std::string_view source);
+
+/// The text in quotes, with what Lua must escape.
+std::string quoted(std::string_view text);
+
+/// A float that reads back exactly, and as a float.
+std::string number_text(double number);
+
+}  // namespace dinal

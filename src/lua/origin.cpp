@@ -1,0 +1,82 @@
+#include "lua/origin.hpp"
+
+#include <fmt/format.h>
+
+#include "lua/bind_excitation.hpp"
+#include "lua/bind_integrator.hpp"
+#include "lua/bind_system.hpp"
+#include "lua/user_function.hpp"
+#include "lua/value_text.hpp"
+
+namespace dinal {
+
+namespace {
+
+void append_lines(std::vector<std::string>& lines, std::string_view text) {
+    for (;;) {
+        const std::size_t end = text.find('\n');
+        lines.emplace_back(text.substr(0, end));
+        if (end == std::string_view::npos) {
+            return;
+        }
+        text.remove_prefix(end + 1);
+    }
+}
+
+/// The function itself where M is nothing else, as its author wrote it.
+std::string excitation_text(lua_State* L, const Excitation& excitation, ValueText& writer) {
+    if (excitation.components().size() == 1) {
+        const Component& only = excitation.components().front();
+        const auto* scripted = std::get_if<Scripted>(&only.term);
+        const bool plain = scripted != nullptr && only.gain == 1 && only.from == -never && only.to == never &&
+                           scripted->breaks.empty() && scripted->period == 0 && scripted->delay == 0;
+        if (const auto* function = plain ? dynamic_cast<const LuaFunction*>(scripted->function.get()) : nullptr) {
+            function->push(L);
+            std::string text = writer.expression(-1);
+            lua_pop(L, 1);
+            return text;
+        }
+    }
+    return describe(L, excitation, &writer);
+}
+
+/// "dt = 0.01", or the times themselves, ten to a line.
+std::string rows_text(const Grid& rows) {
+    if (rows.dt() != 0) {
+        return fmt::format("dt = {}", rows.dt());
+    }
+    std::string text = "times = {";
+    for (std::size_t i = 0; i < rows.times().size(); ++i) {
+        text += fmt::format("{} {},", i % 10 == 9 ? "\n" : "", rows.times()[i]);
+    }
+    return text + " }";
+}
+
+}  // namespace
+
+Origin origin_of(lua_State* L, const Task& task) {
+    Origin origin{task.system, task.integrator, task.excitation, {}};
+    auto& lines = origin.lines;
+    lines.emplace_back("-- dinal " DINAL_VERSION ": without the \"# \" before them, these lines repeat the run");
+    ValueText writer(L);
+    const bool driven = !task.excitation.components().empty();
+    const std::string M = driven ? excitation_text(L, task.excitation, writer) : "";
+    for (const std::string& remark : writer.remarks()) {
+        append_lines(lines, remark);
+    }
+    for (const std::string& global : writer.globals()) {
+        append_lines(lines, global);
+    }
+    if (driven) {
+        append_lines(lines, "local M = " + M);
+    }
+    append_lines(lines, "local sys = " + lua_text(task.system));
+    append_lines(lines,
+                 fmt::format("run = sys:simulate{{ {}theta0 = {}, velocity0 = {}, t_start = {}, t_end = {}, {}, "
+                             "integrator = {} }}",
+                             driven ? "M = M, " : "", task.initial.theta, task.initial.velocity, task.window.start,
+                             task.window.end, rows_text(task.rows), lua_text(task.integrator)));
+    return origin;
+}
+
+}  // namespace dinal

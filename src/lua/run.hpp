@@ -1,0 +1,30 @@
+// What a run object in Lua holds: the trajectory, and where it came from.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/trajectory.hpp"
+#include "lua/bind.hpp"
+#include "lua/origin.hpp"
+
+namespace dinal {
+
+struct Run {
+    Trajectory trajectory;
+    std::optional<Origin> origin = {};       ///< none when it was read from a file
+    std::vector<std::string> comments = {};  ///< of the file it was read from
+};
+
+// Shared, because every column that Lua takes out of a run is a view that keeps the whole run alive.
+using RunHandle = std::shared_ptr<const Run>;
+
+/// The new run as a Lua object on the top of the stack.
+void push_run(lua_State* L, Run run);
+
+/// run:save(file [, { columns = { "t", "theta" } }]), in save_run.cpp.
+int save_run(lua_State* L);
+
+}  // namespace dinal

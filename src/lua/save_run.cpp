@@ -1,0 +1,91 @@
+// run:save(file): which kind of file, which columns, and the comment block that lets the run be repeated.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+
+#include "io/csv.hpp"
+#include "io/record1989.hpp"
+#include "lua/options.hpp"
+#include "lua/run.hpp"
+
+namespace dinal {
+
+namespace {
+
+constexpr const char* example = "run:save(\"run.csv\", { columns = { \"t\", \"theta\" } })";
+
+/// The columns asked for by `columns = { name or number, ... }`, all without it.
+std::vector<NamedColumn> asked_columns(lua_State* L, const Options& options, const Trajectory& trajectory) {
+    std::vector<NamedColumn> all = named_columns(trajectory.names, trajectory.rows);
+    if (!options.has("columns")) {
+        return all;
+    }
+    options.push("columns");
+    if (!lua_istable(L, -1) || lua_rawlen(L, -1) == 0) {
+        options.wrong("columns", "a list such as { \"t\", \"theta\" }");
+    }
+    std::vector<NamedColumn> asked;
+    for (lua_Integer i = 1; i <= static_cast<lua_Integer>(lua_rawlen(L, -1)); ++i) {
+        const bool named = lua_rawgeti(L, -1, i) == LUA_TSTRING;
+        if (!named && lua_isinteger(L, -1) == 0) {
+            options.fail(
+                fmt::format("columns[{}] must be the name or the number of a column, got {}", i, describe(L, -1)));
+        }
+        const auto column = named ? find_column(trajectory.names, std::string_view(lua_tostring(L, -1)))
+                                  : find_column(trajectory.names, std::int64_t{lua_tointeger(L, -1)});
+        if (!column) {
+            options.fail(column.error().sentence);
+        }
+        asked.push_back(all[static_cast<std::size_t>(*column)]);
+        lua_pop(L, 1);
+    }
+    lua_pop(L, 1);
+    return asked;
+}
+
+Expected<Written> write_record(const std::string& file, const Run& run) {
+    if (run.origin) {
+        return write_record1989(file, run.trajectory, run.origin->system);
+    }
+    if (run.trajectory.names == record1989_names()) {
+        return write_record1989(file, run.trajectory.rows);
+    }
+    return Error{"a .dat file needs the system, which a run that was read from a file no longer has; save it as .csv"};
+}
+
+Expected<Written> write(lua_State* L, const Options& options, const std::string& file, const Run& run) {
+    std::string ending = file.substr(std::min(file.rfind('.'), file.size()));
+    std::transform(ending.begin(), ending.end(), ending.begin(),
+                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    if (ending == ".csv") {
+        return write_csv(file, asked_columns(L, options, run.trajectory),
+                         run.origin ? run.origin->lines : run.comments);
+    }
+    if (ending != ".dat") {
+        return Error{
+            fmt::format("the name '{}' must end in .csv (names and numbers) or .dat (the record of 1989)", file)};
+    }
+    if (options.has("columns")) {
+        return Error{"the record of 1989 always has its six columns; save a choice of columns as .csv"};
+    }
+    return write_record(file, run);
+}
+
+}  // namespace
+
+int save_run(lua_State* L) {
+    const RunHandle run = self<RunHandle>(L, 1, "run:save(\"run.csv\")");
+    if (lua_type(L, 2) != LUA_TSTRING) {
+        raise(L, "run:save: the name of the file must be a string, got " + describe(L, 2) + "; for example " + example);
+    }
+    const std::string file = lua_tostring(L, 2);
+    const Options options(L, 3, "run:save", example, {"columns"}, true);
+    const auto written = write(L, options, file, *run);
+    if (!written) {
+        options.fail(written.error().sentence);
+    }
+    return 0;
+}
+
+}  // namespace dinal

@@ -1,0 +1,222 @@
+#include "lua/user_function.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <string>
+
+namespace dinal {
+
+namespace {
+
+// Of this thread of the operating system, because a Lua state belongs to one; a function that is asked from another
+// thread finds none and gives NaN.
+thread_local CallState* current = nullptr;
+
+constexpr double failure = std::numeric_limits<double>::quiet_NaN();
+
+lua_State* main_thread(lua_State* L) {
+    lua_rawgeti(L, LUA_REGISTRYINDEX, LUA_RIDX_MAINTHREAD);
+    lua_State* main = lua_tothread(L, -1);
+    lua_pop(L, 1);
+    return main;
+}
+
+/// How many parameters the Lua function at `index` names; many for `...`, one for a C function.
+int parameter_count(lua_State* L, int index) {
+    constexpr int many = 256;
+    if (lua_iscfunction(L, index) != 0) {
+        return 1;
+    }
+    lua_Debug about{};
+    lua_pushvalue(L, index);
+    lua_getinfo(L, ">u", &about);
+    return about.isvararg != 0 ? many : about.nparams;
+}
+
+bool wants_state(lua_State* L, int index) {
+    if (lua_type(L, index) == LUA_TFUNCTION) {
+        return parameter_count(L, index) >= 2;
+    }
+    bool wants = false;
+    if (luaL_getmetafield(L, index, "__call") != LUA_TNIL) {
+        wants = lua_type(L, -1) == LUA_TFUNCTION && parameter_count(L, -1) >= 3;  // self is the first
+        lua_pop(L, 1);
+    }
+    return wants;
+}
+
+/// "FILE:LINE: " of where the function on the top of the stack (popped) is defined; of the caller for a C function.
+std::string definition(lua_State* L) {
+    if (lua_type(L, -1) != LUA_TFUNCTION) {
+        luaL_getmetafield(L, -1, "__call");
+        lua_remove(L, -2);
+    }
+    if (lua_type(L, -1) != LUA_TFUNCTION || lua_iscfunction(L, -1) != 0) {
+        lua_pop(L, 1);
+        return where(L);
+    }
+    lua_Debug about{};
+    lua_getinfo(L, ">S", &about);
+    return fmt::format("{}:{}: ", about.short_src, about.linedefined);
+}
+
+bool is_about_yield(lua_State* L, int index) {
+    if (lua_type(L, index) != LUA_TSTRING) {
+        return false;
+    }
+    const std::string_view message = lua_tostring(L, index);
+    return message == "attempt to yield across a C-call boundary" ||
+           message == "attempt to yield from outside a coroutine";
+}
+
+std::string text_of_result(lua_State* L) {
+    if (lua_type(L, -1) == LUA_TNUMBER && std::isnan(lua_tonumber(L, -1))) {
+        return "nan";  // Lua itself prints -nan for 0/0
+    }
+    return describe(L, -1);
+}
+
+/// A finite number on the top of the stack; a string that looks like one is none.
+bool is_good(lua_State* L, double& M) {
+    M = lua_tonumber(L, -1);
+    return lua_type(L, -1) == LUA_TNUMBER && std::isfinite(M);
+}
+
+}  // namespace
+
+CallState::CallState(lua_State* L) : L_(L), outer_(current) {
+    luaL_checkstack(L, LUA_MINSTACK, "for the call of a user function");  // once, not at each value
+    current = this;
+}
+
+CallState::~CallState() {
+    current = outer_;
+    if (failed_) {
+        lua_pushnil(L_);
+        lua_rawsetp(L_, LUA_REGISTRYINDEX, this);
+    }
+}
+
+void CallState::keep_error_on_top() {
+    lua_rawsetp(L_, LUA_REGISTRYINDEX, this);
+    failed_ = true;
+}
+
+void CallState::raise_error() {
+    lua_rawgetp(L_, LUA_REGISTRYINDEX, this);
+    lua_error(L_);
+    std::terminate();  // not reached: lua_error does not return, but its declaration does not say so
+}
+
+bool is_callable(lua_State* L, int index) {
+    if (lua_type(L, index) == LUA_TFUNCTION) {
+        return true;
+    }
+    if (luaL_getmetafield(L, index, "__call") == LUA_TNIL) {
+        return false;
+    }
+    lua_pop(L, 1);
+    return true;
+}
+
+LuaFunction::LuaFunction(lua_State* L, int index) : main_(main_thread(L)), feedback_(wants_state(L, index)) {
+    lua_pushvalue(L, index);
+    reference_ = luaL_ref(L, LUA_REGISTRYINDEX);
+}
+
+// Also right while lua_close runs the finalizers: the registry goes last.
+LuaFunction::~LuaFunction() {
+    luaL_unref(main_, LUA_REGISTRYINDEX, reference_);
+}
+
+void LuaFunction::push(lua_State* L) const {
+    lua_rawgeti(L, LUA_REGISTRYINDEX, reference_);
+}
+
+// lua_pcall, although Lua's errors would unwind the integrator just as well: the rows so far are to be kept.
+double LuaFunction::value(double t, const State& state) {
+    CallState* call = current;
+    if (call == nullptr || call->failed_) {
+        return failure;
+    }
+    lua_State* L = call->L_;
+    push(L);
+    lua_pushnumber(L, t);
+    if (feedback_) {
+        lua_pushnumber(L, state.theta);
+        lua_pushnumber(L, state.velocity);
+    }
+    const int status = lua_pcall(L, feedback_ ? 3 : 1, 1, 0);
+    double M = 0;
+    if (status == LUA_OK && is_good(L, M)) {
+        lua_pop(L, 1);
+        return M;
+    }
+    return fail(*call, status, t);
+}
+
+namespace {
+struct Block {
+    const LuaFunction* function;
+    std::span<const double> times;
+    std::span<double> out;
+    std::size_t filled = 0;
+};
+}  // namespace
+
+/// Called with the Block; returns nothing, or the first result that is no good.
+int LuaFunction::fill_protected(lua_State* L) {
+    auto& block = *static_cast<Block*>(lua_touserdata(L, 1));
+    block.function->push(L);
+    for (; block.filled < block.times.size(); ++block.filled) {
+        lua_pushvalue(L, 2);
+        lua_pushnumber(L, block.times[block.filled]);
+        lua_call(L, 1, 1);
+        if (!is_good(L, block.out[block.filled])) {
+            return 1;
+        }
+        lua_pop(L, 1);
+    }
+    return 0;
+}
+
+// One lua_pcall for the block: it costs as much as the call of a short function.
+std::size_t LuaFunction::fill(std::span<const double> times, std::span<double> out) {
+    CallState* call = current;
+    if (call == nullptr || call->failed_ || feedback_) {
+        return UserFunction::fill(times, out);
+    }
+    lua_State* L = call->L_;
+    Block block{this, times, out};
+    const int top = lua_gettop(L);
+    lua_pushcfunction(L, fill_protected);
+    lua_pushlightuserdata(L, &block);
+    const int status = lua_pcall(L, 1, LUA_MULTRET, 0);
+    if (lua_gettop(L) > top) {
+        out[block.filled] = fail(*call, status, times[block.filled]);
+    }
+    return block.filled;
+}
+
+/// The result or the error value stands on the top of the stack.
+double LuaFunction::fail(CallState& call, int status, double t) const {
+    lua_State* L = call.L_;
+    std::string sentence;
+    if (status == LUA_OK) {
+        sentence = fmt::format("M returned {} at t = {:.14g}; it must return a finite number", text_of_result(L), t);
+    } else if (is_about_yield(L, -1)) {
+        sentence =
+            fmt::format("M can not yield, as it did at t = {:.14g} (attempt to yield across a C-call boundary)", t);
+    }
+    if (!sentence.empty()) {
+        push(L);
+        sentence = definition(L) + sentence;
+        lua_pop(L, 1);
+        lua_pushlstring(L, sentence.data(), sentence.size());
+    }
+    call.keep_error_on_top();
+    return failure;
+}
+
+}  // namespace dinal

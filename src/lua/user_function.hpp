@@ -1,0 +1,62 @@
+// A user's Lua function as a term of an excitation, and the Lua call during which such functions may be asked.
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <span>
+
+#include "core/excitation.hpp"
+#include "lua/bind.hpp"
+
+namespace dinal {
+
+/// While it lives, user functions run on `L`: the state of the call in progress, which is a coroutine as often as not.
+/// One on the C++ stack of every binding that may ask an excitation (simulate, e:value, run:at). They nest.
+class CallState {
+public:
+    explicit CallState(lua_State* L);
+    ~CallState();
+    CallState(const CallState&) = delete;
+    CallState& operator=(const CallState&) = delete;
+
+    /// A user function has failed during this call. From then on none is called, all give NaN.
+    [[nodiscard]] bool failed() const { return failed_; }
+    /// Raises what the user function raised, unchanged, or the sentence about what it returned. Only when failed().
+    [[noreturn]] void raise_error();
+
+private:
+    friend class LuaFunction;
+    void keep_error_on_top();
+
+    lua_State* L_;
+    CallState* outer_;
+    bool failed_ = false;
+};
+
+/// What Lua calls like a function: a Lua function, a C function, a table or userdata with __call.
+[[nodiscard]] bool is_callable(lua_State* L, int index);
+
+class LuaFunction final : public UserFunction {
+public:
+    /// Of the callable value at `index`, which the registry keeps from now on.
+    LuaFunction(lua_State* L, int index);
+    ~LuaFunction() override;
+
+    double value(double t, const State& state) override;
+    std::size_t fill(std::span<const double> times, std::span<double> out) override;
+
+    /// It wants theta and velocity: a Lua function (or __call) of two or more parameters, or with `...`.
+    [[nodiscard]] bool feedback() const { return feedback_; }
+    /// Pushes the function itself.
+    void push(lua_State* L) const;
+
+private:
+    static int fill_protected(lua_State* L);
+    double fail(CallState& call, int status, double t) const;
+
+    lua_State* main_;  // for the destructor, which runs when the collector pleases
+    int reference_;
+    bool feedback_;
+};
+
+}  // namespace dinal

@@ -1,0 +1,231 @@
+#include "lua/value_text.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <optional>
+
+#include "lua/bind.hpp"
+#include "lua/function_source.hpp"
+#include "lua/vector.hpp"
+
+namespace dinal {
+
+namespace {
+
+const char standard_key = 0;  // registry key of a copy of _G as it was at the start
+
+const char sources_key = 0;  // registry key of a weak table: function -> its text, or false
+
+/// function_source(), which may have to read a whole script, is asked once for each function: sweeps run the same M
+/// often.
+std::optional<std::string> known_source(lua_State* L, int index) {
+    if (lua_rawgetp(L, LUA_REGISTRYINDEX, &sources_key) != LUA_TTABLE) {
+        lua_newtable(L);
+        lua_newtable(L);
+        lua_pushliteral(L, "k");
+        lua_setfield(L, -2, "__mode");
+        lua_setmetatable(L, -2);
+        lua_pushvalue(L, -1);
+        lua_rawsetp(L, LUA_REGISTRYINDEX, &sources_key);
+        lua_replace(L, -2);
+    }
+    lua_pushvalue(L, index);
+    if (lua_rawget(L, -2) == LUA_TNIL) {
+        const auto source = function_source(L, index);
+        lua_pushvalue(L, index);
+        source ? static_cast<void>(lua_pushlstring(L, source->data(), source->size())) : lua_pushboolean(L, 0);
+        lua_pushvalue(L, -1);
+        lua_replace(L, -4);  // in the place of nil
+        lua_rawset(L, -4);
+    }
+    std::optional<std::string> source;
+    if (lua_type(L, -1) == LUA_TSTRING) {
+        std::size_t length = 0;
+        const char* text = lua_tolstring(L, -1, &length);
+        source = std::string(text, length);
+    }
+    lua_pop(L, 2);
+    return source;
+}
+
+}  // namespace
+
+void note_standard_globals(lua_State* L) {
+    lua_newtable(L);
+    lua_pushglobaltable(L);
+    lua_pushnil(L);
+    while (lua_next(L, -2) != 0) {
+        lua_pushvalue(L, -2);
+        lua_insert(L, -2);
+        lua_rawset(L, -5);
+    }
+    lua_pop(L, 1);
+    lua_rawsetp(L, LUA_REGISTRYINDEX, &standard_key);
+}
+
+std::string ValueText::nothing(std::string_view what) {
+    remarks_.push_back(fmt::format("-- {} could not be written down", what));
+    return "nil";
+}
+
+std::string ValueText::expression(int index) {
+    luaL_checkstack(L_, 10, "too deep");
+    index = lua_absindex(L_, index);
+    if (--budget_ < 0) {
+        return budget_ == -1 ? nothing("a part of a large table") : "nil";
+    }
+    switch (lua_type(L_, index)) {
+        case LUA_TNIL:
+            return "nil";
+        case LUA_TBOOLEAN:
+            return lua_toboolean(L_, index) != 0 ? "true" : "false";
+        case LUA_TNUMBER:
+            return lua_isinteger(L_, index) != 0 ? fmt::format("{}", lua_tointeger(L_, index))
+                                                 : number_text(lua_tonumber(L_, index));
+        case LUA_TSTRING: {
+            std::size_t length = 0;
+            const char* text = lua_tolstring(L_, index, &length);
+            return quoted({text, length});
+        }
+        case LUA_TTABLE:
+            return table(index);
+        case LUA_TFUNCTION:
+            return function(index);
+        case LUA_TUSERDATA:
+            return object(index);
+        default:
+            return nothing(describe(L_, index));
+    }
+}
+
+std::string ValueText::table(int index) {
+    const void* identity = lua_topointer(L_, index);
+    if (std::find(open_.begin(), open_.end(), identity) != open_.end() || open_.size() > 50) {
+        return nothing("a table that contains itself");
+    }
+    if (lua_getmetatable(L_, index) != 0) {
+        lua_pop(L_, 1);
+        remarks_.emplace_back("-- the metatable of a table could not be written down");
+    }
+    open_.push_back(identity);
+    const int top = lua_gettop(L_);
+    std::string text;
+    const auto sequence = static_cast<lua_Integer>(lua_rawlen(L_, index));
+    for (lua_Integer i = 1; i <= sequence && budget_ >= 0; ++i) {
+        lua_rawgeti(L_, index, i);
+        text += (text.empty() ? "" : ", ") + expression(-1);
+        lua_pop(L_, 1);
+    }
+    lua_pushnil(L_);
+    while (budget_ >= 0 && lua_next(L_, index) != 0) {
+        const bool listed =
+            lua_isinteger(L_, -2) != 0 && lua_tointeger(L_, -2) >= 1 && lua_tointeger(L_, -2) <= sequence;
+        if (!listed) {
+            const bool plain = lua_type(L_, -2) == LUA_TSTRING && is_name(lua_tostring(L_, -2));
+            const std::string key = plain ? lua_tostring(L_, -2) : "[" + expression(-2) + "]";
+            text += (text.empty() ? "" : ", ") + key + " = " + expression(-1);
+        }
+        lua_pop(L_, 1);
+    }
+    lua_settop(L_, top);  // the loop may have been left in the middle
+    open_.pop_back();
+    return text.empty() ? "{}" : "{ " + text + " }";
+}
+
+std::string ValueText::object(int index) {
+    if (const auto* vector = test<Vector>(L_, index)) {
+        budget_ -= static_cast<int>(std::min<std::size_t>(vector->size(), 1'000'000));
+        if (budget_ < 0) {
+            return nothing("a long vector");
+        }
+        std::string text;
+        for (const double x : vector->values()) {
+            text += (text.empty() ? "" : ", ") + number_text(x);
+        }
+        return "vector{ " + text + " }";
+    }
+    const Documented found = documented(L_, index);
+    const std::string_view name = found.owner != nullptr ? found.owner->name : "";
+    if (name != "system" && name != "integrator" && name != "excitation") {
+        return nothing(describe(L_, index));
+    }
+    const std::string text = luaL_tolstring(L_, index, nullptr);  // these write themselves as Lua text
+    lua_pop(L_, 1);
+    return text;
+}
+
+std::string ValueText::function(int index) {
+    const void* identity = lua_topointer(L_, index);
+    if (std::find(open_.begin(), open_.end(), identity) != open_.end()) {
+        return nothing("a function that refers to itself in a roundabout way");
+    }
+    const auto source = known_source(L_, index);
+    if (!source) {
+        return nothing("a function whose text is not at hand");
+    }
+    if (lua_iscfunction(L_, index) != 0) {
+        return *source;
+    }
+    open_.push_back(identity);
+    note_globals(index, *source);
+    std::string text = with_locals(index, *source);
+    open_.pop_back();
+    return text;
+}
+
+/// (function() local a = 1; return function(t) return a*t end end)() for a function with local variables from outside.
+std::string ValueText::with_locals(int index, const std::string& source) {
+    std::string locals;
+    std::string own_name;  // local function f(t) ... f(t - 1) ... end: f is a variable of f
+    for (int i = 1; const char* name = lua_getupvalue(L_, index, i); ++i) {
+        const bool environment = std::string_view(name) == "_ENV";
+        if (lua_rawequal(L_, -1, index) != 0) {
+            own_name = name;
+        } else if (!environment && *name != '\0') {
+            locals += fmt::format("local {} = {}\n", name, expression(-1));
+        }
+        lua_pop(L_, 1);
+    }
+    if (locals.empty() && own_name.empty()) {
+        return source;
+    }
+    const std::string result =
+        own_name.empty() ? "return " + source : fmt::format("local {0}; {0} = {1}\nreturn {0}", own_name, source);
+    return "(function()\n" + locals + result + "\nend)()";
+}
+
+void ValueText::note_globals(int function_index, std::string_view source) {
+    for (int i = 1; const char* name = lua_getupvalue(L_, function_index, i); ++i) {
+        if (std::string_view(name) == "_ENV" && lua_istable(L_, -1)) {
+            const int environment = lua_gettop(L_);
+            for (const std::string& free : free_names(source)) {
+                note_global(environment, free);
+            }
+        }
+        lua_pop(L_, 1);
+    }
+}
+
+void ValueText::note_global(int environment, const std::string& name) {
+    if (std::find(names_.begin(), names_.end(), name) != names_.end()) {
+        return;
+    }
+    lua_rawgetp(L_, LUA_REGISTRYINDEX, &standard_key);
+    lua_pushlstring(L_, name.data(), name.size());
+    lua_pushvalue(L_, -1);
+    lua_rawget(L_, environment);
+    lua_insert(L_, -2);
+    lua_rawget(L_, -3);  // stack: standard globals, value, standard value
+    const bool users = !lua_isnil(L_, -2) && lua_rawequal(L_, -1, -2) == 0;
+    lua_pop(L_, 1);
+    if (users) {
+        names_.push_back(name);
+        const bool itself = std::find(open_.begin(), open_.end(), lua_topointer(L_, -1)) != open_.end();
+        // function M(t) return M_old(t) end needs M_old; a function that calls itself is there already.
+        globals_.push_back(name + " = " + (itself ? "nil" : expression(-1)));
+    }
+    lua_pop(L_, 2);
+}
+
+}  // namespace dinal

@@ -1,0 +1,47 @@
+// The Lua text of values and functions, so that a file of results can say how to repeat the run.
+#pragma once
+
+#include <lua.hpp>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "lua/lua_text.hpp"
+
+namespace dinal {
+
+/// To be called once all globals of Lua and dinal stand: what a program has without its user needs no text.
+void note_standard_globals(lua_State* L);
+
+/// Turns values into Lua expressions, with everything that the functions among them take from outside: local variables
+/// go into the expression, global ones become lines of their own.
+class ValueText {
+public:
+    explicit ValueText(lua_State* L) : L_(L) {}
+
+    /// An expression that gives the value at `index` again; `nil` and a remark in comments() when there is none.
+    std::string expression(int index);
+
+    /// "w = 3": what must stand before the expressions.
+    [[nodiscard]] const std::vector<std::string>& globals() const { return globals_; }
+    /// Comment lines about what could not be written down.
+    [[nodiscard]] const std::vector<std::string>& remarks() const { return remarks_; }
+
+private:
+    std::string table(int index);
+    std::string function(int index);
+    std::string object(int index);
+    std::string with_locals(int index, const std::string& source);
+    void note_globals(int function_index, std::string_view source);
+    void note_global(int environment, const std::string& name);
+    std::string nothing(std::string_view what);
+
+    lua_State* L_;
+    std::vector<std::string> globals_;
+    std::vector<std::string> names_;  // of globals that are done or being done
+    std::vector<const void*> open_;   // tables and functions being written: a cycle has no text
+    std::vector<std::string> remarks_;
+    int budget_ = 10'000;  // values; what is larger belongs into a file of its own
+};
+
+}  // namespace dinal

@@ -1,0 +1,53 @@
+#include "lua/vector.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "lua/external_memory.hpp"
+
+namespace dinal {
+
+void push_vector(lua_State* L, std::vector<double> values) {
+    const std::size_t bytes = values.size() * sizeof(double);
+    push(L, Vector(std::move(values)));
+    note_external_memory(L, bytes);
+}
+
+namespace {
+
+std::vector<double> numbers_of_table(lua_State* L, int index, std::string_view what) {
+    const std::size_t n = lua_rawlen(L, index);
+    std::vector<double> numbers;
+    numbers.reserve(n);
+    for (std::size_t i = 1; i <= n; ++i) {
+        if (lua_rawgeti(L, index, static_cast<lua_Integer>(i)) != LUA_TNUMBER) {
+            raise(L, fmt::format("{}[{}] must be a finite number, got {}", what, i, describe(L, -1)));
+        }
+        numbers.push_back(lua_tonumber(L, -1));
+        lua_pop(L, 1);
+    }
+    return numbers;
+}
+
+}  // namespace
+
+std::vector<double> numbers_at(lua_State* L, int index, std::string_view what) {
+    index = lua_absindex(L, index);
+    std::vector<double> numbers;
+    if (const auto* vector = test<Vector>(L, index)) {
+        numbers.assign(vector->begin(), vector->end());
+    } else if (lua_type(L, index) == LUA_TTABLE) {
+        numbers = numbers_of_table(L, index, what);
+    } else {
+        raise(L, fmt::format("{} must be a table of numbers or a vector, got {}", what, describe(L, index)));
+    }
+    const auto bad = std::find_if(numbers.begin(), numbers.end(), [](double x) { return !std::isfinite(x); });
+    if (bad != numbers.end()) {
+        raise(L, fmt::format("{}[{}] = {} must be finite", what, bad - numbers.begin() + 1, *bad));
+    }
+    return numbers;
+}
+
+}  // namespace dinal

@@ -1,0 +1,44 @@
+// A vector of numbers as Lua sees it: immutable, either a view into something that it keeps alive or its own data.
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <span>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "lua/bind.hpp"
+
+namespace dinal {
+
+class Vector {
+public:
+    explicit Vector(std::vector<double> values) {
+        const auto own = std::make_shared<const std::vector<double>>(std::move(values));
+        values_ = *own;
+        owner_ = own;
+    }
+    /// A view of numbers that belong to `owner` (a trajectory). Shared, because a column may outlive the run's
+    /// variable.
+    Vector(std::shared_ptr<const void> owner, const double* data, std::size_t size)
+        : owner_(std::move(owner)), values_(data, size) {}
+
+    [[nodiscard]] std::span<const double> values() const { return values_; }
+    [[nodiscard]] std::size_t size() const { return values_.size(); }
+    [[nodiscard]] const double* begin() const { return values_.data(); }
+    [[nodiscard]] const double* end() const { return values_.data() + values_.size(); }
+
+private:
+    std::shared_ptr<const void> owner_;
+    std::span<const double> values_;
+};
+
+/// Gives Lua a vector with data of its own, and its garbage collector the news of how much memory that takes.
+void push_vector(lua_State* L, std::vector<double> values);
+
+/// The finite numbers of a table or a vector at `index`. `what` heads the sentence when there is something else:
+/// "sys:simulate: times".
+std::vector<double> numbers_at(lua_State* L, int index, std::string_view what);
+
+}  // namespace dinal
