@@ -1,0 +1,38 @@
+// The command line: the options of `lua`, read as `lua` reads them, and --help, --version and --manual.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "core/expected.hpp"
+
+namespace dinal {
+
+enum class Request { run, help, version, manual };
+
+/// -e, -l or -W: they are carried out in the order in which they stand.
+struct Step {
+    char option;
+    const char* value;  ///< of -e and -l
+};
+
+struct Arguments {
+    Request request = Request::run;
+    bool interactive = false;         ///< -i
+    bool show_version = false;        ///< -v or -i
+    bool executes = false;            ///< -e
+    bool ignore_environment = false;  ///< -E
+    std::vector<Step> steps;
+    std::vector<const char*> words;  ///< the whole command line
+    std::size_t script = 0;          ///< its place among the words; words.size() when there is none
+
+    [[nodiscard]] bool has_script() const { return script < words.size(); }
+};
+
+/// Fails with a sentence about the first option that is not known or lacks its value.
+Expected<Arguments> parse_arguments(int count, const char* const* words);
+
+/// What --help prints.
+std::string help_text();
+
+}  // namespace dinal

@@ -1,0 +1,15 @@
+// What the program itself says: values and greetings on standard output, errors on standard error.
+#pragma once
+
+#include <string_view>
+
+namespace dinal {
+
+/// Whether it arrives is asked once, at the end of the program (main.cpp).
+void say(std::string_view text);
+void flush_output();
+
+/// A line on standard error, after all that was said before.
+void say_error(std::string_view text);
+
+}  // namespace dinal

@@ -1,0 +1,16 @@
+// The prompt: reads a chunk of Lua, runs it, shows its values, and goes on whatever happens.
+#pragma once
+
+#include <lua.hpp>
+
+#include <string>
+
+namespace dinal {
+
+/// The first line of a session.
+std::string greeting();
+
+/// Until the end of input. False when Ctrl-C ended it, which happens only where no terminal is.
+bool run_prompt(lua_State* L);
+
+}  // namespace dinal
