@@ -1,0 +1,31 @@
+-- Figure 22: free motion with dry friction, gamma = 0.167, h = 0.001. In the phase plane a spiral about two centres;
+-- the extremes fall by 2 gamma every half period, until one lies within gamma of the middle and the mass stays there.
+local case = dofile((debug.getinfo(1, "S").source:match("^@(.*/)") or "") .. "case.lua")
+
+case.title(22, "free, gamma = 0.167, h = 0.001")
+local old, run = case.run{ gamma = 0.167, velocity0 = 1, t_end = 3, h = 0.001 }
+local known = { 0.846848608, -0.512848608, 0.178848608, 0.155151392 } -- closed form
+
+case.head("1989", "true motion", "closed form")
+local rough, extremes = case.row_extremes(old), case.extremes(run)
+for i = 1, 3 do
+  case.line("extreme " .. i, rough[i].theta, extremes[i].theta, known[i])
+end
+case.line("at rest at theta =", old.theta[#old], extremes[4].theta, known[4])
+case.line("from t/T0 =", "", extremes[4].t, 1.723664157)
+print(run)
+print "The report estimates t* = (1 - A)/(4 gamma), A between 0 and gamma: 1.25 to 1.50."
+case.save(22, old, run)
+
+--[[ prints
+Figure 22: free, gamma = 0.167, h = 0.001
+                                        1989     true motion     closed form
+extreme 1                        0.846846290     0.846848608     0.846848608
+extreme 2                       -0.512846174    -0.512848608    -0.512848608
+extreme 3                        0.178848884     0.178848608     0.178848608
+at rest at theta =               0.155142378     0.155151392     0.155151392
+from t/T0 =                                      1.723664157     1.723664157
+3001 rows, t 0 … 3; 4 events (3 turns, 1 rest); at rest; peak |theta| 0.847
+The report estimates t* = (1 - A)/(4 gamma), A between 0 and gamma: 1.25 to 1.50.
+fig22.csv, fig22.dat: 3001 rows
+]]
