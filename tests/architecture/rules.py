@@ -1,0 +1,152 @@
+#!/usr/bin/env python3
+"""The rules of the house that a program can check: docs/architecture.md says why they are there.
+
+    rules.py SOURCE
+"""
+
+import os
+import re
+import sys
+
+ROOT = sys.argv[1]
+LONGEST_FILE = 350  # lines; 300 is a smell, this is where it is no longer a matter of taste
+
+# Arrows point one way: a folder includes itself and what stands to the right of it.
+LAYERS = ["main", "repl", "lua", "io", "core"]
+
+SOURCES = (".cpp", ".hpp")
+CODE = SOURCES + (".lua", ".py", ".sh")
+
+complaints = []
+
+
+def complain(path, line, sentence):
+    complaints.append(f"{path}:{line}: {sentence}")
+
+
+def files(endings):
+    for folder, folders, names in os.walk(ROOT):
+        folders[:] = sorted(f for f in folders if f not in (".git", "build", "__pycache__"))
+        for name in sorted(names):
+            path = os.path.relpath(os.path.join(folder, name), ROOT)
+            if path.endswith(endings) or (not endings and "." not in name):
+                yield path
+
+
+def lines(path):
+    with open(os.path.join(ROOT, path), encoding="utf-8") as file:
+        return list(enumerate(file.read().split("\n"), 1))
+
+
+def layer(path):
+    return path.split("/")[1] if path.count("/") > 1 else "main"
+
+
+def includes_point_one_way():
+    for path in files(SOURCES):
+        if not path.startswith("src/"):
+            continue
+        own = layer(path)
+        for number, line in lines(path):
+            quoted = re.match(r'\s*#\s*include\s+"([^"]+)"', line)
+            if not quoted:
+                continue
+            target = quoted[1].split("/")[0]
+            if "/" not in quoted[1] or target not in LAYERS:
+                complain(path, number, f'"{quoted[1]}" is not a path from src/')
+            elif LAYERS.index(target) < LAYERS.index(own):
+                complain(path, number, f"{own} must not include {target}: arrows point {' -> '.join(LAYERS)}")
+            if not os.path.exists(os.path.join(ROOT, "src", quoted[1])):
+                complain(path, number, f"src/{quoted[1]} does not exist")
+
+
+FORBIDDEN = [
+    # folders, pattern, why
+    (("core", "io"), r"#\s*include\s+[<\"](lua|lauxlib|lualib)", "only lua and repl know Lua"),
+    (("core",), r"#\s*include\s+<(iostream|fstream|cstdio|stdio\.h|print)>", "the core does not print or read"),
+    (("core",), r"\b(printf|fprintf|puts|fputs|fmt::print)\s*\(", "the core does not print"),
+    (("core",), r"#\s*include\s+<(chrono|ctime|thread|mutex|future|csignal|clocale|random)>",
+     "the core has no clock, no threads, no signals and no chance"),
+    (("core",), r"\b(getenv|setlocale|isatty)\s*\(", "the core does not look around"),
+    (("core", "io", "lua"), r"#\s*include\s+<readline/", "only the line editor knows readline"),
+    (("core", "io", "lua", "repl", "main"), r"\bcatch\s*\(\s*\.\.\.\s*\)", "it would swallow Lua's own errors"),
+    (("core", "io", "lua", "repl", "main"), r"\bsetlocale\s*\(\s*(?!LC_CTYPE)", "only LC_CTYPE: 1.5 must not become 1,5"),
+]
+
+
+def forbidden_things_are_absent():
+    for path in files(SOURCES):
+        if not path.startswith("src/"):
+            continue
+        for number, line in lines(path):
+            code = re.sub(r'"(\\.|[^"\\])*"', '""', line) if "include" not in line else line
+            code = code.split("//")[0]
+            for folders, pattern, why in FORBIDDEN:
+                if layer(path) in folders and re.search(pattern, code):
+                    complain(path, number, f"{why}: {line.strip()}")
+        if "readline/" in "".join(l for _, l in lines(path)) and os.path.basename(path) != "line_editor.cpp":
+            complain(path, 1, "only repl/line_editor.cpp knows readline")
+
+
+def headers_say_what_they_hold():
+    for path in files((".hpp",)):
+        first = [line for _, line in lines(path) if line.strip() and line.strip() != "#pragma once"][0]
+        if not re.match(r"//+ \S.*", first):
+            complain(path, 1, "a header starts with a sentence that says what lives there")
+
+
+def files_are_short():
+    for path in files(CODE):
+        count = len(lines(path)) - 1
+        if count > LONGEST_FILE:
+            complain(path, count, f"{count} lines are more than {LONGEST_FILE}: split it")
+
+
+def names_are_unique():
+    seen = {}
+    for path in files(SOURCES):
+        name = os.path.basename(path)
+        if path.startswith("src/") and name in seen:
+            complain(path, 1, f"has the name of {seen[name]}: a name says the thing, once")
+        seen[name] = path
+
+
+def nothing_is_left_for_later():
+    words = "|".join(("TO" + "DO", "FIX" + "ME", "X" * 3, "HA" + "CK"))
+    for path in list(files(CODE + (".md", ".txt", ".json", ".1"))) + list(files(())):
+        for number, line in lines(path):
+            if re.search(rf"\b({words})\b", line):
+                complain(path, number, f"do it or file it: {line.strip()}")
+
+
+def links_lead_somewhere():
+    for path in files((".md",)):
+        text = "\n".join(line for _, line in lines(path))
+        text = re.sub(r"```.*?```", lambda m: "\n" * m[0].count("\n"), text, flags=re.S)
+        for match in re.finditer(r"\]\(([^)\s]+)\)", text):
+            target, _, anchor = match[1].partition("#")
+            number = text.count("\n", 0, match.start()) + 1
+            if re.match(r"[a-z]+:", target):
+                continue
+            goal = os.path.normpath(os.path.join(ROOT, os.path.dirname(path), target)) if target else os.path.join(ROOT, path)
+            if not os.path.exists(goal):
+                complain(path, number, f"the link {match[1]} leads nowhere")
+            elif anchor and goal.endswith(".md") and anchor not in anchors(goal):
+                complain(path, number, f"the link {match[1]} names no heading")
+
+
+def anchors(goal):
+    with open(goal, encoding="utf-8") as file:
+        text = re.sub(r"```.*?```", "", file.read(), flags=re.S)
+    headings = re.findall(r"^#+ +(.*)$", text, flags=re.M)
+    explicit = re.findall(r'<a (?:id|name)="([^"]+)"', text)
+    return set(explicit) | {re.sub(r"[^\w\- ]", "", h.lower()).strip().replace(" ", "-") for h in headings}
+
+
+for rule in (includes_point_one_way, forbidden_things_are_absent, headers_say_what_they_hold, files_are_short,
+             names_are_unique, nothing_is_left_for_later, links_lead_somewhere):
+    rule()
+if not any(True for _ in files((".hpp",))):
+    complaints.append("no headers found: is the folder right?")
+print("\n".join(complaints) or "all rules hold")
+sys.exit(1 if complaints else 0)

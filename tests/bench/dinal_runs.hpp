@@ -1,0 +1,16 @@
+// dinal at the same work as its peers.
+#pragma once
+
+#include "core/simulate.hpp"
+#include "peers.hpp"
+
+namespace bench {
+
+extern const Peer dinal_rk4;         ///< h = .001
+extern const Peer dinal_rk4_coarse;  ///< h = .01
+extern const Peer dinal_1989;        ///< h = .001
+
+/// A run of the work with rows; ends the program with the reason when dinal refuses it.
+dinal::Trajectory trajectory(const Workload& work, const dinal::Integrator& integrator, const dinal::Grid& rows);
+
+}  // namespace bench

@@ -1,0 +1,13 @@
+// The groups of benchmarks that one program registers.
+#pragma once
+
+#include "results.hpp"
+
+namespace bench {
+
+void register_workloads(Results& results);  ///< W1-W4: peers and dinal
+void register_rows(Results& results);       ///< rows kept in memory, rows written to a file
+void register_lua(Results& results);        ///< M(t) in Lua
+void register_start(Results& results);      ///< the program as a process
+
+}  // namespace bench

@@ -1,0 +1,66 @@
+// What was measured, by group and item; the table and the bars are read from here.
+#pragma once
+
+#include <benchmark/benchmark.h>
+
+#include <deque>
+#include <map>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace bench {
+
+struct Item {
+    std::string group, name;
+    std::vector<double> seconds;  ///< of one iteration, one for each repetition
+    double error = -1;            ///< max |u - truth| in units of Mc/k; negative: not asked
+    double count = 0;             ///< of what `per` names, in one iteration
+    std::string per;              ///< "step", "row", "call"; empty: the whole only
+
+    [[nodiscard]] double median() const;
+};
+
+/// How often rk4 calls a Lua function M in 1e6 steps.
+struct LuaCalls {
+    double on_w3 = 0;
+    double events_on_w3 = 0;
+    double without_events = 0;
+};
+
+class Results {
+public:
+    Item& of(const std::string& group, const std::string& name);
+    [[nodiscard]] const Item* find(std::string_view group, std::string_view name) const;
+    [[nodiscard]] const std::deque<Item>& items() const { return items_; }
+
+    LuaCalls lua_calls;
+
+private:
+    std::deque<Item> items_;  // whose elements stay where they are
+};
+
+/// Collects the repetitions and shows how far it is; prints nothing else.
+class Collector : public benchmark::BenchmarkReporter {
+public:
+    explicit Collector(Results& results) : results_(results) {}
+    bool ReportContext(const Context& context) override;
+    void ReportRuns(const std::vector<Run>& runs) override;
+    [[nodiscard]] bool failed() const { return failed_; }
+
+private:
+    Results& results_;
+    bool failed_ = false;
+};
+
+/// The one table: item, time, ratio to the hand-inlined RK4, error.
+void print_table(const Results& results);
+/// The bars this version has to reach, each met or not.
+void print_bars(const Results& results);
+
+// Names that the table's bars refer to.
+inline constexpr std::string_view rows_group = "rows", files_group = "files", lua_group = "Lua", start_group = "start";
+inline constexpr std::string_view csv_in_memory = "CSV, 1e6 rows of W4, file in memory",
+                                  csv_on_disk = "CSV, 1e6 rows of W4, file on the disk";
+
+}  // namespace bench

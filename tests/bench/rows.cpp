@@ -1,0 +1,64 @@
+// The cost of keeping rows, and of writing them to a file.
+#include <benchmark/benchmark.h>
+
+#include <cstdio>
+#include <filesystem>
+#include <string>
+
+#include <unistd.h>
+
+#include "dinal_runs.hpp"
+#include "io/csv.hpp"
+#include "items.hpp"
+
+namespace bench {
+namespace {
+
+const Workload& free_motion = workloads[0];
+const Workload& driven_motion = workloads[3];
+
+void keep_rows(benchmark::State& state, const dinal::Grid& grid) {
+    benchmark::DoNotOptimize(trajectory(free_motion, dinal::Rk4{0.001}, grid).rows.data());  // warms the memory
+    for ([[maybe_unused]] auto iteration : state) {
+        benchmark::DoNotOptimize(trajectory(free_motion, dinal::Rk4{0.001}, grid).rows.data());
+    }
+}
+
+/// A folder that needs no disk, where there is one.
+std::filesystem::path memory_folder() {
+    return access("/dev/shm", W_OK) == 0 ? "/dev/shm" : std::filesystem::temp_directory_path();
+}
+
+void write_csv(benchmark::State& state, const std::filesystem::path& folder) {
+    const dinal::Trajectory run = trajectory(driven_motion, dinal::Rk4{0.001}, dinal::Grid::every(0.001));
+    const auto columns = dinal::named_columns(run.names, run.rows);
+    const std::string path = (folder / ("dinal-bench-" + std::to_string(getpid()) + ".csv")).string();
+    for ([[maybe_unused]] auto iteration : state) {
+        if (const auto written = dinal::write_csv(path, columns); !written) {
+            state.SkipWithError(written.error().sentence.c_str());
+            break;
+        }
+    }
+    std::remove(path.c_str());
+}
+
+}  // namespace
+
+void register_rows(Results& results) {
+    const auto add = [&](std::string_view group, const std::string& name, double count, const char* per, auto run) {
+        Item& item = results.of(std::string(group), name);
+        item.count = count;
+        item.per = per;
+        benchmark::RegisterBenchmark((item.group + "/" + name).c_str(), run);
+    };
+    add(rows_group, "W1 without rows", 1e7, "step",
+        [](benchmark::State& state) { keep_rows(state, dinal::Grid::none()); });
+    add(rows_group, "W1 with a row a step", 1e7, "step",
+        [](benchmark::State& state) { keep_rows(state, dinal::Grid::every(0.001)); });
+    add(files_group, std::string(csv_in_memory), 1e6, "row",
+        [](benchmark::State& state) { write_csv(state, memory_folder()); });
+    add(files_group, std::string(csv_on_disk), 1e6, "row",
+        [](benchmark::State& state) { write_csv(state, std::filesystem::temp_directory_path()); });
+}
+
+}  // namespace bench

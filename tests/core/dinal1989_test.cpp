@@ -1,0 +1,276 @@
+// The museum piece: what the listing of 1989 computes, what chapter 6 of the report was computed with, and what its
+// stop rule does.
+#include <array>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <numbers>
+
+#include "support/measure.hpp"
+
+using namespace dinal;
+using namespace dinal::truth;
+using Stop = Dinal1989::Stop;
+
+namespace {
+
+constexpr double pi = std::numbers::pi;
+
+/// The loop DO 80 of the listing, transcribed line by line, all in double, with 2 pi in full. U = theta, V = T0 theta',
+/// T = t/T0 (k = 1 = Mc, T0 = 1 in the systems below).
+struct Listing {
+    double DZETA = 0, ZITA = 0, SRE = 0, K = 0;
+    Stop stop = Stop::listing;
+    bool slip = false;
+    double amplitude = 0;  // M* = amplitude sin(2 pi r T)
+    double r = 1;
+    double U = 0, V = 0, T = 0;
+
+    [[nodiscard]] double F(double t) const { return 4 * pi * pi * (amplitude * std::sin(2 * pi * r * t)); }
+    static double SG(double x) { return x == 0 ? 0 : x / std::fabs(x); }
+
+    void step() {
+        const double A = 2 * DZETA * 2 * pi;
+        const double B = ZITA * 4 * pi * pi;
+        const double C = 4 * pi * pi;
+        const auto Q1 = [&](double Y) { return K * Y; };
+        const auto Q2 = [&](double X, double Y, double Z) { return K * (Z - C * X - B * SG(Y) - A * Y); };
+        double X = U;
+        double Y = V;
+        double Z = F(T);
+        const double Q11 = Q1(Y);
+        const double Q21 = Q2(X, Y, Z);
+        X = U + Q11 / 2;
+        Y = V + Q21 / 2;
+        Z = F(T + K / 2);
+        const double Q12 = Q1(Y);
+        const double Q22 = Q2(X, Y, Z);
+        X = U + Q12 / 2;
+        Y = V + (slip ? Q21 : Q22) / 2;
+        const double Q13 = Q1(Y);
+        const double Q23 = Q2(X, Y, Z);
+        X = U + Q13;
+        Y = V + Q23;
+        Z = F(T + K);
+        const double Q14 = Q1(Y);
+        const double Q24 = Q2(X, Y, Z);
+        const double U1 = U;
+        const double V1 = V;
+        U = U + (Q11 + 2 * Q12 + 2 * Q13 + Q14) / 6;
+        V = V + (Q21 + 2 * Q22 + 2 * Q23 + Q24) / 6;
+        T = T + K;
+        const bool slow =
+            stop == Stop::listing ? std::fabs(V) <= std::fabs(V1 - V) : std::fabs(V) < std::fabs(V1 - V) / 2;
+        if (slow && std::fabs(F(T) - C * U) <= SRE * 4 * pi * pi) {
+            U = U1;
+            V = V1;
+        }
+    }
+};
+
+/// theta after n steps of h from theta = 1 at rest, M = 0.
+double after(const Oscillator& system, double h, int n, bool slip) {
+    const double t = n * h;
+    const Trajectory run = must_run(system, {}, {1, 0}, {0, t}, Grid::at({t}), Dinal1989{.h = h, .slip = slip});
+    return run.rows(0, 1);
+}
+
+struct Matrix {
+    double a, b, c, d;
+};
+Matrix operator*(const Matrix& m, const Matrix& n) {
+    return {m.a * n.a + m.b * n.c, m.a * n.b + m.b * n.d, m.c * n.a + m.d * n.c, m.c * n.b + m.d * n.d};
+}
+
+/// One step of classical Runge-Kutta for u'' + 4 pi zeta u' + 4 pi^2 u = 0 as a matrix: 1 + Z + Z^2/2 + Z^3/6 + Z^4/24.
+Matrix classical(double h, double zeta) {
+    const Matrix Z{0, h, -4 * pi * pi * h, -4 * pi * zeta * h};
+    Matrix sum{1, 0, 0, 1};
+    Matrix power{1, 0, 0, 1};
+    double factorial = 1;
+    for (int n = 1; n <= 4; ++n) {
+        power = power * Z;
+        factorial *= n;
+        sum = {sum.a + power.a / factorial, sum.b + power.b / factorial, sum.c + power.c / factorial,
+               sum.d + power.d / factorial};
+    }
+    return sum;
+}
+
+/// The geometric mean growth per step of a free motion, over many steps.
+double growth(const Oscillator& system, double h, int steps, bool slip) {
+    const double t = steps * h;
+    const Trajectory run = must_run(system, {}, {1, 0}, {0, t}, Grid::every(h), Dinal1989{.h = h, .slip = slip});
+    // Amplitude in the phase plane, compared a whole number of half turns apart as nearly as the steps allow: many.
+    const auto radius = [&](Eigen::Index i) {
+        return std::hypot(run.rows(i, 1), run.rows(i, 2) / system.natural_frequency());
+    };
+    const Eigen::Index last = run.size() - 1;
+    return std::pow(radius(last) / radius(0), 1.0 / static_cast<double>(last));
+}
+
+bool diverges(double h, bool slip, double zeta) {
+    return growth(nondimensional(zeta, 0), h, 2000, slip) > 1;
+}
+
+const Oscillator chapter_6 = system_of({.inertia = 1, .stiffness = 39.48});
+
+}  // namespace
+
+TEST_CASE("dinal1989 agrees with a plain transcription of the listing over hundreds of steps", "[dinal1989]") {
+    struct Case {
+        double zeta, gamma, Re, amplitude, r, theta0, velocity0, h;
+    };
+    constexpr std::array cases{
+        Case{0.239, 0, 0, 0, 1, 0, 2 * pi, 0.01},        Case{0, 0.167, 0.167, 0, 1, 0, 2 * pi, 0.001},
+        Case{0, 0.167, 0.167, 1, 1, 1, 0, 0.01},         Case{0, 0.836, 0.836, 1, 1, 1, 0, 0.01},
+        Case{0.119, 0.06, 0.06, 0, 1, 0, 2 * pi, 0.002}, Case{0.119, 0.418, 0.45, 1, 1, 1, 0, 0.01},
+        Case{0, 0.5, 0.5, 1, 1.35, 1, 0, 0.01},          Case{0.05, 0.3, 0.6, 1, 0.3, 0, 0, 0.007}};
+    for (const Case& c : cases) {
+        for (const Stop stop : {Stop::listing, Stop::text}) {
+            for (const bool slip : {false, true}) {
+                CAPTURE(c.zeta, c.gamma, c.h, slip, stop == Stop::text);
+                Listing listing{.DZETA = c.zeta,
+                                .ZITA = c.gamma,
+                                .SRE = c.Re,
+                                .K = c.h,
+                                .stop = stop,
+                                .slip = slip,
+                                .amplitude = c.amplitude,
+                                .r = c.r,
+                                .U = c.theta0,
+                                .V = c.velocity0};
+                constexpr int steps = 700;
+                const Trajectory run =
+                    must_run(nondimensional(c.zeta, c.gamma, c.Re), harmonic(c.amplitude, 2 * pi * c.r),
+                             {c.theta0, c.velocity0}, {0, steps * c.h}, Grid::every(c.h), Dinal1989{c.h, stop, slip});
+                REQUIRE(run.size() == steps + 1);
+                for (int i = 0; i <= steps; ++i) {
+                    CAPTURE(i);
+                    // 2 pi has 12 digits in the listing, which dinal keeps: 7e-14 of the 44 rad of 7 periods.
+                    REQUIRE(std::fabs(run.rows(i, 1) - listing.U) <= 2e-11);
+                    REQUIRE(std::fabs(run.rows(i, 2) - listing.V) <= 2e-10);
+                    REQUIRE(run.rows(i, 3) == Approx(c.amplitude * std::sin(2 * pi * c.r * i * c.h)).margin(1e-11));
+                    REQUIRE(run.rows(i, 4) == 0.0 - c.gamma * Listing::SG(listing.V));
+                    listing.step();
+                }
+            }
+        }
+    }
+}
+
+TEST_CASE("the printed listing is classical Runge-Kutta: -0.997964 after half a period with h = 0.1", "[dinal1989]") {
+    Matrix power{1, 0, 0, 1};
+    for (int i = 0; i < 5; ++i) power = power * classical(0.1, 0);
+    CHECK(power.a == Approx(-0.997964).margin(5e-7));
+    CHECK(after(nondimensional(0, 0), 0.1, 5, false) == Approx(power.a).margin(1e-12));
+    CHECK(after(nondimensional(0.3, 0), 0.1, 1, false) == Approx(classical(0.1, 0.3).a).margin(1e-13));
+}
+
+TEST_CASE("one wrong index in stage 3 gives the numbers of chapter 6", "[dinal1989]") {
+    // k = 39.48, but T0 = 1 to the report: h in units of T0.
+    const double T0 = chapter_6.natural_period();
+    CHECK(after(chapter_6, 0.1 * T0, 5, true) == Approx(-1.0143600).margin(5e-7));
+    CHECK(after(chapter_6, 0.01 * T0, 50, true) == Approx(-1.0000161).margin(5e-8));
+    CHECK(after(chapter_6, 0.001 * T0, 500, true) == Approx(-1.000000014).margin(5e-10));
+}
+
+TEST_CASE("chapter 6: growth without damping and too slow a decay with it", "[dinal1989]") {
+    const Oscillator undamped = nondimensional(0, 0);
+    const Oscillator damped = nondimensional(0.02387, 0);
+    CHECK(growth(undamped, 0.1, 2000, true) == Approx(1.0030).margin(5e-5));
+    CHECK(growth(undamped, 0.1, 2000, false) < 1);
+    CHECK(growth(damped, 0.1, 1000, true) == Approx(0.98720).margin(2e-5));
+    CHECK(growth(damped, 0.1, 1000, false) == Approx(0.98480).margin(2e-5));
+    CHECK(std::exp(-0.02387 * 2 * pi * 0.1) == Approx(0.98511).margin(5e-6));  // the truth
+}
+
+TEST_CASE("chapter 6 diverges from h = 0.196 on, the printed listing from 0.457 on", "[dinal1989]") {
+    CHECK_FALSE(diverges(0.195, true, 0.02387));
+    CHECK(diverges(0.197, true, 0.02387));
+    CHECK_FALSE(diverges(0.456, false, 0.02387));
+    CHECK(diverges(0.458, false, 0.02387));
+    // Without damping: 2 sqrt 2/w0 for Runge-Kutta, any step for the slip.
+    CHECK_FALSE(diverges(0.4500, false, 0));
+    CHECK(diverges(0.4503, false, 0));
+    CHECK(diverges(0.05, true, 0));
+}
+
+TEST_CASE("a step far beyond stability is a result of dinal1989, not an error", "[dinal1989]") {
+    const Trajectory run = must_run(nondimensional(0, 0), {}, {1, 0}, {0, 5000}, Grid::every(1), Dinal1989{.h = 1});
+    CHECK(run.outcome == Outcome::state_not_finite);
+    CHECK(run.size() > 10);
+    CHECK(run.rows.allFinite());
+    CHECK_FALSE(simulate(nondimensional(0, 0), {}, {1, 0}, {0, 50}, Grid::every(1), Rk4{1}));
+}
+
+TEST_CASE("the listing freezes angle and velocity, stale and small, and goes on printing its friction", "[dinal1989]") {
+    const Oscillator system = nondimensional(0, 0.167);
+    const Trajectory run = must_run(system, {}, {0, 2 * pi}, {0, 3}, Grid::every(0.01), Dinal1989{.h = 0.01});
+    const Eigen::Index last = run.size() - 1;
+    CHECK(run.outcome == Outcome::at_rest);
+    for (Eigen::Index i = last - 100; i < last; ++i) {
+        CHECK(run.rows(i, 1) == run.rows(last, 1));
+        CHECK(run.rows(i, 2) == run.rows(last, 2));
+    }
+    CHECK(run.rows(last, 2) != 0);
+    // Of the order of what one step changes: w0^2 h (Re + k theta)/k.
+    CHECK(std::fabs(run.rows(last, 2)) <= 4 * pi * pi * 0.01 * 2 * 0.167);
+    CHECK(run.rows(last, 4) == (run.rows(last, 2) > 0 ? -0.167 : 0.167));  // not k theta, as it would be in truth
+}
+
+TEST_CASE("a mass that starts at rest stays by the rule of the listing, which knows equality, and only by it",
+          "[dinal1989]") {
+    const Oscillator system = nondimensional(0, 0.167);
+    const auto at_end = [&](Stop stop) {
+        const Trajectory run = must_run(system, {}, {0.1, 0}, {0, 1}, Grid::every(0.01), Dinal1989{0.01, stop, false});
+        return run.rows(run.size() - 1, 1);
+    };
+    // |V| <= |V1 - V| holds with V1 = 0; |V| < |V1 - V|/2 can not.
+    CHECK(at_end(Stop::listing) == 0.1);
+    CHECK(at_end(Stop::text) != 0.1);
+}
+
+TEST_CASE("the two stop rules freeze at different steps", "[dinal1989]") {
+    const Oscillator system = nondimensional(0, 0.167);
+    const auto rest = [&](Stop stop) {
+        return must_run(system, {}, {0, 2 * pi}, {0, 3}, Grid::every(0.01), Dinal1989{0.01, stop, false});
+    };
+    const Trajectory listing = rest(Stop::listing);
+    const Trajectory text = rest(Stop::text);
+    CHECK(listing.rows(listing.size() - 1, 1) != text.rows(text.size() - 1, 1));
+    // Both near the truth, to the first order of h = 0.01.
+    CHECK(listing.rows(listing.size() - 1, 1) == Approx(0.155151392).margin(0.01));
+    CHECK(text.rows(text.size() - 1, 1) == Approx(0.155151392).margin(0.01));
+}
+
+TEST_CASE("dinal1989 comes closer with the step, but no faster than the step", "[dinal1989]") {
+    const auto error = [](double h) {
+        const ReferenceSystem& s = reference_system("free Coulomb (fig 22)");
+        return error_of(must_run(s, Grid::every(0.0137), Dinal1989{.h = h}), s.exact(), s.oscillator);
+    };
+    // The place of the steps against the turns scatters the error by a factor of a few; a hundredfold step shows.
+    CHECK(error(1e-4) < error(1e-2) / 20);
+    CHECK(error(1e-4) > error(1e-2) / 2000);
+}
+
+TEST_CASE("with Re > Rd the rule of 1989 holds no more than Rd after the first stop", "[dinal1989]") {
+    // A block drawn by a spring: in truth it slips whenever the pull reaches Re = 29.43.
+    const ReferenceSystem& s = reference_system("spring-pulled block");
+    const auto greatest_pull = [&](const Integrator& integrator, double from) {
+        const Trajectory run = must_run(s, Grid::every(1e-4), integrator);
+        double pull = 0;
+        for (Eigen::Index i = 0; i < run.size(); ++i) {
+            if (run.rows(i, 0) >= from) {
+                pull = std::max(pull, run.rows(i, 3) - s.oscillator.stiffness() * run.rows(i, 1));
+            }
+        }
+        return pull;
+    };
+    // Released at a pull of F it goes on to Rd + sqrt((F - Rd)^2 + (k v/w0)^2), with k v/w0 = 2 for this drive. At
+    // first its velocity is exactly 0 and F = Re = 29.43. Later it has a stale velocity, to which the next step adds as
+    // soon as the pull is greater than Rd = 19.62: then it is no longer smaller than its change, and F = Rd.
+    constexpr double in_truth = 19.62 + 10.0118;
+    CHECK(greatest_pull(Dinal1989{.h = 1e-4}, 0) == Approx(in_truth).margin(0.01));
+    CHECK(greatest_pull(Dinal1989{.h = 1e-4}, 1) == Approx(19.62 + 2).margin(0.01));
+    CHECK(greatest_pull(Rk4{1e-4}, 1) == Approx(in_truth).margin(1e-4));
+}

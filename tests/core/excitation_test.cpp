@@ -1,0 +1,211 @@
+#include "core/excitation.hpp"
+
+#include <algorithm>
+
+#include "support/excitations.hpp"
+
+using namespace dinal;
+using namespace dinal::excitations;
+
+TEST_CASE("a block is filled with the single values", "[excitation]") {
+    std::vector<double> times;
+    for (int i = -50; i < 300; ++i) {
+        times.push_back(0.01 * i);
+    }
+    Excitation all;
+    for (const Excitation& M : one_of_each()) {
+        for (const Excitation& variant : {M, M.scaled(-0.7), M.delayed(0.3), M.windowed(0.2, 0.9), M.scaled(0)}) {
+            all = all + variant;
+            for (const Excitation* e : {&variant, static_cast<const Excitation*>(&all)}) {
+                std::vector<double> out(times.size(), 99);
+                REQUIRE(e->fill(times, out) == times.size());
+                double worst = 0;
+                for (std::size_t i = 0; i < times.size(); ++i) {
+                    worst = std::max(worst, std::fabs(out[i] - e->value(times[i])));
+                }
+                // Only sines in a block are computed in another way; their sums here are below 100.
+                CHECK(worst <= (std::holds_alternative<Harmonic>(M.components()[0].term) || e == &all ? 1e-13 : 0));
+            }
+        }
+    }
+}
+
+TEST_CASE("a block of a sine is good to the rounding of its times, however late", "[excitation]") {
+    const double start = GENERATE(0.0, 1000.0, -1e6);
+    const double omega = 2 * pi;
+    const double amplitude = 3;
+    const double phase = 0.7;
+    const Excitation M = made(Harmonic{amplitude, omega, phase});
+    std::vector<double> even;
+    std::vector<double> uneven;
+    for (int i = 0; i < 1000; ++i) {
+        even.push_back(start + 0.0005 * i);
+        uneven.push_back(start + 0.0005 * i + 1e-6 * std::sin(i));
+    }
+    for (const auto& times : {even, uneven}) {
+        std::vector<double> out(times.size());
+        REQUIRE(M.fill(times, out) == times.size());
+        double worst = 0;
+        for (std::size_t i = 0; i < times.size(); ++i) {
+            const auto exact = std::sin(static_cast<long double>(omega) * times[i] + phase) * amplitude;
+            worst = std::max(worst, std::fabs(static_cast<double>(out[i] - exact)));
+        }
+        // Half an ulp for each of omega t, the sum with the phase and the spacing, and a few of the result.
+        const double ulp = std::numeric_limits<double>::epsilon();
+        CHECK(worst <= amplitude * ulp * (2 * omega * (std::fabs(start) + 1) + 4));
+    }
+}
+
+TEST_CASE("a block of a sine never passes its amplitude, not even by rounding", "[excitation]") {
+    const double amplitude = 0.167;
+    const Excitation M = made(Harmonic{amplitude, 2 * pi, 0});
+    std::ptrdiff_t above = 0;
+    std::vector<double> times(256);
+    std::vector<double> out(256);
+    for (int block = 0; block < 400; ++block) {
+        for (std::size_t i = 0; i < times.size(); ++i) {
+            times[i] = 0.0005 * static_cast<double>(256 * static_cast<std::size_t>(block) + i);
+        }
+        REQUIRE(M.fill(times, out) == times.size());
+        above += std::count_if(out.begin(), out.end(), [amplitude](double x) { return x > amplitude; });
+    }
+    CHECK(above == 0);
+}
+
+TEST_CASE("gain, sum, delay and window are what they are on paper", "[excitation]") {
+    const auto terms = one_of_each();
+    for (const Excitation& a : terms) {
+        for (const Excitation& b : {terms[1], terms[3]}) {
+            for (const double t : {-0.33, 0.05, 0.222, 0.77, 1.9}) {
+                CHECK((a + b).value(t) == a.value(t) + b.value(t));
+                CHECK((a + b).scaled(-3).value(t) == near(-3 * (a.value(t) + b.value(t))));
+                // Shifting the terms by 0.4 rounds their times once; slopes here are below 100.
+                CHECK(a.delayed(0.4).value(t) == Approx(a.value(t - 0.4)).margin(1e-12));
+                CHECK((a + b).windowed(0, 1).value(t) == near(t >= 0 && t < 1 ? a.value(t) + b.value(t) : 0));
+            }
+            CHECK((a + b).next_break(0.15) == std::min(a.next_break(0.15), b.next_break(0.15)));
+        }
+    }
+}
+
+TEST_CASE("the window of a delay and the delay of a window differ, as they should", "[excitation]") {
+    const Excitation M = made(Constant{1});
+    CHECK(breaks_of(M.delayed(2).windowed(0, 1), -9, 9) == std::vector<double>{0, 1});
+    CHECK(breaks_of(M.windowed(0, 1).delayed(2), -9, 9) == std::vector<double>{2, 3});
+    const Excitation ramp = made(Ramp{1, 0});
+    CHECK(ramp.delayed(2).windowed(0, 3).value(2.5) == 0.5);
+    CHECK(ramp.windowed(0, 3).delayed(2).value(2.5) == 0.5);
+    CHECK(ramp.delayed(2).windowed(0, 3).value(3.5) == 0);
+    CHECK(ramp.windowed(0, 3).delayed(2).value(3.5) == 1.5);
+    CHECK(breaks_of(M.windowed(0, 5).windowed(1, 9), -9, 99) == std::vector<double>{1, 5});
+    CHECK(M.windowed(0, 1).windowed(2, 3).components().empty());
+}
+
+TEST_CASE("the time from which M is constant is known for sums, gains and windows", "[excitation]") {
+    const Excitation step = made(Step{1, 2});
+    const Excitation pulse = made(Pulse{1, 1, 4});
+    const Excitation sine = made(Harmonic{1, 1, 0});
+    CHECK((step + pulse).constant_from() == 5);
+    CHECK((step + sine).constant_from() == never);
+    CHECK((step + sine.scaled(0)).constant_from() == 2);
+    CHECK(sine.windowed(0, 7).constant_from() == 7);
+    CHECK(pulse.windowed(0, 7).constant_from() == 5);
+    CHECK(pulse.windowed(0, 3).constant_from() == 3);
+    CHECK(step.windowed(4, never).constant_from() == 4);
+    CHECK(step.windowed(0, 7).constant_from() == 7);
+    CHECK(made(Pulse{0, 1, 4}).constant_from() == -never);
+    for (const Excitation& M : one_of_each()) {
+        const double from = M.constant_from();
+        if (from < never) {
+            CHECK(M.next_break(from) == never);
+            CHECK(M.value(std::max(from, -1e6)) == M.value(1e6));
+        }
+    }
+}
+
+TEST_CASE("a script is called in its own time, with the state, and only where it counts", "[excitation]") {
+    const auto f =
+        std::make_shared<Probe>([](double t, const State& s) { return t + 10 * s.theta + 100 * s.velocity; });
+    const Excitation M = made(Scripted{.function = f, .feedback = true});
+    CHECK(M.has_script());
+    CHECK(M.has_feedback());
+    CHECK(M.value(3, {.theta = 1, .velocity = 2}) == 213);
+    CHECK(M.delayed(0.5).value(3) == 2.5);
+    CHECK(M.scaled(2).value(3) == 6);
+    f->calls = 0;
+    CHECK(M.windowed(0, 1).value(3) == 0);
+    CHECK(M.scaled(0).value(3) == 0);
+    CHECK(f->calls == 0);
+    CHECK(M.constant_from() == never);
+    CHECK_FALSE(made(Scripted{.function = f}).has_feedback());
+}
+
+TEST_CASE("announced breaks of a script are delayed with it and repeat with its period", "[excitation]") {
+    const auto f = probe([](double) { return 1.0; });
+    const Excitation once = made(Scripted{.function = f, .breaks = {0.5, 2}});
+    CHECK(breaks_of(once, -9, 9) == std::vector<double>{0.5, 2});
+    CHECK(breaks_of(once.delayed(1), -9, 9) == std::vector<double>{1.5, 3});
+    const Excitation periodic = made(Scripted{.function = f, .breaks = {0.5, 2}, .period = 3});
+    CHECK(breaks_of(periodic, -1.5, 7) == std::vector<double>{-1, 0.5, 2, 3.5, 5, 6.5});
+    const Excitation closed = made(Scripted{.function = f, .breaks = {0, 0.1, 0.3}, .period = 0.3});
+    double t = 0;
+    for (int i = 0; i < 20000; ++i) {
+        const double next = closed.next_break(t);
+        REQUIRE(next - t > 0.09);  // never two copies of the corner that 0.3 and 0.3 + 0 share
+        t = next;
+    }
+    CHECK(made(Scripted{.function = f, .period = 3}).next_break(0) == never);
+}
+
+TEST_CASE("no repeated break of a script is passed over, not even from one double before it", "[excitation]") {
+    const auto f = probe([](double) { return 1.0; });
+    const Excitation M = made(Scripted{.function = f, .breaks = {0.1, 0.2}, .period = 0.3}).delayed(0.1);
+    int wrong = 0;
+    double t = -50;
+    for (int i = 0; i < 20000; ++i) {
+        const double next = M.next_break(t);
+        wrong += M.next_break(just_before(next)) != next;
+        wrong += std::fabs(next - t) > 0.2 + 1e-9;
+        t = next;
+    }
+    CHECK(wrong == 0);
+}
+
+TEST_CASE("both sides of a scripted jump are seen, whether it says > or >=", "[excitation]") {
+    const bool inclusive = GENERATE(true, false);
+    const double delay = GENERATE(0.0, 0.1, 1e3 + 0.1);
+    const double at = GENERATE(0.0, 0.5, 0.3);
+    const auto jump = probe([=](double t) { return (inclusive ? t >= at : t > at) ? 1.0 : 0.0; });
+    const Excitation M = made(Scripted{.function = jump, .breaks = {at}}).delayed(delay);
+    const double b = M.next_break(-1);
+    CHECK(M.value_before(b) == 0);
+    CHECK(M.value_after(b) == 1);
+}
+
+TEST_CASE("filling stops at the first value that is not finite", "[excitation]") {
+    const std::vector<double> times{0, 1, 2, 3, 4, 5};
+    std::vector<double> out(times.size());
+    const auto fails_at = [](double bad) {
+        return probe([bad](double t) { return t == bad ? std::numeric_limits<double>::quiet_NaN() : t; });
+    };
+    const auto late = fails_at(4);
+    const auto early = fails_at(2);
+    CHECK(made(Scripted{.function = late}).fill(times, out) == 4);
+    CHECK(late->calls == 5);
+    late->calls = 0;
+    CHECK((made(Scripted{.function = late}) + made(Scripted{.function = early})).fill(times, out) == 2);
+    CHECK(early->last == 2);
+    CHECK(early->calls == 3);
+    CHECK(late->last == 2);  // not called for times after the other one's failure
+    CHECK(out[1] == 2);
+    CHECK(made(Exponential{1, -0.001}).fill(times, out) == 1);  // exp(1000) overflows
+    CHECK((made(Exponential{1, -0.001}).scaled(0) + made(Constant{1})).fill(times, out) == 6);
+}
+
+TEST_CASE("a script that failed is the last one that is called", "[excitation]") {
+    const auto bad = probe([](double) { return std::numeric_limits<double>::quiet_NaN(); });
+    const auto good = probe([](double) { return 1.0; });
+    const Excitation M = made(Scripted{.function = bad}) + made(Scripted{.function = good});
+    CHECK(std::isnan(M.value(1)));
+    CHECK(good->calls == 0);
+}

@@ -1,0 +1,60 @@
+// Cases from the field that general tools get wrong, with their closed forms.
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <numbers>
+
+#include "support/measure.hpp"
+
+using namespace dinal;
+using namespace dinal::truth;
+
+TEST_CASE("m = k = 1, friction 10, thrown with a speed of 5: at rest after atan(1/2), at sqrt(125) - 10", "[field]") {
+    const ReferenceSystem& s = reference_system("newsgroup oscillator");
+    const Trajectory run = must_run(s, Grid::none(), Rk4{2 * std::numbers::pi / 1000});
+    REQUIRE(run.events.size() == 1);
+    CHECK(run.events[0].kind == EventKind::rest);
+    // One arc of 0.46 rad and amplitude 11.2: its error is far below the rounding of these digits.
+    CHECK(run.events[0].t == Approx(std::atan(0.5)).margin(1e-9));
+    CHECK(run.events[0].theta == Approx(std::sqrt(125.0) - 10).margin(1e-9));
+    CHECK(run.events[0].t == Approx(0.463647609).margin(1e-9));
+    CHECK(run.events[0].theta == Approx(1.180339887).margin(1e-9));
+}
+
+TEST_CASE("a block drawn by a spring slips and sticks in a rhythm that the parameters give", "[field]") {
+    const ReferenceSystem& s = reference_system("spring-pulled block");
+    const double w0 = s.oscillator.natural_frequency();
+    const double v = 0.01;                       // of the drive
+    const double drop = (29.43 - 19.62) / 4000;  // (Re - Rd)/k: stretch beyond the kinetic balance at release
+    // theta' = v (1 - cos w0 t) + w0 drop sin w0 t = 0 again at w0 t = 2 (pi - atan(w0 drop/v)).
+    const double lasts = 2 * (std::numbers::pi - std::atan(w0 * drop / v)) / w0;
+    const double period = lasts + 2 * drop / v;  // stuck, until the stretch has gone from -drop to +drop
+    const Trajectory run = must_run(s, Grid::every(1e-4), Rk4{s.oscillator.natural_period() / 2000});
+    REQUIRE(run.events.size() >= 9);
+    CHECK(lasts == Approx(0.177191371).margin(1e-9));
+    CHECK(run.events[0].t == Approx(0.735750000).margin(1e-12));
+    for (std::size_t i = 0; i + 2 < 9; i += 2) {
+        CAPTURE(i);
+        CHECK(run.events[i].kind == EventKind::slip);
+        CHECK(run.events[i + 1].kind == EventKind::stick);
+        CHECK(run.events[i + 1].t - run.events[i].t == Approx(lasts).margin(1e-9));
+        CHECK(run.events[i + 2].t - run.events[i].t == Approx(period).margin(1e-9));
+        CHECK(run.events[i + 1].theta - run.events[i].theta == Approx(v * period).margin(1e-11));
+    }
+    // Rows lie 1e-4 apart: w0^2 dt^2/8 of the peak may be missed.
+    CHECK(run.column(Column::velocity).maxCoeff() == Approx(6.005899020e-2).epsilon(2e-6));
+    CHECK(v + std::hypot(v, w0 * drop) == Approx(6.005899020e-2).margin(1e-11));
+}
+
+TEST_CASE("a mass at rest for 20 periods is still hit by a pulse of a twentieth of one", "[field]") {
+    const Excitation pulse = Excitation::make(Pulse{.amplitude = 1, .at = 20, .width = 0.05}).value();
+    for (const double h : {0.001, 0.01, 0.07, 0.3}) {
+        const Trajectory run = must_run(nondimensional(0, 0.167), pulse, {0, 0}, {0, 25}, Grid::none(), Rk4{h});
+        CAPTURE(h);
+        REQUIRE(run.events.size() == 2);
+        CHECK(run.events[0].kind == EventKind::slip);
+        CHECK(run.events[0].t == 20);
+        CHECK(run.events[1].kind == EventKind::rest);
+        CHECK(run.events[1].theta > 0.1);
+        CHECK(run.outcome == Outcome::at_rest);
+    }
+}

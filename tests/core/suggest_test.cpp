@@ -1,0 +1,78 @@
+#include "core/suggest.hpp"
+
+#include <array>
+#include <catch2/catch.hpp>
+
+using dinal::did_you_mean;
+using dinal::suggestions;
+using Names = std::vector<std::string>;
+
+namespace {
+constexpr std::array<std::string_view, 5> of_system = {"I", "k", "C", "Rd", "Re"};
+constexpr std::array<std::string_view, 6> columns = {"t", "theta", "velocity", "M", "friction", "damping"};
+constexpr std::array<std::string_view, 7> options = {"amplitude", "frequency", "omega", "phase", "at", "width", "step"};
+}  // namespace
+
+TEST_CASE("a word with one slip is recognised", "[suggest]") {
+    CHECK(suggestions("teta", columns) == Names{"theta"});    // missing
+    CHECK(suggestions("thetta", columns) == Names{"theta"});  // too many
+    CHECK(suggestions("thota", columns) == Names{"theta"});   // wrong
+    CHECK(suggestions("tehta", columns) == Names{"theta"});   // swapped
+    CHECK(suggestions("stpe", options) == Names{"step"});     // swapped in a short word
+    CHECK(suggestions("widht", options) == Names{"width"});
+}
+
+TEST_CASE("two slips are allowed in words of more than four letters only", "[suggest]") {
+    CHECK(suggestions("velosty", columns) == Names{"velocity"});
+    CHECK(suggestions("frictoin1", columns) == Names{"friction"});
+    CHECK(suggestions("vlct", columns).empty());
+    CHECK(suggestions("stab", options).empty());
+    CHECK(suggestions("velaseti", columns).empty());  // three
+}
+
+TEST_CASE("another case counts as one slip, however many letters differ", "[suggest]") {
+    CHECK(suggestions("THETA", columns) == Names{"theta"});
+    CHECK(suggestions("m", columns) == Names{"M"});
+    CHECK(suggestions("T", columns) == Names{"t"});
+    CHECK(suggestions("RD", of_system) == Names{"Rd"});
+    CHECK(suggestions("THEAT", columns) == Names{"theta"});
+}
+
+TEST_CASE("the beginning of a longer name is recognised", "[suggest]") {
+    CHECK(suggestions("freq", options) == Names{"frequency"});
+    CHECK(suggestions("amp", options) == Names{"amplitude"});
+    CHECK(suggestions("Vel", columns) == Names{"velocity"});
+    CHECK(suggestions("ve", columns).empty());
+}
+
+TEST_CASE("two equally good matches are both named, three are too many", "[suggest]") {
+    CHECK(suggestions("R", of_system) == Names{"Rd", "Re"});
+    CHECK(suggestions("Rs", of_system) == Names{"Rd", "Re"});
+    constexpr std::array<std::string_view, 3> three = {"M1", "M2", "M3"};
+    CHECK(suggestions("M", three).empty());
+}
+
+TEST_CASE("only the best matches count", "[suggest]") {
+    constexpr std::array<std::string_view, 3> near = {"theta12", "theta0", "theta1"};
+    CHECK(suggestions("theta", near) == Names{"theta0", "theta1"});
+}
+
+TEST_CASE("nothing is suggested for a word that is like none", "[suggest]") {
+    CHECK(suggestions("x", columns).empty());
+    CHECK(suggestions("", columns).empty());
+    CHECK(suggestions("colour", columns).empty());
+    CHECK(suggestions("theta", {}).empty());
+    CHECK(suggestions(std::string(5000, 'a'), columns).empty());
+}
+
+TEST_CASE("a word is no suggestion for itself and a name known twice is named once", "[suggest]") {
+    constexpr std::array<std::string_view, 3> twice = {"theta", "theta", "M"};
+    CHECK(suggestions("theta", columns).empty());
+    CHECK(suggestions("teta", twice) == Names{"theta"});
+}
+
+TEST_CASE("the suggestion ends an error sentence", "[suggest]") {
+    CHECK(did_you_mean("teta", columns) == "; did you mean 'theta'?");
+    CHECK(did_you_mean("R", of_system) == "; did you mean 'Rd' or 'Re'?");
+    CHECK(did_you_mean("colour", columns).empty());
+}

@@ -1,0 +1,14 @@
+#!/bin/sh
+# docs/manual.md is what `dinal --manual` writes, and the man page is free of mistakes.
+set -e
+program=$1 source=$2
+"$program" --manual | diff -u "$source/docs/manual.md" - ||
+    { echo "docs/manual.md is stale: write it again with: scripts/dinal --manual > docs/manual.md"; exit 1; }
+complaints=$(groff -man -ww -Tutf8 "$source/docs/dinal.1" 2>&1 >/dev/null)
+[ -z "$complaints" ] || { echo "$complaints"; exit 1; }
+# Each option that the program lists has its place in the man page.
+"$program" --help | grep -oE '(^|[ ,])--?[A-Za-z][a-z]*' | tr -d ' ,' | sort -u >options.$$
+for option in $(cat options.$$); do
+    sed 's/\\-/-/g' "$source/docs/dinal.1" | grep -qe "$option" || { echo "the man page lacks $option"; rm options.$$; exit 1; }
+done
+rm options.$$

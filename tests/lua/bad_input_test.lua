@@ -1,0 +1,86 @@
+-- Wrong values get a sentence with the value, the limit and the user's line; simulate_test.lua has those of simulate.
+package.path = "tests/lua/?.lua;" .. package.path
+local support = require "support"
+local test, equal, raises_here = support.test, support.equal, support.raises_here
+
+test("a system that can not exist is refused with the parameter and its value", function()
+    raises_here(function() system { I = 0, k = 1 } end, "system: I = 0 must be positive")
+    raises_here(function() system { I = -1, k = 1 } end, "I = -1 must be positive")
+    raises_here(function() system { I = 1, k = 0 } end, "k = 0 must be positive")
+    raises_here(function() system { I = 1, k = -2 } end, "k = -2 must be positive")
+    raises_here(function() system { I = 1, k = 1, C = -0.1 } end, "C = -0.1 must not be negative")
+    raises_here(function() system { I = 1, k = 1, Rd = -1 } end, "Rd = -1 must not be negative")
+    raises_here(function() system { I = 1, k = 1, Rd = 2, Re = 1 } end, "Re = 1 must be at least Rd = 2")
+    raises_here(function() system { I = 1e-300, k = 1e300 } end, "too far apart")
+end)
+
+test("NaN, infinity, strings, booleans and tables are no parameters", function()
+    raises_here(function() system { I = 0 / 0, k = 1 } end, "system: I must be a finite number, got", "nan")
+    raises_here(function() system { I = 1, k = math.huge } end, "k must be a finite number, got inf")
+    raises_here(function() system { I = "1", k = 1 } end, 'I must be a finite number, got the string "1"')
+    raises_here(function() system { I = 1, k = true } end, "k must be a finite number, got true")
+    raises_here(function() system { I = 1, k = {} } end, "k must be a finite number, got a table")
+    raises_here(function() system { I = 1, k = 1, Re = "2" } end, "Re must be a finite number")
+end)
+
+test("a missing parameter is named, with an example", function()
+    raises_here(function() system { I = 1 } end, "system needs k, for example system{ I = 1, k = 39.5")
+    raises_here(function() system {} end, "system needs I")
+    raises_here(function() system() end, "system takes one table of named options, for example system{")
+    raises_here(function() system(1, 2) end, "one table of named options")
+    raises_here(function() system { 1, 2 } end, "named options only")
+    raises_here(function() system({ I = 1, k = 1 }, 3) end, "one table")
+end)
+
+test("a misspelt parameter gets a suggestion and the list", function()
+    raises_here(function() system { i = 1, k = 1 } end, "system has no option 'i'; did you mean 'I'?", "I, k, C, Rd and Re")
+    raises_here(function() system { I = 1, k = 1, xyzzy = 1 } end, "no option 'xyzzy'; its options are")
+    raises_here(function() nondimensional { zetta = 1 } end, "did you mean 'zeta'?")
+    raises_here(function() nondimensional { friction = 1 } end, "did you mean 'friction_ratio'?")
+end)
+
+test("the ratios of the nondimensional system are refused in its own words", function()
+    raises_here(function() nondimensional { zeta = -1 } end, "nondimensional: zeta = -1 must not be negative")
+    raises_here(function() nondimensional { friction_ratio = -1 } end, "friction_ratio = -1 must not be negative")
+    raises_here(function() nondimensional { friction_ratio = 0.5, breakaway_ratio = 0.4 } end, "breakaway_ratio = 0.4 must be at least friction_ratio = 0.5")
+    raises_here(function() nondimensional { zeta = "0.1" } end, "zeta must be a finite number")
+end)
+
+test("a table of options may have a metatable, but options hidden in it do not count", function()
+    local tricky = setmetatable({ I = 1 }, { __index = function() return 5 end })
+    raises_here(function() system(tricky) end, "needs k")
+end)
+
+test("methods and metamethods called on the wrong thing are sentences and no crashes", function()
+    local sys = system { I = 1, k = 1 }
+    local run = sys:simulate { theta0 = 1, t_end = 1, dt = 0.5 }
+    local meta = debug.getmetatable(run)
+    for _, value in ipairs { 1, "x", {}, sys, run.theta, io.stdout, print } do
+        for name, f in pairs(meta) do
+            if type(f) == "function" and name ~= "__newindex" then
+                pcall(f, value)
+                pcall(f)
+            end
+        end
+        assert(not pcall(sys.simulate, value, { t_end = 1, dt = 1 }) or value == sys)
+        assert(not pcall(run.at, value, 0.5))
+        assert(not pcall(run.save, value, "x.csv"))
+    end
+    meta.__gc(run)
+    assert(not pcall(function() return run.theta end))
+    collectgarbage()
+end)
+
+test("getmetatable of our objects gives a name, so that nobody breaks them by accident", function()
+    equal(getmetatable(system { I = 1, k = 1 }), "system")
+    assert(not pcall(setmetatable, system { I = 1, k = 1 }, {}))
+end)
+
+test("errors of a call through pcall and in a tail call still tell a line", function()
+    local function tail() return system { I = 0, k = 1 } end
+    raises_here(tail, "system: I = 0")
+    local ok, message = pcall(system, { I = 0, k = 1 })
+    assert(not ok and message:find("system: I = 0", 1, true), message)
+end)
+
+support.finish()

@@ -1,0 +1,165 @@
+-- What a user's M may do: whatever it is, the outcome is clear and the session goes on.
+package.path = "tests/lua/?.lua;" .. package.path
+local support = require "support"
+local test, near, equal, raises = support.test, support.near, support.equal, support.raises
+
+local nd = nondimensional { zeta = 0.1, friction_ratio = 0.1 }
+
+local function simulate(M)
+    return nd:simulate { M = M, theta0 = 1, t_end = 2, dt = 0.01 }
+end
+
+local function works_still()
+    equal(simulate(0).outcome, "at rest")
+end
+
+test("an error in M arrives unchanged, and names the line of M", function()
+    local line
+    local function M(t)
+        line = debug.getinfo(1, "l").currentline + 1
+        if t > 0.5 then error("oh no") end
+        return 0
+    end
+    local message = raises(function() simulate(M) end, "oh no")
+    equal(message, ("%s:%d: oh no"):format(debug.getinfo(1, "S").short_src, line))
+    works_still()
+end)
+
+test("an error value that is no string arrives as the same value", function()
+    for _, value in ipairs { {}, 42, true, print, setmetatable({}, { __tostring = error }) } do
+        local ok, found = pcall(simulate, function(t) if t > 0.1 then error(value) end return 0 end)
+        assert(not ok and rawequal(found, value))
+    end
+    local ok, found = pcall(simulate, function() error() end)
+    assert(not ok and found == nil)
+    ok, found = pcall(simulate, function() error(false) end)
+    assert(not ok and found == false)
+    works_still()
+end)
+
+test("the rows before an error are kept in dinal.partial", function()
+    pcall(simulate, function(t) if t > 0.505 then error "x" end return 0 end)
+    local partial = dinal.partial
+    assert(#partial >= 50 and #partial <= 52, #partial)
+    assert(partial.t[#partial] <= 0.51)
+    assert(partial.outcome:find "excitation", partial.outcome)
+    near((partial:at(0.3)), simulate(0).theta[31], 1e-12)
+end)
+
+test("a result of M that is no finite number is an error with the line of M, the value and the time", function()
+    local here = debug.getinfo(1, "S").short_src
+    for text, value in pairs { ['the string "1.5"'] = "1.5", ["a table"] = {}, ["true"] = true, ["inf"] = math.huge, ["-inf"] = -math.huge, ["nan"] = 0 / 0 } do
+        local M = function(t) return t > 0.35 and value or 0 end
+        local line = debug.getinfo(M, "S").linedefined
+        raises(function() simulate(M) end, ("%s:%d: M returned %s at t = 0.3"):format(here, line, text), "; it must return a finite number")
+        assert(#dinal.partial >= 34 and #dinal.partial <= 37, #dinal.partial)
+    end
+    raises(function() simulate(function() return nil end) end, "M returned nil at t = 0; it must return a finite number")
+    raises(function() simulate(function() end) end, "M returned nil at t = 0")
+    works_still()
+end)
+
+test("M may return integers and huge finite numbers", function()
+    equal(simulate(function() return 1 end).M[1], 1.0)
+    local run = simulate(function() return 1e308 end)
+    assert(run.outcome:find "finite" or run.outcome == "reached the end", run.outcome)
+end)
+
+test("M can not yield, and is told so", function()
+    local function M(t) if t > 0.2 then coroutine.yield(t) end return 0 end
+    raises(function() simulate(M) end, "yield")
+    local ok, message = coroutine.resume(coroutine.create(function() simulate(M) end))
+    assert(not ok and message:find("yield", 1, true), message)
+    works_still()
+end)
+
+test("a run inside a coroutine works, and M may use coroutines of its own", function()
+    local expected = simulate(function(t) return math.sin(t) end)
+    local run = coroutine.wrap(function() return simulate(function(t) return math.sin(t) end) end)()
+    assert(run.theta == expected.theta)
+    local source = coroutine.wrap(function(t)
+        while true do t = coroutine.yield(math.sin(t)) end
+    end)
+    assert(simulate(source).theta == expected.theta)
+    -- M belongs to a coroutine that is dead when the run is asked again
+    local later
+    coroutine.wrap(function() later = simulate(function(t) return math.sin(t) end) end)()
+    collectgarbage()
+    near((later:at(0.505)), (expected:at(0.505)), 1e-15)
+end)
+
+test("M may call simulate itself, and fail there", function()
+    local inner = function(t) return nondimensional {}:simulate { M = 1, t_end = 1, times = {} }:at(0.5) end
+    local run = nd:simulate { M = inner, t_end = 0.1, dt = 0.1, integrator = integrator.rk4 { h = 0.05 } }
+    near(run.M[1], 2, 1e-9)
+    raises(function() simulate(function(t) return simulate(function() error "deep inside" end) end) end, "deep inside")
+    local caught = simulate(function() pcall(simulate, function() error "x" end) return 1 end)
+    equal(caught.outcome, "at rest")
+    works_still()
+end)
+
+test("M that calls simulate without end is an error and not a crash", function()
+    local function M() return simulate(M) end
+    raises(function() simulate(M) end, "overflow")
+    works_still()
+end)
+
+test("M may change globals, the system's name and its own name while it runs", function()
+    counter = 0
+    M = function(t)
+        counter = counter + 1
+        M, nd_global, sys, math_old = nil, nil, nil, math
+        return 1
+    end
+    nd_global = nd
+    local run = nd_global:simulate { M = M, t_end = 1, dt = 0.1 }
+    equal(M, nil)
+    assert(counter > 1)
+    equal(run.M[11], 1.0)
+end)
+
+test("M may drop the run, the system and collect garbage", function()
+    local holder = { nondimensional { zeta = 0.1 } }
+    local run = holder[1]:simulate { M = function() holder[1] = nil collectgarbage() return 1 end, t_end = 0.01, dt = 0.01 }
+    equal(#run, 2)
+    local other = { simulate(function(t) return math.sin(t) end) }
+    local drop = { simulate(function(t) other[1] = nil drop_now = nil collectgarbage() return 0 end) }
+    drop_now = drop[1]
+    drop[1] = nil
+    drop_now:at(0.123)
+    works_still()
+end)
+
+test("a function may be used by an excitation after the variable is gone", function()
+    local e = excitation.scripted(function(t) return 2 * t end) + 1
+    collectgarbage()
+    equal(e(3), 7.0)
+end)
+
+test("M that jumps between rows loses no accuracy with its breaks told", function()
+    local M = function(t) return t < 0.3333 and 0 or 1 end
+    local hinted = nondimensional {}:simulate { M = excitation.scripted(M, { breaks = { 0.3333 } }), t_end = 1, dt = 0.1 }
+    local native = nondimensional {}:simulate { M = excitation.step { at = 0.3333 }, t_end = 1, dt = 0.1 }
+    assert((hinted.theta - native.theta):abs() < 1e-12) -- the same steps, but for the hair after the break
+end)
+
+test("a slow M is called two times a step, not four", function()
+    local calls = 0
+    nondimensional { zeta = 0.1 }:simulate { M = function() calls = calls + 1 return 0.01 end, t_end = 1, dt = 1, integrator = integrator.rk4 { h = 0.01 } }
+    assert(calls < 2 * 100 + 50, calls) -- 100 steps; the rest are events, the row column and the end
+end)
+
+test("errors of M do not leak: a thousand of them leave the stack and the registry as they were", function()
+    local before
+    for i = 1, 1000 do
+        pcall(simulate, function() error "x" end)
+        if i == 200 then
+            collectgarbage() collectgarbage()
+            before = collectgarbage "count"
+        end
+    end
+    collectgarbage() collectgarbage()
+    assert(collectgarbage "count" < before + 50, collectgarbage "count" - before)
+end)
+
+support.finish()

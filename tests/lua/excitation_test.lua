@@ -1,0 +1,279 @@
+-- Excitations: terms, operators, user functions and what is said about mistakes. Run by dinal.
+
+package.path = "tests/lua/?.lua;" .. package.path
+local fails = require("support").raises
+
+-- The line of the caller.
+local function line() return debug.getinfo(2, "l").currentline end
+local function near(a, b) assert(math.abs(a - b) <= 1e-14 * math.max(1, math.abs(b)), a .. " is not " .. b) end
+local e = excitation
+
+-- Every term, with its options and their defaults.
+assert(e.constant{ level = 3 }(9) == 3)
+near(e.harmonic{ frequency = 2 }(1 / 8), 1)
+near(e.harmonic{ amplitude = 2, omega = 3, phase = 0.5 }(0.1), 2 * math.sin(0.8))
+assert(e.step{}(0) == 1 and e.step{ level = 5, at = 2 }(1.9) == 0 and e.step{ level = 5, at = 2 }(2) == 5)
+assert(e.pulse{ width = 1 }(0.5) == 1 and e.pulse{ amplitude = 3, at = 1, width = 1 }(2) == 0)
+assert(e.half_sine{ amplitude = 2, at = 1, width = 2 }(2) == 2)
+assert(e.ramp{}(7) == 7 and e.ramp{ slope = 2, at = 1, width = 3 }(9) == 6)
+assert(e.square{ period = 2 }(1) == -1 and e.square{ frequency = 0.5, duty = 0.75 }(1) == 1)
+assert(e.sawtooth{ period = 2 }(1) == 0 and e.triangle{ frequency = 0.25 }(1) == 1)
+near(e.chirp{ amplitude = 2, from = 1, to = 3, duration = 4, at = 1, phase = 0.1 }(2), 2 * math.sin(0.1 + 2.5 * math.pi))
+near(e.exponential{ amplitude = 2, tau = 0.5, at = 1 }(2), 2 * math.exp(-2))
+assert(e.polynomial{ coefficients = { 1, 2, 3 }, at = 1 }(3) == 17)
+assert(e.polynomial{ coefficients = vector{ 1, 2 } }(3) == 7)
+assert(e.samples{ t = { 0, 2 }, M = { 1, 5 } }(0.5) == 2)
+assert(e.samples{ t = vector{ 0, 2 }, M = vector{ 1, 5 } }(3) == 5)
+
+-- e:value and e(t) are the same; breaks are told; a block is what its values are.
+local train = e.pulse{ at = 0.3, width = 0.5 } + e.pulse{ at = 2, width = 0.5 }
+assert(train:value(0.4) == 1 and train(0.4) == 1 and train(1) == 0)
+local breaks, t = {}, train:next_break(0)
+while t < math.huge do
+    breaks[#breaks + 1] = t
+    t = train:next_break(t)
+end
+assert(#breaks == 4 and breaks[1] == 0.3 and breaks[2] == 0.8 and breaks[4] == 2.5)
+assert(train:values{ 0, 0.5, 1, 2 } == vector{ 0, 1, 0, 1 })
+assert(train:values(vector.linspace(0, 2, 5)):sum() == 2)
+
+-- Operators, with numbers and functions on either side.
+local step = e.step{}
+local double = function(t) return 2 * t end
+assert((step + 2)(1) == 3 and (2 + step)(1) == 3 and (step + double)(3) == 7 and (double + step)(3) == 7)
+assert((step - 2)(1) == -1 and (2 - step)(1) == 1 and (double - step)(3) == 5)
+assert((3 * step)(1) == 3 and (step * 3)(1) == 3 and (step / 4)(1) == 0.25 and (-step)(1) == -1)
+assert((2 * (step + double - 1) / 4)(3) == 3)
+assert(step(1) == 1, "the operands stay as they are")
+fails(function() return step * step end, "excitation_test.lua:" .. line() .. ": ", "multiplied by a number only, got an excitation")
+fails(function() return step * double end, "got a function")
+fails(function() return 1 / step end, "divided by a number only, got 1 / an excitation")
+fails(function() return step / 0 end, "divided by zero")
+fails(function() return step * (0/0) end, "scaled by")
+fails(function() return step + "3" end, "must be a function, a number or an excitation", 'got the string "3"')
+fails(function() return step + {} end, "got a table")
+fails(function() return step + math.huge end, "must be finite, got inf")
+
+-- Delay and window, in either order.
+assert(step:delay(2)(1.9) == 0 and step:delay(2)(2) == 1 and double and (step + double):delay(1)(3) == 5)
+assert(e.ramp{}:window(1, 3)(0.5) == 0 and e.ramp{}:window(1, 3)(2) == 2 and e.ramp{}:window(1, 3)(3) == 0)
+assert(e.ramp{}:window(0, 3):delay(2)(4) == 2 and e.ramp{}:delay(2):window(0, 3)(4) == 0)
+assert(e.ramp{}:window(-math.huge, 3)(2) == 2 and e.ramp{}:window(1, math.huge)(1e6) == 1e6)
+fails(function() return step:window(3, 1) end, "to = 1 must be after from = 3")
+fails(function() return step:window(3) end, "to must be a number, got nil")
+fails(function() return step:delay(1 / 0) end, "d must be a finite number, got inf")
+fails(function() return step.delay(1) end, "use a colon: e:delay(1.5)")
+
+-- Mistakes in options are named, with what to do.
+fails(function() return e.pulse{ at = 1 } end, "excitation.pulse needs width, for example excitation.pulse{")
+fails(function() return e.pulse{ width = -1 } end, "excitation.pulse: width = -1 must be positive")
+fails(function() return e.pulse{ widht = 1 } end, "has no option 'widht'", "did you mean 'width'?")
+fails(function() return e.pulse{ width = "1" } end, 'width must be a finite number, got the string "1"')
+fails(function() return e.pulse(3) end, "one table of named options")
+fails(function() return e.harmonic{} end, "one of frequency and omega is needed")
+fails(function() return e.harmonic{ frequency = 1, omega = 2 } end, "frequency and omega say the same; give one of them")
+fails(function() return e.harmonic{ frequency = -1 } end, "frequency = -1 must not be negative")
+fails(function() return e.square{ frequency = 0 } end, "frequency = 0 must be positive")
+fails(function() return e.square{ period = 1, duty = 2 } end, "duty = 2 must lie between 0 and 1")
+fails(function() return e.exponential{ tau = 0 } end, "tau = 0 must not be zero")
+fails(function() return e.polynomial{} end, "needs coefficients")
+fails(function() return e.samples{ t = { 0, 0.4, 0.3 }, M = { 0, 0, 0 } } end,
+      "samples: t[3] = 0.3 is not after t[2] = 0.4; times must increase")
+fails(function() return e.samples{ t = { 0, 1 }, M = { 0 } } end, "t has 2 values and M has 1")
+fails(function() return e.samples{ t = {}, M = {} } end, "there are no points")
+fails(function() return e.samples(3) end, "the name of a file or a table of points, got 3")
+fails(function() return e.puls end, "there is no excitation.puls", "did you mean 'pulse'?")
+fails(function() return step.valeu end, "an excitation has no field 'valeu'", "'value'")
+fails(function() step.at = 3 end, "can not be changed")
+fails(function() return step("1") end, 'e:value(t): t must be a finite number, got the string "1"')
+
+-- A function is called as its parameter list says.
+local function arguments(...) return select("#", ...) end
+local function called_with(f) return e.scripted(f)(5, 6, 7) end
+assert(called_with(function() return 1 end) == 1)
+assert(called_with(function(t) return t end) == 5)
+assert(called_with(function(t, theta) return theta end) == 6)
+assert(called_with(function(t, theta, velocity) return velocity end) == 7)
+assert(called_with(arguments) == 3)
+assert(called_with(math.sin) == math.sin(5))
+assert(called_with(setmetatable({}, { __call = function(self, t) return t end })) == 5)
+assert(called_with(setmetatable({ 10 }, { __call = function(self, t, theta) return self[1] + theta end })) == 16)
+local generator = coroutine.wrap(function(t)
+    while true do t = coroutine.yield(2 * t) end
+end)
+assert((step + generator)(4) == 9)
+fails(function() return (step + function(t, theta, v) return v end):values{ 0, 1 } end, "needs theta and velocity")
+
+-- Hints.
+local hinted = e.scripted(function(t) return t % 3 < 2 and 1 or 0 end, { breaks = { 0, 2 }, period = 3 })
+assert(hinted:next_break(0) == 2 and hinted:next_break(2) == 3 and hinted:delay(0.5):next_break(2.5) == 3.5)
+fails(function() return e.scripted(double, { breaks = { 2, 1 } }) end, "breaks[2] = 1 is not after breaks[1] = 2")
+fails(function() return e.scripted(double, { breaks = { 0, 4 }, period = 3 }) end, "span more than the period 3")
+fails(function() return e.scripted(double, { period = 0 }) end, "period = 0 must be positive")
+fails(function() return e.scripted(double, { break_at = {} }) end, "no option 'break_at'")
+fails(function() return e.scripted(3) end, "excitation.scripted needs a function, got 3")
+
+-- What a function raises arrives unchanged, be it a table or nil; with its line when it is a message.
+local thrown = {}
+local ok, caught = pcall(function() return (step + function() error(thrown) end)(1) end)
+assert(not ok and caught == thrown)
+ok, caught = pcall(function() return (step + function() error() end):values{ 1, 2 } end)
+assert(not ok and caught == nil)
+fails(function() return (step + function(t) return t + nothing end)(1) end, "excitation_test.lua:" .. line() .. ": ", "'nothing'")
+
+-- What a function returns must be a finite number; the sentence names its line and the time.
+local defined = ":" .. line() + 3 .. ": "
+local function returning(...)
+    local results = table.pack(...)
+    return step + function(t) if t < 0.3 then return 0 end return table.unpack(results, 1, results.n) end
+end
+fails(function() return returning(nil)(0.35) end, defined .. "M returned nil at t = 0.35; it must return a finite number")
+fails(function() return returning()(0.35) end, "M returned nil at t = 0.35")
+fails(function() return returning("3")(0.35) end, 'M returned the string "3" at t = 0.35')
+fails(function() return returning(0/0)(0.35) end, "M returned nan at t = 0.35")
+fails(function() return returning(1 / 0)(0.35) end, "M returned inf at t = 0.35")
+fails(function() return returning({}):values{ 0, 0.1, 0.4, 0.5 } end, defined .. "M returned a table at t = 0.4;")
+fails(function() return e.scripted(math.log)(0) end, ":" .. line() .. ": M returned -inf at t = 0;")
+local odd = setmetatable({}, { __call = function() end })
+fails(function() return e.scripted(odd)(1) end, ":" .. line() - 1 .. ": M returned nil")
+
+-- The first failure counts, and no function is called after it.
+local calls = 0
+local both = e.scripted(function(t) return t < 3 and 1 or nil end) + function(t)
+    calls = calls + 1
+    return t < 2 and 1 or error("late")
+end
+fails(function() return both:values{ 0, 1, 2, 3, 4 } end, "late")
+assert(calls == 3)
+assert(both(1) == 2, "and the next call starts afresh")
+
+-- Yielding is not possible, in a coroutine or out of it.
+local yielding = step + function(t) coroutine.yield(t) return 1 end
+fails(function() return yielding(1) end, ":" .. line() - 1 .. ": M can not yield, as it did at t = 1")
+local inside = coroutine.create(function() return yielding:values{ 1, 2 } end)
+local alive, message = coroutine.resume(inside)
+assert(not alive and message:find("M can not yield", 1, true))
+
+-- A function runs on the coroutine that asks, which goes on afterwards.
+local asking = coroutine.wrap(function()
+    local here = coroutine.running()
+    local where
+    local M = step + function(t) where = coroutine.running() return t end
+    coroutine.yield(M(1))
+    assert(where == here)
+    coroutine.yield(M(2))
+end)
+assert(asking() == 2 and asking() == 3)
+
+-- It may ask another excitation, itself (to a depth), fail in there and catch that, and replace itself.
+local inner = e.scripted(function(t) if t > 5 then error("too late", 0) end return t end)
+local outer = e.scripted(function(t)
+    local good, value = pcall(inner, t)
+    return good and value or -1
+end)
+assert(outer:values{ 4, 6, 5 } == vector{ 4, -1, 5 })
+local depth
+depth = e.scripted(function(t) return t <= 0 and 0 or 1 + depth(t - 1) end)
+assert(depth(20) == 20)
+fails(function() return depth(1e6) end, "overflow")
+function Replaced(t) Replaced = nil return 3 end
+local replacing = e.scripted(Replaced)
+assert(replacing(1) == 3 and replacing(2) == 3 and Replaced == nil)
+
+-- Functions are kept as long as they are needed, and no longer.
+local weak = setmetatable({}, { __mode = "k" })
+do
+    local f = function(t) return t end
+    weak[f] = true
+    local kept = e.scripted(f):delay(1) + 1
+    f = nil
+    collectgarbage()
+    assert(next(weak) and kept(3) == 3)
+    kept = nil
+end
+collectgarbage()
+collectgarbage()
+assert(next(weak) == nil)
+local churn = 0
+for i = 1, 2000 do
+    local M = step + function(t) return i * t end
+    churn = churn + M(1)
+    if i % 500 == 0 then collectgarbage() end
+end
+assert(churn == 2000 + 2000 * 2001 / 2)
+
+-- As text, which makes the same again.
+local function rebuilt(M) return assert(load("return " .. tostring(M)))() end
+local all = e.constant{ level = 2 } - e.harmonic{ omega = 2.1, phase = 0.1 } / 3 + 0.5 * e.step{ at = 0.3 }
+    + e.pulse{ at = 0.1, width = 0.7 } + e.half_sine{ width = 2 } - 2 * e.ramp{} + e.ramp{ width = 3 }:window(1, math.huge)
+    + e.square{ period = 0.3 }:delay(0.1) + e.sawtooth{ frequency = 3 }:window(0, 1) + e.triangle{ period = 0.7 }
+    + e.chirp{ from = 0.1, to = 2, duration = 3 } + e.exponential{ tau = 0.7 } - e.polynomial{ coefficients = { 1, 0.1 } }
+    + e.samples{ t = { 0, 0.1, 3 }, M = { 1, -1, 2 } } + function(t) return t * t end
+    + e.scripted(math.sin, { breaks = { 0.5, 1 }, period = 2 }):delay(0.25)
+local again = rebuilt(all)
+local times = vector.linspace(-1, 5, 601)
+assert(again:values(times) == all:values(times))
+for _, at in ipairs{ -1, 0, 0.3, 0.8, 1, 2.5 } do assert(again:next_break(at) == all:next_break(at)) end
+assert(tostring(0.5 * e.step{ at = 2 }) == "0.5 * excitation.step{ level = 1, at = 2 }")
+assert(tostring(-e.step{} - e.step{} * 2) ==
+       "-excitation.step{ level = 1, at = 0 } - 2 * excitation.step{ level = 1, at = 0 }")
+assert(tostring(e.scripted(math.sin)) == "excitation.scripted(math.sin)")
+assert(tostring(e.step{}:window(0, math.huge)) == "excitation.step{ level = 1, at = 0 }:window(0, math.huge)")
+local many = {}
+for i = 1, 20 do many[i] = i end
+assert(tostring(e.samples{ t = many, M = many }) == "excitation.samples{ --[[ 20 points, t 1 ... 20 ]] }")
+
+-- The text of a function is found in its file: behind strings and comments, whatever is named `function` there.
+local long_one = e.scripted(function(t) -- "function(t) end"
+    local text = [[ end function ]] if t > 1 then return #text end
+    for i = 1, 3 do while t > i do t = t - 1 end end
+    repeat local x <const> = 0xe until true
+    return t
+end)
+local text = tostring(long_one)
+assert(text:match('^excitation%.scripted%(function%(t%) %-%- "function') and text:match("return t\nend%)$"))
+assert(rebuilt(long_one)(7) == 14 and rebuilt(long_one)(0.5) == 0.5)
+local first, second = function(t) return 1 end, function(t) return 2 end
+assert(tostring(e.scripted(first)) == "excitation.scripted(function(t) return 1 end)")
+assert(tostring(e.scripted(second)) == "excitation.scripted(function(t) return 2 end)")
+local function named(t) return 3 * t end
+assert(tostring(e.scripted(named)) == "excitation.scripted(function(t) return 3 * t end)")
+local from_text = load("return function(t) return 4 * t end")()
+assert(tostring(e.scripted(from_text)) == "excitation.scripted(function(t) return 4 * t end)")
+local callable = setmetatable({}, { __call = function(_, t) return t end })
+assert(tostring(e.scripted(callable)) == "excitation.scripted(--[[ a table with __call ]])")
+
+-- Samples from a file.
+local path = os.tmpname()
+local function write(text)
+    local file = assert(io.open(path, "w"))
+    file:write(text)
+    file:close()
+end
+write("# a record\nmoment,M,t,other\n0,1,0,9\n1,3,2,8\n2,5,3,7\n")
+assert(e.samples(path)(1) == 2, "columns t and M are found by name")
+assert(e.samples(path, { value = "other" })(1) == 8.5)
+assert(e.samples(path, { time = "moment" })(0.5) == 2)
+assert(e.samples(path, { time = 1, value = 4 })(0.5) == 8.5)
+assert(e.samples(path, { time = "moment" }):next_break(0) == 1)
+assert(tostring(2 * e.samples(path):delay(3)) ==
+       ('2 * excitation.samples("%s", { time = "t", value = "M" }):delay(3)'):format(path))
+assert(rebuilt(e.samples(path):delay(3))(4) == 2)
+fails(function() return e.samples(path, { value = "mo" }) end, path, "no column 'mo'", "moment")
+fails(function() return e.samples(path, { value = 7 }) end, path, "column 7")
+fails(function() return e.samples(path, { value = {} }) end, "value must be the name or the number of a column, got a table")
+fails(function() return e.samples(path, { column = 1 }) end, "no option 'column'")
+write("0 1\n1 3\n2 5\n")
+assert(e.samples(path)(0.5) == 2, "without names, the first two columns")
+write("a,b\n0,1\n2,3\n1,5\n")
+fails(function() return e.samples(path) end, path, "row 3", "a = 1", "not after 2", "times must increase")
+write("a,b\n0,1\n2,x\n")
+fails(function() return e.samples(path) end, path .. ":3:", "column 2")
+write("a\n0\n2\n")
+fails(function() return e.samples(path) end, path, "only one column")
+write("a,b\n")
+fails(function() return e.samples(path) end, path, "no rows")
+write("")
+fails(function() return e.samples(path) end, path, "empty")
+os.remove(path)
+fails(function() return e.samples(path) end, path)

@@ -1,0 +1,134 @@
+-- The documentation can not lie: it is complete, its examples run and print what they say, docs/manual.md is up to date.
+package.path = "tests/lua/?.lua;" .. package.path
+local support = require "support"
+local test, equal = support.test, support.equal
+
+local manual
+do
+    local pipe <close> = io.popen(('"%s" --manual'):format(support.program()))
+    manual = pipe:read "a"
+end
+
+--- The entries of the manual: heading, signature, summary, example.
+local entries = {}
+for part in (manual .. "\n## "):gsub("\n###? ", "\n\0"):gmatch "%z([^\0]*)" do
+    local heading, signature, summary, example = part:match "^([^\n]+)\n\n`([^\n]*)`\n\n(.-)\n\n```lua\n(.-)\n```\n"
+    if heading then
+        entries[#entries + 1] = { heading = heading, signature = signature, summary = summary, example = example }
+    elseif part ~= "" then
+        entries[#entries + 1] = { heading = part:match "[^\n]+", broken = true }
+    end
+end
+
+test("docs/manual.md is what the program prints", function()
+    assert(support.read "docs/manual.md" == manual, "docs/manual.md is old: run `dinal --manual > docs/manual.md`")
+end)
+
+test("every entry has a signature, a summary that is a sentence, and an example", function()
+    assert(#entries > 80, #entries)
+    for _, entry in ipairs(entries) do
+        assert(not entry.broken, entry.heading)
+        assert(#entry.signature > 0, entry.heading .. " has no signature")
+        assert(#entry.summary > 10 and entry.summary:find "%.$", entry.heading .. " has no summary")
+        assert(#entry.example > 0, entry.heading .. " has no example")
+    end
+end)
+
+test("everything that Lua can see has an entry", function()
+    local described = {}
+    for _, entry in ipairs(entries) do
+        described[entry.heading] = true
+    end
+    local function check(owner, separator, members)
+        for name in pairs(members) do
+            local heading = separator and owner .. separator .. name or name
+            assert(described[heading], "no entry for " .. heading)
+        end
+    end
+    for name, value in pairs(dinal) do
+        if type(value) == "table" then
+            check(name, ".", value)
+        elseif type(value) == "function" then
+            assert(described[name], name)
+        else
+            assert(described["dinal." .. name], name)
+        end
+    end
+    local sys = nondimensional {}
+    local run = sys:simulate { t_end = 1, dt = 1 }
+    for owner, object in pairs { sys = sys, run = run, integrator = run.integrator, e = run.excitation, v = run.t } do
+        local index = debug.getmetatable(object).__index
+        local _, methods = debug.getupvalue(index, 1)
+        local _, fields = debug.getupvalue(index, 2)
+        check(owner, ":", methods)
+        check(owner, ".", fields)
+        assert(next(methods) or next(fields), owner)
+        for name in pairs(debug.getmetatable(object)) do
+            local own = { __index = true, __newindex = true, __gc = true, __name = true, __metatable = true }
+            assert(type(name) ~= "string" or own[name] or name:find "^__", name)
+        end
+    end
+end)
+
+test("every example runs on its own and prints what stands after -->", function()
+    for _, entry in ipairs(entries) do
+        local printed, wanted = {}, {}
+        for line in entry.example:gmatch "[^\n]+" do
+            wanted[#wanted + 1] = line:match "%-%->%s?(.*)$"
+        end
+        local environment = setmetatable({}, { __index = _G })
+        function environment.print(...)
+            local values = table.pack(...)
+            for i = 1, values.n do
+                values[i] = tostring(values[i])
+            end
+            printed[#printed + 1] = table.concat(values, "\t")
+        end
+        function environment.help() end -- writes to stdout
+        local ok, problem = pcall(assert(load(entry.example, "=example", "t", environment)))
+        assert(ok, ("the example of %s fails: %s"):format(entry.heading, problem))
+        equal(table.concat(printed, "\n"), table.concat(wanted, "\n"), "example of " .. entry.heading)
+    end
+end)
+
+--- What `code` prints.
+local function output(code)
+    local name = support.temporary ".lua"
+    support.write(name, code)
+    local pipe <close> = io.popen(('"%s" %s 2>&1'):format(support.program(), name))
+    return pipe:read "a"
+end
+
+test("help knows functions, methods, modules, objects and names", function()
+    local harmonic = output "help(excitation.harmonic)"
+    assert(harmonic:find("excitation.harmonic{ amplitude = 1, frequency | omega, phase = 0 } -> excitation", 1, true), harmonic)
+    for _, same in ipairs { 'help "excitation.harmonic"', 'help "harmonic"' } do
+        equal(output(same), harmonic)
+    end
+    local simulate = output "help(nondimensional{}.simulate)"
+    for _, same in ipairs { "simulate", "sys.simulate", "sys:simulate", "system.simulate" } do
+        equal(output(('help "%s"'):format(same)), simulate)
+    end
+    assert(output "help(excitation)":find("excitation.pulse", 1, true))
+    assert(output "help(nondimensional{})":find("sys.dead_zone", 1, true))
+    assert(output 'help "excitation"':find("excitation.pulse", 1, true))
+    assert(output 'help "sys.omega0"':find("natural frequency", 1, true))
+    assert(output 'help "system"':find("system{ I, k, C = 0", 1, true))
+    assert(output "help(help)":find("help(x)", 1, true))
+end)
+
+test("help searches words, suggests names, and shows where to begin", function()
+    assert(output 'help "dead zone"':find("sys.dead_zone", 1, true))
+    local many = output 'help "the"'
+    assert(select(2, many:gsub("\n  %S", "")) <= 10 and many:find("more: use more of the word", 1, true), many)
+    assert(output 'help "harmonc"':find("did you mean 'harmonic'?", 1, true))
+    assert(output 'help "thta0"':find("did you mean 'theta0'?", 1, true))
+    assert(output "help()":find("sys:simulate", 1, true))
+    equal(output "help(dinal)", output "help()")
+    assert(output "help(nil)":find("in quotes", 1, true))
+    assert(output "help(3.5)":find("in quotes", 1, true))
+    assert(output "help(print)":find("Lua's own", 1, true))
+    assert(output "help(function() end)":find("no help", 1, true))
+end)
+
+support.finish()

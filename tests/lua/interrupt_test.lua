@@ -1,0 +1,81 @@
+-- Ctrl-C stops whatever runs, in coroutines and behind pcall, too; the program then ends with 130.
+package.path = "tests/lua/?.lua;" .. package.path
+local support = require "support"
+local test, equal = support.test, support.equal
+
+--- Runs a script, presses Ctrl-C after 0.4 s; exit code, output, and how long it took (whole seconds at most).
+local function interrupted(code)
+    local name = support.temporary ".lua"
+    support.write(name, code)
+    local pipe = io.popen(('timeout --preserve-status -k 5 -s INT 0.4 "%s" %s 2>&1; echo "exit $?"'):format(support.program(), name))
+    local text = pipe:read "a"
+    pipe:close()
+    return tonumber(text:match "exit (%d+)\n$"), text
+end
+
+local function check(code, output)
+    local exit, text = interrupted(code)
+    equal(exit, 130, text)
+    if output then
+        assert(text:find(output, 1, true), text)
+    end
+end
+
+test("a loop in Lua", function() check "while true do end" end)
+
+test("a loop that swallows errors with pcall or xpcall", function()
+    check "while true do pcall(function() while true do end end) end"
+    check "while true do xpcall(function() while true do end end, function(e) return e end) end"
+    check "while true do pcall(error) end"
+end)
+
+test("a loop inside of coroutines", function()
+    check "coroutine.wrap(function() while true do end end)()"
+    check "while true do coroutine.resume(coroutine.create(function() while true do end end)) end"
+    check [[
+        local inner = coroutine.wrap(function() while true do coroutine.yield(1) end end)
+        local outer = coroutine.wrap(function() while true do inner() coroutine.yield(2) end end)
+        while true do outer() end]]
+    check [[
+        local co = coroutine.create(function() local x <close> = setmetatable({}, { __close = function() while true do end end }) coroutine.yield() end)
+        coroutine.resume(co)
+        coroutine.close(co)]]
+end)
+
+test("a long run with a native excitation", function()
+    check "nondimensional{ zeta = 0.1 }:simulate{ M = excitation.harmonic{ frequency = 0.7 }, t_end = 1e9, times = {} }"
+end)
+
+test("a long run with a scripted excitation, also in a coroutine", function()
+    check "nondimensional{ zeta = 0.1 }:simulate{ M = function(t) return math.sin(t) end, t_end = 1e9, times = {} }"
+    check [[coroutine.wrap(function()
+        nondimensional{ zeta = 0.1 }:simulate{ M = function(t) return math.sin(t) end, t_end = 1e9, times = {} }
+    end)()]]
+end)
+
+test("M that does not return", function()
+    check "nondimensional{}:simulate{ M = function(t) while t > 0.5 do end return 1 end, t_end = 1, dt = 0.1 }"
+end)
+
+test("coroutine functions behave as those of Lua", function()
+    equal(select("#", coroutine.resume(coroutine.create(function(...) return ... end), 1, nil, nil)), 4)
+    local wrapped = coroutine.wrap(function(a) local b = coroutine.yield(a + 1) error("bad " .. b) end)
+    equal(wrapped(1), 2)
+    local ok, message = pcall(wrapped, "x")
+    assert(not ok and message:find("interrupt_test.lua:%d+: bad x"), message)
+    ok, message = pcall(wrapped)
+    assert(not ok and message:find("cannot resume dead coroutine", 1, true), message)
+    support.raises(function() coroutine.resume(1) end, "bad argument #1 to 'resume'", "thread expected")
+    support.raises(function() coroutine.wrap(1) end, "bad argument #1 to 'wrap'")
+    support.raises(function() coroutine.close(coroutine.running()) end, "cannot close a running coroutine")
+    local co = coroutine.create(function() coroutine.yield() end)
+    coroutine.resume(co)
+    equal(coroutine.close(co), true)
+    equal(coroutine.status(co), "dead")
+    local value = {}
+    ok, message = coroutine.resume(coroutine.create(function() error(value) end))
+    assert(not ok and message == value)
+    equal(debug.gethook(), nil)
+end)
+
+support.finish()

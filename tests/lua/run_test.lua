@@ -1,0 +1,197 @@
+package.path = "tests/lua/?.lua;" .. package.path
+local support = require "support"
+local test, near, equal, raises_here = support.test, support.near, support.equal, support.raises_here
+
+local nd = nondimensional { friction_ratio = 0.1, breakaway_ratio = 0.12 }
+local run = nd:simulate { M = excitation.harmonic { frequency = 0.7 }, theta0 = 1, t_end = 5, dt = 0.01 }
+
+test("columns are vectors of one length, and hold what their names say", function()
+    for _, name in ipairs(run.names) do
+        equal(#run[name], 501)
+    end
+    equal(run.theta[1], 1.0)
+    near(run.M[101], run.excitation(1), 1e-14) -- columns of M are filled in blocks, with roundings of their own
+    assert((run.damping):abs() <= 0)
+    assert(run.friction:abs() <= 0.12)
+end)
+
+test("a column outlives its run", function()
+    local theta = nd:simulate { theta0 = 1, t_end = 1, dt = 0.001 }.theta
+    local copy = theta:table()
+    for _ = 1, 20 do
+        collectgarbage()
+        nd:simulate { theta0 = 2, t_end = 1, dt = 0.001 }
+    end
+    for i = 1, #theta do
+        equal(theta[i], copy[i])
+    end
+end)
+
+test("run:columns picks by name or number", function()
+    local t, theta = run:columns("t", "theta")
+    assert(t == run.t and theta == run.theta)
+    local M, first = run:columns(4, 1)
+    assert(M == run.M and first == run.t)
+    equal(select("#", run:columns()), 6)
+    raises_here(function() run:columns("thta") end, "thta", "did you mean", "theta")
+    raises_here(function() run:columns(7) end, "7")
+    raises_here(function() run:columns({}) end, "got a table")
+end)
+
+test("events are a list of tables, the same list each time", function()
+    local events = run.events
+    assert(#events > 0)
+    for i, e in ipairs(events) do
+        assert(math.type(e.t) == "float" and math.type(e.theta) == "float" and math.type(e.M) == "float")
+        assert(e.kind == "turn" or e.kind == "stick" or e.kind == "slip" or e.kind == "rest")
+        assert(i == 1 or e.t >= events[i - 1].t)
+        local _, velocity = run:at(e.t)
+        near(velocity, 0, 1e-6) -- the event's time is rounded, and velocity changes by about 40 per time unit
+    end
+    equal(run.events, events)
+end)
+
+test("run:at gives theta and velocity at rows and between them", function()
+    local theta, velocity = run:at(run.t[200])
+    near(theta, run.theta[200], 1e-12)
+    near(velocity, run.velocity[200], 1e-11)
+    local fine = nd:simulate { M = run.excitation, theta0 = 1, t_end = 5, dt = 0.0025 }
+    near((run:at(3.2125)), fine.theta[1286], 1e-10) -- both integrate with h = 0.001, whose error is below 1e-10
+    raises_here(function() run:at(5.1) end, "t = 5.1 is outside the run from 0 to 5")
+    raises_here(function() run:at(-1) end, "outside")
+    raises_here(function() run:at("1") end, "finite number")
+    raises_here(function() run.at(1) end, "use a colon: run:at(t)")
+end)
+
+test("a run shows where it came from and can not be changed", function()
+    equal(tostring(run.system), tostring(nd))
+    equal(tostring(run.integrator), "integrator.rk4{ h = 0.001 }")
+    equal(run.outcome, "reached the end")
+    raises_here(function() run.theta = 1 end, "a run can not be changed")
+    raises_here(function() return run.tetha end, "this run has no field 'tetha'; did you mean 'theta'?")
+    assert(tostring(run):find("^501 rows, t 0 … 5; %d+ events"), tostring(run))
+end)
+
+test("a run saved as CSV reads back to the last bit", function()
+    local name = support.temporary ".csv"
+    run:save(name)
+    local old = trajectory.load(name)
+    equal(#old, 501)
+    for _, column in ipairs(run.names) do
+        assert(old[column] == run[column], column)
+    end
+    equal(table.concat(old.names, " "), "t theta velocity M friction damping")
+    equal(old.outcome, "read from a file")
+    equal(old.system, nil)
+    equal(#old.events, 0)
+    near((old:at(0.005)), (run:at(0.005)), 1e-5) -- cubic between rows 0.01 apart: h^4/384 theta''''
+    local again = support.temporary ".csv"
+    old:save(again)
+    equal(support.read(again), support.read(name), "saving what was loaded")
+end)
+
+test("a run saved as the record of 1989 reads back to the last bit", function()
+    local name = support.temporary ".dat"
+    run:save(name)
+    local old = trajectory.load(name)
+    equal(table.concat(old.names, " "), "t theta velocity_over_omega0 M_over_k friction_over_k damping_over_k")
+    assert(old.t == run.t and old.theta == run.theta and old.M_over_k == run.M)
+    assert(old.velocity_over_omega0 == run.velocity / nd.omega0)
+    equal(support.read(name):match("^%s*(%d+)"), "501")
+    local again = support.temporary ".dat"
+    old:save(again)
+    equal(support.read(again), support.read(name))
+    raises_here(function() return old.velocity end, "no field 'velocity'", "velocity_over_omega0")
+end)
+
+test("columns of a file that have other names are fields, too", function()
+    local name = support.temporary ".csv"
+    support.write(name, "time,acceleration\n0,1\n1,2.5\n")
+    local record = trajectory.load(name)
+    equal(record.acceleration[2], 2.5)
+    raises_here(function() return record.acelleration end, "did you mean 'acceleration'?")
+    raises_here(function() return record.theta end, "no field 'theta'", "time, acceleration")
+    raises_here(function() record:at(0.5) end, "needs the columns")
+    raises_here(function() record:save(support.temporary ".dat") end, "system")
+end)
+
+test("a choice of columns can be saved", function()
+    local name = support.temporary ".csv"
+    run:save(name, { columns = { "theta", 3 } })
+    equal(table.concat(trajectory.load(name).names, " "), "theta velocity")
+    raises_here(function() run:save(name, { columns = { "thta" } }) end, "thta", "did you mean")
+    raises_here(function() run:save(name, { columns = {} }) end, "columns must be a list")
+    raises_here(function() run:save(name, { column = { "t" } }) end, "did you mean 'columns'?")
+    raises_here(function() run:save(support.temporary ".dat", { columns = { "t" } }) end, "six columns")
+end)
+
+test("a name that says no kind of file, or a place that can not be written, is an error", function()
+    raises_here(function() run:save("run.txt") end, "run.txt", ".csv", ".dat")
+    raises_here(function() run:save("run") end, ".csv", ".dat")
+    raises_here(function() run:save() end, "must be a string")
+    raises_here(function() run:save("/nowhere/at/all/run.csv") end, "/nowhere/at/all/run.csv")
+    raises_here(function() run:save("/dev/full/x.csv") end, "/dev/full")
+    raises_here(function() trajectory.load("/nowhere/run.csv") end, "/nowhere/run.csv")
+    raises_here(function() trajectory.load("run.txt") end, ".csv", ".dat")
+    raises_here(function() trajectory.load(7) end, "must be a string")
+end)
+
+--- The comment block, stripped of "# ", must make a run with the same file.
+local function check_repeats(first, what)
+    local name, again = support.temporary ".csv", support.temporary ".csv"
+    first:save(name)
+    local lines = {}
+    for line in io.lines(name) do
+        if line:sub(1, 2) == "# " then
+            lines[#lines + 1] = line:sub(3)
+        end
+    end
+    local environment = setmetatable({}, { __index = _G })
+    assert(load(table.concat(lines, "\n"), "=comments", "t", environment))()
+    environment.run:save(again)
+    local function rows(file)
+        return (support.read(file):gsub("#[^\n]*\n", ""))
+    end
+    equal(rows(again), rows(name), what)
+    assert(not support.read(name):find("could not be written down"), what)
+end
+
+test("the comment block of a CSV repeats a run with a native excitation", function()
+    check_repeats(run, "harmonic")
+    check_repeats(nd:simulate { theta0 = 1, velocity0 = -0.3, t_start = 0.1, times = { 0.1, 0.2, 1 / 3, 2 } }, "times")
+    check_repeats(nd:simulate { M = 3, t_end = 2, dt = 0.3, integrator = integrator.dinal1989 { h = 0.01, slip = true } }, "1989")
+    local pulses = excitation.pulse { at = 0.5, width = 0.25 } - 2 * excitation.pulse { at = 1, width = 0.5 }:delay(0.5):window(0, 1.8)
+    check_repeats(nd:simulate { M = pulses, t_end = 3, dt = 0.1 }, "pulses")
+end)
+
+function global_drive(t) return global_gain * math.sin(global_omega * t) end
+
+test("the comment block repeats a scripted M with its local and global variables as they were", function()
+    check_repeats(nd:simulate { M = function(t) return math.sin(t) end, t_end = 2, dt = 0.1 }, "one line")
+    local gain, table_of = 2.5, { 1, 2, { x = 0.5, ["a b"] = true } }
+    local function helper(x) return gain * x end
+    local M = function(t, theta, velocity)
+        -- a comment with "end" in it
+        local text = "end"
+        return helper(math.sin(7 * t)) * table_of[3].x - 0.1 * velocity + #text - 3
+    end
+    check_repeats(nd:simulate { M = M, t_end = 2, dt = 0.1 }, "locals")
+    global_gain, global_omega = 3, 1 / 3
+    local first = nd:simulate { M = global_drive, t_end = 2, dt = 0.1 }
+    global_gain = 4
+    check_repeats(first, "globals")
+    check_repeats(nd:simulate { M = 2 * excitation.scripted(M, { breaks = { 0.5 }, period = 1 }):delay(0.1) + 1, t_end = 2, dt = 0.1 }, "terms")
+    check_repeats(nd:simulate { M = math.sin, t_end = 2, dt = 0.1 }, "a function of Lua")
+    check_repeats(nd:simulate { M = load("return 2 * ..."), t_end = 2, dt = 0.1 }, "a chunk")
+    local function countdown(t) return t > 1 and 1 + countdown(t - 1) or t end
+    check_repeats(nd:simulate { M = countdown, t_end = 3, dt = 0.1 }, "recursion")
+end)
+
+test("what can not be written down is said in the comment block", function()
+    local thread = coroutine.create(print)
+    local name = support.temporary ".csv"
+    nd:simulate { M = function(t) return thread and 1 or 0 end, t_end = 1, dt = 1 }:save(name)
+    assert(support.read(name):find("# -- a thread could not be written down", 1, true))
+end)
+
+support.finish()

@@ -1,0 +1,168 @@
+package.path = "tests/lua/?.lua;" .. package.path
+local support = require "support"
+local test, near, equal, raises_here = support.test, support.near, support.equal, support.raises_here
+
+local nd = nondimensional { zeta = 0.119, friction_ratio = 0.418, breakaway_ratio = 0.45 }
+local two_pi = 2 * math.pi
+
+test("rows stand exactly on the grid, and the last one exactly at t_end", function()
+    local run = nd:simulate { t_end = 1, dt = 0.3 }
+    equal(#run, 5)
+    equal(run.t[2], 0.3)
+    equal(run.t[4], 3 * 0.3)
+    equal(run.t[5], 1.0)
+    equal(#nd:simulate { t_end = 20, dt = 0.01 }, 2001)
+end)
+
+test("rows stand exactly at a list of times, from a table or a vector, and t_end is the last", function()
+    local times = { 0, 0.1, 0.25, 1 / 3, 1.7 }
+    for _, list in ipairs { times, vector(times) } do
+        local run = nd:simulate { theta0 = 1, times = list }
+        equal(#run, 5)
+        for i, t in ipairs(times) do
+            equal(run.t[i], t)
+        end
+    end
+end)
+
+test("times = {} keeps no rows, but the events and the motion", function()
+    local run = nondimensional {}:simulate { theta0 = 1, times = {}, t_end = 1.2 }
+    equal(#run, 0)
+    equal(#run.events, 2)
+    near((run:at(1)), 1, 1e-9) -- h = T0/1000: the error of RK4 is about 2 pi (2 pi h)^4/120 = 8e-11
+end)
+
+test("M may be a number, a function, an excitation or nothing", function()
+    local options = { t_end = 2, dt = 0.5 }
+    local function last(M)
+        options.M = M
+        return nondimensional {}:simulate(options).theta[4]
+    end
+    equal(last(nil), 0.0)
+    near(last(3), 6, 1e-8) -- t = 1.5: 3 (1 - cos 3 pi)
+    near(last(function() return 3 end), 6, 1e-8)
+    near(last(excitation.constant { level = 3 }), 6, 1e-8)
+end)
+
+test("a function of t is called with t alone, one of more parameters with theta and velocity", function()
+    local count, theta, velocity
+    nd:simulate { M = function(...) count, _, theta, velocity = select("#", ...), ... return 0 end, theta0 = 1, t_end = 0.1, dt = 0.1 }
+    equal(count, 3)
+    equal(math.type(theta), "float")
+    equal(math.type(velocity), "float")
+    local seen = {}
+    nd:simulate { M = function(t) seen[#seen + 1] = t return 0 end, t_end = 0.1, dt = 0.1 }
+    assert(#seen > 0)
+    local run = nd:simulate { M = math.sin, t_end = 1, dt = 0.5 }
+    equal(run.M[3], math.sin(1))
+    local callable = setmetatable({}, { __call = function(_, t) return 2 * t end })
+    equal(nd:simulate { M = callable, t_end = 1, dt = 1 }.M[2], 2.0)
+end)
+
+test("feedback acts as the damping that it imitates", function()
+    local c = 0.05
+    local imitated = nondimensional {}:simulate { M = function(t, theta, velocity) return -c * velocity end, theta0 = 1, t_end = 3, dt = 0.01 }
+    local sys = nondimensional {}
+    local real = system { I = sys.I, k = 1, C = c }:simulate { theta0 = 1, t_end = 3, dt = 0.01 }
+    assert((imitated.theta - real.theta):abs() < 1e-9) -- both are RK4 with the same stages but for rounding and stage order
+end)
+
+test("free motion with dry friction comes to rest where the report's figure 22 should", function()
+    local run = nondimensional { friction_ratio = 0.167 }:simulate { velocity0 = two_pi, t_end = 3, dt = 0.001 }
+    equal(run.outcome, "at rest")
+    local extremes = { 0.846848608, -0.512848608, 0.178848608, 0.155151392 }
+    local last = run.events[#run.events]
+    near(math.abs(last.theta), extremes[4], 2e-9) -- nine decimals are printed; RK4 with h = 0.001 errs less than 1e-9
+    near(last.t, 1.723664157, 2e-9)
+    near(run.events[1].t, 0.223664157, 2e-9)
+    equal(last.kind, "rest")
+    equal(run.velocity[#run], 0.0)
+end)
+
+test("the default integrator is rk4 with a thousandth of the period", function()
+    equal(tostring(nd:simulate { t_end = 1, dt = 1 }.integrator), "integrator.rk4{ h = 0.001 }")
+end)
+
+test("dinal1989 with its slip reproduces the printed numbers of chapter 6", function()
+    local function at_half(options)
+        local sys = system { I = 1, k = 39.48 } -- the report's rounded 4 pi^2
+        return sys:simulate { theta0 = 1, t_end = 0.5, dt = 0.5, integrator = integrator.dinal1989(options) }.theta[2]
+    end
+    near(at_half { h = 0.1, slip = true }, -1.0143600, 5e-8)
+    near(at_half { h = 0.01, slip = true }, -1.0000161, 5e-8)
+    near(at_half { h = 0.1 }, -0.997964, 5e-7)
+end)
+
+test("t_start shifts the window, and nothing is recorded as an event there", function()
+    local run = nondimensional {}:simulate { theta0 = 1, t_start = 5, t_end = 6.2, dt = 0.1 }
+    equal(run.t[1], 5.0)
+    near(run.events[1].t, 5.5, 1e-9)
+    near(run.events[2].t, 6.0, 1e-9)
+    equal(#run.events, 2)
+end)
+
+test("missing, superfluous and misspelt options are errors that show the way", function()
+    raises_here(function() nd:simulate { t_end = 1 } end, "dt or times is needed", "dt = 0.01")
+    raises_here(function() nd:simulate { dt = 0.1 } end, "sys:simulate needs t_end, for example")
+    raises_here(function() nd:simulate { times = {} } end, "needs t_end")
+    raises_here(function() nd:simulate { t_end = 1, dt = 0.1, times = { 1 } } end, "exclude each other")
+    raises_here(function() nd:simulate { t_end = 1, dt = 0.1, theta = 1 } end, "no option 'theta'; did you mean 'theta0'?", "velocity0")
+    raises_here(function() nd:simulate { t_end = 1, dt = 0.1, m = 1 } end, "did you mean 'M'?")
+    raises_here(function() nd:simulate() end, "one table of named options", "sys:simulate{")
+    raises_here(function() nd:simulate(1, 2) end, "one table of named options")
+    raises_here(function() nd:simulate { 1, 2 } end, "named options only")
+    raises_here(function() nd.simulate { t_end = 1, dt = 0.1 } end, "use a colon: sys:simulate{")
+    raises_here(function() nd.simulate() end, "use a colon: sys:simulate{")
+end)
+
+test("values of a wrong kind are errors that name the option and the value", function()
+    raises_here(function() nd:simulate { t_end = "1", dt = 0.1 } end, "t_end must be a finite number", 'the string "1"')
+    raises_here(function() nd:simulate { t_end = 1, dt = 0.1, theta0 = {} } end, "theta0 must be a finite number, got a table")
+    raises_here(function() nd:simulate { t_end = 1, dt = 0.1, velocity0 = 0 / 0 } end, "velocity0 must be a finite number", "nan")
+    raises_here(function() nd:simulate { t_end = math.huge, dt = 0.1 } end, "t_end must be a finite number", "inf")
+    raises_here(function() nd:simulate { t_end = 1, dt = 0.1, M = "sin" } end, "M must be a function, a number or an excitation", '"sin"')
+    raises_here(function() nd:simulate { t_end = 1, dt = 0.1, M = 0 / 0 } end, "M must be finite")
+    raises_here(function() nd:simulate { t_end = 1, dt = 0.1, integrator = "rk4" } end, "integrator.rk4{ h = 0.001 }", '"rk4"')
+    raises_here(function() nd:simulate { t_end = 1, dt = 0.1, integrator = integrator.rk4 } end, "integrator must be an integrator")
+    raises_here(function() nd:simulate { t_end = 1, dt = 0.1, integrator = nd } end, "got a system")
+end)
+
+test("windows and grids that can not be are errors with their values", function()
+    raises_here(function() nd:simulate { t_end = 1, dt = 0 } end, "dt = 0 must be positive")
+    raises_here(function() nd:simulate { t_end = 1, dt = -0.5 } end, "dt = -0.5 must be positive")
+    raises_here(function() nd:simulate { t_end = 0, dt = 0.1 } end, "t_end = 0 must be after t_start = 0")
+    raises_here(function() nd:simulate { t_start = 2, t_end = 1, dt = 0.1 } end, "t_end = 1 must be after t_start = 2")
+    raises_here(function() nd:simulate { times = { 0, 2, 1 } } end, "times[3] = 1", "must increase")
+    raises_here(function() nd:simulate { times = { 0, 1, 1 } } end, "times[3] = 1", "must increase")
+    raises_here(function() nd:simulate { times = { -1, 1 } } end, "times[1] = -1", "outside")
+    raises_here(function() nd:simulate { times = { 0, 3 }, t_end = 2 } end, "times[2] = 3", "outside")
+    raises_here(function() nd:simulate { times = { 0, "1" } } end, "times")
+    raises_here(function() nd:simulate { times = 3 } end, "times")
+end)
+
+test("a step above the stability limit is refused with the limit", function()
+    raises_here(function() nondimensional {}:simulate { t_end = 1, dt = 0.1, integrator = integrator.rk4 { h = 0.5 } } end,
+        "h = 0.5 exceeds the stability limit 0.45", "use h <=")
+    raises_here(function() integrator.rk4 { h = 0 } end, "h = 0 must be positive")
+    raises_here(function() integrator.rk4 { h = -1 } end, "h = -1 must be positive")
+    raises_here(function() integrator.rk4 {} end, "integrator.rk4 needs h, for example integrator.rk4{ h = 0.001 }")
+    raises_here(function() integrator.rk4 { step = 1 } end, "no option 'step'")
+    raises_here(function() integrator.dinal1989 { h = 0.1, stop = "txt" } end, "stop must be 'listing' or 'text'", "did you mean 'text'?")
+    raises_here(function() integrator.dinal1989 { h = 0.1, slip = 1 } end, "slip must be true or false, got 1")
+end)
+
+test("more rows than memory allows are refused with their size and the cure, before anything is computed", function()
+    local before = os.clock()
+    raises_here(function() nd:simulate { t_end = 1e9, dt = 1e-6 } end, "rows need", "GB", "use dt >=")
+    raises_here(function() nd:simulate { t_end = 1e300, dt = 1e-300 } end, "rows need")
+    assert(os.clock() - before < 1)
+end)
+
+test("an unstable 1989 run ends with an outcome and rows that are all finite", function()
+    local run = nondimensional {}:simulate { theta0 = 1, t_end = 2000, dt = 1, integrator = integrator.dinal1989 { h = 0.5 } }
+    assert(run.outcome:find("stopped being finite"), run.outcome)
+    assert(#run > 0 and #run < 2001)
+    assert(run.theta:abs():max() < math.huge)
+end)
+
+support.finish()

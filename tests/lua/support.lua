@@ -1,0 +1,103 @@
+-- What the Lua tests share: a test is a sentence and a function, failures are collected, the exit code tells.
+local support = {}
+
+local failed, passed = 0, 0
+
+--- Runs one test. Its name is a sentence about behaviour.
+function support.test(sentence, body)
+    local ok, problem = xpcall(body, debug.traceback)
+    if ok then
+        passed = passed + 1
+    else
+        failed = failed + 1
+        io.stderr:write("FAILED: ", sentence, "\n  ", tostring(problem):gsub("\n", "\n  "), "\n")
+    end
+end
+
+--- To be called at the end of a test file.
+function support.finish()
+    if failed > 0 then
+        io.stderr:write(failed, " of ", failed + passed, " tests failed\n")
+        os.exit(1, true)
+    end
+    assert(passed > 0, "no tests were run")
+end
+
+function support.equal(found, wanted, what)
+    if found ~= wanted then
+        error(("%swanted %s, found %s"):format(what and what .. ": " or "", tostring(wanted), tostring(found)), 2)
+    end
+end
+
+function support.near(found, wanted, tolerance)
+    if not (type(found) == "number" and math.abs(found - wanted) <= tolerance) then
+        error(("wanted %.17g within %g, found %s"):format(wanted, tolerance, tostring(found)), 2)
+    end
+end
+
+--- The function must raise a string with all these pieces (plain text, no patterns) in it. Returns the message.
+function support.raises(body, ...)
+    local ok, message = pcall(body)
+    if ok then
+        error("wanted an error, found none", 2)
+    end
+    if type(message) ~= "string" then
+        error("wanted a string as the error, found " .. tostring(message), 2)
+    end
+    for _, piece in ipairs { ... } do
+        if not message:find(piece, 1, true) then
+            error(("wanted an error with \"%s\", found: %s"):format(piece, message), 2)
+        end
+    end
+    return message
+end
+
+--- As raises(), and the message must begin with the file and line of the caller's function: the user's own line.
+function support.raises_here(body, ...)
+    local about = debug.getinfo(body, "S")
+    local message = support.raises(body, ...)
+    local line = message:match("^" .. about.short_src:gsub("%p", "%%%0") .. ":(%d+): ")
+    if not line or tonumber(line) < about.linedefined or tonumber(line) > about.lastlinedefined then
+        error("the message does not begin with the user's line: " .. message, 2)
+    end
+    return message
+end
+
+--- A name for a new file with this ending; the file is removed when the tests end.
+local files = setmetatable({}, {
+    __gc = function(list)
+        for _, name in ipairs(list) do
+            os.remove(name)
+        end
+    end,
+})
+function support.temporary(ending)
+    local name = os.tmpname()
+    files[#files + 1] = name
+    if ending then
+        name = name .. ending
+        files[#files + 1] = name
+    end
+    return name
+end
+
+function support.write(name, text)
+    local file <close> = assert(io.open(name, "wb"))
+    assert(file:write(text))
+end
+
+function support.read(name)
+    local file <close> = assert(io.open(name, "rb"))
+    return file:read("a")
+end
+
+--- The path of the dinal that runs the tests.
+function support.program()
+    local first = 0
+    while arg[first - 1] do
+        first = first - 1
+    end
+    return arg[first]
+end
+
+return support

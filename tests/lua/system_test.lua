@@ -1,0 +1,123 @@
+package.path = "tests/lua/?.lua;" .. package.path
+local support = require "support"
+local test, near, equal, raises_here = support.test, support.near, support.equal, support.raises_here
+
+test("a system shows what it was given", function()
+    local sys = system { I = 2, k = 8, C = 0.5, Rd = 1, Re = 1.5 }
+    equal(sys.I, 2.0)
+    equal(sys.k, 8.0)
+    equal(sys.C, 0.5)
+    equal(sys.Rd, 1.0)
+    equal(sys.Re, 1.5)
+end)
+
+test("C and Rd are zero and Re is Rd unless given", function()
+    local sys = system { I = 1, k = 1 }
+    equal(sys.C, 0.0)
+    equal(sys.Rd, 0.0)
+    equal(sys.Re, 0.0)
+    equal(system { I = 1, k = 1, Rd = 3 }.Re, 3.0)
+end)
+
+test("derived values are fields", function()
+    local sys = system { I = 1, k = 4 * math.pi ^ 2, C = 1.5, Rd = 16.5, Re = 18 }
+    equal(sys.T0, 1.0)
+    near(sys.omega0, 2 * math.pi, 1e-15)
+    near(sys.zeta, 1.5 / (4 * math.pi), 1e-16)
+    near(sys.omega1, 2 * math.pi * math.sqrt(1 - sys.zeta ^ 2), 1e-14)
+    near(sys.dead_zone, 18 / (4 * math.pi ^ 2), 1e-16)
+    equal(sys.regime, "underdamped")
+end)
+
+test("the regime is undamped, underdamped, critical or overdamped, and only a swinging system has omega1", function()
+    equal(system { I = 1, k = 4 }.regime, "undamped")
+    equal(system { I = 1, k = 4, C = 3.9 }.regime, "underdamped")
+    equal(system { I = 1, k = 4, C = 4 }.regime, "critical")
+    equal(system { I = 1, k = 4, C = 4.1 }.regime, "overdamped")
+    equal(system { I = 1, k = 4, C = 4 }.omega1, nil)
+    equal(system { I = 1, k = 4, C = 4.1 }.omega1, nil)
+end)
+
+test("the nondimensional system has k = 1, T0 = 1, and the ratios it was given", function()
+    local nd = nondimensional { zeta = 0.119, friction_ratio = 0.418, breakaway_ratio = 0.45 }
+    equal(nd.k, 1.0)
+    equal(nd.T0, 1.0)
+    near(nd.zeta, 0.119, 1e-16)
+    equal(nd.Rd, 0.418)
+    equal(nd.Re, 0.45)
+    equal(nondimensional { friction_ratio = 0.3 }.Re, 0.3)
+    equal(nondimensional().regime, "undamped")
+    equal(nondimensional { zeta = 1 }.regime, "critical")
+end)
+
+test("friction ratio and characteristic torque are those of the report", function()
+    local sys = system { I = 1, k = 4, Rd = 0.5 }
+    equal(sys:friction_ratio(-2), 0.25)
+    equal(sys:characteristic_torque(3, 8), 20.0)
+    equal(sys:characteristic_torque(3), 12.0)
+    raises_here(function() sys:friction_ratio(0) end, "Mc = 0")
+    raises_here(function() sys:friction_ratio("2") end, "a finite number")
+    raises_here(function() sys.friction_ratio(2) end, "use a colon", "sys:friction_ratio(Mc)")
+end)
+
+test("the text of a system makes the same system again", function()
+    for _, sys in ipairs { system { I = 0.1, k = 1 / 3 }, system { I = 1, k = 2, C = 0.7 }, nondimensional { zeta = 0.3, friction_ratio = 0.1 } } do
+        equal(tostring(load("return " .. tostring(sys))()), tostring(sys))
+    end
+end)
+
+test("a system can not be changed", function()
+    local sys = system { I = 1, k = 4 }
+    raises_here(function() sys.I = 2 end, "a system can not be changed; make a new one")
+    raises_here(function() sys.new = 2 end, "can not be changed")
+    equal(sys.I, 1.0)
+end)
+
+test("a misspelt field is an error with a suggestion", function()
+    local sys = system { I = 1, k = 4 }
+    raises_here(function() return sys.omga0 end, "a system has no field 'omga0'; did you mean 'omega0'?")
+    raises_here(function() return sys[1] end, "a system has no field [1]")
+    raises_here(function() return sys.xyzzy end, "a system has no field 'xyzzy'")
+end)
+
+test("the integrator objects show themselves and can not be changed", function()
+    equal(tostring(integrator.rk4 { h = 0.001 }), "integrator.rk4{ h = 0.001 }")
+    equal(tostring(integrator.dinal1989 { h = 0.01, stop = "text", slip = true }),
+        'integrator.dinal1989{ h = 0.01, stop = "text", slip = true }')
+    equal(integrator.rk4 { h = 0.5 }.name, "rk4")
+    equal(integrator.dinal1989 { h = 0.5 }.name, "dinal1989")
+    raises_here(function() integrator.rk4 { h = 1 }.h = 2 end, "an integrator can not be changed")
+    raises_here(function() return integrator.spectral end, "there is no integrator.spectral")
+    raises_here(function() return integrator.rk5 end, "did you mean 'rk4'?")
+end)
+
+test("dinal is a table whose members are globals, and a user may overwrite these", function()
+    equal(require "dinal", dinal)
+    for _, name in ipairs { "system", "nondimensional", "excitation", "integrator", "trajectory", "vector", "help" } do
+        assert(_G[name] ~= nil and rawget(dinal, name) == _G[name], name)
+    end
+    local saved = {}
+    for name in pairs(dinal) do
+        saved[name] = _G[name]
+        _G[name] = nil
+    end
+    local d, s = dinal, string
+    dinal, string, math = nil, nil, nil
+    local ok, problem = pcall(function()
+        local run = d.nondimensional { zeta = 0.1 }:simulate { M = function() return 1 end, t_end = 1, dt = 0.5 }
+        assert(#run == 3 and run.t[3] == 1 and run.events and tostring(run))
+        local failing = pcall(run.system.simulate, run.system, { M = function() error("x") end, t_end = 1, dt = 1 })
+        assert(not failing and d.partial)
+    end)
+    dinal, string, math = d, s, package.loaded.math
+    for name, value in pairs(saved) do
+        _G[name] = value
+    end
+    assert(ok, problem)
+end)
+
+test("a misspelt name in dinal is an error with a suggestion", function()
+    raises_here(function() return dinal.sytem end, "there is no dinal.sytem; did you mean 'system'?")
+end)
+
+support.finish()

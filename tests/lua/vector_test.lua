@@ -1,0 +1,102 @@
+-- Vectors: made, read, compared and computed with as a user would. Run by dinal.
+
+package.path = "tests/lua/?.lua;" .. package.path
+local fails = require("support").raises
+
+-- The line of the caller.
+local function line() return debug.getinfo(2, "l").currentline end
+
+local v = vector{ 1, 2, 4 }
+
+-- Elements are counted from 1, and beyond the end is nil, as in a table.
+assert(#v == 3 and v[1] == 1 and v[3] == 4)
+assert(v[0] == nil and v[4] == nil and v[1.5] == nil)
+assert(math.type(v[1]) == "float")
+fails(function() return v[-1] end, "vector_test.lua:" .. line() .. ": ", "v[-1]", "v[#v]")
+fails(function() return v.maxx end, "a vector has no field 'maxx'", "did you mean 'max'?")
+fails(function() v[1] = 3 end, "can not be changed")
+local seen = {}
+for i, x in ipairs(v) do seen[i] = x end
+assert(#seen == 3 and seen[2] == 2)
+
+-- What is copied from a table stays when the table changes.
+local t = { 5, 6 }
+local w = vector(t)
+t[1] = 0
+assert(w[1] == 5)
+assert(vector(w) == w and #vector{} == 0)
+
+fails(function() return vector{ 1, "2" } end, 'vector[2] must be a finite number, got the string "2"')
+fails(function() return vector{ 1, 0/0 } end, "vector[2] = ", "must be finite")
+fails(function() return vector(3) end, "vector{ 1, 2, 3 }")
+fails(function() return vector.linspce end, "did you mean 'linspace'?")
+
+-- Arithmetic goes element by element, with a number or an equally long vector on either side.
+assert(v + 1 == vector{ 2, 3, 5 } and 1 + v == v + 1)
+assert(v - vector{ 1, 1, 1 } == vector{ 0, 1, 3 } and 10 - v == vector{ 9, 8, 6 })
+assert(v * v == vector{ 1, 4, 16 } and v * v == v ^ 2 and 2 ^ v == vector{ 2, 4, 16 })
+assert(v / 2 == vector{ 0.5, 1, 2 } and 4 / v == vector{ 4, 2, 1 })
+assert(-v == vector{ -1, -2, -4 })
+assert(v[1] == 1, "the operands stay as they are")
+fails(function() return v + vector{ 1, 2 } end, "v + w have 3 and 2 numbers")
+fails(function() return v * "2" end, 'a vector * the string "2"', "a number or a vector")
+fails(function() return {} + v end, "a table")
+
+-- A comparison is true when it holds for every element.
+assert(v > 0 and v >= 1 and v < 5 and v <= 4)
+assert(not (v > 1) and not (v < 4))
+assert(v < v + 1 and not (v < v) and v <= v)
+assert(vector{} < 0, "there is no element for which it does not hold")
+assert(v == vector{ 1, 2, 4 } and v ~= vector{ 1, 2, 5 } and v ~= vector{ 1, 2 })
+
+-- Mathematics on all elements.
+for name, f in pairs{ sin = math.sin, cos = math.cos, tan = math.tan, exp = math.exp, log = math.log, sqrt = math.sqrt,
+                      abs = math.abs } do
+    local result = v[name](v)
+    for i = 1, #v do assert(result[i] == f(v[i]), name) end
+end
+local root = vector{ -1 }:sqrt()[1]
+assert(root ~= root)
+
+-- One number out of many.
+assert(v:max() == 4 and v:min() == 1 and v:sum() == 7 and v:mean() == 7 / 3)
+assert(vector{}:sum() == 0)
+fails(function() return vector{}:max() end, "v:max(): the vector is empty")
+fails(function() return v.max() end, "use a colon: v:max()")
+local tenths = {}
+for i = 1, 1000000 do tenths[i] = 0.1 end
+assert(vector(tenths):sum() == 100000, "a plain loop is off by 1e-6")
+
+-- Pieces.
+assert(v:slice(2) == vector{ 2, 4 } and v:slice(1, 2) == vector{ 1, 2 } and v:slice(1, 3, 2) == vector{ 1, 4 })
+assert(#v:slice(3, 2) == 0 and v:slice(1, 3, math.maxinteger) == vector{ 1 } and #vector{}:slice() == 0)
+fails(function() return v:slice(0, 2) end, "elements 1 to 3")
+fails(function() return v:slice(1, 4) end, "elements 1 to 3")
+fails(function() return v:slice(1.5) end, "first must be a whole number, got 1.5")
+local copy = v:table()
+assert(type(copy) == "table" and #copy == 3 and copy[3] == 4)
+
+-- Even spacing, with exact ends.
+local line = vector.linspace(-0.1, 0.7, 81)
+assert(#line == 81 and line[1] == -0.1 and line[81] == 0.7 and math.abs(line[41] - 0.3) < 1e-15)
+fails(function() return vector.linspace(0, 1, 1) end, "n = 1 must be a whole number")
+fails(function() return vector.linspace(0, 1, 2.5) end, "n = 2.5 must be a whole number")
+fails(function() return vector.linspace(0, 1 / 0, 5) end, "to must be a finite number, got inf")
+
+-- As text.
+assert(tostring(v) == "vector{ 1, 2, 4 }")
+assert(tostring(vector{}) == "vector{}")
+assert(tostring(vector.linspace(0, 1, 101)) == "vector{ 0, 0.01, 0.02, ..., 0.98, 0.99, 1 }  -- 101 numbers")
+
+-- The collector knows how long a vector is: 400 times 8 MB pass through a process that never holds them all.
+local function resident()
+    local file = io.open("/proc/self/statm")
+    if not file then return 0 end
+    local pages = file:read("a"):match("%d+ (%d+)")
+    file:close()
+    return tonumber(pages) * 4096
+end
+local long = vector.linspace(0, 1, 1000000)
+local before = resident()
+for _ = 1, 400 do local _ = long * 2 end
+assert(resident() - before < 1e9, "less than a third of what was made")

@@ -1,0 +1,92 @@
+"""Ctrl-C in a script: it ends at once, with exit code 130 and a word about where. Usage: interrupt_test.py PROGRAM"""
+
+import os
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+import unittest
+
+PROGRAM = ""
+# The code needs microseconds to notice. The rest is for a machine that does other work: a stop that waits for the end
+# of a run, of a pcall or for a key never comes within it.
+PATIENCE = 1.0
+
+SIMULATE = "nondimensional{{ zeta = 0.01, friction_ratio = 0.1 }}:simulate{{ M = {}, t_end = 1e7, dt = 1e4 }}"
+LONG = {
+    "a loop in Lua": "while true do end",
+    "a loop in a coroutine that was resumed":
+        "print(coroutine.resume(coroutine.create(function() while true do end end))) while true do end",
+    "a loop in a wrapped coroutine": "coroutine.wrap(function() while true do end end)()",
+    "a loop in a coroutine within a coroutine":
+        "coroutine.wrap(function() coroutine.wrap(function() while true do end end)() end)()",
+    "a pcall, and more code after it": "pcall(function() while true do end end) while true do end",
+    "a loop of pcalls": "while true do pcall(function() while true do end end) end",
+    "a loop of xpcalls": "while true do xpcall(function() while true do end end, function() return 1 end) end",
+    "a pcall that is the last thing": "pcall(function() while true do end end)",
+    "a reader of load": "load(function() while true do end end) while true do end",
+    "a comparison in table.sort": "table.sort({3, 2, 1}, function(a, b) while true do end end)",
+    "io.read": "io.read()",
+    "a run with a native M": SIMULATE.format("excitation.harmonic{ amplitude = 1, frequency = 0.3 }"),
+    "a run with M in Lua": SIMULATE.format("function(t) return math.sin(t) end"),
+    "a run with feedback": SIMULATE.format("function(t, theta, velocity) return -0.1*velocity end"),
+    "runs within pcall": "while true do pcall(function() " + SIMULATE.format(1) + " end) end",
+    "a run in a coroutine": "coroutine.wrap(function() " + SIMULATE.format("math.sin") + " end)()",
+    "M that never returns": SIMULATE.format("function(t) while true do end end"),
+    "__close": "local x <close> = setmetatable({}, { __close = function() while true do end end })",
+}
+
+
+class Interrupts(unittest.TestCase):
+    def start(self, *command):
+        process = subprocess.Popen([PROGRAM, *command], stdin=subprocess.PIPE, stdout=subprocess.PIPE,
+                                   stderr=subprocess.PIPE, text=True)
+        self.addCleanup(process.kill)
+        return process
+
+    def interrupt(self, process):
+        """Once it says that it runs; returns the exit code and standard error."""
+        self.assertEqual(process.stdout.readline(), "running\n")
+        time.sleep(0.1)
+        began = time.monotonic()
+        process.send_signal(signal.SIGINT)
+        process.wait(timeout=20)
+        took = time.monotonic() - began
+        self.assertLess(took, PATIENCE)
+        return process.returncode, process.communicate()[1]
+
+    def test_whatever_runs_stops(self):
+        for what, code in LONG.items():
+            with self.subTest(what), tempfile.NamedTemporaryFile("w", suffix=".lua") as script:
+                script.write(f"print('running') io.stdout:flush()\n{code}\nprint('never')\n")
+                script.flush()
+                code, errors = self.interrupt(self.start(script.name))
+                self.assertEqual(code, 130)
+                self.assertRegex(errors, r"^dinal: interrupted( at \S+:\d+)?\n$")
+
+    def test_a_script_on_standard_input_stops(self):
+        process = self.start("-")
+        process.stdin.write("print('running') io.stdout:flush() while true do end")
+        process.stdin.close()
+        process.stdin = None
+        self.assertEqual(self.interrupt(process), (130, "dinal: interrupted at stdin:1\n"))
+
+    def test_code_that_is_waited_for_stops(self):
+        process = self.start("-e", "print('running') io.stdout:flush()", "-")  # standard input stays open and silent
+        self.assertEqual(self.interrupt(process), (130, "dinal: interrupted\n"))
+
+    def test_lua_init_stops(self):
+        os.environ["LUA_INIT"] = "print('running') io.stdout:flush() while true do end"
+        self.addCleanup(os.environ.pop, "LUA_INIT")
+        self.assertEqual(self.interrupt(self.start("-e", "print(1)"))[0], 130)
+
+    def test_an_endless_finalizer_at_the_end_stops(self):
+        loop = "setmetatable({}, { __gc = function() print('running') io.stdout:flush() while true do end end })"
+        code, _ = self.interrupt(self.start("-e", loop))
+        self.assertEqual(code, -signal.SIGINT)  # Lua can not be stopped there, so the signal ends the process
+
+
+if __name__ == "__main__":
+    PROGRAM = os.path.abspath(sys.argv.pop(1))
+    unittest.main()

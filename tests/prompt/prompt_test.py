@@ -1,0 +1,258 @@
+"""What a user sees at the prompt. Usage: prompt_test.py PROGRAM [unittest arguments]"""
+
+import os
+import pathlib
+import stat
+import subprocess
+import sys
+import tempfile
+import time
+import unittest
+
+sys.dont_write_bytecode = True  # no folder __pycache__ in the source tree
+
+from session import CONTINUATION, CTRL_C, CTRL_D, ENTER, TAB, UP, Session
+
+PROGRAM = ""
+HAS_READLINE = True
+
+
+class SessionTest(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.home = pathlib.Path(folder.name)
+
+    def start(self, *arguments, **options):
+        session = Session(PROGRAM, self.home, arguments, **options)
+        self.addCleanup(session.child.close, True)
+        return session
+
+    def run_on(self, session, code):
+        """Types code that runs for long, and waits until it does."""
+        session.press("print('run' .. 'ning') " + code + ENTER)
+        session.child.expect_exact("running\r\n")
+        time.sleep(0.1)
+
+    def interrupted(self, session, code):
+        """What is shown when Ctrl-C stops the code, which it does at once."""
+        self.run_on(session, code)
+        pressed = time.monotonic()
+        session.press(CTRL_C)
+        shown = session.until_prompt()
+        self.assertLess(time.monotonic() - pressed, 2)  # at once for a person, on a machine that does other work, too
+        return shown.replace("^C", "")
+
+
+
+class PromptTest(SessionTest):
+    """With readline: its escape sequences show where the prompt is."""
+
+    @classmethod
+    def setUpClass(cls):
+        if not HAS_READLINE:
+            raise unittest.SkipTest("built without readline")
+
+
+class Values(PromptTest):
+    def test_the_first_line_names_the_version_and_the_way_out(self):
+        self.assertRegex(self.start().greeting, r"dinal \d+\.\d+\.\d+ \(Lua 5\.4\.\d+\): help\(\) for help, Ctrl-D to")
+
+    def test_expressions_are_shown_without_print_and_kept_in_ans(self):
+        session = self.start()
+        self.assertEqual(session.enter("1 + 1"), "2")
+        self.assertEqual(session.enter("ans * 1.5"), "3.0")
+        self.assertEqual(session.enter("'a\"b'"), r'"a\"b"')
+        self.assertEqual(session.enter("{ 1, x = { 2 } }"), "{ 1, x = { 2 } }")
+        self.assertEqual(session.enter("= ans.x[1]"), "2")
+        self.assertEqual(session.enter("y = 5"), "")
+        self.assertEqual(session.enter("y, nil"), "5\tnil")
+
+    def test_an_error_is_told_and_the_session_goes_on(self):
+        session = self.start()
+        self.assertEqual(session.enter("error('oh')"), "stdin:1: oh")
+        self.assertIn("syntax error near 'b'", session.enter("a b"))
+        self.assertEqual(session.enter("1"), "1")
+
+    def test_os_exit_at_the_prompt_gives_its_code(self):
+        session = self.start()
+        session.press("os.exit(3)" + ENTER)
+        self.assertEqual(session.exit_code(), 3)
+
+    def test_lua_code_reads_the_next_line_that_is_typed(self):
+        session = self.start()
+        self.run_on(session, "name = io.read()")
+        session.enter("Coulomb")
+        self.assertEqual(session.enter("name"), '"Coulomb"')
+
+    def test_a_script_with_i_is_followed_by_the_prompt(self):
+        (self.home / "lab.lua").write_text("w = 42 print(...)\n")
+        session = self.start("-i", "lab.lua", "here")
+        self.assertIn("here", session.greeting)
+        self.assertEqual(session.enter("w"), "42")
+
+
+class Lines(PromptTest):
+    def test_a_chunk_may_take_several_lines(self):
+        session = self.start()
+        self.assertEqual(session.enter("function f(x)", CONTINUATION), "")
+        self.assertEqual(session.enter("return 2*x", CONTINUATION), "")
+        self.assertEqual(session.enter("end"), "")
+        self.assertEqual(session.enter("f(", CONTINUATION), "")
+        self.assertEqual(session.enter("21)"), "42")
+
+    def test_a_pasted_block_runs_once_and_shows_its_last_value(self):
+        session = self.start()
+        session.press("\x1b[200~n = (n or 0) + 1\nfor i = 1, 2 do\n\tprint('line', i)\nend\nn * 10\x1b[201~")
+        shown = session.enter("")
+        self.assertRegex(shown, r"line\s+1\nline\s+2\n10$")
+
+    def test_ctrl_d_in_a_continuation_drops_it_and_ctrl_d_at_the_prompt_leaves(self):
+        session = self.start()
+        session.enter("f(", CONTINUATION)
+        session.press(CTRL_D)
+        self.assertIn("near <eof>", session.until_prompt())
+        self.assertEqual(session.leave(), 0)
+        self.assertTrue(session.child.before.endswith("\r\n"))
+
+    def test_tab_inserts_nothing(self):
+        session = self.start()
+        (self.home / "file.lua").write_text("")
+        session.press("'" + TAB + "fi" + TAB + TAB)
+        self.assertEqual(session.enter("'"), '"fi"')
+
+    def test_a_dumb_terminal_gets_no_escape_sequences(self):
+        session = self.start(prompt="> ", TERM="dumb")
+        session.press("{ 1, 'two' }" + ENTER)
+        session.child.expect_exact('{ 1, "two" }\r\n> ')
+        self.assertEqual(session.leave(), 0)
+        self.assertNotIn("\x1b", session.greeting + session.child.before)
+
+    def test_prompts_can_be_set_as_in_lua(self):
+        session = self.start()
+        session.press("_PROMPT = 'lab> '" + ENTER)
+        session.until_prompt("lab> ")
+        session.press("_G = setmetatable(_G, { __index = function(_, k) error(k) end }) _PROMPT = nil" + ENTER)
+        session.until_prompt()
+
+
+class History(PromptTest):
+    def test_entries_of_several_lines_come_back_whole_in_the_next_session(self):
+        first = self.start()
+        first.enter("for i = 1, 2 do", CONTINUATION)
+        first.enter("  print(i)", CONTINUATION)
+        first.enter("end")
+        first.enter("'later'")
+        self.assertEqual(first.leave(), 0)
+        second = self.start()
+        second.press(UP + UP)
+        self.assertTrue(second.enter("").endswith("1\n2"))
+
+    def test_the_file_is_for_its_user_only(self):
+        session = self.start(XDG_STATE_HOME=str(self.home / "some" / "state"))
+        session.enter("1")
+        folder = self.home / "some" / "state" / "dinal"
+        self.assertEqual(stat.S_IMODE(folder.stat().st_mode), 0o700)
+        self.assertEqual(stat.S_IMODE((folder / "history").stat().st_mode), 0o600)
+        self.assertIn("\n1\n", (folder / "history").read_text())
+
+    def test_a_session_that_ends_by_os_exit_is_kept(self):
+        session = self.start()
+        session.press("os.exit()" + ENTER)
+        session.exit_code()
+        self.assertIn("os.exit()", (self.home / ".local/state/dinal/history").read_text())
+
+    def test_the_prompt_works_where_no_history_can_be_written(self):
+        session = self.start(XDG_STATE_HOME="/dev/null")
+        self.assertEqual(session.enter("1 + 1"), "2")
+
+    def test_blank_and_repeated_lines_are_not_kept(self):
+        session = self.start()
+        for line in ["'a'", "", "'b'", "'b'"]:
+            session.enter(line)
+        session.press(UP + UP)
+        self.assertTrue(session.enter("").endswith('"a"'))
+
+
+class Interrupts(PromptTest):
+    def test_ctrl_c_clears_the_line_and_drops_a_continuation(self):
+        session = self.start()
+        session.press("x = 1 -- never")
+        session.press(CTRL_C)
+        session.until_prompt()
+        self.assertEqual(session.enter("x"), "nil")
+        session.enter("do", CONTINUATION)
+        session.press("x = 2")
+        session.press(CTRL_C)
+        session.until_prompt()
+        self.assertEqual(session.enter("x"), "nil")
+
+    def test_ctrl_c_stops_lua_code_and_keeps_the_session(self):
+        session = self.start()
+        for line in ["while true do end", "coroutine.wrap(function() while true do end end)()",
+                     "while true do pcall(function() while true do end end) end",
+                     "return setmetatable({}, { __tostring = function() while true do end end })",
+                     "return { 1, { setmetatable({}, { __tostring = function() while true do end end }) } }"]:
+            self.assertRegex(self.interrupted(session, line), r"^\n?interrupted( at stdin:1)?\n")
+            self.assertEqual(session.enter("1 + 1"), "2")
+
+    def test_a_second_ctrl_c_ends_c_code_that_never_returns(self):
+        session = self.start()
+        self.run_on(session, "return ('a'):rep(40):find(('a-'):rep(40) .. 'b')")
+        for _ in range(3):  # the third in case that the second came late
+            session.press(CTRL_C)
+            time.sleep(0.2)
+        self.assertEqual(session.exit_code(), 130)
+
+    def test_the_rows_of_an_interrupted_run_are_kept_in_ans(self):
+        session = self.start()
+        session.enter("nd = nondimensional{ zeta = 0.01 }")
+        for M in ["function(t) return math.sin(t) end", "excitation.harmonic{ amplitude = 1, frequency = 0.3 }"]:
+            shown = self.interrupted(session, f"return nd:simulate{{ M = {M}, t_end = 1e6, dt = 1 }}")
+            self.assertIn("interrupted at stdin:1", shown)
+            self.assertIn("the part of the run that was done is in ans: ", shown)
+            self.assertEqual(session.enter("#ans > 0 and #ans < 1000001 and #ans.theta == #ans"), "true")
+
+    def test_the_rows_of_a_run_whose_excitation_failed_are_kept_in_ans(self):
+        session = self.start()
+        session.enter("M = function(t) if t > 2 then error('broken') end return 0 end")
+        shown = session.enter("nondimensional{}:simulate{ M = M, t_end = 10, dt = 0.1 }")
+        self.assertIn("stdin:1: broken", shown)
+        self.assertIn("is in ans", shown)
+        self.assertEqual(session.enter("ans.t[#ans] > 1.5"), "true")
+        self.assertNotIn("ans", session.enter("error('another')"))  # the old run is not announced again
+
+    def test_a_closed_terminal_ends_the_program(self):
+        session = self.start()
+        session.child.close(force=False)
+        self.assertFalse(session.child.isalive())
+
+
+class PlainLines(SessionTest):
+    """What a build without readline does at a terminal; one with readline does it, too, on a dumb one."""
+
+    def start(self, *arguments):
+        return super().start(*arguments, prompt="\n> ", TERM="dumb")
+
+    def test_lines_continuations_and_both_control_keys(self):
+        session = self.start()
+        session.enter("1")
+        session.press("x = (" + ENTER)
+        session.until_prompt("\n>> ")
+        session.enter("7)")
+        session.press("x = 8")
+        session.press(CTRL_C)
+        session.until_prompt()
+        self.assertEqual(session.enter("x"), "7")
+        session.press("f(" + ENTER)
+        session.until_prompt("\n>> ")
+        session.press(CTRL_D)
+        self.assertIn("near <eof>", session.until_prompt())
+        self.assertIn("interrupted at stdin:1", self.interrupted(session, "while true do end"))
+        self.assertEqual(session.leave(), 0)
+
+
+if __name__ == "__main__":
+    PROGRAM = os.path.abspath(sys.argv.pop(1))
+    HAS_READLINE = "edited with GNU Readline" in subprocess.run([PROGRAM, "--version"], capture_output=True, text=True).stdout
+    unittest.main()

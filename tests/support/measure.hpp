@@ -1,0 +1,50 @@
+// Runs for tests: simulate() that must succeed, and how far a run is from the truth.
+#pragma once
+
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <numbers>
+#include <utility>
+#include <vector>
+
+#include "core/simulate.hpp"
+#include "support/reference_systems.hpp"
+
+namespace dinal::truth {
+
+inline Trajectory must_run(const Oscillator& oscillator, const Excitation& excitation, const State& initial,
+                           const Window& window, const Grid& rows, const Integrator& integrator) {
+    auto run = simulate(oscillator, excitation, initial, window, rows, integrator);
+    if (!run) FAIL(run.error().sentence);
+    return std::move(run).value();
+}
+
+inline Trajectory must_run(const ReferenceSystem& s, const Grid& rows, const Integrator& integrator) {
+    return must_run(s.oscillator, s.excitation, s.initial, s.window, rows, integrator);
+}
+
+/// The greatest error of a row in theta or velocity/w0, in the units of theta.
+inline double error_of(const Trajectory& run, const ExactMotion& exact, const Oscillator& oscillator) {
+    const double w0 = oscillator.natural_frequency();
+    double worst = 0;
+    for (Eigen::Index i = 0; i < run.size(); ++i) {
+        const Motion y = exact.at(run.rows(i, 0));
+        worst = std::max({worst, std::fabs(static_cast<double>(run.rows(i, 1) - y.theta)),
+                          std::fabs(static_cast<double>(run.rows(i, 2) - y.velocity)) / w0});
+    }
+    return worst;
+}
+
+/// The slope of log error over log h, by least squares.
+inline double order_of(const std::vector<std::pair<double, double>>& errors) {
+    double n = 0, sx = 0, sy = 0, sxx = 0, sxy = 0;
+    for (const auto& [h, error] : errors) {
+        const double x = std::log(h);
+        const double y = std::log(error);
+        n += 1, sx += x, sy += y, sxx += x * x, sxy += x * y;
+    }
+    return (n * sxy - sx * sy) / (n * sxx - sx * sx);
+}
+
+}  // namespace dinal::truth

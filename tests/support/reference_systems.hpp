@@ -1,0 +1,52 @@
+// Named systems with an exact answer: every integrator is measured against every one of them.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/excitation.hpp"
+#include "core/oscillator.hpp"
+#include "core/simulate.hpp"
+#include "support/closed_form.hpp"
+
+namespace dinal::truth {
+
+struct ReferenceSystem {
+    std::string name;
+    Oscillator oscillator;
+    Excitation excitation;
+    std::vector<Piece> drives;  ///< the same excitation, for the closed form
+    State initial;
+    Window window;
+    double size;  ///< the greatest angle to expect: errors are counted in it
+
+    [[nodiscard]] ExactMotion exact() const {
+        return ExactMotion(oscillator, drives, initial, window.start, window.end);
+    }
+    /// The fastest thing that goes on, rad per time unit: swing, load, or the creep of an overdamped system.
+    [[nodiscard]] double fastest_rate() const;
+    /// w0 times the length of the window.
+    [[nodiscard]] double radians() const { return oscillator.natural_frequency() * (window.end - window.start); }
+};
+
+/// k = 1, T0 = 1: the form in which the report states its cases.
+Oscillator nondimensional(double zeta, double friction_ratio, double breakaway_ratio);
+inline Oscillator nondimensional(double zeta, double friction_ratio) {
+    return nondimensional(zeta, friction_ratio, friction_ratio);
+}
+Oscillator system_of(const OscillatorParameters& parameters);
+
+/// amplitude sin(omega t + phase), as dinal and as the closed form have it.
+Excitation harmonic(double amplitude, double omega, double phase = 0);
+std::vector<Piece> harmonic_drive(double amplitude, double omega, double phase = 0);
+/// M = sin 2 pi t.
+inline constexpr double resonance = 6.283185307179586;
+
+const std::vector<ReferenceSystem>& reference_systems();
+const ReferenceSystem& reference_system(std::string_view name);
+
+/// The same motion in other units: theta times `angle`, with the given inertia and stiffness.
+ReferenceSystem rescaled(const ReferenceSystem& base, std::string name, double inertia, double stiffness, double angle);
+
+}  // namespace dinal::truth
