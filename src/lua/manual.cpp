@@ -12,6 +12,9 @@ namespace dinal {
 
 namespace {
 
+// A terminal over ssh has 80 columns.
+constexpr std::size_t text_width = 79;
+
 std::string lower(std::string_view text) {
     std::string result(text);
     std::transform(result.begin(), result.end(), result.begin(),
@@ -58,7 +61,7 @@ std::string indented(std::string_view text) {
 }
 
 std::string doc_text(const Doc& doc) {
-    return fmt::format("{}\n\n{}\n\n{}\n", doc.signature, wrapped(doc.summary, 100), indented(doc.example));
+    return fmt::format("{}\n\n{}\n\n{}\n", doc.signature, wrapped(doc.summary, text_width), indented(doc.example));
 }
 
 std::string listed_name(const Section& section, const Member& member) {
@@ -152,7 +155,7 @@ std::vector<Hit> mentioning(std::string_view words) {
 
 std::string line_about(const Hit& hit) {
     constexpr std::size_t indent = 28;
-    std::string text = wrapped(first_sentence(hit.member->doc.summary), 100 - indent);
+    std::string text = wrapped(first_sentence(hit.member->doc.summary), text_width - indent);
     for (std::size_t at = text.find('\n'); at != std::string::npos; at = text.find('\n', at + 1)) {
         text.insert(at + 1, indent, ' ');
     }
@@ -227,14 +230,17 @@ std::string help_about(std::string_view words) {
 
 std::string start_page() {
     std::string text =
-        "A laboratory for oscillators with dry friction: make a system, excite it, look at the run.\n\n"
+        "A laboratory for oscillators with dry friction: make a system, excite it,\n"
+        "look at the run.\n\n"
         "    sys = system{ I = 1, k = 4*math.pi^2, C = 1.5, Rd = 16.5, Re = 18 }\n"
-        "    run = sys:simulate{ M = function(t) return 30*math.sin(6*t) end, t_end = 20, dt = 0.01 }\n"
-        "    print(run)                       -- a summary; run.t, run.theta, run.events, run:at(3.2)\n"
+        "    M = function(t) return 30*math.sin(6*t) end\n"
+        "    run = sys:simulate{ M = M, t_end = 20, dt = 0.01 }\n"
+        "    print(run)          -- a summary; run.t, run.theta, run.events, run:at(3.2)\n"
         "    run:save(\"run.csv\")\n\n"
-        "help(sys.simulate), help \"theta0\", help(excitation): more about a function, a word, a module.\n\n";
+        "More about a function, a word, a module:\n\n"
+        "    help(sys.simulate), help \"theta0\", help(excitation)\n\n";
     for (const Section& section : sections()) {
-        text += fmt::format("  {:<24} {}\n", section.title, section.description->doc.signature);
+        text += fmt::format("  {:<22} {}\n", section.title, section.description->doc.signature);
     }
     return text;
 }
