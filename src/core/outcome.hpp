@@ -10,7 +10,7 @@ namespace dinal {
     X(at_rest, "at rest")                                                                    \
     X(interrupted, "interrupted")                                                            \
     X(state_not_finite, "the state stopped being finite: unstable system, feedback or step") \
-    X(excitation_not_finite, "the excitation stopped being finite")                          \
+    X(excitation_not_finite, "M failed or stopped being finite")                             \
     X(chattering, "stuck and slipped without end in no time: the feedback chatters")
 
 enum class Outcome {
