@@ -46,7 +46,9 @@ bool Rk4Engine::careful_step(double end, const Sampled* known) {
 
 bool Rk4Engine::piece(double end, bool break_at_end, const Sampled* known) {
     for (int events = 0; t_ < end; ++events) {
-        if (events > most_events_in_a_piece) return fail(Outcome::chattering);
+        if (events > most_events_in_a_piece || standstills_at_once_ > most_events_in_a_piece) {
+            return fail(Outcome::chattering);
+        }
         if (standstill_) leave_standstill();
         if (!system_.frictionless() && motion_ == Motion::stuck) {
             if (!stay(end, break_at_end, known)) return false;
@@ -134,6 +136,7 @@ bool Rk4Engine::reach_zero(const Stepped& whole, double zero, double end, bool b
 }
 
 void Rk4Engine::leave_standstill() {
+    watch_for_chatter();
     const Motion before = motion_;
     motion_ = motion_from_standstill(system_, M_, y_.theta);
     friction_ = system_.kinetic_friction() * sign_of(motion_);
@@ -176,6 +179,7 @@ bool Rk4Engine::stay(double end, bool break_at_end, const Sampled* known) {
         if (!release) return finite();
         next = motion_from_standstill(system_, M_, y_.theta);
     }
+    watch_for_chatter();
     record(EventKind::slip);
     at_start_ = false;
     motion_ = next;
@@ -263,6 +267,14 @@ void Rk4Engine::record_turns(double t, double h, double direction, const State& 
 
 void Rk4Engine::record(EventKind kind) {
     if (events_ != nullptr) events_->push_back({t_, kind, y_.theta, M_});
+}
+
+/// Feedback that pushes at rest and holds in motion would come to a standstill in every step for ever.
+// NOTE: a step too long for its system may have as many honest events, so only short ones are judged.
+void Rk4Engine::watch_for_chatter() {
+    const bool at_once = t_ - last_standstill_ < 2 * full_.h && full_.h * full_.h * full_.w < 0.01;
+    standstills_at_once_ = feedback_ && at_once ? standstills_at_once_ + 1 : 0;
+    last_standstill_ = t_;
 }
 
 }  // namespace dinal

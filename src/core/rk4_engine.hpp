@@ -91,6 +91,7 @@ private:
         }
     }
     void record(EventKind kind);
+    void watch_for_chatter();
     bool fail(Outcome outcome) {
         outcome_ = outcome;
         return false;
@@ -132,7 +133,9 @@ private:
     bool standstill_ = false;  // velocity 0: the law must be asked before the next piece
     bool at_start_ = false;    // ... and nothing that it says is an event
     double friction_ = 0;      // Rd sgn(velocity) of the present motion
-    bool failed_ = false;      // M between the steps, at a row, was not finite
+    double last_standstill_ = -never;
+    int standstills_at_once_ = 0;  // one after the other, none more than two steps from the one before
+    bool failed_ = false;          // M between the steps, at a row, was not finite
     Outcome outcome_ = Outcome::reached_end;
 
     // One block: M in the middle and at the end of each step, what follows from it for the present motion, and the

@@ -154,6 +154,9 @@ std::string describe(lua_State* L, int index) {
         case LUA_TBOOLEAN:
             return lua_toboolean(L, index) != 0 ? "true" : "false";
         case LUA_TNUMBER: {
+            if (std::isnan(lua_tonumber(L, index))) {
+                return "nan";  // Lua itself prints -nan for 0/0
+            }
             lua_pushvalue(L, index);  // lua_tostring changes the value it converts
             std::string text = lua_tostring(L, -1);
             lua_pop(L, 1);

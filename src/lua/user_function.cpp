@@ -70,13 +70,6 @@ bool is_about_yield(lua_State* L, int index) {
            message == "attempt to yield from outside a coroutine";
 }
 
-std::string text_of_result(lua_State* L) {
-    if (lua_type(L, -1) == LUA_TNUMBER && std::isnan(lua_tonumber(L, -1))) {
-        return "nan";  // Lua itself prints -nan for 0/0
-    }
-    return describe(L, -1);
-}
-
 /// A finite number on the top of the stack; a string that looks like one is none.
 bool is_good(lua_State* L, double& M) {
     M = lua_tonumber(L, -1);
@@ -204,7 +197,7 @@ double LuaFunction::fail(CallState& call, int status, double t) const {
     lua_State* L = call.L_;
     std::string sentence;
     if (status == LUA_OK) {
-        sentence = fmt::format("M returned {} at t = {:.14g}; it must return a finite number", text_of_result(L), t);
+        sentence = fmt::format("M returned {} at t = {:.14g}; it must return a finite number", describe(L, -1), t);
     } else if (is_about_yield(L, -1)) {
         sentence =
             fmt::format("M can not yield, as it did at t = {:.14g} (attempt to yield across a C-call boundary)", t);

@@ -16,12 +16,20 @@ void* counted(std::size_t size) {
 }
 }  // namespace
 
-// Replacing these four covers the array and nothrow forms, which call them.
+// All forms but the over-aligned ones, so that no pair of new and delete is of mixed origin (AddressSanitizer looks).
 void* operator new(std::size_t size) {
     return counted(size);
 }
 void* operator new[](std::size_t size) {
     return counted(size);
+}
+void* operator new(std::size_t size, const std::nothrow_t&) noexcept {
+    ++allocations;
+    return std::malloc(size == 0 ? 1 : size);
+}
+void* operator new[](std::size_t size, const std::nothrow_t&) noexcept {
+    ++allocations;
+    return std::malloc(size == 0 ? 1 : size);
 }
 void operator delete(void* memory) noexcept {
     std::free(memory);
@@ -33,6 +41,12 @@ void operator delete[](void* memory) noexcept {
     std::free(memory);
 }
 void operator delete[](void* memory, std::size_t) noexcept {
+    std::free(memory);
+}
+void operator delete(void* memory, const std::nothrow_t&) noexcept {
+    std::free(memory);
+}
+void operator delete[](void* memory, const std::nothrow_t&) noexcept {
     std::free(memory);
 }
 

@@ -42,7 +42,7 @@ test("the rows before an error are kept in dinal.partial", function()
     local partial = dinal.partial
     assert(#partial >= 50 and #partial <= 52, #partial)
     assert(partial.t[#partial] <= 0.51)
-    assert(partial.outcome:find "excitation", partial.outcome)
+    assert(partial.outcome:find "M failed", partial.outcome)
     near((partial:at(0.3)), simulate(0).theta[31], 1e-12)
 end)
 
@@ -160,6 +160,25 @@ test("errors of M do not leak: a thousand of them leave the stack and the regist
     end
     collectgarbage() collectgarbage()
     assert(collectgarbage "count" < before + 50, collectgarbage "count" - before)
+end)
+
+test("feedback that pushes at rest and holds in motion ends the run with an outcome that says so", function()
+    local relay = function(t, theta, velocity) return velocity > 0 and -10 or 10 end
+    local run = nondimensional { friction_ratio = 0.1 }:simulate { M = relay, theta0 = 1, t_end = 50, dt = 0.1 }
+    assert(run.outcome:find("chatters", 1, true), run.outcome)
+    -- It is found out at once, and what was computed until then is there.
+    assert(#run > 0 and #run.events < 1000 and run.t[#run] < 5, tostring(run))
+    -- Less friction at rest than in motion: it would creep.
+    local friction = function(t, theta, velocity) return velocity > 0 and -0.2 or velocity < 0 and 0.2 or 0 end
+    run = nondimensional { friction_ratio = 0.1 }:simulate { M = friction, theta0 = 2, t_end = 50, dt = 0.1 }
+    assert(run.outcome:find("chatters", 1, true), run.outcome)
+end)
+
+test("feedback with thousands of stops that does not chatter runs to its end", function()
+    local M = function(t, theta, velocity) return 0.5 * math.sin(300 * t) + 0.3 - 0.002 * velocity end
+    local run = nondimensional { friction_ratio = 0.2 }:simulate { M = M, t_end = 20, dt = 0.1 }
+    equal(run.outcome, "reached the end")
+    assert(#run.events > 1000, tostring(run))
 end)
 
 support.finish()
