@@ -73,7 +73,7 @@ private:
     bool stay(double end, bool break_at_end, const Sampled* known);
     void hold_still(double end, double M_end);
     void leave_standstill();
-    bool reach_zero(const Stepped& step, double zero, double end, bool break_at_end, const Sampled* known);
+    bool reach_zero(const Stepped& whole, double zero, double end, bool break_at_end);
     [[nodiscard]] Stepped step(double length, double end, bool break_at_end, const Sampled* known) const;
     [[nodiscard]] Stepped feedback_step(double length, double end, bool break_at_end) const;
     [[nodiscard]] bool lost_in_rounding(const State& y, double a) const;

@@ -1,0 +1,50 @@
+// Velocities that dip to zero and come back within one step: two events or none, never one.
+#include <catch2/catch.hpp>
+
+#include <cmath>
+
+#include "support/measure.hpp"
+#include "support/reference_systems.hpp"
+
+namespace {
+
+using namespace dinal;
+using namespace dinal::truth;
+
+/// Drawn along by a ramp with a sine on top: in the long run the velocity is slope (1 - (1 + depth) sin(...)) / k,
+/// which passes zero twice in every period when depth > 0, and not at all when depth < 0.
+ReferenceSystem grazing(double friction, double depth) {
+    const double zeta = 0.5, omega = 9, slope = 0.3;
+    const double r = omega / resonance;
+    const double magnification = 1 / std::hypot(1 - r * r, 2 * zeta * r);
+    const double amplitude = slope * (1 + depth) / (omega * magnification);
+    return {"grazing",
+            nondimensional(zeta, friction),
+            *Excitation::make(Ramp{.slope = slope}) + harmonic(amplitude, omega),
+            {{0, {.slope = slope, .amplitude = amplitude, .omega = omega}}},
+            {0, slope},
+            {0, 12},
+            4};
+}
+
+}  // namespace
+
+TEST_CASE("a velocity that dips through zero and back within a step turns twice", "[rk4][grazing]") {
+    for (const double friction : {0.0, 0.01}) {
+        // At 1e-5 the velocity is on the wrong side for 1/1000 of T0, a fifth of a step.
+        for (const double depth : {1e-2, 1e-3, 1e-4, 1e-5, -1e-5, -1e-4, -1e-3}) {
+            const ReferenceSystem s = grazing(friction, depth);
+            const ExactMotion exact = s.exact();
+            const Trajectory run = must_run(s, Grid::none(), Rk4{0.005});
+            CAPTURE(friction, depth, exact.events().size());
+            REQUIRE((depth > 0) == (exact.events().size() > 20));
+            REQUIRE(run.events.size() == exact.events().size());
+            for (std::size_t i = 0; i < run.events.size(); ++i) {
+                CHECK(run.events[i].kind == exact.events()[i].kind);
+                // A velocity error e moves a zero of curvature 2 by e / (distance between the two zeros): here
+                // 1e-9 from h^4, against 1e-3 T0.
+                CHECK(run.events[i].t == Approx(static_cast<double>(exact.events()[i].t)).margin(1e-5));
+            }
+        }
+    }
+}
