@@ -6,9 +6,9 @@
 
 #include "io/csv.hpp"
 #include "lua/bind_excitation.hpp"
+#include "lua/lua_text.hpp"
 #include "lua/options.hpp"
 #include "lua/user_function.hpp"
-#include "lua/lua_text.hpp"
 
 namespace dinal::excitation_functions {
 
