@@ -7,7 +7,8 @@ In README.md, docs/*.md and examples/README.md a block fenced as ```console is r
   "$ command"   is given to the shell, in a folder of its own for each document, with the project's examples/ and docs/
                 in it; scripts/dinal and dinal are the program under test;
   "> text"      after "$ scripts/dinal" or "$ dinal" alone is typed at the prompt, on a terminal;
-  other lines   are the output (both channels); a line "..." stands for any lines.
+  other lines   are the output (both channels); a line "..." stands for any lines, and numbers of more than nine digits
+                are compared in nine: the rest depends on how a compiler orders sums.
 A block fenced as ```sh is not run: it is for what can not be run here (git clone, apt); the scripts that it names must be
 there. --update writes the present output into the documents (then read it!).
 """
@@ -76,7 +77,12 @@ def parts(block):
         yield command, typed, expected
 
 
+def in_nine_digits(text):
+    return re.sub(r"\d+\.\d{9,}(?:e[-+]\d+)?", lambda number: f"{float(number[0]):.9g}", text)
+
+
 def same(expected, got):
+    expected, got = in_nine_digits(expected), in_nine_digits(got)
     pattern = "".join("(?:.*\n)*" if line == "..." else re.escape(line.rstrip()) + "\n"
                       for line in expected.rstrip().splitlines())
     got = "".join(line.rstrip() + "\n" for line in got.rstrip().splitlines())
