@@ -65,9 +65,10 @@ public:
     std::size_t sample(const Present& p, std::size_t count) {
         if (feedback_) return 0;
         double T = p.T;
-        for (std::size_t i = 0; i < count; ++i, T = T + K) {
+        for (std::size_t i = 0; i < count; ++i) {
             times_[2 * i] = t_start_ + (T + K / 2) * T0;
             times_[2 * i + 1] = t_start_ + (T + K) * T0;
+            T = T + K;
         }
         count = excitation_.fill({times_.data(), 2 * count}, {Z_.data(), 2 * count}) / 2;
         for (std::size_t i = 0; i < 2 * count; ++i) Z_[i] = C * (Z_[i] / system_.stiffness());

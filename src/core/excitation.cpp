@@ -2,8 +2,6 @@
 
 #include <array>
 
-#include <array>
-
 #include "core/terms.hpp"
 
 namespace dinal {

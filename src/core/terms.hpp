@@ -215,7 +215,10 @@ inline double next_break(const std::shared_ptr<const Samples>& s, double t) {
         return never;
     }
     const auto next = std::upper_bound(s->t.begin(), s->t.end(), t);
-    return next == s->t.end() ? never : *next;
+    if (next == s->t.end()) {
+        return never;
+    }
+    return *next;
 }
 inline double next_break(const Scripted& s, double t) {
     if (s.breaks.empty()) {
@@ -230,7 +233,7 @@ inline double next_break(const Scripted& s, double t) {
         return first_in_cycle(0);
     }
     const double n = std::floor((t - s.delay - s.breaks.front()) / s.period);
-    for (double offset = -1; offset <= 2; ++offset) {
+    for (int offset = -1; offset <= 2; ++offset) {
         if (const double found = first_in_cycle(n + offset); found < never) {
             return found;
         }

@@ -150,7 +150,7 @@ std::string ValueText::object(int index) {
     if (name != "system" && name != "integrator" && name != "excitation") {
         return nothing(describe(L_, index));
     }
-    const std::string text = luaL_tolstring(L_, index, nullptr);  // these write themselves as Lua text
+    std::string text = luaL_tolstring(L_, index, nullptr);  // these write themselves as Lua text
     lua_pop(L_, 1);
     return text;
 }

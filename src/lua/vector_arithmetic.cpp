@@ -43,6 +43,9 @@ std::size_t common_size(lua_State* L, const Operand& a, const Operand& b, const 
         raise(L, fmt::format("the vectors in v {} w have {} and {} numbers; they must be equally long", symbol,
                              a.vector->size(), b.vector->size()));
     }
+    if (a.vector == nullptr && b.vector == nullptr) {  // debug.getmetatable leads here
+        raise(L, fmt::format("x {} y of vectors needs a vector on one side", symbol));
+    }
     return a.vector != nullptr ? a.vector->size() : b.vector->size();
 }
 

@@ -100,3 +100,6 @@ local long = vector.linspace(0, 1, 1000000)
 local before = resident()
 for _ = 1, 400 do local _ = long * 2 end
 assert(resident() - before < 1e9, "less than a third of what was made")
+
+-- An operator reached by debug.getmetatable, with no vector on either side.
+fails(function() return debug.getmetatable(vector{ 1 }).__lt(1, 2) end, "needs a vector on one side")
