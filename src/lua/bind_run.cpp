@@ -34,8 +34,8 @@ void push_column(lua_State* L, const RunHandle& run, Eigen::Index column) {
             names.emplace_back(member.name);
         }
     }
-    raise(L, fmt::format("this run has no field '{}'{}; its columns are {}", wrong, did_you_mean(wrong, names),
-                         fmt::join(trajectory.names, ", ")));
+    raise(L, fmt::format("this run has no field '{}'; its columns are {}{}", wrong, fmt::join(trajectory.names, ", "),
+                         did_you_mean(wrong, names)));
 }
 
 int column_by_name(lua_State* L, const char* name) {

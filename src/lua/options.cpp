@@ -40,8 +40,8 @@ Options::Options(lua_State* L, int index, std::string_view call, std::string_vie
         }
         const std::string_view name = lua_tostring(L, -2);
         if (std::find(known.begin(), known.end(), name) == known.end()) {
-            raise(L, fmt::format("{} has no option '{}'{}; its options are {}", call, name, did_you_mean(name, known),
-                                 joined(known, " and ")));
+            raise(L, fmt::format("{} has no option '{}' among {}{}", call, name, joined(known, " and "),
+                                 did_you_mean(name, known)));
         }
         lua_pop(L, 1);
     }

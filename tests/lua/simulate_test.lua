@@ -106,7 +106,7 @@ test("missing, superfluous and misspelt options are errors that show the way", f
     raises_here(function() nd:simulate { dt = 0.1 } end, "sys:simulate needs t_end, for example")
     raises_here(function() nd:simulate { times = {} } end, "needs t_end")
     raises_here(function() nd:simulate { t_end = 1, dt = 0.1, times = { 1 } } end, "exclude each other")
-    raises_here(function() nd:simulate { t_end = 1, dt = 0.1, theta = 1 } end, "no option 'theta'; did you mean 'theta0'?", "velocity0")
+    raises_here(function() nd:simulate { t_end = 1, dt = 0.1, theta = 1 } end, "no option 'theta' among M, theta0", "did you mean 'theta0'?", "velocity0")
     raises_here(function() nd:simulate { t_end = 1, dt = 0.1, m = 1 } end, "did you mean 'M'?")
     raises_here(function() nd:simulate() end, "one table of named options", "sys:simulate{")
     raises_here(function() nd:simulate(1, 2) end, "one table of named options")
