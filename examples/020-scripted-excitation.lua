@@ -31,7 +31,7 @@ print(string.format("theta(6), as it should be:                %.6f",
 
 --[[ prints
 601 rows, t 0 … 6; 12 events (12 turns); moving at the end; peak |theta| 4.12
-peak while pushed: 3.7618, after that: 4.1150
+peak while pushed: 3.7618, after that: 4.1160
 theta(6), h = 0.02, a bare function:      -1.163650
 theta(6), h = 0.02, breaks = { off }:     -1.164167
 theta(6), h = 0.02, harmonic:window():    -1.164167

@@ -343,7 +343,7 @@ Trajectory run(const Problem& problem, const Dinal1989& options) {
         }
     }
     rows.finish();
-    trajectory.dense = [record](double t) { return replay(*record, t); };
+    if (problem.limits.dense) trajectory.dense = [record](double t) { return replay(*record, t); };
     return trajectory;
 }
 

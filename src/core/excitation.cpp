@@ -228,6 +228,13 @@ bool Excitation::has_script() const {
     return std::any_of(components_.begin(), components_.end(), is_script);
 }
 
+bool Excitation::may_go_on() const {
+    return std::all_of(components_.begin(), components_.end(), [](const Component& c) {
+        const auto* script = std::get_if<Scripted>(&c.term);
+        return script == nullptr || script->function->may_go_on();
+    });
+}
+
 std::size_t Excitation::fill(std::span<const double> times, std::span<double> out) const {
     std::size_t n = times.size();
     if (script_count(components_) > 1) {

@@ -97,6 +97,8 @@ public:
         }
         return times.size();
     }
+    /// After a failure: whether it may be asked again, at other times. What failed stays known to the owner.
+    virtual bool may_go_on() { return true; }
 };
 /// A user's function, delayed by `delay`, with what he says about it.
 // Shared ownership: every excitation and every trajectory that contains the function keeps it alive.
@@ -141,6 +143,9 @@ public:
     [[nodiscard]] bool has_script() const;
     /// out[i] = value(times[i]); not for feedback. Returns how many were filled: fewer when one is not finite.
     std::size_t fill(std::span<const double> times, std::span<double> out) const;
+
+    /// After a value that was not finite: whether the functions in it may be asked again, at other times.
+    [[nodiscard]] bool may_go_on() const;
 
     [[nodiscard]] Excitation scaled(double gain) const;
     [[nodiscard]] Excitation delayed(double delay) const;

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <complex>
 #include <numbers>
+#include <optional>
 
 namespace dinal {
 
@@ -30,8 +31,29 @@ double stable_radius(std::complex<double> lambda) {
     return inside;
 }
 
-std::string wrong_step(double h) {
-    return fmt::format("h = {:.6g} must be positive and finite", h);
+std::optional<Error> not_positive(const char* name, double value) {
+    if (value > 0 && std::isfinite(value)) return {};
+    return Error{fmt::format("{} = {:.6g} must be positive and finite", name, value)};
+}
+
+std::optional<Error> wrong(const Spectral& options, const Oscillator&) {
+    if (!(options.tolerance > 0) || !(options.tolerance < 1)) {
+        return Error{fmt::format("tolerance = {:.6g} must be between 0 and 1", options.tolerance)};
+    }
+    if (!(options.max_panel > 0)) return Error{fmt::format("max_panel = {:.6g} must be positive", options.max_panel)};
+    return {};
+}
+std::optional<Error> wrong(const Rk4& options, const Oscillator& system) {
+    if (auto error = not_positive("h", options.h)) return error;
+    const double limit = rk4_stability_limit(system);
+    // The limit is itself rounded; a step that equals it to the digits shown is let through.
+    if (options.h <= limit * (1 + 1e-12)) return {};
+    return Error{fmt::format(
+        "h = {:.6g} exceeds the stability limit {:.6g} of rk4 (w0 = {:.6g}, zeta = {:.4g}): use h <= {:.3g}", options.h,
+        limit, system.natural_frequency(), system.damping_ratio(), 0.999 * limit)};
+}
+std::optional<Error> wrong(const Dinal1989& options, const Oscillator&) {
+    return not_positive("h", options.h);
 }
 
 }  // namespace
@@ -46,26 +68,17 @@ double rk4_stability_limit(const Oscillator& system) {
     return stable_radius({-1, 0}) / (w0 * (zeta + std::sqrt((zeta - 1) * (zeta + 1))));
 }
 
-Integrator default_integrator(const Oscillator& system) {
-    return Rk4{std::min(system.natural_period() / 1000, rk4_stability_limit(system) / 10)};
-}
-
-double step_length(const Integrator& integrator) {
-    return std::visit([](const auto& options) { return options.h; }, integrator);
+double resolution(const Integrator& integrator, const Oscillator& system) {
+    if (const auto* spectral = std::get_if<Spectral>(&integrator)) {
+        return std::min(spectral->max_panel, longest_panel * system.natural_period()) / 16;
+    }
+    const auto* rk4 = std::get_if<Rk4>(&integrator);
+    return rk4 != nullptr ? rk4->h : std::get<Dinal1989>(integrator).h;
 }
 
 Expected<Integrator> validated(const Integrator& integrator, const Oscillator& system) {
-    const double h = step_length(integrator);
-    if (!(h > 0) || !std::isfinite(h)) return Error{wrong_step(h)};
-    if (std::holds_alternative<Rk4>(integrator)) {
-        const double limit = rk4_stability_limit(system);
-        // The limit is itself rounded; a step that equals it to the digits shown is let through.
-        if (h > limit * (1 + 1e-12)) {
-            return Error{fmt::format(
-                "h = {:.6g} exceeds the stability limit {:.6g} of rk4 (w0 = {:.6g}, zeta = {:.4g}): use h <= {:.3g}", h,
-                limit, system.natural_frequency(), system.damping_ratio(), 0.999 * limit)};
-        }
-    }
+    const auto error = std::visit([&](const auto& options) { return wrong(options, system); }, integrator);
+    if (error) return *error;
     return integrator;
 }
 

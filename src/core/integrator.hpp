@@ -1,12 +1,21 @@
 // The integrators a run can choose from: plain option structs in a variant, dispatched once a run.
 #pragma once
 
+#include <limits>
 #include <variant>
 
 #include "core/expected.hpp"
 #include "core/oscillator.hpp"
 
 namespace dinal {
+
+/// Chebyshev panels between events and breaks of M, each solved to rounding whatever M is.
+struct Spectral {
+    double tolerance = 1e-12;  ///< of the motion, relative, on each panel; 0 < tolerance < 1
+    double max_panel = std::numeric_limits<double>::infinity();  ///< longest panel, time units; > 0
+};
+/// No panel is longer than this many natural periods, whatever max_panel says.
+inline constexpr double longest_panel = 0.6;
 
 /// Classical fourth-order Runge-Kutta, exact about dry friction: sign frozen per piece, step cut at velocity zero and
 /// at breaks of M. h > 0, at most `rk4_stability_limit`.
@@ -25,18 +34,15 @@ struct Dinal1989 {
     bool slip = false;  ///< the wrong index in stage 3 with which chapter 6 of the report was computed
 };
 
-using Integrator = std::variant<Rk4, Dinal1989>;
+using Integrator = std::variant<Spectral, Rk4, Dinal1989>;
 
 /// The largest h for which RK4 does not amplify the free motion of this system (2 sqrt(2) / w0 without damping).
 double rk4_stability_limit(const Oscillator& system);
 
-/// What a run uses when none is asked for: rk4 with h = T0/1000, or a tenth of its stability limit if that is less.
-Integrator default_integrator(const Oscillator& system);
+/// The distance between two evaluations of M, which times must be able to tell apart.
+double resolution(const Integrator& integrator, const Oscillator& system);
 
-/// h, whichever integrator it is.
-double step_length(const Integrator& integrator);
-
-/// Fails when h is not positive and finite, or rk4 could not be stable with it.
+/// Fails when an option is out of its range, or rk4 could not be stable with its h.
 Expected<Integrator> validated(const Integrator& integrator, const Oscillator& system);
 
 }  // namespace dinal

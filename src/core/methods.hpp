@@ -5,6 +5,7 @@
 
 namespace dinal {
 
+Trajectory run(const Problem& problem, const Spectral& options);
 Trajectory run(const Problem& problem, const Rk4& options);
 Trajectory run(const Problem& problem, const Dinal1989& options);
 

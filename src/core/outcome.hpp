@@ -11,6 +11,7 @@ namespace dinal {
     X(interrupted, "interrupted")                                                            \
     X(state_not_finite, "the state stopped being finite: unstable system, feedback or step") \
     X(excitation_not_finite, "M failed or stopped being finite")                             \
+    X(unresolved, "M never becomes smooth: integrator.rk4 asks for less")                    \
     X(chattering, "stuck and slipped without end in no time: the feedback chatters")
 
 enum class Outcome {

@@ -27,7 +27,8 @@ Expected<State> replay(const Record& record, double t) {
     const auto grid = Grid::at({t}).within(record.window);
     if (!grid) return grid.error();
     const Monitor monitor;
-    const Problem problem{record.system, record.excitation, record.initial, record.window, *grid, monitor};
+    const Limits limits;
+    const Problem problem{record.system, record.excitation, record.initial, record.window, *grid, monitor, limits};
     Trajectory trajectory;
     RowWriter rows(record.system, *grid, trajectory);
     Rk4Engine engine(problem, record.options, rows, nullptr, nullptr);
@@ -58,14 +59,15 @@ Trajectory run(const Problem& problem, const Rk4& options) {
     RowWriter rows(problem.system, problem.rows, trajectory);
     auto record = std::make_shared<Record>(Record{problem.system, problem.excitation, options, problem.initial,
                                                   problem.window, Checkpoints<Rk4Checkpoint>(0)});
-    Rk4Engine engine(problem, options, rows, &trajectory.events, &record->checkpoints);
-    record->checkpoints = Checkpoints<Rk4Checkpoint>(engine.steps());
+    const bool dense = problem.limits.dense;
+    Rk4Engine engine(problem, options, rows, &trajectory.events, dense ? &record->checkpoints : nullptr);
+    if (dense) record->checkpoints = Checkpoints<Rk4Checkpoint>(engine.steps());
 
     trajectory.outcome = engine.run();
     rows.finish();
     trajectory.t_start = problem.window.start;
     trajectory.t_stop = trajectory.outcome == Outcome::at_rest ? problem.window.end : engine.now();
-    trajectory.dense = [record](double t) { return replay(*record, t); };
+    if (dense) trajectory.dense = [record](double t) { return replay(*record, t); };
     return trajectory;
 }
 

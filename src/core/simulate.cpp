@@ -92,9 +92,10 @@ Expected<Trajectory> simulate(const Oscillator& system, const Excitation& excita
     }
     auto method = validated(integrator, system);
     if (!method) return method.error();
-    if (auto lost = lost_in_time("h", step_length(*method), window)) return *lost;
+    const bool spectral = std::holds_alternative<Spectral>(*method);
+    if (auto lost = lost_in_time(spectral ? "T0/27" : "h", resolution(*method, system), window)) return *lost;
 
-    const Problem problem{system, excitation, initial, window, *grid, monitor};
+    const Problem problem{system, excitation, initial, window, *grid, monitor, limits};
     return std::visit([&](const auto& options) { return run(problem, options); }, *method);
 }
 

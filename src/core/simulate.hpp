@@ -54,7 +54,8 @@ private:
 using Monitor = std::function<bool(double t)>;
 
 struct Limits {
-    std::size_t memory = std::size_t{4} << 30;  ///< bytes that the rows may take
+    std::size_t memory = std::size_t{4} << 30;  ///< bytes that the rows may take, and the motion between them
+    bool dense = true;                          ///< keep what is needed to evaluate the motion between the rows
 };
 
 /// One run as its integrator sees it: all of it checked.
@@ -65,6 +66,7 @@ struct Problem {
     Window window;
     const Grid& rows;
     const Monitor& monitor;
+    const Limits& limits;
 };
 
 /// Runs from `initial` at window.start. Fails (before the first step) when the window, the grid or the integrator's

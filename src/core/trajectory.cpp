@@ -64,17 +64,18 @@ std::string events_text(const std::vector<Event>& events) {
 }  // namespace
 
 Expected<State> Trajectory::at(double t) const {
-    if (!dense) return between_rows(*this, t);
+    if (!computed) return between_rows(*this, t);
     if (!(t >= t_start) || !(t <= t_stop)) {
         return Error{fmt::format("t = {:.6g} is outside the run from {:.6g} to {:.6g}", t, t_start, t_stop)};
     }
+    if (!dense) return Error{"the motion between the rows was not kept: run without dense = false"};
     return dense(t);
 }
 
 std::string summary(const Trajectory& trajectory) {
     const auto& rows = trajectory.rows;
     std::string text = fmt::format("{} row{}", rows.rows(), rows.rows() == 1 ? "" : "s");
-    if (!trajectory.dense) {
+    if (!trajectory.computed) {
         for (std::size_t i = 0; i < trajectory.names.size(); ++i)
             text += (i == 0 ? " of " : ", ") + trajectory.names[i];
         return text;

@@ -3,6 +3,7 @@
 
 #include <Eigen/Core>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -14,6 +15,8 @@
 #include "core/outcome.hpp"
 
 namespace dinal {
+
+class Panels;
 
 /// The columns of a computed run, in this order: theta rad, velocity rad per time unit, the rest torques on the mass.
 enum class Column : int { t, theta, velocity, M, friction, damping };
@@ -29,8 +32,10 @@ struct Trajectory {
     std::vector<Event> events;       ///< in order of time
     Outcome outcome = Outcome::reached_end;
     double t_start = 0;
-    double t_stop = 0;  ///< how far it came: t_end unless the outcome says otherwise
-    DenseOutput dense;  ///< empty for a trajectory that was read from a file
+    double t_stop = 0;                     ///< how far it came: t_end unless the outcome says otherwise
+    bool computed = true;                  ///< false when it was read from a file
+    DenseOutput dense;                     ///< empty when it was declined, or the trajectory read from a file
+    std::shared_ptr<const Panels> panels;  ///< the motion itself, of a spectral run with dense output
 
     [[nodiscard]] Eigen::Index size() const { return rows.rows(); }
     [[nodiscard]] std::optional<Eigen::Index> find(std::string_view name) const;

@@ -1,6 +1,10 @@
 // integrator.rk4{...}, integrator.dinal1989{...} and the objects they make.
 #include <fmt/format.h>
 
+#include <array>
+#include <cmath>
+#include <optional>
+
 #include "lua/bind_integrator.hpp"
 #include "lua/library.hpp"
 #include "lua/options.hpp"
@@ -15,6 +19,24 @@ double step(const Options& options) {
         options.fail(fmt::format("h = {:.6g} must be positive", h));
     }
     return h;
+}
+
+int spectral(lua_State* L) {
+    const Options options(L, 1, "integrator.spectral", "integrator.spectral{ tolerance = 1e-12 }",
+                          {"tolerance", "max_panel"});
+    Spectral method;
+    method.tolerance = options.number("tolerance", method.tolerance);
+    if (method.tolerance <= 0 || method.tolerance >= 1) {
+        options.fail(fmt::format("tolerance = {:.6g} must be between 0 and 1", method.tolerance));
+    }
+    if (options.has("max_panel")) {
+        method.max_panel = options.number("max_panel");
+        if (method.max_panel <= 0) {
+            options.fail(fmt::format("max_panel = {:.6g} must be positive", method.max_panel));
+        }
+    }
+    push<Integrator>(L, method);
+    return 1;
 }
 
 int rk4(lua_State* L) {
@@ -39,13 +61,39 @@ Integrator& integrator_self(lua_State* L) {
 }
 
 int name(lua_State* L) {
-    lua_pushstring(L, std::holds_alternative<Rk4>(integrator_self(L)) ? "rk4" : "dinal1989");
+    constexpr std::array names{"spectral", "rk4", "dinal1989"};  // in the order of the variant
+    static_assert(std::variant_size_v<Integrator> == names.size());
+    lua_pushstring(L, names.at(integrator_self(L).index()));
+    return 1;
+}
+
+/// A number, or nil where there is none or it is without limit.
+int push_finite(lua_State* L, std::optional<double> value) {
+    if (value && std::isfinite(*value)) {
+        lua_pushnumber(L, *value);
+    } else {
+        lua_pushnil(L);
+    }
     return 1;
 }
 
 int h(lua_State* L) {
-    lua_pushnumber(L, std::visit([](const auto& method) { return method.h; }, integrator_self(L)));
-    return 1;
+    const Integrator& integrator = integrator_self(L);
+    const auto* rk4 = std::get_if<Rk4>(&integrator);
+    const auto* listing = std::get_if<Dinal1989>(&integrator);
+    return push_finite(L, rk4 != nullptr       ? std::optional(rk4->h)
+                          : listing != nullptr ? std::optional(listing->h)
+                                               : std::nullopt);
+}
+
+int tolerance(lua_State* L) {
+    const auto* method = std::get_if<Spectral>(&integrator_self(L));
+    return push_finite(L, method != nullptr ? std::optional(method->tolerance) : std::nullopt);
+}
+
+int max_panel(lua_State* L) {
+    const auto* method = std::get_if<Spectral>(&integrator_self(L));
+    return push_finite(L, method != nullptr ? std::optional(method->max_panel) : std::nullopt);
 }
 
 int to_string(lua_State* L) {
@@ -54,6 +102,18 @@ int to_string(lua_State* L) {
 }
 
 constexpr Member functions[] = {
+    {"spectral",
+     guarded<spectral>,
+     Kind::function,
+     {"integrator.spectral{ tolerance = 1e-12, max_panel = 0.6 T0 } -> integrator",
+      "The default: the motion as polynomials on panels between events and breaks of M, right to rounding for any M, "
+      "with every event in its place. tolerance is relative, for each panel. A pulse of a scripted M that falls "
+      "between "
+      "the 17 samples of a panel is not seen: announce it by excitation.scripted(f, { breaks = {...} }), or take "
+      "max_panel (time units) a few times as long as the shortest pulse.",
+      "sys = nondimensional{ friction_ratio = 0.167 }\n"
+      "run = sys:simulate{ velocity0 = 2*math.pi, t_end = 3, dt = 0.5, integrator = integrator.spectral{} }\n"
+      "print(string.format(\"%.9f\", (run:at(3))))  --> 0.155151392"}},
     {"rk4",
      guarded<rk4>,
      Kind::function,
@@ -84,7 +144,18 @@ constexpr Member members[] = {
     {"h",
      guarded<h>,
      Kind::field,
-     {"integrator.h -> number", "The step, in time units.", "print(integrator.rk4{ h = 0.001 }.h)  --> 0.001"}},
+     {"integrator.h -> number", "The step, in time units; nil for spectral.",
+      "print(integrator.rk4{ h = 0.001 }.h)  --> 0.001"}},
+    {"tolerance",
+     guarded<tolerance>,
+     Kind::field,
+     {"integrator.tolerance -> number", "The relative tolerance of spectral; nil for the others.",
+      "print(integrator.spectral{}.tolerance)  --> 1e-12"}},
+    {"max_panel",
+     guarded<max_panel>,
+     Kind::field,
+     {"integrator.max_panel -> number", "The longest panel of spectral that was asked for, in time units, or nil.",
+      "print(integrator.spectral{ max_panel = 0.02 }.max_panel)  --> 0.02"}},
     {"__tostring",
      guarded<to_string>,
      Kind::metamethod,
@@ -95,6 +166,14 @@ constexpr Member members[] = {
 }  // namespace
 
 std::string lua_text(const Integrator& integrator) {
+    if (const auto* method = std::get_if<Spectral>(&integrator)) {
+        std::string options;
+        if (method->tolerance != Spectral{}.tolerance) options = fmt::format("tolerance = {}", method->tolerance);
+        if (std::isfinite(method->max_panel)) {
+            options += fmt::format("{}max_panel = {}", options.empty() ? "" : ", ", method->max_panel);
+        }
+        return options.empty() ? "integrator.spectral{}" : fmt::format("integrator.spectral{{ {} }}", options);
+    }
     if (const auto* method = std::get_if<Rk4>(&integrator)) {
         return fmt::format("integrator.rk4{{ h = {} }}", method->h);
     }
@@ -107,7 +186,7 @@ std::string lua_text(const Integrator& integrator) {
 const Class integrator_module = {
     "integrator",
     {"integrator.NAME{ ... } -> integrator",
-     "The methods a run can use. A run that names none takes rk4 with h = T0/1000.",
+     "The methods a run can use. A run that names none takes integrator.spectral{}.",
      "sys = nondimensional{ zeta = 0.1 }\n"
      "run = sys:simulate{ theta0 = 1, t_end = 2, dt = 0.5, integrator = integrator.rk4{ h = 0.01 } }\n"
      "print(run.integrator)  --> integrator.rk4{ h = 0.01 }"},

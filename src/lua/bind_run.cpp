@@ -261,7 +261,7 @@ constexpr Member members[] = {
      Kind::field,
      {"run.integrator -> integrator or nil",
       "The integrator that was used, also when none was asked for; nil in a run that was read from a file.",
-      DINAL_RUN "print(run.integrator)  --> integrator.rk4{ h = 0.001 }"}},
+      DINAL_RUN "print(run.integrator)  --> integrator.spectral{}"}},
     {"__len",
      guarded<length>,
      Kind::metamethod,

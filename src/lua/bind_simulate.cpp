@@ -20,9 +20,9 @@ namespace {
 
 constexpr std::string_view example = "sys:simulate{ M = M, theta0 = 1, t_end = 20, dt = 0.01 }";
 
-/// Rows may take half of the memory of the machine.
-Limits memory_limit() {
-    Limits limits;
+/// A run may take half of the memory of the machine.
+Limits limits_of(const Options& options) {
+    Limits limits{.dense = options.boolean("dense", true)};
     const long pages = sysconf(_SC_PHYS_PAGES);
     const long page_size = sysconf(_SC_PAGESIZE);
     if (pages > 0 && page_size > 0) {
@@ -46,9 +46,9 @@ Grid asked_rows(const Options& options) {
     return Grid::every(dt);
 }
 
-Integrator asked_integrator(lua_State* L, const Options& options, const Oscillator& system) {
+Integrator asked_integrator(lua_State* L, const Options& options) {
     if (!options.has("integrator")) {
-        return default_integrator(system);
+        return Spectral{};
     }
     options.push("integrator");
     const auto* integrator = test<Integrator>(L, -1);
@@ -67,7 +67,7 @@ Task asked_task(lua_State* L, const Options& options, const Oscillator& system) 
               .initial = {.theta = options.number("theta0", 0), .velocity = options.number("velocity0", 0)},
               .window = {.start = options.number("t_start", 0)},
               .rows = rows,
-              .integrator = asked_integrator(L, options, system)};
+              .integrator = asked_integrator(L, options)};
     lua_pop(L, 1);
     const std::vector<double>& times = rows.times();
     // The latest time and not the last one: times that do not increase are an error of their own.
@@ -88,7 +88,8 @@ void set_partial(lua_State* L) {
 int simulate_system(lua_State* L) {
     const Oscillator& system = self<Oscillator>(L, 1, example);
     const Options options(L, 2, "sys:simulate", example,
-                          {"M", "theta0", "velocity0", "t_start", "t_end", "dt", "times", "integrator"});
+                          {"M", "theta0", "velocity0", "t_start", "t_end", "dt", "times", "integrator", "dense"});
+    const Limits limits = limits_of(options);
     const Task task = asked_task(L, options, system);
     // What M refers to is written down before M runs, because it may change that.
     Run run{.trajectory = {}, .origin = origin_of(L, task)};
@@ -96,7 +97,7 @@ int simulate_system(lua_State* L) {
     CallState call(L);
     auto result = simulate(
         task.system, task.excitation, task.initial, task.window, task.rows, task.integrator,
-        [](double) { return !interrupt_requested(); }, memory_limit());
+        [](double) { return !interrupt_requested(); }, limits);
     if (!result) {
         options.fail(result.error().sentence);
     }

@@ -39,6 +39,7 @@ int load(lua_State* L) {
     Run run;
     run.comments = std::move(content.comments);
     Trajectory& trajectory = run.trajectory;
+    trajectory.computed = false;
     trajectory.names = std::move(content.names);
     trajectory.rows = std::move(content.values);
     if (const auto time = trajectory.find("t"); time && trajectory.size() > 0) {

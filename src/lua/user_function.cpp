@@ -5,6 +5,8 @@
 #include <cmath>
 #include <string>
 
+#include "lua/interrupt.hpp"
+
 namespace dinal {
 
 namespace {
@@ -85,7 +87,7 @@ CallState::CallState(lua_State* L) : L_(L), outer_(current) {
 
 CallState::~CallState() {
     current = outer_;
-    if (failed_) {
+    if (failed()) {
         lua_pushnil(L_);
         lua_rawsetp(L_, LUA_REGISTRYINDEX, this);
     }
@@ -147,6 +149,16 @@ double LuaFunction::value(double t, const State& state) {
         return M;
     }
     return fail(*call, status, t);
+}
+
+// Not after Ctrl-C, which means all of it.
+bool LuaFunction::may_go_on() {
+    if (current == nullptr || interrupt_requested()) {
+        return false;
+    }
+    current->failed_before_ = current->failed();
+    current->failed_ = false;
+    return true;
 }
 
 namespace {

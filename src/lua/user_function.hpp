@@ -19,8 +19,8 @@ public:
     CallState(const CallState&) = delete;
     CallState& operator=(const CallState&) = delete;
 
-    /// A user function has failed during this call. From then on none is called, all give NaN.
-    [[nodiscard]] bool failed() const { return failed_; }
+    /// A user function has failed during this call. From then on none is called, all give NaN, until may_go_on().
+    [[nodiscard]] bool failed() const { return failed_ || failed_before_; }
     /// Raises what the user function raised, unchanged, or the sentence about what it returned. Only when failed().
     [[noreturn]] void raise_error();
 
@@ -30,7 +30,8 @@ private:
 
     lua_State* L_;
     CallState* outer_;
-    bool failed_ = false;
+    bool failed_ = false;         // and nobody has said that it may go on
+    bool failed_before_ = false;  // the error is kept all the same
 };
 
 /// What Lua calls like a function: a Lua function, a C function, a table or userdata with __call.
@@ -44,6 +45,7 @@ public:
 
     double value(double t, const State& state) override;
     std::size_t fill(std::span<const double> times, std::span<double> out) override;
+    bool may_go_on() override;
 
     /// It wants theta and velocity: a Lua function (or __call) of two or more parameters, or with `...`.
     [[nodiscard]] bool feedback() const { return feedback_; }

@@ -134,12 +134,12 @@ TEST_CASE("run.at between the rows keeps the order of rk4", "[order][rk4][rows]"
     CHECK(order_of(errors) < 4.5);
 }
 
-TEST_CASE("run.at says what a row there would have said", "[rk4][dinal1989][rows]") {
+TEST_CASE("run.at says what a row there would have said", "[spectral][rk4][dinal1989][rows]") {
     for (const ReferenceSystem& s : reference_systems()) {
         CAPTURE(s.name);
-        const double h = std::get<Rk4>(default_integrator(s.oscillator)).h;
-        const std::vector<Integrator> both{Rk4{h}, Dinal1989{.h = h}};
-        for (const Integrator& integrator : both) {
+        const double h = std::min(s.oscillator.natural_period() / 1000, rk4_stability_limit(s.oscillator) / 10);
+        const std::vector<Integrator> all{Spectral{}, Rk4{h}, Dinal1989{.h = h}};
+        for (const Integrator& integrator : all) {
             CAPTURE(integrator.index());
             const double dt = (s.window.end - s.window.start) / 61.3;
             const Trajectory with_rows = must_run(s, Grid::every(dt), integrator);
@@ -155,12 +155,12 @@ TEST_CASE("run.at says what a row there would have said", "[rk4][dinal1989][rows
     }
 }
 
-TEST_CASE("the rows asked for do not change the motion", "[rk4][dinal1989][rows]") {
+TEST_CASE("the rows asked for do not change the motion", "[spectral][rk4][dinal1989][rows]") {
     for (const ReferenceSystem& s : reference_systems()) {
         CAPTURE(s.name);
-        const double h = std::get<Rk4>(default_integrator(s.oscillator)).h;
-        const std::vector<Integrator> both{Rk4{h}, Dinal1989{.h = h}};
-        for (const Integrator& integrator : both) {
+        const double h = std::min(s.oscillator.natural_period() / 1000, rk4_stability_limit(s.oscillator) / 10);
+        const std::vector<Integrator> all{Spectral{}, Rk4{h}, Dinal1989{.h = h}};
+        for (const Integrator& integrator : all) {
             CAPTURE(integrator.index());
             const Trajectory none = must_run(s, Grid::none(), integrator);
             const Trajectory some = must_run(s, Grid::every(7.3 * h), integrator);

@@ -65,7 +65,7 @@ end)
 
 test("a run shows where it came from and can not be changed", function()
     equal(tostring(run.system), tostring(nd))
-    equal(tostring(run.integrator), "integrator.rk4{ h = 0.001 }")
+    equal(tostring(run.integrator), "integrator.spectral{}")
     equal(run.outcome, "reached the end")
     raises_here(function() run.theta = 1 end, "a run can not be changed")
     raises_here(function() return run.tetha end, "this run has no field 'tetha'; its columns are", "did you mean 'theta'?")

@@ -79,8 +79,8 @@ test("free motion with dry friction comes to rest where the report's figure 22 s
     equal(run.velocity[#run], 0.0)
 end)
 
-test("the default integrator is rk4 with a thousandth of the period", function()
-    equal(tostring(nd:simulate { t_end = 1, dt = 1 }.integrator), "integrator.rk4{ h = 0.001 }")
+test("the default integrator is spectral", function()
+    equal(tostring(nd:simulate { t_end = 1, dt = 1 }.integrator), "integrator.spectral{}")
 end)
 
 test("dinal1989 with its slip reproduces the printed numbers of chapter 6", function()

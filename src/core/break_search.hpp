@@ -1,0 +1,82 @@
+// Where a function that is smooth but for jumps and kinks has one of them, found to rounding from its values alone.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <optional>
+#include <span>
+
+namespace dinal {
+
+namespace detail {
+
+/// Three values, evenly spaced, and how far the middle one is from the straight line.
+struct Triple {
+    double a, fa, middle, fm, b, fb;
+    [[nodiscard]] double bend() const { return std::fabs(fa - 2 * fm + fb); }
+    [[nodiscard]] double noise() const {
+        return 8 * std::numeric_limits<double>::epsilon() * (std::fabs(fa) + std::fabs(fm) + std::fabs(fb));
+    }
+};
+
+/// The half of the triple (left, middle or right) that bends most; two new values.
+template <class F>
+Triple most_bent_half(const Triple& t, const F& f) {
+    const double q1 = t.a + (t.middle - t.a) / 2, q3 = t.middle + (t.b - t.middle) / 2;
+    const double f1 = f(q1), f3 = f(q3);
+    const Triple left{t.a, t.fa, q1, f1, t.middle, t.fm}, centre{q1, f1, t.middle, t.fm, q3, f3},
+        right{t.middle, t.fm, q3, f3, t.b, t.fb};
+    const Triple& side = left.bend() >= right.bend() ? left : right;
+    return side.bend() >= centre.bend() ? side : centre;
+}
+
+/// The first double at which f has the value it has at b rather than the one at a.
+template <class F>
+double jump_between(double a, double fa, double b, double fb, const F& f) {
+    for (;;) {
+        const double middle = a + (b - a) / 2;
+        if (!(middle > a && middle < b)) return b;
+        const double fm = f(middle);
+        if (std::fabs(fm - fa) <= std::fabs(fm - fb)) {
+            a = middle, fa = fm;
+        } else {
+            b = middle, fb = fm;
+        }
+    }
+}
+
+}  // namespace detail
+
+/// The jump or kink of f that shows most in its values at increasing times, if halving the interval around it shows
+/// that it is one: there the second difference stays (jump) or halves (kink), elsewhere it falls to a quarter.
+template <class F>
+std::optional<double> find_break(std::span<const double> times, std::span<const double> values, const F& f) {
+    std::size_t worst = 0;
+    double most = 0;
+    for (std::size_t i = 1; i + 1 < times.size(); ++i) {
+        const double part = (times[i] - times[i - 1]) / (times[i + 1] - times[i - 1]);
+        const double bend = std::fabs(values[i] - (values[i - 1] + part * (values[i + 1] - values[i - 1])));
+        if (bend > most) worst = i, most = bend;
+    }
+    if (worst == 0) return {};
+    const double a = times[worst - 1], b = times[worst + 1], middle = a + (b - a) / 2;
+    detail::Triple t{a, values[worst - 1], middle, f(middle), b, values[worst + 1]};
+
+    constexpr int judged_at = 7;        // halvings after which
+    constexpr double smooth = 0x1p-10;  // a kink still bends by 2^-7 or more, a smooth f by 2^-14
+    const double at_first = std::max(t.bend(), most);
+    for (int i = 1; i < 60; ++i) {
+        t = detail::most_bent_half(t, f);
+        if (i == judged_at && !(t.bend() > smooth * at_first)) return {};
+        const bool jumps = t.bend() > at_first / 8;
+        if (i >= 3 * judged_at && jumps) return detail::jump_between(t.a, t.fa, t.b, t.fb, f);
+        if (t.bend() <= t.noise() || !(t.middle > t.a && t.middle < t.b)) {
+            return i > judged_at ? std::optional(t.middle) : std::nullopt;
+        }
+    }
+    return t.middle;
+}
+
+}  // namespace dinal

@@ -1,0 +1,85 @@
+#include "core/chebyshev.hpp"
+
+#include <algorithm>
+
+namespace dinal::chebyshev {
+
+namespace {
+
+constexpr std::size_t half = degree / 2;
+
+// Terms of even k are even functions and those of odd k odd ones, so each transform falls into two of half the size.
+
+template <std::size_t rows, std::size_t columns>
+using Matrix = std::array<std::array<double, columns>, rows>;
+
+/// Row j: T_{2i + parity} at the node j from the left, i = 0, 1, ...
+template <std::size_t columns>
+constexpr Matrix<half + 1, columns> polynomials(std::size_t parity) {
+    Matrix<half + 1, columns> m{};
+    for (std::size_t j = 0; j <= half; ++j) {
+        for (std::size_t i = 0; i < columns; ++i) {
+            const double T = cosine((2 * i + parity) * j);
+            m[j][i] = parity == 0 ? T : -T;  // nodes run from -1
+        }
+    }
+    return m;
+}
+constexpr auto even_terms = polynomials<half + 1>(0);
+constexpr auto odd_terms = polynomials<half>(1);
+
+/// Row j: the weight of f(x_j) + f(-x_j), or of the difference, in the coefficients of that parity.
+template <std::size_t columns>
+constexpr Matrix<half + 1, columns> weights(const Matrix<half + 1, columns>& terms, std::size_t parity) {
+    Matrix<half + 1, columns> m{};
+    for (std::size_t j = 0; j <= half; ++j) {
+        for (std::size_t i = 0; i < columns; ++i) {
+            const std::size_t k = 2 * i + parity;
+            // Of the sum over all points both end points count half, and the middle is in f(x) + f(-x) twice.
+            const double share = (j == 0 || j == half ? 1.0 : 2.0) * (k == 0 || k == degree ? 0.5 : 1.0);
+            m[j][i] = share * terms[j][i] / static_cast<double>(degree);
+        }
+    }
+    return m;
+}
+constexpr auto even_weights = weights(even_terms, 0);
+constexpr auto odd_weights = weights(odd_terms, 1);
+
+}  // namespace
+
+Series<points> fit(const Samples& f) {
+    Series<points> c{};
+    if (std::all_of(f.begin(), f.end(), [&](double x) { return x == f[0]; })) {
+        c[0] = f[0];
+        return c;
+    }
+    std::array<double, half + 1> even{};
+    std::array<double, half> odd{};
+    for (std::size_t j = 0; j <= half; ++j) {
+        const double sum = f[j] + f[degree - j], difference = f[j] - f[degree - j];
+        for (std::size_t i = 0; i <= half; ++i) even[i] += even_weights[j][i] * sum;
+        for (std::size_t i = 0; i < half; ++i) odd[i] += odd_weights[j][i] * difference;
+    }
+    for (std::size_t i = 0; i < half; ++i) {
+        c[2 * i] = even[i];
+        c[2 * i + 1] = odd[i];
+    }
+    c[degree] = even[half];
+    return c;
+}
+
+Samples at_nodes(const Series<points>& c) {
+    Samples f{};
+    for (std::size_t j = 0; j <= half; ++j) {
+        double even = c[degree] * even_terms[j][half], odd = 0;
+        for (std::size_t i = 0; i < half; ++i) {
+            even += c[2 * i] * even_terms[j][i];
+            odd += c[2 * i + 1] * odd_terms[j][i];
+        }
+        f[j] = even + odd;
+        f[degree - j] = even - odd;
+    }
+    return f;
+}
+
+}  // namespace dinal::chebyshev

@@ -1,0 +1,122 @@
+// Polynomials on a panel -1 <= x <= 1 as Chebyshev series c[0] T0 + c[1] T1 + ...: sampled, integrated, evaluated.
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <cstddef>
+
+namespace dinal::chebyshev {
+
+/// Panels are sampled at degree + 1 Chebyshev-Lobatto points; 16 resolves 0.6 natural periods to rounding.
+inline constexpr std::size_t degree = 16;
+inline constexpr std::size_t points = degree + 1;
+
+template <std::size_t n>
+using Series = std::array<double, n>;
+using Samples = std::array<double, points>;
+
+/// cos(pi j/16) for any j.
+constexpr double cosine(std::size_t j) {
+    constexpr std::array<double, 9> quarter = {1,
+                                               0.98078528040323044913,
+                                               0.92387953251128675613,
+                                               0.83146961230254523708,
+                                               0.70710678118654752440,
+                                               0.55557023301960222474,
+                                               0.38268343236508977173,
+                                               0.19509032201612826785,
+                                               0};
+    const std::size_t turn = j % (2 * degree);
+    const std::size_t half = turn <= degree ? turn : 2 * degree - turn;
+    return half <= degree / 2 ? quarter[half] : -quarter[degree - half];
+}
+
+/// The points of a panel, from -1 to 1.
+inline constexpr Samples nodes = [] {
+    Samples x{};
+    for (std::size_t j = 0; j <= degree; ++j) x[j] = -cosine(j);
+    return x;
+}();
+
+/// The polynomial through values at the nodes. Equal values give a constant, exactly.
+Series<points> fit(const Samples& values);
+/// The values at the nodes.
+Samples at_nodes(const Series<points>& c);
+
+/// The same for a longer series, whose last terms look like lower ones there: T17 like T15, T18 like T14.
+template <std::size_t n>
+Samples at_nodes(const Series<n>& c) {
+    static_assert(n > points && n <= 2 * degree);
+    Series<points> folded{};
+    for (std::size_t k = 0; k < points; ++k) folded[k] = c[k];
+    for (std::size_t k = points; k < n; ++k) folded[2 * degree - k] += c[k];
+    return at_nodes(folded);
+}
+
+/// Clenshaw's sum.
+template <std::size_t n>
+double value(const Series<n>& c, double x) {
+    double b1 = 0, b2 = 0;
+    for (std::size_t k = n - 1; k > 0; --k) {
+        const double b0 = c[k] + (2 * x * b1 - b2);
+        b2 = b1;
+        b1 = b0;
+    }
+    return c[0] + (x * b1 - b2);
+}
+
+/// The antiderivative that has the value `at_left` at x = -1.
+template <std::size_t n>
+Series<n + 1> integral(const Series<n>& f, double at_left) {
+    Series<n + 1> F{};
+    F[1] = f[0] - f[2] / 2;
+    double alternating = -F[1];
+    for (std::size_t k = 2; k <= n; ++k) {
+        const double next = k + 1 < n ? f[k + 1] : 0;
+        F[k] = (f[k - 1] - next) * (0.5 / static_cast<double>(k));
+        alternating += k % 2 == 0 ? F[k] : -F[k];
+    }
+    F[0] = at_left - alternating;
+    return F;
+}
+
+template <std::size_t n>
+Series<n - 1> derivative(const Series<n>& f) {
+    Series<n - 1> d{};
+    for (std::size_t k = n - 1; k > 0; --k) {
+        d[k - 1] = 2 * static_cast<double>(k) * f[k] + (k + 1 < n - 1 ? d[k + 1] : 0);
+    }
+    d[0] /= 2;
+    return d;
+}
+
+/// sum |c[k]|, which is at least max |f|.
+template <std::size_t n>
+double size(const Series<n>& c) {
+    double sum = 0;
+    for (const double x : c) sum += std::fabs(x);
+    return sum;
+}
+
+/// A bound of |f''|: |Tk''| <= k^2 (k^2 - 1)/3.
+template <std::size_t n>
+double second_derivative_bound(const Series<n>& c) {
+    double sum = 0;
+    for (std::size_t k = 2; k < n; ++k) {
+        const auto k2 = static_cast<double>(k * k);
+        sum += std::fabs(c[k]) * (k2 * (k2 - 1) / 3);
+    }
+    return sum;
+}
+/// A bound of |f'''|: |Tk'''| <= k^2 (k^2 - 1)(k^2 - 4)/15.
+template <std::size_t n>
+double third_derivative_bound(const Series<n>& c) {
+    double sum = 0;
+    for (std::size_t k = 3; k < n; ++k) {
+        const auto k2 = static_cast<double>(k * k);
+        sum += std::fabs(c[k]) * (k2 * (k2 - 1) * (k2 - 4) / 15);
+    }
+    return sum;
+}
+
+}  // namespace dinal::chebyshev

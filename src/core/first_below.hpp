@@ -1,0 +1,136 @@
+// The first place where a polynomial on a panel falls below zero, proven to be the first and polished to rounding.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+#include "core/chebyshev.hpp"
+
+namespace dinal::chebyshev {
+
+/// A polynomial with its derivative, and what proves that there is no zero between two values.
+template <std::size_t n>
+class Curve {
+public:
+    /// `sign` * f; `slope` is the derivative of f.
+    Curve(double sign, const Series<n>& f, const Series<n - 1>& slope) : f_(f), slope_(slope) {
+        for (double& c : f_) c *= sign;
+        for (double& c : slope_) c *= sign;
+        second_ = second_derivative_bound(f_);
+        floor_ = 16 * std::numeric_limits<double>::epsilon() * size(f_);
+    }
+    [[nodiscard]] double operator()(double x) const { return value(f_, x); }
+    [[nodiscard]] double slope(double x) const { return value(slope_, x); }
+    [[nodiscard]] double second_bound() const { return second_; }
+    /// What may be rounding alone.
+    [[nodiscard]] double floor() const { return floor_; }
+    /// For a curve that is a difference of larger numbers.
+    void raise_floor(double least) { floor_ = std::max(floor_, least); }
+    [[nodiscard]] Samples at_nodes() const { return chebyshev::at_nodes(f_); }
+
+    /// Whether a curve that leaves zero at -1 is certainly positive up to -1 + d: by its slope there, or, where that
+    /// is zero too, by its curvature.
+    [[nodiscard]] bool leaves_upward(double d) const {
+        double at_left = 0, bend = 0;
+        for (std::size_t k = 0; k + 1 < n; ++k) at_left += k % 2 == 0 ? slope_[k] : -slope_[k];
+        if (at_left > second_ * d / 2) return true;
+        if (at_left < 0) return false;
+        for (std::size_t k = 2; k < n; ++k) {
+            const auto k2 = static_cast<double>(k * k);
+            bend += (k % 2 == 0 ? f_[k] : -f_[k]) * (k2 * (k2 - 1) / 3);
+        }
+        return bend > third_derivative_bound(f_) * d / 3;
+    }
+
+private:
+    Series<n> f_;
+    Series<n - 1> slope_;
+    double second_ = 0;
+    double floor_ = 0;
+};
+
+namespace detail {
+
+/// The zero between f(a) > 0 and f(b) <= 0 of a curve that falls all the way: Newton within the bracket.
+template <class F>
+double polish(const F& f, double a, double fa, double b, double fb) {
+    double x = a + (b - a) * (fa / (fa - fb));
+    for (int i = 0; i < 60; ++i) {
+        const double fx = f(x);
+        (fx > 0 ? a : b) = x;
+        const double slope = f.slope(x);
+        double next = slope < 0 ? x - fx / slope : a;
+        if (!(next > a && next < b)) {
+            if (b - a <= 4e-16) break;
+            next = fx == 0 ? x : a + (b - a) / 2;
+        }
+        const double step = std::fabs(next - x);
+        x = next;
+        if (step <= 2e-16) break;
+    }
+    return x;
+}
+
+template <class F, class Confirm>
+std::optional<double> search(const F& f, double a, double fa, double b, double fb, const Confirm& confirm) {
+    const double width = b - a;
+    const double dip = f.second_bound() * width * width / 8;  // how far below its chord the curve may sag
+    if (std::min(fa, fb) > dip) return {};
+    const double middle = a + width / 2;
+    if (const double slope = f.slope(middle); std::fabs(slope) > f.second_bound() * width / 2) {
+        if (slope > 0 || fb > f.floor()) return {};
+        if (fb < -f.floor()) return fa > 0 ? polish(f, a, fa, b, fb) : a;
+        return confirm(b) ? std::optional(b) : std::nullopt;
+    }
+    if (dip <= f.floor() || width < 1e-12) {
+        if (fb < -f.floor()) return fa > 0 ? polish(f, a, fa, b, fb) : a;
+        const double lowest = fa < fb ? a : b;
+        return std::min(fa, fb) <= f.floor() && confirm(lowest) ? std::optional(lowest) : std::nullopt;
+    }
+    const double fm = f(middle);
+    if (const auto x = search(f, a, fa, middle, fm, confirm)) return x;
+    return search(f, middle, fm, b, fb, confirm);
+}
+
+}  // namespace detail
+
+enum class Start {
+    anywhere,  ///< f(from) may be positive, or zero within rounding
+    leaving,   ///< f(from) is zero and f means to become positive; -1 or `from` is the answer when it does not
+};
+
+/// The first x in [from, 1] at which f falls below zero. Where it comes to zero within rounding and does not clearly
+/// cross it, confirm(x) decides whether that counts. Between two values of f, a bound of f'' proves that there is no
+/// zero; where it can not, the interval is halved until it can, so pairs of zeros close together are not passed over.
+template <class F, class Confirm>
+std::optional<double> first_below(const F& f, double from, Start start, const Confirm& confirm) {
+    const Samples at_node = f.at_nodes();
+    std::size_t j = 1;
+    while (j < degree && nodes[j] <= from) ++j;
+    double left = from;
+    double f_left = start == Start::leaving ? 0 : from == -1 ? at_node[0] : f(from);
+    if (start == Start::leaving) {
+        const double right = nodes[j];
+        if (from == -1 && f.leaves_upward(right - from)) {
+            left = right, f_left = at_node[j], ++j;
+            if (f_left <= 0) f_left = f.floor();  // positive, and small
+        } else {
+            // From within the rounding outwards, until it is clear which way the curve goes.
+            double d = (right - from) * 0x1p-46;
+            while (d < right - from && std::fabs(f(from + d)) <= f.floor()) d *= 2;
+            left = std::min(from + d, right), f_left = f(left);
+            if (f_left < -f.floor()) return from;
+        }
+    }
+    for (; j <= degree; ++j) {
+        if (nodes[j] > left) {
+            if (const auto x = detail::search(f, left, f_left, nodes[j], at_node[j], confirm)) return x;
+        }
+        left = nodes[j], f_left = at_node[j];
+    }
+    return {};
+}
+
+}  // namespace dinal::chebyshev

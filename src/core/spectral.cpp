@@ -1,0 +1,43 @@
+// integrator.spectral: a run from beginning to end, and its motion between the rows.
+#include <fmt/format.h>
+
+#include "core/methods.hpp"
+#include "core/spectral_engine.hpp"
+
+namespace dinal {
+
+namespace {
+
+/// The panels may take this part of the memory that the rows may.
+constexpr std::size_t share_of_panels = 4;
+
+Expected<State> state_at(const Panels& panels, double t) {
+    if (panels.size() == 0) return Error{"the run has no motion to evaluate: it ended where it started"};
+    if (t > panels.end() && !panels.complete()) {
+        return Error{fmt::format(
+            "the motion was kept up to t = {:.6g} only, for want of memory: take rows, or begin a run there",
+            panels.end())};
+    }
+    return panels.at(t);
+}
+
+}  // namespace
+
+Trajectory run(const Problem& problem, const Spectral& options) {
+    Trajectory trajectory;
+    RowWriter rows(problem.system, problem.rows, trajectory);
+    std::shared_ptr<Panels> panels;
+    if (problem.limits.dense) {
+        panels = std::make_shared<Panels>(problem.system, problem.limits.memory / share_of_panels);
+    }
+    SpectralEngine engine(problem, options, rows, trajectory.events, panels.get());
+    trajectory.outcome = engine.run();
+    rows.finish();
+    trajectory.t_start = problem.window.start;
+    trajectory.t_stop = engine.now();
+    if (panels) trajectory.dense = [panels](double t) { return state_at(*panels, t); };
+    trajectory.panels = std::move(panels);
+    return trajectory;
+}
+
+}  // namespace dinal

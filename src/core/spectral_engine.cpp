@@ -1,0 +1,315 @@
+#include "core/spectral_engine.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "core/first_below.hpp"
+
+namespace dinal {
+
+namespace {
+
+constexpr double epsilon = std::numeric_limits<double>::epsilon();
+/// More standstills than this, each at once after the one before, are a feedback that chatters, not a motion.
+constexpr int most_standstills_at_once = 200;
+/// Natural periods within which one standstill follows another at once.
+constexpr double at_once = 1e-6;
+/// Pieces between two questions to the monitor.
+constexpr unsigned monitor_interval = 16;
+
+}  // namespace
+
+SpectralEngine::SpectralEngine(const Problem& problem, const Spectral& options, RowWriter& rows,
+                               std::vector<Event>& events, Panels* panels)
+    : system_(problem.system),
+      excitation_(problem.excitation),
+      monitor_(problem.monitor),
+      window_(problem.window),
+      rows_(rows),
+      events_(events),
+      panels_(panels),
+      tolerance_(options.tolerance),
+      w0_(problem.system.natural_frequency()),
+      T0_(problem.system.natural_period()),
+      h_max_(std::min(options.max_panel, longest_panel * T0_) / 2),
+      feedback_(problem.excitation.has_feedback()),
+      script_(problem.excitation.has_script()),
+      constant_from_(problem.excitation.constant_from()),
+      clock_{problem.window.start, 0},
+      y_(problem.initial),
+      h_(h_max_) {}
+
+Outcome SpectralEngine::run() {
+    begin();
+    bool alive = std::isfinite(M_) || fail(Outcome::excitation_not_finite);
+    while (alive && clock_.hi < window_.end) {
+        if (pieces_++ % monitor_interval == 0 && monitor_ && !monitor_(clock_.hi)) {
+            outcome_ = Outcome::interrupted;
+            break;
+        }
+        alive = advance();
+    }
+    if (outcome_ == Outcome::reached_end) finish();
+    return outcome_;
+}
+
+void SpectralEngine::begin() {
+    const double t = window_.start;
+    const bool at_break = excitation_.next_break(std::nextafter(t, -never)) == t;
+    M_ = at_break ? excitation_.value_after(t, y_) : excitation_.value(t, y_);
+    motion_ = motion_of(y_.velocity);
+    standstill_ = y_.velocity == 0;
+}
+
+bool SpectralEngine::advance() {
+    if (system_.frictionless()) return move();
+    if (standstill_ && !leave_standstill()) return false;
+    if (stuck_for_good()) {
+        panel_ = Panel{.start = clock_, .length = clock_.until(window_.end), .begin = y_};
+        if (panels_ != nullptr) panels_->add(panel_);
+        clock_ = {window_.end, 0};
+        return true;
+    }
+    return motion_ == Motion::stuck ? stay() : move();
+}
+
+void SpectralEngine::finish() {
+    while (rows_.next_time() < never) rows_.put(y_, M_, friction_of(M_));
+    if (!system_.frictionless() && standstill_) leave_standstill();
+    if (!system_.frictionless() && motion_ == Motion::stuck) {
+        if (!events_.empty()) events_.back().kind = EventKind::rest;
+        outcome_ = Outcome::at_rest;
+    }
+}
+
+bool SpectralEngine::stuck_for_good() const {
+    return motion_ == Motion::stuck && constant_from_ <= clock_.hi &&
+           motion_from_standstill(system_, M_, y_.theta) == Motion::stuck;
+}
+
+/// Asks the friction law at velocity zero.
+bool SpectralEngine::leave_standstill() {
+    const Motion before = motion_;
+    motion_ = motion_from_standstill(system_, M_, y_.theta);
+    standstill_ = false;
+    leaving_ = motion_ != Motion::stuck;
+    holding_ = false;
+    if (!at_start_) {
+        if (motion_ == Motion::stuck) {
+            record(EventKind::stick);
+        } else if (motion_ != before) {
+            record(EventKind::turn);  // the same direction again: it only touched zero, which is no event
+        }
+    }
+    return !stopped();
+}
+
+/// Feedback that pushes at rest and holds in motion would come to a standstill for ever.
+bool SpectralEngine::stopped() {
+    standstills_at_once_ = clock_.hi - last_standstill_ <= at_once * T0_ ? standstills_at_once_ + 1 : 0;
+    last_standstill_ = clock_.hi;
+    return standstills_at_once_ > most_standstills_at_once && !fail(Outcome::chattering);
+}
+
+// ---- stuck
+
+/// Stuck, up to the first time that |M - k theta| > Re or the end of the panel.
+bool SpectralEngine::stay() {
+    double from = standing_from_;
+    if (from == nowhere) {
+        if (M_sampled_ && !holding_) {
+            const Motion direction = motion_from_standstill(system_, M_, y_.theta);
+            if (direction != Motion::stuck) return release_at(nowhere, direction);
+        }
+        choose_panel();
+        if (const Attempt attempt = sample_standing(); attempt != Attempt::resolved) return attempt != Attempt::ended;
+        from = -1;
+    }
+    const auto [x, direction] = first_release(from);
+    if (x < 1) return release_at(x, direction);
+    end_piece(1, y_, 0);
+    return std::isfinite(M_) || fail(Outcome::excitation_not_finite);
+}
+
+/// The release in [from, 1], if there is one, and its direction; else `nowhere`.
+std::pair<double, Motion> SpectralEngine::first_release(double from) const {
+    std::pair<double, Motion> first{nowhere, Motion::stuck};
+    const double k_theta = system_.stiffness() * y_.theta, Re = system_.breakaway();
+    double varying = 0;
+    for (std::size_t k = 1; k < points; ++k) varying += std::fabs(panel_.M[k]);
+    const auto lets_go = [&](double x) {
+        if (holding_) return false;
+        const double M = excitation_.value(time_at(x), y_);
+        return motion_from_standstill(system_, M, y_.theta) != Motion::stuck;
+    };
+    for (const Motion side : {Motion::forward, Motion::backward}) {
+        const double sign = sign_of(side);
+        const double mean = sign * (panel_.M[0] - k_theta);
+        if (mean + varying < Re) continue;
+        // What is left of the limit: Re - side (M - k theta).
+        Series left{};
+        chebyshev::Series<points - 1> slope = chebyshev::derivative(panel_.M);
+        for (std::size_t k = 1; k < points; ++k) left[k] = -sign * panel_.M[k];
+        for (double& c : slope) c *= -sign;
+        left[0] = Re - mean;
+        chebyshev::Curve<points> curve(1, left, slope);
+        curve.raise_floor(8 * epsilon * (Re + std::fabs(k_theta)));
+        if (const auto x = chebyshev::first_below(curve, from, chebyshev::Start::anywhere, lets_go)) {
+            if (*x < first.first) first = {*x, side};
+        }
+    }
+    if (first.first != nowhere && time_at(first.first) >= end_) first.first = nowhere;  // the next panel's business
+    return first;
+}
+
+/// Breakaway at x of the panel, or, with `nowhere`, at once.
+bool SpectralEngine::release_at(double x, Motion direction) {
+    const bool at_once_only = x == nowhere;
+    if (!at_once_only) {
+        const bool feedback = feedback_ && x > -1;
+        const double M = feedback ? excitation_.value(time_at(x), y_) : chebyshev::value(panel_.M, x);
+        if (!std::isfinite(M)) return fail(Outcome::excitation_not_finite);
+        end_piece(x, y_, M);
+        standing_from_ = nowhere;
+    }
+    motion_ = direction;
+    leaving_ = true;
+    holding_ = false;
+    record(EventKind::slip);
+    at_start_ = false;
+    return !stopped();
+}
+
+/// A motion that did not get under way: M only touched the limit. The mass stays where it is.
+void SpectralEngine::never_left() {
+    if (!events_.empty() && events_.back().t == clock_.hi) {
+        Event& last = events_.back();
+        if (last.kind == EventKind::slip) {
+            events_.pop_back();
+        } else if (last.kind == EventKind::turn) {
+            last.kind = EventKind::stick;
+        }
+    }
+    motion_ = Motion::stuck;
+    leaving_ = false;
+    holding_ = true;
+    standing_from_ = nowhere;
+}
+
+// ---- moving
+
+bool SpectralEngine::move() {
+    choose_panel();
+    panel_.motion = system_.frictionless() ? Motion::forward : motion_;
+    if (const Attempt attempt = solve(); attempt != Attempt::resolved) return attempt != Attempt::ended;
+    if (system_.frictionless()) record_turns();
+    const std::optional<double> zero = system_.frictionless() ? std::nullopt : first_standstill();
+    if (zero && *zero <= -1 && leaving_) {
+        never_left();
+        return !stopped();
+    }
+    double x = zero.value_or(1);
+    if (x > -1 && time_at(x) >= end_) x = 1;
+    const State state{y_.theta + chebyshev::value(p_, x), zero ? 0 : chebyshev::value(v_, x) / panel_.h};
+    const double M = x == 1 ? 0 : feedback_ ? excitation_.value(time_at(x), state) : chebyshev::value(panel_.M, x);
+    end_piece(x, state, M);
+    leaving_ = false;
+    standstill_ = zero.has_value();
+    standing_from_ = zero && x < 1 && !feedback_ ? x : nowhere;
+    return std::isfinite(M_) || fail(Outcome::excitation_not_finite);
+}
+
+/// Where the velocity is down to zero. At the end of the panel, zero within rounding is zero.
+std::optional<double> SpectralEngine::first_standstill() const {
+    using namespace chebyshev;
+    const double sign = sign_of(motion_);
+    const Curve<points + 1> velocity(sign, v_, panel_.w);
+    const auto always = [](double) { return true; };
+    const auto zero = first_below(velocity, -1, leaving_ ? Start::leaving : Start::anywhere, always);
+    if (!zero && velocity(1) <= velocity.floor()) return 1;
+    return zero;
+}
+
+/// Without friction nothing happens at a turn, it is only told.
+void SpectralEngine::record_turns() {
+    using namespace chebyshev;
+    constexpr double nothing = 1e-290;  // products of smaller numbers lose their digits to underflow
+    const double load = std::fabs(y_.theta) + size(panel_.M) / system_.stiffness();
+    const double w0h = w0_ * panel_.h;
+    const double moving = size(v_);
+    // At its equilibrium a system changes the sign of its velocity by rounding alone.
+    if (moving <= 32 * epsilon * w0h * w0h * load || moving < nothing) return;
+    if (motion_ == Motion::stuck) {
+        // From a start at rest: the first velocity that is not rounding tells the direction.
+        const auto v = at_nodes(v_);
+        const auto first = std::find_if(v.begin(), v.end(), [&](double u) { return std::fabs(u) > 1e-14 * moving; });
+        motion_ = motion_of(first == v.end() ? 0 : *first);
+    }
+    double from = -1;
+    Start start = y_.velocity == 0 ? Start::leaving : Start::anywhere;
+    const auto no = [](double) { return false; };
+    while (motion_ != Motion::stuck) {
+        const Curve<points + 1> velocity(sign_of(motion_), v_, panel_.w);
+        const auto x = first_below(velocity, from, start, no);
+        if (!x) break;
+        motion_ = motion_ == Motion::forward ? Motion::backward : Motion::forward;
+        // A curve that leaves zero the other way was turned already, at the end of the panel before.
+        const bool told = start == Start::leaving && *x <= from;
+        if (!told) events_.push_back({time_at(*x), EventKind::turn, y_.theta + value(p_, *x), value(panel_.M, *x)});
+        if (told && from > -1) break;
+        from = *x;
+        start = Start::leaving;
+    }
+}
+
+// ---- the present
+
+void SpectralEngine::end_piece(double x, State state, double M) {
+    const bool whole = x == 1;
+    // A stuck piece may begin within the panel.
+    Panel piece = panel_;
+    piece.length = whole ? panel_.start.until(end_) : panel_.h * (1 + x);
+    rows_until(piece.length);
+    if (panels_ != nullptr) {
+        if (motion_ == Motion::stuck && !system_.frictionless()) {
+            const Clock from = clock_;
+            piece.length -= from.hi == panel_.start.hi ? 0 : panel_.start.until(from.hi) + from.lo;
+            piece.start = from;
+            piece.begin = y_;
+            piece.motion = Motion::stuck;
+        }
+        if (piece.length > 0) panels_->add(piece);
+    }
+    clock_ = whole ? Clock{end_, 0} : panel_.start.later(panel_.h * (1 + x));
+    y_ = state;
+    if (whole) standing_from_ = nowhere;
+    M_sampled_ = whole;
+    M_ = !whole ? M : break_at_end_ ? excitation_.value_after(end_, y_) : samples_[points - 1];
+    if (whole && feedback_ && !break_at_end_) M_ = excitation_.value(end_, y_);
+    if (clock_.hi > window_.start) at_start_ = false;
+    if (whole) {
+        std::erase_if(found_breaks_, [&](double b) { return b <= end_; });
+        holding_ = false;
+    }
+}
+
+/// The rows before the end of the piece; the one at its end belongs to the next.
+void SpectralEngine::rows_until(double length) {
+    const bool standing = motion_ == Motion::stuck && !system_.frictionless();
+    for (double t = rows_.next_time(); t < never; t = rows_.next_time()) {
+        const double since = panel_.start.until(t);
+        if (!(since < length)) break;
+        const double x = std::clamp(since / panel_.h - 1, -1.0, 1.0);
+        State state = y_;
+        if (!standing && x > -1) {
+            state = {y_.theta + chebyshev::value(p_, x), chebyshev::value(v_, x) / panel_.h};
+        }
+        const double M = feedback_ ? excitation_.value(t, state) : chebyshev::value(panel_.M, x);
+        rows_.put(state, M,
+                  standing ? friction_torque(system_, Motion::stuck, M, state.theta)
+                           : friction_torque(system_, panel_.motion, M, state.theta));
+    }
+}
+
+}  // namespace dinal

@@ -1,0 +1,129 @@
+// The spectral integrator at work: panel after panel, each solved to rounding, up to the first event in it.
+//
+// A panel is a stretch of time in which M is smooth and friction keeps its sign. It ends at a break of M, at the end of
+// the window, where M or the motion could not be resolved any longer, or at an event, where the friction law is asked.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "core/panel_equation.hpp"
+#include "core/panels.hpp"
+#include "core/rows.hpp"
+#include "core/simulate.hpp"
+
+namespace dinal {
+
+class SpectralEngine {
+public:
+    /// `panels` may be null: then only the rows remain of the motion.
+    SpectralEngine(const Problem& problem, const Spectral& options, RowWriter& rows, std::vector<Event>& events,
+                   Panels* panels);
+
+    Outcome run();
+    /// How far it came.
+    [[nodiscard]] double now() const { return clock_.hi; }
+
+private:
+    static constexpr std::size_t points = chebyshev::points;
+    static constexpr double nowhere = 2;  // an x beyond every panel
+    using Series = chebyshev::Series<points>;
+
+    // One piece of the motion after the other. What returns false has ended the run.
+    void begin();
+    bool advance();
+    bool stay();
+    bool move();
+    void finish();
+    [[nodiscard]] bool stuck_for_good() const;
+    bool leave_standstill();
+    bool release_at(double x, Motion direction);
+    void never_left();
+    [[nodiscard]] std::optional<double> first_standstill() const;
+    [[nodiscard]] std::pair<double, Motion> first_release(double from) const;
+    void record_turns();
+    bool stopped();
+
+    // The present at the end of a piece, which reaches to x in the panel; 1 is exactly the end of the panel.
+    void end_piece(double x, State state, double M);
+    void rows_until(double length);
+    [[nodiscard]] double time_at(double x) const { return panel_.start.after(panel_.h * (1 + x)); }
+    void record(EventKind kind) { events_.push_back({clock_.hi, kind, y_.theta, M_}); }
+    [[nodiscard]] double friction_of(double M) const {
+        return friction_torque(system_, system_.frictionless() ? Motion::forward : motion_, M, y_.theta);
+    }
+    bool fail(Outcome outcome) {
+        outcome_ = outcome;
+        return false;
+    }
+
+    // spectral_panel.cpp: choosing, sampling and solving a panel.
+    enum class Attempt {
+        resolved,
+        shorten,  ///< the next one will be shorter
+        ended,    ///< the run can not go on
+    };
+    void choose_panel();
+    Attempt sample_standing();
+    Attempt solve();
+    [[nodiscard]] double next_break() const;
+    [[nodiscard]] double sampled(std::size_t node, const State& state) const;
+    bool sample_all(const State& state);
+    bool bad_at(std::size_t node);
+    Attempt before_failure();
+    void solve_for(const Series& torque);
+    enum class Iteration { converged, diverges, failed };
+    Iteration iterate();
+    void estimate_slopes();
+    [[nodiscard]] double unresolved_load() const;
+    [[nodiscard]] double unresolved_motion() const;
+    Attempt judge(double unresolved);
+    void lengthen(double unresolved);
+
+    const Oscillator& system_;
+    const Excitation& excitation_;
+    const Monitor& monitor_;
+    Window window_;
+    RowWriter& rows_;
+    std::vector<Event>& events_;
+    Panels* panels_;
+
+    double tolerance_;
+    double w0_, T0_;
+    double h_max_;
+    bool feedback_, script_;
+    double constant_from_;
+
+    Clock clock_;  // the present: time, state, M (from the right), motion
+    State y_;
+    double M_ = 0;
+    Motion motion_ = Motion::stuck;
+    bool M_sampled_ = true;    // M_ is a value of M, not of its series
+    bool standstill_ = false;  // velocity 0: the law must be asked
+    bool leaving_ = false;     // velocity 0, and the law has said which way to go
+    bool at_start_ = true;     // nothing is an event yet
+    bool holding_ = false;     // M is within rounding of the limit, and the motion has been seen not to get under way
+
+    double h_;                          // half the length of the next panel
+    std::vector<double> found_breaks_;  // of a function that did not announce them, in order
+    double bad_time_ = never;           // M is known to fail here
+    double chi_ = 0, kappa_ = 0;        // -dM/dvelocity and -dM/dtheta of a feedback: solved for, not iterated
+
+    Panel panel_;  // the one at work
+    double end_ = 0;
+    bool break_at_end_ = false;
+    double standing_from_ = nowhere;  // from here on its M serves a mass that came to a stop in it
+    chebyshev::Samples times_{}, samples_{};
+    chebyshev::Series<points + 1> v_{};
+    chebyshev::Series<points + 2> p_{};
+    PanelEquation equation_;
+
+    double last_standstill_ = -never;
+    int standstills_at_once_ = 0;
+    int unresolved_in_a_row_ = 0;
+    int short_in_a_row_ = 0;
+    unsigned pieces_ = 0;
+    Outcome outcome_ = Outcome::reached_end;
+};
+
+}  // namespace dinal

@@ -1,0 +1,272 @@
+// The spectral engine's panels: how long, what M is on them, the motion they carry, and whether both are resolved.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "core/break_search.hpp"
+#include "core/spectral_engine.hpp"
+
+namespace dinal {
+
+namespace {
+
+constexpr double epsilon = std::numeric_limits<double>::epsilon();
+/// A panel so short (natural periods) that what it does not resolve can not be seen in the motion.
+constexpr double shortest = 1e-13;
+/// So many of those one after the other, and there is nothing smooth about M.
+constexpr int most_unresolved = 100;
+/// So many resolved panels below this length (natural periods), and there is no getting on.
+constexpr double too_short = 1e-7;
+constexpr int most_short = 100000;
+/// Not resolved by more than this factor: it may be a break.
+constexpr double gross = 1e3;
+constexpr int most_iterations = 25;
+/// Where M fails, the run comes this near to it (natural periods).
+constexpr double near_failure = 1e-9;
+
+double tail(const chebyshev::Series<chebyshev::points>& c) {
+    return std::max(std::fabs(c[chebyshev::degree - 1]), std::fabs(c[chebyshev::degree]));
+}
+
+}  // namespace
+
+double SpectralEngine::next_break() const {
+    const double announced = excitation_.next_break(clock_.hi);
+    return found_breaks_.empty() ? announced : std::min(announced, found_breaks_.front());
+}
+
+void SpectralEngine::choose_panel() {
+    const double breaks = next_break();
+    const double limit = std::min(window_.end, breaks);
+    const double remaining = clock_.until(limit);
+    if (bad_time_ < never) h_ = std::min(h_, clock_.until(bad_time_) / 4);
+    const bool to_limit = remaining <= 2 * h_ * (1 + 1e-9);
+    panel_.start = clock_;
+    panel_.begin = y_;
+    panel_.motion = motion_;
+    // Two panels of equal length rather than a long and a very short one.
+    panel_.h = to_limit ? remaining / 2 : remaining < 4 * h_ ? remaining / 4 : h_;
+    end_ = to_limit ? limit : clock_.after(2 * panel_.h);
+    break_at_end_ = to_limit && limit == breaks;
+    for (std::size_t j = 0; j + 1 < points; ++j) times_[j] = time_at(chebyshev::nodes[j]);
+    times_[points - 1] = end_;
+    standing_from_ = nowhere;
+}
+
+double SpectralEngine::sampled(std::size_t node, const State& state) const {
+    return node + 1 == points && break_at_end_ ? excitation_.value_before(end_, state)
+                                               : excitation_.value(times_[node], state);
+}
+
+/// M at all nodes for one state, of which only a feedback takes notice.
+bool SpectralEngine::sample_all(const State& state) {
+    const std::size_t first = M_sampled_ ? 1 : 0;
+    if (M_sampled_) samples_[0] = M_;
+    if (feedback_) {
+        for (std::size_t j = first; j < points; ++j) {
+            samples_[j] = sampled(j, state);
+            if (!std::isfinite(samples_[j])) return bad_at(j);
+        }
+    } else {
+        const std::size_t last = break_at_end_ ? points - 1 : points;
+        const std::size_t count = last - first;
+        const std::size_t good = excitation_.fill({&times_[first], count}, {&samples_[first], count});
+        if (good < count) return bad_at(first + good);
+        if (break_at_end_) samples_[points - 1] = excitation_.value_before(end_);
+        if (!std::isfinite(samples_[points - 1])) return bad_at(points - 1);
+    }
+    panel_.M = chebyshev::fit(samples_);
+    return true;
+}
+
+bool SpectralEngine::bad_at(std::size_t node) {
+    bad_time_ = times_[node];
+    return false;
+}
+
+/// M has failed ahead: the run goes on in ever shorter panels until it stands before that time, and ends there.
+SpectralEngine::Attempt SpectralEngine::before_failure() {
+    const bool there = clock_.until(bad_time_) <= std::max(near_failure * T0_, 64 * epsilon * std::fabs(clock_.hi));
+    if (feedback_) bad_time_ = never;
+    if (!there && excitation_.may_go_on()) return Attempt::shorten;
+    fail(Outcome::excitation_not_finite);
+    return Attempt::ended;
+}
+
+SpectralEngine::Attempt SpectralEngine::sample_standing() {
+    if (!sample_all(y_)) return before_failure();
+    return judge(unresolved_load());
+}
+
+/// The motion under this torque (M, or what is not linear in a feedback), from the state at the beginning.
+void SpectralEngine::solve_for(const Series& torque) {
+    const double h = panel_.h, inertia = system_.inertia();
+    equation_.prepare(h * ((system_.damping() + chi_) / inertia), h * (h * ((system_.stiffness() + kappa_) / inertia)));
+    const double scale = h * (h / inertia);
+    Series r{};
+    for (std::size_t k = 1; k < points; ++k) r[k] = scale * torque[k];
+    const double friction = system_.kinetic_friction() * sign_of(panel_.motion);
+    r[0] = scale * (std::fma(-system_.stiffness(), y_.theta, torque[0]) - friction);
+    panel_.w = equation_.solve(r, h * y_.velocity);
+    v_ = chebyshev::integral(panel_.w, h * y_.velocity);
+    p_ = chebyshev::integral(v_, 0.0);
+}
+
+SpectralEngine::Attempt SpectralEngine::solve() {
+    if (feedback_) {
+        switch (iterate()) {
+            case Iteration::failed:
+                // Perhaps for a state that only the iteration has been in: a shorter panel will tell.
+                h_ = panel_.h / 2;
+                bad_time_ = clock_.after(panel_.h);
+                return before_failure();
+            case Iteration::diverges:
+                return judge(std::numeric_limits<double>::infinity());
+            case Iteration::converged:
+                break;
+        }
+    } else {
+        if (!sample_all({})) return before_failure();
+        solve_for(panel_.M);
+    }
+    if (!std::isfinite(chebyshev::size(p_)) || !std::isfinite(chebyshev::size(v_) / panel_.h)) {
+        fail(Outcome::state_not_finite);
+        return Attempt::ended;
+    }
+    return judge(feedback_ ? unresolved_motion() : std::max(unresolved_load(), unresolved_motion()));
+}
+
+// ---- feedback
+
+/// M(t, theta, velocity) and the motion, each from the other until they agree.
+SpectralEngine::Iteration SpectralEngine::iterate() {
+    constexpr double stiffest = 4;  // h^2 k/I up to which a panel's equation is well-conditioned
+    for (const bool again : {false, true}) {
+        if (panel_.h * panel_.h * (system_.stiffness() + kappa_) / system_.inertia() > stiffest) {
+            return Iteration::diverges;
+        }
+        chebyshev::Samples p{}, v{};
+        for (std::size_t j = 0; j < points; ++j) {
+            v[j] = panel_.h * y_.velocity;
+            p[j] = (1 + chebyshev::nodes[j]) * v[j];
+        }
+        double change = never;
+        for (int i = 0; i < most_iterations; ++i) {
+            chebyshev::Samples rest{};
+            for (std::size_t j = 0; j < points; ++j) {
+                samples_[j] = sampled(j, {y_.theta + p[j], v[j] / panel_.h});
+                if (!std::isfinite(samples_[j])) return Iteration::failed;
+                rest[j] = samples_[j] + kappa_ * p[j] + chi_ * (v[j] / panel_.h);
+            }
+            solve_for(chebyshev::fit(rest));
+            const auto p_next = chebyshev::at_nodes(p_), v_next = chebyshev::at_nodes(v_);
+            const double before = change;
+            change = 0;
+            for (std::size_t j = 0; j < points; ++j) {
+                change = std::max({change, std::fabs(p_next[j] - p[j]), std::fabs(v_next[j] - v[j])});
+            }
+            p = p_next, v = v_next;
+            const double scale = chebyshev::size(v_) + chebyshev::size(p_);
+            if (!(change < never)) break;
+            // What is left shrinks by change/before once more with the solution just made.
+            const double rate = before < never ? change / before : 1;
+            if (change <= 16 * epsilon * scale || change * rate <= 0.01 * tolerance_ * scale) {
+                panel_.M = chebyshev::fit(samples_);
+                return Iteration::converged;
+            }
+            if (i >= 2 && change > 0.5 * before) {
+                if (change > 1e4 * epsilon * scale) break;
+                panel_.M = chebyshev::fit(samples_);
+                return Iteration::converged;  // that is rounding
+            }
+        }
+        if (again) break;
+        estimate_slopes();
+    }
+    return Iteration::diverges;
+}
+
+/// How M depends on theta and velocity, by secants as wide as the motion on this panel.
+void SpectralEngine::estimate_slopes() {
+    const double t = clock_.hi;
+    const double d_theta = std::max(chebyshev::size(p_), 1e-6 * std::fabs(y_.theta));
+    const double d_velocity = std::max(chebyshev::size(v_) / panel_.h, 1e-6 * std::fabs(y_.velocity));
+    const auto slope = [](double above, double below, double d) {
+        const double s = d > 0 && d < never ? (below - above) / (2 * d) : 0;
+        return std::isfinite(s) ? s : 0;
+    };
+    kappa_ = slope(excitation_.value(t, {y_.theta + d_theta, y_.velocity}),
+                   excitation_.value(t, {y_.theta - d_theta, y_.velocity}), d_theta);
+    chi_ = slope(excitation_.value(t, {y_.theta, y_.velocity + d_velocity}),
+                 excitation_.value(t, {y_.theta, y_.velocity - d_velocity}), d_velocity);
+}
+
+// ---- resolved?
+
+/// The last coefficients of M over what the tolerance allows, in units of the torques that are at play.
+double SpectralEngine::unresolved_load() const {
+    const Series& M = panel_.M;
+    const double scale = chebyshev::size(M) + system_.breakaway() + system_.stiffness() * std::fabs(y_.theta);
+    double allowed = (tolerance_ + 4 * epsilon) * scale;
+    const double last = tail(M);
+    if (last <= allowed) return allowed > 0 ? last / allowed : 0;
+    // Far from t = 0 the times themselves are rounded, and M(t) with them.
+    double slope = 0;
+    for (std::size_t k = 1; k < points; ++k) slope += static_cast<double>(k * k) * std::fabs(M[k]);
+    const double late = std::max(std::fabs(clock_.hi), std::fabs(end_));
+    allowed += 4 * epsilon * late / panel_.h * slope;
+    return last / allowed;
+}
+
+/// The same for the motion: the last coefficients of theta'' against velocity and acceleration.
+double SpectralEngine::unresolved_motion() const {
+    const auto& w = panel_.w;
+    const double last = tail(w);
+    const double v = chebyshev::size(v_), acceleration = chebyshev::size(w);
+    double allowed = tolerance_ * std::max(v, acceleration);
+    if (last <= allowed) return allowed > 0 ? last / allowed : 0;
+    const double a = panel_.h * (system_.damping() + std::fabs(chi_)) / system_.inertia();
+    const double b = panel_.h * (panel_.h * (system_.stiffness() + std::fabs(kappa_)) / system_.inertia());
+    const double load = std::fabs(y_.theta) + chebyshev::size(panel_.M) / system_.stiffness();
+    allowed += 64 * epsilon * (acceleration + a * v + b * (chebyshev::size(p_) + load));
+    return last / allowed;
+}
+
+SpectralEngine::Attempt SpectralEngine::judge(double unresolved) {
+    if (unresolved <= 1) {
+        unresolved_in_a_row_ = 0;
+        short_in_a_row_ = 2 * panel_.h < too_short * T0_ ? short_in_a_row_ + 1 : 0;
+        if (short_in_a_row_ > most_short) {
+            fail(Outcome::unresolved);
+            return Attempt::ended;
+        }
+        lengthen(unresolved);
+        return Attempt::resolved;
+    }
+    const double late = std::max(std::fabs(clock_.hi), std::fabs(end_));
+    if (2 * panel_.h <= std::max(shortest * T0_, 16 * epsilon * late)) {
+        // Whatever goes on here is over before it can move the mass.
+        h_ = h_max_;
+        if (++unresolved_in_a_row_ <= most_unresolved) return Attempt::resolved;
+        fail(feedback_ ? Outcome::chattering : Outcome::unresolved);
+        return Attempt::ended;
+    }
+    if (script_ && !feedback_ && unresolved > gross) {
+        const auto M = [&](double t) { return excitation_.value(t); };
+        if (const auto found = find_break(times_, samples_, M); found && *found > clock_.hi && *found < end_) {
+            found_breaks_.insert(std::upper_bound(found_breaks_.begin(), found_breaks_.end(), *found), *found);
+            return Attempt::shorten;
+        }
+    }
+    // The last coefficients fall with h^16.
+    h_ = panel_.h * std::clamp(0.9 * std::pow(unresolved, -1.0 / chebyshev::degree), 0.5, 0.9);
+    return Attempt::shorten;
+}
+
+void SpectralEngine::lengthen(double unresolved) {
+    if (h_ >= h_max_) return;
+    const double factor = 0.9 * std::pow(std::max(unresolved, 1e-16), -1.0 / chebyshev::degree);
+    h_ = std::min(h_max_, std::max(h_, panel_.h * std::min(factor, 8.0)));
+}
+
+}  // namespace dinal
