@@ -19,15 +19,17 @@ public:
         for (double& c : f_) c *= sign;
         for (double& c : slope_) c *= sign;
         second_ = second_derivative_bound(f_);
-        floor_ = 16 * std::numeric_limits<double>::epsilon() * size(f_);
+        floor_ = rounding * size(f_);
+        slope_floor_ = rounding * size(slope_);
     }
     [[nodiscard]] double operator()(double x) const { return value(f_, x); }
     [[nodiscard]] double slope(double x) const { return value(slope_, x); }
     [[nodiscard]] double second_bound() const { return second_; }
     /// What may be rounding alone.
     [[nodiscard]] double floor() const { return floor_; }
-    /// For a curve that is a difference of larger numbers.
+    /// For a curve that is a difference of larger numbers, or whose slope is.
     void raise_floor(double least) { floor_ = std::max(floor_, least); }
+    void raise_slope_floor(double least) { slope_floor_ = std::max(slope_floor_, least); }
     [[nodiscard]] Samples at_nodes() const { return chebyshev::at_nodes(f_); }
 
     /// Whether a curve that leaves zero at -1 is certainly positive up to -1 + d: by its slope there, or, where that
@@ -36,7 +38,7 @@ public:
         double at_left = 0, bend = 0;
         for (std::size_t k = 0; k + 1 < n; ++k) at_left += k % 2 == 0 ? slope_[k] : -slope_[k];
         if (at_left > second_ * d / 2) return true;
-        if (at_left < 0) return false;
+        if (at_left < -slope_floor_) return false;
         for (std::size_t k = 2; k < n; ++k) {
             const auto k2 = static_cast<double>(k * k);
             bend += (k % 2 == 0 ? f_[k] : -f_[k]) * (k2 * (k2 - 1) / 3);
@@ -45,10 +47,12 @@ public:
     }
 
 private:
+    static constexpr double rounding = 16 * std::numeric_limits<double>::epsilon();
+
     Series<n> f_;
     Series<n - 1> slope_;
     double second_ = 0;
-    double floor_ = 0;
+    double floor_ = 0, slope_floor_ = 0;
 };
 
 namespace detail {

@@ -11,8 +11,8 @@ namespace dinal {
     X(interrupted, "interrupted")                                                            \
     X(state_not_finite, "the state stopped being finite: unstable system, feedback or step") \
     X(excitation_not_finite, "M failed or stopped being finite")                             \
-    X(unresolved, "M never becomes smooth: integrator.rk4 asks for less")                    \
-    X(chattering, "stuck and slipped without end in no time: the feedback chatters")
+    X(unresolved, "M never becomes smooth: try a larger tolerance, or rk4")                  \
+    X(chattering, "switched without end in no time: the feedback chatters")
 
 enum class Outcome {
 #define DINAL_OUTCOME(id, sentence) id,

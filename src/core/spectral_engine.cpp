@@ -224,7 +224,10 @@ bool SpectralEngine::move() {
 std::optional<double> SpectralEngine::first_standstill() const {
     using namespace chebyshev;
     const double sign = sign_of(motion_);
-    const Curve<points + 1> velocity(sign, v_, panel_.w);
+    Curve<points + 1> velocity(sign, v_, panel_.w);
+    // The acceleration is what is left of torques that may balance each other.
+    const double w0h = w0_ * panel_.h;
+    velocity.raise_slope_floor(w0h * w0h * (64 * epsilon * torques() + lost_in_time()) / system_.stiffness());
     const auto always = [](double) { return true; };
     const auto zero = first_below(velocity, -1, leaving_ ? Start::leaving : Start::anywhere, always);
     if (!zero && velocity(1) <= velocity.floor()) return 1;
@@ -235,11 +238,10 @@ std::optional<double> SpectralEngine::first_standstill() const {
 void SpectralEngine::record_turns() {
     using namespace chebyshev;
     constexpr double nothing = 1e-290;  // products of smaller numbers lose their digits to underflow
-    const double load = std::fabs(y_.theta) + size(panel_.M) / system_.stiffness();
     const double w0h = w0_ * panel_.h;
     const double moving = size(v_);
     // At its equilibrium a system changes the sign of its velocity by rounding alone.
-    if (moving <= 32 * epsilon * w0h * w0h * load || moving < nothing) return;
+    if (moving <= 32 * epsilon * w0h * w0h * torques() / system_.stiffness() || moving < nothing) return;
     if (motion_ == Motion::stuck) {
         // From a start at rest: the first velocity that is not rounding tells the direction.
         const auto v = at_nodes(v_);

@@ -75,8 +75,15 @@ private:
     enum class Iteration { converged, diverges, failed };
     Iteration iterate();
     void estimate_slopes();
+    /// The size of the torques that are at play on the panel.
+    [[nodiscard]] double torques() const {
+        return chebyshev::size(panel_.M) + system_.breakaway() + system_.stiffness() * std::fabs(y_.theta);
+    }
+    /// What M may differ by because times far from t = 0 are rounded.
+    [[nodiscard]] double lost_in_time() const;
     [[nodiscard]] double unresolved_load() const;
     [[nodiscard]] double unresolved_motion() const;
+    bool found_break();
     Attempt judge(double unresolved);
     void lengthen(double unresolved);
 
@@ -104,10 +111,11 @@ private:
     bool at_start_ = true;     // nothing is an event yet
     bool holding_ = false;     // M is within rounding of the limit, and the motion has been seen not to get under way
 
-    double h_;                          // half the length of the next panel
-    std::vector<double> found_breaks_;  // of a function that did not announce them, in order
-    double bad_time_ = never;           // M is known to fail here
-    double chi_ = 0, kappa_ = 0;        // -dM/dvelocity and -dM/dtheta of a feedback: solved for, not iterated
+    double h_;                                       // half the length of the next panel
+    std::vector<double> found_breaks_;               // of a function that did not announce them, in order
+    double searched_from_ = never, searched_h_ = 0;  // where one was looked for last
+    double bad_time_ = never;                        // M is known to fail here
+    double chi_ = 0, kappa_ = 0;  // -dM/dvelocity and -dM/dtheta of a feedback: solved for, not iterated
 
     Panel panel_;  // the one at work
     double end_ = 0;

@@ -18,6 +18,8 @@ constexpr int most_unresolved = 100;
 /// So many resolved panels below this length (natural periods), and there is no getting on.
 constexpr double too_short = 1e-7;
 constexpr int most_short = 100000;
+/// The same with a feedback, which passes each of its switches in some forty of them.
+constexpr int most_short_with_feedback = 2000;
 /// Not resolved by more than this factor: it may be a break.
 constexpr double gross = 1e3;
 constexpr int most_iterations = 25;
@@ -203,18 +205,20 @@ void SpectralEngine::estimate_slopes() {
 
 // ---- resolved?
 
+double SpectralEngine::lost_in_time() const {
+    double slope = 0;
+    for (std::size_t k = 1; k < points; ++k) slope += static_cast<double>(k * k) * std::fabs(panel_.M[k]);
+    const double late = std::max(std::fabs(clock_.hi), std::fabs(end_));
+    return 4 * epsilon * late / panel_.h * slope;
+}
+
 /// The last coefficients of M over what the tolerance allows, in units of the torques that are at play.
 double SpectralEngine::unresolved_load() const {
     const Series& M = panel_.M;
-    const double scale = chebyshev::size(M) + system_.breakaway() + system_.stiffness() * std::fabs(y_.theta);
-    double allowed = (tolerance_ + 4 * epsilon) * scale;
+    double allowed = (tolerance_ + 4 * epsilon) * torques();
     const double last = tail(M);
     if (last <= allowed) return allowed > 0 ? last / allowed : 0;
-    // Far from t = 0 the times themselves are rounded, and M(t) with them.
-    double slope = 0;
-    for (std::size_t k = 1; k < points; ++k) slope += static_cast<double>(k * k) * std::fabs(M[k]);
-    const double late = std::max(std::fabs(clock_.hi), std::fabs(end_));
-    allowed += 4 * epsilon * late / panel_.h * slope;
+    allowed += lost_in_time();
     return last / allowed;
 }
 
@@ -227,17 +231,27 @@ double SpectralEngine::unresolved_motion() const {
     if (last <= allowed) return allowed > 0 ? last / allowed : 0;
     const double a = panel_.h * (system_.damping() + std::fabs(chi_)) / system_.inertia();
     const double b = panel_.h * (panel_.h * (system_.stiffness() + std::fabs(kappa_)) / system_.inertia());
-    const double load = std::fabs(y_.theta) + chebyshev::size(panel_.M) / system_.stiffness();
-    allowed += 64 * epsilon * (acceleration + a * v + b * (chebyshev::size(p_) + load));
+    allowed += 64 * epsilon * (acceleration + a * v + b * (chebyshev::size(p_) + torques() / system_.stiffness()));
     return last / allowed;
+}
+
+/// Looks for a jump or kink of M in the panel, once in each order of magnitude of its length.
+bool SpectralEngine::found_break() {
+    if (searched_from_ == clock_.hi && panel_.h > 0.1 * searched_h_) return false;
+    searched_from_ = clock_.hi, searched_h_ = panel_.h;
+    const auto found = find_break(times_, samples_, [&](double t) { return excitation_.value(t); });
+    // One at the very beginning is not a break but a singular point, which ever shorter panels leave behind.
+    if (!found || clock_.until(*found) < 1e-6 * panel_.h || !(*found < end_)) return false;
+    found_breaks_.insert(std::upper_bound(found_breaks_.begin(), found_breaks_.end(), *found), *found);
+    return true;
 }
 
 SpectralEngine::Attempt SpectralEngine::judge(double unresolved) {
     if (unresolved <= 1) {
         unresolved_in_a_row_ = 0;
         short_in_a_row_ = 2 * panel_.h < too_short * T0_ ? short_in_a_row_ + 1 : 0;
-        if (short_in_a_row_ > most_short) {
-            fail(Outcome::unresolved);
+        if (short_in_a_row_ > (feedback_ ? most_short_with_feedback : most_short)) {
+            fail(feedback_ ? Outcome::chattering : Outcome::unresolved);
             return Attempt::ended;
         }
         lengthen(unresolved);
@@ -245,19 +259,13 @@ SpectralEngine::Attempt SpectralEngine::judge(double unresolved) {
     }
     const double late = std::max(std::fabs(clock_.hi), std::fabs(end_));
     if (2 * panel_.h <= std::max(shortest * T0_, 16 * epsilon * late)) {
-        // Whatever goes on here is over before it can move the mass.
-        h_ = h_max_;
+        // Whatever goes on here is over before it can move the mass. A feedback that switches may do so again at once.
+        h_ = feedback_ ? 64 * panel_.h : h_max_;
         if (++unresolved_in_a_row_ <= most_unresolved) return Attempt::resolved;
         fail(feedback_ ? Outcome::chattering : Outcome::unresolved);
         return Attempt::ended;
     }
-    if (script_ && !feedback_ && unresolved > gross) {
-        const auto M = [&](double t) { return excitation_.value(t); };
-        if (const auto found = find_break(times_, samples_, M); found && *found > clock_.hi && *found < end_) {
-            found_breaks_.insert(std::upper_bound(found_breaks_.begin(), found_breaks_.end(), *found), *found);
-            return Attempt::shorten;
-        }
-    }
+    if (script_ && !feedback_ && unresolved > gross && found_break()) return Attempt::shorten;
     // The last coefficients fall with h^16.
     h_ = panel_.h * std::clamp(0.9 * std::pow(unresolved, -1.0 / chebyshev::degree), 0.5, 0.9);
     return Attempt::shorten;
