@@ -51,7 +51,7 @@ std::optional<real> first_descent(F&& f, G&& df, real a, real b, real step) {
             if (left == a && f(begin) <= 0) return a;  // nothing but rounding above zero
             return bisect(f, begin, right);
         }
-        if (left > a && df(left) < 0 && df(right) > 0) {
+        if ((left > a || f(a) > 0) && df(left) < 0 && df(right) > 0) {
             const real low = bisect(df, left, right);
             if (f(low) <= 0) return bisect(f, left, low);
         }
