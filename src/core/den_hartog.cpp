@@ -1,0 +1,184 @@
+#include "core/den_hartog.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "core/theory_forced.hpp"
+
+namespace dinal::theory {
+
+namespace {
+
+constexpr double pi = std::numbers::pi;
+
+/// What the square wave needs of the mode over half a period P, each in a form that keeps its digits.
+struct HalfPeriod {
+    double apart;        // q - r, underdamped
+    double pushed;       // g = e^(-zeta P) (sin qP)/q
+    double decay;        // 1 - E, E = e^(-zeta P)
+    double one_plus;     // E (1 + cos qP)
+    double determinant;  // Delta = (1 + 2 E cos qP + E^2)/2
+};
+
+/// sin qP and 1 + cos qP vanish where q/r is a whole number n, so they are taken from q/r - n.
+HalfPeriod underdamped(const Modes& modes, double r) {
+    const double zeta = modes.zeta();
+    const double q = modes.rate();
+    const double n = std::nearbyint(q / r);
+    // q is rounded; for little damping q - n r comes from 1 - q = zeta^2/(1 + q), which is better.
+    const auto away = [&](double m) {
+        return zeta < 0.3 ? std::fma(-m, r, 1) - zeta * zeta / (1 + q) : std::fma(-m, r, q);
+    };
+    const double x = pi * (away(n) / r);
+    const bool odd = std::fmod(n, 2) != 0;
+    const double half = odd ? std::sin(x / 2) : std::cos(x / 2);
+    const double decay = -std::expm1(-zeta * pi / r);
+    const double E = 1 - decay;
+    const double one_plus = 2 * E * half * half;
+    return {away(1), E * (odd ? -1 : 1) * std::sin(x) / q, decay, one_plus, decay * decay / 2 + one_plus};
+}
+
+HalfPeriod overdamped(const Modes& modes, double r) {
+    const double P = pi / r;
+    const double decay = -std::expm1(-modes.zeta() * P);
+    const double E = 1 - decay;
+    const double cosine = modes.damped_cosine(P);
+    return {0, modes.pushed(P), decay, E + cosine, (1 + E * E) / 2 + cosine};
+}
+
+/// -Y Delta = (1 - E^2)/2 - zeta g, in a form that does not cancel.
+double lag_of_square(const Modes& modes, const HalfPeriod& half, double P) {
+    const double zeta = modes.zeta();
+    const double a = zeta * P;
+    if (P < 1 && a < 1) {
+        // sinh a - zeta (sinh b)/b P with b^2 = a^2 - P^2: a P^2 sum of (a^2n - b^2n)/(a^2 - b^2)/(2n + 1)!
+        const double b2 = a * a - P * P;
+        double complete = 1, power = 1, factor = 1.0 / 6, sum = factor;
+        for (int n = 2; n < 12; ++n) {
+            power *= b2;
+            complete = complete * a * a + power;
+            factor /= 2 * n * (2 * n + 1);
+            sum += complete * factor;
+        }
+        return std::exp(-a) * a * P * P * sum;
+    }
+    if (modes.swings()) return -std::expm1(-2 * a) / 2 - zeta * half.pushed;
+    const double slow = modes.slow_root();
+    return -(1 + std::exp(-modes.fast_root() * P)) * std::expm1(-slow * P) / 2 - slow * half.pushed;
+}
+
+}  // namespace
+
+DenHartog::DenHartog(double r, double zeta) : r_(r), modes_(zeta), half_(pi / r) {
+    const HalfPeriod half = modes_.swings() ? underdamped(modes_, r) : overdamped(modes_, r);
+    apart_ = half.apart;
+    angle_ = -lag_of_square(modes_, half, half_) / half.determinant;
+    velocity_ = -half.pushed / half.determinant;
+    sine_ = (half.decay + half.one_plus) / half.determinant;
+    if (!modes_.swings()) sine_ = (1 + modes_.damped_cosine(half_)) / half.determinant;
+}
+
+bool DenHartog::grows() const {
+    return r_ == 1 && modes_.zeta() == 0;
+}
+
+/// The velocity of the steady motion must not change sign within the half period after a turn at x = 0. Divided by
+/// r sin rx, its part that is proportional to gamma must stay below the rest, which is a constant: the swing.
+double DenHartog::velocity_excess(double x) const {
+    const double zeta = modes_.zeta();
+    const double q = modes_.rate();
+    double difference = 0;  // cos rx - e^(-zeta x) cos qx
+    if (modes_.swings()) {
+        const double cosines = 2 * std::sin((q + r_) * x / 2) * std::sin(apart_ * x / 2);
+        difference = std::exp(-zeta * x) * (std::expm1(zeta * x) * std::cos(r_ * x) + cosines);
+    } else {
+        const double half = std::sin(r_ * x / 2);
+        difference = -(std::expm1(-modes_.slow_root() * x) + std::expm1(-modes_.fast_root() * x)) / 2 - 2 * half * half;
+    }
+    return (sine_ * modes_.pushed(x) - velocity_ * difference) / (r_ * std::sin(r_ * x));
+}
+
+/// At the turn itself: the mass must leave it towards the other side, against `breakaway`.
+double DenHartog::excess_at_turn(double friction, double breakaway) const {
+    return (breakaway - friction * (angle_ + 2 * modes_.zeta() * velocity_)) / (r_ * r_);
+}
+
+double DenHartog::refined_peak(double from, double to) const {
+    constexpr double golden = 0.6180339887498949;
+    double left = to - golden * (to - from), right = from + golden * (to - from);
+    double at_left = velocity_excess(left), at_right = velocity_excess(right);
+    for (int i = 0; i < 45; ++i) {  // to 4e-10 of the width; the peak is flat, so its height is good to rounding
+        if (at_left > at_right) {
+            to = right, right = left, at_right = at_left;
+            left = to - golden * (to - from), at_left = velocity_excess(left);
+        } else {
+            from = left, left = right, at_left = at_right;
+            right = from + golden * (to - from), at_right = velocity_excess(right);
+        }
+    }
+    return std::max(at_left, at_right);
+}
+
+/// The maximum over the half period, its beginning included. The points are as close as the mode and the load need, and
+/// closer where a fast mode dies just after the turn.
+double DenHartog::greatest_excess() const {
+    const double widest = std::min(half_ / 64, 2 * pi / 32);
+    constexpr double nearly = 0.03;  // a peak may be that much above the best of its points
+    double best = excess_at_turn(1, 1);
+    double before = 0, x = 1e-3 * std::min(widest, 1 / modes_.fast_root());
+    double value_before = best, value = velocity_excess(x);
+    while (x < half_) {
+        const double after = x + std::min(x / 4, widest);
+        const double value_after = after < half_ ? velocity_excess(after) : -std::numeric_limits<double>::infinity();
+        if (value >= value_before && value > value_after && value > best - nearly * std::fabs(best)) {
+            best = std::max({best, value, refined_peak(before, std::min(after, half_))});
+        }
+        before = x, value_before = value;
+        x = after, value = value_after;
+    }
+    return best;
+}
+
+SlidingMotion DenHartog::sliding(double friction_ratio, double swing) const {
+    SlidingMotion y;
+    y.amplitude = friction_ratio * angle_ + swing;
+    const double viscous = phase_lag(r_, modes_.zeta());
+    y.lag = viscous + std::atan2(friction_ratio * velocity_ / r_, swing);
+    // The fundamental answers load and fundamental of the square wave, 4 gamma/pi and a quarter of a period off.
+    const double g = 4 * friction_ratio / pi;
+    const double across = g * std::cos(y.lag), along = 1 - g * std::sin(y.lag);
+    y.fundamental_amplitude = magnification(r_, modes_.zeta()) * std::hypot(across, along);
+    y.fundamental_lag = viscous + std::atan2(across, along);
+    return y;
+}
+
+// swing = sqrt(Phi^2 - (gamma Y'/r)^2) is amplitude - gamma Y: what the harmonic part has at the turn.
+std::optional<SlidingMotion> DenHartog::motion(double friction_ratio, double breakaway_ratio) const {
+    if (r_ == 0) {
+        if (breakaway_ratio > 0) return {};
+        return SlidingMotion{1, 0, 1, 0};
+    }
+    if (grows()) {
+        if (!(friction_ratio < pi / 4)) return {};
+        constexpr double unbounded = std::numeric_limits<double>::infinity();
+        return SlidingMotion{unbounded, pi / 2, unbounded, pi / 2};
+    }
+    const double phi = magnification(r_, modes_.zeta());
+    const double lost = friction_ratio * std::fabs(velocity_) / r_;
+    if (!(lost < phi)) return {};
+    const double swing = std::sqrt(phi - lost) * std::sqrt(phi + lost);
+    if (!(swing > excess_at_turn(friction_ratio, breakaway_ratio))) return {};
+    if (!(swing > friction_ratio * greatest_excess())) return {};
+    return sliding(friction_ratio, swing);
+}
+
+double DenHartog::stop_boundary(double breakaway_factor) const {
+    if (r_ == 0) return 0;
+    if (grows()) return pi / 4;
+    const double excess = std::max(greatest_excess(), excess_at_turn(1, breakaway_factor));
+    return magnification(r_, modes_.zeta()) / std::hypot(excess, velocity_ / r_);
+}
+
+}  // namespace dinal::theory

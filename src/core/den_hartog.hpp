@@ -1,0 +1,56 @@
+// Den Hartog's exact steady motion with dry friction under M0 sin wt, and the boundary beyond which it has stops.
+//
+// J. P. Den Hartog, "Forced vibrations with combined Coulomb and viscous friction", Trans. ASME 53 (1931). Without
+// stops friction is a square wave whose jumps are the turns. The steady motion repeats with the other sign after half a
+// period; so its response to that square wave at a turn depends on r and zeta only, and the turn where the velocity is
+// zero gives the amplitude. docs/theory.md, section 3, has the derivation.
+#pragma once
+
+#include <optional>
+
+#include "core/theory_modes.hpp"
+
+namespace dinal::theory {
+
+/// Amplitudes in units of M0/k, lags behind the load in rad.
+struct SlidingMotion {
+    double amplitude = 0;  ///< the greatest angle
+    double lag = 0;        ///< of the greatest angle
+    double fundamental_amplitude = 0;
+    double fundamental_lag = 0;
+};
+
+class DenHartog {
+public:
+    static constexpr double slowest = 1e-4;  ///< half a period of the load has 5000 natural periods there
+    static constexpr double fastest = 1e6;
+
+    /// r = w/w0, 0 or from `slowest` to `fastest`; zeta >= 0.
+    DenHartog(double r, double zeta);
+
+    /// The steady motion without stops for gamma = Rd/M0 and Re/M0 >= gamma; none when there is none. At r = 1 without
+    /// viscous damping it grows without bound: the amplitude is infinity, the lag what a growing motion has, pi/2.
+    // NOTE: at r = 1/2, 1/4, ... with zeta = 0 it is one of a family of steady motions, the symmetric one.
+    [[nodiscard]] std::optional<SlidingMotion> motion(double friction_ratio, double breakaway_ratio) const;
+
+    /// The gamma from which on the motion has stops, for Re = `breakaway_factor` Rd.
+    [[nodiscard]] double stop_boundary(double breakaway_factor) const;
+
+private:
+    [[nodiscard]] double velocity_excess(double x) const;
+    [[nodiscard]] double greatest_excess() const;
+    [[nodiscard]] double refined_peak(double from, double to) const;
+    [[nodiscard]] double excess_at_turn(double friction, double breakaway) const;
+    [[nodiscard]] bool grows() const;
+    [[nodiscard]] SlidingMotion sliding(double friction_ratio, double swing) const;
+
+    double r_;
+    Modes modes_;
+    double half_;      // x = w0 t of half a period, pi/r
+    double apart_;     // q - r (underdamped)
+    double angle_;     // Y: response to the square wave +1 after the turn, at the turn
+    double velocity_;  // Y', by x
+    double sine_;      // (1 + e^(-zeta P) cos qP)/Delta: how much of pushed(x) is in Y(x)
+};
+
+}  // namespace dinal::theory

@@ -1,0 +1,163 @@
+#include "core/theory_free.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "core/friction.hpp"
+
+namespace dinal::theory {
+
+namespace {
+
+constexpr double pi = std::numbers::pi;
+constexpr double never = std::numeric_limits<double>::infinity();
+
+double side_of(double x) {
+    return x < 0 ? -1 : 1;
+}
+
+/// zeta, and 1 whenever the system is critical: the root in damping_ratio() may have rounded.
+double regime_zeta(const Oscillator& system) {
+    return system.regime() == Regime::critical ? 1 : system.damping_ratio();
+}
+
+}  // namespace
+
+State free_response(double natural_frequency, double zeta, const State& initial, double t) {
+    const Motion2 y =
+        free_motion(Modes(zeta), {initial.theta, initial.velocity / natural_frequency}, natural_frequency * t);
+    return {y.y, y.dy * natural_frequency};
+}
+
+HalfCycles::HalfCycles(double zeta, double friction_shift)
+    : logarithm_(logarithmic_decrement(zeta) / 2), shift_(friction_shift) {}
+
+// a -> e a - x_f (1 + e), n times: e^n a - x_f (1 + e)(1 - e^n)/(1 - e), and 2 n x_f for e = 1.
+double HalfCycles::shrunk(double n, double size) const {
+    if (logarithm_ == 0) return std::fma(-2 * n, shift_, size);
+    const double sum = std::expm1(-n * logarithm_) / std::expm1(-logarithm_);
+    return size * std::exp(-n * logarithm_) - shift_ * (1 + std::exp(-logarithm_)) * sum;
+}
+
+double HalfCycles::after(double n, double X) const {
+    const double side = std::fmod(n, 2) == 0 ? side_of(X) : -side_of(X);
+    return side * shrunk(n, std::fabs(X));
+}
+
+double HalfCycles::until_within(double dead_zone, double X) const {
+    const double size = std::fabs(X);
+    const double excess = size - dead_zone;
+    if (excess <= 0) return 0;
+    if (dead_zone == 0 || (logarithm_ == 0 && shift_ == 0)) return never;
+    // The extremes lie on e^n (a + c) - c with c = x_f (1 + e)/(1 - e): where does that meet the dead zone?
+    const double c = logarithm_ == 0 ? 0 : shift_ / std::tanh(logarithm_ / 2);
+    const double guess = logarithm_ == 0 ? excess / (2 * shift_) : std::log1p(excess / (dead_zone + c)) / logarithm_;
+    constexpr double countable = 0x1p50;
+    if (!(guess < countable)) return std::ceil(guess);
+    double n = std::max(1.0, std::ceil(guess) - 1);
+    while (shrunk(n, size) > dead_zone) ++n;  // the guess is off by a rounding at most
+    return n;
+}
+
+FreeMotion::FreeMotion(const Oscillator& system, const State& initial)
+    : system_(system),
+      initial_(initial),
+      modes_(regime_zeta(system)),
+      w0_(system.natural_frequency()),
+      shift_(system.kinetic_friction() / system.stiffness()) {
+    first_ = {0, initial.theta};
+    if (initial.velocity != 0) {
+        const double side = side_of(initial.velocity);
+        first_.t = first_zero(side) / w0_;
+        first_.theta = first_.t < never ? arc(-side, initial, first_.t).theta : 0;
+    }
+    until_rest_ = half_cycles_to_rest();
+}
+
+double FreeMotion::half_cycles_to_rest() const {
+    if (first_.t == never) return never;
+    if (stays(first_.theta)) return 0;
+    if (!modes_.swings()) return never;
+    const double n = HalfCycles(modes_.zeta(), shift_).until_within(system_.dead_zone(), first_.theta);
+    return std::max(1.0, n);  // the friction law has the last word at the edge of the dead zone
+}
+
+bool FreeMotion::stays(double theta) const {
+    return motion_from_standstill(system_, 0, theta) == Motion::stuck;
+}
+
+/// While friction pushes towards `side`: the mass swings about side x_f.
+State FreeMotion::arc(double side, const State& start, double t) const {
+    const State y = free_response(w0_, modes_.zeta(), {start.theta - side * shift_, start.velocity}, t);
+    return {y.theta + side * shift_, y.velocity};
+}
+
+/// x = w0 t of the first zero of the velocity, which begins towards `side`; infinity when there is none.
+/// v(x) = 0 where (tan qx)/q (tanh, or x) is |v0|/(zeta |v0| + y0).
+double FreeMotion::first_zero(double side) const {
+    const double v = std::fabs(initial_.velocity) / w0_;
+    const double y = side * initial_.theta + shift_;
+    const double rate = modes_.rate();
+    if (modes_.swings()) return std::atan2(rate * v, modes_.zeta() * v + y) / rate;
+    const double slow = modes_.slow_root() * v + y;
+    if (slow <= 0) return never;
+    return rate == 0 ? v / slow : std::log1p(2 * rate * v / slow) / (2 * rate);
+}
+
+double FreeMotion::half_cycle() const {
+    return pi / (modes_.rate() * w0_);
+}
+
+State FreeMotion::at(double t) const {
+    if (t < first_.t) return arc(-side_of(initial_.velocity), initial_, t);
+    if (t >= time_to_rest()) return {extreme(until_rest_).theta, 0};
+    const double n = modes_.swings() ? std::min(std::floor((t - first_.t) / half_cycle()), until_rest_ - 1) : 0;
+    const Extreme last = extreme(n);
+    return arc(side_of(last.theta), {last.theta, 0}, t - last.t);
+}
+
+double FreeMotion::time_to_rest() const {
+    return until_rest_ < never ? extreme(until_rest_).t : never;
+}
+
+std::optional<double> FreeMotion::rest_position() const {
+    if (until_rest_ < never) return extreme(until_rest_).theta;
+    if (modes_.zeta() == 0) return {};
+    if (modes_.swings()) return 0;
+    return shift_ * (first_.t < never ? side_of(first_.theta) : -side_of(initial_.velocity));
+}
+
+double FreeMotion::extremes() const {
+    if (first_.t == never) return 0;
+    return modes_.swings() || until_rest_ == 0 ? until_rest_ + 1 : 1;
+}
+
+Extreme FreeMotion::extreme(double n) const {
+    if (n == 0) return first_;
+    return {first_.t + n * half_cycle(), HalfCycles(modes_.zeta(), shift_).after(n, first_.theta)};
+}
+
+double logarithmic_decrement(double zeta) {
+    return 2 * pi * zeta / (std::sqrt(1 - zeta) * std::sqrt(1 + zeta));
+}
+
+double zeta_of_decrement(double decrement) {
+    return decrement / std::hypot(decrement, 2 * pi);
+}
+
+double friction_decrement(double kinetic_friction, double stiffness) {
+    return 4 * kinetic_friction / stiffness;
+}
+
+std::optional<Dampings> identify(double X0, double X1, double X2) {
+    X0 = std::fabs(X0), X1 = std::fabs(X1), X2 = std::fabs(X2);
+    const double first = X0 - X1;
+    const double second = X1 - X2;
+    if (!(first > 0 && second > 0)) return {};
+    const double q = second / first;
+    return Dampings{zeta_of_decrement(-2 * std::log(q)), (q * X0 - X1) / (1 + q)};
+}
+
+}  // namespace dinal::theory

@@ -1,0 +1,88 @@
+// Closed forms of free motion: the three regimes, dry friction by half cycles, decrements and what they tell.
+#pragma once
+
+#include <optional>
+
+#include "core/oscillator.hpp"
+#include "core/theory_modes.hpp"
+
+namespace dinal::theory {
+
+/// Free motion without dry friction at the time t (any sign), from `initial` at t = 0.
+State free_response(double natural_frequency, double zeta, const State& initial, double t);
+
+/// The half-cycle map. From an extreme X (velocity zero) the mass swings to the next one, X' = s x_f - (X - s x_f) e,
+/// e = e^(-pi zeta / sqrt(1 - zeta^2)), s = sgn X, x_f = Rd/k; n half cycles at once by the geometric sum.
+class HalfCycles {
+public:
+    /// 0 <= zeta < 1, x_f >= 0.
+    HalfCycles(double zeta, double friction_shift);
+    /// The extreme that is n half cycles after X, as long as nothing comes to rest before.
+    [[nodiscard]] double after(double n, double X) const;
+    /// How many half cycles after X the mass is the first time within |angle| <= dead_zone, which is at least x_f;
+    /// infinity when it never is. A little off when near 2^53.
+    [[nodiscard]] double until_within(double dead_zone, double X) const;
+
+private:
+    [[nodiscard]] double shrunk(double n, double size) const;
+
+    double logarithm_;  // -ln e
+    double shift_;
+};
+
+/// An extreme of a free motion: the velocity is zero there.
+struct Extreme {
+    double t = 0;
+    double theta = 0;
+};
+
+/// The exact free motion of a system with dry friction from t = 0 on, by the half-cycle map; any number of half cycles
+/// costs the same.
+class FreeMotion {
+public:
+    FreeMotion(const Oscillator& system, const State& initial);
+
+    /// t >= 0.
+    [[nodiscard]] State at(double t) const;
+    /// When it stops for good: infinity when it only tends to a place, or never settles.
+    [[nodiscard]] double time_to_rest() const;
+    /// Where it stops, or what it tends to; none when it swings for ever.
+    [[nodiscard]] std::optional<double> rest_position() const;
+    /// How many times the velocity is zero, counted from the start on if it is at rest there, until it rests.
+    [[nodiscard]] double extremes() const;
+    /// 0 <= n < extremes().
+    [[nodiscard]] Extreme extreme(double n) const;
+
+private:
+    [[nodiscard]] double half_cycles_to_rest() const;
+    [[nodiscard]] bool stays(double theta) const;
+    [[nodiscard]] double first_zero(double side) const;
+    [[nodiscard]] State arc(double side, const State& start, double t) const;
+    [[nodiscard]] double half_cycle() const;
+
+    Oscillator system_;
+    State initial_;
+    Modes modes_;
+    double w0_;
+    double shift_;       // x_f = Rd/k
+    Extreme first_{};    // t = infinity when there is none
+    double until_rest_;  // half cycles from the first extreme to rest
+};
+
+/// delta = ln(X0/X2) = 2 pi zeta / sqrt(1 - zeta^2), by viscous damping alone; zeta < 1.
+double logarithmic_decrement(double zeta);
+/// The zeta that has this logarithmic decrement.
+double zeta_of_decrement(double decrement);
+/// What a cycle takes from the amplitude by dry friction alone: 4 Rd/k.
+double friction_decrement(double kinetic_friction, double stiffness);
+
+struct Dampings {
+    double zeta = 0;
+    double friction_shift = 0;  ///< x_f = Rd/k
+};
+/// Both dampings from three successive extremes (signs do not count): q = (X1 - X2)/(X0 - X1),
+/// zeta/sqrt(1 - zeta^2) = -(ln q)/pi, x_f = (q X0 - X1)/(1 + q). None unless they fall, X0 > X1 > X2. A negative value
+/// means that the extremes are not accurate enough to tell that damping from none.
+std::optional<Dampings> identify(double X0, double X1, double X2);
+
+}  // namespace dinal::theory

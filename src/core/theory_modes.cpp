@@ -1,0 +1,38 @@
+#include "core/theory_modes.hpp"
+
+#include <cmath>
+
+namespace dinal::theory {
+
+namespace {
+
+// Above this k the two exponentials are far enough apart to be written one by one; below it, by their sum and
+// difference, which have a limit.
+constexpr double apart = 0.5;
+
+}  // namespace
+
+Modes::Modes(double zeta) : zeta_(zeta), rate_(std::sqrt(std::fabs(1 - zeta)) * std::sqrt(1 + zeta)) {}
+
+double Modes::damped_cosine(double x) const {
+    if (swings()) return std::exp(-zeta_ * x) * std::cos(rate_ * x);
+    return (std::exp(-slow_root() * x) + std::exp(-fast_root() * x)) / 2;
+}
+
+double Modes::pushed(double x) const {
+    if (rate_ == 0) return x * std::exp(-x);
+    if (swings()) return std::exp(-zeta_ * x) * std::sin(rate_ * x) / rate_;
+    return -std::exp(-slow_root() * x) * std::expm1(-2 * rate_ * x) / (2 * rate_);
+}
+
+double Modes::pushed_velocity(double x) const {
+    if (swings() || rate_ < apart) return damped_cosine(x) - zeta_ * pushed(x);
+    return (fast_root() * std::exp(-fast_root() * x) - slow_root() * std::exp(-slow_root() * x)) / (2 * rate_);
+}
+
+double Modes::released(double x) const {
+    if (swings() || rate_ < apart) return damped_cosine(x) + zeta_ * pushed(x);
+    return (fast_root() * std::exp(-slow_root() * x) - slow_root() * std::exp(-fast_root() * x)) / (2 * rate_);
+}
+
+}  // namespace dinal::theory

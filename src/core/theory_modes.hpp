@@ -1,0 +1,45 @@
+// The free motions of y'' + 2 zeta y' + y = 0 for any zeta >= 0, without loss of digits on the way from one regime to
+// the next.
+#pragma once
+
+namespace dinal::theory {
+
+/// Time is x = w0 t. With q = sqrt(1 - zeta^2), or k = sqrt(zeta^2 - 1) when overdamped, the fundamental solutions are
+/// built from e^(-zeta x) cos qx and e^(-zeta x) (sin qx)/q, whose limits q -> 0 are e^(-x) and x e^(-x).
+class Modes {
+public:
+    explicit Modes(double zeta);
+
+    [[nodiscard]] double zeta() const { return zeta_; }
+    [[nodiscard]] bool swings() const { return zeta_ < 1; }
+    /// q, or k when overdamped.
+    [[nodiscard]] double rate() const { return rate_; }
+    /// 1/(zeta + k) and zeta + k: the rates at which an overdamped motion dies.
+    [[nodiscard]] double slow_root() const { return 1 / fast_root(); }
+    [[nodiscard]] double fast_root() const { return swings() ? 1 : zeta_ + rate_; }
+
+    /// e^(-zeta x) cos qx.
+    [[nodiscard]] double damped_cosine(double x) const;
+    /// y(0) = 0, y'(0) = 1: e^(-zeta x) (sin qx)/q.
+    [[nodiscard]] double pushed(double x) const;
+    /// y' of it.
+    [[nodiscard]] double pushed_velocity(double x) const;
+    /// y(0) = 1, y'(0) = 0; its velocity is -pushed(x).
+    [[nodiscard]] double released(double x) const;
+
+private:
+    double zeta_;
+    double rate_;
+};
+
+/// An angle (or y) and its velocity at x = w0 t, from those at x = 0.
+struct Motion2 {
+    double y = 0;
+    double dy = 0;  ///< by x
+};
+inline Motion2 free_motion(const Modes& modes, const Motion2& start, double x) {
+    const double g = modes.pushed(x);
+    return {start.y * modes.released(x) + start.dy * g, start.dy * modes.pushed_velocity(x) - start.y * g};
+}
+
+}  // namespace dinal::theory

@@ -1,0 +1,99 @@
+// Closed forms of steady motion without dry friction, and of friction taken for viscous.
+#include "core/theory_forced.hpp"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <complex>
+#include <limits>
+#include <numbers>
+
+using namespace dinal::theory;
+
+namespace {
+
+constexpr double pi = std::numbers::pi;
+constexpr double infinite = std::numeric_limits<double>::infinity();
+
+}  // namespace
+
+TEST_CASE("magnification, lag and transmissibility solve the equation of motion", "[theory]") {
+    using Complex = std::complex<double>;
+    for (const double zeta : {0.0, 0.02, 0.119, 0.7, 1.0, 3.0}) {
+        for (const double r : {0.0, 0.1, 0.9, 1.1, 2.0, 50.0}) {
+            const Complex answer = 1.0 / Complex(1 - r * r, 2 * zeta * r);
+            CAPTURE(zeta, r);
+            CHECK(magnification(r, zeta) == Approx(std::abs(answer)).epsilon(1e-14));
+            CHECK(phase_lag(r, zeta) == Approx(std::abs(std::arg(answer))).epsilon(1e-14));
+            CHECK(transmissibility(r, zeta) == Approx(std::abs(answer * Complex(1, 2 * zeta * r))).epsilon(1e-14));
+        }
+    }
+}
+
+TEST_CASE("near resonance the magnification keeps its digits, and at resonance it has its limits", "[theory]") {
+    const double r = 1 + 0x1p-40;
+    CHECK(magnification(r, 0) == Approx(0x1p39).epsilon(1e-12 + 1e-15));  // 1/(2e + e^2)
+    CHECK(magnification(1, 0.239) == Approx(2.0920502).epsilon(1e-7));    // figure 19
+    CHECK(magnification(1, 0) == infinite);
+    CHECK(phase_lag(1, 0) == pi / 2);
+    CHECK(phase_lag(1, 0.3) == pi / 2);
+    CHECK(phase_lag(0.99, 0) == 0);
+    CHECK(phase_lag(1.01, 0) == Approx(pi));
+    CHECK(transmissibility(std::sqrt(2.0), 0.4) == Approx(1).epsilon(1e-14));
+}
+
+TEST_CASE("zeta = 0 instead of 1 is wrong by 4.99 % at r = 0.156 and by 5.01 % at r = 6.4", "[theory]") {
+    const auto error = [](double r) { return magnification(r, 0) / magnification(r, 1) - 1; };
+    CHECK(std::fabs(error(0.156) - 0.0499) <= 0.00005);
+    CHECK(std::fabs(error(6.4) - 0.0501) <= 0.00005);
+}
+
+TEST_CASE("equivalent damping takes from a cycle what dry friction takes", "[theory]") {
+    const double Rd = 0.7, omega = 3, X = 0.2;
+    CHECK(pi * equivalent_damping(Rd, omega, X) * omega * X * X == Approx(friction_work(Rd, X)).epsilon(1e-15));
+    CHECK(friction_work(Rd, X) == Approx(4 * Rd * X).epsilon(1e-15));
+
+    // zeta = C/(2 sqrt(I k)), in the units I = 2, k = 5, M0 = 1.5.
+    const double omega0 = std::sqrt(2.5), M0 = 1.5;
+    const double C = equivalent_damping(Rd, omega, X);
+    CHECK(equivalent_damping_ratio(Rd / M0, omega / omega0, X * 5 / M0) ==
+          Approx(C / (2 * std::sqrt(10.0))).epsilon(1e-14));
+}
+
+TEST_CASE("figure 25: friction taken for viscous is 8.9 % too great, zeta = 0.242 10.6 %", "[theory]") {
+    const auto motion = linearised_friction(1.35, 0, 0.5);
+    REQUIRE(motion);
+    const double truth = 0.860792180;
+    CHECK(std::fabs(motion->amplitude - 0.9376) <= 0.00005);
+    CHECK(std::fabs(motion->amplitude / truth - 1.089) <= 0.0005);
+    CHECK(std::fabs(magnification(1.35, 0.242) - 0.9520) <= 0.00005);
+    CHECK(std::fabs(magnification(1.35, 0.242) / truth - 1.106) <= 0.0005);
+    CHECK(std::fabs(phase_lag(1.35, 0.242) * 180 / pi - 141.54) <= 0.005);
+}
+
+TEST_CASE("friction taken for viscous is the motion that its own equivalent damping gives", "[theory]") {
+    for (const double zeta : {0.0, 0.05, 0.8}) {
+        for (const double r : {0.2, 0.95, 1.0, 1.05, 4.0}) {
+            const double gamma = 0.3;
+            if (zeta == 0 && r == 1) continue;
+            const auto motion = linearised_friction(r, zeta, gamma);
+            REQUIRE(motion);
+            const double all = zeta + equivalent_damping_ratio(gamma, r, motion->amplitude);
+            CAPTURE(zeta, r);
+            CHECK(motion->amplitude == Approx(magnification(r, all)).epsilon(1e-13));
+            CHECK(motion->lag == Approx(phase_lag(r, all)).epsilon(1e-13));
+            if (zeta == 0) {
+                const double report = std::sqrt(1 - std::pow(4 * gamma / pi, 2)) / std::fabs(1 - r * r);
+                CHECK(motion->amplitude == Approx(report).epsilon(1e-13));
+            }
+        }
+    }
+    CHECK(linearised_friction(1, 0, 0.5)->amplitude == infinite);
+    CHECK_FALSE(linearised_friction(1.35, 0, pi / 4));
+    CHECK_FALSE(linearised_friction(1.35, 0.3, 2));
+}
+
+TEST_CASE("figure 23: at resonance the amplitude grows by pi - 4 gamma a period, below pi/4", "[theory]") {
+    CHECK(std::fabs(growth_at_resonance(0.167) - 2.473593) <= 5e-7);
+    CHECK(growth_at_resonance(0) == pi);
+    CHECK(growth_at_resonance(0.8) == 0);
+}

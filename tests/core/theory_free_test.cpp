@@ -1,0 +1,239 @@
+// Closed forms of free motion against the report's numbers, an independent exact solution, and rk4.
+#include "core/theory_free.hpp"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <numbers>
+#include <random>
+
+#include "support/measure.hpp"
+
+using namespace dinal;
+using namespace dinal::theory;
+using truth::nondimensional;
+
+namespace {
+
+constexpr double pi = std::numbers::pi;
+
+/// Half a unit of the ninth decimal, the last one printed.
+constexpr double printed = 0.51e-9;
+
+class Chance {
+public:
+    explicit Chance(unsigned seed) : engine_(seed) {}
+    double between(double a, double b) { return std::uniform_real_distribution<double>(a, b)(engine_); }
+    double power_of_ten(double a, double b) { return std::pow(10, between(a, b)); }
+
+private:
+    std::mt19937 engine_;
+};
+
+truth::ExactMotion exact(const Oscillator& system, const State& initial, double end) {
+    return {system, {truth::Piece{}}, initial, 0, end};
+}
+
+void check_extremes(const FreeMotion& motion, const std::vector<Extreme>& expected) {
+    REQUIRE(motion.extremes() == static_cast<double>(expected.size()));
+    for (std::size_t i = 0; i < expected.size(); ++i) {
+        const Extreme found = motion.extreme(static_cast<double>(i));
+        CHECK(std::fabs(found.t - expected[i].t) <= printed);
+        CHECK(std::fabs(found.theta - expected[i].theta) <= printed);
+    }
+}
+
+}  // namespace
+
+TEST_CASE("the free response is the exact one in all regimes and on the way between them", "[theory]") {
+    Chance chance(1);
+    for (int i = 0; i < 400; ++i) {
+        const double near_one = 1 + (i % 2 == 0 ? 1 : -1) * chance.power_of_ten(-16, -1);
+        const double zeta = i % 4 == 0 ? near_one : i % 4 == 1 ? chance.power_of_ten(-6, 2) : chance.between(0, 2);
+        const Oscillator system = nondimensional(zeta, 0);
+        const State initial{chance.between(-1, 1), chance.between(-6, 6)};
+        const double t = chance.between(0, 3);
+        const truth::Motion y = exact(system, initial, 3).at(t);
+        const State found = free_response(system.natural_frequency(), system.damping_ratio(), initial, t);
+        CAPTURE(zeta, t);
+        // A hundred roundings of the size of the motion; the velocity is greater by w0.
+        REQUIRE(std::fabs(found.theta - static_cast<double>(y.theta)) <= 1e-14);
+        REQUIRE(std::fabs(found.velocity - static_cast<double>(y.velocity)) <= 1e-13);
+    }
+}
+
+TEST_CASE("the free response before t = 0 leads to where it starts", "[theory]") {
+    for (const double zeta : {0.0, 0.3, 1.0, 1.7}) {
+        const State before = free_response(3, zeta, {0.4, -1.1}, -0.6);
+        const State back = free_response(3, zeta, before, 0.6);
+        CHECK(back.theta == Approx(0.4).epsilon(1e-13));
+        CHECK(back.velocity == Approx(-1.1).epsilon(1e-13));
+    }
+}
+
+TEST_CASE("figure 22: the half-cycle map gives the extremes and the rest of dry friction", "[theory]") {
+    const FreeMotion motion(nondimensional(0, 0.167), {0, 2 * pi});
+    check_extremes(motion, {{0.223664157, 0.846848608},
+                            {0.723664157, -0.512848608},
+                            {1.223664157, 0.178848608},
+                            {1.723664157, 0.155151392}});
+    CHECK(std::fabs(motion.time_to_rest() - 1.723664157) <= printed);
+    CHECK(std::fabs(*motion.rest_position() - 0.155151392) <= printed);
+}
+
+TEST_CASE("figure 26: the half-cycle map with both frictions", "[theory]") {
+    const FreeMotion motion(nondimensional(0.119, 0.06), {0, 2 * pi});
+    REQUIRE(motion.extremes() == 4);
+    const double theta[] = {0.793829171, -0.443584361, 0.203231680, -0.038291587};
+    for (int i = 0; i < 4; ++i) CHECK(std::fabs(motion.extreme(i).theta - theta[i]) <= printed);
+    CHECK(std::fabs(motion.time_to_rest() - 1.733933195) <= printed);
+}
+
+TEST_CASE("a push against Coulomb friction ten times the spring ends at t = atan(1/2), x = sqrt(125) - 10",
+          "[theory]") {
+    const Oscillator system = truth::system_of({.inertia = 1, .stiffness = 1, .kinetic_friction = 10});
+    const FreeMotion motion(system, {0, 5});
+    // x cancels ten of eleven: 1e-15 of 11.
+    CHECK(std::fabs(*motion.rest_position() - (std::sqrt(125.0) - 10)) <= 1.1e-14);
+    CHECK(std::fabs(motion.time_to_rest() - std::atan(0.5)) <= 1e-15);
+    CHECK(motion.at(1).velocity == 0);
+}
+
+TEST_CASE("free motion with dry friction is the exact one, event by event and in between", "[theory]") {
+    Chance chance(2);
+    int rests = 0;
+    for (int i = 0; i < 300; ++i) {
+        const double zeta = i % 3 == 0 ? 0 : chance.between(0, i % 3 == 1 ? 0.3 : 1.6);
+        const double gamma = chance.between(0.005, 0.3);
+        const Oscillator system = nondimensional(zeta, gamma, gamma * (i % 2 == 0 ? 1 : chance.between(1, 2)));
+        const State initial{chance.between(-1, 1), i % 5 == 0 ? 0 : chance.between(-6, 6)};
+        const double end = 12;
+        const truth::ExactMotion y = exact(system, initial, end);
+        const FreeMotion motion(system, initial);
+        CAPTURE(zeta, gamma, initial.theta, initial.velocity);
+        for (int j = 0; j < 20; ++j) {
+            const double t = chance.between(0, end);
+            // A few roundings for each half cycle, and t itself is rounded.
+            REQUIRE(std::fabs(motion.at(t).theta - static_cast<double>(y.at(t).theta)) <= 2e-14);
+            REQUIRE(std::fabs(motion.at(t).velocity - static_cast<double>(y.at(t).velocity)) <= 2e-13);
+        }
+        const double start = initial.velocity == 0 ? 1 : 0;  // which is not an event
+        if (motion.time_to_rest() < end && !y.events().empty()) {
+            ++rests;
+            REQUIRE(motion.extremes() == static_cast<double>(y.events().size()) + start);
+            REQUIRE(y.ends_stuck());
+            REQUIRE(std::fabs(motion.time_to_rest() - static_cast<double>(y.events().back().t)) <= 2e-14);
+        }
+        REQUIRE(y.ends_stuck() == (motion.time_to_rest() < end));
+    }
+    CHECK(rests > 150);
+}
+
+TEST_CASE("rk4 at a fine step follows the closed form with dry friction", "[theory]") {
+    Chance chance(3);
+    for (int i = 0; i < 10; ++i) {
+        const Oscillator system = nondimensional(chance.between(0, 0.3), chance.between(0.01, 0.1));
+        const State initial{chance.between(-1, 1), chance.between(-6, 6)};
+        const Trajectory run = truth::must_run(system, {}, initial, {0, 10}, Grid::every(0.1), Rk4{0.001});
+        const FreeMotion motion(system, initial);
+        for (Eigen::Index row = 0; row < run.size(); ++row) {
+            // 8.2e-11 a period and unit amplitude is rk4's own error of phase.
+            REQUIRE(std::fabs(run.rows(row, 1) - motion.at(run.rows(row, 0)).theta) <= 1e-9);
+        }
+    }
+}
+
+TEST_CASE("the duration of a free motion is (1 - A)/(4 gamma) with A, the last angle, within gamma", "[theory]") {
+    for (const double gamma : {0.3, 0.167, 0.1, 0.03, 0.01, 1e-3, 1e-5}) {
+        const FreeMotion motion(nondimensional(0, gamma), {1, 0});
+        const double t = motion.time_to_rest();
+        // A counts as negative when the mass stops on the side it came from: gamma = 0.3 stops at -0.2, not at 0.2.
+        const double A = 1 - 4 * gamma * t;
+        CAPTURE(gamma);
+        CHECK(std::fabs(A) <= gamma + 1e-12);
+        CHECK(std::fabs(A) == Approx(std::fabs(*motion.rest_position())).margin(1e-12));
+        CHECK(t == std::ceil((1 - gamma) / (2 * gamma)) / 2);
+    }
+}
+
+TEST_CASE("n half cycles at once are n times one", "[theory]") {
+    for (const double zeta : {0.0, 1e-12, 1e-4, 0.05}) {
+        const HalfCycles map(zeta, 0.003);
+        double X = 1;
+        for (int n = 1; n <= 60 && std::fabs(X) > 0.003; ++n) {
+            X = map.after(1, X);
+            // Sixty roundings; small zeta must not cost more.
+            REQUIRE(std::fabs(map.after(n, 1) - X) <= 60 * 2.3e-16);
+        }
+    }
+}
+
+TEST_CASE("a motion of 2.5e12 cycles is as quick and as exact as a short one", "[theory]") {
+    const double gamma = 1e-13;
+    const FreeMotion motion(nondimensional(0, gamma), {1, 0});
+    CHECK(motion.time_to_rest() == Approx(0.25 / gamma).epsilon(1e-12));
+    CHECK(std::fabs(*motion.rest_position()) <= gamma);
+    CHECK(motion.at(1e12).theta == Approx(1 - 0.4).epsilon(1e-3));  // an eighth of 1e-3 period is left of t's digits
+}
+
+TEST_CASE("inside the dead zone nothing begins", "[theory]") {
+    const FreeMotion motion(nondimensional(0.1, 0.1, 0.2), {0.2, 0});
+    CHECK(motion.time_to_rest() == 0);
+    CHECK(motion.rest_position() == 0.2);
+    CHECK(motion.extremes() == 1);
+    CHECK(motion.at(7).theta == 0.2);
+}
+
+TEST_CASE("an overdamped mass creeps to the edge Rd/k for ever", "[theory]") {
+    const FreeMotion motion(nondimensional(1.5, 0.1), {1, 0});
+    CHECK(motion.time_to_rest() == never);
+    CHECK(motion.rest_position() == 0.1);
+    CHECK(motion.at(30).theta == Approx(0.1).margin(1e-15));
+    CHECK(motion.extremes() == 1);
+
+    // Thrown at the middle from afar it never turns; thrown past it, it turns once and stays.
+    CHECK(FreeMotion(nondimensional(1.5, 0.1), {1, -1}).extremes() == 0);
+    CHECK(FreeMotion(nondimensional(1.5, 0.1), {1, -1}).rest_position() == 0.1);
+    CHECK(FreeMotion(nondimensional(1.5, 0.1), {0, 0.5}).time_to_rest() < 1);
+}
+
+TEST_CASE("without dry friction a motion swings for ever, or tends to the middle", "[theory]") {
+    const FreeMotion undamped(nondimensional(0, 0), {1, 0});
+    CHECK(undamped.time_to_rest() == never);
+    CHECK_FALSE(undamped.rest_position());
+    CHECK(undamped.extremes() == never);
+    CHECK(undamped.extreme(3).theta == -1);
+    CHECK(FreeMotion(nondimensional(0.1, 0), {1, 0}).rest_position() == 0.0);
+    CHECK(FreeMotion(nondimensional(1, 0), {1, 0}).rest_position() == 0.0);
+    // Breakaway alone, without kinetic friction, stops a damped swing.
+    CHECK(FreeMotion(nondimensional(0.1, 0, 0.1), {1, 0}).time_to_rest() < 5);
+    CHECK(FreeMotion(nondimensional(0, 0, 0.1), {1, 0}).time_to_rest() == never);
+}
+
+TEST_CASE("three extremes tell both dampings", "[theory]") {
+    Chance chance(4);
+    for (int i = 0; i < 100; ++i) {
+        const double zeta = i % 10 == 0 ? 0 : chance.between(0, 0.3);
+        const double shift = i % 10 == 1 ? 0 : chance.between(0, 0.02);
+        const HalfCycles map(zeta, shift);
+        const auto found = identify(1, map.after(1, 1), map.after(2, 1));
+        CAPTURE(zeta, shift);
+        REQUIRE(found);
+        // The extremes carry roundings of 1e-16, which weigh more the smaller their differences are.
+        const double lost = 4e-16 / (1 - std::fabs(map.after(1, 1)));
+        CHECK(std::fabs(found->zeta - zeta) <= lost);
+        CHECK(std::fabs(found->friction_shift - shift) <= lost);
+    }
+    CHECK_FALSE(identify(1, 1, 0.5));
+    CHECK_FALSE(identify(1, 0.5, 0.6));
+    CHECK(identify(1, 0.8, 0.5)->zeta < 0);  // falls faster and faster: not these dampings, and said so
+}
+
+TEST_CASE("decrements of viscous and of dry friction", "[theory]") {
+    CHECK(logarithmic_decrement(0.119) == Approx(2 * pi * 0.119 / std::sqrt(1 - 0.119 * 0.119)).epsilon(1e-15));
+    for (const double zeta : {0.0, 1e-9, 0.119, 0.9, 0.999999}) {
+        // Near 1 the decrement is steep, its inverse flat.
+        CHECK(zeta_of_decrement(logarithmic_decrement(zeta)) == Approx(zeta).epsilon(1e-15).margin(0));
+    }
+    const HalfCycles map(0, 0.03);
+    CHECK(1 - map.after(2, 1) == Approx(friction_decrement(0.06, 2)).epsilon(1e-15));
+}
