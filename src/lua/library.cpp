@@ -11,7 +11,7 @@ namespace {
 
 constexpr void (*register_functions[])(lua_State*) = {
     register_system,     register_excitation, register_integrator, register_run,
-    register_trajectory, register_vector,     register_help,
+    register_trajectory, register_theory,     register_vector,     register_help,
 };
 
 // Plain fields of the table: documented here, set by open_library() and sys:simulate.
@@ -49,6 +49,7 @@ const Section all_sections[] = {
     {"An integrator", "integrator", &integrator_class},
     {"A run", "run", &run_class},
     {"Trajectories from files", "trajectory", &trajectory_module},
+    {"Theory", "theory", &theory_module},
     {"Vectors", "vector", &vector_module},
     {"A vector", "v", &vector_class},
     {"Help", "", &help_functions},

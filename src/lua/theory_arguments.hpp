@@ -1,0 +1,108 @@
+// Arguments and results of closed forms: each option a number or a vector, and results of the same shape.
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <deque>
+#include <limits>
+#include <string_view>
+#include <vector>
+
+#include "core/oscillator.hpp"
+#include "lua/interrupt.hpp"
+#include "lua/options.hpp"
+#include "lua/vector.hpp"
+
+namespace dinal {
+
+/// What a closed form returns where it does not hold: nil for numbers, nan in a vector.
+inline constexpr double no_value = std::numeric_limits<double>::quiet_NaN();
+
+/// Which values an option may have, and how the sentence goes on that refuses another one: "r = -1 must ...".
+struct Range {
+    const char* must;
+    bool (*holds)(double);
+};
+inline constexpr Range any_number{"", [](double) { return true; }};
+inline constexpr Range positive{"must be positive", [](double x) { return x > 0; }};
+inline constexpr Range not_negative{"must not be negative", [](double x) { return x >= 0; }};
+
+/// A number, or the numbers of a vector.
+class Quantity {
+public:
+    explicit Quantity(double number) : number_(number) {}
+    explicit Quantity(std::span<const double> values) : values_(values.data()) {}
+    double operator[](std::size_t i) const { return values_ != nullptr ? values_[i] : number_; }
+
+private:
+    const double* values_ = nullptr;
+    double number_ = 0;
+};
+
+class TheoryArguments {
+public:
+    /// As Options. `call` is the name of the function: "theory.magnification".
+    TheoryArguments(lua_State* L, std::string_view call, std::string_view example,
+                    std::initializer_list<std::string_view> names);
+
+    [[nodiscard]] const Options& options() const { return options_; }
+
+    /// Vectors and tables of numbers must be equally long. A nan in a vector passes: its result is nan.
+    Quantity quantity(std::string_view name, const Range& range);
+    Quantity quantity(std::string_view name, const Range& range, double otherwise);
+    /// The system that must be there.
+    [[nodiscard]] const Oscillator& system() const;
+    /// system(), or nullptr when there is none.
+    [[nodiscard]] const Oscillator* optional_system() const;
+
+    /// Raises "CALL: NAME[i] = VALUE MUST" for element i from 0 (without [i] when NAME is a number).
+    [[noreturn]] void refuse(std::string_view name, std::size_t i, double value, std::string_view must) const;
+
+    /// Pushes f(i) for each element, i from 0: an array of doubles, one for each result. A number when all options are
+    /// numbers, otherwise a vector.
+    template <class Function>
+    int push_results(Function f) const;
+    /// The same for a function with one result.
+    template <class Function>
+    int push_result(Function f) const {
+        return push_results([&](std::size_t i) { return std::array{static_cast<double>(f(i))}; });
+    }
+
+private:
+    Quantity remembered(const Quantity& quantity);
+    [[nodiscard]] bool has_nan(std::size_t i) const;
+    void check_size(std::string_view name, std::size_t size);
+    void check(std::string_view name, const Range& range, std::span<const double> values) const;
+
+    lua_State* L_;
+    Options options_;
+    std::deque<std::vector<double>> tables_;  // numbers of Lua tables; a deque does not move them
+    std::vector<Quantity> quantities_;
+    std::size_t size_ = 1;
+    std::string_view sized_by_;  // the first option that is a vector
+};
+
+template <class Function>
+int TheoryArguments::push_results(Function f) const {
+    constexpr std::size_t count = std::tuple_size_v<decltype(f(0))>;
+    std::array<std::vector<double>, count> columns;
+    for (auto& column : columns) column.resize(size_, no_value);
+    for (std::size_t i = 0; i < size_; ++i) {
+        if (interrupt_requested()) raise_interrupted(L_);
+        if (has_nan(i)) continue;
+        const auto results = f(i);
+        for (std::size_t j = 0; j < count; ++j) columns[j][i] = results[j];
+    }
+    for (auto& column : columns) {
+        if (!sized_by_.empty()) {
+            push_vector(L_, std::move(column));
+        } else if (std::isnan(column[0])) {
+            lua_pushnil(L_);
+        } else {
+            lua_pushnumber(L_, column[0]);
+        }
+    }
+    return static_cast<int>(count);
+}
+
+}  // namespace dinal

@@ -1,0 +1,208 @@
+-- theory.*: numbers and vectors in, the same shape out; the numbers themselves are tested in tests/core.
+package.path = "tests/lua/?.lua;" .. package.path
+local support = require "support"
+local test, near, equal, raises_here = support.test, support.near, support.equal, support.raises_here
+
+local nd = nondimensional { zeta = 0.119, friction_ratio = 0.06 }
+
+--- Arguments with which each function works, all of them numbers.
+local calls = {
+    free_response = { system = nd, theta0 = 1, velocity0 = 0, t = 0.3 },
+    time_to_rest = { system = nd, theta0 = 1, velocity0 = 0.5 },
+    rest_position = { system = nd, theta0 = 1, velocity0 = 0.5 },
+    half_cycle = { X = 1, zeta = 0.1, x_f = 0.05, dead_zone = 0.06, n = 2 },
+    logarithmic_decrement = { zeta = 0.1 },
+    zeta_from_decrement = { decrement = 0.6 },
+    friction_decrement = { Rd = 2, k = 40 },
+    identify = { X0 = 1, X1 = -0.7, X2 = 0.45 },
+    magnification = { r = 0.5, zeta = 0.1 },
+    phase_lag = { r = 0.5, zeta = 0.1 },
+    transmissibility = { r = 0.5, zeta = 0.1 },
+    equivalent_damping = { Rd = 2, omega = 6, amplitude = 0.5 },
+    equivalent_zeta = { friction_ratio = 0.2, r = 0.5, magnification = 1.3 },
+    linearised = { r = 0.5, friction_ratio = 0.1, zeta = 0.05 },
+    friction_work = { Rd = 2, amplitude = 0.5 },
+    growth_at_resonance = { friction_ratio = 0.2 },
+    den_hartog = { r = 0.75, friction_ratio = 0.2, zeta = 0.1, breakaway_ratio = 0.25 },
+    den_hartog_fundamental = { r = 0.75, friction_ratio = 0.2, zeta = 0.1, breakaway_ratio = 0.25 },
+    stop_boundary = { r = 0.75, zeta = 0.1, Re_over_Rd = 1.25 },
+    step_limit = { system = nd, rule = "report", theta0 = 1, velocity0 = 0.5, Mc = 2 },
+}
+local two_results = { free_response = true, identify = true, linearised = true, den_hartog = true,
+    den_hartog_fundamental = true }
+
+test("theory is in the table dinal and a global, and all of its functions are tried here", function()
+    equal(theory, dinal.theory)
+    for name in pairs(theory) do
+        assert(calls[name] or name == "extremes", name)
+    end
+end)
+
+test("numbers give numbers", function()
+    for name, arguments in pairs(calls) do
+        local results = table.pack(theory[name](arguments))
+        equal(results.n, two_results[name] and 2 or 1, name)
+        for i = 1, results.n do
+            equal(math.type(results[i]), "float", name)
+        end
+    end
+end)
+
+test("each option may be a vector or a table, and then the results are vectors of the same numbers", function()
+    for name, arguments in pairs(calls) do
+        for option, value in pairs(arguments) do
+            if type(value) == "number" then
+                -- the same value three times, so that it is good for every function
+                for _, many in ipairs { vector { value, value, value }, { value, value, value } } do
+                    local copy = {}
+                    for k, v in pairs(arguments) do copy[k] = v end
+                    copy[option] = many
+                    local wanted, found = table.pack(theory[name](arguments)), table.pack(theory[name](copy))
+                    equal(found.n, wanted.n, name)
+                    for i = 1, wanted.n do
+                        equal(found[i], vector { wanted[i], wanted[i], wanted[i] }, name .. " with many " .. option)
+                    end
+                end
+            end
+        end
+    end
+end)
+
+test("a whole curve is one call", function()
+    local r = vector.linspace(0, 3, 301)
+    local phi = theory.magnification { r = r, zeta = 0.2 }
+    equal(#phi, 301)
+    equal(phi[101], theory.magnification { r = r[101], zeta = 0.2 })
+    near(phi[101], 2.5, 1e-14)
+    -- two vectors go side by side
+    local both = theory.phase_lag { r = { 0.5, 2 }, zeta = { 0.1, 0.2 } }
+    equal(both[2], theory.phase_lag { r = 2, zeta = 0.2 })
+    equal(#theory.magnification { r = {} }, 0)
+end)
+
+test("where a closed form does not hold there is nil, and nan among others", function()
+    equal(theory.den_hartog { r = 2, friction_ratio = 0.6 }, nil)
+    equal(select("#", theory.den_hartog { r = 2, friction_ratio = 0.6 }), 2)
+    local A, lag = theory.den_hartog { r = { 2, 2 }, friction_ratio = { 0.5, 0.6 } }
+    near(A[1], 0.220479276, 0.51e-9)
+    assert(A[2] ~= A[2] and lag[2] ~= lag[2])
+    equal(theory.den_hartog { r = 2, friction_ratio = 0.57 } ~= nil, true)
+    equal(theory.den_hartog { r = 2, friction_ratio = 0.57, breakaway_ratio = 1.25 * 0.57 }, nil)
+    equal(theory.linearised { r = 0.5, friction_ratio = 0.8 }, nil)
+    equal(theory.identify { X0 = 1, X1 = 1.2, X2 = 0.5 }, nil)
+    equal(theory.rest_position { system = nondimensional {}, theta0 = 1 }, nil)
+    equal(theory.time_to_rest { system = nondimensional {}, theta0 = 1 }, math.huge)
+end)
+
+test("a nan in a vector stays where it is", function()
+    local A = theory.den_hartog { r = { 0.5, 0.9, 1.3 }, friction_ratio = 0.4 }
+    assert(A[1] ~= A[1])
+    local zeta = theory.equivalent_zeta { friction_ratio = 0.4, r = { 0.5, 0.9, 1.3 }, magnification = A }
+    assert(zeta[1] ~= zeta[1])
+    near(zeta[2], 2 * 0.4 / (math.pi * 0.9 * A[2]), 1e-15)
+end)
+
+test("resonance without damping has no amplitude, and says so", function()
+    equal(theory.magnification { r = 1 }, math.huge)
+    equal(theory.phase_lag { r = 1 }, math.pi / 2)
+    local A, lag = theory.den_hartog { r = 1, friction_ratio = 0.5 }
+    equal(A, math.huge)
+    equal(lag, math.pi / 2)
+    near(theory.stop_boundary { r = 1 }, math.pi / 4, 1e-15)
+end)
+
+test("a run agrees with theory.free_response, turns and rest included", function()
+    local run = nd:simulate { velocity0 = 2 * math.pi, t_end = 3, dt = 0.01, integrator = integrator.rk4 { h = 0.001 } }
+    local theta, velocity = theory.free_response { system = nd, velocity0 = 2 * math.pi, t = run.t }
+    -- rk4 is good to 8e-11 of the amplitude a period; the velocity is greater by 2 pi
+    assert((theta - run.theta):abs():max() < 1e-9)
+    assert((velocity - run.velocity):abs():max() < 1e-8)
+    local t, X = theory.extremes { system = nd, velocity0 = 2 * math.pi }
+    equal(#run.events, #t)
+    for i, event in ipairs(run.events) do
+        near(event.t, t[i], 1e-9)
+        near(event.theta, X[i], 1e-9)
+    end
+    near(theory.time_to_rest { system = nd, velocity0 = 2 * math.pi }, 1.733933195, 0.51e-9)
+    near(theory.rest_position { system = nd, velocity0 = 2 * math.pi }, -0.038291587, 0.51e-9)
+end)
+
+test("omega0 and zeta do without a system", function()
+    local theta, velocity = theory.free_response { omega0 = 2, theta0 = 1, t = { -0.5, 0, 1 } }
+    near(theta[3], math.cos(2), 1e-15)
+    near(velocity[1], 2 * math.sin(1), 1e-15)
+    near(theory.free_response { omega0 = 2, zeta = 1, theta0 = 1, t = 1 }, 3 * math.exp(-2), 1e-15)
+end)
+
+test("extremes stop at rest, at count, or ask for it", function()
+    local sys = nondimensional { friction_ratio = 0.1 }
+    local t, X = theory.extremes { system = sys, theta0 = 0.55 }
+    equal(#t, 4)
+    near(X[4], 0.05, 1e-15)
+    equal(#theory.extremes { system = sys, theta0 = 0.55, count = 2 }, 2)
+    equal(#theory.extremes { system = nondimensional {}, theta0 = 1, count = 5 }, 5)
+    raises_here(function() theory.extremes { system = nondimensional {}, theta0 = 1 } end,
+        "theory.extremes: count is needed, because this motion never comes to rest")
+    raises_here(function() theory.extremes { system = nondimensional { friction_ratio = 1e-12 }, theta0 = 1 } end,
+        "count is needed, because there are 5e+11 extremes until rest")
+    raises_here(function() theory.extremes { system = sys, count = 1.5 } end, "count = 1.5 must be a whole number")
+    raises_here(function() theory.extremes { theta0 = 1 } end, "theory.extremes needs system, for example")
+    raises_here(function() theory.extremes { system = 3 } end, "system must be a system such as", "got 3")
+end)
+
+test("half_cycle takes a system, too, and stops in the dead zone", function()
+    local sys = system { I = 1, k = 10, C = 0.4, Rd = 0.5, Re = 0.8 }
+    equal(theory.half_cycle { X = 1, system = sys },
+        theory.half_cycle { X = 1, zeta = sys.zeta, x_f = sys.Rd / sys.k, dead_zone = sys.dead_zone })
+    equal(theory.half_cycle { X = 0.08, system = sys }, 0.08)
+    raises_here(function() theory.half_cycle { X = 1, system = sys, zeta = 0.1 } end, "system excludes zeta")
+    raises_here(function() theory.half_cycle { X = 1, system = nondimensional { zeta = 1 } } end,
+        "the system has zeta = 1: without a swing there is no next extreme")
+    raises_here(function() theory.half_cycle { X = 1, zeta = 1.2 } end, "zeta = 1.2 must be from 0 to less than 1")
+    raises_here(function() theory.half_cycle { X = 1, x_f = 0.2, dead_zone = { 0.3, 0.1 } } end,
+        "dead_zone[2] = 0.1 must be at least x_f = 0.2")
+end)
+
+test("the three step limits", function()
+    local sys = system { I = 1, k = 39.48, Rd = 6.59316 }
+    near(theory.step_limit { system = sys, rule = "report", velocity0 = 6.283311, Mc = 39.48 }, 0.0265778, 1e-6)
+    near(theory.step_limit { system = sys, rule = "corrected", velocity0 = 6.283311 }, 0.167 / 6.283311, 1e-9)
+    near(theory.step_limit { system = sys }, 0.4502 * sys.T0, 1e-4)
+    raises_here(function() theory.step_limit { system = sys, rule = "euler" } end, "rule must be 'rk4', 'report' or 'corrected', got")
+    raises_here(function() theory.step_limit { system = sys, rule = "reprot" } end, "did you mean 'report'?")
+    raises_here(function() theory.step_limit { system = sys, rule = "report" } end, "theta0 or velocity0 is needed")
+    raises_here(function() theory.step_limit { system = sys, rule = "report", theta0 = 1, Mc = 0 } end,
+        "Mc = 0 must not be zero")
+end)
+
+test("wrong values are refused with the option, the element and the limit", function()
+    raises_here(function() theory.magnification { r = -1 } end, "theory.magnification: r = -1 must not be negative")
+    raises_here(function() theory.magnification { r = { 1, 2, -3 } } end, "theory.magnification: r[3] = -3 must not be")
+    raises_here(function() theory.magnification { r = vector { 1, 2 }, zeta = { 1, 2, 3 } } end,
+        "r and zeta have 2 and 3 numbers; they must be equally long")
+    raises_here(function() theory.magnification { r = "1" } end,
+        'r must be a finite number or a vector, got the string "1"')
+    raises_here(function() theory.magnification { r = 0 / 0 } end, "r must be a finite number, got", "nan")
+    raises_here(function() theory.magnification { r = { 1, "2" } } end, 'r[2] must be a finite number, got the string "2"')
+    raises_here(function() theory.magnification {} end, "theory.magnification needs r, for example")
+    raises_here(function() theory.magnification(0.5) end, "theory.magnification takes one table of named options")
+    raises_here(function() theory.magnification { r = 1, zetta = 0 } end, "no option 'zetta'", "did you mean 'zeta'?")
+    raises_here(function() theory.den_hartog { r = 0.5, friction_ratio = 0.3, breakaway_ratio = 0.2 } end,
+        "breakaway_ratio = 0.2 must be at least friction_ratio = 0.3")
+    raises_here(function() theory.den_hartog { r = 1e-5, friction_ratio = 0.3 } end,
+        "r = 1e-05 must be 0 or from 0.0001 to 1e6")
+    raises_here(function() theory.stop_boundary { r = 0.5, Re_over_Rd = 0.9 } end, "Re_over_Rd = 0.9 must be at least 1")
+    raises_here(function() theory.free_response { t = 1, theta0 = 1 } end, "theory.free_response needs system, or omega0")
+    raises_here(function() theory.free_response { t = 1, system = nd, omega0 = 1 } end, "system excludes omega0 and zeta")
+    raises_here(function() theory.free_response { t = { 1, -1 }, system = nd, theta0 = 1 } end,
+        "t[2] = -1 must not be negative")
+    raises_here(function() theory.identify { X0 = 0, X1 = 0, X2 = 0 } end, "X0 = 0 must not be zero")
+    raises_here(function() theory.logarithmic_decrement { zeta = 1 } end, "zeta = 1 must be from 0 to less than 1")
+end)
+
+test("a misspelt function is an error with a suggestion", function()
+    raises_here(function() return theory.den_hartg end, "there is no theory.den_hartg; did you mean 'den_hartog'?")
+    raises_here(function() return theory.magnificaton end, "did you mean 'magnification'?")
+end)
+
+support.finish()
