@@ -271,7 +271,7 @@ void SpectralEngine::end_piece(double x, State state, double M) {
     const bool whole = x == 1;
     // A stuck piece may begin within the panel.
     Panel piece = panel_;
-    piece.length = whole ? panel_.start.until(end_) : panel_.h * (1 + x);
+    piece.length = whole ? 2 * panel_.h : panel_.h * (1 + x);
     rows_until(piece.length);
     if (panels_ != nullptr) {
         if (motion_ == Motion::stuck && !system_.frictionless()) {
@@ -283,7 +283,7 @@ void SpectralEngine::end_piece(double x, State state, double M) {
         }
         if (piece.length > 0) panels_->add(piece);
     }
-    clock_ = whole ? Clock{end_, 0} : panel_.start.later(panel_.h * (1 + x));
+    clock_ = whole && to_limit_ ? Clock{end_, 0} : panel_.start.later(whole ? 2 * panel_.h : panel_.h * (1 + x));
     y_ = state;
     if (whole) standing_from_ = nowhere;
     M_sampled_ = whole;

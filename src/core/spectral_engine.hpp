@@ -119,6 +119,7 @@ private:
 
     Panel panel_;  // the one at work
     double end_ = 0;
+    bool to_limit_ = false;  // it ends at a break or with the window, exactly
     bool break_at_end_ = false;
     double standing_from_ = nowhere;  // from here on its M serves a mass that came to a stop in it
     chebyshev::Samples times_{}, samples_{};

@@ -42,14 +42,14 @@ void SpectralEngine::choose_panel() {
     const double limit = std::min(window_.end, breaks);
     const double remaining = clock_.until(limit);
     if (bad_time_ < never) h_ = std::min(h_, clock_.until(bad_time_) / 4);
-    const bool to_limit = remaining <= 2 * h_ * (1 + 1e-9);
+    to_limit_ = remaining <= 2 * h_ * (1 + 1e-9);
     panel_.start = clock_;
     panel_.begin = y_;
     panel_.motion = motion_;
     // Two panels of equal length rather than a long and a very short one.
-    panel_.h = to_limit ? remaining / 2 : remaining < 4 * h_ ? remaining / 4 : h_;
-    end_ = to_limit ? limit : clock_.after(2 * panel_.h);
-    break_at_end_ = to_limit && limit == breaks;
+    panel_.h = to_limit_ ? remaining / 2 : remaining < 4 * h_ ? remaining / 4 : h_;
+    end_ = to_limit_ ? limit : clock_.after(2 * panel_.h);
+    break_at_end_ = to_limit_ && limit == breaks;
     for (std::size_t j = 0; j + 1 < points; ++j) times_[j] = time_at(chebyshev::nodes[j]);
     times_[points - 1] = end_;
     standing_from_ = nowhere;

@@ -26,6 +26,7 @@ struct LuaCalls {
     double on_w3 = 0;
     double events_on_w3 = 0;
     double without_events = 0;
+    double spectral_on_w3 = 0;
 };
 
 class Results {
