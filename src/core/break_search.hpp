@@ -67,6 +67,7 @@ std::optional<double> find_break(std::span<const double> times, std::span<const 
     constexpr int judged_at = 7;        // halvings after which
     constexpr double smooth = 0x1p-10;  // a kink still bends by 2^-7 or more, a smooth f by 2^-14
     const double at_first = std::max(t.bend(), most);
+    if (at_first <= 64 * t.noise()) return {};
     for (int i = 1; i < 60; ++i) {
         t = detail::most_bent_half(t, f);
         if (i == judged_at && !(t.bend() > smooth * at_first)) return {};

@@ -22,6 +22,8 @@ constexpr int most_short = 100000;
 constexpr int most_short_with_feedback = 2000;
 /// Not resolved by more than this factor: it may be a break.
 constexpr double gross = 1e3;
+/// Found and still ahead: more would be the noise of M.
+constexpr std::size_t most_found_breaks = 50;
 constexpr int most_iterations = 25;
 /// Where M fails, the run comes this near to it (natural periods).
 constexpr double near_failure = 1e-9;
@@ -237,7 +239,8 @@ double SpectralEngine::unresolved_motion() const {
 
 /// Looks for a jump or kink of M in the panel, once in each order of magnitude of its length.
 bool SpectralEngine::found_break() {
-    if (searched_from_ == clock_.hi && panel_.h > 0.1 * searched_h_) return false;
+    const bool searched = searched_from_ == clock_.hi && panel_.h > 0.1 * searched_h_;
+    if (searched || found_breaks_.size() >= most_found_breaks || !(unresolved_load() > gross)) return false;
     searched_from_ = clock_.hi, searched_h_ = panel_.h;
     const auto found = find_break(times_, samples_, [&](double t) { return excitation_.value(t); });
     // One at the very beginning is not a break but a singular point, which ever shorter panels leave behind.
