@@ -290,16 +290,14 @@ Trajectory run(const Problem& problem, const Dinal1989& options) {
     Trajectory trajectory;
     RowWriter rows(problem.system, problem.rows, trajectory);
     const Window& window = problem.window;
-    const auto record = std::make_shared<Record>(Record{
-        problem.system, problem.excitation, options, window.start,
-        Checkpoints<Present>(static_cast<std::size_t>(std::min((window.end - window.start) / options.h, 1e18)))});
+    // A step that would begin within rounding of the end is not made.
+    const double covering = std::min((window.end - window.start) / options.h, 1e18);
+    const auto steps = static_cast<std::size_t>(std::ceil(covering - 1e-9));
+    const auto record = std::make_shared<Record>(
+        Record{problem.system, problem.excitation, options, window.start, Checkpoints<Present>(steps)});
     Dinal dinal(record->system, record->excitation, options, window.start);
     const std::size_t steps_per_row = rows.steps_per_row(options.h);
-
     Present now = dinal.start(problem.initial);
-    // A step that would begin within rounding of the end is not made.
-    const auto steps =
-        static_cast<std::size_t>(std::ceil(std::min((window.end - window.start) / options.h, 1e18) - 1e-9));
     std::size_t block = 0, block_end = 0, sampled = 0;
     while (finite(now)) {
         if (on_step(rows, window.start, options.h, now.step, steps_per_row))
@@ -316,14 +314,14 @@ Trajectory run(const Problem& problem, const Dinal1989& options) {
             sampled = dinal.sample(now, block_end - block);
         }
         const std::size_t i = now.step - block;
-        const std::size_t stop =
-            std::min(block + sampled, step_before_row(rows, window.start, options.h, steps_per_row));
+        const auto before_row = step_before_row(rows, window.start, options.h, steps_per_row);
+        const std::size_t stop = std::min(block + sampled, before_row);
         if (block + i < stop && dinal.plain_steps(now, i, stop - block) > i) continue;
 
         const Present next = i < sampled ? dinal.step(now, i) : dinal.step(now);
         if (finite(next)) {
-            if (!on_step(rows, window.start, options.h, next.step, steps_per_row) &&
-                !rows_between(rows, dinal, now, next)) {
+            const bool row_at_end = on_step(rows, window.start, options.h, next.step, steps_per_row);
+            if (!row_at_end && !rows_between(rows, dinal, now, next)) {
                 trajectory.outcome = Outcome::excitation_not_finite;
                 break;
             }
@@ -343,6 +341,8 @@ Trajectory run(const Problem& problem, const Dinal1989& options) {
         }
     }
     rows.finish();
+    trajectory.state_at_stop = dinal.state(now);
+    trajectory.motion_at_stop = now.frozen ? Motion::stuck : motion_of(trajectory.state_at_stop.velocity);
     if (problem.limits.dense) trajectory.dense = [record](double t) { return replay(*record, t); };
     return trajectory;
 }

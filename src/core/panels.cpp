@@ -19,6 +19,11 @@ void Panels::add(const Panel& panel) {
     ++size_;
 }
 
+void Panels::append(const Panels& later) {
+    for (std::size_t i = 0; i < later.size(); ++i) add(later[i]);
+    complete_ = complete_ && later.complete_;
+}
+
 double Panels::end() const {
     const Panel& last = (*this)[size_ - 1];
     return last.start.after(last.length);

@@ -34,7 +34,14 @@ public:
     /// `most_bytes` is what they may take; what comes later is not kept.
     Panels(const Oscillator& system, std::size_t most_bytes) : system_(system), most_(most_bytes / sizeof(Panel)) {}
 
+    Panels(const Panels& other) : system_(other.system_), most_(other.most_), complete_(other.complete_) {
+        append(other);
+    }
+    Panels& operator=(const Panels&) = delete;
+    ~Panels() = default;
+
     void add(const Panel& panel);
+    void append(const Panels& later);
     [[nodiscard]] const Oscillator& system() const { return system_; }
     [[nodiscard]] std::size_t size() const { return size_; }
     [[nodiscard]] const Panel& operator[](std::size_t i) const { return (*chunks_[i / chunk])[i % chunk]; }

@@ -67,6 +67,8 @@ Trajectory run(const Problem& problem, const Rk4& options) {
     rows.finish();
     trajectory.t_start = problem.window.start;
     trajectory.t_stop = trajectory.outcome == Outcome::at_rest ? problem.window.end : engine.now();
+    trajectory.state_at_stop = engine.state();
+    trajectory.motion_at_stop = engine.motion();
     if (dense) trajectory.dense = [record](double t) { return replay(*record, t); };
     return trajectory;
 }

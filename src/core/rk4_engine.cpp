@@ -23,6 +23,7 @@ Rk4Engine::Rk4Engine(const Problem& problem, const Rk4& options, RowWriter& rows
       excitation_(problem.excitation),
       monitor_(problem.monitor),
       initial_(problem.initial),
+      before_(problem.before),
       window_(problem.window),
       rows_(rows),
       events_(events),
@@ -35,11 +36,13 @@ Rk4Engine::Rk4Engine(const Problem& problem, const Rk4& options, RowWriter& rows
       constant_from_(problem.excitation.constant_from()) {}
 
 Outcome Rk4Engine::run() {
-    at_start_ = true;
+    at_start_ = !before_;
     const double t = window_.start;
     const bool at_break = excitation_.next_break(std::nextafter(t, -never)) == t;
     const double M = at_break ? excitation_.value_after(t, initial_) : excitation_.value(t, initial_);
-    return run({0, initial_, M, motion_of(initial_.velocity), initial_.velocity == 0}, steps_);
+    const Motion motion = before_.value_or(motion_of(initial_.velocity));
+    const bool standstill = initial_.velocity == 0 && !(before_ && motion == Motion::stuck);
+    return run({0, initial_, M, motion, standstill}, steps_);
 }
 
 Outcome Rk4Engine::run(const Rk4Checkpoint& from, std::size_t last_step) {

@@ -39,6 +39,8 @@ public:
         return n == steps_ ? window_.end : window_.start + static_cast<double>(n) * full_.h;
     }
     [[nodiscard]] double now() const { return t_; }
+    [[nodiscard]] State state() const { return y_; }
+    [[nodiscard]] Motion motion() const { return motion_; }
     [[nodiscard]] Rk4Checkpoint here(std::size_t step) const { return {step, y_, M_, motion_, standstill_}; }
 
 private:
@@ -114,6 +116,7 @@ private:
     const Excitation& excitation_;
     const Monitor& monitor_;
     State initial_;
+    std::optional<Motion> before_;
     Window window_;
     RowWriter& rows_;
     std::vector<Event>* events_;

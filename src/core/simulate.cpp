@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "core/methods.hpp"
+#include "core/panels.hpp"
 
 namespace dinal {
 
@@ -73,9 +74,12 @@ Expected<Grid> Grid::within(const Window& window) const {
     return grid;
 }
 
-Expected<Trajectory> simulate(const Oscillator& system, const Excitation& excitation, const State& initial,
-                              const Window& window, const Grid& rows, const Integrator& integrator,
-                              const Monitor& monitor, const Limits& limits) {
+namespace {
+
+Expected<Trajectory> run_from(const std::optional<Motion>& before, const Oscillator& system,
+                              const Excitation& excitation, const State& initial, const Window& window,
+                              const Grid& rows, const Integrator& integrator, const Monitor& monitor,
+                              const Limits& limits) {
     if (!std::isfinite(initial.theta)) return Error{fmt::format("theta0 = {} must be a finite number", initial.theta)};
     if (!std::isfinite(initial.velocity))
         return Error{fmt::format("velocity0 = {} must be a finite number", initial.velocity)};
@@ -95,8 +99,73 @@ Expected<Trajectory> simulate(const Oscillator& system, const Excitation& excita
     const bool spectral = std::holds_alternative<Spectral>(*method);
     if (auto lost = lost_in_time(spectral ? "T0/27" : "h", resolution(*method, system), window)) return *lost;
 
-    const Problem problem{system, excitation, initial, window, *grid, monitor, limits};
+    const Problem problem{system, excitation, initial, window, *grid, monitor, limits, before};
     return std::visit([&](const auto& options) { return run(problem, options); }, *method);
+}
+
+/// The rows of the second part under those of the first, of which `kept` remain; and so on for all that a run has.
+Trajectory joined(const Trajectory& first, Eigen::Index kept, Trajectory second) {
+    Eigen::MatrixXd rows(kept + second.rows.rows(), column_count);
+    rows << first.rows.topRows(kept), second.rows;
+    second.rows = std::move(rows);
+
+    std::vector<Event> events = first.events;
+    if (!events.empty() && events.back().kind == EventKind::rest) events.back().kind = EventKind::stick;
+    events.insert(events.end(), second.events.begin(), second.events.end());
+    if (second.outcome == Outcome::at_rest && !events.empty()) events.back().kind = EventKind::rest;
+    second.events = std::move(events);
+
+    if (first.dense && second.dense) {
+        second.dense = [before = first.dense, split = second.t_start, after = second.dense](double t) {
+            return t < split ? before(t) : after(t);
+        };
+    } else {
+        second.dense = {};
+    }
+    if (first.panels && second.panels) {
+        auto panels = std::make_shared<Panels>(*first.panels);
+        panels->append(*second.panels);
+        second.panels = std::move(panels);
+    } else {
+        second.panels = {};
+    }
+    second.t_start = first.t_start;
+    return second;
+}
+
+}  // namespace
+
+Expected<Trajectory> simulate(const Oscillator& system, const Excitation& excitation, const State& initial,
+                              const Window& window, const Grid& rows, const Integrator& integrator,
+                              const Monitor& monitor, const Limits& limits) {
+    return run_from({}, system, excitation, initial, window, rows, integrator, monitor, limits);
+}
+
+Expected<Trajectory> resume(const Oscillator& system, const Excitation& excitation, const Trajectory& so_far,
+                            double t_end, const Grid& rows, const Integrator& integrator, const Monitor& monitor,
+                            const Limits& limits) {
+    const Window window{so_far.t_stop, t_end};
+    if (!(t_end > window.start)) {
+        return Error{fmt::format("t_end = {:.6g} must be after t = {:.6g}, where the run ended", t_end, window.start)};
+    }
+    const auto grid = rows.within({so_far.t_start, t_end});
+    if (!grid) return grid.error();
+    if (auto wrong = too_many_rows(static_cast<double>(grid->count()), *grid, window, limits)) return *wrong;
+    // The last row of the first part is none of all of it when only the old t_end put it there.
+    std::size_t kept = 0;
+    const auto had = static_cast<std::size_t>(so_far.size());
+    while (kept < had && kept < grid->count() && so_far.rows(static_cast<Eigen::Index>(kept), 0) == grid->time(kept)) {
+        ++kept;
+    }
+    std::vector<double> times;
+    times.reserve(grid->count() - kept);
+    for (std::size_t i = kept; i < grid->count(); ++i) {
+        if (grid->time(i) >= window.start) times.push_back(grid->time(i));
+    }
+    auto second = run_from(so_far.motion_at_stop, system, excitation, so_far.state_at_stop, window,
+                           Grid::at(std::move(times)), integrator, monitor, limits);
+    if (!second) return second.error();
+    return joined(so_far, static_cast<Eigen::Index>(kept), std::move(second).value());
 }
 
 }  // namespace dinal

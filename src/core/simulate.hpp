@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <functional>
+#include <optional>
 #include <vector>
 
 #include "core/excitation.hpp"
@@ -67,6 +68,7 @@ struct Problem {
     const Grid& rows;
     const Monitor& monitor;
     const Limits& limits;
+    std::optional<Motion> before = {};  ///< of a run that goes on: what the mass did until now; its start is an event
 };
 
 /// Runs from `initial` at window.start. Fails (before the first step) when the window, the grid or the integrator's
@@ -74,5 +76,11 @@ struct Problem {
 Expected<Trajectory> simulate(const Oscillator& system, const Excitation& excitation, const State& initial,
                               const Window& window, const Grid& rows, const Integrator& integrator,
                               const Monitor& monitor = {}, const Limits& limits = {});
+
+/// Goes on from where `so_far` ended, to t_end, as if it had not been interrupted: the trajectory of both. `rows` are
+/// those of all of it; the ones that `so_far` has are kept. Fails like simulate().
+Expected<Trajectory> resume(const Oscillator& system, const Excitation& excitation, const Trajectory& so_far,
+                            double t_end, const Grid& rows, const Integrator& integrator, const Monitor& monitor = {},
+                            const Limits& limits = {});
 
 }  // namespace dinal

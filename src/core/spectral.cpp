@@ -34,7 +34,7 @@ Trajectory run(const Problem& problem, const Spectral& options) {
     trajectory.outcome = engine.run();
     rows.finish();
     trajectory.t_start = problem.window.start;
-    trajectory.t_stop = engine.now();
+    engine.leave(trajectory);
     if (panels) trajectory.dense = [panels](double t) { return state_at(*panels, t); };
     trajectory.panels = std::move(panels);
     return trajectory;

@@ -26,6 +26,7 @@ SpectralEngine::SpectralEngine(const Problem& problem, const Spectral& options, 
       excitation_(problem.excitation),
       monitor_(problem.monitor),
       window_(problem.window),
+      before_(problem.before),
       rows_(rows),
       events_(events),
       panels_(panels),
@@ -58,8 +59,9 @@ void SpectralEngine::begin() {
     const double t = window_.start;
     const bool at_break = excitation_.next_break(std::nextafter(t, -never)) == t;
     M_ = at_break ? excitation_.value_after(t, y_) : excitation_.value(t, y_);
-    motion_ = motion_of(y_.velocity);
-    standstill_ = y_.velocity == 0;
+    motion_ = before_.value_or(motion_of(y_.velocity));
+    at_start_ = !before_;
+    standstill_ = y_.velocity == 0 && !(before_ && motion_ == Motion::stuck);
 }
 
 bool SpectralEngine::advance() {

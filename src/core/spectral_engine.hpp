@@ -21,8 +21,12 @@ public:
                    Panels* panels);
 
     Outcome run();
-    /// How far it came.
-    [[nodiscard]] double now() const { return clock_.hi; }
+    /// Tells how far it came, and in which state.
+    void leave(Trajectory& trajectory) const {
+        trajectory.t_stop = clock_.hi;
+        trajectory.state_at_stop = y_;
+        trajectory.motion_at_stop = motion_;
+    }
 
 private:
     static constexpr std::size_t points = chebyshev::points;
@@ -84,6 +88,7 @@ private:
     [[nodiscard]] double unresolved_load() const;
     [[nodiscard]] double unresolved_motion() const;
     bool found_break();
+    Attempt pass_over();
     Attempt judge(double unresolved);
     void lengthen(double unresolved);
 
@@ -91,6 +96,7 @@ private:
     const Excitation& excitation_;
     const Monitor& monitor_;
     Window window_;
+    std::optional<Motion> before_;
     RowWriter& rows_;
     std::vector<Event>& events_;
     Panels* panels_;

@@ -146,9 +146,7 @@ SpectralEngine::Attempt SpectralEngine::solve() {
 SpectralEngine::Iteration SpectralEngine::iterate() {
     constexpr double stiffest = 4;  // h^2 k/I up to which a panel's equation is well-conditioned
     for (const bool again : {false, true}) {
-        if (panel_.h * panel_.h * (system_.stiffness() + kappa_) / system_.inertia() > stiffest) {
-            return Iteration::diverges;
-        }
+        if (panel_.h * panel_.h * (system_.stiffness() + kappa_) / system_.inertia() > stiffest) break;
         chebyshev::Samples p{}, v{};
         for (std::size_t j = 0; j < points; ++j) {
             v[j] = panel_.h * y_.velocity;
@@ -184,17 +182,21 @@ SpectralEngine::Iteration SpectralEngine::iterate() {
                 return Iteration::converged;  // that is rounding
             }
         }
-        if (again) break;
-        estimate_slopes();
+        if (!again) estimate_slopes();
     }
+    kappa_ = chi_ = 0;  // a shorter panel begins without them: they may be what is wrong
     return Iteration::diverges;
 }
 
-/// How M depends on theta and velocity, by secants as wide as the motion on this panel.
+/// How M depends on theta and velocity, by secants as wide as the motion on this panel: that of the last iteration, but
+/// no wider than the torques at its beginning can make it.
 void SpectralEngine::estimate_slopes() {
-    const double t = clock_.hi;
-    const double d_theta = std::max(chebyshev::size(p_), 1e-6 * std::fabs(y_.theta));
-    const double d_velocity = std::max(chebyshev::size(v_) / panel_.h, 1e-6 * std::fabs(y_.velocity));
+    const double t = clock_.hi, h = panel_.h;
+    const double torque =
+        std::fabs(samples_[0]) + system_.stiffness() * std::fabs(y_.theta) + system_.kinetic_friction();
+    const double fastest = std::fabs(y_.velocity) + h * torque / system_.inertia();
+    const double d_theta = std::max(std::min(chebyshev::size(p_), 2 * h * fastest), 1e-6 * std::fabs(y_.theta));
+    const double d_velocity = std::max(std::min(chebyshev::size(v_) / h, fastest), 1e-6 * std::fabs(y_.velocity));
     const auto slope = [](double above, double below, double d) {
         const double s = d > 0 && d < never ? (below - above) / (2 * d) : 0;
         return std::isfinite(s) ? s : 0;
@@ -242,11 +244,20 @@ bool SpectralEngine::found_break() {
     const bool searched = searched_from_ == clock_.hi && panel_.h > 0.1 * searched_h_;
     if (searched || found_breaks_.size() >= most_found_breaks || !(unresolved_load() > gross)) return false;
     searched_from_ = clock_.hi, searched_h_ = panel_.h;
-    const auto found = find_break(times_, samples_, [&](double t) { return excitation_.value(t); });
+    const auto found = find_break(times_, samples_, [&](double t) { return excitation_.value(t, y_); });
     // One at the very beginning is not a break but a singular point, which ever shorter panels leave behind.
     if (!found || clock_.until(*found) < 1e-6 * panel_.h || !(*found < end_)) return false;
     found_breaks_.insert(std::upper_bound(found_breaks_.begin(), found_breaks_.end(), *found), *found);
     return true;
+}
+
+/// A panel too short to matter, with M held at its first value: nothing happens in it, and M is asked at its end.
+SpectralEngine::Attempt SpectralEngine::pass_over() {
+    panel_.M = {};
+    panel_.M[0] = samples_[0];
+    kappa_ = chi_ = 0;
+    if (panel_.motion != Motion::stuck) solve_for(panel_.M);
+    return Attempt::resolved;
 }
 
 SpectralEngine::Attempt SpectralEngine::judge(double unresolved) {
@@ -264,11 +275,13 @@ SpectralEngine::Attempt SpectralEngine::judge(double unresolved) {
     if (2 * panel_.h <= std::max(shortest * T0_, 16 * epsilon * late)) {
         // Whatever goes on here is over before it can move the mass. A feedback that switches may do so again at once.
         h_ = feedback_ ? 64 * panel_.h : h_max_;
-        if (++unresolved_in_a_row_ <= most_unresolved) return Attempt::resolved;
+        if (++unresolved_in_a_row_ <= most_unresolved) return pass_over();
         fail(feedback_ ? Outcome::chattering : Outcome::unresolved);
         return Attempt::ended;
     }
-    if (script_ && !feedback_ && unresolved > gross && found_break()) return Attempt::shorten;
+    // While the mass is stuck its state is known, and a feedback is a function of time, too.
+    const bool of_time = !feedback_ || (panel_.motion == Motion::stuck);
+    if (script_ && of_time && unresolved > gross && found_break()) return Attempt::shorten;
     // The last coefficients fall with h^16.
     h_ = panel_.h * std::clamp(0.9 * std::pow(unresolved, -1.0 / chebyshev::degree), 0.5, 0.9);
     return Attempt::shorten;

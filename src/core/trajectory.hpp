@@ -11,6 +11,7 @@
 
 #include "core/event.hpp"
 #include "core/expected.hpp"
+#include "core/friction.hpp"
 #include "core/oscillator.hpp"
 #include "core/outcome.hpp"
 
@@ -32,7 +33,9 @@ struct Trajectory {
     std::vector<Event> events;       ///< in order of time
     Outcome outcome = Outcome::reached_end;
     double t_start = 0;
-    double t_stop = 0;                     ///< how far it came: t_end unless the outcome says otherwise
+    double t_stop = 0;  ///< how far it came: t_end unless the outcome says otherwise
+    State state_at_stop;
+    Motion motion_at_stop = Motion::stuck;
     bool computed = true;                  ///< false when it was read from a file
     DenseOutput dense;                     ///< empty when it was declined, or the trajectory read from a file
     std::shared_ptr<const Panels> panels;  ///< the motion itself, of a spectral run with dense output

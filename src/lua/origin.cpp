@@ -55,8 +55,8 @@ std::string rows_text(const Grid& rows) {
 }  // namespace
 
 Origin origin_of(lua_State* L, const Task& task) {
-    Origin origin{task.system, task.integrator, task.excitation, {}};
-    auto& lines = origin.lines;
+    Origin origin{task, {}};
+    auto& lines = origin.set_up;
     lines.emplace_back("-- dinal " DINAL_VERSION ": without the \"# \" before them, these lines repeat the run");
     ValueText writer(L);
     const bool driven = !task.excitation.components().empty();
@@ -71,12 +71,17 @@ Origin origin_of(lua_State* L, const Task& task) {
         append_lines(lines, "local M = " + M);
     }
     append_lines(lines, "local sys = " + lua_text(task.system));
-    append_lines(lines,
-                 fmt::format("run = sys:simulate{{ {}theta0 = {}, velocity0 = {}, t_start = {}, t_end = {}, {}, "
-                             "integrator = {} }}",
-                             driven ? "M = M, " : "", task.initial.theta, task.initial.velocity, task.window.start,
-                             task.window.end, rows_text(task.rows), lua_text(task.integrator)));
     return origin;
+}
+
+std::vector<std::string> repeat_lines(const Origin& origin) {
+    std::vector<std::string> lines = origin.set_up;
+    append_lines(lines, fmt::format("run = sys:simulate{{ {}theta0 = {}, velocity0 = {}, t_start = {}, t_end = {}, {}, "
+                                    "integrator = {} }}",
+                                    origin.excitation.components().empty() ? "" : "M = M, ", origin.initial.theta,
+                                    origin.initial.velocity, origin.window.start, origin.window.end,
+                                    rows_text(origin.rows), lua_text(origin.integrator)));
+    return lines;
 }
 
 }  // namespace dinal

@@ -20,14 +20,14 @@ struct Task {
 };
 
 /// What was simulated. A trajectory that was read from a file has none.
-struct Origin {
-    Oscillator system;
-    Integrator integrator;
-    Excitation excitation;
-    /// Lua text that makes the same run again, as lines: with the values that its variables had when it was started.
-    std::vector<std::string> lines;
+struct Origin : Task {
+    /// Lua text that makes M and the system again, with the values that their variables had when the run was started.
+    std::vector<std::string> set_up;
 };
 
 Origin origin_of(lua_State* L, const Task& task);
+
+/// Lua text that makes the same run again, as lines.
+std::vector<std::string> repeat_lines(const Origin& origin);
 
 }  // namespace dinal

@@ -60,7 +60,7 @@ Expected<Written> write(lua_State* L, const Options& options, const std::string&
                    [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
     if (ending == ".csv") {
         return write_csv(file, asked_columns(L, options, run.trajectory),
-                         run.origin ? run.origin->lines : run.comments);
+                         run.origin ? repeat_lines(*run.origin) : run.comments);
     }
     if (ending != ".dat") {
         return Error{

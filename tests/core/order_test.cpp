@@ -124,7 +124,7 @@ TEST_CASE("run.at between the rows keeps the order of rk4", "[order][rk4][rows]"
         for (double t = 0.0137; t < 6.1; t += 0.0531) {
             const auto y = run.at(t);
             REQUIRE(y);
-            const Motion truth = exact.at(t);
+            const truth::Motion truth = exact.at(t);
             worst = std::max({worst, std::fabs(static_cast<double>(y->theta - truth.theta)),
                               std::fabs(static_cast<double>(y->velocity - truth.velocity)) / resonance});
         }

@@ -1,0 +1,100 @@
+// A run that goes on from where it ended, against the same run without a stop.
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "support/measure.hpp"
+
+using namespace dinal;
+using namespace dinal::truth;
+
+namespace {
+
+void check_like_whole(const Trajectory& parts, const Trajectory& whole, const ReferenceSystem& s, double tolerance) {
+    REQUIRE(parts.size() == whole.size());
+    for (Eigen::Index i = 0; i < whole.size(); ++i) {
+        REQUIRE(parts.rows(i, 0) == whole.rows(i, 0));
+        REQUIRE(std::fabs(parts.rows(i, 1) - whole.rows(i, 1)) <= tolerance * s.size);
+    }
+    REQUIRE(parts.events.size() == whole.events.size());
+    for (std::size_t i = 0; i < whole.events.size(); ++i) {
+        CHECK(parts.events[i].kind == whole.events[i].kind);
+        CHECK(std::fabs(parts.events[i].theta - whole.events[i].theta) <= tolerance * s.size);
+    }
+    CHECK(parts.outcome == whole.outcome);
+    CHECK(parts.t_start == whole.t_start);
+    CHECK(parts.t_stop == whole.t_stop);
+    const double length = s.window.end - s.window.start;
+    for (const double part : {0.01, 0.2, 0.49, 0.51, 0.97}) {
+        const double t = s.window.start + part * length;
+        CHECK(std::fabs(parts.at(t)->theta - whole.at(t)->theta) <= tolerance * s.size);
+    }
+}
+
+}  // namespace
+
+TEST_CASE("a run in three parts is the run in one, for every reference system", "[resume][spectral][rk4]") {
+    for (const ReferenceSystem& s : reference_systems()) {
+        const double h = std::min(s.oscillator.natural_period() / 1000, rk4_stability_limit(s.oscillator) / 10);
+        const double length = s.window.end - s.window.start;
+        const Grid rows = Grid::every(length / 61.3);
+        for (const Integrator& integrator : std::vector<Integrator>{Spectral{}, Rk4{h}}) {
+            CAPTURE(s.name, integrator.index());
+            const Trajectory whole = must_run(s, rows, integrator);
+            Trajectory run = must_run(s.oscillator, s.excitation, s.initial,
+                                      {s.window.start, s.window.start + 0.337 * length}, rows, integrator);
+            for (const double part : {0.5, 1.0}) {
+                const double t_end = part == 1 ? s.window.end : s.window.start + part * length;
+                auto longer = resume(s.oscillator, s.excitation, run, t_end, rows, integrator);
+                if (!longer) FAIL(longer.error().sentence);
+                run = std::move(longer).value();
+            }
+            // spectral: rounding, which the swings since add up. rk4: its steps are others, so its own error.
+            const double rounding = 1e-13 + 4e-16 * s.radians();
+            const double truncation = s.radians() * std::pow(s.fastest_rate() * h, 4) / 60 + 1e-9;
+            check_like_whole(run, whole, s, integrator.index() == 0 ? rounding : truncation);
+        }
+    }
+}
+
+TEST_CASE("a run that was interrupted goes on with the rows it has not had", "[resume]") {
+    const ReferenceSystem& s = reference_system("W3: one stop per half cycle (fig 24)");
+    const Grid rows = Grid::every(0.01);
+    const Trajectory whole = must_run(s, rows, Spectral{});
+    int asked = 0;
+    auto first = simulate(s.oscillator, s.excitation, s.initial, s.window, rows, Spectral{},
+                          [&](double) { return ++asked < 2; });
+    REQUIRE(first);
+    REQUIRE(first->outcome == Outcome::interrupted);
+    REQUIRE(first->size() > 0);
+    REQUIRE(first->size() < whole.size());
+    auto both = resume(s.oscillator, s.excitation, *first, s.window.end, rows, Spectral{});
+    REQUIRE(both);
+    check_like_whole(*both, whole, s, 1e-13 + 4e-16 * s.radians());
+}
+
+TEST_CASE("a mass at rest that goes on into a load slips, and its rest becomes a stick", "[resume]") {
+    const Oscillator system = nondimensional(0, 0.2, 0.3);
+    const Excitation late = Excitation::make(Step{.level = 0.9, .at = 5}).value();
+    for (const double split : {4.0, 5.0}) {  // the second at the very time of the jump
+        auto first = simulate(system, late, {1, 0}, {0, split}, Grid::every(0.5), Spectral{});
+        REQUIRE(first);
+        CHECK(first->events.back().kind == EventKind::rest);
+        auto both = resume(system, late, *first, 6, Grid::every(0.5), Spectral{});
+        REQUIRE(both);
+        const Trajectory whole = must_run(system, late, {1, 0}, {0, 6}, Grid::every(0.5), Spectral{});
+        REQUIRE(both->events.size() == whole.events.size());
+        for (std::size_t i = 0; i < whole.events.size(); ++i) {
+            CHECK(both->events[i].kind == whole.events[i].kind);
+            CHECK(both->events[i].t == whole.events[i].t);
+        }
+    }
+}
+
+TEST_CASE("a run can not go on to a time before its end", "[resume]") {
+    const Oscillator system = nondimensional(0, 0.2);
+    auto first = simulate(system, {}, {1, 0}, {0, 3}, Grid::every(0.5), Spectral{});
+    REQUIRE(first);
+    const auto back = resume(system, {}, *first, 2, Grid::every(0.5), Spectral{});
+    REQUIRE_FALSE(back);
+    CHECK(back.error().sentence == "t_end = 2 must be after t = 3, where the run ended");
+}
