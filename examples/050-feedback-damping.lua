@@ -28,8 +28,8 @@ for i = 1, #alone do
   print(string.format("%4.1f  %+.5f  %+.5f  %+.5f    %+.5f", alone.t[i], alone.theta[i], damped.theta[i], same.theta[i],
     limited.theta[i]))
 end
-print(string.format("damper against C + gain, largest difference below 1e-9: %s",
-  (damped.theta - same.theta):abs():max() < 1e-9))
+print(string.format("damper against C + gain, largest difference below 1e-12: %s",
+  (damped.theta - same.theta):abs():max() < 1e-12))
 print(string.format("zeta %.3f -> %.3f", sys.zeta, dashpot.zeta))
 -- The small motor takes off about the same amount each cycle at first, as dry friction does, and a fixed part of what
 -- is left only when the motion has become small.
@@ -45,6 +45,6 @@ print(string.format("zeta %.3f -> %.3f", sys.zeta, dashpot.zeta))
  3.0  +0.68723  +0.01291  +0.01291    +0.18891
  3.5  -0.64559  -0.00607  -0.00607    -0.09505
  4.0  +0.60646  +0.00283  +0.00283    +0.04643
-damper against C + gain, largest difference below 1e-9: true
+damper against C + gain, largest difference below 1e-12: true
 zeta 0.020 -> 0.219
 ]]

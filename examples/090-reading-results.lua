@@ -16,7 +16,7 @@ print(string.format("%d rows, theta %+.4f ... %+.4f, last %+.4f",
 print(string.format("largest energy %.4f, at the end %.4f", energy:max(), energy[#energy]))
 print(string.format("mean of |velocity| over the first second: %.4f", run.velocity:slice(1, 101):abs():mean()))
 
--- Between the rows the integrator is asked again.
+-- Between the rows the run knows the motion as well as on them: rows are samples of it, not steps.
 local theta, velocity = run:at(0.7654321)
 print(string.format("at t = 0.7654321: theta %.6f, velocity %.6f", theta, velocity))
 

@@ -6,7 +6,6 @@ local run = sys:simulate{
   theta0 = 1,
   t_end = 40,
   dt = 0.001,
-  integrator = integrator.rk4{ h = 0.001 },
 }
 
 -- The last period: 1000 rows, the last one not counted twice. Torque times velocity is power; its mean over a whole

@@ -34,7 +34,7 @@ function case.run(p)
     }
   end
   return with(integrator.dinal1989{ h = p.h, slip = p.slip or false }),
-    with(integrator.rk4{ h = math.min(p.h, 1 / 2000) * sys.T0 }), sys
+    with(integrator.spectral{}), sys
 end
 
 -- The true extremes: { t in T0, theta, kind } of each time the velocity comes to zero.
@@ -71,35 +71,6 @@ function case.amplitude(run)
   return math.abs(list[#list].theta)
 end
 
--- theta(t) of a free motion without dry friction.
-function case.closed_form(sys, theta0, velocity0)
-  local zeta, w0 = sys.zeta, sys.omega0
-  if math.abs(zeta - 1) < 1e-9 then -- 2 sqrt(I k) is critical damping only to rounding
-    return function(t) return (theta0 * (1 + w0 * t) + velocity0 * t) * math.exp(-w0 * t) end
-  elseif zeta < 1 then
-    local w1 = sys.omega1
-    return function(t)
-      return math.exp(-zeta * w0 * t)
-        * (theta0 * math.cos(w1 * t) + (velocity0 + zeta * w0 * theta0) / w1 * math.sin(w1 * t))
-    end
-  end
-  local root = math.sqrt(zeta^2 - 1)
-  local r1, r2 = zeta - root, zeta + root
-  return function(t)
-    local slow, fast = math.exp(-r1 * w0 * t), math.exp(-r2 * w0 * t)
-    return theta0 * (r2 * slow - r1 * fast) / (r2 - r1) + velocity0 / w0 * (slow - fast) / (r2 - r1)
-  end
-end
-
--- The largest difference between a run's theta and f(t).
-function case.difference(run, f)
-  local worst = 0
-  for i = 1, #run do
-    worst = math.max(worst, math.abs(run.theta[i] - f(run.t[i])))
-  end
-  return worst
-end
-
 -- By how much one step h of the scheme of 1989 multiplies a free motion without dry friction: two single steps give
 -- the 2 x 2 matrix of the step, its larger eigenvalue the factor. slip = false is plain RK4.
 function case.growth(zeta, h, slip)
@@ -117,8 +88,9 @@ function case.growth(zeta, h, slip)
   return math.abs(trace) / 2 + math.sqrt(discriminant)
 end
 
--- Where that factor passes 1: the largest h that does not diverge, in T0.
+-- Where that factor passes 1: the largest h that does not diverge, in T0. For the printed scheme theory knows it.
 function case.largest_step(zeta, slip)
+  if not slip then return theory.step_limit{ system = nondimensional{ zeta = zeta } } end
   local low, high = 0.02, 0.6
   for _ = 1, 40 do
     local h = (low + high) / 2

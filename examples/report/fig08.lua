@@ -4,9 +4,10 @@ local case = dofile((debug.getinfo(1, "S").source:match("^@(.*/)") or "") .. "ca
 
 case.title(8, "zeta = 0.02387, h = 0.005, with the slip of chapter 6")
 local old, run, sys = case.run{ zeta = 0.02387, theta0 = 1, t_end = 20, h = 0.005, slip = true }
+local exact = theory.free_response{ system = sys, theta0 = 1, t = old.t }
 
 case.head("1989", "report")
-case.line("largest error of theta", case.difference(old, case.closed_form(sys, 1, 0)), "invisible")
+case.line("largest error of theta", (old.theta - exact):abs():max(), "invisible")
 case.head("with the slip", "RK4 as printed", "exact")
 case.line("factor per step", case.growth(0.02387, 0.005, true), case.growth(0.02387, 0.005, false),
   math.exp(-2 * math.pi * 0.02387 * 0.005))

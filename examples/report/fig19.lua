@@ -6,7 +6,8 @@ case.title(19, "resonance, zeta = 0.239 (underdamped), h = 0.01")
 local old, run, sys = case.run{ zeta = 0.239, r = 1, theta0 = 1, t_end = 12, h = 0.01 }
 
 case.head("1989", "true motion", "1/(2 zeta)", "report")
-case.line("steady amplitude", case.row_amplitude(old, 100), case.amplitude(run), 1 / (2 * sys.zeta), "2.12")
+case.line("steady amplitude", case.row_amplitude(old, 100), case.amplitude(run),
+  theory.magnification{ r = 1, zeta = sys.zeta }, "2.12")
 print(string.format("(With C = 3, which is zeta = %.5f, the amplitude is %.4f.)", 3 / (2 * sys.omega0), sys.omega0 / 3))
 case.save(19, old, run)
 

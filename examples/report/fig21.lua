@@ -6,7 +6,8 @@ case.title(21, "resonance, zeta = 2.387 (overdamped), h = 0.01")
 local old, run, sys = case.run{ zeta = 2.387, r = 1, theta0 = 1, t_end = 12, h = 0.01 }
 
 case.head("1989", "true motion", "1/(2 zeta)", "report")
-case.line("steady amplitude", case.row_amplitude(old, 100), case.amplitude(run), 1 / (2 * sys.zeta), "")
+case.line("steady amplitude", case.row_amplitude(old, 100), case.amplitude(run),
+  theory.magnification{ r = 1, zeta = sys.zeta }, "")
 case.save(21, old, run)
 
 --[[ prints

@@ -3,8 +3,8 @@
 local case = dofile((debug.getinfo(1, "S").source:match("^@(.*/)") or "") .. "case.lua")
 
 case.title(22, "free, gamma = 0.167, h = 0.001")
-local old, run = case.run{ gamma = 0.167, velocity0 = 1, t_end = 3, h = 0.001 }
-local known = { 0.846848608, -0.512848608, 0.178848608, 0.155151392 } -- closed form
+local old, run, sys = case.run{ gamma = 0.167, velocity0 = 1, t_end = 3, h = 0.001 }
+local known_t, known = theory.extremes{ system = sys, velocity0 = sys.omega0 } -- the half-cycle map
 
 case.head("1989", "true motion", "closed form")
 local rough, extremes = case.row_extremes(old), case.extremes(run)
@@ -12,9 +12,13 @@ for i = 1, 3 do
   case.line("extreme " .. i, rough[i].theta, extremes[i].theta, known[i])
 end
 case.line("at rest at theta =", old.theta[#old], extremes[4].theta, known[4])
-case.line("from t/T0 =", "", extremes[4].t, 1.723664157)
+case.line("from t/T0 =", "", extremes[4].t, known_t[4] / sys.T0)
 print(run)
-print "The report estimates t* = (1 - A)/(4 gamma), A between 0 and gamma: 1.25 to 1.50."
+-- The report's formula for the duration is of a start at an extreme, theta* = 1, and must read t* = (1 - A)/(4 gamma),
+-- where A, between -gamma and gamma, is what is left: negative on the side it came from.
+local left = -theory.rest_position{ system = sys, theta0 = 1 } -- three half cycles: the other side counts as positive
+print(string.format("Let go at theta = 1 it would rest from t/T0 = %.6f; (1 - A)/(4 gamma) = %.6f",
+  theory.time_to_rest{ system = sys, theta0 = 1 } / sys.T0, (1 - left) / (4 * 0.167)))
 case.save(22, old, run)
 
 --[[ prints
@@ -26,6 +30,6 @@ extreme 3                        0.178848884     0.178848608     0.178848608
 at rest at theta =               0.155142378     0.155151392     0.155151392
 from t/T0 =                                      1.723664157     1.723664157
 3001 rows, t 0 … 3; 4 events (3 turns, 1 rest); at rest; peak |theta| 0.847
-The report estimates t* = (1 - A)/(4 gamma), A between 0 and gamma: 1.25 to 1.50.
+Let go at theta = 1 it would rest from t/T0 = 1.500000; (1 - A)/(4 gamma) = 1.500000
 fig22.csv, fig22.dat: 3001 rows
 ]]

@@ -16,7 +16,8 @@ end
 local n, rough = #run.events, case.row_extremes(old)
 case.head("1989", "true motion", "pi - 4 gamma")
 case.line("growth per period", math.abs(rough[#rough].theta) - math.abs(rough[#rough - 2].theta),
-  math.abs(run.events[n].theta) - math.abs(run.events[n - 2].theta), math.pi - 4 * 0.167)
+  math.abs(run.events[n].theta) - math.abs(run.events[n - 2].theta),
+  theory.growth_at_resonance{ friction_ratio = 0.167 })
 case.save(23, old, run)
 
 --[[ prints

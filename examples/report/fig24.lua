@@ -13,8 +13,8 @@ local events = run.events
 local n = #events
 while events[n].kind ~= "slip" do n = n - 1 end
 local stick, slip = events[n - 1].t / sys.T0 % 0.5, events[n].t / sys.T0 % 0.5
-case.line("sticks at t/T0 = n/2 +", "", stick, 0.45017942)
-case.line("slips at t/T0 = n/2 +", "", slip, 0.12493764)
+case.line("sticks at t/T0 = n/2 +", "", stick, "0.45017942")
+case.line("slips at t/T0 = n/2 +", "", slip, "0.12493764")
 case.line("part of the time stuck", "", (slip + 0.5 - stick) / 0.5)
 case.save(24, old, run)
 
@@ -22,8 +22,8 @@ case.save(24, old, run)
 Figure 24: resonance, gamma = 0.836, h = 0.01
                                         1989     true motion           exact          report
 amplitude                        0.158242517     0.129170352     0.129170352            0.14
-sticks at t/T0 = n/2 +                           0.450179423     0.450179420
-slips at t/T0 = n/2 +                            0.124937635     0.124937640
+sticks at t/T0 = n/2 +                           0.450179423      0.45017942
+slips at t/T0 = n/2 +                            0.124937635      0.12493764
 part of the time stuck                           0.349516424
 fig24.csv, fig24.dat: 3001 rows
 ]]

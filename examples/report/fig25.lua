@@ -16,14 +16,17 @@ local function lag(run)
   return math.deg(math.atan(-(theta * angle:cos()):sum(), (theta * angle:sin()):sum()))
 end
 
-local V, U = 1 / (1 - r^2), math.tan(math.pi / (2 * r)) / r
+local amplitude = theory.den_hartog{ r = r, friction_ratio = 0.5 }
+local _, dry_lag = theory.den_hartog_fundamental{ r = r, friction_ratio = 0.5 }
 case.head("1989", "true motion", "closed form")
-case.line("amplitude, gamma = 0.5", case.row_amplitude(old, 100), case.amplitude(dry), math.sqrt(V^2 - (0.5 * U)^2))
+case.line("amplitude, gamma = 0.5", case.row_amplitude(old, 100), case.amplitude(dry), amplitude)
 case.line("amplitude, zeta = 0.242", case.row_amplitude(old_viscous, 100), case.amplitude(viscous),
-  1 / math.sqrt((1 - r^2)^2 + (2 * 0.242 * r)^2))
-case.line("amplitude, linearised", "", "", math.sqrt(1 - (4 * 0.5 / math.pi)^2) / math.abs(1 - r^2))
-case.line("lag in degrees, gamma = 0.5", lag(old), lag(dry), "140.69")
-case.line("lag in degrees, zeta = 0.242", lag(old_viscous), lag(viscous), "141.54")
+  theory.magnification{ r = r, zeta = 0.242 })
+case.line("amplitude, linearised", "", "",
+  (theory.linearised{ r = r, friction_ratio = 0.5 }))
+case.line("lag in degrees, gamma = 0.5", lag(old), lag(dry), math.deg(dry_lag))
+case.line("lag in degrees, zeta = 0.242", lag(old_viscous), lag(viscous),
+  math.deg(theory.phase_lag{ r = r, zeta = 0.242 }))
 
 case.write_csv("fig25.csv", "theta in Mc/k, velocity over omega0: dry friction 0.5, viscous 0.242",
   { "t", "theta_dry_1989", "theta_viscous_1989", "theta_dry", "velocity_dry", "theta_viscous", "velocity_viscous" },
@@ -39,7 +42,7 @@ Figure 25: r = 1.35, gamma = 0.5 against zeta = 0.242, 100 steps a period
 amplitude, gamma = 0.5           0.876129589     0.860792180     0.860792180
 amplitude, zeta = 0.242          0.951788929     0.951976153     0.951976153
 amplitude, linearised                                            0.937602241
-lag in degrees, gamma = 0.5    140.380040613   140.686248785          140.69
-lag in degrees, zeta = 0.242   141.536123761   141.536114761          141.54
+lag in degrees, gamma = 0.5    140.380040613   140.686248785   140.686249614
+lag in degrees, zeta = 0.242   141.536123761   141.536114761   141.536114761
 fig25.csv, fig25.dat, fig25-viscous.dat: 6001 rows
 ]]

@@ -5,16 +5,18 @@ local case = dofile((debug.getinfo(1, "S").source:match("^@(.*/)") or "") .. "ca
 case.title(27, "resonance, zeta = 0.119, gamma = 0.418, h = 0.01")
 local old, run, sys = case.run{ zeta = 0.119, gamma = 0.418, r = 1, theta0 = 1, t_end = 30, h = 0.01 }
 
-case.head("1989", "true motion", "exact")
-case.line("amplitude", case.row_amplitude(old, 100), case.amplitude(run), 1.9611201772)
+local amplitude = theory.den_hartog{ r = 1, friction_ratio = 0.418, zeta = 0.119 } -- without stops, so it is exact
+case.head("1989", "true motion", "closed form")
+case.line("amplitude", case.row_amplitude(old, 100), case.amplitude(run), amplitude)
 -- what dry friction alone would be worth as a viscous damper at this amplitude
-case.line("dry friction as a zeta", "", 2 * 0.418 / (math.pi * 1.9611201772))
+case.line("dry friction as a zeta", "",
+  theory.equivalent_zeta{ friction_ratio = 0.418, r = 1, magnification = amplitude })
 print(run)
 case.save(27, old, run)
 
 --[[ prints
 Figure 27: resonance, zeta = 0.119, gamma = 0.418, h = 0.01
-                                        1989     true motion           exact
+                                        1989     true motion     closed form
 amplitude                        1.961207921     1.961120177     1.961120177
 dry friction as a zeta                           0.135691360
 3001 rows, t 0 … 30; 61 events (59 turns, 1 stick, 1 slip); moving at the end; peak |theta| 1.96
