@@ -230,6 +230,7 @@ std::optional<double> SpectralEngine::first_standstill() const {
     // The acceleration is what is left of torques that may balance each other.
     const double w0h = w0_ * panel_.h;
     velocity.raise_slope_floor(w0h * w0h * (64 * epsilon * torques() + lost_in_time()) / system_.stiffness());
+    if (feedback_) velocity.raise_floor(rounding_of_motion());
     const auto always = [](double) { return true; };
     const auto zero = first_below(velocity, -1, leaving_ ? Start::leaving : Start::anywhere, always);
     if (!zero && velocity(1) <= velocity.floor()) return 1;

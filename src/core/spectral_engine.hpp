@@ -87,6 +87,7 @@ private:
     [[nodiscard]] double lost_in_time() const;
     [[nodiscard]] double unresolved_load() const;
     [[nodiscard]] double unresolved_motion() const;
+    [[nodiscard]] double rounding_of_motion() const;
     bool found_break();
     Attempt pass_over();
     Attempt judge(double unresolved);

@@ -160,6 +160,7 @@ SpectralEngine::Iteration SpectralEngine::iterate() {
                 if (!std::isfinite(samples_[j])) return Iteration::failed;
                 rest[j] = samples_[j] + kappa_ * p[j] + chi_ * (v[j] / panel_.h);
             }
+            panel_.M = chebyshev::fit(samples_);
             solve_for(chebyshev::fit(rest));
             const auto p_next = chebyshev::at_nodes(p_), v_next = chebyshev::at_nodes(v_);
             const double before = change;
@@ -172,14 +173,11 @@ SpectralEngine::Iteration SpectralEngine::iterate() {
             if (!(change < never)) break;
             // What is left shrinks by change/before once more with the solution just made.
             const double rate = before < never ? change / before : 1;
-            if (change <= 16 * epsilon * scale || change * rate <= 0.01 * tolerance_ * scale) {
-                panel_.M = chebyshev::fit(samples_);
-                return Iteration::converged;
-            }
+            const double rounding = std::max(16 * epsilon * scale, rounding_of_motion());
+            if (change <= rounding || change * rate <= 0.01 * tolerance_ * scale) return Iteration::converged;
             if (i >= 2 && change > 0.5 * before) {
-                if (change > 1e4 * epsilon * scale) break;
-                panel_.M = chebyshev::fit(samples_);
-                return Iteration::converged;  // that is rounding
+                if (change > 100 * rounding) break;
+                return Iteration::converged;  // it does not get better than that
             }
         }
         if (!again) estimate_slopes();
@@ -233,10 +231,17 @@ double SpectralEngine::unresolved_motion() const {
     const double v = chebyshev::size(v_), acceleration = chebyshev::size(w);
     double allowed = tolerance_ * std::max(v, acceleration);
     if (last <= allowed) return allowed > 0 ? last / allowed : 0;
+    allowed += rounding_of_motion();
+    return last / allowed;
+}
+
+/// What theta'' on the panel may differ by because its torques are rounded.
+double SpectralEngine::rounding_of_motion() const {
     const double a = panel_.h * (system_.damping() + std::fabs(chi_)) / system_.inertia();
     const double b = panel_.h * (panel_.h * (system_.stiffness() + std::fabs(kappa_)) / system_.inertia());
-    allowed += 64 * epsilon * (acceleration + a * v + b * (chebyshev::size(p_) + torques() / system_.stiffness()));
-    return last / allowed;
+    return 64 * epsilon *
+           (chebyshev::size(panel_.w) + a * chebyshev::size(v_) +
+            b * (chebyshev::size(p_) + torques() / system_.stiffness()));
 }
 
 /// Looks for a jump or kink of M in the panel, once in each order of magnitude of its length.
