@@ -239,9 +239,8 @@ double SpectralEngine::unresolved_motion() const {
 double SpectralEngine::rounding_of_motion() const {
     const double a = panel_.h * (system_.damping() + std::fabs(chi_)) / system_.inertia();
     const double b = panel_.h * (panel_.h * (system_.stiffness() + std::fabs(kappa_)) / system_.inertia());
-    return 64 * epsilon *
-           (chebyshev::size(panel_.w) + a * chebyshev::size(v_) +
-            b * (chebyshev::size(p_) + torques() / system_.stiffness()));
+    const double terms = chebyshev::size(panel_.w) + a * chebyshev::size(v_) + b * chebyshev::size(p_);
+    return 64 * epsilon * terms + b * (64 * epsilon * torques() + lost_in_time()) / system_.stiffness();
 }
 
 /// Looks for a jump or kink of M in the panel, once in each order of magnitude of its length.
