@@ -241,10 +241,9 @@ std::optional<double> SpectralEngine::first_standstill() const {
 void SpectralEngine::record_turns() {
     using namespace chebyshev;
     constexpr double nothing = 1e-290;  // products of smaller numbers lose their digits to underflow
-    const double w0h = w0_ * panel_.h;
     const double moving = size(v_);
     // At its equilibrium a system changes the sign of its velocity by rounding alone.
-    if (moving <= 32 * epsilon * w0h * w0h * torques() / system_.stiffness() || moving < nothing) return;
+    if (moving <= (feedback_ ? rounding_left_by_iteration : 1) * rounding_of_motion() || moving < nothing) return;
     if (motion_ == Motion::stuck) {
         // From a start at rest: the first velocity that is not rounding tells the direction.
         const auto v = at_nodes(v_);

@@ -31,6 +31,7 @@ public:
 private:
     static constexpr std::size_t points = chebyshev::points;
     static constexpr double nowhere = 2;  // an x beyond every panel
+    static constexpr double rounding_left_by_iteration = 100;
     using Series = chebyshev::Series<points>;
 
     // One piece of the motion after the other. What returns false has ended the run.

@@ -176,7 +176,7 @@ SpectralEngine::Iteration SpectralEngine::iterate() {
             const double rounding = std::max(16 * epsilon * scale, rounding_of_motion());
             if (change <= rounding || change * rate <= 0.01 * tolerance_ * scale) return Iteration::converged;
             if (i >= 2 && change > 0.5 * before) {
-                if (change > 100 * rounding) break;
+                if (change > rounding_left_by_iteration * rounding) break;
                 return Iteration::converged;  // it does not get better than that
             }
         }
@@ -211,7 +211,9 @@ double SpectralEngine::lost_in_time() const {
     double slope = 0;
     for (std::size_t k = 1; k < points; ++k) slope += static_cast<double>(k * k) * std::fabs(panel_.M[k]);
     const double late = std::max(std::fabs(clock_.hi), std::fabs(end_));
-    return 4 * epsilon * late / panel_.h * slope;
+    // A jump has a slope, too, on a panel short enough; it must not pass for this.
+    constexpr double most = 1e-6;
+    return std::min(4 * epsilon * late / panel_.h * slope, most * torques());
 }
 
 /// The last coefficients of M over what the tolerance allows, in units of the torques that are at play.
@@ -240,7 +242,12 @@ double SpectralEngine::rounding_of_motion() const {
     const double a = panel_.h * (system_.damping() + std::fabs(chi_)) / system_.inertia();
     const double b = panel_.h * (panel_.h * (system_.stiffness() + std::fabs(kappa_)) / system_.inertia());
     const double terms = chebyshev::size(panel_.w) + a * chebyshev::size(v_) + b * chebyshev::size(p_);
-    return 64 * epsilon * terms + b * (64 * epsilon * torques() + lost_in_time()) / system_.stiffness();
+    const double rounding =
+        64 * epsilon * terms + b * (64 * epsilon * torques() + lost_in_time()) / system_.stiffness();
+    if (!feedback_) return rounding;
+    // The slopes of a feedback that switches are none; what it does must not pass for rounding.
+    constexpr double most = 1e-6;
+    return std::min(rounding, most * panel_.h * (panel_.h * torques() / system_.inertia()));
 }
 
 /// Looks for a jump or kink of M in the panel, once in each order of magnitude of its length.
