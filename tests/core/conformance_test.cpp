@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "support/measure.hpp"
+#include "support/within.hpp"
 
 using namespace dinal;
 using namespace dinal::truth;
@@ -147,7 +148,7 @@ TEST_CASE("rows are at the asked times and their torques add up", "[conformance]
             CAPTURE(i, t);
             REQUIRE(run.rows(i, 0) == t);
             // sin of up to 1e3 rad, argument rounded
-            REQUIRE(run.rows(i, 3) == Approx(static_cast<double>(exact.excitation(t))).margin(1e-12 * torque));
+            REQUIRE(run.rows(i, 3) == within(static_cast<double>(exact.excitation(t)), 1e-12 * torque));
             REQUIRE(run.rows(i, 5) == -o.damping() * velocity);
             if (velocity != 0) {
                 REQUIRE(friction == (velocity > 0 ? -o.kinetic_friction() : o.kinetic_friction()));
@@ -156,7 +157,7 @@ TEST_CASE("rows are at the asked times and their torques add up", "[conformance]
                 const double load = run.rows(i, 3) - o.stiffness() * theta;
                 const bool stuck = std::fabs(load) <= o.breakaway() * (1 + 1e-12);
                 const double expected = stuck ? -load : std::copysign(o.kinetic_friction(), -load);
-                REQUIRE(friction == Approx(expected).margin(1e-15 * torque));
+                REQUIRE(friction == within(expected, 1e-15 * torque));
             }
         }
     }

@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "support/measure.hpp"
+#include "support/within.hpp"
 
 using namespace dinal;
 using namespace dinal::truth;
@@ -149,7 +150,7 @@ TEST_CASE("dinal1989 agrees with a plain transcription of the listing over hundr
                     // 2 pi has 12 digits in the listing, which dinal keeps: 7e-14 of the 44 rad of 7 periods.
                     REQUIRE(std::fabs(run.rows(i, 1) - listing.U) <= 2e-11);
                     REQUIRE(std::fabs(run.rows(i, 2) - listing.V) <= 2e-10);
-                    REQUIRE(run.rows(i, 3) == Approx(c.amplitude * std::sin(2 * pi * c.r * i * c.h)).margin(1e-11));
+                    REQUIRE(run.rows(i, 3) == within(c.amplitude * std::sin(2 * pi * c.r * i * c.h), 1e-11));
                     REQUIRE(run.rows(i, 4) == 0.0 - c.gamma * Listing::SG(listing.V));
                     listing.step();
                 }
@@ -161,27 +162,26 @@ TEST_CASE("dinal1989 agrees with a plain transcription of the listing over hundr
 TEST_CASE("the printed listing is classical Runge-Kutta: -0.997964 after half a period with h = 0.1", "[dinal1989]") {
     Matrix power{1, 0, 0, 1};
     for (int i = 0; i < 5; ++i) power = power * classical(0.1, 0);
-    CHECK(power.a == Approx(-0.997964).margin(5e-7));
-    CHECK(after(nondimensional(0, 0), 0.1, 5, false) == Approx(power.a).margin(1e-12));
-    CHECK(after(nondimensional(0.3, 0), 0.1, 1, false) == Approx(classical(0.1, 0.3).a).margin(1e-13));
+    CHECK(power.a == within(-0.997964, 5e-7));
+    CHECK(after(nondimensional(0, 0), 0.1, 5, false) == within(power.a, 1e-12));
+    CHECK(after(nondimensional(0.3, 0), 0.1, 1, false) == within(classical(0.1, 0.3).a, 1e-13));
 }
 
 TEST_CASE("one wrong index in stage 3 gives the numbers of chapter 6", "[dinal1989]") {
-    // k = 39.48, but T0 = 1 to the report: h in units of T0.
-    const double T0 = chapter_6.natural_period();
-    CHECK(after(chapter_6, 0.1 * T0, 5, true) == Approx(-1.0143600).margin(5e-7));
-    CHECK(after(chapter_6, 0.01 * T0, 50, true) == Approx(-1.0000161).margin(5e-8));
-    CHECK(after(chapter_6, 0.001 * T0, 500, true) == Approx(-1.000000014).margin(5e-10));
+    // In units of 1, not of T0, which is 0.99998 with k = 39.48: the last digits tell.
+    CHECK(after(chapter_6, 0.1, 5, true) == within(-1.0143600, 5e-8));
+    CHECK(after(chapter_6, 0.01, 50, true) == within(-1.0000161, 5e-8));
+    CHECK(after(chapter_6, 0.001, 500, true) == within(-1.000000014, 5e-10));
 }
 
 TEST_CASE("chapter 6: growth without damping and too slow a decay with it", "[dinal1989]") {
     const Oscillator undamped = nondimensional(0, 0);
     const Oscillator damped = nondimensional(0.02387, 0);
-    CHECK(growth(undamped, 0.1, 2000, true) == Approx(1.0030).margin(5e-5));
+    CHECK(growth(undamped, 0.1, 2000, true) == within(1.0030, 5e-5));
     CHECK(growth(undamped, 0.1, 2000, false) < 1);
-    CHECK(growth(damped, 0.1, 1000, true) == Approx(0.98720).margin(2e-5));
-    CHECK(growth(damped, 0.1, 1000, false) == Approx(0.98480).margin(2e-5));
-    CHECK(std::exp(-0.02387 * 2 * pi * 0.1) == Approx(0.98511).margin(5e-6));  // the truth
+    CHECK(growth(damped, 0.1, 1000, true) == within(0.98720, 2e-5));
+    CHECK(growth(damped, 0.1, 1000, false) == within(0.98480, 2e-5));
+    CHECK(std::exp(-0.02387 * 2 * pi * 0.1) == within(0.98511, 5e-6));  // the truth
 }
 
 TEST_CASE("chapter 6 diverges from h = 0.196 on, the printed listing from 0.457 on", "[dinal1989]") {
@@ -239,8 +239,8 @@ TEST_CASE("the two stop rules freeze at different steps", "[dinal1989]") {
     const Trajectory text = rest(Stop::text);
     CHECK(listing.rows(listing.size() - 1, 1) != text.rows(text.size() - 1, 1));
     // Both near the truth, to the first order of h = 0.01.
-    CHECK(listing.rows(listing.size() - 1, 1) == Approx(0.155151392).margin(0.01));
-    CHECK(text.rows(text.size() - 1, 1) == Approx(0.155151392).margin(0.01));
+    CHECK(listing.rows(listing.size() - 1, 1) == within(0.155151392, 0.01));
+    CHECK(text.rows(text.size() - 1, 1) == within(0.155151392, 0.01));
 }
 
 TEST_CASE("dinal1989 comes closer with the step, but no faster than the step", "[dinal1989]") {
@@ -270,7 +270,7 @@ TEST_CASE("with Re > Rd the rule of 1989 holds no more than Rd after the first s
     // first its velocity is exactly 0 and F = Re = 29.43. Later it has a stale velocity, to which the next step adds as
     // soon as the pull is greater than Rd = 19.62: then it is no longer smaller than its change, and F = Rd.
     constexpr double in_truth = 19.62 + 10.0118;
-    CHECK(greatest_pull(Dinal1989{.h = 1e-4}, 0) == Approx(in_truth).margin(0.01));
-    CHECK(greatest_pull(Dinal1989{.h = 1e-4}, 1) == Approx(19.62 + 2).margin(0.01));
-    CHECK(greatest_pull(Rk4{1e-4}, 1) == Approx(in_truth).margin(1e-4));
+    CHECK(greatest_pull(Dinal1989{.h = 1e-4}, 0) == within(in_truth, 0.01));
+    CHECK(greatest_pull(Dinal1989{.h = 1e-4}, 1) == within(19.62 + 2, 0.01));
+    CHECK(greatest_pull(Rk4{1e-4}, 1) == within(in_truth, 1e-4));
 }

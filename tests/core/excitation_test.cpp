@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "support/excitations.hpp"
+#include "support/within.hpp"
 
 using namespace dinal;
 using namespace dinal::excitations;
@@ -80,7 +81,7 @@ TEST_CASE("gain, sum, delay and window are what they are on paper", "[excitation
                 CHECK((a + b).value(t) == a.value(t) + b.value(t));
                 CHECK((a + b).scaled(-3).value(t) == near(-3 * (a.value(t) + b.value(t))));
                 // Shifting the terms by 0.4 rounds their times once; slopes here are below 100.
-                CHECK(a.delayed(0.4).value(t) == Approx(a.value(t - 0.4)).margin(1e-12));
+                CHECK(a.delayed(0.4).value(t) == within(a.value(t - 0.4), 1e-12));
                 CHECK((a + b).windowed(0, 1).value(t) == near(t >= 0 && t < 1 ? a.value(t) + b.value(t) : 0));
             }
             CHECK((a + b).next_break(0.15) == std::min(a.next_break(0.15), b.next_break(0.15)));

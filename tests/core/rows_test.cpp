@@ -5,6 +5,7 @@
 #include <string>
 
 #include "support/measure.hpp"
+#include "support/within.hpp"
 
 using namespace dinal;
 using namespace dinal::truth;
@@ -99,7 +100,7 @@ TEST_CASE("the last row of dinal1989 is the state at t_end, not that of the step
     const Oscillator system = nondimensional(0, 0);
     const Trajectory coinciding = must_run(system, {}, {1, 0}, {0, 0.1}, Grid::every(0.03), Dinal1989{.h = 0.03});
     CHECK(coinciding.rows(coinciding.size() - 1, 0) == 0.1);
-    CHECK(coinciding.rows(coinciding.size() - 1, 1) == Approx(std::cos(2 * std::numbers::pi * 0.1)).margin(1e-4));
+    CHECK(coinciding.rows(coinciding.size() - 1, 1) == within(std::cos(2 * std::numbers::pi * 0.1), 1e-4));
 }
 
 TEST_CASE("the first row is the initial state", "[rows]") {
@@ -121,7 +122,7 @@ TEST_CASE("no rows at all is fine", "[rows]") {
     CHECK(run.names == column_names());
     CHECK_FALSE(run.events.empty());
     // Third half cycle: 0.5 cos about 0.1, at its quarter.
-    CHECK(run.at(1.25)->theta == Approx(0.1).margin(1e-5));
+    CHECK(run.at(1.25)->theta == within(0.1, 1e-5));
 }
 
 TEST_CASE("a trajectory has six columns, named", "[rows]") {
@@ -174,7 +175,7 @@ TEST_CASE("a spacing that the times themselves can not show is refused", "[rows]
 TEST_CASE("a step above the stability limit of rk4 is refused with the limit; the limit itself is not", "[rows][rk4]") {
     const Oscillator system = nondimensional(0, 0);
     CHECK(rk4_stability_limit(system) == Approx(2 * std::numbers::sqrt2 / (2 * std::numbers::pi)).epsilon(1e-12));
-    CHECK(rk4_stability_limit(nondimensional(0.02387, 0)) == Approx(0.457).margin(5e-4));
+    CHECK(rk4_stability_limit(nondimensional(0.02387, 0)) == within(0.457, 5e-4));
     const auto run = simulate(system, {}, {1, 0}, {0, 1}, Grid::none(), Rk4{0.5});
     REQUIRE_FALSE(run);
     CHECK_THAT(run.error().sentence, Contains("h = 0.5") && Contains("0.450") && Contains("rk4"));

@@ -1,6 +1,7 @@
 #include "core/terms.hpp"
 
 #include "support/excitations.hpp"
+#include "support/within.hpp"
 
 using namespace dinal;
 using namespace dinal::excitations;
@@ -96,7 +97,7 @@ TEST_CASE("a chirp sweeps linearly and its phase never jumps", "[excitation]") {
     CHECK(M.value(5.3) == near(3 * std::sin(0.3 + 2 * pi * (all + to * 0.3))));
     for (const double corner : breaks_of(M, -9, 99)) {
         // Slope at most 2 pi * 2.5 * 3 = 47 over two steps of 1e-9.
-        CHECK(M.value(corner - 1e-9) == Approx(M.value(corner + 1e-9)).margin(1e-7));
+        CHECK(M.value(corner - 1e-9) == within(M.value(corner + 1e-9), 1e-7));
     }
     CHECK(breaks_of(M, -9, 99) == std::vector<double>{1, 5});
     CHECK(made(Chirp{1, 1, 0, 4}).constant_from() == 4);
@@ -143,7 +144,7 @@ TEST_CASE("every sample of an uneven record is hit exactly, in order and out of 
     for (std::size_t i = 0; i < t.size(); ++i) {
         const std::size_t k = i * 617 % t.size();
         REQUIRE(M.value(t[k]) == values[k]);
-        REQUIRE(M.value_before(t[k]) == Approx(values[k]).margin(1e-10));  // an ulp of t times a slope of about 1e3
+        REQUIRE(M.value_before(t[k]) == within(values[k], 1e-10));  // an ulp of t times a slope of about 1e3
     }
     CHECK(breaks_of(M, -1, 99) == t);
 }
@@ -184,7 +185,7 @@ TEST_CASE("a square wave is exact at each of a hundred thousand edges", "[excita
     }
     CHECK(wrong == 0);
     // 50000 periods on; both ends are rounded, and the sum is of order 1e4.
-    CHECK(t == Approx(-50 + 50000 * 0.3).margin(0.3));
+    CHECK(t == within(-50 + 50000 * 0.3, 0.3));
 }
 
 TEST_CASE("a sawtooth and a triangle are exact at each of their corners", "[excitation]") {

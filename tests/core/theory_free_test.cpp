@@ -7,6 +7,7 @@
 #include <random>
 
 #include "support/measure.hpp"
+#include "support/within.hpp"
 
 using namespace dinal;
 using namespace dinal::theory;
@@ -150,7 +151,7 @@ TEST_CASE("the duration of a free motion is (1 - A)/(4 gamma) with A, the last a
         const double A = 1 - 4 * gamma * t;
         CAPTURE(gamma);
         CHECK(std::fabs(A) <= gamma + 1e-12);
-        CHECK(std::fabs(A) == Approx(std::fabs(*motion.rest_position())).margin(1e-12));
+        CHECK(std::fabs(A) == within(std::fabs(*motion.rest_position()), 1e-12));
         CHECK(t == std::ceil((1 - gamma) / (2 * gamma)) / 2);
     }
 }
@@ -187,7 +188,7 @@ TEST_CASE("an overdamped mass creeps to the edge Rd/k for ever", "[theory]") {
     const FreeMotion motion(nondimensional(1.5, 0.1), {1, 0});
     CHECK(motion.time_to_rest() == never);
     CHECK(motion.rest_position() == 0.1);
-    CHECK(motion.at(30).theta == Approx(0.1).margin(1e-15));
+    CHECK(motion.at(30).theta == within(0.1, 1e-15));
     CHECK(motion.extremes() == 1);
 
     // Thrown at the middle from afar it never turns; thrown past it, it turns once and stays.

@@ -1,0 +1,59 @@
+// Systems and excitations by lot: the same number gives the same case, told twice, to dinal and to the oracle.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "core/simulate.hpp"
+#include "support/oracle.hpp"
+
+namespace dinal::truth {
+
+struct RandomCase {
+    std::string story;  ///< enough to write the case down elsewhere
+    Oscillator system;
+    Excitation excitation;
+    Load load;  ///< the same excitation
+    State initial;
+    Window window;
+    double size;  ///< about the greatest angle
+
+    /// Where it is told: generic times in the window, increasing.
+    std::vector<double> times;
+};
+
+RandomCase random_case(std::uint64_t number);
+
+/// Evenly distributed numbers that are the same with every library.
+class Lot {
+public:
+    explicit Lot(std::uint64_t seed) : state_(seed) {}
+    double between(double a, double b) { return a + (b - a) * (static_cast<double>(next() >> 11U) * 0x1p-53); }
+    /// One of 0 .. n - 1.
+    int of(int n) { return static_cast<int>(between(0, n)); }
+    bool once_in(int n) { return of(n) == 0; }
+    double power_of_ten(double a, double b);
+
+private:
+    std::uint64_t next();
+    std::uint64_t state_;
+};
+
+/// A term of M, told twice.
+struct Ingredient {
+    std::string story;
+    Excitation excitation;
+    Load load;
+};
+/// What a case is measured in.
+struct Units {
+    Window window;
+    double period;  ///< T0
+    double angle;
+    double torque;  ///< k angle
+};
+Ingredient random_native_term(Lot& lot, const Units& units);
+Ingredient random_function_of_time(Lot& lot, const Units& units);
+Ingredient random_feedback(Lot& lot, const Units& units);
+
+}  // namespace dinal::truth
