@@ -39,7 +39,7 @@ inline constexpr Samples nodes = [] {
 }();
 
 /// The polynomial through values at the nodes. Equal values give a constant, exactly.
-Series<points> fit(const Samples& values);
+Series<points> fit(const Samples& f);
 /// The values at the nodes.
 Samples at_nodes(const Series<points>& c);
 

@@ -247,7 +247,8 @@ void SpectralEngine::record_turns() {
     if (motion_ == Motion::stuck) {
         // From a start at rest: the first velocity that is not rounding tells the direction.
         const auto v = at_nodes(v_);
-        const auto first = std::find_if(v.begin(), v.end(), [&](double u) { return std::fabs(u) > 1e-14 * moving; });
+        const auto* const first =
+            std::find_if(v.begin(), v.end(), [&](double u) { return std::fabs(u) > 1e-14 * moving; });
         motion_ = motion_of(first == v.end() ? 0 : *first);
     }
     double from = -1;
@@ -301,7 +302,8 @@ void SpectralEngine::end_piece(double x, State state, double M) {
 /// The rows before the end of the piece; the one at its end belongs to the next.
 void SpectralEngine::rows_until(double length) {
     const bool standing = motion_ == Motion::stuck && !system_.frictionless();
-    for (double t = rows_.next_time(); t < never; t = rows_.next_time()) {
+    while (rows_.next_time() < never) {
+        const double t = rows_.next_time();
         const double since = panel_.start.until(t);
         if (!(since < length)) break;
         const double x = std::clamp(since / panel_.h - 1, -1.0, 1.0);
