@@ -38,11 +38,14 @@ void note_place(lua_State* L) {
     }
 }
 
+void note_first_place(lua_State* L) {
+    if (place[0] == '\0') {
+        note_place(L);
+    }
+}
+
 void interrupt_hook(lua_State* L, lua_Debug*) {
     if (requested != Stop::none && armed) {
-        if (place[0] == '\0') {
-            note_place(L);
-        }
         raise_interrupted(L);
     }
     lua_sethook(L, nullptr, 0, 0);  // left over from a chunk that has ended
@@ -89,6 +92,10 @@ bool interrupt_requested() noexcept {
     return stop_requested() == Stop::interrupted;
 }
 
+bool chunk_runs() noexcept {
+    return armed.load(std::memory_order_relaxed);
+}
+
 void request_stop(Stop reason) noexcept {
     Stop none = Stop::none;
     requested.compare_exchange_strong(none, reason);
@@ -97,7 +104,15 @@ void request_stop(Stop reason) noexcept {
     }
 }
 
+void stop_here(Stop reason) noexcept {
+    if (lua_State* L = running; chunk_runs() && L != nullptr) {
+        note_first_place(L);
+    }
+    request_stop(reason);
+}
+
 void raise_interrupted(lua_State* L) {
+    note_first_place(L);
     if (interrupt_requested()) {
         lua_pushliteral(L, "interrupted!");
     } else {

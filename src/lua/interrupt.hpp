@@ -8,6 +8,8 @@
 #include <lua.hpp>
 #include <string>
 
+#include "lua/time_limit.hpp"
+
 namespace dinal {
 
 enum class Stop { none, interrupted, time, memory };
@@ -24,14 +26,20 @@ void install_interrupt_handler();
 /// Stops what runs, unless it is being stopped already. To be called on the thread of Lua, also in a signal handler.
 void request_stop(Stop reason) noexcept;
 
+/// The same, not in a signal handler: stopped_at() is what runs now.
+void stop_here(Stop reason) noexcept;
+
 /// What is raised in the running code: the string "interrupted!" or "limit reached!", without position.
 [[noreturn]] void raise_interrupted(lua_State* L);
 
 /// "lab.lua:3" where the running code was stopped, "" when it was in no Lua function.
 std::string stopped_at();
 
+/// An InterruptScope lives.
+[[nodiscard]] bool chunk_runs() noexcept;
+
 /// While it lives, a stop is raised again and again in what runs on `L`, so that no pcall can swallow it. One for each
-/// chunk, around its lua_pcall at the top level. Outside of it, Ctrl-C only sets the flag.
+/// chunk, around its lua_pcall at the top level; its time runs meanwhile. Outside of it, Ctrl-C only sets the flag.
 class InterruptScope {
 public:
     explicit InterruptScope(lua_State* L);
@@ -41,6 +49,7 @@ public:
 
 private:
     lua_State* L_;
+    TimeAllowance time_;
 };
 
 /// Replaces coroutine.resume, wrap and close by functions that do the same and note which thread runs.

@@ -90,6 +90,7 @@ class Interrupts(unittest.TestCase):
     def test_a_second_one_ends_code_that_never_returns(self):
         process = self.start("-e", "print('running') io.stdout:flush(); (('a'):rep(40)):find(('.-'):rep(40)..'b')")
         self.assertEqual(process.stdout.readline(), "running\n")
+        time.sleep(0.2)
         process.send_signal(signal.SIGINT)
         time.sleep(1.5)  # not only a quick one
         self.assertIsNone(process.poll())
