@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "core/simulate.hpp"
+#include "io/progress.hpp"
 #include "lua/bind_excitation.hpp"
 #include "lua/dinal_table.hpp"
 #include "lua/interrupt.hpp"
@@ -107,9 +108,13 @@ int simulate_system(lua_State* L) {
     }
 
     CallState call(L);
-    auto result = simulate(
-        task.system, task.excitation, task.initial, task.window, task.rows, task.integrator,
-        [](double) { return stop_requested() == Stop::none; }, limits);
+    Progress progress = Progress::of_time(task.window.start, task.window.end);
+    const auto monitor = [&progress](double t) {
+        progress.advance(t);
+        return stop_requested() == Stop::none;
+    };
+    auto result =
+        simulate(task.system, task.excitation, task.initial, task.window, task.rows, task.integrator, monitor, limits);
     if (!result) {
         options.fail(result.error().sentence);
     }

@@ -8,6 +8,7 @@
 #include <array>
 #include <atomic>
 
+#include "io/progress.hpp"
 #include "lua/running_thread.hpp"
 
 namespace dinal {
@@ -137,6 +138,7 @@ InterruptScope::InterruptScope(lua_State* L) : L_(L) {
 InterruptScope::~InterruptScope() {
     armed = false;
     running = nullptr;
+    end_progress();
     if (lua_gethook(L_) == interrupt_hook) {
         lua_sethook(L_, nullptr, 0, 0);
     }

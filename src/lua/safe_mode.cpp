@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "io/confinement.hpp"
+#include "io/progress.hpp"
 #include "lua/bind.hpp"
 #include "lua/interrupt.hpp"
 
@@ -125,6 +126,7 @@ int require(lua_State* L) {
 /// Writes the arguments from `first` on to the stream that the first upvalue names.
 int write_from(lua_State* L, int first) {
     auto* stream = static_cast<std::FILE*>(lua_touserdata(L, lua_upvalueindex(1)));
+    make_way_for_output(lua_isstring(L, -1) != 0 && std::string_view(lua_tostring(L, -1)).ends_with('\n'));
     for (int i = first; i <= lua_gettop(L); ++i) {
         std::size_t length = 0;
         const char* text = luaL_checklstring(L, i, &length);
