@@ -21,8 +21,11 @@ namespace {
 
 constexpr std::string_view example = "sys:simulate{ M = M, theta0 = 1, t_end = 20, dt = 0.01 }";
 
-/// The bytes that the rows will take; none when the grid is wrong, which simulate() tells.
+/// The bytes that the rows will take; none when the window or the grid is wrong, which simulate() tells.
 std::size_t bytes_of_rows(const Task& task) {
+    if (!(task.window.start < task.window.end)) {
+        return 0;
+    }
     const auto grid = task.rows.within(task.window);
     return grid ? std::min<std::size_t>(grid->count(), 1ULL << 50U) * column_count * sizeof(double) : 0;
 }

@@ -129,8 +129,7 @@ MemoryCharge::~MemoryCharge() {
 
 }  // namespace dinal
 
-// NOTE: the other forms of new, for arrays and without exceptions, lead here. Not those for over-aligned types, which
-// nothing here has.
+// NOTE: the forms for arrays lead here. Those for over-aligned types do not, which nothing here has.
 void* operator new(std::size_t size) {
     const bool limited = dinal::limited();
     if (limited && !dinal::allowed(static_cast<dinal::Bytes>(std::min<std::size_t>(size, 1ULL << 62U)))) {
@@ -145,6 +144,14 @@ void* operator new(std::size_t size) {
         dinal::count(dinal::size_of(block));
     }
     return block;
+}
+
+void* operator new(std::size_t size, const std::nothrow_t&) noexcept {
+    try {
+        return operator new(size);
+    } catch (const std::bad_alloc&) {
+        return nullptr;
+    }
 }
 
 void operator delete(void* block) noexcept {

@@ -65,4 +65,10 @@ strangers.check({
     ["a finalizer that never ends, at the end"] = "setmetatable({}, { __gc = function() while true do end end })",
 }, "--max-time 0.2", 1, "dinal: stopped[^\n]*: it ran longer than the 0.2 s that %-%-max%-time allows\n")
 
+-- Without a limit of memory, so that the endless events of such a run are not what ends it.
+strangers.check({
+    ["a run with more breaks than steps"] = "nondimensional{}:simulate{ M = excitation.square{ frequency = 1e15 }, t_end = 1, dt = 1, integrator = integrator.rk4{ h = 0.01 } }",
+    ["a run of dinal1989 with more breaks than steps"] = "nondimensional{}:simulate{ M = excitation.square{ frequency = 1e15 }, t_end = 1e9, dt = 1e9, integrator = integrator.dinal1989{ h = 0.1 } }",
+}, "--max-time 0.2", 1, "dinal: stopped at script:1: it ran longer than the 0.2 s that %-%-max%-time allows\n")
+
 require("support").finish()

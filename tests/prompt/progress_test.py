@@ -56,10 +56,10 @@ class Terminal:
     def until(self, condition, seconds=10):
         """Waits until the lines on the screen are as wanted."""
         end = time.monotonic() + seconds
-        while not condition(self.lines()) and time.monotonic() < end:
+        while not (self.lines() and condition(self.lines())) and time.monotonic() < end:
             if not self.read(0.05):
                 break
-        assert condition(self.lines()), self.lines()
+        assert self.lines() and condition(self.lines()), self.lines()
         return self.lines()
 
     def until_the_end(self):
@@ -135,7 +135,7 @@ class TheLine(TerminalTest):
         code = ("for i in progress(2, 'outer') do for j in progress({ 'a', 'b', 'c', 'd' }, 'inner') do "
                 "local c = os.clock() repeat until os.clock() > c + 0.14 end end print 'done'")
         terminal = self.start("-e", code)
-        shown = terminal.until(lambda lines: lines and "62%" in lines[-1])
+        shown = terminal.until(lambda lines: "62%" in lines[-1])
         self.assertRegex(shown[0], r"^outer +62% .* 1 of 2, ")
         self.assertEqual(terminal.until_the_end(), ["done"])
 
@@ -152,7 +152,7 @@ class TheLine(TerminalTest):
                 "if i == 6 then coroutine.yield() end end end)()")
         terminal = self.start("-i", "-e", code)
         terminal.until(progress_lines)
-        shown = terminal.until(lambda lines: lines and lines[-1] == ">")
+        shown = terminal.until(lambda lines: lines[-1] == ">")
         self.assertEqual(progress_lines(shown), [])
 
     def test_short_work_shows_nothing(self):
@@ -174,7 +174,7 @@ class TheLine(TerminalTest):
 class AtThePrompt(TerminalTest):
     def interrupted_run(self, **options):
         terminal = self.start(**options)
-        terminal.until(lambda lines: lines and lines[-1] == ">")
+        terminal.until(lambda lines: lines[-1] == ">")
         terminal.child.send(LONG.replace("times = {}", "dt = 1e6, integrator = integrator.rk4{ h = 0.01 }") + "\r")
         terminal.until(progress_lines)
         pressed = time.monotonic()
@@ -198,7 +198,7 @@ class AtThePrompt(TerminalTest):
 
     def test_ctrl_c_at_the_prompt_clears_the_line(self):
         terminal = self.start()
-        terminal.until(lambda lines: lines and lines[-1] == ">")
+        terminal.until(lambda lines: lines[-1] == ">")
         terminal.child.send("some text (that is wrong")
         terminal.until(lambda lines: lines[-1].endswith("wrong"))
         terminal.child.send(CTRL_C)
@@ -208,7 +208,7 @@ class AtThePrompt(TerminalTest):
 
     def test_each_input_of_a_limited_session_has_its_own_time(self):
         terminal = self.start("--safe", "--max-time", "0.3")
-        terminal.until(lambda lines: lines and lines[-1] == ">")
+        terminal.until(lambda lines: lines[-1] == ">")
         time.sleep(0.5)  # typing takes its time
         terminal.child.send("6*7\r")
         terminal.until(lambda lines: lines[-2:] == ["42", ">"])
