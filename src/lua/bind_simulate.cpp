@@ -114,7 +114,7 @@ int simulate_system(lua_State* L) {
     Progress progress = Progress::of_time(task.window.start, task.window.end);
     const auto monitor = [&progress](double t) {
         progress.advance(t);
-        return stop_requested() == Stop::none;
+        return !interrupt_requested();
     };
     auto result =
         simulate(task.system, task.excitation, task.initial, task.window, task.rows, task.integrator, monitor, limits);

@@ -30,7 +30,7 @@ int close(lua_State* L) {
     if (coroutine == nullptr) {
         return original_close(L);
     }
-    if (stop_requested() != Stop::none) {
+    if (interrupt_requested()) {
         raise_interrupted(L);  // its variables stay open: nothing of this chunk runs on
     }
     const RunningThread note(L, coroutine);
@@ -40,7 +40,7 @@ int close(lua_State* L) {
 /// Closes the coroutine that failed and raises its error here, headed by the position of the caller, as Lua does.
 int raise_error_of(lua_State* L, lua_State* coroutine) {
     int status = lua_status(coroutine);
-    if (status != LUA_OK && status != LUA_YIELD && stop_requested() == Stop::none) {
+    if (status != LUA_OK && status != LUA_YIELD && !interrupt_requested()) {
         const RunningThread note(L, coroutine);
         status = lua_resetthread(coroutine);
         lua_xmove(coroutine, L, 1);

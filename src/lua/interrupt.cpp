@@ -90,7 +90,7 @@ Stop stop_requested() noexcept {
 }
 
 bool interrupt_requested() noexcept {
-    return stop_requested() == Stop::interrupted;
+    return stop_requested() != Stop::none;
 }
 
 bool chunk_runs() noexcept {
@@ -114,7 +114,7 @@ void stop_here(Stop reason) noexcept {
 
 void raise_interrupted(lua_State* L) {
     note_first_place(L);
-    if (interrupt_requested()) {
+    if (stop_requested() == Stop::interrupted) {
         lua_pushliteral(L, "interrupted!");
     } else {
         lua_pushliteral(L, "limit reached!");

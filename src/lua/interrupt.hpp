@@ -20,7 +20,7 @@ void install_interrupt_handler();
 
 /// Why what runs shall stop, since the last InterruptScope began. A stepping loop asks this now and then.
 [[nodiscard]] Stop stop_requested() noexcept;
-/// It is Ctrl-C.
+/// It shall, whatever the reason.
 [[nodiscard]] bool interrupt_requested() noexcept;
 
 /// Stops what runs, unless it is being stopped already. To be called on the thread of Lua, also in a signal handler.

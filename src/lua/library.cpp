@@ -11,9 +11,8 @@ namespace dinal {
 namespace {
 
 constexpr void (*register_functions[])(lua_State*) = {
-    register_system,     register_excitation, register_integrator, register_run,
-    register_trajectory, register_theory,     register_vector,     register_progress,
-    register_help,
+    register_system, register_excitation, register_integrator, register_run,  register_trajectory,
+    register_theory, register_vector,     register_progress,   register_help,
 };
 
 // Plain fields of the table: documented here, set by open_library() and sys:simulate.

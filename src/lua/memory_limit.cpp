@@ -38,7 +38,7 @@ void count(Bytes bytes) noexcept {
 
 /// So much more can be had. Always, when no chunk runs: the program itself goes on.
 bool allowed(Bytes more) noexcept {
-    const Bytes extra = stop_requested() == Stop::none ? 0 : slack;
+    const Bytes extra = interrupt_requested() ? slack : 0;
     return !chunk_runs() || now_taken() + more <= limit.load(std::memory_order_relaxed) + extra;
 }
 

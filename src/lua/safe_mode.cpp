@@ -75,7 +75,7 @@ int set_metatable(lua_State* L) {
 
 /// The handler of xpcall, the upvalue. Lua calls it with hooks switched off when what runs is being stopped.
 int handle(lua_State* L) {
-    if (stop_requested() != Stop::none) {
+    if (interrupt_requested()) {
         return 1;
     }
     lua_pushvalue(L, lua_upvalueindex(1));

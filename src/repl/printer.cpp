@@ -37,7 +37,7 @@ std::string told(lua_State* L, int index) {
     lua_pushcfunction(L, to_text);
     lua_insert(L, -2);
     const bool fine = lua_pcall(L, 1, 1, 0) == LUA_OK;
-    if (!fine && stop_requested() != Stop::none) {
+    if (!fine && interrupt_requested()) {
         raise_interrupted(L);
     }
     std::string text = lua_isstring(L, -1) != 0 ? text_of(L, -1) : std::string(luaL_typename(L, -1));

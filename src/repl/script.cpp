@@ -44,8 +44,8 @@ std::string explained(std::string text) {
 bool finished(lua_State* L, int status) {
     if (status != LUA_OK) {
         const std::string text = explained(take_text(L));
-        complain(interrupt_requested() && text.rfind("interrupted", 0) != 0 ? "interrupted" : text);
-    } else if (interrupt_requested()) {
+        complain(stop_requested() == Stop::interrupted && text.rfind("interrupted", 0) != 0 ? "interrupted" : text);
+    } else if (stop_requested() == Stop::interrupted) {
         complain("interrupted");
         return false;
     }
@@ -193,7 +193,7 @@ void open(lua_State* L, const Arguments& arguments) {
 }
 
 int failure() {
-    return interrupt_requested() ? exit_code::interrupted : exit_code::script_error;
+    return stop_requested() == Stop::interrupted ? exit_code::interrupted : exit_code::script_error;
 }
 
 int prompt(lua_State* L, const Arguments& arguments) {

@@ -9,13 +9,36 @@ using Texts = std::span<const std::string_view>;
 
 // In a template, a letter after $ stands for a value of that kind:
 //   $n number  $t time or span  $v vector  $e excitation  $i integrator  $s system  $r run  $f function
-//   $w word in quotes  $g global variable  $a any value  $x statement
+//   $w word in quotes  $g global variable  $h theory  $a any value  $x statement
 constexpr std::array<std::string_view, 34> numbers{
     "0",         "1",    "-1",    "2",         "0.5",     "0.1",      "1e-3",     "3",
     "10",        "100",  "1e6",   "1e15",      "1e-9",    "1e308",    "-1e308",   "5e-324",
     "0/0",       "1/0",  "-1/0",  "math.pi",   "2^53",    "-0.0",     "1000",     "$g",
     "#$v",       "#$r",  "$v[1]", "($n + $n)", "$n * $n", "$v:max()", "$v:sum()", "math.mininteger",
     "$r:at($t)", "$s.T0"};
+constexpr std::array<std::string_view, 21> theories{
+    "theory.free_response{ t = $v, theta0 = $n, velocity0 = $n, system = $s }",
+    "theory.extremes{ system = $s, theta0 = $n, count = $n }",
+    "theory.time_to_rest{ system = $s, theta0 = $n, velocity0 = $n }",
+    "theory.rest_position{ system = $s, theta0 = $n }",
+    "theory.half_cycle{ X = $n, zeta = $n, x_f = $n, dead_zone = $n, n = $n }",
+    "theory.logarithmic_decrement{ zeta = $n }",
+    "theory.zeta_from_decrement{ decrement = $v }",
+    "theory.friction_decrement{ Rd = $n, k = $n }",
+    "theory.identify{ X0 = $n, X1 = $n, X2 = $n }",
+    "theory.magnification{ r = $v, zeta = $n }",
+    "theory.phase_lag{ r = $v, zeta = $v }",
+    "theory.transmissibility{ r = $n, zeta = $n }",
+    "theory.equivalent_damping{ Rd = $n, omega = $n, amplitude = $n }",
+    "theory.equivalent_zeta{ friction_ratio = $n, r = $n, magnification = $n }",
+    "theory.linearised{ r = $n, friction_ratio = $n, zeta = $n }",
+    "theory.friction_work{ Rd = $n, amplitude = $n }",
+    "theory.growth_at_resonance{ friction_ratio = $n }",
+    "theory.den_hartog{ r = $n, friction_ratio = $n, zeta = $n, breakaway_ratio = $n }",
+    "theory.den_hartog_fundamental{ r = $v, friction_ratio = $n }",
+    "theory.stop_boundary{ r = $n, zeta = $n, Re_over_Rd = $n }",
+    "theory.step_limit{ system = $s, rule = $w, theta0 = $n, Mc = $n }"};
+
 constexpr std::array<std::string_view, 18> times{"1",  "0",   "0.5",   "2",   "3",   "0.25", "0.1", "1e-3", "10",
                                                  "-1", "1e9", "1e-12", "0/0", "1/0", "$n",   "2.5", "$g",   "0.7"};
 constexpr std::array<std::string_view, 17> vectors{"vector{ 1, 2, 3 }",
@@ -112,8 +135,9 @@ constexpr std::array<std::string_view, 14> words{"'t'",       "'theta'",      "'
                                                  "'1'",       "''",           "'x'",    "'friction'",  "('x'):rep($n)",
                                                  "'run.csv'", "tostring($a)", "'%s%d'", "\"\\0\\xff\""};
 constexpr std::array<std::string_view, 6> globals{"a", "b", "c", "d", "e", "f"};
-constexpr std::array<std::string_view, 22> any_values{
+constexpr std::array<std::string_view, 23> any_values{
     "$n",
+    "$h",
     "$v",
     "$e",
     "$s",
@@ -135,7 +159,7 @@ constexpr std::array<std::string_view, 22> any_values{
     "print",
     "{ t = $v, M = $v }",
     "select(2, pcall($f, $n))"};
-constexpr std::array<std::string_view, 30> statements{
+constexpr std::array<std::string_view, 32> statements{
     "$g = $n",
     "$g = $v",
     "$g = $e",
@@ -159,6 +183,8 @@ constexpr std::array<std::string_view, 30> statements{
     "for i = 1, 20 do $x end",
     "help($a)",
     "assert($v == $v, $v < $n)",
+    "print($h)",
+    "$g = $r:continue{ t_end = $t }",
     "$g = $a .. $w",
     "$g = $a + $a",
     "$g = ($a)[$a]",
@@ -213,6 +239,8 @@ private:
                 return runs;
             case 'f':
                 return functions;
+            case 'h':
+                return theories;
             case 'w':
                 return words;
             case 'g':
