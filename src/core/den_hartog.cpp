@@ -127,7 +127,8 @@ double DenHartog::greatest_excess() const {
     const double widest = std::min(half_ / 64, 2 * pi / 32);
     constexpr double nearly = 0.03;  // a peak may be that much above the best of its points
     double best = excess_at_turn(1, 1);
-    double before = 0, x = 1e-3 * std::min(widest, 1 / modes_.fast_root());
+    constexpr double least = 1e-300;  // the fast root may be infinite, and x must grow
+    double before = 0, x = std::max(1e-3 * std::min(widest, 1 / modes_.fast_root()), least);
     double value_before = best, value = velocity_excess(x);
     while (x < half_) {
         const double after = x + std::min(x / 4, widest);

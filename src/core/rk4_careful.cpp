@@ -39,6 +39,8 @@ bool Rk4Engine::careful_step(double end, const Sampled* known) {
         if (!piece(breaks ? next_break : end, breaks, breaks ? nullptr : known)) return false;
         if (breaks) M_ = excitation_.value_after(t_, y_);
         if (!finite()) return false;
+        // There may be more breaks within a step than anyone would wait for.
+        if (breaks && monitor_ && !monitor_(t_)) return fail(Outcome::interrupted);
         known = nullptr;
     }
     return true;

@@ -8,6 +8,8 @@
 #include <cerrno>
 #include <system_error>
 
+#include "io/confinement.hpp"
+
 namespace dinal {
 namespace {
 
@@ -39,6 +41,9 @@ private:
 Expected<std::string> read_file(const std::string& path) {
     if (path.find('\0') != std::string::npos) {
         return can_not_read(path.substr(0, path.find('\0')), "its name goes on after a NUL byte");
+    }
+    if (const auto why = outside(path, Access::read)) {
+        return can_not_read(path, *why);
     }
     const Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
     struct stat status {};

@@ -12,6 +12,8 @@
 #include <system_error>
 #include <utility>
 
+#include "io/confinement.hpp"
+
 namespace dinal {
 namespace {
 
@@ -91,6 +93,9 @@ int create_temporary(const std::string& folder, std::string& name) {
 Expected<OutputFile> OutputFile::create(const std::string& path) {
     if (has_nul(path)) {
         return can_not_write(path.substr(0, path.find('\0')), "its name goes on after a NUL byte");
+    }
+    if (const auto why = outside(path, Access::write)) {
+        return can_not_write(path, *why);
     }
     std::string target = path;
     for (int link = 0; link < most_links; ++link) {

@@ -17,6 +17,7 @@
 #include <vector>
 
 #include "core/suggest.hpp"  // did_you_mean, for every unknown name
+#include "lua/memory_limit.hpp"
 
 namespace dinal {
 
@@ -70,6 +71,7 @@ void push_message(lua_State* L, const char* text);
 template <lua_CFunction function>
 int guarded(lua_State* L) {
     try {
+        collect_when_tight(L);
         return function(L);
     } catch (const std::bad_alloc&) {
         detail::push_message(L, "not enough memory");

@@ -69,7 +69,7 @@ int values(lua_State* L) {
         raise(L, "e:values(times): this excitation needs theta and velocity; use e:value(t, theta, velocity)");
     }
     const std::vector<double> times = numbers_at(L, 2, "e:values(times): times");
-    std::vector<double> result(times.size());
+    std::vector<double> result = new_numbers(L, times.size());
     CallState call(L);
     const std::size_t filled = excitation.fill(times, result);
     if (call.failed()) {

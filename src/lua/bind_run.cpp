@@ -289,6 +289,7 @@ const Class run_class = {
 
 void push_run(lua_State* L, Run run) {
     const auto bytes = static_cast<std::size_t>(run.trajectory.rows.size()) * sizeof(double);
+    run.rows = MemoryCharge(bytes);
     push<RunHandle>(L, std::make_shared<const Run>(std::move(run)));
     note_external_memory(L, bytes);
 }

@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "core/simulate.hpp"
+#include "io/progress.hpp"
 #include "lua/bind_excitation.hpp"
 #include "lua/dinal_table.hpp"
 #include "lua/interrupt.hpp"
@@ -20,7 +21,16 @@ namespace {
 
 constexpr std::string_view example = "sys:simulate{ M = M, theta0 = 1, t_end = 20, dt = 0.01 }";
 
-/// A run may take half of the memory of the machine.
+/// The bytes that the rows will take; none when the window or the grid is wrong, which simulate() tells.
+std::size_t bytes_of_rows(const Task& task) {
+    if (!(task.window.start < task.window.end)) {
+        return 0;
+    }
+    const auto grid = task.rows.within(task.window);
+    return grid ? std::min<std::size_t>(grid->count(), 1ULL << 50U) * column_count * sizeof(double) : 0;
+}
+
+/// A run may take half of the memory of the machine, and most of what the script may still have.
 Limits limits_of(const Options& options) {
     Limits limits{.dense = options.boolean("dense", true)};
     const long pages = sysconf(_SC_PHYS_PAGES);
@@ -28,6 +38,7 @@ Limits limits_of(const Options& options) {
     if (pages > 0 && page_size > 0) {
         limits.memory = static_cast<std::size_t>(pages) * static_cast<std::size_t>(page_size) / 2;
     }
+    limits.memory = std::min(limits.memory, memory_left() / 4 * 3);
     return limits;
 }
 
@@ -89,15 +100,24 @@ int simulate_system(lua_State* L) {
     const Oscillator& system = self<Oscillator>(L, 1, example);
     const Options options(L, 2, "sys:simulate", example,
                           {"M", "theta0", "velocity0", "t_start", "t_end", "dt", "times", "integrator", "dense"});
-    const Limits limits = limits_of(options);
     const Task task = asked_task(L, options, system);
     // What M refers to is written down before M runs, because it may change that.
     Run run{.trajectory = {}, .origin = origin_of(L, task)};
 
+    make_room(L, bytes_of_rows(task));
+    const Limits limits = limits_of(options);
+    if (const std::size_t bytes = bytes_of_rows(task); bytes <= limits.memory) {
+        run.rows = MemoryCharge(bytes);  // now, because M may want memory, too
+    }
+
     CallState call(L);
-    auto result = simulate(
-        task.system, task.excitation, task.initial, task.window, task.rows, task.integrator,
-        [](double) { return !interrupt_requested(); }, limits);
+    Progress progress = Progress::of_time(task.window.start, task.window.end);
+    const auto monitor = [&progress](double t) {
+        progress.advance(t);
+        return !interrupt_requested();
+    };
+    auto result =
+        simulate(task.system, task.excitation, task.initial, task.window, task.rows, task.integrator, monitor, limits);
     if (!result) {
         options.fail(result.error().sentence);
     }

@@ -125,6 +125,7 @@ int slice(lua_State* L) {
         raise(L, fmt::format("v:slice({}, {}, {}): the vector has elements 1 to {}, and step must be at least 1", first,
                              last, step, n));
     }
+    make_room(L, v.size() * sizeof(double));
     std::vector<double> result;
     for (lua_Integer i = first; i <= last; i += std::min(step, n)) {
         result.push_back(v.begin()[i - 1]);
@@ -181,7 +182,7 @@ int linspace(lua_State* L) {
         raise(L, fmt::format("vector.linspace(from, to, n): n = {} must be a whole number from 2 to {}", count, most));
     }
     const auto n = static_cast<std::size_t>(count);
-    std::vector<double> values(n);
+    std::vector<double> values = new_numbers(L, n);
     for (std::size_t i = 0; i < n; ++i) {
         values[i] = from + (to - from) * (static_cast<double>(i) / (count - 1));
     }

@@ -1,7 +1,9 @@
 // coroutine.resume, wrap and close: Lua's own functions, framed by a note of which thread runs.
 //
 // A C function may call another one directly, on its own frame: arguments, results, upvalues and errors are the same.
-// So what is called here is what Lua itself provides, and nothing about coroutines is written a second time.
+// So what is called here is what Lua itself provides. Only what coroutine.wrap returns is written anew: Lua's own
+// closes a coroutine that failed before it returns, and in one that was stopped no hook is called any more, so that an
+// endless __close there could not be stopped.
 #include "lua/interrupt.hpp"
 #include "lua/running_thread.hpp"
 
@@ -13,26 +15,50 @@ namespace {
 lua_CFunction original_resume = nullptr;
 lua_CFunction original_close = nullptr;
 lua_CFunction original_create = nullptr;
-lua_CFunction original_wrapped = nullptr;  // what coroutine.wrap returns; its upvalue is the coroutine
-
-int tracked(lua_State* L, lua_State* coroutine, lua_CFunction original) {
-    if (coroutine == nullptr) {
-        return original(L);  // raises its own sentence about the argument
-    }
-    const RunningThread note(L, coroutine);
-    return original(L);
-}
 
 int resume(lua_State* L) {
-    return tracked(L, lua_tothread(L, 1), original_resume);
+    lua_State* coroutine = lua_tothread(L, 1);
+    if (coroutine == nullptr) {
+        return original_resume(L);  // raises its own sentence about the argument
+    }
+    const RunningThread note(L, coroutine);
+    return original_resume(L);
 }
 
 int close(lua_State* L) {
-    return tracked(L, lua_tothread(L, 1), original_close);
+    lua_State* coroutine = lua_tothread(L, 1);
+    if (coroutine == nullptr) {
+        return original_close(L);
+    }
+    if (interrupt_requested()) {
+        raise_interrupted(L);  // its variables stay open: nothing of this chunk runs on
+    }
+    const RunningThread note(L, coroutine);
+    return original_close(L);
+}
+
+/// Closes the coroutine that failed and raises its error here, headed by the position of the caller, as Lua does.
+int raise_error_of(lua_State* L, lua_State* coroutine) {
+    int status = lua_status(coroutine);
+    if (status != LUA_OK && status != LUA_YIELD && !interrupt_requested()) {
+        const RunningThread note(L, coroutine);
+        status = lua_resetthread(coroutine);
+        lua_xmove(coroutine, L, 1);
+    }
+    if (status != LUA_ERRMEM && lua_type(L, -1) == LUA_TSTRING) {
+        luaL_where(L, 1);
+        lua_insert(L, -2);
+        lua_concat(L, 2);
+    }
+    return lua_error(L);
 }
 
 int wrapped(lua_State* L) {
-    return tracked(L, lua_tothread(L, lua_upvalueindex(1)), original_wrapped);
+    lua_State* coroutine = lua_tothread(L, lua_upvalueindex(1));
+    lua_pushvalue(L, lua_upvalueindex(1));
+    lua_insert(L, 1);
+    const int results = resume(L);
+    return lua_toboolean(L, -results) != 0 ? results - 1 : raise_error_of(L, coroutine);
 }
 
 int wrap(lua_State* L) {
@@ -48,10 +74,6 @@ lua_CFunction original(lua_State* L, const char* name) {
     return function;
 }
 
-int nothing(lua_State*) {
-    return 0;
-}
-
 }  // namespace
 
 void open_coroutines(lua_State* L) {
@@ -60,11 +82,6 @@ void open_coroutines(lua_State* L) {
         original_resume = original(L, "resume");
         original_close = original(L, "close");
         original_create = original(L, "create");
-        lua_getfield(L, -1, "wrap");
-        lua_pushcfunction(L, nothing);
-        lua_call(L, 1, 1);
-        original_wrapped = lua_tocfunction(L, -1);
-        lua_pop(L, 1);
         const luaL_Reg functions[] = {{"resume", resume}, {"close", close}, {"wrap", wrap}, {nullptr, nullptr}};
         luaL_setfuncs(L, functions, 0);
     }

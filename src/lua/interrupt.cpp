@@ -2,29 +2,51 @@
 
 #include <unistd.h>
 #include <csignal>
+#include <cstdio>
 #include <ctime>
 
+#include <array>
 #include <atomic>
 
+#include "io/progress.hpp"
 #include "lua/running_thread.hpp"
 
 namespace dinal {
 
 namespace {
 
-static_assert(std::atomic<lua_State*>::is_always_lock_free && std::atomic<bool>::is_always_lock_free &&
-                  std::atomic<long>::is_always_lock_free,
+static_assert(std::atomic<lua_State*>::is_always_lock_free && std::atomic<Stop>::is_always_lock_free &&
+                  std::atomic<bool>::is_always_lock_free && std::atomic<long>::is_always_lock_free,
               "a signal handler may use lock-free atomics only");
 
-std::atomic<bool> requested = false;
+std::atomic<Stop> requested = Stop::none;
 std::atomic<bool> armed = false;
 std::atomic<lua_State*> running = nullptr;
 std::atomic<long> first_signal_ms = 0;  // 0: none in this chunk
+std::array<char, LUA_IDSIZE + 20> place{};
 
-constexpr long patience_ms = 1000;
+// Code that can be stopped has stopped by then; a key that is held down, or a finger that trembles, is faster.
+constexpr long patience_ms = 200;
+
+void note_place(lua_State* L) {
+    lua_Debug frame{};
+    for (int level = 0; lua_getstack(L, level, &frame) != 0; ++level) {
+        lua_getinfo(L, "Sl", &frame);
+        if (frame.currentline > 0) {
+            std::snprintf(place.data(), place.size(), "%s:%d", frame.short_src, frame.currentline);
+            return;
+        }
+    }
+}
+
+void note_first_place(lua_State* L) {
+    if (place[0] == '\0') {
+        note_place(L);
+    }
+}
 
 void interrupt_hook(lua_State* L, lua_Debug*) {
-    if (requested && armed) {
+    if (requested != Stop::none && armed) {
         raise_interrupted(L);
     }
     lua_sethook(L, nullptr, 0, 0);  // left over from a chunk that has ended
@@ -43,18 +65,14 @@ long now_ms() {
 }
 
 extern "C" void on_signal(int) {
-    requested = true;
-    if (!armed) {
-        return;
+    if (armed) {
+        long first = 0;
+        const long now = now_ms();
+        if (!first_signal_ms.compare_exchange_strong(first, now) && now - first > patience_ms) {
+            _exit(130);  // the only cure for C code that never returns
+        }
     }
-    const long now = now_ms();
-    const long first = first_signal_ms.exchange(now);
-    if (first != 0 && now - first < patience_ms) {
-        _exit(130);  // the only cure for C code that never returns
-    }
-    if (lua_State* L = running) {
-        set_hook(L);
-    }
+    request_stop(Stop::interrupted);
 }
 
 }  // namespace
@@ -67,19 +85,52 @@ void install_interrupt_handler() {
     sigaction(SIGINT, &action, nullptr);
 }
 
-bool interrupt_requested() noexcept {
+Stop stop_requested() noexcept {
     return requested.load(std::memory_order_relaxed);
 }
 
+bool interrupt_requested() noexcept {
+    return stop_requested() != Stop::none;
+}
+
+bool chunk_runs() noexcept {
+    return armed.load(std::memory_order_relaxed);
+}
+
+void request_stop(Stop reason) noexcept {
+    Stop none = Stop::none;
+    requested.compare_exchange_strong(none, reason);
+    if (lua_State* L = running; armed && L != nullptr) {
+        set_hook(L);
+    }
+}
+
+void stop_here(Stop reason) noexcept {
+    if (lua_State* L = running; chunk_runs() && L != nullptr) {
+        note_first_place(L);
+    }
+    request_stop(reason);
+}
+
 void raise_interrupted(lua_State* L) {
-    lua_pushliteral(L, "interrupted!");
+    note_first_place(L);
+    if (stop_requested() == Stop::interrupted) {
+        lua_pushliteral(L, "interrupted!");
+    } else {
+        lua_pushliteral(L, "limit reached!");
+    }
     lua_error(L);
     std::terminate();  // not reached: lua_error does not return, but its declaration does not say so
 }
 
+std::string stopped_at() {
+    return place.data();
+}
+
 InterruptScope::InterruptScope(lua_State* L) : L_(L) {
-    requested = false;
+    requested = Stop::none;
     first_signal_ms = 0;
+    place[0] = '\0';
     running = L;
     armed = true;
 }
@@ -87,25 +138,26 @@ InterruptScope::InterruptScope(lua_State* L) : L_(L) {
 InterruptScope::~InterruptScope() {
     armed = false;
     running = nullptr;
+    end_progress();
     if (lua_gethook(L_) == interrupt_hook) {
         lua_sethook(L_, nullptr, 0, 0);
     }
 }
 
 RunningThread::RunningThread(lua_State* caller, lua_State* callee) : caller_(caller) {
-    if (lua_gethook(callee) == interrupt_hook && !requested) {
+    if (lua_gethook(callee) == interrupt_hook && requested == Stop::none) {
         lua_sethook(callee, nullptr, 0, 0);  // it was created or stopped while an earlier chunk was being interrupted
     }
     running = callee;
-    if (requested && armed) {
+    if (requested != Stop::none && armed) {
         set_hook(callee);
     }
 }
 
 RunningThread::~RunningThread() {
     running = caller_;
-    if (requested && armed) {
-        set_hook(caller_);  // the coroutine died of the interruption: its caller must, too
+    if (requested != Stop::none && armed) {
+        set_hook(caller_);  // the coroutine died of the stop: its caller must, too
     }
 }
 

@@ -1,25 +1,45 @@
-// Ctrl-C: stops the Lua code that runs, in coroutines too, and through interrupt_requested() the C++ stepping loop.
+// What stops a chunk from outside: Ctrl-C, and the limits of limits.hpp. It stops the Lua code that runs, in coroutines
+// too, and through stop_requested() the C++ stepping loop.
 //
-// No hook is set until the signal comes: its handler puts one on the thread that is running then. That thread is known
+// No hook is set until then: the handler of the signal puts one on the thread that is running. That thread is known
 // because coroutine.resume, wrap and close are replaced by functions that note it (open_coroutines).
 #pragma once
 
 #include <lua.hpp>
+#include <string>
+
+#include "lua/time_limit.hpp"
 
 namespace dinal {
 
-/// Installs the SIGINT handler. A second Ctrl-C within a second, while the chunk has still not stopped, ends the
+enum class Stop { none, interrupted, time, memory };
+
+/// Installs the SIGINT handler. A second Ctrl-C, when the chunk has had a moment and has still not stopped, ends the
 /// process with exit code 130.
 void install_interrupt_handler();
 
-/// Ctrl-C was pressed since the last InterruptScope began. A stepping loop asks this now and then.
+/// Why what runs shall stop, since the last InterruptScope began. A stepping loop asks this now and then.
+[[nodiscard]] Stop stop_requested() noexcept;
+/// It shall, whatever the reason.
 [[nodiscard]] bool interrupt_requested() noexcept;
 
-/// What is raised in the running code: the string "interrupted!", without position.
+/// Stops what runs, unless it is being stopped already. To be called on the thread of Lua, also in a signal handler.
+void request_stop(Stop reason) noexcept;
+
+/// The same, not in a signal handler: stopped_at() is what runs now.
+void stop_here(Stop reason) noexcept;
+
+/// What is raised in the running code: the string "interrupted!" or "limit reached!", without position.
 [[noreturn]] void raise_interrupted(lua_State* L);
 
-/// While it lives, Ctrl-C raises "interrupted!" again and again in what runs on `L`, so that no pcall can swallow it.
-/// One for each chunk, around its lua_pcall at the top level. Outside of it, Ctrl-C only sets the flag.
+/// "lab.lua:3" where the running code was stopped, "" when it was in no Lua function.
+std::string stopped_at();
+
+/// An InterruptScope lives.
+[[nodiscard]] bool chunk_runs() noexcept;
+
+/// While it lives, a stop is raised again and again in what runs on `L`, so that no pcall can swallow it. One for each
+/// chunk, around its lua_pcall at the top level; its time runs meanwhile. Outside of it, Ctrl-C only sets the flag.
 class InterruptScope {
 public:
     explicit InterruptScope(lua_State* L);
@@ -29,6 +49,7 @@ public:
 
 private:
     lua_State* L_;
+    TimeAllowance time_;
 };
 
 /// Replaces coroutine.resume, wrap and close by functions that do the same and note which thread runs.

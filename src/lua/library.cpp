@@ -3,6 +3,7 @@
 
 #include "lua/dinal_table.hpp"
 #include "lua/interrupt.hpp"
+#include "lua/terminal_output.hpp"
 #include "lua/value_text.hpp"
 
 namespace dinal {
@@ -10,8 +11,8 @@ namespace dinal {
 namespace {
 
 constexpr void (*register_functions[])(lua_State*) = {
-    register_system,     register_excitation, register_integrator, register_run,
-    register_trajectory, register_theory,     register_vector,     register_help,
+    register_system, register_excitation, register_integrator, register_run,  register_trajectory,
+    register_theory, register_vector,     register_progress,   register_help,
 };
 
 // Plain fields of the table: documented here, set by open_library() and sys:simulate.
@@ -52,6 +53,7 @@ const Section all_sections[] = {
     {"Theory", "theory", &theory_module},
     {"Vectors", "vector", &vector_module},
     {"A vector", "v", &vector_class},
+    {"Progress", "", &progress_functions},
     {"Help", "", &help_functions},
     {"The table dinal", "dinal", &library_class},
 };
@@ -100,6 +102,7 @@ void push_dinal_table(lua_State* L) {
 
 void open_library(lua_State* L) {
     open_coroutines(L);
+    open_terminal_output(L);
     lua_newtable(L);
     lua_pushvalue(L, -1);
     lua_rawsetp(L, LUA_REGISTRYINDEX, &library_key);

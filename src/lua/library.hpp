@@ -18,6 +18,7 @@ void register_run(lua_State* L);
 void register_trajectory(lua_State* L);
 void register_theory(lua_State* L);
 void register_vector(lua_State* L);
+void register_progress(lua_State* L);
 void register_help(lua_State* L);
 
 /// Everything that Lua can see, in the order of the manual. A section is a module, a class of objects, or functions.
@@ -29,17 +30,18 @@ struct Section {
 std::span<const Section> sections();
 
 // Defined in the bind_*.cpp of that name.
-extern const Class system_functions;   // system, nondimensional
-extern const Class system_class;       // sys
-extern const Class excitation_module;  // excitation.harmonic ...
-extern const Class excitation_class;   // e
-extern const Class integrator_module;  // integrator.rk4 ...
-extern const Class integrator_class;   // what they return
-extern const Class run_class;          // run
-extern const Class trajectory_module;  // trajectory.load
-extern const Class theory_module;      // theory.magnification ...
-extern const Class vector_module;      // vector{...}, vector.linspace
-extern const Class vector_class;       // v
-extern const Class help_functions;     // help
+extern const Class system_functions;    // system, nondimensional
+extern const Class system_class;        // sys
+extern const Class excitation_module;   // excitation.harmonic ...
+extern const Class excitation_class;    // e
+extern const Class integrator_module;   // integrator.rk4 ...
+extern const Class integrator_class;    // what they return
+extern const Class run_class;           // run
+extern const Class trajectory_module;   // trajectory.load
+extern const Class theory_module;       // theory.magnification ...
+extern const Class vector_module;       // vector{...}, vector.linspace
+extern const Class vector_class;        // v
+extern const Class progress_functions;  // progress
+extern const Class help_functions;      // help
 
 }  // namespace dinal

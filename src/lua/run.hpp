@@ -8,6 +8,7 @@
 
 #include "core/trajectory.hpp"
 #include "lua/bind.hpp"
+#include "lua/memory_limit.hpp"
 #include "lua/origin.hpp"
 
 namespace dinal {
@@ -16,6 +17,7 @@ struct Run {
     Trajectory trajectory;
     std::optional<Origin> origin = {};       ///< none when it was read from a file
     std::vector<std::string> comments = {};  ///< of the file it was read from
+    MemoryCharge rows = {};                  ///< of the trajectory
 };
 
 // Shared, because every column that Lua takes out of a run is a view that keeps the whole run alive.

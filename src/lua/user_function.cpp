@@ -80,7 +80,11 @@ bool is_good(lua_State* L, double& M) {
 
 }  // namespace
 
-CallState::CallState(lua_State* L) : L_(L), outer_(current) {
+CallState::CallState(lua_State* L) : L_(L), outer_(current), depth_(outer_ == nullptr ? 1 : outer_->depth_ + 1) {
+    constexpr int deepest = 50;
+    if (depth_ > deepest) {
+        raise(L, fmt::format("a run within M of a run within M of a run, and so on: {} deep is too much", deepest));
+    }
     luaL_checkstack(L, LUA_MINSTACK, "for the call of a user function");  // once, not at each value
     current = this;
 }

@@ -14,6 +14,7 @@ namespace dinal {
 /// One on the C++ stack of every binding that may ask an excitation (simulate, e:value, run:at). They nest.
 class CallState {
 public:
+    /// Raises when they nest too deep: each may be an integration on the C++ stack, which is smaller than Lua thinks.
     explicit CallState(lua_State* L);
     ~CallState();
     CallState(const CallState&) = delete;
@@ -30,6 +31,7 @@ private:
 
     lua_State* L_;
     CallState* outer_;
+    int depth_;
     bool failed_ = false;         // and nobody has said that it may go on
     bool failed_before_ = false;  // the error is kept all the same
 };

@@ -13,6 +13,8 @@ namespace dinal {
 
 namespace {
 
+constexpr std::size_t deepest = 50;  // tables and functions within each other; each takes some of the C++ stack
+
 const char standard_key = 0;  // registry key of a copy of _G as it was at the start
 
 const char sources_key = 0;  // registry key of a weak table: function -> its text, or false
@@ -101,7 +103,7 @@ std::string ValueText::expression(int index) {
 
 std::string ValueText::table(int index) {
     const void* identity = lua_topointer(L_, index);
-    if (std::find(open_.begin(), open_.end(), identity) != open_.end() || open_.size() > 50) {
+    if (std::find(open_.begin(), open_.end(), identity) != open_.end() || open_.size() > deepest) {
         return nothing("a table that contains itself");
     }
     if (lua_getmetatable(L_, index) != 0) {
@@ -159,6 +161,9 @@ std::string ValueText::function(int index) {
     const void* identity = lua_topointer(L_, index);
     if (std::find(open_.begin(), open_.end(), identity) != open_.end()) {
         return nothing("a function that refers to itself in a roundabout way");
+    }
+    if (open_.size() > deepest) {
+        return nothing("a function within too many others");
     }
     const auto source = known_source(L_, index);
     if (!source) {

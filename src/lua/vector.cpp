@@ -9,6 +9,11 @@
 
 namespace dinal {
 
+std::vector<double> new_numbers(lua_State* L, std::size_t n) {
+    make_room(L, n * sizeof(double));
+    return std::vector<double>(n);
+}
+
 void push_vector(lua_State* L, std::vector<double> values) {
     const std::size_t bytes = values.size() * sizeof(double);
     push(L, Vector(std::move(values)));
@@ -19,6 +24,7 @@ namespace {
 
 std::vector<double> numbers_of_table(lua_State* L, int index, std::string_view what) {
     const std::size_t n = lua_rawlen(L, index);
+    make_room(L, n * sizeof(double));
     std::vector<double> numbers;
     numbers.reserve(n);
     for (std::size_t i = 1; i <= n; ++i) {
@@ -37,6 +43,7 @@ std::vector<double> numbers_at(lua_State* L, int index, std::string_view what) {
     index = lua_absindex(L, index);
     std::vector<double> numbers;
     if (const auto* vector = test<Vector>(L, index)) {
+        make_room(L, vector->size() * sizeof(double));
         numbers.assign(vector->begin(), vector->end());
     } else if (lua_type(L, index) == LUA_TTABLE) {
         numbers = numbers_of_table(L, index, what);

@@ -34,6 +34,9 @@ private:
     std::span<const double> values_;
 };
 
+/// n zeros. Where memory is limited, garbage makes room for them.
+std::vector<double> new_numbers(lua_State* L, std::size_t n);
+
 /// Gives Lua a vector with data of its own, and its garbage collector the news of how much memory that takes.
 void push_vector(lua_State* L, std::vector<double> values);
 

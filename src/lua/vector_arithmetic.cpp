@@ -14,7 +14,7 @@ namespace {
 template <class Function>
 int mapped(lua_State* L, std::string_view call, Function f) {
     const auto& v = self<Vector>(L, 1, call);
-    std::vector<double> result(v.size());
+    std::vector<double> result = new_numbers(L, v.size());
     std::transform(v.begin(), v.end(), result.begin(), f);
     push_vector(L, std::move(result));
     return 1;
@@ -53,7 +53,7 @@ template <class Function>
 int combined(lua_State* L, const char* symbol, Function f) {
     const Operand a = operand(L, 1, symbol);
     const Operand b = operand(L, 2, symbol);
-    std::vector<double> result(common_size(L, a, b, symbol));
+    std::vector<double> result = new_numbers(L, common_size(L, a, b, symbol));
     for (std::size_t i = 0; i < result.size(); ++i) {
         result[i] = f(a[i], b[i]);
     }

@@ -3,15 +3,18 @@
 #include <fmt/core.h>
 
 #include <array>
+#include <optional>
 #include <string_view>
 
 #include "core/suggest.hpp"
+#include "repl/limit_options.hpp"
 
 namespace dinal {
 namespace {
 
-constexpr std::array<std::string_view, 12> known_options = {"-e", "-l", "-i", "-v",     "-W",        "-E",
-                                                            "-",  "--", "-h", "--help", "--version", "--manual"};
+constexpr std::array<std::string_view, 15> known_options = {
+    "-e", "-l",     "-i",        "-v",       "-W",     "-E",         "-",           "--",
+    "-h", "--help", "--version", "--manual", "--safe", "--max-time", "--max-memory"};
 
 Error unknown(std::string_view option) {
     return {fmt::format("unknown option '{}'{}", option, did_you_mean(option, known_options))};
@@ -53,6 +56,31 @@ bool set_flag(Arguments& arguments, char letter) {
     }
 }
 
+/// --max-time 10 or --max-time=10 at place i, which goes to the value.
+std::optional<Error> read_limit(Arguments& arguments, std::string_view option, std::size_t& i) {
+    const std::string_view word = arguments.words[i];
+    if (word.size() > option.size()) {
+        return set_limit(arguments.limits, option, word.substr(option.size() + 1));
+    }
+    ++i;
+    return set_limit(arguments.limits, option, i < arguments.words.size() ? arguments.words[i] : "");
+}
+
+/// What is not possible together; what safe mode brings with it.
+std::optional<Error> settle(Arguments& arguments) {
+    if (!arguments.safe) {
+        return std::nullopt;
+    }
+    for (const Step& step : arguments.steps) {
+        if (step.option == 'l') {
+            return Error{fmt::format("-l {} is not possible with --safe, which loads no modules", step.value)};
+        }
+    }
+    arguments.ignore_environment = true;
+    complete_safe_limits(arguments.limits);
+    return std::nullopt;
+}
+
 }  // namespace
 
 Expected<Arguments> parse_arguments(int count, const char* const* words) {
@@ -72,7 +100,13 @@ Expected<Arguments> parse_arguments(int count, const char* const* words) {
             arguments.request = request;
             return arguments;
         }
-        if (word[1] == 'e' || word[1] == 'l') {
+        if (word == "--safe") {
+            arguments.safe = true;
+        } else if (const std::string_view limit = limit_option(word); !limit.empty()) {
+            if (auto wrong = read_limit(arguments, limit, i)) {
+                return *wrong;
+            }
+        } else if (word[1] == 'e' || word[1] == 'l') {
             const char* value = arguments.words[i] + 2;
             if (*value == '\0') {
                 // NOTE: as in lua, a value that begins with a dash must be joined to its option: -e-x.
@@ -88,6 +122,9 @@ Expected<Arguments> parse_arguments(int count, const char* const* words) {
         }
     }
     arguments.script = i;
+    if (auto wrong = settle(arguments)) {
+        return *wrong;
+    }
     return arguments;
 }
 
@@ -106,6 +143,10 @@ without a script: a prompt on a terminal, else standard input is run as a script
   -E         ignore environment variables (LUA_INIT, LUA_PATH, LUA_CPATH)
   --         no more options: what follows is the script
   -          no more options: run standard input as the script
+  --safe     for scripts of strangers: no files outside the current folder, no
+             processes, no modules, and limits: --max-memory 256M --max-time 10
+  --max-memory SIZE  end a script that needs more, for example 256M or 2G
+  --max-time SECONDS end a script that runs longer; at the prompt, an input
   --help     this text
   --version  version, licence and what is built in
   --manual   the whole manual, as Markdown

@@ -1,10 +1,11 @@
-// The command line: the options of `lua`, read as `lua` reads them, and --help, --version and --manual.
+// The command line: the options of `lua`, read as `lua` reads them, and those in words, such as --help and --safe.
 #pragma once
 
 #include <string>
 #include <vector>
 
 #include "core/expected.hpp"
+#include "lua/limits.hpp"
 
 namespace dinal {
 
@@ -22,6 +23,8 @@ struct Arguments {
     bool show_version = false;        ///< -v or -i
     bool executes = false;            ///< -e
     bool ignore_environment = false;  ///< -E
+    bool safe = false;                ///< --safe
+    ScriptLimits limits;              ///< --max-memory, --max-time; in safe mode there are always some
     std::vector<Step> steps;
     std::vector<const char*> words;  ///< the whole command line
     std::size_t script = 0;          ///< its place among the words; words.size() when there is none

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "lua/interrupt.hpp"
+#include "lua/limits.hpp"
 
 namespace dinal {
 namespace {
@@ -158,6 +159,11 @@ int call(lua_State* L, int arguments, int results) {
         status = lua_pcall(L, arguments, results, function);
     }
     lua_remove(L, function);
+    if (const std::string limit = reached_limit(); !limit.empty()) {  // also when a pcall was the last thing
+        lua_settop(L, function - 1);
+        lua_pushlstring(L, limit.data(), limit.size());
+        return LUA_ERRRUN;
+    }
     if (status < 0) {  // a C++ exception that no binding caught: what is on the stack is not a message
         lua_pop(L, 1);
         lua_pushliteral(L, "internal error: a C++ exception reached Lua; please report it");

@@ -14,9 +14,13 @@
 #include <memory>
 #include <string_view>
 
+#include "io/confinement.hpp"
 #include "lua/function_source.hpp"
 #include "lua/interrupt.hpp"
 #include "lua/library.hpp"
+#include "lua/limits.hpp"
+#include "lua/safe_mode.hpp"
+#include "lua/time_limit.hpp"
 #include "repl/call.hpp"
 #include "repl/line_editor.hpp"
 #include "repl/output.hpp"
@@ -27,6 +31,9 @@ namespace {
 
 /// Lua's words are good but for bytecode, which its own program would not take either.
 std::string explained(std::string text) {
+    if (text.starts_with("attempt to load a binary chunk")) {
+        return "the script is Lua bytecode, which safe mode does not take: run its source instead";
+    }
     if (text.find("bad binary format") != std::string::npos) {
         text += "; it is Lua bytecode that this Lua (" LUA_RELEASE ") can not run: run its source instead";
     }
@@ -37,8 +44,8 @@ std::string explained(std::string text) {
 bool finished(lua_State* L, int status) {
     if (status != LUA_OK) {
         const std::string text = explained(take_text(L));
-        complain(interrupt_requested() && text.rfind("interrupted", 0) != 0 ? "interrupted" : text);
-    } else if (interrupt_requested()) {
+        complain(stop_requested() == Stop::interrupted && text.rfind("interrupted", 0) != 0 ? "interrupted" : text);
+    } else if (stop_requested() == Stop::interrupted) {
         complain("interrupted");
         return false;
     }
@@ -53,7 +60,7 @@ bool run_loaded(lua_State* L, int status, int arguments = 0) {
 
 /// Text that is in no file. It is kept, so that a file of results can hold the source of the functions in it.
 int load_text(lua_State* L, std::string_view text, const char* name) {
-    const int status = luaL_loadbuffer(L, text.data(), text.size(), name);
+    const int status = luaL_loadbufferx(L, text.data(), text.size(), name, load_mode());
     if (status == LUA_OK) {
         keep_source(L, name, text);
     }
@@ -62,6 +69,11 @@ int load_text(lua_State* L, std::string_view text, const char* name) {
 
 bool run_text(lua_State* L, const char* text, const char* name) {
     return run_loaded(L, load_text(L, text, name));
+}
+
+/// luaL_loadfile as a function that Lua can call: it takes its time and memory like any other code.
+int load_file(lua_State* L) {
+    return luaL_loadfilex(L, lua_tostring(L, 1), load_mode()) == LUA_OK ? 1 : lua_error(L);
 }
 
 /// What luaL_loadfile(L, nullptr) does, mark of UTF-8 and `#!` line included, but the text is kept.
@@ -155,7 +167,15 @@ int push_script_arguments(lua_State* L) {
 bool run_script(lua_State* L, const Arguments& arguments) {
     const std::string_view word = arguments.words[arguments.script];
     const bool after_dashes = std::string_view(arguments.words[arguments.script - 1]) == "--";
-    const int status = word == "-" && !after_dashes ? load_standard_input(L) : luaL_loadfile(L, word.data());
+    int status = LUA_OK;
+    if (word == "-" && !after_dashes) {
+        status = load_standard_input(L);
+    } else {
+        allow_reading(word.data());
+        lua_pushcfunction(L, load_file);
+        lua_pushstring(L, word.data());
+        status = call(L, 1, 1);
+    }
     return status == LUA_OK ? run_loaded(L, status, push_script_arguments(L)) : finished(L, status);
 }
 
@@ -165,14 +185,15 @@ void open(lua_State* L, const Arguments& arguments) {
         lua_pushboolean(L, 1);
         lua_setfield(L, LUA_REGISTRYINDEX, "LUA_NOENV");
     }
-    luaL_openlibs(L);
+    arguments.safe ? open_safe_libraries(L) : luaL_openlibs(L);
     open_library(L);
     set_arg(L, arguments);
     lua_gc(L, LUA_GCGEN, 0, 0);  // as lua does
+    set_limits(L, arguments.limits);
 }
 
 int failure() {
-    return interrupt_requested() ? exit_code::interrupted : exit_code::script_error;
+    return stop_requested() == Stop::interrupted ? exit_code::interrupted : exit_code::script_error;
 }
 
 int prompt(lua_State* L, const Arguments& arguments) {
@@ -220,6 +241,7 @@ int protected_run(lua_State* L) {
 void close_state(lua_State* L) {
     // Finalizers run now, and Lua calls no hook in them: an endless one must not be deaf to Ctrl-C.
     static_cast<void>(std::signal(SIGINT, SIG_DFL));
+    const TimeAllowance time;
     lua_close(L);
 }
 
@@ -239,6 +261,9 @@ int run(const Arguments& arguments) {
     if (lua_pcall(L, 1, 0, 0) != LUA_OK) {
         complain(take_text(L));
         return failure();
+    }
+    if (!reached_limit().empty()) {
+        std::exit(program.code);  // what the script has left open is not closed: that may take for ever, too
     }
     return program.code;
 }

@@ -7,7 +7,7 @@ program=$1 source=$2
 complaints=$(groff -man -ww -Tutf8 "$source/docs/dinal.1" 2>&1 >/dev/null)
 [ -z "$complaints" ] || { echo "$complaints"; exit 1; }
 # Each option that the program lists has its place in the man page.
-"$program" --help | grep -oE '(^|[ ,])--?[A-Za-z][a-z]*' | tr -d ' ,' | sort -u >options.$$
+"$program" --help | grep -oE '(^|[ ,])--?[A-Za-z][a-z-]*' | tr -d ' ,' | sort -u >options.$$
 for option in $(cat options.$$); do
     sed 's/\\-/-/g' "$source/docs/dinal.1" | grep -qe "$option" || { echo "the man page lacks $option"; rm options.$$; exit 1; }
 done

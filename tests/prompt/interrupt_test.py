@@ -34,6 +34,12 @@ LONG = {
     "runs within pcall": "while true do pcall(function() " + SIMULATE.format(1) + " end) end",
     "a run in a coroutine": "coroutine.wrap(function() " + SIMULATE.format("math.sin") + " end)()",
     "M that never returns": SIMULATE.format("function(t) while true do end end"),
+    "__close of a coroutine that is stopped":
+        "coroutine.wrap(function() local x <close> = setmetatable({}, { __close = function() while true do end end }) "
+        "while true do end end)()",
+    "coroutine.close of a coroutine that was stopped":
+        "local co = coroutine.create(function() local x <close> = setmetatable({}, { __close = function() while true "
+        "do end end }) while true do end end) while true do pcall(coroutine.resume, co) pcall(coroutine.close, co) end",
     "__close": "local x <close> = setmetatable({}, { __close = function() while true do end end })",
 }
 
@@ -80,6 +86,25 @@ class Interrupts(unittest.TestCase):
         os.environ["LUA_INIT"] = "print('running') io.stdout:flush() while true do end"
         self.addCleanup(os.environ.pop, "LUA_INIT")
         self.assertEqual(self.interrupt(self.start("-e", "print(1)"))[0], 130)
+
+    def test_a_second_one_ends_code_that_never_returns(self):
+        process = self.start("-e", "print('running') io.stdout:flush(); (('a'):rep(40)):find(('.-'):rep(40)..'b')")
+        self.assertEqual(process.stdout.readline(), "running\n")
+        time.sleep(0.2)
+        process.send_signal(signal.SIGINT)
+        time.sleep(1.5)  # not only a quick one
+        self.assertIsNone(process.poll())
+        process.send_signal(signal.SIGINT)
+        self.assertEqual(process.wait(timeout=5), 130)
+
+    def test_a_key_that_is_held_down_is_one(self):
+        code = "print('running') io.stdout:flush() local ok, e = pcall(function() while true do end end) error(e, 0)"
+        process = self.start("-i", "-e", code)
+        self.assertEqual([process.stdout.readline() for _ in range(2)][1], "running\n")
+        process.send_signal(signal.SIGINT)
+        process.send_signal(signal.SIGINT)
+        self.assertEqual(process.wait(timeout=5), 130)
+        self.assertRegex(process.communicate()[1], "dinal: interrupted at")  # _exit(130) would say nothing
 
     def test_an_endless_finalizer_at_the_end_stops(self):
         loop = "setmetatable({}, { __gc = function() print('running') io.stdout:flush() while true do end end })"

@@ -1,0 +1,135 @@
+// progress(n, label): a for loop that shows how far it is.
+#include <fmt/format.h>
+
+#include <cmath>
+#include <limits>
+#include <optional>
+
+#include "io/progress.hpp"
+#include "lua/library.hpp"
+#include "lua/vector.hpp"
+
+namespace dinal {
+
+namespace {
+
+constexpr const char* example = "for i in progress(100, \"sweep\") do ... end";
+
+/// The state of such a loop. Its user value is the list that it goes through, if any.
+struct Loop {
+    std::unique_ptr<Progress> progress;  // none when the loop has ended
+    lua_Integer steps = 0;
+    bool list = false;
+};
+
+Loop& loop_self(lua_State* L) {
+    auto* loop = test<Loop>(L, 1);
+    if (loop == nullptr) {
+        raise(L, fmt::format("progress is for loops: {}", example));
+    }
+    return *loop;
+}
+
+/// The function that the for loop calls: with the Loop and the number of the step before.
+int next_step(lua_State* L) {
+    Loop& loop = loop_self(L);
+    const lua_Integer step = lua_tointeger(L, 2) + 1;
+    if (step < 1 || step > loop.steps || loop.progress == nullptr) {
+        loop.progress.reset();
+        return 0;
+    }
+    loop.progress->advance(static_cast<double>(step - 1));
+    lua_pushinteger(L, step);
+    if (!loop.list) {
+        return 1;
+    }
+    lua_getiuservalue(L, 1, 1);
+    lua_geti(L, -1, step);
+    lua_remove(L, -2);
+    return 2;
+}
+
+int close_loop(lua_State* L) {
+    loop_self(L).progress.reset();
+    return 0;
+}
+
+/// How many steps the first argument stands for; none when it is no whole number of them.
+std::optional<double> steps_of(lua_State* L) {
+    if (lua_type(L, 1) == LUA_TTABLE) {
+        return static_cast<double>(lua_rawlen(L, 1));
+    }
+    if (const auto* vector = test<Vector>(L, 1)) {
+        return static_cast<double>(vector->size());
+    }
+    const double n = lua_tonumber(L, 1);
+    const bool whole = lua_type(L, 1) == LUA_TNUMBER && n >= 0 && (std::isinf(n) || (n == std::floor(n) && n < 9e15));
+    return whole ? std::optional(n) : std::nullopt;
+}
+
+int progress(lua_State* L) {
+    lua_settop(L, 2);
+    const auto steps = steps_of(L);
+    if (!steps) {
+        raise(L, fmt::format(
+                     "progress needs how many steps there are, math.huge if nobody knows, or a list to go through, "
+                     "got {}; for example {}",
+                     describe(L, 1), example));
+    }
+    if (!lua_isnil(L, 2) && lua_type(L, 2) != LUA_TSTRING) {
+        raise(L, fmt::format("progress: the label must be a string, got {}; for example {}", describe(L, 2), example));
+    }
+    const std::string label = lua_isnil(L, 2) ? "" : lua_tostring(L, 2);
+    lua_pushcfunction(L, guarded<next_step>);
+    auto& loop = push(L, Loop{.progress = nullptr,
+                              .steps = std::isinf(*steps) ? std::numeric_limits<lua_Integer>::max()
+                                                          : static_cast<lua_Integer>(*steps),
+                              .list = lua_type(L, 1) != LUA_TNUMBER});
+    loop.progress.reset(
+        new Progress(Progress::of_steps(label, *steps)));  // NOLINT: it can not be moved, only made here
+    lua_pushvalue(L, 1);
+    lua_setiuservalue(L, -2, 1);
+    lua_pushinteger(L, 0);
+    lua_pushvalue(L, -2);  // the closing value: the line goes, however the loop is left
+    return 4;
+}
+
+constexpr Member loop_members[] = {
+    {"__close", guarded<close_loop>, Kind::metamethod, {"", "The loop was left.", ""}},
+};
+
+const Class loop_class = {"progress", {example, "The state of a loop that shows its progress.", ""}, loop_members};
+
+constexpr Member functions[] = {
+    {"progress",
+     guarded<progress>,
+     Kind::function,
+     {"for i in progress(n, label) do, for i, x in progress(list, label) do",
+      "A loop of n steps, or through a list (a table or a vector), that shows how far it is: after half a second one "
+      "line "
+      "on standard error with the label, the fraction, the rate and the time that is left, if that is a terminal; the "
+      "line "
+      "goes when the loop ends. Runs and loops within a step count as parts of it. n may be math.huge; leave such a "
+      "loop "
+      "with break. A run by itself shows the same.",
+      "peaks = {}\n"
+      "for i, f in progress({ 0.5, 1, 2 }, \"sweep\") do\n"
+      "    M = excitation.harmonic{ frequency = f }\n"
+      "    peaks[i] = nondimensional{ zeta = 0.1 }:simulate{ M = M, t_end = 20, dt = 0.01 }.theta:max()\n"
+      "end\n"
+      "print(#peaks)  --> 3"}},
+};
+
+}  // namespace
+
+const Class progress_functions = {
+    "progress",
+    {"for i in progress(n, label) do", "Loops that show how far they are.", "for i in progress(3, \"sweep\") do end"},
+    functions};
+
+void register_progress(lua_State* L) {
+    add_class<Loop>(L, loop_class);
+    add_functions(L, progress_functions);
+}
+
+}  // namespace dinal

@@ -1,0 +1,26 @@
+// The limits of time and memory of a script, as --max-time and --max-memory name them.
+#pragma once
+
+#include <cstddef>
+#include <lua.hpp>
+#include <string>
+
+#include "lua/interrupt.hpp"
+
+namespace dinal {
+
+struct ScriptLimits {
+    std::size_t memory = 0;  ///< bytes; 0: none
+    double seconds = 0;      ///< 0: none
+};
+
+/// Puts the limits in force for all chunks that run from now on. Once, before the first of them.
+void set_limits(lua_State* L, const ScriptLimits& limits);
+
+/// "stopped at lab.lua:3: it ran longer than the 10 s that --max-time allows". `place` may be empty.
+std::string limit_sentence(Stop reason, const std::string& place);
+
+/// The sentence when a limit has stopped the last chunk, else empty.
+std::string reached_limit();
+
+}  // namespace dinal

@@ -1,0 +1,166 @@
+#include "lua/memory_limit.hpp"
+
+#include <malloc.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cstdint>
+#include <cstdlib>
+#include <limits>
+#include <new>
+#include <utility>
+
+#include "lua/interrupt.hpp"
+
+namespace dinal {
+namespace {
+
+using Bytes = std::int64_t;
+
+// Atomic for the sake of other threads that use `new`; only the one of Lua is ever refused anything.
+std::atomic<Bytes> limit = 0;  // 0: none
+std::atomic<Bytes> taken = 0;  // since there is a limit; what was there before counts negative when it goes
+
+/// What the unwinding of a chunk that is stopped may take on top: messages, closing of variables.
+constexpr Bytes slack = Bytes{4} << 20;
+
+bool limited() noexcept {
+    return limit.load(std::memory_order_relaxed) != 0;
+}
+
+Bytes now_taken() noexcept {
+    return taken.load(std::memory_order_relaxed);
+}
+
+void count(Bytes bytes) noexcept {
+    taken.fetch_add(bytes, std::memory_order_relaxed);
+}
+
+/// So much more can be had. Always, when no chunk runs: the program itself goes on.
+bool allowed(Bytes more) noexcept {
+    const Bytes extra = interrupt_requested() ? slack : 0;
+    return !chunk_runs() || now_taken() + more <= limit.load(std::memory_order_relaxed) + extra;
+}
+
+Bytes size_of(void* block) noexcept {
+    return block == nullptr ? 0 : static_cast<Bytes>(malloc_usable_size(block));
+}
+
+/// Lua collects its garbage when it is refused memory, and asks again. So a refusal is final when the same is refused
+/// twice, or when something else is asked for.
+bool is_final(std::size_t refused_before, std::size_t size, bool fits) {
+    return refused_before != 0 && (refused_before != size || !fits);
+}
+
+void* allocate(void*, void* block, std::size_t, std::size_t size) {
+    static std::size_t refused = 0;
+    const Bytes before = size_of(block);
+    if (size == 0) {
+        count(-before);
+        std::free(block);  // NOLINT: Lua's blocks are those of realloc
+        return nullptr;
+    }
+    if (const Bytes more = static_cast<Bytes>(size) - before; more > 0) {
+        const bool fits = allowed(more);
+        if (is_final(std::exchange(refused, fits ? 0 : size), size, fits)) {
+            stop_here(Stop::memory);
+        }
+        if (!fits) {
+            return nullptr;
+        }
+    }
+    void* result = std::realloc(block, size);  // NOLINT
+    count(result == nullptr ? 0 : size_of(result) - before);
+    return result;
+}
+
+}  // namespace
+
+void set_memory_limit(lua_State* L, std::size_t bytes) {
+    taken = 0;
+    limit = static_cast<Bytes>(std::min<std::size_t>(bytes, std::numeric_limits<Bytes>::max() / 2));
+    lua_setallocf(L, allocate, nullptr);
+}
+
+std::size_t memory_limit() noexcept {
+    return static_cast<std::size_t>(limit.load(std::memory_order_relaxed));
+}
+
+std::size_t memory_left() noexcept {
+    if (!limited()) {
+        return std::numeric_limits<std::size_t>::max();
+    }
+    return static_cast<std::size_t>(std::max<Bytes>(limit.load(std::memory_order_relaxed) - now_taken(), 0));
+}
+
+void make_room(lua_State* L, std::size_t bytes) {
+    if (bytes > memory_left()) {
+        lua_gc(L, LUA_GCCOLLECT);
+    }
+}
+
+void collect_when_tight(lua_State* L) {
+    if (!limited()) {
+        return;
+    }
+    static Bytes after_last = 0;  // what is taken by what is in use can not be collected again and again
+    const Bytes all = limit.load(std::memory_order_relaxed);
+    after_last = std::min(after_last, now_taken());
+    if (now_taken() > all / 2 && now_taken() - after_last > all / 8) {
+        lua_gc(L, LUA_GCCOLLECT);
+        after_last = now_taken();
+    }
+}
+
+MemoryCharge::MemoryCharge(std::size_t bytes) : bytes_(limited() ? bytes : 0) {
+    count(static_cast<Bytes>(bytes_));
+}
+
+MemoryCharge::MemoryCharge(MemoryCharge&& other) noexcept : bytes_(std::exchange(other.bytes_, 0)) {}
+
+MemoryCharge& MemoryCharge::operator=(MemoryCharge&& other) noexcept {
+    std::swap(bytes_, other.bytes_);
+    return *this;
+}
+
+MemoryCharge::~MemoryCharge() {
+    count(-static_cast<Bytes>(bytes_));
+}
+
+}  // namespace dinal
+
+// NOTE: the forms for arrays lead here. Those for over-aligned types do not, which nothing here has.
+void* operator new(std::size_t size) {
+    const bool limited = dinal::limited();
+    if (limited && !dinal::allowed(static_cast<dinal::Bytes>(std::min<std::size_t>(size, 1ULL << 62U)))) {
+        dinal::stop_here(dinal::Stop::memory);
+        throw std::bad_alloc();
+    }
+    void* block = std::malloc(std::max<std::size_t>(size, 1));  // NOLINT
+    if (block == nullptr) {
+        throw std::bad_alloc();
+    }
+    if (limited) {
+        dinal::count(dinal::size_of(block));
+    }
+    return block;
+}
+
+void* operator new(std::size_t size, const std::nothrow_t&) noexcept {
+    try {
+        return operator new(size);
+    } catch (const std::bad_alloc&) {
+        return nullptr;
+    }
+}
+
+void operator delete(void* block) noexcept {
+    if (dinal::limited()) {
+        dinal::count(-dinal::size_of(block));
+    }
+    std::free(block);  // NOLINT
+}
+
+void operator delete(void* block, std::size_t) noexcept {
+    operator delete(block);
+}

@@ -1,0 +1,271 @@
+#include "lua/safe_mode.hpp"
+
+#include <array>
+#include <cstdio>
+#include <cstring>
+#include <string>
+#include <string_view>
+
+#include "io/confinement.hpp"
+#include "io/progress.hpp"
+#include "lua/bind.hpp"
+#include "lua/interrupt.hpp"
+
+namespace dinal {
+namespace {
+
+// ---- what there is
+
+struct Library {
+    const char* name;
+    lua_CFunction open;
+    std::initializer_list<const char*> members;
+};
+
+const std::initializer_list<Library> libraries = {
+    {LUA_GNAME, luaopen_base, {"assert", "collectgarbage", "error",  "getmetatable", "ipairs",   "load",
+                               "next",   "pairs",          "pcall",  "print",        "select",   "rawequal",
+                               "rawget", "rawlen",         "rawset", "setmetatable", "tonumber", "tostring",
+                               "type",   "warn",           "xpcall", "_VERSION"}},
+    {LUA_COLIBNAME,
+     luaopen_coroutine,
+     {"close", "create", "isyieldable", "resume", "running", "status", "wrap", "yield"}},
+    {LUA_STRLIBNAME,
+     luaopen_string,
+     {"byte", "char", "find", "format", "gmatch", "gsub", "len", "lower", "match", "pack", "packsize", "rep", "reverse",
+      "sub", "unpack", "upper"}},
+    {LUA_TABLIBNAME, luaopen_table, {"concat", "insert", "move", "pack", "remove", "sort", "unpack"}},
+    {LUA_UTF8LIBNAME, luaopen_utf8, {"char", "charpattern", "codepoint", "codes", "len", "offset"}},
+    {LUA_MATHLIBNAME, luaopen_math, {"abs", "acos",       "asin", "atan",      "ceil", "cos",    "deg",
+                                     "exp", "floor",      "fmod", "huge",      "log",  "max",    "maxinteger",
+                                     "min", "mininteger", "modf", "pi",        "rad",  "random", "randomseed",
+                                     "sin", "sqrt",       "tan",  "tointeger", "type", "ult"}},
+    {LUA_OSLIBNAME, luaopen_os, {"clock", "date", "difftime", "time"}},
+    {LUA_DBLIBNAME, luaopen_debug, {"traceback"}},
+};
+
+bool is_safe = false;
+lua_CFunction original_load = nullptr;
+lua_CFunction original_setmetatable = nullptr;
+lua_CFunction original_xpcall = nullptr;
+
+// ---- what is not quite what it is in Lua
+
+/// Text only: Lua does not check bytecode.
+int load(lua_State* L) {
+    if (lua_gettop(L) < 3) {
+        lua_settop(L, 3);
+    }
+    lua_pushliteral(L, "t");
+    lua_replace(L, 3);
+    return original_load(L);
+}
+
+/// Without __gc: in a finalizer nothing can stop an endless loop.
+int set_metatable(lua_State* L) {
+    if (lua_type(L, 2) == LUA_TTABLE) {
+        lua_pushliteral(L, "__gc");
+        if (lua_rawget(L, 2) != LUA_TNIL) {
+            raise(L, "setmetatable: a metatable with __gc is not possible in safe mode");
+        }
+        lua_pop(L, 1);
+    }
+    return original_setmetatable(L);
+}
+
+/// The handler of xpcall, the upvalue. Lua calls it with hooks switched off when what runs is being stopped.
+int handle(lua_State* L) {
+    if (interrupt_requested()) {
+        return 1;
+    }
+    lua_pushvalue(L, lua_upvalueindex(1));
+    lua_insert(L, 1);
+    lua_call(L, lua_gettop(L) - 1, LUA_MULTRET);
+    return lua_gettop(L);
+}
+
+int xpcall_safely(lua_State* L) {
+    if (lua_type(L, 2) == LUA_TFUNCTION) {
+        lua_pushvalue(L, 2);
+        lua_pushcclosure(L, handle, 1);
+        lua_replace(L, 2);
+    }
+    return original_xpcall(L);
+}
+
+int collect_garbage(lua_State* L) {
+    const std::string_view what = luaL_optstring(L, 1, "collect");
+    if (what == "count") {
+        lua_pushnumber(L, lua_gc(L, LUA_GCCOUNT) + lua_gc(L, LUA_GCCOUNTB) / 1024.0);
+        return 1;
+    }
+    if (what != "collect") {
+        raise(L, "collectgarbage: only \"collect\" and \"count\" are possible in safe mode");
+    }
+    lua_pushinteger(L, lua_gc(L, LUA_GCCOLLECT));
+    return 1;
+}
+
+/// Only what is there already. The upvalue is the table of that.
+int require(lua_State* L) {
+    luaL_checkstring(L, 1);
+    lua_settop(L, 1);
+    lua_pushvalue(L, 1);
+    if (lua_rawget(L, lua_upvalueindex(1)) == LUA_TNIL) {
+        raise(L,
+              "require: there is no module '" + std::string(lua_tostring(L, 1)) + "' in safe mode, which loads none");
+    }
+    return 1;
+}
+
+// ---- io: standard output, error and input, and no files
+//
+// NOTE: Lua's own handles are not given away: with seek, a script could write over what others have written to a file
+// that standard output leads to.
+
+/// Writes the arguments from `first` on to the stream that the first upvalue names.
+int write_from(lua_State* L, int first) {
+    auto* stream = static_cast<std::FILE*>(lua_touserdata(L, lua_upvalueindex(1)));
+    make_way_for_output(lua_isstring(L, -1) != 0 && std::string_view(lua_tostring(L, -1)).ends_with('\n'));
+    for (int i = first; i <= lua_gettop(L); ++i) {
+        std::size_t length = 0;
+        const char* text = luaL_checklstring(L, i, &length);
+        static_cast<void>(std::fwrite(text, 1, length, stream));
+    }
+    return 0;
+}
+
+/// io.write(...); the second upvalue is the stream as Lua sees it, for io.write(1):write(2).
+int write(lua_State* L) {
+    write_from(L, 1);
+    lua_pushvalue(L, lua_upvalueindex(2));
+    return 1;
+}
+
+/// io.stdout:write(...)
+int write_to(lua_State* L) {
+    luaL_checktype(L, 1, LUA_TTABLE);
+    write_from(L, 2);
+    lua_pushvalue(L, 1);
+    return 1;
+}
+
+int flush(lua_State* L) {
+    static_cast<void>(std::fflush(static_cast<std::FILE*>(lua_touserdata(L, lua_upvalueindex(1)))));
+    return 0;
+}
+
+void push_stream_function(lua_State* L, std::FILE* stream, lua_CFunction function) {
+    lua_pushlightuserdata(L, stream);
+    lua_pushcclosure(L, function, 1);
+}
+
+/// io.stdout or io.stderr, a table with write and flush.
+void push_stream(lua_State* L, std::FILE* stream) {
+    lua_createtable(L, 0, 2);
+    push_stream_function(L, stream, guarded<write_to>);
+    lua_setfield(L, -2, "write");
+    push_stream_function(L, stream, guarded<flush>);
+    lua_setfield(L, -2, "flush");
+}
+
+/// io.read is Lua's own: it reads standard input, and gives away nothing but strings and numbers.
+void push_io(lua_State* L) {
+    lua_createtable(L, 0, 4);
+    push_stream(L, stderr);
+    lua_setfield(L, -2, "stderr");
+    push_stream(L, stdout);
+    lua_pushlightuserdata(L, stdout);
+    lua_pushvalue(L, -2);
+    lua_pushcclosure(L, guarded<write>, 2);
+    lua_setfield(L, -3, "write");
+    lua_setfield(L, -2, "stdout");
+    luaopen_io(L);
+    lua_getfield(L, -1, "read");
+    lua_setfield(L, -3, "read");
+    lua_pop(L, 1);
+}
+
+// ---- putting it together
+
+/// Lua's own function of that name, replaced by ours in the table on the top of the stack.
+lua_CFunction replace(lua_State* L, const char* name, lua_CFunction ours) {
+    lua_getfield(L, -1, name);
+    const lua_CFunction original = lua_tocfunction(L, -1);
+    lua_pop(L, 1);
+    lua_pushcfunction(L, ours);
+    lua_setfield(L, -2, name);
+    return original;
+}
+
+/// A new table with the members that are listed, out of the library as Lua makes it.
+void push_library(lua_State* L, const Library& library) {
+    lua_pushcfunction(L, library.open);
+    lua_pushstring(L, library.name);
+    lua_call(L, 1, 1);
+    lua_newtable(L);
+    for (const char* name : library.members) {
+        lua_getfield(L, -2, name);
+        lua_setfield(L, -2, name);
+    }
+    lua_remove(L, -2);
+}
+
+/// ("x"):rep(3) must find our table, and nobody may change the metatable of all strings.
+void guard_strings(lua_State* L) {
+    lua_pushliteral(L, "");
+    lua_getmetatable(L, -1);
+    lua_getglobal(L, LUA_STRLIBNAME);
+    lua_setfield(L, -2, "__index");
+    lua_pushliteral(L, "string");
+    lua_setfield(L, -2, "__metatable");
+    lua_pop(L, 2);
+}
+
+/// The globals and the table of what is loaded become new ones. Nothing leads to the old ones any more.
+void replace_globals(lua_State* L) {
+    lua_newtable(L);  // loaded
+    for (const Library& library : libraries) {
+        push_library(L, library);
+        lua_setfield(L, -2, library.name);
+    }
+    push_io(L);
+    lua_setfield(L, -2, LUA_IOLIBNAME);
+    lua_getfield(L, -1, LUA_GNAME);
+    lua_pushnil(L);
+    while (lua_next(L, -3) != 0) {
+        lua_pushvalue(L, -2);
+        lua_insert(L, -2);
+        lua_rawset(L, -4);
+    }
+    lua_rawseti(L, LUA_REGISTRYINDEX, LUA_RIDX_GLOBALS);
+    lua_setfield(L, LUA_REGISTRYINDEX, LUA_LOADED_TABLE);
+}
+
+}  // namespace
+
+void open_safe_libraries(lua_State* L) {
+    is_safe = true;
+    confine_files();
+    replace_globals(L);
+    lua_pushglobaltable(L);
+    original_load = replace(L, "load", load);
+    original_setmetatable = replace(L, "setmetatable", guarded<set_metatable>);
+    original_xpcall = replace(L, "xpcall", xpcall_safely);
+    replace(L, "collectgarbage", guarded<collect_garbage>);
+    lua_getfield(L, LUA_REGISTRYINDEX, LUA_LOADED_TABLE);
+    lua_pushcclosure(L, guarded<require>, 1);
+    lua_setfield(L, -2, "require");
+    lua_pop(L, 1);
+    guard_strings(L);
+}
+
+bool safe_mode() noexcept {
+    return is_safe;
+}
+
+const char* load_mode() noexcept {
+    return is_safe ? "t" : nullptr;
+}
+
+}  // namespace dinal
