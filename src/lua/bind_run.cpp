@@ -193,6 +193,13 @@ constexpr Member members[] = {
       "for its runs.",
       "run = system{ I = 1, k = 1, Rd = 0.12 }:simulate{ theta0 = 1, t_end = 20, dt = 5 }\n"
       "print(string.format(\"%.6f\", run:energy().total.dry))  --> 0.499200"}},
+    {"explain",
+     guarded<explain_run>,
+     Kind::method,
+     {"run:explain() -> string",
+      "The run told in sentences: its half cycles, where, when and why it stopped and slipped (|M - k theta| against "
+      "Re), and what became of it: at rest, or in steady motion with which period, amplitude, lag and stops.",
+      DINAL_RUN "print(run:explain():match(\"It made[^.]*\"))  --> It made 4 half cycles with 3 turns and 0 stops"}},
     {"save",
      guarded<save_run>,
      Kind::method,
