@@ -154,9 +154,9 @@ TEST_CASE("a slip at a jump of M is told as one", "[explain]") {
 }
 
 TEST_CASE("a mass that never moves, and one that M can not move any more", "[explain]") {
-    const std::string never = story(nondimensional(0, 0.5), harmonic(0.1, 12), {0.1, 0}, {0, 50});
-    CHECK_THAT(never, Contains("Nothing moved it until the end of the run, t = 50."));
-    CHECK_THAT(never, Contains("M went through a whole period and did not move it, so it never will."));
+    const std::string unmoved = story(nondimensional(0, 0.5), harmonic(0.1, 12), {0.1, 0}, {0, 50});
+    CHECK_THAT(unmoved, Contains("Nothing moved it until the end of the run, t = 50."));
+    CHECK_THAT(unmoved, Contains("M went through a whole period and did not move it, so it never will."));
     const std::string stopped = story(nondimensional(0, 0.5), harmonic(0.1, 12), {3, 0}, {0, 50});
     CHECK_THAT(stopped, Contains("was still stuck when the run ended at t = 50. M went through a whole period"));
     CHECK_THAT(stopped, !Contains("steady"));
