@@ -110,8 +110,8 @@ void Story::tell_start() {
 void Story::tell_counts() {
     if (half_cycles_ == 0 || stretches_.back().to == run_.t_start) return;
     if (run_.events.empty()) {
-        const auto end = last_state(run_);
-        const bool stayed = end && end->velocity == 0 && run_.initial.velocity == 0 && end->theta == run_.initial.theta;
+        const State &begin = run_.initial, &end = run_.state_at_stop;
+        const bool stayed = begin.velocity == 0 && end.velocity == 0 && begin.theta == end.theta;
         say("{}", stayed ? "It stayed there: M and the spring are in balance." : "It moved one way all the time.");
         return;
     }

@@ -17,9 +17,8 @@ void Story::tell_end() {
     }
     if (failed) {
         tell_outcome();
-    } else if (const auto y = last_state(run_); y && !stretches_.back().stuck) {
-        say("At the end, t = {}, theta = {} and velocity = {:.5g}.", at(run_.t_stop),
-            number_text(y->theta, std::fabs(stretches_.back().begin.theta)), y->velocity);
+    } else if (const Stretch& last = stretches_.back(); !last.stuck) {
+        say("At the end, t = {}, theta = {} and velocity = {:.5g}.", at(run_.t_stop), place(last), last.end.velocity);
     }
     end_paragraph();
 }

@@ -2,8 +2,6 @@
 
 #include <algorithm>
 
-#include "core/panels.hpp"
-
 namespace dinal {
 
 namespace {
@@ -16,21 +14,6 @@ bool begins_stuck(const Trajectory& trajectory) {
 }
 
 }  // namespace
-
-std::optional<State> last_state(const Trajectory& trajectory) {
-    if (const Panels* panels = trajectory.panels.get(); panels != nullptr && panels->size() > 0) {
-        if (panels->complete()) return panels->at(trajectory.t_stop);
-    }
-    const Eigen::Index n = trajectory.size();
-    if (n > 0 && trajectory.column(Column::t)[n - 1] == trajectory.t_stop) {
-        return State{trajectory.column(Column::theta)[n - 1], trajectory.column(Column::velocity)[n - 1]};
-    }
-    if (!trajectory.events.empty()) {
-        const Event& last = trajectory.events.back();
-        if (last.kind == EventKind::stick || last.kind == EventKind::rest) return State{last.theta, 0};
-    }
-    return {};
-}
 
 std::vector<Stretch> stretches(const Trajectory& trajectory) {
     std::vector<Stretch> list;
@@ -45,7 +28,7 @@ std::vector<Stretch> stretches(const Trajectory& trajectory) {
         now.stuck = event.kind == EventKind::stick || event.kind == EventKind::rest;
     }
     now.to = std::max(trajectory.t_stop, now.from);
-    now.end = now.stuck ? now.begin : last_state(trajectory).value_or(now.begin);
+    now.end = now.stuck ? now.begin : trajectory.state_at_stop;
     list.push_back(now);
     return list;
 }

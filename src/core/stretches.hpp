@@ -17,11 +17,7 @@ struct Stretch {
     [[nodiscard]] double lasts() const { return to - from; }
 };
 
-/// The state at t_stop, where the trajectory knows it without asking M again.
-std::optional<State> last_state(const Trajectory& trajectory);
-
-/// In order and without gaps from t_start to t_stop; a stretch may last no time. Of a computed run only. The end of the
-/// last one is its beginning when last_state() knows none.
+/// In order and without gaps from t_start to t_stop; a stretch may last no time. Of a computed run only.
 std::vector<Stretch> stretches(const Trajectory& trajectory);
 
 }  // namespace dinal

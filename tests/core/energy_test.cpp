@@ -238,6 +238,19 @@ TEST_CASE("an interrupted run has the energy of what was done", "[energy]") {
     check_books(*energy);
 }
 
+TEST_CASE("a run that went on has the energy of all of it", "[energy][resume]") {
+    const ReferenceSystem& s = reference_system("W4: resonance, both frictions (fig 27)");
+    const Trajectory part = must_run(s.oscillator, s.excitation, s.initial, {0, 7.3}, Grid::none(), Spectral{});
+    const auto run = resume(s.oscillator, s.excitation, part, s.window.end, Grid::none(), Spectral{});
+    REQUIRE(run);
+    const Energy energy = energy_of(*run).value();
+    const Energy whole = energy_of_run(s.oscillator, s.excitation, s.initial, s.window);
+    CHECK(energy.start.spring == whole.start.spring);
+    CHECK(energy.half_cycles.size() == whole.half_cycles.size());
+    CHECK(energy.total.work.input == Approx(whole.total.work.input).epsilon(near));
+    check_books(energy);
+}
+
 TEST_CASE("a run that kept no panels says what to do for its energy", "[energy]") {
     const Oscillator system = nondimensional(0.05, 0.1);
     const auto complaint = [](const Trajectory& run) {
