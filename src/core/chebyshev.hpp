@@ -90,6 +90,20 @@ Series<n - 1> derivative(const Series<n>& f) {
     return d;
 }
 
+/// Exactly, from Tj Tk = (T(j+k) + T|j-k|)/2.
+template <std::size_t n, std::size_t m>
+Series<n + m - 1> product(const Series<n>& f, const Series<m>& g) {
+    Series<n + m - 1> c{};
+    for (std::size_t j = 0; j < n; ++j) {
+        for (std::size_t k = 0; k < m; ++k) {
+            const double half = f[j] * g[k] / 2;
+            c[j + k] += half;
+            c[j > k ? j - k : k - j] += half;
+        }
+    }
+    return c;
+}
+
 /// sum |c[k]|, which is at least max |f|.
 template <std::size_t n>
 double size(const Series<n>& c) {

@@ -100,7 +100,9 @@ Expected<Trajectory> run_from(const std::optional<Motion>& before, const Oscilla
     if (auto lost = lost_in_time(spectral ? "T0/27" : "h", resolution(*method, system), window)) return *lost;
 
     const Problem problem{system, excitation, initial, window, *grid, monitor, limits, before};
-    return std::visit([&](const auto& options) { return run(problem, options); }, *method);
+    Trajectory trajectory = std::visit([&](const auto& options) { return run(problem, options); }, *method);
+    trajectory.initial = initial;
+    return trajectory;
 }
 
 /// The rows of the second part under those of the first, of which `kept` remain; and so on for all that a run has.
@@ -129,6 +131,7 @@ Trajectory joined(const Trajectory& first, Eigen::Index kept, Trajectory second)
     } else {
         second.panels = {};
     }
+    second.initial = first.initial;
     second.t_start = first.t_start;
     return second;
 }

@@ -19,9 +19,6 @@ std::optional<Eigen::Index> Trajectory::find(std::string_view name) const {
     return static_cast<Eigen::Index>(it - names.begin());
 }
 
-namespace {
-
-/// Cubic interpolation between the rows of a trajectory that has no integrator behind it.
 Expected<State> between_rows(const Trajectory& trajectory, double t) {
     const auto time = trajectory.find("t"), theta = trajectory.find("theta"), velocity = trajectory.find("velocity");
     if (!time || !theta || !velocity) return Error{"at() needs the columns t, theta and velocity"};
@@ -46,6 +43,8 @@ Expected<State> between_rows(const Trajectory& trajectory, double t) {
     const double c2 = 3 * (y1 - y0) - 2 * v0 - v1, c3 = 2 * (y0 - y1) + v0 + v1;
     return State{y0 + s * (v0 + s * (c2 + s * c3)), (v0 + s * (2 * c2 + s * 3 * c3)) / h};
 }
+
+namespace {
 
 std::string events_text(const std::vector<Event>& events) {
     if (events.empty()) return "no events";

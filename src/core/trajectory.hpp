@@ -32,6 +32,7 @@ struct Trajectory {
     Eigen::MatrixXd rows;            ///< column-major: a column is contiguous. Never NaN.
     std::vector<Event> events;       ///< in order of time
     Outcome outcome = Outcome::reached_end;
+    State initial;  ///< at t_start
     double t_start = 0;
     double t_stop = 0;  ///< how far it came: t_end unless the outcome says otherwise
     State state_at_stop;
@@ -48,6 +49,9 @@ struct Trajectory {
     /// Fails when t is outside the run or there are no such columns.
     [[nodiscard]] Expected<State> at(double t) const;
 };
+
+/// theta and velocity at t by cubic interpolation of the rows, for want of anything better.
+Expected<State> between_rows(const Trajectory& trajectory, double t);
 
 /// The one-line summary: "2001 rows, t 0 … 20; 41 events (39 turns, 1 stick, 1 slip); moving at the end; peak
 /// |theta| 1.96".

@@ -1,4 +1,5 @@
-// The run object: columns as vectors, events, the motion between the rows. run:save is in save_run.cpp.
+// The run object: columns as vectors, events, the motion between the rows. run:save is in save_run.cpp, run:energy in
+// bind_energy.cpp.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -182,6 +183,23 @@ constexpr Member members[] = {
      {"run:columns(name, ...) -> vector, ...",
       "The columns of these names or numbers (t is 1); without arguments all of them. READDIN of 1989 did this.",
       DINAL_RUN "t, M = run:columns(\"t\", \"M\")\nprint(t, M[5])  --> vector{ 0, 0.5, 1, 1.5, 2 }\t3.0"}},
+    {"energy",
+     guarded<energy_of_run>,
+     Kind::method,
+     {"run:energy() -> energy",
+      "Where the energy went: the work of M, what is stored in the mass and the spring, what the two frictions took; "
+      "in "
+      "total, for each half cycle and at the rows. Integrated over the motion that integrator.spectral keeps, so only "
+      "for its runs.",
+      "run = system{ I = 1, k = 1, Rd = 0.12 }:simulate{ theta0 = 1, t_end = 20, dt = 5 }\n"
+      "print(string.format(\"%.6f\", run:energy().total.dry))  --> 0.499200"}},
+    {"explain",
+     guarded<explain_run>,
+     Kind::method,
+     {"run:explain() -> string",
+      "The run told in sentences: its half cycles, where, when and why it stopped and slipped (|M - k theta| against "
+      "Re), and what became of it: at rest, or in steady motion with which period, amplitude, lag and stops.",
+      DINAL_RUN "print(run:explain():match(\"It made[^.]*\"))  --> It made 4 half cycles with 3 turns and 0 stops"}},
     {"save",
      guarded<save_run>,
      Kind::method,

@@ -11,8 +11,8 @@ namespace dinal {
 namespace {
 
 constexpr void (*register_functions[])(lua_State*) = {
-    register_system, register_excitation, register_integrator, register_run,  register_trajectory,
-    register_theory, register_vector,     register_progress,   register_help,
+    register_system,     register_excitation, register_integrator, register_run,      register_energy,
+    register_trajectory, register_theory,     register_vector,     register_progress, register_help,
 };
 
 // Plain fields of the table: documented here, set by open_library() and sys:simulate.
@@ -49,6 +49,7 @@ const Section all_sections[] = {
     {"Integrators", "integrator", &integrator_module},
     {"An integrator", "integrator", &integrator_class},
     {"A run", "run", &run_class},
+    {"The energy of a run", "energy", &energy_class},
     {"Trajectories from files", "trajectory", &trajectory_module},
     {"Theory", "theory", &theory_module},
     {"Vectors", "vector", &vector_module},

@@ -15,6 +15,7 @@ void register_system(lua_State* L);
 void register_excitation(lua_State* L);
 void register_integrator(lua_State* L);
 void register_run(lua_State* L);
+void register_energy(lua_State* L);
 void register_trajectory(lua_State* L);
 void register_theory(lua_State* L);
 void register_vector(lua_State* L);
@@ -37,6 +38,7 @@ extern const Class excitation_class;    // e
 extern const Class integrator_module;   // integrator.rk4 ...
 extern const Class integrator_class;    // what they return
 extern const Class run_class;           // run
+extern const Class energy_class;        // what run:energy() returns
 extern const Class trajectory_module;   // trajectory.load
 extern const Class theory_module;       // theory.magnification ...
 extern const Class vector_module;       // vector{...}, vector.linspace

@@ -28,5 +28,9 @@ void push_run(lua_State* L, Run run);
 
 /// run:save(file [, { columns = { "t", "theta" } }]), in save_run.cpp.
 int save_run(lua_State* L);
+/// run:energy(), in bind_energy.cpp.
+int energy_of_run(lua_State* L);
+/// run:explain(), in explain_run.cpp.
+int explain_run(lua_State* L);
 
 }  // namespace dinal

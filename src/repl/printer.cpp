@@ -18,6 +18,8 @@ constexpr std::size_t deepest = 3;            // tables within tables; further o
 constexpr std::size_t most_lines = 24;        // of one value,
 constexpr std::size_t most_joined_lines = 6;  // of a long list of numbers
 constexpr std::size_t longest_string = 1000;
+constexpr std::size_t width_of_line = 80;   // a longer string of several lines is a text, as from run:explain(),
+constexpr std::size_t longest_text = 4000;  // up to this
 constexpr std::size_t longest_inner_string = 60;
 
 std::string text_of(lua_State* L, int index) {
@@ -66,6 +68,9 @@ std::string scalar(lua_State* L, int index, bool inside) {
             return std::isnan(lua_tonumber(L, index)) ? "nan" : told(L, index);
         case LUA_TSTRING: {
             std::string text = text_of(L, index);
+            if (!inside && text.size() > width_of_line && text.size() <= longest_text && is_lines(text)) {
+                return text;
+            }
             const std::size_t limit = inside ? longest_inner_string : longest_string;
             return quoted(text, limit) +
                    (!inside && text.size() > limit ? fmt::format(" ({} bytes)", text.size()) : "");

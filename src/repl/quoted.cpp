@@ -68,6 +68,20 @@ std::string quoted(std::string_view text, std::size_t limit) {
     return result + (i < text.size() ? "\"..." : "\"");
 }
 
+bool is_lines(std::string_view text) {
+    if (text.find('\n') == std::string_view::npos) {
+        return false;
+    }
+    while (!text.empty()) {
+        const std::size_t length = text[0] == '\n' ? 1 : printable_length(text);
+        if (length == 0) {
+            return false;
+        }
+        text.remove_prefix(length);
+    }
+    return true;
+}
+
 std::size_t columns(std::string_view text) {
     return text.size() - static_cast<std::size_t>(std::count_if(text.begin(), text.end(), continues));
 }

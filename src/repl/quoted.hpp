@@ -11,6 +11,9 @@ namespace dinal {
 /// text are shown, and `...` stands for the rest.
 std::string quoted(std::string_view text, std::size_t limit);
 
+/// Several lines of nothing but printable characters: a text to be read as it is, without quotes.
+bool is_lines(std::string_view text);
+
 /// Columns that UTF-8 text takes on a terminal, taking every character for one column wide.
 std::size_t columns(std::string_view text);
 

@@ -1,0 +1,220 @@
+#include "core/energy.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/panels.hpp"
+#include "core/stretches.hpp"
+
+namespace dinal {
+
+namespace {
+
+/// A sum of many terms that does not collect their roundings (Neumaier).
+class Sum {
+public:
+    void add(double x) {
+        const double sum = sum_ + x;
+        rest_ += std::fabs(sum_) >= std::fabs(x) ? (sum_ - sum) + x : (x - sum) + sum_;
+        sum_ = sum;
+    }
+    [[nodiscard]] double value() const { return sum_ + rest_; }
+
+private:
+    double sum_ = 0, rest_ = 0;
+};
+
+class WorkSum {
+public:
+    void add(const Work& work) {
+        input_.add(work.input);
+        viscous_.add(work.viscous);
+        dry_.add(work.dry);
+    }
+    [[nodiscard]] Work value() const { return {input_.value(), viscous_.value(), dry_.value()}; }
+
+private:
+    Sum input_, viscous_, dry_;
+};
+
+Work operator-(const Work& a, const Work& b) {
+    return {a.input - b.input, a.viscous - b.viscous, a.dry - b.dry};
+}
+
+Stored stored(const Oscillator& system, const State& y) {
+    return {system.inertia() * y.velocity * y.velocity / 2, system.stiffness() * y.theta * y.theta / 2};
+}
+
+Stored change(const Oscillator& system, const State& from, const State& to) {
+    // As products: the difference of two large energies would keep their rounding.
+    return {system.inertia() * ((to.velocity - from.velocity) * (to.velocity + from.velocity)) / 2,
+            system.stiffness() * ((to.theta - from.theta) * (to.theta + from.theta)) / 2};
+}
+
+/// The work done on one panel, from its beginning to any place in it.
+class PanelWork {
+public:
+    PanelWork(const Oscillator& system, const Panel& panel) : panel_(&panel) {
+        if (standing()) return;
+        const auto v = panel.velocity();
+        input_ = chebyshev::integral(chebyshev::product(panel.M, v), 0);
+        way_ = chebyshev::integral(v, 0);
+        dry_ = system.kinetic_friction() * sign_of(panel.motion);
+        if (system.damping() == 0) return;
+        squared_ = chebyshev::integral(chebyshev::product(v, v), 0);
+        viscous_ = system.damping() / panel.h;
+    }
+    /// Up to `since` time units after the beginning of the panel.
+    [[nodiscard]] Work until(double since) const {
+        if (standing() || !(since > 0)) return {};
+        const double x = std::min(since / panel_->h - 1, 1.0);
+        return {chebyshev::value(input_, x), viscous_ == 0 ? 0 : viscous_ * chebyshev::value(squared_, x),
+                dry_ == 0 ? 0 : dry_ * chebyshev::value(way_, x)};
+    }
+    [[nodiscard]] Work all() const { return until(panel_->length); }
+
+private:
+    static constexpr std::size_t points = chebyshev::points;
+    [[nodiscard]] bool standing() const { return panel_->motion == Motion::stuck; }
+
+    const Panel* panel_;
+    double dry_ = 0, viscous_ = 0;
+    chebyshev::Series<2 * points + 1> input_{};    // of M v
+    chebyshev::Series<2 * points + 2> squared_{};  // of v^2
+    chebyshev::Series<points + 2> way_{};
+};
+
+/// Adds up panels into half cycles as the stretches of the run cut them.
+class Bookkeeper {
+public:
+    Bookkeeper(const Oscillator& system, const std::vector<Stretch>& stretches)
+        : system_(system), stretch_(stretches.begin()), last_(stretches.end() - 1) {}
+
+    void add(const Panel& panel) {
+        const PanelWork work(system_, panel);
+        Work done;
+        // Without friction a turn may lie within the panel; else it is where one begins, to rounding.
+        while (stretch_ != last_ && panel.start.until(stretch_->to) < panel.length) {
+            const Work here = work.until(panel.start.until(stretch_->to));
+            present_.add(here - done);
+            done = here;
+            close();
+        }
+        present_.add(work.all() - done);
+    }
+    Energy finish(const State& initial) {
+        while (stretch_ != last_) close();
+        close();
+        energy_.total.work = total_.value();
+        energy_.start = stored(system_, initial);
+        energy_.flow = flow_.value();
+        return std::move(energy_);
+    }
+
+private:
+    void close() {
+        const Work work = present_.value();
+        total_.add(work);
+        present_ = {};
+        if (!stretch_->stuck && stretch_->lasts() > 0) {
+            const State &begin = stretch_->begin, &end = stretch_->end;
+            const Balance balance{work, change(system_, begin, end)};
+            energy_.half_cycles.push_back({stretch_->from, stretch_->to, begin.theta, end.theta, balance});
+            // On its way through theta = 0 the spring gives all that it has.
+            const bool through = (begin.theta < 0) != (end.theta < 0);
+            const double spring = through ? stored(system_, begin).spring : std::max(-balance.change.spring, 0.0);
+            for (const double given : {work.input, spring, -balance.change.kinetic}) flow_.add(std::max(given, 0.0));
+        }
+        ++stretch_;
+    }
+
+    const Oscillator& system_;
+    std::vector<Stretch>::const_iterator stretch_, last_;
+    WorkSum present_, total_;
+    Sum flow_;
+    Energy energy_;
+};
+
+}  // namespace
+
+double Energy::closure() const {
+    return flow > 0 ? std::fabs(total.error()) / flow : 0;
+}
+
+Expected<Energy> energy_of(const Trajectory& trajectory) {
+    if (!trajectory.computed) {
+        return Error{"a run that was read from a file has no motion to integrate over: simulate the system again"};
+    }
+    const Panels* panels = trajectory.panels.get();
+    if (panels == nullptr) {
+        return Error{
+            "the energy is integrated over the motion that integrator.spectral keeps: simulate with that integrator "
+            "and without dense = false"};
+    }
+    if (panels->size() == 0) return Error{"there is no motion to integrate over: the run ended where it started"};
+    if (!panels->complete()) {
+        return Error{fmt::format(
+            "the motion was kept up to t = {:.6g} only, for want of memory: simulate in parts, each up to that length",
+            panels->end())};
+    }
+    const Oscillator& system = panels->system();
+    const std::vector<Stretch> cut = stretches(trajectory);
+    Bookkeeper books(system, cut);
+    for (std::size_t i = 0; i < panels->size(); ++i) books.add((*panels)[i]);
+    Energy energy = books.finish(trajectory.initial);
+    energy.t_start = trajectory.t_start;
+    energy.t_end = trajectory.t_stop;
+    energy.finish = stored(system, cut.back().end);
+    energy.total.change = change(system, trajectory.initial, cut.back().end);
+    return energy;
+}
+
+Eigen::MatrixXd energy_columns(const Trajectory& trajectory) {
+    const Panels& panels = *trajectory.panels;
+    const Oscillator& system = panels.system();
+    const auto t = trajectory.column(Column::t), theta = trajectory.column(Column::theta),
+               velocity = trajectory.column(Column::velocity);
+    Eigen::MatrixXd columns(trajectory.size(), energy_column_count);
+    WorkSum before;
+    std::size_t i = 0;
+    PanelWork work(system, panels[0]);
+    for (Eigen::Index row = 0; row < trajectory.size(); ++row) {
+        while (i + 1 < panels.size() && panels[i + 1].start.until(t[row]) >= 0) {
+            before.add(work.all());
+            work = PanelWork(system, panels[++i]);
+        }
+        WorkSum sum = before;
+        sum.add(work.until(std::min(panels[i].start.until(t[row]), panels[i].length)));
+        const State y{theta[row], velocity[row]};
+        const Stored s = stored(system, y);
+        const Balance balance{sum.value(), change(system, trajectory.initial, y)};
+        columns.row(row) << balance.work.input, s.kinetic, s.spring, balance.work.viscous, balance.work.dry,
+            balance.error();
+    }
+    return columns;
+}
+
+std::string text(const Energy& energy) {
+    const auto& [work, change] = energy.total;
+    // What is smaller than the rounding of the whole is no number.
+    const auto shown = [&](double x) { return std::fabs(x) <= 1e-15 * energy.flow ? 0.0 : x; };
+    const auto stored_line = [&](const char* name, double difference, double start, double finish) {
+        return fmt::format("  {:<8}{:>13.6g}   from {:.6g} to {:.6g}\n", name, shown(difference), shown(start),
+                           shown(finish));
+    };
+    std::string text = fmt::format("energy, t {:.9g} … {:.9g}: input = kinetic + spring + viscous + dry\n",
+                                   energy.t_start, energy.t_end);
+    text += fmt::format("  {:<8}{:>13.6g}   work of M on the mass\n", "input", shown(work.input));
+    text += stored_line("kinetic", change.kinetic, energy.start.kinetic, energy.finish.kinetic);
+    text += stored_line("spring", change.spring, energy.start.spring, energy.finish.spring);
+    text += fmt::format("  {:<8}{:>13.6g}   lost to viscous damping\n", "viscous", shown(work.viscous));
+    text += fmt::format("  {:<8}{:>13.6g}   lost to dry friction\n", "dry", shown(work.dry));
+    text += fmt::format("  {:<8}{:>13.2g}   {:.1g} of {:.6g} that flowed in {} half cycle{}", "error",
+                        energy.total.error(), energy.closure(), energy.flow, energy.half_cycles.size(),
+                        energy.half_cycles.size() == 1 ? "" : "s");
+    return text;
+}
+
+}  // namespace dinal

@@ -1,0 +1,68 @@
+// Where the energy of a run goes: what M puts in, what is stored, what the two frictions take; and how well it adds up.
+//
+//     input = change of kinetic + change of spring + viscous + dry
+//
+// The work of M is the integral of M theta' dt, viscous friction takes that of C theta'^2 and dry friction Rd times the
+// way. All are integrated over the panels on which the motion was computed, products of series and so exactly; the
+// stored energies come from theta and velocity. Nothing is made to add up: the error says how well it does.
+#pragma once
+
+#include <vector>
+
+#include "core/expected.hpp"
+#include "core/trajectory.hpp"
+
+namespace dinal {
+
+/// Energies in torque times rad.
+struct Stored {
+    double kinetic = 0;  ///< I theta'^2 / 2
+    double spring = 0;   ///< k theta^2 / 2
+};
+
+struct Work {
+    double input = 0;    ///< of M on the mass
+    double viscous = 0;  ///< lost to viscous damping
+    double dry = 0;      ///< lost to dry friction
+};
+
+struct Balance {
+    Work work;
+    Stored change;
+    /// What does not add up: input - (kinetic + spring + viscous + dry).
+    [[nodiscard]] double error() const {
+        return work.input - work.viscous - work.dry - (change.kinetic + change.spring);
+    }
+};
+
+/// The motion from one velocity zero to the next; the first and the last one may be cut off by the ends of the run.
+struct HalfCycle {
+    double t_start = 0, t_end = 0;
+    double theta_start = 0, theta_end = 0;
+    Balance balance;
+};
+
+struct Energy {
+    double t_start = 0, t_end = 0;
+    Stored start, finish;
+    Balance total;
+    /// The energy that flowed: what M put in and what the spring and the moving mass gave, half cycle by half cycle.
+    double flow = 0;
+    std::vector<HalfCycle> half_cycles;
+
+    /// |error| as a part of the energy that flowed; 0 when none did.
+    [[nodiscard]] double closure() const;
+};
+
+/// Of a run of integrator.spectral. Fails with a sentence when the run has not kept its motion.
+Expected<Energy> energy_of(const Trajectory& trajectory);
+
+/// The same at the rows: work done since t_start and energy stored at each. Only after energy_of() has succeeded.
+enum class EnergyColumn : int { input, kinetic, spring, viscous, dry, error };
+inline constexpr int energy_column_count = 6;
+Eigen::MatrixXd energy_columns(const Trajectory& trajectory);
+
+/// The balance as a small table, for people.
+std::string text(const Energy& energy);
+
+}  // namespace dinal

@@ -1,0 +1,40 @@
+#include "core/explain.hpp"
+
+#include "core/story.hpp"
+
+namespace dinal {
+
+std::string explain(const Trajectory& trajectory, const Oscillator& system, const Excitation& excitation,
+                    const Integrator& integrator) {
+    return Story(trajectory, system, excitation, integrator).told();
+}
+
+std::string explain_rows(const Trajectory& trajectory) {
+    const auto t = trajectory.find("t"), theta = trajectory.find("theta"), velocity = trajectory.find("velocity");
+    std::string text = fmt::format("This run was read from a file: {}", summary(trajectory)) + ".";
+    if (theta && trajectory.size() > 0) {
+        Eigen::Index low = 0, high = 0;
+        const auto column = trajectory.rows.col(*theta);
+        const double least = column.minCoeff(&low), most = column.maxCoeff(&high);
+        const auto when = [&](Eigen::Index row) {
+            return t ? fmt::format(" (t = {:.6g})", trajectory.rows(row, *t)) : "";
+        };
+        text += fmt::format(" theta goes from {:.5g}{} to {:.5g}{}.", least, when(low), most, when(high));
+    }
+    if (velocity && trajectory.size() > 0) {
+        const auto v = trajectory.rows.col(*velocity);
+        std::size_t changes = 0, still = 0;
+        double before = 0;
+        for (const double now : v) {
+            if (before * now < 0) ++changes;
+            if (now != 0) before = now;
+            if (now == 0) ++still;
+        }
+        text += fmt::format(" The velocity changes its sign {} and is exactly 0 in {}.", counted(changes, "time"),
+                            counted(still, "row"));
+    }
+    text += " Rows do not tell events and their reasons: simulate again for the story.";
+    return wrapped_lines(text);
+}
+
+}  // namespace dinal

@@ -1,0 +1,21 @@
+// A run told in sentences: what happened, when, where and why, and what kind of motion it became.
+#pragma once
+
+#include <string>
+
+#include "core/excitation.hpp"
+#include "core/integrator.hpp"
+#include "core/oscillator.hpp"
+#include "core/trajectory.hpp"
+
+namespace dinal {
+
+/// Paragraphs of lines that fit 80 columns. Of a long run only the first and the last stops are told one by one. No
+/// user function is called.
+std::string explain(const Trajectory& trajectory, const Oscillator& system, const Excitation& excitation,
+                    const Integrator& integrator);
+
+/// What rows alone tell, of a trajectory that was read from a file.
+std::string explain_rows(const Trajectory& trajectory);
+
+}  // namespace dinal

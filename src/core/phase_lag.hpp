@@ -1,0 +1,17 @@
+// By how much a steady motion lags behind the M that drives it.
+#pragma once
+
+#include <optional>
+
+#include "core/excitation.hpp"
+#include "core/trajectory.hpp"
+
+namespace dinal {
+
+/// The lag of the fundamental of theta behind that of M in the period of M before `until`, degrees, from -90 to 270.
+/// None when M has no fundamental or depends on the motion, or the rows are too few where they are needed. User
+/// functions are not asked again: their M is read off the rows.
+std::optional<double> phase_lag(const Trajectory& trajectory, const Excitation& excitation, double period,
+                                double until);
+
+}  // namespace dinal

@@ -1,0 +1,124 @@
+#include "core/recurrence.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace dinal {
+
+namespace {
+
+constexpr std::size_t most_events = 400;  // in a period; more, and nobody calls it one
+constexpr double same = 1e-7;             // amplitudes: above the rounding of events, below all that matters
+constexpr double near_enough = 1e-4;      // amplitudes that a steady motion may still be from its limit
+constexpr double settling = 0.1;          // amplitudes that a settling one may
+
+EventKind kind_of(const Event& event) {
+    // A stick that the end of the run did not let end is no other stick.
+    return event.kind == EventKind::rest ? EventKind::stick : event.kind;
+}
+
+/// A period of m events, tried on the last three of them.
+class Attempt {
+public:
+    Attempt(const std::vector<Event>& events, std::size_t m, bool drifting) : events_(events), m_(m) {
+        const Event& last = events.back();
+        const Event& before = events[events.size() - 1 - m];
+        period_ = last.t - before.t;
+        if (drifting) drift_ = last.theta - before.theta;
+        const auto [low, high] = std::minmax_element(events.end() - 1 - static_cast<std::ptrdiff_t>(m), events.end(),
+                                                     [](const Event& a, const Event& b) { return a.theta < b.theta; });
+        amplitude_ = (high->theta - low->theta) / 2;
+        centre_ = low->theta + amplitude_;
+    }
+    /// How far event i is from where the event a period before it says; `never` when it is another kind of event.
+    [[nodiscard]] double off(std::size_t i) const {
+        const Event &now = events_[i], &then = events_[i - m_];
+        if (kind_of(now) != kind_of(then) || !(amplitude_ > 0) || !(period_ > 0)) return never;
+        return std::max(std::fabs(now.theta - then.theta - drift_) / amplitude_,
+                        std::fabs(now.t - then.t - period_) / period_);
+    }
+    /// The worst of m events, the last of them events_[last - 1].
+    [[nodiscard]] double worst(std::size_t last, double limit) const {
+        double worst = 0;
+        for (std::size_t i = last; i > last - m_ && worst <= limit; --i) worst = std::max(worst, off(i - 1));
+        return worst;
+    }
+    [[nodiscard]] std::optional<Recurrence> judge(double allowed) const {
+        const std::size_t n = events_.size();
+        const double change = worst(n, allowed);
+        if (change > allowed) return {};
+        const double before = worst(n - m_, never);
+        // Differences that shrink by change/before each period add up to this.
+        const double left = change < before ? change / (1 - change / before) : never;
+        if (change > same && left > allowed) return {};
+        if (drift_ != 0 && (change > same || before > same || std::fabs(drift_) <= near_enough * amplitude_)) return {};
+        Recurrence found{.steady = change <= same || left <= near_enough, .period = period_, .drift = drift_};
+        found.amplitude = amplitude_;
+        found.centre = centre_;
+        found.change = change;
+        found.until = events_.back().t;
+        std::size_t first = n - m_;
+        while (first > m_ && off(first - 1) <= 1e-3) --first;
+        found.since = events_[first - m_].t;
+        count_stops(found);
+        return found;
+    }
+
+private:
+    void count_stops(Recurrence& found) const {
+        const std::size_t n = events_.size();
+        for (std::size_t i = n - 1 - m_; i + 1 < n; ++i) {
+            if (kind_of(events_[i]) != EventKind::stick) continue;
+            ++found.stops;
+            found.stuck += (events_[i + 1].t - events_[i].t) / period_;
+        }
+    }
+
+    static constexpr double never = 1e300;
+    const std::vector<Event>& events_;
+    std::size_t m_;
+    double period_ = 0, drift_ = 0, amplitude_ = 0, centre_ = 0;
+};
+
+}  // namespace
+
+std::optional<Recurrence> recurrence(const std::vector<Event>& events) {
+    const std::size_t most = std::min(events.size() / 3, most_events);
+    for (const double allowed : {near_enough, settling}) {
+        for (std::size_t m = 2; m <= most; ++m) {
+            if (const auto found = Attempt(events, m, false).judge(allowed)) return found;
+            if (const auto found = Attempt(events, m, true).judge(near_enough)) return found;
+        }
+    }
+    return {};
+}
+
+Swings swings(const std::vector<Stretch>& stretches, double period) {
+    std::vector<const Stretch*> whole;
+    for (const Stretch& s : stretches) {
+        if (!s.stuck && s.ended_by && s.lasts() > 0) whole.push_back(&s);
+    }
+    Swings result;
+    if (whole.empty()) return result;
+    const auto at_least = [&](std::size_t n) { return whole.size() >= n; };
+    if (!(period > 0) && at_least(2)) period = whole.back()->to - (*(whole.end() - 2))->from;
+    result.span = period;
+    std::array<int, 3> count{};
+    const double end = whole.back()->to;
+    for (const Stretch* s : whole) {
+        const double age = (end - s->to) / period;
+        if (!(age < 2.999)) continue;
+        const auto i = static_cast<std::size_t>(2 - static_cast<int>(age + 1e-3));
+        result.amplitudes[i] = std::max(result.amplitudes[i], std::fabs(s->end.theta - s->begin.theta) / 2);
+        ++count[i];
+    }
+    if (std::any_of(count.begin(), count.end(), [](int n) { return n == 0; })) return result;
+    const auto& [a, b, c] = result.amplitudes;
+    const double least = 1e-9 * std::max({a, b, c});
+    result.trend = b - a > least && c - b > least   ? Trend::growing
+                   : a - b > least && b - c > least ? Trend::shrinking
+                                                    : Trend::irregular;
+    return result;
+}
+
+}  // namespace dinal

@@ -1,0 +1,209 @@
+// How a run began and went on: the setting, the start, turns, stops.
+#include "core/story.hpp"
+
+#include <numbers>
+
+#include "core/forcing.hpp"
+
+namespace dinal {
+
+namespace {
+
+constexpr std::size_t most_stops = 5;  // told one by one; of more, these:
+constexpr std::size_t first_stops = 2, last_stops = 2;
+constexpr std::size_t most_turns = 4;
+
+}  // namespace
+
+Story::Story(const Trajectory& trajectory, const Oscillator& system, const Excitation& excitation,
+             const Integrator& integrator)
+    : run_(trajectory),
+      system_(system),
+      excitation_(excitation),
+      museum_(std::get_if<Dinal1989>(&integrator)),
+      stretches_(stretches(trajectory)),
+      T0_(system.natural_period()),
+      constant_from_(excitation.has_feedback() ? never : excitation.constant_from()) {
+    for (const Stretch& s : stretches_) {
+        s.stuck ? void(stuck_ += s.lasts()) : void(++half_cycles_);
+        if (s.stuck && s.begun_by) stops_.push_back(&s);
+    }
+}
+
+std::string Story::told() {
+    tell_setting();
+    tell_start();
+    tell_counts();
+    tell_turns();
+    tell_stops();
+    tell_end();
+    return std::move(text_);
+}
+
+void Story::end_paragraph() {
+    if (sentence_.empty()) return;
+    text_ += text_.empty() ? "" : "\n";
+    text_ += wrapped_lines(sentence_);
+    sentence_.clear();
+}
+
+/// Whether a torque on a mass at rest is the limit, as far as M and k theta are known.
+bool Story::at_limit(double torque, const Event& event) const {
+    const double Re = system_.breakaway();
+    const double known = Re + std::fabs(event.M) + system_.stiffness() * std::fabs(event.theta);
+    return std::fabs(std::fabs(torque) - Re) <= 1e-9 * known;
+}
+
+void Story::tell_setting() {
+    say("The system has T0 = {:.5g}, zeta = {:.4g} ({})", T0_, system_.damping_ratio(), name(system_.regime()));
+    const double Rd = system_.kinetic_friction(), Re = system_.breakaway();
+    if (system_.frictionless()) {
+        add(" and no dry friction.");
+    } else if (Rd == Re) {
+        add(" and dry friction Rd = Re = {:.5g}.", Rd);
+    } else {
+        add(" and dry friction: Rd = {:.5g} brakes it, up to Re = {:.5g} holds it.", Rd, Re);
+    }
+    const double period = period_from(excitation_, run_.t_start);
+    if (excitation_.components().empty()) {
+        say("There is no M: the motion is free.");
+    } else if (excitation_.has_feedback()) {
+        say("M depends on the motion itself: a feedback.");
+    } else if (free()) {
+        say("M is constant: the motion is free, about theta = M/k.");
+    } else if (period > 0) {
+        say("M has the period {:.5g} ({:.4g} T0).", period, period / T0_);
+    } else if (constant_from_ < run_.t_stop) {
+        say("M changes until t = {}, then it is constant.", at(constant_from_));
+    }
+    if (museum_ != nullptr) {
+        say("It was integrated as in 1989, in steps of h = {:.5g}: events are noticed at the ends of steps, and a stop "
+            "is what the stop rule of the listing takes for one.",
+            museum_->h);
+    }
+    end_paragraph();
+}
+
+void Story::tell_start() {
+    const State& y = run_.initial;
+    const Stretch& first = stretches_.front();
+    say("It started at t = {} from theta = {:.5g} with velocity {:.5g}", at(run_.t_start), y.theta, y.velocity);
+    const bool known = run_.size() > 0 && run_.column(Column::t)[0] == run_.t_start;
+    const bool told = y.velocity == 0 && !system_.frictionless() && museum_ == nullptr && known && first.lasts() > 0;
+    if (first.stuck) add(" and stuck there");
+    if (told) {
+        const double torque = std::fma(-system_.stiffness(), y.theta, run_.column(Column::M)[0]);
+        add("{} because {}", first.stuck ? "" : " and moved off", reason(torque));
+    }
+    if (first.stuck && first.ended_by) {
+        add("{} until t = {}, when {}.", told ? "," : "", at(first.to), slip(*first.ended_by, told));
+    } else {
+        add(".");
+    }
+    if (first.stuck && !first.ended_by) {
+        say("Nothing moved it until the end of the run, t = {}.", at(run_.t_stop));
+        tell_stillness();
+    }
+    end_paragraph();
+}
+
+void Story::tell_counts() {
+    if (half_cycles_ == 0 || stretches_.back().to == run_.t_start) return;
+    if (run_.events.empty()) {
+        const State &begin = run_.initial, &end = run_.state_at_stop;
+        const bool stayed = begin.velocity == 0 && end.velocity == 0 && begin.theta == end.theta;
+        say("{}", stayed ? "It stayed there: M and the spring are in balance." : "It moved one way all the time.");
+        return;
+    }
+    const auto turns = static_cast<std::size_t>(std::count_if(
+        run_.events.begin(), run_.events.end(), [](const Event& event) { return event.kind == EventKind::turn; }));
+    say("It made {} with {} and {}", counted(half_cycles_, "half cycle"), counted(turns, "turn"),
+        counted(stops_.size(), "stop"));
+    if (stuck_ > 0) {
+        const double all = run_.t_stop - run_.t_start;
+        add("; it was stuck for {} of {} time units ({})", at(stuck_), at(all), percent(stuck_ / all));
+    }
+    add(".");
+}
+
+void Story::tell_turns() {
+    std::string places;
+    std::size_t n = 0;
+    for (const Stretch& s : stretches_) {
+        if (!s.ended_by || s.ended_by->kind != EventKind::turn) continue;
+        if (n < most_turns) places += fmt::format("{}{} (t = {})", n == 0 ? "" : ", ", place(s), at(s.to));
+        ++n;
+    }
+    if (n > 0) say("It turned at theta = {}{}", places, n > most_turns ? " ..." : ".");
+    tell_decay();
+    end_paragraph();
+}
+
+/// What the closed forms say about a free motion, as far as it has turned.
+void Story::tell_decay() {
+    const bool swung = stretches_.size() > 1 && stretches_[1].begun_by->kind == EventKind::turn;
+    if (!free() || museum_ != nullptr || !swung) return;
+    decay_told_ = true;
+    const double zeta = system_.damping_ratio(), step = 2 * system_.kinetic_friction() / system_.stiffness();
+    const double factor = zeta < 1 ? std::exp(-std::numbers::pi * zeta / std::sqrt(1 - zeta * zeta)) : 0;
+    if (zeta >= 1) {
+        say("Damped so much, it turns once at most and then creeps.");
+    } else if (zeta == 0 && step == 0) {
+        say("Nothing takes its energy, so every swing is as wide as the first.");
+    } else if (zeta == 0) {
+        say("Each half cycle ends 2 Rd/k = {:.5g} nearer to the middle than it began: dry friction takes the same from "
+            "every swing, so the extremes fall on a straight line and the motion ends.",
+            step);
+    } else if (step == 0) {
+        say("Each extreme is {:.5g} = exp(-pi zeta/sqrt(1 - zeta^2)) of the one before: viscous damping takes a part "
+            "of what is left, so the motion never quite ends.",
+            factor);
+    } else {
+        say("Half a cycle makes an extreme X into qX - (1 + q)Rd/k with q = exp(-pi zeta/sqrt(1 - zeta^2)) = {:.5g} "
+            "and Rd/k = {:.5g}: viscous damping takes a part, dry friction the same each time, and that ends the "
+            "motion.",
+            factor, step / 2);
+    }
+}
+
+void Story::tell_stops() {
+    const std::size_t n = stops_.size();
+    for (std::size_t i = 0; i < n; ++i) {
+        if (n > most_stops && i == first_stops) {
+            i = n - last_stops;
+            say("... {} more ...", i - first_stops);
+            end_paragraph();
+        }
+        tell_stop(*stops_[i]);
+    }
+}
+
+void Story::tell_stop(const Stretch& stop) {
+    const Event& begun = *stop.begun_by;
+    say("It stopped at t = {} at theta = {} because {}", at(begun.t), place(*(&stop - 1)), reason(pull(begun)));
+    if (stop.ended_by) {
+        add("; stuck for {:.5g}, until {}.", stop.lasts(), slip(*stop.ended_by, true));
+    } else if (constant_from_ <= run_.t_stop) {
+        add(".");
+        say("M is constant from {} on, so it rests there for good.",
+            constant_from_ <= begun.t ? "then" : "t = " + at(constant_from_));
+    } else {
+        add(", and was still stuck when the run ended at t = {}.", at(run_.t_stop));
+        tell_stillness();
+    }
+    end_paragraph();
+}
+
+/// Why it slipped and which way; after a sentence about |M - k theta| that is "that".
+std::string Story::slip(const Event& event, bool told) const {
+    const double torque = pull(event);
+    std::string why = fmt::format("M jumped, {},", reason(torque));
+    if (museum_ != nullptr) {
+        why = fmt::format("the listing let it go at {}", reason(torque));
+    } else if (at_limit(torque, event)) {
+        why = fmt::format("{} grew past Re", told ? "that" : "|M - k theta|");
+    }
+    return fmt::format("{} and it slipped {}", why, torque < 0 ? "backward" : "forward");
+}
+
+}  // namespace dinal

@@ -1,0 +1,84 @@
+// The story of a run while it is being told, sentence by sentence, paragraph by paragraph; explain() is the way in.
+#pragma once
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "core/excitation.hpp"
+#include "core/integrator.hpp"
+#include "core/recurrence.hpp"
+#include "core/sentences.hpp"
+
+namespace dinal {
+
+class Story {
+public:
+    /// All of it must outlive the story.
+    Story(const Trajectory& trajectory, const Oscillator& system, const Excitation& excitation,
+          const Integrator& integrator);
+    std::string told();
+
+private:
+    template <class... Values>
+    void say(fmt::format_string<Values...> format, Values&&... values) {
+        sentence_ += sentence_.empty() ? "" : " ";
+        sentence_ += fmt::format(format, std::forward<Values>(values)...);
+    }
+    void end_paragraph();
+    /// Goes on with the last sentence.
+    template <class... Values>
+    void add(fmt::format_string<Values...> format, Values&&... values) {
+        sentence_ += fmt::format(format, std::forward<Values>(values)...);
+    }
+    [[nodiscard]] std::string at(double t) const { return time_text(t, T0_); }
+    /// Where a stretch ended.
+    [[nodiscard]] static std::string place(const Stretch& s) {
+        return number_text(s.end.theta, std::max(std::fabs(s.begin.theta), std::fabs(s.end.theta)));
+    }
+    [[nodiscard]] bool at_limit(double torque, const Event& event) const;
+    /// M - k theta.
+    [[nodiscard]] double pull(const Event& event) const { return std::fma(-system_.stiffness(), event.theta, event.M); }
+    /// "|M - k theta| = 0.155 <= Re = 0.167"
+    [[nodiscard]] std::string reason(double pull) const {
+        return "|M - k theta| = " + against_limit(std::fabs(pull), system_.breakaway());
+    }
+    /// M never changes.
+    [[nodiscard]] bool free() const { return constant_from_ <= run_.t_start; }
+
+    // How it began and went on, in story.cpp.
+    void tell_setting();
+    void tell_start();
+    void tell_counts();
+    void tell_turns();
+    void tell_decay();
+    void tell_stops();
+    void tell_stop(const Stretch& stop);
+    [[nodiscard]] std::string slip(const Event& event, bool told) const;
+    // What became of it, in story_end.cpp.
+    void tell_end();
+    void tell_stillness();
+    void tell_recurrence(const Recurrence& motion);
+    void tell_period(const Recurrence& motion);
+    void tell_trend();
+    void tell_step(const Swings& last);
+    void tell_outcome();
+
+    const Trajectory& run_;
+    const Oscillator& system_;
+    const Excitation& excitation_;
+    const Dinal1989* museum_;
+    std::vector<Stretch> stretches_;
+    std::vector<const Stretch*> stops_;
+    double T0_, constant_from_;
+    double stuck_ = 0;
+    std::size_t half_cycles_ = 0;
+    bool decay_told_ = false;  // by its closed form
+    bool still_ = false;       // for good, under a periodic M
+    std::string text_, sentence_;
+};
+
+}  // namespace dinal

@@ -1,0 +1,123 @@
+// What became of a run: rest, steady motion, growth; and how the run ended.
+#include "core/forcing.hpp"
+#include "core/phase_lag.hpp"
+#include "core/story.hpp"
+
+namespace dinal {
+
+void Story::tell_end() {
+    const bool over = still_ || (stretches_.back().stuck && constant_from_ <= run_.t_stop);
+    const bool failed = run_.outcome != Outcome::reached_end && run_.outcome != Outcome::at_rest;
+    if (half_cycles_ > 0 && !over) {
+        if (const auto motion = recurrence(run_.events)) {
+            tell_recurrence(*motion);
+        } else if (!decay_told_) {
+            tell_trend();
+        }
+    }
+    if (failed) {
+        tell_outcome();
+    } else if (const Stretch& last = stretches_.back(); !last.stuck) {
+        say("At the end, t = {}, theta = {} and velocity = {:.5g}.", at(run_.t_stop), place(last), last.end.velocity);
+    }
+    end_paragraph();
+}
+
+/// Stuck at the end under a periodic M: if that did not move it in a whole period, it never will.
+void Story::tell_stillness() {
+    const Stretch& last = stretches_.back();
+    const double period = excitation_.has_feedback() ? 0 : period_from(excitation_, last.from);
+    still_ = period > 0 && last.lasts() > period;
+    if (still_) say("M went through a whole period and did not move it, so it never will.");
+}
+
+void Story::tell_recurrence(const Recurrence& motion) {
+    tell_period(motion);
+    if (motion.drift != 0) {
+        say("In each period it goes on by {:.5g}: stick-slip.", motion.drift);
+    } else {
+        say("The amplitude is {:.5g} about theta = {}.", motion.amplitude,
+            number_text(motion.centre, 1e7 * motion.amplitude));
+    }
+    // A motion that repeats itself under an M of unknown period tells that period.
+    const double known = period_from(excitation_, motion.since), period = known > 0 ? known : motion.period;
+    if (std::fabs(motion.period / period - 1) <= 1e-3 && motion.drift == 0 && constant_from_ > motion.since) {
+        if (const auto lag = phase_lag(run_, excitation_, period, motion.until)) {
+            say("Theta {} M by {:.1f} degrees (their fundamentals).", *lag < 0 ? "leads" : "lags behind",
+                std::fabs(*lag));
+        }
+    }
+    if (motion.stops == 0) {
+        if (!system_.frictionless()) say("It does not stop on its way.");
+    } else {
+        say("It stops {} in each period and is stuck for {} of the time.",
+            motion.stops == 1   ? "once"
+            : motion.stops == 2 ? "twice"
+                                : fmt::format("{} times", motion.stops),
+            percent(motion.stuck));
+    }
+    end_paragraph();
+}
+
+void Story::tell_period(const Recurrence& motion) {
+    const double period = period_from(excitation_, motion.since);
+    const double ratio = period > 0 ? motion.period / period : 0, whole = std::round(ratio);
+    std::string of = fmt::format("{:.5g} T0", motion.period / T0_);
+    if (whole >= 1 && std::fabs(ratio - whole) <= 1e-3 * ratio) {
+        of = whole == 1 ? "the period of M" : fmt::format("{} periods of M", whole);
+    }
+    if (!motion.steady) {
+        say("The motion settles: it nearly repeats itself every {} ({}), and the last two times differ by {} of the "
+            "amplitude.",
+            at(motion.period), of, percent(motion.change));
+        return;
+    }
+    const bool always = motion.since == run_.events.front().t;
+    say("{} steady: it repeats itself every {} ({}).",
+        always ? "The motion is" : fmt::format("From t = {} on the motion is", at(motion.since)), at(motion.period),
+        of);
+    if (period == 0 && excitation_.has_feedback()) say("If M depends on the motion alone, this is a limit cycle.");
+}
+
+void Story::tell_trend() {
+    const double period = period_from(excitation_, stretches_.back().from);
+    const Swings last = swings(stretches_, period);
+    if (last.trend == Trend::unknown) {
+        if (!free() && run_.events.size() > 1) say("That is too short to tell whether it becomes steady.");
+        end_paragraph();
+        return;
+    }
+    const auto& [a, b, c] = last.amplitudes;
+    const bool grows = last.trend == Trend::growing, shrinks = last.trend == Trend::shrinking;
+    say("The motion {}: amplitudes of {:.5g}, {:.5g} and {:.5g} in the last three {}",
+        grows     ? "grows"
+        : shrinks ? "gets smaller"
+                  : "is not periodic so far",
+        a, b, c, period > 0 ? "periods of M" : fmt::format("spans of {}", at(last.span)));
+    tell_step(last);
+    add(".");
+    end_paragraph();
+}
+
+/// By how much the amplitude changes each time, when that has a rule.
+void Story::tell_step(const Swings& last) {
+    if (last.trend == Trend::irregular) return;
+    const auto& [a, b, c] = last.amplitudes;
+    constexpr double rule = 1e-3;
+    const char* more = c > b ? "more" : "less";
+    if (std::fabs((c - b) - (b - a)) <= rule * std::fabs(c - b)) {
+        add(", {:.5g} {} each time", std::fabs(c - b), more);
+    } else if (std::fabs(c / b - b / a) <= rule * std::fabs(c / b - 1)) {
+        add(", {:.5g} times as much each time", c / b);
+    }
+}
+
+void Story::tell_outcome() {
+    if (run_.outcome == Outcome::interrupted) {
+        say("The run was interrupted at t = {}: this is the story up to there.", at(run_.t_stop));
+    } else {
+        say("The run broke off at t = {}: {}.", at(run_.t_stop), sentence(run_.outcome));
+    }
+}
+
+}  // namespace dinal

@@ -1,0 +1,36 @@
+#include "core/stretches.hpp"
+
+#include <algorithm>
+
+namespace dinal {
+
+namespace {
+
+/// A run that begins with a slip, or in which nothing ever happens and that ends at rest, was stuck from its start.
+bool begins_stuck(const Trajectory& trajectory) {
+    if (trajectory.initial.velocity != 0) return false;
+    if (!trajectory.events.empty()) return trajectory.events.front().kind == EventKind::slip;
+    return trajectory.outcome == Outcome::at_rest;
+}
+
+}  // namespace
+
+std::vector<Stretch> stretches(const Trajectory& trajectory) {
+    std::vector<Stretch> list;
+    list.reserve(trajectory.events.size() + 1);
+    Stretch now{.from = trajectory.t_start, .begin = trajectory.initial, .stuck = begins_stuck(trajectory)};
+    for (const Event& event : trajectory.events) {
+        now.to = event.t;
+        now.end = {event.theta, 0};
+        now.ended_by = event;
+        list.push_back(now);
+        now = {.from = event.t, .begin = now.end, .begun_by = event};
+        now.stuck = event.kind == EventKind::stick || event.kind == EventKind::rest;
+    }
+    now.to = std::max(trajectory.t_stop, now.from);
+    now.end = now.stuck ? now.begin : trajectory.state_at_stop;
+    list.push_back(now);
+    return list;
+}
+
+}  // namespace dinal

@@ -1,0 +1,23 @@
+// A run cut at its events: stretches of motion one way, half cycles, and stretches of standing still.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "core/trajectory.hpp"
+
+namespace dinal {
+
+struct Stretch {
+    double from = 0, to = 0;
+    State begin = {}, end = {};  ///< at an event the velocity is 0
+    bool stuck = false;
+    std::optional<Event> begun_by = {}, ended_by = {};  ///< none at the ends of the run
+
+    [[nodiscard]] double lasts() const { return to - from; }
+};
+
+/// In order and without gaps from t_start to t_stop; a stretch may last no time. Of a computed run only.
+std::vector<Stretch> stretches(const Trajectory& trajectory);
+
+}  // namespace dinal

@@ -1,0 +1,214 @@
+// What run:energy() returns: the energy balance of a run in total, for each half cycle, and as columns beside its rows.
+#include <algorithm>
+
+#include "core/energy.hpp"
+#include "lua/external_memory.hpp"
+#include "lua/library.hpp"
+#include "lua/run.hpp"
+#include "lua/vector.hpp"
+
+namespace dinal {
+
+namespace {
+
+struct RunEnergy {
+    RunHandle run;
+    Energy energy;
+    Eigen::MatrixXd columns = {};  // at the rows; made when first asked for
+    bool has_columns = false;
+};
+// Shared, because a column that Lua takes out is a view that keeps it alive.
+using EnergyHandle = std::shared_ptr<RunEnergy>;
+
+EnergyHandle& energy_self(lua_State* L, const char* call) {
+    return self<EnergyHandle>(L, 1, call);
+}
+
+template <EnergyColumn which>
+int column_field(lua_State* L) {
+    const EnergyHandle& handle = energy_self(L, "energy.input");
+    if (!handle->has_columns) {
+        handle->columns = energy_columns(handle->run->trajectory);
+        handle->has_columns = true;
+        note_external_memory(L, static_cast<std::size_t>(handle->columns.size()) * sizeof(double));
+    }
+    const auto column = handle->columns.col(static_cast<Eigen::Index>(which));
+    push(L, Vector(handle, column.data(), static_cast<std::size_t>(column.size())));
+    return 1;
+}
+
+int times(lua_State* L) {
+    const RunHandle& run = energy_self(L, "energy.t")->run;
+    const auto t = run->trajectory.column(Column::t);
+    push(L, Vector(run, t.data(), static_cast<std::size_t>(t.size())));
+    return 1;
+}
+
+void set_number(lua_State* L, const char* name, double value) {
+    lua_pushnumber(L, value);
+    lua_setfield(L, -2, name);
+}
+
+void set_balance(lua_State* L, const Balance& balance) {
+    set_number(L, "input", balance.work.input);
+    set_number(L, "kinetic", balance.change.kinetic);
+    set_number(L, "spring", balance.change.spring);
+    set_number(L, "viscous", balance.work.viscous);
+    set_number(L, "dry", balance.work.dry);
+    set_number(L, "error", balance.error());
+}
+
+int total(lua_State* L) {
+    const Energy& energy = energy_self(L, "energy.total")->energy;
+    lua_createtable(L, 0, 8);
+    set_balance(L, energy.total);
+    set_number(L, "flow", energy.flow);
+    set_number(L, "closure", energy.closure());
+    return 1;
+}
+
+template <auto member>
+int stored_field(lua_State* L) {
+    const Energy& energy = energy_self(L, "energy.start")->energy;
+    lua_createtable(L, 0, 2);
+    set_number(L, "kinetic", (energy.*member).kinetic);
+    set_number(L, "spring", (energy.*member).spring);
+    return 1;
+}
+
+// Made when first asked for and then kept, so that a loop over energy.half_cycles[i] is no trap.
+int half_cycles(lua_State* L) {
+    const auto& list = energy_self(L, "energy.half_cycles")->energy.half_cycles;
+    if (lua_getiuservalue(L, 1, 1) == LUA_TTABLE) {
+        return 1;
+    }
+    lua_createtable(L, static_cast<int>(list.size()), 0);
+    for (std::size_t i = 0; i < list.size(); ++i) {
+        lua_createtable(L, 0, 10);
+        set_number(L, "t_start", list[i].t_start);
+        set_number(L, "t_end", list[i].t_end);
+        set_number(L, "theta_start", list[i].theta_start);
+        set_number(L, "theta_end", list[i].theta_end);
+        set_balance(L, list[i].balance);
+        lua_rawseti(L, -2, static_cast<lua_Integer>(i) + 1);
+    }
+    lua_pushvalue(L, -1);
+    lua_setiuservalue(L, 1, 1);
+    return 1;
+}
+
+int to_string(lua_State* L) {
+    const std::string text = dinal::text(energy_self(L, "tostring(energy)")->energy);
+    lua_pushlstring(L, text.data(), text.size());
+    return 1;
+}
+
+#define DINAL_ENERGY                                                             \
+    "run = system{ I = 1, k = 1, Rd = 0.12 }:simulate{ theta0 = 1, t_end = 20, " \
+    "dt = 5 }\nenergy = run:energy()\n"
+
+constexpr Member members[] = {
+    {"total",
+     guarded<total>,
+     Kind::field,
+     {"energy.total -> table",
+      "The balance of the whole run, torque times rad: input (work of M on the mass) = kinetic + spring (the changes "
+      "of what is stored) + viscous + dry (what the two frictions took) + error (what does not add up); flow is what "
+      "M, "
+      "the spring and the moving mass gave in all half cycles together, and closure is |error|/flow.",
+      DINAL_ENERGY
+      "print(string.format(\"%.6f %.6f\", energy.total.dry, energy.total.spring))  --> 0.499200 -0.499200\n"
+      "print(energy.total.closure < 1e-12)  --> true"}},
+    {"half_cycles",
+     guarded<half_cycles>,
+     Kind::field,
+     {"energy.half_cycles -> table",
+      "A list with the balance of each motion from one velocity zero to the next: { t_start, t_end, theta_start, "
+      "theta_end, input, kinetic, spring, viscous, dry, error }. The first and the last one may be cut off by the ends "
+      "of the run. While the mass sticks no energy flows, so that is no entry.",
+      DINAL_ENERGY "for _, half in ipairs(energy.half_cycles) do\n"
+                   "    print(string.format(\"%.2f %.2f %.4f\", half.theta_start, half.theta_end, half.dry))\n"
+                   "end\n"
+                   "--> 1.00 -0.76 0.2112\n"
+                   "--> -0.76 0.52 0.1536\n"
+                   "--> 0.52 -0.28 0.0960\n"
+                   "--> -0.28 0.04 0.0384"}},
+    {"start",
+     guarded<stored_field<&Energy::start>>,
+     Kind::field,
+     {"energy.start -> table", "What was stored at the start: { kinetic, spring }, torque times rad.",
+      DINAL_ENERGY "print(energy.start.spring)  --> 0.5"}},
+    {"finish",
+     guarded<stored_field<&Energy::finish>>,
+     Kind::field,
+     {"energy.finish -> table", "What was stored at the end: { kinetic, spring }, torque times rad.",
+      DINAL_ENERGY "print(energy.finish.kinetic)  --> 0.0"}},
+    {"t",
+     guarded<times>,
+     Kind::field,
+     {"energy.t -> vector", "The times of the rows, run.t.", DINAL_ENERGY "print(energy.t[2])  --> 5.0"}},
+    {"input",
+     guarded<column_field<EnergyColumn::input>>,
+     Kind::field,
+     {"energy.input -> vector", "The work that M has done since the start, at each row.",
+      DINAL_ENERGY "print(energy.input:max())  --> 0.0"}},
+    {"kinetic",
+     guarded<column_field<EnergyColumn::kinetic>>,
+     Kind::field,
+     {"energy.kinetic -> vector", "The kinetic energy I velocity^2/2 at each row.",
+      DINAL_ENERGY "print(energy.kinetic[1])  --> 0.0"}},
+    {"spring",
+     guarded<column_field<EnergyColumn::spring>>,
+     Kind::field,
+     {"energy.spring -> vector", "The energy k theta^2/2 of the spring at each row.",
+      DINAL_ENERGY "print(energy.spring[1])  --> 0.5"}},
+    {"viscous",
+     guarded<column_field<EnergyColumn::viscous>>,
+     Kind::field,
+     {"energy.viscous -> vector", "What viscous damping has taken since the start, at each row.",
+      DINAL_ENERGY "print(energy.viscous:max())  --> 0.0"}},
+    {"dry",
+     guarded<column_field<EnergyColumn::dry>>,
+     Kind::field,
+     {"energy.dry -> vector", "What dry friction has taken since the start, at each row.",
+      DINAL_ENERGY "print(string.format(\"%.6f\", energy.dry[#run]))  --> 0.499200"}},
+    {"error",
+     guarded<column_field<EnergyColumn::error>>,
+     Kind::field,
+     {"energy.error -> vector",
+      "What does not add up at each row: input less the changes of kinetic and spring, viscous and dry.",
+      DINAL_ENERGY "print(energy.error:abs():max() < 1e-12)  --> true"}},
+    {"__tostring",
+     guarded<to_string>,
+     Kind::metamethod,
+     {"tostring(energy) -> string", "The balance of the whole run as a small table.",
+      DINAL_ENERGY "print(tostring(energy):match(\"[^\\n]*\"))\n"
+                   "--> energy, t 0 … 20: input = kinetic + spring + viscous + dry"}},
+};
+
+}  // namespace
+
+const Class energy_class = {
+    "energy",
+    {"run:energy() -> energy",
+     "The energy balance of a run: total, half_cycles, and columns beside run.t. It can not be changed.",
+     DINAL_ENERGY "print(#energy.half_cycles)  --> 4"},
+    members};
+
+#undef DINAL_ENERGY
+
+int energy_of_run(lua_State* L) {
+    const RunHandle& run = self<RunHandle>(L, 1, "run:energy()");
+    auto energy = energy_of(run->trajectory);
+    if (!energy) {
+        raise(L, "run:energy(): " + energy.error().sentence);
+    }
+    push<EnergyHandle>(L, std::make_shared<RunEnergy>(RunEnergy{run, std::move(energy).value()}));
+    return 1;
+}
+
+void register_energy(lua_State* L) {
+    add_class<EnergyHandle>(L, energy_class);
+}
+
+}  // namespace dinal

@@ -1,0 +1,273 @@
+// run:energy(): every joule that M puts in is found again, in closed forms and in what adds up.
+#include "core/energy.hpp"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <numbers>
+
+#include "support/excitations.hpp"
+#include "support/measure.hpp"
+
+using namespace dinal;
+using namespace dinal::truth;
+
+namespace {
+
+constexpr double pi = std::numbers::pi;
+/// The promise: nothing that flowed is lost but this part. What is found is near 1e-15, the rounding of a panel.
+constexpr double promised = 1e-12;
+/// For closed forms: the motion is right to 1e-13 or so of its amplitude, and energies are squares of it.
+constexpr double near = 1e-12;
+
+Energy energy_of_run(const Oscillator& system, const Excitation& M, const State& initial, const Window& window) {
+    const Trajectory run = must_run(system, M, initial, window, Grid::none(), Spectral{});
+    auto energy = energy_of(run);
+    if (!energy) FAIL(energy.error().sentence);
+    return std::move(energy).value();
+}
+
+Excitation feedback(std::function<double(double, const State&)> f) {
+    return excitations::made(
+        Scripted{.function = std::make_shared<excitations::Probe>(std::move(f)), .feedback = true});
+}
+
+/// All that must hold of any energy: the closure in total and for each half cycle, and the parts make the whole.
+void check_books(const Energy& energy) {
+    CAPTURE(energy.closure());
+    CHECK(energy.closure() <= promised);
+    Work sum;
+    for (const HalfCycle& half : energy.half_cycles) {
+        CHECK(std::fabs(half.balance.error()) <= promised * energy.flow);
+        CHECK(half.balance.work.viscous >= -promised * energy.flow);
+        CHECK(half.balance.work.dry >= -promised * energy.flow);
+        sum.input += half.balance.work.input;
+        sum.viscous += half.balance.work.viscous;
+        sum.dry += half.balance.work.dry;
+    }
+    CHECK(std::fabs(sum.input - energy.total.work.input) <= promised * energy.flow);
+    CHECK(std::fabs(sum.viscous - energy.total.work.viscous) <= promised * energy.flow);
+    CHECK(std::fabs(sum.dry - energy.total.work.dry) <= promised * energy.flow);
+}
+
+}  // namespace
+
+TEST_CASE("the energy of every reference system adds up", "[energy]") {
+    for (const ReferenceSystem& s : reference_systems()) {
+        CAPTURE(s.name);
+        const Energy energy = energy_of_run(s.oscillator, s.excitation, s.initial, s.window);
+        CHECK((energy.flow > 0) == (s.name != "start on the limit"));
+        check_books(energy);
+        // Dry friction is constant, so what it takes is Rd times the way, and the way is told by the exact motion.
+        double way = 0;
+        const ExactMotion exact = s.exact();
+        double theta = s.initial.theta;
+        for (const TrueEvent& event : exact.events()) {
+            way += std::fabs(static_cast<double>(event.theta) - theta);
+            theta = static_cast<double>(event.theta);
+        }
+        way += std::fabs(static_cast<double>(exact.at(s.window.end).theta) - theta);
+        // Event angles of a stiff or long run are right to 1e-11 of its size.
+        CHECK(std::fabs(energy.total.work.dry - s.oscillator.kinetic_friction() * way) <=
+              1e-10 * (energy.flow + s.oscillator.kinetic_friction() * s.size));
+    }
+}
+
+TEST_CASE("dry friction takes Rd (X0 + X1) of each half cycle of a free decay, exactly", "[energy]") {
+    const double Rd = 0.167;
+    const Energy energy = energy_of_run(nondimensional(0, Rd), {}, {0, 2 * pi}, {0, 5});
+    REQUIRE(energy.half_cycles.size() == 4);
+    // Thrown from the middle with the energy of amplitude 1: X = 0.846..., and 2 Rd less at each turn.
+    const double first = std::sqrt(1 + Rd * Rd) - Rd;
+    double X = first, lost = Rd * first;
+    CHECK(energy.half_cycles[0].balance.work.dry == Approx(lost).epsilon(near));
+    for (std::size_t i = 1; i < 4; ++i) {
+        CAPTURE(i);
+        const HalfCycle& half = energy.half_cycles[i];
+        const double next = X - 2 * Rd;
+        CHECK(half.t_end - half.t_start == Approx(0.5).epsilon(near));
+        CHECK(half.balance.work.dry == Approx(Rd * (X + next)).epsilon(near));
+        CHECK(half.balance.change.spring == Approx((next * next - X * X) / 2).epsilon(near));
+        CHECK(half.balance.change.kinetic == 0);
+        CHECK(std::fabs(half.theta_end) == Approx(std::fabs(next)).epsilon(near));
+        lost += Rd * (X + next);
+        X = next;
+    }
+    CHECK(energy.total.work.dry == Approx(lost).epsilon(near));
+    CHECK(energy.total.work.input == 0);
+    CHECK(energy.total.work.viscous == 0);
+    CHECK(energy.start.kinetic == Approx(0.5).epsilon(near));
+    CHECK(energy.finish.spring == Approx(0.155151392 * 0.155151392 / 2).epsilon(1e-8));  // the report's nine digits
+    CHECK(energy.finish.kinetic == 0);
+    // What was there at the start, and what the spring gave back after each turn.
+    double gave = 0.5;
+    for (std::size_t i = 1; i < 4; ++i) {
+        const HalfCycle& half = energy.half_cycles[i];
+        const double left = half.theta_start * half.theta_end > 0 ? std::pow(half.theta_end, 2) : 0;
+        gave += (std::pow(half.theta_start, 2) - left) / 2;
+    }
+    CHECK(energy.flow == Approx(gave).epsilon(near));
+}
+
+TEST_CASE("a steady cycle: M puts in 4 Rd X and what the damper takes", "[energy]") {
+    // Figure 27. After 40 periods the transient is 0.47^40 of what it was.
+    const Oscillator system = nondimensional(0.119, 0.418);
+    const Energy energy = energy_of_run(system, harmonic(1, 2 * pi), {1, 0}, {0, 40});
+    const auto& last = energy.half_cycles[energy.half_cycles.size() - 2];
+    const double X = 1.9611201772;
+    CHECK(std::fabs(last.theta_end) == Approx(X).epsilon(1e-10));
+    CHECK(last.balance.work.dry == Approx(2 * 0.418 * X).epsilon(1e-10));
+    CHECK(last.balance.work.input == Approx(last.balance.work.dry + last.balance.work.viscous).epsilon(near));
+    check_books(energy);
+}
+
+TEST_CASE("steady resonance without dry friction: input and viscous loss are pi M0 X a period", "[energy]") {
+    const double zeta = 0.239, X = 1 / (2 * zeta);
+    // Started in the steady motion itself: theta = -X cos w0 t.
+    const Energy energy = energy_of_run(nondimensional(zeta, 0), harmonic(1, 2 * pi), {-X, 0}, {0, 10});
+    CHECK(energy.total.work.input == Approx(10 * pi * X).epsilon(near));
+    CHECK(energy.total.work.viscous == Approx(10 * pi * X).epsilon(near));
+    CHECK(energy.total.work.dry == 0);
+    REQUIRE(energy.half_cycles.size() >= 19);  // the start and the end are turns, to rounding
+    for (std::size_t i = 1; i < 19; ++i) {
+        CHECK(energy.half_cycles[i].balance.work.viscous == Approx(pi * X / 2).epsilon(near));
+    }
+    check_books(energy);
+}
+
+TEST_CASE("nothing is lost without friction: the energy stays, or M brought it", "[energy]") {
+    const Oscillator system = nondimensional(0, 0);
+    const Energy free = energy_of_run(system, {}, {1, 0}, {0, 1000});
+    CHECK(free.total.work.input == 0);
+    CHECK(free.finish.kinetic + free.finish.spring == Approx(0.5).epsilon(1e-11));  // 1000 periods of 1e-12 each
+    CHECK(free.flow == Approx(2000 * 0.5).epsilon(1e-11));  // the spring gives all it has in every half cycle
+    check_books(free);
+    // A constant M: its work is M times the way between the ends.
+    const Energy pushed = energy_of_run(system, excitations::made(Constant{3}), {1, 0}, {0, 7.25});
+    CHECK(pushed.total.work.input == Approx(3 * (3 - 1)).epsilon(near));  // at a quarter period it passes theta = 3
+    check_books(pushed);
+    // Undamped resonance from rest: theta = (sin w0 t - w0 t cos w0 t)/2, and all that M did is in there.
+    const Energy grown = energy_of_run(system, harmonic(1, 2 * pi), {0, 0}, {0, 10});
+    CHECK(grown.start.kinetic + grown.start.spring == 0);
+    CHECK(grown.total.work.input == Approx(std::pow(10 * pi, 2) / 2).epsilon(near));
+    check_books(grown);
+}
+
+TEST_CASE("a motor that acts like a damper takes what the damper would", "[energy]") {
+    const double c = 0.119 / pi;
+    const Energy motor =
+        energy_of_run(nondimensional(0, 0.06), feedback([c](double, const State& y) { return -c * y.velocity; }),
+                      {0, 2 * pi}, {0, 5});
+    const Energy damper = energy_of_run(nondimensional(0.119, 0.06), {}, {0, 2 * pi}, {0, 5});
+    CHECK(motor.total.work.input == Approx(-damper.total.work.viscous).epsilon(1e-11));
+    CHECK(motor.total.work.dry == Approx(damper.total.work.dry).epsilon(1e-11));
+    check_books(motor);
+    // An unstable one: it feeds the motion, a thousandfold.
+    const Energy fed = energy_of_run(
+        nondimensional(0, 0.01), feedback([](double, const State& y) { return 0.1 * y.velocity; }), {0.2, 0}, {0, 4});
+    CHECK(fed.total.work.input > 100 * fed.start.spring);
+    check_books(fed);
+    // A van der Pol oscillator on its limit cycle: what is nonlinear is iterated, not solved for.
+    check_books(energy_of_run(nondimensional(0, 0.05), feedback([](double, const State& y) {
+                                  return 0.1 * (1 - y.theta * y.theta) * y.velocity;
+                              }),
+                              {0.5, 0}, {0, 30}));
+}
+
+TEST_CASE("a thousand periods with two thousand stops add up as one does", "[energy]") {
+    const Energy energy = energy_of_run(nondimensional(0, 0.836), harmonic(1, 2 * pi), {1, 0}, {0, 1000});
+    REQUIRE(energy.half_cycles.size() > 1990);
+    for (std::size_t i = 100; i + 1 < energy.half_cycles.size(); i += 100) {
+        CHECK(energy.half_cycles[i].balance.work.dry == Approx(2 * 0.836 * 0.1291703518).epsilon(1e-9));
+    }
+    check_books(energy);
+}
+
+TEST_CASE("jumps of M, announced or not, cost no energy", "[energy]") {
+    const Oscillator system = nondimensional(0.05, 0.2);
+    check_books(energy_of_run(system, excitations::made(Square{.amplitude = 1, .period = 0.73}), {0.3, 1}, {0, 50}));
+    const auto jumps = [](double t) { return std::fmod(t, 0.73) < 0.365 ? 1.0 : -1.0; };
+    check_books(
+        energy_of_run(system, excitations::made(Scripted{.function = excitations::probe(jumps)}), {0.3, 1}, {0, 50}));
+}
+
+TEST_CASE("the columns are the balance of a run up to each row", "[energy]") {
+    for (const char* name : {"W3: one stop per half cycle (fig 24)", "W4: resonance, both frictions (fig 27)",
+                             "resonance, no dry friction (fig 19)", "stiff, C = 4000"}) {
+        const ReferenceSystem& s = reference_system(name);
+        CAPTURE(s.name);
+        const double dt = (s.window.end - s.window.start) / 37;
+        const Trajectory run = must_run(s, Grid::every(dt), Spectral{});
+        const Energy whole = energy_of(run).value();
+        const Eigen::MatrixXd columns = energy_columns(run);
+        REQUIRE(columns.rows() == run.size());
+        REQUIRE(columns.cols() == energy_column_count);
+        CHECK(columns(0, 0) == 0);
+        CHECK(columns(0, 4) == 0);
+        for (const Eigen::Index i : {5, 21, 37}) {
+            CAPTURE(i);
+            const Energy part = energy_of_run(s.oscillator, s.excitation, s.initial, {s.window.start, run.rows(i, 0)});
+            const double off = promised * whole.flow;
+            CHECK(std::fabs(columns(i, 0) - part.total.work.input) <= off);
+            CHECK(std::fabs(columns(i, 1) - part.finish.kinetic) <= off);
+            CHECK(std::fabs(columns(i, 2) - part.finish.spring) <= off);
+            CHECK(std::fabs(columns(i, 3) - part.total.work.viscous) <= off);
+            CHECK(std::fabs(columns(i, 4) - part.total.work.dry) <= off);
+        }
+        CHECK(columns.col(5).cwiseAbs().maxCoeff() <= promised * whole.flow);
+    }
+}
+
+TEST_CASE("a mass that never moves keeps what its spring holds, and nothing flows", "[energy]") {
+    const Energy energy = energy_of_run(nondimensional(0.1, 0.3), harmonic(0.1, 3), {0.1, 0}, {0, 9});
+    CHECK(energy.half_cycles.empty());
+    CHECK(energy.total.error() == 0);
+    CHECK(energy.flow == 0);
+    CHECK(energy.closure() == 0);
+    CHECK(energy.finish.spring == 0.1 * 0.1 / 2);
+}
+
+TEST_CASE("an interrupted run has the energy of what was done", "[energy]") {
+    const Oscillator system = nondimensional(0.05, 0.1);
+    const auto run =
+        simulate(system, harmonic(1, 5), {1, 0}, {0, 100}, Grid::none(), Spectral{}, [](double t) { return t < 10; });
+    REQUIRE(run);
+    REQUIRE(run->outcome == Outcome::interrupted);
+    const auto energy = energy_of(*run);
+    REQUIRE(energy);
+    CHECK(energy->t_end == run->t_stop);
+    check_books(*energy);
+}
+
+TEST_CASE("a run that went on has the energy of all of it", "[energy][resume]") {
+    const ReferenceSystem& s = reference_system("W4: resonance, both frictions (fig 27)");
+    const Trajectory part = must_run(s.oscillator, s.excitation, s.initial, {0, 7.3}, Grid::none(), Spectral{});
+    const auto run = resume(s.oscillator, s.excitation, part, s.window.end, Grid::none(), Spectral{});
+    REQUIRE(run);
+    const Energy energy = energy_of(*run).value();
+    const Energy whole = energy_of_run(s.oscillator, s.excitation, s.initial, s.window);
+    CHECK(energy.start.spring == whole.start.spring);
+    CHECK(energy.half_cycles.size() == whole.half_cycles.size());
+    CHECK(energy.total.work.input == Approx(whole.total.work.input).epsilon(near));
+    check_books(energy);
+}
+
+TEST_CASE("a run that kept no panels says what to do for its energy", "[energy]") {
+    const Oscillator system = nondimensional(0.05, 0.1);
+    const auto complaint = [](const Trajectory& run) {
+        const auto energy = energy_of(run);
+        return energy ? "" : energy.error().sentence;
+    };
+    const auto rk4 = must_run(system, {}, {1, 0}, {0, 1}, Grid::none(), Rk4{0.01});
+    CHECK(complaint(rk4).find("integrator.spectral") != std::string::npos);
+    const auto sparse = simulate(system, {}, {1, 0}, {0, 1}, Grid::none(), Spectral{}, {}, {.dense = false});
+    REQUIRE(sparse);
+    CHECK(complaint(*sparse).find("dense = false") != std::string::npos);
+    Trajectory loaded;
+    loaded.computed = false;
+    CHECK(complaint(loaded).find("read from a file") != std::string::npos);
+    const auto small =
+        simulate(system, harmonic(1, 5), {1, 0}, {0, 100}, Grid::none(), Spectral{}, {}, {.memory = 10000});
+    REQUIRE(small);
+    CAPTURE(complaint(*small), complaint(rk4));
+    CHECK(complaint(*small).find("for want of memory") != std::string::npos);
+}

@@ -1,0 +1,114 @@
+package.path = "tests/lua/?.lua;" .. package.path
+local support = require "support"
+local test, near, equal, raises_here = support.test, support.near, support.equal, support.raises_here
+
+-- Figure 27 of the report: steady after a while, both frictions, no stops.
+local sys = nondimensional { zeta = 0.119, friction_ratio = 0.418 }
+local M = excitation.harmonic { frequency = 1 }
+local run = sys:simulate { M = M, theta0 = 1, t_end = 40, dt = 0.01 }
+local energy = run:energy()
+
+test("the total adds up, and says how well", function()
+    local total = energy.total
+    near(total.input - total.kinetic - total.spring - total.viscous - total.dry, total.error, 1e-12 * total.flow)
+    assert(total.closure <= 1e-12 and total.flow > total.input)
+    near(energy.finish.kinetic - energy.start.kinetic, total.kinetic, 1e-15 * total.flow)
+    near(energy.finish.spring - energy.start.spring, total.spring, 1e-15 * total.flow)
+    equal(energy.start.spring, 0.5)
+end)
+
+test("half cycles are a list of tables, the same list each time, that make up the total", function()
+    local half_cycles = energy.half_cycles
+    equal(energy.half_cycles, half_cycles)
+    local sum = { input = 0, kinetic = 0, spring = 0, viscous = 0, dry = 0, error = 0 }
+    for i, half in ipairs(half_cycles) do
+        for name in pairs(sum) do
+            sum[name] = sum[name] + half[name]
+        end
+        assert(half.t_end > half.t_start)
+        if i > 1 then
+            assert(half.t_start >= half_cycles[i - 1].t_end) -- later when it stuck in between
+            equal(half.theta_start, half_cycles[i - 1].theta_end)
+        end
+    end
+    for name, value in pairs(sum) do
+        near(value, energy.total[name], 1e-13 * energy.total.flow)
+    end
+    local X = 1.9611201772 -- the amplitude of figure 27, exact
+    near(half_cycles[#half_cycles - 1].dry, 2 * sys.Rd * X, 1e-9)
+end)
+
+test("columns stand beside the rows and end at the total", function()
+    assert(energy.t == run.t)
+    for _, name in ipairs { "input", "viscous", "dry" } do
+        local column = energy[name]
+        equal(#column, #run)
+        equal(column[1], 0.0)
+        near(column[#run], energy.total[name], 1e-13 * energy.total.flow)
+    end
+    near(energy.kinetic[100], 0.5 / (4 * math.pi ^ 2) * run.velocity[100] ^ 2, 1e-15)
+    near(energy.spring[100], 0.5 * run.theta[100] ^ 2, 1e-15)
+    assert(energy.error:abs():max() <= 1e-12 * energy.total.flow)
+    for i = 2, #run do
+        assert(energy.dry[i] >= energy.dry[i - 1] - 1e-14, "dry friction gave something back at row " .. i)
+    end
+end)
+
+test("a column outlives run and energy", function()
+    local dry = sys:simulate { M = M, theta0 = 1, t_end = 1, dt = 0.01 }:energy().dry
+    local copy = dry:table()
+    for _ = 1, 20 do
+        collectgarbage()
+        sys:simulate { M = M, theta0 = 2, t_end = 1, dt = 0.01 }:energy()
+    end
+    for i = 1, #dry do
+        equal(dry[i], copy[i])
+    end
+end)
+
+test("the rows asked for do not change the energy", function()
+    local bare = sys:simulate { M = M, theta0 = 1, t_end = 40, times = {} }:energy()
+    equal(bare.total.dry, energy.total.dry)
+    equal(bare.total.input, energy.total.input)
+    equal(#bare.input, 0)
+end)
+
+test("it shows itself as a small table", function()
+    local text = tostring(energy)
+    for _, piece in ipairs { "t 0 … 40", "input", "kinetic", "spring", "from 0.5 to", "viscous", "dry", "half cycles" } do
+        assert(text:find(piece, 1, true), piece .. " is not in\n" .. text)
+    end
+    for line in text:gmatch("[^\n]+") do
+        assert(utf8.len(line) <= 80, line)
+    end
+end)
+
+test("runs that have not kept their motion say what to do", function()
+    local rk4 = sys:simulate { M = M, t_end = 1, dt = 0.1, integrator = integrator.rk4 { h = 0.01 } }
+    raises_here(function() rk4:energy() end, "run:energy(): ", "integrator.spectral")
+    local old = sys:simulate { M = M, t_end = 1, dt = 0.1, integrator = integrator.dinal1989 { h = 0.01 } }
+    raises_here(function() old:energy() end, "integrator.spectral")
+    local sparse = sys:simulate { M = M, t_end = 1, dt = 0.1, dense = false }
+    raises_here(function() sparse:energy() end, "without dense = false")
+    local name = support.temporary ".csv"
+    run:save(name)
+    raises_here(function() trajectory.load(name):energy() end, "read from a file", "simulate the system again")
+    raises_here(function() run.energy() end, "use a colon: run:energy()")
+end)
+
+test("misspelt names are errors with a suggestion", function()
+    raises_here(function() return energy.imput end, "did you mean 'input'?")
+    raises_here(function() return energy.halfcycles end, "did you mean 'half_cycles'?")
+    raises_here(function() energy.input = 1 end, "can not be changed")
+end)
+
+test("what was done of a broken run has its energy", function()
+    local ok = pcall(function()
+        sys:simulate { M = function(t) assert(t < 5) return math.sin(6 * t) end, theta0 = 1, t_end = 10, dt = 0.1 }
+    end)
+    assert(not ok)
+    local part = dinal.partial:energy()
+    assert(part.total.dry > 1 and part.total.closure <= 1e-12)
+end)
+
+support.finish()

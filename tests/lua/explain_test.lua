@@ -1,0 +1,68 @@
+package.path = "tests/lua/?.lua;" .. package.path
+local support = require "support"
+local test, equal, raises_here = support.test, support.equal, support.raises_here
+
+local nd = nondimensional { friction_ratio = 0.167 }
+local free = nd:simulate { velocity0 = 2 * math.pi, t_end = 5, dt = 0.01 }
+
+--- The story as one line.
+local function told(run)
+    return (run:explain():gsub("\n", " "))
+end
+local function says(run, sentence)
+    local text = told(run)
+    assert(text:find(sentence, 1, true), ("%q is not in\n%s"):format(sentence, text))
+end
+
+test("explain tells when, where and why the mass stopped", function()
+    says(free, "It stopped at t = 1.7237 at theta = 0.15515 because |M - k theta| = 0.15515 <= Re = 0.167.")
+    says(free, "It made 4 half cycles with 3 turns and 1 stop")
+end)
+
+test("lines fit a terminal and there are not too many, however long the run", function()
+    local run = nondimensional { friction_ratio = 0.836 }:simulate {
+        M = excitation.harmonic { frequency = 1 }, theta0 = 1, t_end = 1000, dt = 1 }
+    local count = 0
+    for line in (run:explain() .. "\n"):gmatch("([^\n]*)\n") do
+        count = count + 1
+        assert(#line < 80, line)
+    end
+    assert(count <= 25, count)
+    says(run, "repeats itself every 1 (the period of M)")
+    says(run, "... 1995 more ...")
+end)
+
+test("a user's function is not called again", function()
+    local calls = 0
+    local function M(t)
+        calls = calls + 1
+        return math.sin(2 * math.pi * t)
+    end
+    for _, with in ipairs { integrator.spectral {}, integrator.rk4 { h = 0.001 } } do
+        local run = nondimensional { zeta = 0.119, friction_ratio = 0.418 }:simulate {
+            M = M, theta0 = 1, t_end = 20, dt = 0.005, integrator = with }
+        local before = calls
+        says(run, "lags behind M by 92.1 degrees")
+        says(run, "It does not stop on its way.")
+        equal(calls, before)
+    end
+end)
+
+test("a run read from a file, one of 1989 and a broken one have a story, too", function()
+    local name = support.temporary ".csv"
+    free:save(name)
+    says(trajectory.load(name), "read from a file")
+    says(trajectory.load(name), "The velocity changes its sign 3 times")
+    says(nd:simulate { velocity0 = 2 * math.pi, t_end = 5, dt = 0.01, integrator = integrator.dinal1989 { h = 0.001 } },
+        "integrated as in 1989")
+    pcall(function()
+        nd:simulate { M = function(t) assert(t < 3) return math.sin(t) end, theta0 = 1, t_end = 10, dt = 0.1 }
+    end)
+    says(dinal.partial, "The run broke off at t = 3: M failed")
+end)
+
+test("explain is a method", function()
+    raises_here(function() free.explain() end, "use a colon: run:explain()")
+end)
+
+support.finish()
