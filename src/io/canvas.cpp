@@ -64,6 +64,10 @@ const Canvas::Cell& Canvas::cell(int column, int row) const {
     return cells_[static_cast<std::size_t>(row * columns_ + column)];
 }
 
+bool Canvas::has_ink() const {
+    return std::any_of(cells_.begin(), cells_.end(), [](const Cell& cell) { return cell.ink != 0; });
+}
+
 Canvas::Cell* Canvas::cell_of_dot(int x, int y) {
     const bool inside = x >= 0 && y >= 0 && x < width() && y < height();
     return inside ? &cells_[static_cast<std::size_t>((y / cell_height_) * columns_ + x / cell_width_)] : nullptr;

@@ -34,6 +34,7 @@ public:
         std::string_view glyph;   // must outlive the canvas
     };
     [[nodiscard]] const Cell& cell(int column, int row) const;
+    [[nodiscard]] bool has_ink() const;  ///< of any curve
     /// What stands in the cell. In ASCII `mark` stands for the dots of a curve (0: their shape does), `behind` for the
     /// rest.
     [[nodiscard]] std::string text(const Cell& cell, char mark, char behind) const;

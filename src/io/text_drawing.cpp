@@ -16,8 +16,11 @@ struct Stroke {
 };
 
 /// Solid, dotted, dashed ...: with more curves than that only letters help.
-Stroke stroke_of(const Figure& figure, std::size_t curve) {
+Stroke stroke_of(const Figure& figure, std::size_t curve, Charset charset) {
     constexpr std::array<Stroke, 4> strokes{{{1, 1}, {1, 2}, {5, 8}, {1, 4}}};
+    if (charset == Charset::ascii && uses_letters(figure)) {
+        return strokes[0];  // each dot is the letter of its curve
+    }
     switch (figure.curves[curve].dashes) {
         case Dashes::solid:
             return strokes[0];
@@ -188,7 +191,7 @@ void draw(Canvas& canvas, const Figure& figure, const Projection& projection, co
         } else if (curve.style == Style::fill) {
             draw_fill(canvas, curve, projection, ink);
         } else {
-            const Stroke stroke = stroke_of(figure, i);
+            const Stroke stroke = stroke_of(figure, i, charset);
             draw_line(Pen(canvas, ink, stroke.on, stroke.period), curve, projection);
         }
     }

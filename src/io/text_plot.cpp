@@ -202,15 +202,16 @@ private:
                 line.add(" ");
                 line.add(label.empty() ? frame_.side : frame_.tick);
             }
-            add_cells(line, canvas, row);
+            if (row == rows_ / 2 && !canvas.has_ink()) {
+                line.add("  (no points)");
+            } else {
+                add_cells(line, canvas, row);
+            }
             const auto& inks = letters[static_cast<std::size_t>(row)];
             for (std::size_t i = 0; i < std::min<std::size_t>(inks.size(), letters_at_end); ++i) {
                 line.add(std::string{letter(inks[i])}, inks[i]);
             }
             lines.push_back(line);
-        }
-        if (std::all_of(figure_.curves.begin(), figure_.curves.end(), [](const Curve& c) { return c.size() == 0; })) {
-            lines.push_back(centred("(no points)"));
         }
     }
 
