@@ -11,7 +11,8 @@ namespace {
 
 constexpr void (*register_functions[])(lua_State*) = {
     register_system,     register_excitation, register_integrator, register_run,
-    register_trajectory, register_theory,     register_vector,     register_help,
+    register_trajectory, register_theory,     register_vector,     register_plot,
+    register_help,
 };
 
 // Plain fields of the table: documented here, set by open_library() and sys:simulate.
@@ -52,6 +53,8 @@ const Section all_sections[] = {
     {"Theory", "theory", &theory_module},
     {"Vectors", "vector", &vector_module},
     {"A vector", "v", &vector_class},
+    {"Plots", "", &plot_functions},
+    {"A picture", "picture", &picture_class},
     {"Help", "", &help_functions},
     {"The table dinal", "dinal", &library_class},
 };
