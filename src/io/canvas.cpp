@@ -60,8 +60,12 @@ Canvas::Canvas(int columns, int rows, Charset charset)
       cell_height_(charset == Charset::braille ? 4 : 2),
       cells_(static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows)) {}
 
+std::size_t Canvas::place(int column, int row) const {
+    return static_cast<std::size_t>(row) * static_cast<std::size_t>(columns_) + static_cast<std::size_t>(column);
+}
+
 const Canvas::Cell& Canvas::cell(int column, int row) const {
-    return cells_[static_cast<std::size_t>(row * columns_ + column)];
+    return cells_[place(column, row)];
 }
 
 bool Canvas::has_ink() const {
@@ -70,7 +74,7 @@ bool Canvas::has_ink() const {
 
 Canvas::Cell* Canvas::cell_of_dot(int x, int y) {
     const bool inside = x >= 0 && y >= 0 && x < width() && y < height();
-    return inside ? &cells_[static_cast<std::size_t>((y / cell_height_) * columns_ + x / cell_width_)] : nullptr;
+    return inside ? &cells_[place(x / cell_width_, y / cell_height_)] : nullptr;
 }
 
 void Canvas::dot(int x, int y, std::uint8_t ink) {
@@ -137,8 +141,7 @@ void Pen::to(double x, double y) {
     Line line{down_ ? from_x : x, down_ ? from_y : y, x, y};
     down_ = true;
     if (clip(line, canvas_.width() - 1, canvas_.height() - 1)) {
-        const auto whole = [](double value) { return static_cast<int>(value + 0.5); };
-        this->line(whole(line.x0), whole(line.y0), whole(line.x1), whole(line.y1));
+        this->line(nearest_dot(line.x0), nearest_dot(line.y0), nearest_dot(line.x1), nearest_dot(line.y1));
     }
 }
 

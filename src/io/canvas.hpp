@@ -1,6 +1,9 @@
 // A sheet of dots that becomes lines of text: two by four dots a character in braille, one by two in ASCII.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <string>
 #include <string_view>
@@ -40,6 +43,7 @@ public:
     [[nodiscard]] std::string text(const Cell& cell, char mark, char behind) const;
 
 private:
+    [[nodiscard]] std::size_t place(int column, int row) const;
     Cell* cell_of_dot(int x, int y);  // null outside of the sheet
 
     int columns_, rows_;
@@ -47,6 +51,11 @@ private:
     int cell_width_, cell_height_;
     std::vector<Cell> cells_;
 };
+
+/// The dot that a place falls on; what is far from any sheet may be anywhere there.
+inline int nearest_dot(double place) {
+    return static_cast<int>(std::floor(std::clamp(place, -1e6, 1e6) + 0.5));
+}
 
 /// Dots along a path, `on` of every `period` of them: a line that is solid, dashed or dotted.
 class Pen {

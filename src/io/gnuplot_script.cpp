@@ -36,7 +36,8 @@ Selection select(const Panel& panel, double coarseness) {
 /// What gets too large is made coarser.
 std::vector<Selection> select(const Sheet& sheet) {
     std::vector<Selection> all;
-    for (double coarseness = 1; coarseness < 20; coarseness *= 1.5) {
+    double coarseness = 1;
+    for (int attempt = 0; attempt < 8; ++attempt) {
         all.clear();
         std::size_t points = 0;
         for (const Panel& panel : sheet.panels) {
@@ -48,6 +49,7 @@ std::vector<Selection> select(const Sheet& sheet) {
         if (points <= most_points) {
             break;
         }
+        coarseness *= 1.5;
     }
     return all;
 }

@@ -22,7 +22,7 @@ double digits_width(const std::string& number) {
 
 /// What is too long for its place loses its end, so that one sees that it was too long.
 std::string cut(const std::string& text, double width) {
-    const std::string shown = displayable(text);
+    std::string shown = displayable(text);
     if (width_of(shown) <= width) {
         return shown;
     }

@@ -49,8 +49,8 @@ void draw_points(Canvas& canvas, const Curve& curve, const Projection& projectio
         const double x = projection.x(curve.x.values[i]);
         const double y = projection.y(curve.y.values[i]);
         if (x > -0.5 && y > -0.5 && x < projection.box.width && y < projection.box.height) {
-            const int column = static_cast<int>(x + 0.5);
-            const int row = static_cast<int>(y + 0.5);
+            const int column = nearest_dot(x);
+            const int row = nearest_dot(y);
             if (curve.size() <= most_glyphs) {
                 canvas.glyph(column, row, glyph, ink);
             } else {
@@ -77,15 +77,16 @@ void draw_fill(Canvas& canvas, const Curve& curve, const Projection& projection,
             std::swap(y0, y1);
             std::swap(b0, b1);
         }
-        const double last = std::min(x1, projection.box.width - 1);
-        for (double x = std::max(std::ceil(x0), 0.0); x <= last; ++x) {
+        const int last = static_cast<int>(std::clamp(x1, -1.0, projection.box.width - 1));
+        for (int x = static_cast<int>(std::ceil(std::clamp(x0, 0.0, projection.box.width))); x <= last; ++x) {
             const double part = x1 > x0 ? (x - x0) / (x1 - x0) : 0;
             const double y = y0 + part * (y1 - y0);
             const double b = b0 + part * (b1 - b0);
-            const double bottom = std::min(std::max(y, b), projection.box.height - 1);
-            for (double dot = std::max(std::ceil(std::min(y, b)), 0.0); dot <= bottom; ++dot) {
-                if (static_cast<int>(x) % 2 == 0 && static_cast<int>(dot) % 2 == 0) {
-                    canvas.dot(static_cast<int>(x), static_cast<int>(dot), ink);
+            const int bottom = static_cast<int>(std::clamp(std::max(y, b), -1.0, projection.box.height - 1));
+            for (int dot = static_cast<int>(std::ceil(std::clamp(std::min(y, b), 0.0, projection.box.height)));
+                 dot <= bottom; ++dot) {
+                if (x % 2 == 0 && dot % 2 == 0) {
+                    canvas.dot(x, dot, ink);
                 }
             }
         }
@@ -95,15 +96,13 @@ void draw_fill(Canvas& canvas, const Curve& curve, const Projection& projection,
 
 void draw_circle(Canvas& canvas, const Projection& projection, double radius) {
     const double size = radius / projection.view.x.range().length() * (projection.box.width - 1);
-    constexpr double gap = 4;  // dots from one to the next
-    const int count = static_cast<int>(2 * std::numbers::pi * size / gap);
+    constexpr double gap = 4;     // dots from one to the next
+    constexpr double most = 1e4;  // a window far from the origin sees no more than a piece of a line
+    const int count = static_cast<int>(std::min(2 * std::numbers::pi * size / gap, most));
     for (int i = 0; i < count; ++i) {
         const double angle = 2 * std::numbers::pi * i / count;
-        const double x = projection.x(radius * std::cos(angle)) + 0.5;
-        const double y = projection.y(radius * std::sin(angle)) + 0.5;
-        if (x >= 0 && y >= 0) {
-            canvas.dot(static_cast<int>(x), static_cast<int>(y), 0);
-        }
+        canvas.dot(nearest_dot(projection.x(radius * std::cos(angle))),
+                   nearest_dot(projection.y(radius * std::sin(angle))), 0);
     }
 }
 
@@ -114,7 +113,7 @@ bool inside(const Scale& scale, double value) {
 void draw_background(Canvas& canvas, const Figure& figure, const Projection& projection,
                      const std::vector<double>& circles) {
     if (!projection.view.y.logarithmic() && inside(projection.view.y, 0)) {
-        const int row = static_cast<int>(projection.y(0) + 0.5);
+        const int row = nearest_dot(projection.y(0));
         for (int x = 0; x < projection.box.width; x += 2) {
             canvas.dot(x, row, 0);
         }
@@ -123,7 +122,7 @@ void draw_background(Canvas& canvas, const Figure& figure, const Projection& pro
         for (const double radius : circles) {
             draw_circle(canvas, projection, radius);
         }
-        const int column = static_cast<int>(projection.x(0) + 0.5);
+        const int column = nearest_dot(projection.x(0));
         for (int y = 0; inside(projection.view.x, 0) && y < projection.box.height; y += 2) {
             canvas.dot(column, y, 0);
         }
@@ -132,11 +131,11 @@ void draw_background(Canvas& canvas, const Figure& figure, const Projection& pro
 
 /// Only where no curve runs: it is not to be hidden.
 void draw_dead_zone(Canvas& canvas, Range zone, const Projection& projection, std::string_view sign) {
-    const double row = projection.y(0) + 0.5;
+    const int row = nearest_dot(projection.y(0));
     const double from = std::max(projection.x(zone.low), 0.0);
     const double to = std::min(projection.x(zone.high), projection.box.width - 1);
-    for (int x = static_cast<int>(from + 0.5); row >= 0 && x <= to; ++x) {
-        canvas.glyph_if_free(x, static_cast<int>(row), sign);
+    for (int x = nearest_dot(from); x <= to; ++x) {
+        canvas.glyph_if_free(x, row, sign);
     }
 }
 
@@ -202,12 +201,9 @@ void draw(Canvas& canvas, const Figure& figure, const Projection& projection, co
         draw_dead_zone(canvas, *figure.dead_zone, projection, signs(charset).dead_zone);
     }
     for (const Mark& mark : figure.marks) {
-        const double x = projection.x(mark.x) + 0.5;
-        const double y = projection.y(mark.y) + 0.5;
-        if (x >= 0 && y >= 0 && x < canvas.width() && y < canvas.height()) {
-            const Signs of = signs(charset);
-            canvas.glyph(static_cast<int>(x), static_cast<int>(y), mark.kind == MarkKind::start ? of.start : of.end, 1);
-        }
+        const Signs of = signs(charset);
+        canvas.glyph(nearest_dot(projection.x(mark.x)), nearest_dot(projection.y(mark.y)),
+                     mark.kind == MarkKind::start ? of.start : of.end, 1);
     }
 }
 

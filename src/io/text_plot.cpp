@@ -181,10 +181,10 @@ private:
     }
 
     [[nodiscard]] std::size_t row_of(double dot) const {
-        return static_cast<std::size_t>(dot + 0.5) / (format_.charset == Charset::braille ? 4 : 2);
+        return static_cast<std::size_t>(std::max(0, nearest_dot(dot))) / (format_.charset == Charset::braille ? 4 : 2);
     }
     [[nodiscard]] std::size_t column_of(double dot) const {
-        return static_cast<std::size_t>(dot + 0.5) / (format_.charset == Charset::braille ? 2 : 1);
+        return static_cast<std::size_t>(std::max(0, nearest_dot(dot))) / (format_.charset == Charset::braille ? 2 : 1);
     }
 
     void add_rows(TextBlock& lines, const Canvas& canvas, const Projection& projection) {

@@ -30,11 +30,13 @@ double round_step(double least) {
 }
 
 std::vector<double> multiples(double step, Range range) {
-    std::vector<double> at;
     const double slack = 1e-9 * range.length();
     const double first = std::ceil((range.low - slack) / step);
-    for (double i = first; i * step <= range.high + slack && at.size() < most_ticks; ++i) {
-        at.push_back(i * step + 0.0);  // no minus zero
+    const double last = std::floor((range.high + slack) / step);
+    const double count = std::clamp(last - first + 1, 0.0, static_cast<double>(most_ticks));
+    std::vector<double> at(static_cast<std::size_t>(count));
+    for (std::size_t i = 0; i < at.size(); ++i) {
+        at[i] = (first + static_cast<double>(i)) * step + 0.0;  // no minus zero
     }
     return at;
 }
@@ -81,6 +83,7 @@ std::string scientific(double value, int digits) {
 /// The same number of decimals for all, as many as the finest of the gaps needs.
 std::vector<std::string> fixed(const std::vector<double>& at, int decimals) {
     std::vector<std::string> text;
+    text.reserve(at.size());
     for (const double value : at) {
         text.push_back(fmt::format("{:.{}f}", value, decimals));
     }
@@ -89,6 +92,7 @@ std::vector<std::string> fixed(const std::vector<double>& at, int decimals) {
 
 std::vector<std::string> in_powers(const std::vector<double>& at, int finest) {
     std::vector<std::string> text;
+    text.reserve(at.size());
     for (const double value : at) {
         text.push_back(value == 0 ? "0" : scientific(value, exponent_of(std::fabs(value)) - finest));
     }
@@ -135,6 +139,7 @@ void label_linear(Ticks& ticks, Range range) {
 
 std::vector<std::string> each_by_itself(const std::vector<double>& at) {
     std::vector<std::string> text;
+    text.reserve(at.size());
     for (const double value : at) {
         const bool plain = value >= 1e-3 && value < 1e5;
         text.push_back(plain ? fmt::format("{:.6g}", value) : scientific(value, 5));
@@ -157,9 +162,11 @@ Ticks ticks_of(const Axis& axis, const Scale& scale, int most) {
         ticks.at = powers_of_ten(range, most);
     } else {
         // One tick gives no scale.
-        for (double least = range.length() / std::max(most, 1); ticks.at.size() < 2; least /= 2) {
+        double least = range.length() / std::max(most, 1);
+        do {
             ticks.at = multiples(round_step(least), range);
-        }
+            least /= 2;
+        } while (ticks.at.size() < 2);
     }
     if (scale.logarithmic()) {
         ticks.text = each_by_itself(ticks.at);

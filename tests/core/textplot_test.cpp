@@ -229,6 +229,23 @@ TEST_CASE("who looks at a piece of time sees the values of that piece", "[textpl
     CHECK(view_of(zoomed).y.range().high == Approx(2.05));
 }
 
+TEST_CASE("a window far away from the curves is drawn, too", "[textplot]") {
+    for (const double far : {-1e9, 1e9, 1e200}) {
+        for (const Style style : {Style::line, Style::points, Style::fill}) {
+            Figure figure = ::figure(curve({0, 1, 0.5}, {0, 1, 2}));
+            figure.curves[0].style = style;
+            figure.marks = {{1, 1, MarkKind::start}};
+            figure.stuck = {{0, 1}};
+            figure.dead_zone = Range{-1, 1};
+            figure.equal = figure.circles = true;
+            for (Axis* axis : {&figure.x, &figure.y}) {
+                axis->limits = Range{far, far + std::fabs(far) / 1000};
+                CHECK(drawn(figure, 40, 12).find("(no points)") != std::string::npos);
+            }
+        }
+    }
+}
+
 TEST_CASE("ticks are round numbers with as many digits as they need", "[ticks]") {
     CHECK(tick_texts(0, 20, 6) == Texts{"0", "5", "10", "15", "20"});
     CHECK(tick_texts(-1, 1, 4) == Texts{"-1.0", "-0.5", "0.0", "0.5", "1.0"});
