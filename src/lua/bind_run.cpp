@@ -7,6 +7,7 @@
 #include "io/table.hpp"
 #include "lua/external_memory.hpp"
 #include "lua/library.hpp"
+#include "lua/plot_docs.hpp"
 #include "lua/run.hpp"
 #include "lua/user_function.hpp"
 #include "lua/vector.hpp"
@@ -212,6 +213,8 @@ constexpr Member members[] = {
                 "run:save(file, { columns = { \"t\", \"theta\" } })\n"
                 "print(#trajectory.load(file))  --> 5\n"
                 "os.remove(file)"}},
+    {"plot", guarded<plot_run>, Kind::method, plot_run_doc},
+    {"phase_plot", guarded<phase_plot_run>, Kind::method, phase_plot_run_doc},
     {"t",
      guarded<column_field<Column::t>>,
      Kind::field,

@@ -11,8 +11,8 @@ namespace dinal {
 namespace {
 
 constexpr void (*register_functions[])(lua_State*) = {
-    register_system,     register_excitation, register_integrator, register_run,      register_energy,
-    register_trajectory, register_theory,     register_vector,     register_progress, register_help,
+    register_system, register_excitation, register_integrator, register_run,  register_energy, register_trajectory,
+    register_theory, register_vector,     register_progress,   register_plot, register_help,
 };
 
 // Plain fields of the table: documented here, set by open_library() and sys:simulate.
@@ -55,6 +55,8 @@ const Section all_sections[] = {
     {"Vectors", "vector", &vector_module},
     {"A vector", "v", &vector_class},
     {"Progress", "", &progress_functions},
+    {"Plots", "", &plot_functions},
+    {"A picture", "picture", &picture_class},
     {"Help", "", &help_functions},
     {"The table dinal", "dinal", &library_class},
 };

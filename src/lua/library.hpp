@@ -20,6 +20,7 @@ void register_trajectory(lua_State* L);
 void register_theory(lua_State* L);
 void register_vector(lua_State* L);
 void register_progress(lua_State* L);
+void register_plot(lua_State* L);
 void register_help(lua_State* L);
 
 /// Everything that Lua can see, in the order of the manual. A section is a module, a class of objects, or functions.
@@ -43,6 +44,8 @@ extern const Class trajectory_module;   // trajectory.load
 extern const Class theory_module;       // theory.magnification ...
 extern const Class vector_module;       // vector{...}, vector.linspace
 extern const Class vector_class;        // v
+extern const Class plot_functions;      // plot
+extern const Class picture_class;       // what plot{ ..., show = false } returns
 extern const Class progress_functions;  // progress
 extern const Class help_functions;      // help
 

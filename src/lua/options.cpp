@@ -11,12 +11,13 @@ namespace dinal {
 
 namespace {
 
+/// "a, b and c", or with `quote` "'a', 'b' or 'c'".
 std::string joined(std::span<const std::string_view> names, std::string_view last_separator,
-                   std::string_view separator = ", ") {
+                   std::string_view quote = "") {
     std::string text;
     for (std::size_t i = 0; i < names.size(); ++i) {
-        text += i == 0 ? "" : i + 1 == names.size() ? last_separator : separator;
-        text += names[i];
+        text += i == 0 ? "" : i + 1 == names.size() ? last_separator : ", ";
+        text.append(quote).append(names[i]).append(quote);
     }
     return text;
 }
@@ -125,7 +126,7 @@ std::size_t Options::choice(std::string_view name, std::initializer_list<std::st
     const std::string value = is_text ? lua_tostring(L_, -1) : "";
     const auto found = std::find(known.begin(), known.end(), value);
     if (!is_text || found == known.end()) {
-        fail(fmt::format("{} must be '{}', got {}{}", name, joined(known, "' or '", "', '"), describe(L_, -1),
+        fail(fmt::format("{} must be {}, got {}{}", name, joined(known, " or ", "'"), describe(L_, -1),
                          is_text ? did_you_mean(value, known) : ""));
     }
     lua_pop(L_, 1);

@@ -1,0 +1,92 @@
+-- 150: plots. A response, its phase plane and a family of curves, in the terminal and as figures for a report.
+--
+-- Here all pictures are 64 columns of plain ASCII, so that the comment below can show them. Without width, height and
+-- ascii they are as wide as your terminal, and finer: run:plot().
+
+local sys = nondimensional{ zeta = 0.02, friction_ratio = 0.1, breakaway_ratio = 0.15 }
+local M = excitation.harmonic{ amplitude = 0.3, frequency = 0.31 }
+local run = sys:simulate{ M = M, theta0 = 1, t_end = 12, dt = 0.01 }
+
+local function small(options)
+  options.width, options.height, options.ascii = 64, 16, true
+  return options
+end
+
+-- theta and M/k over time; the bars below are the times when the mass sticks
+run:plot(small{})
+
+-- 1:1, with the dead zone: without an excitation the mass can rest anywhere on it
+local free = sys:simulate{ theta0 = 1, t_end = 12, dt = 0.01 }
+free:phase_plot(small{ title = "free motion" })
+
+-- any vectors: magnification for some ratios of damping
+local r = vector.linspace(0, 2.5, 251)
+local family = { xlabel = "frequency ratio", ylabel = "magnification", ylim = { 0, 4 } }
+for i, zeta in ipairs{ 0.15, 0.3, 0.7 } do
+  family[i] = { r, 1 / ((1 - r^2)^2 + (2 * zeta * r)^2):sqrt(), label = "zeta = " .. zeta }
+end
+plot(small(family))
+
+-- The same calls write figures as wide as the column of a paper, when they have a file: .svg, .png and .pdf are drawn
+-- by gnuplot, response.gp is what it was told, to be restyled.
+run:plot{ file = "response.gp" }
+family.file, family.width, family.height, family.ascii = "resonance.svg", nil, nil, nil
+if pcall(plot, family) then
+  -- side by side, in the width of a page
+  plot{ run:plot{ show = false }, run:phase_plot{ show = false }, file = "both.svg", size = { 17, 7 } }
+  print "written: response.gp, resonance.svg, both.svg"
+else
+  print "written: response.gp; figures need the Debian package gnuplot-nox"
+end
+
+--[[ prints
+   rad   a theta   b M/k
+  1.0 +a
+      |a   a
+      |aa  aa
+      | a  aa
+  0.5 + a aaa
+      | ababaa         aaaaaa         aaaaa         aaaaa
+      | aba ba        bab bbaa      baa bbaa       aa  baa
+  0.0 +ba-a- ab- - - ba- - -ba - - baa - -baa- - -ba - -baa-
+      | a a  aaaaa  baa      aa   bba      ba   bba      ba
+      | aaa  aa baaaaa        aaaaaaa       aaaaaaa       aaaab
+      |  aa
+ -0.5 +  a
+      ++---------------------+---------------------+---------
+stuck          ==  ==   =====  ====   =====  =====  =====  ==
+       0                     5                    10         t
+              free motion
+theta'/omega0, rad   o start   @ end   = dead zone
+     | .    *******        .
+ 0.5 +    ***    .****
+     |  **       .   **      .
+     | **     ****     *
+ 0.0 +.*. . .**==*@ . .*. . . o .
+     | **    **  .     *      *
+     |  *     ***.   ***     *
+-0.5 +  **      *****       **
+     | .  **     .        ***
+     |   .  **** .     ****
+     |       .  *******
+     +-----------+------------+--
+                 0            1
+              theta, rad
+magnification   a zeta = 0.15   b zeta = 0.3   c zeta = 0.7
+4 +
+  |
+  |                     aaaa
+3 +                    aa  aa
+  |                  aa     aa
+  |                 aa       a
+2 +               aaabbbbbb   aa
+  |           aaaaabbb    bbbb aa
+1 +aaaaaaaaaaaabb            bbbaaaa
+  |             cccccccccccccc   bbaaaaa
+  |                          cccccccccbbaaaaaaaaaaaaaa
+0 +                                            cccccbaaaaaaaaabc
+  ++----------+-----------+----------+-----------+----------+
+  0.0        0.5         1.0        1.5         2.0        2.5
+                         frequency ratio
+written: response.gp, resonance.svg, both.svg
+]]

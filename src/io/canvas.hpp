@@ -1,0 +1,82 @@
+// A sheet of dots that becomes lines of text: two by four dots a character in braille, one by two in ASCII.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace dinal {
+
+enum class Charset { braille, ascii };
+
+class Canvas {
+public:
+    Canvas(int columns, int rows, Charset charset);
+
+    // In dots from the upper left corner. A dot is as high as it is wide.
+    [[nodiscard]] int width() const { return columns_ * cell_width_; }
+    [[nodiscard]] int height() const { return rows_ * cell_height_; }
+    [[nodiscard]] int columns() const { return columns_; }
+    [[nodiscard]] int rows() const { return rows_; }
+
+    /// Outside of the sheet it does nothing. `ink` is 1, 2, ... for a curve, 0 for what stays behind the curves.
+    void dot(int x, int y, std::uint8_t ink);
+    /// A character instead of dots, in the cell of that dot.
+    void glyph(int x, int y, std::string_view character, std::uint8_t ink);
+
+    void glyph_if_free(int x, int y, std::string_view character);  ///< where no curve has made dots
+
+    struct Cell {
+        std::uint8_t dots = 0;    // one bit each
+        std::uint8_t behind = 0;  // of ink 0
+        std::uint8_t ink = 0;     // whose: the first curve that came here
+        std::string_view glyph;   // must outlive the canvas
+    };
+    [[nodiscard]] const Cell& cell(int column, int row) const;
+    [[nodiscard]] bool has_ink() const;  ///< of any curve
+    /// What stands in the cell. In ASCII `mark` stands for the dots of a curve (0: their shape does), `behind` for the
+    /// rest.
+    [[nodiscard]] std::string text(const Cell& cell, char mark, char behind) const;
+
+private:
+    [[nodiscard]] std::size_t place(int column, int row) const;
+    Cell* cell_of_dot(int x, int y);  // null outside of the sheet
+
+    int columns_, rows_;
+    Charset charset_;
+    int cell_width_, cell_height_;
+    std::vector<Cell> cells_;
+};
+
+/// The dot that a place falls on; what is far from any sheet may be anywhere there.
+inline int nearest_dot(double place) {
+    return static_cast<int>(std::floor(std::clamp(place, -1e6, 1e6) + 0.5));
+}
+
+/// Dots along a path, `on` of every `period` of them: a line that is solid, dashed or dotted.
+class Pen {
+public:
+    Pen(Canvas& canvas, std::uint8_t ink, int on = 1, int period = 1)
+        : canvas_(canvas), ink_(ink), on_(on), period_(period) {}
+
+    /// In dots, not rounded; NaN lifts the pen. The part of the line outside of the sheet is left out.
+    void to(double x, double y);
+
+private:
+    void line(int x, int y, int to_x, int to_y);
+    void step(int x, int y);
+
+    Canvas& canvas_;
+    std::uint8_t ink_;
+    int on_, period_;
+    int count_ = 0;
+    bool down_ = false;
+    double x_ = 0, y_ = 0;
+    int last_x_ = -1, last_y_ = -1;  // the dot that was made last
+};
+
+}  // namespace dinal

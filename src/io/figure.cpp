@@ -1,0 +1,140 @@
+#include "io/figure.hpp"
+
+#include <algorithm>
+#include <limits>
+
+namespace dinal {
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+struct Extent {
+    double low = infinity;
+    double high = -infinity;
+    void add(double value) {
+        low = std::min(low, value);
+        high = std::max(high, value);
+    }
+    [[nodiscard]] bool empty() const { return low > high; }
+};
+
+bool usable(double value, bool logarithmic) {
+    return std::fabs(value) <= 1e300 && (!logarithmic || value > 0);
+}
+
+Extent extent_of_x(const Figure& figure) {
+    Extent extent;
+    for (const Curve& curve : figure.curves) {
+        for (std::size_t i = 0; i < curve.size(); ++i) {
+            const double x = curve.x.values[i];
+            if (usable(x, figure.x.logarithmic) && usable(curve.y.values[i], figure.y.logarithmic)) {
+                extent.add(x);
+            }
+        }
+    }
+    return extent;
+}
+
+/// Of the points that are seen: who looks at a piece of time wants to see that piece.
+Extent extent_of_y(const Figure& figure, Range x_range) {
+    Extent extent;
+    for (const Curve& curve : figure.curves) {
+        for (std::size_t i = 0; i < curve.size(); ++i) {
+            const double x = curve.x.values[i];
+            const double y = curve.y.values[i];
+            if (!(x >= x_range.low && x <= x_range.high)) {
+                continue;
+            }
+            if (usable(y, figure.y.logarithmic)) {
+                extent.add(y);
+            }
+            if (curve.style == Style::fill && curve.base && usable(curve.base->values[i], figure.y.logarithmic)) {
+                extent.add(curve.base->values[i]);
+            }
+        }
+        if (curve.style == Style::fill && !curve.base && !figure.y.logarithmic && curve.size() > 0) {
+            extent.add(0);
+        }
+    }
+    return extent;
+}
+
+Range widened(Extent extent, double air) {
+    if (extent.empty()) {
+        return {0, 1};
+    }
+    const double middle = extent.low / 2 + extent.high / 2;
+    const double size = std::max(std::fabs(extent.low), std::fabs(extent.high));
+    const double length = extent.high - extent.low;
+    if (length <= 1e-12 * size) {  // a constant, or what differs from one by roundings
+        const double half = size > 0 ? size / 10 : 1;
+        return {middle - half, middle + half};
+    }
+    return {extent.low - air * length, extent.high + air * length};
+}
+
+Range logarithmically_widened(Extent extent, double air) {
+    if (extent.empty()) {
+        return {1, 10};
+    }
+    const double ratio = extent.high / extent.low;
+    const double factor = ratio < 1 + 1e-9 ? std::sqrt(10) : std::pow(ratio, air);
+    return {extent.low / factor, extent.high * factor};
+}
+
+Range with_air(Extent extent, const Axis& axis, double air) {
+    if (axis.limits) {
+        return *axis.limits;
+    }
+    return axis.logarithmic ? logarithmically_widened(extent, air) : widened(extent, air);
+}
+
+/// The origin is the middle of a phase plane, unless the motion is far from it.
+void include_origin(Extent& extent) {
+    if (!extent.empty()) {
+        Extent wider = extent;
+        wider.add(0);
+        if (wider.high - wider.low <= 3 * (extent.high - extent.low)) {
+            extent = wider;
+        }
+    }
+}
+
+}  // namespace
+
+Scale::Scale(Range range, bool logarithmic)
+    : range_(range),
+      logarithmic_(logarithmic),
+      low_(logarithmic ? std::log10(range.low) : range.low),
+      factor_(1 / ((logarithmic ? std::log10(range.high) : range.high) - low_)) {}
+
+View view_of(const Figure& figure) {
+    const bool has_points = std::any_of(figure.curves.begin(), figure.curves.end(),
+                                        [](const Curve& curve) { return curve.style == Style::points; });
+    Extent x = extent_of_x(figure);
+    if (figure.circles) {
+        include_origin(x);
+    }
+    const Range x_range = with_air(x, figure.x, figure.equal || has_points ? 0.06 : 0);
+    Extent y = extent_of_y(figure, x_range);
+    if (figure.circles) {
+        include_origin(y);
+    }
+    return {Scale(x_range, figure.x.logarithmic), Scale(with_air(y, figure.y, 0.05), figure.y.logarithmic)};
+}
+
+Box equal_box(View& view, Box most) {
+    constexpr double thinnest = 0.25;  // of the room
+    const auto widen = [](Scale& scale, double length) {
+        const double more = (length - scale.range().length()) / 2;
+        if (more > 0) {
+            scale = Scale({scale.range().low - more, scale.range().high + more}, false);
+        }
+    };
+    const double unit = std::min(most.width / view.x.range().length(), most.height / view.y.range().length());
+    widen(view.x, thinnest * most.width / unit);
+    widen(view.y, thinnest * most.height / unit);
+    return {unit * view.x.range().length(), unit * view.y.range().length()};
+}
+
+}  // namespace dinal

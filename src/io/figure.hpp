@@ -1,0 +1,108 @@
+// A figure as a value: curves, marks and spans over two axes, before anybody decides how to draw it.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace dinal {
+
+/// Numbers to draw: a view and what keeps it alive. Shared, because a picture may outlive the run it shows.
+struct Numbers {
+    std::shared_ptr<const void> owner;
+    std::span<const double> values;
+
+    static Numbers own(std::vector<double> numbers) {
+        const auto kept = std::make_shared<const std::vector<double>>(std::move(numbers));
+        return {kept, *kept};
+    }
+};
+
+struct Range {
+    double low = 0;
+    double high = 1;
+    [[nodiscard]] double length() const { return high - low; }
+};
+
+enum class Style { line, points, fill };
+/// How a line is broken; `by_place` is another one for each curve, so that a grey print still tells them apart.
+enum class Dashes { by_place, solid, dashed, dotted };
+
+/// The shorter of x and y counts. What is not finite, or can not stand on a logarithmic axis, is a gap.
+struct Curve {
+    Numbers x, y;
+    std::string label = {};  ///< none: not in the legend
+    Style style = Style::line;
+    Dashes dashes = Dashes::by_place;
+    int colour = 0;                    ///< 1, 2, ... of the palette; 0: by place
+    std::optional<Numbers> base = {};  ///< a fill reaches from y to this, to zero without it
+    [[nodiscard]] std::size_t size() const { return std::min(x.values.size(), y.values.size()); }
+};
+
+struct Axis {
+    std::string label = {};
+    std::optional<Range> limits = {};
+    std::vector<double> ticks = {};       ///< where they stand; none: at round numbers
+    std::optional<double> division = {};  ///< or at the multiples of this (DIVX, DIVY of DRAAR)
+    bool logarithmic = false;
+};
+
+enum class MarkKind { start, end };
+struct Mark {
+    double x = 0;
+    double y = 0;
+    MarkKind kind = MarkKind::start;
+};
+
+struct Figure {
+    std::string title = {};
+    Axis x, y;
+    bool equal = false;    ///< one unit is as long on both axes
+    bool axes = true;      ///< frame, ticks, labels and grid
+    bool circles = false;  ///< about the origin, through the ticks: lines of equal energy in a phase plane
+    std::vector<Curve> curves;
+    std::vector<Mark> marks;
+    std::vector<Range> stuck;             ///< intervals of x, marked at its axis
+    std::optional<Range> dead_zone = {};  ///< of x, marked on y = 0
+};
+
+/// One axis as it is drawn: from a value to its fraction of the axis.
+class Scale {
+public:
+    Scale(Range range, bool logarithmic);
+    [[nodiscard]] Range range() const { return range_; }
+    [[nodiscard]] bool logarithmic() const { return logarithmic_; }
+    /// 0 at the low end, 1 at the high one; NaN for what has no place.
+    [[nodiscard]] double operator()(double value) const {
+        return ((logarithmic_ ? std::log10(value) : value) - low_) * factor_;
+    }
+    /// Numbers beyond 1e300 would overflow in differences, and nobody could see them.
+    [[nodiscard]] bool has(double value) const { return std::fabs(value) <= 1e300 && (!logarithmic_ || value > 0); }
+
+private:
+    Range range_;
+    bool logarithmic_;
+    double low_;
+    double factor_;
+};
+
+struct View {
+    Scale x, y;
+};
+
+/// What is seen of a figure: the limits asked for, else all data with some air around them.
+View view_of(const Figure& figure);
+
+/// The largest box of at most width times height in which one unit is as long on both axes (in a text or a paper of
+/// square dots). Where that box would be a thread the view is widened.
+struct Box {
+    double width, height;
+};
+Box equal_box(View& view, Box most);
+
+}  // namespace dinal

@@ -1,0 +1,202 @@
+#include "lua/picture.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+
+#include "io/file.hpp"
+#include "io/gnuplot.hpp"
+#include "io/screen.hpp"
+
+namespace dinal {
+namespace {
+
+Range asked_range(const Options& options, std::string_view name, bool logarithmic) {
+    const std::vector<double> ends = options.numbers(name);
+    if (ends.size() != 2 || !(ends[0] < ends[1])) {
+        options.fail(fmt::format("{} must be two increasing numbers such as {{ 0, 10 }}", name));
+    }
+    if (logarithmic && ends[0] <= 0) {
+        options.fail(
+            fmt::format("{} = {{ {:.6g}, {:.6g} }} must be positive on a logarithmic axis", name, ends[0], ends[1]));
+    }
+    // So far apart, or so close together, that fractions of the axis could not be told.
+    if (!(ends[1] - ends[0] <= 1e300) || ends[1] - ends[0] < 1e-13 * std::max(std::fabs(ends[0]), std::fabs(ends[1]))) {
+        options.fail(
+            fmt::format("{} = {{ {}, {} }} can not be drawn: its ends must differ by more than 1e-13 of their size and "
+                        "by less than 1e300",
+                        name, ends[0], ends[1]));
+    }
+    return {ends[0], ends[1]};
+}
+
+/// xticks = 0.5: a tick at each multiple of it; xticks = { 0, 1, 4 }: these.
+void set_ticks(lua_State* L, const Options& options, std::string_view name, Axis& axis) {
+    if (!options.has(name)) {
+        return;
+    }
+    options.push(name);
+    const bool is_number = lua_type(L, -1) == LUA_TNUMBER;
+    lua_pop(L, 1);
+    if (!is_number) {
+        axis.ticks = options.numbers(name);
+        return;
+    }
+    axis.division = options.number(name);
+    if (*axis.division <= 0) {
+        options.fail(
+            fmt::format("{} = {:.6g} must be positive: it is the distance from tick to tick", name, *axis.division));
+    }
+    if (axis.logarithmic) {
+        options.fail(fmt::format("{} must be a list of numbers such as {{ 0.1, 1, 10 }} on a logarithmic axis", name));
+    }
+}
+
+void set_axis(lua_State* L, const Options& options, char letter, Axis& axis) {
+    const auto name = [letter](std::string_view rest) { return letter + std::string(rest); };
+    axis.logarithmic = options.boolean(name("log"), axis.logarithmic);
+    if (options.has(name("label"))) {
+        axis.label = options.text(name("label"));
+    }
+    if (options.has(name("lim"))) {
+        axis.limits = asked_range(options, name("lim"), axis.logarithmic);
+    }
+    set_ticks(L, options, name("ticks"), axis);
+}
+
+int whole(const Options& options, std::string_view name, int otherwise, int least, int most) {
+    if (!options.has(name)) {
+        return otherwise;
+    }
+    const double value = options.number(name);
+    if (value != std::floor(value) || value < least || value > most) {
+        options.fail(fmt::format("{} = {:.6g} must be a whole number from {} to {}: {} of text", name, value, least,
+                                 most, name == "width" ? "columns" : "lines"));
+    }
+    return static_cast<int>(value);
+}
+
+/// As wide as the screen, but no wider than one can overlook, and so high that what was typed still stands above it.
+TextFormat asked_format(const Options& options, bool phase) {
+    const Screen seen = screen();
+    constexpr int widest = 120;
+    TextFormat format;
+    format.columns = whole(options, "width", std::clamp(seen.columns - 1, 20, widest), 20, 1000);
+    format.rows = whole(options, "height", std::clamp(seen.rows - 2, 10, phase ? 40 : 24), 5, 500);
+    format.charset = options.boolean("ascii", seen.charset == Charset::ascii) ? Charset::ascii : Charset::braille;
+    format.colours = seen.colours;
+    return format;
+}
+
+PaperSize asked_size(const Options& options) {
+    if (!options.has("size")) {
+        return {};
+    }
+    const std::vector<double> size = options.numbers("size");
+    if (size.size() != 2 || *std::min_element(size.begin(), size.end()) < 2 ||
+        *std::max_element(size.begin(), size.end()) > 100) {
+        options.fail("size must be width and height in cm, each from 2 to 100, such as { 8.5, 6 }");
+    }
+    return {size[0], size[1]};
+}
+
+/// The bytes of the file that `file` names, by its ending.
+Expected<std::string> content(const std::vector<Figure>& figures, std::string_view file, PaperSize size,
+                              TextFormat format) {
+    std::string ending(file.substr(std::min(file.rfind('.'), file.size())));
+    std::transform(ending.begin(), ending.end(), ending.begin(),
+                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    if (ending == ".txt") {
+        format.colours = false;
+        return text_plot(figures, format);
+    }
+    if (ending == ".gp") {
+        return gnuplot_file(figures, size);
+    }
+    if (ending != ".svg" && ending != ".png" && ending != ".pdf") {
+        return Error{
+            fmt::format("the name '{}' must end in .svg, .png, .pdf, .gp (gnuplot commands and data) or .txt", file)};
+    }
+    const Terminal terminal = ending == ".svg" ? Terminal::svg : ending == ".png" ? Terminal::png : Terminal::pdf;
+    return run_gnuplot(gnuplot_input(figures, terminal, size));
+}
+
+void write_picture(const Options& options, const std::vector<Figure>& figures, const TextFormat& format) {
+    const std::string file = options.text("file");
+    const PaperSize size = asked_size(options);
+    const auto bytes = content(figures, file, size, format);
+    if (!bytes) {
+        options.fail(bytes.error().sentence);
+    }
+    if (const auto written = write_file(file, *bytes); !written) {
+        options.fail(written.error().sentence);
+    }
+}
+
+/// A user's ticks must be few enough to be told apart.
+void check_ticks(const Options& options, std::string_view name, const Axis& axis, const Scale& scale) {
+    constexpr double most = 200;
+    const double count =
+        axis.division ? scale.range().length() / *axis.division : static_cast<double>(axis.ticks.size());
+    if (count > most) {
+        options.fail(
+            fmt::format("{} makes {:.3g} ticks from {:.6g} to {:.6g}, more than {:.0f}: give a larger distance", name,
+                        count, scale.range().low, scale.range().high, most));
+    }
+}
+
+}  // namespace
+
+void apply_options(lua_State* L, const Options& options, Figure& figure) {
+    if (options.has("title")) {
+        figure.title = options.text("title");
+    }
+    set_axis(L, options, 'x', figure.x);
+    set_axis(L, options, 'y', figure.y);
+    figure.equal = options.boolean("equal", figure.equal);
+    figure.axes = options.boolean("axes", figure.axes);
+    if (options.has("xticks") || options.has("yticks")) {
+        const View view = view_of(figure);
+        check_ticks(options, "xticks", figure.x, view.x);
+        check_ticks(options, "yticks", figure.y, view.y);
+    }
+    if (figure.equal && (figure.x.logarithmic || figure.y.logarithmic)) {
+        options.fail("equal = true needs linear axes: leave out xlog and ylog");
+    }
+}
+
+int deliver(lua_State* L, const Options& options, std::vector<Figure> figures) {
+    const bool phase = std::any_of(figures.begin(), figures.end(), [](const Figure& figure) { return figure.equal; });
+    const TextFormat format = asked_format(options, phase);
+    const bool show = options.boolean("show", true);
+    if (options.has("file")) {
+        if (!show) {
+            options.fail("file and show = false exclude each other");
+        }
+        write_picture(options, figures, format);
+        return 0;
+    }
+    if (options.has("size")) {
+        options.fail("size is for files; give width and height for a picture in the terminal");
+    }
+    if (!show) {
+        push(L, Picture{std::move(figures), format});
+        return 1;
+    }
+    const std::string text = text_plot(figures, format);
+    lua_writestring(text.data(), text.size());  // as print() does
+    return 0;
+}
+
+std::string text_of_picture(const Picture& picture) {
+    TextFormat format = picture.format;
+    format.colours = false;
+    std::string text = text_plot(picture.figures, format);
+    if (text.ends_with('\n')) {
+        text.pop_back();
+    }
+    return text;
+}
+
+}  // namespace dinal

@@ -1,0 +1,33 @@
+// A picture in Lua: figures that were described but not yet drawn, and where drawing them leads.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "io/figure.hpp"
+#include "io/gnuplot_script.hpp"
+#include "io/text_plot.hpp"
+#include "lua/options.hpp"
+
+namespace dinal {
+
+struct Picture {
+    std::vector<Figure> figures;
+    TextFormat format;
+};
+
+/// Options of every call that draws: for the parts of a figure, and for where it goes.
+#define DINAL_FIGURE_OPTIONS \
+    "title", "xlabel", "ylabel", "xlim", "ylim", "xticks", "yticks", "xlog", "ylog", "equal", "axes"
+#define DINAL_TARGET_OPTIONS "file", "size", "width", "height", "ascii", "show"
+
+/// Changes the figure as the options say.
+void apply_options(lua_State* L, const Options& options, Figure& figure);
+
+/// Prints, writes the file, or with show = false leaves the picture on the stack; returns the number of values left.
+int deliver(lua_State* L, const Options& options, std::vector<Figure> figures);
+
+/// The text of the picture without the last line end.
+std::string text_of_picture(const Picture& picture);
+
+}  // namespace dinal

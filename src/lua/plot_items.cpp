@@ -1,0 +1,130 @@
+#include "lua/plot_items.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <memory>
+
+#include "lua/options.hpp"
+#include "lua/picture.hpp"
+#include "lua/vector.hpp"
+
+namespace dinal {
+namespace {
+
+Numbers numbers_on_top(lua_State* L, std::string_view what) {
+    if (const auto* vector = test<Vector>(L, -1)) {
+        const auto kept = std::make_shared<const Vector>(*vector);  // a view; no number is copied
+        return {kept, kept->values()};
+    }
+    if (!lua_istable(L, -1)) {
+        raise(L, fmt::format("{} must be a vector or a table of numbers, got {}", what, describe(L, -1)));
+    }
+    std::vector<double> values(lua_rawlen(L, -1));
+    for (std::size_t i = 0; i < values.size(); ++i) {
+        if (lua_rawgeti(L, -1, static_cast<lua_Integer>(i) + 1) != LUA_TNUMBER) {
+            raise(L, fmt::format("{}[{}] must be a number, got {}", what, i + 1, describe(L, -1)));
+        }
+        values[i] = lua_tonumber(L, -1);  // nan is a gap
+        lua_pop(L, 1);
+    }
+    return Numbers::own(std::move(values));
+}
+
+Curve curve_with_options(lua_State* L, int item, const std::string& call) {
+    push_named(L, item, 2);
+    const Options options(L, lua_gettop(L), call, "{ x, y, label = \"theta\", style = \"points\" }",
+                          {"label", "style", "dashes", "colour", "base"});
+    Curve curve;
+    if (options.has("label")) {
+        curve.label = options.text("label");
+    }
+    curve.style = static_cast<Style>(options.choice("style", {"line", "points", "fill"}, 0));
+    curve.dashes = static_cast<Dashes>(options.choice("dashes", {"automatic", "solid", "dashed", "dotted"}, 0));
+    const double colour = options.number("colour", 0);
+    if (colour != std::floor(colour) || colour < 0 || colour > 7) {
+        options.fail(fmt::format("colour = {:.6g} must be a whole number from 1 to 7", colour));
+    }
+    curve.colour = static_cast<int>(colour);
+    if (options.has("base")) {
+        options.push("base");
+        curve.base = numbers_on_top(L, call + ": base");
+        lua_pop(L, 1);
+    }
+    lua_pop(L, 1);
+    return curve;
+}
+
+/// The curve that the table on the top of the stack describes; the table stays.
+Curve curve_on_top(lua_State* L, const std::string& call) {
+    const int item = lua_gettop(L);
+    Curve curve = curve_with_options(L, item, call);
+    const auto vector = [L, item, &call](lua_Integer place, std::string_view name) {
+        lua_rawgeti(L, item, place);
+        Numbers numbers = numbers_on_top(L, fmt::format("{}: {}", call, name));
+        lua_pop(L, 1);
+        return numbers;
+    };
+    curve.x = vector(1, "x");
+    curve.y = vector(2, "y");
+    const auto same_length = [&](const Numbers& numbers, std::string_view name) {
+        if (numbers.values.size() != curve.x.values.size()) {
+            raise(L, fmt::format("{}: x has {} numbers, but {} has {}", call, curve.x.values.size(), name,
+                                 numbers.values.size()));
+        }
+    };
+    same_length(curve.y, "y");
+    if (curve.base) {
+        same_length(*curve.base, "base");
+        if (curve.style != Style::fill) {
+            raise(L, call + ": base is the other edge of a fill; add style = \"fill\"");
+        }
+    }
+    return curve;
+}
+
+/// plot{ { 0, 1 }, { 2, 3 } } forgets the braces around x and y; its items are no curves.
+bool is_table_of_items(lua_State* L) {
+    if (!lua_istable(L, -1)) {
+        return false;
+    }
+    const bool numbers = lua_rawgeti(L, -1, 1) == LUA_TNUMBER;
+    lua_pop(L, 1);
+    return !numbers;
+}
+
+}  // namespace
+
+void push_named(lua_State* L, int from, lua_Integer listed) {
+    lua_newtable(L);
+    lua_pushnil(L);
+    while (lua_next(L, from) != 0) {
+        if (lua_isinteger(L, -2) != 0 && lua_tointeger(L, -2) >= 1 && lua_tointeger(L, -2) <= listed) {
+            lua_pop(L, 1);
+            continue;
+        }
+        lua_pushvalue(L, -2);
+        lua_insert(L, -2);
+        lua_rawset(L, -4);
+    }
+}
+
+PlotItems plot_items(lua_State* L, int table) {
+    PlotItems items;
+    const auto count = static_cast<lua_Integer>(lua_rawlen(L, table));
+    for (lua_Integer i = 1; i <= count; ++i) {
+        lua_rawgeti(L, table, i);
+        if (const auto* picture = test<Picture>(L, -1)) {
+            items.panels.insert(items.panels.end(), picture->figures.begin(), picture->figures.end());
+        } else if (is_table_of_items(L)) {
+            items.curves.push_back(curve_on_top(L, fmt::format("plot: curve {}", i)));
+        } else {
+            raise(L, fmt::format("plot: item {} must be a curve {{ x, y }} or a picture, got {}; for example {}", i,
+                                 describe(L, -1), plot_example));
+        }
+        lua_pop(L, 1);
+    }
+    return items;
+}
+
+}  // namespace dinal

@@ -1,0 +1,25 @@
+// The list part of plot{ ... }: curves made of vectors, or pictures to set side by side.
+#pragma once
+
+#include <lua.hpp>
+#include <string_view>
+#include <vector>
+
+#include "io/figure.hpp"
+
+namespace dinal {
+
+inline constexpr std::string_view plot_example = "plot{ { t, theta, label = \"theta\" }, xlabel = \"t\" }";
+
+struct PlotItems {
+    std::vector<Curve> curves;
+    std::vector<Figure> panels;  ///< of pictures
+};
+
+/// Raises when something in the list of the table at `table` is neither.
+PlotItems plot_items(lua_State* L, int table);
+
+/// Copies the table at `from` without its first `listed` places to a new table on the top, where Options can check it.
+void push_named(lua_State* L, int from, lua_Integer listed);
+
+}  // namespace dinal

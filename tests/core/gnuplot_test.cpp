@@ -1,0 +1,174 @@
+#include "io/gnuplot.hpp"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+
+#include "io/gnuplot_data.hpp"
+#include "io/gnuplot_script.hpp"
+#include "support/temporary_folder.hpp"
+
+using namespace dinal;
+
+namespace {
+
+Figure wave(std::size_t n = 200) {
+    std::vector<double> t, y;
+    for (std::size_t i = 0; i < n; ++i) {
+        t.push_back(100.0 * static_cast<double>(i) / static_cast<double>(n));
+        y.push_back(std::exp(-0.01 * t.back()) * std::cos(5 * t.back()));
+    }
+    Figure figure;
+    figure.curves.push_back({Numbers::own(t), Numbers::own(y), "θ"});
+    figure.x.label = "t";
+    figure.y.label = "θ, rad";
+    return figure;
+}
+
+Figure spiral(std::size_t n) {
+    std::vector<double> x, y;
+    for (std::size_t i = 0; i < n; ++i) {
+        const double s = static_cast<double>(i) / static_cast<double>(n);
+        x.push_back((1 - s) * std::cos(5000 * s));
+        y.push_back((1 - s) * std::sin(5000 * s));
+    }
+    Figure figure;
+    figure.curves.push_back({Numbers::own(x), Numbers::own(y)});
+    figure.equal = figure.circles = true;
+    figure.dead_zone = Range{-0.1, 0.1};
+    figure.marks = {{1, 0, MarkKind::start}, {0, 0, MarkKind::end}};
+    return figure;
+}
+
+std::string svg(const Figure& figure) {
+    const auto picture = run_gnuplot(gnuplot_input({&figure, 1}, Terminal::svg, {}));
+    if (!picture) {
+        FAIL(picture.error().sentence);
+    }
+    return *picture;
+}
+
+/// With this PATH until the end of the scope.
+class Path {
+public:
+    explicit Path(const std::string& path) : old_(std::getenv("PATH")) { ::setenv("PATH", path.c_str(), 1); }
+    Path(const Path&) = delete;
+    Path& operator=(const Path&) = delete;
+    ~Path() { ::setenv("PATH", old_.c_str(), 1); }
+
+private:
+    std::string old_;
+};
+
+}  // namespace
+
+TEST_CASE("a user's words stand in single quotes with quotes doubled, on one line", "[gnuplot]") {
+    CHECK(single_quoted("plain θ") == "'plain θ'");
+    CHECK(single_quoted("it's") == "'it''s'");
+    CHECK(single_quoted("'it'") == "'’it'''");
+    CHECK(single_quoted("a'\nsystem 'date'\n'") == "'a'' system ''date'' '''");
+    CHECK(single_quoted("`date` \"$(date)\" \\") == "'`date` \"$(date)\" \\'");
+    CHECK(single_quoted("\xff") == "'\xEF\xBF\xBD'");
+}
+
+TEST_CASE("no word of a user becomes a command of gnuplot or of a shell", "[gnuplot]") {
+    const testing::TemporaryFolder folder;
+    const std::string victim = folder.file("victim");
+    for (const std::string& attack :
+         {"`touch " + victim + "`", "'; system('touch " + victim + "'); '", "'\nsystem 'touch " + victim + "'\n'",
+          "\n!touch " + victim + "\n", "\"`touch " + victim + "`\"", "'.system('touch " + victim + "').'",
+          "\\'\nsystem 'touch " + victim + "' #", "$(touch " + victim + ")", "\r!touch " + victim,
+          std::string("@x ^{2} {/Symbol q} % %s </text><script>")}) {
+        Figure figure = wave();
+        figure.title = figure.x.label = figure.y.label = figure.curves[0].label = attack;
+        const std::string picture = svg(figure);
+        CHECK(picture.find("</svg>") != std::string::npos);
+        CHECK(picture.find("<script") == std::string::npos);
+        testing::put_text(folder.file("figure.gp"), gnuplot_file({&figure, 1}, {}));
+        const auto again = run_gnuplot(gnuplot_file({&figure, 1}, {}));
+        CHECK(static_cast<bool>(again));
+        CHECK(!std::filesystem::exists(victim));
+    }
+}
+
+TEST_CASE("a label may begin with a quote", "[gnuplot]") {
+    Figure figure = wave();
+    figure.title = "'quoted'";
+    figure.x.label = "''";
+    CHECK(svg(figure).find("’quoted'") != std::string::npos);
+}
+
+TEST_CASE("the same figure gives the same bytes", "[gnuplot]") {
+    CHECK(svg(wave()) == svg(wave()));
+    const Figure one = wave(), same = wave();
+    CHECK(gnuplot_file({&one, 1}, {}) == gnuplot_file({&same, 1}, {}));
+}
+
+TEST_CASE("the file to be restyled draws the same picture as the pipe", "[gnuplot]") {
+    const Figure figure = wave();
+    const auto again = run_gnuplot(gnuplot_file({&figure, 1}, {}));
+    REQUIRE(again);
+    CHECK(*again == svg(figure));
+}
+
+TEST_CASE("an SVG of a million points is smaller than 200 kB", "[gnuplot]") {
+    CHECK(svg(wave(1'000'000)).size() < 200'000);
+    CHECK(svg(spiral(1'000'000)).size() < 200'000);
+    Figure many;
+    for (int i = 0; i < 20; ++i) {
+        many.curves.push_back(wave(100'000).curves[0]);
+    }
+    CHECK(svg(many).size() < 200'000);
+}
+
+TEST_CASE("svg, png and pdf begin as such files begin", "[gnuplot]") {
+    const Figure figure = spiral(1000);
+    CHECK(svg(figure).find("<svg") < 200);
+    const auto png = run_gnuplot(gnuplot_input({&figure, 1}, Terminal::png, {}));
+    REQUIRE(png);
+    CHECK(png->substr(1, 3) == "PNG");
+    const auto pdf = run_gnuplot(gnuplot_input({&figure, 1}, Terminal::pdf, {}));
+    REQUIRE(pdf);
+    CHECK(pdf->substr(0, 5) == "%PDF-");
+}
+
+TEST_CASE("the size of the sheet is what was asked, in cm", "[gnuplot]") {
+    const Figure figure = wave();
+    const auto picture = run_gnuplot(gnuplot_input({&figure, 1}, Terminal::svg, {12.7, 5.08}));
+    REQUIRE(picture);
+    CHECK(picture->find("width=\"480\" height=\"192\"") != std::string::npos);  // 5 and 2 inches of 96 pixels
+}
+
+TEST_CASE("gaps, one point, no points, constants and extremes of range are drawn without complaint", "[gnuplot]") {
+    const double nan = std::nan("");
+    for (const auto& [x, y] :
+         std::vector<std::pair<std::vector<double>, std::vector<double>>>{{{}, {}},
+                                                                          {{1}, {2}},
+                                                                          {{nan}, {nan}},
+                                                                          {{0, 1, 2, 3, 4}, {0, 1, nan, 1, 0}},
+                                                                          {{0, 1}, {3.7, 3.7}},
+                                                                          {{0, 1e-9}, {0, 1e6}},
+                                                                          {{0, 1}, {-1e300, 1e300}},
+                                                                          {{1e6, 1e6 + 1e-6}, {1, 2}}}) {
+        for (const Style style : {Style::line, Style::points, Style::fill}) {
+            Figure figure;
+            figure.curves.push_back({Numbers::own(x), Numbers::own(y), "", style});
+            CHECK(svg(figure).find("</svg>") != std::string::npos);
+        }
+    }
+}
+
+TEST_CASE("without gnuplot one sentence says what to install", "[gnuplot]") {
+    const testing::TemporaryFolder empty;
+    const Path path(empty.path().string());
+    const auto picture = run_gnuplot("plot sin(x)");
+    REQUIRE(!picture);
+    CHECK(picture.error().sentence.find("install the Debian package gnuplot-nox") != std::string::npos);
+}
+
+TEST_CASE("what gnuplot complains about is told", "[gnuplot]") {
+    const auto picture = run_gnuplot("set terminal svg\nplot nonsense(x)\n");
+    REQUIRE(!picture);
+    CHECK(picture.error().sentence.find("undefined function: nonsense") != std::string::npos);
+}

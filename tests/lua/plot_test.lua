@@ -1,0 +1,218 @@
+-- plot, run:plot, run:phase_plot: what they draw, what they return, and what they say to wrong input.
+package.path = "tests/lua/?.lua;" .. package.path
+local support = require "support"
+local test, equal, raises_here = support.test, support.equal, support.raises_here
+
+local nd = nondimensional { friction_ratio = 0.1, breakaway_ratio = 0.12 }
+local run = nd:simulate { M = excitation.harmonic { frequency = 0.7 }, theta0 = 1, t_end = 5, dt = 0.01 }
+local free = nd:simulate { theta0 = 1, t_end = 5, dt = 0.01 }
+local line = { { 0, 1, 2 }, { 0, 1, 4 } }
+
+--- The text of a picture; ASCII and 60 columns unless said otherwise.
+local function text(object, method, options)
+    options = options or {}
+    options.show = false
+    if options.ascii == nil then options.ascii = true end
+    options.width = options.width or 60
+    return tostring(object[method](object, options))
+end
+local function vectors(options)
+    options.show, options.ascii, options.width = false, true, options.width or 60
+    return tostring(plot(options))
+end
+local function has(picture, ...)
+    for _, piece in ipairs { ... } do
+        assert(picture:find(piece, 1, true), ("no %q in\n%s"):format(piece, picture))
+    end
+end
+local function has_not(picture, piece)
+    assert(not picture:find(piece, 1, true), ("%q in\n%s"):format(piece, picture))
+end
+
+test("a driven run shows theta and M/k, a free one only theta, both where they stick", function()
+    has(text(run, "plot"), "a theta", "b M/k", " t")
+    has(text(nd:simulate { M = excitation.harmonic { amplitude = 0.2, frequency = 0.3 }, theta0 = 1, t_end = 9, dt = 0.01 }, "plot"),
+        "b M/k", "stuck")
+    has(text(free, "plot"), "theta, rad", "stuck", "=")
+    has_not(text(free, "plot"), "M/k")
+    has_not(text(nondimensional {}:simulate { theta0 = 1, t_end = 1, dt = 0.1 }, "plot"), "stuck")
+end)
+
+test("x and y choose columns by name or number, torques over k as in the record of 1989", function()
+    has(text(run, "plot", { x = "theta", y = "friction" }), "friction", "theta, rad")
+    has(text(run, "plot", { y = { "friction/k", "damping/k", "M/k", "velocity/omega0" } }), "a friction/k", "d theta'/omega0")
+    has(text(run, "plot", { x = 1, y = { 2, 4 } }), "a theta", "b M")
+    raises_here(function() run:plot { y = "frction" } end, "frction", "did you mean 'friction'?")
+    raises_here(function() run:plot { y = "M/kk" } end, "M/kk")
+    raises_here(function() run:plot { y = "thta/k" } end, "did you mean 'theta'?")
+    raises_here(function() run:plot { x = 9 } end, "9")
+    raises_here(function() run:plot { y = {} } end, "y must name a column")
+    raises_here(function() run:plot { y = true } end, "y must be the name or the number of a column, got true")
+    raises_here(function() run:plot { x = { "t", "theta" } } end, "x must be one column")
+end)
+
+test("the phase plane has its start, its end and the dead zone", function()
+    has(text(free, "phase_plot", { height = 20 }), "theta'/omega0, rad", "o start", "@ end", "= dead zone")
+    has_not(text(nondimensional {}:simulate { theta0 = 1, t_end = 1, dt = 0.1 }, "phase_plot"), "dead zone")
+end)
+
+test("a run that began stuck, and one that never moved, show it", function()
+    local sys = system { I = 1, k = 1, Rd = 1, Re = 2 }
+    has(text(sys:simulate { M = function(t) return t end, t_end = 4, dt = 0.1 }, "plot"), "stuck  =")
+    local still = text(sys:simulate { theta0 = 0.5, t_end = 4, dt = 0.1 }, "plot")
+    local bar = still:match "stuck  (=+)"
+    assert(bar and #bar > 45, still) -- all along the axis of about 50 columns
+end)
+
+test("a run from a file is drawn, too", function()
+    local csv, dat = support.temporary ".csv", support.temporary ".dat"
+    run:save(csv)
+    run:save(dat)
+    has(text(trajectory.load(csv), "plot"), "theta, rad")
+    has(text(trajectory.load(dat), "plot"), "a theta", "b M/k")
+    has(text(trajectory.load(dat), "phase_plot"), "theta'/omega0, rad")
+    raises_here(function() trajectory.load(csv):phase_plot() end, "needs omega0", "run:plot{ x = \"theta\", y = \"velocity\" }")
+    local other = support.temporary ".csv"
+    support.write(other, "time,acceleration\n0,1\n1,2.5\n")
+    has(text(trajectory.load(other), "plot"), "acceleration", "time")
+end)
+
+test("a run without rows says what to do", function()
+    local none = nd:simulate { theta0 = 1, t_end = 1, times = {} }
+    raises_here(function() none:plot() end, "run:plot: the run has no rows to draw", "dt")
+    raises_here(function() none:phase_plot() end, "no rows")
+end)
+
+test("what DRAAR asked for: window, divisions, axes or none", function()
+    local picture = text(run, "plot", { xlim = { 1, 2 }, ylim = { -2, 2 }, xticks = 0.25, yticks = { -2, 0, 2 }, title = "window" })
+    has(picture, "window", "1.25", "1.75", "-2 +", " 2 +")
+    has_not(picture, "-1 +")
+    local bare = text(run, "plot", { axes = false, y = "theta" })
+    has_not(bare, "|")
+    has_not(bare, "+")
+    has(text(run, "plot", { xlabel = "time, s", ylabel = "angle" }), "time, s", "angle")
+end)
+
+test("curves are vectors or tables of numbers; nan and inf are gaps", function()
+    has(vectors { line, title = "parabola", xlabel = "x", ylabel = "y" }, "parabola", "4 +")
+    has(vectors { { vector { 0, 1 }, vector { 2, 3 }, label = "one" }, { { 0, 1 }, { 3, 0 / 0 }, label = "two" } }, "a one", "b two")
+    local v = vector.linspace(-1, 1, 50)
+    has(vectors { { v, v:sqrt() } }, "1.0 +")
+    has(vectors { { { 0, 1, 2 }, { 1, math.huge, 3 } } }, "3.0 +")
+    has(vectors { { {}, {} } }, "(no points)")
+    has(vectors { { { 0 / 0 }, { 1 } } }, "(no points)")
+end)
+
+test("styles: points, fills to zero or to another edge", function()
+    has(vectors { { { 0, 1, 2 }, { 0, 1, 4 }, style = "points" } }, "x")
+    vectors { { { 0, 1, 2 }, { 0, 1, 4 }, style = "fill" } }
+    vectors { { { 0, 1, 2 }, { 0, 1, 4 }, style = "fill", base = { 1, 1, 1 }, colour = 3, dashes = "dashed" } }
+end)
+
+test("logarithmic axes", function()
+    has(vectors { { { 1, 10, 100 }, { 1e-9, 1e-6, 1e-3 } }, xlog = true, ylog = true }, "10", "1e-9")
+    has(vectors { { { 1, 10, 100 }, { 0, -1, 5 } }, ylog = true }, "5") -- what is not positive has no place
+    raises_here(function() plot { line, xlog = true, xlim = { 0, 1 } } end, "xlim", "must be positive")
+    raises_here(function() plot { line, xlog = true, xticks = 2 } end, "xticks must be a list")
+    raises_here(function() plot { line, xlog = true, equal = true } end, "equal = true needs linear axes")
+end)
+
+test("show = false returns a picture, that can be printed and set beside another one", function()
+    local left = plot { line, title = "left", show = false, width = 60 }
+    local right = run:phase_plot { title = "right", show = false }
+    equal(getmetatable(left) ~= nil, true)
+    has(tostring(left), "left")
+    local both = tostring(plot { left, right, width = 100, height = 20, show = false })
+    assert(both:match "^[^\n]*left[^\n]*right", both)
+    local narrow = tostring(plot { left, right, width = 60, height = 20, show = false })
+    assert(narrow:match "left.-\n.*right" and not narrow:match "^[^\n]*left[^\n]*right", narrow)
+    raises_here(function() plot { left, line } end, "curves and pictures can not stand together")
+    raises_here(function() plot { left, title = "both" } end, "plot has no option 'title'")
+    raises_here(function() return left.titel end, "a picture has no field 'titel'")
+end)
+
+test("a picture outlives its run", function()
+    local picture = nd:simulate { theta0 = 1, t_end = 5, dt = 0.001 }:plot { show = false }
+    local before = tostring(picture)
+    for _ = 1, 20 do
+        collectgarbage()
+        nd:simulate { theta0 = 2, t_end = 5, dt = 0.001 }
+    end
+    equal(tostring(picture), before)
+end)
+
+test("wrong curves are told by their number", function()
+    raises_here(function() plot() end, "plot takes one table of curves", "for example plot{")
+    raises_here(function() plot {} end, "plot needs a curve")
+    raises_here(function() plot { xlabel = "x" } end, "plot needs a curve")
+    raises_here(function() plot(run.t, run.theta) end, "plot takes one table")
+    raises_here(function() plot { run.t, run.theta } end, "item 1 must be a curve { x, y } or a picture, got a vector")
+    raises_here(function() plot { { 0, 1 }, { 0, 1 } } end, "item 1 must be a curve { x, y }")
+    raises_here(function() plot { run } end, "item 1 must be a curve { x, y } or a picture, got a run")
+    raises_here(function() plot { line, { { 1, 2 } } } end, "plot: curve 2: y must be a vector or a table of numbers, got nil")
+    raises_here(function() plot { { { 1, 2 }, { 1 } } } end, "plot: curve 1: x has 2 numbers, but y has 1")
+    raises_here(function() plot { { { 1, 2 }, { 1, "2" } } } end, "plot: curve 1: y[2] must be a number, got the string \"2\"")
+    raises_here(function() plot { { { 1 }, { 1 }, lable = "x" } } end, "plot: curve 1 has no option 'lable'", "did you mean 'label'?")
+    raises_here(function() plot { { { 1 }, { 1 }, { 1 } } } end, "plot: curve 1 takes named options only", "{ x, y, label")
+    raises_here(function() plot { { { 1 }, { 1 }, style = "dots" } } end, "style must be 'line', 'points' or 'fill'")
+    raises_here(function() plot { { { 1 }, { 1 }, dashes = "dahsed" } } end, "did you mean 'dashed'?")
+    raises_here(function() plot { { { 1 }, { 1 }, colour = 8 } } end, "colour = 8 must be a whole number from 1 to 7")
+    raises_here(function() plot { { { 1 }, { 1 }, base = { 0 } } } end, "base is the other edge of a fill")
+    raises_here(function() plot { { { 1 }, { 1 }, base = { 0, 1 }, style = "fill" } } end, "but base has 2")
+    raises_here(function() plot { line, [5] = line } end, "named options only")
+end)
+
+test("wrong options are told with their limits", function()
+    raises_here(function() run:plot { tilte = "x" } end, "run:plot has no option 'tilte'", "did you mean 'title'?")
+    raises_here(function() run:phase_plot { y = "theta" } end, "run:phase_plot has no option 'y'")
+    raises_here(function() run:plot("x.svg") end, "named options")
+    raises_here(function() run.plot() end, "use a colon: run:plot()")
+    raises_here(function() run:plot { width = 10 } end, "width = 10 must be a whole number from 20 to 1000")
+    raises_here(function() run:plot { height = 2.5 } end, "height = 2.5 must be a whole number from 5 to 500")
+    raises_here(function() run:plot { title = 1 } end, "title must be a string")
+    raises_here(function() run:plot { xlim = { 1, 0 } } end, "xlim must be two increasing numbers")
+    raises_here(function() run:plot { xlim = { 1 } } end, "xlim must be two increasing numbers")
+    raises_here(function() run:plot { xlim = { 1, 1 + 1e-15 } } end, "xlim", "1e-13")
+    raises_here(function() run:plot { ylim = { -1e308, 1e308 } } end, "ylim", "1e300")
+    raises_here(function() run:plot { xticks = 0 } end, "xticks = 0 must be positive")
+    raises_here(function() run:plot { xticks = 1e-9 } end, "xticks makes 5e+09 ticks", "more than 200")
+    raises_here(function() run:plot { xticks = "many" } end, "xticks")
+    raises_here(function() run:plot { size = { 8, 6 } } end, "size is for files")
+    raises_here(function() run:plot { file = "x.svg", size = { 1, 6 } } end, "size must be width and height in cm")
+    raises_here(function() run:plot { file = "x.svg", show = false } end, "file and show = false exclude each other")
+    raises_here(function() run:plot { file = "x.jpg" } end, "'x.jpg' must end in .svg, .png, .pdf, .gp", ".txt")
+    raises_here(function() run:plot { file = "x" } end, "'x' must end in .svg")
+    raises_here(function() run:plot { file = 7 } end, "file must be a string")
+    raises_here(function() run:plot { file = "/nowhere/at/all.svg" } end, "there is no folder '/nowhere/at'")
+    raises_here(function() run:plot { file = "x\0.svg" } end, "NUL")
+end)
+
+test("files begin as files of their kind begin, and an old one is replaced as a whole", function()
+    local heads = { svg = "<?xml", png = "\x89PNG", pdf = "%PDF-", gp = "# A figure of dinal" }
+    for ending, head in pairs(heads) do
+        local name = support.temporary("." .. ending)
+        support.write(name, ("old "):rep(100000))
+        run:plot { file = name }
+        local bytes = support.read(name)
+        equal(bytes:sub(1, #head), head)
+        assert(#bytes < 200000, #bytes)
+    end
+    local name = support.temporary ".txt"
+    free:plot { file = name, ascii = true, width = 50 }
+    equal(support.read(name), text(free, "plot", { width = 50 }) .. "\n")
+    plot { plot { line, show = false }, free:phase_plot { show = false }, file = support.temporary ".svg", size = { 16, 6 } }
+end)
+
+test("labels are only words, whatever is in them", function()
+    local name, victim = support.temporary ".svg", os.tmpname()
+    os.remove(victim)
+    for _, attack in ipairs { "`touch %s`", "'; system('touch %s')", "'\n!touch %s\n", "\"`touch %s`\"", "$(touch %s)", "\27[2J%s" } do
+        local words = attack:format(victim)
+        run:plot { title = words, xlabel = words, ylabel = words, file = name }
+        plot { { { 0, 1 }, { 0, 1 }, label = words }, file = name }
+        assert(not io.open(victim), attack)
+        assert(not text(run, "plot", { title = words, xlabel = words }):find "[\0-\9\11-\31\127]")
+    end
+end)
+
+support.finish()
