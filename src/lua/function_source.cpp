@@ -5,7 +5,6 @@
 
 #include "io/file.hpp"
 #include "lua/lua_text.hpp"
-#include "lua/lua_words.hpp"
 
 namespace dinal {
 namespace {
@@ -183,6 +182,21 @@ void keep_source(lua_State* L, const char* chunk_name, std::string_view text) {
     lua_pushlstring(L, text.data(), text.size());
     lua_rawseti(L, -2, static_cast<lua_Integer>(lua_rawlen(L, -2)) + 1);
     lua_settop(L, top);
+}
+
+std::optional<std::string> last_kept_source(lua_State* L, const std::string& chunk_name) {
+    luaL_checkstack(L, LUA_MINSTACK, "for the text of a chunk");
+    const int top = lua_gettop(L);
+    std::optional<std::string> text;
+    if (lua_rawgetp(L, LUA_REGISTRYINDEX, &kept_key) == LUA_TTABLE &&
+        lua_getfield(L, -1, chunk_name.c_str()) == LUA_TTABLE) {
+        lua_rawgeti(L, -1, static_cast<lua_Integer>(lua_rawlen(L, -1)));
+        std::size_t size = 0;
+        const char* start = lua_tolstring(L, -1, &size);
+        text = std::string(start, size);
+    }
+    lua_settop(L, top);
+    return text;
 }
 
 }  // namespace dinal

@@ -6,6 +6,7 @@
 #include <cctype>
 #include <vector>
 
+#include "io/screen.hpp"
 #include "lua/lua_text.hpp"
 
 namespace dinal {
@@ -27,26 +28,6 @@ std::string first_sentence(std::string_view summary) {
         return std::string(summary.substr(0, stop + 1));
     }
     return std::string(summary);
-}
-
-std::string wrapped(std::string_view text, std::size_t width) {
-    std::string result;
-    std::size_t column = 0;
-    while (!text.empty()) {
-        const std::size_t end = std::min(text.find(' '), text.size());
-        if (column > 0 && column + 1 + end > width) {
-            result += '\n';
-            column = 0;
-        }
-        if (column > 0) {
-            result += ' ';
-            ++column;
-        }
-        result += text.substr(0, end);
-        column += end;
-        text.remove_prefix(std::min(end + 1, text.size()));
-    }
-    return result;
 }
 
 std::string indented(std::string_view text) {

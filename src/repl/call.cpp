@@ -5,6 +5,7 @@
 #include <string_view>
 #include <vector>
 
+#include "lua/error_remarks.hpp"
 #include "lua/interrupt.hpp"
 
 namespace dinal {
@@ -140,7 +141,8 @@ int message_handler(lua_State* L) {
     if (interrupt_requested()) {
         text = frames.empty() ? "interrupted" : "interrupted at " + frames.front().place;
     } else {
-        text = shortened(message_of(L)) + trace(frames);
+        const Remarks remarks = remarks_on(L, 1);
+        text = shortened(message_of(L)) + remarks.suggestion + remarks.excerpt + remarks.during + trace(frames);
     }
     lua_pushlstring(L, text.data(), text.size());
     return 1;

@@ -50,12 +50,12 @@ std::string escaped(char c) {
 
 }  // namespace
 
-std::string quoted(std::string_view text, std::size_t limit) {
+std::string quoted(std::string_view text, std::size_t limit, bool unicode) {
     std::string result = "\"";
     std::size_t i = 0;
     while (i < text.size() && i < limit) {
         const std::size_t length = printable_length(text.substr(i));
-        if (length == 0) {
+        if (length == 0 || (length > 1 && !unicode)) {
             result += escaped(text[i++]);
             continue;
         }
@@ -66,10 +66,6 @@ std::string quoted(std::string_view text, std::size_t limit) {
         i += length;
     }
     return result + (i < text.size() ? "\"..." : "\"");
-}
-
-std::size_t columns(std::string_view text) {
-    return text.size() - static_cast<std::size_t>(std::count_if(text.begin(), text.end(), continues));
 }
 
 }  // namespace dinal

@@ -1,7 +1,6 @@
 #include "repl/repl.hpp"
 
 #include <fmt/core.h>
-#include <sys/ioctl.h>
 #include <unistd.h>
 
 #include "lua/dinal_table.hpp"
@@ -16,14 +15,6 @@
 
 namespace dinal {
 namespace {
-
-constexpr std::size_t default_width = 80;
-
-std::size_t screen_width() {
-    winsize size{};
-    const bool known = isatty(STDOUT_FILENO) != 0 && ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0;
-    return known ? size.ws_col : default_width;
-}
 
 /// As in lua, a string in the global _PROMPT or _PROMPT2 replaces ours. Raw: a strict _G must not make it an error.
 std::string prompt_text(lua_State* L, const char* global, const char* ours) {
@@ -54,7 +45,7 @@ void push_partial(lua_State* L) {
 }
 
 int print_partial(lua_State* L) {
-    say_error("the part of the run that was done is in ans: " + show(L, 1, screen_width()));
+    say_error("the part of the run that was done is in ans: " + show(L, 1, screen_of(STDOUT_FILENO)));
     return 0;
 }
 
@@ -62,7 +53,7 @@ int print_values(lua_State* L) {
     const int count = lua_gettop(L);
     std::string text;
     for (int i = 1; i <= count; ++i) {
-        text.append(i == 1 ? "" : "\t").append(show(L, i, screen_width()));
+        text.append(i == 1 ? "" : "\t").append(show(L, i, screen_of(STDOUT_FILENO)));
     }
     text += '\n';
     say(text);

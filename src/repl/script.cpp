@@ -14,6 +14,7 @@
 #include <memory>
 #include <string_view>
 
+#include "lua/error_remarks.hpp"
 #include "lua/function_source.hpp"
 #include "lua/interrupt.hpp"
 #include "lua/library.hpp"
@@ -33,10 +34,12 @@ std::string explained(std::string text) {
     return text;
 }
 
-/// Ends a piece of work whose error, if any, is the text on the top of the stack.
-bool finished(lua_State* L, int status) {
+/// Ends a piece of work whose error, if any, is the text on the top of the stack. `file` is that of the chunk, if it
+/// did not even compile.
+bool finished(lua_State* L, int status, const char* file = nullptr) {
     if (status != LUA_OK) {
-        const std::string text = explained(take_text(L));
+        const Remarks remarks = status == LUA_ERRSYNTAX ? remarks_on_syntax(L, -1, file) : Remarks{};
+        const std::string text = explained(take_text(L)) + remarks.suggestion + remarks.excerpt;
         complain(interrupt_requested() && text.rfind("interrupted", 0) != 0 ? "interrupted" : text);
     } else if (interrupt_requested()) {
         complain("interrupted");
@@ -54,8 +57,8 @@ bool run_loaded(lua_State* L, int status, int arguments = 0) {
 /// Text that is in no file. It is kept, so that a file of results can hold the source of the functions in it.
 int load_text(lua_State* L, std::string_view text, const char* name) {
     const int status = luaL_loadbuffer(L, text.data(), text.size(), name);
-    if (status == LUA_OK) {
-        keep_source(L, name, text);
+    if (status == LUA_OK || status == LUA_ERRSYNTAX) {
+        keep_source(L, name, text);  // an error needs it, too
     }
     return status;
 }
@@ -153,10 +156,12 @@ int push_script_arguments(lua_State* L) {
 }
 
 bool run_script(lua_State* L, const Arguments& arguments) {
-    const std::string_view word = arguments.words[arguments.script];
+    const char* file = arguments.words[arguments.script];
     const bool after_dashes = std::string_view(arguments.words[arguments.script - 1]) == "--";
-    const int status = word == "-" && !after_dashes ? load_standard_input(L) : luaL_loadfile(L, word.data());
-    return status == LUA_OK ? run_loaded(L, status, push_script_arguments(L)) : finished(L, status);
+    const bool standard_input = std::string_view(file) == "-" && !after_dashes;
+    const int status = standard_input ? load_standard_input(L) : luaL_loadfile(L, file);
+    return status == LUA_OK ? run_loaded(L, status, push_script_arguments(L))
+                            : finished(L, status, standard_input ? nullptr : file);
 }
 
 void open(lua_State* L, const Arguments& arguments) {

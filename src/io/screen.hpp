@@ -1,0 +1,32 @@
+// What the other end of an output can show: how wide it is, which characters and whether colours.
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <string_view>
+
+namespace dinal {
+
+struct Screen {
+    std::size_t width = 80;
+    bool unicode = true;  ///< UTF-8, else ASCII
+    bool colour = false;  ///< a terminal that knows colours, and no NO_COLOR
+    bool terminal = false;
+};
+
+/// As it is now: a terminal may have got another size. What is no terminal is 80 columns wide.
+Screen screen_of(int descriptor);
+
+/// The terminal obeys escape sequences: TERM is set, and not to "dumb".
+bool obeys_escapes();
+
+/// Our own text for a screen: the few letters beyond ASCII that we use (…, θ, ω) are spelled out when it must be so.
+std::string spelled(std::string_view text, const Screen& screen);
+
+/// Columns that UTF-8 text takes on a terminal; what is not UTF-8 takes one for each byte that begins a character.
+std::size_t columns(std::string_view text);
+
+/// Words in lines of at most `width` columns; newlines in the text stay.
+std::string wrapped(std::string_view text, std::size_t width);
+
+}  // namespace dinal
