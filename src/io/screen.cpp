@@ -41,6 +41,14 @@ std::pair<std::size_t, wchar_t> first_character(std::string_view text) {
     return {length, static_cast<wchar_t>(code)};
 }
 
+unsigned byte(char c) {
+    return static_cast<unsigned char>(c);
+}
+
+bool continues(char c) {
+    return (byte(c) & 0xC0U) == 0x80U;
+}
+
 }  // namespace
 
 bool obeys_escapes() {
@@ -87,6 +95,37 @@ std::size_t columns(std::string_view text) {
         text.remove_prefix(length);
     }
     return count;
+}
+
+std::size_t printable_length(std::string_view text) {
+    const unsigned first = byte(text[0]);
+    if (first < 0x80U) {
+        return first >= 0x20U && first != 0x7FU ? 1 : 0;
+    }
+    const std::size_t length = first >= 0xF0U ? 4 : first >= 0xE0U ? 3 : 2;
+    if (first < 0xC2U || first > 0xF4U || text.size() < length) {
+        return 0;
+    }
+    if (!std::all_of(text.begin() + 1, text.begin() + static_cast<std::ptrdiff_t>(length), continues)) {
+        return 0;
+    }
+    const unsigned second = byte(text[1]);
+    const bool overlong = (first == 0xE0U && second < 0xA0U) || (first == 0xF0U && second < 0x90U);
+    const bool outside = (first == 0xEDU && second > 0x9FU) || (first == 0xF4U && second > 0x8FU);
+    const bool control = first == 0xC2U && second < 0xA0U;
+    return overlong || outside || control ? 0 : length;
+}
+
+std::string printable(std::string_view line, const Screen& screen) {
+    std::string result;
+    while (!line.empty()) {
+        const std::size_t length = printable_length(line);
+        const bool fits = length == 1 || (length > 1 && screen.unicode);
+        const bool blank = line.front() == '\t' || line.front() == '\r';
+        result += fits ? line.substr(0, length) : blank ? " " : "?";
+        line.remove_prefix(std::max<std::size_t>(length, 1));
+    }
+    return result;
 }
 
 std::string wrapped(std::string_view text, std::size_t width) {

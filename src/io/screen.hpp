@@ -26,6 +26,12 @@ std::string spelled(std::string_view text, const Screen& screen);
 /// Columns that UTF-8 text takes on a terminal; what is not UTF-8 takes one for each byte that begins a character.
 std::size_t columns(std::string_view text);
 
+/// Bytes of the printable character that begins the text; 0 when it is a control character or not UTF-8.
+std::size_t printable_length(std::string_view text);
+
+/// One line that is safe to show: blanks for white space, `?` for what can not be printed.
+std::string printable(std::string_view line, const Screen& screen);
+
 /// Words in lines of at most `width` columns; newlines in the text stay.
 std::string wrapped(std::string_view text, std::size_t width);
 

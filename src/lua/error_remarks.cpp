@@ -69,13 +69,19 @@ struct Mark {
 };
 
 /// Where in the statement the first of the suspects stands. None when nothing is known but the line.
-std::optional<Mark> marked(std::string_view statement, const std::vector<std::string>& names) {
+std::optional<Mark> marked(std::string_view statement, const std::vector<std::string>& names, bool stumbled) {
     const std::vector<Token> all = tokens(statement);
     for (const std::string& suspect : names) {
-        for (const Token& token : all) {
-            if (token.text == suspect && token.kind != TokenKind::comment) {
-                return Mark{token.at, token.text.size()};
-            }
+        const auto is_suspect = [&suspect](const Token& token) {
+            return token.text == suspect && token.kind != TokenKind::comment;
+        };
+        // What a parser stumbles over stands behind what it has accepted.
+        const bool last = &suspect == &names.front() && stumbled;
+        const auto behind = std::find_if(all.rbegin(), all.rend(), is_suspect);
+        const auto first = std::find_if(all.begin(), all.end(), is_suspect);
+        if (first != all.end()) {
+            const Token& token = last ? *behind : *first;
+            return Mark{token.at, token.text.size()};
         }
     }
     return std::nullopt;
@@ -83,9 +89,8 @@ std::optional<Mark> marked(std::string_view statement, const std::vector<std::st
 
 /// The line, cut so that the mark is on the screen, and the mark below it.
 std::string excerpt_of(std::string_view line, int number, Mark mark, const Screen& screen) {
-    std::string text(line);
-    std::replace(text.begin(), text.end(), '\t', ' ');
-    text.erase(std::remove(text.begin(), text.end(), '\r'), text.end());
+    std::string text = printable(line, screen);
+    mark.at = printable(line.substr(0, mark.at), screen).size();
     const std::string head = fmt::format("{:>4} | ", number);
     const std::size_t room = std::max<std::size_t>(screen.width, head.size() + 12) - head.size() - 1;
     std::size_t indent = std::min(text.find_first_not_of(' '), mark.at);
@@ -127,7 +132,8 @@ std::string excerpt_from(const SourceText& source, const Message& message, std::
     if (statement.empty()) {
         return "";
     }
-    auto found = marked(statement, suspects(message.words, suggestion));
+    auto found =
+        marked(statement, suspects(message.words, suggestion), message.words.find(" near '") != std::string_view::npos);
     if (message.words.ends_with("near <eof>")) {
         found = Mark{statement.find_last_not_of(" \t\r\n") + 1, 1};
     }
@@ -135,7 +141,7 @@ std::string excerpt_from(const SourceText& source, const Message& message, std::
         return "";  // the one line was typed just now
     }
     if (!found) {
-        found = marked(statement, {"error", "assert"});
+        found = marked(statement, {"error", "assert"}, false);
     }
     Mark mark = found.value_or(Mark{std::min(statement.find_first_not_of(" \t"), statement.size()), 1});
     int number = message.line;
