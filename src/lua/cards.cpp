@@ -13,7 +13,7 @@ namespace {
 /// Name, value and remark in columns; a remark that does not fit is left out.
 std::string row(std::string_view name, double value, std::string_view remark, const Screen& screen) {
     const std::string text = fmt::format("  {:<9}  {:<10.6g}", name, value);
-    const bool fits = columns(text) + columns(remark) + 1 <= screen.width;
+    const bool fits = columns(text) + columns(remark) + 1 < screen.width;
     return "\n" + (fits ? text + " " + std::string(remark) : text.substr(0, text.find_last_not_of(' ') + 1));
 }
 
@@ -28,7 +28,7 @@ std::string vector_line(const Vector& v, std::size_t ends) {
 std::string system_card(lua_State* L, int index, const Screen& screen) {
     const Oscillator& system = *test<Oscillator>(L, index);
     std::string text = spelled("system  I θ'' + C θ' + Rd sgn θ' + k θ = M(t)", screen);
-    text = columns(text) <= screen.width ? text : "system";
+    text = columns(text) < screen.width ? text : "system";
     text += row("I", system.inertia(), "moment of inertia", screen);
     text += row("k", system.stiffness(), "stiffness", screen);
     text += row("C", system.damping(), "viscous damping", screen);
@@ -49,22 +49,23 @@ std::string vector_card(lua_State* L, int index, const Screen& screen) {
     }
     if (v.size() <= most) {
         std::string whole = fmt::format("vector{{ {:.6g} }}", fmt::join(v.values(), ", "));
-        if (columns(whole) <= screen.width || v.size() < 3) {
+        if (columns(whole) < screen.width || v.size() < 3) {
             return whole;
         }
     }
     constexpr std::size_t most_ends = 5;
     for (std::size_t ends = std::min(most_ends, (v.size() - 1) / 2); ends > 1; --ends) {
         std::string line = vector_line(v, ends);
-        if (columns(line) <= screen.width) {
+        if (columns(line) < screen.width) {
             return line;
         }
     }
-    return vector_line(v, 1);
+    const std::string line = vector_line(v, 1);
+    return columns(line) < screen.width ? line : fmt::format("{} ({})", line.substr(0, line.find("  --")), v.size());
 }
 
 std::string run_card(lua_State* L, int index, const Screen& screen) {
-    return wrapped(spelled(summary((*test<RunHandle>(L, index))->trajectory), screen), screen.width);
+    return wrapped(spelled(summary((*test<RunHandle>(L, index))->trajectory), screen), screen.width - 1);
 }
 
 }  // namespace dinal

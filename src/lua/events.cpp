@@ -53,7 +53,7 @@ int events_text(lua_State* L) {
         if (lua_rawgeti(L, 1, i) == LUA_TTABLE) {
             ++kinds[kind_field(L, 2)];
             if (i <= most_rows) {
-                table += fmt::format("\n{:>4} {:<9.6g} {:<5} {:>9.5g} {:>9.5g}", i, number_field(L, 2, "t"),
+                table += fmt::format("\n{:>3} {:<9.6g} {:<5} {:>10.5g} {:>8.4g}", i, number_field(L, 2, "t"),
                                      kind_field(L, 2), number_field(L, 2, "theta"), number_field(L, 2, "M"));
             }
         }
@@ -62,11 +62,13 @@ int events_text(lua_State* L) {
     std::string text = fmt::format("{} event{}", count, count == 1 ? "" : "s");
     const char* separator = ": ";
     for (const auto& [kind, times] : kinds) {
-        text += fmt::format("{}{} {}", separator, times, kind);
-        separator = ", ";
+        if (times > 0) {
+            text += fmt::format("{}{} {}{}", separator, times, kind, times == 1 ? "" : "s");
+            separator = ", ";
+        }
     }
     if (!table.empty()) {
-        text += fmt::format("\n   i {:<9} {:<5} {:>9} {:>9}", "t", "kind", "theta", "M") + table;
+        text += fmt::format("\n  i {:<9} {:<5} {:>10} {:>8}", "t", "kind", "theta", "M") + table;
     }
     if (count > most_rows) {
         text += fmt::format("\n ... and {} more", count - most_rows);

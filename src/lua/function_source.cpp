@@ -5,6 +5,7 @@
 
 #include "io/file.hpp"
 #include "lua/lua_text.hpp"
+#include "lua/standard_globals.hpp"
 
 namespace dinal {
 namespace {
@@ -120,6 +121,10 @@ std::optional<std::string> library_name(lua_State* L, int index) {
     while (!name && lua_next(L, top + 1) != 0) {
         if (lua_type(L, top + 2) == LUA_TSTRING && lua_istable(L, top + 3)) {
             const std::string module = lua_tostring(L, top + 2);
+            if (module == LUA_GNAME) {  // not under a name that the user has given it
+                push_standard_globals(L);
+                lua_replace(L, top + 3);
+            }
             lua_pushnil(L);
             while (!name && lua_next(L, top + 3) != 0) {
                 if (lua_type(L, -2) == LUA_TSTRING && lua_rawequal(L, -1, index) != 0) {

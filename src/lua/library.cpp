@@ -3,7 +3,7 @@
 
 #include "lua/dinal_table.hpp"
 #include "lua/interrupt.hpp"
-#include "lua/value_text.hpp"
+#include "lua/standard_globals.hpp"
 
 namespace dinal {
 

@@ -8,7 +8,7 @@
 namespace dinal {
 namespace {
 
-// No line is longer than 76 columns, no page than 20 lines: they are for a terminal of 80 by 24. A test types them all.
+// No line is longer than 77 columns, no page than 20 lines: they are for a terminal of 80 by 24. A test types them all.
 constexpr std::array<std::string_view, 6> pages = {
     R"(A mass on a spring, with viscous damping C and dry friction: Rd is the
 torque while it slides, Re what sticking can hold.
@@ -16,8 +16,8 @@ torque while it slides, Re what sticking can hold.
     > sys = system{ I = 1, k = 4*math.pi^2, C = 1.5, Rd = 16.5, Re = 18 }
     > sys
 
-The names on the left are fields: sys.T0 is the natural period. Tab completes
-names, and inside { } it lists the options. What you see is also in ans.
+The names on the left are fields: sys.T0 is the natural period. Tab
+completes names, and lists the options inside { }. The last value is in ans.
 
 help(sys) says more about it, help "dead zone" searches, ? is short for help,
 and help "contents" lists all there is.
@@ -86,7 +86,7 @@ std::string tour_page(std::size_t page) {
             pages.size(), text);
     }
     const std::string next = page < pages.size() ? fmt::format("\nhelp({}) is the next page.\n", page + 1) : "";
-    return fmt::format("Page {} of {}. {}{}", page, pages.size(), text, next);
+    return fmt::format("Page {} of {}\n\n{}{}", page, pages.size(), text, next);
 }
 
 }  // namespace dinal

@@ -10,8 +10,8 @@
 namespace dinal {
 namespace {
 
-constexpr std::array<std::string_view, 12> known_options = {"-e", "-l", "-i", "-v",     "-W",        "-E",
-                                                            "-",  "--", "-h", "--help", "--version", "--manual"};
+constexpr std::array<std::string_view, 13> known_options = {
+    "-e", "-l", "-i", "-v", "-W", "-E", "-", "--", "-h", "--help", "--version", "--manual", "--no-init"};
 
 Error unknown(std::string_view option) {
     return {fmt::format("unknown option '{}'{}", option, did_you_mean(option, known_options))};
@@ -68,6 +68,10 @@ Expected<Arguments> parse_arguments(int count, const char* const* words) {
             ++i;
             break;
         }
+        if (word == "--no-init") {
+            arguments.no_init = true;
+            continue;
+        }
         if (const Request request = request_of(word); request != Request::run) {
             arguments.request = request;
             return arguments;
@@ -106,6 +110,7 @@ without a script: a prompt on a terminal, else standard input is run as a script
   -E         ignore environment variables (LUA_INIT, LUA_PATH, LUA_CPATH)
   --         no more options: what follows is the script
   -          no more options: run standard input as the script
+  --no-init  a prompt without the file ~/.config/dinal/init.lua
   --help     this text
   --version  version, licence and what is built in
   --manual   the whole manual, as Markdown

@@ -1,4 +1,4 @@
-// The command line: the options of `lua`, read as `lua` reads them, and --help, --version and --manual.
+// The command line: the options of `lua`, read as `lua` reads them, and --help and its like.
 #pragma once
 
 #include <string>
@@ -22,6 +22,7 @@ struct Arguments {
     bool show_version = false;        ///< -v or -i
     bool executes = false;            ///< -e
     bool ignore_environment = false;  ///< -E
+    bool no_init = false;             ///< --no-init
     std::vector<Step> steps;
     std::vector<const char*> words;  ///< the whole command line
     std::size_t script = 0;          ///< its place among the words; words.size() when there is none

@@ -167,6 +167,22 @@ int call(lua_State* L, int arguments, int results) {
     return status;
 }
 
+int call_with(lua_State* L, lua_CFunction function) {
+    lua_pushcfunction(L, function);
+    lua_insert(L, -2);
+    return call(L, 1, 0);
+}
+
+std::string told_error(lua_State* L, const char* file) {
+    const Remarks remarks = remarks_on_syntax(L, -1, file);
+    std::string text = take_text(L);
+    // Lua's words are good but for bytecode, which its own program would not take either.
+    if (text.find("bad binary format") != std::string::npos) {
+        text += "; it is Lua bytecode that this Lua (" LUA_RELEASE ") can not run: run its source instead";
+    }
+    return text + remarks.suggestion + remarks.excerpt;
+}
+
 std::string take_text(lua_State* L) {
     std::size_t size = 0;
     const char* text = lua_tolstring(L, -1, &size);

@@ -16,9 +16,22 @@ namespace {
 constexpr std::size_t deepest = 3;            // tables within tables; further ones are {...}
 constexpr std::size_t most_lines = 24;        // of one value,
 constexpr std::size_t most_joined_lines = 6;  // of a long list of numbers
+
 bool is_fraction(lua_State* L, int index) {
     const double number = lua_type(L, index) == LUA_TNUMBER ? lua_tonumber(L, index) : 0;
     return std::isfinite(number) && number != std::floor(number);
+}
+
+/// The first columns of a text, and three dots. Letters of several bytes stay whole.
+std::string shortened(std::string text, std::size_t width) {
+    const auto inside = [&text] { return !text.empty() && (static_cast<unsigned char>(text.back()) & 0xC0U) == 0x80U; };
+    while (!text.empty() && columns(text) + 3 > width) {
+        while (inside()) {
+            text.pop_back();
+        }
+        text.pop_back();
+    }
+    return text + "...";
 }
 
 struct Piece {
@@ -28,7 +41,7 @@ struct Piece {
 
 class Printer {
 public:
-    Printer(lua_State* L, const Screen& screen) : L_(L), screen_(screen), width_(screen.width) {}
+    Printer(lua_State* L, const Screen& screen) : L_(L), screen_(screen), width_(screen.width - 1) {}
 
     std::string value(int index) {
         if (!is_plain_table(L_, index)) {
@@ -38,13 +51,23 @@ public:
         return line.whole ? line.text : table_lines(index);
     }
 
+    std::string line(int index, std::size_t width) {
+        std::string text = is_plain_table(L_, index) ? table_line(index, width).text : scalar(index);
+        return columns(text) > width ? shortened(std::move(text), width) : text;
+    }
+
 private:
     [[nodiscard]] std::string scalar(int index) const { return scalar_text(L_, index, Place::inside, screen_); }
 
     /// A value inside a table, in `room` columns if it can be cut.
     Piece inner(int index, std::size_t room) {
         if (!is_plain_table(L_, index)) {
-            return {brief_ && is_fraction(L_, index) ? fmt::format("{:.6g}", lua_tonumber(L_, index)) : scalar(index)};
+            const bool short_number = brief_ && is_fraction(L_, index);
+            Piece item{short_number ? fmt::format("{:.6g}", lua_tonumber(L_, index)) : scalar(index)};
+            if (lua_isuserdata(L_, index) != 0 && columns(item.text) > room) {  // of our objects the beginning will do
+                item = {shortened(std::move(item.text), room), false};
+            }
+            return item;
         }
         const void* address = lua_topointer(L_, index);
         if (std::find(open_.begin(), open_.end(), address) != open_.end()) {
@@ -80,8 +103,12 @@ private:
     }
 
     std::string key_text(int index) const {
-        if (lua_type(L_, index) == LUA_TSTRING && is_name(lua_tostring(L_, index))) {
-            return lua_tostring(L_, index);
+        if (lua_type(L_, index) == LUA_TSTRING) {
+            std::size_t size = 0;
+            const char* start = lua_tolstring(L_, index, &size);
+            if (is_name({start, size})) {
+                return {start, size};
+            }
         }
         return "[" + (is_plain_table(L_, index) ? "{...}" : scalar(index)) + "]";
     }
@@ -156,6 +183,10 @@ private:
 
 std::string show(lua_State* L, int index, const Screen& screen) {
     return Printer(L, screen).value(lua_absindex(L, index));
+}
+
+std::string show_line(lua_State* L, int index, const Screen& screen, std::size_t width) {
+    return Printer(L, screen).line(lua_absindex(L, index), std::max<std::size_t>(width, 8));
 }
 
 }  // namespace dinal

@@ -14,4 +14,7 @@ namespace dinal {
 /// call() only: Ctrl-C during it is a Lua error.
 std::string show(lua_State* L, int index, const Screen& screen);
 
+/// The beginning of it on one line of `width` columns.
+std::string show_line(lua_State* L, int index, const Screen& screen, std::size_t width);
+
 }  // namespace dinal

@@ -102,7 +102,7 @@ std::string scalar_text(lua_State* L, int index, Place place, const Screen& scre
         return found.owner->card(L, lua_absindex(L, index), screen);
     }
     std::string text = told(L, index);
-    return found.owner != nullptr ? wrapped(spelled(text, screen), screen.width) : text;
+    return found.owner != nullptr ? wrapped(spelled(text, screen), screen.width - 1) : text;
 }
 
 }  // namespace dinal

@@ -14,7 +14,6 @@
 #include <memory>
 #include <string_view>
 
-#include "lua/error_remarks.hpp"
 #include "lua/function_source.hpp"
 #include "lua/interrupt.hpp"
 #include "lua/library.hpp"
@@ -26,20 +25,11 @@
 namespace dinal {
 namespace {
 
-/// Lua's words are good but for bytecode, which its own program would not take either.
-std::string explained(std::string text) {
-    if (text.find("bad binary format") != std::string::npos) {
-        text += "; it is Lua bytecode that this Lua (" LUA_RELEASE ") can not run: run its source instead";
-    }
-    return text;
-}
-
 /// Ends a piece of work whose error, if any, is the text on the top of the stack. `file` is that of the chunk, if it
 /// did not even compile.
 bool finished(lua_State* L, int status, const char* file = nullptr) {
     if (status != LUA_OK) {
-        const Remarks remarks = status == LUA_ERRSYNTAX ? remarks_on_syntax(L, -1, file) : Remarks{};
-        const std::string text = explained(take_text(L)) + remarks.suggestion + remarks.excerpt;
+        const std::string text = status == LUA_ERRSYNTAX ? told_error(L, file) : take_text(L);
         complain(interrupt_requested() && text.rfind("interrupted", 0) != 0 ? "interrupted" : text);
     } else if (interrupt_requested()) {
         complain("interrupted");
@@ -184,7 +174,8 @@ int prompt(lua_State* L, const Arguments& arguments) {
     if (!arguments.show_version) {
         say(greeting() + "\n");
     }
-    return run_prompt(L) ? exit_code::ok : exit_code::interrupted;
+    return run_prompt(L, arguments.no_init ? Start::plain : Start::with_init_file) ? exit_code::ok
+                                                                                   : exit_code::interrupted;
 }
 
 int run_all(lua_State* L, const Arguments& arguments) {
