@@ -2,8 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+
 #include "core/oscillator.hpp"
 #include "lua/bind.hpp"
+#include "lua/bind_integrator.hpp"
 #include "lua/run.hpp"
 #include "lua/vector.hpp"
 
@@ -39,6 +42,20 @@ std::string system_card(lua_State* L, int index, const Screen& screen) {
     text += row("zeta", system.damping_ratio(), "damping ratio: " + std::string(name(system.regime())), screen);
     text += row("dead_zone", system.dead_zone(), spelled("it can rest wherever |θ| <= this", screen), screen);
     return text;
+}
+
+std::string integrator_card(lua_State* L, int index, const Screen& screen) {
+    const Integrator& integrator = *test<Integrator>(L, index);
+    std::string text = lua_text(integrator);
+    if (const auto* method = std::get_if<Spectral>(&integrator)) {
+        const std::string panel = std::isfinite(method->max_panel) ? fmt::format("{}", method->max_panel)
+                                                                   : fmt::format("{} T0", longest_panel);
+        text = fmt::format("integrator.spectral{{ tolerance = {}, max_panel = {} }}", method->tolerance, panel);
+    } else if (const auto* listing = std::get_if<Dinal1989>(&integrator)) {
+        text = fmt::format("integrator.dinal1989{{ h = {}, stop = \"{}\", slip = {} }}", listing->h,
+                           listing->stop == Dinal1989::Stop::text ? "text" : "listing", listing->slip);
+    }
+    return wrapped(text, screen.width - 1);
 }
 
 std::string vector_card(lua_State* L, int index, const Screen& screen) {

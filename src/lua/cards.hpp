@@ -14,6 +14,9 @@ std::string system_card(lua_State* L, int index, const Screen& screen);
 /// M(t) as a formula, a line for each term, and the times at which it jumps or kinks.
 std::string excitation_card(lua_State* L, int index, const Screen& screen);
 
+/// The method with all its options, those that were not given, too.
+std::string integrator_card(lua_State* L, int index, const Screen& screen);
+
 /// The ends of the vector that fit on a line, and its length.
 std::string vector_card(lua_State* L, int index, const Screen& screen);
 
