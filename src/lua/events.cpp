@@ -2,8 +2,10 @@
 
 #include <fmt/format.h>
 
-#include <map>
+#include <algorithm>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "lua/bind.hpp"
 
@@ -47,11 +49,18 @@ int event_text(lua_State* L) {
 int events_text(lua_State* L) {
     luaL_checktype(L, 1, LUA_TTABLE);
     const auto count = static_cast<lua_Integer>(lua_rawlen(L, 1));
-    std::map<std::string, int> kinds;
+    std::vector<std::pair<std::string, int>> kinds = {{"turn", 0}, {"stick", 0}, {"slip", 0}, {"rest", 0}};
     std::string table;
     for (lua_Integer i = 1; i <= count; ++i) {
         if (lua_rawgeti(L, 1, i) == LUA_TTABLE) {
-            ++kinds[kind_field(L, 2)];
+            const std::string kind = kind_field(L, 2);
+            const auto known =
+                std::find_if(kinds.begin(), kinds.end(), [&kind](const auto& k) { return k.first == kind; });
+            if (known == kinds.end()) {
+                kinds.emplace_back(kind, 1);
+            } else {
+                ++known->second;
+            }
             if (i <= most_rows) {
                 table += fmt::format("\n{:>3} {:<9.6g} {:<5} {:>10.5g} {:>8.4g}", i, number_field(L, 2, "t"),
                                      kind_field(L, 2), number_field(L, 2, "theta"), number_field(L, 2, "M"));
