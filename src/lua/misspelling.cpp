@@ -1,11 +1,11 @@
 #include "lua/misspelling.hpp"
 
 #include <algorithm>
-#include <array>
 #include <optional>
 #include <utility>
 
 #include "lua/bind.hpp"
+#include "lua/habits.hpp"
 #include "lua/tokens.hpp"
 
 namespace dinal {
@@ -142,14 +142,18 @@ bool is_declared(const std::vector<Token>& all, std::string_view name) {
 /// The word in "sys:simulate needs t_end, for example ..." or "system: I must be ..., got nil".
 std::string_view missing_in(std::string_view words) {
     const std::size_t needs = words.find(" needs ");
-    const std::size_t colon = words.ends_with(", got nil") ? words.find(": ") : std::string_view::npos;
+    const std::size_t colon =
+        words.ends_with("must be a finite number, got nil") ? words.find(": ") : std::string_view::npos;
     const std::size_t begin = needs != std::string_view::npos ? needs + 7 : colon + 2;
     const bool there = needs != std::string_view::npos || colon != std::string_view::npos;
     return there ? words.substr(begin, words.find_first_of(" ,", begin) - begin) : std::string_view();
 }
 
-/// A global that is nil, in the statement: one with a likely other spelling or the value of the `missing` option.
-std::string nil_global(lua_State* L, lua_Debug* frame, std::string_view statement, std::string_view missing) {
+/// A global that is nil, in the statement: the value of the option that is missing; else one with a likely other
+/// spelling or, when the words speak of nil without saying of which, any.
+std::string nil_global(lua_State* L, lua_Debug* frame, std::string_view words, std::string_view statement) {
+    const std::string_view missing = missing_in(words);
+    const bool any = words.find("nil") != std::string_view::npos && words.find("nil value (") == std::string_view::npos;
     const std::vector<Token> all = tokens(statement);
     const std::vector<std::string> local = variables(L, frame);
     for (std::size_t i = 0; i < all.size(); ++i) {
@@ -162,28 +166,9 @@ std::string nil_global(lua_State* L, lua_Debug* frame, std::string_view statemen
         const bool is_nil = lua_isnil(L, -1);
         lua_pop(L, 1);
         const std::string hint = is_nil ? similar_global(L, all[i].text) : "";
-        const bool its_value = is_nil && i > 1 && all[i - 1].is("=") && all[i - 2].is(missing);
-        if (missing.empty() ? !hint.empty() : its_value) {
+        const bool its_value = i > 1 && all[i - 1].is("=") && all[i - 2].is(missing);
+        if (is_nil && (missing.empty() ? any || !hint.empty() : its_value)) {
             return "; '" + std::string(all[i].text) + "' is nil" + hint;
-        }
-    }
-    return "";
-}
-
-/// What people write who know other languages.
-std::string other_language(std::string_view words) {
-    constexpr std::array<std::pair<std::string_view, std::string_view>, 7> habits = {{
-        {"near '!'", "; in Lua 'not equal' is ~= and 'not' is a word"},
-        {"near '+'", "; in Lua that is x = x + 1"},
-        {"near '-'", "; in Lua that is x = x - 1"},
-        {"near '&'", "; in Lua that is the word and"},
-        {"near '|'", "; in Lua that is the word or"},
-        {"symbol near '['", "; a list is { 1, 2, 3 }"},
-        {"near '\\'", "; a string is in quotes"},
-    }};
-    for (const auto& [symptom, cure] : habits) {
-        if (words.find(symptom) != std::string_view::npos) {
-            return std::string(cure);
         }
     }
     return "";
@@ -239,7 +224,9 @@ std::string help_with(lua_State* L, lua_Debug* frame, std::string_view words, st
         return "; it is a value and no function: leave out the parentheses";
     }
     if (words.find("nil value") != std::string_view::npos) {
-        if (const std::string_view name = named_in(words, "global"); !name.empty()) {
+        if (const std::string_view name = named_in(words, "global"); name == "quit" || name == "exit") {
+            return "; os.exit() ends a script, :quit or Ctrl-D a session";
+        } else if (!name.empty()) {
             std::vector<std::string> names = variables(L, frame);
             lua_pushglobaltable(L);
             add_keys(L, names);
@@ -252,10 +239,13 @@ std::string help_with(lua_State* L, lua_Debug* frame, std::string_view words, st
             }
         }
     }
-    if (words.find("near ") != std::string_view::npos) {
-        return other_language(words);
+    if (const std::string habit = habit_of_others(words, statement); !habit.empty()) {
+        return habit;
     }
-    return nil_global(L, frame, statement, missing_in(words));
+    if (words.find(" near ") != std::string_view::npos) {
+        return "";
+    }
+    return nil_global(L, frame, words, statement);
 }
 
 }  // namespace dinal

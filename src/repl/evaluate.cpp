@@ -64,22 +64,22 @@ void show_values(lua_State* L, int base, const Chunk& chunk) {
     if (lua_gettop(L) == base) {
         return;
     }
-    const bool only_nil = lua_isnil(L, base + 1) && lua_gettop(L) == base + 1;
+    const bool single = lua_gettop(L) == base + 1;
     if (!lua_isnil(L, base + 1)) {
         set_ans(L, base + 1);
     }
     if (!chunk.silent) {
         show_by(L, print_values, base);
     }
-    if (only_nil) {
-        say_notice(nil_notice(L, chunk));
+    if (single) {
+        say_notice(name_notice(L, chunk));
     }
 }
 
 /// The part of a run that was done before the error is worth keeping. `before` is where the earlier one stands.
 void keep_partial_run(lua_State* L, int before) {
     push_partial(L);
-    if (!lua_isnil(L, -1) && lua_rawequal(L, -1, before) == 0) {
+    if (!lua_isnil(L, -1) && lua_rawequal(L, -1, before) == 0 && luaL_len(L, -1) > 0) {
         set_ans(L, -1);
         show_by(L, print_partial, lua_gettop(L) - 1);
     }

@@ -5,8 +5,10 @@
 #include <algorithm>
 #include <vector>
 
+#include "lua/help_text.hpp"
 #include "lua/misspelling.hpp"
 #include "lua/tokens.hpp"
+#include "repl/meaning.hpp"
 #include "repl/output.hpp"
 
 namespace dinal {
@@ -40,17 +42,45 @@ std::ptrdiff_t uses(const std::vector<Token>& all, std::string_view name) {
 
 }  // namespace
 
-std::string nil_notice(lua_State* L, const Chunk& chunk) {
+std::string name_notice(lua_State* L, const Chunk& chunk) {
     const std::vector<Token> all = tokens(chunk.expression);
+    if (all.size() == 1 && all.front().is("help")) {
+        return "help() starts a tour; ?name explains a name";
+    }
     if (all.size() != 1 || all.front().kind != TokenKind::name || all.front().is("ans")) {
         return "";
     }
     const std::string_view name = all.front().text;
+    lua_pushglobaltable(L);
+    lua_pushlstring(L, name.data(), name.size());
+    const bool there = lua_rawget(L, -2) != LUA_TNIL;
+    lua_pop(L, 2);
+    if (there) {
+        return "";
+    }
     if (name == "exit" || name == "quit") {
         return "there is no such variable; :quit or Ctrl-D leaves";
     }
     const std::string hint = similar_global(L, name);
     return hint.empty() ? "" : fmt::format("there is no variable '{}'{}", name, hint);
+}
+
+std::string colon_notice(lua_State* L, const std::string& text) {
+    const std::vector<Token> all = tokens(text);
+    if (all.size() < 3 || all.back().kind != TokenKind::name || !all[all.size() - 2].is(":")) {
+        return "";
+    }
+    const std::vector<Token> before(all.begin(), all.end());
+    const int top = lua_gettop(L);
+    const Meaning found = meaning(L, before);
+    lua_settop(L, top);
+    if (found.kind != Meaning::Kind::member || found.member->kind == Kind::function) {
+        return "";
+    }
+    return found.member->kind == Kind::field
+               ? fmt::format("{} is a field: write it with a point, {}", found.member->name,
+                             written_name(*found.section, *found.member))
+               : fmt::format("{} is a method, which is called: {}", found.member->name, found.member->doc.signature);
 }
 
 std::string local_notice(const std::string& text) {

@@ -8,8 +8,11 @@
 
 namespace dinal {
 
-/// The expression is the name of a global that does not exist.
-std::string nil_notice(lua_State* L, const Chunk& chunk);
+/// The expression is the name of a global that does not exist, or the word help.
+std::string name_notice(lua_State* L, const Chunk& chunk);
+
+/// "run:events" waits for arguments that a field never gets and a method may have been expected to do without.
+std::string colon_notice(lua_State* L, const std::string& text);
 
 /// A local variable at the top level that nothing after it uses: it is lost.
 std::string local_notice(const std::string& text);

@@ -64,6 +64,12 @@ Reading read_and_run(Session& session) {
         return Reading::line;
     }
     Chunk chunk = compile(L, input.text);
+    if (const std::string notice = chunk.result == Compiled::incomplete ? colon_notice(L, input.text) : "";
+        !notice.empty()) {
+        session.editor.remember(input.text);
+        say_notice(notice);
+        return Reading::line;
+    }
     input = read_rest(session, chunk, input);
     if (input.reading == Reading::interrupted) {
         return input.reading;

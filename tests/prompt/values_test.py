@@ -113,6 +113,21 @@ class Notices(PromptTest):
         self.assertEqual(terminal.enter("xyzzy"), "nil")
         self.assertIn(":quit", terminal.enter("exit"))
 
+    def test_a_colon_without_a_call_does_not_wait_for_more(self):
+        terminal = self.start()
+        terminal.enter(SYSTEM)
+        terminal.enter(RUN)
+        self.assertIn("write it with a point, run.events", terminal.enter("run:events"))
+        self.assertIn("run:at(t) -> theta, velocity", terminal.enter("x = run:at"))
+        self.assertIn("help() starts a tour", terminal.enter("help"))
+
+    def test_a_run_that_failed_before_its_first_row_is_not_announced(self):
+        terminal = self.start()
+        terminal.enter(SYSTEM)
+        shown = terminal.enter("sys:simulate{ M = function(t) return tt + 1 end, t_end = 1, dt = 0.1 }")
+        self.assertIn("in M at t = 0", shown)
+        self.assertNotIn("is in ans", shown)
+
 
 class Help(PromptTest):
     def test_question_marks_before_and_behind(self):
