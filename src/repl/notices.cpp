@@ -10,6 +10,7 @@
 #include "lua/tokens.hpp"
 #include "repl/meaning.hpp"
 #include "repl/output.hpp"
+#include "repl/typed_text.hpp"
 
 namespace dinal {
 namespace {
@@ -66,13 +67,15 @@ std::string name_notice(lua_State* L, const Chunk& chunk) {
 }
 
 std::string colon_notice(lua_State* L, const std::string& text) {
-    const std::vector<Token> all = tokens(text);
-    if (all.size() < 3 || all.back().kind != TokenKind::name || !all[all.size() - 2].is(":")) {
+    const TypedText typed(text);
+    if (typed.cursor() != Cursor::member || typed.separator() != ':' || typed.word().empty()) {
         return "";
     }
-    const std::vector<Token> before(all.begin(), all.end());
+    std::vector<Token> expression(typed.owner().begin(), typed.owner().end());
+    expression.push_back({TokenKind::symbol, ":"});
+    expression.push_back({TokenKind::name, typed.word()});
     const int top = lua_gettop(L);
-    const Meaning found = meaning(L, before);
+    const Meaning found = meaning(L, expression);
     lua_settop(L, top);
     if (found.kind != Meaning::Kind::member || found.member->kind == Kind::function) {
         return "";
