@@ -66,7 +66,7 @@ void load(Session& session, const std::string& file) {
     lua_settop(L, 0);
     if (luaL_loadfile(L, file.c_str()) != LUA_OK) {
         say_error(told_error(L, file.c_str()));
-    } else if (evaluate(L, Chunk{Compiled::ready, "", "", true}).fine) {
+    } else if (evaluate(L, Chunk{Compiled::ready, "", "", true}).fine && !session.record.writes(file)) {
         session.record.add_statement(fmt::format("dofile({})", quoted(file)));
     }
     lua_settop(L, 0);

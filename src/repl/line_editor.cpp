@@ -51,7 +51,6 @@ void accept(char* text) {
 void erase_hint() {
     if (editing.hinting) {
         std::fputs(erase_to_end, rl_outstream);
-        std::fflush(rl_outstream);
         editing.hinting = false;
     }
 }
@@ -66,6 +65,7 @@ void redisplay() {
     if (InterruptNote::interrupted()) {
         return;  // the line is being given up: it stays as it is
     }
+    erase_hint();  // before the cursor moves: it stands where the hint begins
     rl_redisplay();
     constexpr unsigned long other_uses = RL_STATE_ISEARCH | RL_STATE_NSEARCH | RL_STATE_SEARCH | RL_STATE_NUMERICARG |
                                          RL_STATE_COMPLETING | RL_STATE_VIMOTION;

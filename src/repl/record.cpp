@@ -65,9 +65,12 @@ void Record::clear() {
     update();
 }
 
+bool Record::writes(const std::string& file) const {
+    return std::find(written_.begin(), written_.end(), file) != written_.end();
+}
+
 Expected<bool> Record::may_write(const std::string& file) const {
-    const bool ours = std::find(written_.begin(), written_.end(), file) != written_.end();
-    if (!ours && access(file.c_str(), F_OK) == 0) {
+    if (!writes(file) && access(file.c_str(), F_OK) == 0) {
         return Error{fmt::format("{} is there already, and not of this session; choose another name", file)};
     }
     return true;

@@ -23,6 +23,8 @@ public:
     Expected<bool> save(const std::string& file);
 
     [[nodiscard]] const std::string& file() const { return file_; }
+    /// The file is one of this session: a script that loads itself would never end.
+    [[nodiscard]] bool writes(const std::string& file) const;
     /// Why the file is no longer up to date; empty when it is.
     [[nodiscard]] const std::string& problem() const { return problem_; }
 

@@ -152,6 +152,18 @@ class Colours(Typing):
         terminal.wait(lambda: terminal.row() == ">>")
         self.assertNotIn("I, k", terminal.text())
 
+    def test_a_hint_goes_away_when_the_line_becomes_another_one(self):
+        terminal = self.start()
+        terminal.enter("do", prompt=">>")
+        terminal.enter("end")
+        for keys in (UP, " I = 1, k = 40, C = 1, Rd = 2, Re = 3 } -- a remark that leaves no room for any hint"):
+            terminal.screen.reset()
+            terminal.type(CTRL_C + "system{")
+            terminal.shows("system{  I, k")
+            terminal.type(keys)
+            terminal.wait(lambda: "end" in terminal.text() or "hint" in terminal.text())
+            self.assertNotIn("I, k", terminal.text())
+
     def test_the_cursor_moves_within_a_painted_line(self):
         terminal = self.start()
         terminal.type("print('ac')" + LEFT * 3 + "b" + ENTER)

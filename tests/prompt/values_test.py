@@ -173,7 +173,7 @@ class Commands(PromptTest):
         terminal = self.start()
         terminal.enter(":record lab.lua")
         for line in [SYSTEM, "sys.T0", "local lost = 1", "nowhere.field", "sys:friction_ratio(4);", "ans * 2 -- twice",
-                     "x = 7;", "=x", "print('printed')", "1, 2", ":who", "nothing", "goto done ::done::"]:
+                     "x = 7;", "=x", "print('printed')", "1, 2", ":who", "nothing", "goto done ::done::", ":load lab.lua"]:
             terminal.enter(line)
         script = (self.home / "lab.lua").read_text()
         self.assertNotIn("nowhere", script)
