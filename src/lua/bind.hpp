@@ -41,7 +41,7 @@ struct Member {
     Doc doc;
 };
 
-struct Screen;
+struct Display;
 
 /// A Lua class or a Lua module.
 struct Class {
@@ -52,7 +52,7 @@ struct Class {
     /// 1, or returns 0 for "no such field", which then becomes an error with a suggestion.
     lua_CFunction other_keys = nullptr;
     /// What the prompt shows for the object at `index`; without it, what tostring says.
-    std::string (*card)(lua_State* L, int index, const Screen& screen) = nullptr;
+    std::string (*card)(lua_State* L, int index, const Display& screen) = nullptr;
 };
 
 /// Raises `sentence` as a Lua error, headed by the file and line of the user's code that led here.

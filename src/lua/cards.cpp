@@ -14,7 +14,7 @@ namespace dinal {
 namespace {
 
 /// Name, value and remark in columns; a remark that does not fit is left out.
-std::string row(std::string_view name, double value, std::string_view remark, const Screen& screen) {
+std::string row(std::string_view name, double value, std::string_view remark, const Display& screen) {
     const std::string text = fmt::format("  {:<9}  {:<10.6g}", name, value);
     const bool fits = columns(text) + columns(remark) + 1 < screen.width;
     return "\n" + (fits ? text + " " + std::string(remark) : text.substr(0, text.find_last_not_of(' ') + 1));
@@ -28,7 +28,7 @@ std::string vector_line(const Vector& v, std::size_t ends) {
 
 }  // namespace
 
-std::string system_card(lua_State* L, int index, const Screen& screen) {
+std::string system_card(lua_State* L, int index, const Display& screen) {
     const Oscillator& system = *test<Oscillator>(L, index);
     std::string text = spelled("system  I θ'' + C θ' + Rd sgn θ' + k θ = M(t)", screen);
     text = columns(text) < screen.width ? text : "system";
@@ -44,7 +44,7 @@ std::string system_card(lua_State* L, int index, const Screen& screen) {
     return text;
 }
 
-std::string integrator_card(lua_State* L, int index, const Screen& screen) {
+std::string integrator_card(lua_State* L, int index, const Display& screen) {
     const Integrator& integrator = *test<Integrator>(L, index);
     std::string text = lua_text(integrator);
     if (const auto* method = std::get_if<Spectral>(&integrator)) {
@@ -58,7 +58,7 @@ std::string integrator_card(lua_State* L, int index, const Screen& screen) {
     return wrapped(text, screen.width - 1);
 }
 
-std::string vector_card(lua_State* L, int index, const Screen& screen) {
+std::string vector_card(lua_State* L, int index, const Display& screen) {
     const Vector& v = *test<Vector>(L, index);
     constexpr std::size_t most = 12;  // numbers of a vector that is shown whole
     if (v.size() == 0) {
@@ -81,7 +81,7 @@ std::string vector_card(lua_State* L, int index, const Screen& screen) {
     return columns(line) < screen.width ? line : fmt::format("{} ({})", line.substr(0, line.find("  --")), v.size());
 }
 
-std::string run_card(lua_State* L, int index, const Screen& screen) {
+std::string run_card(lua_State* L, int index, const Display& screen) {
     return wrapped(spelled(summary((*test<RunHandle>(L, index))->trajectory), screen), screen.width - 1);
 }
 

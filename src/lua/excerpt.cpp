@@ -8,7 +8,7 @@
 #include <optional>
 #include <vector>
 
-#include "io/screen.hpp"
+#include "io/display.hpp"
 #include "lua/tokens.hpp"
 
 namespace dinal {
@@ -74,7 +74,7 @@ std::optional<Mark> marked(std::string_view statement, const std::vector<std::st
 }
 
 /// The line, cut so that the mark is on the screen, and the mark below it.
-std::string excerpt_of(std::string_view line, int number, Mark mark, const Screen& screen) {
+std::string excerpt_of(std::string_view line, int number, Mark mark, const Display& screen) {
     std::string text = printable(line, screen);
     mark.at = printable(line.substr(0, mark.at), screen).size();
     const std::string head = fmt::format("{:>4} | ", number);
@@ -115,7 +115,7 @@ std::string marked_excerpt(std::string_view text, int number, Mark mark) {
         text.remove_prefix(end + 1);
         ++number;
     }
-    return excerpt_of(text.substr(0, text.find('\n')), number, mark, screen_of(STDERR_FILENO));
+    return excerpt_of(text.substr(0, text.find('\n')), number, mark, display_of(STDERR_FILENO));
 }
 
 bool compiles_so_far(lua_State* L, std::string_view text) {

@@ -155,7 +155,7 @@ std::string breaks_of(const Excitation& excitation) {
 
 }  // namespace
 
-std::string excitation_card(lua_State* L, int index, const Screen& screen) {
+std::string excitation_card(lua_State* L, int index, const Display& screen) {
     const Excitation& excitation = *test<Excitation>(L, index);
     luaL_checkstack(L, LUA_MINSTACK, "for the text of an excitation");
     std::string text = spelled(excitation.has_feedback() ? "excitation  M(t, θ, θ') =" : "excitation  M(t) =", screen);

@@ -11,7 +11,7 @@ namespace dinal {
 
 namespace {
 
-std::string text_about(const Documented& found, const Screen& screen) {
+std::string text_about(const Documented& found, const Display& screen) {
     std::string text;
     for (const Section& section : sections()) {
         if (section.description == found.owner) {
@@ -28,7 +28,7 @@ std::string text_about_page(lua_State* L) {
                                      : "the tour has pages 1 to " + std::to_string(last) + "\n";
 }
 
-std::string text_about_value(lua_State* L, const Screen& screen) {
+std::string text_about_value(lua_State* L, const Display& screen) {
     if (lua_isnone(L, 1)) {
         return tour_page(1);
     }
@@ -57,7 +57,7 @@ std::string text_about_value(lua_State* L, const Screen& screen) {
 }
 
 int help(lua_State* L) {
-    const std::string text = text_about_value(L, screen_of(STDOUT_FILENO));
+    const std::string text = text_about_value(L, display_of(STDOUT_FILENO));
     lua_writestring(text.data(), text.size());  // as print() does
     return 0;
 }

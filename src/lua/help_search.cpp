@@ -18,11 +18,11 @@ struct Hit {
     const Member* member;  // none: the section itself
 };
 
-std::string hit_text(const Hit& hit, const Screen& screen) {
+std::string hit_text(const Hit& hit, const Display& screen) {
     return hit.member != nullptr ? member_text(*hit.section, *hit.member, screen) : class_text(*hit.section, screen);
 }
 
-std::string hit_line(const Hit& hit, const Screen& screen) {
+std::string hit_line(const Hit& hit, const Display& screen) {
     return line_about(listed_name(*hit.section, *hit.member), hit.member->doc.summary, screen);
 }
 
@@ -136,7 +136,7 @@ std::string no_help(std::string_view words) {
                        hint.empty() ? "; help \"contents\" lists what there is" : "");
 }
 
-std::string contents(const Screen& screen) {
+std::string contents(const Display& screen) {
     std::string text;
     for (const Section& section : sections()) {
         text += fmt::format("{}{}\n", text.empty() ? "" : "\n", section.title);
@@ -176,7 +176,7 @@ std::vector<std::string> help_names() {
     return names;
 }
 
-std::string help_about(std::string_view words, const Screen& screen) {
+std::string help_about(std::string_view words, const Display& screen) {
     constexpr std::size_t most = 10;
     while (!words.empty() && words.back() == ' ') words.remove_suffix(1);
     while (!words.empty() && words.front() == ' ') words.remove_prefix(1);

@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::size_t widest = 79;  // longer lines are hard to read, however wide the screen is
 
-std::size_t text_width(const Screen& screen) {
+std::size_t text_width(const Display& screen) {
     return std::min(screen.width - 1, widest);
 }
 
@@ -33,7 +33,7 @@ std::string indented(std::string_view text) {
     return result;
 }
 
-std::string doc_text(const Doc& doc, const Screen& screen) {
+std::string doc_text(const Doc& doc, const Display& screen) {
     const std::size_t width = text_width(screen);
     return spelled(fmt::format("{}\n\n{}\n\n{}\n", wrapped(doc.signature, width), wrapped(doc.summary, width),
                                indented(doc.example)),
@@ -128,7 +128,7 @@ std::vector<std::string> see_also(const Section& section, const Member& member) 
     return names.list;
 }
 
-std::string member_text(const Section& section, const Member& member, const Screen& screen) {
+std::string member_text(const Section& section, const Member& member, const Display& screen) {
     std::string text = doc_text(member.doc, screen);
     if (const auto names = see_also(section, member); !names.empty()) {
         text += "\n" + wrapped(fmt::format("See also: {}", fmt::join(names, ", ")), text_width(screen)) + "\n";
@@ -136,7 +136,7 @@ std::string member_text(const Section& section, const Member& member, const Scre
     return text;
 }
 
-std::string line_about(std::string_view name, std::string_view summary, const Screen& screen) {
+std::string line_about(std::string_view name, std::string_view summary, const Display& screen) {
     constexpr std::size_t indent = 28;
     const std::size_t width = text_width(screen);
     if (width < indent + 24) {  // narrow: the text goes below the name
@@ -153,7 +153,7 @@ std::string line_about(std::string_view name, std::string_view summary, const Sc
     return spelled(fmt::format("  {:<{}} {}\n", name, indent - 3, text), screen);
 }
 
-std::string class_text(const Section& section, const Screen& screen) {
+std::string class_text(const Section& section, const Display& screen) {
     std::string text = doc_text(section.description->doc, screen) + "\n";
     for (const Member& member : section.description->members) {
         text += line_about(listed_name(section, member), member.doc.summary, screen);

@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-#include "io/screen.hpp"
+#include "io/display.hpp"
 #include "lua/library.hpp"
 
 namespace dinal {
@@ -19,16 +19,16 @@ std::string written_name(const Section& section, const Member& member);
 std::string listed_name(const Section& section, const Member& member);
 
 /// Signature, summary, example, and what to look at next.
-std::string member_text(const Section& section, const Member& member, const Screen& screen);
+std::string member_text(const Section& section, const Member& member, const Display& screen);
 
 /// The same for a class or module, and one line for each member.
-std::string class_text(const Section& section, const Screen& screen);
+std::string class_text(const Section& section, const Display& screen);
 
 /// A name and the first sentence about it.
-std::string line_about(std::string_view name, std::string_view summary, const Screen& screen);
+std::string line_about(std::string_view name, std::string_view summary, const Display& screen);
 
 /// Help about a name ("simulate", "sys.omega0", "excitation"), else about words in names and summaries, else a hint.
-std::string help_about(std::string_view words, const Screen& screen);
+std::string help_about(std::string_view words, const Display& screen);
 
 /// All names that help_about() knows, as a user writes them.
 std::vector<std::string> help_names();

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "core/suggest.hpp"
-#include "io/screen.hpp"
+#include "io/display.hpp"
 #include "lua/help_text.hpp"
 #include "lua/lua_text.hpp"
 #include "lua/standard_globals.hpp"
@@ -73,7 +73,7 @@ void load(Session& session, const std::string& file) {
 }
 
 int print_globals(lua_State* L) {
-    const Screen screen = screen_of(STDOUT_FILENO);
+    const Display screen = display_of(STDOUT_FILENO);
     const std::vector<std::string> names = users_globals(L);
     for (const std::string& name : names) {
         lua_pushglobaltable(L);
@@ -128,7 +128,7 @@ constexpr std::array<Command, 9> commands = {{
 }};
 
 void help(Session& session, const std::string& argument) {
-    const Screen screen = screen_of(STDOUT_FILENO);
+    const Display screen = display_of(STDOUT_FILENO);
     if (!argument.empty() && argument.front() != ':') {
         answer_question(session.L, argument);
         return;

@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "io/screen.hpp"
+#include "io/display.hpp"
 #include "lua/dinal_table.hpp"
 #include "lua/interrupt.hpp"
 #include "repl/call.hpp"
@@ -34,7 +34,7 @@ void push_partial(lua_State* L) {
 }
 
 int print_partial(lua_State* L) {
-    say_error("the part of the run that was done is in ans: " + show(L, 1, screen_of(STDERR_FILENO)));
+    say_error("the part of the run that was done is in ans: " + show(L, 1, display_of(STDERR_FILENO)));
     return 0;
 }
 
@@ -42,7 +42,7 @@ int print_values(lua_State* L) {
     const int count = lua_gettop(L);
     std::string text;
     for (int i = 1; i <= count; ++i) {
-        text.append(i == 1 ? "" : "\t").append(show(L, i, screen_of(STDOUT_FILENO)));
+        text.append(i == 1 ? "" : "\t").append(show(L, i, display_of(STDOUT_FILENO)));
     }
     text += '\n';
     say(text);

@@ -12,7 +12,7 @@
 #include <cstring>
 #include <vector>
 
-#include "io/screen.hpp"
+#include "io/display.hpp"
 #include "repl/completion.hpp"
 #include "repl/output.hpp"
 #include "repl/typing.hpp"
@@ -125,7 +125,7 @@ void start_readline(const std::string& history) {
         history_truncate_file(history.c_str(), longest_history);
         read_history(history.c_str());
     }
-    editing.paints = screen_of(STDOUT_FILENO).colour;
+    editing.paints = display_of(STDOUT_FILENO).colour;
     if (editing.paints) {
         rl_redisplay_function = redisplay;
         rl_bind_key('\r', finish_line);

@@ -5,7 +5,7 @@
 #include <cstdio>
 #include <string>
 
-#include "io/screen.hpp"
+#include "io/display.hpp"
 
 namespace dinal {
 namespace {
@@ -37,7 +37,7 @@ void flush_output() {
 
 void say_error(std::string_view text) {
     flush_output();
-    const Screen screen = screen_of(STDERR_FILENO);
+    const Display screen = display_of(STDERR_FILENO);
     const std::string fitting = screen.terminal ? in_rows(text, screen.width) : "";
     text = screen.terminal ? fitting : text;
     static_cast<void>(std::fwrite(text.data(), 1, text.size(), stderr));

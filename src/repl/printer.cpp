@@ -41,7 +41,7 @@ struct Piece {
 
 class Printer {
 public:
-    Printer(lua_State* L, const Screen& screen) : L_(L), screen_(screen), width_(screen.width - 1) {}
+    Printer(lua_State* L, const Display& screen) : L_(L), screen_(screen), width_(screen.width - 1) {}
 
     std::string value(int index) {
         if (!is_plain_table(L_, index)) {
@@ -173,7 +173,7 @@ private:
     }
 
     lua_State* L_;
-    Screen screen_;
+    Display screen_;
     std::size_t width_;
     bool brief_ = false;             // numbers with six digits
     std::vector<const void*> open_;  // the tables that are being shown, outermost first
@@ -181,11 +181,11 @@ private:
 
 }  // namespace
 
-std::string show(lua_State* L, int index, const Screen& screen) {
+std::string show(lua_State* L, int index, const Display& screen) {
     return Printer(L, screen).value(lua_absindex(L, index));
 }
 
-std::string show_line(lua_State* L, int index, const Screen& screen, std::size_t width) {
+std::string show_line(lua_State* L, int index, const Display& screen, std::size_t width) {
     return Printer(L, screen).line(lua_absindex(L, index), std::max<std::size_t>(width, 8));
 }
 

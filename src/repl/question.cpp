@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "io/screen.hpp"
+#include "io/display.hpp"
 #include "lua/help_text.hpp"
 #include "lua/tokens.hpp"
 #include "lua/tour.hpp"
@@ -27,7 +27,7 @@ std::string without_marks(std::string_view text) {
 }
 
 /// Pushes nothing. The entry for what the words are, if they are an expression of the user's that we know.
-std::string entry(const Meaning& meaning, const Screen& screen) {
+std::string entry(const Meaning& meaning, const Display& screen) {
     if (meaning.kind == Meaning::Kind::member && meaning.section != nullptr) {
         return member_text(*meaning.section, *meaning.member, screen);
     }
@@ -36,7 +36,7 @@ std::string entry(const Meaning& meaning, const Screen& screen) {
 }
 
 int show_value(lua_State* L) {
-    const Screen screen = screen_of(STDOUT_FILENO);
+    const Display screen = display_of(STDOUT_FILENO);
     say(fmt::format("{}, now {}\n", luaL_typename(L, 1), show(L, 1, screen)));
     return 0;
 }
@@ -49,7 +49,7 @@ bool is_question(std::string_view line) {
 }
 
 void answer_question(lua_State* L, std::string_view line) {
-    const Screen screen = screen_of(STDOUT_FILENO);
+    const Display screen = display_of(STDOUT_FILENO);
     const std::string words = without_marks(line);
     if (words.empty()) {
         say(tour_page(1));

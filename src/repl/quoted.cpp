@@ -2,7 +2,7 @@
 
 #include <fmt/core.h>
 
-#include "io/screen.hpp"
+#include "io/display.hpp"
 
 namespace dinal {
 namespace {

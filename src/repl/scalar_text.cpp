@@ -39,7 +39,7 @@ std::string told(lua_State* L, int index) {
     return fine ? text : fmt::format("<error in __tostring: {}>", text);
 }
 
-std::string string_text(lua_State* L, int index, Place place, const Screen& screen) {
+std::string string_text(lua_State* L, int index, Place place, const Display& screen) {
     std::size_t size = 0;
     const char* start = lua_tolstring(L, index, &size);
     const std::size_t limit = place == Place::inside ? longest_inner_string : longest_string;
@@ -83,7 +83,7 @@ bool is_plain_table(lua_State* L, int index) {
     return false;
 }
 
-std::string scalar_text(lua_State* L, int index, Place place, const Screen& screen) {
+std::string scalar_text(lua_State* L, int index, Place place, const Display& screen) {
     switch (lua_type(L, index)) {
         case LUA_TNUMBER:
             return std::isnan(lua_tonumber(L, index)) ? "nan" : told(L, index);

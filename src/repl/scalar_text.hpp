@@ -4,7 +4,7 @@
 #include <lua.hpp>
 #include <string>
 
-#include "io/screen.hpp"
+#include "io/display.hpp"
 
 namespace dinal {
 
@@ -15,6 +15,6 @@ enum class Place { alone, inside };
 bool is_plain_table(lua_State* L, int index);
 
 /// The text for the value at `index`. Runs __tostring, whose errors become part of the text; Ctrl-C is a Lua error.
-std::string scalar_text(lua_State* L, int index, Place place, const Screen& screen);
+std::string scalar_text(lua_State* L, int index, Place place, const Display& screen);
 
 }  // namespace dinal

@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-#include "io/screen.hpp"
+#include "io/display.hpp"
 #include "lua/bind.hpp"
 #include "lua/tokens.hpp"
 
@@ -77,7 +77,7 @@ std::string in_colours(std::string_view text) {
 
 Painted paint(lua_State* L, std::string_view prompt, const std::string& pending, std::string_view line,
               std::size_t cursor) {
-    const Screen screen = screen_of(STDOUT_FILENO);
+    const Display screen = display_of(STDOUT_FILENO);
     const std::size_t before = columns(prompt);
     const std::size_t used = before + columns(line);
     constexpr std::size_t spare = 2;  // a row that is full to its end may have been wrapped already

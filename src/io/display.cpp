@@ -1,4 +1,4 @@
-#include "io/screen.hpp"
+#include "io/display.hpp"
 
 #include <langinfo.h>
 #include <sys/ioctl.h>
@@ -56,8 +56,8 @@ bool obeys_escapes() {
     return !name.empty() && name != "dumb";
 }
 
-Screen screen_of(int descriptor) {
-    Screen screen;
+Display display_of(int descriptor) {
+    Display screen;
     screen.unicode = std::strcmp(nl_langinfo(CODESET), "UTF-8") == 0;
     screen.terminal = isatty(descriptor) != 0;
     if (!screen.terminal) {
@@ -71,7 +71,7 @@ Screen screen_of(int descriptor) {
     return screen;
 }
 
-std::string spelled(std::string_view text, const Screen& screen) {
+std::string spelled(std::string_view text, const Display& screen) {
     std::string result(text);
     if (!screen.unicode) {
         for (const auto& [letter, words] : spellings) {
@@ -116,7 +116,7 @@ std::size_t printable_length(std::string_view text) {
     return overlong || outside || control ? 0 : length;
 }
 
-std::string printable(std::string_view line, const Screen& screen) {
+std::string printable(std::string_view line, const Display& screen) {
     std::string result;
     while (!line.empty()) {
         const std::size_t length = printable_length(line);
