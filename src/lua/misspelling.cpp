@@ -224,9 +224,11 @@ std::string help_with(lua_State* L, lua_Debug* frame, std::string_view words, st
         return "; it is a value and no function: leave out the parentheses";
     }
     if (words.find("nil value") != std::string_view::npos) {
-        if (const std::string_view name = named_in(words, "global"); name == "quit" || name == "exit") {
+        const std::string_view name = named_in(words, "global");
+        if (name == "quit" || name == "exit") {
             return "; os.exit() ends a script, :quit or Ctrl-D a session";
-        } else if (!name.empty()) {
+        }
+        if (!name.empty()) {
             std::vector<std::string> names = variables(L, frame);
             lua_pushglobaltable(L);
             add_keys(L, names);
@@ -234,12 +236,12 @@ std::string help_with(lua_State* L, lua_Debug* frame, std::string_view words, st
             return likely(name, names);
         }
         for (const char* kind : {"field", "method"}) {
-            if (const std::string_view name = named_in(words, kind); !name.empty()) {
-                return likely(name, siblings(L, frame, name, statement));
+            if (const std::string_view key = named_in(words, kind); !key.empty()) {
+                return likely(key, siblings(L, frame, key, statement));
             }
         }
     }
-    if (const std::string habit = habit_of_others(words, statement); !habit.empty()) {
+    if (std::string habit = habit_of_others(words, statement); !habit.empty()) {
         return habit;
     }
     if (words.find(" near ") != std::string_view::npos) {
