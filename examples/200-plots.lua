@@ -1,4 +1,4 @@
--- 150: plots. A response, its phase plane and a family of curves, in the terminal and as figures for a report.
+-- 200: plots. A response, its phase plane and a family of curves, in the terminal and as figures for a report.
 --
 -- Here all pictures are 64 columns of plain ASCII, so that the comment below can show them. Without width, height and
 -- ascii they are as wide as your terminal, and finer: run:plot().

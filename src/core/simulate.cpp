@@ -2,8 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <array>
 #include <cmath>
 #include <limits>
+#include <string>
 
 #include "core/methods.hpp"
 #include "core/panels.hpp"
@@ -29,15 +31,22 @@ std::optional<Error> wrong_times(const std::vector<double>& times, const Window&
     return {};
 }
 
+/// "48 GB"
+std::string memory_text(double bytes) {
+    constexpr std::array<const char*, 5> units = {"kB", "MB", "GB", "TB", "PB"};
+    std::size_t i = 0;
+    for (bytes /= 1000; bytes >= 1000 && i + 1 < units.size(); ++i) bytes /= 1000;
+    return fmt::format("{:.3g} {}", bytes, units[i]);
+}
+
 /// Rows that stay within memory, told in the user's options.
 std::optional<Error> too_many_rows(double count, const Grid& grid, const Window& window, const Limits& limits) {
     const double bytes = count * column_count * sizeof(double);
     if (bytes <= static_cast<double>(limits.memory)) return {};
     const double most = static_cast<double>(limits.memory) / (column_count * sizeof(double));
-    return Error{
-        fmt::format("{:.3g} rows need {:.3g} GB and {:.3g} GB are allowed: use dt >= {:.2g}, or times = {{...}}", count,
-                    bytes / 1e9, static_cast<double>(limits.memory) / 1e9,
-                    std::max(grid.dt(), (window.end - window.start) / most))};
+    return Error{fmt::format("{:.3g} rows need {} and {} are allowed: use dt >= {:.2g}, or times = {{...}}", count,
+                             memory_text(bytes), memory_text(static_cast<double>(limits.memory)),
+                             std::max(grid.dt(), (window.end - window.start) / most))};
 }
 
 /// Rows of the grid with spacing dt: start + i dt before the end, and the end. As a double, because it may be too many.

@@ -101,6 +101,17 @@ int index_module(lua_State* L) {
                                                         : ""));
 }
 
+int module_text(lua_State* L) {
+    const Class& module = class_of_closure(L, 1);
+    std::string text = std::string(module.name) + ":";
+    for (const std::string_view name : visible_names(module)) {
+        text += (text.back() == ':' ? " " : ", ") + std::string(name);
+    }
+    text += "; help(" + std::string(module.name) + ") says more";
+    lua_pushlstring(L, text.data(), text.size());
+    return 1;
+}
+
 void set_metamethods(lua_State* L, const Class& description) {
     for (const Member& member : description.members) {
         if (member.kind == Kind::metamethod) {
@@ -192,6 +203,9 @@ void add_module(lua_State* L, const Class& module) {
     lua_pushlightuserdata(L, const_cast<Class*>(&module));  // never written through
     lua_pushcclosure(L, guarded<index_module>, 1);
     lua_setfield(L, -2, "__index");
+    lua_pushlightuserdata(L, const_cast<Class*>(&module));
+    lua_pushcclosure(L, guarded<module_text>, 1);
+    lua_setfield(L, -2, "__tostring");
     lua_setmetatable(L, -2);
     lua_setfield(L, -2, module.name);
 }

@@ -42,6 +42,8 @@ struct Member {
     Doc doc;
 };
 
+struct Display;
+
 /// A Lua class or a Lua module.
 struct Class {
     const char* name;  ///< in sentences: "a system has no field ..."
@@ -50,6 +52,8 @@ struct Class {
     /// Called with (object, key) for a number key and for a string that names no member: pushes one value and returns
     /// 1, or returns 0 for "no such field", which then becomes an error with a suggestion.
     lua_CFunction other_keys = nullptr;
+    /// What the prompt shows for the object at `index`; without it, what tostring says.
+    std::string (*card)(lua_State* L, int index, const Display& screen) = nullptr;
 };
 
 /// Raises `sentence` as a Lua error, headed by the file and line of the user's code that led here.

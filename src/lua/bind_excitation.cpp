@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "lua/cards.hpp"
 #include "lua/library.hpp"
 #include "lua/user_function.hpp"
 #include "lua/vector.hpp"
@@ -243,6 +244,8 @@ const Class excitation_class{
      "A torque M(t), or M(t, theta, velocity) with feedback. It can not be changed; arithmetic makes new ones.",
      "e = 2 * excitation.step{ at = 1 }\nprint(e(0), e(1))  --> 0.0\t2.0"},
     class_members,
+    nullptr,
+    excitation_card,
 };
 
 void register_excitation(lua_State* L) {

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "lua/bind_integrator.hpp"
+#include "lua/cards.hpp"
 #include "lua/library.hpp"
 #include "lua/options.hpp"
 
@@ -197,7 +198,9 @@ const Class integrator_class = {
     {"integrator.rk4{ h = 0.001 } -> integrator",
      "A method with its options, for `integrator =` in sys:simulate{...}. It can not be changed.",
      "print(integrator.rk4{ h = 0.001 }.h)  --> 0.001"},
-    members};
+    members,
+    nullptr,
+    integrator_card};
 
 void register_integrator(lua_State* L) {
     add_class<Integrator>(L, integrator_class);

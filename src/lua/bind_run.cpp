@@ -5,6 +5,8 @@
 #include <algorithm>
 
 #include "io/table.hpp"
+#include "lua/cards.hpp"
+#include "lua/events.hpp"
 #include "lua/external_memory.hpp"
 #include "lua/library.hpp"
 #include "lua/plot_docs.hpp"
@@ -98,30 +100,13 @@ int names(lua_State* L) {
     return 1;
 }
 
-void push_event(lua_State* L, const Event& event) {
-    lua_createtable(L, 0, 4);
-    lua_pushnumber(L, event.t);
-    lua_setfield(L, -2, "t");
-    const std::string_view kind = name(event.kind);
-    lua_pushlstring(L, kind.data(), kind.size());
-    lua_setfield(L, -2, "kind");
-    lua_pushnumber(L, event.theta);
-    lua_setfield(L, -2, "theta");
-    lua_pushnumber(L, event.M);
-    lua_setfield(L, -2, "M");
-}
-
 // Made when first asked for and then kept as the user value of the run, so that a loop over run.events[i] is no trap.
 int events(lua_State* L) {
     const auto& events = run_self(L, "run.events")->trajectory.events;
     if (lua_getiuservalue(L, 1, 1) == LUA_TTABLE) {
         return 1;
     }
-    lua_createtable(L, static_cast<int>(events.size()), 0);
-    for (std::size_t i = 0; i < events.size(); ++i) {
-        push_event(L, events[i]);
-        lua_rawseti(L, -2, static_cast<lua_Integer>(i) + 1);
-    }
+    push_events(L, events);
     lua_pushvalue(L, -1);
     lua_setiuservalue(L, 1, 1);
     return 1;
@@ -304,7 +289,8 @@ const Class run_class = {
      "It can not be changed. A trajectory that was read from a file has the columns of its file as fields.",
      DINAL_RUN "print(run.theta:max() < 5.001)  --> true"},
     members,
-    other_column};
+    other_column,
+    run_card};
 
 #undef DINAL_RUN
 

@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "lua/bind_simulate.hpp"
+#include "lua/cards.hpp"
 #include "lua/library.hpp"
 #include "lua/options.hpp"
 
@@ -240,7 +241,9 @@ const Class system_class = {
     {"system{ I, k, C = 0, Rd = 0, Re = Rd } -> system",
      "A valid oscillator. It can not be changed; its parameters and what follows from them are fields.",
      "sys = system{ I = 1, k = 4, C = 1 }\nprint(sys.omega0, sys.zeta)  --> 2.0\t0.25"},
-    members};
+    members,
+    nullptr,
+    system_card};
 
 void register_system(lua_State* L) {
     add_class<Oscillator>(L, system_class);

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <optional>
 
+#include "lua/cards.hpp"
 #include "lua/library.hpp"
 #include "lua/vector.hpp"
 #include "lua/vector_arithmetic.hpp"
@@ -325,6 +326,7 @@ const Class vector_class{
      "v = vector{ 1, 2, 3 }\nprint(v[1], #v, 2 * v)  --> 1.0\t3\tvector{ 2, 4, 6 }"},
     class_members,
     guarded<element>,
+    vector_card,
 };
 
 const Class vector_module{

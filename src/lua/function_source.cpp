@@ -5,7 +5,7 @@
 
 #include "io/file.hpp"
 #include "lua/lua_text.hpp"
-#include "lua/lua_words.hpp"
+#include "lua/standard_globals.hpp"
 
 namespace dinal {
 namespace {
@@ -121,6 +121,10 @@ std::optional<std::string> library_name(lua_State* L, int index) {
     while (!name && lua_next(L, top + 1) != 0) {
         if (lua_type(L, top + 2) == LUA_TSTRING && lua_istable(L, top + 3)) {
             const std::string module = lua_tostring(L, top + 2);
+            if (module == LUA_GNAME) {  // not under a name that the user has given it
+                push_standard_globals(L);
+                lua_replace(L, top + 3);
+            }
             lua_pushnil(L);
             while (!name && lua_next(L, top + 3) != 0) {
                 if (lua_type(L, -2) == LUA_TSTRING && lua_rawequal(L, -1, index) != 0) {
@@ -183,6 +187,21 @@ void keep_source(lua_State* L, const char* chunk_name, std::string_view text) {
     lua_pushlstring(L, text.data(), text.size());
     lua_rawseti(L, -2, static_cast<lua_Integer>(lua_rawlen(L, -2)) + 1);
     lua_settop(L, top);
+}
+
+std::optional<std::string> last_kept_source(lua_State* L, const std::string& chunk_name) {
+    luaL_checkstack(L, LUA_MINSTACK, "for the text of a chunk");
+    const int top = lua_gettop(L);
+    std::optional<std::string> text;
+    if (lua_rawgetp(L, LUA_REGISTRYINDEX, &kept_key) == LUA_TTABLE &&
+        lua_getfield(L, -1, chunk_name.c_str()) == LUA_TTABLE) {
+        lua_rawgeti(L, -1, static_cast<lua_Integer>(lua_rawlen(L, -1)));
+        std::size_t size = 0;
+        const char* start = lua_tolstring(L, -1, &size);
+        text = std::string(start, size);
+    }
+    lua_settop(L, top);
+    return text;
 }
 
 }  // namespace dinal

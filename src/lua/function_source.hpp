@@ -16,4 +16,7 @@ std::optional<std::string> function_source(lua_State* L, int index);
 /// with ("=stdin"). Many texts may have the same name.
 void keep_source(lua_State* L, const char* chunk_name, std::string_view text);
 
+/// The text that was kept last under that name.
+std::optional<std::string> last_kept_source(lua_State* L, const std::string& chunk_name);
+
 }  // namespace dinal

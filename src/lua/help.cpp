@@ -1,46 +1,63 @@
 // help(x), at the prompt and in scripts.
+#include <unistd.h>
+
 #include "lua/bind.hpp"
 #include "lua/dinal_table.hpp"
+#include "lua/help_text.hpp"
 #include "lua/library.hpp"
-#include "lua/manual.hpp"
+#include "lua/tour.hpp"
 
 namespace dinal {
 
 namespace {
 
-std::string text_about(const Documented& found) {
+std::string text_about(const Documented& found, const Display& screen) {
     std::string text;
     for (const Section& section : sections()) {
         if (section.description == found.owner) {
-            text += found.member != nullptr ? member_text(section, *found.member) : class_text(section);
+            text += found.member != nullptr ? member_text(section, *found.member, screen) : class_text(section, screen);
         }
     }
     return text;
 }
 
-std::string text_about_value(lua_State* L) {
-    if (lua_isnoneornil(L, 1)) {
-        // help(nothing_of_that_name) comes here, too.
-        return lua_isnone(L, 1) ? start_page() : "nil has no help; put the name in quotes: help \"simulate\"\n";
+std::string text_about_page(lua_State* L) {
+    const lua_Integer page = lua_tointeger(L, 1);
+    const auto last = static_cast<lua_Integer>(tour_pages());
+    return page >= 1 && page <= last ? tour_page(static_cast<std::size_t>(page))
+                                     : "the tour has pages 1 to " + std::to_string(last) + "\n";
+}
+
+std::string text_about_value(lua_State* L, const Display& screen) {
+    if (lua_isnone(L, 1)) {
+        return tour_page(1);
+    }
+    if (lua_isnil(L, 1)) {
+        // help(nothing_of_that_name) comes here.
+        return "nil has no help; put the name in quotes: help \"simulate\"\n";
     }
     if (lua_type(L, 1) == LUA_TSTRING) {
-        return help_about(lua_tostring(L, 1));
+        const std::string_view words = lua_tostring(L, 1);
+        return words.find_first_not_of(' ') == std::string_view::npos ? tour_page(1) : help_about(words, screen);
+    }
+    if (lua_isinteger(L, 1) != 0) {
+        return text_about_page(L);
     }
     push_dinal_table(L);
     const bool is_library = lua_rawequal(L, 1, -1) != 0;
     lua_pop(L, 1);
     if (is_library) {
-        return start_page();
+        return help_about("contents", screen);
     }
     if (const Documented found = documented(L, 1); found.owner != nullptr) {
-        return text_about(found);
+        return text_about(found, screen);
     }
     return describe(L, 1) + " has no help of its own; put the name in quotes: help \"omega0\"" +
            (lua_isfunction(L, 1) ? ", or see https://www.lua.org/manual/5.4 for Lua's own functions" : "") + "\n";
 }
 
 int help(lua_State* L) {
-    const std::string text = text_about_value(L);
+    const std::string text = text_about_value(L, display_of(STDOUT_FILENO));
     lua_writestring(text.data(), text.size());  // as print() does
     return 0;
 }

@@ -3,6 +3,7 @@
 
 #include "lua/dinal_table.hpp"
 #include "lua/interrupt.hpp"
+#include "lua/standard_globals.hpp"
 #include "lua/terminal_output.hpp"
 #include "lua/value_text.hpp"
 

@@ -1,4 +1,4 @@
-// Small pieces of Lua text: names, strings, numbers.
+// Small pieces of Lua text: names, functions, strings, numbers.
 #pragma once
 
 #include <string>
@@ -12,6 +12,10 @@ bool is_name(std::string_view text);
 
 /// The names in a piece of Lua text that may be variables (no fields, no words in strings or comments), each once.
 std::vector<std::string> free_names(std::string_view source);
+
+/// The functions in a text that compiles, from the word `function` to their `end`, that begin on one line and end on
+/// the other (counted from 1).
+std::vector<std::string_view> functions_between(std::string_view text, int first_line, int last_line);
 
 /// The text in quotes, with what Lua must escape.
 std::string quoted(std::string_view text);

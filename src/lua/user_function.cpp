@@ -5,6 +5,7 @@
 #include <cmath>
 #include <string>
 
+#include "lua/error_remarks.hpp"
 #include "lua/interrupt.hpp"
 
 namespace dinal {
@@ -103,6 +104,9 @@ void CallState::keep_error_on_top() {
 }
 
 void CallState::raise_error() {
+    if (outer_ != nullptr) {
+        keep_remarks(L_);
+    }
     lua_rawgetp(L_, LUA_REGISTRYINDEX, this);
     lua_error(L_);
     std::terminate();  // not reached: lua_error does not return, but its declaration does not say so
@@ -140,13 +144,16 @@ double LuaFunction::value(double t, const State& state) {
         return failure;
     }
     lua_State* L = call->L_;
+    lua_pushcfunction(L, guarded<remember_remarks>);
+    const int handler = lua_gettop(L);
     push(L);
     lua_pushnumber(L, t);
     if (feedback_) {
         lua_pushnumber(L, state.theta);
         lua_pushnumber(L, state.velocity);
     }
-    const int status = lua_pcall(L, feedback_ ? 3 : 1, 1, 0);
+    const int status = lua_pcall(L, feedback_ ? 3 : 1, 1, handler);
+    lua_remove(L, handler);
     double M = 0;
     if (status == LUA_OK && is_good(L, M)) {
         lua_pop(L, 1);
@@ -199,9 +206,11 @@ std::size_t LuaFunction::fill(std::span<const double> times, std::span<double> o
     lua_State* L = call->L_;
     Block block{this, times, out};
     const int top = lua_gettop(L);
+    lua_pushcfunction(L, guarded<remember_remarks>);
     lua_pushcfunction(L, fill_protected);
     lua_pushlightuserdata(L, &block);
-    const int status = lua_pcall(L, 1, LUA_MULTRET, 0);
+    const int status = lua_pcall(L, 1, LUA_MULTRET, top + 1);
+    lua_remove(L, top + 1);
     if (lua_gettop(L) > top) {
         out[block.filled] = fail(*call, status, times[block.filled]);
     }
@@ -223,6 +232,8 @@ double LuaFunction::fail(CallState& call, int status, double t) const {
         sentence = definition(L) + sentence;
         lua_pop(L, 1);
         lua_pushlstring(L, sentence.data(), sentence.size());
+    } else {
+        remember_time(L, t);
     }
     call.keep_error_on_top();
     return failure;

@@ -7,6 +7,7 @@
 
 #include "lua/bind.hpp"
 #include "lua/function_source.hpp"
+#include "lua/standard_globals.hpp"
 #include "lua/vector.hpp"
 
 namespace dinal {
@@ -14,8 +15,6 @@ namespace dinal {
 namespace {
 
 constexpr std::size_t deepest = 50;  // tables and functions within each other; each takes some of the C++ stack
-
-const char standard_key = 0;  // registry key of a copy of _G as it was at the start
 
 const char sources_key = 0;  // registry key of a weak table: function -> its text, or false
 
@@ -52,19 +51,6 @@ std::optional<std::string> known_source(lua_State* L, int index) {
 }
 
 }  // namespace
-
-void note_standard_globals(lua_State* L) {
-    lua_newtable(L);
-    lua_pushglobaltable(L);
-    lua_pushnil(L);
-    while (lua_next(L, -2) != 0) {
-        lua_pushvalue(L, -2);
-        lua_insert(L, -2);
-        lua_rawset(L, -5);
-    }
-    lua_pop(L, 1);
-    lua_rawsetp(L, LUA_REGISTRYINDEX, &standard_key);
-}
 
 std::string ValueText::nothing(std::string_view what) {
     remarks_.push_back(fmt::format("-- {} could not be written down", what));
@@ -216,7 +202,7 @@ void ValueText::note_global(int environment, const std::string& name) {
     if (std::find(names_.begin(), names_.end(), name) != names_.end()) {
         return;
     }
-    lua_rawgetp(L_, LUA_REGISTRYINDEX, &standard_key);
+    push_standard_globals(L_);
     lua_pushlstring(L_, name.data(), name.size());
     lua_pushvalue(L_, -1);
     lua_rawget(L_, environment);

@@ -10,9 +10,6 @@
 
 namespace dinal {
 
-/// To be called once all globals of Lua and dinal stand: what a program has without its user needs no text.
-void note_standard_globals(lua_State* L);
-
 /// Turns values into Lua expressions, with everything that the functions among them take from outside: local variables
 /// go into the expression, global ones become lines of their own.
 class ValueText {

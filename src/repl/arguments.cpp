@@ -12,9 +12,9 @@
 namespace dinal {
 namespace {
 
-constexpr std::array<std::string_view, 15> known_options = {
-    "-e", "-l",     "-i",        "-v",       "-W",     "-E",         "-",           "--",
-    "-h", "--help", "--version", "--manual", "--safe", "--max-time", "--max-memory"};
+constexpr std::array<std::string_view, 16> known_options = {
+    "-e", "-l",     "-i",        "-v",       "-W",        "-E",     "-",          "--",
+    "-h", "--help", "--version", "--manual", "--no-init", "--safe", "--max-time", "--max-memory"};
 
 Error unknown(std::string_view option) {
     return {fmt::format("unknown option '{}'{}", option, did_you_mean(option, known_options))};
@@ -96,6 +96,10 @@ Expected<Arguments> parse_arguments(int count, const char* const* words) {
             ++i;
             break;
         }
+        if (word == "--no-init") {
+            arguments.no_init = true;
+            continue;
+        }
         if (const Request request = request_of(word); request != Request::run) {
             arguments.request = request;
             return arguments;
@@ -143,6 +147,7 @@ without a script: a prompt on a terminal, else standard input is run as a script
   -E         ignore environment variables (LUA_INIT, LUA_PATH, LUA_CPATH)
   --         no more options: what follows is the script
   -          no more options: run standard input as the script
+  --no-init  a prompt without the file ~/.config/dinal/init.lua
   --safe     for scripts of strangers: no files outside the current folder, no
              processes, no modules, and limits: --max-memory 256M --max-time 10
   --max-memory SIZE  end a script that needs more, for example 256M or 2G

@@ -23,6 +23,7 @@ struct Arguments {
     bool show_version = false;        ///< -v or -i
     bool executes = false;            ///< -e
     bool ignore_environment = false;  ///< -E
+    bool no_init = false;             ///< --no-init
     bool safe = false;                ///< --safe
     ScriptLimits limits;              ///< --max-memory, --max-time; in safe mode there are always some
     std::vector<Step> steps;

@@ -5,8 +5,10 @@
 #include <string_view>
 #include <vector>
 
+#include "lua/error_remarks.hpp"
 #include "lua/interrupt.hpp"
 #include "lua/limits.hpp"
+#include "lua/memory_limit.hpp"
 
 namespace dinal {
 namespace {
@@ -141,7 +143,8 @@ int message_handler(lua_State* L) {
     if (interrupt_requested()) {
         text = frames.empty() ? "interrupted" : "interrupted at " + frames.front().place;
     } else {
-        text = shortened(message_of(L)) + trace(frames);
+        const Remarks remarks = remarks_on(L, 1);
+        text = shortened(message_of(L)) + remarks.suggestion + remarks.excerpt + remarks.during + trace(frames);
     }
     lua_pushlstring(L, text.data(), text.size());
     return 1;
@@ -169,6 +172,28 @@ int call(lua_State* L, int arguments, int results) {
         lua_pushliteral(L, "internal error: a C++ exception reached Lua; please report it");
     }
     return status;
+}
+
+int call_with(lua_State* L, lua_CFunction function) {
+    lua_pushcfunction(L, function);
+    lua_insert(L, -2);
+    return call(L, 1, 0);
+}
+
+std::string told_error(lua_State* L, const char* file) {
+    const Remarks remarks = remarks_on_syntax(L, -1, file);
+    std::string text = take_text(L);
+    // Lua's words are good but for bytecode, which its own program would not take either.
+    if (text == "not enough memory" && memory_limit() > 0) {
+        return limit_sentence(Stop::memory, "");
+    }
+    if (text.starts_with("attempt to load a binary chunk")) {
+        return "the script is Lua bytecode, which safe mode does not take: run its source instead";
+    }
+    if (text.find("bad binary format") != std::string::npos) {
+        text += "; it is Lua bytecode that this Lua (" LUA_RELEASE ") can not run: run its source instead";
+    }
+    return text + remarks.suggestion + remarks.excerpt;
 }
 
 std::string take_text(lua_State* L) {

@@ -2,6 +2,9 @@
 
 #include <cctype>
 #include <string_view>
+#include <vector>
+
+#include "lua/tokens.hpp"
 
 namespace dinal {
 namespace {
@@ -33,9 +36,23 @@ std::string returned(std::string_view expression) {
     return std::string(returning).append(expression);
 }
 
+/// The text without the semicolons (and comments) at its end; the same text when there are none.
+std::string_view without_semicolons(std::string_view text) {
+    const std::vector<Token> all = tokens(text);
+    std::string_view result = text;
+    for (auto token = all.rbegin(); token != all.rend(); ++token) {
+        if (token->is(";")) {
+            result = text.substr(0, token->at);
+        } else if (token->kind != TokenKind::comment) {
+            break;
+        }
+    }
+    return result;
+}
+
 /// A block whose last lines are an expression becomes one that returns it. Pushes the function when there is one.
 /// NOTE: `cautious` leaves alone lines that Lua may read as the rest of the line before: (f)(), "s", {...}, -x.
-bool load_with_last_value(lua_State* L, const std::string& text, bool cautious) {
+bool load_with_last_value(lua_State* L, Chunk& chunk, const std::string& text, bool cautious) {
     for (std::size_t cut = text.rfind('\n'); cut != std::string::npos && cut > 0; cut = text.rfind('\n', cut - 1)) {
         const std::size_t first = text.find_first_not_of(" \t\r\n", cut);
         if (first == std::string::npos) {
@@ -48,35 +65,49 @@ bool load_with_last_value(lua_State* L, const std::string& text, bool cautious) 
         const std::string begin = text.substr(0, cut + 1);
         const std::string last = text.substr(cut + 1);
         if (loads(L, begin) && loads(L, returned(last))) {
+            chunk.statements = begin;
+            chunk.expression = last;
             return load(L, begin + returned(last));
         }
     }
     return false;
 }
 
+/// The words after `return`, when that is the first word.
+std::string_view without_return(std::string_view text) {
+    const std::vector<Token> all = tokens(text);
+    return !all.empty() && all.front().is("return") ? text.substr(all.front().end()) : text;
+}
+
 }  // namespace
 
-Compiled compile(lua_State* L, const std::string& text) {
+Chunk compile(lua_State* L, const std::string& text) {
+    Chunk chunk{Compiled::ready, text, "", false};
+    const std::string_view quiet = without_semicolons(text);
+    chunk.silent = quiet.size() != text.size();
     const bool equals = !text.empty() && text[0] == '=';  // = x, as in Lua 5.2 and before
-    if (load(L, returned(std::string_view(text).substr(equals ? 1 : 0)))) {
-        return Compiled::ready;
+    const std::string_view expression = without_return(quiet.substr(equals ? 1 : 0));
+    if (load(L, returned(expression))) {
+        chunk.statements.clear();
+        chunk.expression = expression;
+        return chunk;
     }
     bool early = ended_early(L);
     lua_pop(L, 1);
     const bool statements = load(L, text);
     early = !statements && (ended_early(L) || early);
-    if (early) {
-        return Compiled::incomplete;
-    }
     if (text.find('\n') != std::string::npos) {
         const int top = lua_gettop(L);
-        if (load_with_last_value(L, text, statements)) {
+        // NOTE: a block may end in a name, after which Lua expects more.
+        if (load_with_last_value(L, chunk, std::string(quiet), statements || early)) {
             lua_remove(L, top);
-            return Compiled::ready;
+            return chunk;
         }
         lua_settop(L, top);
     }
-    return statements ? Compiled::ready : Compiled::wrong;
+    chunk.silent = false;
+    chunk.result = statements ? Compiled::ready : early ? Compiled::incomplete : Compiled::wrong;
+    return chunk;
 }
 
 }  // namespace dinal

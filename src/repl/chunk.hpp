@@ -1,4 +1,4 @@
-// What is typed at the prompt, compiled: an expression to a function that returns its values, else as statements.
+// What is typed at the prompt, compiled: statements, and an expression at their end whose values are shown.
 #pragma once
 
 #include <lua.hpp>
@@ -13,9 +13,16 @@ enum class Compiled {
     wrong,       ///< the message is
 };
 
+struct Chunk {
+    Compiled result = Compiled::wrong;
+    std::string statements;  ///< what is run first
+    std::string expression;  ///< whose values the function returns; empty when there is none
+    bool silent = false;     ///< a `;` stands behind the expression: its values are not to be shown
+};
+
 /// The name of every such chunk, in messages "stdin", as in lua.
 inline constexpr const char* prompt_chunk = "=stdin";
 
-Compiled compile(lua_State* L, const std::string& text);
+Chunk compile(lua_State* L, const std::string& text);
 
 }  // namespace dinal

@@ -1,108 +1,122 @@
 // The only file that knows readline, and the only one that differs when it is not built in.
 #include "repl/line_editor.hpp"
 
-#include <unistd.h>
-
-#include <csignal>
-#include <cstdio>
-#include <cstdlib>
-
 #ifdef DINAL_READLINE
 #include <poll.h>
 #include <readline/history.h>
 #include <readline/readline.h>
+#include <unistd.h>
 
+#include <cstdio>
+#include <cstdlib>
 #include <cstring>
+#include <vector>
+
+#include "io/display.hpp"
+#include "repl/completion.hpp"
+#include "repl/output.hpp"
+#include "repl/typing.hpp"
+#include "repl/user_files.hpp"
 #endif
 
-#include "repl/history_file.hpp"
-#include "repl/output.hpp"
-
 namespace dinal {
-namespace {
-
-volatile std::sig_atomic_t interrupted = 0;
-
-extern "C" void note_interrupt(int) {
-    interrupted = 1;
-}
-
-/// While it lives, Ctrl-C belongs to the line that is typed, and to nobody else.
-class InterruptNote {
-public:
-    InterruptNote() {
-        interrupted = 0;
-        struct sigaction action {};
-        action.sa_handler = note_interrupt;
-        sigemptyset(&action.sa_mask);
-        action.sa_flags = 0;  // no SA_RESTART: reading must wake up
-        sigaction(SIGINT, &action, &before_);
-    }
-    ~InterruptNote() { sigaction(SIGINT, &before_, nullptr); }
-    InterruptNote(const InterruptNote&) = delete;
-    InterruptNote& operator=(const InterruptNote&) = delete;
-
-private:
-    struct sigaction before_ {};
-};
-
-Line read_plain(const std::string& prompt) {
-    say(prompt);
-    flush_output();
-    const InterruptNote note;
-    char* buffer = nullptr;
-    std::size_t capacity = 0;
-    // From the same FILE as io.read, so that Lua code can read the lines that follow its own.
-    const ssize_t size = getline(&buffer, &capacity, stdin);
-    std::string text(buffer == nullptr ? "" : buffer, size > 0 ? static_cast<std::size_t>(size) : 0);
-    std::free(buffer);  // NOLINT: getline allocated it
-    if (interrupted != 0) {
-        std::clearerr(stdin);
-        say("\n");
-        return {Reading::interrupted, ""};
-    }
-    if (size < 0) {
-        std::clearerr(stdin);  // Ctrl-D ends this line, not all that may still be typed
-        return {Reading::end, ""};
-    }
-    if (text.back() == '\n') {
-        text.pop_back();
-    }
-    return {Reading::line, text};
-}
 
 #ifdef DINAL_READLINE
 
-constexpr int longest_history = 5000;  // entries
+namespace {
 
-bool accepted = false;  // these two are set by accept(), which readline calls when the line is finished
-Line accepted_line;
+constexpr int longest_history = 5000;  // entries
+constexpr const char* erase_to_end = "\x1b[K";
+
+// What readline's callbacks need to know: there is one editor, and they get no argument.
+struct Editing {
+    lua_State* L = nullptr;
+    bool paints = false;   // colours and hints
+    bool hinting = false;  // a hint stands behind the line
+    bool accepted = false;
+    Line line;
+    std::string prompt;
+    std::string pending;  // earlier lines of the chunk, each with its newline
+    std::vector<std::string> names;
+};
+Editing editing;
 
 void accept(char* text) {
-    accepted = true;
-    accepted_line = text == nullptr ? Line{} : Line{Reading::line, text};
+    editing.accepted = true;
+    editing.line = text == nullptr ? Line{} : Line{Reading::line, text};
     std::free(text);               // NOLINT: readline allocated it
     rl_callback_handler_remove();  // now, before readline prints another prompt
 }
 
-char* no_completion(const char*, int) {
-    return nullptr;
+void erase_hint() {
+    if (editing.hinting) {
+        std::fputs(erase_to_end, rl_outstream);
+        editing.hinting = false;
+    }
 }
 
-bool dumb_terminal() {
-    const char* name = std::getenv("TERM");  // NOLINT(concurrency-mt-unsafe): one thread
-    return name == nullptr || *name == '\0' || std::strcmp(name, "dumb") == 0;
+int finish_line(int count, int key) {
+    erase_hint();
+    return rl_newline(count, key);
+}
+
+/// readline draws the line; then it is drawn over in colours, with the hint behind it, where it is one simple row.
+void redisplay() {
+    if (InterruptNote::interrupted()) {
+        return;  // the line is being given up: it stays as it is
+    }
+    erase_hint();  // before the cursor moves: it stands where the hint begins
+    rl_redisplay();
+    constexpr unsigned long other_uses = RL_STATE_ISEARCH | RL_STATE_NSEARCH | RL_STATE_SEARCH | RL_STATE_NUMERICARG |
+                                         RL_STATE_COMPLETING | RL_STATE_VIMOTION;
+    if (!editing.paints || RL_ISSTATE(other_uses) || rl_display_prompt != rl_prompt) {
+        return;
+    }
+    const std::string_view line(rl_line_buffer, static_cast<std::size_t>(rl_end));
+    const auto cursor = static_cast<std::size_t>(rl_point);
+    const Painted painted = paint(editing.L, editing.prompt, editing.pending, line, cursor);
+    editing.hinting = painted.hint;
+    if (!painted.text.empty()) {
+        std::fputs(painted.text.c_str(), rl_outstream);
+        std::fflush(rl_outstream);
+    }
+}
+
+/// readline asks for one name after the other, and wants to free each.
+char* next_name(const char*, int again) {
+    static std::size_t next = 0;
+    next = again == 0 ? 0 : next;
+    return next < editing.names.size() ? strdup(editing.names[next++].c_str()) : nullptr;
+}
+
+char** complete_word(const char* word, int, int end) {
+    erase_hint();
+    rl_attempted_completion_over = 1;  // no names of files where none belong
+    rl_completion_append_character = '\0';
+    const std::string line(rl_line_buffer, static_cast<std::size_t>(end));
+    if (!editing.pending.empty() && line.find_first_not_of(' ') == std::string::npos) {
+        rl_insert_text("  ");  // the key indents a line of a block
+        return nullptr;
+    }
+    Completion completion = complete_safely(editing.L, editing.pending + line);
+    if (completion.files) {
+        return rl_completion_matches(word, rl_filename_completion_function);
+    }
+    editing.names = std::move(completion.names);
+    return rl_completion_matches(word, next_name);
 }
 
 void start_readline(const std::string& history) {
     rl_readline_name = "dinal";
-    rl_catch_signals = 1;                          // it restores the terminal before Ctrl-Z and its like take effect,
-    rl_persistent_signal_handlers = 1;             // also when one comes while we wait for a key
-    rl_completion_entry_function = no_completion;  // its own would offer names of files
+    rl_catch_signals = 1;               // it restores the terminal before Ctrl-Z and its like take effect,
+    rl_persistent_signal_handlers = 1;  // also when one comes while we wait for a key
+    rl_attempted_completion_function = complete_word;
+    rl_completer_word_break_characters = const_cast<char*>(" \t\n\"\\'`@$><=;|&{}()[]:.,+-*/%^~#!?");  // only read
+    rl_completer_quote_characters = "\"'";
     rl_initialize();
     // After the user's inputrc. A blinking parenthesis would swallow a Ctrl-C that is typed within its half second.
     rl_variable_bind("blink-matching-paren", "off");
-    rl_variable_bind("enable-bracketed-paste", dumb_terminal() ? "off" : "on");
+    rl_variable_bind("enable-bracketed-paste", obeys_escapes() ? "on" : "off");
     // With time stamps an entry of several lines is read back as one.
     history_comment_char = '#';
     history_write_timestamps = 1;
@@ -110,6 +124,12 @@ void start_readline(const std::string& history) {
     if (!history.empty()) {
         history_truncate_file(history.c_str(), longest_history);
         read_history(history.c_str());
+    }
+    editing.paints = display_of(STDOUT_FILENO).colour;
+    if (editing.paints) {
+        rl_redisplay_function = redisplay;
+        rl_bind_key('\r', finish_line);
+        rl_bind_key('\n', finish_line);
     }
 }
 
@@ -121,25 +141,29 @@ bool key_arrived() {
     sigfillset(&all);
     // All are blocked from the last look until ppoll sleeps, so that none is overlooked.
     sigprocmask(SIG_BLOCK, &all, &before);
-    if (rl_pending_signal() == 0 && interrupted == 0) {
+    if (rl_pending_signal() == 0 && !InterruptNote::interrupted()) {
         pollfd input{fileno(rl_instream), POLLIN, 0};
         arrived = ppoll(&input, 1, nullptr, &before) > 0;
     }
     sigprocmask(SIG_SETMASK, &before, nullptr);
-    rl_check_signals();  // raises the signal again for note_interrupt, with the terminal in order
-    return arrived && interrupted == 0;
+    rl_check_signals();  // raises the signal again for the note, with the terminal in order
+    return arrived && !InterruptNote::interrupted();
 }
 
-Line read_edited(const std::string& prompt) {
+Line read_edited(const std::string& prompt, const std::string& pending) {
     const InterruptNote note;
-    accepted = false;
+    editing.accepted = false;
+    editing.hinting = false;
+    editing.prompt = prompt;
+    editing.pending = pending.empty() ? "" : pending + "\n";
     using_history();
     rl_callback_handler_install(prompt.c_str(), accept);
-    while (!accepted) {
+    while (!editing.accepted) {
         if (key_arrived()) {
             rl_callback_read_char();
         }
-        if (interrupted != 0 && !accepted) {
+        if (InterruptNote::interrupted() && !editing.accepted) {
+            erase_hint();
             rl_callback_sigcleanup();
             rl_free_line_state();
             rl_callback_handler_remove();
@@ -147,29 +171,22 @@ Line read_edited(const std::string& prompt) {
             return {Reading::interrupted, ""};
         }
     }
-    return accepted_line;
+    return editing.line;
 }
-
-bool can_edit() {
-    return isatty(STDIN_FILENO) != 0 && isatty(STDOUT_FILENO) != 0;
-}
-
-#endif
 
 }  // namespace
 
-#ifdef DINAL_READLINE
-
 // NOTE: readline reads a pipe badly (it spins at its end and completes at its tabs): never use it there.
-LineEditor::LineEditor() : edits_(can_edit()) {
+LineEditor::LineEditor(lua_State* L) : edits_(isatty(STDIN_FILENO) != 0 && isatty(STDOUT_FILENO) != 0) {
     if (edits_) {
+        editing.L = L;
         history_file_ = history_file();
         start_readline(history_file_);
     }
 }
 
-Line LineEditor::read(const std::string& prompt) const {
-    return edits_ ? read_edited(prompt) : read_plain(prompt);
+Line LineEditor::read(const std::string& prompt, const std::string& pending) const {
+    return edits_ ? read_edited(prompt, pending) : read_plain(prompt);
 }
 
 void LineEditor::remember(const std::string& entry) {
@@ -192,9 +209,9 @@ const char* LineEditor::about() {
 
 #else
 
-LineEditor::LineEditor() : edits_(false) {}
+LineEditor::LineEditor(lua_State*) : edits_(false) {}
 
-Line LineEditor::read(const std::string& prompt) const {
+Line LineEditor::read(const std::string& prompt, const std::string&) const {
     return read_plain(prompt);
 }
 

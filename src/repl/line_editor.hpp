@@ -1,27 +1,21 @@
 // Lines typed by the user: with GNU readline at a terminal when it is built in, else plain.
 #pragma once
 
+#include <lua.hpp>
 #include <string>
 
+#include "repl/plain_lines.hpp"
+
 namespace dinal {
-
-enum class Reading {
-    line,
-    end,          ///< Ctrl-D, or the end of a file
-    interrupted,  ///< Ctrl-C
-};
-
-struct Line {
-    Reading reading = Reading::end;
-    std::string text;  ///< without its newline; a pasted block has newlines inside
-};
 
 /// One lives at a time. Lua code may read standard input between two lines.
 class LineEditor {
 public:
-    LineEditor();
+    /// The state is asked for names at Tab and for signatures.
+    explicit LineEditor(lua_State* L);
 
-    [[nodiscard]] Line read(const std::string& prompt) const;
+    /// `pending` are the lines before it of a chunk that goes on.
+    [[nodiscard]] Line read(const std::string& prompt, const std::string& pending = "") const;
 
     /// Adds an entry, which may have several lines, to the history of this and of later sessions.
     void remember(const std::string& entry);

@@ -4,11 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <string_view>
 #include <vector>
 
-#include "lua/interrupt.hpp"
-#include "repl/quoted.hpp"
+#include "lua/lua_text.hpp"
+#include "repl/scalar_text.hpp"
 #include "repl/table_items.hpp"
 
 namespace dinal {
@@ -17,72 +16,22 @@ namespace {
 constexpr std::size_t deepest = 3;            // tables within tables; further ones are {...}
 constexpr std::size_t most_lines = 24;        // of one value,
 constexpr std::size_t most_joined_lines = 6;  // of a long list of numbers
-constexpr std::size_t longest_string = 1000;
-constexpr std::size_t width_of_line = 80;   // a longer string of several lines is a text, as from run:explain(),
-constexpr std::size_t longest_text = 4000;  // up to this
-constexpr std::size_t longest_inner_string = 60;
 
-std::string text_of(lua_State* L, int index) {
-    std::size_t size = 0;
-    const char* text = lua_tolstring(L, index, &size);
-    return {text, size};
+bool is_fraction(lua_State* L, int index) {
+    const double number = lua_type(L, index) == LUA_TNUMBER ? lua_tonumber(L, index) : 0;
+    return std::isfinite(number) && number != std::floor(number);
 }
 
-int to_text(lua_State* L) {
-    luaL_tolstring(L, 1, nullptr);
-    return 1;
-}
-
-/// What tostring says, or that it failed. Ctrl-C ends the whole display.
-std::string told(lua_State* L, int index) {
-    lua_pushvalue(L, index);
-    lua_pushcfunction(L, to_text);
-    lua_insert(L, -2);
-    const bool fine = lua_pcall(L, 1, 1, 0) == LUA_OK;
-    if (!fine && interrupt_requested()) {
-        raise_interrupted(L);
-    }
-    std::string text = lua_isstring(L, -1) != 0 ? text_of(L, -1) : std::string(luaL_typename(L, -1));
-    lua_pop(L, 1);
-    return fine ? text : fmt::format("<error in __tostring: {}>", text);
-}
-
-bool has_tostring(lua_State* L, int index) {
-    if (luaL_getmetafield(L, index, "__tostring") == LUA_TNIL) {
-        return false;
-    }
-    lua_pop(L, 1);
-    return true;
-}
-
-bool is_name(std::string_view text) {
-    const auto letter = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_'; };
-    const auto fits = [letter](char c) { return letter(c) || (c >= '0' && c <= '9'); };
-    return !text.empty() && letter(text[0]) && std::all_of(text.begin(), text.end(), fits);
-}
-
-/// One value, but tables only when they speak for themselves.
-std::string scalar(lua_State* L, int index, bool inside) {
-    switch (lua_type(L, index)) {
-        case LUA_TNUMBER:
-            return std::isnan(lua_tonumber(L, index)) ? "nan" : told(L, index);
-        case LUA_TSTRING: {
-            std::string text = text_of(L, index);
-            if (!inside && text.size() > width_of_line && text.size() <= longest_text && is_lines(text)) {
-                return text;
-            }
-            const std::size_t limit = inside ? longest_inner_string : longest_string;
-            return quoted(text, limit) +
-                   (!inside && text.size() > limit ? fmt::format(" ({} bytes)", text.size()) : "");
+/// The first columns of a text, and three dots. Letters of several bytes stay whole.
+std::string shortened(std::string text, std::size_t width) {
+    const auto inside = [&text] { return !text.empty() && (static_cast<unsigned char>(text.back()) & 0xC0U) == 0x80U; };
+    while (!text.empty() && columns(text) + 3 > width) {
+        while (inside()) {
+            text.pop_back();
         }
-        case LUA_TFUNCTION:
-            return inside ? "function" : told(L, index);
-        default:
-            break;
+        text.pop_back();
     }
-    std::string text = told(L, index);
-    const std::size_t end = text.find('\n');
-    return inside && end != std::string::npos ? text.substr(0, end) + "..." : text;
+    return text + "...";
 }
 
 struct Piece {
@@ -92,29 +41,33 @@ struct Piece {
 
 class Printer {
 public:
-    Printer(lua_State* L, std::size_t width) : L_(L), width_(std::max<std::size_t>(width, 20)) {}
+    Printer(lua_State* L, const Display& screen) : L_(L), screen_(screen), width_(screen.width - 1) {}
 
     std::string value(int index) {
-        if (!is_plain_table(index)) {
-            return scalar(L_, index, false);
+        if (!is_plain_table(L_, index)) {
+            return scalar_text(L_, index, Place::alone, screen_);
         }
         const Piece line = table_line(index, width_);
         return line.whole ? line.text : table_lines(index);
     }
 
-private:
-    bool is_plain_table(int index) const { return lua_istable(L_, index) && !has_tostring(L_, index); }
-
-    bool is_fraction(int index) const {
-        const double number = lua_type(L_, index) == LUA_TNUMBER ? lua_tonumber(L_, index) : 0;
-        return std::isfinite(number) && number != std::floor(number);
+    std::string line(int index, std::size_t width) {
+        std::string text = is_plain_table(L_, index) ? table_line(index, width).text : scalar(index);
+        return columns(text) > width ? shortened(std::move(text), width) : text;
     }
+
+private:
+    [[nodiscard]] std::string scalar(int index) const { return scalar_text(L_, index, Place::inside, screen_); }
 
     /// A value inside a table, in `room` columns if it can be cut.
     Piece inner(int index, std::size_t room) {
-        if (!is_plain_table(index)) {
-            return {brief_ && is_fraction(index) ? fmt::format("{:.6g}", lua_tonumber(L_, index))
-                                                 : scalar(L_, index, true)};
+        if (!is_plain_table(L_, index)) {
+            const bool short_number = brief_ && is_fraction(L_, index);
+            Piece item{short_number ? fmt::format("{:.6g}", lua_tonumber(L_, index)) : scalar(index)};
+            if (lua_isuserdata(L_, index) != 0 && columns(item.text) > room) {  // of our objects the beginning will do
+                item = {shortened(std::move(item.text), room), false};
+            }
+            return item;
         }
         const void* address = lua_topointer(L_, index);
         if (std::find(open_.begin(), open_.end(), address) != open_.end()) {
@@ -150,9 +103,14 @@ private:
     }
 
     std::string key_text(int index) const {
-        std::string text = is_plain_table(index) ? "{...}" : scalar(L_, index, true);
-        const bool name = lua_type(L_, index) == LUA_TSTRING && is_name(text_of(L_, index));
-        return name ? text_of(L_, index) : "[" + text + "]";
+        if (lua_type(L_, index) == LUA_TSTRING) {
+            std::size_t size = 0;
+            const char* start = lua_tolstring(L_, index, &size);
+            if (is_name({start, size})) {
+                return {start, size};
+            }
+        }
+        return "[" + (is_plain_table(L_, index) ? "{...}" : scalar(index)) + "]";
     }
 
     /// "name = value", or only the value for an item of the list.
@@ -215,6 +173,7 @@ private:
     }
 
     lua_State* L_;
+    Display screen_;
     std::size_t width_;
     bool brief_ = false;             // numbers with six digits
     std::vector<const void*> open_;  // the tables that are being shown, outermost first
@@ -222,8 +181,12 @@ private:
 
 }  // namespace
 
-std::string show(lua_State* L, int index, std::size_t width) {
-    return Printer(L, width).value(lua_absindex(L, index));
+std::string show(lua_State* L, int index, const Display& screen) {
+    return Printer(L, screen).value(lua_absindex(L, index));
+}
+
+std::string show_line(lua_State* L, int index, const Display& screen, std::size_t width) {
+    return Printer(L, screen).line(lua_absindex(L, index), std::max<std::size_t>(width, 8));
 }
 
 }  // namespace dinal

@@ -1,29 +1,19 @@
 #include "repl/repl.hpp"
 
-#include <fmt/core.h>
-#include <sys/ioctl.h>
 #include <unistd.h>
 
-#include "lua/dinal_table.hpp"
 #include "lua/function_source.hpp"
-#include "lua/interrupt.hpp"
 #include "repl/call.hpp"
 #include "repl/chunk.hpp"
-#include "repl/line_editor.hpp"
+#include "repl/commands.hpp"
+#include "repl/notices.hpp"
 #include "repl/output.hpp"
-#include "repl/printer.hpp"
 #include "repl/script.hpp"
+#include "repl/session.hpp"
+#include "repl/user_files.hpp"
 
 namespace dinal {
 namespace {
-
-constexpr std::size_t default_width = 80;
-
-std::size_t screen_width() {
-    winsize size{};
-    const bool known = isatty(STDOUT_FILENO) != 0 && ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0;
-    return known ? size.ws_col : default_width;
-}
 
 /// As in lua, a string in the global _PROMPT or _PROMPT2 replaces ours. Raw: a strict _G must not make it an error.
 std::string prompt_text(lua_State* L, const char* global, const char* ours) {
@@ -35,147 +25,123 @@ std::string prompt_text(lua_State* L, const char* global, const char* ours) {
     return text;
 }
 
-/// Sets the global ans to the value at `index`.
-void set_ans(lua_State* L, int index) {
-    index = lua_absindex(L, index);
-    lua_pushglobaltable(L);
-    lua_pushliteral(L, "ans");
-    lua_pushvalue(L, index);
-    lua_rawset(L, -3);
-    lua_pop(L, 1);
+/// Tells the message on the top of the stack, of a text that does not compile.
+void reject(Session& session, const std::string& text) {
+    keep_source(session.L, prompt_chunk, text);  // the message shows the line
+    say_error(told_error(session.L, nullptr));
 }
 
-/// What a run that failed or was stopped has left behind, or nil.
-void push_partial(lua_State* L) {
-    push_dinal_table(L);
-    lua_pushliteral(L, "partial");
-    lua_rawget(L, -2);
-    lua_remove(L, -2);
-}
-
-int print_partial(lua_State* L) {
-    say_error("the part of the run that was done is in ans: " + show(L, 1, screen_width()));
-    return 0;
-}
-
-int print_values(lua_State* L) {
-    const int count = lua_gettop(L);
-    std::string text;
-    for (int i = 1; i <= count; ++i) {
-        text.append(i == 1 ? "" : "\t").append(show(L, i, screen_width()));
-    }
-    text += '\n';
-    say(text);
-    return 0;
-}
-
-/// Shows the values on top of `base` by one of the two functions above, which take them.
-void show_by(lua_State* L, lua_CFunction function, int base) {
-    luaL_checkstack(L, LUA_MINSTACK, "too many values to show");
-    lua_pushcfunction(L, function);
-    lua_insert(L, base + 1);
-    if (call(L, lua_gettop(L) - base - 1, 0) != LUA_OK) {
-        say_error(take_text(L));
-    }
-}
-
-/// The values on top of `base` become ans (the first) and are shown.
-void show_values(lua_State* L, int base) {
-    if (lua_gettop(L) == base) {
-        return;
-    }
-    if (!lua_isnil(L, base + 1)) {
-        set_ans(L, base + 1);
-    }
-    show_by(L, print_values, base);
-}
-
-/// The part of a run that was done before the error is worth keeping. `before` is where the earlier one stands.
-void keep_partial_run(lua_State* L, int before) {
-    push_partial(L);
-    if (!lua_isnil(L, -1) && lua_rawequal(L, -1, before) == 0) {
-        set_ans(L, -1);
-        show_by(L, print_partial, lua_gettop(L) - 1);
-    }
-}
-
-/// Runs the function on the top of the stack and empties the stack.
-void evaluate(lua_State* L) {
-    push_partial(L);
-    lua_insert(L, 1);
-    if (call(L, 0, LUA_MULTRET) == LUA_OK) {
-        if (interrupt_requested()) {
-            say_error("interrupted");
-        }
-        show_values(L, 1);
-    } else {
-        say_error(take_text(L));
-        keep_partial_run(L, 1);
-    }
-    lua_settop(L, 0);
-}
-
-/// Takes the message from the top of the stack.
-Line reject(lua_State* L, LineEditor& editor, const std::string& text) {
-    editor.remember(text);
-    say_error(take_text(L));
-    return {Reading::line, ""};
-}
-
-/// Reads lines until they make a chunk and compiles it: its function is then on the stack. Nothing is when there is
-/// nothing to run.
-Line read_chunk(lua_State* L, LineEditor& editor) {
-    Line chunk = editor.read(prompt_text(L, "_PROMPT", "> "));
-    while (chunk.reading == Reading::line) {
-        const Compiled result = compile(L, chunk.text);
-        if (result == Compiled::ready) {
-            break;
-        }
-        if (result == Compiled::wrong) {
-            return reject(L, editor, chunk.text);
-        }
-        Line more = editor.read(prompt_text(L, "_PROMPT2", ">> "));
+/// Reads the lines that are missing of a chunk, and compiles it: its function is then on the stack.
+Line read_rest(Session& session, Chunk& chunk, Line input) {
+    lua_State* L = session.L;
+    while (chunk.result == Compiled::incomplete) {
+        const Line more = session.editor.read(prompt_text(L, "_PROMPT2", ">> "), input.text);
         if (more.reading == Reading::end) {
             say("\n");
-            return reject(L, editor, chunk.text);
+            chunk.result = Compiled::wrong;
+            return input;
         }
         lua_settop(L, 0);
         if (more.reading == Reading::interrupted) {
             return more;
         }
-        chunk.text.append("\n").append(more.text);
+        input.text.append("\n").append(more.text);
+        chunk = compile(L, input.text);
     }
-    if (chunk.text.find("function") != std::string::npos) {
-        keep_source(L, prompt_chunk, chunk.text);  // a file of results may need the text of what is defined here
+    return input;
+}
+
+/// Reads one input and does what it says.
+Reading read_and_run(Session& session) {
+    lua_State* L = session.L;
+    Line input = session.editor.read(prompt_text(L, "_PROMPT", "> "));
+    if (input.reading != Reading::line) {
+        return input.reading;
     }
-    editor.remember(chunk.text);
-    return chunk;
+    if (is_command(input.text)) {
+        session.editor.remember(input.text);
+        run_command(session, input.text);
+        return Reading::line;
+    }
+    Chunk chunk = compile(L, input.text);
+    if (const std::string notice = chunk.result == Compiled::incomplete ? colon_notice(L, input.text) : "";
+        !notice.empty()) {
+        session.editor.remember(input.text);
+        say_notice(notice);
+        return Reading::line;
+    }
+    input = read_rest(session, chunk, input);
+    if (input.reading == Reading::interrupted) {
+        return input.reading;
+    }
+    session.editor.remember(input.text);
+    chunk.result == Compiled::ready ? run_chunk(session, chunk, input.text) : reject(session, input.text);
+    return Reading::line;
+}
+
+void run_init_file(lua_State* L) {
+    const std::string file = init_file();
+    if (file.empty()) {
+        return;
+    }
+    if (luaL_loadfile(L, file.c_str()) != LUA_OK) {
+        say_error(told_error(L, file.c_str()));
+    } else if (call(L, 0, 0) != LUA_OK) {
+        say_error(take_text(L));
+    }
+    lua_settop(L, 0);
 }
 
 }  // namespace
+
+void run_chunk(Session& session, const Chunk& chunk, const std::string& text) {
+    keep_source(session.L, prompt_chunk,
+                text);  // errors and files of results may need the text of what is defined here
+    const Evaluated result = evaluate(session.L, chunk);
+    if (!result.fine) {
+        return;
+    }
+    if (const std::string notice = session.local_noticed ? "" : local_notice(text); !notice.empty()) {
+        say_notice(notice);
+        session.local_noticed = true;
+    }
+    const std::string before = session.record.problem();
+    session.record.add(chunk, result);
+    if (const std::string& problem = session.record.problem(); !problem.empty() && before.empty()) {
+        say_error(":record: " + problem);
+    }
+}
+
+void run_text(Session& session, const std::string& text) {
+    lua_settop(session.L, 0);
+    const Chunk chunk = compile(session.L, text);
+    chunk.result == Compiled::ready ? run_chunk(session, chunk, text) : reject(session, text);
+    lua_settop(session.L, 0);
+}
 
 std::string greeting() {
     return version_line() + ": help() for help, Ctrl-D to leave";
 }
 
-bool run_prompt(lua_State* L) {
-    LineEditor editor;
+bool run_prompt(lua_State* L, Start start) {
     lua_settop(L, 0);
-    for (;;) {
-        const Line chunk = read_chunk(L, editor);
-        if (chunk.reading == Reading::end) {
+    if (start == Start::with_init_file) {
+        run_init_file(L);
+    }
+    Session session(L);
+    while (!session.leaving) {
+        const Reading reading = read_and_run(session);
+        lua_settop(L, 0);
+        flush_output();
+        if (reading == Reading::end) {
             say("\n");
             return true;
         }
-        if (chunk.reading == Reading::interrupted && isatty(STDIN_FILENO) == 0) {
+        if (reading == Reading::interrupted && isatty(STDIN_FILENO) == 0) {
             return false;
         }
-        if (lua_gettop(L) > 0) {
-            evaluate(L);
-        }
-        lua_settop(L, 0);
-        flush_output();
     }
+    return true;
 }
 
 }  // namespace dinal

@@ -10,7 +10,9 @@ namespace dinal {
 /// The first line of a session.
 std::string greeting();
 
+enum class Start { with_init_file, plain };
+
 /// Until the end of input. False when Ctrl-C ended it, which happens only where no terminal is.
-bool run_prompt(lua_State* L);
+bool run_prompt(lua_State* L, Start start);
 
 }  // namespace dinal

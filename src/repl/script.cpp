@@ -29,21 +29,11 @@
 namespace dinal {
 namespace {
 
-/// Lua's words are good but for bytecode, which its own program would not take either.
-std::string explained(std::string text) {
-    if (text.starts_with("attempt to load a binary chunk")) {
-        return "the script is Lua bytecode, which safe mode does not take: run its source instead";
-    }
-    if (text.find("bad binary format") != std::string::npos) {
-        text += "; it is Lua bytecode that this Lua (" LUA_RELEASE ") can not run: run its source instead";
-    }
-    return text;
-}
-
-/// Ends a piece of work whose error, if any, is the text on the top of the stack.
-bool finished(lua_State* L, int status) {
+/// Ends a piece of work whose error, if any, is the text on the top of the stack. `file` is that of the chunk, if it
+/// did not even compile.
+bool finished(lua_State* L, int status, const char* file = nullptr) {
     if (status != LUA_OK) {
-        const std::string text = explained(take_text(L));
+        const std::string text = status == LUA_ERRSYNTAX || status == LUA_ERRMEM ? told_error(L, file) : take_text(L);
         complain(stop_requested() == Stop::interrupted && text.rfind("interrupted", 0) != 0 ? "interrupted" : text);
     } else if (stop_requested() == Stop::interrupted) {
         complain("interrupted");
@@ -61,8 +51,8 @@ bool run_loaded(lua_State* L, int status, int arguments = 0) {
 /// Text that is in no file. It is kept, so that a file of results can hold the source of the functions in it.
 int load_text(lua_State* L, std::string_view text, const char* name) {
     const int status = luaL_loadbufferx(L, text.data(), text.size(), name, load_mode());
-    if (status == LUA_OK) {
-        keep_source(L, name, text);
+    if (status == LUA_OK || status == LUA_ERRSYNTAX) {
+        keep_source(L, name, text);  // an error needs it, too
     }
     return status;
 }
@@ -71,9 +61,23 @@ bool run_text(lua_State* L, const char* text, const char* name) {
     return run_loaded(L, load_text(L, text, name));
 }
 
-/// luaL_loadfile as a function that Lua can call: it takes its time and memory like any other code.
+/// luaL_loadfile as a function that Lua can call; returns the chunk or the message, and the status.
 int load_file(lua_State* L) {
-    return luaL_loadfilex(L, lua_tostring(L, 1), load_mode()) == LUA_OK ? 1 : lua_error(L);
+    lua_pushinteger(L, luaL_loadfilex(L, lua_tostring(L, 1), load_mode()));
+    return 2;
+}
+
+/// luaL_loadfile, which takes its time and memory like any other code.
+int load_script(lua_State* L, const char* file) {
+    allow_reading(file);
+    lua_pushcfunction(L, load_file);
+    lua_pushstring(L, file);
+    int status = call(L, 1, 2);
+    if (status == LUA_OK) {
+        status = static_cast<int>(lua_tointeger(L, -1));
+        lua_pop(L, 1);
+    }
+    return status;
 }
 
 /// What luaL_loadfile(L, nullptr) does, mark of UTF-8 and `#!` line included, but the text is kept.
@@ -165,18 +169,12 @@ int push_script_arguments(lua_State* L) {
 }
 
 bool run_script(lua_State* L, const Arguments& arguments) {
-    const std::string_view word = arguments.words[arguments.script];
+    const char* file = arguments.words[arguments.script];
     const bool after_dashes = std::string_view(arguments.words[arguments.script - 1]) == "--";
-    int status = LUA_OK;
-    if (word == "-" && !after_dashes) {
-        status = load_standard_input(L);
-    } else {
-        allow_reading(word.data());
-        lua_pushcfunction(L, load_file);
-        lua_pushstring(L, word.data());
-        status = call(L, 1, 1);
-    }
-    return status == LUA_OK ? run_loaded(L, status, push_script_arguments(L)) : finished(L, status);
+    const bool standard_input = std::string_view(file) == "-" && !after_dashes;
+    const int status = standard_input ? load_standard_input(L) : load_script(L, file);
+    return status == LUA_OK ? run_loaded(L, status, push_script_arguments(L))
+                            : finished(L, status, standard_input ? nullptr : file);
 }
 
 void open(lua_State* L, const Arguments& arguments) {
@@ -200,7 +198,8 @@ int prompt(lua_State* L, const Arguments& arguments) {
     if (!arguments.show_version) {
         say(greeting() + "\n");
     }
-    return run_prompt(L) ? exit_code::ok : exit_code::interrupted;
+    return run_prompt(L, arguments.no_init ? Start::plain : Start::with_init_file) ? exit_code::ok
+                                                                                   : exit_code::interrupted;
 }
 
 int run_all(lua_State* L, const Arguments& arguments) {

@@ -329,7 +329,7 @@ TEST_CASE("the boundary of the motion without stops", "[report]") {
 TEST_CASE("the number of stops per cycle falls as the load quickens", "[report]") {
     const Method method = either();
     CAPTURE(method.spectral());
-    const auto stops = [](double r) {
+    const auto stops = [&](double r) {
         const Trajectory run = driven(method, nondimensional(0, 0.4), r, {0, 0}, 60 / r);
         return static_cast<double>(count_since(run, stick, 20 / r)) / 40;
     };

@@ -6,7 +6,8 @@
 In README.md, docs/*.md and examples/README.md a block fenced as ```console is run:
   "$ command"   is given to the shell, in a folder of its own for each document, with the project's examples/ and docs/
                 in it; scripts/dinal and dinal are the program under test;
-  "> text"      after "$ scripts/dinal" or "$ dinal" alone is typed at the prompt, on a terminal;
+  "> text"      after "$ scripts/dinal" or "$ dinal" alone is typed at the prompt, on a terminal; a block that begins
+                so goes on with the session of the block before;
   other lines   are the output (both channels); a line "..." stands for any lines, and numbers of more than nine digits
                 are compared in nine: the rest depends on how a compiler orders sums.
 A block fenced as ```sh is not run: it is for what can not be run here (git clone, apt); the scripts that it names must be
@@ -53,28 +54,42 @@ def run(command, folder):
     return done.stdout.decode()
 
 
-def type_at_prompt(command, typed, folder):
-    """The screen after the lines were typed, without the prompt that the end of the input answered."""
-    screen = pexpect.spawn("sh", ["-c", command], cwd=folder, env=environment(folder), encoding="utf-8", timeout=TIMEOUT,
-                           dimensions=(50, 100))
-    text = ""
-    for line in typed + [None]:
-        screen.expect(r"(^|\n)>>? $")
-        text += screen.before + screen.after
-        if line is None:
-            screen.sendeof()
-        else:
-            screen.sendline(line)
-    screen.expect(pexpect.EOF)
-    return re.sub(r"\n>>? $", "\n", text.replace("\r", ""))
+class Prompt:
+    """A session of a document."""
+
+    def __init__(self, command, folder):
+        self.screen = pexpect.spawn("sh", ["-c", command], cwd=folder, env=environment(folder), encoding="utf-8",
+                                    timeout=TIMEOUT, dimensions=(50, 100))
+        self.screen.expect(r"(^|\n)> $")
+        self.greeting = self.screen.before.replace("\r", "") + "\n"
+
+    def type(self, lines):
+        """What is on the screen then, from the first prompt to before the last one."""
+        text = "> "
+        for line in lines:
+            self.screen.sendline(line)
+            self.screen.expect([r"(^|\n)>>? $", pexpect.EOF])
+            text += self.screen.before + (self.screen.after if isinstance(self.screen.after, str) else "")
+        return re.sub(r"\n>>? $", "\n", text.replace("\r", ""))
+
+    def leave(self):
+        if self.screen.isalive():
+            self.screen.sendeof()
+            self.screen.expect(pexpect.EOF)
+
+
+def typed_lines(text):
+    return re.findall(r"^>>? ?(.*)$", text, re.M)
 
 
 def parts(block):
-    """(command, typed lines, expected text) of each "$ " line."""
+    """(command, expected text) of each "$ " line; the command is None for what is typed into the session so far."""
+    if block.startswith(">"):
+        yield None, block
+        return
     for chunk in re.split(r"^\$ ", block, flags=re.M)[1:]:
         command, _, expected = chunk.partition("\n")
-        typed = re.findall(r"^>>? ?(.*)$", expected, re.M) if command in ("dinal", "scripts/dinal") else []
-        yield command, typed, expected
+        yield command, expected
 
 
 def in_nine_digits(text):
@@ -93,8 +108,8 @@ def check(path):
     """The number of commands, the complaints, and the text as --update would write it."""
     with open(path, encoding="utf-8") as file:
         text = file.read()
-    count, complaints, fresh = 0, [], text
-    folder = sandbox()
+    count, complaints, fresh, done = 0, [], "", 0
+    folder, prompt = sandbox(), None
     try:
         for fence in FENCE.finditer(text):
             language, block = fence.groups()
@@ -105,18 +120,30 @@ def check(path):
             if language != "console":
                 continue
             answer = ""
-            for command, typed, expected in parts(block):
+            for command, expected in parts(block):
                 count += 1
-                got = type_at_prompt(command, typed, folder) if typed else run(command, folder)
-                if same(expected, got):
-                    answer += f"$ {command}\n{expected}"
+                typed = typed_lines(expected) if command in (None, "dinal", "scripts/dinal") else []
+                head = f"$ {command}\n" if command is not None else ""
+                if command is not None and prompt:
+                    prompt.leave()
+                    prompt = None
+                if command is not None and typed:
+                    prompt = Prompt(command, folder)
+                    got = prompt.greeting + prompt.type(typed)
                 else:
-                    answer += f"$ {command}\n{got}"
-                    complaints.append(f"$ {command}\n--- it says\n{expected}--- it is\n{got}---")
-            fresh = fresh.replace(block, answer)
+                    got = prompt.type(typed) if typed else run(command, folder)
+                if same(expected, got):
+                    answer += head + expected
+                else:
+                    answer += head + got
+                    complaints.append(f"{head}--- it says\n{expected}--- it is\n{got}---")
+            fresh += text[done:fence.start(2)] + answer
+            done = fence.end(2)
+        if prompt:
+            prompt.leave()
     finally:
         shutil.rmtree(folder)
-    return count, complaints, fresh
+    return count, complaints, fresh + text[done:]
 
 
 def main():

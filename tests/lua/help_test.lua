@@ -101,7 +101,7 @@ end
 
 test("help knows functions, methods, modules, objects and names", function()
     local harmonic = output "help(excitation.harmonic)"
-    assert(harmonic:find("excitation.harmonic{ amplitude = 1, frequency | omega, phase = 0 } -> excitation", 1, true), harmonic)
+    assert(harmonic:find("excitation.harmonic{ amplitude = 1, frequency | omega, phase = 0 } ->", 1, true), harmonic)
     for _, same in ipairs { 'help "excitation.harmonic"', 'help "harmonic"' } do
         equal(output(same), harmonic)
     end
@@ -123,12 +123,31 @@ test("help searches words, suggests names, and shows where to begin", function()
     assert(select(2, many:gsub("\n  %S", "")) <= 10 and many:find("more: use more of the word", 1, true), many)
     assert(output 'help "harmonc"':find("did you mean 'harmonic'?", 1, true))
     assert(output 'help "thta0"':find("did you mean 'theta0'?", 1, true))
-    assert(output "help()":find("sys:simulate", 1, true))
-    equal(output "help(dinal)", output "help()")
+    assert(output "help()":find("sys = system{", 1, true) and output "help()":find("help(2)", 1, true))
+    equal(output "help(1)", output "help()")
+    equal(output 'help " "', output "help()")
+    assert(output "help(7)":find("pages 1 to 6", 1, true))
+    assert(output 'help "contents"':find("excitation.harmonic", 1, true))
+    equal(output "help(dinal)", output 'help "contents"')
+    assert(output 'help "brakaway"':find("did you mean 'breakaway'?", 1, true))
+    assert(output 'help "elseif"':find("a word of Lua", 1, true))
     assert(output "help(nil)":find("in quotes", 1, true))
     assert(output "help(3.5)":find("in quotes", 1, true))
     assert(output "help(print)":find("Lua's own", 1, true))
     assert(output "help(function() end)":find("no help", 1, true))
+end)
+
+test("an entry names what to look at next, and help knows these names", function()
+    local simulate = output 'help "simulate"'
+    local names = simulate:match "See also: ([^\n]+)"
+    assert(names:find("run", 1, true) and names:find("integrator.", 1, true), simulate)
+    for _, entry in ipairs(entries) do
+        if not entry.heading:find "[ #%-]" and #entry.heading > 1 then
+            for name in (output(('help "%s"'):format(entry.heading)):match "See also: ([^\n]+)" or ""):gmatch "[^, ]+" do
+                assert(not output(('help "%s"'):format(name)):find("nothing about", 1, true), entry.heading .. " names " .. name)
+            end
+        end
+    end
 end)
 
 support.finish()

@@ -115,12 +115,6 @@ class Lines(PromptTest):
         self.assertEqual(session.leave(), 0)
         self.assertTrue(session.child.before.endswith("\r\n"))
 
-    def test_tab_inserts_nothing(self):
-        session = self.start()
-        (self.home / "file.lua").write_text("")
-        session.press("'" + TAB + "fi" + TAB + TAB)
-        self.assertEqual(session.enter("'"), '"fi"')
-
     def test_a_dumb_terminal_gets_no_escape_sequences(self):
         session = self.start(prompt="> ", TERM="dumb")
         session.press("{ 1, 'two' }" + ENTER)

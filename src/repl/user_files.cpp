@@ -1,4 +1,4 @@
-#include "repl/history_file.hpp"
+#include "repl/user_files.hpp"
 
 #include <fcntl.h>
 #include <sys/stat.h>
@@ -14,11 +14,12 @@ std::string absolute_folder(const char* variable) {
     return value != nullptr && value[0] == '/' ? value : "";
 }
 
-std::string state_folder() {
-    std::string folder = absolute_folder("XDG_STATE_HOME");  // its specification: ignore it unless absolute
+/// Our folder in that of the variable, or in this folder of the home; empty when there is neither.
+std::string own_folder(const char* variable, const char* in_home) {
+    std::string folder = absolute_folder(variable);  // the specification of XDG: ignore it unless absolute
     if (folder.empty()) {
         const std::string home = absolute_folder("HOME");
-        folder = home.empty() ? "" : home + "/.local/state";
+        folder = home.empty() ? "" : home + in_home;
     }
     return folder.empty() ? "" : folder + "/dinal";
 }
@@ -33,7 +34,7 @@ void make_folders(const std::string& path) {
 }  // namespace
 
 std::string history_file() {
-    const std::string folder = state_folder();
+    const std::string folder = own_folder("XDG_STATE_HOME", "/.local/state");
     if (folder.empty()) {
         return "";
     }
@@ -45,6 +46,12 @@ std::string history_file() {
     }
     close(descriptor);
     return file;
+}
+
+std::string init_file() {
+    const std::string folder = own_folder("XDG_CONFIG_HOME", "/.config");
+    const std::string file = folder.empty() ? "" : folder + "/init.lua";
+    return !file.empty() && access(file.c_str(), F_OK) == 0 ? file : "";
 }
 
 }  // namespace dinal

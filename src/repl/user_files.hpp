@@ -1,4 +1,4 @@
-// Where the history of the prompt is kept.
+// The files that belong to the user and not to his work: the history of the prompt, and what it begins with.
 #pragma once
 
 #include <string>
@@ -8,5 +8,8 @@ namespace dinal {
 /// ${XDG_STATE_HOME:-~/.local/state}/dinal/history, made (for this user only) with its folders when it is not there;
 /// empty when that is not possible: the prompt works without a history.
 std::string history_file();
+
+/// ${XDG_CONFIG_HOME:-~/.config}/dinal/init.lua, run before the first prompt; empty when it is not there.
+std::string init_file();
 
 }  // namespace dinal

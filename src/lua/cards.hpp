@@ -1,0 +1,26 @@
+// Objects as the prompt shows them, for the eye: what `tostring` says in Lua text, and what follows from it.
+#pragma once
+
+#include <lua.hpp>
+#include <string>
+
+#include "io/display.hpp"
+
+namespace dinal {
+
+/// The parameters of the system at `index` and what follows from them, a line each.
+std::string system_card(lua_State* L, int index, const Display& screen);
+
+/// M(t) as a formula, a line for each term, and the times at which it jumps or kinks.
+std::string excitation_card(lua_State* L, int index, const Display& screen);
+
+/// The method with all its options, those that were not given, too.
+std::string integrator_card(lua_State* L, int index, const Display& screen);
+
+/// The ends of the vector that fit on a line, and its length.
+std::string vector_card(lua_State* L, int index, const Display& screen);
+
+/// The summary, over more than one line when it must be.
+std::string run_card(lua_State* L, int index, const Display& screen);
+
+}  // namespace dinal

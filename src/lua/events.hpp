@@ -1,0 +1,14 @@
+// The list run.events as Lua sees it: plain tables that know how to write themselves.
+#pragma once
+
+#include <lua.hpp>
+#include <span>
+
+#include "core/event.hpp"
+
+namespace dinal {
+
+/// Pushes { { t, kind, theta, M }, ... }.
+void push_events(lua_State* L, std::span<const Event> events);
+
+}  // namespace dinal

@@ -1,0 +1,19 @@
+// The line of source that an error is about, with a mark below it.
+#pragma once
+
+#include <lua.hpp>
+#include <string>
+#include <string_view>
+
+#include "lua/source_text.hpp"
+
+namespace dinal {
+
+/// "\n  10 | x = sytem{}\n     |     ^^^^^". The mark is found by the names in the message, or in the suggestion of
+/// help_with(). Empty when the line is not there, or was typed just now and no part of it is known to be the culprit.
+std::string excerpt(const SourceText& source, const Message& message, std::string_view suggestion);
+
+/// The same for a chunk that does not compile.
+std::string syntax_excerpt(lua_State* L, const SourceText& source, const Message& message);
+
+}  // namespace dinal

@@ -1,0 +1,206 @@
+// Which entries belong to a name or to words that somebody asks help() about.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+
+#include "core/suggest.hpp"
+#include "lua/help_text.hpp"
+#include "lua/signature.hpp"
+#include "lua/tokens.hpp"
+
+namespace dinal {
+
+namespace {
+
+struct Hit {
+    const Section* section;
+    const Member* member;  // none: the section itself
+};
+
+std::string hit_text(const Hit& hit, const Display& screen) {
+    return hit.member != nullptr ? member_text(*hit.section, *hit.member, screen) : class_text(*hit.section, screen);
+}
+
+std::string hit_line(const Hit& hit, const Display& screen) {
+    return line_about(listed_name(*hit.section, *hit.member), hit.member->doc.summary, screen);
+}
+
+// A user may write sys.simulate, sys:simulate, system:simulate or simulate.
+bool has_name(const Section& section, const Member& member, std::string_view name) {
+    if (member.kind == Kind::metamethod) {
+        return false;
+    }
+    const std::size_t separator = name.find_last_of(".:");
+    if (separator == std::string_view::npos) {
+        return name == member.name;
+    }
+    const std::string_view owner = name.substr(0, separator);
+    return name.substr(separator + 1) == member.name &&
+           (owner == section.prefix || owner == section.description->name ||
+            (owner == "dinal" && *section.prefix == '\0'));
+}
+
+/// Globals first: `excitation` is the module and its class, although run.excitation is a field, too.
+std::vector<Hit> named(std::string_view name) {
+    std::vector<Hit> globals;
+    std::vector<Hit> others;
+    for (const Section& section : sections()) {
+        const bool is_function_table = *section.prefix == '\0';
+        for (const Member& member : section.description->members) {
+            if (has_name(section, member, name)) {
+                (is_function_table ? globals : others).push_back({&section, &member});
+            }
+        }
+        if (!is_function_table && (name == section.description->name || name == section.prefix)) {
+            globals.push_back({&section, nullptr});
+        }
+    }
+    return globals.empty() ? others : globals;
+}
+
+/// Lower case, and dead_zone is found as "dead zone".
+std::string searchable(std::string_view text) {
+    std::string result = lower(text);
+    std::replace(result.begin(), result.end(), '_', ' ');
+    return result;
+}
+
+/// Does every word stand somewhere in the text?
+bool has_words(const std::string& text, std::string_view words) {
+    const std::string wanted = searchable(words);
+    for (std::size_t at = 0; at < wanted.size();) {
+        const std::size_t end = std::min(wanted.find(' ', at), wanted.size());
+        if (text.find(wanted.substr(at, end - at)) == std::string::npos) {
+            return false;
+        }
+        at = end + 1;
+    }
+    return true;
+}
+
+/// Those with the words in their names first.
+std::vector<Hit> mentioning(std::string_view words) {
+    std::vector<Hit> in_name;
+    std::vector<Hit> elsewhere;
+    for (const Section& section : sections()) {
+        for (const Member& member : section.description->members) {
+            const std::string name = searchable(listed_name(section, member));
+            if (has_words(name, words)) {
+                in_name.push_back({&section, &member});
+            } else if (has_words(searchable(fmt::format("{} {} {}", name, member.doc.signature, member.doc.summary)),
+                                 words)) {
+                elsewhere.push_back({&section, &member});
+            }
+        }
+    }
+    in_name.insert(in_name.end(), elsewhere.begin(), elsewhere.end());
+    return in_name;
+}
+
+std::string likely(std::string_view word, const std::vector<std::string>& known) {
+    const std::vector<std::string_view> views(known.begin(), known.end());
+    return did_you_mean(word, views);
+}
+
+/// A name or an option, else one of the longer words of all summaries.
+std::string likely(std::string_view word) {
+    constexpr std::size_t shortest = 6;
+    std::vector<std::string> names;
+    std::vector<std::string> words;
+    for (const Section& section : sections()) {
+        names.emplace_back(section.description->name);
+        for (const Member& member : section.description->members) {
+            for (const Token& token : tokens(member.doc.signature)) {
+                if (token.kind == TokenKind::name) {
+                    names.emplace_back(token.text);
+                }
+            }
+            for (const Token& token : tokens(member.doc.summary)) {
+                if (token.kind == TokenKind::name && token.text.size() >= shortest) {
+                    words.push_back(lower(token.text));
+                }
+            }
+        }
+    }
+    const std::string hint = likely(word, names);
+    return hint.empty() ? likely(word, words) : hint;
+}
+
+std::string no_help(std::string_view words) {
+    if (std::find(keywords().begin(), keywords().end(), words) != keywords().end()) {
+        return fmt::format("'{}' is a word of Lua: see https://www.lua.org/manual/5.4\n", words);
+    }
+    const std::string hint = likely(words);
+    return fmt::format("nothing about '{}'{}{}\n", words, hint,
+                       hint.empty() ? "; help \"contents\" lists what there is" : "");
+}
+
+std::string contents(const Display& screen) {
+    std::string text;
+    for (const Section& section : sections()) {
+        text += fmt::format("{}{}\n", text.empty() ? "" : "\n", section.title);
+        std::string names;
+        for (const Member& member : section.description->members) {
+            if (member.kind != Kind::metamethod) {
+                names += (names.empty() ? "" : ", ") + written_name(section, member);
+            }
+        }
+        text += "  " + wrapped(names, std::min<std::size_t>(screen.width, 80) - 3) + "\n";
+    }
+    for (std::size_t at = text.find('\n'); at + 1 < text.size(); at = text.find('\n', at + 1)) {
+        if (std::islower(static_cast<unsigned char>(text[at + 1])) != 0) {
+            text.insert(at + 1, "  ");
+        }
+    }
+    return text + "\nhelp \"name\" says more about each of them.\n";
+}
+
+}  // namespace
+
+std::vector<std::string> help_names() {
+    std::vector<std::string> names = {"contents"};
+    for (const Section& section : sections()) {
+        if (*section.prefix != '\0') {
+            names.emplace_back(section.description->name);
+        }
+        for (const Member& member : section.description->members) {
+            if (member.kind != Kind::metamethod) {
+                names.push_back(written_name(section, member));
+                names.emplace_back(member.name);
+            }
+        }
+    }
+    std::sort(names.begin(), names.end());
+    names.erase(std::unique(names.begin(), names.end()), names.end());
+    return names;
+}
+
+std::string help_about(std::string_view words, const Display& screen) {
+    constexpr std::size_t most = 10;
+    while (!words.empty() && words.back() == ' ') words.remove_suffix(1);
+    while (!words.empty() && words.front() == ' ') words.remove_prefix(1);
+    if (words == "contents") {
+        return contents(screen);
+    }
+    std::string text;
+    for (const Hit& hit : named(words)) {
+        text += (text.empty() ? "" : "\n") + hit_text(hit, screen);
+    }
+    if (!text.empty()) {
+        return text;
+    }
+    const std::vector<Hit> hits = mentioning(words);
+    if (hits.empty()) {
+        return no_help(words);
+    }
+    for (std::size_t i = 0; i < std::min(most, hits.size()); ++i) {
+        text += hit_line(hits[i], screen);
+    }
+    if (hits.size() > most) {
+        text += fmt::format("  ... and {} more: use more of the word\n", hits.size() - most);
+    }
+    return text;
+}
+
+}  // namespace dinal

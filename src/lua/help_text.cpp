@@ -1,0 +1,164 @@
+#include "lua/help_text.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+
+#include "lua/signature.hpp"
+
+namespace dinal {
+
+namespace {
+
+constexpr std::size_t widest = 79;  // longer lines are hard to read, however wide the screen is
+
+std::size_t text_width(const Display& screen) {
+    return std::min(screen.width - 1, widest);
+}
+
+std::string first_sentence(std::string_view summary) {
+    const std::size_t stop = summary.find(". ");
+    return std::string(stop == std::string_view::npos ? summary : summary.substr(0, stop + 1));
+}
+
+std::string indented(std::string_view text) {
+    std::string result = "    ";
+    for (const char c : text) {
+        result += c;
+        if (c == '\n') {
+            result += "    ";
+        }
+    }
+    return result;
+}
+
+std::string doc_text(const Doc& doc, const Display& screen) {
+    const std::size_t width = text_width(screen);
+    return spelled(fmt::format("{}\n\n{}\n\n{}\n", wrapped(doc.signature, width), wrapped(doc.summary, width),
+                               indented(doc.example)),
+                   screen);
+}
+
+/// Does the text use the name as a name of its own, not as a part of another?
+bool mentions(std::string_view text, std::string_view name) {
+    const auto is_part = [](char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_'; };
+    for (std::size_t at = text.find(name); at != std::string_view::npos; at = text.find(name, at + 1)) {
+        const std::size_t end = at + name.size();
+        const bool begins = at == 0 || (!is_part(text[at - 1]) && text[at - 1] != '.' && text[at - 1] != ':');
+        if (begins && (end == text.size() || !is_part(text[end]))) {
+            return true;
+        }
+    }
+    return false;
+}
+
+class Names {
+public:
+    void add(const std::string& name) {
+        constexpr std::size_t most = 5;
+        if (list.size() < most && std::find(list.begin(), list.end(), name) == list.end()) {
+            list.push_back(name);
+        }
+    }
+    std::vector<std::string> list;
+};
+
+/// A name of one plain word ("system", "v") is too common a word to count as a mention.
+bool telling(std::string_view name) {
+    return name.find_first_of(".:") != std::string_view::npos;
+}
+
+}  // namespace
+
+std::string lower(std::string_view text) {
+    std::string result(text);
+    std::transform(result.begin(), result.end(), result.begin(),
+                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    return result;
+}
+
+std::string written_name(const Section& section, const Member& member) {
+    const std::string_view prefix = section.prefix;
+    const std::string_view separator = prefix.empty() ? "" : member.kind == Kind::method ? ":" : ".";
+    return fmt::format("{}{}{}", prefix, separator, member.name);
+}
+
+std::string listed_name(const Section& section, const Member& member) {
+    if (member.kind == Kind::metamethod) {
+        const std::string_view signature = member.doc.signature;
+        return std::string(signature.substr(0, signature.find(" ->")));
+    }
+    return written_name(section, member);
+}
+
+// What the entry mentions, what it gives, what mentions it, and its neighbours: nobody has to keep a list of these.
+std::vector<std::string> see_also(const Section& section, const Member& member) {
+    Names names;
+    const std::string own = written_name(section, member);
+    std::vector<std::string> mentioning;
+    std::vector<std::string> alike;  // those after the member, then those before it
+    std::size_t before = 0;
+    for (const Section& other_section : sections()) {
+        for (const Member& other : other_section.description->members) {
+            const std::string name = written_name(other_section, other);
+            if (other.kind == Kind::metamethod || name == own) {
+                continue;
+            }
+            if (telling(name) && mentions(member.doc.summary, name)) {
+                names.add(name);
+            } else if (telling(own) && mentions(other.doc.summary, own)) {
+                mentioning.push_back(name);
+            } else if (&section == &other_section && other.kind == member.kind) {
+                alike.push_back(name);
+                before += &other < &member ? 1U : 0U;
+            }
+        }
+    }
+    const Section* result = result_class(member.doc.signature);
+    if (result != nullptr && result->description != section.description) {
+        names.add(result->description->name);
+    }
+    std::for_each(mentioning.begin(), mentioning.end(), [&names](const std::string& name) { names.add(name); });
+    std::rotate(alike.begin(), alike.begin() + static_cast<std::ptrdiff_t>(before), alike.end());
+    constexpr std::size_t enough = 3;
+    for (std::size_t i = 0; i < alike.size() && names.list.size() < enough; ++i) {
+        names.add(alike[i]);
+    }
+    return names.list;
+}
+
+std::string member_text(const Section& section, const Member& member, const Display& screen) {
+    std::string text = doc_text(member.doc, screen);
+    if (const auto names = see_also(section, member); !names.empty()) {
+        text += "\n" + wrapped(fmt::format("See also: {}", fmt::join(names, ", ")), text_width(screen)) + "\n";
+    }
+    return text;
+}
+
+std::string line_about(std::string_view name, std::string_view summary, const Display& screen) {
+    constexpr std::size_t indent = 28;
+    const std::size_t width = text_width(screen);
+    if (width < indent + 24) {  // narrow: the text goes below the name
+        std::string text = wrapped(first_sentence(summary), width - 4);
+        for (std::size_t at = text.find('\n'); at != std::string::npos; at = text.find('\n', at + 1)) {
+            text.insert(at + 1, "    ");
+        }
+        return fmt::format("  {}\n    {}\n", name, spelled(text, screen));
+    }
+    std::string text = wrapped(first_sentence(summary), width - indent);
+    for (std::size_t at = text.find('\n'); at != std::string::npos; at = text.find('\n', at + 1)) {
+        text.insert(at + 1, indent, ' ');
+    }
+    return spelled(fmt::format("  {:<{}} {}\n", name, indent - 3, text), screen);
+}
+
+std::string class_text(const Section& section, const Display& screen) {
+    std::string text = doc_text(section.description->doc, screen) + "\n";
+    for (const Member& member : section.description->members) {
+        text += line_about(listed_name(section, member), member.doc.summary, screen);
+    }
+    return text;
+}
+
+}  // namespace dinal

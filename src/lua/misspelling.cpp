@@ -1,0 +1,253 @@
+#include "lua/misspelling.hpp"
+
+#include <algorithm>
+#include <optional>
+#include <utility>
+
+#include "lua/bind.hpp"
+#include "lua/habits.hpp"
+#include "lua/tokens.hpp"
+
+namespace dinal {
+namespace {
+
+constexpr int most_metatables = 10;  // an __index may lead to itself
+
+/// The string keys of the table on the top.
+void add_keys(lua_State* L, std::vector<std::string>& names) {
+    lua_pushnil(L);
+    while (lua_next(L, -2) != 0) {
+        if (lua_type(L, -2) == LUA_TSTRING) {
+            names.emplace_back(lua_tostring(L, -2));
+        }
+        lua_pop(L, 1);
+    }
+}
+
+/// Replaces the value on the top by the table in the __index of its metatable; false when there is none.
+bool step_to_index_table(lua_State* L) {
+    if (lua_getmetatable(L, -1) == 0) {
+        return false;
+    }
+    lua_pushliteral(L, "__index");
+    lua_rawget(L, -2);
+    lua_replace(L, -3);
+    lua_pop(L, 1);
+    return lua_istable(L, -1);
+}
+
+std::string likely(std::string_view name, const std::vector<std::string>& names) {
+    const std::vector<std::string_view> views(names.begin(), names.end());
+    return did_you_mean(name, views);
+}
+
+/// Calls visit(name) with the value of each local and outer variable of the frame on the top of the stack.
+template <class Visit>
+void each_variable(lua_State* L, lua_Debug* frame, Visit visit) {
+    if (frame == nullptr) {
+        return;
+    }
+    for (int i = 1; const char* name = lua_getlocal(L, frame, i); ++i) {
+        visit(name);
+        lua_pop(L, 1);
+    }
+    lua_getinfo(L, "f", frame);
+    const int function = lua_gettop(L);
+    for (int i = 1; const char* name = lua_getupvalue(L, function, i); ++i) {
+        visit(name);
+        lua_pop(L, 1);
+    }
+    lua_pop(L, 1);
+}
+
+std::vector<std::string> variables(lua_State* L, lua_Debug* frame) {
+    std::vector<std::string> names;
+    each_variable(L, frame, [&names](std::string_view name) {
+        if (!name.empty() && name.front() != '(' && name != "_ENV") {
+            names.emplace_back(name);
+        }
+    });
+    return names;
+}
+
+/// Pushes what the variable holds there: a local one (the innermost of that name), an outer one, a global one.
+void push_variable(lua_State* L, lua_Debug* frame, std::string_view wanted) {
+    lua_pushnil(L);
+    const int result = lua_gettop(L);
+    bool found = false;
+    each_variable(L, frame, [&](std::string_view name) {
+        if (name == wanted) {
+            lua_copy(L, -1, result);
+            found = true;
+        }
+    });
+    if (!found) {
+        lua_pushglobaltable(L);
+        lua_pushlstring(L, wanted.data(), wanted.size());
+        lua_rawget(L, -2);
+        lua_replace(L, result);
+        lua_pop(L, 1);
+    }
+}
+
+/// For "x.y.name" or "x.y:name" in the statement: the names that x.y has.
+std::vector<std::string> siblings(lua_State* L, lua_Debug* frame, std::string_view name, std::string_view statement) {
+    const std::vector<Token> all = tokens(statement);
+    for (std::size_t i = 2; i < all.size(); ++i) {
+        if (!all[i].is(name) || !(all[i - 1].is(".") || all[i - 1].is(":")) || all[i - 2].kind != TokenKind::name) {
+            continue;
+        }
+        std::size_t first = i - 2;
+        while (first >= 2 && all[first - 1].is(".") && all[first - 2].kind == TokenKind::name) {
+            first -= 2;
+        }
+        const int top = lua_gettop(L);
+        push_variable(L, frame, all[first].text);
+        for (std::size_t k = first + 2; k < i && lua_istable(L, -1); k += 2) {
+            lua_pushlstring(L, all[k].text.data(), all[k].text.size());
+            lua_rawget(L, -2);
+        }
+        std::vector<std::string> names = member_names(L);
+        lua_settop(L, top);
+        return names;
+    }
+    return {};
+}
+
+/// The word in "... (KIND 'word')".
+std::string_view named_in(std::string_view words, std::string_view kind) {
+    const std::size_t at = words.find("(" + std::string(kind) + " '");
+    if (at == std::string_view::npos) {
+        return {};
+    }
+    const std::size_t begin = at + kind.size() + 3;
+    return words.substr(begin, words.find('\'', begin) - begin);
+}
+
+/// Names that the statement itself declares: local x, function(x), for x, { x = 1 }.
+bool is_declared(const std::vector<Token>& all, std::string_view name) {
+    bool declaring = false;
+    for (std::size_t i = 0; i < all.size(); ++i) {
+        const Token& token = all[i];
+        declaring = token.is("local") || token.is("for") || token.is("function") ||
+                    (declaring && (token.kind == TokenKind::name || token.is(",") || token.is("(")));
+        const bool assigned = i + 1 < all.size() && all[i + 1].is("=");
+        if (token.kind == TokenKind::name && token.text == name && (declaring || assigned)) {
+            return true;
+        }
+    }
+    return false;
+}
+
+/// The word in "sys:simulate needs t_end, for example ..." or "system: I must be ..., got nil".
+std::string_view missing_in(std::string_view words) {
+    const std::size_t needs = words.find(" needs ");
+    const std::size_t colon =
+        words.ends_with("must be a finite number, got nil") ? words.find(": ") : std::string_view::npos;
+    const std::size_t begin = needs != std::string_view::npos ? needs + 7 : colon + 2;
+    const bool there = needs != std::string_view::npos || colon != std::string_view::npos;
+    return there ? words.substr(begin, words.find_first_of(" ,", begin) - begin) : std::string_view();
+}
+
+/// A global that is nil, in the statement: the value of the option that is missing; else one with a likely other
+/// spelling or, when the words speak of nil without saying of which, any.
+std::string nil_global(lua_State* L, lua_Debug* frame, std::string_view words, std::string_view statement) {
+    const std::string_view missing = missing_in(words);
+    const bool any = words.find("nil") != std::string_view::npos && words.find("nil value (") == std::string_view::npos;
+    const std::vector<Token> all = tokens(statement);
+    const std::vector<std::string> local = variables(L, frame);
+    for (std::size_t i = 0; i < all.size(); ++i) {
+        const bool field = i > 0 && (all[i - 1].is(".") || all[i - 1].is(":") || all[i - 1].is("goto"));
+        if (all[i].kind != TokenKind::name || field || is_declared(all, all[i].text) ||
+            std::find(local.begin(), local.end(), all[i].text) != local.end()) {
+            continue;
+        }
+        push_variable(L, nullptr, all[i].text);
+        const bool is_nil = lua_isnil(L, -1);
+        lua_pop(L, 1);
+        const std::string hint = is_nil ? similar_global(L, all[i].text) : "";
+        const bool its_value = i > 1 && all[i - 1].is("=") && all[i - 2].is(missing);
+        if (is_nil && (missing.empty() ? any || !hint.empty() : its_value)) {
+            return "; '" + std::string(all[i].text) + "' is nil" + hint;
+        }
+    }
+    return "";
+}
+
+bool called_a_value(std::string_view words) {
+    return words.starts_with("attempt to call a number value") || words.starts_with("attempt to call a string value") ||
+           words.starts_with("attempt to call a boolean value");
+}
+
+}  // namespace
+
+std::vector<std::string> member_names(lua_State* L) {
+    std::vector<std::string> names;
+    luaL_checkstack(L, LUA_MINSTACK, "for the names of members");
+    const int top = lua_gettop(L);
+    lua_pushvalue(L, -1);
+    if (const Documented found = documented(L, -1); found.owner != nullptr && found.member == nullptr) {
+        for (const Member& member : found.owner->members) {
+            if (member.kind != Kind::metamethod) {
+                names.emplace_back(member.name);
+            }
+        }
+    }
+    for (int i = 0; i < most_metatables; ++i) {
+        if (lua_istable(L, -1)) {
+            add_keys(L, names);
+        }
+        if (lua_isuserdata(L, -1) != 0 || !step_to_index_table(L)) {
+            break;
+        }
+    }
+    lua_settop(L, top);
+    std::sort(names.begin(), names.end());
+    names.erase(std::unique(names.begin(), names.end()), names.end());
+    return names;
+}
+
+std::string similar_global(lua_State* L, std::string_view name) {
+    std::vector<std::string> names;
+    lua_pushglobaltable(L);
+    add_keys(L, names);
+    lua_pop(L, 1);
+    return likely(name, names);
+}
+
+std::string help_with(lua_State* L, lua_Debug* frame, std::string_view words, std::string_view statement) {
+    luaL_checkstack(L, LUA_MINSTACK, "for the help with an error");
+    if (words.find("did you mean") != std::string_view::npos) {
+        return "";
+    }
+    if (called_a_value(words)) {
+        return "; it is a value and no function: leave out the parentheses";
+    }
+    if (words.find("nil value") != std::string_view::npos) {
+        const std::string_view name = named_in(words, "global");
+        if (name == "quit" || name == "exit") {
+            return "; os.exit() ends a script, :quit or Ctrl-D a session";
+        }
+        if (!name.empty()) {
+            std::vector<std::string> names = variables(L, frame);
+            lua_pushglobaltable(L);
+            add_keys(L, names);
+            lua_pop(L, 1);
+            return likely(name, names);
+        }
+        for (const char* kind : {"field", "method"}) {
+            if (const std::string_view key = named_in(words, kind); !key.empty()) {
+                return likely(key, siblings(L, frame, key, statement));
+            }
+        }
+    }
+    if (std::string habit = habit_of_others(words, statement); !habit.empty()) {
+        return habit;
+    }
+    if (words.find(" near ") != std::string_view::npos) {
+        return "";
+    }
+    return nil_global(L, frame, words, statement);
+}
+
+}  // namespace dinal

@@ -1,0 +1,22 @@
+// The globals that Lua and dinal bring, apart from those that the user makes.
+#pragma once
+
+#include <lua.hpp>
+#include <string>
+#include <vector>
+
+namespace dinal {
+
+/// To be called once all globals of Lua and dinal stand: remembers them.
+void note_standard_globals(lua_State* L);
+
+/// Pushes a table of them: name -> value.
+void push_standard_globals(lua_State* L);
+
+/// The names of all globals that are not among them, or hold something else now; sorted.
+std::vector<std::string> users_globals(lua_State* L);
+
+/// Takes away the user's globals and gives the standard ones back.
+void reset_globals(lua_State* L);
+
+}  // namespace dinal

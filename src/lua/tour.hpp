@@ -1,0 +1,14 @@
+// The tour of two minutes that help() starts.
+#pragma once
+
+#include <cstddef>
+#include <string>
+
+namespace dinal {
+
+std::size_t tour_pages();
+
+/// Page 1, 2, ... The lines to be typed begin with four blanks and "> ".
+std::string tour_page(std::size_t page);
+
+}  // namespace dinal

@@ -1,0 +1,30 @@
+// What an expression that is being typed will be, found without running anything: raw tables, and documentation.
+#pragma once
+
+#include <lua.hpp>
+#include <span>
+
+#include "lua/library.hpp"
+#include "lua/tokens.hpp"
+
+namespace dinal {
+
+struct Meaning {
+    enum class Kind {
+        unknown,
+        value,   ///< it is on the top of the stack
+        object,  ///< it will be an object of the class `section`
+        member,  ///< it is the method or field `member` of `section`, or one of our functions
+    };
+    Kind kind = Kind::unknown;
+    const Section* section = nullptr;
+    const Member* member = nullptr;
+};
+
+/// Pushes exactly one value: that of Kind::value, else nil.
+Meaning meaning(lua_State* L, std::span<const Token> expression);
+
+/// The section that describes a class, nullptr when none does.
+const Section* section_of(const Class* description);
+
+}  // namespace dinal

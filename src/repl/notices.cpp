@@ -1,0 +1,113 @@
+#include "repl/notices.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <vector>
+
+#include "lua/help_text.hpp"
+#include "lua/misspelling.hpp"
+#include "lua/tokens.hpp"
+#include "repl/meaning.hpp"
+#include "repl/output.hpp"
+#include "repl/typed_text.hpp"
+
+namespace dinal {
+namespace {
+
+bool opens_block(const Token& token) {
+    return token.is("function") || token.is("do") || token.is("if") || token.is("repeat");
+}
+bool closes_block(const Token& token) {
+    return token.is("end") || token.is("until");
+}
+
+/// The names that `local`, which is token `at`, declares.
+std::vector<std::string_view> declared(const std::vector<Token>& all, std::size_t at) {
+    std::vector<std::string_view> names;
+    std::size_t i = at + 1 + (at + 1 < all.size() && all[at + 1].is("function") ? 1 : 0);
+    for (; i < all.size() && all[i].kind == TokenKind::name; i += 2) {
+        names.push_back(all[i].text);
+        if (i + 1 >= all.size() || !all[i + 1].is(",")) {
+            break;
+        }
+    }
+    return names;
+}
+
+/// How often a name stands there. Once only: where it is declared.
+std::ptrdiff_t uses(const std::vector<Token>& all, std::string_view name) {
+    return std::count_if(all.begin(), all.end(),
+                         [name](const Token& t) { return t.kind == TokenKind::name && t.text == name; });
+}
+
+}  // namespace
+
+std::string name_notice(lua_State* L, const Chunk& chunk) {
+    const std::vector<Token> all = tokens(chunk.expression);
+    if (all.size() == 1 && all.front().is("help")) {
+        return "help() starts a tour; ?name explains a name";
+    }
+    if (all.size() != 1 || all.front().kind != TokenKind::name || all.front().is("ans")) {
+        return "";
+    }
+    const std::string_view name = all.front().text;
+    lua_pushglobaltable(L);
+    lua_pushlstring(L, name.data(), name.size());
+    const bool there = lua_rawget(L, -2) != LUA_TNIL;
+    lua_pop(L, 2);
+    if (there) {
+        return "";
+    }
+    if (name == "exit" || name == "quit") {
+        return "there is no such variable; :quit or Ctrl-D leaves";
+    }
+    const std::string hint = similar_global(L, name);
+    return hint.empty() ? "" : fmt::format("there is no variable '{}'{}", name, hint);
+}
+
+std::string colon_notice(lua_State* L, const std::string& text) {
+    const TypedText typed(text);
+    if (typed.cursor() != Cursor::member || typed.separator() != ':' || typed.word().empty()) {
+        return "";
+    }
+    std::vector<Token> expression(typed.owner().begin(), typed.owner().end());
+    expression.push_back({TokenKind::symbol, ":"});
+    expression.push_back({TokenKind::name, typed.word()});
+    const int top = lua_gettop(L);
+    const Meaning found = meaning(L, expression);
+    lua_settop(L, top);
+    if (found.kind != Meaning::Kind::member || found.member->kind == Kind::function) {
+        return "";
+    }
+    return found.member->kind == Kind::field
+               ? fmt::format("{} is a field: write it with a point, {}", found.member->name,
+                             written_name(*found.section, *found.member))
+               : fmt::format("{} is a method, which is called: {}", found.member->name, found.member->doc.signature);
+}
+
+std::string local_notice(const std::string& text) {
+    const std::vector<Token> all = tokens(text);
+    int depth = 0;
+    for (std::size_t i = 0; i < all.size(); ++i) {
+        if (all[i].is("local") && depth == 0) {
+            for (const std::string_view name : declared(all, i)) {
+                if (uses(all, name) == 1) {
+                    return fmt::format(
+                        "a local variable ends with the line: to keep '{}' at the prompt, leave out the word local",
+                        name);
+                }
+            }
+        }
+        depth += opens_block(all[i]) ? 1 : closes_block(all[i]) ? -1 : 0;
+    }
+    return "";
+}
+
+void say_notice(const std::string& notice) {
+    if (!notice.empty()) {
+        say_error("(" + notice + ")");
+    }
+}
+
+}  // namespace dinal

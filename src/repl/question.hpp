@@ -1,0 +1,14 @@
+// ?name and name? at the prompt: help, by what the name stands for now, else by the name itself.
+#pragma once
+
+#include <lua.hpp>
+#include <string_view>
+
+namespace dinal {
+
+/// A line that begins or ends with a question mark, which Lua does not have.
+bool is_question(std::string_view line);
+
+void answer_question(lua_State* L, std::string_view line);
+
+}  // namespace dinal

@@ -1,0 +1,217 @@
+"""What is seen while a line is typed: completion, colours, hints, history, paste. Usage: typing_test.py PROGRAM"""
+
+import os
+import pathlib
+import subprocess
+import sys
+import tempfile
+import unittest
+
+sys.dont_write_bytecode = True  # no folder __pycache__ in the source tree
+
+from screen import CTRL_C, CTRL_R, ENTER, LEFT, TAB, UP, Terminal
+
+PROGRAM = ""
+HAS_READLINE = True
+SYSTEM = "sys = system{ I = 1, k = 40, Rd = 2 }"
+
+
+class Typing(unittest.TestCase):
+    def setUp(self):
+        if not HAS_READLINE:
+            self.skipTest("built without readline")
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.home = pathlib.Path(folder.name)
+
+    def start(self, *arguments, **options):
+        terminal = Terminal(PROGRAM, self.home, *arguments, **options)
+        self.addCleanup(terminal.close)
+        return terminal
+
+    def completes(self, terminal, typed, whole):
+        terminal.type(typed + TAB)
+        terminal.wait(lambda: terminal.row().startswith("> " + whole.rstrip()))
+        terminal.type(CTRL_C)
+        terminal.wait(lambda: terminal.row() == ">")
+
+    def offers(self, terminal, typed, names):
+        terminal.screen.reset()
+        terminal.type(typed + TAB + TAB)
+        terminal.wait(lambda: len(terminal.lines()) > 1 and terminal.lines()[-1].startswith("> "))
+        seen = terminal.text().replace(" = ", " ").replace("{ ", " ").replace("(", " ").split()
+        for name in names:
+            self.assertIn(name, seen)
+        terminal.type(CTRL_C)
+        terminal.wait(lambda: terminal.row() == ">")
+        return seen
+
+
+class Completion(Typing):
+    def test_globals_fields_methods_and_keywords(self):
+        terminal = self.start(TERM="dumb")
+        terminal.enter(SYSTEM)
+        terminal.enter("run = sys:simulate{ theta0 = 1, t_end = 1, dt = 0.1 }")
+        terminal.enter("lab = { inner = { depth = 1 }, ['no name'] = 2 }")
+        for typed, whole in [("nond", "nondimensional{ "), ("excitation.har", "excitation.harmonic{ "),
+                             ("sys:sim", "sys:simulate{ "), ("sys.dead", "sys.dead_zone"), ("run.th", "run.theta"),
+                             ("run.theta:me", "run.theta:mean("), ("run.system:sim", "run.system:simulate{ "),
+                             ("math.fl", "math.floor("), ("lab.in", "lab.inner"), ("lab.inner.", "lab.inner.depth"),
+                             ("x = whi", "x = while"), ("sys:simulate{ dt = 1 }:sav", "sys:simulate{ dt = 1 }:save("),
+                             ("excitation.step{}:win", "excitation.step{}:window("), ("('x'):low", "('x'):low")]:
+            self.completes(terminal, typed, whole)
+
+    def test_options_inside_the_braces_of_a_known_call_without_those_that_are_there(self):
+        terminal = self.start(TERM="dumb")
+        terminal.enter(SYSTEM)
+        self.completes(terminal, "sys:simulate{ th", "sys:simulate{ theta0 = ")
+        self.completes(terminal, "sys:simulate{ theta0 = 1, ve", "sys:simulate{ theta0 = 1, velocity0 = ")
+        seen = self.offers(terminal, "sys:simulate{ M = function(t) return 1 end, t_start = 0, ",
+                           ["theta0", "velocity0", "t_end", "dt", "times", "integrator"])
+        self.assertNotIn("print", seen)
+        self.assertEqual(seen.count("t_start"), 2)  # the line, twice on the screen; not in the list
+        self.offers(terminal, "excitation.samples('a.csv', { ", ["time", "value"])
+        self.offers(terminal, "excitation.samples{ ", ["t", "M"])
+        self.offers(terminal, "excitation.scripted(print, { ", ["breaks", "period"])
+        self.completes(terminal, "sys:simulate{ M = excitation.pulse{ wi", "sys:simulate{ M = excitation.pulse{ width = ")
+        self.completes(terminal, "sys:simulate{ integrator = integrator.rk", "sys:simulate{ integrator = integrator.rk4{ ")
+
+    def test_options_on_a_later_line_and_the_key_that_indents(self):
+        terminal = self.start(TERM="dumb")
+        terminal.enter(SYSTEM)
+        terminal.enter("sys:simulate{", prompt=">>")
+        terminal.type(TAB + "th" + TAB)
+        terminal.wait(lambda: terminal.row().startswith(">>   theta0 ="))
+
+    def test_names_of_files_inside_quotes_and_of_entries_after_help(self):
+        (self.home / "record.csv").write_text("")
+        terminal = self.start(TERM="dumb")
+        self.completes(terminal, "trajectory.load('rec", "trajectory.load('record.csv'")
+        self.completes(terminal, 'help "excitation.har', 'help "excitation.harmonic"')
+        self.completes(terminal, "?sys.dead", "?sys.dead_zone")
+        self.completes(terminal, ":load rec", ":load record.csv")
+        self.completes(terminal, ":rec", ":record")
+        self.completes(terminal, "help(excitation.har", "help(excitation.harmonic")
+
+    def test_it_never_runs_code_of_the_user(self):
+        terminal = self.start(TERM="dumb")
+        terminal.enter("t = setmetatable({}, { __index = function() ran = true return { deep = 1 } end })")
+        terminal.enter("setmetatable(_G, { __index = function() ran = true end })")
+        terminal.type("t.x." + TAB + TAB + "nowhere." + TAB + TAB)
+        terminal.type(CTRL_C)
+        terminal.wait(lambda: terminal.row() == ">")
+        self.assertEqual(terminal.enter("rawget(_G, 'ran')"), "nil")
+
+    def test_nothing_is_offered_in_comments_and_numbers(self):
+        terminal = self.start(TERM="dumb")
+        terminal.type("-- pri" + TAB + TAB + "x" + ENTER)
+        terminal.wait(lambda: "> -- prix" in terminal.text())
+        terminal.type("0xpri" + TAB)
+        terminal.wait(lambda: terminal.row() == "> 0xpri")
+
+
+class Colours(Typing):
+    def test_words_strings_numbers_and_comments_have_colours(self):
+        terminal = self.start()
+        terminal.type("local x = 12 .. 'text' -- remark")
+        terminal.wait(lambda: "remark" in terminal.row() and terminal.colour("remark") != "default")
+        colours = [terminal.colour(word) for word in ("local", "12", "'text'", "--", "x")]
+        self.assertEqual(len(set(colours)), 5)
+        self.assertEqual(terminal.colour("x"), "default")
+        terminal.type(ENTER)
+        terminal.wait(lambda: terminal.row() == ">")
+
+    def test_a_string_without_its_end_looks_different(self):
+        terminal = self.start()
+        terminal.type("x = 'te")
+        terminal.wait(lambda: terminal.row().endswith("'te"))
+        self.assertEqual(terminal.colour("'te"), "red")
+
+    def test_a_hint_names_the_options_that_are_missing_and_goes_away(self):
+        terminal = self.start()
+        terminal.enter(SYSTEM)
+        terminal.type("sys:simulate{")
+        terminal.shows("sys:simulate{  M = 0, theta0 = 0")
+        terminal.type(" M = 2,")
+        terminal.shows("sys:simulate{ M = 2,  theta0 = 0")
+        self.assertNotEqual(terminal.colour("theta0"), "default")
+        terminal.type(" t_end = 1, dt = 0.5 };" + ENTER)
+        terminal.wait(lambda: terminal.row() == ">")
+        self.assertIn("> sys:simulate{ M = 2, t_end = 1, dt = 0.5 };", terminal.lines())
+
+    def test_enter_and_ctrl_c_leave_no_hint_behind(self):
+        terminal = self.start()
+        terminal.type("system{")
+        terminal.shows("system{  I, k")
+        terminal.type(CTRL_C)
+        terminal.wait(lambda: terminal.row() == ">")
+        self.assertNotIn("I, k", terminal.text())
+        terminal.type("system{")
+        terminal.shows("system{  I, k")
+        terminal.type(ENTER)
+        terminal.wait(lambda: terminal.row() == ">>")
+        self.assertNotIn("I, k", terminal.text())
+
+    def test_a_hint_goes_away_when_the_line_becomes_another_one(self):
+        terminal = self.start()
+        terminal.enter("do", prompt=">>")
+        terminal.enter("end")
+        for keys in (UP, " I = 1, k = 40, C = 1, Rd = 2, Re = 3 } -- a remark that leaves no room for any hint"):
+            terminal.screen.reset()
+            terminal.type(CTRL_C + "system{")
+            terminal.shows("system{  I, k")
+            terminal.type(keys)
+            terminal.wait(lambda: "end" in terminal.text() or "hint" in terminal.text())
+            self.assertNotIn("I, k", terminal.text())
+
+    def test_the_cursor_moves_within_a_painted_line(self):
+        terminal = self.start()
+        terminal.type("print('ac')" + LEFT * 3 + "b" + ENTER)
+        terminal.wait(lambda: "abc" in terminal.lines())
+
+    def test_wide_letters_and_long_lines_stay_whole(self):
+        terminal = self.start(width=40)
+        terminal.type("print('θ漢字' .. 'x')" + LEFT * 3 + "y" + ENTER)
+        terminal.wait(lambda: "θ漢字yx" in terminal.text().replace(" ", "") and terminal.row() == ">")
+        self.assertEqual(terminal.enter("('12345678901234567890' .. '12345678901234567890'):len()").splitlines()[-1], "40")
+
+    def test_no_colours_where_they_are_not_wanted(self):
+        for variables in ({"NO_COLOR": "1"}, {"TERM": "dumb"}):
+            terminal = self.start(**variables)
+            terminal.enter("x = 'text' + nowhere.field")
+            self.assertNotIn(b"\x1b[3", terminal.raw)
+            self.assertNotIn(b"\x1b[9", terminal.raw)
+
+
+class Lines(Typing):
+    def test_ctrl_r_finds_an_entry_of_several_lines_of_an_earlier_session(self):
+        terminal = self.start()
+        terminal.enter("for i = 1, 2 do", prompt=">>")
+        terminal.enter("  print('again', i)", prompt=">>")
+        terminal.enter("end")
+        terminal.close()
+        terminal = self.start()
+        terminal.type(CTRL_R + "again")
+        terminal.shows("print('again', i)")
+        terminal.type(ENTER)
+        terminal.wait(lambda: terminal.row() == ">")
+        self.assertIn("again   2", terminal.text())
+
+    def test_a_command_is_in_the_history(self):
+        terminal = self.start()
+        terminal.enter(":who")
+        terminal.screen.reset()
+        terminal.type(UP + ENTER)
+        terminal.shows("no variables of your own")
+
+    def test_a_pasted_block_runs_once_as_one(self):
+        terminal = self.start()
+        terminal.type("\x1b[200~n = (n or 0) + 1\nfor i = 1, 2 do\n\tn = n + 10\nend\nn\x1b[201~" + ENTER)
+        terminal.shows("\n21")
+        self.assertEqual(terminal.enter("n"), "21")
+
+
+if __name__ == "__main__":
+    PROGRAM = os.path.abspath(sys.argv.pop(1))
+    HAS_READLINE = "edited with GNU Readline" in subprocess.run([PROGRAM, "--version"], capture_output=True, text=True).stdout
+    unittest.main()

@@ -1,0 +1,247 @@
+"""What the prompt shows: values, notices, help, commands, at 80 and 40 columns, in UTF-8 and ASCII, with and without
+readline. Usage: values_test.py PROGRAM"""
+
+import os
+import pathlib
+import re
+import subprocess
+import sys
+import tempfile
+import unittest
+
+sys.dont_write_bytecode = True  # no folder __pycache__ in the source tree
+
+import pexpect
+
+from screen import Terminal
+
+PROGRAM = ""
+SYSTEM = "sys = system{ I = 1, k = 40, Rd = 2 }"
+RUN = "run = sys:simulate{ theta0 = 1, t_end = 5, dt = 0.01 }"
+
+
+class PromptTest(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.home = pathlib.Path(folder.name)
+
+    def start(self, *arguments, **options):
+        terminal = Terminal(PROGRAM, self.home, *arguments, **options)
+        self.addCleanup(terminal.close)
+        return terminal
+
+
+class Values(PromptTest):
+    def test_a_system_is_a_card(self):
+        terminal = self.start()
+        terminal.enter(SYSTEM)
+        card = terminal.enter("sys")
+        for piece in ["I θ'' + C θ' + Rd sgn θ' + k θ = M(t)", "omega0     6.32456    natural frequency",
+                      "zeta       0          damping ratio: undamped", "dead_zone  0.05       it can rest"]:
+            self.assertIn(piece, card)
+
+    def test_an_excitation_is_a_formula_and_its_breaks(self):
+        terminal = self.start()
+        shown = terminal.enter("3*excitation.pulse{ at = 1.5, width = 0.2 } - excitation.harmonic{ omega = 2 }")
+        self.assertEqual(shown.splitlines(), ["excitation  M(t) =", "    3 for 1.5 <= t < 1.7", "  - sin(2 t)",
+                                              "  jumps or kinks at t = 1.5, 1.7"])
+        self.assertIn("jumps or kinks at t = 0, 1, 2, 3, 4, 5, ...", terminal.enter("excitation.square{ period = 2 }"))
+        self.assertIn("    function(t) return 2*t end", terminal.enter("excitation.scripted(function(t) return 2*t end)"))
+
+    def test_a_run_its_columns_and_events(self):
+        terminal = self.start()
+        terminal.enter(SYSTEM)
+        terminal.enter(RUN)
+        self.assertRegex(terminal.enter("run"), r"^501 rows, t 0 … 5; \d+ events? \(.*rest\)")
+        self.assertRegex(terminal.enter("run.theta"), r"^vector\{ 1, 0\.\d+, .*\.\.\., .* \}  -- 501 numbers$")
+        self.assertRegex(terminal.enter("run.events"), r"^\d+ events: .*1 rest.*\n  i t +kind +theta +M\n  1 ")
+        self.assertRegex(terminal.enter("run.events[1]"), r'^\{ t = 0\.\d+, kind = "turn", theta = -?0\.\d+, M = 0 \}$')
+        self.assertRegex(terminal.enter("run.integrator"), r"^integrator\.spectral\{ tolerance = 1e-12, .* \}$")
+
+    def test_functions_show_their_text_or_how_they_are_called(self):
+        terminal = self.start()
+        self.assertEqual(terminal.enter("function(t) return 3*t end"), "function(t) return 3*t end")
+        self.assertEqual(terminal.enter("math.sin"), "function math.sin of Lua")
+        self.assertEqual(terminal.enter("nondimensional").split("{")[0], "function nondimensional")
+        self.assertTrue(terminal.enter("excitation").startswith("excitation: constant, harmonic,"))
+
+    def test_everything_fits_in_forty_columns(self):
+        terminal = self.start(width=40, height=50)
+        terminal.enter("s = nondimensional{ zeta = 0.1 }")
+        terminal.enter("r = s:simulate{ theta0=1,", prompt=">>")
+        terminal.enter("t_end = 9, dt = 0.01 }")
+        for text in ["s", "r", "r.theta", "r.events", "excitation", "{ 1, { 2, 3 }, x = 'a long text, rather' }",
+                     "{ s, r, r.t }"]:
+            shown = terminal.enter(text)
+            self.assertTrue(shown)
+            # A line of 40 characters would go on in the next row.
+            self.assertTrue(all(len(line) < 40 for line in shown.splitlines()), shown)
+
+    def test_ascii_where_the_locale_has_nothing_else(self):
+        terminal = self.start(LC_ALL="C")
+        terminal.enter(SYSTEM)
+        terminal.enter(RUN)
+        for text in ["sys", "run", "'\\u{3b8}'", "help(sys.dead_zone)", "excitation.scripted(function(t, x) return 1 end)"]:
+            shown = terminal.enter(text)
+            self.assertTrue(shown and shown.isascii(), shown)
+        self.assertIn("theta''", terminal.enter("sys"))
+
+    def test_a_semicolon_keeps_quiet_and_ans_is_kept(self):
+        terminal = self.start()
+        self.assertEqual(terminal.enter("6 * 7;"), "")
+        self.assertEqual(terminal.enter("ans"), "42")
+        self.assertEqual(terminal.enter("6 * 8 ; -- remark"), "")
+        self.assertEqual(terminal.enter("return ans"), "48")
+
+
+class Notices(PromptTest):
+    def test_a_local_variable_that_is_lost_is_noticed_once(self):
+        terminal = self.start()
+        self.assertIn("to keep 'x' at the prompt, leave out", terminal.enter("local x = 3").replace("\n", " "))
+        self.assertEqual(terminal.enter("local y = 3"), "")
+
+    def test_a_local_variable_that_is_used_is_not(self):
+        terminal = self.start()
+        self.assertEqual(terminal.enter("local x = 3 print(x)"), "3")
+        self.assertEqual(terminal.enter("for i = 1, 2 do local z = i end"), "")
+
+    def test_a_misspelt_variable_is_nil_with_a_word(self):
+        terminal = self.start()
+        terminal.enter("velocity = 3")
+        self.assertEqual(terminal.enter("velocty"), "nil\n(there is no variable 'velocty'; did you mean 'velocity'?)")
+        self.assertEqual(terminal.enter("xyzzy"), "nil")
+        self.assertIn(":quit", terminal.enter("exit"))
+
+    def test_a_colon_without_a_call_does_not_wait_for_more(self):
+        terminal = self.start()
+        terminal.enter(SYSTEM)
+        terminal.enter(RUN)
+        self.assertIn("write it with a point, run.events", terminal.enter("run:events"))
+        self.assertIn("run:at(t) -> theta, velocity", terminal.enter("x = run:at"))
+        self.assertIn("help() starts a tour", terminal.enter("help"))
+
+    def test_a_run_that_failed_before_its_first_row_is_not_announced(self):
+        terminal = self.start()
+        terminal.enter(SYSTEM)
+        shown = terminal.enter("sys:simulate{ M = function(t) return tt + 1 end, t_end = 1, dt = 0.1 }")
+        self.assertIn("in M at t = 0", shown)
+        self.assertNotIn("is in ans", shown)
+
+
+class Help(PromptTest):
+    def test_question_marks_before_and_behind(self):
+        terminal = self.start()
+        terminal.enter(SYSTEM)
+        entry = terminal.enter("help(sys.simulate)")
+        self.assertIn("See also:", entry)
+        for same in ["?sys.simulate", "sys.simulate?", "? simulate", "?sys:simulate", "help 'simulate'", ":help simulate"]:
+            self.assertEqual(terminal.enter(same), entry)
+        self.assertIn("The natural period", terminal.enter("?sys.T0"))
+        self.assertIn("did you mean 'harmonic'?", terminal.enter("harmonc?"))
+        self.assertIn("now 3", terminal.enter("x = 3") + terminal.enter("x?"))
+
+    def test_the_tour_can_be_typed(self):
+        terminal = self.start(height=40)
+        pages = 0
+        page = terminal.enter("?")
+        while page:
+            pages += 1
+            lines = page.splitlines()
+            self.assertLess(len(lines), 22)
+            self.assertTrue(all(len(line) < 78 for line in lines))
+            typed = [line[6:] for line in lines if line.startswith("    > ")]
+            depth = 0
+            for line in typed:
+                depth += len(re.findall(r"\b(do|function)\b", line)) - len(re.findall(r"\bend\b", line))
+                shown = terminal.enter(line, prompt=">>" if depth > 0 else ">")
+                if "theta_0" in line:
+                    self.assertIn("did you mean 'theta0'?", shown.replace("\n", " "))
+                else:
+                    self.assertNotIn("stdin:", shown)
+            following = re.search(r"help\(\d\)", page)
+            page = terminal.enter(following[0]) if following else ""
+        self.assertEqual(pages, 6)
+        self.assertTrue((self.home / "run.csv").exists())
+        done = subprocess.run([PROGRAM, "tour.lua"], cwd=self.home, capture_output=True, text=True)
+        self.assertEqual(done.stderr, "")
+        self.assertIn("2001 rows", done.stdout)
+
+
+class Commands(PromptTest):
+    def test_a_recorded_session_runs_again(self):
+        terminal = self.start()
+        terminal.enter(":record lab.lua")
+        for line in [SYSTEM, "sys.T0", "local lost = 1", "nowhere.field", "sys:friction_ratio(4);", "ans * 2 -- twice",
+                     "x = 7;", "=x", "print('printed')", "1, 2", ":who", "nothing", "goto done ::done::", ":load lab.lua"]:
+            terminal.enter(line)
+        script = (self.home / "lab.lua").read_text()
+        self.assertNotIn("nowhere", script)
+        done = subprocess.run([PROGRAM, "lab.lua"], cwd=self.home, capture_output=True, text=True)
+        self.assertEqual((done.stderr, done.returncode), ("", 0))
+        self.assertEqual(done.stdout, "0.99345882657961\n1.0\n7\nprinted\n1\t2\nnil\n")
+        self.assertEqual(script.splitlines()[1:6], [SYSTEM, "print(sys.T0)", "do", "local lost = 1", "end"])
+
+    def test_files_of_others_are_not_overwritten(self):
+        (self.home / "mine.lua").write_text("precious")
+        terminal = self.start()
+        for command in (":record mine.lua", ":save mine.lua", ":save 'mine.lua'"):
+            self.assertIn("is there already", terminal.enter(command))
+        self.assertEqual((self.home / "mine.lua").read_text(), "precious")
+        terminal.enter("x = 1")
+        terminal.enter(":save lab.lua")
+        terminal.enter("y = 2")
+        terminal.enter(":save lab.lua")
+        self.assertEqual((self.home / "lab.lua").read_text().splitlines()[1:], ["x = 1", "y = 2"])
+        self.assertIn("needs the name of a file", terminal.enter(":save"))
+        self.assertIn("no/lab.lua", terminal.enter(":record no/lab.lua"))
+
+    def test_load_who_reset_and_time(self):
+        (self.home / "lab.lua").write_text("w = 42\nfunction twice(x) return 2*x end\n")
+        (self.home / "wrong.lua").write_text("x = = 1\n")
+        terminal = self.start()
+        terminal.enter(":load lab.lua")
+        self.assertRegex(terminal.enter(":who"), r"^  twice +function\n  w +42$")
+        self.assertIn("wrong.lua:1: unexpected symbol", terminal.enter(":load wrong.lua"))
+        self.assertIn("cannot open", terminal.enter(":load missing.lua"))
+        terminal.enter("system = 3 math = nil")
+        terminal.enter(":reset")
+        self.assertIn("no variables", terminal.enter(":who"))
+        self.assertEqual(terminal.enter("w, type(system), math.pi > 3"), 'nil\t"function"\ttrue'.expandtabs())
+        self.assertRegex(terminal.enter(":time 6 * 7"), r"^42\n[0-9.e-]+ s$")
+
+    def test_names_may_be_short_and_wrong_ones_are_told(self):
+        terminal = self.start()
+        self.assertIn(":record file", terminal.enter(":h"))
+        self.assertIn("did you mean 'quit'?", terminal.enter(":qiut"))
+        self.assertIn(":help lists them", terminal.enter(":re"))
+        self.assertIn("write :load file", terminal.enter(":load"))
+        self.assertEqual(terminal.enter("::label:: x = 5"), "")
+        terminal.type(":q\r")
+        terminal.child.expect(pexpect.EOF)
+        terminal.child.close()
+        self.assertEqual(terminal.child.exitstatus, 0)
+
+    def test_the_init_file_is_for_the_prompt_only(self):
+        (self.home / ".config/dinal").mkdir(parents=True)
+        (self.home / ".config/dinal/init.lua").write_text("g = 9.81\nif wrong then error('never') end\n")
+        self.assertEqual(self.start().enter("g"), "9.81")
+        self.assertEqual(self.start("--no-init").enter("g"), "nil")
+        environment = {"HOME": str(self.home), "PATH": "/usr/bin:/bin"}
+        done = subprocess.run([PROGRAM, "-e", "print(g)"], env=environment, capture_output=True, text=True)
+        self.assertEqual(done.stdout, "nil\n")
+        (self.home / ".config/dinal/init.lua").write_text("x = 1\nerror('broken')\n")
+        self.assertEqual(self.start().enter("x"), "1")
+
+    def test_they_are_no_lua(self):
+        (self.home / "lab.lua").write_text(":who\n")
+        done = subprocess.run([PROGRAM, "lab.lua"], cwd=self.home, capture_output=True, text=True)
+        self.assertEqual(done.returncode, 1)
+        done = subprocess.run([PROGRAM, "-i"], cwd=self.home, capture_output=True, text=True, input="x = 1\n:who\n?x\n:quit\nx\n")
+        self.assertIn("  x         1\n", done.stdout)
+        self.assertNotIn("\x1b", done.stdout)
+
+
+if __name__ == "__main__":
+    PROGRAM = os.path.abspath(sys.argv.pop(1))
+    unittest.main()
