@@ -311,7 +311,12 @@ void SpectralEngine::rows_until(double length) {
         if (!standing && x > -1) {
             state = {y_.theta + chebyshev::value(p_, x), chebyshev::value(v_, x) / panel_.h};
         }
-        const double M = feedback_ ? excitation_.value(t, state) : chebyshev::value(panel_.M, x);
+        double M = samples_[0];  // as it was given: M(0) = 0 is to be read as 0
+        if (feedback_) {
+            M = excitation_.value(t, state);
+        } else if (x > -1) {
+            M = chebyshev::value(panel_.M, x);
+        }
         rows_.put(state, M,
                   standing ? friction_torque(system_, Motion::stuck, M, state.theta)
                            : friction_torque(system_, panel_.motion, M, state.theta));

@@ -1,5 +1,5 @@
-// The run object: columns as vectors, events, the motion between the rows. run:save is in save_run.cpp, run:energy in
-// bind_energy.cpp.
+// The run object: columns as vectors, events, the motion between the rows. run:save is in save_run.cpp, run:continue
+// in continue_run.cpp, run:energy in bind_energy.cpp.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -119,6 +119,12 @@ int outcome(lua_State* L) {
     return 1;
 }
 
+template <double Trajectory::*time>
+int time_field(lua_State* L) {
+    lua_pushnumber(L, run_self(L, "run.t_end")->trajectory.*time);
+    return 1;
+}
+
 template <auto member>
 int origin_field(lua_State* L) {
     const Run& run = *run_self(L, "run.system");
@@ -169,6 +175,15 @@ constexpr Member members[] = {
      {"run:columns(name, ...) -> vector, ...",
       "The columns of these names or numbers (t is 1); without arguments all of them. READDIN of 1989 did this.",
       DINAL_RUN "t, M = run:columns(\"t\", \"M\")\nprint(t, M[5])  --> vector{ 0, 0.5, 1, 1.5, 2 }\t3.0"}},
+    {"continue",
+     guarded<continue_run>,
+     Kind::method,
+     {"run:continue{ t_end, times } -> run",
+      "A new run: this one, and how it goes on from where it ended (reached its end, or stopped by Ctrl-C or an error "
+      "in M), with the same rows as if it had never ended. Without t_end a run that was stopped goes on to the t_end "
+      "it was given. A run with dt keeps its dt; one with `times` gets the new ones.",
+      DINAL_RUN "longer = run:continue{ t_end = 3 }\n"
+                "print(#longer, longer.t_end, string.format(\"%.6f\", longer:at(3)))  --> 7\t3.0\t1.000000"}},
     {"energy",
      guarded<energy_of_run>,
      Kind::method,
@@ -242,6 +257,15 @@ constexpr Member members[] = {
       "for _, e in ipairs(run.events) do print(e.kind, string.format(\"%.4f %.4f\", e.t, e.theta)) end\n"
       "--> turn\t0.5000 -1.0000\n"
       "--> turn\t1.0000 1.0000"}},
+    {"t_start",
+     guarded<time_field<&Trajectory::t_start>>,
+     Kind::field,
+     {"run.t_start -> number", "The time at which the run began.", DINAL_RUN "print(run.t_start)  --> 0.0"}},
+    {"t_end",
+     guarded<time_field<&Trajectory::t_stop>>,
+     Kind::field,
+     {"run.t_end -> number", "The time at which the run ended: the t_end it was given, or earlier when it was stopped.",
+      DINAL_RUN "print(run.t_end)  --> 2.0"}},
     {"outcome",
      guarded<outcome>,
      Kind::field,

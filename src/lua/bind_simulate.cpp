@@ -5,13 +5,10 @@
 
 #include <algorithm>
 
-#include "core/simulate.hpp"
 #include "io/progress.hpp"
 #include "lua/bind_excitation.hpp"
 #include "lua/dinal_table.hpp"
 #include "lua/interrupt.hpp"
-#include "lua/options.hpp"
-#include "lua/origin.hpp"
 #include "lua/run.hpp"
 #include "lua/user_function.hpp"
 
@@ -31,8 +28,8 @@ std::size_t bytes_of_rows(const Task& task) {
 }
 
 /// A run may take half of the memory of the machine, and most of what the script may still have.
-Limits limits_of(const Options& options) {
-    Limits limits{.dense = options.boolean("dense", true)};
+Limits limits_of(bool dense) {
+    Limits limits{.dense = dense};
     const long pages = sysconf(_SC_PHYS_PAGES);
     const long page_size = sysconf(_SC_PAGESIZE);
     if (pages > 0 && page_size > 0) {
@@ -96,28 +93,23 @@ void set_partial(lua_State* L) {
 
 }  // namespace
 
-int simulate_system(lua_State* L) {
-    const Oscillator& system = self<Oscillator>(L, 1, example);
-    const Options options(L, 2, "sys:simulate", example,
-                          {"M", "theta0", "velocity0", "t_start", "t_end", "dt", "times", "integrator", "dense"});
-    const Task task = asked_task(L, options, system);
-    // What M refers to is written down before M runs, because it may change that.
-    Run run{.trajectory = {}, .origin = origin_of(L, task)};
-
-    make_room(L, bytes_of_rows(task));
-    const Limits limits = limits_of(options);
-    if (const std::size_t bytes = bytes_of_rows(task); bytes <= limits.memory) {
+int run_task(lua_State* L, const Options& options, Origin origin, double from, bool dense, const Compute& compute) {
+    const std::size_t bytes = bytes_of_rows(origin);
+    const double to = origin.window.end;
+    Run run{.trajectory = {}, .origin = std::move(origin)};
+    make_room(L, bytes);
+    const Limits limits = limits_of(dense);
+    if (bytes <= limits.memory) {
         run.rows = MemoryCharge(bytes);  // now, because M may want memory, too
     }
 
     CallState call(L);
-    Progress progress = Progress::of_time(task.window.start, task.window.end);
+    Progress progress = Progress::of_time(from, to);
     const auto monitor = [&progress](double t) {
         progress.advance(t);
         return !interrupt_requested();
     };
-    auto result =
-        simulate(task.system, task.excitation, task.initial, task.window, task.rows, task.integrator, monitor, limits);
+    auto result = compute(*run.origin, monitor, limits);
     if (!result) {
         options.fail(result.error().sentence);
     }
@@ -129,6 +121,19 @@ int simulate_system(lua_State* L) {
         call.failed() ? call.raise_error() : raise_interrupted(L);
     }
     return 1;
+}
+
+int simulate_system(lua_State* L) {
+    const Oscillator& system = self<Oscillator>(L, 1, example);
+    const Options options(L, 2, "sys:simulate", example,
+                          {"M", "theta0", "velocity0", "t_start", "t_end", "dt", "times", "integrator", "dense"});
+    const Task task = asked_task(L, options, system);
+    const auto compute = [](const Task& asked, const Monitor& monitor, const Limits& limits) {
+        return simulate(asked.system, asked.excitation, asked.initial, asked.window, asked.rows, asked.integrator,
+                        monitor, limits);
+    };
+    // What M refers to is written down before M runs, because it may change that.
+    return run_task(L, options, origin_of(L, task), task.window.start, options.boolean("dense", true), compute);
 }
 
 }  // namespace dinal

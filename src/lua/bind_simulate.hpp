@@ -1,11 +1,24 @@
 // sys:simulate{...}: a method of the class in bind_system.cpp, with a file of its own for its many options.
 #pragma once
 
+#include <functional>
+
+#include "core/simulate.hpp"
 #include "lua/bind.hpp"
+#include "lua/options.hpp"
+#include "lua/origin.hpp"
 
 namespace dinal {
 
 int simulate_system(lua_State* L);
+
+/// What is asked of the core: simulate() or resume().
+using Compute = std::function<Expected<Trajectory>(const Task& task, const Monitor& monitor, const Limits& limits)>;
+
+/// Pushes the run that `compute` makes of the task of `origin`, beginning at the time `from`: under the limits of the
+/// script, with a progress line. Raises when the core refuses the task, M fails or Ctrl-C is pressed; what was done
+/// until then is in dinal.partial.
+int run_task(lua_State* L, const Options& options, Origin origin, double from, bool dense, const Compute& compute);
 
 inline constexpr Doc simulate_doc = {
     "sys:simulate{ M = 0, theta0 = 0, velocity0 = 0, t_start = 0, t_end, dt | times, integrator, dense = true } -> run",

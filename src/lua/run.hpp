@@ -28,6 +28,8 @@ void push_run(lua_State* L, Run run);
 
 /// run:save(file [, { columns = { "t", "theta" } }]), in save_run.cpp.
 int save_run(lua_State* L);
+/// run:continue{ t_end }, in continue_run.cpp.
+int continue_run(lua_State* L);
 /// run:energy(), in bind_energy.cpp.
 int energy_of_run(lua_State* L);
 /// run:explain(), in explain_run.cpp.

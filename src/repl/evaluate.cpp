@@ -34,7 +34,8 @@ void push_partial(lua_State* L) {
 }
 
 int print_partial(lua_State* L) {
-    say_error("the part of the run that was done is in ans: " + show(L, 1, display_of(STDERR_FILENO)));
+    say_error("the part of the run that was done is in ans (ans:continue() goes on): " +
+              show(L, 1, display_of(STDERR_FILENO)));
     return 0;
 }
 

@@ -10,6 +10,7 @@ test("columns are vectors of one length, and hold what their names say", functio
         equal(#run[name], 501)
     end
     equal(run.theta[1], 1.0)
+    equal(run.M[1], 0.0) -- M(0) as it is, without rounding
     near(run.M[101], run.excitation(1), 1e-14) -- columns of M are filled in blocks, with roundings of their own
     assert((run.damping):abs() <= 0)
     assert(run.friction:abs() <= 0.12)

@@ -204,8 +204,24 @@ class Interrupts(PromptTest):
         for M in ["function(t) return math.sin(t) end", "excitation.harmonic{ amplitude = 1, frequency = 0.3 }"]:
             shown = self.interrupted(session, f"return nd:simulate{{ M = {M}, t_end = 1e6, dt = 1 }}")
             self.assertIn("interrupted at stdin:1", shown)
-            self.assertIn("the part of the run that was done is in ans: ", shown)
+            self.assertIn("the part of the run that was done is in ans (ans:continue() goes on): ", shown)
             self.assertEqual(session.enter("#ans > 0 and #ans < 1000001 and #ans.theta == #ans"), "true")
+
+    def test_an_interrupted_run_goes_on_as_if_it_had_not_been(self):
+        session = self.start()
+        session.enter("nd = nondimensional{ zeta = 0.01, friction_ratio = 0.3 }")
+        session.enter("function go(t_end) return nd:simulate{ M = math.sin, t_end = t_end, dt = 1 } end")
+        self.interrupted(session, "go(1e6)")
+        session.enter("part = ans")
+        self.assertEqual(session.enter("part.outcome"), '"interrupted"')
+        session.enter("longer = part:continue{ t_end = part.t_end + 100 };")
+        session.enter("whole = go(longer.t_end);")
+        # M moves by rounding of t only, 1e-10 at the latest possible t; theta is of order 1.
+        self.assertEqual(session.enter("(longer.theta - whole.theta):abs():max() < 1e-9"), "true")
+        self.assertEqual(session.enter("#longer == #whole and #longer.events == #whole.events"), "true")
+        session.enter("part = part:continue{ t_end = part.t_end + 10 };")
+        self.interrupted(session, "part:continue{ t_end = 1e6 }")
+        self.assertEqual(session.enter("ans.t_end > part.t_end"), "true")
 
     def test_the_rows_of_a_run_whose_excitation_failed_are_kept_in_ans(self):
         session = self.start()

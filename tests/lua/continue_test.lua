@@ -1,0 +1,114 @@
+package.path = "tests/lua/?.lua;" .. package.path
+local support = require "support"
+local test, near, equal, raises_here = support.test, support.near, support.equal, support.raises_here
+
+local nd = nondimensional { zeta = 0.01, friction_ratio = 0.4, breakaway_ratio = 0.5 }
+local M = excitation.harmonic { frequency = 0.3, phase = 0.4 }
+
+--- The rows of two runs, which differ by the rounding of what was computed in between.
+local function same_rows(a, b)
+    equal(#a, #b)
+    assert((a.t - b.t):abs():max() == 0, "the times differ")
+    assert((a.theta - b.theta):abs():max() <= 1e-12 * b.theta:abs():max(), "theta differs")
+    assert((a.velocity - b.velocity):abs():max() <= 1e-11 * b.velocity:abs():max(), "velocity differs")
+    equal(#a.events, #b.events)
+    for i, e in ipairs(b.events) do
+        equal(a.events[i].kind, e.kind)
+        near(a.events[i].t, e.t, 1e-11)
+    end
+    equal(a.outcome, b.outcome)
+end
+
+for name, integrator in pairs {
+    spectral = integrator.spectral {},
+    rk4 = integrator.rk4 { h = 0.001 },
+    dinal1989 = integrator.dinal1989 { h = 0.01 },
+} do
+    test("a run that goes on is the run that never ended: " .. name, function()
+        local whole = nd:simulate { M = M, theta0 = 2, t_end = 12, dt = 0.1, integrator = integrator }
+        local first = nd:simulate { M = M, theta0 = 2, t_end = 3.4, dt = 0.1, integrator = integrator }
+        local longer = first:continue { t_end = 7 }:continue { t_end = 12 }
+        same_rows(longer, whole)
+        equal(first.t_end, 3.4)
+        equal(#first, 35)
+        equal(longer.t_start, 0.0)
+        equal(longer.t_end, 12.0)
+    end)
+end
+
+test("a list of times goes on with another", function()
+    local first = nd:simulate { M = M, theta0 = 2, times = { 0.5, 1, 2 } }
+    local whole = nd:simulate { M = M, theta0 = 2, times = { 0.5, 1, 2, 3, 5, 7.7 } }
+    same_rows(first:continue { times = { 3, 5, 7.7 } }, whole)
+    same_rows(first:continue { times = vector { 3, 5 } }:continue { times = { 7.7 } }, whole)
+    local bare = first:continue { times = {}, t_end = 9 }
+    equal(#bare, 3)
+    equal(bare.t_end, 9.0)
+    near((bare:at(7.7)), whole.theta[6], 1e-12)
+end)
+
+test("what M interrupted goes on to where it should have ended", function()
+    local broken = true
+    local function fragile(t)
+        if broken and t > 4.321 then error "the wire broke" end
+        return math.sin(2 * t)
+    end
+    for _, rows in ipairs { { dt = 0.25 }, { times = { 1, 2, 3, 5, 8, 9 } } } do
+        local options = { M = fragile, theta0 = 2, t_end = 10, dt = rows.dt, times = rows.times }
+        broken = true
+        assert(not pcall(nd.simulate, nd, options))
+        local partial = dinal.partial
+        assert(partial.t_end < 5 and #partial < 20)
+        -- Still broken: what was done stays.
+        assert(not pcall(partial.continue, partial))
+        equal(dinal.partial.t_end, partial.t_end)
+        broken = false
+        same_rows(partial:continue(), nd:simulate(options))
+        equal(partial:continue { t_end = 20 }.t_end, 20.0)
+        local times = partial:continue { t_end = 6 }.t
+        assert(times:max() <= 6)
+    end
+end)
+
+test("a run that goes on can be saved, repeated and asked for its energy and story", function()
+    local file = os.tmpname() .. ".csv"
+    local longer = nd:simulate { M = M, theta0 = 2, t_end = 3.4, dt = 0.1 }:continue { t_end = 8 }
+    longer:save(file)
+    local text = support.read(file)
+    os.remove(file)
+    assert(text:find("t_end = 8, dt = 0.1", 1, true), text:sub(1, 600))
+    local total = longer:energy().total
+    local whole = nd:simulate { M = M, theta0 = 2, t_end = 8, dt = 0.1 }
+    near(total.input, whole:energy().total.input, 1e-12)
+    equal(longer:explain(), whole:explain())
+end)
+
+test("a run without dense output goes on without", function()
+    local first = nd:simulate { M = M, theta0 = 2, t_end = 3, dt = 0.1, dense = false }
+    local longer = first:continue { t_end = 6 }
+    raises_here(function() longer:energy() end, "dense")
+    same_rows(longer, nd:simulate { M = M, theta0 = 2, t_end = 6, dt = 0.1 })
+end)
+
+test("wrong uses get a sentence", function()
+    local run = nd:simulate { M = M, theta0 = 2, t_end = 3, dt = 0.1 }
+    raises_here(function() run:continue() end, "reached its end at t = 3", "run:continue{ t_end = 40 }")
+    raises_here(function() run:continue { t_end = 3 } end, "t_end = 3 must be after t = 3, where the run ended")
+    raises_here(function() run:continue { t_end = 0 / 0 } end, "t_end must be a finite number")
+    raises_here(function() run:continue { tend = 4 } end, "did you mean 't_end'")
+    raises_here(function() run:continue(4) end, "run:continue{ t_end = 40 }")
+    raises_here(function() run:continue { times = { 4 } } end, "dt = 0.1")
+    local listed = nd:simulate { M = M, theta0 = 2, times = { 1, 3 } }
+    raises_here(function() listed:continue { times = { 3 } } end, "times[1] = 3 must be after t = 3")
+    raises_here(function() listed:continue { times = { 5, 4 } } end, "times[2] = 4")
+    raises_here(function() listed:continue { times = { 5, 7 }, t_end = 6 } end, "times[2] = 7 is outside")
+    raises_here(function() listed:continue { times = {} } end, "reached its end")
+    local file = os.tmpname() .. ".csv"
+    run:save(file)
+    local loaded = trajectory.load(file)
+    os.remove(file)
+    equal(loaded.t_end, 3.0)
+    raises_here(function() loaded:continue { t_end = 5 } end, "read from a file")
+end)
+
+support.finish()
