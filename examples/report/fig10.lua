@@ -2,24 +2,18 @@
 -- take 0.15, 0.2, 0.3 and 0.4, of which this is h = 0.15: with the slip of chapter 6 it still decays.
 local case = dofile((debug.getinfo(1, "S").source:match("^@(.*/)") or "") .. "case.lua")
 
-case.title(10, "zeta = 0.02387, h = 0.15, 80 steps with the slip of chapter 6: still decays")
-local old, run = case.run{ zeta = 0.02387, theta0 = 1, t_end = 80 * 0.15, h = 0.15, slip = true }
+local fig = case.figure("10", "zeta = 0.02387, h = 0.15, 80 steps with the slip of chapter 6: still decays", ...)
+local number, picture = case.raised_step(0.15, 80)
+fig:raised_step(number)
 
-case.head("with the slip", "RK4 as printed", "exact")
-case.line("factor per step", case.growth(0.02387, 0.15, true), case.growth(0.02387, 0.15, false),
-  math.exp(-2 * math.pi * 0.02387 * 0.15))
-case.line("largest h without divergence", case.largest_step(0.02387, true), case.largest_step(0.02387, false))
-case.head("1989", "true motion")
-case.line("largest |theta|, last steps", string.format("%.5g", case.row_amplitude(old, 6)),
-  string.format("%.5g", case.row_amplitude(run, 6)))
-case.save(10, old, run)
+fig:quote{ 10, 0.15, number.slip, number.rk4, number.exact }
+return fig:draw(picture)
 
 --[[ prints
 Figure 10: zeta = 0.02387, h = 0.15, 80 steps with the slip of chapter 6: still decays
                                with the slip  RK4 as printed           exact
 factor per step                  0.988652178     0.973981612     0.977754224
 largest h without divergence     0.196155805     0.457267120
-                                        1989     true motion
-largest |theta|, last steps          0.40535         0.17047
-fig10.csv, fig10.dat: 81 rows
+largest |theta|, last steps          0.40535         0.13874         0.17047
+fig10.svg
 ]]

@@ -2,24 +2,18 @@
 -- take 0.15, 0.2, 0.3 and 0.4, of which this is h = 0.2: with the slip of chapter 6 it just diverges.
 local case = dofile((debug.getinfo(1, "S").source:match("^@(.*/)") or "") .. "case.lua")
 
-case.title(11, "zeta = 0.02387, h = 0.2, 80 steps with the slip of chapter 6: just diverges")
-local old, run = case.run{ zeta = 0.02387, theta0 = 1, t_end = 80 * 0.2, h = 0.2, slip = true }
+local fig = case.figure("11", "zeta = 0.02387, h = 0.2, 80 steps with the slip of chapter 6: just diverges", ...)
+local number, picture = case.raised_step(0.2, 80)
+fig:raised_step(number)
 
-case.head("with the slip", "RK4 as printed", "exact")
-case.line("factor per step", case.growth(0.02387, 0.2, true), case.growth(0.02387, 0.2, false),
-  math.exp(-2 * math.pi * 0.02387 * 0.2))
-case.line("largest h without divergence", case.largest_step(0.02387, true), case.largest_step(0.02387, false))
-case.head("1989", "true motion")
-case.line("largest |theta|, last steps", string.format("%.5g", case.row_amplitude(old, 6)),
-  string.format("%.5g", case.row_amplitude(run, 6)))
-case.save(11, old, run)
+fig:quote{ 11, 0.2, number.slip, number.rk4, number.exact }
+return fig:draw(picture)
 
 --[[ prints
 Figure 11: zeta = 0.02387, h = 0.2, 80 steps with the slip of chapter 6: just diverges
                                with the slip  RK4 as printed           exact
 factor per step                  1.001396074     0.950074336     0.970449487
 largest h without divergence     0.196155805     0.457267120
-                                        1989     true motion
-largest |theta|, last steps           1.0931         0.10533
-fig11.csv, fig11.dat: 81 rows
+largest |theta|, last steps           1.0931        0.020396         0.10533
+fig11.svg
 ]]

@@ -2,17 +2,28 @@
 -- The report: the shortest transient of the three.
 local case = dofile((debug.getinfo(1, "S").source:match("^@(.*/)") or "") .. "case.lua")
 
-case.title(20, "resonance, zeta = 1 (critical), h = 0.01")
+local fig = case.figure("20", "resonance, zeta = 1 (critical), h = 0.01", ...)
 local old, run, sys = case.run{ zeta = 1, r = 1, theta0 = 1, t_end = 12, h = 0.01 }
 
-case.head("1989", "true motion", "1/(2 zeta)", "report")
-case.line("steady amplitude", case.row_amplitude(old, 100), case.amplitude(run),
+fig:head("1989", "true motion", "1/(2 zeta)", "report")
+fig:line("steady amplitude", case.row_amplitude(old, 100), case.amplitude(run),
   theory.magnification{ r = 1, zeta = sys.zeta }, "")
-case.save(20, old, run)
+
+local steady = theory.magnification{ r = 1, zeta = sys.zeta }
+local settled = case.transient(sys, 0.05)
+fig:line("within 0.05 of it from t =", "", "", settled)
+
+fig:quote{ 20, 1, steady, case.row_amplitude(old, 100), settled }
+return fig:draw{
+  case.columns(run, { "theta", "M/k" }, { xlim = { 0, 6 }, ylim = { -2.3, 2.3 } }),
+  case.plane(run, 2.3),
+  size = case.page,
+}
 
 --[[ prints
 Figure 20: resonance, zeta = 1 (critical), h = 0.01
                                         1989     true motion      1/(2 zeta)          report
 steady amplitude                 0.499999667     0.500000000     0.500000000
-fig20.csv, fig20.dat: 1201 rows
+within 0.05 of it from t =                                       0.832000000
+fig20.svg
 ]]

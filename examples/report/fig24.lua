@@ -2,21 +2,40 @@
 -- Figure 5a predicts an amplitude of 0.14, says the report; it is 0.129.
 local case = dofile((debug.getinfo(1, "S").source:match("^@(.*/)") or "") .. "case.lua")
 
-case.title(24, "resonance, gamma = 0.836, h = 0.01")
+local fig = case.figure("24", "resonance, gamma = 0.836, h = 0.01", ...)
 local old, run, sys = case.run{ gamma = 0.836, r = 1, theta0 = 1, t_end = 30, h = 0.01 }
 
-case.head("1989", "true motion", "exact", "report")
-case.line("amplitude", case.row_amplitude(old, 100), case.amplitude(run), 0.1291703518, "0.14")
+fig:head("1989", "true motion", "exact", "report")
+fig:line("amplitude", case.row_amplitude(old, 100), case.amplitude(run), 0.1291703518, "0.14")
 
 -- the last stop and the slip that ends it, counted from the half cycle they belong to
 local events = run.events
 local n = #events
 while events[n].kind ~= "slip" do n = n - 1 end
 local stick, slip = events[n - 1].t / sys.T0 % 0.5, events[n].t / sys.T0 % 0.5
-case.line("sticks at t/T0 = n/2 +", "", stick, "0.45017942")
-case.line("slips at t/T0 = n/2 +", "", slip, "0.12493764")
-case.line("part of the time stuck", "", (slip + 0.5 - stick) / 0.5)
-case.save(24, old, run)
+fig:line("sticks at t/T0 = n/2 +", "", stick, "0.45017942")
+fig:line("slips at t/T0 = n/2 +", "", slip, "0.12493764")
+local stuck = (slip + 0.5 - stick) / 0.5
+fig:line("part of the time stuck", "", stuck)
+local last = old.theta:slice(#old - 100, #old)
+local fine = case.run{ gamma = 0.836, r = 1, theta0 = 1, t_end = 30, h = 0.001 }
+fig:line("highest, lowest, h = 0.01", last:max(), last:min())
+fig:line("amplitude, h = 0.001", case.row_amplitude(fine, 1000))
+
+fig:quote{ 0.836, 0.14, stick, slip, 100 * stuck, case.amplitude(run), 0.14, 0.01, last:max(), last:min(), 0.14,
+  0.001, case.row_amplitude(fine, 1000) }
+local function steady(of) -- the last period
+  return of.theta:slice(#of - 100, #of), of.velocity:slice(#of - 100, #of) / sys.omega0
+end
+local x, y = steady(run)
+local x_old, y_old = steady(old)
+return fig:draw{
+  case.columns(run, { "theta", "M/k" }, { xlim = { 0, 10 } }),
+  case.plane(run),
+  plot{ { x, y, label = "true" }, { x_old, y_old, label = "1989" }, equal = true, xlim = { -0.27, 0.27 },
+    ylim = { -0.27, 0.27 }, xticks = 0.2, yticks = 0.1, xlabel = "θ*", ylabel = "θ*'/2π", show = false },
+  size = { 17, 6 },
+}
 
 --[[ prints
 Figure 24: resonance, gamma = 0.836, h = 0.01
@@ -25,5 +44,7 @@ amplitude                        0.158242517     0.129170352     0.129170352    
 sticks at t/T0 = n/2 +                           0.450179423      0.45017942
 slips at t/T0 = n/2 +                            0.124937635      0.12493764
 part of the time stuck                           0.349516424
-fig24.csv, fig24.dat: 3001 rows
+highest, lowest, h = 0.01        0.158242517    -0.146906724
+amplitude, h = 0.001             0.133535467
+fig24.svg
 ]]

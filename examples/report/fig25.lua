@@ -6,7 +6,7 @@ local case = dofile((debug.getinfo(1, "S").source:match("^@(.*/)") or "") .. "ca
 
 local r = 1.35
 local period = case.system().T0 / r
-case.title(25, "r = 1.35, gamma = 0.5 against zeta = 0.242, 100 steps a period")
+local fig = case.figure("25", "r = 1.35, gamma = 0.5 against zeta = 0.242, 100 steps a period", ...)
 local old, dry, sys = case.run{ gamma = 0.5, r = r, theta0 = 1, t_end = 60 * period, h = period / 100 }
 local old_viscous, viscous = case.run{ zeta = 0.242, r = r, theta0 = 1, t_end = 60 * period, h = period / 100 }
 
@@ -18,23 +18,40 @@ end
 
 local amplitude = theory.den_hartog{ r = r, friction_ratio = 0.5 }
 local _, dry_lag = theory.den_hartog_fundamental{ r = r, friction_ratio = 0.5 }
-case.head("1989", "true motion", "closed form")
-case.line("amplitude, gamma = 0.5", case.row_amplitude(old, 100), case.amplitude(dry), amplitude)
-case.line("amplitude, zeta = 0.242", case.row_amplitude(old_viscous, 100), case.amplitude(viscous),
-  theory.magnification{ r = r, zeta = 0.242 })
-case.line("amplitude, linearised", "", "",
-  (theory.linearised{ r = r, friction_ratio = 0.5 }))
-case.line("lag in degrees, gamma = 0.5", lag(old), lag(dry), math.deg(dry_lag))
-case.line("lag in degrees, zeta = 0.242", lag(old_viscous), lag(viscous),
-  math.deg(theory.phase_lag{ r = r, zeta = 0.242 }))
+fig:head("1989", "true motion", "closed form")
+fig:line("amplitude, gamma = 0.5", case.row_amplitude(old, 100), case.amplitude(dry), amplitude)
+local damped = theory.magnification{ r = r, zeta = 0.242 }
+fig:line("amplitude, zeta = 0.242", case.row_amplitude(old_viscous, 100), case.amplitude(viscous), damped)
+local linear = theory.linearised{ r = r, friction_ratio = 0.5 }
+fig:line("amplitude, linearised", "", "", linear)
+fig:line("lag in degrees, gamma = 0.5", lag(old), lag(dry), math.deg(dry_lag))
+local damped_lag = math.deg(theory.phase_lag{ r = r, zeta = 0.242 })
+fig:line("lag in degrees, zeta = 0.242", lag(old_viscous), lag(viscous), damped_lag)
 
-case.write_csv("fig25.csv", "theta in Mc/k, velocity over omega0: dry friction 0.5, viscous 0.242",
-  { "t", "theta_dry_1989", "theta_viscous_1989", "theta_dry", "velocity_dry", "theta_viscous", "velocity_viscous" },
-  { dry.t, old.theta, old_viscous.theta, dry.theta, dry.velocity / sys.omega0, viscous.theta,
-    viscous.velocity / sys.omega0 })
-old:save(case.path("fig25.dat"))
-old_viscous:save(case.path("fig25-viscous.dat"))
-print(string.format("fig25.csv, fig25.dat, fig25-viscous.dat: %d rows", #dry))
+-- the damper that takes as much energy as dry friction, by the amplitude one believes in
+local by_formula = theory.equivalent_zeta{ friction_ratio = 0.5, r = r, magnification = linear }
+local by_truth = theory.equivalent_zeta{ friction_ratio = 0.5, r = r, magnification = amplitude }
+local better = theory.magnification{ r = r, zeta = by_truth }
+fig:head("linearised", "exact")
+fig:line("amplitude", linear, amplitude)
+fig:line("its equivalent zeta", by_formula, by_truth)
+fig:line("amplitude with that zeta", theory.magnification{ r = r, zeta = by_formula }, better)
+
+fig:quote{ r, 0.5, 0.242, math.deg(dry_lag), damped_lag, damped, amplitude, 100 * (damped / amplitude - 1),
+  linear, by_formula, 0.242, 2 * 0.5 / (math.pi * r * 0.242), by_truth, better, 100 * (better / amplitude - 1) }
+local function steady(of) -- the last period
+  return of.theta:slice(#of - 100, #of), of.velocity:slice(#of - 100, #of) / sys.omega0
+end
+local x, y = steady(dry)
+local x_viscous, y_viscous = steady(viscous)
+local t = dry.t / sys.T0
+return fig:draw{
+  case.response{ { t, dry.theta, label = "γ = 0.5" }, { t, viscous.theta, label = "ζ = 0.242" },
+    { t, dry.M / sys.k, label = "M*", dashes = "dotted", colour = 5 }, xlim = { 41, 44 } },
+  plot{ { x, y, label = "γ = 0.5" }, { x_viscous, y_viscous, label = "ζ = 0.242" }, equal = true,
+    xlabel = "θ*", ylabel = "θ*'/2π", show = false },
+  size = case.page,
+}
 
 --[[ prints
 Figure 25: r = 1.35, gamma = 0.5 against zeta = 0.242, 100 steps a period
@@ -44,5 +61,9 @@ amplitude, zeta = 0.242          0.951788929     0.951976153     0.951976153
 amplitude, linearised                                            0.937602241
 lag in degrees, gamma = 0.5    140.380040613   140.686248785   140.686249614
 lag in degrees, zeta = 0.242   141.536123761   141.536114761   141.536114761
-fig25.csv, fig25.dat, fig25-viscous.dat: 6001 rows
+                                  linearised           exact
+amplitude                        0.937602241     0.860792180
+its equivalent zeta              0.251476682     0.273916407
+amplitude with that zeta         0.937602241     0.904070301
+fig25.svg
 ]]

@@ -177,9 +177,38 @@ std::vector<std::size_t> by_corners(const Curve& curve, const Paper& paper) {
     return paper.coarseness > 1 ? without_repainting(corners, project, paper, is_forced) : corners;
 }
 
+/// Points that are not joined: the first on each pixel of those that are seen.
+std::vector<std::size_t> by_pixels(const Curve& curve, const Paper& paper) {
+    const Projected project(curve, paper);
+    const double columns = std::floor(paper.pixels.width / paper.coarseness) + 1;
+    const double rows = std::floor(paper.pixels.height / paper.coarseness) + 1;
+    std::vector<bool> taken(static_cast<std::size_t>(columns * rows), false);
+    std::vector<std::size_t> kept;
+    for (std::size_t i = 0; i < curve.size(); ++i) {
+        if (!project.has(i)) {
+            continue;
+        }
+        const Point point = project(i);
+        const double column = std::floor(point.x / paper.coarseness);
+        const double row = std::floor(point.y / paper.coarseness);
+        if (column < 0 || row < 0 || column >= columns || row >= rows) {
+            continue;
+        }
+        const auto pixel = static_cast<std::size_t>(row * columns + column);
+        if (!taken[pixel]) {
+            taken[pixel] = true;
+            kept.push_back(i);
+        }
+    }
+    return kept;
+}
+
 }  // namespace
 
 std::vector<std::size_t> thinned(const Curve& curve, const Paper& paper) {
+    if (curve.style == Style::points) {
+        return by_pixels(curve, paper);
+    }
     return never_falls(curve) ? by_columns(curve, paper) : by_corners(curve, paper);
 }
 

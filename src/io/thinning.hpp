@@ -24,7 +24,8 @@ struct Paper {
 /// The places in the curve of the points to draw, in order, with `gap` between pieces. When x never falls: the first,
 /// last, lowest and highest point of each column of pixels (as good as all of them, extremes included). Else the
 /// corners of a line that is nowhere further from the curve than a fifth of a pixel or two; with a coarseness above 1
-/// not those which would only paint over ink. The extremes in x and y are among them.
+/// not those which would only paint over ink. The extremes in x and y are among them. Of points that no line joins, one
+/// for each pixel, and none that the paper does not show.
 std::vector<std::size_t> thinned(const Curve& curve, const Paper& paper);
 
 }  // namespace dinal

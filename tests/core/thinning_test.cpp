@@ -120,3 +120,32 @@ TEST_CASE("the extremes of a phase plane are kept however coarse the picture is"
         CHECK(std::count(kept.begin(), kept.end(), static_cast<std::size_t>(high - numbers.values.begin())) >= 1);
     }
 }
+
+TEST_CASE("points are no line: a cloud keeps one of each pixel, in whatever order they come", "[thinning]") {
+    // Ten points above each other in each of ten columns: as a line, only the ends of each column would be seen.
+    std::vector<double> x, y;
+    for (int column = 0; column < 10; ++column) {
+        for (int row = 0; row < 10; ++row) {
+            x.push_back(column);
+            y.push_back(row);
+        }
+    }
+    Curve cloud{Numbers::own(x), Numbers::own(y)};
+    cloud.style = Style::points;
+    CHECK(thinned(cloud, paper_for(cloud, {600, 400})).size() == 100);
+    std::reverse(x.begin(), x.end());  // x falls: not the corners of a line either
+    cloud.x = Numbers::own(x);
+    CHECK(thinned(cloud, paper_for(cloud, {600, 400})).size() == 100);
+
+    Curve dense = sampled(
+        1'000'000, [](double s) { return std::sin(8e5 * s); }, [](double s) { return std::cos(5e5 * s * s); });
+    dense.style = Style::points;
+    CHECK(thinned(dense, paper_for(dense, {600, 400}, 8)).size() <= 76 * 51);
+}
+
+TEST_CASE("points that can not be seen are left out, and so is what has no place", "[thinning]") {
+    Curve cloud{Numbers::own({0, 5, std::nan(""), 1, 0}), Numbers::own({0, 5, 0, 1, std::nan("")})};
+    cloud.style = Style::points;
+    const Paper paper{{Scale({0, 1}, false), Scale({0, 1}, false)}, {600, 400}};
+    CHECK(thinned(cloud, paper) == std::vector<std::size_t>{0, 3});
+}

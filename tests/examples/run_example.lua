@@ -26,8 +26,8 @@ local function run_in_empty_folder()
     quoted(folder), quoted(program), quoted(script)))
   local out, err = read(folder .. "/.out"), read(folder .. "/.err")
   -- what an example says that it wrote must be there
-  for name in out:gmatch("[%w-]+%.csv") do
-    if script:find("report/") then assert(io.open(folder .. "/" .. name), name .. " was not written"):close() end
+  for name in out:gmatch("%f[%w]fig%w+%.svg") do
+    assert(io.open(folder .. "/" .. name), name .. " was not written"):close()
   end
   os.execute("rm -r " .. quoted(folder))
   assert(ok, ("exit code %s\n%s%s"):format(code, out, err))

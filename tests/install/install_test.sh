@@ -8,7 +8,7 @@ trap 'rm -rf "$prefix"' EXIT
 DESTDIR='' "$cmake" --install "$build" --prefix "$prefix/usr" >"$prefix/log"
 
 for file in bin/dinal share/man/man1/dinal.1 share/dinal/examples/README.md share/dinal/examples/classic.lua \
-    share/doc/dinal/LICENSE share/doc/dinal/README.md share/doc/dinal/docs/manual.md; do
+    share/doc/dinal/LICENSE share/doc/dinal/README.md share/doc/dinal/docs/manual.md share/doc/dinal/docs/report/fig22.svg; do
     [ -s "$prefix/usr/$file" ] || { echo "$file was not installed"; exit 1; }
 done
 (cd "$source" && find examples -type f) | while read -r file; do
@@ -30,6 +30,9 @@ for example in "$1"/usr/share/dinal/examples/0*.lua; do
     "$dinal" "$example" >out </dev/null || { echo "$example does not run where it is installed"; exit 1; }
     [ -s out ]
 done
+# The figures of the report share a module and go into the current folder here, with gnuplot or without.
+"$dinal" "$1/usr/share/dinal/examples/report/all.lua" >out </dev/null
+[ -s fig22.svg ] || [ -s fig22.gp ] || { echo "the figures of the report are not drawn where they are installed"; exit 1; }
 "$dinal" --manual | cmp - "$1/usr/share/doc/dinal/docs/manual.md"
 END
 if unshare -rm true 2>/dev/null; then
