@@ -22,10 +22,11 @@ Range asked_range(const Options& options, std::string_view name, bool logarithmi
             fmt::format("{} = {{ {:.6g}, {:.6g} }} must be positive on a logarithmic axis", name, ends[0], ends[1]));
     }
     // So far apart, or so close together, that fractions of the axis could not be told.
-    if (!(ends[1] - ends[0] <= 1e300) || ends[1] - ends[0] < 1e-13 * std::max(std::fabs(ends[0]), std::fabs(ends[1]))) {
+    if (!(ends[1] - ends[0] <= 1e300) || ends[1] - ends[0] < shortest_axis ||
+        ends[1] - ends[0] < 1e-13 * std::max(std::fabs(ends[0]), std::fabs(ends[1]))) {
         options.fail(
-            fmt::format("{} = {{ {}, {} }} can not be drawn: its ends must differ by more than 1e-13 of their size and "
-                        "by less than 1e300",
+            fmt::format("{} = {{ {}, {} }} can not be drawn: its ends must differ by more than 1e-13 of their size, by "
+                        "more than 1e-305 and by less than 1e300",
                         name, ends[0], ends[1]));
     }
     return {ends[0], ends[1]};
