@@ -18,16 +18,12 @@ struct Extent {
     [[nodiscard]] bool empty() const { return low > high; }
 };
 
-bool usable(double value, bool logarithmic) {
-    return std::fabs(value) <= 1e300 && (!logarithmic || value > 0);
-}
-
 Extent extent_of_x(const Figure& figure) {
     Extent extent;
     for (const Curve& curve : figure.curves) {
         for (std::size_t i = 0; i < curve.size(); ++i) {
             const double x = curve.x.values[i];
-            if (usable(x, figure.x.logarithmic) && usable(curve.y.values[i], figure.y.logarithmic)) {
+            if (drawable(x, figure.x.logarithmic) && drawable(curve.y.values[i], figure.y.logarithmic)) {
                 extent.add(x);
             }
         }
@@ -45,10 +41,10 @@ Extent extent_of_y(const Figure& figure, Range x_range) {
             if (!(x >= x_range.low && x <= x_range.high)) {
                 continue;
             }
-            if (usable(y, figure.y.logarithmic)) {
+            if (drawable(y, figure.y.logarithmic)) {
                 extent.add(y);
             }
-            if (curve.style == Style::fill && curve.base && usable(curve.base->values[i], figure.y.logarithmic)) {
+            if (curve.style == Style::fill && curve.base && drawable(curve.base->values[i], figure.y.logarithmic)) {
                 extent.add(curve.base->values[i]);
             }
         }
@@ -66,8 +62,8 @@ Range widened(Extent extent, double air) {
     const double middle = extent.low / 2 + extent.high / 2;
     const double size = std::max(std::fabs(extent.low), std::fabs(extent.high));
     const double length = extent.high - extent.low;
-    if (length <= 1e-12 * size) {  // a constant, or what differs from one by roundings
-        const double half = size > 0 ? size / 10 : 1;
+    if (length <= 1e-12 * size || length < shortest_axis) {  // a constant, or what differs from one by roundings
+        const double half = size > 10 * shortest_axis ? size / 10 : 1;
         return {middle - half, middle + half};
     }
     return {extent.low - air * length, extent.high + air * length};
@@ -77,9 +73,10 @@ Range logarithmically_widened(Extent extent, double air) {
     if (extent.empty()) {
         return {1, 10};
     }
-    const double ratio = extent.high / extent.low;
-    const double factor = ratio < 1 + 1e-9 ? std::sqrt(10) : std::pow(ratio, air);
-    return {extent.low / factor, extent.high * factor};
+    const double decades = std::log10(extent.high) - std::log10(extent.low);  // of the ratio, which may overflow
+    const double factor = std::pow(10, decades < 1e-9 ? 0.5 : air * decades);
+    return {std::max(extent.low / factor, std::numeric_limits<double>::denorm_min()),
+            std::min(extent.high * factor, std::numeric_limits<double>::max())};
 }
 
 Range with_air(Extent extent, const Axis& axis, double air) {

@@ -71,6 +71,14 @@ struct Figure {
     std::optional<Range> dead_zone = {};  ///< of x, marked on y = 0
 };
 
+/// Numbers beyond 1e300 would overflow in differences, and nobody could see them.
+inline bool drawable(double value, bool logarithmic) {
+    return std::fabs(value) <= 1e300 && (!logarithmic || value > 0);
+}
+
+/// Fractions of a shorter one could not be told.
+inline constexpr double shortest_axis = 1e-305;
+
 /// One axis as it is drawn: from a value to its fraction of the axis.
 class Scale {
 public:
@@ -81,8 +89,12 @@ public:
     [[nodiscard]] double operator()(double value) const {
         return ((logarithmic_ ? std::log10(value) : value) - low_) * factor_;
     }
-    /// Numbers beyond 1e300 would overflow in differences, and nobody could see them.
-    [[nodiscard]] bool has(double value) const { return std::fabs(value) <= 1e300 && (!logarithmic_ || value > 0); }
+    [[nodiscard]] bool has(double value) const { return drawable(value, logarithmic_); }
+    /// The value at that fraction of the axis.
+    [[nodiscard]] double at(double fraction) const {
+        const double place = low_ + fraction / factor_;
+        return logarithmic_ ? std::pow(10, place) : place;
+    }
 
 private:
     Range range_;

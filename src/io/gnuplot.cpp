@@ -1,13 +1,18 @@
 #include "io/gnuplot.hpp"
 
 #include <fcntl.h>
+#include <poll.h>
 #include <spawn.h>
 #include <sys/mman.h>
+#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
+#include <csignal>
+#include <optional>
 #include <string>
 #include <system_error>
 #include <utility>
@@ -40,6 +45,36 @@ private:
     int number_;
 };
 
+/// A started program. What is still running when this goes is killed: nobody would read what it writes.
+class Child {
+public:
+    Child() = default;
+    Child(const Child&) = delete;
+    Child& operator=(const Child&) = delete;
+    ~Child() {
+        if (id_ > 0) {
+            ::kill(id_, SIGKILL);
+            wait();
+        }
+    }
+    /// Returns the errno of a failure.
+    int start(int input, int output, int errors);
+    void limit_memory(std::size_t bytes) const {
+        const rlimit limit{bytes, bytes};
+        ::prlimit(id_, RLIMIT_AS, &limit, nullptr);
+    }
+    int wait() {
+        int status = 0;
+        while (::waitpid(id_, &status, 0) < 0 && errno == EINTR) {
+        }
+        id_ = 0;
+        return status;
+    }
+
+private:
+    pid_t id_ = 0;
+};
+
 /// A file without a name, in memory. With one for the input and one for the errors there is only one pipe to read, and
 /// nobody can wait for anybody.
 int nameless_file() {
@@ -57,14 +92,21 @@ bool write_all(int descriptor, std::string_view text) {
     return ::lseek(descriptor, 0, SEEK_SET) == 0;
 }
 
-std::string read_all(int descriptor) {
+/// To the end; nothing when go_on() says no before.
+std::optional<std::string> read_all(int descriptor, const std::function<bool()>& go_on) {
     std::string text;
     std::array<char, 1U << 16U> piece{};
     for (;;) {
-        const ssize_t count = ::read(descriptor, piece.data(), piece.size());
+        constexpr int now_and_then = 50;  // ms; a signal to this thread wakes it up at once
+        pollfd readable{descriptor, POLLIN, 0};
+        const bool ready = ::poll(&readable, 1, now_and_then) > 0;
+        if (go_on && !go_on()) {
+            return std::nullopt;
+        }
+        const ssize_t count = ready ? ::read(descriptor, piece.data(), piece.size()) : 0;
         if (count > 0) {
             text.append(piece.data(), static_cast<std::size_t>(count));
-        } else if (count == 0 || errno != EINTR) {
+        } else if (ready && (count == 0 || errno != EINTR)) {
             return text;
         }
     }
@@ -84,7 +126,7 @@ std::vector<char*> environment() {
     return all;
 }
 
-int start(pid_t& child, int input, int output, int errors) {
+int Child::start(int input, int output, int errors) {
     posix_spawn_file_actions_t actions;
     posix_spawn_file_actions_init(&actions);
     posix_spawn_file_actions_adddup2(&actions, input, STDIN_FILENO);
@@ -92,7 +134,7 @@ int start(pid_t& child, int input, int output, int errors) {
     posix_spawn_file_actions_adddup2(&actions, errors, STDERR_FILENO);
     static char name[] = "gnuplot", defaults[] = "--default-settings";
     const std::array<char*, 3> arguments{name, defaults, nullptr};
-    const int error = ::posix_spawnp(&child, name, &actions, nullptr, arguments.data(), environment().data());
+    const int error = ::posix_spawnp(&id_, name, &actions, nullptr, arguments.data(), environment().data());
     posix_spawn_file_actions_destroy(&actions);
     return error;
 }
@@ -104,9 +146,20 @@ std::string first_complaint(const std::string& text) {
     return begin == std::string::npos ? "" : text.substr(begin, text.find('\n', begin) - begin);
 }
 
+Error complaint(int status, int errors) {
+    if (WIFSIGNALED(status)) {
+        return failure("it was stopped by signal " + std::to_string(WTERMSIG(status)));
+    }
+    ::lseek(errors, 0, SEEK_SET);
+    const std::string words = first_complaint(read_all(errors, {}).value_or(""));
+    return failure(words.empty()
+                       ? "it ended with exit code " + std::to_string(WEXITSTATUS(status)) + " and drew nothing"
+                       : "it says: " + words);
+}
+
 }  // namespace
 
-Expected<std::string> run_gnuplot(std::string_view commands) {
+Expected<std::string> run_gnuplot(std::string_view commands, const GnuplotLimits& limits) {
     const Descriptor input(nameless_file()), errors(nameless_file());
     std::array<int, 2> ends{-1, -1};
     if (input.number() < 0 || errors.number() < 0 || !write_all(input.number(), commands) ||
@@ -115,26 +168,28 @@ Expected<std::string> run_gnuplot(std::string_view commands) {
     }
     const Descriptor from(ends[0]);
     Descriptor to(ends[1]);
-    pid_t child = 0;
-    if (const int error = start(child, input.number(), to.number(), errors.number()); error != 0) {
+    Child child;
+    if (const int error = child.start(input.number(), to.number(), errors.number()); error != 0) {
         return error == ENOENT ? Error{"files .svg, .png and .pdf are drawn by gnuplot, which is not installed: install "
                                        "the Debian package gnuplot-nox (plots in the terminal and .gp files need no "
                                        "gnuplot)"}
                                : failure(error);
     }
+    if (limits.memory > 0) {
+        constexpr std::size_t own_needs = std::size_t{256}
+                                          << 20U;  // addresses; libraries and fonts took 150 MB of them
+        child.limit_memory(own_needs + std::min(limits.memory, std::size_t{1} << 48U));
+    }
     to.close();
-    std::string picture = read_all(from.number());
-    int status = 0;
-    while (::waitpid(child, &status, 0) < 0 && errno == EINTR) {
+    std::optional<std::string> picture = read_all(from.number(), limits.go_on);
+    if (!picture) {
+        return failure("it was interrupted");
     }
-    if (WIFSIGNALED(status)) {
-        return failure("it was stopped by signal " + std::to_string(WTERMSIG(status)));
+    const int status = child.wait();
+    if (status != 0 || picture->empty()) {
+        return complaint(status, errors.number());
     }
-    if (WEXITSTATUS(status) != 0 || picture.empty()) {
-        ::lseek(errors.number(), 0, SEEK_SET);
-        return failure("it says: " + first_complaint(read_all(errors.number())));
-    }
-    return picture;
+    return std::move(*picture);
 }
 
 }  // namespace dinal

@@ -9,7 +9,7 @@ namespace dinal {
 namespace {
 
 constexpr int most_digits = 6;  // of a label, before it is written another way
-constexpr std::size_t most_ticks = 1000;
+constexpr double most_ticks = 1000;
 
 /// The decimal exponent: 3 for 1000 to 9999. From the text, because log10(1000) may round to 2.999...
 int exponent_of(double value) {
@@ -33,7 +33,7 @@ std::vector<double> multiples(double step, Range range) {
     const double slack = 1e-9 * range.length();
     const double first = std::ceil((range.low - slack) / step);
     const double last = std::floor((range.high + slack) / step);
-    const double count = std::clamp(last - first + 1, 0.0, static_cast<double>(most_ticks));
+    const double count = std::clamp(last - first + 1, 0.0, most_ticks + 2);
     std::vector<double> at(static_cast<std::size_t>(count));
     for (std::size_t i = 0; i < at.size(); ++i) {
         at[i] = (first + static_cast<double>(i)) * step + 0.0;  // no minus zero
@@ -123,10 +123,11 @@ void label_linear(Ticks& ticks, Range range) {
     const int leading = largest > 0 ? exponent_of(largest) : 0;
     if (leading - finest > most_digits + 1) {
         const double unit = std::pow(10.0, exponent_of(range.length()) + 1);
-        const double offset = std::floor(ticks.at.front() / unit + 1e-6) * unit;
+        const double offset = std::round((range.low / 2 + range.high / 2) / unit) * unit;
         std::vector<double> rest = ticks.at;
         for (double& value : rest) {
-            value -= offset;
+            const double digit = std::pow(10.0, finest);
+            value = std::round((value - offset) / digit) * digit + 0.0;  // the roundings of large numbers left out
         }
         ticks.offset = fmt::format("{:+.15g}", offset);
         ticks.text = finest < -5 ? in_powers(rest, finest) : fixed(rest, std::max(0, -finest));
@@ -156,7 +157,7 @@ Ticks ticks_of(const Axis& axis, const Scale& scale, int most) {
         std::copy_if(axis.ticks.begin(), axis.ticks.end(), std::back_inserter(ticks.at),
                      [range](double x) { return x >= range.low && x <= range.high; });
         std::sort(ticks.at.begin(), ticks.at.end());
-    } else if (axis.division) {
+    } else if (axis.division && range.length() / *axis.division < most_ticks) {
         ticks.at = multiples(*axis.division, range);
     } else if (scale.logarithmic()) {
         ticks.at = powers_of_ten(range, most);

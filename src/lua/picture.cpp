@@ -3,11 +3,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 
 #include "io/file.hpp"
 #include "io/gnuplot.hpp"
 #include "io/screen.hpp"
+#include "lua/interrupt.hpp"
+#include "lua/memory_limit.hpp"
 
 namespace dinal {
 namespace {
@@ -22,10 +25,11 @@ Range asked_range(const Options& options, std::string_view name, bool logarithmi
             fmt::format("{} = {{ {:.6g}, {:.6g} }} must be positive on a logarithmic axis", name, ends[0], ends[1]));
     }
     // So far apart, or so close together, that fractions of the axis could not be told.
-    if (!(ends[1] - ends[0] <= 1e300) || ends[1] - ends[0] < 1e-13 * std::max(std::fabs(ends[0]), std::fabs(ends[1]))) {
+    if (!(ends[1] - ends[0] <= 1e300) || ends[1] - ends[0] < shortest_axis ||
+        ends[1] - ends[0] < 1e-13 * std::max(std::fabs(ends[0]), std::fabs(ends[1]))) {
         options.fail(
-            fmt::format("{} = {{ {}, {} }} can not be drawn: its ends must differ by more than 1e-13 of their size and "
-                        "by less than 1e300",
+            fmt::format("{} = {{ {}, {} }} can not be drawn: its ends must differ by more than 1e-13 of their size, by "
+                        "more than 1e-305 and by less than 1e300",
                         name, ends[0], ends[1]));
     }
     return {ends[0], ends[1]};
@@ -101,37 +105,56 @@ PaperSize asked_size(const Options& options) {
     return {size[0], size[1]};
 }
 
-/// The bytes of the file that `file` names, by its ending.
-Expected<std::string> content(const std::vector<Figure>& figures, std::string_view file, PaperSize size,
-                              TextFormat format) {
+enum class FileKind { svg, png, pdf, gp, txt };
+
+FileKind kind_of(const Options& options, std::string_view file) {
+    constexpr std::array<std::string_view, 5> endings{".svg", ".png", ".pdf", ".gp", ".txt"};
     std::string ending(file.substr(std::min(file.rfind('.'), file.size())));
     std::transform(ending.begin(), ending.end(), ending.begin(),
                    [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-    if (ending == ".txt") {
+    const auto* const known = std::find(endings.begin(), endings.end(), ending);
+    if (known == endings.end()) {
+        options.fail(
+            fmt::format("the name '{}' must end in .svg, .png, .pdf, .gp (gnuplot commands and data) or .txt", file));
+    }
+    return static_cast<FileKind>(known - endings.begin());
+}
+
+Expected<std::string> content(const std::vector<Figure>& figures, FileKind kind, PaperSize size, TextFormat format) {
+    if (kind == FileKind::txt) {
         format.colours = false;
         return text_plot(figures, format);
     }
-    if (ending == ".gp") {
+    if (kind == FileKind::gp) {
         return gnuplot_file(figures, size);
     }
-    if (ending != ".svg" && ending != ".png" && ending != ".pdf") {
-        return Error{
-            fmt::format("the name '{}' must end in .svg, .png, .pdf, .gp (gnuplot commands and data) or .txt", file)};
-    }
-    const Terminal terminal = ending == ".svg" ? Terminal::svg : ending == ".png" ? Terminal::png : Terminal::pdf;
-    return run_gnuplot(gnuplot_input(figures, terminal, size));
+    const Terminal terminal = kind == FileKind::svg   ? Terminal::svg
+                              : kind == FileKind::png ? Terminal::png
+                                                      : Terminal::pdf;
+    return run_gnuplot(gnuplot_input(figures, terminal, size),
+                       {.go_on = [] { return !interrupt_requested(); },
+                        .memory = memory_limit() == 0 ? 0 : std::max<std::size_t>(memory_left(), 1)});
 }
 
-void write_picture(const Options& options, const std::vector<Figure>& figures, const TextFormat& format) {
-    const std::string file = options.text("file");
+template <class T>
+T value_or_fail(const Options& options, Expected<T> expected) {
+    if (!expected) {
+        options.fail(expected.error().sentence);
+    }
+    return std::move(expected).value();
+}
+
+void write_picture(lua_State* L, const Options& options, const std::vector<Figure>& figures, const TextFormat& format) {
+    const std::string name = options.text("file");
+    const FileKind kind = kind_of(options, name);
     const PaperSize size = asked_size(options);
-    const auto bytes = content(figures, file, size, format);
-    if (!bytes) {
-        options.fail(bytes.error().sentence);
+    OutputFile file = value_or_fail(options, OutputFile::create(name));  // before the work that may be in vain
+    const auto bytes = content(figures, kind, size, format);
+    if (interrupt_requested()) {
+        raise_interrupted(L);
     }
-    if (const auto written = write_file(file, *bytes); !written) {
-        options.fail(written.error().sentence);
-    }
+    file.write(value_or_fail(options, bytes));
+    value_or_fail(options, file.commit());
 }
 
 /// A user's ticks must be few enough to be told apart.
@@ -174,7 +197,7 @@ int deliver(lua_State* L, const Options& options, std::vector<Figure> figures) {
         if (!show) {
             options.fail("file and show = false exclude each other");
         }
-        write_picture(options, figures, format);
+        write_picture(L, options, figures, format);
         return 0;
     }
     if (options.has("size")) {

@@ -217,6 +217,21 @@ TEST_CASE("nothing, one point and a constant are pictures, too", "[textplot]") {
     CHECK(drawn(figure(curve({0, 1}, {1e308, -1e308})), 40, 10).size() > 100);
 }
 
+TEST_CASE("the smallest and the largest numbers are drawn like others", "[textplot]") {
+    CHECK(drawn(figure(curve({0, 5e-324, 1e-323}, {0, 5e-324, 0})), 40, 10).find("0 ┤") != std::string::npos);
+    CHECK(drawn(figure(curve({0, 1e-300}, {0, 1e-300})), 40, 10).find("1e-300") != std::string::npos);
+    CHECK(drawn(figure(curve({0, 1e300}, {-1e300, 1e300})), 40, 10).find("-1e300") != std::string::npos);
+    Figure wide = figure(curve({1e-300, 1, 1e300}, {5e-324, 1, 1e300}));
+    wide.x.logarithmic = wide.y.logarithmic = true;
+    CHECK(drawn(wide, 40, 10).find("1e") != std::string::npos);
+    for (const double value : {5e-324, 1e-310, 1e-300, 1.0, 1e300}) {
+        CHECK(drawn(figure(curve({value}, {value})), 40, 10).size() > 100);
+        Figure equal = figure(curve({0, value}, {0, 1}));
+        equal.equal = equal.circles = true;
+        CHECK(drawn(equal, 40, 10).size() > 100);
+    }
+}
+
 TEST_CASE("infinity is a gap", "[textplot]") {
     const double infinity = std::numeric_limits<double>::infinity();
     Figure broken = figure(curve({0, 1, 2, 3}, {0, 1, infinity, 1}));
@@ -260,6 +275,15 @@ TEST_CASE("ticks that begin alike show the difference, and the label what to add
     CHECK(ticks.offset == "+1000000");
     CHECK(ticks.text.front() == "0.0000");
     CHECK(ticks.text.back() == "0.0010");
+}
+
+TEST_CASE("what is added to ticks is the round number in their middle", "[ticks]") {
+    const Ticks about = ticks_of({}, Scale({1e9 - 1.1e-3, 1e9 + 1.1e-3}, false), 3);
+    CHECK(about.offset == "+1000000000");
+    CHECK(about.text == Texts{"-0.001", "0.000", "0.001"});
+    const Ticks below = ticks_of({}, Scale({-273.15 - 1.1e-6, -273.15 + 1.1e-6}, false), 3);
+    CHECK(below.offset == "-273.15");
+    CHECK(below.text == Texts{"-1e-6", "0", "1e-6"});
 }
 
 TEST_CASE("ticks can be asked for by their distance or one by one", "[ticks]") {
