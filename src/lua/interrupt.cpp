@@ -127,7 +127,10 @@ std::string stopped_at() {
     return place.data();
 }
 
-InterruptScope::InterruptScope(lua_State* L) : L_(L) {
+InterruptScope::InterruptScope(lua_State* L) : L_(L), within_(armed) {
+    if (within_) {
+        return;
+    }
     requested = Stop::none;
     first_signal_ms = 0;
     place[0] = '\0';
@@ -136,9 +139,12 @@ InterruptScope::InterruptScope(lua_State* L) : L_(L) {
 }
 
 InterruptScope::~InterruptScope() {
+    end_progress();
+    if (within_) {
+        return;
+    }
     armed = false;
     running = nullptr;
-    end_progress();
     if (lua_gethook(L_) == interrupt_hook) {
         lua_sethook(L_, nullptr, 0, 0);
     }

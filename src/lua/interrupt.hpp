@@ -40,6 +40,7 @@ std::string stopped_at();
 
 /// While it lives, a stop is raised again and again in what runs on `L`, so that no pcall can swallow it. One for each
 /// chunk, around its lua_pcall at the top level; its time runs meanwhile. Outside of it, Ctrl-C only sets the flag.
+/// One within another is a part of it: a Ctrl-C between two of them is not lost.
 class InterruptScope {
 public:
     explicit InterruptScope(lua_State* L);
@@ -49,6 +50,7 @@ public:
 
 private:
     lua_State* L_;
+    bool within_;  ///< another one
     TimeAllowance time_;
 };
 

@@ -34,7 +34,7 @@ void push_partial(lua_State* L) {
 }
 
 int print_partial(lua_State* L) {
-    say_error("the part of the run that was done is in ans (ans:continue() goes on): " +
+    say_error("the part of the run that was done is in ans (ans:continue() goes on):\n" +
               show(L, 1, display_of(STDERR_FILENO)));
     return 0;
 }
@@ -86,19 +86,27 @@ void keep_partial_run(lua_State* L, int before) {
     }
 }
 
+/// Runs the function on the top of the stack and shows its values; false, and the message on the stack, when it failed.
+bool run_and_show(lua_State* L, const Chunk& chunk, Evaluated& result) {
+    const InterruptScope running(L);  // a Ctrl-C meant for the function may come when its values are being shown
+    if (call(L, 0, LUA_MULTRET) != LUA_OK) {
+        return false;
+    }
+    result = {!interrupt_requested(), lua_gettop(L) - 1, lua_gettop(L) > 1 && lua_isnil(L, 2)};
+    if (!result.fine) {
+        say_error("interrupted");
+    }
+    show_values(L, 1, chunk);
+    return true;
+}
+
 }  // namespace
 
 Evaluated evaluate(lua_State* L, const Chunk& chunk) {
     Evaluated result;
     push_partial(L);
     lua_insert(L, 1);
-    if (call(L, 0, LUA_MULTRET) == LUA_OK) {
-        result = {!interrupt_requested(), lua_gettop(L) - 1, lua_gettop(L) > 1 && lua_isnil(L, 2)};
-        if (!result.fine) {
-            say_error("interrupted");
-        }
-        show_values(L, 1, chunk);
-    } else {
+    if (!run_and_show(L, chunk, result)) {
         say_error(take_text(L));
         keep_partial_run(L, 1);
     }

@@ -11,7 +11,7 @@ import unittest
 
 sys.dont_write_bytecode = True  # no folder __pycache__ in the source tree
 
-from session import CTRL_C, environment
+from session import AT_ONCE, CTRL_C, PATIENCE, environment, processor_time
 
 import pexpect
 
@@ -32,7 +32,7 @@ class Terminal:
     def __init__(self, arguments, columns=80, rows=12, **variables):
         self.home = tempfile.TemporaryDirectory()
         self.child = pexpect.spawn(PROGRAM, arguments, env=environment(self.home.name, **variables), cwd=self.home.name,
-                                   dimensions=(rows, columns), timeout=10)
+                                   dimensions=(rows, columns), timeout=PATIENCE)
         self.child.delaybeforesend = None
         self.screen = pyte.Screen(columns, rows)
         self.stream = pyte.ByteStream(self.screen)
@@ -53,9 +53,9 @@ class Terminal:
     def lines(self):
         return [line.rstrip() for line in self.screen.display if line.strip()]
 
-    def until(self, condition, seconds=10):
+    def until(self, condition):
         """Waits until the lines on the screen are as wanted."""
-        end = time.monotonic() + seconds
+        end = time.monotonic() + PATIENCE
         while not (self.lines() and condition(self.lines())) and time.monotonic() < end:
             if not self.read(0.05):
                 break
@@ -63,8 +63,9 @@ class Terminal:
         return self.lines()
 
     def until_the_end(self):
-        while self.read(1):
-            pass
+        end = time.monotonic() + PATIENCE
+        while self.read(0.5):
+            assert time.monotonic() < end, self.lines()
         return self.lines()
 
 
@@ -86,7 +87,7 @@ class TheLine(TerminalTest):
         self.assertRegex(shown[0], r"^  0% ▕ +▏ t = [\d.e+]+ of 1e\+09, [\d.e+]+/s, .* left$")
 
     def test_it_moves_on_in_one_line_and_is_gone_at_the_end(self):
-        terminal = self.start("-e", "for i in progress(9, 'sweep') do local c = os.clock() repeat until os.clock() > c + 0.15 end "
+        terminal = self.start("-e", "for i in progress(9, 'sweep') do os.execute 'sleep 0.15' end "
                               "print 'done'")
         first = terminal.until(progress_lines)
         second = terminal.until(lambda lines: progress_lines(lines) and lines != first)
@@ -113,14 +114,14 @@ class TheLine(TerminalTest):
         terminal = self.start("-e", LONG, TERM="dumb")
         seen = b""
         while b"%" not in seen:
-            seen += terminal.child.read_nonblocking(65536, 10)
+            seen += terminal.child.read_nonblocking(65536, PATIENCE)
         terminal.child.send(CTRL_C)
         seen += terminal.child.read()
         self.assertNotIn(b"\x1b", seen)
 
     def test_what_is_printed_stands_in_lines_of_its_own(self):
         # The line is there from the fifth step on.
-        code = ("for i in progress(9, 'loop') do local c = os.clock() repeat until os.clock() > c + 0.12 "
+        code = ("for i in progress(9, 'loop') do os.execute 'sleep 0.12' "
                 "local ways = { print, function(i) io.write(i, '\\n') end, function(i) io.stdout:write(i, '\\n') end, "
                 "function(i) io.stderr:write(i, '\\n') end } ways[i % 4 + 1](i) end")
         terminal = self.start("-e", code)
@@ -128,19 +129,19 @@ class TheLine(TerminalTest):
         self.assertEqual(terminal.until_the_end(), [str(i) for i in range(1, 10)])
 
     def test_a_line_that_is_not_yet_ended_is_left_alone(self):
-        code = "for i in progress(8) do local c = os.clock() repeat until os.clock() > c + 0.12 io.write(i, ' ') io.flush() end"
+        code = "for i in progress(8) do os.execute 'sleep 0.12' io.write(i, ' ') io.flush() end"
         self.assertEqual(self.start("-e", code).until_the_end(), ["1 2 3 4 5 6 7 8"])
 
     def test_loops_within_loops_are_one_line(self):
         code = ("for i in progress(2, 'outer') do for j in progress({ 'a', 'b', 'c', 'd' }, 'inner') do "
-                "local c = os.clock() repeat until os.clock() > c + 0.14 end end print 'done'")
+                "os.execute 'sleep 0.14' end end print 'done'")
         terminal = self.start("-e", code)
         shown = terminal.until(lambda lines: "62%" in lines[-1])
         self.assertRegex(shown[0], r"^outer +62% .* 1 of 2, ")
         self.assertEqual(terminal.until_the_end(), ["done"])
 
     def test_a_loop_that_is_left_takes_its_line_along(self):
-        code = ("local function loop(leave) for i in progress(10) do local c = os.clock() repeat until os.clock() > c + 0.12 "
+        code = ("local function loop(leave) for i in progress(10) do os.execute 'sleep 0.12' "
                 "if i == 6 then if leave == 'break' then break elseif leave == 'error' then error() else return end end end end "
                 "for _, leave in ipairs{ 'break', 'error', 'return' } do pcall(loop, leave) print(leave) end io.read()")
         terminal = self.start("-e", code)
@@ -148,7 +149,7 @@ class TheLine(TerminalTest):
         self.assertEqual(terminal.until(lambda lines: lines[-1] == "return"), ["break", "error", "return"])
 
     def test_a_loop_in_a_coroutine_that_is_forgotten_leaves_no_line(self):
-        code = ("coroutine.wrap(function() for i in progress(10) do local c = os.clock() repeat until os.clock() > c + 0.12 "
+        code = ("coroutine.wrap(function() for i in progress(10) do os.execute 'sleep 0.12' "
                 "if i == 6 then coroutine.yield() end end end)()")
         terminal = self.start("-i", "-e", code)
         terminal.until(progress_lines)
@@ -160,14 +161,14 @@ class TheLine(TerminalTest):
         seen = b""
         while True:
             try:
-                seen += terminal.child.read_nonblocking(65536, 2)
+                seen += terminal.child.read_nonblocking(65536, PATIENCE)
             except (pexpect.EOF, pexpect.TIMEOUT):
                 break
         self.assertEqual(seen, b"")
 
     def test_nothing_where_standard_error_is_no_terminal(self):
-        code = "for i in progress(8) do local c = os.clock() repeat until os.clock() > c + 0.12 end"
-        done = subprocess.run([PROGRAM, "-e", code], capture_output=True, timeout=20)
+        code = "for i in progress(8) do os.execute 'sleep 0.12' end"
+        done = subprocess.run([PROGRAM, "-e", code], capture_output=True, timeout=PATIENCE)
         self.assertEqual((done.stdout, done.stderr, done.returncode), (b"", b"", 0))
 
 
@@ -177,11 +178,10 @@ class AtThePrompt(TerminalTest):
         terminal.until(lambda lines: lines[-1] == ">")
         terminal.child.send(LONG.replace("times = {}", "dt = 1e6, integrator = integrator.rk4{ h = 0.01 }") + "\r")
         terminal.until(progress_lines)
-        pressed = time.monotonic()
+        before = processor_time(terminal.child.pid)
         terminal.child.send(CTRL_C)
         shown = terminal.until(lambda lines: lines[-1] == ">")
-        # 0.1 s is promised; the rest is for a machine that does other work.
-        self.assertLess(time.monotonic() - pressed, 1)
+        self.assertLess(processor_time(terminal.child.pid) - before, AT_ONCE)
         return terminal, shown
 
     def test_ctrl_c_stops_the_run_and_keeps_what_was_done(self):
@@ -207,14 +207,14 @@ class AtThePrompt(TerminalTest):
         terminal.until(lambda lines: lines[-2:] == ["42", ">"])
 
     def test_each_input_of_a_limited_session_has_its_own_time(self):
-        terminal = self.start("--safe", "--max-time", "0.3")
+        terminal = self.start("--safe", "--max-time", "0.5")
         terminal.until(lambda lines: lines[-1] == ">")
-        time.sleep(0.5)  # typing takes its time
+        time.sleep(0.6)  # typing takes its time
         terminal.child.send("6*7\r")
         terminal.until(lambda lines: lines[-2:] == ["42", ">"])
         terminal.child.send("while true do end\r")
         shown = terminal.until(lambda lines: lines[-1] == ">" and "max-time" in lines[-2])
-        self.assertIn("stopped at stdin:1: it ran longer than the 0.3 s", shown[-2])
+        self.assertIn("stopped at stdin:1: it ran longer than the 0.5 s", shown[-2])
         terminal.child.send("7*7\r")
         terminal.until(lambda lines: lines[-2:] == ["49", ">"])
 

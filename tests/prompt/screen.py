@@ -6,10 +6,9 @@ import time
 import pexpect
 import pyte
 
-from session import environment
+from session import PATIENCE, environment
 
 CTRL_C, CTRL_D, CTRL_R, TAB, UP, LEFT, ENTER = "\x03", "\x04", "\x12", "\t", "\x1b[A", "\x1b[D", "\r"
-PATIENCE = 10  # seconds; the sanitizers are slow
 
 
 class Terminal:

@@ -3,6 +3,7 @@
 import os
 import re
 import sys
+import time
 
 try:
     import pexpect
@@ -14,6 +15,10 @@ ESCAPES = re.compile(r"\x1b\[[0-9;?]*[A-Za-z]|\x1b[=>]|\x07|\r")
 PROMPT = "\x1b[?2004h> "
 CONTINUATION = "\x1b[?2004h>> "
 CTRL_C, CTRL_D, TAB, UP, ENTER = "\x03", "\x04", "\t", "\x1b[A", "\r"
+PATIENCE = 60  # seconds: the sanitizers are slow, and the machine may do other work
+# What stops, stops within this time of its own processor time, however little of it the machine gives. 0.1 s is
+# promised; the sanitizers need more.
+AT_ONCE = 0.5
 
 
 def environment(home, **more):
@@ -22,11 +27,42 @@ def environment(home, **more):
             "INPUTRC": "/dev/null", **more}
 
 
+def processor_time(pid):
+    """Seconds that the process has used: other than a clock, it stands still while the machine does other work."""
+    with open(f"/proc/{pid}/stat", encoding="ascii", errors="replace") as file:
+        fields = file.read().rpartition(")")[2].split()
+    return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
+
+
+def time_until_end(process):
+    """Waits for the end of a subprocess; its processor time."""
+    until = time.monotonic() + PATIENCE
+    while os.waitid(os.P_PID, process.pid, os.WEXITED | os.WNOWAIT | os.WNOHANG) is None:
+        if time.monotonic() > until:
+            raise AssertionError("never ended")
+        time.sleep(0.005)
+    used = processor_time(process.pid)
+    process.wait()
+    return used
+
+
+def end(child):
+    """Hangs up, as a terminal that is closed; true when the program has ended."""
+    child.ptyproc.fileobj.close()
+    child.ptyproc.closed = child.closed = True
+    until = time.monotonic() + PATIENCE
+    while child.ptyproc.isalive():
+        if time.monotonic() > until:
+            return False
+        time.sleep(0.01)
+    return True
+
+
 class Session:
     def __init__(self, program, home, arguments=(), prompt=PROMPT, **variables):
         self.prompt = prompt
         self.child = pexpect.spawn(program, list(arguments), env=environment(home, **variables), encoding="utf-8",
-                                   cwd=str(home), dimensions=(24, 80), timeout=10)
+                                   cwd=str(home), dimensions=(24, 80), timeout=PATIENCE)
         self.child.delaybeforesend = None
         self.greeting = self.until_prompt()
 
