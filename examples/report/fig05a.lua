@@ -23,7 +23,7 @@ local function edge(r, inside, outside)
   return amplitude
 end
 local corner, lowest, highest = {}, {}, {}
-for i = 1, 33 do
+for i = 1, 40 do
   local r = i / 100
   local step, least, most = i < 20 and 0.04 or 0.01
   for gamma = step, i < 20 and 0.98 or 0.5, step do
