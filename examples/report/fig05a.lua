@@ -7,8 +7,8 @@ local picture = {
   xlabel = "ω/ω₀", ylabel = "Φ", xlim = { 0, 2 }, ylim = { 0, 3 }, xticks = 0.5, size = { 12, 9 },
 }
 
--- Where there are several stops in half a cycle: for each r the least and the most friction that has them, found by a scan
--- (the finer the thinner the region is) and then by halving.
+-- Where there are several stops in half a cycle: for each r the least and the most friction that has them, found by a
+-- scan (the finer the thinner the region is) and then by halving.
 local function amplitude_of_several(r, gamma)
   local amplitude, _, stops = case.steady(r, gamma)
   return stops > 1 and amplitude

@@ -1,5 +1,5 @@
 -- Figure 6: the stop rule. When is a velocity that jumps over zero "zero"? Left, a turn and the two rules of the report
--- (the text takes the nearer of two points, the listing both); right, what they make of the stop of figure 22 with h = 0.01.
+-- (the text takes the nearer of two points, the listing both); right, what they make of the stop of figure 22, h = 0.01.
 local case = dofile((debug.getinfo(1, "S").source:match("^@(.*/)") or "") .. "case.lua")
 
 local fig = case.figure("06", "the stop rule, free, gamma = 0.167, h = 0.01", ...)

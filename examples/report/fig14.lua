@@ -17,7 +17,7 @@ fig:line("factor per step", string.format("%.12f", slip), string.format("%.12f",
 
 fig:line("largest error to t = 50", slip_error:abs():max(), rk4_error:abs():max())
 
-fig:quote{ 50, old.theta[51], -1, slip, 5000, slip^5000, slip_error:abs():max(), rk4, rk4_error:abs():max() }
+fig:quote{ 0.01, 50, old.theta[51], -1, slip, 5000, slip^5000, slip_error:abs():max(), rk4, rk4_error:abs():max() }
 return fig:draw{
   case.response{ slipped, ylim = { -1.2, 1.2 } },
   case.response{
