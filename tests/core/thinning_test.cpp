@@ -44,7 +44,7 @@ TEST_CASE("a million points over time become four to a column of pixels, and no 
     y[777'777] = -4;
     curve.y = Numbers::own(y);
     const auto kept = thinned(curve, paper_for(curve, {600, 400}));
-    CHECK(kept.size() <= 4 * 602);
+    CHECK(kept.size() <= 4U * 602);
     CHECK(std::is_sorted(kept.begin(), kept.end()));
     CHECK(std::count(kept.begin(), kept.end(), 123'456U) == 1);
     CHECK(std::count(kept.begin(), kept.end(), 777'777U) == 1);
@@ -140,7 +140,7 @@ TEST_CASE("points are no line: a cloud keeps one of each pixel, in whatever orde
     Curve dense = sampled(
         1'000'000, [](double s) { return std::sin(8e5 * s); }, [](double s) { return std::cos(5e5 * s * s); });
     dense.style = Style::points;
-    CHECK(thinned(dense, paper_for(dense, {600, 400}, 8)).size() <= 76 * 51);
+    CHECK(thinned(dense, paper_for(dense, {600, 400}, 8)).size() <= 76U * 51);
 }
 
 TEST_CASE("points that can not be seen are left out, and so is what has no place", "[thinning]") {
