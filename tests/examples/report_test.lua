@@ -130,6 +130,7 @@ local folder = new_folder()
 local figures = assert(loadfile(examples .. "/report/all.lua"))(folder)
 local quotes = {}
 for _, figure in ipairs(figures) do quotes[figure.name] = figure.quoted end
+assert(os.clock() < 30, "all figures take " .. os.clock() .. " s: half a minute was promised")
 assert(#figures == 27, "figures 3, 3 bis, 4, 5a, 5b and 6 to 27")
 
 local chapter = read(examples .. "/../docs/report.md")
