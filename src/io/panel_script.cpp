@@ -6,9 +6,6 @@
 #include <array>
 #include <cmath>
 #include <numbers>
-
-#include "io/thinning.hpp"
-
 namespace dinal {
 namespace {
 
@@ -147,7 +144,7 @@ private:
 
     [[nodiscard]] std::string line_style(std::size_t curve) const {
         const Look look = look_of(figure_, curve);
-        return fmt::format("lt 1 lw 1.3 dt {} lc rgb '{}'", look.dashes, look.colour);
+        return fmt::format("lt 1 lw {} dt {} lc rgb '{}'", line_width, look.dashes, look.colour);
     }
     [[nodiscard]] std::string point_style(std::size_t curve) const {
         constexpr std::array<int, 5> shapes{6, 2, 8, 4, 1};  // circle, x, triangle, square, +
@@ -208,25 +205,61 @@ private:
 
     void add_curve(std::size_t i) {
         const Curve& curve = figure_.curves[i];
-        if (curve.style == Style::fill) {
+        const Trace& trace = kept_[i];
+        if (!trace.ink.all.empty()) {
+            constexpr double overlap = 1.6;  // or a screen shows the seams between rows
+            elements_.push_back(fmt::format("{} with lines lt 1 dt 1 lw {:.3f} lc rgb '{}'",
+                                            data_.add(columns_of(trace.ink.all)), overlap * trace.ink.height,
+                                            look_of(figure_, i).colour));
+        } else if (curve.style == Style::fill) {
             add_fill(i);
-            return;
+        } else if (curve.style == Style::points) {
+            add_points(curve, trace.places, point_style(i));
+        } else {
+            add_line(i);
         }
-        const auto columns = columns_of(curve, kept_[i]);
-        const bool points = curve.style == Style::points || columns.front().size() == 1;
-        if (!columns.front().empty()) {
-            elements_.push_back(fmt::format("{} with {} {}", data_.add(columns), points ? "points" : "lines",
-                                            points ? point_style(i) : line_style(i)));
+    }
+
+    void add_points(const Curve& curve, const std::vector<std::size_t>& places, const std::string& style) {
+        if (!places.empty()) {
+            elements_.push_back(data_.add(columns_of(curve, places)) + " with points " + style);
         }
+    }
+
+    /// What is no longer than a dot would leave no ink.
+    void add_line(std::size_t i) {
+        const Curve& curve = figure_.curves[i];
+        std::vector<std::size_t> dots;
+        std::vector<std::size_t> lines;
+        for (const std::vector<std::size_t>& piece : pieces_of(kept_[i].places)) {
+            if (is_dot(curve, piece)) {
+                dots.push_back(piece.front());
+            } else {
+                lines.insert(lines.end(), piece.begin(), piece.end());
+                lines.push_back(gap);
+            }
+        }
+        if (!lines.empty()) {
+            lines.pop_back();
+            elements_.push_back(data_.add(columns_of(curve, lines)) + " with lines " + line_style(i));
+        }
+        add_points(curve, dots, fmt::format("pt 7 ps 0.3 lc rgb '{}'", look_of(figure_, i).colour));
+    }
+
+    [[nodiscard]] bool is_dot(const Curve& curve, const std::vector<std::size_t>& piece) const {
+        const auto near = [&](double a, double b, double pixels) { return std::fabs(a - b) * pixels < line_width; };
+        return std::all_of(piece.begin(), piece.end(), [&](std::size_t place) {
+            return near(panel_.view.x(curve.x.values[place]), panel_.view.x(curve.x.values[piece.front()]),
+                        panel_.right - panel_.left) &&
+                   near(panel_.view.y(curve.y.values[place]), panel_.view.y(curve.y.values[piece.front()]),
+                        panel_.top - panel_.bottom);
+        });
     }
 
     /// NaN would close an area where it opens: each piece is drawn for itself.
     void add_fill(std::size_t i) {
         const Curve& curve = figure_.curves[i];
-        const auto draw = [&](const std::vector<std::size_t>& piece) {
-            if (piece.empty()) {
-                return;
-            }
+        for (const std::vector<std::size_t>& piece : pieces_of(kept_[i].places)) {
             std::vector<std::vector<double>> columns = columns_of(curve, piece);
             const double zero = panel_.view.y.logarithmic() ? panel_.view.y.range().low : 0;
             columns.emplace_back();
@@ -235,17 +268,22 @@ private:
             }
             elements_.push_back(fmt::format("{} with filledcurves fc rgb '{}' fs transparent solid {} noborder",
                                             data_.add(columns), look_of(figure_, i).colour, fill_density));
-        };
-        std::vector<std::size_t> piece;
-        for (const std::size_t place : kept_[i]) {
-            if (place == gap) {
-                draw(piece);
-                piece.clear();
-            } else {
-                piece.push_back(place);
+        }
+    }
+
+    static std::vector<std::vector<std::size_t>> pieces_of(const std::vector<std::size_t>& places) {
+        std::vector<std::vector<std::size_t>> pieces;
+        bool open = false;
+        for (const std::size_t place : places) {
+            if (place != gap && !open) {
+                pieces.emplace_back();
+            }
+            open = place != gap;
+            if (open) {
+                pieces.back().push_back(place);
             }
         }
-        draw(piece);
+        return pieces;
     }
 
     static std::vector<std::vector<double>> columns_of(const Curve& curve, const std::vector<std::size_t>& places) {
@@ -253,6 +291,18 @@ private:
         for (const std::size_t place : places) {
             columns[0].push_back(place == gap ? std::nan("") : curve.x.values[place]);
             columns[1].push_back(place == gap ? std::nan("") : curve.y.values[place]);
+        }
+        return columns;
+    }
+
+    [[nodiscard]] std::vector<std::vector<double>> columns_of(const std::vector<Stroke>& strokes) const {
+        std::vector<std::vector<double>> columns(2);
+        const double width = panel_.right - panel_.left;
+        for (const Stroke& stroke : strokes) {
+            const double y = panel_.view.y.at(stroke.y / (panel_.top - panel_.bottom));
+            columns[0].insert(columns[0].end(), {panel_.view.x.at(stroke.from / width),
+                                                 panel_.view.x.at(stroke.to / width), std::nan("")});
+            columns[1].insert(columns[1].end(), {y, y, std::nan("")});
         }
         return columns;
     }

@@ -137,6 +137,64 @@ TEST_CASE("an SVG of a million points is smaller than 200 kB", "[gnuplot]") {
     CHECK(svg(many).size() < 200'000);
 }
 
+TEST_CASE("an SVG of a million random points is smaller than 200 kB and shows all of the square", "[gnuplot]") {
+    std::vector<double> x, y;
+    std::uint64_t state = 1;
+    const auto random = [&state] {  // Knuth's MMIX
+        state = state * 6364136223846793005U + 1442695040888963407U;
+        return static_cast<double>(state >> 11U) / 9007199254740992.0;
+    };
+    for (int i = 0; i < 1'000'000; ++i) {
+        x.push_back(random());
+        y.push_back(random());
+    }
+    for (const Style style : {Style::line, Style::points}) {
+        Figure figure;
+        figure.curves.push_back({Numbers::own(x), Numbers::own(y), "", style});
+        const std::string picture = svg(figure);
+        CHECK(picture.size() < 200'000);
+        CHECK(picture.size() > 5'000);
+    }
+    Figure few;
+    few.curves.push_back(
+        {Numbers::own({x.begin(), x.begin() + 5000}), Numbers::own({y.begin(), y.begin() + 5000}), "", Style::points});
+    CHECK(svg(few).size() < 200'000);
+}
+
+TEST_CASE("a point between gaps is drawn as a dot, and so is a curve shorter than a pixel", "[gnuplot]") {
+    const double nan = std::nan("");
+    const auto dots = [](std::vector<double> x, std::vector<double> y) {
+        Figure figure;
+        figure.curves.push_back({Numbers::own(std::move(x)), Numbers::own(std::move(y))});
+        const std::string picture = svg(figure);
+        std::size_t count = 0;
+        for (std::size_t at = picture.find("<use"); at != std::string::npos; at = picture.find("<use", at + 1)) {
+            count += picture.compare(at, 26, "<use xlink:href='#gpPt6' t") == 0 ? 1 : 0;
+        }
+        return count;
+    };
+    CHECK(dots({0, 1, 2, 3, 4}, {0, 1, nan, 3, nan}) == 1);
+    CHECK(dots({0, 1, 2}, {1, nan, 3}) == 2);
+    CHECK(dots({7}, {7}) == 1);
+    CHECK(dots({1, 1 + 1e-15}, {1, 1 + 1e-15}) == 1);
+    CHECK(dots({0, 1}, {0, 1}) == 0);
+}
+
+TEST_CASE("an area between two curves is interrupted where one of them is", "[gnuplot]") {
+    const double nan = std::nan("");
+    Figure figure;
+    figure.curves.push_back(
+        {Numbers::own({0, 1, 2, 3, 4, 5, 6, 7, 8}), Numbers::own({1, 1, nan, 1, 1, 1, 1, 1, 1}), "", Style::fill});
+    figure.curves[0].base = Numbers::own({0, 0, 0, 0, 0, nan, 0, 0, 0});
+    const std::string script = gnuplot_file({&figure, 1}, {});
+    std::size_t areas = 0;
+    for (std::size_t at = script.find("filledcurves"); at != std::string::npos;
+         at = script.find("filledcurves", at + 1)) {
+        ++areas;
+    }
+    CHECK(areas == 3);
+}
+
 TEST_CASE("svg, png and pdf begin as such files begin", "[gnuplot]") {
     const Figure figure = spiral(1000);
     CHECK(svg(figure).find("<svg") < 200);
