@@ -3,11 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "io/gnuplot_data.hpp"
 #include "io/panel_script.hpp"
 #include "io/paper_layout.hpp"
-#include "io/thinning.hpp"
+#include "io/paper_style.hpp"
 
 namespace dinal {
 namespace {
@@ -92,7 +93,9 @@ std::vector<Selection> select(const Sheet& sheet) {
 }
 
 std::string terminal_line(Terminal terminal, const Sheet& sheet) {
-    constexpr double dots_per_pixel = 3;  // of a PNG: 288 to the inch
+    constexpr double most_dots = 4e7;  // of a PNG in all: 160 MB in gnuplot
+    const double dots_per_pixel =
+        std::min(3.0, std::sqrt(most_dots / (sheet.width * sheet.height)));  // 288 to the inch
     const double cm_wide = sheet.width / pixels_per_cm;
     const double cm_high = sheet.height / pixels_per_cm;
     switch (terminal) {
@@ -106,11 +109,11 @@ std::string terminal_line(Terminal terminal, const Sheet& sheet) {
                 "set terminal pngcairo size {:.0f},{:.0f} noenhanced font 'Sans,{}' fontscale {} "
                 "linewidth {} dashlength 1 pointscale {}\n",
                 sheet.width * dots_per_pixel, sheet.height * dots_per_pixel, font_size, dots_per_pixel, dots_per_pixel,
-                dots_per_pixel);
+                1.3 * dots_per_pixel);
         case Terminal::pdf:
             return fmt::format(
                 "set terminal pdfcairo size {:.3f}cm,{:.3f}cm noenhanced font 'Sans,{}' fontscale 0.75 "
-                "linewidth 1.7 dashlength 1\n",
+                "linewidth 1.5 dashlength 1 pointscale 0.95\n",
                 cm_wide, cm_high, font_size);
     }
     return "";

@@ -280,3 +280,29 @@ TEST_CASE("gnuplot gets no more memory than allowed above what it needs itself",
     CHECK(run_gnuplot(gnuplot_input({&figure, 1}, Terminal::pdf, {}), {.memory = little}));
     CHECK(!run_gnuplot("set terminal pngcairo size 20000,20000\nplot sin(x)\n", {.memory = little}));
 }
+
+TEST_CASE("ticks on the ends of an axis are drawn", "[gnuplot]") {
+    Figure figure;
+    figure.curves.push_back({Numbers::own({10, 100}), Numbers::own({0.3, 0.6})});
+    figure.x.logarithmic = true;
+    figure.y.limits = Range{0.3, 0.6};
+    const std::string picture = svg(figure);
+    for (const char* tick : {">10<", ">100<", ">0.3", ">0.6"}) {
+        CHECK(picture.find(tick) != std::string::npos);
+    }
+}
+
+TEST_CASE("a phase plane that is flat or steep gets a sheet that fits it", "[gnuplot]") {
+    Figure figure = spiral(1000);
+    const auto height = [&] {
+        const std::string picture = svg(figure);
+        return std::stoi(picture.substr(picture.find("height=\"") + 8));
+    };
+    const int round = height();
+    figure.y.limits = Range{-0.02, 0.02};
+    const int flat = height();
+    CHECK(round > 250);
+    CHECK(flat < 0.7 * round);
+    figure.y.limits = Range{-20, 20};
+    CHECK(height() >= round - 1);
+}

@@ -286,6 +286,11 @@ TEST_CASE("what is added to ticks is the round number in their middle", "[ticks]
     CHECK(below.text == Texts{"-1e-6", "0", "1e-6"});
 }
 
+TEST_CASE("ticks are as exact as the numbers they stand for", "[ticks]") {
+    const Ticks ticks = ticks_of({}, Scale({1e9 - 1.1e-3, 1e9 + 1.1e-3}, false), 5);
+    CHECK(ticks.text == Texts{"-0.0010", "-0.0005", "0.0000", "0.0005", "0.0010"});
+}
+
 TEST_CASE("ticks can be asked for by their distance or one by one", "[ticks]") {
     Axis axis;
     axis.division = 0.25;
