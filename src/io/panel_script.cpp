@@ -82,7 +82,7 @@ private:
         // NOTE: a tick on the very end of a logarithmic axis is lost to gnuplot's roundings.
         constexpr double hair = 1e-9;
         const double low = scale.range().low * (scale.logarithmic() ? 1 - hair : 1);
-        const double high = scale.range().high * (scale.logarithmic() ? 1 + hair : 1);
+        const double high = std::min(scale.range().high * (scale.logarithmic() ? 1 + hair : 1), 1.7e308);
         line(fmt::format("set {}range [{}:{}]", name, low, high));
         if (scale.logarithmic()) {
             line(fmt::format("set logscale {}", name));

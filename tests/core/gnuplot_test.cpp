@@ -292,6 +292,13 @@ TEST_CASE("ticks on the ends of an axis are drawn", "[gnuplot]") {
     }
 }
 
+TEST_CASE("logarithmic axes go to the end of the numbers", "[gnuplot]") {
+    Figure figure;
+    figure.curves.push_back({Numbers::own({1e-300, 1e300}), Numbers::own({5e-324, 1e300})});
+    figure.x.logarithmic = figure.y.logarithmic = true;
+    CHECK(svg(figure).find("</svg>") != std::string::npos);
+}
+
 TEST_CASE("a phase plane that is flat or steep gets a sheet that fits it", "[gnuplot]") {
     Figure figure = spiral(1000);
     const auto height = [&] {

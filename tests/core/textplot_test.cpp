@@ -139,7 +139,8 @@ TEST_CASE("no line is wider than asked, and there are no more lines", "[textplot
     family.title = std::string(200, 'T');
     family.x.label = std::string(200, 'x');
     family.y.label = std::string(200, 'y');
-    for (const int columns : {20, 40, 79, 200}) {
+    family.curves.push_back(curve({-1e-300, 1e300}, {0, 1.234567e-123}));
+    for (const int columns : {20, 21, 22, 23, 24, 40, 79, 200}) {
         for (const Charset charset : {Charset::braille, Charset::ascii}) {
             const auto lines = lines_of(drawn(family, columns, 24, charset));
             CHECK(lines.size() <= 24);
