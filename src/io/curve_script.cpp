@@ -28,11 +28,18 @@ std::vector<Places> pieces_of(const Places& places) {
     return pieces;
 }
 
-Columns columns_of(const Curve& curve, const Places& places) {
+/// gnuplot loses lines that come from very far outside of the box. They are nearly straight above or beside it.
+double in_reach(const Scale& scale, double value) {
+    constexpr double reach = 1e5;  // lengths of the axis
+    const double place = scale(value);
+    return std::fabs(place) > reach ? scale.at(std::copysign(reach, place)) : value;
+}
+
+Columns columns_of(const Panel& panel, const Curve& curve, const Places& places) {
     Columns columns(2);
     for (const std::size_t place : places) {
-        columns[0].push_back(place == gap ? std::nan("") : curve.x.values[place]);
-        columns[1].push_back(place == gap ? std::nan("") : curve.y.values[place]);
+        columns[0].push_back(place == gap ? std::nan("") : in_reach(panel.view.x, curve.x.values[place]));
+        columns[1].push_back(place == gap ? std::nan("") : in_reach(panel.view.y, curve.y.values[place]));
     }
     return columns;
 }
@@ -74,10 +81,10 @@ std::vector<std::string> line_elements(const Panel& panel, std::size_t i, const 
     std::vector<std::string> elements;
     if (!lines.empty()) {
         lines.pop_back();
-        elements.push_back(data.add(columns_of(curve, lines)) + " with lines " + line_style(*panel.figure, i));
+        elements.push_back(data.add(columns_of(panel, curve, lines)) + " with lines " + line_style(*panel.figure, i));
     }
     if (!dots.empty()) {
-        elements.push_back(data.add(columns_of(curve, dots)) + " with points " + dot_style(*panel.figure, i));
+        elements.push_back(data.add(columns_of(panel, curve, dots)) + " with points " + dot_style(*panel.figure, i));
     }
     return elements;
 }
@@ -88,10 +95,10 @@ std::vector<std::string> fill_elements(const Panel& panel, std::size_t i, const 
     const double zero = panel.view.y.logarithmic() ? panel.view.y.range().low : 0;
     std::vector<std::string> elements;
     for (const Places& piece : pieces_of(places)) {
-        Columns columns = columns_of(curve, piece);
+        Columns columns = columns_of(panel, curve, piece);
         columns.emplace_back();
         for (const std::size_t place : piece) {
-            columns.back().push_back(curve.base ? curve.base->values[place] : zero);
+            columns.back().push_back(curve.base ? in_reach(panel.view.y, curve.base->values[place]) : zero);
         }
         elements.push_back(data.add(columns) + " with filledcurves " + fill_style(*panel.figure, i));
     }
@@ -116,7 +123,7 @@ std::vector<std::string> curve_elements(const Panel& panel, std::size_t i, const
     if (trace.places.empty()) {
         return {};
     }
-    return {data.add(columns_of(curve, trace.places)) + " with points " + point_style(*panel.figure, i)};
+    return {data.add(columns_of(panel, curve, trace.places)) + " with points " + point_style(*panel.figure, i)};
 }
 
 }  // namespace dinal

@@ -299,6 +299,18 @@ TEST_CASE("logarithmic axes go to the end of the numbers", "[gnuplot]") {
     CHECK(svg(figure).find("</svg>") != std::string::npos);
 }
 
+TEST_CASE("a line that leaves the window by far is drawn within it", "[gnuplot]") {
+    for (const double far : {100.0, 1e12, 1e300}) {
+        Figure figure;
+        figure.curves.push_back({Numbers::own({0, 1, 2, 3, 4}), Numbers::own({0.5, far, 0.5, -far, 0.5}), ""});
+        figure.y.limits = Range{0, 1};
+        const std::string picture = svg(figure);
+        const std::size_t curve = picture.find("<path stroke='rgb(  0, 114, 178)'");
+        REQUIRE(curve != std::string::npos);  // up near 0, down near 2 and up near 4
+        CHECK(picture.substr(curve, picture.find('>', curve) - curve).size() > 100);
+    }
+}
+
 TEST_CASE("a phase plane that is flat or steep gets a sheet that fits it", "[gnuplot]") {
     Figure figure = spiral(1000);
     const auto height = [&] {
