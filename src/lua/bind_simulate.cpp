@@ -114,6 +114,9 @@ int run_task(lua_State* L, const Options& options, Origin origin, double from, b
         options.fail(result.error().sentence);
     }
     run.trajectory = std::move(result).value();
+    if (call.failed() && interrupt_requested()) {  // M was what was stopped
+        run.trajectory.outcome = Outcome::interrupted;
+    }
     const bool interrupted = run.trajectory.outcome == Outcome::interrupted;
     push_run(L, std::move(run));
     if (call.failed() || interrupted) {
