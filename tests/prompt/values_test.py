@@ -71,7 +71,8 @@ class Values(PromptTest):
         terminal.enter("s = nondimensional{ zeta = 0.1 }")
         terminal.enter("r = s:simulate{ theta0=1,", prompt=">>")
         terminal.enter("t_end = 9, dt = 0.01 }")
-        for text in ["s", "r", "r.theta", "r.events", "excitation", "{ 1, { 2, 3 }, x = 'a long text, rather' }",
+        for text in ["s", "r", "r.theta", "r.events", "r:energy()", "r:explain()", "excitation", "nondimensional", "theory.step_limit",
+                     "r.integrator", "excitation.square{ period = 2 } + excitation.harmonic{ frequency = 3 }", "theory", "{ 1, { 2, 3 }, x = 'a long text, rather' }",
                      "{ s, r, r.t }"]:
             shown = terminal.enter(text)
             self.assertTrue(shown)
@@ -96,6 +97,21 @@ class Values(PromptTest):
 
 
 class Notices(PromptTest):
+    def test_what_is_no_error_but_hardly_meant_is_noticed(self):
+        terminal = self.start()
+        terminal.enter(SYSTEM)
+        terminal.enter("M = math.sin")
+        for typed, notice in [("sys:simulate{ M = m, t_end = 1, dt = 0.5 };", "('m' is nil, so M is not given; did you mean 'M'?)"),
+                              ("sys:simulate{ t_end = 1, dt = 0.5, integrator = rk4 };",
+                               "('rk4' is nil, so integrator is not given; did you mean 'integrator.rk4'?)"),
+                              ("N = m", "('m' is nil; did you mean 'M'?)"),
+                              ("x = 1,5", "(1,5 are two numbers, and x is the first; a decimal point is a point: 1.5)"),
+                              ("x = pi", "('pi' is nil; did you mean 'math.pi'?)")]:
+            self.assertEqual(terminal.enter(typed).replace("\n", " "), notice)
+        for typed in ["x = M", "y = { x, M }", "a, b = 1, 5", "x = nil", "f = function() x = later end", "local n = 3 m = n",
+                      "t = { [1] = M }", "w = qwertz"]:
+            self.assertEqual(terminal.enter(typed), "", typed)
+
     def test_a_local_variable_that_is_lost_is_noticed_once(self):
         terminal = self.start()
         self.assertIn("to keep 'x' at the prompt, leave out", terminal.enter("local x = 3").replace("\n", " "))
@@ -232,6 +248,20 @@ class Commands(PromptTest):
         self.assertEqual(done.stdout, "nil\n")
         (self.home / ".config/dinal/init.lua").write_text("x = 1\nerror('broken')\n")
         self.assertEqual(self.start().enter("x"), "1")
+
+    def test_a_safe_prompt_loads_no_bytecode_and_nothing_from_outside(self):
+        (self.home / "lab").mkdir()
+        (self.home / "outside.lua").write_text("print('reached')\n")
+        (self.home / "lab" / "inside.lua").write_text("print('in' .. 'side')\n")
+        subprocess.run([PROGRAM, "-e", "io.open('lab/code.lua', 'w'):write(string.dump(load 'print(1)')):close()"], cwd=self.home,
+                       check=True, env={"HOME": str(self.home)})
+        done = subprocess.run([PROGRAM, "--safe", "-i"], cwd=self.home / "lab", capture_output=True, text=True,
+                              input=":load inside.lua\n:load ../outside.lua\n:load code.lua\n:save ../new.lua\n:record /tmp/new.lua\n")
+        self.assertEqual(done.stdout.count("side"), 1)
+        self.assertNotIn("reached", done.stdout)
+        self.assertEqual(done.stderr.count("in the current folder and below only"), 3, done.stderr)
+        self.assertIn("bytecode", done.stderr)
+        self.assertFalse((self.home / "new.lua").exists())
 
     def test_they_are_no_lua(self):
         (self.home / "lab.lua").write_text(":who\n")
