@@ -1,14 +1,87 @@
 #include "core/suggest.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
+#include <utility>
 
 namespace dinal {
 namespace {
 
 constexpr std::size_t longest_word = 64;  // nobody mistypes more than that; it bounds the work for odd input
 constexpr std::size_t shortest_beginning = 3;
+constexpr int most_slips = 2;
 constexpr int far = 1000;
+
+// What other books and programs call the things here. A word may stand for several: only those that are known count.
+constexpr std::array<std::pair<std::string_view, std::string_view>, 62> synonyms = {{
+    {"sin", "harmonic"},
+    {"sine", "harmonic"},
+    {"cos", "harmonic"},
+    {"cosine", "harmonic"},
+    {"sinus", "harmonic"},
+    {"impulse", "pulse"},
+    {"rectangle", "pulse"},
+    {"sweep", "chirp"},
+    {"table", "samples"},
+    {"data", "samples"},
+    {"file", "samples"},
+    {"func", "scripted"},
+    {"euler", "rk4"},
+    {"rungekutta", "rk4"},
+    {"runge_kutta", "rk4"},
+    {"run", "simulate"},
+    {"solve", "simulate"},
+    {"integrate", "simulate"},
+    {"w0", "omega0"},
+    {"wn", "omega0"},
+    {"omega_n", "omega0"},
+    {"period", "T0"},
+    {"xi", "zeta"},
+    {"damping_ratio", "zeta"},
+    {"m", "I"},
+    {"j", "I"},
+    {"mass", "I"},
+    {"inertia", "I"},
+    {"stiffness", "k"},
+    {"damping", "C"},
+    {"friction", "Rd"},
+    {"torque", "M"},
+    {"force", "M"},
+    {"f", "M"},
+    {"excitation", "M"},
+    {"x0", "theta0"},
+    {"v0", "velocity0"},
+    {"step", "dt"},
+    {"h", "dt"},
+    {"step", "h"},
+    {"dt", "h"},
+    {"duration", "t_end"},
+    {"tmax", "t_end"},
+    {"t_max", "t_end"},
+    {"method", "integrator"},
+    {"solver", "integrator"},
+    {"x", "theta"},
+    {"angle", "theta"},
+    {"position", "theta"},
+    {"displacement", "theta"},
+    {"v", "velocity"},
+    {"speed", "velocity"},
+    {"time", "t"},
+    {"f", "frequency"},
+    {"w", "omega"},
+    {"maximum", "max"},
+    {"minimum", "min"},
+    {"average", "mean"},
+    {"write", "save"},
+    {"export", "save"},
+    {"describe", "explain"},
+    {"draw", "plot"},
+}};
+
+bool is_synonym(std::string_view small_word, std::string_view name) {
+    return std::find(synonyms.begin(), synonyms.end(), std::pair(small_word, name)) != synonyms.end();
+}
 
 char lower(char c) {
     return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
@@ -43,6 +116,18 @@ int edits(std::string_view a, std::string_view b) {
     return last[b.size()];
 }
 
+bool same_letters(std::string_view a, std::string_view b) {
+    return std::is_permutation(a.begin(), a.end(), b.begin(), b.end());
+}
+
+/// How many slips from the word a name may be. A word of two letters must at least begin as the name does: w0 is no T0.
+int allowed_slips(std::string_view small_word, std::string_view small_name) {
+    if (small_word.size() <= 2) {
+        return small_word.front() == small_name.front() ? 1 : 0;
+    }
+    return small_word.size() > 5 || (small_word.size() == 5 && same_letters(small_word, small_name)) ? 2 : 1;
+}
+
 /// How many slips the word is from the name (0: another case only); `far` when it is no misspelling of it.
 int slips(std::string_view word, std::string_view name) {
     if (word.empty() || name.empty() || word == name || std::max(word.size(), name.size()) > longest_word) {
@@ -54,22 +139,30 @@ int slips(std::string_view word, std::string_view name) {
         return 0;  // better than any slip: RD is Rd, not Re
     }
     const int count = std::min(edits(word, name), edits(small_word, small_name) + 1);
-    const int allowed = word.size() <= 4 ? 1 : 2;
+    const int allowed = allowed_slips(small_word, small_name);
     // A word of which no letter is left is another word: x is not a misspelt t.
     if (count <= allowed && count < static_cast<int>(std::max(word.size(), name.size()))) {
         return count;
     }
     const bool beginning = word.size() >= shortest_beginning && small_name.starts_with(small_word);
-    return beginning ? allowed + 1 : far;
+    return beginning ? most_slips + 1 : far;
+}
+
+/// How far the name is from what the word may stand for; `far` when it is something else.
+int distance(std::string_view word, std::string_view name, Likeness likeness) {
+    const int count = slips(word, name);
+    const bool other_word = count > 0 && likeness == Likeness::of_meaning && is_synonym(lower(word), name);
+    return other_word ? 1 : 2 * count;  // between another case and a slip
 }
 
 }  // namespace
 
-std::vector<std::string> suggestions(std::string_view word, std::span<const std::string_view> known) {
+std::vector<std::string> suggestions(std::string_view word, std::span<const std::string_view> known,
+                                     Likeness likeness) {
     std::vector<std::string> best;
     int fewest = far;
     for (const std::string_view name : known) {
-        const int count = slips(word, name);
+        const int count = distance(word, name, likeness);
         if (count < fewest) {
             fewest = count;
             best.clear();
@@ -84,8 +177,8 @@ std::vector<std::string> suggestions(std::string_view word, std::span<const std:
     return best;
 }
 
-std::string did_you_mean(std::string_view word, std::span<const std::string_view> known) {
-    const std::vector<std::string> best = suggestions(word, known);
+std::string did_you_mean(std::string_view word, std::span<const std::string_view> known, Likeness likeness) {
+    const std::vector<std::string> best = suggestions(word, known, likeness);
     if (best.empty()) {
         return {};
     }

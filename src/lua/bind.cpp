@@ -88,7 +88,8 @@ int index_object(lua_State* L) {
 
 int refuse_assignment(lua_State* L) {
     const Class& description = class_of_closure(L, 1);
-    raise(L, with_article(description.name) + " can not be changed; make a new one");
+    raise(L, with_article(description.name) + " can not be changed, so " + key_text(L, 2) +
+                 " can not be set; make a new one");
 }
 
 int index_module(lua_State* L) {

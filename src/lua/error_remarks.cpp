@@ -2,11 +2,15 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <string_view>
+#include <vector>
 
 #include "lua/excerpt.hpp"
+#include "lua/function_source.hpp"
 #include "lua/misspelling.hpp"
 #include "lua/source_text.hpp"
+#include "lua/tokens.hpp"
 
 namespace dinal {
 namespace {
@@ -57,6 +61,16 @@ void set_item(lua_State* L, int item, const std::string& text) {
     lua_rawseti(L, -2, item);
 }
 
+/// The remarks on the error value on the top.
+void remember(lua_State* L, const Remarks& remarks) {
+    lua_createtable(L, 4, 0);
+    lua_pushvalue(L, -2);
+    lua_rawseti(L, -2, 1);
+    set_item(L, 2, remarks.suggestion);
+    set_item(L, 3, remarks.excerpt);
+    lua_rawsetp(L, LUA_REGISTRYINDEX, &memory_key);
+}
+
 }  // namespace
 
 Remarks remarks_on(lua_State* L, int index) {
@@ -100,14 +114,25 @@ int remember_remarks(lua_State* L) {
             return 1;
         }
     }
-    const Remarks remarks = lua_type(L, 1) == LUA_TSTRING ? fresh_remarks(L, lua_tostring(L, 1)) : Remarks{};
-    lua_createtable(L, 4, 0);
-    lua_pushvalue(L, 1);
-    lua_rawseti(L, -2, 1);
-    set_item(L, 2, remarks.suggestion);
-    set_item(L, 3, remarks.excerpt);
-    lua_rawsetp(L, LUA_REGISTRYINDEX, &memory_key);
+    remember(L, lua_type(L, 1) == LUA_TSTRING ? fresh_remarks(L, lua_tostring(L, 1)) : Remarks{});
     return 1;
+}
+
+void remember_result(lua_State* L, int index) {
+    luaL_checkstack(L, LUA_MINSTACK, "for the remarks on an error");
+    index = lua_absindex(L, index);
+    const std::string text = lua_tostring(L, -1);
+    const auto message = parse_message(text);
+    Remarks remarks;
+    if (const auto function = function_source(L, index); message && function) {
+        const SourceText source{*function, message->line};
+        const std::vector<Token> all = tokens(source.text);
+        const bool returns = std::any_of(all.begin(), all.end(), [](const Token& t) { return t.is("return"); });
+        remarks.suggestion =
+            message->words.starts_with("M returned nil") && !returns ? "; is the word return missing?" : "";
+        remarks.excerpt = excerpt(source, *message, remarks.suggestion);
+    }
+    remember(L, remarks);
 }
 
 void remember_time(lua_State* L, double t) {

@@ -23,6 +23,9 @@ Remarks remarks_on_syntax(lua_State* L, int index, const char* file);
 /// The handler for calls of M: leaves the error value alone, and remembers the remarks on it for remarks_on().
 int remember_remarks(lua_State* L);
 
+/// Remembers remarks on the message on the top, which is about what the function at `index` has returned.
+void remember_result(lua_State* L, int index);
+
 /// Adds to the remarks that are remembered about the error value on the top for which t M was asked.
 void remember_time(lua_State* L, double t);
 

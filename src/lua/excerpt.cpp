@@ -36,7 +36,21 @@ std::vector<std::string> suspects(std::string_view words, std::string_view sugge
         names = quoted_words(suggestion.substr(0, suggestion.find(" is nil")));
     }
     const std::vector<std::string> quoted = quoted_words(sentence);
-    names.insert(names.end(), quoted.begin(), quoted.end());
+    for (const std::string& name : quoted) {
+        names.insert(names.end(), {name, '"' + name + '"', "'" + name + "'"});
+    }
+    if (words.starts_with("there is no ") || words.starts_with("use a colon: ")) {
+        const std::string_view name = words.substr(0, words.find_first_of(";{(", 13));
+        for (const Token& token : tokens(name.substr(name.find_first_of(" :") + 1))) {  // the object, then the member
+            names.insert(words.starts_with("use") ? names.end() : names.begin(), std::string(token.text));
+        }
+    }
+    if (words.starts_with("M returned ")) {
+        names.insert(names.end(), {"return", "function"});
+    }
+    if (words.find("for iterator") != std::string_view::npos) {
+        names.emplace_back("in");
+    }
     const std::size_t head = std::min(words.find(": "), words.find(" needs "));
     if (head != std::string_view::npos) {
         for (const Token& token : tokens(words.substr(head + 1).substr(0, 60))) {
@@ -125,6 +139,12 @@ bool compiles_so_far(lua_State* L, std::string_view text) {
     return good;
 }
 
+/// The message has the beginning of a malformed number, and of a letter that is not plain its first byte: <\\206>.
+bool may_be(const Token& token, std::string_view near) {
+    return token.text == near || (token.kind == TokenKind::number && token.text.starts_with(near)) ||
+           (near.starts_with("<\\") && static_cast<unsigned char>(token.text.front()) >= 0x80);
+}
+
 /// The token that the parser does not accept: the first one of that line and text with which the chunk is wrong
 /// however it goes on.
 std::optional<Mark> stumbled_at(lua_State* L, const SourceText& source, const Message& message) {
@@ -135,7 +155,7 @@ std::optional<Mark> stumbled_at(lua_State* L, const SourceText& source, const Me
         text.replace(0, 2, "--");  // Lua skips such a line in files only
     }
     for (const Token& token : tokens(text)) {
-        const bool candidate = token.line == message.line && !names.empty() && token.text == names.front();
+        const bool candidate = token.line == message.line && !names.empty() && may_be(token, names.front());
         if (candidate && !compiles_so_far(L, std::string_view(text).substr(0, token.end()))) {
             return Mark{token.at, token.text.size()};
         }

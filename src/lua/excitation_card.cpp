@@ -143,14 +143,20 @@ std::string line_of(lua_State* L, Component c, bool first) {
     return text;
 }
 
-std::string breaks_of(const Excitation& excitation) {
+/// The first breaks, in one line.
+std::string breaks_of(const Excitation& excitation, std::size_t width) {
     std::string text;
-    double t = std::nextafter(0.0, -1.0);
     int count = 0;
-    for (t = excitation.next_break(t); t < never && count < most_breaks; t = excitation.next_break(t)) {
-        text += fmt::format("{}{:.6g}", count++ == 0 ? "\n  jumps or kinks at t = " : ", ", t);
+    for (double t = excitation.next_break(std::nextafter(0.0, -1.0)); t < never; t = excitation.next_break(t)) {
+        const std::string next = fmt::format("{}{:.6g}", count == 0 ? "\n  jumps or kinks at t = " : ", ", t);
+        constexpr std::string_view rest = ", ...";
+        if (count == most_breaks || (count > 0 && text.size() + next.size() + rest.size() > width)) {
+            return text.append(rest);
+        }
+        text += next;
+        ++count;
     }
-    return text + (t < never ? ", ..." : "");
+    return text;
 }
 
 }  // namespace
@@ -162,7 +168,7 @@ std::string excitation_card(lua_State* L, int index, const Display& screen) {
     for (const Component& c : excitation.components()) {
         text += line_of(L, c, &c == &excitation.components().front());
     }
-    return text + (excitation.components().empty() ? " 0" : breaks_of(excitation));
+    return text + (excitation.components().empty() ? " 0" : breaks_of(excitation, screen.width));
 }
 
 }  // namespace dinal

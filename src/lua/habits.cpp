@@ -1,73 +1,106 @@
 #include "lua/habits.hpp"
 
+#include <algorithm>
 #include <array>
 #include <utility>
 #include <vector>
 
-#include "core/suggest.hpp"
 #include "lua/tokens.hpp"
 
 namespace dinal {
 namespace {
 
-constexpr std::array<std::pair<std::string_view, std::string_view>, 10> habits = {{
-    {"near '!'", "; in Lua 'not equal' is ~= and 'not' is a word"},
-    {"near '+'", "; in Lua that is x = x + 1"},
-    {"near '&'", "; in Lua that is the word and"},
-    {"near '|'", "; in Lua that is the word or"},
-    {"symbol near '['", "; a list is { 1, 2, 3 }"},
-    {"'then' expected near '='", "; comparing is =="},
-    {"'do' expected near '='", "; comparing is =="},
-    {"')' expected near '='", "; named options stand in braces: system{ I = 1, k = 4 }"},
-    {"'}' expected near", "; is a comma missing there?"},
-    {"expected (to close '{' at line", "; is a comma missing there, or a brace?"},
+constexpr std::array<std::pair<std::string_view, std::string_view>, 20> foreign_names = {{
+    {"echo", "; did you mean 'print'?"},
+    {"disp", "; did you mean 'print'?"},
+    {"puts", "; did you mean 'print'?"},
+    {"println", "; did you mean 'print'?"},
+    {"True", "; did you mean 'true'?"},
+    {"False", "; did you mean 'false'?"},
+    {"None", "; did you mean 'nil'?"},
+    {"null", "; did you mean 'nil'?"},
+    {"NULL", "; did you mean 'nil'?"},
+    {"range", "; a loop is: for i = 1, 10 do ... end"},
+    {"len", "; the length of x is #x"},
+    {"length", "; the length of x is #x"},
+    {"str", "; did you mean 'tostring'?"},
+    {"int", "; did you mean 'math.floor'?"},
+    {"float", "; did you mean 'tonumber'?"},
+    {"ln", "; did you mean 'math.log'?"},
+    {"log10", "; did you mean 'math.log'?"},
+    {"exit", "; os.exit() ends a script, :quit or Ctrl-D a session"},
+    {"quit", "; os.exit() ends a script, :quit or Ctrl-D a session"},
+    {"bye", "; os.exit() ends a script, :quit or Ctrl-D a session"},
 }};
 
-/// In "M = function(t) retrun math.sin(t) end" the parser stumbles over what stands behind the misspelt word.
-std::string misspelt_keyword(std::string_view words, std::string_view statement) {
-    const std::size_t near = words.find(" near '");
-    if (near == std::string_view::npos) {
-        return "";
-    }
-    const std::string_view stumbled = words.substr(near + 7, words.rfind('\'') - near - 7);
-    const std::vector<Token> all = tokens(statement);
-    for (std::size_t i = all.size(); i-- > 1;) {
-        if (all[i].text == stumbled && all[i - 1].kind == TokenKind::name) {
-            return did_you_mean(all[i - 1].text, keywords());
-        }
-    }
-    return "";
-}
+constexpr std::array<std::string_view, 8> file_endings = {"csv", "dat", "txt", "svg", "png", "pdf", "gp", "lua"};
 
-/// "dt = 0,1" is two entries of a table.
-std::string decimal_comma(std::string_view words, std::string_view statement) {
+/// "k = 0,5" in braces is two entries of a table.
+std::string decimal_comma(std::string_view words, const std::vector<Token>& all) {
     if (words.find("named options only") == std::string_view::npos) {
         return "";
     }
-    const std::vector<Token> all = tokens(statement);
-    for (std::size_t i = 2; i < all.size(); ++i) {
-        if (all[i].kind == TokenKind::number && all[i - 1].is(",") && all[i - 2].kind == TokenKind::number) {
+    for (std::size_t i = 3; i < all.size(); ++i) {
+        if (all[i].kind == TokenKind::number && all[i - 1].is(",") && all[i - 2].kind == TokenKind::number &&
+            all[i - 3].is("=")) {
             return "; a decimal point is a point: " + std::string(all[i - 2].text) + "." + std::string(all[i].text);
         }
     }
     return "";
 }
 
-}  // namespace
-
-std::string habit_of_others(std::string_view words, std::string_view statement) {
-    if (const std::string comma = decimal_comma(words, statement); !comma.empty()) {
-        return comma;
-    }
-    if (const std::string keyword = misspelt_keyword(words, statement); !keyword.empty()) {
-        return keyword;
-    }
-    for (const auto& [symptom, cure] : habits) {
-        if (words.find(symptom) != std::string_view::npos) {
-            return std::string(cure);
+/// run:save(run.csv)
+std::string file_without_quotes(std::string_view words, const std::vector<Token>& all) {
+    for (std::size_t i = 2; i < all.size(); ++i) {
+        const bool ending = std::find(file_endings.begin(), file_endings.end(), all[i].text) != file_endings.end();
+        const std::string key = "'" + std::string(all[i].text) + "'";
+        const std::string owner = "'" + std::string(all[i - 2].text) + "'";
+        if (ending && all[i - 1].is(".") && all[i - 2].kind == TokenKind::name &&
+            (words.find(key) != std::string_view::npos || words.find(owner) != std::string_view::npos)) {
+            return "; the name of a file stands in quotes: \"" + std::string(all[i - 2].text) + "." +
+                   std::string(all[i].text) + "\"";
         }
     }
     return "";
+}
+
+/// A number, a string, a list that is called.
+std::string called_value(std::string_view words) {
+    constexpr std::string_view head = "attempt to call a ";
+    if (!words.starts_with(head)) {
+        return "";
+    }
+    const std::string_view type = words.substr(head.size(), words.find(" value") - head.size());
+    if (words.find("for iterator") != std::string_view::npos) {
+        return type == "number" ? "; counting is: for i = 1, 10 do"
+                                : "; going through a list is: for i, x in ipairs(list) do";
+    }
+    if (type == "vector" || type == "table") {
+        return "; its elements are in brackets: v[1]";
+    }
+    const bool simple = type == "number" || type == "string" || type == "boolean";
+    return simple ? "; it is a value and no function: leave out the parentheses" : "";
+}
+
+}  // namespace
+
+std::string running_habit(std::string_view words, std::string_view statement) {
+    const std::vector<Token> all = tokens(statement);
+    if (words.starts_with("attempt to add a 'string' with a 'string'")) {
+        return "; texts are joined with ..";
+    }
+    for (std::string advice : {decimal_comma(words, all), file_without_quotes(words, all), called_value(words)}) {
+        if (!advice.empty()) {
+            return advice;
+        }
+    }
+    return "";
+}
+
+std::string foreign_name(std::string_view name) {
+    const auto found =
+        std::find_if(foreign_names.begin(), foreign_names.end(), [name](const auto& n) { return n.first == name; });
+    return found == foreign_names.end() ? "" : std::string(found->second);
 }
 
 }  // namespace dinal

@@ -6,6 +6,7 @@
 #include <cctype>
 
 #include "lua/signature.hpp"
+#include "lua/tokens.hpp"
 
 namespace dinal {
 
@@ -22,13 +23,41 @@ std::string first_sentence(std::string_view summary) {
     return std::string(stop == std::string_view::npos ? summary : summary.substr(0, stop + 1));
 }
 
-std::string indented(std::string_view text) {
-    std::string result = "    ";
-    for (const char c : text) {
-        result += c;
-        if (c == '\n') {
-            result += "    ";
+/// A line of Lua in rows of `width`: what follows --> begins a new one, the rest is cut between tokens.
+std::string code_in_rows(std::string_view line, std::size_t width) {
+    constexpr std::size_t indent = 4;
+    std::string rows;
+    for (std::size_t room = width; columns(line) > room; room = width - indent) {
+        const std::size_t arrow = line.find("-->");
+        std::size_t cut = arrow != std::string_view::npos && arrow > 0 ? arrow : 0;
+        if (cut == 0 || cut > room) {
+            cut = 0;
+            for (const Token& token : tokens(line)) {
+                const bool fits = token.end() <= room && token.end() < line.size() && line[token.end()] == ' ';
+                cut = fits ? token.end() : cut;
+            }
         }
+        if (cut == 0) {
+            break;
+        }
+        const std::size_t end = line.find_last_not_of(' ', cut - 1) + 1;
+        rows.append(line.substr(0, end)).append("\n").append(indent, ' ');
+        line.remove_prefix(std::min(line.find_first_not_of(' ', cut), line.size()));
+    }
+    return rows.append(line);
+}
+
+std::string indented(std::string_view text, std::size_t width) {
+    constexpr std::string_view margin = "    ";
+    std::string result;
+    for (std::size_t begin = 0; begin <= text.size();) {
+        const std::size_t end = std::min(text.find('\n', begin), text.size());
+        std::string rows = code_in_rows(text.substr(begin, end - begin), width - margin.size());
+        for (std::size_t at = rows.find('\n'); at != std::string::npos; at = rows.find('\n', at + 1)) {
+            rows.insert(at + 1, margin);
+        }
+        result.append(begin == 0 ? "" : "\n").append(margin).append(rows);
+        begin = end + 1;
     }
     return result;
 }
@@ -36,7 +65,7 @@ std::string indented(std::string_view text) {
 std::string doc_text(const Doc& doc, const Display& screen) {
     const std::size_t width = text_width(screen);
     return spelled(fmt::format("{}\n\n{}\n\n{}\n", wrapped(doc.signature, width), wrapped(doc.summary, width),
-                               indented(doc.example)),
+                               indented(doc.example, width)),
                    screen);
 }
 

@@ -1,9 +1,11 @@
 #include "lua/misspelling.hpp"
 
 #include <algorithm>
+#include <array>
 #include <optional>
 #include <utility>
 
+#include "core/suggest.hpp"
 #include "lua/bind.hpp"
 #include "lua/habits.hpp"
 #include "lua/tokens.hpp"
@@ -36,9 +38,9 @@ bool step_to_index_table(lua_State* L) {
     return lua_istable(L, -1);
 }
 
-std::string likely(std::string_view name, const std::vector<std::string>& names) {
+std::string likely(std::string_view name, const std::vector<std::string>& names, Likeness likeness) {
     const std::vector<std::string_view> views(names.begin(), names.end());
-    return did_you_mean(name, views);
+    return did_you_mean(name, views, likeness);
 }
 
 /// Calls visit(name) with the value of each local and outer variable of the frame on the top of the stack.
@@ -174,9 +176,33 @@ std::string nil_global(lua_State* L, lua_Debug* frame, std::string_view words, s
     return "";
 }
 
-bool called_a_value(std::string_view words) {
-    return words.starts_with("attempt to call a number value") || words.starts_with("attempt to call a string value") ||
-           words.starts_with("attempt to call a boolean value");
+/// Names of that spelling in the libraries: sin is math.sin, rk4 is integrator.rk4. Two at most.
+std::string qualified(lua_State* L, std::string_view name) {
+    constexpr std::array<std::string_view, 9> modules = {"excitation", "integrator", "theory", "trajectory", "vector",
+                                                         "math",       "string",     "table",  "os"};
+    std::string found;
+    int count = 0;
+    const int top = lua_gettop(L);
+    for (const std::string_view module : modules) {
+        push_variable(L, nullptr, module);
+        if (lua_istable(L, -1)) {
+            lua_pushlstring(L, name.data(), name.size());
+            if (lua_rawget(L, -2) != LUA_TNIL) {
+                found.append(count == 0 ? "; did you mean '" : " or '").append(module).append(".").append(name).append(
+                    "'");
+                ++count;
+            }
+        }
+        lua_settop(L, top);
+    }
+    return count == 1 || count == 2 ? found + "?" : "";
+}
+
+/// What a global name that is nil may have meant.
+std::string meant_by(lua_State* L, std::string_view name, const std::vector<std::string>& names) {
+    std::string hint = foreign_name(name);
+    hint = hint.empty() ? qualified(L, name) : hint;
+    return hint.empty() ? likely(name, names, Likeness::of_letters) : hint;
 }
 
 }  // namespace
@@ -212,7 +238,7 @@ std::string similar_global(lua_State* L, std::string_view name) {
     lua_pushglobaltable(L);
     add_keys(L, names);
     lua_pop(L, 1);
-    return likely(name, names);
+    return meant_by(L, name, names);
 }
 
 std::string help_with(lua_State* L, lua_Debug* frame, std::string_view words, std::string_view statement) {
@@ -220,32 +246,25 @@ std::string help_with(lua_State* L, lua_Debug* frame, std::string_view words, st
     if (words.find("did you mean") != std::string_view::npos) {
         return "";
     }
-    if (called_a_value(words)) {
-        return "; it is a value and no function: leave out the parentheses";
+    if (words.find(" near ") != std::string_view::npos) {
+        return syntax_habit(L, words, statement);
+    }
+    if (std::string habit = running_habit(words, statement); !habit.empty()) {
+        return habit;
     }
     if (words.find("nil value") != std::string_view::npos) {
-        const std::string_view name = named_in(words, "global");
-        if (name == "quit" || name == "exit") {
-            return "; os.exit() ends a script, :quit or Ctrl-D a session";
-        }
-        if (!name.empty()) {
+        if (const std::string_view name = named_in(words, "global"); !name.empty()) {
             std::vector<std::string> names = variables(L, frame);
             lua_pushglobaltable(L);
             add_keys(L, names);
             lua_pop(L, 1);
-            return likely(name, names);
+            return meant_by(L, name, names);
         }
         for (const char* kind : {"field", "method"}) {
             if (const std::string_view key = named_in(words, kind); !key.empty()) {
-                return likely(key, siblings(L, frame, key, statement));
+                return likely(key, siblings(L, frame, key, statement), Likeness::of_meaning);
             }
         }
-    }
-    if (std::string habit = habit_of_others(words, statement); !habit.empty()) {
-        return habit;
-    }
-    if (words.find(" near ") != std::string_view::npos) {
-        return "";
     }
     return nil_global(L, frame, words, statement);
 }

@@ -231,7 +231,10 @@ double LuaFunction::fail(CallState& call, int status, double t) const {
         push(L);
         sentence = definition(L) + sentence;
         lua_pop(L, 1);
+        push(L);
         lua_pushlstring(L, sentence.data(), sentence.size());
+        remember_result(L, -2);
+        lua_remove(L, -2);
     } else {
         remember_time(L, t);
     }

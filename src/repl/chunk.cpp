@@ -23,13 +23,24 @@ bool loads(lua_State* L, const std::string& text) {
     return good;
 }
 
-/// The message on the top of the stack says that the text ended too early.
-bool ended_early(lua_State* L) {
+/// "...\\" or "...\\z  "
+bool goes_on(std::string_view text) {
+    if (text.ends_with('\\')) {
+        return true;
+    }
+    const std::size_t last = text.find_last_not_of(" \t\r\n");
+    return last != std::string_view::npos && last > 0 && text.substr(last - 1, 2) == "\\z";
+}
+
+/// The message on the top of the stack says that the chunk ended too early.
+bool ended_early(lua_State* L, std::string_view chunk) {
     constexpr std::string_view mark = "<eof>";
     std::size_t size = 0;
     const char* text = lua_tolstring(L, -1, &size);
     const std::string_view message(text, size);
-    return size >= mark.size() && message.substr(size - mark.size()) == mark;
+    // A string in quotes ends on its line, unless a backslash takes the newline in.
+    const bool open_string = message.find("unfinished string near") != std::string_view::npos;
+    return message.ends_with(mark) && !(open_string && !goes_on(chunk));
 }
 
 std::string returned(std::string_view expression) {
@@ -92,10 +103,10 @@ Chunk compile(lua_State* L, const std::string& text) {
         chunk.expression = expression;
         return chunk;
     }
-    bool early = ended_early(L);
+    bool early = ended_early(L, text);
     lua_pop(L, 1);
     const bool statements = load(L, text);
-    early = !statements && (ended_early(L) || early);
+    early = !statements && (ended_early(L, text) || early);
     if (text.find('\n') != std::string::npos) {
         const int top = lua_gettop(L);
         // NOTE: a block may end in a name, after which Lua expects more.

@@ -41,6 +41,15 @@ std::ptrdiff_t uses(const std::vector<Token>& all, std::string_view name) {
                          [name](const Token& t) { return t.kind == TokenKind::name && t.text == name; });
 }
 
+/// Raw: to ask must not run the code of a strict _G.
+bool is_global(lua_State* L, std::string_view name) {
+    lua_pushglobaltable(L);
+    lua_pushlstring(L, name.data(), name.size());
+    const bool there = lua_rawget(L, -2) != LUA_TNIL;
+    lua_pop(L, 2);
+    return there;
+}
+
 }  // namespace
 
 std::string name_notice(lua_State* L, const Chunk& chunk) {
@@ -52,15 +61,14 @@ std::string name_notice(lua_State* L, const Chunk& chunk) {
         return "";
     }
     const std::string_view name = all.front().text;
-    lua_pushglobaltable(L);
-    lua_pushlstring(L, name.data(), name.size());
-    const bool there = lua_rawget(L, -2) != LUA_TNIL;
-    lua_pop(L, 2);
-    if (there) {
+    if (is_global(L, name)) {
         return "";
     }
-    if (name == "exit" || name == "quit") {
+    if (name == "exit" || name == "quit" || name == "q" || name == "bye") {
         return "there is no such variable; :quit or Ctrl-D leaves";
+    }
+    if (name == "clear" || name == "cls") {
+        return "there is no such variable; Ctrl-L clears the screen, :reset forgets your variables";
     }
     const std::string hint = similar_global(L, name);
     return hint.empty() ? "" : fmt::format("there is no variable '{}'{}", name, hint);
@@ -102,6 +110,40 @@ std::string local_notice(const std::string& text) {
         depth += opens_block(all[i]) ? 1 : closes_block(all[i]) ? -1 : 0;
     }
     return "";
+}
+
+std::string nil_notice(lua_State* L, const std::string& text) {
+    const std::vector<Token> all = tokens(text);
+    int braces = 0;
+    for (std::size_t i = 0; i < all.size(); ++i) {
+        braces += all[i].is("{") ? 1 : all[i].is("}") ? -1 : 0;
+        if (all[i].is("function")) {
+            break;  // what it uses may come later
+        }
+        const bool assigned = i > 1 && all[i - 1].is("=") && all[i - 2].kind == TokenKind::name;
+        const bool alone = i + 1 == all.size() || all[i + 1].is(",") || all[i + 1].is("}") || all[i + 1].is(";") ||
+                           all[i + 1].line > all[i].line;
+        if (all[i].kind == TokenKind::name && assigned && alone && uses(all, all[i].text) == 1 &&
+            !is_global(L, all[i].text)) {
+            const std::string hint = similar_global(L, all[i].text);
+            if (braces > 0) {
+                return fmt::format("'{}' is nil, so {} is not given{}", all[i].text, all[i - 2].text, hint);
+            }
+            return hint.empty() ? "" : fmt::format("'{}' is nil{}", all[i].text, hint);
+        }
+    }
+    return "";
+}
+
+std::string comma_notice(const std::string& text) {
+    const std::vector<Token> all = tokens(text);
+    const bool shape = all.size() == 5 && all[0].kind == TokenKind::name && all[1].is("=") && all[3].is(",") &&
+                       all[2].kind == TokenKind::number && all[4].kind == TokenKind::number;
+    if (!shape || all[2].end() + 1 != all[4].at) {
+        return "";
+    }
+    return fmt::format("{},{} are two numbers, and {} is the first; a decimal point is a point: {}.{}", all[2].text,
+                       all[4].text, all[0].text, all[2].text, all[4].text);
 }
 
 void say_notice(const std::string& notice) {

@@ -17,6 +17,12 @@ std::string colon_notice(lua_State* L, const std::string& text);
 /// A local variable at the top level that nothing after it uses: it is lost.
 std::string local_notice(const std::string& text);
 
+/// An option, or a variable, becomes a global that does not exist, integrator = rk4: no error in Lua, but hardly meant.
+std::string nil_notice(lua_State* L, const std::string& text);
+
+/// "x = 1,5"
+std::string comma_notice(const std::string& text);
+
 /// On standard error, unless it is empty.
 void say_notice(const std::string& notice);
 

@@ -105,6 +105,8 @@ void run_chunk(Session& session, const Chunk& chunk, const std::string& text) {
         say_notice(notice);
         session.local_noticed = true;
     }
+    say_notice(nil_notice(session.L, text));
+    say_notice(comma_notice(text));
     const std::string before = session.record.problem();
     session.record.add(chunk, result);
     if (const std::string& problem = session.record.problem(); !problem.empty() && before.empty()) {

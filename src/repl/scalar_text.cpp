@@ -67,9 +67,9 @@ std::string string_text(lua_State* L, int index, Place place, const Display& scr
 }
 
 /// A function as its source where that is short, else where it is defined; ours as they are called.
-std::string function_text(lua_State* L, int index) {
+std::string function_text(lua_State* L, int index, const Display& screen) {
     if (const Documented found = documented(L, index); found.member != nullptr) {
-        return fmt::format("function {}", found.member->doc.signature);
+        return wrapped(fmt::format("function {}", found.member->doc.signature), screen.width - 1);
     }
     const auto source = function_source(L, index);
     if (lua_iscfunction(L, index) != 0) {
@@ -109,7 +109,7 @@ std::string scalar_text(lua_State* L, int index, Place place, const Display& scr
         case LUA_TSTRING:
             return string_text(L, index, place, screen);
         case LUA_TFUNCTION:
-            return place == Place::inside ? "function" : function_text(L, index);
+            return place == Place::inside ? "function" : function_text(L, index, screen);
         default:
             break;
     }

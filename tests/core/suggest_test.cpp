@@ -58,11 +58,34 @@ TEST_CASE("only the best matches count", "[suggest]") {
 }
 
 TEST_CASE("nothing is suggested for a word that is like none", "[suggest]") {
-    CHECK(suggestions("x", columns).empty());
+    CHECK(suggestions("q", columns).empty());
     CHECK(suggestions("", columns).empty());
     CHECK(suggestions("colour", columns).empty());
     CHECK(suggestions("theta", {}).empty());
     CHECK(suggestions(std::string(5000, 'a'), columns).empty());
+}
+
+TEST_CASE("other words for the same thing are known, and count more than a likeness of letters", "[suggest]") {
+    constexpr std::array<std::string_view, 4> terms = {"harmonic", "pulse", "samples", "chirp"};
+    CHECK(suggestions("sin", terms) == Names{"harmonic"});
+    CHECK(suggestions("Cosine", terms) == Names{"harmonic"});
+    CHECK(suggestions("impulse", terms) == Names{"pulse"});
+    constexpr std::array<std::string_view, 4> fields = {"T0", "omega0", "I", "M"};
+    CHECK(suggestions("w0", fields) == Names{"omega0"});
+    CHECK(suggestions("mass", fields) == Names{"I"});
+    CHECK(suggestions("m", fields) == Names{"M"});  // a letter of another case comes first
+    constexpr std::array<std::string_view, 2> of_math = {"sin", "sinh"};
+    CHECK(suggestions("sine", of_math) == Names{"sin", "sinh"});  // only what is there
+    CHECK(suggestions("x", columns) == Names{"theta"});
+    CHECK(suggestions("x", columns, dinal::Likeness::of_letters).empty());  // a variable of the user may be anything
+}
+
+TEST_CASE("short words must be very much alike", "[suggest]") {
+    constexpr std::array<std::string_view, 4> globals = {"os", "rawget", "T0", "dofile"};
+    CHECK(suggestions("ls", globals).empty());
+    CHECK(suggestions("x0", globals).empty());
+    CHECK(suggestions("range", globals).empty());
+    CHECK(suggestions("tetha", columns) == Names{"theta"});  // the same letters
 }
 
 TEST_CASE("a word is no suggestion for itself and a name known twice is named once", "[suggest]") {

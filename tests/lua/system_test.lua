@@ -68,7 +68,7 @@ end)
 
 test("a system can not be changed", function()
     local sys = system { I = 1, k = 4 }
-    raises_here(function() sys.I = 2 end, "a system can not be changed; make a new one")
+    raises_here(function() sys.I = 2 end, "a system can not be changed, so 'I' can not be set; make a new one")
     raises_here(function() sys.new = 2 end, "can not be changed")
     equal(sys.I, 1.0)
 end)

@@ -71,7 +71,8 @@ class Values(PromptTest):
         terminal.enter("s = nondimensional{ zeta = 0.1 }")
         terminal.enter("r = s:simulate{ theta0=1,", prompt=">>")
         terminal.enter("t_end = 9, dt = 0.01 }")
-        for text in ["s", "r", "r.theta", "r.events", "excitation", "{ 1, { 2, 3 }, x = 'a long text, rather' }",
+        for text in ["s", "r", "r.theta", "r.events", "r:energy()", "r:explain()", "excitation", "nondimensional", "theory.step_limit",
+                     "r.integrator", "excitation.square{ period = 2 } + excitation.harmonic{ frequency = 3 }", "theory", "{ 1, { 2, 3 }, x = 'a long text, rather' }",
                      "{ s, r, r.t }"]:
             shown = terminal.enter(text)
             self.assertTrue(shown)
@@ -96,6 +97,21 @@ class Values(PromptTest):
 
 
 class Notices(PromptTest):
+    def test_what_is_no_error_but_hardly_meant_is_noticed(self):
+        terminal = self.start()
+        terminal.enter(SYSTEM)
+        terminal.enter("M = math.sin")
+        for typed, notice in [("sys:simulate{ M = m, t_end = 1, dt = 0.5 };", "('m' is nil, so M is not given; did you mean 'M'?)"),
+                              ("sys:simulate{ t_end = 1, dt = 0.5, integrator = rk4 };",
+                               "('rk4' is nil, so integrator is not given; did you mean 'integrator.rk4'?)"),
+                              ("N = m", "('m' is nil; did you mean 'M'?)"),
+                              ("x = 1,5", "(1,5 are two numbers, and x is the first; a decimal point is a point: 1.5)"),
+                              ("x = pi", "('pi' is nil; did you mean 'math.pi'?)")]:
+            self.assertEqual(terminal.enter(typed).replace("\n", " "), notice)
+        for typed in ["x = M", "y = { x, M }", "a, b = 1, 5", "x = nil", "f = function() x = later end", "local n = 3 m = n",
+                      "t = { [1] = M }", "w = qwertz"]:
+            self.assertEqual(terminal.enter(typed), "", typed)
+
     def test_a_local_variable_that_is_lost_is_noticed_once(self):
         terminal = self.start()
         self.assertIn("to keep 'x' at the prompt, leave out", terminal.enter("local x = 3").replace("\n", " "))
