@@ -133,7 +133,9 @@ SpectralEngine::Attempt SpectralEngine::solve() {
         if (!sample_all({})) return before_failure();
         solve_for(panel_.M);
     }
-    if (!std::isfinite(chebyshev::size(p_)) || !std::isfinite(chebyshev::size(v_) / panel_.h)) {
+    // Bounds of the derivatives are some powers of ten larger, and must be numbers: without them no search would end.
+    constexpr double largest = 1e290;
+    if (!(chebyshev::size(p_) < largest && chebyshev::size(v_) / std::min(panel_.h, 1.0) < largest)) {
         fail(Outcome::state_not_finite);
         return Attempt::ended;
     }

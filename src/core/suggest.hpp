@@ -10,9 +10,9 @@ namespace dinal {
 
 /// The best matches for a word that is not among the known ones: two at most, none when nothing is close or too much
 /// is. Close is one slip (a letter wrong, missing, too many, two swapped) in words of up to five letters, two in longer
-/// ones and between words of the same letters; different case counts as one slip, and as none when nothing else differs.
-/// The beginning of a longer name (three letters or more) is close, too. What others call the same thing (mass, w0,
-/// sine) is better than any slip.
+/// ones and between words of the same letters; different case counts as one slip, and as none when nothing else
+/// differs. The beginning of a longer name (three letters or more) is close, too. What others call the same thing
+/// (mass, w0, sine) is better than any slip.
 enum class Likeness { of_letters, of_meaning };
 std::vector<std::string> suggestions(std::string_view word, std::span<const std::string_view> known,
                                      Likeness likeness = Likeness::of_meaning);

@@ -188,8 +188,11 @@ std::string qualified(lua_State* L, std::string_view name) {
         if (lua_istable(L, -1)) {
             lua_pushlstring(L, name.data(), name.size());
             if (lua_rawget(L, -2) != LUA_TNIL) {
-                found.append(count == 0 ? "; did you mean '" : " or '").append(module).append(".").append(name).append(
-                    "'");
+                found.append(count == 0 ? "; did you mean '" : " or '")
+                    .append(module)
+                    .append(".")
+                    .append(name)
+                    .append("'");
                 ++count;
             }
         }

@@ -1,5 +1,5 @@
-// Habits from other languages that Lua does not compile. A rule looks at the message, at the token over which the parser
-// stumbled, and at the one before it.
+// Habits from other languages that Lua does not compile. A rule looks at the message, at the token over which the
+// parser stumbled, and at the one before it.
 #include <algorithm>
 #include <array>
 #include <cctype>
@@ -108,7 +108,8 @@ Stumble stumble_in(std::string_view words, std::string_view statement) {
     }
     const std::string_view text = words.substr(near + 7, words.rfind('\'') - near - 7);
     for (std::size_t i = 1; i < stumble.all.size(); ++i) {
-        if (stumble.all[i].text == text && (stumble.at == 0 || (is_value(stumble.all[i]) && is_value(stumble.all[i - 1])))) {
+        if (stumble.all[i].text == text &&
+            (stumble.at == 0 || (is_value(stumble.all[i]) && is_value(stumble.all[i - 1])))) {
             stumble.at = i;
         }
     }
@@ -166,7 +167,8 @@ std::string misspelt_keyword(const Stumble& stumble) {
         for (std::size_t i = 0; i + 1 < stumble.all.size(); ++i) {
             const Token& token = stumble.all[i];
             if (token.kind == TokenKind::name && stumble.all[i + 1].is("(")) {
-                if (std::string hint = token.is("fun") ? "; did you mean 'function'?" : did_you_mean(token.text, wanted);
+                if (std::string hint =
+                        token.is("fun") ? "; did you mean 'function'?" : did_you_mean(token.text, wanted);
                     !hint.empty()) {
                     return hint;
                 }

@@ -2,11 +2,13 @@
 #include "repl/line_editor.hpp"
 
 #ifdef DINAL_READLINE
+#include <fcntl.h>
 #include <poll.h>
 #include <readline/history.h>
 #include <readline/readline.h>
 #include <unistd.h>
 
+#include <cerrno>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
@@ -106,10 +108,48 @@ char** complete_word(const char* word, int, int end) {
     return rl_completion_matches(word, next_name);
 }
 
+/// Waits for a key or a signal, and lets readline see the signal. True when there is a key to read.
+bool key_arrived() {
+    bool arrived = false;
+    sigset_t all;
+    sigset_t before;
+    sigfillset(&all);
+    // All are blocked from the last look until ppoll sleeps, so that none is overlooked.
+    sigprocmask(SIG_BLOCK, &all, &before);
+    if (rl_pending_signal() == 0 && !InterruptNote::interrupted()) {
+        pollfd input{fileno(rl_instream), POLLIN, 0};
+        arrived = ppoll(&input, 1, nullptr, &before) > 0;
+    }
+    sigprocmask(SIG_SETMASK, &before, nullptr);
+    rl_check_signals();  // raises the signal again for the note, with the terminal in order
+    return arrived && !InterruptNote::interrupted();
+}
+
+/// What readline reads the keys with. NOTE: Ctrl-C throws away what was typed before it, so a key that was there may be
+/// gone, and one that is waited for would hold up the Ctrl-C: hence no blocking read.
+int read_key(FILE*) {
+    static const int keyboard = open("/proc/self/fd/0", O_RDONLY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC);
+    while (!InterruptNote::interrupted()) {
+        if (!key_arrived()) {
+            continue;
+        }
+        unsigned char key = 0;
+        const ssize_t count = read(keyboard < 0 ? STDIN_FILENO : keyboard, &key, 1);
+        if (count == 1) {
+            return key;
+        }
+        if (count == 0 || (errno != EAGAIN && errno != EINTR)) {
+            break;  // the terminal is gone
+        }
+    }
+    return EOF;
+}
+
 void start_readline(const std::string& history) {
     rl_readline_name = "dinal";
     rl_catch_signals = 1;               // it restores the terminal before Ctrl-Z and its like take effect,
     rl_persistent_signal_handlers = 1;  // also when one comes while we wait for a key
+    rl_getc_function = read_key;
     rl_attempted_completion_function = complete_word;
     rl_completer_word_break_characters = const_cast<char*>(" \t\n\"\\'`@$><=;|&{}()[]:.,+-*/%^~#!?");  // only read
     rl_completer_quote_characters = "\"'";
@@ -133,21 +173,14 @@ void start_readline(const std::string& history) {
     }
 }
 
-/// Waits for a key or a signal, and lets readline see the signal. True when there is a key to read.
-bool key_arrived() {
-    bool arrived = false;
-    sigset_t all;
-    sigset_t before;
-    sigfillset(&all);
-    // All are blocked from the last look until ppoll sleeps, so that none is overlooked.
-    sigprocmask(SIG_BLOCK, &all, &before);
-    if (rl_pending_signal() == 0 && !InterruptNote::interrupted()) {
-        pollfd input{fileno(rl_instream), POLLIN, 0};
-        arrived = ppoll(&input, 1, nullptr, &before) > 0;
+void give_up() {
+    if (!editing.accepted) {
+        erase_hint();
+        rl_callback_sigcleanup();
+        rl_free_line_state();
+        rl_callback_handler_remove();
     }
-    sigprocmask(SIG_SETMASK, &before, nullptr);
-    rl_check_signals();  // raises the signal again for the note, with the terminal in order
-    return arrived && !InterruptNote::interrupted();
+    say("\n");  // rl_outstream is standard output
 }
 
 Line read_edited(const std::string& prompt, const std::string& pending) {
@@ -162,12 +195,8 @@ Line read_edited(const std::string& prompt, const std::string& pending) {
         if (key_arrived()) {
             rl_callback_read_char();
         }
-        if (InterruptNote::interrupted() && !editing.accepted) {
-            erase_hint();
-            rl_callback_sigcleanup();
-            rl_free_line_state();
-            rl_callback_handler_remove();
-            say("\n");  // rl_outstream is standard output
+        if (InterruptNote::interrupted()) {  // also when the line was accepted just before: it has not run yet
+            give_up();
             return {Reading::interrupted, ""};
         }
     }

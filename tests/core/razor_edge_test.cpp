@@ -315,6 +315,15 @@ TEST_CASE("feedback that no damping stops overflows into an outcome, not into a 
     CHECK(run.rows.allFinite());
 }
 
+TEST_CASE("a motion too large for its derivatives ends the run, also without friction", "[razor]") {
+    // The fuzzer's: with a bound of the second derivative that is no number, the search for turns never ended.
+    const double speed = GENERATE(-1e308, 1e305, 1e280);
+    const double dry = GENERATE(0.0, 0.1);
+    const Trajectory run = run_of(nondimensional(0, dry), {}, {0, speed}, 2.5, either());
+    CHECK((std::fabs(speed) > 1e300 || run.outcome == Outcome::reached_end));
+    CHECK(run.rows.allFinite());
+}
+
 TEST_CASE("linear feedback is the damping that it imitates", "[razor]") {
     class Damping : public UserFunction {
     public:

@@ -209,6 +209,21 @@ class Interrupts(PromptTest):
             self.assertIn("the part of the run that was done is in ans (ans:continue() goes on):\n", shown)
             self.assertEqual(session.enter("#ans > 0 and #ans < 1000001 and #ans.theta == #ans"), "true")
 
+    def test_a_run_that_is_stopped_within_M_is_marked_interrupted(self):
+        session = self.start()
+        session.enter("function M(t) if t > 9 then busy() while true do end end return 1 end")
+        self.interrupted(session, "nondimensional{}:simulate{ M = M, t_end = 20, dt = 1 }")
+        self.assertEqual(session.enter("ans.outcome"), '"interrupted"')
+
+    def test_ctrl_c_is_not_lost_while_keys_are_read(self):
+        # The terminal throws away what was typed before: readline must not wait for a key that is gone.
+        session = self.start()
+        for i in range(200):
+            session.press("x = 1 -- never")
+            session.press(CTRL_C)
+            session.until_prompt()
+        self.assertEqual(session.enter("x"), "nil")
+
     def test_an_interrupted_run_goes_on_as_if_it_had_not_been(self):
         session = self.start()
         session.enter("nd = nondimensional{ zeta = 0.01, friction_ratio = 0.3 }")
