@@ -43,6 +43,9 @@ public:
     char* room(std::size_t count);
     void used(const char* end);
 
+    /// What is still to be written is of no use any more.
+    [[nodiscard]] bool failed() const { return failure_ != 0; }
+
     /// Writes what is left and makes it the file; only now the old file is gone. To be called once.
     Expected<Written> commit();
 

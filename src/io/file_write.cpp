@@ -13,6 +13,7 @@
 #include <utility>
 
 #include "io/confinement.hpp"
+#include "io/stop.hpp"
 
 namespace dinal {
 namespace {
@@ -215,6 +216,7 @@ void OutputFile::used(const char* end) {
 
 void OutputFile::flush() {
     std::size_t done = 0;
+    failure_ = failure_ == 0 && shall_stop() ? ECANCELED : failure_;
     // EINTR is a failure like any other: it is Ctrl-C while a pipe's reader sleeps.
     while (failure_ == 0 && done < filled_) {
         const ssize_t count = ::write(descriptor_, buffer_.data() + done, filled_ - done);

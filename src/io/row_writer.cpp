@@ -67,7 +67,7 @@ std::optional<Error> write_rows(OutputFile& file, std::span<const NamedColumn> c
     for (std::size_t i = 0; i + 1 < columns.size(); ++i) {
         cells[i].terminator = separator;
     }
-    for (std::size_t row = 0; row < rows; ++row) {
+    for (std::size_t row = 0; row < rows && !file.failed(); ++row) {
         char* place = file.room((columns.size() + 1) * cell_size);
         for (std::size_t i = 0; i < columns.size(); ++i) {
             const double value = columns[i].values[row];

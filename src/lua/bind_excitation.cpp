@@ -1,10 +1,12 @@
 #include "lua/bind_excitation.hpp"
 
 #include <fmt/format.h>
-
+#include <algorithm>
 #include <cmath>
+#include <span>
 
 #include "lua/cards.hpp"
+#include "lua/interrupt.hpp"
 #include "lua/library.hpp"
 #include "lua/user_function.hpp"
 #include "lua/vector.hpp"
@@ -72,12 +74,21 @@ int values(lua_State* L) {
     const std::vector<double> times = numbers_at(L, 2, "e:values(times): times");
     std::vector<double> result = new_numbers(L, times.size());
     CallState call(L);
-    const std::size_t filled = excitation.fill(times, result);
-    if (call.failed()) {
-        call.raise_error();
-    }
-    if (filled < times.size()) {
-        raise(L, fmt::format("e:values(times): M = {} at t = {:.14g} is not finite", result[filled], times[filled]));
+    constexpr std::size_t block = std::size_t{1} << 16U;
+    for (std::size_t begin = 0; begin < times.size(); begin += block) {
+        const std::size_t count = std::min(block, times.size() - begin);
+        const std::size_t filled =
+            begin + excitation.fill(std::span(times).subspan(begin, count), std::span(result).subspan(begin, count));
+        if (call.failed()) {
+            call.raise_error();
+        }
+        if (filled < begin + count) {
+            raise(L,
+                  fmt::format("e:values(times): M = {} at t = {:.14g} is not finite", result[filled], times[filled]));
+        }
+        if (interrupt_requested()) {
+            raise_interrupted(L);
+        }
     }
     push_vector(L, std::move(result));
     return 1;

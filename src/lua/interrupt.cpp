@@ -9,6 +9,7 @@
 #include <atomic>
 
 #include "io/progress.hpp"
+#include "io/stop.hpp"
 #include "lua/running_thread.hpp"
 
 namespace dinal {
@@ -83,6 +84,7 @@ void install_interrupt_handler() {
     sigemptyset(&action.sa_mask);
     action.sa_flags = 0;  // no SA_RESTART: a script that waits in io.read() must wake up
     sigaction(SIGINT, &action, nullptr);
+    set_stop_question(interrupt_requested);
 }
 
 Stop stop_requested() noexcept {

@@ -5,17 +5,33 @@
 #include <algorithm>
 #include <cmath>
 
+#include "lua/interrupt.hpp"
 #include "lua/vector.hpp"
 
 namespace dinal::vector_functions {
 
 namespace {
 
+/// Calls work(i) for all i below n; a stop is noticed in between.
+template <class Work>
+void for_each_index(lua_State* L, std::size_t n, Work work) {
+    constexpr std::size_t block = std::size_t{1} << 16U;
+    for (std::size_t begin = 0; begin < n; begin += block) {
+        if (interrupt_requested()) {
+            raise_interrupted(L);
+        }
+        const std::size_t end = std::min(n, begin + block);
+        for (std::size_t i = begin; i < end; ++i) {
+            work(i);
+        }
+    }
+}
+
 template <class Function>
 int mapped(lua_State* L, std::string_view call, Function f) {
     const auto& v = self<Vector>(L, 1, call);
     std::vector<double> result = new_numbers(L, v.size());
-    std::transform(v.begin(), v.end(), result.begin(), f);
+    for_each_index(L, v.size(), [&](std::size_t i) { result[i] = f(v.begin()[i]); });
     push_vector(L, std::move(result));
     return 1;
 }
@@ -54,9 +70,7 @@ int combined(lua_State* L, const char* symbol, Function f) {
     const Operand a = operand(L, 1, symbol);
     const Operand b = operand(L, 2, symbol);
     std::vector<double> result = new_numbers(L, common_size(L, a, b, symbol));
-    for (std::size_t i = 0; i < result.size(); ++i) {
-        result[i] = f(a[i], b[i]);
-    }
+    for_each_index(L, result.size(), [&](std::size_t i) { result[i] = f(a[i], b[i]); });
     push_vector(L, std::move(result));
     return 1;
 }

@@ -14,6 +14,7 @@
 #include "lua/lua_text.hpp"
 #include "lua/standard_globals.hpp"
 #include "repl/call.hpp"
+#include "repl/load_file.hpp"
 #include "repl/output.hpp"
 #include "repl/printer.hpp"
 #include "repl/question.hpp"
@@ -64,7 +65,7 @@ void save(Session& session, const std::string& argument) {
 void load(Session& session, const std::string& file) {
     lua_State* L = session.L;
     lua_settop(L, 0);
-    if (luaL_loadfile(L, file.c_str()) != LUA_OK) {
+    if (load_file(L, file.c_str()) != LUA_OK) {
         say_error(told_error(L, file.c_str()));
     } else if (evaluate(L, Chunk{Compiled::ready, "", "", true}).fine && !session.record.writes(file)) {
         session.record.add_statement(fmt::format("dofile({})", quoted(file)));

@@ -12,9 +12,11 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <string_view>
 #include <vector>
 
 #include "io/display.hpp"
+#include "lua/safe_mode.hpp"
 #include "repl/completion.hpp"
 #include "repl/output.hpp"
 #include "repl/typing.hpp"
@@ -91,6 +93,10 @@ char* next_name(const char*, int again) {
     return next < editing.names.size() ? strdup(editing.names[next++].c_str()) : nullptr;
 }
 
+bool leads_outside(std::string_view path) {
+    return path.starts_with('/') || path.starts_with('~') || path.find("..") != std::string_view::npos;
+}
+
 char** complete_word(const char* word, int, int end) {
     erase_hint();
     rl_attempted_completion_over = 1;  // no names of files where none belong
@@ -101,6 +107,9 @@ char** complete_word(const char* word, int, int end) {
         return nullptr;
     }
     Completion completion = complete_safely(editing.L, editing.pending + line);
+    if (completion.files && safe_mode() && leads_outside(word)) {
+        return nullptr;
+    }
     if (completion.files) {
         return rl_completion_matches(word, rl_filename_completion_function);
     }

@@ -3,6 +3,7 @@
 #include <unistd.h>
 
 #include "lua/function_source.hpp"
+#include "lua/safe_mode.hpp"
 #include "repl/call.hpp"
 #include "repl/chunk.hpp"
 #include "repl/commands.hpp"
@@ -84,7 +85,7 @@ void run_init_file(lua_State* L) {
     if (file.empty()) {
         return;
     }
-    if (luaL_loadfile(L, file.c_str()) != LUA_OK) {
+    if (luaL_loadfilex(L, file.c_str(), load_mode()) != LUA_OK) {
         say_error(told_error(L, file.c_str()));
     } else if (call(L, 0, 0) != LUA_OK) {
         say_error(take_text(L));

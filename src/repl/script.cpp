@@ -23,6 +23,7 @@
 #include "lua/time_limit.hpp"
 #include "repl/call.hpp"
 #include "repl/line_editor.hpp"
+#include "repl/load_file.hpp"
 #include "repl/output.hpp"
 #include "repl/repl.hpp"
 
@@ -59,25 +60,6 @@ int load_text(lua_State* L, std::string_view text, const char* name) {
 
 bool run_text(lua_State* L, const char* text, const char* name) {
     return run_loaded(L, load_text(L, text, name));
-}
-
-/// luaL_loadfile as a function that Lua can call; returns the chunk or the message, and the status.
-int load_file(lua_State* L) {
-    lua_pushinteger(L, luaL_loadfilex(L, lua_tostring(L, 1), load_mode()));
-    return 2;
-}
-
-/// luaL_loadfile, which takes its time and memory like any other code.
-int load_script(lua_State* L, const char* file) {
-    allow_reading(file);
-    lua_pushcfunction(L, load_file);
-    lua_pushstring(L, file);
-    int status = call(L, 1, 2);
-    if (status == LUA_OK) {
-        status = static_cast<int>(lua_tointeger(L, -1));
-        lua_pop(L, 1);
-    }
-    return status;
 }
 
 /// What luaL_loadfile(L, nullptr) does, mark of UTF-8 and `#!` line included, but the text is kept.
@@ -172,7 +154,10 @@ bool run_script(lua_State* L, const Arguments& arguments) {
     const char* file = arguments.words[arguments.script];
     const bool after_dashes = std::string_view(arguments.words[arguments.script - 1]) == "--";
     const bool standard_input = std::string_view(file) == "-" && !after_dashes;
-    const int status = standard_input ? load_standard_input(L) : load_script(L, file);
+    if (!standard_input) {
+        allow_reading(file);
+    }
+    const int status = standard_input ? load_standard_input(L) : load_file(L, file);
     return status == LUA_OK ? run_loaded(L, status, push_script_arguments(L))
                             : finished(L, status, standard_input ? nullptr : file);
 }

@@ -1,4 +1,5 @@
 #include "io/file.hpp"
+#include "io/stop.hpp"
 
 #include <fcntl.h>
 #include <sys/resource.h>
@@ -259,4 +260,16 @@ TEST_CASE("a file name with blanks, quotes and letters beyond ASCII is only a na
     const std::string path = folder.file("Versuch 'ä' $(x).csv");
     REQUIRE(write_file(path, "x"));
     CHECK(text_of(path) == "x");
+}
+
+TEST_CASE("who is told to stop writes no further, and the old file stays", "[file]") {
+    const TemporaryFolder folder;
+    const std::string path = folder.file("rows.csv");
+    REQUIRE(write_file(path, "old"));
+    set_stop_question([]() noexcept { return true; });
+    const auto written = write_file(path, std::string(std::size_t{1} << 20U, 'x'));
+    set_stop_question(nullptr);
+    REQUIRE_FALSE(written);
+    CHECK(written.error().sentence.find("the old file is kept") != std::string::npos);
+    CHECK(*read_file(path) == "old");
 }

@@ -159,7 +159,7 @@ constexpr std::array<std::string_view, 23> any_values{
     "print",
     "{ t = $v, M = $v }",
     "select(2, pcall($f, $n))"};
-constexpr std::array<std::string_view, 32> statements{
+constexpr std::array<std::string_view, 42> statements{
     "$g = $n",
     "$g = $v",
     "$g = $e",
@@ -185,6 +185,16 @@ constexpr std::array<std::string_view, 32> statements{
     "assert($v == $v, $v < $n)",
     "print($h)",
     "$g = $r:continue{ t_end = $t }",
+    "$g = $r:energy()",
+    "local e = $r:energy() print(e, e.total, e.half_cycles, e.dry - e.input)",
+    "print($r:explain())",
+    "$g = $r:plot{ x = $w, y = { $w, $w }, ascii = true, width = $n, height = $n, show = false } print($g)",
+    "print($r:plot{ y = 'velocity', xlim = { $n, $n }, xticks = $n, ascii = true, show = false })",
+    "print($r:phase_plot{ equal = true, ascii = $a, show = false })",
+    "print(plot{ { $v, $v, style = 'points' }, { $v, $v, base = $a }, ylim = { $n, $n }, yticks = $v, show = false })",
+    "print(plot{ { $v, $v, label = $w }, xlog = true, ylog = $a, title = $w, width = $n, show = false })",
+    "$r:plot{ file = 'p.txt', size = { $n, $n } } $r:plot{ file = 'p.gp', title = $w, xlabel = $w }",
+    "print(plot{ $g, $r:plot{ show = false }, show = false })",
     "$g = $a .. $w",
     "$g = $a + $a",
     "$g = ($a)[$a]",

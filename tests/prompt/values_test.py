@@ -249,6 +249,20 @@ class Commands(PromptTest):
         (self.home / ".config/dinal/init.lua").write_text("x = 1\nerror('broken')\n")
         self.assertEqual(self.start().enter("x"), "1")
 
+    def test_a_safe_prompt_loads_no_bytecode_and_nothing_from_outside(self):
+        (self.home / "lab").mkdir()
+        (self.home / "outside.lua").write_text("print('reached')\n")
+        (self.home / "lab" / "inside.lua").write_text("print('in' .. 'side')\n")
+        subprocess.run([PROGRAM, "-e", "io.open('lab/code.lua', 'w'):write(string.dump(load 'print(1)')):close()"], cwd=self.home,
+                       check=True, env={"HOME": str(self.home)})
+        done = subprocess.run([PROGRAM, "--safe", "-i"], cwd=self.home / "lab", capture_output=True, text=True,
+                              input=":load inside.lua\n:load ../outside.lua\n:load code.lua\n:save ../new.lua\n:record /tmp/new.lua\n")
+        self.assertEqual(done.stdout.count("side"), 1)
+        self.assertNotIn("reached", done.stdout)
+        self.assertEqual(done.stderr.count("in the current folder and below only"), 3, done.stderr)
+        self.assertIn("bytecode", done.stderr)
+        self.assertFalse((self.home / "new.lua").exists())
+
     def test_they_are_no_lua(self):
         (self.home / "lab.lua").write_text(":who\n")
         done = subprocess.run([PROGRAM, "lab.lua"], cwd=self.home, capture_output=True, text=True)
