@@ -198,6 +198,7 @@ Line read_edited(const std::string& prompt, const std::string& pending) {
     editing.hinting = false;
     editing.prompt = prompt;
     editing.pending = pending.empty() ? "" : pending + "\n";
+    rl_eof_found = 0;  // of an earlier line: readline would end every further one with a blank one
     using_history();
     rl_callback_handler_install(prompt.c_str(), accept);
     while (!editing.accepted) {

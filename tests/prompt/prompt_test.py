@@ -111,6 +111,7 @@ class Lines(PromptTest):
         session.enter("f(", CONTINUATION)
         session.press(CTRL_D)
         self.assertIn("near <eof>", session.until_prompt())
+        self.assertEqual(session.enter("1"), "1")  # and no blank line before it
         self.assertEqual(session.leave(), 0)
         self.assertTrue(session.child.before.endswith("\r\n"))
 

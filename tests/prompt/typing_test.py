@@ -55,7 +55,10 @@ class Completion(Typing):
         terminal.enter("lab = { inner = { depth = 1 }, ['no name'] = 2 }")
         for typed, whole in [("nond", "nondimensional{ "), ("excitation.har", "excitation.harmonic{ "),
                              ("sys:sim", "sys:simulate{ "), ("sys.dead", "sys.dead_zone"), ("run.th", "run.theta"),
-                             ("run.theta:me", "run.theta:mean("), ("run.system:sim", "run.system:simulate{ "),
+                             ("run.theta:me", "run.theta:mean("), ("run:ener", "run:energy("),
+                             ("run:energy().half", "run:energy().half_cycles"), ("run:cont", "run:continue{ "),
+                             ("run:continue{}:exp", "run:continue{}:explain("), ("theory.magn", "theory.magnification{ "),
+                             ("vector{ 1 }:mea", "vector{ 1 }:mean("), ("run.system:sim", "run.system:simulate{ "),
                              ("math.fl", "math.floor("), ("lab.in", "lab.inner"), ("lab.inner.", "lab.inner.depth"),
                              ("x = whi", "x = while"), ("sys:simulate{ dt = 1 }:sav", "sys:simulate{ dt = 1 }:save("),
                              ("excitation.step{}:win", "excitation.step{}:window("), ("('x'):low", "('x'):low")]:
@@ -73,6 +76,9 @@ class Completion(Typing):
         self.offers(terminal, "excitation.samples('a.csv', { ", ["time", "value"])
         self.offers(terminal, "excitation.samples{ ", ["t", "M"])
         self.offers(terminal, "excitation.scripted(print, { ", ["breaks", "period"])
+        seen = self.offers(terminal, "plot{ title = 'x', ", ["xlabel", "file", "ascii"])
+        self.assertNotIn("dashes", seen)
+        self.completes(terminal, "plot{ { v, w, da", "plot{ { v, w, dashes = ")
         self.completes(terminal, "sys:simulate{ M = excitation.pulse{ wi", "sys:simulate{ M = excitation.pulse{ width = ")
         self.completes(terminal, "sys:simulate{ integrator = integrator.rk", "sys:simulate{ integrator = integrator.rk4{ ")
 
