@@ -169,6 +169,21 @@ class Colours(Typing):
             terminal.wait(lambda: "end" in terminal.text() or "hint" in terminal.text())
             self.assertNotIn("I, k", terminal.text())
 
+    def test_a_window_that_changes_its_width_shows_the_line_once(self):
+        terminal = self.start()
+        terminal.type("system{")
+        terminal.shows("system{  I, k")
+        for width in (40, 60, 30):
+            terminal.resize(width)
+            terminal.wait(lambda: terminal.row().startswith("> system{") and len(terminal.row()) > min(width, 40) - 12)
+            self.assertEqual(terminal.text().count("system{"), 1)
+        terminal.type(" I = 1, k = 40, Rd = 2, C = 0.5, Re = 3 }")
+        terminal.wait(lambda: "Re = 3 }" in "".join(terminal.lines()))
+        terminal.resize(80)
+        terminal.type(";" + ENTER)
+        terminal.wait(lambda: terminal.row() == ">")
+        self.assertEqual(terminal.enter("ans.Re"), "3.0")
+
     def test_the_cursor_moves_within_a_painted_line(self):
         terminal = self.start()
         terminal.type("print('ac')" + LEFT * 3 + "b" + ENTER)
