@@ -153,8 +153,8 @@ function case.raised_step(h, steps)
 end
 
 -- Steady motions under sin(2 pi r t*) whatever number of stops they have, from the events of a run: amplitude, lag of the
--- peak in rad, stops in each half cycle. Where the mass stops for long it forgets how it began, and few periods are enough;
--- near resonance it may stop so shortly that it takes hundreds.
+-- peak in rad, stops in each half cycle. Where the mass stops for long it forgets how it began, and few periods are
+-- enough; near resonance it may stop so shortly that it takes hundreds.
 function case.steady(r, gamma)
   local periods, watched = r < 0.3 and 6 or math.abs(r - 1) < 0.1 and 400 or 40, 2
   local run = nondimensional{ friction_ratio = gamma }:simulate{

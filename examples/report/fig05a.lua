@@ -7,8 +7,8 @@ local picture = {
   xlabel = "ω/ω₀", ylabel = "Φ", xlim = { 0, 2 }, ylim = { 0, 3 }, xticks = 0.5, size = { 12, 9 },
 }
 
--- Where there are several stops in half a cycle: for each r the least and the most friction that has them, found by a scan
--- (the finer the thinner the region is) and then by halving.
+-- Where there are several stops in half a cycle: for each r the least and the most friction that has them, found by a
+-- scan (the finer the thinner the region is) and then by halving.
 local function amplitude_of_several(r, gamma)
   local amplitude, _, stops = case.steady(r, gamma)
   return stops > 1 and amplitude
@@ -23,7 +23,7 @@ local function edge(r, inside, outside)
   return amplitude
 end
 local corner, lowest, highest = {}, {}, {}
-for i = 1, 33 do
+for i = 1, 40 do
   local r = i / 100
   local step, least, most = i < 20 and 0.04 or 0.01
   for gamma = step, i < 20 and 0.98 or 0.5, step do

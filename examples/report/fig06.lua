@@ -1,5 +1,5 @@
 -- Figure 6: the stop rule. When is a velocity that jumps over zero "zero"? Left, a turn and the two rules of the report
--- (the text takes the nearer of two points, the listing both); right, what they make of the stop of figure 22 with h = 0.01.
+-- (the text takes the nearer of two points, the listing both); right, what they make of the stop of figure 22, h = 0.01.
 local case = dofile((debug.getinfo(1, "S").source:match("^@(.*/)") or "") .. "case.lua")
 
 local fig = case.figure("06", "the stop rule, free, gamma = 0.167, h = 0.01", ...)
@@ -28,7 +28,7 @@ fig:line("at theta =", theta[first], theta_text[second], rest.theta)
 fig:line("with velocity/2 pi =", listing[first], text[second], 0)
 
 fig:quote{ 0.01, listing[first], text[second], t[first], t[second], rest.t, theta[first], theta_text[second], rest.theta }
-local step = math.abs(listing[22] - listing[23]) -- across the first turn
+local step = math.abs(listing[23] - listing[24]) -- across the first turn
 local x = { 0.205, 0.245 }
 local function band(height) return { x, { height, height }, base = { -height, -height }, style = "fill" } end
 local rules = { band(step), band(step / 2), { run.t, velocity, colour = 1, dashes = "solid", label = "true" },

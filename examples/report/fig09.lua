@@ -21,9 +21,10 @@ for _, n in ipairs{ 5, 10, 20 } do
 end
 
 slipped.dashes, printed.style = "dashed", "points"
-fig:quote{ slip_factor, factor, 20, largest(old.theta, 20), largest(exact, 20), slip_period, 20 / slip_period - 20 / period,
-  rk4_factor, rk4_period }
-return fig:draw{ case.exact(zeta, 20), slipped, printed, xlabel = "t*", ylabel = "θ*", ylim = { -1, 1 }, size = case.page }
+fig:quote{ h, slip_factor, factor, 20, largest(old.theta, 20), largest(exact, 20), slip_period,
+  20 / slip_period - 20 / period, rk4_factor, rk4_period }
+return fig:draw{ case.exact(zeta, 20), slipped, printed, xlabel = "t*", ylabel = "θ*", xlim = { 0, 20 }, ylim = { -1, 1 },
+  size = case.page }
 
 --[[ prints
 Figure 9: zeta = 0.02387, h = 0.1, with the slip of chapter 6

@@ -14,12 +14,13 @@ fig:line("at rest at theta =", old.theta[#old], extremes[4].theta, known[4])
 fig:line("from t/T0 =", "", extremes[4].t, known_t[4] / sys.T0)
 fig:say(tostring(run))
 
-local half = (extremes[2].t - extremes[1].t)
+local half = extremes[2].t - extremes[1].t
 local zeta, x_f = theory.identify{ X0 = known[1], X1 = known[2], X2 = known[3] }
 fig:line("from turn to turn, in T0", "", half, math.pi / sys.omega1 / sys.T0)
 fig:line("zeta, gamma from extremes", "", zeta, x_f)
 
-fig:quote{ 0.119, 0.06, known[1], known[2], known[3], known[4], known_t[4] / sys.T0, half, 0.002, old.theta[#old], zeta, x_f }
+fig:quote{ 0.119, 0.06, known[1], known[2], known[3], known[4], known_t[4] / sys.T0, half, 0.002,
+  old.theta[#old], zeta, x_f }
 return fig:draw{
   case.columns(run, { "theta", "friction/k" }, { ylim = { -0.6, 1 }, yticks = 0.2 }),
   case.plane(run, 1.1),

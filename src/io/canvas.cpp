@@ -6,6 +6,8 @@
 #include <cstdlib>
 #include <utility>
 
+#include "io/line.hpp"
+
 namespace dinal {
 namespace {
 
@@ -17,38 +19,6 @@ std::string braille(std::uint8_t dots) {  // U+2800 + dots
 }
 
 constexpr double slack = 0.49;  // of a dot: a value on the very limit must not be lost to a rounding
-
-struct Line {
-    double x0, y0, x1, y1;
-};
-
-/// Cuts the line to the dots from 0 to the limits (Liang and Barsky); false when nothing is left.
-bool clip(Line& line, double width, double height) {
-    const double dx = line.x1 - line.x0;
-    const double dy = line.y1 - line.y0;
-    double begin = 0;
-    double end = 1;
-    const std::array<std::array<double, 2>, 4> sides{{{-dx, line.x0 + slack},
-                                                      {dx, width + slack - line.x0},
-                                                      {-dy, line.y0 + slack},
-                                                      {dy, height + slack - line.y0}}};
-    for (const auto& [direction, distance] : sides) {
-        if (direction == 0) {
-            if (distance < 0) {
-                return false;
-            }
-        } else if (direction < 0) {
-            begin = std::max(begin, distance / direction);
-        } else {
-            end = std::min(end, distance / direction);
-        }
-    }
-    if (!(begin <= end)) {
-        return false;
-    }
-    line = {line.x0 + begin * dx, line.y0 + begin * dy, line.x0 + end * dx, line.y0 + end * dy};
-    return true;
-}
 
 }  // namespace
 
@@ -138,10 +108,10 @@ void Pen::to(double x, double y) {
     y = std::clamp(y, -far, far);
     const double from_x = std::exchange(x_, x);
     const double from_y = std::exchange(y_, y);
-    Line line{down_ ? from_x : x, down_ ? from_y : y, x, y};
+    Line line{{down_ ? from_x : x, down_ ? from_y : y}, {x, y}};
     down_ = true;
-    if (clip(line, canvas_.width() - 1, canvas_.height() - 1)) {
-        this->line(nearest_dot(line.x0), nearest_dot(line.y0), nearest_dot(line.x1), nearest_dot(line.y1));
+    if (clip(line, {canvas_.width() - 1.0, canvas_.height() - 1.0}, slack)) {
+        this->line(nearest_dot(line.from.x), nearest_dot(line.from.y), nearest_dot(line.to.x), nearest_dot(line.to.y));
     }
 }
 

@@ -121,17 +121,20 @@ View view_of(const Figure& figure) {
 }
 
 Box equal_box(View& view, Box most) {
-    constexpr double thinnest = 0.25;  // of the room
+    const double thinnest = 0.25 * std::max(most.width, most.height);
+    const auto unit = [&] {
+        return std::min(most.width / view.x.range().length(), most.height / view.y.range().length());
+    };
     const auto widen = [](Scale& scale, double length) {
         const double more = (length - scale.range().length()) / 2;
         if (more > 0) {
             scale = Scale({scale.range().low - more, scale.range().high + more}, false);
         }
     };
-    const double unit = std::min(most.width / view.x.range().length(), most.height / view.y.range().length());
-    widen(view.x, thinnest * most.width / unit);
-    widen(view.y, thinnest * most.height / unit);
-    return {unit * view.x.range().length(), unit * view.y.range().length()};
+    const double length = thinnest / unit();
+    widen(view.x, length);
+    widen(view.y, length);
+    return {unit() * view.x.range().length(), unit() * view.y.range().length()};
 }
 
 }  // namespace dinal

@@ -3,59 +3,99 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "io/gnuplot_data.hpp"
 #include "io/panel_script.hpp"
 #include "io/paper_layout.hpp"
-#include "io/thinning.hpp"
+#include "io/paper_style.hpp"
 
 namespace dinal {
 namespace {
 
-constexpr std::size_t most_points = 11'000;  // of all curves together: an SVG below 200 kB
+constexpr double fineness = 2;          // to the pixel of 1/96 inch: a line is wider than two of them
+constexpr double most_bytes = 140'000;  // of the curves in an SVG: all of it shall be smaller than 200 kB
 
-Selection select(const Panel& panel, double coarseness) {
-    constexpr double fineness = 2;  // to the pixel of 1/96 inch: a line is wider than two of them
-    const Paper paper{
-        panel.view, {(panel.right - panel.left) * fineness, (panel.top - panel.bottom) * fineness}, coarseness};
-    Selection selection;
-    for (const Curve& curve : panel.figure->curves) {
-        selection.push_back(thinned(curve, paper));
-        if (curve.style == Style::fill && curve.base) {  // the other edge has extremes of its own
-            Curve edge{curve.x, *curve.base};
-            std::vector<std::size_t> more = thinned(edge, paper);
-            more.insert(more.end(), selection.back().begin(), selection.back().end());
-            std::sort(more.begin(), more.end());
-            more.erase(std::unique(more.begin(), more.end()), more.end());
-            selection.back() = std::move(more);
+constexpr double point_bytes = 15;  // "L293.68,135.55 "
+constexpr double stroke_bytes = 2 * point_bytes;
+constexpr double mark_bytes = 110;
+
+double bytes_of(const Curve& curve, const Trace& trace) {
+    return static_cast<double>(trace.ink.all.size()) * stroke_bytes +
+           static_cast<double>(trace.places.size()) * (curve.style == Style::points ? mark_bytes : point_bytes);
+}
+
+/// An area has the corners of both its edges, and is interrupted where one of them is.
+std::vector<std::size_t> between_edges(const Curve& curve, const Paper& paper) {
+    Curve other = curve;
+    other.y = *curve.base;
+    std::vector<std::size_t> all = thinned(curve, paper);
+    const std::vector<std::size_t> more = thinned(other, paper);
+    all.insert(all.end(), more.begin(), more.end());
+    std::sort(all.begin(), all.end());
+    std::vector<std::size_t> kept;
+    std::size_t next = 0;
+    for (const std::size_t i : all) {
+        for (; next <= i && next < curve.size(); ++next) {
+            const bool there = paper.view.x.has(curve.x.values[next]) && paper.view.y.has(curve.y.values[next]) &&
+                               paper.view.y.has(other.y.values[next]);
+            if (!there && !kept.empty() && kept.back() != gap) {
+                kept.push_back(gap);
+            } else if (there && next == i) {
+                kept.push_back(i);
+            }
         }
     }
-    return selection;
+    return kept;
+}
+
+/// No larger than `most` bytes, if there is a way to make it so with this coarseness.
+Trace trace_of(const Curve& curve, const Paper& paper, double most) {
+    Trace trace{curve.style == Style::fill && curve.base ? between_edges(curve, paper) : thinned(curve, paper)};
+    if (bytes_of(curve, trace) > most && curve.style != Style::fill && !has_columns(curve)) {
+        trace = {.ink = inked(curve, paper, line_width * fineness, static_cast<std::size_t>(most / stroke_bytes))};
+        trace.ink.height /= fineness;
+        for (Stroke& stroke : trace.ink.all) {
+            stroke = {stroke.from / fineness, stroke.to / fineness, stroke.y / fineness};
+        }
+    }
+    return trace;
 }
 
 /// What gets too large is made coarser.
 std::vector<Selection> select(const Sheet& sheet) {
-    std::vector<Selection> all;
+    std::size_t curves = 0;
+    for (const Panel& panel : sheet.panels) {
+        curves += panel.figure->curves.size();
+    }
+    double most_each = most_bytes;
     double coarseness = 1;
-    for (int attempt = 0; attempt < 8; ++attempt) {
-        all.clear();
-        std::size_t points = 0;
+    for (int attempt = 0;; ++attempt) {
+        std::vector<Selection> all;
+        double bytes = 0;
         for (const Panel& panel : sheet.panels) {
-            all.push_back(select(panel, coarseness));
-            for (const auto& kept : all.back()) {
-                points += kept.size();
+            const Box pixels{(panel.right - panel.left) * fineness, (panel.top - panel.bottom) * fineness};
+            const Paper paper{panel.view, pixels, coarseness};
+            all.emplace_back();
+            for (const Curve& curve : panel.figure->curves) {
+                all.back().push_back(trace_of(curve, paper, most_each));
+                bytes += bytes_of(curve, all.back().back());
             }
         }
-        if (points <= most_points) {
-            break;
+        if (bytes <= most_bytes || attempt == 8) {
+            return all;
         }
-        coarseness *= 1.5;
+        if (attempt > 0) {
+            coarseness *= 1.5;
+        }
+        most_each = most_bytes / static_cast<double>(curves);
     }
-    return all;
 }
 
 std::string terminal_line(Terminal terminal, const Sheet& sheet) {
-    constexpr double dots_per_pixel = 3;  // of a PNG: 288 to the inch
+    constexpr double most_dots = 4e7;  // of a PNG in all: 160 MB in gnuplot
+    const double dots_per_pixel =
+        std::min(3.0, std::sqrt(most_dots / (sheet.width * sheet.height)));  // 288 to the inch
     const double cm_wide = sheet.width / pixels_per_cm;
     const double cm_high = sheet.height / pixels_per_cm;
     switch (terminal) {
@@ -69,11 +109,11 @@ std::string terminal_line(Terminal terminal, const Sheet& sheet) {
                 "set terminal pngcairo size {:.0f},{:.0f} noenhanced font 'Sans,{}' fontscale {} "
                 "linewidth {} dashlength 1 pointscale {}\n",
                 sheet.width * dots_per_pixel, sheet.height * dots_per_pixel, font_size, dots_per_pixel, dots_per_pixel,
-                dots_per_pixel);
+                1.3 * dots_per_pixel);
         case Terminal::pdf:
             return fmt::format(
                 "set terminal pdfcairo size {:.3f}cm,{:.3f}cm noenhanced font 'Sans,{}' fontscale 0.75 "
-                "linewidth 1.7 dashlength 1\n",
+                "linewidth 1.5 dashlength 1 pointscale 0.95\n",
                 cm_wide, cm_high, font_size);
     }
     return "";

@@ -3,36 +3,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <numbers>
 
-#include "io/thinning.hpp"
-
+#include "io/paper_style.hpp"
 namespace dinal {
 namespace {
 
-// Okabe and Ito's colours, which the colour-blind tell apart, without the yellow, which paper swallows.
-constexpr std::array<std::string_view, 7> palette{"#0072B2", "#D55E00", "#009E73", "#CC79A7",
-                                                  "#000000", "#E69F00", "#56B4E9"};
-// Another length of this list than of that one: the pair repeats after 42 curves only.
-constexpr std::array<std::string_view, 6> dash_types{"1", "(11,4)", "(2,3)", "(11,3,2,3)", "(6,3)", "(11,3,2,3,2,3)"};
-constexpr std::string_view ink = "#444444";
-constexpr double fill_density = 0.25;
-
-struct Look {
-    std::string colour, dashes;
-};
-
-Look look_of(const Figure& figure, std::size_t curve) {
-    const Curve& own = figure.curves[curve];
-    const std::size_t colour = own.colour > 0 ? static_cast<std::size_t>(own.colour - 1) : curve;
-    std::size_t dashes = curve % dash_types.size();
-    if (own.dashes != Dashes::by_place) {
-        dashes = own.dashes == Dashes::solid ? 0 : own.dashes == Dashes::dashed ? 1 : 2;
-    }
-    return {std::string(palette[colour % palette.size()]), std::string(dash_types[dashes])};
-}
+constexpr double bar = 0.3 * em;  // how high the bars are for the dead zone and for what is stuck
 
 class PanelScript {
 public:
@@ -41,16 +19,17 @@ public:
 
     std::string text() {
         add_box();
-        add_axis('x', figure_.x, panel_.view.x, panel_.x_ticks);
-        add_axis('y', figure_.y, panel_.view.y, panel_.y_ticks);
+        add_axis('x', panel_.view.x, panel_.x_ticks);
+        add_axis('y', panel_.view.y, panel_.y_ticks);
         add_legend();
         add_stuck();
-        add_circles();
-        for (std::size_t i = 0; i < figure_.curves.size(); ++i) {
-            add_curve(i);
+        if (figure_.dead_zone) {
+            add_dead_zone();
         }
-        add_marks();
+        add_circles();
+        add_curves();
         if (elements_.empty()) {
+            line(fmt::format("set label '(no points)' at graph 0.5,0.5 center textcolor rgb '{}'", ink_colour));
             elements_.emplace_back("NaN");
         }
         return text_ + fmt::format("plot \\\n  {} notitle\n", fmt::join(elements_, " notitle, \\\n  "));
@@ -69,7 +48,7 @@ private:
         if (!figure_.axes) {
             line("unset border");
         } else {
-            line(fmt::format("set border 3 lt 1 lw 0.8 lc rgb '{}'", ink));
+            line(fmt::format("set border 3 lt 1 lw 0.8 lc rgb '{}'", ink_colour));
             line("set grid xtics ytics back lt 1 lw 0.5 lc rgb '#E4E4E4'");
         }
         if (figure_.axes && !panel_.view.y.logarithmic()) {
@@ -95,13 +74,17 @@ private:
     void add_words(const Words& words, std::string_view how) {
         if (!words.text.empty()) {
             line(fmt::format("set label {} at {} center{} textcolor rgb '{}'", single_quoted(words.text),
-                             at(words.x, words.y), how, ink));
+                             at(words.x, words.y), how, ink_colour));
         }
     }
 
-    void add_axis(char name, const Axis& axis, const Scale& scale, const Ticks& ticks) {
-        line(fmt::format("set {}range [{}:{}]", name, scale.range().low, scale.range().high));
-        if (axis.logarithmic) {
+    void add_axis(char name, const Scale& scale, const Ticks& ticks) {
+        // NOTE: a tick on the very end of a logarithmic axis is lost to gnuplot's roundings.
+        constexpr double hair = 1e-9;
+        const double low = scale.range().low * (scale.logarithmic() ? 1 - hair : 1);
+        const double high = std::min(scale.range().high * (scale.logarithmic() ? 1 + hair : 1), 1.7e308);
+        line(fmt::format("set {}range [{}:{}]", name, low, high));
+        if (scale.logarithmic()) {
             line(fmt::format("set logscale {}", name));
         }
         if (!figure_.axes) {
@@ -110,34 +93,52 @@ private:
         }
         std::vector<std::string> list;
         for (std::size_t i = 0; i < ticks.at.size(); ++i) {
-            list.push_back(fmt::format("'{}' {}", typeset(ticks.text[i]), ticks.at[i]));
+            list.push_back(fmt::format("'{}' {}", typeset(ticks.text[i]), std::clamp(ticks.at[i], low, high)));
         }
         line(fmt::format("set {}tics nomirror out scale 0.5 offset {} textcolor rgb '{}' ({})", name,
-                         name == 'x' ? "0,0.3" : "0.5,0", ink, fmt::join(list, ", ")));
+                         name == 'y'             ? "0.5,0"
+                         : figure_.stuck.empty() ? "0,0.3"
+                                                 : "0,0.1",
+                         ink_colour, fmt::join(list, ", ")));
     }
 
     void add_legend() {
         for (const LegendEntry& entry : panel_.legend) {
             const double width = sample_width(entry.sample);
             line(fmt::format("set label {} at {} left textcolor rgb '{}'", single_quoted(entry.text),
-                             at(entry.x + width + after_sample, entry.y), ink));
-            const Curve* curve = entry.sample == Sample::curve ? &figure_.curves[entry.curve] : nullptr;
-            const Look look = curve != nullptr ? look_of(figure_, entry.curve) : Look{std::string(ink), "1"};
-            if (entry.sample == Sample::start || entry.sample == Sample::end) {
-                add_sample_point(entry, mark_style(entry.sample == Sample::start));
-            } else if (curve != nullptr && curve->style == Style::points) {
-                add_sample_point(entry, point_style(entry.curve));
-            } else if (curve != nullptr && curve->style == Style::fill) {
-                line(fmt::format("set object rectangle from {} to {} fc rgb '{}' fs transparent solid {} noborder",
-                                 at(entry.x, entry.y - 0.35 * em), at(entry.x + width, entry.y + 0.35 * em),
-                                 look.colour, fill_density));
-            } else {
-                line(fmt::format("set arrow from {} to {} nohead {}", at(entry.x, entry.y),
-                                 at(entry.x + width, entry.y),
-                                 curve != nullptr                    ? line_style(entry.curve)
-                                 : entry.sample == Sample::dead_zone ? dead_zone_style()
-                                                                     : bar_style()));
+                             at(entry.x + width + after_sample, entry.y), ink_colour));
+            switch (entry.sample) {
+                case Sample::start:
+                case Sample::end:
+                    add_sample_point(entry,
+                                     mark_style(entry.sample == Sample::start ? MarkKind::start : MarkKind::end));
+                    break;
+                case Sample::dead_zone:
+                    add_bar(at(entry.x, entry.y - bar / 2), at(entry.x + width, entry.y + bar / 2), dead_zone_colour);
+                    break;
+                case Sample::stuck:
+                    add_bar(at(entry.x, entry.y - bar / 2), at(entry.x + width, entry.y + bar / 2), ink_colour);
+                    break;
+                case Sample::curve:
+                    add_sample_of_curve(entry);
+                    break;
+                case Sample::none:
+                    break;
             }
+        }
+    }
+
+    void add_sample_of_curve(const LegendEntry& entry) {
+        const double end = entry.x + sample_width(entry.sample);
+        const Style style = figure_.curves[entry.curve].style;
+        if (style == Style::points) {
+            add_sample_point(entry, point_style(figure_, entry.curve));
+        } else if (style == Style::fill) {
+            line(fmt::format("set object rectangle from {} to {} {}", at(entry.x, entry.y - 0.35 * em),
+                             at(end, entry.y + 0.35 * em), fill_style(figure_, entry.curve)));
+        } else {
+            line(fmt::format("set arrow from {} to {} nohead {}", at(entry.x, entry.y), at(end, entry.y),
+                             line_style(figure_, entry.curve)));
         }
     }
 
@@ -145,32 +146,20 @@ private:
         line(fmt::format("set label '' at {} point {}", at(entry.x + sample_width(entry.sample) / 2, entry.y), style));
     }
 
-    [[nodiscard]] std::string line_style(std::size_t curve) const {
-        const Look look = look_of(figure_, curve);
-        return fmt::format("lt 1 lw 1.3 dt {} lc rgb '{}'", look.dashes, look.colour);
+    void add_bar(const std::string& from, const std::string& to, std::string_view colour) {
+        line(fmt::format("set object rectangle from {} to {} fc rgb '{}' fs solid noborder", from, to, colour));
     }
-    [[nodiscard]] std::string point_style(std::size_t curve) const {
-        constexpr std::array<int, 5> shapes{6, 2, 8, 4, 1};  // circle, x, triangle, square, +
-        return fmt::format("pt {} ps 0.45 lw 0.9 lc rgb '{}'", shapes[curve % shapes.size()],
-                           look_of(figure_, curve).colour);
-    }
-    static std::string mark_style(bool start) {
-        return fmt::format("pt {} ps 0.7 lw 1.2 lc rgb '{}'", start ? 6 : 7, ink);
-    }
-    static std::string dead_zone_style() { return "lt 1 dt 1 lw 4 lc rgb '#909090'"; }
-    static std::string bar_style() { return fmt::format("lt 1 dt 1 lw 4 lc rgb '{}'", ink); }
 
-    /// Bars just above the time axis; thousands of stops that no eye parts become one.
+    /// Bars below the time axis; thousands of stops that no eye parts become one.
     void add_stuck() {
         const Range seen = panel_.view.x.range();
         const double finest = seen.length() / (2 * (panel_.right - panel_.left));
-        Range bar{seen.high, seen.high};
+        Range all{seen.high, seen.high};
         const auto draw = [&] {
-            if (bar.high > bar.low) {
-                line(
-                    fmt::format("set object rectangle from first {}, graph 0 to first {}, graph 0.02 front fc rgb "
-                                "'{}' fs solid noborder",
-                                bar.low, bar.high, ink));
+            if (all.high > all.low) {
+                const double top = panel_.bottom - 1;
+                add_bar(fmt::format("first {}, screen {:.5f}", all.low, (top - bar) / sheet_.height),
+                        fmt::format("first {}, screen {:.5f}", all.high, top / sheet_.height), ink_colour);
             }
         };
         for (const Range& span : figure_.stuck) {
@@ -179,14 +168,24 @@ private:
             if (low > high) {
                 continue;
             }
-            if (low - bar.high <= finest && bar.high > bar.low) {
-                bar.high = std::max(bar.high, high);
+            if (low - all.high <= finest && all.high > all.low) {
+                all.high = std::max(all.high, high);
                 continue;
             }
             draw();
-            bar = {low, high};
+            all = {low, high};
         }
         draw();
+    }
+
+    void add_dead_zone() {
+        const Range seen = panel_.view.x.range();
+        const double half = panel_.view.y.range().length() * (bar / 2) / (panel_.top - panel_.bottom);
+        const double low = std::max(figure_.dead_zone->low, seen.low);
+        const double high = std::min(figure_.dead_zone->high, seen.high);
+        if (low < high) {
+            add_bar(fmt::format("{}, {}", low, -half), fmt::format("{}, {}", high, half), dead_zone_colour);
+        }
     }
 
     void add_circles() {
@@ -206,65 +205,13 @@ private:
         }
     }
 
-    void add_curve(std::size_t i) {
-        const Curve& curve = figure_.curves[i];
-        if (curve.style == Style::fill) {
-            add_fill(i);
-            return;
-        }
-        const auto columns = columns_of(curve, kept_[i]);
-        const bool points = curve.style == Style::points || columns.front().size() == 1;
-        if (!columns.front().empty()) {
-            elements_.push_back(fmt::format("{} with {} {}", data_.add(columns), points ? "points" : "lines",
-                                            points ? point_style(i) : line_style(i)));
-        }
-    }
-
-    /// NaN would close an area where it opens: each piece is drawn for itself.
-    void add_fill(std::size_t i) {
-        const Curve& curve = figure_.curves[i];
-        const auto draw = [&](const std::vector<std::size_t>& piece) {
-            if (piece.empty()) {
-                return;
-            }
-            std::vector<std::vector<double>> columns = columns_of(curve, piece);
-            const double zero = panel_.view.y.logarithmic() ? panel_.view.y.range().low : 0;
-            columns.emplace_back();
-            for (const std::size_t place : piece) {
-                columns.back().push_back(curve.base ? curve.base->values[place] : zero);
-            }
-            elements_.push_back(fmt::format("{} with filledcurves fc rgb '{}' fs transparent solid {} noborder",
-                                            data_.add(columns), look_of(figure_, i).colour, fill_density));
-        };
-        std::vector<std::size_t> piece;
-        for (const std::size_t place : kept_[i]) {
-            if (place == gap) {
-                draw(piece);
-                piece.clear();
-            } else {
-                piece.push_back(place);
-            }
-        }
-        draw(piece);
-    }
-
-    static std::vector<std::vector<double>> columns_of(const Curve& curve, const std::vector<std::size_t>& places) {
-        std::vector<std::vector<double>> columns(2);
-        for (const std::size_t place : places) {
-            columns[0].push_back(place == gap ? std::nan("") : curve.x.values[place]);
-            columns[1].push_back(place == gap ? std::nan("") : curve.y.values[place]);
-        }
-        return columns;
-    }
-
-    void add_marks() {
-        if (figure_.dead_zone) {
-            elements_.push_back(data_.add({{figure_.dead_zone->low, figure_.dead_zone->high}, {0, 0}}) +
-                                " with lines " + dead_zone_style());
+    void add_curves() {
+        for (std::size_t i = 0; i < figure_.curves.size(); ++i) {
+            const std::vector<std::string> more = curve_elements(panel_, i, kept_[i], data_);
+            elements_.insert(elements_.end(), more.begin(), more.end());
         }
         for (const Mark& mark : figure_.marks) {
-            elements_.push_back(data_.add({{mark.x}, {mark.y}}) + " with points " +
-                                mark_style(mark.kind == MarkKind::start));
+            elements_.push_back(data_.add({{mark.x}, {mark.y}}) + " with points " + mark_style(mark.kind));
         }
     }
 

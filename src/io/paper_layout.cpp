@@ -48,6 +48,12 @@ std::vector<LegendEntry> legend_of(const Figure& figure) {
             entries.push_back({Sample::curve, i, figure.curves[i].label});
         }
     }
+    constexpr std::size_t most = 42;  // as many as there are looks
+    if (entries.size() > most) {
+        const std::string rest = "+ " + std::to_string(entries.size() - most) + " more";
+        entries.resize(most);
+        entries.push_back({Sample::none, 0, rest});
+    }
     for (const Mark& mark : figure.marks) {
         const bool start = mark.kind == MarkKind::start;
         entries.push_back({start ? Sample::start : Sample::end, 0, start ? "start" : "end"});
@@ -87,8 +93,10 @@ int flow(std::vector<LegendEntry>& entries, double width) {
     return entries.empty() ? 0 : line + 1;
 }
 
+constexpr int most_ticks = 12;  // of an axis: a poster needs no more of them than a page
+
 int x_tick_count(const Panel& panel, double em_each) {
-    return std::max(2, static_cast<int>((panel.right - panel.left) / (em_each * em)));
+    return std::clamp(static_cast<int>((panel.right - panel.left) / (em_each * em)), 2, most_ticks);
 }
 
 /// The ticks below the box; the last label may not stand out of the sheet.
@@ -118,42 +126,46 @@ void set_x_ticks(Panel& panel, double limit) {
 void place(Panel& panel, double left, double width, double height) {
     const Figure& figure = *panel.figure;
     const auto y_ticks = [&](double high) {
-        return ticks_of(figure.y, panel.view.y, std::max(2, static_cast<int>(high / (2.6 * em))));
+        return ticks_of(figure.y, panel.view.y, std::clamp(static_cast<int>(high / (2.6 * em)), 2, most_ticks));
     };
     panel.y_ticks = y_ticks(height);
     panel.y_label.text = with_offset(figure.y.label, panel.y_ticks);
     const double label_room = panel.y_label.text.empty() ? 0 : 1.6 * em;
     panel.left = left + 0.4 * em + (figure.axes ? label_room + widest(panel.y_ticks.text) + 0.9 * em : 0);
     panel.right = left + width - (figure.axes ? 1.0 : 0.4) * em;
-    panel.bottom = figure.axes ? 2.0 * em + (figure.x.label.empty() ? 0 : 1.5 * em) : 0.4 * em;
-    panel.legend = legend_of(figure);
-    const double above =
-        0.5 * em + flow(panel.legend, panel.right - panel.left) * line_height + (figure.title.empty() ? 0 : 1.5 * em);
-    panel.top = height - above;
-    // What a user made too small to hold its own legend keeps a little box at least.
-    panel.top = std::max(panel.top, panel.bottom + 2 * em);
+    const double bars = figure.stuck.empty() ? 0 : 0.2 * em;
+    panel.bottom = figure.axes ? 2.1 * em + bars + (figure.x.label.empty() ? 0 : 1.5 * em) : 0.4 * em;
     panel.right = std::max(panel.right, panel.left + 2 * em);
+    panel.legend = legend_of(figure);
+    const double title = figure.title.empty() ? 0 : 1.5 * em;
+    double above = 0.5 * em + flow(panel.legend, panel.right - panel.left) * line_height + title;
+    if (height - above < panel.bottom + 3 * em) {  // a sheet that is too small has curves rather than words
+        panel.legend.clear();
+        above = 0.5 * em + title;
+    }
+    panel.top = std::max(height - above, panel.bottom + 2 * em);
     const double legend_left = panel.left;
     if (figure.equal) {
         const Box room{panel.right - panel.left, panel.top - panel.bottom};
         const Box box = equal_box(panel.view, room);
         panel.left += (room.width - box.width) / 2;
         panel.right = panel.left + box.width;
-        panel.bottom += (room.height - box.height) / 2;
+        panel.unused = room.height - box.height;
+        panel.bottom += panel.unused / 2;
         panel.top = panel.bottom + box.height;
     }
     panel.y_ticks = y_ticks(panel.top - panel.bottom);
     set_x_ticks(panel, left + width - 0.2 * em);
     for (LegendEntry& entry : panel.legend) {
         entry.x += std::min(legend_left, panel.left);
-        entry.y += panel.top + above - 0.1 * em - (figure.title.empty() ? 0 : 1.5 * em);
+        entry.y += panel.top + above - 0.1 * em - title;
     }
     const double whole_width =
         2 * std::min((panel.left + panel.right) / 2 - left, left + width - (panel.left + panel.right) / 2);
     panel.title = {cut(figure.title, whole_width), (panel.left + panel.right) / 2, panel.top + above - 0.7 * em};
     panel.x_label.text = cut(with_offset(figure.x.label, panel.x_ticks), whole_width);
     panel.x_label.x = (panel.left + panel.right) / 2;
-    panel.x_label.y = panel.bottom - 2.65 * em;
+    panel.x_label.y = panel.bottom - 2.85 * em - bars;
     panel.y_label.text =
         cut(panel.y_label.text, 2 * std::min((panel.bottom + panel.top) / 2, height - (panel.bottom + panel.top) / 2));
     panel.y_label.x = panel.left - widest(panel.y_ticks.text) - 1.7 * em;
@@ -186,6 +198,7 @@ PaperSize complete(PaperSize size, std::span<const Figure> figures) {
 }  // namespace
 
 Sheet lay_out(std::span<const Figure> figures, PaperSize size) {
+    const bool any_height = size.height <= 0;
     size = complete(size, figures);
     Sheet sheet{size.width * pixels_per_cm, size.height * pixels_per_cm, {}};
     double shares = 0;
@@ -195,10 +208,12 @@ Sheet lay_out(std::span<const Figure> figures, PaperSize size) {
     double left = 0;
     for (const Figure& figure : figures) {
         const double width = sheet.width * share_of(figure) / shares;
-        Panel panel{.figure = &figure, .view = view_of(figure)};
-        place(panel, left, width, sheet.height);
-        sheet.panels.push_back(std::move(panel));
+        sheet.panels.push_back({.figure = &figure, .view = view_of(figure)});
+        place(sheet.panels.back(), left, width, sheet.height);
         left += width;
+    }
+    if (any_height && figures.size() == 1 && sheet.panels.front().unused > 1) {
+        return lay_out(figures, {size.width, size.height - sheet.panels.front().unused / pixels_per_cm});
     }
     return sheet;
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 namespace dinal {
 
@@ -59,48 +60,97 @@ void Corners::begin(std::size_t i, Point point) {
     reach_ = 0;
 }
 
-Painted::Painted(Box pixels, double coarseness)
-    : brush_(static_cast<int>(coarseness)),
-      width_(static_cast<int>(pixels.width) + 1),
-      height_(static_cast<int>(pixels.height) + 1),
-      done_(static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_), false) {}
+Ink::Ink(Box pixels, double cell)
+    : cell_(cell),
+      columns_(static_cast<int>(std::ceil(pixels.width / cell)) + 1),
+      rows_(static_cast<int>(std::ceil(pixels.height / cell)) + 1),
+      inked_(static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_), false) {}
 
-bool Painted::line(Point from, Point to) {
+bool Ink::dot(Point point) {
+    const double column = point.x / cell_;
+    const double row = point.y / cell_;
+    if (!(column >= 0 && row >= 0 && column < columns_ && row < rows_)) {
+        return false;
+    }
+    const std::size_t here = place(static_cast<int>(column), static_cast<int>(row));
+    const bool blank = !inked_[here];
+    inked_[here] = true;
+    return blank;
+}
+
+void Ink::line(Line line) {
+    if (!clip(line, {columns_ * cell_, rows_ * cell_}, 0)) {
+        return;
+    }
+    const auto& [from, to] = line;
     const double length = std::max(std::fabs(to.x - from.x), std::fabs(to.y - from.y));
-    const int steps = std::max(1, static_cast<int>(std::ceil(length)));
-    const auto point = [&](int i) {
+    const int steps = static_cast<int>(std::ceil(length / cell_));
+    for (int i = 0; i < steps; ++i) {
         const double part = static_cast<double>(i) / steps;
-        return Point{from.x + part * (to.x - from.x), from.y + part * (to.y - from.y)};
-    };
-    bool fresh = false;
-    for (int i = 0; i <= steps && !fresh; ++i) {
-        fresh = is_blank(point(i));
+        dot({from.x + part * (to.x - from.x), from.y + part * (to.y - from.y)});
     }
-    for (int i = 0; i <= steps && fresh; ++i) {
-        paint(point(i));
-    }
-    return fresh;
+    dot(to);
 }
 
-bool Painted::is_blank(Point point) const {
-    return point.x >= 0 && point.y >= 0 && point.x < width_ && point.y < height_ &&
-           !done_[place(static_cast<int>(point.x), static_cast<int>(point.y))];
-}
-
-void Painted::paint(Point point) {
-    const int left = std::max(0, static_cast<int>(std::floor(point.x)) - brush_);
-    const int right = std::min(width_ - 1, static_cast<int>(std::floor(point.x)) + brush_);
-    const int low = std::max(0, static_cast<int>(std::floor(point.y)) - brush_);
-    const int high = std::min(height_ - 1, static_cast<int>(std::floor(point.y)) + brush_);
-    for (int y = low; y <= high; ++y) {
-        for (int x = left; x <= right; ++x) {
-            done_[place(x, y)] = true;
+std::vector<std::vector<Ink::Run>> Ink::runs_of_rows() const {
+    std::vector<std::vector<Run>> rows(static_cast<std::size_t>(rows_));
+    for (int row = 0; row < rows_; ++row) {
+        auto& runs = rows[static_cast<std::size_t>(row)];
+        for (int column = 0; column < columns_; ++column) {
+            if (!inked_[place(column, row)]) {
+                continue;
+            }
+            if (runs.empty() || runs.back().end < column) {
+                runs.push_back({column, column});
+            }
+            runs.back().end = column + 1;
         }
     }
+    return rows;
 }
 
-std::size_t Painted::place(int x, int y) const {
-    return static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(x);
+Strokes Ink::strokes(double pen) const {
+    const std::vector<std::vector<Run>> rows = runs_of_rows();
+    const double radius = pen / 2 / cell_;  // in cells
+    const int reach = static_cast<int>(radius);
+    Strokes strokes{{}, cell_};
+    std::vector<int> change;  // of the number of runs that ink a cell, from the cell before
+    for (int row = 0; row < rows_; ++row) {
+        change.assign(static_cast<std::size_t>(columns_) + 1, 0);
+        for (int other = std::max(0, row - reach); other <= std::min(rows_ - 1, row + reach); ++other) {
+            const int more = static_cast<int>(std::sqrt(radius * radius - (other - row) * (other - row)));
+            for (const Run& run : rows[static_cast<std::size_t>(other)]) {
+                ++change[static_cast<std::size_t>(std::max(0, run.begin - more))];
+                --change[static_cast<std::size_t>(std::min(columns_, run.end + more))];
+            }
+        }
+        int runs = 0;
+        for (int column = 0; column <= columns_; ++column) {
+            const int before = std::exchange(runs, runs + change[static_cast<std::size_t>(column)]);
+            if (before == 0 && runs > 0) {
+                strokes.all.push_back({column * cell_, 0, (row + 0.5) * cell_});
+            } else if (before > 0 && runs == 0) {
+                strokes.all.back().to = column * cell_;
+            }
+        }
+    }
+    return strokes;
+}
+
+Ink Ink::coarser() const {
+    Ink result({columns_ * cell_, rows_ * cell_}, 2 * cell_);
+    for (int row = 0; row < rows_; ++row) {
+        for (int column = 0; column < columns_; ++column) {
+            if (inked_[place(column, row)]) {
+                result.inked_[result.place(column / 2, row / 2)] = true;
+            }
+        }
+    }
+    return result;
+}
+
+std::size_t Ink::place(int column, int row) const {
+    return static_cast<std::size_t>(row) * static_cast<std::size_t>(columns_) + static_cast<std::size_t>(column);
 }
 
 }  // namespace dinal

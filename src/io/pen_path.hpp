@@ -4,14 +4,9 @@
 #include <cstddef>
 #include <vector>
 
-#include "io/figure.hpp"
+#include "io/line.hpp"
 
 namespace dinal {
-
-/// In pixels.
-struct Point {
-    double x, y;
-};
 
 /// Leaves out the points between which the curve is straight to within the tolerance: from a corner, a point can be
 /// reached by straight lines of a certain range of directions, and the range narrows with each point on the way.
@@ -34,23 +29,41 @@ private:
     double middle_ = 0, low_ = 0, high_ = 0, reach_ = 0;
 };
 
-/// Where there is ink.
-class Painted {
-public:
-    /// A line inks `coarseness` pixels to each side.
-    Painted(Box pixels, double coarseness);
+/// Inked from here to there along a row of the sheet.
+struct Stroke {
+    double from, to, y;
+};
 
-    /// Draws a line and tells whether that made a difference.
-    bool line(Point from, Point to);
+struct Strokes {
+    std::vector<Stroke> all = {};
+    double height = 0;  ///< of each row
+};
+
+/// Where there is ink, in square cells: a million lines above one another are no more of it than a few.
+class Ink {
+public:
+    Ink(Box pixels, double cell);
+
+    void line(Line line);  ///< what is outside of the sheet is left out
+    /// Tells whether its cell was blank before.
+    bool dot(Point point);
+
+    /// What a round pen of this width leaves where there is ink. All in pixels.
+    [[nodiscard]] Strokes strokes(double pen) const;
+
+    /// The same in cells that are twice as wide and high.
+    [[nodiscard]] Ink coarser() const;
 
 private:
-    [[nodiscard]] bool is_blank(Point point) const;
-    void paint(Point point);
-    [[nodiscard]] std::size_t place(int x, int y) const;
+    struct Run {
+        int begin, end;  // columns
+    };
+    [[nodiscard]] std::vector<std::vector<Run>> runs_of_rows() const;
+    [[nodiscard]] std::size_t place(int column, int row) const;
 
-    int brush_;  // pixels to each side
-    int width_, height_;
-    std::vector<bool> done_;
+    double cell_;
+    int columns_, rows_;
+    std::vector<bool> inked_;
 };
 
 }  // namespace dinal

@@ -78,7 +78,7 @@ private:
         const int cell_width = format_.charset == Charset::braille ? 2 : 1;
         const int cell_height = 2 * cell_width;
         rows_ = std::max(3, format_.rows - foot - static_cast<int>(head_.size()) - (figure_.title.empty() ? 0 : 1));
-        columns_ = std::max(8, format_.columns - around - letters_at_end);
+        columns_ = std::max(2, format_.columns - around - letters_at_end);
         box_ = {static_cast<double>(columns_ * cell_width), static_cast<double>(rows_ * cell_height)};
         if (figure_.equal) {
             view_ = view_of(figure_);
@@ -233,7 +233,8 @@ private:
             const std::string& text = x_ticks_.text[i];
             const std::size_t middle = label_width_ + 2 + column;
             const std::size_t start = middle - std::min(middle, text.size() / 2);
-            if (numbers.width() == 0 || start > numbers.width()) {  // else it would touch its neighbour
+            const bool fits = start + text.size() <= static_cast<std::size_t>(format_.columns);
+            if (fits && (numbers.width() == 0 || start > numbers.width())) {  // else it would touch its neighbour
                 numbers.pad(start);
                 numbers.add(text);
             }

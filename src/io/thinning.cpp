@@ -5,12 +5,10 @@
 #include <cmath>
 #include <limits>
 
-#include "io/pen_path.hpp"
-
 namespace dinal {
 namespace {
 
-constexpr double far = 1e5;  // pixels; what is further away is far enough
+constexpr double far = 1e7;  // pixels; what is further away is far enough
 
 class Projected {
 public:
@@ -28,18 +26,6 @@ private:
     const Curve& curve_;
     const Paper& paper_;
 };
-
-bool never_falls(const Curve& curve) {
-    const auto x = curve.x.values.first(curve.size());
-    double before = -std::numeric_limits<double>::infinity();
-    for (const double value : x) {
-        if (value < before) {
-            return false;
-        }
-        before = std::isnan(value) ? before : value;
-    }
-    return true;
-}
 
 /// The points of one column of pixels that are drawn.
 struct ColumnOfPixels {
@@ -105,98 +91,29 @@ std::vector<std::size_t> by_columns(const Curve& curve, const Paper& paper) {
     return kept;
 }
 
-/// The points that no other one outdoes: drawn whatever else is left out.
-std::array<std::size_t, 4> extremes(const Curve& curve, const Projected& project) {
-    std::array<std::size_t, 4> found{gap, gap, gap, gap};
-    for (std::size_t i = 0; i < curve.size(); ++i) {
-        if (!project.has(i)) {
-            continue;
-        }
-        const auto better = [&](std::size_t which, bool yes) {
-            if (found[which] == gap || yes) {
-                found[which] = i;
-            }
-        };
-        const auto x = [&](std::size_t which) { return curve.x.values[found[which] == gap ? i : found[which]]; };
-        const auto y = [&](std::size_t which) { return curve.y.values[found[which] == gap ? i : found[which]]; };
-        better(0, curve.x.values[i] < x(0));
-        better(1, curve.x.values[i] > x(1));
-        better(2, curve.y.values[i] < y(2));
-        better(3, curve.y.values[i] > y(3));
-    }
-    return found;
-}
-
-/// Leaves out the lines that would only paint over ink that is there.
-template <class Predicate>
-std::vector<std::size_t> without_repainting(const std::vector<std::size_t>& corners, const Projected& project,
-                                            const Paper& paper, const Predicate& is_forced) {
-    Painted painted(paper.pixels, paper.coarseness);
-    std::vector<std::size_t> kept;
-    for (std::size_t n = 0; n < corners.size(); ++n) {
-        const std::size_t i = corners[n];
-        const bool starts = n == 0 || corners[n - 1] == gap;
-        if (i == gap || starts) {
-            i == gap ? lift(kept) : kept.push_back(i);
-            continue;
-        }
-        if (painted.line(project(corners[n - 1]), project(i)) || is_forced(i) || is_forced(corners[n - 1])) {
-            if (kept.empty() || kept.back() != corners[n - 1]) {
-                lift(kept);
-                kept.push_back(corners[n - 1]);
-            }
-            kept.push_back(i);
-        }
-    }
-    return kept;
-}
-
 std::vector<std::size_t> by_corners(const Curve& curve, const Paper& paper) {
+    constexpr double tolerance = 0.1;  // of a pixel; up to twice of that is lost
     const Projected project(curve, paper);
-    const auto forced = extremes(curve, project);
-    const auto is_forced = [&forced](std::size_t i) {
-        return std::find(forced.begin(), forced.end(), i) != forced.end();
-    };
     std::vector<std::size_t> corners;
-    Corners piece(corners, std::min(0.5, 0.2 * paper.coarseness));
+    Corners piece(corners, tolerance);
     for (std::size_t i = 0; i < curve.size(); ++i) {
-        if (!project.has(i)) {
+        if (project.has(i)) {
+            piece.add(i, project(i));
+        } else {
             piece.finish();
             lift(corners);
-            continue;
-        }
-        piece.add(i, project(i));
-        if (is_forced(i)) {
-            piece.finish();
-            piece.add(i, project(i));
-            corners.pop_back();
         }
     }
     piece.finish();
-
-    return paper.coarseness > 1 ? without_repainting(corners, project, paper, is_forced) : corners;
+    return corners;
 }
 
-/// Points that are not joined: the first on each pixel of those that are seen.
 std::vector<std::size_t> by_pixels(const Curve& curve, const Paper& paper) {
     const Projected project(curve, paper);
-    const double columns = std::floor(paper.pixels.width / paper.coarseness) + 1;
-    const double rows = std::floor(paper.pixels.height / paper.coarseness) + 1;
-    std::vector<bool> taken(static_cast<std::size_t>(columns * rows), false);
     std::vector<std::size_t> kept;
+    Ink ink(paper.pixels, 1);
     for (std::size_t i = 0; i < curve.size(); ++i) {
-        if (!project.has(i)) {
-            continue;
-        }
-        const Point point = project(i);
-        const double column = std::floor(point.x / paper.coarseness);
-        const double row = std::floor(point.y / paper.coarseness);
-        if (column < 0 || row < 0 || column >= columns || row >= rows) {
-            continue;
-        }
-        const auto pixel = static_cast<std::size_t>(row * columns + column);
-        if (!taken[pixel]) {
-            taken[pixel] = true;
+        if (project.has(i) && ink.dot(project(i))) {
             kept.push_back(i);
         }
     }
@@ -205,11 +122,49 @@ std::vector<std::size_t> by_pixels(const Curve& curve, const Paper& paper) {
 
 }  // namespace
 
+bool has_columns(const Curve& curve) {
+    const auto x = curve.x.values.first(curve.size());
+    double before = -std::numeric_limits<double>::infinity();
+    return curve.style != Style::points && std::all_of(x.begin(), x.end(), [&before](double value) {
+               const bool falls = value < before;
+               before = std::isnan(value) ? before : value;
+               return !falls;
+           });
+}
+
 std::vector<std::size_t> thinned(const Curve& curve, const Paper& paper) {
     if (curve.style == Style::points) {
         return by_pixels(curve, paper);
     }
-    return never_falls(curve) ? by_columns(curve, paper) : by_corners(curve, paper);
+    return has_columns(curve) ? by_columns(curve, paper) : by_corners(curve, paper);
+}
+
+Strokes inked(const Curve& curve, const Paper& paper, double pen, std::size_t most) {
+    constexpr double finest = 0.25;     // pixels: no printer shows that they are steps
+    constexpr double most_cells = 2e7;  // of a large sheet
+    const double area = paper.pixels.width * paper.pixels.height;
+    const Projected project(curve, paper);
+    Ink ink(paper.pixels, std::max(finest, std::sqrt(area / most_cells)));
+    bool down = false;
+    Point last{};
+    for (std::size_t i = 0; i < curve.size(); ++i) {
+        if (project.has(i)) {
+            const Point point = project(i);
+            if (down && curve.style != Style::points) {
+                ink.line({last, point});
+            } else {
+                ink.dot(point);
+            }
+            last = point;
+        }
+        down = project.has(i);
+    }
+    Strokes strokes = ink.strokes(pen);
+    while (strokes.all.size() > std::max<std::size_t>(most, 16)) {  // no more than 4 in the coarsest
+        ink = ink.coarser();
+        strokes = ink.strokes(pen);
+    }
+    return strokes;
 }
 
 }  // namespace dinal

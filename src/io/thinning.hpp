@@ -5,7 +5,7 @@
 #include <limits>
 #include <vector>
 
-#include "io/figure.hpp"
+#include "io/pen_path.hpp"
 
 namespace dinal {
 
@@ -16,16 +16,20 @@ inline constexpr std::size_t gap = std::numeric_limits<std::size_t>::max();
 struct Paper {
     View view;
     Box pixels;
-    /// Above 1 it saves room where curves are so dense that the paper is full of ink: pixels per column, and about half
-    /// the distance from a line to one beside it.
-    double coarseness = 1;
+    double coarseness = 1;  ///< above 1 it saves room: pixels to a column
 };
 
-/// The places in the curve of the points to draw, in order, with `gap` between pieces. When x never falls: the first,
-/// last, lowest and highest point of each column of pixels (as good as all of them, extremes included). Else the
-/// corners of a line that is nowhere further from the curve than a fifth of a pixel or two; with a coarseness above 1
-/// not those which would only paint over ink. The extremes in x and y are among them. Of points that no line joins, one
-/// for each pixel, and none that the paper does not show.
+/// A line or an area whose x never falls.
+bool has_columns(const Curve& curve);
+
+/// The places in the curve of the points to draw, in order, with `gap` between pieces. With columns: the first,
+/// last, lowest and highest point of each column of pixels (as good as all of them, extremes included). Of another
+/// line: the corners of one that is nowhere further from the curve than a fifth of a pixel. Of points: one in each
+/// pixel.
 std::vector<std::size_t> thinned(const Curve& curve, const Paper& paper);
+
+/// The same as strokes on the paper, at most so many, for what has no such columns and is so dense that it is mostly
+/// ink. The fewer strokes, the coarser they are.
+Strokes inked(const Curve& curve, const Paper& paper, double pen, std::size_t most);
 
 }  // namespace dinal

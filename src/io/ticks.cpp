@@ -106,7 +106,8 @@ int finest_digit(const std::vector<double>& at, double length) {
     for (int digit = exponent_of(length) + 1; digit > least; --digit) {
         const double unit = std::pow(10.0, digit);
         if (std::all_of(at.begin(), at.end(), [unit, length](double x) {
-                return std::fabs(std::round(x / unit) * unit - x) <= 1e-6 * length;
+                const double rounding = std::max(1e-6 * length, 1e-15 * std::fabs(x));
+                return std::fabs(std::round(x / unit) * unit - x) <= rounding;
             })) {
             return digit;
         }

@@ -76,6 +76,12 @@ int plot_vectors(lua_State* L) {
     if (items.curves.empty() && items.panels.empty()) {
         raise(L, fmt::format("plot needs a curve, for example {}", plot_example));
     }
+    constexpr std::size_t most_curves = 1000;
+    if (items.curves.size() > most_curves) {
+        raise(L, fmt::format("plot: {} curves are too many, {} can be drawn; one curve may have pieces with 0/0 (nan) "
+                             "between them",
+                             items.curves.size(), most_curves));
+    }
     push_named(L, 1, static_cast<lua_Integer>(lua_rawlen(L, 1)));
     lua_replace(L, 1);
     if (items.panels.empty()) {

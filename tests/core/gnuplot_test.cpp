@@ -137,6 +137,64 @@ TEST_CASE("an SVG of a million points is smaller than 200 kB", "[gnuplot]") {
     CHECK(svg(many).size() < 200'000);
 }
 
+TEST_CASE("an SVG of a million random points is smaller than 200 kB and shows all of the square", "[gnuplot]") {
+    std::vector<double> x, y;
+    std::uint64_t state = 1;
+    const auto random = [&state] {  // Knuth's MMIX
+        state = state * 6364136223846793005U + 1442695040888963407U;
+        return static_cast<double>(state >> 11U) / 9007199254740992.0;
+    };
+    for (int i = 0; i < 1'000'000; ++i) {
+        x.push_back(random());
+        y.push_back(random());
+    }
+    for (const Style style : {Style::line, Style::points}) {
+        Figure figure;
+        figure.curves.push_back({Numbers::own(x), Numbers::own(y), "", style});
+        const std::string picture = svg(figure);
+        CHECK(picture.size() < 200'000);
+        CHECK(picture.size() > 5'000);
+    }
+    Figure few;
+    few.curves.push_back(
+        {Numbers::own({x.begin(), x.begin() + 5000}), Numbers::own({y.begin(), y.begin() + 5000}), "", Style::points});
+    CHECK(svg(few).size() < 200'000);
+}
+
+TEST_CASE("a point between gaps is drawn as a dot, and so is a curve shorter than a pixel", "[gnuplot]") {
+    const double nan = std::nan("");
+    const auto dots = [](std::vector<double> x, std::vector<double> y) {
+        Figure figure;
+        figure.curves.push_back({Numbers::own(std::move(x)), Numbers::own(std::move(y))});
+        const std::string picture = svg(figure);
+        std::size_t count = 0;
+        for (std::size_t at = picture.find("<use"); at != std::string::npos; at = picture.find("<use", at + 1)) {
+            count += picture.compare(at, 26, "<use xlink:href='#gpPt6' t") == 0 ? 1 : 0;
+        }
+        return count;
+    };
+    CHECK(dots({0, 1, 2, 3, 4}, {0, 1, nan, 3, nan}) == 1);
+    CHECK(dots({0, 1, 2}, {1, nan, 3}) == 2);
+    CHECK(dots({7}, {7}) == 1);
+    CHECK(dots({1, 1 + 1e-15}, {1, 1 + 1e-15}) == 1);
+    CHECK(dots({0, 1}, {0, 1}) == 0);
+}
+
+TEST_CASE("an area between two curves is interrupted where one of them is", "[gnuplot]") {
+    const double nan = std::nan("");
+    Figure figure;
+    figure.curves.push_back(
+        {Numbers::own({0, 1, 2, 3, 4, 5, 6, 7, 8}), Numbers::own({1, 1, nan, 1, 1, 1, 1, 1, 1}), "", Style::fill});
+    figure.curves[0].base = Numbers::own({0, 0, 0, 0, 0, nan, 0, 0, 0});
+    const std::string script = gnuplot_file({&figure, 1}, {});
+    std::size_t areas = 0;
+    for (std::size_t at = script.find("filledcurves"); at != std::string::npos;
+         at = script.find("filledcurves", at + 1)) {
+        ++areas;
+    }
+    CHECK(areas == 3);
+}
+
 TEST_CASE("svg, png and pdf begin as such files begin", "[gnuplot]") {
     const Figure figure = spiral(1000);
     CHECK(svg(figure).find("<svg") < 200);
@@ -221,4 +279,49 @@ TEST_CASE("gnuplot gets no more memory than allowed above what it needs itself",
     constexpr std::size_t little = 16U << 20U;
     CHECK(run_gnuplot(gnuplot_input({&figure, 1}, Terminal::pdf, {}), {.memory = little}));
     CHECK(!run_gnuplot("set terminal pngcairo size 20000,20000\nplot sin(x)\n", {.memory = little}));
+}
+
+TEST_CASE("ticks on the ends of an axis are drawn", "[gnuplot]") {
+    Figure figure;
+    figure.curves.push_back({Numbers::own({10, 100}), Numbers::own({0.3, 0.6})});
+    figure.x.logarithmic = true;
+    figure.y.limits = Range{0.3, 0.6};
+    const std::string picture = svg(figure);
+    for (const char* tick : {">10<", ">100<", ">0.3", ">0.6"}) {
+        CHECK(picture.find(tick) != std::string::npos);
+    }
+}
+
+TEST_CASE("logarithmic axes go to the end of the numbers", "[gnuplot]") {
+    Figure figure;
+    figure.curves.push_back({Numbers::own({1e-300, 1e300}), Numbers::own({5e-324, 1e300})});
+    figure.x.logarithmic = figure.y.logarithmic = true;
+    CHECK(svg(figure).find("</svg>") != std::string::npos);
+}
+
+TEST_CASE("a line that leaves the window by far is drawn within it", "[gnuplot]") {
+    for (const double far : {100.0, 1e12, 1e300}) {
+        Figure figure;
+        figure.curves.push_back({Numbers::own({0, 1, 2, 3, 4}), Numbers::own({0.5, far, 0.5, -far, 0.5}), ""});
+        figure.y.limits = Range{0, 1};
+        const std::string picture = svg(figure);
+        const std::size_t curve = picture.find("<path stroke='rgb(  0, 114, 178)'");
+        REQUIRE(curve != std::string::npos);  // up near 0, down near 2 and up near 4
+        CHECK(picture.substr(curve, picture.find('>', curve) - curve).size() > 100);
+    }
+}
+
+TEST_CASE("a phase plane that is flat or steep gets a sheet that fits it", "[gnuplot]") {
+    Figure figure = spiral(1000);
+    const auto height = [&] {
+        const std::string picture = svg(figure);
+        return std::stoi(picture.substr(picture.find("height=\"") + 8));
+    };
+    const int round = height();
+    figure.y.limits = Range{-0.02, 0.02};
+    const int flat = height();
+    CHECK(round > 250);
+    CHECK(flat < 0.7 * round);
+    figure.y.limits = Range{-20, 20};
+    CHECK(height() >= round - 1);
 }

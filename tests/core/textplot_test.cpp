@@ -139,7 +139,8 @@ TEST_CASE("no line is wider than asked, and there are no more lines", "[textplot
     family.title = std::string(200, 'T');
     family.x.label = std::string(200, 'x');
     family.y.label = std::string(200, 'y');
-    for (const int columns : {20, 40, 79, 200}) {
+    family.curves.push_back(curve({-1e-300, 1e300}, {0, 1.234567e-123}));
+    for (const int columns : {20, 21, 22, 23, 24, 40, 79, 200}) {
         for (const Charset charset : {Charset::braille, Charset::ascii}) {
             const auto lines = lines_of(drawn(family, columns, 24, charset));
             CHECK(lines.size() <= 24);
@@ -284,6 +285,11 @@ TEST_CASE("what is added to ticks is the round number in their middle", "[ticks]
     const Ticks below = ticks_of({}, Scale({-273.15 - 1.1e-6, -273.15 + 1.1e-6}, false), 3);
     CHECK(below.offset == "-273.15");
     CHECK(below.text == Texts{"-1e-6", "0", "1e-6"});
+}
+
+TEST_CASE("ticks are as exact as the numbers they stand for", "[ticks]") {
+    const Ticks ticks = ticks_of({}, Scale({1e9 - 1.1e-3, 1e9 + 1.1e-3}, false), 5);
+    CHECK(ticks.text == Texts{"-0.0010", "-0.0005", "0.0000", "0.0005", "0.0010"});
 }
 
 TEST_CASE("ticks can be asked for by their distance or one by one", "[ticks]") {

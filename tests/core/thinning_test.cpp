@@ -44,7 +44,7 @@ TEST_CASE("a million points over time become four to a column of pixels, and no 
     y[777'777] = -4;
     curve.y = Numbers::own(y);
     const auto kept = thinned(curve, paper_for(curve, {600, 400}));
-    CHECK(kept.size() <= 4 * 602);
+    CHECK(kept.size() <= 4U * 602);
     CHECK(std::is_sorted(kept.begin(), kept.end()));
     CHECK(std::count(kept.begin(), kept.end(), 123'456U) == 1);
     CHECK(std::count(kept.begin(), kept.end(), 777'777U) == 1);
@@ -104,21 +104,68 @@ TEST_CASE("a phase plane keeps its shape to a fifth of a pixel", "[thinning]") {
     CHECK(worst < 0.4);
 }
 
-TEST_CASE("a cycle that repeats a thousand times is drawn about once", "[thinning]") {
-    const Curve curve = sampled(
-        1'000'000, [](double s) { return std::cos(2000 * pi * s); }, [](double s) { return std::sin(2000 * pi * s); });
-    CHECK(thinned(curve, paper_for(curve, {500, 500}, 1.5)).size() < 500);
+TEST_CASE("a cycle that repeats a thousand times is no more ink than one", "[thinning]") {
+    const auto strokes = [](int n, double turns) {
+        static double angle;
+        angle = 2 * pi * turns;
+        const Curve curve = sampled(
+            n, [](double s) { return std::cos(angle * s); }, [](double s) { return std::sin(angle * s); });
+        return inked(curve, paper_for(curve, {500, 500}), 2.6, 5000).all.size();
+    };
+    CHECK(strokes(1'000'000, 1000) < 2 * strokes(1000, 1));
 }
 
-TEST_CASE("the extremes of a phase plane are kept however coarse the picture is", "[thinning]") {
+TEST_CASE("dense curves leave no white and stay inside of themselves", "[thinning]") {
     const Curve curve = sampled(
         300'000, [](double s) { return s * std::cos(3000 * s); }, [](double s) { return s * std::sin(3000 * s); });
-    const auto kept = thinned(curve, paper_for(curve, {500, 500}, 8));
-    for (const Numbers& numbers : {curve.x, curve.y}) {
-        const auto [low, high] = std::minmax_element(numbers.values.begin(), numbers.values.end());
-        CHECK(std::count(kept.begin(), kept.end(), static_cast<std::size_t>(low - numbers.values.begin())) >= 1);
-        CHECK(std::count(kept.begin(), kept.end(), static_cast<std::size_t>(high - numbers.values.begin())) >= 1);
+    const Paper paper = paper_for(curve, {500, 500});
+    const double middle_x = paper.view.x(0) * 500, middle_y = paper.view.y(0) * 500;
+    const double radius = paper.view.x(1) * 500 - middle_x;
+    constexpr double pen = 2.6;
+    const auto strokes = inked(curve, paper, pen, 1000);
+    CHECK(strokes.all.size() <= 1000);
+    double area = 0;
+    for (const Stroke& stroke : strokes.all) {
+        area += (stroke.to - stroke.from) * strokes.height;
+        for (const double x : {stroke.from, stroke.to}) {
+            // The rightmost point of a stroke: half a pen and a cell beyond the curve at most.
+            CHECK(std::hypot(x - middle_x, stroke.y - middle_y) < radius + pen / 2 + strokes.height);
+        }
     }
+    CHECK(area > pi * radius * (paper.view.y(1) * 500 - middle_y));  // an ellipse: there is more air above it
+}
+
+TEST_CASE("a point that left its cycle once is drawn", "[thinning]") {
+    std::vector<double> x, y;
+    for (int i = 0; i < 1'000'000; ++i) {
+        x.push_back(std::cos(0.0123 * i));
+        y.push_back(std::sin(0.0123 * i));
+    }
+    x[654'321] = y[654'321] = 3;
+    Curve curve{Numbers::own(x), Numbers::own(y)};
+    const Paper paper = paper_for(curve, {500, 500});
+    const auto kept = thinned(curve, paper);
+    CHECK(std::count(kept.begin(), kept.end(), 654'321U) == 1);
+    for (const Style style : {Style::line, Style::points}) {
+        curve.style = style;
+        const auto strokes = inked(curve, paper, 2.6, 5000).all;
+        CHECK(std::any_of(strokes.begin(), strokes.end(), [&paper](const Stroke& stroke) {
+            const double x_there = paper.view.x(3) * 500;
+            return std::fabs(stroke.y - paper.view.y(3) * 500) <= 0.5 && stroke.from <= x_there && x_there <= stroke.to;
+        }));
+    }
+}
+
+TEST_CASE("of points one is kept in each pixel", "[thinning]") {
+    Curve curve{Numbers::own({0, 0, 1, 1, 0, 5}), Numbers::own({0, 0, 1, 1, 0, 5})};
+    curve.style = Style::points;
+    CHECK(thinned(curve, paper_for(curve, {500, 500})) == std::vector<std::size_t>{0, 2, 5});
+    const Strokes strokes = inked(curve, paper_for(curve, {500, 500}), 2.6, 5000);
+    double area = 0;
+    for (const Stroke& stroke : strokes.all) {
+        area += (stroke.to - stroke.from) * strokes.height;
+    }
+    CHECK(area == Approx(3 * pi * 1.3 * 1.3).epsilon(0.1));  // three discs; their edge is steps of a quarter pixel
 }
 
 TEST_CASE("points are no line: a cloud keeps one of each pixel, in whatever order they come", "[thinning]") {
@@ -136,11 +183,6 @@ TEST_CASE("points are no line: a cloud keeps one of each pixel, in whatever orde
     std::reverse(x.begin(), x.end());  // x falls: not the corners of a line either
     cloud.x = Numbers::own(x);
     CHECK(thinned(cloud, paper_for(cloud, {600, 400})).size() == 100);
-
-    Curve dense = sampled(
-        1'000'000, [](double s) { return std::sin(8e5 * s); }, [](double s) { return std::cos(5e5 * s * s); });
-    dense.style = Style::points;
-    CHECK(thinned(dense, paper_for(dense, {600, 400}, 8)).size() <= 76 * 51);
 }
 
 TEST_CASE("points that can not be seen are left out, and so is what has no place", "[thinning]") {

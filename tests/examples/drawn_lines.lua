@@ -40,7 +40,8 @@ function drawn_lines.read(svg)
   for fill, points in svg:gmatch "<polygon%s+fill%s*=%s*'([^']*)'[^>]-points%s*=%s*'([^']*)'" do
     paint_path(ink[colour("fill ", fill)], points)
   end
-  for shape, x, y, own in svg:gmatch "<use xlink:href='#(%w+)' transform='translate%(([%d.]+),([%d.]+)%)[^']*' color='([^']*)'" do
+  local point = "<use xlink:href='#(%w+)' transform='translate%(([%d.]+),([%d.]+)%)[^']*' color='([^']*)'"
+  for shape, x, y, own in svg:gmatch(point) do
     paint(ink[colour(shape .. " ", own)], x, y, x, y)
   end
   return { words = words, ink = setmetatable(ink, nil) }

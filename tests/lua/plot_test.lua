@@ -160,6 +160,9 @@ test("wrong curves are told by their number", function()
     raises_here(function() plot { { { 1 }, { 1 }, base = { 0 } } } end, "base is the other edge of a fill")
     raises_here(function() plot { { { 1 }, { 1 }, base = { 0, 1 }, style = "fill" } } end, "but base has 2")
     raises_here(function() plot { line, [5] = line } end, "named options only")
+    local many = {}
+    for i = 1, 1001 do many[i] = line end
+    raises_here(function() plot(many) end, "1001 curves are too many, 1000 can be drawn")
 end)
 
 test("wrong options are told with their limits", function()
