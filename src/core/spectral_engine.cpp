@@ -27,6 +27,7 @@ SpectralEngine::SpectralEngine(const Problem& problem, const Spectral& options, 
       monitor_(problem.monitor),
       window_(problem.window),
       before_(problem.before),
+      released_(problem.released),
       rows_(rows),
       events_(events),
       panels_(panels),
@@ -63,7 +64,8 @@ void SpectralEngine::begin() {
     M_ = at_break ? excitation_.value_after(t, y_) : excitation_.value(t, y_);
     motion_ = before_.value_or(motion_of(y_.velocity));
     at_start_ = !before_;
-    standstill_ = y_.velocity == 0 && !(before_ && motion_ == Motion::stuck);
+    standstill_ = y_.velocity == 0 && !released_ && !(before_ && motion_ == Motion::stuck);
+    leaving_ = released_;
 }
 
 bool SpectralEngine::advance() {

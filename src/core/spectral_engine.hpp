@@ -113,6 +113,7 @@ private:
     const Monitor& monitor_;
     Window window_;
     std::optional<Motion> before_;
+    bool released_;
     RowWriter& rows_;
     std::vector<Event>& events_;
     Panels* panels_;

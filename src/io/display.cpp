@@ -128,34 +128,40 @@ std::string printable(std::string_view line, const Display& screen) {
     return result;
 }
 
+namespace {
+
+std::string line_in_rows(std::string_view line, std::size_t width) {
+    std::string rows;
+    std::size_t column = 0;
+    while (!line.empty()) {
+        const std::string_view word = line.substr(0, line.find(' '));
+        const std::size_t size = columns(word);
+        if (column > 0) {
+            const bool fits = column + 1 + size <= width;
+            rows += fits ? ' ' : '\n';
+            column = fits ? column + 1 : 0;
+        }
+        rows += word;
+        column += size;
+        line.remove_prefix(std::min(word.size() + 1, line.size()));
+    }
+    return rows;
+}
+
+}  // namespace
+
 std::string wrapped(std::string_view text, std::size_t width) {
     std::string result;
-    std::size_t column = 0;
-    while (!text.empty()) {
-        if (text.front() == '\n') {
-            result += '\n';
-            column = 0;
-            text.remove_prefix(1);
-            continue;
+    for (;;) {
+        const std::string_view line = text.substr(0, text.find('\n'));
+        const bool laid_out = line.starts_with(' ') || columns(line) <= width;
+        result += laid_out ? std::string(line) : line_in_rows(line, width);
+        if (line.size() == text.size()) {
+            return result;
         }
-        const std::string_view word = text.substr(0, text.find_first_of(" \n"));
-        const std::size_t size = columns(word);
-        if (column > 0 && column + 1 + size > width) {
-            result += '\n';
-            column = 0;
-        }
-        if (column > 0) {
-            result += ' ';
-            ++column;
-        }
-        result += word;
-        column += size;
-        text.remove_prefix(word.size());
-        if (!text.empty() && text.front() == ' ') {
-            text.remove_prefix(1);
-        }
+        result += '\n';
+        text.remove_prefix(line.size() + 1);
     }
-    return result;
 }
 
 }  // namespace dinal

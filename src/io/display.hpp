@@ -32,7 +32,8 @@ std::size_t printable_length(std::string_view text);
 /// One line that is safe to show: blanks for white space, `?` for what can not be printed.
 std::string printable(std::string_view line, const Display& screen);
 
-/// Words in lines of at most `width` columns; newlines in the text stay.
+/// Words in lines of at most `width` columns; newlines in the text stay. A line that begins with a blank is laid out
+/// already, and stays as it is.
 std::string wrapped(std::string_view text, std::size_t width);
 
 }  // namespace dinal

@@ -2,6 +2,7 @@
 #include <algorithm>
 
 #include "core/energy.hpp"
+#include "lua/cards.hpp"
 #include "lua/external_memory.hpp"
 #include "lua/library.hpp"
 #include "lua/run.hpp"
@@ -193,9 +194,24 @@ const Class energy_class = {
     {"run:energy() -> energy",
      "The energy balance of a run: total, half_cycles, and columns beside run.t. It can not be changed.",
      DINAL_ENERGY "print(#energy.half_cycles)  --> 4"},
-    members};
+    members,
+    nullptr,
+    energy_card};
 
 #undef DINAL_ENERGY
+
+std::string energy_card(lua_State* L, int index, const Display& screen) {
+    constexpr std::size_t name_and_number = 23;
+    std::string card;
+    const std::string whole = spelled(text((*test<EnergyHandle>(L, index))->energy), screen);
+    for (std::string_view rest = whole; !rest.empty();) {
+        const std::string_view line = rest.substr(0, rest.find('\n'));
+        const bool fits = columns(line) < screen.width || !line.starts_with(' ');
+        card.append(card.empty() ? "" : "\n").append(fits ? line : line.substr(0, name_and_number));
+        rest.remove_prefix(std::min(line.size() + 1, rest.size()));
+    }
+    return wrapped(card, screen.width - 1);
+}
 
 int energy_of_run(lua_State* L) {
     const RunHandle& run = self<RunHandle>(L, 1, "run:energy()");

@@ -331,7 +331,7 @@ const Class vector_class{
 
 const Class vector_module{
     "vector",
-    {"vector{ ... }", "Makes vectors.", "print(vector{ 1, 2, 3 }:sum())  --> 6.0"},
+    {"vector{ ... } -> vector", "Makes vectors.", "print(vector{ 1, 2, 3 }:sum())  --> 6.0"},
     module_members,
 };
 

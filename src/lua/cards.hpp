@@ -23,4 +23,7 @@ std::string vector_card(lua_State* L, int index, const Display& screen);
 /// The summary, over more than one line when it must be.
 std::string run_card(lua_State* L, int index, const Display& screen);
 
+/// The balance, without the remarks that do not fit.
+std::string energy_card(lua_State* L, int index, const Display& screen);
+
 }  // namespace dinal

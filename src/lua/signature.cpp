@@ -8,9 +8,8 @@ namespace dinal {
 namespace {
 
 bool is_class_of_objects(const Section& section) {
-    return std::any_of(section.description->members.begin(), section.description->members.end(),
-                       [](const Member& member) { return member.kind == Kind::method; }) ||
-           section.description == &integrator_class;
+    return std::none_of(section.description->members.begin(), section.description->members.end(),
+                        [](const Member& member) { return member.kind == Kind::function; });
 }
 
 }  // namespace
@@ -25,7 +24,7 @@ std::vector<std::string> option_names(std::string_view signature, Braces braces)
         depth += token.is("{") ? 1 : token.is("}") ? -1 : 0;
         const bool begins = before == "{" || before == "," || before == "|";
         const bool asked = (parentheses > 0) == (braces == Braces::in_parentheses);
-        if (depth > 0 && asked && begins && token.kind == TokenKind::name) {
+        if (depth == (braces == Braces::nested ? 2 : 1) && asked && begins && token.kind == TokenKind::name) {
             names.emplace_back(token.text);
         }
         before = token.text;

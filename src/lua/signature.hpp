@@ -9,8 +9,8 @@
 
 namespace dinal {
 
-/// How a table of options is passed: f{ ... }, or f(..., { ... }).
-enum class Braces { alone, in_parentheses };
+/// How a table of options is passed: f{ ... }, f(..., { ... }), or f{ { ... } }, as a curve of a plot.
+enum class Braces { alone, in_parentheses, nested };
 
 /// The names of the options: M, t_end, dt, times.
 std::vector<std::string> option_names(std::string_view signature, Braces braces);

@@ -46,6 +46,8 @@ Mind the colon. A wrong name is answered by the right one; try it:
     > run.theta:max(), run.theta[1]
     > run.events
     > run:at(3.21)
+    > run:plot()
+    > run:explain()
 
 turn: it goes on the other way; stick: it stays; slip: it breaks away;
 rest: it stays for good.

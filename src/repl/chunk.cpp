@@ -1,5 +1,6 @@
 #include "repl/chunk.hpp"
 
+#include <algorithm>
 #include <cctype>
 #include <string_view>
 #include <vector>
@@ -61,16 +62,31 @@ std::string_view without_semicolons(std::string_view text) {
     return result;
 }
 
+/// Where the last value of a text may begin: after a semicolon, and at each line. The last place comes first.
+std::vector<std::size_t> possible_cuts(const std::string& text) {
+    std::vector<std::size_t> cuts;
+    for (std::size_t cut = text.rfind('\n'); cut != std::string::npos && cut > 0; cut = text.rfind('\n', cut - 1)) {
+        cuts.push_back(cut);
+    }
+    for (const Token& token : tokens(text)) {
+        if (token.is(";")) {
+            cuts.push_back(token.at);
+        }
+    }
+    std::sort(cuts.rbegin(), cuts.rend());
+    return cuts;
+}
+
 /// A block whose last lines are an expression becomes one that returns it. Pushes the function when there is one.
 /// NOTE: `cautious` leaves alone lines that Lua may read as the rest of the line before: (f)(), "s", {...}, -x.
 bool load_with_last_value(lua_State* L, Chunk& chunk, const std::string& text, bool cautious) {
-    for (std::size_t cut = text.rfind('\n'); cut != std::string::npos && cut > 0; cut = text.rfind('\n', cut - 1)) {
-        const std::size_t first = text.find_first_not_of(" \t\r\n", cut);
+    for (const std::size_t cut : possible_cuts(text)) {
+        const std::size_t first = text.find_first_not_of(" \t\r\n", cut + 1);
         if (first == std::string::npos) {
             continue;
         }
         const char letter = text[first];
-        if (cautious && std::isalnum(static_cast<unsigned char>(letter)) == 0 && letter != '_') {
+        if (cautious && text[cut] == '\n' && std::isalnum(static_cast<unsigned char>(letter)) == 0 && letter != '_') {
             continue;
         }
         const std::string begin = text.substr(0, cut + 1);
@@ -107,7 +123,7 @@ Chunk compile(lua_State* L, const std::string& text) {
     lua_pop(L, 1);
     const bool statements = load(L, text);
     early = !statements && (ended_early(L, text) || early);
-    if (text.find('\n') != std::string::npos) {
+    if (quiet.find_first_of("\n;") != std::string::npos) {
         const int top = lua_gettop(L);
         // NOTE: a block may end in a name, after which Lua expects more.
         if (load_with_last_value(L, chunk, std::string(quiet), statements || early)) {

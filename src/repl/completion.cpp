@@ -175,7 +175,7 @@ Completion complete(lua_State* L, std::string_view before) {
 
 std::string signature_hint(lua_State* L, std::string_view before) {
     const TypedText typed(before);
-    if (!typed.call() || typed.cursor() == Cursor::nothing) {
+    if (!typed.call() || typed.cursor() == Cursor::nothing || typed.call()->braces == Braces::nested) {
         return "";
     }
     const int top = lua_gettop(L);

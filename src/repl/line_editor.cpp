@@ -9,6 +9,7 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <csignal>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
@@ -117,6 +118,32 @@ char** complete_word(const char* word, int, int end) {
     return rl_completion_matches(word, next_name);
 }
 
+volatile std::sig_atomic_t resized = 0;
+
+extern "C" void on_resize(int) {
+    resized = 1;
+}
+
+/// NOTE: readline leaves the old line where it is when somebody else draws: so nobody else does meanwhile.
+void fit_to_window() {
+    erase_hint();
+    rl_redisplay_function = rl_redisplay;
+    rl_resize_terminal();
+    if (editing.paints) {
+        rl_redisplay_function = redisplay;
+        redisplay();
+    }
+}
+
+void notice_resizing() {
+    rl_catch_sigwinch = 0;
+    struct sigaction action {};
+    action.sa_handler = on_resize;
+    sigemptyset(&action.sa_mask);
+    action.sa_flags = SA_RESTART;  // it is no matter of the script
+    sigaction(SIGWINCH, &action, nullptr);
+}
+
 /// Waits for a key or a signal, and lets readline see the signal. True when there is a key to read.
 bool key_arrived() {
     bool arrived = false;
@@ -131,6 +158,10 @@ bool key_arrived() {
     }
     sigprocmask(SIG_SETMASK, &before, nullptr);
     rl_check_signals();  // raises the signal again for the note, with the terminal in order
+    if (resized != 0) {
+        resized = 0;
+        fit_to_window();
+    }
     return arrived && !InterruptNote::interrupted();
 }
 
@@ -162,6 +193,7 @@ void start_readline(const std::string& history) {
     rl_attempted_completion_function = complete_word;
     rl_completer_word_break_characters = const_cast<char*>(" \t\n\"\\'`@$><=;|&{}()[]:.,+-*/%^~#!?");  // only read
     rl_completer_quote_characters = "\"'";
+    notice_resizing();
     rl_initialize();
     // After the user's inputrc. A blinking parenthesis would swallow a Ctrl-C that is typed within its half second.
     rl_variable_bind("blink-matching-paren", "off");
@@ -198,6 +230,7 @@ Line read_edited(const std::string& prompt, const std::string& pending) {
     editing.hinting = false;
     editing.prompt = prompt;
     editing.pending = pending.empty() ? "" : pending + "\n";
+    rl_eof_found = 0;  // of an earlier line: readline would end every further one with a blank one
     using_history();
     rl_callback_handler_install(prompt.c_str(), accept);
     while (!editing.accepted) {

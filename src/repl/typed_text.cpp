@@ -99,10 +99,12 @@ void TypedText::find_call() {
     const std::size_t bracket = open.back();
     OpenCall call{.function = expression_before(bracket)};
     call.options = tokens_[bracket].is("{");
-    if (call.options && call.function.empty() && open.size() > 1 && tokens_[open[open.size() - 2]].is("(") &&
-        (tokens_[bracket - 1].is(",") || tokens_[bracket - 1].is("("))) {
-        call.function = expression_before(open[open.size() - 2]);
-        call.braces = Braces::in_parentheses;
+    if (call.options && call.function.empty() && open.size() > 1) {
+        const Token& outer = tokens_[open[open.size() - 2]];
+        if (tokens_[bracket - 1].is(",") || tokens_[bracket - 1].is(outer.text)) {
+            call.function = expression_before(open[open.size() - 2]);
+            call.braces = outer.is("(") ? Braces::in_parentheses : Braces::nested;
+        }
     }
     if (call.function.empty()) {
         return;

@@ -72,6 +72,27 @@ TEST_CASE("a run that was interrupted goes on with the rows it has not had", "[r
     check_like_whole(*both, whole, s, 1e-13 + 4e-16 * s.radians());
 }
 
+TEST_CASE("a run goes on from wherever it was stopped, also from the very moment of a slip", "[resume]") {
+    const Oscillator system = nondimensional(0.01, 0.3);
+    const Excitation M = Excitation::make(Harmonic{.amplitude = 1, .omega = 1}).value();
+    const Trajectory whole = must_run(system, M, {0, 0}, {0, 400}, Grid::every(1), Spectral{});
+    for (const Integrator& integrator : std::vector<Integrator>{Spectral{}, Rk4{0.01}}) {
+        int slips = 0;
+        for (double stop = 20; stop < 400; stop += 0.7) {
+            auto first = simulate(system, M, {0, 0}, {0, 400}, Grid::every(1), integrator,
+                                  [stop](double t) { return t < stop; });
+            REQUIRE(first);
+            if (first->outcome != Outcome::interrupted) continue;
+            slips += first->events.back().kind == EventKind::slip && first->events.back().t == first->t_stop ? 1 : 0;
+            auto both = resume(system, M, *first, 400, Grid::every(1), integrator);
+            REQUIRE(both);
+            CAPTURE(stop, first->t_stop);
+            CHECK(both->events.size() == whole.events.size());
+        }
+        CHECK((slips > 0 || integrator.index() != 0));  // such stops are among them
+    }
+}
+
 TEST_CASE("a mass at rest that goes on into a load slips, and its rest becomes a stick", "[resume]") {
     const Oscillator system = nondimensional(0, 0.2, 0.3);
     const Excitation late = Excitation::make(Step{.level = 0.9, .at = 5}).value();

@@ -45,8 +45,21 @@ strangers.check({
     ["a run with feedback"] = "nondimensional{}:simulate{ M = function(t, theta, v) return -v end, theta0 = 1, t_end = 1e9, times = {} }",
     ["a run in a coroutine in a pcall"] = "pcall(coroutine.wrap(function() nondimensional{ zeta = 0.1 }:simulate{ M = 1, theta0 = 1, t_end = 1e9, dt = 1e6, integrator = integrator.rk4{ h = 0.001 } } end)) print 'escaped'",
     ["run:at again and again"] = "local r = nondimensional{}:simulate{ theta0 = 1, t_end = 1000, times = {} } while true do pcall(r.at, r, 999.9) end",
+    ["vectors of vectors"] = "local v = vector.linspace(0, 1, 2e6) while true do pcall(v.sin, v) pcall(function() return v ^ 0.3 end) end",
+    ["the energy, the story and plots of a run"] = "local run = nondimensional{}:simulate{ theta0 = 1, t_end = 1e4, dt = 1 } while true do pcall(run.energy, run) pcall(run.explain, run) pcall(run.plot, run, { show = false }) end",
+    ["a run that goes on and on"] = "local run = nondimensional{}:simulate{ theta0 = 1, t_end = 1, times = {} } while true do pcall(run.continue, run, { t_end = 1e8 }) end",
     ["values in a loop"] = "local e, t = excitation.harmonic{ frequency = 1 }, vector.linspace(0, 1, 100) while true do pcall(e.values, e, t) end",
 }, options, 1, "dinal: stopped at [^\n]*script:1: it ran longer than the 0.2 s that %-%-max%-time allows\n")
+
+local folder = os.tmpname()
+os.execute(("rm '%s' && mkdir '%s'"):format(folder, folder))
+local removed <close> = setmetatable({}, { __close = function() os.execute("rm -rf '" .. folder .. "'") end })
+strangers.check({
+    ["a file that grows"] = "local run = nondimensional{}:simulate{ theta0 = 1, t_end = 100, dt = 1e-2 } local c = {} for i = 1, 1e4 do c[i] = 'theta' end while true do pcall(run.save, run, 'big.csv', { columns = c }) end",
+}, options, 1, "dinal: stopped at script:1: it ran longer than the 0.2 s that %-%-max%-time allows\n", folder)
+require("support").test("what was not written to its end is gone", function()
+    require("support").equal(io.popen(("ls -A '%s'"):format(folder)):read "a", "")
+end)
 
 -- C code that looks at nothing: the program ends a second later.
 strangers.check({

@@ -41,6 +41,7 @@ class PlotTest(unittest.TestCase):
         self.assertIn("M/k", session.enter("run:plot{ show = false }"))
         self.assertNotIn("M/k", session.enter("p = run:plot{ show = false }"))
         self.assertIn("M/k", session.enter("p"))
+        self.assertEqual(session.enter("p"), session.enter("print(p)"))  # its blanks, too
 
     def test_curves_have_colours_unless_the_user_or_the_terminal_has_none(self):
         self.assertIn("\x1b[36m", self.raw(self.start(), "run:plot()"))

@@ -66,6 +66,12 @@ class Values(PromptTest):
         self.assertEqual(session.enter("= ans.x[1]"), "2")
         self.assertEqual(session.enter("y = 5"), "")
         self.assertEqual(session.enter("y, nil"), "5\tnil")
+        self.assertEqual(session.enter("y = 6; y"), "6")
+        self.assertEqual(session.enter("y = 7; z = y; y + z;"), "")
+        self.assertEqual(session.enter("ans"), "14")
+        self.assertEqual(session.enter("s = 'a;b'; s"), '"a;b"')
+        self.assertEqual(session.enter("for i = 1, 2 do y = i; z = i end; z"), "2")
+        self.assertEqual(session.enter("y = 1; print(y)"), "1")
 
     def test_an_error_is_told_and_the_session_goes_on(self):
         session = self.start()
@@ -111,6 +117,7 @@ class Lines(PromptTest):
         session.enter("f(", CONTINUATION)
         session.press(CTRL_D)
         self.assertIn("near <eof>", session.until_prompt())
+        self.assertEqual(session.enter("1"), "1")  # and no blank line before it
         self.assertEqual(session.leave(), 0)
         self.assertTrue(session.child.before.endswith("\r\n"))
 

@@ -73,5 +73,10 @@ class Terminal:
         y = self.screen.cursor.y
         return self.screen.buffer[y][self.screen.display[y].index(word)].fg
 
+    def resize(self, width):
+        """A window with another width, which cuts what stands behind."""
+        self.screen.resize(columns=width)
+        self.child.setwinsize(self.screen.lines, width)
+
     def close(self):
         self.child.close(force=True)

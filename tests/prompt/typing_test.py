@@ -55,7 +55,10 @@ class Completion(Typing):
         terminal.enter("lab = { inner = { depth = 1 }, ['no name'] = 2 }")
         for typed, whole in [("nond", "nondimensional{ "), ("excitation.har", "excitation.harmonic{ "),
                              ("sys:sim", "sys:simulate{ "), ("sys.dead", "sys.dead_zone"), ("run.th", "run.theta"),
-                             ("run.theta:me", "run.theta:mean("), ("run.system:sim", "run.system:simulate{ "),
+                             ("run.theta:me", "run.theta:mean("), ("run:ener", "run:energy("),
+                             ("run:energy().half", "run:energy().half_cycles"), ("run:cont", "run:continue{ "),
+                             ("run:continue{}:exp", "run:continue{}:explain("), ("theory.magn", "theory.magnification{ "),
+                             ("vector{ 1 }:mea", "vector{ 1 }:mean("), ("run.system:sim", "run.system:simulate{ "),
                              ("math.fl", "math.floor("), ("lab.in", "lab.inner"), ("lab.inner.", "lab.inner.depth"),
                              ("x = whi", "x = while"), ("sys:simulate{ dt = 1 }:sav", "sys:simulate{ dt = 1 }:save("),
                              ("excitation.step{}:win", "excitation.step{}:window("), ("('x'):low", "('x'):low")]:
@@ -73,6 +76,9 @@ class Completion(Typing):
         self.offers(terminal, "excitation.samples('a.csv', { ", ["time", "value"])
         self.offers(terminal, "excitation.samples{ ", ["t", "M"])
         self.offers(terminal, "excitation.scripted(print, { ", ["breaks", "period"])
+        seen = self.offers(terminal, "plot{ title = 'x', ", ["xlabel", "file", "ascii"])
+        self.assertNotIn("dashes", seen)
+        self.completes(terminal, "plot{ { v, w, da", "plot{ { v, w, dashes = ")
         self.completes(terminal, "sys:simulate{ M = excitation.pulse{ wi", "sys:simulate{ M = excitation.pulse{ width = ")
         self.completes(terminal, "sys:simulate{ integrator = integrator.rk", "sys:simulate{ integrator = integrator.rk4{ ")
 
@@ -162,6 +168,21 @@ class Colours(Typing):
             terminal.type(keys)
             terminal.wait(lambda: "end" in terminal.text() or "hint" in terminal.text())
             self.assertNotIn("I, k", terminal.text())
+
+    def test_a_window_that_changes_its_width_shows_the_line_once(self):
+        terminal = self.start()
+        terminal.type("system{")
+        terminal.shows("system{  I, k")
+        for width in (40, 60, 30):
+            terminal.resize(width)
+            terminal.wait(lambda: terminal.row().startswith("> system{") and len(terminal.row()) > min(width, 40) - 12)
+            self.assertEqual(terminal.text().count("system{"), 1)
+        terminal.type(" I = 1, k = 40, Rd = 2, C = 0.5, Re = 3 }")
+        terminal.wait(lambda: "Re = 3 }" in "".join(terminal.lines()))
+        terminal.resize(80)
+        terminal.type(";" + ENTER)
+        terminal.wait(lambda: terminal.row() == ">")
+        self.assertEqual(terminal.enter("ans.Re"), "3.0")
 
     def test_the_cursor_moves_within_a_painted_line(self):
         terminal = self.start()
