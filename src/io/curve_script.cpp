@@ -148,23 +148,23 @@ std::vector<std::string> fill_elements(const Panel& panel, std::size_t i, const 
 
 }  // namespace
 
-std::vector<std::string> curve_elements(const Panel& panel, std::size_t i, const Trace& trace, GnuplotData& data) {
-    const Curve& curve = panel.figure->curves[i];
+std::vector<std::string> curve_elements(const Panel& panel, std::size_t place, const Trace& trace, GnuplotData& data) {
+    const Curve& curve = panel.figure->curves[place];
     if (!trace.ink.all.empty()) {
         constexpr double overlap = 1.6;  // or a screen shows the seams between rows
         return {fmt::format("{} with lines lt 1 dt 1 lw {:.3f} lc rgb '{}'", data.add(columns_of(panel, trace.ink.all)),
-                            overlap * trace.ink.height, colour_of(*panel.figure, i))};
+                            overlap * trace.ink.height, colour_of(*panel.figure, place))};
     }
     if (curve.style == Style::fill) {
-        return fill_elements(panel, i, trace.places, data);
+        return fill_elements(panel, place, trace.places, data);
     }
     if (curve.style == Style::line) {
-        return line_elements(panel, i, trace.places, data);
+        return line_elements(panel, place, trace.places, data);
     }
     if (trace.places.empty()) {
         return {};
     }
-    return {data.add(columns_of(panel, curve, trace.places)) + " with points " + point_style(*panel.figure, i)};
+    return {data.add(columns_of(panel, curve, trace.places)) + " with points " + point_style(*panel.figure, place)};
 }
 
 }  // namespace dinal
