@@ -217,6 +217,15 @@ double Excitation::constant_from() const {
     return last;
 }
 
+double Excitation::most() const {
+    double sum = 0;
+    for (const Component& c : components_) {
+        if (c.gain != 0)
+            sum += std::fabs(c.gain) * std::visit([](const auto& term) { return terms::most(term); }, c.term);
+    }
+    return sum;
+}
+
 bool Excitation::has_feedback() const {
     return std::any_of(components_.begin(), components_.end(), [](const Component& c) {
         const auto* script = std::get_if<Scripted>(&c.term);

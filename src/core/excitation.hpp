@@ -138,6 +138,8 @@ public:
     [[nodiscard]] double next_break(double t) const;
     /// From when on M is known to be constant for ever; `never` when that is not known.
     [[nodiscard]] double constant_from() const;
+    /// What |M| never exceeds; `never` when that is not known.
+    [[nodiscard]] double most() const;
     /// M needs theta and velocity.
     [[nodiscard]] bool has_feedback() const;
     [[nodiscard]] bool has_script() const;

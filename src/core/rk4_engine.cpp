@@ -24,7 +24,6 @@ Rk4Engine::Rk4Engine(const Problem& problem, const Rk4& options, RowWriter& rows
       monitor_(problem.monitor),
       initial_(problem.initial),
       before_(problem.before),
-      released_(problem.released),
       window_(problem.window),
       rows_(rows),
       events_(events),
@@ -42,7 +41,7 @@ Outcome Rk4Engine::run() {
     const bool at_break = excitation_.next_break(std::nextafter(t, -never)) == t;
     const double M = at_break ? excitation_.value_after(t, initial_) : excitation_.value(t, initial_);
     const Motion motion = before_.value_or(motion_of(initial_.velocity));
-    const bool standstill = initial_.velocity == 0 && !released_ && !(before_ && motion == Motion::stuck);
+    const bool standstill = initial_.velocity == 0 && !before_;  // else the law was asked at the end of the part before
     return run({0, initial_, M, motion, standstill}, steps_);
 }
 

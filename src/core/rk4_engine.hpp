@@ -117,7 +117,6 @@ private:
     const Monitor& monitor_;
     State initial_;
     std::optional<Motion> before_;
-    bool released_;
     Window window_;
     RowWriter& rows_;
     std::vector<Event>* events_;

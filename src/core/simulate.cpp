@@ -85,15 +85,10 @@ Expected<Grid> Grid::within(const Window& window) const {
 
 namespace {
 
-/// What a run that goes on must know of its first part; nothing for a new one.
-struct Before {
-    std::optional<Motion> motion = {};
-    bool released = false;
-};
-
-Expected<Trajectory> run_from(const Before& before, const Oscillator& system, const Excitation& excitation,
-                              const State& initial, const Window& window, const Grid& rows,
-                              const Integrator& integrator, const Monitor& monitor, const Limits& limits) {
+Expected<Trajectory> run_from(const std::optional<Motion>& before, const Oscillator& system,
+                              const Excitation& excitation, const State& initial, const Window& window,
+                              const Grid& rows, const Integrator& integrator, const Monitor& monitor,
+                              const Limits& limits) {
     if (!std::isfinite(initial.theta)) return Error{fmt::format("theta0 = {} must be a finite number", initial.theta)};
     if (!std::isfinite(initial.velocity))
         return Error{fmt::format("velocity0 = {} must be a finite number", initial.velocity)};
@@ -113,7 +108,7 @@ Expected<Trajectory> run_from(const Before& before, const Oscillator& system, co
     const bool spectral = std::holds_alternative<Spectral>(*method);
     if (auto lost = lost_in_time(spectral ? "T0/27" : "h", resolution(*method, system), window)) return *lost;
 
-    const Problem problem{system, excitation, initial, window, *grid, monitor, limits, before.motion, before.released};
+    const Problem problem{system, excitation, initial, window, *grid, monitor, limits, before};
     Trajectory trajectory = std::visit([&](const auto& options) { return run(problem, options); }, *method);
     trajectory.initial = initial;
     return trajectory;
@@ -179,9 +174,7 @@ Expected<Trajectory> resume(const Oscillator& system, const Excitation& excitati
     for (std::size_t i = kept; i < grid->count(); ++i) {
         if (grid->time(i) >= window.start) times.push_back(grid->time(i));
     }
-    const bool released = !so_far.events.empty() && so_far.events.back().kind == EventKind::slip &&
-                          so_far.events.back().t == so_far.t_stop;
-    auto second = run_from({so_far.motion_at_stop, released}, system, excitation, so_far.state_at_stop, window,
+    auto second = run_from(so_far.motion_at_stop, system, excitation, so_far.state_at_stop, window,
                            Grid::at(std::move(times)), integrator, monitor, limits);
     if (!second) return second.error();
     return joined(so_far, static_cast<Eigen::Index>(kept), std::move(second).value());

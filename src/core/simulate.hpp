@@ -69,7 +69,6 @@ struct Problem {
     const Monitor& monitor;
     const Limits& limits;
     std::optional<Motion> before = {};  ///< of a run that goes on: what the mass did until now; its start is an event
-    bool released = false;              ///< and it has just been released: to ask again might hold it
 };
 
 /// Runs from `initial` at window.start. Fails (before the first step) when the window, the grid or the integrator's

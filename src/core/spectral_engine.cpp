@@ -27,7 +27,6 @@ SpectralEngine::SpectralEngine(const Problem& problem, const Spectral& options, 
       monitor_(problem.monitor),
       window_(problem.window),
       before_(problem.before),
-      released_(problem.released),
       rows_(rows),
       events_(events),
       panels_(panels),
@@ -39,6 +38,7 @@ SpectralEngine::SpectralEngine(const Problem& problem, const Spectral& options, 
       feedback_(problem.excitation.has_feedback()),
       script_(problem.excitation.has_script()),
       constant_from_(problem.excitation.constant_from()),
+      most_M_(problem.excitation.most()),
       clock_{problem.window.start, 0},
       y_(problem.initial),
       h_(h_max_),
@@ -50,6 +50,7 @@ Outcome SpectralEngine::run() {
     while (alive && clock_.hi < window_.end) {
         if (pieces_++ % monitor_interval == 0 && monitor_ && !monitor_(clock_.hi)) {
             outcome_ = Outcome::interrupted;
+            if (standstill_ && !system_.frictionless()) leave_standstill();
             break;
         }
         alive = advance();
@@ -64,20 +65,30 @@ void SpectralEngine::begin() {
     M_ = at_break ? excitation_.value_after(t, y_) : excitation_.value(t, y_);
     motion_ = before_.value_or(motion_of(y_.velocity));
     at_start_ = !before_;
-    standstill_ = y_.velocity == 0 && !released_ && !(before_ && motion_ == Motion::stuck);
-    leaving_ = released_;
+    standstill_ = y_.velocity == 0 && !before_;
+    leaving_ =
+        y_.velocity == 0 && before_ && motion_ != Motion::stuck;  // the law was asked at the end of the part before
 }
 
 bool SpectralEngine::advance() {
     if (system_.frictionless()) return move();
     if (standstill_ && !leave_standstill()) return false;
     if (stuck_for_good()) {
-        panel_ = Panel{.start = clock_, .length = clock_.until(window_.end), .begin = y_};
-        if (panels_ != nullptr) panels_->add(panel_);
-        clock_ = {window_.end, 0};
+        rest_until_end();
         return true;
     }
     return motion_ == Motion::stuck ? stay() : move();
+}
+
+void SpectralEngine::rest_until_end() {
+    panel_ = Panel{.start = clock_, .length = clock_.until(window_.end), .begin = y_};
+    if (panels_ != nullptr) panels_->add(panel_);
+    while (rows_.next_time() < window_.end) {
+        const double M = excitation_.value(rows_.next_time());
+        rows_.put(y_, M, friction_of(M));
+    }
+    clock_ = {window_.end, 0};
+    M_ = excitation_.value(window_.end);
 }
 
 void SpectralEngine::finish() {
@@ -89,9 +100,11 @@ void SpectralEngine::finish() {
     }
 }
 
+/// M can not move it any more, whatever comes: it is constant, or nowhere great enough.
 bool SpectralEngine::stuck_for_good() const {
-    return motion_ == Motion::stuck && constant_from_ <= clock_.hi &&
-           motion_from_standstill(system_, M_, y_.theta) == Motion::stuck;
+    if (motion_ != Motion::stuck) return false;
+    if (most_M_ + std::fabs(system_.stiffness() * y_.theta) <= system_.breakaway()) return true;
+    return constant_from_ <= clock_.hi && motion_from_standstill(system_, M_, y_.theta) == Motion::stuck;
 }
 
 /// Asks the friction law at velocity zero.
@@ -101,7 +114,6 @@ bool SpectralEngine::leave_standstill() {
     standstill_ = false;
     leaving_ = motion_ != Motion::stuck;
     holding_ = false;
-    if (!leaving_) theta_rest_ = 0;
     if (!at_start_) {
         if (motion_ == Motion::stuck) {
             record(EventKind::stick);
@@ -158,7 +170,9 @@ bool SpectralEngine::creeps() const {
 void SpectralEngine::settle() {
     const double place = (M_ - system_.kinetic_friction() * sign_of(motion_)) / system_.stiffness();
     const double near = 64 * epsilon * torques() / system_.stiffness();
-    if (!feedback_ && std::fabs(place - y_.theta) <= near) y_.theta = place;
+    if (feedback_ || !(std::fabs(place - y_.theta) <= near)) return;
+    y_.theta = place;
+    theta_rest_ = 0;
 }
 
 /// Where the velocity is down to zero. At the end of the panel, zero within rounding is zero.
@@ -199,8 +213,9 @@ void SpectralEngine::record_turns() {
         const auto x = first_below(velocity, from, start, no);
         if (!x) break;
         motion_ = motion_ == Motion::forward ? Motion::backward : Motion::forward;
-        // A curve that leaves zero the other way was turned already, at the end of the panel before.
-        const bool told = start == Start::leaving && *x <= from;
+        // A curve that leaves zero the other way was turned already, when that is told.
+        const bool told =
+            start == Start::leaving && *x <= from && (from > -1 || (!events_.empty() && events_.back().t == clock_.hi));
         if (!told) events_.push_back({time_at(*x), EventKind::turn, y_.theta + value(p_, *x), value(panel_.M, *x)});
         if (told && from > -1) break;
         from = *x;

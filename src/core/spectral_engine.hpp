@@ -40,6 +40,7 @@ private:
     bool move();
     void finish();
     [[nodiscard]] bool stuck_for_good() const;
+    void rest_until_end();
     bool leave_standstill();
     [[nodiscard]] std::optional<double> first_standstill() const;
     [[nodiscard]] bool creeps() const;
@@ -113,7 +114,6 @@ private:
     const Monitor& monitor_;
     Window window_;
     std::optional<Motion> before_;
-    bool released_;
     RowWriter& rows_;
     std::vector<Event>& events_;
     Panels* panels_;
@@ -123,11 +123,11 @@ private:
     double pace_;  ///< what short times are measured in: T0, or all of a run that is shorter
     double h_max_;
     bool feedback_, script_;
-    double constant_from_;
+    double constant_from_, most_M_;
 
     Clock clock_;  // the present: time, state, M (from the right), motion
     State y_;
-    double theta_rest_ = 0;  // what was rounded off theta; 0 at rest
+    double theta_rest_ = 0;  // what was rounded off theta, so that a thousand stops do not add up
     double M_ = 0;
     Motion motion_ = Motion::stuck;
     bool M_sampled_ = true;    // M_ is a value of M, not of its series

@@ -140,7 +140,6 @@ void SpectralEngine::never_left() {
         record(EventKind::stick);  // it was on its way, came to rest, and did not go on
     }
     motion_ = Motion::stuck;
-    theta_rest_ = 0;
     leaving_ = false;
     holding_ = true;
     standing_from_ = nowhere;

@@ -119,3 +119,19 @@ TEST_CASE("a run can not go on to a time before its end", "[resume]") {
     REQUIRE_FALSE(back);
     CHECK(back.error().sentence == "t_end = 2 must be after t = 3, where the run ended");
 }
+
+TEST_CASE("a run that goes on from the very time of a turn has that turn once", "[resume][spectral]") {
+    for (int i = 0; i < 12; ++i) {
+        const Oscillator system = nondimensional(i % 3 == 0 ? 0 : 0.07, i % 2 == 0 ? 0 : 0.1);
+        const Excitation M = Excitation::make(Sawtooth{.amplitude = 1.3, .period = 0.9 + 0.07 * i}).value();
+        const Trajectory whole = must_run(system, M, {0.4, 5}, {0, 20}, Grid::none(), Spectral{});
+        for (const Event& cut : whole.events) {
+            if (cut.kind != EventKind::turn) continue;
+            const Trajectory first = must_run(system, M, {0.4, 5}, {0, cut.t}, Grid::none(), Spectral{});
+            const auto all = resume(system, M, first, 20, Grid::none(), Spectral{});
+            CAPTURE(i, cut.t);
+            REQUIRE(all);
+            REQUIRE(all->events.size() == whole.events.size());
+        }
+    }
+}

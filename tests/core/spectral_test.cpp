@@ -113,6 +113,27 @@ TEST_CASE("a step that comes bare between the samples of short panels releases a
     }
 }
 
+TEST_CASE("a mass that M is nowhere great enough to move waits for any length of time at no cost", "[spectral]") {
+    const Oscillator system = nondimensional(0.05, 0.3);
+    for (const Excitation& M : {harmonic(0.2, 7), harmonic(0.1, 7) + made(Square{.amplitude = 0.1, .period = 0.37}),
+                                made(Chirp{.amplitude = 0.2, .from = 1, .to = 5, .duration = 10}),
+                                made(Triangle{.amplitude = 0.2, .period = 3})}) {
+        const Trajectory run =
+            must_run(system, M, {-0.05, 0}, {0, 1e8}, Grid::at({0, 0.1, 12345678.9, 1e8}), Spectral{});
+        CHECK(run.outcome == Outcome::at_rest);
+        CHECK(run.events.empty());
+        for (Eigen::Index i = 0; i < run.size(); ++i) {
+            CHECK(run.rows(i, 3) == M.value(run.rows(i, 0)));
+            CHECK(run.rows(i, 4) == -(M.value(run.rows(i, 0)) + 0.05));
+        }
+        CHECK(run.at(7654321.1)->theta == -0.05);
+    }
+    // An exponential that grows, and a ramp, have no such bound.
+    const Trajectory late = spectral(system, made(Exponential{.amplitude = 1e-9, .tau = -50}), {0, 0}, {0, 2000});
+    REQUIRE_FALSE(late.events.empty());
+    CHECK(late.events[0].t == within(50 * std::log(0.3e9), 1e-10));
+}
+
 // ---- feedback
 
 TEST_CASE("a hard cubic spring made by feedback keeps the energy", "[spectral][feedback]") {
