@@ -1,6 +1,7 @@
 // Polynomials on a panel -1 <= x <= 1 as Chebyshev series c[0] T0 + c[1] T1 + ...: sampled, integrated, evaluated.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
@@ -110,6 +111,11 @@ double size(const Series<n>& c) {
     double sum = 0;
     for (const double x : c) sum += std::fabs(x);
     return sum;
+}
+
+/// The last two coefficients: about what a series that has decayed is off by.
+inline double tail(const Series<points>& c) {
+    return std::max(std::fabs(c[degree - 1]), std::fabs(c[degree]));
 }
 
 /// A bound of |f''|: |Tk''| <= k^2 (k^2 - 1)/3.

@@ -168,6 +168,10 @@ Expected<Energy> energy_of(const Trajectory& trajectory) {
     energy.t_end = trajectory.t_stop;
     energy.finish = stored(system, cut.back().end);
     energy.total.change = change(system, trajectory.initial, cut.back().end);
+    if (!std::isfinite(energy.flow) || !std::isfinite(energy.total.error())) {
+        return Error{
+            "the energies of this run are beyond the range of numbers: choose larger units of torque or angle"};
+    }
     return energy;
 }
 

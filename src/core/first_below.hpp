@@ -30,6 +30,16 @@ public:
     /// For a curve that is a difference of larger numbers, or whose slope is.
     void raise_floor(double least) { floor_ = std::max(floor_, least); }
     void raise_slope_floor(double least) { slope_floor_ = std::max(slope_floor_, least); }
+    /// The lowest place around x, where the curve comes to zero within rounding without clearly crossing it.
+    [[nodiscard]] double lowest_near(double x) const {
+        const double reach = second_ > 0 ? 2 * std::sqrt(8 * floor_ / second_) : 0;
+        double a = std::max(-1.0, x - reach), b = std::min(1.0, x + reach);
+        if (!(slope(a) < -slope_floor_ && slope(b) > slope_floor_)) return x;
+        for (double middle = a + (b - a) / 2; middle > a && middle < b; middle = a + (b - a) / 2) {
+            (slope(middle) < 0 ? a : b) = middle;
+        }
+        return b;
+    }
     [[nodiscard]] Samples at_nodes() const { return chebyshev::at_nodes(f_); }
 
     /// Whether a curve that leaves zero at -1 is certainly positive up to -1 + d: by its slope there, or, where that

@@ -13,7 +13,7 @@ namespace {
 constexpr double epsilon = std::numeric_limits<double>::epsilon();
 /// More standstills than this, each at once after the one before, are a feedback that chatters, not a motion.
 constexpr int most_standstills_at_once = 200;
-/// Natural periods within which one standstill follows another at once.
+/// Within this time, in units of pace_, one standstill follows another at once.
 constexpr double at_once = 1e-6;
 /// Pieces between two questions to the monitor.
 constexpr unsigned monitor_interval = 16;
@@ -34,13 +34,15 @@ SpectralEngine::SpectralEngine(const Problem& problem, const Spectral& options, 
       tolerance_(options.tolerance),
       w0_(problem.system.natural_frequency()),
       T0_(problem.system.natural_period()),
+      pace_(std::min(T0_, problem.window.end - problem.window.start)),
       h_max_(std::min(options.max_panel, longest_panel * T0_) / 2),
       feedback_(problem.excitation.has_feedback()),
       script_(problem.excitation.has_script()),
       constant_from_(problem.excitation.constant_from()),
       clock_{problem.window.start, 0},
       y_(problem.initial),
-      h_(h_max_) {}
+      h_(h_max_),
+      shortened_since_(problem.window.start) {}
 
 Outcome SpectralEngine::run() {
     begin();
@@ -99,6 +101,7 @@ bool SpectralEngine::leave_standstill() {
     standstill_ = false;
     leaving_ = motion_ != Motion::stuck;
     holding_ = false;
+    if (!leaving_) theta_rest_ = 0;
     if (!at_start_) {
         if (motion_ == Motion::stuck) {
             record(EventKind::stick);
@@ -109,96 +112,13 @@ bool SpectralEngine::leave_standstill() {
     return !stopped();
 }
 
-/// Feedback that pushes at rest and holds in motion would come to a standstill for ever.
+/// Feedback that pushes at rest and holds in motion would come to a standstill for ever. A function of time moves the
+/// mass as often as it says.
 bool SpectralEngine::stopped() {
-    standstills_at_once_ = clock_.hi - last_standstill_ <= at_once * T0_ ? standstills_at_once_ + 1 : 0;
+    if (!feedback_) return false;
+    standstills_at_once_ = clock_.hi - last_standstill_ <= at_once * pace_ ? standstills_at_once_ + 1 : 0;
     last_standstill_ = clock_.hi;
     return standstills_at_once_ > most_standstills_at_once && !fail(Outcome::chattering);
-}
-
-// ---- stuck
-
-/// Stuck, up to the first time that |M - k theta| > Re or the end of the panel.
-bool SpectralEngine::stay() {
-    double from = standing_from_;
-    if (from == nowhere) {
-        if (M_sampled_ && !holding_) {
-            const Motion direction = motion_from_standstill(system_, M_, y_.theta);
-            if (direction != Motion::stuck) return release_at(nowhere, direction);
-        }
-        choose_panel();
-        if (const Attempt attempt = sample_standing(); attempt != Attempt::resolved) return attempt != Attempt::ended;
-        from = -1;
-    }
-    const auto [x, direction] = first_release(from);
-    if (x < 1) return release_at(x, direction);
-    end_piece(1, y_, 0);
-    return std::isfinite(M_) || fail(Outcome::excitation_not_finite);
-}
-
-/// The release in [from, 1], if there is one, and its direction; else `nowhere`.
-std::pair<double, Motion> SpectralEngine::first_release(double from) const {
-    std::pair<double, Motion> first{nowhere, Motion::stuck};
-    const double k_theta = system_.stiffness() * y_.theta, Re = system_.breakaway();
-    double varying = 0;
-    for (std::size_t k = 1; k < points; ++k) varying += std::fabs(panel_.M[k]);
-    const auto lets_go = [&](double x) {
-        if (holding_) return false;
-        const double M = excitation_.value(time_at(x), y_);
-        return motion_from_standstill(system_, M, y_.theta) != Motion::stuck;
-    };
-    for (const Motion side : {Motion::forward, Motion::backward}) {
-        const double sign = sign_of(side);
-        const double mean = sign * (panel_.M[0] - k_theta);
-        if (mean + varying < Re) continue;
-        // What is left of the limit: Re - side (M - k theta).
-        Series left{};
-        chebyshev::Series<points - 1> slope = chebyshev::derivative(panel_.M);
-        for (std::size_t k = 1; k < points; ++k) left[k] = -sign * panel_.M[k];
-        for (double& c : slope) c *= -sign;
-        left[0] = Re - mean;
-        chebyshev::Curve<points> curve(1, left, slope);
-        curve.raise_floor(8 * epsilon * (Re + std::fabs(k_theta)));
-        if (const auto x = chebyshev::first_below(curve, from, chebyshev::Start::anywhere, lets_go)) {
-            if (*x < first.first) first = {*x, side};
-        }
-    }
-    if (first.first != nowhere && time_at(first.first) >= end_) first.first = nowhere;  // the next panel's business
-    return first;
-}
-
-/// Breakaway at x of the panel, or, with `nowhere`, at once.
-bool SpectralEngine::release_at(double x, Motion direction) {
-    const bool at_once_only = x == nowhere;
-    if (!at_once_only) {
-        const bool feedback = feedback_ && x > -1;
-        const double M = feedback ? excitation_.value(time_at(x), y_) : chebyshev::value(panel_.M, x);
-        if (!std::isfinite(M)) return fail(Outcome::excitation_not_finite);
-        end_piece(x, y_, M);
-        standing_from_ = nowhere;
-    }
-    motion_ = direction;
-    leaving_ = true;
-    holding_ = false;
-    record(EventKind::slip);
-    at_start_ = false;
-    return !stopped();
-}
-
-/// A motion that did not get under way: M only touched the limit. The mass stays where it is.
-void SpectralEngine::never_left() {
-    if (!events_.empty() && events_.back().t == clock_.hi) {
-        Event& last = events_.back();
-        if (last.kind == EventKind::slip) {
-            events_.pop_back();
-        } else if (last.kind == EventKind::turn) {
-            last.kind = EventKind::stick;
-        }
-    }
-    motion_ = Motion::stuck;
-    leaving_ = false;
-    holding_ = true;
-    standing_from_ = nowhere;
 }
 
 // ---- moving
@@ -208,20 +128,37 @@ bool SpectralEngine::move() {
     panel_.motion = system_.frictionless() ? Motion::forward : motion_;
     if (const Attempt attempt = solve(); attempt != Attempt::resolved) return attempt != Attempt::ended;
     if (system_.frictionless()) record_turns();
-    const std::optional<double> zero = system_.frictionless() ? std::nullopt : first_standstill();
-    if (zero && *zero <= -1 && leaving_) {
+    const bool dry = !system_.frictionless(), crept = dry && creeps();
+    const std::optional<double> zero = dry && !crept ? first_standstill() : std::nullopt;
+    if (leaving_ && (crept || (zero && *zero <= -1))) {
         never_left();
         return !stopped();
     }
     double x = zero.value_or(1);
     if (x > -1 && time_at(x) >= end_) x = 1;
-    const State state{y_.theta + chebyshev::value(p_, x), zero ? 0 : chebyshev::value(v_, x) / panel_.h};
+    const Clock theta = Clock{y_.theta, theta_rest_}.later(chebyshev::value(p_, x));  // a sum like that of time
+    theta_rest_ = theta.lo;
+    const State state{theta.hi, zero || crept ? 0 : chebyshev::value(v_, x) / panel_.h};
     const double M = x == 1 ? 0 : feedback_ ? excitation_.value(time_at(x), state) : chebyshev::value(panel_.M, x);
     end_piece(x, state, M);
+    if (crept) settle();
     leaving_ = false;
-    standstill_ = zero.has_value();
+    standstill_ = crept || zero;
     standing_from_ = zero && x < 1 && !feedback_ ? x : nowhere;
     return std::isfinite(M_) || fail(Outcome::excitation_not_finite);
+}
+
+/// Whether all that goes on in the panel is slower than the rounding of its torques could make it.
+bool SpectralEngine::creeps() const {
+    const double fastest = chebyshev::size(v_) / panel_.h;
+    return fastest * (system_.damping() + system_.inertia() / (2 * panel_.h)) <= 4 * epsilon * torques();
+}
+
+/// What has crept to rounding distance from its place is there: at the very limit of sticking, when Re = Rd.
+void SpectralEngine::settle() {
+    const double place = (M_ - system_.kinetic_friction() * sign_of(motion_)) / system_.stiffness();
+    const double near = 64 * epsilon * torques() / system_.stiffness();
+    if (!feedback_ && std::fabs(place - y_.theta) <= near) y_.theta = place;
 }
 
 /// Where the velocity is down to zero. At the end of the panel, zero within rounding is zero.
@@ -232,7 +169,7 @@ std::optional<double> SpectralEngine::first_standstill() const {
     // The acceleration is what is left of torques that may balance each other.
     const double w0h = w0_ * panel_.h;
     velocity.raise_slope_floor(w0h * w0h * (64 * epsilon * torques() + lost_in_time()) / system_.stiffness());
-    if (feedback_) velocity.raise_floor(rounding_of_motion());
+    if (feedback_) velocity.raise_floor(rounding_of_motion(lost_in_time()));
     const auto always = [](double) { return true; };
     const auto zero = first_below(velocity, -1, leaving_ ? Start::leaving : Start::anywhere, always);
     if (!zero && velocity(1) <= velocity.floor()) return 1;
@@ -245,7 +182,8 @@ void SpectralEngine::record_turns() {
     constexpr double nothing = 1e-290;  // products of smaller numbers lose their digits to underflow
     const double moving = size(v_);
     // At its equilibrium a system changes the sign of its velocity by rounding alone.
-    if (moving <= (feedback_ ? rounding_left_by_iteration : 1) * rounding_of_motion() || moving < nothing) return;
+    if (moving <= (feedback_ ? rounding_left_by_iteration : 1) * rounding_of_motion(lost_in_time()) || moving < nothing)
+        return;
     if (motion_ == Motion::stuck) {
         // From a start at rest: the first velocity that is not rounding tells the direction.
         const auto v = at_nodes(v_);
@@ -277,7 +215,7 @@ void SpectralEngine::end_piece(double x, State state, double M) {
     // A stuck piece may begin within the panel.
     Panel piece = panel_;
     piece.length = whole ? 2 * panel_.h : panel_.h * (1 + x);
-    rows_until(piece.length);
+    const bool told = rows_until(piece.length);
     if (panels_ != nullptr) {
         if (motion_ == Motion::stuck && !system_.frictionless()) {
             const Clock from = clock_;
@@ -294,6 +232,7 @@ void SpectralEngine::end_piece(double x, State state, double M) {
     M_sampled_ = whole;
     M_ = !whole ? M : break_at_end_ ? excitation_.value_after(end_, y_) : samples_[points - 1];
     if (whole && feedback_ && !break_at_end_) M_ = excitation_.value(end_, y_);
+    if (!told) M_ = std::numeric_limits<double>::quiet_NaN();
     if (clock_.hi > window_.start) at_start_ = false;
     if (whole) {
         std::erase_if(found_breaks_, [&](double b) { return b <= end_; });
@@ -301,13 +240,13 @@ void SpectralEngine::end_piece(double x, State state, double M) {
     }
 }
 
-/// The rows before the end of the piece; the one at its end belongs to the next.
-void SpectralEngine::rows_until(double length) {
+/// The rows before the end of the piece; the one at its end belongs to the next. False when M fails at one of them.
+bool SpectralEngine::rows_until(double length) {
     const bool standing = motion_ == Motion::stuck && !system_.frictionless();
     while (rows_.next_time() < never) {
         const double t = rows_.next_time();
         const double since = panel_.start.until(t);
-        if (!(since < length)) break;
+        if (!(since < length)) return true;
         const double x = std::clamp(since / panel_.h - 1, -1.0, 1.0);
         State state = y_;
         if (!standing && x > -1) {
@@ -319,10 +258,12 @@ void SpectralEngine::rows_until(double length) {
         } else if (x > -1) {
             M = chebyshev::value(panel_.M, x);
         }
+        if (!std::isfinite(M)) return false;
         rows_.put(state, M,
                   standing ? friction_torque(system_, Motion::stuck, M, state.theta)
                            : friction_torque(system_, panel_.motion, M, state.theta));
     }
+    return true;
 }
 
 }  // namespace dinal

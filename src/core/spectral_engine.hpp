@@ -37,21 +37,19 @@ private:
     // One piece of the motion after the other. What returns false has ended the run.
     void begin();
     bool advance();
-    bool stay();
     bool move();
     void finish();
     [[nodiscard]] bool stuck_for_good() const;
     bool leave_standstill();
-    bool release_at(double x, Motion direction);
-    void never_left();
     [[nodiscard]] std::optional<double> first_standstill() const;
-    [[nodiscard]] std::pair<double, Motion> first_release(double from) const;
+    [[nodiscard]] bool creeps() const;
+    void settle();
     void record_turns();
     bool stopped();
 
     // The present at the end of a piece, which reaches to x in the panel; 1 is exactly the end of the panel.
     void end_piece(double x, State state, double M);
-    void rows_until(double length);
+    bool rows_until(double length);
     [[nodiscard]] double time_at(double x) const { return panel_.start.after(panel_.h * (1 + x)); }
     void record(EventKind kind) { events_.push_back({clock_.hi, kind, y_.theta, M_}); }
     [[nodiscard]] double friction_of(double M) const {
@@ -61,6 +59,18 @@ private:
         outcome_ = outcome;
         return false;
     }
+
+    // spectral_stuck.cpp: the mass at rest.
+    bool stay();
+    [[nodiscard]] std::pair<double, Motion> first_release(double from) const;
+    [[nodiscard]] double release_towards(Motion side, double from) const;
+    [[nodiscard]] bool lets_go(double x, Motion side) const;
+    [[nodiscard]] double moment_of_release(double x, double off, double from, Motion side) const;
+    bool release_at(double x, Motion direction);
+    void never_left();
+
+    /// Of a run that gets nowhere: whose fault it is.
+    [[nodiscard]] Outcome never_ending() const { return feedback_ ? Outcome::chattering : Outcome::unresolved; }
 
     // spectral_panel.cpp: choosing, sampling and solving a panel.
     enum class Attempt {
@@ -77,8 +87,11 @@ private:
     bool bad_at(std::size_t node);
     Attempt before_failure();
     void solve_for(const Series& torque);
+    [[nodiscard]] bool within_range() const;
     enum class Iteration { converged, diverges, failed };
     Iteration iterate();
+    [[nodiscard]] bool well_conditioned() const;
+    void take_linear_part(const Series& rest);
     void estimate_slopes();
     /// The size of the torques that are at play on the panel.
     [[nodiscard]] double torques() const {
@@ -88,10 +101,11 @@ private:
     [[nodiscard]] double lost_in_time() const;
     [[nodiscard]] double unresolved_load() const;
     [[nodiscard]] double unresolved_motion() const;
-    [[nodiscard]] double rounding_of_motion() const;
+    [[nodiscard]] double rounding_of_motion(double uncertain) const;
     bool found_break();
     Attempt pass_over();
     Attempt judge(double unresolved);
+    bool crawls();
     void lengthen(double unresolved);
 
     const Oscillator& system_;
@@ -106,12 +120,14 @@ private:
 
     double tolerance_;
     double w0_, T0_;
+    double pace_;  ///< what short times are measured in: T0, or all of a run that is shorter
     double h_max_;
     bool feedback_, script_;
     double constant_from_;
 
     Clock clock_;  // the present: time, state, M (from the right), motion
     State y_;
+    double theta_rest_ = 0;  // what was rounded off theta; 0 at rest
     double M_ = 0;
     Motion motion_ = Motion::stuck;
     bool M_sampled_ = true;    // M_ is a value of M, not of its series
@@ -140,6 +156,8 @@ private:
     int standstills_at_once_ = 0;
     int unresolved_in_a_row_ = 0;
     int short_in_a_row_ = 0;
+    int shortened_ = 0;  // panels, since then:
+    double shortened_since_;
     unsigned pieces_ = 0;
     Outcome outcome_ = Outcome::reached_end;
 };

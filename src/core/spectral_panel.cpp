@@ -11,26 +11,24 @@ namespace dinal {
 namespace {
 
 constexpr double epsilon = std::numeric_limits<double>::epsilon();
-/// A panel so short (natural periods) that what it does not resolve can not be seen in the motion.
+// Lengths of time are in units of pace_.
+/// A panel so short that what it does not resolve can not be seen in the motion.
 constexpr double shortest = 1e-13;
 /// So many of those one after the other, and there is nothing smooth about M.
 constexpr int most_unresolved = 100;
-/// So many resolved panels below this length (natural periods), and there is no getting on.
+/// So many panels that are not resolved, in steps below this length on average, or so many shorter ones in a row for no
+/// break's sake, and there is no getting on.
 constexpr double too_short = 1e-7;
-constexpr int most_short = 100000;
-/// The same with a feedback, which passes each of its switches in some forty of them.
+constexpr int most_attempts = 100000;
+/// With a feedback, whose panels are iterated, less; it passes each of its switches in some forty short ones.
+constexpr int most_attempts_with_feedback = 10000;
 constexpr int most_short_with_feedback = 2000;
 /// Not resolved by more than this factor: it may be a break.
 constexpr double gross = 1e3;
 /// Found and still ahead: more would be the noise of M.
 constexpr std::size_t most_found_breaks = 50;
-constexpr int most_iterations = 25;
-/// Where M fails, the run comes this near to it (natural periods).
+/// Where M fails, the run comes this near to it.
 constexpr double near_failure = 1e-9;
-
-double tail(const chebyshev::Series<chebyshev::points>& c) {
-    return std::max(std::fabs(c[chebyshev::degree - 1]), std::fabs(c[chebyshev::degree]));
-}
 
 }  // namespace
 
@@ -90,7 +88,7 @@ bool SpectralEngine::bad_at(std::size_t node) {
 
 /// M has failed ahead: the run goes on in ever shorter panels until it stands before that time, and ends there.
 SpectralEngine::Attempt SpectralEngine::before_failure() {
-    const bool there = clock_.until(bad_time_) <= std::max(near_failure * T0_, 64 * epsilon * std::fabs(clock_.hi));
+    const bool there = clock_.until(bad_time_) <= std::max(near_failure * pace_, 64 * epsilon * std::fabs(clock_.hi));
     if (feedback_) bad_time_ = never;
     if (!there && excitation_.may_go_on()) return Attempt::shorten;
     fail(Outcome::excitation_not_finite);
@@ -110,7 +108,8 @@ void SpectralEngine::solve_for(const Series& torque) {
     Series r{};
     for (std::size_t k = 1; k < points; ++k) r[k] = scale * torque[k];
     const double friction = system_.kinetic_friction() * sign_of(panel_.motion);
-    r[0] = scale * (std::fma(-system_.stiffness(), y_.theta, torque[0]) - friction);
+    const double k = system_.stiffness();
+    r[0] = scale * ((std::fma(-k, y_.theta, torque[0]) - friction) - k * theta_rest_);
     panel_.w = equation_.solve(r, h * y_.velocity);
     v_ = chebyshev::integral(panel_.w, h * y_.velocity);
     p_ = chebyshev::integral(v_, 0.0);
@@ -133,78 +132,20 @@ SpectralEngine::Attempt SpectralEngine::solve() {
         if (!sample_all({})) return before_failure();
         solve_for(panel_.M);
     }
-    // Bounds of the derivatives are some powers of ten larger, and must be numbers: without them no search would end.
-    constexpr double largest = 1e290;
-    if (!(chebyshev::size(p_) < largest && chebyshev::size(v_) / std::min(panel_.h, 1.0) < largest)) {
+    if (!within_range()) {
         fail(Outcome::state_not_finite);
         return Attempt::ended;
     }
     return judge(feedback_ ? unresolved_motion() : std::max(unresolved_load(), unresolved_motion()));
 }
 
-// ---- feedback
-
-/// M(t, theta, velocity) and the motion, each from the other until they agree.
-SpectralEngine::Iteration SpectralEngine::iterate() {
-    constexpr double stiffest = 4;  // h^2 k/I up to which a panel's equation is well-conditioned
-    for (const bool again : {false, true}) {
-        if (panel_.h * panel_.h * (system_.stiffness() + kappa_) / system_.inertia() > stiffest) break;
-        chebyshev::Samples p{}, v{};
-        for (std::size_t j = 0; j < points; ++j) {
-            v[j] = panel_.h * y_.velocity;
-            p[j] = (1 + chebyshev::nodes[j]) * v[j];
-        }
-        double change = never;
-        for (int i = 0; i < most_iterations; ++i) {
-            chebyshev::Samples rest{};
-            for (std::size_t j = 0; j < points; ++j) {
-                samples_[j] = sampled(j, {y_.theta + p[j], v[j] / panel_.h});
-                if (!std::isfinite(samples_[j])) return Iteration::failed;
-                rest[j] = samples_[j] + kappa_ * p[j] + chi_ * (v[j] / panel_.h);
-            }
-            panel_.M = chebyshev::fit(samples_);
-            solve_for(chebyshev::fit(rest));
-            const auto p_next = chebyshev::at_nodes(p_), v_next = chebyshev::at_nodes(v_);
-            const double before = change;
-            change = 0;
-            for (std::size_t j = 0; j < points; ++j) {
-                change = std::max({change, std::fabs(p_next[j] - p[j]), std::fabs(v_next[j] - v[j])});
-            }
-            p = p_next, v = v_next;
-            const double scale = chebyshev::size(v_) + chebyshev::size(p_);
-            if (!(change < never)) break;
-            // What is left shrinks by change/before once more with the solution just made.
-            const double rate = before < never ? change / before : 1;
-            const double rounding = std::max(16 * epsilon * scale, rounding_of_motion());
-            if (change <= rounding || change * rate <= 0.01 * tolerance_ * scale) return Iteration::converged;
-            if (i >= 2 && change > 0.5 * before) {
-                if (change > rounding_left_by_iteration * rounding) break;
-                return Iteration::converged;  // it does not get better than that
-            }
-        }
-        if (!again) estimate_slopes();
-    }
-    kappa_ = chi_ = 0;  // a shorter panel begins without them: they may be what is wrong
-    return Iteration::diverges;
-}
-
-/// How M depends on theta and velocity, by secants as wide as the motion on this panel: that of the last iteration, but
-/// no wider than the torques at its beginning can make it.
-void SpectralEngine::estimate_slopes() {
-    const double t = clock_.hi, h = panel_.h;
-    const double torque =
-        std::fabs(samples_[0]) + system_.stiffness() * std::fabs(y_.theta) + system_.kinetic_friction();
-    const double fastest = std::fabs(y_.velocity) + h * torque / system_.inertia();
-    const double d_theta = std::max(std::min(chebyshev::size(p_), 2 * h * fastest), 1e-6 * std::fabs(y_.theta));
-    const double d_velocity = std::max(std::min(chebyshev::size(v_) / h, fastest), 1e-6 * std::fabs(y_.velocity));
-    const auto slope = [](double above, double below, double d) {
-        const double s = d > 0 && d < never ? (below - above) / (2 * d) : 0;
-        return std::isfinite(s) ? s : 0;
-    };
-    kappa_ = slope(excitation_.value(t, {y_.theta + d_theta, y_.velocity}),
-                   excitation_.value(t, {y_.theta - d_theta, y_.velocity}), d_theta);
-    chi_ = slope(excitation_.value(t, {y_.theta, y_.velocity + d_velocity}),
-                 excitation_.value(t, {y_.theta, y_.velocity - d_velocity}), d_velocity);
+/// Whether the motion on the panel, its torques, and the bounds that prove its events are numbers.
+bool SpectralEngine::within_range() const {
+    constexpr double largest = std::numeric_limits<double>::max() / 1e7;  // chebyshev::third_derivative_bound takes 2e6
+    const double farthest = std::fabs(y_.theta) + chebyshev::size(p_), fastest = chebyshev::size(v_) / panel_.h;
+    const auto fits = [](double x) { return x < largest; };
+    return fits(farthest) && fits(system_.stiffness() * farthest) && fits(fastest) &&
+           fits(system_.damping() * fastest) && fits(chebyshev::size(v_)) && fits(chebyshev::size(panel_.w));
 }
 
 // ---- resolved?
@@ -222,7 +163,7 @@ double SpectralEngine::lost_in_time() const {
 double SpectralEngine::unresolved_load() const {
     const Series& M = panel_.M;
     double allowed = (tolerance_ + 4 * epsilon) * torques();
-    const double last = tail(M);
+    const double last = chebyshev::tail(M);
     if (last <= allowed) return allowed > 0 ? last / allowed : 0;
     allowed += lost_in_time();
     return last / allowed;
@@ -231,25 +172,26 @@ double SpectralEngine::unresolved_load() const {
 /// The same for the motion: the last coefficients of theta'' against velocity and acceleration.
 double SpectralEngine::unresolved_motion() const {
     const auto& w = panel_.w;
-    const double last = tail(w);
+    const double last = chebyshev::tail(w);
     const double v = chebyshev::size(v_), acceleration = chebyshev::size(w);
     double allowed = tolerance_ * std::max(v, acceleration);
     if (last <= allowed) return allowed > 0 ? last / allowed : 0;
-    allowed += rounding_of_motion();
+    allowed += rounding_of_motion(lost_in_time());
     return last / allowed;
 }
 
-/// What theta'' on the panel may differ by because its torques are rounded.
-double SpectralEngine::rounding_of_motion() const {
-    const double a = panel_.h * (system_.damping() + std::fabs(chi_)) / system_.inertia();
-    const double b = panel_.h * (panel_.h * (system_.stiffness() + std::fabs(kappa_)) / system_.inertia());
+/// What theta'' on the panel may differ by because its torques are rounded, and M by `uncertain` more.
+double SpectralEngine::rounding_of_motion(double uncertain) const {
+    const double per_torque = panel_.h * (panel_.h / system_.inertia());
+    const double a = panel_.h * ((system_.damping() + std::fabs(chi_)) / system_.inertia());
+    const double b = per_torque * (system_.stiffness() + std::fabs(kappa_));
     const double terms = chebyshev::size(panel_.w) + a * chebyshev::size(v_) + b * chebyshev::size(p_);
-    const double rounding =
-        64 * epsilon * terms + b * (64 * epsilon * torques() + lost_in_time()) / system_.stiffness();
+    const double asked = torques() + std::fabs(kappa_ * y_.theta);  // a feedback is asked at a rounded theta
+    const double rounding = 64 * epsilon * (terms + per_torque * asked) + per_torque * uncertain;
     if (!feedback_) return rounding;
     // The slopes of a feedback that switches are none; what it does must not pass for rounding.
     constexpr double most = 1e-6;
-    return std::min(rounding, most * panel_.h * (panel_.h * torques() / system_.inertia()));
+    return std::min(rounding, most * per_torque * torques());
 }
 
 /// Looks for a jump or kink of M in the panel, once in each order of magnitude of its length.
@@ -259,7 +201,11 @@ bool SpectralEngine::found_break() {
     searched_from_ = clock_.hi, searched_h_ = panel_.h;
     const auto found = find_break(times_, samples_, [&](double t) { return excitation_.value(t, y_); });
     // One at the very beginning is not a break but a singular point, which ever shorter panels leave behind.
-    if (!found || clock_.until(*found) < 1e-6 * panel_.h || !(*found < end_)) return false;
+    if (!found || !(*found < end_)) return false;
+    if (clock_.until(*found) < 1e-6 * panel_.h) {
+        searched_h_ = 0;  // and need not be looked for again
+        return false;
+    }
     found_breaks_.insert(std::upper_bound(found_breaks_.begin(), found_breaks_.end(), *found), *found);
     return true;
 }
@@ -276,20 +222,25 @@ SpectralEngine::Attempt SpectralEngine::pass_over() {
 SpectralEngine::Attempt SpectralEngine::judge(double unresolved) {
     if (unresolved <= 1) {
         unresolved_in_a_row_ = 0;
-        short_in_a_row_ = 2 * panel_.h < too_short * T0_ ? short_in_a_row_ + 1 : 0;
-        if (short_in_a_row_ > (feedback_ ? most_short_with_feedback : most_short)) {
-            fail(feedback_ ? Outcome::chattering : Outcome::unresolved);
+        const bool needless = feedback_ || !to_limit_;
+        short_in_a_row_ = needless && 2 * panel_.h < too_short * pace_ ? short_in_a_row_ + 1 : 0;
+        if (short_in_a_row_ > (feedback_ ? most_short_with_feedback : most_attempts)) {
+            fail(never_ending());
             return Attempt::ended;
         }
         lengthen(unresolved);
         return Attempt::resolved;
     }
     const double late = std::max(std::fabs(clock_.hi), std::fabs(end_));
-    if (2 * panel_.h <= std::max(shortest * T0_, 16 * epsilon * late)) {
+    if (2 * panel_.h <= std::max(shortest * pace_, 16 * epsilon * late)) {
         // Whatever goes on here is over before it can move the mass. A feedback that switches may do so again at once.
         h_ = feedback_ ? 64 * panel_.h : h_max_;
         if (++unresolved_in_a_row_ <= most_unresolved) return pass_over();
-        fail(feedback_ ? Outcome::chattering : Outcome::unresolved);
+        fail(never_ending());
+        return Attempt::ended;
+    }
+    if (crawls()) {
+        fail(never_ending());
         return Attempt::ended;
     }
     // While the mass is stuck its state is known, and a feedback is a function of time, too.
@@ -298,6 +249,15 @@ SpectralEngine::Attempt SpectralEngine::judge(double unresolved) {
     // The last coefficients fall with h^16.
     h_ = panel_.h * std::clamp(0.9 * std::pow(unresolved, -1.0 / chebyshev::degree), 0.5, 0.9);
     return Attempt::shorten;
+}
+
+/// Whether many attempts have led nowhere: M has more jumps than anyone could pass, or is rough at every scale.
+bool SpectralEngine::crawls() {
+    const int most = feedback_ ? most_attempts_with_feedback : most_attempts;
+    if (++shortened_ < most) return false;
+    const bool crawled = clock_.hi - shortened_since_ < too_short * most * pace_;
+    shortened_ = 0, shortened_since_ = clock_.hi;
+    return crawled;
 }
 
 void SpectralEngine::lengthen(double unresolved) {

@@ -17,6 +17,6 @@ struct Trace {
 };
 
 /// In the order in which they are to be drawn, for the panel's curve of that place.
-std::vector<std::string> curve_elements(const Panel& panel, std::size_t curve, const Trace& trace, GnuplotData& data);
+std::vector<std::string> curve_elements(const Panel& panel, std::size_t place, const Trace& trace, GnuplotData& data);
 
 }  // namespace dinal

@@ -15,44 +15,55 @@ struct Extent {
         low = std::min(low, value);
         high = std::max(high, value);
     }
+    void add(const Extent& other) {
+        low = std::min(low, other.low);
+        high = std::max(high, other.high);
+    }
     [[nodiscard]] bool empty() const { return low > high; }
 };
 
-Extent extent_of_x(const Figure& figure) {
-    Extent extent;
-    for (const Curve& curve : figure.curves) {
-        for (std::size_t i = 0; i < curve.size(); ++i) {
-            const double x = curve.x.values[i];
-            if (drawable(x, figure.x.logarithmic) && drawable(curve.y.values[i], figure.y.logarithmic)) {
-                extent.add(x);
-            }
+/// An area reaches to its base, or to zero.
+void add_other_edge(const Curve& curve, Range window, bool logarithmic, Extent& y) {
+    if (!curve.base) {
+        if (!logarithmic) {
+            y.add(0);
+        }
+        return;
+    }
+    for (std::size_t i = 0; i < curve.size(); ++i) {
+        const double x = curve.x.values[i];
+        if (drawable(curve.base->values[i], logarithmic) && x >= window.low && x <= window.high) {
+            y.add(curve.base->values[i]);
         }
     }
-    return extent;
 }
 
-/// Of the points that are seen: who looks at a piece of time wants to see that piece.
-Extent extent_of_y(const Figure& figure, Range x_range) {
-    Extent extent;
+struct Extents {
+    Extent x, y;
+};
+
+/// Of the points that are seen: who looks at a piece of time wants to see the values of that piece.
+Extents extents_of(const Figure& figure) {
+    const Range window = figure.x.limits.value_or(Range{-infinity, infinity});
+    const bool x_log = figure.x.logarithmic, y_log = figure.y.logarithmic;
+    Extents all;
     for (const Curve& curve : figure.curves) {
-        for (std::size_t i = 0; i < curve.size(); ++i) {
-            const double x = curve.x.values[i];
-            const double y = curve.y.values[i];
-            if (!(x >= x_range.low && x <= x_range.high)) {
-                continue;
-            }
-            if (drawable(y, figure.y.logarithmic)) {
-                extent.add(y);
-            }
-            if (curve.style == Style::fill && curve.base && drawable(curve.base->values[i], figure.y.logarithmic)) {
-                extent.add(curve.base->values[i]);
+        const double* xs = curve.x.values.data();
+        const double* ys = curve.y.values.data();
+        Extents own;
+        for (std::size_t i = 0, n = curve.size(); i < n; ++i) {
+            if (drawable(xs[i], x_log) && drawable(ys[i], y_log) && xs[i] >= window.low && xs[i] <= window.high) {
+                own.x.add(xs[i]);
+                own.y.add(ys[i]);
             }
         }
-        if (curve.style == Style::fill && !curve.base && !figure.y.logarithmic && curve.size() > 0) {
-            extent.add(0);
+        if (curve.style == Style::fill && !own.x.empty()) {
+            add_other_edge(curve, window, y_log, own.y);
         }
+        all.x.add(own.x);
+        all.y.add(own.y);
     }
-    return extent;
+    return all;
 }
 
 Range widened(Extent extent, double air) {
@@ -108,16 +119,13 @@ Scale::Scale(Range range, bool logarithmic)
 View view_of(const Figure& figure) {
     const bool has_points = std::any_of(figure.curves.begin(), figure.curves.end(),
                                         [](const Curve& curve) { return curve.style == Style::points; });
-    Extent x = extent_of_x(figure);
+    Extents extents = extents_of(figure);
     if (figure.circles) {
-        include_origin(x);
+        include_origin(extents.x);
+        include_origin(extents.y);
     }
-    const Range x_range = with_air(x, figure.x, figure.equal || has_points ? 0.06 : 0);
-    Extent y = extent_of_y(figure, x_range);
-    if (figure.circles) {
-        include_origin(y);
-    }
-    return {Scale(x_range, figure.x.logarithmic), Scale(with_air(y, figure.y, 0.05), figure.y.logarithmic)};
+    return {Scale(with_air(extents.x, figure.x, figure.equal || has_points ? 0.06 : 0), figure.x.logarithmic),
+            Scale(with_air(extents.y, figure.y, 0.05), figure.y.logarithmic)};
 }
 
 Box equal_box(View& view, Box most) {

@@ -21,8 +21,10 @@ constexpr double stroke_bytes = 2 * point_bytes;
 constexpr double mark_bytes = 110;
 
 double bytes_of(const Curve& curve, const Trace& trace) {
-    return static_cast<double>(trace.ink.all.size()) * stroke_bytes +
-           static_cast<double>(trace.places.size()) * (curve.style == Style::points ? mark_bytes : point_bytes);
+    const double each = curve.style == Style::points ? mark_bytes
+                        : curve.style == Style::fill ? 2 * point_bytes  // there and back
+                                                     : point_bytes;
+    return static_cast<double>(trace.ink.all.size()) * stroke_bytes + static_cast<double>(trace.places.size()) * each;
 }
 
 /// An area has the corners of both its edges, and is interrupted where one of them is.

@@ -27,7 +27,7 @@ Frame frame_of(Charset charset) {
 class TextPlot {
 public:
     TextPlot(const Figure& figure, const TextFormat& format)
-        : figure_(figure), format_(format), view_(view_of(figure)), frame_(frame_of(format.charset)) {}
+        : figure_(figure), format_(format), seen_(view_of(figure)), view_(seen_), frame_(frame_of(format.charset)) {}
 
     TextBlock block() {
         lay_out();
@@ -81,7 +81,7 @@ private:
         columns_ = std::max(2, format_.columns - around - letters_at_end);
         box_ = {static_cast<double>(columns_ * cell_width), static_cast<double>(rows_ * cell_height)};
         if (figure_.equal) {
-            view_ = view_of(figure_);
+            view_ = seen_;
             box_ = equal_box(view_, box_);
             columns_ = std::max(1, static_cast<int>(std::ceil(box_.width / cell_width - 1e-9)));
             rows_ = std::max(1, static_cast<int>(std::ceil(box_.height / cell_height - 1e-9)));
@@ -281,7 +281,8 @@ private:
 
     const Figure& figure_;
     const TextFormat& format_;
-    View view_;
+    const View seen_;  // of the figure
+    View view_;        // on the canvas
     Frame frame_;
     Ticks x_ticks_, y_ticks_;
     TextBlock head_;

@@ -5,7 +5,6 @@
 
 #include "io/run_figure.hpp"
 #include "io/table.hpp"
-#include "lua/external_memory.hpp"
 #include "lua/library.hpp"
 #include "lua/picture.hpp"
 #include "lua/plot_docs.hpp"

@@ -9,6 +9,7 @@
 #include "io/file.hpp"
 #include "io/gnuplot.hpp"
 #include "io/screen.hpp"
+#include "lua/external_memory.hpp"
 #include "lua/interrupt.hpp"
 #include "lua/memory_limit.hpp"
 
@@ -157,6 +158,17 @@ void write_picture(lua_State* L, const Options& options, const std::vector<Figur
     value_or_fail(options, file.commit());
 }
 
+/// What they may keep alive outside of Lua.
+std::size_t bytes_of(const std::vector<Figure>& figures) {
+    std::size_t numbers = 0;
+    for (const Figure& figure : figures) {
+        for (const Curve& curve : figure.curves) {
+            numbers += curve.x.values.size() + curve.y.values.size();
+        }
+    }
+    return numbers * sizeof(double);
+}
+
 /// A user's ticks must be few enough to be told apart.
 void check_ticks(const Options& options, std::string_view name, const Axis& axis, const Scale& scale) {
     constexpr double most = 200;
@@ -204,7 +216,9 @@ int deliver(lua_State* L, const Options& options, std::vector<Figure> figures) {
         options.fail("size is for files; give width and height for a picture in the terminal");
     }
     if (!show) {
+        const std::size_t bytes = bytes_of(figures);
         push(L, Picture{std::move(figures), format});
+        note_external_memory(L, bytes);
         return 1;
     }
     const std::string text = text_plot(figures, format);

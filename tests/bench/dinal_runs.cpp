@@ -20,6 +20,12 @@ T need(Expected<T> result) {
     return std::move(result).value();
 }
 
+Excitation excitation(const Workload& work) {
+    return work.driven ? need(Excitation::make(Harmonic{.amplitude = 1, .omega = omega0})) : Excitation();
+}
+
+}  // namespace
+
 // k = 1 and I = 1/w0^2: times are in natural periods, angles in Mc/k.
 Oscillator oscillator(const Workload& work) {
     const double inertia = 1 / (omega0 * omega0);
@@ -28,12 +34,6 @@ Oscillator oscillator(const Workload& work) {
                                   .damping = 2 * work.zeta * omega0 * inertia,
                                   .kinetic_friction = work.friction_ratio}));
 }
-
-Excitation excitation(const Workload& work) {
-    return work.driven ? need(Excitation::make(Harmonic{.amplitude = 1, .omega = omega0})) : Excitation();
-}
-
-}  // namespace
 
 Trajectory trajectory(const Workload& work, const Integrator& integrator, const Grid& rows) {
     return need(simulate(oscillator(work), excitation(work), {work.u0, work.v0}, {0, work.length}, rows, integrator));

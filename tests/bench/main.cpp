@@ -15,6 +15,7 @@ int main(int argc, char** argv) {
     bench::register_workloads(results);
     bench::register_rows(results);
     bench::register_lua(results);
+    bench::register_plots(results);
     bench::register_start(results);
 
     benchmark::Initialize(&argc, argv);

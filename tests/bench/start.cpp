@@ -82,15 +82,16 @@ void measure(benchmark::State& state, const std::vector<std::string>& arguments)
 }  // namespace
 
 void register_start(Results& results) {
-    const auto add = [&](const std::string& name, const std::vector<std::string>& arguments) {
-        const Item& item = results.of(std::string(start_group), name);
+    const auto add = [&](std::string_view group, const std::string& name, const std::vector<std::string>& arguments) {
+        const Item& item = results.of(std::string(group), name);
         benchmark::RegisterBenchmark((item.group + "/" + name).c_str(), [arguments](benchmark::State& state) {
             measure(state, arguments);
         })->UseManualTime();
     };
-    add("to the end of -e \"\"", {"-e", ""});
-    add("to the end of an empty script", {home().path() + "/empty.lua"});
-    add("to the prompt", {"-i"});  // whose input has ended already: it prompts once and leaves
+    add(plots_group, std::string(report_figures), {DINAL_EXAMPLES "/report/all.lua", home().path()});
+    add(start_group, "to the end of -e \"\"", {"-e", ""});
+    add(start_group, "to the end of an empty script", {home().path() + "/empty.lua"});
+    add(start_group, "to the prompt", {"-i"});  // whose input has ended already: it prompts once and leaves
 }
 
 }  // namespace bench

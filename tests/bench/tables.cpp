@@ -131,6 +131,16 @@ void print_bars(const Results& results) {
         bar_of(results, {{files_group, csv}}, fmt::format("{}: a row", csv), 250, "ns",
                [&] { return median(results, files_group, csv) / 1e6 * 1e9; });
     }
+    for (const std::string_view plot : {terminal_response, terminal_phase}) {
+        bar_of(results, {{plots_group, plot}}, fmt::format("plot of 1e6 rows, {}", plot), 50, "ms",
+               [&] { return median(results, plots_group, plot) * 1e3; });
+    }
+    for (const std::string_view plot : {svg_response, svg_phase}) {
+        bar_of(results, {{plots_group, plot}}, fmt::format("plot of 1e6 rows, {}", plot), 1, "s",
+               [&] { return median(results, plots_group, plot); });
+    }
+    bar_of(results, {{plots_group, report_figures}}, report_figures, 30, "s",
+           [&] { return median(results, plots_group, report_figures); });
     for (const std::string_view start : {"to the end of -e \"\"", "to the end of an empty script", "to the prompt"}) {
         bar_of(results, {{start_group, start}}, fmt::format("start {}", start), 20, "ms",
                [&] { return median(results, start_group, start) * 1e3; });

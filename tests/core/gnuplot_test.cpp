@@ -311,6 +311,14 @@ TEST_CASE("a line that leaves the window by far is drawn within it", "[gnuplot]"
     }
 }
 
+TEST_CASE("an area that leaves the window is cut where its edge does", "[gnuplot]") {
+    Figure figure;
+    figure.curves.push_back({Numbers::own({0, 1, 2}), Numbers::own({0, 4, 0}), "", Style::fill});
+    figure.y.limits = Range{0, 1};
+    const std::string script = gnuplot_file({&figure, 1}, {});
+    CHECK(script.find("$data1 << end\n0 0\n0.25 1\n1.75 1\n2 0\n") != std::string::npos);
+}
+
 TEST_CASE("a phase plane that is flat or steep gets a sheet that fits it", "[gnuplot]") {
     Figure figure = spiral(1000);
     const auto height = [&] {

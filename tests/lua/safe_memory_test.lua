@@ -31,6 +31,8 @@ strangers.check({
     ["the text of an excitation"] = "local e = excitation.harmonic{ frequency = 1 } for i = 1, 15 do e = e + e end local t = {} while true do t[#t + 1] = tostring(e) .. #t end",
     ["an error message"] = "local s = 'x' while true do s = s .. s pcall(error, s) pcall(function() return system[s] end) end",
     ["warnings"] = "local s = 'x' while true do s = s .. s warn('@off', s) end",
+    ["pictures that stay"] = "local x, t = {}, {} for i = 1, 1e4 do x[i] = i end while true do t[#t + 1] = plot{ { x, x }, show = false } end",
+    ["texts of pictures that stay"] = "local p, t = plot{ { { 0, 1 }, { 0, 1 } }, width = 1000, height = 500, show = false }, {} while true do t[#t + 1] = tostring(p) end",
     ["memory while the chunk is stopped"] = "local t = {} local x <close> = setmetatable({}, { __close = function() while true do t[#t + 1] = {} end end }) while true do t[#t + 1] = {} end",
 }, options, 1, "dinal: stopped[^\n]*: " .. limit)
 
@@ -39,6 +41,7 @@ strangers.check({
     ["vectors that are thrown away"] = "local v = vector.linspace(0, 1, 5e5) for i = 1, 100 do v = v + 1 end print 'done'",
     ["runs that are thrown away"] = "for i = 1, 100 do nondimensional{}:simulate{ theta0 = 1, t_end = 10, dt = 1e-3 } end print 'done'",
     ["excitations that are thrown away"] = "local e = excitation.harmonic{ frequency = 1 } for i = 1, 1000 do e = e + 1 end print 'done'",
+    ["pictures that are thrown away"] = "local x = {} for i = 1, 1e4 do x[i] = i end for i = 1, 1000 do plot{ { x, x }, show = false } end print 'done'",
     ["tables that are thrown away"] = "for i = 1, 300 do local t = {} for j = 1, 10000 do t[j] = { j } end end print 'done'",
     ["a run that takes most of what there is"] = "print(#nondimensional{}:simulate{ theta0 = 1, t_end = 1, times = vector.linspace(0, 1, 3e5) } == 3e5 and 'done')",
 }, options, 0, "done\n")

@@ -83,6 +83,9 @@ strangers.check(blocked, options, 0, ".*nothing\n", folder)
 local function saves(name)
     return run .. ("local ok, why = pcall(run.save, run, %q) print(ok and 'saved' or why)"):format(name)
 end
+local function draws(name)
+    return run .. ("local ok, why = pcall(run.plot, run, { file = %q }) print(ok and 'saved' or why)"):format(name)
+end
 local function reads(name)
     return ("local ok, why = pcall(trajectory.load, %q) local _, other = pcall(excitation.samples, %q) print(ok and 'read' or why) print(other)"):format(
         name, name)
@@ -95,13 +98,16 @@ end
 for _, name in ipairs { "../secret.csv", "../new.csv", folder .. "/../new.csv", "/tmp/dinal-safe-mode.csv", "write.csv", "read.csv", "up/new.csv", "up/new.dat", "out.csv", "loop.csv", "/dev/fd/1.csv", "sub/../../new.csv", "../lab2/x.csv" } do
     refused["writing " .. name] = saves(name)
 end
+for _, name in ipairs { "../new.svg", folder .. "/../new.gp", "up/new.png", "/tmp/dinal-safe-mode.txt", "sub/../../new.pdf", "../lab2/x.svg" } do
+    refused["drawing " .. name] = draws(name)
+end
 local results = strangers.run(refused, options, folder)
 for name, code in pairs(refused) do
     support.test(name .. " is refused", function()
         local result = results[name]
         support.equal(result.exit, 0, result.text)
         local file = name:match "%S+$"
-        local ends = file:match "%.csv$" or file:match "%.dat$"
+        local ends = file:match "%.csv$" or file:match "%.dat$" or name:find "^drawing"
         assert(not ends or result.text:find(only, 1, true) or result.text:find("there is no folder", 1, true), result.text)
         assert(not result.text:find "saved" and not result.text:find "read\n", result.text)
         assert(not result.text:find "excitation.samples *{" and not result.text:find "root:", result.text)
@@ -114,6 +120,18 @@ for _, name in ipairs { "a.csv", "sub/b.csv", "./c.dat", folder .. "/d.csv", "su
     fine["writing and reading " .. name] = saves(name) .. reads(name)
 end
 strangers.check(fine, options, 0, "saved\nread\n.*", folder)
+strangers.check({
+    ["drawing within the folder"] = draws "a.svg" .. draws "sub/b.png" .. draws "c.pdf" .. draws "d.gp" .. draws "e.txt",
+}, options, 0, ("saved\n"):rep(5), folder)
+
+-- What gnuplot is told: the script's words and numbers are none of its commands.
+local words = run .. [[
+    for _, attack in ipairs { "`touch ../new`", "'; system('touch ../new'); '", "'\n!touch ../new\n", "\"`touch ../new`\"", "\\'\nsystem 'touch ../new' #", "$(touch ../new)", "@GPVAL_PWD" } do
+        run:plot{ title = attack, xlabel = attack, ylabel = attack, file = "words.svg" }
+        plot{ { { 0, 1 }, { 0, 1 }, label = attack }, file = "words.svg" }
+    end
+    print "drawn"]]
+strangers.check({ ["words are no commands of gnuplot"] = words }, options, 0, "drawn\n", folder)
 
 local test = support.test
 test("what stands outside of the folder is as it was", function()

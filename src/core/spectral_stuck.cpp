@@ -1,0 +1,149 @@
+// The spectral engine's mass at rest: how long M holds it there, and its breakaway.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "core/first_below.hpp"
+#include "core/spectral_engine.hpp"
+
+namespace dinal {
+
+namespace {
+
+constexpr double epsilon = std::numeric_limits<double>::epsilon();
+
+}  // namespace
+
+/// Stuck, up to the first time that |M - k theta| > Re or the end of the panel.
+bool SpectralEngine::stay() {
+    double from = standing_from_;
+    if (from == nowhere) {
+        if (M_sampled_ && !holding_) {
+            const Motion direction = motion_from_standstill(system_, M_, y_.theta);
+            if (direction != Motion::stuck) return release_at(nowhere, direction);
+        }
+        choose_panel();
+        if (const Attempt attempt = sample_standing(); attempt != Attempt::resolved) return attempt != Attempt::ended;
+        from = -1;
+    }
+    const auto [x, direction] = first_release(from);
+    if (x < 1) return release_at(x, direction);
+    end_piece(1, y_, 0);
+    return std::isfinite(M_) || fail(Outcome::excitation_not_finite);
+}
+
+/// The first release in [from, 1] and its direction; else `nowhere`.
+std::pair<double, Motion> SpectralEngine::first_release(double from) const {
+    std::pair<double, Motion> first{nowhere, Motion::stuck};
+    for (const Motion side : {Motion::forward, Motion::backward}) {
+        if (const double x = release_towards(side, from); x < first.first) first = {x, side};
+    }
+    if (first.first != nowhere && time_at(first.first) >= end_) first.first = nowhere;  // the next panel's business
+    return first;
+}
+
+/// Where M passes the limit of this side. Its series tells, but where the two meet so gently that the error of the
+/// series matters, M itself is asked: the limit is a razor's edge.
+double SpectralEngine::release_towards(Motion side, double from) const {
+    constexpr double exact_enough = 1e-11;  // natural periods
+    const double sign = sign_of(side), k_theta = system_.stiffness() * y_.theta, Re = system_.breakaway();
+    const double doubt = 8 * (epsilon * (Re + std::fabs(k_theta)) + chebyshev::tail(panel_.M));
+    double varying = 0;
+    for (std::size_t k = 1; k < points; ++k) varying += std::fabs(panel_.M[k]);
+    const double mean = sign * (panel_.M[0] - k_theta);
+    if (mean + varying < Re - doubt) return nowhere;
+
+    // What is left of the limit: Re - side (M - k theta).
+    Series left{};
+    chebyshev::Series<points - 1> slope = chebyshev::derivative(panel_.M);
+    for (std::size_t k = 1; k < points; ++k) left[k] = -sign * panel_.M[k];
+    for (double& c : slope) c *= -sign;
+    left[0] = Re - mean;
+    chebyshev::Curve<points> curve(1, left, slope);
+    curve.raise_floor(doubt);
+    std::optional<double> touch;
+    const auto touches = [&](double x) {
+        if (holding_) return false;
+        for (const double place : {x, curve.lowest_near(x)}) {
+            if (!lets_go(place, side)) continue;
+            touch = place;
+            return true;
+        }
+        return false;
+    };
+    const auto x = chebyshev::first_below(curve, from, chebyshev::Start::anywhere, touches);
+    if (!x) return nowhere;
+    const double off = doubt / std::fabs(curve.slope(*x));
+    if (holding_ || (!touch && off * panel_.h <= exact_enough * T0_)) return *x;
+    return moment_of_release(touch.value_or(*x), off, from, side);
+}
+
+bool SpectralEngine::lets_go(double x, Motion side) const {
+    return motion_from_standstill(system_, excitation_.value(time_at(x), y_), y_.theta) == side;
+}
+
+/// Between a place near x where M still holds and one where it lets go, by halving.
+double SpectralEngine::moment_of_release(double x, double off, double from, Motion side) const {
+    constexpr double finest = 1e-15;
+    double held = x, gone = x;
+    double step = std::clamp(off, 1e-12, 1e-3);
+    if (lets_go(x, side)) {
+        for (; held == gone; step *= 2) {
+            if (gone <= from) return from;
+            held = std::max(from, gone - step);
+            if (lets_go(held, side)) gone = held;
+        }
+    } else {
+        for (; held == gone; step *= 2) {
+            if (held >= 1) return nowhere;
+            gone = std::min(1.0, held + step);
+            if (!lets_go(gone, side)) held = gone;
+        }
+    }
+    while (gone - held > finest) {
+        const double middle = held + (gone - held) / 2;
+        if (!(middle > held && middle < gone)) break;
+        (lets_go(middle, side) ? gone : held) = middle;
+    }
+    return gone;
+}
+
+/// Breakaway at x of the panel, or, with `nowhere`, at once.
+bool SpectralEngine::release_at(double x, Motion direction) {
+    const bool at_once_only = x == nowhere;
+    if (!at_once_only) {
+        const bool feedback = feedback_ && x > -1;
+        const double M = feedback ? excitation_.value(time_at(x), y_) : chebyshev::value(panel_.M, x);
+        if (!std::isfinite(M)) return fail(Outcome::excitation_not_finite);
+        end_piece(x, y_, M);
+        if (!std::isfinite(M_)) return fail(Outcome::excitation_not_finite);
+        standing_from_ = nowhere;
+    }
+    motion_ = direction;
+    leaving_ = true;
+    holding_ = false;
+    record(EventKind::slip);
+    at_start_ = false;
+    return !stopped();
+}
+
+/// A motion that did not get under way: M only touched the limit. The mass stays where it is.
+void SpectralEngine::never_left() {
+    if (!events_.empty() && events_.back().t == clock_.hi) {
+        Event& last = events_.back();
+        if (last.kind == EventKind::slip) {
+            events_.pop_back();
+        } else if (last.kind == EventKind::turn) {
+            last.kind = EventKind::stick;
+        }
+    } else if (!at_start_) {
+        record(EventKind::stick);  // it was on its way, came to rest, and did not go on
+    }
+    motion_ = Motion::stuck;
+    theta_rest_ = 0;
+    leaving_ = false;
+    holding_ = true;
+    standing_from_ = nowhere;
+}
+
+}  // namespace dinal

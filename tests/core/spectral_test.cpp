@@ -1,0 +1,321 @@
+// What only the spectral integrator has to answer for: functions that hide their jumps, feedback, and where it gives
+// up.
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <numbers>
+
+#include "core/energy.hpp"
+#include "support/excitations.hpp"
+#include "support/measure.hpp"
+#include "support/random_case.hpp"
+#include "support/within.hpp"
+
+using namespace dinal;
+using namespace dinal::truth;
+
+namespace {
+
+constexpr double pi = std::numbers::pi;
+using excitations::made;
+using excitations::Probe;
+
+struct Script {
+    std::shared_ptr<Probe> probe;
+    Excitation M;
+};
+Script script(std::function<double(double)> f) {
+    auto probe = excitations::probe(std::move(f));
+    return {probe, made(Scripted{.function = probe})};
+}
+Excitation feedback(std::function<double(double, const State&)> f) {
+    return made(Scripted{.function = std::make_shared<Probe>(std::move(f)), .feedback = true});
+}
+double sgn(double x) {
+    return x > 0 ? 1 : x < 0 ? -1 : 0;
+}
+
+Trajectory spectral(const Oscillator& system, const Excitation& M, const State& initial, const Window& window,
+                    const Spectral& options = {}) {
+    return must_run(system, M, initial, window, Grid::every((window.end - window.start) / 64), options);
+}
+
+/// Stick and slip take turns, and nothing but a slip ends a stick.
+void check_order(const std::vector<Event>& events) {
+    for (std::size_t i = 1; i < events.size(); ++i) {
+        CAPTURE(i);
+        REQUIRE(events[i].t >= events[i - 1].t);
+        REQUIRE((events[i - 1].kind == EventKind::stick) == (events[i].kind == EventKind::slip));
+    }
+}
+
+}  // namespace
+
+// ---- the limit of sticking
+
+TEST_CASE("a sine of amplitude Re touches the limit at any frequency and phase and releases nothing",
+          "[spectral][razor]") {
+    Lot lot(17);
+    for (int i = 0; i < 300; ++i) {
+        const double Re = lot.between(0.05, 2), Rd = i % 3 == 0 ? Re : Re * lot.between(0.1, 1);
+        const Oscillator system = nondimensional(0, Rd, Re);
+        const double omega = 2 * pi * lot.power_of_ten(-1, 1.5), phase = lot.between(0, 6.28);
+        CAPTURE(i, Re, Rd, omega, phase);
+        REQUIRE(spectral(system, harmonic(Re, omega, phase), {0, 0}, {0, 20}).events.empty());
+        const auto same = script([=](double t) { return Re * std::sin(omega * t + phase); });
+        REQUIRE(spectral(system, same.M, {0, 0}, {0, 20}).events.empty());
+        // The spring takes half of what M may be.
+        REQUIRE(spectral(system, harmonic(Re / 2, omega, phase), {-Re / 2, 0}, {0, 20}).events.empty());
+    }
+}
+
+TEST_CASE("a sine that passes Re by a part in 1e13 releases, and when it does", "[spectral][razor]") {
+    Lot lot(18);
+    for (const double excess : {1e-13, 1e-11, 1e-9}) {
+        for (int i = 0; i < 100; ++i) {
+            const double Re = lot.between(0.05, 2), omega = 2 * pi * lot.power_of_ten(-1, 1), A = Re * (1 + excess);
+            const Oscillator system = nondimensional(0, Re / 2, Re);
+            const Trajectory run = spectral(system, harmonic(A, omega), {0, 0}, {0, 0.7 * 2 * pi / omega});
+            CAPTURE(excess, i, Re, omega);
+            REQUIRE_FALSE(run.events.empty());
+            CHECK(run.events[0].kind == EventKind::slip);
+            // M is known to a rounding or two; its slope there is A omega sqrt(2 excess).
+            const double t = std::asin(Re / A) / omega;
+            CHECK(run.events[0].t == within(t, 4e-16 / (omega * std::sqrt(2 * excess)) + 1e-13));
+        }
+    }
+}
+
+TEST_CASE("a function that rests at Re and then leaves it gently releases when it leaves", "[spectral][razor]") {
+    const Oscillator system = nondimensional(0, 0.2, 0.5);
+    for (int power = 1; power <= 6; ++power) {
+        const auto M = script([power](double t) { return 0.5 + std::pow(std::max(0.0, t - 0.3), power); });
+        const Trajectory run = spectral(system, M.M, {0, 0}, {-0.2, 0.6});
+        CAPTURE(power);
+        REQUIRE(run.events.size() == 1);
+        CHECK(run.events[0].kind == EventKind::slip);
+        // The first M above 0.5 in doubles is where the power passes half of its last place, 2^-54.
+        CHECK(run.events[0].t == within(0.3 + std::pow(0x1p-54, 1.0 / power), 1e-8));
+    }
+}
+
+TEST_CASE("a step that comes bare between the samples of short panels releases at its time", "[spectral]") {
+    const Oscillator system = nondimensional(0.05, 0.2, 0.3);
+    const auto M = script([](double t) { return t < 1.325 ? 0.0 : 0.7; });
+    for (const double max_panel : {0.025, 0.05, 1.0}) {
+        const Trajectory run = spectral(system, M.M, {0, 0}, {0, 2}, {.max_panel = max_panel});
+        CAPTURE(max_panel);
+        REQUIRE_FALSE(run.events.empty());
+        CHECK(run.events[0].kind == EventKind::slip);
+        CHECK(run.events[0].t == within(1.325, 1e-15));
+        CHECK(run.events[0].M == within(0.7, 1e-15));
+    }
+}
+
+// ---- feedback
+
+TEST_CASE("a hard cubic spring made by feedback keeps the energy", "[spectral][feedback]") {
+    const Oscillator system = nondimensional(0, 0);
+    for (const double hardness : {1.0, 1e2, 1e4}) {
+        const Excitation M =
+            feedback([hardness](double, const State& y) { return -hardness * y.theta * y.theta * y.theta; });
+        const State initial{1, 0};
+        const Trajectory run = spectral(system, M, initial, {0, 10});
+        const auto energy = [&](double theta, double v) {
+            return system.inertia() * v * v / 2 + theta * theta / 2 + hardness * std::pow(theta, 4) / 4;
+        };
+        const double all = energy(1, 0);
+        CAPTURE(hardness);
+        for (Eigen::Index i = 0; i < run.size(); ++i) {
+            // Some 50 panels a swing, sqrt(hardness) swings in T0, a rounding or two of each.
+            REQUIRE(energy(run.rows(i, 1), run.rows(i, 2)) == within(all, 1e-13 * std::sqrt(hardness) * 10 * all));
+        }
+        CHECK(energy_of(run)->closure() < 1e-12);
+    }
+}
+
+TEST_CASE("a stiff relaxation oscillator is followed through its jumps", "[spectral][feedback]") {
+    const Oscillator system = nondimensional(0.02, 0);
+    const Excitation M = feedback([](double, const State& y) { return 50 * (1 - y.theta * y.theta) * y.velocity; });
+    const Trajectory run = spectral(system, M, {1.5, 0.2}, {0, 20});
+    // Richardson's limit of classical Runge-Kutta in long double with 2 and 4 million steps.
+    CHECK(run.at(10)->theta == within(1.143363102918, 1e-11));
+    CHECK(run.at(12)->theta == within(-1.98732282598, 2e-10));
+    CHECK(energy_of(run)->closure() < 1e-10);
+}
+
+TEST_CASE("feedback far from t = 0 adds up as it does near it", "[spectral][feedback]") {
+    const Oscillator system = nondimensional(0.05, 0.3);
+    for (const double start : {0.0, 1e6, -1e9}) {
+        const Excitation M = feedback([](double t, const State& y) {
+            return std::sin(6.9 * t) - 0.1 * y.velocity - 0.3 * y.theta * y.theta * y.theta;
+        });
+        const Trajectory run = spectral(system, M, {1, 0}, {start, start + 20});
+        CAPTURE(start);
+        CHECK(run.outcome == Outcome::reached_end);
+        CHECK(energy_of(run)->closure() < 1e-12);
+    }
+}
+
+TEST_CASE("a motion that runs away in finite time ends with an outcome", "[spectral][feedback]") {
+    for (const double Rd : {0.0, 0.3}) {
+        const Oscillator system = nondimensional(0.05, Rd);
+        for (const bool square : {true, false}) {
+            const Excitation M = feedback([square](double, const State& y) {
+                return square ? -0.1 * y.velocity * y.velocity : 5 * y.theta * y.theta * y.theta;
+            });
+            const Trajectory run = spectral(system, M, {1.5, 0.2}, {0, 20});
+            CAPTURE(Rd, square);
+            CHECK(run.outcome != Outcome::reached_end);
+            CHECK(run.outcome != Outcome::at_rest);
+            CHECK(run.t_stop < 0.3);
+            CHECK(run.rows.allFinite());
+        }
+    }
+}
+
+TEST_CASE("negative damping grows beyond all numbers without inventing turns on the way", "[spectral][feedback]") {
+    for (const double Rd : {0.0, 0.3}) {
+        const Oscillator system = nondimensional(0.05, Rd);
+        // Both roots of the free motion are real and positive: it turns once at most.
+        const Excitation M = feedback([](double, const State& y) { return 2 * y.velocity; });
+        const Trajectory run = spectral(system, M, {1.5, 0.2}, {0, 20});
+        CAPTURE(Rd);
+        CHECK(run.outcome == Outcome::state_not_finite);
+        CHECK(run.events.size() == 1);
+        CHECK(run.rows.allFinite());
+        CHECK(std::fabs(run.state_at_stop.theta) > 1e290);
+        REQUIRE_FALSE(energy_of(run));
+        CHECK_THAT(energy_of(run).error().sentence, Catch::Contains("beyond the range"));
+    }
+}
+
+TEST_CASE("feedback that pushes at rest and holds in motion ends, its events in order", "[spectral][feedback]") {
+    for (const double zeta : {0.0, 0.05}) {
+        const Excitation M = feedback([](double t, const State& y) {
+            return 1.2 * std::sin(t) - 0.3 * std::exp(-std::fabs(y.velocity) / 0.1) * sgn(y.velocity);
+        });
+        const Trajectory run = spectral(nondimensional(zeta, 0.3), M, {0.3, 0.2}, {0, 20});
+        CHECK(run.outcome == Outcome::chattering);
+        CHECK(run.events.size() > 10);
+        check_order(run.events);
+    }
+}
+
+TEST_CASE("a relay that slides along its switching line ends soon, with the outcome that says so",
+          "[spectral][feedback]") {
+    const auto relay = std::make_shared<Probe>(
+        [](double t, const State& y) { return -5 * sgn(y.theta + 0.3 * y.velocity) + std::sin(3 * t); });
+    const Excitation M = made(Scripted{.function = relay, .feedback = true});
+    for (const double Rd : {0.0, 0.3}) {
+        relay->calls = 0;
+        const Trajectory run = spectral(nondimensional(0.02, Rd), M, {0.3, 0.2}, {0, 20});
+        CHECK(run.outcome == Outcome::chattering);
+        CHECK(run.t_stop < 0.1);
+        CHECK(relay->calls < 20000000);  // a second or two
+    }
+}
+
+TEST_CASE("at its equilibrium a system under feedback does not turn", "[spectral][feedback]") {
+    const Excitation M = feedback([](double, const State& y) { return 100 * (0.5 - y.theta) - 3 * y.velocity; });
+    // Damped with 3/(2 sqrt(101) I w0): at rest, to rounding, after some ten swings.
+    const Trajectory run = spectral(nondimensional(0, 0), M, {0, 0}, {0, 200});
+    CHECK(run.outcome == Outcome::reached_end);
+    CHECK(run.events.size() < 60);
+    CHECK(run.state_at_stop.theta == within(50.0 / 101, 1e-15));
+}
+
+// ---- time scales far from T0
+
+TEST_CASE("where the spring is next to nothing, stops and turns follow the load, not T0", "[spectral]") {
+    // A block of mass 1 under +-1 in turn, friction 0.3: accelerations of 0.7 and 1.3 make it turn 0.7/1.3 of half a
+    // period late, for the first time.
+    for (const double k : {1e-6, 1e-9, 1e-14, 1e-20}) {
+        const Oscillator system = system_of({.inertia = 1, .stiffness = k, .kinetic_friction = 0.3});
+        const auto hidden = script([](double t) { return t - std::floor(t) < 0.5 ? 1.0 : -1.0; });
+        for (const Excitation& M : {made(Square{.amplitude = 1, .period = 1}), hidden.M}) {
+            const Trajectory run = spectral(system, M, {0, 0}, {0, 1000});
+            CAPTURE(k);
+            CHECK(run.outcome == Outcome::reached_end);
+            REQUIRE(run.events.size() == 1999);
+            CHECK(run.events[0].t == within(0.5 + 0.5 * 0.7 / 1.3, 1e-5 * std::sqrt(k) + k + 1e-14));
+        }
+    }
+    // Slow enough for it to stop in each half: 0.3 of friction outweighs a load of 0.25 at rest.
+    const Oscillator system = system_of({.inertia = 1, .stiffness = 1e-12, .kinetic_friction = 0.3});
+    const Trajectory run =
+        spectral(system, made(Square{.amplitude = 0.4, .period = 1, .duty = 0.25}), {0, 0}, {0, 100000});
+    CHECK(run.outcome != Outcome::chattering);
+    CHECK(run.events.size() > 100000);
+    check_order(run.events);
+}
+
+// ---- what never becomes smooth
+
+TEST_CASE("a function that is rough at every scale ends with its own outcome, soon", "[spectral]") {
+    const auto noise = [](double t) {
+        const double x = std::sin(t * 12345.678) * 43758.5;
+        return x - std::floor(x);
+    };
+    const auto staircase = [](double t) {  // Cantor's: flat almost everywhere, and never smooth
+        double x = t / 20, sum = 0, weight = 0.5;
+        for (int i = 0; i < 40; ++i, weight /= 2) {
+            x *= 3;
+            const int digit = static_cast<int>(x);
+            x -= digit;
+            if (digit > 0) sum += weight;
+            if (digit == 1) break;
+        }
+        return sum;
+    };
+    const auto single = [](double t) { return static_cast<double>(std::sin(static_cast<float>(t))); };
+    for (const std::function<double(double)>& f : {std::function<double(double)>(noise), {staircase}, {single}}) {
+        for (const double Rd : {0.0, 0.3}) {
+            const auto M = script(f);
+            const Trajectory run = spectral(nondimensional(0.05, Rd), M.M, {0.3, 0}, {0, 20});
+            CHECK(run.outcome == Outcome::unresolved);
+            CHECK(M.probe->calls < 20000000);
+        }
+    }
+}
+
+TEST_CASE("a square wave that a function hides costs a hundred calls an edge, from the first one at t_start on",
+          "[spectral]") {
+    const auto M = script([](double t) { return std::sin(6.9 * t) > 0 ? 1.0 : -1.0; });
+    const Trajectory run = spectral(nondimensional(0.05, 0.3), M.M, {1, 0}, {0, 20});
+    CHECK(run.outcome == Outcome::reached_end);
+    CHECK(M.probe->calls < 8000);  // 43 edges and 800 for the panels; the one at 0 is looked for down to 1e-308
+}
+
+// ---- stiff
+
+TEST_CASE("a stiff system far from t = 0 is followed like one at t = 0", "[spectral]") {
+    // zeta about 2000, from t0 = 571 T0 on.
+    const OscillatorParameters p{.inertia = 1, .stiffness = 1, .damping = 4000, .kinetic_friction = 0.3};
+    const Oscillator system = system_of(p);
+    const double start = 571 * system.natural_period(), end = start + 12 * system.natural_period();
+    const ReferenceSystem s{"stiff, late", system, harmonic(2, 0.7), harmonic_drive(2, 0.7), {0.4, -0.01},
+                            {start, end},  0.5};
+    const ExactMotion exact = s.exact();
+    const Trajectory run = must_run(s, Grid::every(0.37), Spectral{});
+    CHECK(run.outcome == Outcome::reached_end);
+    CHECK(error_of(run, exact, system) < 1e-12);
+    REQUIRE(run.events.size() == exact.events().size());
+    for (std::size_t i = 0; i < run.events.size(); ++i) {
+        CHECK(run.events[i].kind == exact.events()[i].kind);
+        // theta'' is M/C w there at most, 2000 times less than without damping.
+        CHECK(run.events[i].t == within(static_cast<double>(exact.events()[i].t), 1e-9));
+    }
+}
+
+TEST_CASE("an overdamped mass that creeps to its place is told to be at rest, not to chatter", "[spectral]") {
+    for (const double zeta : {1.0, 1.5, 40.0}) {
+        const Oscillator system = nondimensional(zeta, 0.3);
+        const Trajectory run = spectral(system, {}, {1.5, 0}, {0, 100 * zeta});
+        CAPTURE(zeta);
+        CHECK(run.outcome == Outcome::at_rest);
+        REQUIRE(run.events.size() == 1);
+        CHECK(run.state_at_stop.theta == within(0.3, 1e-11));
+    }
+}
