@@ -7,6 +7,8 @@
 #include <cstdlib>
 #include <system_error>
 
+#include "io/stop.hpp"
+
 namespace dinal {
 namespace {
 
@@ -62,7 +64,9 @@ Lines::Lines(std::string_view text) : rest_(text) {
 }
 
 bool Lines::next() {
-    if (rest_.empty()) {
+    constexpr std::size_t lines_between_questions = 4096;
+    const bool stops = number_ % lines_between_questions == lines_between_questions - 1 && shall_stop();
+    if (rest_.empty() || stops) {
         return false;
     }
     ++number_;

@@ -15,7 +15,7 @@ class Lines {
 public:
     explicit Lines(std::string_view text);
 
-    /// Goes to the next line; false at the end of the text.
+    /// Goes to the next line; false at the end of the text, and when shall_stop() says so.
     bool next();
     [[nodiscard]] std::string_view text() const { return line_; }
     [[nodiscard]] std::size_t number() const { return number_; }

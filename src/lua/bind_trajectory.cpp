@@ -4,6 +4,7 @@
 
 #include "io/csv.hpp"
 #include "io/record1989.hpp"
+#include "lua/interrupt.hpp"
 #include "lua/library.hpp"
 #include "lua/run.hpp"
 
@@ -32,6 +33,9 @@ int load(lua_State* L) {
         raise(L, "trajectory.load: the name of the file must be a string, got " + describe(L, 1));
     }
     auto table = read(lua_tostring(L, 1));
+    if (interrupt_requested()) {
+        raise_interrupted(L);  // what was read is not all
+    }
     if (!table) {
         raise(L, "trajectory.load: " + table.error().sentence);
     }

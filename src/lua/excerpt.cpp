@@ -4,7 +4,7 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <cstdlib>
+#include <charconv>
 #include <optional>
 #include <vector>
 
@@ -118,8 +118,10 @@ std::optional<Message> unclosed(const Message& message) {
     if (close == std::string_view::npos || line == std::string_view::npos) {
         return std::nullopt;
     }
-    const std::string number(message.words.substr(line + 9, message.words.find(')', line) - line - 9));
-    return Message{message.chunk, std::atoi(number.c_str()), message.words.substr(close + 10, line - close - 10)};
+    int number = 0;
+    const std::string_view digits = message.words.substr(line + 9);
+    std::from_chars(digits.data(), digits.data() + digits.size(), number);
+    return Message{message.chunk, number, message.words.substr(close + 10, line - close - 10)};
 }
 
 /// The excerpt with the mark at a place in the text that begins with the line of that number.

@@ -3,9 +3,11 @@
 
 #include <algorithm>
 #include <optional>
+#include <utility>
 
 #include "io/csv.hpp"
 #include "lua/bind_excitation.hpp"
+#include "lua/interrupt.hpp"
 #include "lua/lua_text.hpp"
 #include "lua/options.hpp"
 #include "lua/user_function.hpp"
@@ -72,7 +74,11 @@ std::vector<double> column_values(const Table& table, Eigen::Index column) {
 int samples_from_file(lua_State* L) {
     const std::string file = lua_tostring(L, 1);
     const Options options(L, 2, "excitation.samples", file_example, {"time", "value"}, true);
-    const Table table = value_or_raise(L, "", read_csv(file));
+    auto read = read_csv(file);
+    if (interrupt_requested()) {
+        raise_interrupted(L);  // what was read is not all
+    }
+    const Table table = value_or_raise(L, "", std::move(read));
     if (table.values.rows() == 0) {
         raise(L, fmt::format("excitation.samples: {} has names but no rows of numbers", file));
     }

@@ -98,7 +98,7 @@ std::string running_habit(std::string_view words, std::string_view statement) {
 }
 
 std::string foreign_name(std::string_view name) {
-    const auto found =
+    const auto* const found =
         std::find_if(foreign_names.begin(), foreign_names.end(), [name](const auto& n) { return n.first == name; });
     return found == foreign_names.end() ? "" : std::string(found->second);
 }

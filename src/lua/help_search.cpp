@@ -131,7 +131,10 @@ std::string no_help(std::string_view words) {
     if (std::find(keywords().begin(), keywords().end(), words) != keywords().end()) {
         return fmt::format("'{}' is a word of Lua: see https://www.lua.org/manual/5.4\n", words);
     }
-    const std::string hint = likely(words);
+    std::string hint = likely(words);
+    if (const std::size_t last = words.find_last_of(".:"); hint.empty() && last != std::string_view::npos) {
+        hint = likely(words.substr(last + 1));  // run.enrgy
+    }
     return fmt::format("nothing about '{}'{}{}\n", words, hint,
                        hint.empty() ? "; help \"contents\" lists what there is" : "");
 }

@@ -81,7 +81,8 @@ constexpr std::array<Cure, 14> printed_signs = {{
 
 template <std::size_t count>
 std::string_view cure(const std::array<Cure, count>& cures, std::string_view word) {
-    const auto found = std::find_if(cures.begin(), cures.end(), [word](const Cure& c) { return c.first == word; });
+    const auto* const found =
+        std::find_if(cures.begin(), cures.end(), [word](const Cure& c) { return c.first == word; });
     return found == cures.end() ? std::string_view() : found->second;
 }
 

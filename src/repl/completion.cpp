@@ -116,7 +116,7 @@ std::vector<std::string> plain_names(lua_State* L, const TypedText& typed, bool 
     for (const Token& token : typed.tokens_before()) {
         const std::string name(token.text);
         const bool known = std::any_of(names.begin(), names.end(), [&name](const std::string& n) {
-            return n.starts_with(name) && (n.size() == name.size() || is_name(n) == false);
+            return n.starts_with(name) && (n.size() == name.size() || !is_name(n));
         });
         if (token.kind == TokenKind::name && before != "." && before != ":" && !known) {
             names.push_back(name);

@@ -55,7 +55,7 @@ void accept(char* text) {
 
 void erase_hint() {
     if (editing.hinting) {
-        std::fputs(erase_to_end, rl_outstream);
+        static_cast<void>(std::fputs(erase_to_end, rl_outstream));
         editing.hinting = false;
     }
 }
@@ -82,8 +82,8 @@ void redisplay() {
     const Painted painted = paint(editing.L, editing.prompt, editing.pending, line, cursor);
     editing.hinting = painted.hint;
     if (!painted.text.empty()) {
-        std::fputs(painted.text.c_str(), rl_outstream);
-        std::fflush(rl_outstream);
+        static_cast<void>(std::fputs(painted.text.c_str(), rl_outstream));
+        static_cast<void>(std::fflush(rl_outstream));
     }
 }
 
@@ -282,6 +282,7 @@ const char* LineEditor::about() {
 
 LineEditor::LineEditor(lua_State*) : edits_(false) {}
 
+// NOLINTNEXTLINE(readability-convert-member-functions-to-static): with readline it is none
 Line LineEditor::read(const std::string& prompt, const std::string&) const {
     return read_plain(prompt);
 }

@@ -24,8 +24,8 @@ public:
     static const char* about();
 
 private:
-    bool edits_;                // readline, not plain reading
-    std::string history_file_;  // empty when there is none
+    [[maybe_unused]] bool edits_;  // readline, not plain reading
+    std::string history_file_;     // empty when there is none
 };
 
 }  // namespace dinal

@@ -36,7 +36,7 @@ void reject(Session& session, const std::string& text) {
 Line read_rest(Session& session, Chunk& chunk, Line input) {
     lua_State* L = session.L;
     while (chunk.result == Compiled::incomplete) {
-        const Line more = session.editor.read(prompt_text(L, "_PROMPT2", ">> "), input.text);
+        Line more = session.editor.read(prompt_text(L, "_PROMPT2", ">> "), input.text);
         if (more.reading == Reading::end) {
             say("\n");
             chunk.result = Compiled::wrong;

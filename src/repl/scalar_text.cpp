@@ -84,7 +84,7 @@ std::string function_text(lua_State* L, int index, const Display& screen) {
     return fmt::format("function at {}:{}", about.short_src, about.linedefined);
 }
 
-std::string in_one_line(std::string text) {
+std::string in_one_line(const std::string& text) {
     const std::size_t end = text.find('\n');
     return end == std::string::npos ? text : text.substr(0, end) + "...";
 }

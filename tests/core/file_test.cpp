@@ -1,4 +1,5 @@
 #include "io/file.hpp"
+#include "io/csv.hpp"
 #include "io/stop.hpp"
 
 #include <fcntl.h>
@@ -272,4 +273,16 @@ TEST_CASE("who is told to stop writes no further, and the old file stays", "[fil
     REQUIRE_FALSE(written);
     CHECK(written.error().sentence.find("the old file is kept") != std::string::npos);
     CHECK(*read_file(path) == "old");
+}
+
+TEST_CASE("who is told to stop reads no further", "[file]") {
+    std::string text = "t,theta\n";
+    for (int i = 0; i < 100'000; ++i) text += "1,2\n";
+    int questions = 0;
+    static int* asked = &questions;
+    set_stop_question([]() noexcept { return ++*asked == 3; });
+    const auto table = parse_csv(text, "x.csv");
+    set_stop_question(nullptr);
+    REQUIRE(table);
+    CHECK(table->values.rows() < 20'000);
 }

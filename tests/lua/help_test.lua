@@ -122,6 +122,7 @@ test("help searches words, suggests names, and shows where to begin", function()
     local many = output 'help "the"'
     assert(select(2, many:gsub("\n  %S", "")) <= 10 and many:find("more: use more of the word", 1, true), many)
     assert(output 'help "harmonc"':find("did you mean 'harmonic'?", 1, true))
+    assert(output 'help "run.enrgy"':find("did you mean 'energy'?", 1, true))
     assert(output 'help "thta0"':find("did you mean 'theta0'?", 1, true))
     assert(output "help()":find("sys = system{", 1, true) and output "help()":find("help(2)", 1, true))
     equal(output "help(1)", output "help()")
