@@ -1,5 +1,6 @@
 #include "io/gnuplot.hpp"
 
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <chrono>
 #include <cmath>
@@ -8,6 +9,7 @@
 
 #include "io/gnuplot_data.hpp"
 #include "io/gnuplot_script.hpp"
+#include "io/paper_layout.hpp"
 #include "support/temporary_folder.hpp"
 
 using namespace dinal;
@@ -159,6 +161,37 @@ TEST_CASE("an SVG of a million random points is smaller than 200 kB and shows al
     few.curves.push_back(
         {Numbers::own({x.begin(), x.begin() + 5000}), Numbers::own({y.begin(), y.begin() + 5000}), "", Style::points});
     CHECK(svg(few).size() < 200'000);
+}
+
+TEST_CASE("one point of a million that stands out reaches the top of the SVG", "[gnuplot]") {
+    std::vector<double> x, y;
+    for (int i = 0; i < 1'000'000; ++i) {
+        x.push_back(i);
+        y.push_back(std::sin(0.01 * i));
+    }
+    y[654'321] = 7;
+    for (const bool over_time : {true, false}) {
+        if (!over_time) {  // a phase plane of 1591 turns
+            std::transform(x.begin(), x.end(), x.begin(), [](double i) { return std::cos(0.01 * i); });
+            x[654'321] = 5;
+        }
+        Figure figure;
+        figure.curves.push_back({Numbers::own(x), Numbers::own(y)});
+        figure.y.limits = Range{-2, 7};
+        const Sheet sheet = lay_out({&figure, 1}, {});
+        const std::string picture = svg(figure);
+        CHECK(picture.size() < 200'000);
+        const std::size_t curve = picture.find("<path stroke='rgb(  0, 114, 178)'");
+        REQUIRE(curve != std::string::npos);
+        double top = sheet.height;
+        for (std::size_t at = picture.find(',', picture.find(" d='", curve)); at < picture.find("</g>", curve);
+             at = picture.find(',', at + 1)) {
+            top = std::min(top, std::stod(picture.substr(at + 1)));
+        }
+        // An SVG counts from above, to a hundredth of a pixel; the ink of a dense curve is in cells of an eighth of
+        // one.
+        CHECK(top == Approx(sheet.height - sheet.panels[0].top).margin(0.15));
+    }
 }
 
 TEST_CASE("a point between gaps is drawn as a dot, and so is a curve shorter than a pixel", "[gnuplot]") {
