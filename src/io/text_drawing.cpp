@@ -184,7 +184,7 @@ void draw(Canvas& canvas, const Figure& figure, const Projection& projection, co
     for (std::size_t i = 0; i < figure.curves.size(); ++i) {
         const Curve& curve = figure.curves[i];
         const std::uint8_t ink = ink_of(i);
-        if (curve.style == Style::points) {
+        if (curve.style == Style::points || curve.size() == 1) {
             const std::string_view own = alphabet.substr(i % letters, 1);
             draw_points(canvas, curve, projection, ink, uses_letters(figure) ? own : signs(charset).point);
         } else if (curve.style == Style::fill) {

@@ -1,13 +1,13 @@
 #include "io/gnuplot.hpp"
 
+#include <algorithm>
 #include <catch2/catch.hpp>
-#include <chrono>
 #include <cmath>
-#include <cstdlib>
 #include <filesystem>
 
 #include "io/gnuplot_data.hpp"
 #include "io/gnuplot_script.hpp"
+#include "io/paper_layout.hpp"
 #include "support/temporary_folder.hpp"
 
 using namespace dinal;
@@ -49,32 +49,6 @@ std::string svg(const Figure& figure) {
     }
     return *picture;
 }
-
-/// With this PATH until the end of the scope.
-class Path {
-public:
-    explicit Path(const std::string& path) : old_(std::getenv("PATH")) { ::setenv("PATH", path.c_str(), 1); }
-    Path(const Path&) = delete;
-    Path& operator=(const Path&) = delete;
-    ~Path() { ::setenv("PATH", old_.c_str(), 1); }
-
-private:
-    std::string old_;
-};
-
-/// In the place of gnuplot until the end of the scope: a shell script.
-class Impostor {
-public:
-    explicit Impostor(const std::string& script) : path_(folder_.path().string()) {
-        const std::string file = folder_.file("gnuplot");
-        testing::put_text(file, "#!/bin/sh\n" + script + "\n");
-        std::filesystem::permissions(file, std::filesystem::perms::owner_all);
-    }
-
-private:
-    testing::TemporaryFolder folder_;
-    Path path_;
-};
 
 }  // namespace
 
@@ -161,6 +135,37 @@ TEST_CASE("an SVG of a million random points is smaller than 200 kB and shows al
     CHECK(svg(few).size() < 200'000);
 }
 
+TEST_CASE("one point of a million that stands out reaches the top of the SVG", "[gnuplot]") {
+    std::vector<double> x, y;
+    for (int i = 0; i < 1'000'000; ++i) {
+        x.push_back(i);
+        y.push_back(std::sin(0.01 * i));
+    }
+    y[654'321] = 7;
+    for (const bool over_time : {true, false}) {
+        if (!over_time) {  // a phase plane of 1591 turns
+            std::transform(x.begin(), x.end(), x.begin(), [](double i) { return std::cos(0.01 * i); });
+            x[654'321] = 5;
+        }
+        Figure figure;
+        figure.curves.push_back({Numbers::own(x), Numbers::own(y)});
+        figure.y.limits = Range{-2, 7};
+        const Sheet sheet = lay_out({&figure, 1}, {});
+        const std::string picture = svg(figure);
+        CHECK(picture.size() < 200'000);
+        const std::size_t curve = picture.find("<path stroke='rgb(  0, 114, 178)'");
+        REQUIRE(curve != std::string::npos);
+        double top = sheet.height;
+        for (std::size_t at = picture.find(',', picture.find(" d='", curve)); at < picture.find("</g>", curve);
+             at = picture.find(',', at + 1)) {
+            top = std::min(top, std::stod(picture.substr(at + 1)));
+        }
+        // An SVG counts from above, to a hundredth of a pixel; the ink of a dense curve is in cells of an eighth of
+        // one.
+        CHECK(top == Approx(sheet.height - sheet.panels[0].top).margin(0.15));
+    }
+}
+
 TEST_CASE("a point between gaps is drawn as a dot, and so is a curve shorter than a pixel", "[gnuplot]") {
     const double nan = std::nan("");
     const auto dots = [](std::vector<double> x, std::vector<double> y) {
@@ -230,55 +235,6 @@ TEST_CASE("gaps, one point, no points, constants and extremes of range are drawn
             CHECK(svg(figure).find("</svg>") != std::string::npos);
         }
     }
-}
-
-TEST_CASE("without gnuplot one sentence says what to install", "[gnuplot]") {
-    const testing::TemporaryFolder empty;
-    const Path path(empty.path().string());
-    const auto picture = run_gnuplot("plot sin(x)");
-    REQUIRE(!picture);
-    CHECK(picture.error().sentence.find("install the Debian package gnuplot-nox") != std::string::npos);
-}
-
-TEST_CASE("what gnuplot complains about is told", "[gnuplot]") {
-    const auto picture = run_gnuplot("set terminal svg\nplot nonsense(x)\n");
-    REQUIRE(!picture);
-    CHECK(picture.error().sentence.find("undefined function: nonsense") != std::string::npos);
-}
-
-TEST_CASE("a gnuplot that ends without a word is told, too", "[gnuplot]") {
-    const auto sentence_of = [](const char* script) {
-        const Impostor impostor(script);
-        const auto picture = run_gnuplot("plot sin(x)");
-        REQUIRE(!picture);
-        return picture.error().sentence;
-    };
-    CHECK(sentence_of("kill -9 $$") == "can not run gnuplot: it was stopped by signal 9");
-    CHECK(sentence_of("exit 3") == "can not run gnuplot: it ended with exit code 3 and drew nothing");
-    CHECK(sentence_of("echo '<svg'; exit 3") == "can not run gnuplot: it ended with exit code 3 and drew nothing");
-    CHECK(sentence_of("echo boom >&2") == "can not run gnuplot: it says: boom");
-}
-
-TEST_CASE("gnuplot is killed as soon as it shall not go on", "[gnuplot]") {
-    const testing::TemporaryFolder folder;
-    const Impostor impostor("echo $$ >" + folder.file("id") + "; echo '<svg'; exec /bin/sleep 60");
-    const auto begin = std::chrono::steady_clock::now();
-    const auto picture =
-        run_gnuplot("plot sin(x)", {.go_on = [&] { return !std::filesystem::exists(folder.file("id")); }});
-    REQUIRE(!picture);
-    CHECK(picture.error().sentence == "can not run gnuplot: it was interrupted");
-    CHECK(std::chrono::steady_clock::now() - begin < std::chrono::seconds(30));  // of 60, on a busy machine
-    const std::string id = testing::text_of(folder.file("id"));
-    if (!id.empty()) {
-        CHECK(!std::filesystem::exists("/proc/" + id.substr(0, id.find('\n'))));
-    }
-}
-
-TEST_CASE("gnuplot gets no more memory than allowed above what it needs itself", "[gnuplot]") {
-    const Figure figure = wave();
-    constexpr std::size_t little = 16U << 20U;
-    CHECK(run_gnuplot(gnuplot_input({&figure, 1}, Terminal::pdf, {}), {.memory = little}));
-    CHECK(!run_gnuplot("set terminal pngcairo size 20000,20000\nplot sin(x)\n", {.memory = little}));
 }
 
 TEST_CASE("ticks on the ends of an axis are drawn", "[gnuplot]") {

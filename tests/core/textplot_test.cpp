@@ -214,6 +214,7 @@ TEST_CASE("nothing, one point and a constant are pictures, too", "[textplot]") {
     const std::string point = drawn(figure(curve({1}, {2})), 40, 12);
     CHECK(point.find("2.0") != std::string::npos);
     CHECK(point.find("1.0") != std::string::npos);
+    CHECK(point.find("×") != std::string::npos);
     CHECK(drawn(figure(curve({0, 1}, {3.7, 3.7})), 40, 10).find("4.0") != std::string::npos);
     CHECK(drawn(figure(curve({0, 1}, {1e308, -1e308})), 40, 10).size() > 100);
 }
