@@ -35,7 +35,9 @@ public:
         const double reach = second_ > 0 ? 2 * std::sqrt(8 * floor_ / second_) : 0;
         double a = std::max(-1.0, x - reach), b = std::min(1.0, x + reach);
         if (!(slope(a) < -slope_floor_ && slope(b) > slope_floor_)) return x;
-        for (double middle = a + (b - a) / 2; middle > a && middle < b; middle = a + (b - a) / 2) {
+        for (int i = 0; i < 60; ++i) {
+            const double middle = a + (b - a) / 2;
+            if (!(middle > a && middle < b)) break;
             (slope(middle) < 0 ? a : b) = middle;
         }
         return b;

@@ -158,6 +158,8 @@ void Rk4Engine::hold_still(double end, double M_end) {
         } else if (last.kind == EventKind::turn) {
             last.kind = EventKind::stick;
         }
+    } else if (!at_start_) {
+        record(EventKind::stick);  // it was on its way, came to rest, and did not go on
     }
     motion_ = Motion::stuck;
     friction_ = 0;

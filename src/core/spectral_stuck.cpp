@@ -87,18 +87,18 @@ double SpectralEngine::moment_of_release(double x, double off, double from, Moti
     constexpr double finest = 1e-15;
     double held = x, gone = x;
     double step = std::clamp(off, 1e-12, 1e-3);
-    if (lets_go(x, side)) {
-        for (; held == gone; step *= 2) {
+    const bool late = lets_go(x, side);
+    while (held == gone) {
+        if (late) {
             if (gone <= from) return from;
             held = std::max(from, gone - step);
             if (lets_go(held, side)) gone = held;
-        }
-    } else {
-        for (; held == gone; step *= 2) {
+        } else {
             if (held >= 1) return nowhere;
             gone = std::min(1.0, held + step);
             if (!lets_go(gone, side)) held = gone;
         }
+        step *= 2;
     }
     while (gone - held > finest) {
         const double middle = held + (gone - held) / 2;

@@ -1,6 +1,7 @@
 // How a run began and went on: the setting, the start, turns, stops.
 #include "core/story.hpp"
 
+#include <limits>
 #include <numbers>
 
 #include "core/forcing.hpp"
@@ -47,11 +48,12 @@ void Story::end_paragraph() {
     sentence_.clear();
 }
 
-/// Whether a torque on a mass at rest is the limit, as far as M and k theta are known.
+/// Whether a torque on a mass at rest is the limit, as far as M, k theta and the time are known.
 bool Story::at_limit(double torque, const Event& event) const {
     const double Re = system_.breakaway();
     const double known = Re + std::fabs(event.M) + system_.stiffness() * std::fabs(event.theta);
-    return std::fabs(std::fabs(torque) - Re) <= 1e-9 * known;
+    const double late = std::numeric_limits<double>::epsilon() * std::fabs(event.t) / T0_;
+    return std::fabs(std::fabs(torque) - Re) <= (1e-9 + 64 * late) * known;
 }
 
 void Story::tell_setting() {
@@ -156,8 +158,8 @@ void Story::tell_decay() {
             step);
     } else if (step == 0) {
         say("Each extreme is {:.5g} = exp(-pi zeta/sqrt(1 - zeta^2)) of the one before: viscous damping takes a part "
-            "of what is left, so the motion never quite ends.",
-            factor);
+            "of what is left, {}.",
+            factor, system_.frictionless() ? "so the motion never quite ends" : "until breakaway holds the rest");
     } else {
         say("Half a cycle makes an extreme X into qX - (1 + q)Rd/k with q = exp(-pi zeta/sqrt(1 - zeta^2)) = {:.5g} "
             "and Rd/k = {:.5g}: viscous damping takes a part, dry friction the same each time, and that ends the "

@@ -6,11 +6,13 @@ namespace dinal {
 
 namespace {
 
-/// A run that begins with a slip, or in which nothing ever happens and that ends at rest, was stuck from its start.
+/// A run that begins with a slip, or in which nothing ever happens and that ends at rest or broke off stuck, was stuck
+/// from its start.
 bool begins_stuck(const Trajectory& trajectory) {
     if (trajectory.initial.velocity != 0) return false;
     if (!trajectory.events.empty()) return trajectory.events.front().kind == EventKind::slip;
-    return trajectory.outcome == Outcome::at_rest;
+    if (trajectory.outcome == Outcome::reached_end) return false;
+    return trajectory.outcome == Outcome::at_rest || trajectory.motion_at_stop == Motion::stuck;
 }
 
 }  // namespace

@@ -182,6 +182,30 @@ TEST_CASE("a run that broke off says so, and when", "[explain]") {
     CHECK_THAT(story(system, chatter, {0, 0}, {0, 5}), Contains("The run broke off") && Contains("chatters"));
 }
 
+TEST_CASE("a run that broke off before anything moved the mass says that it was stuck", "[explain]") {
+    class Failing : public UserFunction {
+    public:
+        double value(double t, const State&) override { return t > 2 ? std::nan("") : 1.0; }
+    };
+    const Excitation M = Excitation::make(Scripted{.function = std::make_shared<Failing>()}).value();
+    const std::string text = story(nondimensional(0, 0.3), M, {1, 0}, {0, 10});
+    CHECK_THAT(text, Contains("stuck there because |M - k theta| = 0 <= Re = 0.3."));
+    CHECK_THAT(text, Contains("The run broke off at t = 2: M failed"));
+    CHECK_THAT(text, !Contains("moved off") && !Contains("in balance"));
+}
+
+TEST_CASE("far from t = 0 a load that grows past Re does not jump", "[explain]") {
+    const std::string text = story(nondimensional(0.05, 0.3), harmonic(1, 2 * pi), {1, 0}, {1e9, 1e9 + 2});
+    CHECK_THAT(text, Contains("grew past Re") || Contains("grew past\nRe") || Contains("grew\npast Re"));
+    CHECK_THAT(text, !Contains("jumped"));
+}
+
+TEST_CASE("viscous damping alone ends a motion that breakaway can hold", "[explain]") {
+    const std::string text = story(nondimensional(0.05, 0, 0.3), {}, {1, 0}, {0, 40});
+    CHECK_THAT(text, Contains("until breakaway holds the"));
+    CHECK_THAT(text, !Contains("never quite ends"));
+}
+
 TEST_CASE("a run of 1989 says that its events are those of its steps", "[explain]") {
     const std::string text =
         story(nondimensional(0, 0.836), harmonic(1, 2 * pi), {1, 0}, {0, 20}, Dinal1989{.h = 0.01});
