@@ -2,7 +2,7 @@
 
 #include <array>
 
-#include "core/term_bound.hpp"
+#include "core/term_bounds.hpp"
 #include "core/terms.hpp"
 
 namespace dinal {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/term_bounds.hpp"
 #include "core/terms.hpp"
 
 namespace dinal {

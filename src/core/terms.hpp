@@ -1,4 +1,4 @@
-// What one term of an excitation does: its value, its next break, when it settles, and itself at a later time.
+// What one term of an excitation does: its value, its next break, and itself at a later time.
 //
 // The invariant of this file: `next_break` returns exactly the double that `value` compares with. So value(b) is the
 // new level and value(nextafter(b, -inf)) the old one, whatever a delay or the ten thousandth period was rounded to.
@@ -239,68 +239,6 @@ inline double next_break(const Scripted& s, double t) {
         }
     }
     return std::nextafter(t, never);
-}
-
-// ---- from when on a term is constant; -never when it always is
-
-inline double settles(double amplitude, double time) {
-    return amplitude == 0 ? -never : time;
-}
-inline double constant_from(const Constant&) {
-    return -never;
-}
-inline double constant_from(const Harmonic& h) {
-    return h.omega == 0 ? -never : settles(h.amplitude, never);
-}
-inline double constant_from(const Step& s) {
-    return settles(s.level, s.at);
-}
-inline double constant_from(const Pulse& p) {
-    return settles(p.amplitude, p.at + p.width);
-}
-inline double constant_from(const HalfSine& h) {
-    return settles(h.amplitude, h.at + h.width);
-}
-inline double constant_from(const Ramp& r) {
-    return settles(r.slope, r.at + r.width);
-}
-inline double constant_from(const Square& s) {
-    return settles(s.amplitude, never);
-}
-inline double constant_from(const Sawtooth& s) {
-    return settles(s.amplitude, never);
-}
-inline double constant_from(const Triangle& s) {
-    return settles(s.amplitude, never);
-}
-inline double constant_from(const Chirp& c) {
-    return settles(c.amplitude, c.to > 0 ? never : c.from > 0 ? c.at + c.duration : -never);
-}
-inline double constant_from(const Exponential& e) {
-    return settles(e.amplitude, never);
-}
-inline double constant_from(const Polynomial& p) {
-    const auto varies = [](double c) { return c != 0; };
-    return p.coefficients.size() < 2 || std::none_of(p.coefficients.begin() + 1, p.coefficients.end(), varies) ? -never
-                                                                                                               : never;
-}
-inline double constant_from(const std::shared_ptr<const Samples>& s) {
-    return s->t.size() == 1 ? -never : s->t.back();
-}
-inline double constant_from(const Scripted&) {
-    return never;
-}
-
-/// Once constant, these are zero.
-inline constexpr bool ends_at_zero(const Pulse&) {
-    return true;
-}
-inline constexpr bool ends_at_zero(const HalfSine&) {
-    return true;
-}
-template <class T>
-constexpr bool ends_at_zero(const T&) {
-    return false;
 }
 
 // ---- the same term, later by d

@@ -283,12 +283,13 @@ TEST_CASE("a function that is rough at every scale ends with its own outcome, so
     };
     const auto staircase = [](double t) {  // Cantor's: flat almost everywhere, and never smooth
         double x = t / 20, sum = 0, weight = 0.5;
-        for (int i = 0; i < 40; ++i, weight /= 2) {
+        for (int i = 0; i < 40; ++i) {
             x *= 3;
             const int digit = static_cast<int>(x);
             x -= digit;
             if (digit > 0) sum += weight;
             if (digit == 1) break;
+            weight /= 2;
         }
         return sum;
     };
