@@ -160,6 +160,9 @@ int distance(std::string_view word, std::string_view name, Likeness likeness) {
 std::vector<std::string> suggestions(std::string_view word, std::span<const std::string_view> known,
                                      Likeness likeness) {
     std::vector<std::string> best;
+    if (word.size() > longest_word) {
+        return best;
+    }
     int fewest = far;
     for (const std::string_view name : known) {
         const int count = distance(word, name, likeness);

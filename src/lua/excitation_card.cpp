@@ -147,7 +147,8 @@ std::string line_of(lua_State* L, Component c, bool first) {
 std::string breaks_of(const Excitation& excitation, std::size_t width) {
     std::string text;
     int count = 0;
-    for (double t = excitation.next_break(std::nextafter(0.0, -1.0)); t < never; t = excitation.next_break(t)) {
+    double t = excitation.next_break(std::nextafter(0.0, -1.0));
+    while (t < never) {
         const std::string next = fmt::format("{}{:.6g}", count == 0 ? "\n  jumps or kinks at t = " : ", ", t);
         constexpr std::string_view rest = ", ...";
         if (count == most_breaks || (count > 0 && text.size() + next.size() + rest.size() > width)) {
@@ -155,6 +156,7 @@ std::string breaks_of(const Excitation& excitation, std::size_t width) {
         }
         text += next;
         ++count;
+        t = excitation.next_break(t);
     }
     return text;
 }

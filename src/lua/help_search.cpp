@@ -66,9 +66,8 @@ std::string searchable(std::string_view text) {
     return result;
 }
 
-/// Does every word stand somewhere in the text?
-bool has_words(const std::string& text, std::string_view words) {
-    const std::string wanted = searchable(words);
+/// Does every word stand somewhere in the text? Both are searchable().
+bool has_words(const std::string& text, const std::string& wanted) {
     for (std::size_t at = 0; at < wanted.size();) {
         const std::size_t end = std::min(wanted.find(' ', at), wanted.size());
         if (text.find(wanted.substr(at, end - at)) == std::string::npos) {
@@ -83,13 +82,14 @@ bool has_words(const std::string& text, std::string_view words) {
 std::vector<Hit> mentioning(std::string_view words) {
     std::vector<Hit> in_name;
     std::vector<Hit> elsewhere;
+    const std::string wanted = searchable(words);
     for (const Section& section : sections()) {
         for (const Member& member : section.description->members) {
             const std::string name = searchable(listed_name(section, member));
-            if (has_words(name, words)) {
+            if (has_words(name, wanted)) {
                 in_name.push_back({&section, &member});
             } else if (has_words(searchable(fmt::format("{} {} {}", name, member.doc.signature, member.doc.summary)),
-                                 words)) {
+                                 wanted)) {
                 elsewhere.push_back({&section, &member});
             }
         }

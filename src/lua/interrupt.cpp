@@ -34,7 +34,7 @@ void note_place(lua_State* L) {
     for (int level = 0; lua_getstack(L, level, &frame) != 0; ++level) {
         lua_getinfo(L, "Sl", &frame);
         if (frame.currentline > 0) {
-            std::snprintf(place.data(), place.size(), "%s:%d", frame.short_src, frame.currentline);
+            static_cast<void>(std::snprintf(place.data(), place.size(), "%s:%d", frame.short_src, frame.currentline));
             return;
         }
     }

@@ -148,15 +148,15 @@ void help(Session& session, const std::string& argument) {
 
 /// The command of that name, or the only one that begins so; nullptr when there is none.
 const Command* find(std::string_view name) {
-    const auto exact =
+    const auto* const exact =
         std::find_if(commands.begin(), commands.end(), [name](const Command& c) { return c.name == name; });
     if (exact != commands.end()) {
-        return &*exact;
+        return exact;
     }
     const auto begins = [name](const Command& c) { return !name.empty() && c.name.starts_with(name); };
-    const auto first = std::find_if(commands.begin(), commands.end(), begins);
+    const auto* const first = std::find_if(commands.begin(), commands.end(), begins);
     const bool only = std::count_if(commands.begin(), commands.end(), begins) == 1;
-    return only ? &*first : nullptr;
+    return only ? first : nullptr;
 }
 
 std::string trimmed(std::string_view text) {
