@@ -34,9 +34,7 @@ public:
     /// `most_bytes` is what they may take; what comes later is not kept.
     Panels(const Oscillator& system, std::size_t most_bytes) : system_(system), most_(most_bytes / sizeof(Panel)) {}
 
-    Panels(const Panels& other) : system_(other.system_), most_(other.most_), complete_(other.complete_) {
-        append(other);
-    }
+    Panels(const Panels& other) : system_(other.system_), most_(other.most_) { append(other); }
     Panels& operator=(const Panels&) = delete;
     ~Panels() = default;
 

@@ -51,13 +51,14 @@ double HalfCycles::until_within(double dead_zone, double X) const {
     const double excess = size - dead_zone;
     if (excess <= 0) return 0;
     if (dead_zone == 0 || (logarithm_ == 0 && shift_ == 0)) return never;
-    // The extremes lie on e^n (a + c) - c with c = x_f (1 + e)/(1 - e): where does that meet the dead zone?
-    const double c = logarithm_ == 0 ? 0 : shift_ / std::tanh(logarithm_ / 2);
-    const double guess = logarithm_ == 0 ? excess / (2 * shift_) : std::log1p(excess / (dead_zone + c)) / logarithm_;
+    // The extremes lie on e^n (a + c) - c with c = x_f (1 + e)/(1 - e) = x_f/slope: where does that meet the dead zone?
+    const double slope = std::tanh(logarithm_ / 2);
+    const double guess = logarithm_ == 0 ? excess / (2 * shift_)
+                                         : std::log1p(excess * slope / (dead_zone * slope + shift_)) / logarithm_;
     constexpr double countable = 0x1p50;
     if (!(guess < countable)) return std::ceil(guess);
     double n = std::max(1.0, std::ceil(guess) - 1);
-    while (shrunk(n, size) > dead_zone) ++n;  // the guess is off by a rounding at most
+    for (int i = 0; i < 4 && shrunk(n, size) > dead_zone; ++i) ++n;  // the guess is off by a rounding at most
     return n;
 }
 

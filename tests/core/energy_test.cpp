@@ -251,6 +251,21 @@ TEST_CASE("a run that went on has the energy of all of it", "[energy][resume]") 
     check_books(energy);
 }
 
+TEST_CASE("a run that went on after its panels were full says up to when they reach", "[energy][resume]") {
+    const Oscillator system = nondimensional(0.05, 0);
+    const Excitation M = harmonic(1, 5);
+    const Limits little{.memory = 100000};
+    const auto first = simulate(system, M, {1, 0}, {0, 500}, Grid::none(), Spectral{}, {}, little);
+    REQUIRE(first);
+    const auto all = resume(system, M, *first, 600, Grid::none(), Spectral{}, {}, little);
+    REQUIRE(all);
+    for (const Trajectory& run : {*first, *all}) {
+        const auto energy = energy_of(run);
+        REQUIRE_FALSE(energy);
+        CHECK_THAT(energy.error().sentence, Catch::Contains("kept up to t = 45.6 only"));
+    }
+}
+
 TEST_CASE("a run that kept no panels says what to do for its energy", "[energy]") {
     const Oscillator system = nondimensional(0.05, 0.1);
     const auto complaint = [](const Trajectory& run) {

@@ -176,6 +176,15 @@ TEST_CASE("a motion of 2.5e12 cycles is as quick and as exact as a short one", "
     CHECK(motion.at(1e12).theta == Approx(1 - 0.4).epsilon(1e-3));  // an eighth of 1e-3 period is left of t's digits
 }
 
+TEST_CASE("next to no damping takes as many half cycles as none", "[theory]") {
+    for (const double zeta : {0.0, 1e-305, 1e-300}) {
+        CAPTURE(zeta);
+        CHECK(HalfCycles(zeta, 1e12).until_within(1e12, 1e300) / 5e287 == Approx(1).epsilon(1e-11));
+        CHECK(HalfCycles(zeta, 0.1).until_within(0.1, 1) == 5);
+        CHECK(HalfCycles(zeta, 1e290).until_within(1e290, 1e294) == Approx(4999.5).epsilon(2e-4));
+    }
+}
+
 TEST_CASE("inside the dead zone nothing begins", "[theory]") {
     const FreeMotion motion(nondimensional(0.1, 0.1, 0.2), {0.2, 0});
     CHECK(motion.time_to_rest() == 0);
