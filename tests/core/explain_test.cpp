@@ -276,7 +276,7 @@ TEST_CASE("numbers for people have as many digits as say something", "[explain]"
 }
 
 TEST_CASE("lines are not broken within a formula", "[explain]") {
-    CHECK(wrapped_lines("") == "");
+    CHECK(wrapped_lines("").empty());
     CHECK(wrapped_lines("a b") == "a b");
     const std::string seventy(70, 'x');
     CHECK(wrapped_lines(seventy + " a b cdef") == seventy + " a b cdef");
