@@ -15,8 +15,9 @@ constexpr double epsilon = std::numeric_limits<double>::epsilon();
 constexpr int most_standstills_at_once = 200;
 /// Within this time, in units of pace_, one standstill follows another at once.
 constexpr double at_once = 1e-6;
-/// Pieces between two questions to the monitor.
-constexpr unsigned monitor_interval = 16;
+/// Between two questions to the monitor: pieces, and rows at rest.
+constexpr unsigned pieces_between_questions = 16;
+constexpr std::size_t rows_between_questions = 1U << 16U;
 
 }  // namespace
 
@@ -48,7 +49,7 @@ Outcome SpectralEngine::run() {
     begin();
     bool alive = std::isfinite(M_) || fail(Outcome::excitation_not_finite);
     while (alive && clock_.hi < window_.end) {
-        if (pieces_++ % monitor_interval == 0 && monitor_ && !monitor_(clock_.hi)) {
+        if (pieces_++ % pieces_between_questions == 0 && monitor_ && !monitor_(clock_.hi)) {
             outcome_ = Outcome::interrupted;
             if (standstill_ && !system_.frictionless()) leave_standstill();
             break;
@@ -74,21 +75,29 @@ bool SpectralEngine::advance() {
     if (system_.frictionless()) return move();
     if (standstill_ && !leave_standstill()) return false;
     if (stuck_for_good()) {
-        rest_until_end();
-        return true;
+        return rest_until_end();
     }
     return motion_ == Motion::stuck ? stay() : move();
 }
 
-void SpectralEngine::rest_until_end() {
-    panel_ = Panel{.start = clock_, .length = clock_.until(window_.end), .begin = y_};
-    if (panels_ != nullptr) panels_->add(panel_);
-    while (rows_.next_time() < window_.end) {
-        const double M = excitation_.value(rows_.next_time());
+/// At rest there is nothing to compute but M at the rows, of which there may be many.
+bool SpectralEngine::rest_until_end() {
+    double until = window_.end;
+    for (std::size_t count = 1; rows_.next_time() < window_.end; ++count) {
+        const double t = rows_.next_time();
+        const double M = excitation_.value(t);
         rows_.put(y_, M, friction_of(M));
+        if (count % rows_between_questions == 0 && monitor_ && !monitor_(t)) {
+            outcome_ = Outcome::interrupted;
+            until = t;
+            break;
+        }
     }
-    clock_ = {window_.end, 0};
-    M_ = excitation_.value(window_.end);
+    panel_ = Panel{.start = clock_, .length = clock_.until(until), .begin = y_};
+    if (panels_ != nullptr) panels_->add(panel_);
+    clock_ = {until, 0};
+    M_ = excitation_.value(until);
+    return outcome_ == Outcome::reached_end;
 }
 
 void SpectralEngine::finish() {

@@ -40,7 +40,7 @@ private:
     bool move();
     void finish();
     [[nodiscard]] bool stuck_for_good() const;
-    void rest_until_end();
+    bool rest_until_end();
     bool leave_standstill();
     [[nodiscard]] std::optional<double> first_standstill() const;
     [[nodiscard]] bool creeps() const;

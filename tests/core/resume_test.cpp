@@ -135,3 +135,20 @@ TEST_CASE("a run that goes on from the very time of a turn has that turn once", 
         }
     }
 }
+
+TEST_CASE("a run with very many rows at rest stops when it is told to, and goes on", "[resume]") {
+    const Oscillator system = nondimensional(0, 0.5);
+    const Excitation load = harmonic(0.3, 1);  // can not move it
+    const auto part =
+        simulate(system, load, {0.1, 0}, {0, 1e4}, Grid::every(0.01), Spectral{}, [](double t) { return t < 1000; });
+    REQUIRE(part);
+    CHECK(part->outcome == Outcome::interrupted);
+    CHECK(part->t_stop >= 1000);
+    CHECK(part->t_stop < 2000);
+    CHECK(part->rows(part->size() - 1, 0) == part->t_stop);
+    const auto all = resume(system, load, *part, 1e4, Grid::every(0.01), Spectral{});
+    const Trajectory whole = must_run(system, load, {0.1, 0}, {0, 1e4}, Grid::every(0.01), Spectral{});
+    REQUIRE(all);
+    CHECK(all->outcome == whole.outcome);
+    CHECK(all->rows == whole.rows);
+}
