@@ -9,7 +9,7 @@
 
 #include <vector>
 
-#include "core/expected.hpp"
+#include "text/expected.hpp"
 #include "core/trajectory.hpp"
 
 namespace dinal {

@@ -12,7 +12,7 @@
 #include <variant>
 #include <vector>
 
-#include "core/expected.hpp"
+#include "text/expected.hpp"
 #include "core/oscillator.hpp"
 
 namespace dinal {

@@ -4,7 +4,7 @@
 #include <limits>
 #include <variant>
 
-#include "core/expected.hpp"
+#include "text/expected.hpp"
 #include "core/oscillator.hpp"
 
 namespace dinal {

@@ -9,7 +9,7 @@
 #include <optional>
 #include <string_view>
 
-#include "core/expected.hpp"
+#include "text/expected.hpp"
 
 namespace dinal {
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "core/excitation.hpp"
-#include "core/expected.hpp"
+#include "text/expected.hpp"
 #include "core/integrator.hpp"
 #include "core/oscillator.hpp"
 #include "core/trajectory.hpp"

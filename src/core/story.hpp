@@ -11,7 +11,7 @@
 #include "core/excitation.hpp"
 #include "core/integrator.hpp"
 #include "core/recurrence.hpp"
-#include "core/sentences.hpp"
+#include "text/sentences.hpp"
 
 namespace dinal {
 

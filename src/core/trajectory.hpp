@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "core/event.hpp"
-#include "core/expected.hpp"
+#include "text/expected.hpp"
 #include "core/friction.hpp"
 #include "core/oscillator.hpp"
 #include "core/outcome.hpp"

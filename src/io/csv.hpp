@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "core/expected.hpp"
+#include "text/expected.hpp"
 #include "io/file.hpp"
 #include "io/table.hpp"
 

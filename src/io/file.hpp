@@ -9,7 +9,7 @@
 #include <string_view>
 #include <vector>
 
-#include "core/expected.hpp"
+#include "text/expected.hpp"
 
 namespace dinal {
 

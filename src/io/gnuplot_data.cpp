@@ -5,7 +5,7 @@
 #include <cmath>
 #include <utility>
 
-#include "io/display_text.hpp"
+#include "text/display_text.hpp"
 
 namespace dinal {
 

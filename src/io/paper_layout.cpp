@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "io/display_text.hpp"
+#include "text/display_text.hpp"
 
 namespace dinal {
 namespace {

@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-#include "core/expected.hpp"
+#include "text/expected.hpp"
 #include "core/oscillator.hpp"
 #include "core/trajectory.hpp"
 #include "io/file.hpp"

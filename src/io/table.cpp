@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "core/suggest.hpp"
+#include "text/suggest.hpp"
 
 namespace dinal {
 namespace {

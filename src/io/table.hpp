@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "core/expected.hpp"
+#include "text/expected.hpp"
 
 namespace dinal {
 

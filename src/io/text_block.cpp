@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <array>
 
-#include "io/display_text.hpp"
+#include "text/display_text.hpp"
 
 namespace dinal {
 namespace {

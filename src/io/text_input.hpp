@@ -6,7 +6,7 @@
 #include <string>
 #include <string_view>
 
-#include "core/expected.hpp"
+#include "text/expected.hpp"
 
 namespace dinal {
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <limits>
 
-#include "io/display_text.hpp"
+#include "text/display_text.hpp"
 #include "io/text_block.hpp"
 #include "io/text_drawing.hpp"
 #include "io/ticks.hpp"

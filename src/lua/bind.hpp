@@ -16,7 +16,7 @@
 #include <utility>
 #include <vector>
 
-#include "core/suggest.hpp"  // did_you_mean, for every unknown name
+#include "text/suggest.hpp"  // did_you_mean, for every unknown name
 #include "lua/memory_limit.hpp"
 
 namespace dinal {

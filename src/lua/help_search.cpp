@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cctype>
 
-#include "core/suggest.hpp"
+#include "text/suggest.hpp"
 #include "lua/help_text.hpp"
 #include "lua/signature.hpp"
 #include "lua/tokens.hpp"

@@ -5,7 +5,7 @@
 #include <optional>
 #include <utility>
 
-#include "core/suggest.hpp"
+#include "text/suggest.hpp"
 #include "lua/bind.hpp"
 #include "lua/habits.hpp"
 #include "lua/tokens.hpp"

@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "core/suggest.hpp"
+#include "text/suggest.hpp"
 #include "lua/habits.hpp"
 #include "lua/tokens.hpp"
 

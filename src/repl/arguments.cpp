@@ -6,7 +6,7 @@
 #include <optional>
 #include <string_view>
 
-#include "core/suggest.hpp"
+#include "text/suggest.hpp"
 #include "repl/limit_options.hpp"
 
 namespace dinal {

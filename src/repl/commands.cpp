@@ -8,7 +8,7 @@
 #include <chrono>
 #include <vector>
 
-#include "core/suggest.hpp"
+#include "text/suggest.hpp"
 #include "io/display.hpp"
 #include "lua/help_text.hpp"
 #include "lua/lua_text.hpp"

@@ -4,7 +4,7 @@
 #include <optional>
 #include <string_view>
 
-#include "core/expected.hpp"
+#include "text/expected.hpp"
 #include "lua/limits.hpp"
 
 namespace dinal {

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "core/expected.hpp"
+#include "text/expected.hpp"
 #include "repl/chunk.hpp"
 #include "repl/evaluate.hpp"
 

@@ -9,7 +9,7 @@
 #include "core/forcing.hpp"
 #include "core/phase_lag.hpp"
 #include "core/recurrence.hpp"
-#include "core/sentences.hpp"
+#include "text/sentences.hpp"
 #include "support/excitations.hpp"
 #include "support/measure.hpp"
 

@@ -1,4 +1,4 @@
-#include "core/suggest.hpp"
+#include "text/suggest.hpp"
 
 #include <array>
 #include <catch2/catch.hpp>

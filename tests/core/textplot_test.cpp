@@ -5,7 +5,7 @@
 #include <limits>
 #include <sstream>
 
-#include "io/display_text.hpp"
+#include "text/display_text.hpp"
 #include "io/ticks.hpp"
 
 using namespace dinal;

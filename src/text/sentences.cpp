@@ -1,4 +1,4 @@
-#include "core/sentences.hpp"
+#include "text/sentences.hpp"
 
 #include <fmt/format.h>
 

@@ -1,4 +1,4 @@
-#include "io/display_text.hpp"
+#include "text/display_text.hpp"
 
 #include <algorithm>
 #include <array>
