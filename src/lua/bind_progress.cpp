@@ -5,7 +5,7 @@
 #include <limits>
 #include <optional>
 
-#include "io/progress.hpp"
+#include "terminal/progress.hpp"
 #include "lua/library.hpp"
 #include "lua/vector.hpp"
 

@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-#include "io/progress.hpp"
+#include "terminal/progress.hpp"
 #include "lua/bind_excitation.hpp"
 #include "lua/dinal_table.hpp"
 #include "lua/interrupt.hpp"

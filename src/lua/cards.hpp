@@ -4,7 +4,7 @@
 #include <lua.hpp>
 #include <string>
 
-#include "io/display.hpp"
+#include "terminal/display.hpp"
 
 namespace dinal {
 

@@ -8,7 +8,7 @@
 #include <optional>
 #include <vector>
 
-#include "io/display.hpp"
+#include "terminal/display.hpp"
 #include "lua/tokens.hpp"
 
 namespace dinal {

@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-#include "io/display.hpp"
+#include "terminal/display.hpp"
 #include "lua/library.hpp"
 
 namespace dinal {

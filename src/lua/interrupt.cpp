@@ -8,7 +8,7 @@
 #include <array>
 #include <atomic>
 
-#include "io/progress.hpp"
+#include "terminal/progress.hpp"
 #include "io/stop.hpp"
 #include "lua/running_thread.hpp"
 

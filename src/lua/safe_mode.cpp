@@ -7,7 +7,7 @@
 #include <string_view>
 
 #include "io/confinement.hpp"
-#include "io/progress.hpp"
+#include "terminal/progress.hpp"
 #include "lua/bind.hpp"
 #include "lua/interrupt.hpp"
 

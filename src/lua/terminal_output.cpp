@@ -1,6 +1,6 @@
 #include "lua/terminal_output.hpp"
 
-#include "io/progress.hpp"
+#include "terminal/progress.hpp"
 
 namespace dinal {
 

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "text/suggest.hpp"
-#include "io/display.hpp"
+#include "terminal/display.hpp"
 #include "lua/help_text.hpp"
 #include "lua/lua_text.hpp"
 #include "lua/standard_globals.hpp"

@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "io/display.hpp"
+#include "terminal/display.hpp"
 #include "lua/dinal_table.hpp"
 #include "lua/interrupt.hpp"
 #include "repl/call.hpp"

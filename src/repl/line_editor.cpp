@@ -16,7 +16,7 @@
 #include <string_view>
 #include <vector>
 
-#include "io/display.hpp"
+#include "terminal/display.hpp"
 #include "lua/safe_mode.hpp"
 #include "repl/completion.hpp"
 #include "repl/output.hpp"

@@ -5,7 +5,7 @@
 #include <cstdio>
 #include <string>
 
-#include "io/display.hpp"
+#include "terminal/display.hpp"
 
 namespace dinal {
 void say(std::string_view text) {

@@ -5,7 +5,7 @@
 
 #include <string>
 
-#include "io/display.hpp"
+#include "terminal/display.hpp"
 
 namespace dinal {
 

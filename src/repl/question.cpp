@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "io/display.hpp"
+#include "terminal/display.hpp"
 #include "lua/help_text.hpp"
 #include "lua/tokens.hpp"
 #include "lua/tour.hpp"

@@ -9,7 +9,7 @@
 #include "lua/bind.hpp"
 #include "lua/function_source.hpp"
 #include "lua/interrupt.hpp"
-#include "repl/quoted.hpp"
+#include "terminal/quoted.hpp"
 
 namespace dinal {
 namespace {

@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-#include "io/display.hpp"
+#include "terminal/display.hpp"
 #include "lua/bind.hpp"
 #include "lua/tokens.hpp"
 

@@ -3,7 +3,7 @@
 #include <clocale>
 #include <string>
 
-#include "io/progress_text.hpp"
+#include "terminal/progress_text.hpp"
 
 using namespace dinal;
 

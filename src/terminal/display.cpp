@@ -1,4 +1,4 @@
-#include "io/display.hpp"
+#include "terminal/display.hpp"
 
 #include <langinfo.h>
 #include <sys/ioctl.h>

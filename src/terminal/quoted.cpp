@@ -1,8 +1,8 @@
-#include "repl/quoted.hpp"
+#include "terminal/quoted.hpp"
 
 #include <fmt/core.h>
 
-#include "io/display.hpp"
+#include "terminal/display.hpp"
 
 namespace dinal {
 namespace {

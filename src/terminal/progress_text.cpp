@@ -1,4 +1,4 @@
-#include "io/progress_text.hpp"
+#include "terminal/progress_text.hpp"
 
 #include <fmt/format.h>
 

@@ -7,7 +7,7 @@
 
 #include <string>
 
-#include "io/progress_text.hpp"
+#include "terminal/progress_text.hpp"
 
 namespace dinal {
 

@@ -1,4 +1,4 @@
-#include "io/progress.hpp"
+#include "terminal/progress.hpp"
 
 #include <fmt/format.h>
 #include <langinfo.h>
