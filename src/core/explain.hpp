@@ -3,9 +3,9 @@
 
 #include <string>
 
-#include "core/excitation.hpp"
+#include "model/excitation.hpp"
 #include "core/integrator.hpp"
-#include "core/oscillator.hpp"
+#include "model/oscillator.hpp"
 #include "core/trajectory.hpp"
 
 namespace dinal {

@@ -5,7 +5,7 @@
 #include <variant>
 
 #include "text/expected.hpp"
-#include "core/oscillator.hpp"
+#include "model/oscillator.hpp"
 
 namespace dinal {
 

@@ -4,7 +4,7 @@
 #include <optional>
 #include <utility>
 
-#include "core/oscillator.hpp"
+#include "model/oscillator.hpp"
 
 namespace dinal {
 

@@ -6,8 +6,8 @@
 
 #include "core/chebyshev.hpp"
 #include "core/clock.hpp"
-#include "core/friction.hpp"
-#include "core/oscillator.hpp"
+#include "model/friction.hpp"
+#include "model/oscillator.hpp"
 
 namespace dinal {
 

@@ -3,7 +3,7 @@
 
 #include <optional>
 
-#include "core/excitation.hpp"
+#include "model/excitation.hpp"
 #include "core/trajectory.hpp"
 
 namespace dinal {

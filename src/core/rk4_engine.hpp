@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "core/checkpoints.hpp"
-#include "core/friction.hpp"
+#include "model/friction.hpp"
 #include "core/interpolation.hpp"
 #include "core/rk4_step.hpp"
 #include "core/rows.hpp"

@@ -1,7 +1,7 @@
 // One classical Runge-Kutta step of I theta'' + C theta' + k theta = F(t) as the affine map that it is.
 #pragma once
 
-#include "core/oscillator.hpp"
+#include "model/oscillator.hpp"
 
 namespace dinal {
 

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <cstddef>
 
-#include "core/friction.hpp"
+#include "model/friction.hpp"
 #include "core/simulate.hpp"
 
 namespace dinal {

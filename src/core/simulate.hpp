@@ -6,10 +6,10 @@
 #include <optional>
 #include <vector>
 
-#include "core/excitation.hpp"
+#include "model/excitation.hpp"
 #include "text/expected.hpp"
 #include "core/integrator.hpp"
-#include "core/oscillator.hpp"
+#include "model/oscillator.hpp"
 #include "core/trajectory.hpp"
 
 namespace dinal {

@@ -4,7 +4,7 @@
 #include <limits>
 #include <numbers>
 
-#include "core/forcing.hpp"
+#include "model/forcing.hpp"
 
 namespace dinal {
 

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "core/excitation.hpp"
+#include "model/excitation.hpp"
 #include "core/integrator.hpp"
 #include "core/recurrence.hpp"
 #include "text/sentences.hpp"

@@ -1,5 +1,5 @@
 // What became of a run: rest, steady motion, growth; and how the run ended.
-#include "core/forcing.hpp"
+#include "model/forcing.hpp"
 #include "core/phase_lag.hpp"
 #include "core/story.hpp"
 

@@ -5,7 +5,7 @@
 
 #include <optional>
 
-#include "core/oscillator.hpp"
+#include "model/oscillator.hpp"
 
 namespace dinal::theory {
 

@@ -5,7 +5,7 @@
 #include <limits>
 #include <numbers>
 
-#include "core/friction.hpp"
+#include "model/friction.hpp"
 
 namespace dinal::theory {
 

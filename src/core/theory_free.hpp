@@ -3,7 +3,7 @@
 
 #include <optional>
 
-#include "core/oscillator.hpp"
+#include "model/oscillator.hpp"
 #include "core/theory_modes.hpp"
 
 namespace dinal::theory {

@@ -1,7 +1,7 @@
 // Limits of the step for numerical methods: what the report printed, what its argument really gives, what is true.
 #pragma once
 
-#include "core/oscillator.hpp"
+#include "model/oscillator.hpp"
 
 namespace dinal::theory {
 

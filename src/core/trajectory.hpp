@@ -9,11 +9,11 @@
 #include <string_view>
 #include <vector>
 
-#include "core/event.hpp"
+#include "model/event.hpp"
 #include "text/expected.hpp"
-#include "core/friction.hpp"
-#include "core/oscillator.hpp"
-#include "core/outcome.hpp"
+#include "model/friction.hpp"
+#include "model/oscillator.hpp"
+#include "model/outcome.hpp"
 
 namespace dinal {
 

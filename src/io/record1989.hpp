@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "text/expected.hpp"
-#include "core/oscillator.hpp"
+#include "model/oscillator.hpp"
 #include "core/trajectory.hpp"
 #include "io/file.hpp"
 #include "io/table.hpp"

@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "core/oscillator.hpp"
+#include "model/oscillator.hpp"
 #include "core/trajectory.hpp"
 #include "io/figure.hpp"
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <string_view>
 
-#include "core/excitation.hpp"
+#include "model/excitation.hpp"
 #include "lua/bind.hpp"
 
 namespace dinal {

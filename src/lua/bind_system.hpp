@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "core/oscillator.hpp"
+#include "model/oscillator.hpp"
 
 namespace dinal {
 

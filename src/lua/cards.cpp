@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "core/oscillator.hpp"
+#include "model/oscillator.hpp"
 #include "lua/bind.hpp"
 #include "lua/bind_integrator.hpp"
 #include "lua/run.hpp"

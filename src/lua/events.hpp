@@ -4,7 +4,7 @@
 #include <lua.hpp>
 #include <span>
 
-#include "core/event.hpp"
+#include "model/event.hpp"
 
 namespace dinal {
 

@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "core/oscillator.hpp"
+#include "model/oscillator.hpp"
 #include "lua/interrupt.hpp"
 #include "lua/options.hpp"
 #include "lua/vector.hpp"

@@ -5,7 +5,7 @@
 #include <memory>
 #include <span>
 
-#include "core/excitation.hpp"
+#include "model/excitation.hpp"
 #include "lua/bind.hpp"
 
 namespace dinal {

@@ -6,7 +6,7 @@
 #include <numbers>
 #include <sstream>
 
-#include "core/forcing.hpp"
+#include "model/forcing.hpp"
 #include "core/phase_lag.hpp"
 #include "core/recurrence.hpp"
 #include "text/sentences.hpp"

@@ -1,4 +1,4 @@
-#include "core/friction.hpp"
+#include "model/friction.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>

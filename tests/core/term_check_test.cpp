@@ -1,4 +1,4 @@
-#include "core/excitation.hpp"
+#include "model/excitation.hpp"
 
 #include "support/excitations.hpp"
 

@@ -1,4 +1,4 @@
-#include "core/terms.hpp"
+#include "model/terms.hpp"
 
 #include "support/excitations.hpp"
 #include "support/within.hpp"

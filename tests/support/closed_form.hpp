@@ -6,8 +6,8 @@
 #include <cstddef>
 #include <vector>
 
-#include "core/event.hpp"
-#include "core/oscillator.hpp"
+#include "model/event.hpp"
+#include "model/oscillator.hpp"
 
 namespace dinal::truth {
 

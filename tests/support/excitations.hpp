@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "core/excitation.hpp"
+#include "model/excitation.hpp"
 
 namespace dinal::excitations {
 

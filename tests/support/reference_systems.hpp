@@ -5,8 +5,8 @@
 #include <string_view>
 #include <vector>
 
-#include "core/excitation.hpp"
-#include "core/oscillator.hpp"
+#include "model/excitation.hpp"
+#include "model/oscillator.hpp"
 #include "core/simulate.hpp"
 #include "support/closed_form.hpp"
 

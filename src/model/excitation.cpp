@@ -1,9 +1,9 @@
-#include "core/excitation.hpp"
+#include "model/excitation.hpp"
 
 #include <array>
 
-#include "core/term_bounds.hpp"
-#include "core/terms.hpp"
+#include "model/term_bounds.hpp"
+#include "model/terms.hpp"
 
 namespace dinal {
 namespace {

@@ -1,7 +1,7 @@
 // What can be known about M without asking for its values: that it is constant, its period, that it depends on motion.
 #pragma once
 
-#include "core/excitation.hpp"
+#include "model/excitation.hpp"
 
 namespace dinal {
 

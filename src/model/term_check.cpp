@@ -4,7 +4,7 @@
 #include <cmath>
 #include <optional>
 
-#include "core/excitation.hpp"
+#include "model/excitation.hpp"
 
 namespace dinal {
 namespace {

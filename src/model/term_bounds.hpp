@@ -5,7 +5,7 @@
 #include <cmath>
 #include <memory>
 
-#include "core/terms.hpp"
+#include "model/terms.hpp"
 
 namespace dinal::terms {
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "core/oscillator.hpp"
+#include "model/oscillator.hpp"
 
 namespace dinal {
 

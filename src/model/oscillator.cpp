@@ -1,4 +1,4 @@
-#include "core/oscillator.hpp"
+#include "model/oscillator.hpp"
 
 #include <fmt/format.h>
 

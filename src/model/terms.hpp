@@ -11,7 +11,7 @@
 #include <span>
 #include <vector>
 
-#include "core/excitation.hpp"
+#include "model/excitation.hpp"
 
 namespace dinal::terms {
 

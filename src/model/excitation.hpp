@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "text/expected.hpp"
-#include "core/oscillator.hpp"
+#include "model/oscillator.hpp"
 
 namespace dinal {
 

@@ -1,10 +1,10 @@
-#include "core/forcing.hpp"
+#include "model/forcing.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "core/term_bounds.hpp"
-#include "core/terms.hpp"
+#include "model/term_bounds.hpp"
+#include "model/terms.hpp"
 
 namespace dinal {
 
