@@ -11,10 +11,10 @@
 #include <memory>
 #include <optional>
 
-#include "core/checkpoints.hpp"
-#include "core/interpolation.hpp"
-#include "core/methods.hpp"
-#include "core/rows.hpp"
+#include "motion/checkpoints.hpp"
+#include "motion/interpolation.hpp"
+#include "motion/methods.hpp"
+#include "motion/rows.hpp"
 
 namespace dinal {
 

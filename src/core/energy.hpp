@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "text/expected.hpp"
-#include "core/trajectory.hpp"
+#include "motion/trajectory.hpp"
 
 namespace dinal {
 

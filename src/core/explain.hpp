@@ -4,9 +4,9 @@
 #include <string>
 
 #include "model/excitation.hpp"
-#include "core/integrator.hpp"
+#include "motion/integrator.hpp"
 #include "model/oscillator.hpp"
-#include "core/trajectory.hpp"
+#include "motion/trajectory.hpp"
 
 namespace dinal {
 

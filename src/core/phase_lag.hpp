@@ -4,7 +4,7 @@
 #include <optional>
 
 #include "model/excitation.hpp"
-#include "core/trajectory.hpp"
+#include "motion/trajectory.hpp"
 
 namespace dinal {
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <memory>
 
-#include "core/methods.hpp"
+#include "motion/methods.hpp"
 #include "core/rk4_engine.hpp"
 
 namespace dinal {

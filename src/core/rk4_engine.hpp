@@ -6,12 +6,12 @@
 #include <array>
 #include <vector>
 
-#include "core/checkpoints.hpp"
+#include "motion/checkpoints.hpp"
 #include "model/friction.hpp"
-#include "core/interpolation.hpp"
+#include "motion/interpolation.hpp"
 #include "core/rk4_step.hpp"
-#include "core/rows.hpp"
-#include "core/simulate.hpp"
+#include "motion/rows.hpp"
+#include "motion/simulate.hpp"
 
 namespace dinal {
 

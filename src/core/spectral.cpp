@@ -1,7 +1,7 @@
 // integrator.spectral: a run from beginning to end, and its motion between the rows.
 #include <fmt/format.h>
 
-#include "core/methods.hpp"
+#include "motion/methods.hpp"
 #include "core/spectral_engine.hpp"
 
 namespace dinal {

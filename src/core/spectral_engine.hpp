@@ -9,8 +9,8 @@
 
 #include "core/panel_equation.hpp"
 #include "core/panels.hpp"
-#include "core/rows.hpp"
-#include "core/simulate.hpp"
+#include "motion/rows.hpp"
+#include "motion/simulate.hpp"
 
 namespace dinal {
 

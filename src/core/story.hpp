@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "model/excitation.hpp"
-#include "core/integrator.hpp"
+#include "motion/integrator.hpp"
 #include "core/recurrence.hpp"
 #include "text/sentences.hpp"
 

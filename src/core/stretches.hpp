@@ -4,7 +4,7 @@
 #include <optional>
 #include <vector>
 
-#include "core/trajectory.hpp"
+#include "motion/trajectory.hpp"
 
 namespace dinal {
 

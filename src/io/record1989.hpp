@@ -7,7 +7,7 @@
 
 #include "text/expected.hpp"
 #include "model/oscillator.hpp"
-#include "core/trajectory.hpp"
+#include "motion/trajectory.hpp"
 #include "io/file.hpp"
 #include "io/table.hpp"
 

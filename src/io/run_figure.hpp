@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "model/oscillator.hpp"
-#include "core/trajectory.hpp"
+#include "motion/trajectory.hpp"
 #include "io/figure.hpp"
 
 namespace dinal {

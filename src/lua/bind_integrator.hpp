@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "core/integrator.hpp"
+#include "motion/integrator.hpp"
 
 namespace dinal {
 

@@ -3,7 +3,7 @@
 
 #include <functional>
 
-#include "core/simulate.hpp"
+#include "motion/simulate.hpp"
 #include "lua/bind.hpp"
 #include "lua/options.hpp"
 #include "lua/origin.hpp"

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "core/simulate.hpp"
+#include "motion/simulate.hpp"
 
 namespace dinal {
 

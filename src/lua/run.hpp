@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "core/trajectory.hpp"
+#include "motion/trajectory.hpp"
 #include "lua/bind.hpp"
 #include "lua/memory_limit.hpp"
 #include "lua/origin.hpp"

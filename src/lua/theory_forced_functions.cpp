@@ -1,7 +1,7 @@
 #include <fmt/format.h>
 
 #include "core/den_hartog.hpp"
-#include "core/integrator.hpp"
+#include "motion/integrator.hpp"
 #include "core/theory_forced.hpp"
 #include "core/theory_steps.hpp"
 #include "lua/theory_arguments.hpp"

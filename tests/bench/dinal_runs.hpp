@@ -1,7 +1,7 @@
 // dinal at the same work as its peers.
 #pragma once
 
-#include "core/simulate.hpp"
+#include "motion/simulate.hpp"
 #include "peers.hpp"
 
 namespace bench {

@@ -6,7 +6,7 @@
 #include <limits>
 #include <numbers>
 
-#include "core/integrator.hpp"
+#include "motion/integrator.hpp"
 #include "support/reference_systems.hpp"
 
 using namespace dinal;

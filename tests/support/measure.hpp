@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "core/simulate.hpp"
+#include "motion/simulate.hpp"
 #include "support/reference_systems.hpp"
 
 namespace dinal::truth {

@@ -7,7 +7,7 @@
 #include <functional>
 #include <vector>
 
-#include "core/simulate.hpp"
+#include "motion/simulate.hpp"
 #include "support/closed_form.hpp"
 
 namespace dinal::truth {

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <string>
 
-#include "core/simulate.hpp"
+#include "motion/simulate.hpp"
 #include "support/oracle.hpp"
 
 namespace dinal::truth {

@@ -7,7 +7,7 @@
 
 #include "model/excitation.hpp"
 #include "model/oscillator.hpp"
-#include "core/simulate.hpp"
+#include "motion/simulate.hpp"
 #include "support/closed_form.hpp"
 
 namespace dinal::truth {

@@ -8,9 +8,9 @@
 
 #include "model/excitation.hpp"
 #include "text/expected.hpp"
-#include "core/integrator.hpp"
+#include "motion/integrator.hpp"
 #include "model/oscillator.hpp"
-#include "core/trajectory.hpp"
+#include "motion/trajectory.hpp"
 
 namespace dinal {
 

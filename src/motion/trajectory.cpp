@@ -1,4 +1,4 @@
-#include "core/trajectory.hpp"
+#include "motion/trajectory.hpp"
 
 #include <fmt/format.h>
 

@@ -6,7 +6,7 @@
 #include <cstddef>
 
 #include "model/friction.hpp"
-#include "core/simulate.hpp"
+#include "motion/simulate.hpp"
 
 namespace dinal {
 

@@ -1,7 +1,7 @@
 // The integrators' entry points, for simulate() only.
 #pragma once
 
-#include "core/simulate.hpp"
+#include "motion/simulate.hpp"
 
 namespace dinal {
 

@@ -1,4 +1,4 @@
-#include "core/integrator.hpp"
+#include "motion/integrator.hpp"
 
 #include <fmt/format.h>
 

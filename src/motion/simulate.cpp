@@ -1,4 +1,4 @@
-#include "core/simulate.hpp"
+#include "motion/simulate.hpp"
 
 #include <fmt/format.h>
 
@@ -7,7 +7,7 @@
 #include <limits>
 #include <string>
 
-#include "core/methods.hpp"
+#include "motion/methods.hpp"
 #include "core/panels.hpp"
 
 namespace dinal {

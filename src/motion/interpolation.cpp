@@ -1,4 +1,4 @@
-#include "core/interpolation.hpp"
+#include "motion/interpolation.hpp"
 
 #include <algorithm>
 #include <array>
