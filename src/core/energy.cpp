@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-#include "core/panels.hpp"
+#include "motion/spectral/panels.hpp"
 #include "core/stretches.hpp"
 
 namespace dinal {

@@ -5,7 +5,7 @@
 #include <complex>
 #include <numbers>
 
-#include "core/panels.hpp"
+#include "motion/spectral/panels.hpp"
 
 namespace dinal {
 

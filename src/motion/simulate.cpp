@@ -8,7 +8,7 @@
 #include <string>
 
 #include "motion/methods.hpp"
-#include "core/panels.hpp"
+#include "motion/spectral/panels.hpp"
 
 namespace dinal {
 

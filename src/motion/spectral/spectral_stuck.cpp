@@ -3,8 +3,8 @@
 #include <cmath>
 #include <limits>
 
-#include "core/first_below.hpp"
-#include "core/spectral_engine.hpp"
+#include "motion/spectral/first_below.hpp"
+#include "motion/spectral/spectral_engine.hpp"
 
 namespace dinal {
 

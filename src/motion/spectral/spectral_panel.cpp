@@ -3,8 +3,8 @@
 #include <cmath>
 #include <limits>
 
-#include "core/break_search.hpp"
-#include "core/spectral_engine.hpp"
+#include "motion/spectral/break_search.hpp"
+#include "motion/spectral/spectral_engine.hpp"
 
 namespace dinal {
 

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <limits>
 
-#include "core/spectral_engine.hpp"
+#include "motion/spectral/spectral_engine.hpp"
 
 namespace dinal {
 

@@ -1,10 +1,10 @@
-#include "core/spectral_engine.hpp"
+#include "motion/spectral/spectral_engine.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
-#include "core/first_below.hpp"
+#include "motion/spectral/first_below.hpp"
 
 namespace dinal {
 

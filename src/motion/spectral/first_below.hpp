@@ -6,7 +6,7 @@
 #include <limits>
 #include <optional>
 
-#include "core/chebyshev.hpp"
+#include "motion/spectral/chebyshev.hpp"
 
 namespace dinal::chebyshev {
 

@@ -1,4 +1,4 @@
-#include "core/panels.hpp"
+#include "motion/spectral/panels.hpp"
 
 #include <algorithm>
 

@@ -7,8 +7,8 @@
 #include <optional>
 #include <vector>
 
-#include "core/panel_equation.hpp"
-#include "core/panels.hpp"
+#include "motion/spectral/panel_equation.hpp"
+#include "motion/spectral/panels.hpp"
 #include "motion/rows.hpp"
 #include "motion/simulate.hpp"
 

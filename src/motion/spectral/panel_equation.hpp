@@ -1,7 +1,7 @@
 // The equation of motion on one panel, solved as a Chebyshev series in a time that grows with its length.
 #pragma once
 
-#include "core/chebyshev.hpp"
+#include "motion/spectral/chebyshev.hpp"
 
 namespace dinal {
 

@@ -1,4 +1,4 @@
-#include "core/chebyshev.hpp"
+#include "motion/spectral/chebyshev.hpp"
 
 #include <algorithm>
 

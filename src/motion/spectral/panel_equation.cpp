@@ -1,4 +1,4 @@
-#include "core/panel_equation.hpp"
+#include "motion/spectral/panel_equation.hpp"
 
 namespace dinal {
 

@@ -4,8 +4,8 @@
 #include <memory>
 #include <vector>
 
-#include "core/chebyshev.hpp"
-#include "core/clock.hpp"
+#include "motion/spectral/chebyshev.hpp"
+#include "motion/spectral/clock.hpp"
 #include "model/friction.hpp"
 #include "model/oscillator.hpp"
 

@@ -2,7 +2,7 @@
 #include <fmt/format.h>
 
 #include "motion/methods.hpp"
-#include "core/spectral_engine.hpp"
+#include "motion/spectral/spectral_engine.hpp"
 
 namespace dinal {
 
