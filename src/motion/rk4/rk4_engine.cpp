@@ -1,4 +1,4 @@
-#include "core/rk4_engine.hpp"
+#include "motion/rk4/rk4_engine.hpp"
 
 #include <algorithm>
 #include <cmath>

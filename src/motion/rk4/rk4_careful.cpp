@@ -3,7 +3,7 @@
 #include <cmath>
 #include <limits>
 
-#include "core/rk4_engine.hpp"
+#include "motion/rk4/rk4_engine.hpp"
 
 namespace dinal {
 

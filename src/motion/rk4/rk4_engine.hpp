@@ -9,7 +9,7 @@
 #include "motion/checkpoints.hpp"
 #include "model/friction.hpp"
 #include "motion/interpolation.hpp"
-#include "core/rk4_step.hpp"
+#include "motion/rk4/rk4_step.hpp"
 #include "motion/rows.hpp"
 #include "motion/simulate.hpp"
 

@@ -5,7 +5,7 @@
 #include <memory>
 
 #include "motion/methods.hpp"
-#include "core/rk4_engine.hpp"
+#include "motion/rk4/rk4_engine.hpp"
 
 namespace dinal {
 
