@@ -1,9 +1,9 @@
 #include <fmt/format.h>
 
-#include "core/den_hartog.hpp"
+#include "theory/den_hartog.hpp"
 #include "motion/integrator.hpp"
-#include "core/theory_forced.hpp"
-#include "core/theory_steps.hpp"
+#include "theory/theory_forced.hpp"
+#include "theory/theory_steps.hpp"
 #include "lua/theory_arguments.hpp"
 #include "lua/theory_functions.hpp"
 

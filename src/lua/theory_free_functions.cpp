@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/theory_free.hpp"
+#include "theory/theory_free.hpp"
 #include "lua/theory_arguments.hpp"
 #include "lua/theory_functions.hpp"
 

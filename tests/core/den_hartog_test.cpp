@@ -1,5 +1,5 @@
 // Den Hartog's motion and stop boundary against numbers of 80 digits, the balance of energy, and rk4.
-#include "core/den_hartog.hpp"
+#include "theory/den_hartog.hpp"
 
 #include <algorithm>
 #include <catch2/catch.hpp>
@@ -9,7 +9,7 @@
 #include <random>
 #include <vector>
 
-#include "core/theory_forced.hpp"
+#include "theory/theory_forced.hpp"
 #include "support/measure.hpp"
 #include "support/within.hpp"
 

@@ -1,5 +1,5 @@
 // Closed forms of steady motion without dry friction, and of friction taken for viscous.
-#include "core/theory_forced.hpp"
+#include "theory/theory_forced.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>

@@ -1,5 +1,5 @@
 // Closed forms of free motion against the report's numbers, an independent exact solution, and rk4.
-#include "core/theory_free.hpp"
+#include "theory/theory_free.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "core/theory_free.hpp"
+#include "theory/theory_free.hpp"
 
 #include <algorithm>
 #include <cmath>

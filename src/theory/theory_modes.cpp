@@ -1,4 +1,4 @@
-#include "core/theory_modes.hpp"
+#include "theory/theory_modes.hpp"
 
 #include <cmath>
 

@@ -4,7 +4,7 @@
 #include <optional>
 
 #include "model/oscillator.hpp"
-#include "core/theory_modes.hpp"
+#include "theory/theory_modes.hpp"
 
 namespace dinal::theory {
 

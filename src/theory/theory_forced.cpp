@@ -1,4 +1,4 @@
-#include "core/theory_forced.hpp"
+#include "theory/theory_forced.hpp"
 
 #include <algorithm>
 #include <cmath>

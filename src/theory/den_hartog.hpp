@@ -8,7 +8,7 @@
 
 #include <optional>
 
-#include "core/theory_modes.hpp"
+#include "theory/theory_modes.hpp"
 
 namespace dinal::theory {
 

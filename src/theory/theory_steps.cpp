@@ -1,4 +1,4 @@
-#include "core/theory_steps.hpp"
+#include "theory/theory_steps.hpp"
 
 #include <cmath>
 #include <numbers>

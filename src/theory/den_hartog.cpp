@@ -1,11 +1,11 @@
-#include "core/den_hartog.hpp"
+#include "theory/den_hartog.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
 
-#include "core/theory_forced.hpp"
+#include "theory/theory_forced.hpp"
 
 namespace dinal::theory {
 
