@@ -1,7 +1,7 @@
 // What run:energy() returns: the energy balance of a run in total, for each half cycle, and as columns beside its rows.
 #include <algorithm>
 
-#include "core/energy.hpp"
+#include "analysis/energy.hpp"
 #include "lua/cards.hpp"
 #include "lua/external_memory.hpp"
 #include "lua/library.hpp"

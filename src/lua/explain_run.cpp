@@ -1,5 +1,5 @@
 // run:explain(): the run told in sentences.
-#include "core/explain.hpp"
+#include "analysis/explain.hpp"
 #include "lua/run.hpp"
 
 namespace dinal {

@@ -1,5 +1,5 @@
 // run:energy(): every joule that M puts in is found again, in closed forms and in what adds up.
-#include "core/energy.hpp"
+#include "analysis/energy.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>

@@ -1,5 +1,5 @@
 // run:explain(): what the sentences must say, on motions whose story is known.
-#include "core/explain.hpp"
+#include "analysis/explain.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -7,8 +7,8 @@
 #include <sstream>
 
 #include "model/forcing.hpp"
-#include "core/phase_lag.hpp"
-#include "core/recurrence.hpp"
+#include "analysis/phase_lag.hpp"
+#include "analysis/recurrence.hpp"
 #include "text/sentences.hpp"
 #include "support/excitations.hpp"
 #include "support/measure.hpp"

@@ -6,7 +6,7 @@
 #include <memory>
 #include <numbers>
 
-#include "core/energy.hpp"
+#include "analysis/energy.hpp"
 #include "support/excitations.hpp"
 #include "support/measure.hpp"
 #include "support/random_case.hpp"

@@ -1,4 +1,4 @@
-#include "core/energy.hpp"
+#include "analysis/energy.hpp"
 
 #include <fmt/format.h>
 
@@ -7,7 +7,7 @@
 #include <limits>
 
 #include "motion/spectral/panels.hpp"
-#include "core/stretches.hpp"
+#include "analysis/stretches.hpp"
 
 namespace dinal {
 

@@ -10,7 +10,7 @@
 
 #include "model/excitation.hpp"
 #include "motion/integrator.hpp"
-#include "core/recurrence.hpp"
+#include "analysis/recurrence.hpp"
 #include "text/sentences.hpp"
 
 namespace dinal {

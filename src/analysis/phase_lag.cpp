@@ -1,4 +1,4 @@
-#include "core/phase_lag.hpp"
+#include "analysis/phase_lag.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,6 @@
-#include "core/explain.hpp"
+#include "analysis/explain.hpp"
 
-#include "core/story.hpp"
+#include "analysis/story.hpp"
 
 namespace dinal {
 

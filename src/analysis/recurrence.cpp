@@ -1,4 +1,4 @@
-#include "core/recurrence.hpp"
+#include "analysis/recurrence.hpp"
 
 #include <algorithm>
 #include <cmath>

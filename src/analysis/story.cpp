@@ -1,5 +1,5 @@
 // How a run began and went on: the setting, the start, turns, stops.
-#include "core/story.hpp"
+#include "analysis/story.hpp"
 
 #include <limits>
 #include <numbers>

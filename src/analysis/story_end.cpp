@@ -1,7 +1,7 @@
 // What became of a run: rest, steady motion, growth; and how the run ended.
 #include "model/forcing.hpp"
-#include "core/phase_lag.hpp"
-#include "core/story.hpp"
+#include "analysis/phase_lag.hpp"
+#include "analysis/story.hpp"
 
 namespace dinal {
 

@@ -1,4 +1,4 @@
-#include "core/stretches.hpp"
+#include "analysis/stretches.hpp"
 
 #include <algorithm>
 

@@ -6,7 +6,7 @@
 #include <optional>
 #include <vector>
 
-#include "core/stretches.hpp"
+#include "analysis/stretches.hpp"
 
 namespace dinal {
 
