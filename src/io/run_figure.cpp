@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <array>
 
-#include "io/table.hpp"
+#include "files/table.hpp"
 
 namespace dinal {
 namespace {

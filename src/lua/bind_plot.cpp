@@ -4,7 +4,7 @@
 #include <optional>
 
 #include "io/run_figure.hpp"
-#include "io/table.hpp"
+#include "files/table.hpp"
 #include "lua/library.hpp"
 #include "lua/picture.hpp"
 #include "lua/plot_docs.hpp"

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "io/table.hpp"
+#include "files/table.hpp"
 #include "lua/cards.hpp"
 #include "lua/events.hpp"
 #include "lua/external_memory.hpp"

@@ -2,8 +2,8 @@
 #include <algorithm>
 #include <cctype>
 
-#include "io/csv.hpp"
-#include "io/record1989.hpp"
+#include "files/csv.hpp"
+#include "files/record1989.hpp"
 #include "lua/interrupt.hpp"
 #include "lua/library.hpp"
 #include "lua/run.hpp"

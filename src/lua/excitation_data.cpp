@@ -5,7 +5,7 @@
 #include <optional>
 #include <utility>
 
-#include "io/csv.hpp"
+#include "files/csv.hpp"
 #include "lua/bind_excitation.hpp"
 #include "lua/interrupt.hpp"
 #include "lua/lua_text.hpp"

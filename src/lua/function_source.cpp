@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <vector>
 
-#include "io/file.hpp"
+#include "files/file.hpp"
 #include "lua/lua_text.hpp"
 #include "lua/standard_globals.hpp"
 

@@ -9,7 +9,7 @@
 #include <atomic>
 
 #include "terminal/progress.hpp"
-#include "io/stop.hpp"
+#include "files/stop.hpp"
 #include "lua/running_thread.hpp"
 
 namespace dinal {

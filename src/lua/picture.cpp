@@ -6,7 +6,7 @@
 #include <array>
 #include <cctype>
 
-#include "io/file.hpp"
+#include "files/file.hpp"
 #include "io/gnuplot.hpp"
 #include "io/screen.hpp"
 #include "lua/external_memory.hpp"

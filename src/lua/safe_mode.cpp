@@ -6,7 +6,7 @@
 #include <string>
 #include <string_view>
 
-#include "io/confinement.hpp"
+#include "files/confinement.hpp"
 #include "terminal/progress.hpp"
 #include "lua/bind.hpp"
 #include "lua/interrupt.hpp"

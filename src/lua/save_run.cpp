@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cctype>
 
-#include "io/csv.hpp"
-#include "io/record1989.hpp"
+#include "files/csv.hpp"
+#include "files/record1989.hpp"
 #include "lua/options.hpp"
 #include "lua/run.hpp"
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cctype>
 
-#include "io/file.hpp"
+#include "files/file.hpp"
 #include "lua/function_source.hpp"
 #include "lua/tokens.hpp"
 

@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "io/confinement.hpp"
+#include "files/confinement.hpp"
 #include "lua/safe_mode.hpp"
 #include "repl/call.hpp"
 

@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-#include "io/file.hpp"
+#include "files/file.hpp"
 #include "lua/tokens.hpp"
 
 namespace dinal {

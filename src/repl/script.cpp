@@ -14,7 +14,7 @@
 #include <memory>
 #include <string_view>
 
-#include "io/confinement.hpp"
+#include "files/confinement.hpp"
 #include "lua/function_source.hpp"
 #include "lua/interrupt.hpp"
 #include "lua/library.hpp"

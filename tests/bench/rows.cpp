@@ -8,7 +8,7 @@
 #include <unistd.h>
 
 #include "dinal_runs.hpp"
-#include "io/csv.hpp"
+#include "files/csv.hpp"
 #include "items.hpp"
 
 namespace bench {

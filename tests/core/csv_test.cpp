@@ -1,4 +1,4 @@
-#include "io/csv.hpp"
+#include "files/csv.hpp"
 
 #include <bit>
 #include <catch2/catch.hpp>

@@ -1,6 +1,6 @@
-#include "io/file.hpp"
-#include "io/csv.hpp"
-#include "io/stop.hpp"
+#include "files/file.hpp"
+#include "files/csv.hpp"
+#include "files/stop.hpp"
 
 #include <fcntl.h>
 #include <sys/resource.h>

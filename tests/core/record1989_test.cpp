@@ -1,4 +1,4 @@
-#include "io/record1989.hpp"
+#include "files/record1989.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>

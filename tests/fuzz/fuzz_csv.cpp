@@ -4,7 +4,7 @@
 #include <cstdlib>
 #include <string_view>
 
-#include "io/csv.hpp"
+#include "files/csv.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     const auto table = dinal::parse_csv({reinterpret_cast<const char*>(data), size}, "fuzz.csv");

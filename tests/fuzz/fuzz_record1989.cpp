@@ -4,7 +4,7 @@
 #include <cstdlib>
 #include <string_view>
 
-#include "io/record1989.hpp"
+#include "files/record1989.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     const auto table = dinal::parse_record1989({reinterpret_cast<const char*>(data), size}, "fuzz.dat");

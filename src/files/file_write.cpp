@@ -1,4 +1,4 @@
-#include "io/file.hpp"
+#include "files/file.hpp"
 
 #include <fcntl.h>
 #include <unistd.h>
@@ -12,8 +12,8 @@
 #include <system_error>
 #include <utility>
 
-#include "io/confinement.hpp"
-#include "io/stop.hpp"
+#include "files/confinement.hpp"
+#include "files/stop.hpp"
 
 namespace dinal {
 namespace {

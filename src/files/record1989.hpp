@@ -8,8 +8,8 @@
 #include "text/expected.hpp"
 #include "model/oscillator.hpp"
 #include "motion/trajectory.hpp"
-#include "io/file.hpp"
-#include "io/table.hpp"
+#include "files/file.hpp"
+#include "files/table.hpp"
 
 namespace dinal {
 

@@ -1,4 +1,4 @@
-#include "io/record1989.hpp"
+#include "files/record1989.hpp"
 
 #include <algorithm>
 #include <array>
@@ -7,8 +7,8 @@
 #include <optional>
 #include <utility>
 
-#include "io/row_writer.hpp"
-#include "io/text_input.hpp"
+#include "files/row_writer.hpp"
+#include "files/text_input.hpp"
 
 namespace dinal {
 namespace {

@@ -1,11 +1,11 @@
-#include "io/csv.hpp"
+#include "files/csv.hpp"
 
 #include <algorithm>
 #include <optional>
 #include <utility>
 
-#include "io/row_writer.hpp"
-#include "io/text_input.hpp"
+#include "files/row_writer.hpp"
+#include "files/text_input.hpp"
 
 namespace dinal {
 namespace {

@@ -1,4 +1,4 @@
-#include "io/confinement.hpp"
+#include "files/confinement.hpp"
 
 #include <algorithm>
 #include <filesystem>

@@ -1,4 +1,4 @@
-#include "io/table.hpp"
+#include "files/table.hpp"
 
 #include <algorithm>
 

@@ -1,10 +1,10 @@
-#include "io/csv.hpp"
+#include "files/csv.hpp"
 
 #include <algorithm>
 #include <optional>
 #include <utility>
 
-#include "io/text_input.hpp"
+#include "files/text_input.hpp"
 
 namespace dinal {
 namespace {

@@ -4,8 +4,8 @@
 #include <optional>
 #include <span>
 
-#include "io/file.hpp"
-#include "io/table.hpp"
+#include "files/file.hpp"
+#include "files/table.hpp"
 
 namespace dinal {
 

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "text/expected.hpp"
-#include "io/file.hpp"
-#include "io/table.hpp"
+#include "files/file.hpp"
+#include "files/table.hpp"
 
 namespace dinal {
 

@@ -1,4 +1,4 @@
-#include "io/stop.hpp"
+#include "files/stop.hpp"
 
 namespace dinal {
 namespace {

@@ -1,4 +1,4 @@
-#include "io/row_writer.hpp"
+#include "files/row_writer.hpp"
 
 #include <array>
 #include <bit>

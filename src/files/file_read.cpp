@@ -1,4 +1,4 @@
-#include "io/file.hpp"
+#include "files/file.hpp"
 
 #include <fcntl.h>
 #include <sys/stat.h>
@@ -8,7 +8,7 @@
 #include <cerrno>
 #include <system_error>
 
-#include "io/confinement.hpp"
+#include "files/confinement.hpp"
 
 namespace dinal {
 namespace {

@@ -1,4 +1,4 @@
-#include "io/text_input.hpp"
+#include "files/text_input.hpp"
 
 #include <algorithm>
 #include <array>
@@ -7,7 +7,7 @@
 #include <cstdlib>
 #include <system_error>
 
-#include "io/stop.hpp"
+#include "files/stop.hpp"
 
 namespace dinal {
 namespace {
