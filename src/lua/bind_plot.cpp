@@ -3,7 +3,7 @@
 
 #include <optional>
 
-#include "io/run_figure.hpp"
+#include "plots/run_figure.hpp"
 #include "files/table.hpp"
 #include "lua/library.hpp"
 #include "lua/picture.hpp"

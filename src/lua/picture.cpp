@@ -7,8 +7,8 @@
 #include <cctype>
 
 #include "files/file.hpp"
-#include "io/gnuplot.hpp"
-#include "io/screen.hpp"
+#include "plots/gnuplot.hpp"
+#include "plots/screen.hpp"
 #include "lua/external_memory.hpp"
 #include "lua/interrupt.hpp"
 #include "lua/memory_limit.hpp"

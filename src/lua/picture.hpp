@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
-#include "io/figure.hpp"
-#include "io/gnuplot_script.hpp"
-#include "io/text_plot.hpp"
+#include "plots/figure.hpp"
+#include "plots/gnuplot_script.hpp"
+#include "plots/text_plot.hpp"
 #include "lua/options.hpp"
 
 namespace dinal {

@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-#include "io/figure.hpp"
+#include "plots/figure.hpp"
 
 namespace dinal {
 

@@ -6,10 +6,10 @@
 #include <string>
 
 #include "dinal_runs.hpp"
-#include "io/gnuplot.hpp"
-#include "io/gnuplot_script.hpp"
-#include "io/run_figure.hpp"
-#include "io/text_plot.hpp"
+#include "plots/gnuplot.hpp"
+#include "plots/gnuplot_script.hpp"
+#include "plots/run_figure.hpp"
+#include "plots/text_plot.hpp"
 #include "items.hpp"
 
 namespace bench {

@@ -3,7 +3,7 @@
 #include <cstdlib>
 #include <filesystem>
 
-#include "io/gnuplot.hpp"
+#include "plots/gnuplot.hpp"
 #include "support/temporary_folder.hpp"
 
 using namespace dinal;

@@ -1,13 +1,13 @@
-#include "io/gnuplot.hpp"
+#include "plots/gnuplot.hpp"
 
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <filesystem>
 
-#include "io/gnuplot_data.hpp"
-#include "io/gnuplot_script.hpp"
-#include "io/paper_layout.hpp"
+#include "plots/gnuplot_data.hpp"
+#include "plots/gnuplot_script.hpp"
+#include "plots/paper_layout.hpp"
 #include "support/temporary_folder.hpp"
 
 using namespace dinal;

@@ -1,4 +1,4 @@
-#include "io/text_plot.hpp"
+#include "plots/text_plot.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -6,7 +6,7 @@
 #include <sstream>
 
 #include "text/display_text.hpp"
-#include "io/ticks.hpp"
+#include "plots/ticks.hpp"
 
 using namespace dinal;
 

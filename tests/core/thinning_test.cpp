@@ -1,4 +1,4 @@
-#include "io/thinning.hpp"
+#include "plots/thinning.hpp"
 
 #include <algorithm>
 #include <catch2/catch.hpp>

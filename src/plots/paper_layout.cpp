@@ -1,0 +1,245 @@
+#include "plots/paper_layout.hpp"
+
+#include <algorithm>
+
+#include "text/display_text.hpp"
+
+namespace dinal {
+namespace {
+
+constexpr double letter_width = 0.55 * em;  // of the average one in the fonts that will be met
+constexpr double digit_width = 0.62 * em;
+constexpr double line_height = 1.35 * em;
+constexpr double between_entries = 1.2 * em;
+
+double width_of(std::string_view text) {
+    return letter_width * static_cast<double>(display_width(text));
+}
+
+double digits_width(const std::string& number) {
+    return digit_width * static_cast<double>(display_width(typeset(number)));
+}
+
+/// What is too long for its place loses its end, so that one sees that it was too long.
+std::string cut(const std::string& text, double width) {
+    std::string shown = displayable(text);
+    if (width_of(shown) <= width) {
+        return shown;
+    }
+    return std::string(cut_to_width(shown, static_cast<std::size_t>(std::max(1.0, width / letter_width - 1)))) + "…";
+}
+
+double widest(const std::vector<std::string>& texts) {
+    double width = 0;
+    for (const std::string& text : texts) {
+        width = std::max(width, digits_width(text));
+    }
+    return width;
+}
+
+std::string with_offset(const std::string& label, const Ticks& ticks) {
+    return ticks.offset.empty() ? label : label + " (" + typeset(ticks.offset) + ")";
+}
+
+std::vector<LegendEntry> legend_of(const Figure& figure) {
+    std::vector<LegendEntry> entries;
+    for (std::size_t i = 0; i < figure.curves.size(); ++i) {
+        if (!figure.curves[i].label.empty()) {
+            entries.push_back({Sample::curve, i, figure.curves[i].label});
+        }
+    }
+    constexpr std::size_t most = 42;  // as many as there are looks
+    if (entries.size() > most) {
+        const std::string rest = "+ " + std::to_string(entries.size() - most) + " more";
+        entries.resize(most);
+        entries.push_back({Sample::none, 0, rest});
+    }
+    for (const Mark& mark : figure.marks) {
+        const bool start = mark.kind == MarkKind::start;
+        entries.push_back({start ? Sample::start : Sample::end, 0, start ? "start" : "end"});
+    }
+    if (figure.dead_zone) {
+        entries.push_back({Sample::dead_zone, 0, "dead zone"});
+    }
+    if (!figure.stuck.empty()) {
+        entries.push_back({Sample::stuck, 0, "stuck"});
+    }
+    return entries;
+}
+
+/// Sets the entries one after the other, in lines of this width, all of them in columns when there are many. Their y
+/// counts down from 0 at the top. Returns the number of lines.
+int flow(std::vector<LegendEntry>& entries, double width) {
+    double most = 0;
+    for (const LegendEntry& entry : entries) {
+        most = std::max(most, sample_width(entry.sample) + after_sample + width_of(entry.text) + between_entries);
+    }
+    most = std::min(most, width + between_entries);
+    constexpr std::size_t few = 4;
+    const double columns = std::max(1.0, std::floor((width + between_entries) / most));
+    double x = 0;
+    int line = 0;
+    for (LegendEntry& entry : entries) {
+        entry.text = cut(entry.text, width - sample_width(entry.sample) - after_sample);
+        const double own = sample_width(entry.sample) + after_sample + width_of(entry.text);
+        if (x > 0 && (entries.size() > few ? x >= (columns - 0.5) * most : x + own > width)) {
+            x = 0;
+            ++line;
+        }
+        entry.x = x;
+        entry.y = -(line + 0.5) * line_height;
+        x += entries.size() > few ? most : own + between_entries;
+    }
+    return entries.empty() ? 0 : line + 1;
+}
+
+constexpr int most_ticks = 12;  // of an axis: a poster needs no more of them than a page
+
+int x_tick_count(const Panel& panel, double em_each) {
+    return std::clamp(static_cast<int>((panel.right - panel.left) / (em_each * em)), 2, most_ticks);
+}
+
+/// The ticks below the box; the last label may not stand out of the sheet.
+void set_x_ticks(Panel& panel, double limit) {
+    const Figure& figure = *panel.figure;
+    const bool free = figure.x.ticks.empty() && !figure.x.division;
+    for (int attempt = 0; attempt < 2; ++attempt) {
+        constexpr double closest = 3;  // em from tick to tick
+        panel.x_ticks = ticks_of(figure.x, panel.view.x, x_tick_count(panel, closest));
+        const double room = widest(panel.x_ticks.text) + em;
+        if (free && room > closest * em) {
+            panel.x_ticks = ticks_of(figure.x, panel.view.x, x_tick_count(panel, room / em));
+        }
+        if (panel.x_ticks.at.empty() || figure.equal) {
+            return;
+        }
+        const double place = panel.left + panel.view.x(panel.x_ticks.at.back()) * (panel.right - panel.left);
+        const double over = place + digits_width(panel.x_ticks.text.back()) / 2 - limit;
+        if (over <= 0) {
+            return;
+        }
+        panel.right -= over;
+    }
+}
+
+/// The margins of a panel, the ticks that fit between them, and the box.
+void place(Panel& panel, double left, double width, double height) {
+    const Figure& figure = *panel.figure;
+    const auto y_ticks = [&](double high) {
+        return ticks_of(figure.y, panel.view.y, std::clamp(static_cast<int>(high / (2.6 * em)), 2, most_ticks));
+    };
+    panel.y_ticks = y_ticks(height);
+    panel.y_label.text = with_offset(figure.y.label, panel.y_ticks);
+    const double label_room = panel.y_label.text.empty() ? 0 : 1.6 * em;
+    panel.left = left + 0.4 * em + (figure.axes ? label_room + widest(panel.y_ticks.text) + 0.9 * em : 0);
+    panel.right = left + width - (figure.axes ? 1.0 : 0.4) * em;
+    const double bars = figure.stuck.empty() ? 0 : 0.2 * em;
+    panel.bottom = figure.axes ? 2.1 * em + bars + (figure.x.label.empty() ? 0 : 1.5 * em) : 0.4 * em;
+    panel.right = std::max(panel.right, panel.left + 2 * em);
+    panel.legend = legend_of(figure);
+    const double title = figure.title.empty() ? 0 : 1.5 * em;
+    double above = 0.5 * em + flow(panel.legend, panel.right - panel.left) * line_height + title;
+    if (height - above < panel.bottom + 3 * em) {  // a sheet that is too small has curves rather than words
+        panel.legend.clear();
+        above = 0.5 * em + title;
+    }
+    panel.top = std::max(height - above, panel.bottom + 2 * em);
+    const double legend_left = panel.left;
+    if (figure.equal) {
+        const Box room{panel.right - panel.left, panel.top - panel.bottom};
+        const Box box = equal_box(panel.view, room);
+        panel.left += (room.width - box.width) / 2;
+        panel.right = panel.left + box.width;
+        panel.unused = room.height - box.height;
+        panel.bottom += panel.unused / 2;
+        panel.top = panel.bottom + box.height;
+    }
+    panel.y_ticks = y_ticks(panel.top - panel.bottom);
+    set_x_ticks(panel, left + width - 0.2 * em);
+    for (LegendEntry& entry : panel.legend) {
+        entry.x += std::min(legend_left, panel.left);
+        entry.y += panel.top + above - 0.1 * em - title;
+    }
+    const double whole_width =
+        2 * std::min((panel.left + panel.right) / 2 - left, left + width - (panel.left + panel.right) / 2);
+    panel.title = {cut(figure.title, whole_width), (panel.left + panel.right) / 2, panel.top + above - 0.7 * em};
+    panel.x_label.text = cut(with_offset(figure.x.label, panel.x_ticks), whole_width);
+    panel.x_label.x = (panel.left + panel.right) / 2;
+    panel.x_label.y = panel.bottom - 2.85 * em - bars;
+    panel.y_label.text =
+        cut(panel.y_label.text, 2 * std::min((panel.bottom + panel.top) / 2, height - (panel.bottom + panel.top) / 2));
+    panel.y_label.x = panel.left - widest(panel.y_ticks.text) - 1.7 * em;
+    panel.y_label.y = (panel.bottom + panel.top) / 2;
+}
+
+double share_of(const Figure& figure) {
+    return figure.equal ? 1 : 1.4;
+}
+
+PaperSize complete(PaperSize size, std::span<const Figure> figures) {
+    const bool single = figures.size() == 1;
+    if (size.width <= 0) {
+        size.width = single ? 8.5 : 17;
+    }
+    if (size.height <= 0) {
+        double most = 0;
+        for (const Figure& figure : figures) {
+            // A long legend must not eat the picture: it gets room of its own.
+            std::vector<LegendEntry> entries = legend_of(figure);
+            const double width = size.width * pixels_per_cm / static_cast<double>(figures.size()) - 6 * em;
+            const double legend = flow(entries, width) * line_height / pixels_per_cm;
+            most = std::max(most, (single && figure.equal ? 7.6 : 5.6) + legend);
+        }
+        size.height = single ? most : most + 0.5;
+    }
+    return size;
+}
+
+}  // namespace
+
+Sheet lay_out(std::span<const Figure> figures, PaperSize size) {
+    const bool any_height = size.height <= 0;
+    size = complete(size, figures);
+    Sheet sheet{size.width * pixels_per_cm, size.height * pixels_per_cm, {}};
+    double shares = 0;
+    for (const Figure& figure : figures) {
+        shares += share_of(figure);
+    }
+    double left = 0;
+    for (const Figure& figure : figures) {
+        const double width = sheet.width * share_of(figure) / shares;
+        sheet.panels.push_back({.figure = &figure, .view = view_of(figure)});
+        place(sheet.panels.back(), left, width, sheet.height);
+        left += width;
+    }
+    if (any_height && figures.size() == 1 && sheet.panels.front().unused > 1) {
+        return lay_out(figures, {size.width, size.height - sheet.panels.front().unused / pixels_per_cm});
+    }
+    return sheet;
+}
+
+std::string typeset(const std::string& number) {
+    constexpr std::string_view raised[] = {"⁰", "¹", "²", "³", "⁴", "⁵", "⁶", "⁷", "⁸", "⁹"};
+    std::string result;
+    bool in_power = false;
+    for (const char c : number) {
+        if (c == 'e') {
+            if (result == "1" || result == "−1") {
+                result.pop_back();
+            } else {
+                result += "·";
+            }
+            result += "10";
+            in_power = true;
+        } else if (c == '-') {
+            result += in_power ? "⁻" : "−";
+        } else if (in_power && c >= '0' && c <= '9') {
+            result += raised[c - '0'];
+        } else if (!(in_power && c == '+')) {
+            result += c;
+        }
+    }
+    return result;
+}
+
+}  // namespace dinal

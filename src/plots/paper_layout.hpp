@@ -1,0 +1,59 @@
+// Where the parts of a printed figure stand: the box of the curves, and around it ticks, labels, legend and title.
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "plots/figure.hpp"
+#include "plots/gnuplot_script.hpp"
+#include "plots/ticks.hpp"
+
+namespace dinal {
+
+inline constexpr double font_size = 8;             // points
+inline constexpr double em = font_size * 96 / 72;  // pixels of 1/96 inch, the unit of this file
+inline constexpr double pixels_per_cm = 96 / 2.54;
+
+enum class Sample { curve, start, end, dead_zone, stuck, none };
+
+/// A line of the legend: a sample, and words to its right.
+struct LegendEntry {
+    Sample sample;
+    std::size_t curve;  // which, for a curve
+    std::string text;
+    double x = 0, y = 0;  // of the left end of the sample, in the middle of the line
+};
+constexpr double sample_width(Sample sample) {
+    return (sample == Sample::none ? 0 : sample == Sample::start || sample == Sample::end ? 0.8 : 2.2) * em;
+}
+inline constexpr double after_sample = 0.4 * em;
+
+/// Words somewhere on the sheet.
+struct Words {
+    std::string text;
+    double x = 0, y = 0;  // their middle
+};
+
+/// All places in pixels from the lower left corner of the sheet.
+struct Panel {
+    const Figure* figure;
+    View view;
+    Ticks x_ticks = {}, y_ticks = {};
+    double left = 0, bottom = 0, right = 0, top = 0;  // the box of the curves
+    double unused = 0;                                // of the height, because the box may not be higher than that
+    std::vector<LegendEntry> legend = {};
+    Words title = {}, x_label = {}, y_label = {};
+};
+
+struct Sheet {
+    double width, height;
+    std::vector<Panel> panels;
+};
+
+Sheet lay_out(std::span<const Figure> figures, PaperSize size);
+
+/// As a printer sets it: "−0.5", "2·10⁻⁹".
+std::string typeset(const std::string& number);
+
+}  // namespace dinal

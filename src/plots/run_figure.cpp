@@ -1,0 +1,178 @@
+#include "plots/run_figure.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+
+#include "files/table.hpp"
+
+namespace dinal {
+namespace {
+
+struct Symbol {
+    std::string_view name, symbol, unit;
+};
+
+constexpr std::array<Symbol, 8> symbols{{{"theta", "θ", "rad"},
+                                         {"velocity", "θ'", "rad/time"},
+                                         {"velocity/omega0", "θ'/ω₀", "rad"},
+                                         {"velocity_over_omega0", "θ'/ω₀", "rad"},
+                                         {"M/k", "M/k", "rad"},
+                                         {"M_over_k", "M/k", "rad"},
+                                         {"friction_over_k", "friction/k", "rad"},
+                                         {"damping_over_k", "damping/k", "rad"}}};
+
+Symbol symbol_of(std::string_view name) {
+    const auto* found =
+        std::find_if(symbols.begin(), symbols.end(), [name](const Symbol& symbol) { return symbol.name == name; });
+    return found != symbols.end() ? *found : Symbol{name, name, name.ends_with("/k") ? "rad" : ""};
+}
+
+std::string axis_label(std::string_view name) {
+    const Symbol symbol = symbol_of(name);
+    return std::string(symbol.symbol) + (symbol.unit.empty() ? "" : ", " + std::string(symbol.unit));
+}
+
+Expected<Numbers> plain_column(const RunData& run, std::string_view name) {
+    const auto column = find_column(run.trajectory->names, name);
+    if (!column) {
+        return column.error();
+    }
+    const auto values = run.trajectory->rows.col(*column);
+    return Numbers{run.owner, {values.data(), static_cast<std::size_t>(values.size())}};
+}
+
+/// "M/k" and its like; nothing when the name is none of these.
+std::optional<double> divisor(const RunData& run, std::string_view name) {
+    const std::size_t slash = name.find('/');
+    if (slash == std::string_view::npos || run.system == nullptr) {
+        return std::nullopt;
+    }
+    const std::string_view by = name.substr(slash + 1);
+    if (by == "k") {
+        return run.system->stiffness();
+    }
+    return by == "omega0" ? std::optional(run.system->natural_frequency()) : std::nullopt;
+}
+
+Expected<Numbers> column(const RunData& run, std::string_view name) {
+    const std::optional<double> by = divisor(run, name);
+    if (!by) {
+        return plain_column(run, name);
+    }
+    auto plain = plain_column(run, name.substr(0, name.find('/')));
+    if (!plain) {
+        return plain;
+    }
+    std::vector<double> scaled(plain->values.size());
+    std::transform(plain->values.begin(), plain->values.end(), scaled.begin(), [&by](double x) { return x / *by; });
+    return Numbers::own(std::move(scaled));
+}
+
+bool has(const RunData& run, std::string_view name) {
+    return run.trajectory->find(name).has_value();
+}
+
+bool is_excited(const RunData& run, std::string_view name) {
+    const auto M = run.trajectory->find(name);
+    return M && run.trajectory->size() > 0 && run.trajectory->rows.col(*M).cwiseAbs().maxCoeff() > 0;
+}
+
+/// Any other table of numbers: the second column over the first.
+std::vector<std::string> usual_columns(const RunData& run, std::string_view x) {
+    if (!has(run, "theta")) {
+        const auto& names = run.trajectory->names;
+        const auto other = std::find_if(names.begin(), names.end(), [x](const std::string& name) { return name != x; });
+        return {other != names.end() ? *other : std::string(x)};
+    }
+    std::vector<std::string> names{"theta"};
+    if (run.system != nullptr && is_excited(run, "M")) {
+        names.emplace_back("M/k");
+    } else if (is_excited(run, "M_over_k")) {
+        names.emplace_back("M_over_k");
+    }
+    return names;
+}
+
+}  // namespace
+
+std::vector<Range> stuck_intervals(const Trajectory& trajectory) {
+    std::vector<Range> intervals;
+    const auto& events = trajectory.events;
+    // Nothing is recorded at the start: a run that begins with a slip, or ends at rest without any event, began stuck.
+    bool stuck = events.empty() ? trajectory.outcome == Outcome::at_rest : events.front().kind == EventKind::slip;
+    double since = trajectory.t_start;
+    for (const Event& event : events) {
+        const bool holds = event.kind == EventKind::stick || event.kind == EventKind::rest;
+        if (holds && !stuck) {
+            since = event.t;
+        } else if (!holds && stuck) {
+            intervals.push_back({since, event.t});
+        }
+        stuck = holds;
+    }
+    if (stuck) {
+        intervals.push_back({since, trajectory.t_stop});
+    }
+    return intervals;
+}
+
+Expected<Figure> column_figure(const RunData& run, std::string_view x, const std::vector<std::string>& ys) {
+    if (run.trajectory->names.empty()) {
+        return Error{"the run has no columns to draw"};
+    }
+    const std::string across = !x.empty() ? std::string(x) : has(run, "t") ? "t" : run.trajectory->names.front();
+    const std::vector<std::string> names = ys.empty() ? usual_columns(run, across) : ys;
+    const auto x_values = column(run, across);
+    if (!x_values) {
+        return x_values.error();
+    }
+    Figure figure;
+    figure.x.label = axis_label(across);
+    for (const std::string& name : names) {
+        const auto values = column(run, name);
+        if (!values) {
+            return values.error();
+        }
+        figure.curves.push_back({*x_values, *values, names.size() > 1 ? std::string(symbol_of(name).symbol) : ""});
+    }
+    const std::string_view unit = symbol_of(names.front()).unit;
+    if (names.size() == 1) {
+        figure.y.label = axis_label(names.front());
+    } else if (std::all_of(names.begin(), names.end(),
+                           [unit](const std::string& name) { return symbol_of(name).unit == unit; })) {
+        figure.y.label = unit;
+    }
+    if (across == "t") {
+        figure.stuck = stuck_intervals(*run.trajectory);
+    }
+    return figure;
+}
+
+Expected<Figure> phase_figure(const RunData& run) {
+    const bool record = run.system == nullptr && has(run, "velocity_over_omega0");
+    if (run.system == nullptr && !record) {
+        return Error{
+            "the phase plane needs omega0, which a run that was read from a .csv file no longer has; use run:plot{ x = "
+            "\"theta\", y = \"velocity\" }"};
+    }
+    auto figure = column_figure(run, "theta", {record ? "velocity_over_omega0" : "velocity/omega0"});
+    if (!figure) {
+        return figure;
+    }
+    Figure plane = std::move(figure).value();
+    plane.equal = true;
+    plane.circles = true;
+    const Curve& motion = plane.curves.front();
+    if (const std::size_t rows = motion.size(); rows > 0) {
+        plane.marks = {{motion.x.values[0], motion.y.values[0], MarkKind::start},
+                       {motion.x.values[rows - 1], motion.y.values[rows - 1], MarkKind::end}};
+    }
+    if (run.system != nullptr && run.system->dead_zone() > 0) {
+        plane.dead_zone = Range{-run.system->dead_zone(), run.system->dead_zone()};
+    }
+    return plane;
+}
+
+}  // namespace dinal

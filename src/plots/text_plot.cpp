@@ -1,0 +1,312 @@
+#include "plots/text_plot.hpp"
+
+#include <algorithm>
+#include <limits>
+
+#include "text/display_text.hpp"
+#include "plots/text_block.hpp"
+#include "plots/text_drawing.hpp"
+#include "plots/ticks.hpp"
+
+namespace dinal {
+namespace {
+
+constexpr int narrowest_panel = 38;  // columns; what has less stands under its neighbour
+constexpr int letters_at_end = 3;    // columns to the right of the canvas for the letters of curves
+
+constexpr std::size_t most_legend_lines = 5;
+
+struct Frame {
+    std::string_view side, tick, corner, floor, floor_tick, stuck;
+};
+
+Frame frame_of(Charset charset) {
+    return charset == Charset::braille ? Frame{"│", "┤", "└", "─", "┬", "━"} : Frame{"|", "+", "+", "-", "+", "="};
+}
+
+class TextPlot {
+public:
+    TextPlot(const Figure& figure, const TextFormat& format)
+        : figure_(figure), format_(format), seen_(view_of(figure)), view_(seen_), frame_(frame_of(format.charset)) {}
+
+    TextBlock block() {
+        lay_out();
+        Canvas canvas(columns_, rows_, format_.charset);
+        const Projection projection{view_, box_};
+        draw(canvas, figure_, projection, circles_of(figure_, x_ticks_, y_ticks_), format_.charset);
+        TextBlock lines;
+        if (!figure_.title.empty()) {
+            lines.push_back(centred(figure_.title));
+        }
+        lines.insert(lines.end(), head_.begin(), head_.end());
+        add_rows(lines, canvas, projection);
+        if (figure_.axes) {
+            add_foot(lines);
+        }
+        return lines;
+    }
+
+private:
+    [[nodiscard]] TextLine empty_line() const { return TextLine(format_.colours); }
+    [[nodiscard]] std::string shown(std::string_view text) const {
+        const std::string clean = displayable(text);
+        return format_.charset == Charset::braille ? clean : in_ascii(clean);
+    }
+
+    /// The room depends on the tick labels, and how many ticks there are on the room: again until both agree.
+    void lay_out() {
+        for (int attempt = 0; attempt < 4; ++attempt) {
+            const std::size_t width_before = label_width_;
+            const std::size_t height_before = head_.size();
+            head_ = head_lines();
+            set_canvas();
+            y_ticks_ = ticks_of(figure_.y, view_.y, std::max(2, rows_ / 3));
+            x_ticks_ = ticks_of(figure_.x, view_.x, std::max(2, columns_ / (figure_.equal ? 7 : 11)));
+            label_width_ = figure_.axes && !figure_.stuck.empty() ? 5 : 0;
+            for (const std::string& text : figure_.axes ? y_ticks_.text : std::vector<std::string>{}) {
+                label_width_ = std::max(label_width_, text.size());
+            }
+            if (attempt > 0 && label_width_ == width_before && head_.size() == height_before) {
+                break;
+            }
+        }
+    }
+
+    void set_canvas() {
+        const int foot = figure_.axes ? 2 + (figure_.stuck.empty() ? 0 : 1) + (long_x_label() ? 1 : 0) : 0;
+        const int around = figure_.axes ? static_cast<int>(label_width_) + 2 : 0;
+        const int cell_width = format_.charset == Charset::braille ? 2 : 1;
+        const int cell_height = 2 * cell_width;
+        rows_ = std::max(3, format_.rows - foot - static_cast<int>(head_.size()) - (figure_.title.empty() ? 0 : 1));
+        columns_ = std::max(2, format_.columns - around - letters_at_end);
+        box_ = {static_cast<double>(columns_ * cell_width), static_cast<double>(rows_ * cell_height)};
+        if (figure_.equal) {
+            view_ = seen_;
+            box_ = equal_box(view_, box_);
+            columns_ = std::max(1, static_cast<int>(std::ceil(box_.width / cell_width - 1e-9)));
+            rows_ = std::max(1, static_cast<int>(std::ceil(box_.height / cell_height - 1e-9)));
+        }
+    }
+
+    [[nodiscard]] bool long_x_label() const { return display_width(x_label()) > letters_at_end - 1; }
+    [[nodiscard]] std::string x_label() const {
+        return shown(figure_.x.label + (x_ticks_.offset.empty() ? "" : " (" + x_ticks_.offset + ")"));
+    }
+    [[nodiscard]] std::string y_label() const {
+        return shown(figure_.y.label + (y_ticks_.offset.empty() ? "" : " (" + y_ticks_.offset + ")"));
+    }
+
+    struct Entry {
+        std::string text;
+        std::uint8_t ink;
+    };
+
+    [[nodiscard]] std::vector<Entry> entries() const {
+        std::vector<Entry> list;
+        for (std::size_t i = 0; i < figure_.curves.size(); ++i) {
+            if (!figure_.curves[i].label.empty()) {
+                const std::string mark = uses_letters(figure_) ? std::string{letter(ink_of(i)), ' '} : "";
+                list.push_back({mark + shown(figure_.curves[i].label), ink_of(i)});
+            }
+        }
+        const Signs sign = signs(format_.charset);
+        for (const Mark& mark : figure_.marks) {
+            const bool start = mark.kind == MarkKind::start;
+            list.push_back({std::string(start ? sign.start : sign.end) + (start ? " start" : " end"), 0});
+        }
+        if (figure_.dead_zone) {
+            list.push_back({std::string(sign.dead_zone) + " dead zone", 0});
+        }
+        return list;
+    }
+
+    /// The label of the vertical axis and the legend, on as few lines as they need, but not on many.
+    [[nodiscard]] TextBlock head_lines() const {
+        TextBlock lines;
+        TextLine line = empty_line();
+        const std::string name = figure_.axes ? y_label() : "";
+        const std::size_t start = figure_.axes ? label_width_ + 2 : 0;
+        const auto width = static_cast<std::size_t>(format_.columns);
+        line.pad(!name.empty() && display_width(name) < start ? start - 1 - display_width(name) : 0);
+        line.add(cut_to_width(name, width));
+        const std::vector<Entry> list = entries();
+        for (std::size_t i = 0; i < list.size(); ++i) {
+            constexpr std::size_t gap = 3;
+            if (line.width() > 0 && line.width() + gap + display_width(list[i].text) > width) {
+                lines.push_back(line);
+                line = empty_line();
+                if (lines.size() == most_legend_lines) {
+                    line.pad(start);
+                    line.add("+ " + std::to_string(list.size() - i) + " more");
+                    break;
+                }
+            }
+            line.pad(line.width() == 0 ? start : std::max(start, line.width() + gap));
+            line.add(cut_to_width(list[i].text, width > line.width() ? width - line.width() : 0), list[i].ink);
+        }
+        if (line.width() > 0) {
+            lines.push_back(line);
+        }
+        return lines;
+    }
+
+    [[nodiscard]] TextLine centred(const std::string& words) const {
+        const std::string whole = shown(words);
+        const std::string_view text = cut_to_width(whole, static_cast<std::size_t>(format_.columns));
+        const std::size_t before = figure_.axes ? label_width_ + 2 : 0;
+        const std::size_t middle = before + static_cast<std::size_t>(columns_) / 2;
+        const std::size_t width = display_width(text);
+        TextLine line = empty_line();
+        line.pad(
+            std::min(middle > width / 2 ? middle - width / 2 : 0, static_cast<std::size_t>(format_.columns) - width));
+        line.add(text);
+        return line;
+    }
+
+    /// The letters at the right edge, where the curves end.
+    [[nodiscard]] std::vector<std::vector<std::uint8_t>> letters_of_rows(const Projection& projection) const {
+        std::vector<std::vector<std::uint8_t>> rows(static_cast<std::size_t>(rows_));
+        for (std::size_t i = 0; letters_at_ends(figure_) && i < figure_.curves.size(); ++i) {
+            const Curve& curve = figure_.curves[i];
+            for (std::size_t n = curve.size(); n > 0; --n) {
+                const double x = projection.x(curve.x.values[n - 1]);
+                const double y = projection.y(curve.y.values[n - 1]);
+                if (x < box_.width && y > -0.5 && y < box_.height) {
+                    rows[std::min(rows.size() - 1, row_of(y))].push_back(ink_of(i));
+                    break;
+                }
+            }
+        }
+        return rows;
+    }
+
+    [[nodiscard]] std::size_t row_of(double dot) const {
+        return static_cast<std::size_t>(std::max(0, nearest_dot(dot))) / (format_.charset == Charset::braille ? 4 : 2);
+    }
+    [[nodiscard]] std::size_t column_of(double dot) const {
+        return static_cast<std::size_t>(std::max(0, nearest_dot(dot))) / (format_.charset == Charset::braille ? 2 : 1);
+    }
+
+    void add_rows(TextBlock& lines, const Canvas& canvas, const Projection& projection) {
+        std::vector<std::string> labels(static_cast<std::size_t>(rows_));
+        for (std::size_t i = 0; i < y_ticks_.at.size(); ++i) {
+            labels[std::min(labels.size() - 1, row_of(projection.y(y_ticks_.at[i])))] = y_ticks_.text[i];
+        }
+        const auto letters = letters_of_rows(projection);
+        for (int row = 0; row < rows_; ++row) {
+            TextLine line = empty_line();
+            if (figure_.axes) {
+                const std::string& label = labels[static_cast<std::size_t>(row)];
+                line.pad(label_width_ > label.size() ? label_width_ - label.size() : 0);
+                line.add(label);
+                line.add(" ");
+                line.add(label.empty() ? frame_.side : frame_.tick);
+            }
+            if (row == rows_ / 2 && !canvas.has_ink()) {
+                line.add("  (no points)");
+            } else {
+                add_cells(line, canvas, row);
+            }
+            const auto& inks = letters[static_cast<std::size_t>(row)];
+            for (std::size_t i = 0; i < std::min<std::size_t>(inks.size(), letters_at_end); ++i) {
+                line.add(std::string{letter(inks[i])}, inks[i]);
+            }
+            lines.push_back(line);
+        }
+    }
+
+    void add_cells(TextLine& line, const Canvas& canvas, int row) const {
+        for (int column = 0; column < columns_; ++column) {
+            const Canvas::Cell& cell = canvas.cell(column, row);
+            const char mark = uses_letters(figure_) && cell.ink != 0 ? letter(cell.ink) : figure_.circles ? '*' : '\0';
+            line.add(canvas.text(cell, mark, figure_.circles ? '.' : '-'), cell.ink);
+        }
+    }
+
+    void add_foot(TextBlock& lines) {
+        const auto width = static_cast<std::size_t>(columns_);
+        std::vector<std::string_view> floor(width, frame_.floor);
+        TextLine numbers = empty_line();
+        for (std::size_t i = 0; i < x_ticks_.at.size(); ++i) {
+            const std::size_t column = std::min(width - 1, column_of(view_.x(x_ticks_.at[i]) * (box_.width - 1)));
+            floor[column] = frame_.floor_tick;
+            const std::string& text = x_ticks_.text[i];
+            const std::size_t middle = label_width_ + 2 + column;
+            const std::size_t start = middle - std::min(middle, text.size() / 2);
+            const bool fits = start + text.size() <= static_cast<std::size_t>(format_.columns);
+            if (fits && (numbers.width() == 0 || start > numbers.width())) {  // else it would touch its neighbour
+                numbers.pad(start);
+                numbers.add(text);
+            }
+        }
+        TextLine line = empty_line();
+        line.pad(label_width_ + 1);
+        line.add(frame_.corner);
+        for (const std::string_view piece : floor) {
+            line.add(piece);
+        }
+        lines.push_back(line);
+        if (!figure_.stuck.empty()) {
+            lines.push_back(stuck_line());
+        }
+        const std::string label = x_label();
+        if (!long_x_label() && !label.empty()) {
+            numbers.pad(std::max(numbers.width() + 1, label_width_ + 2 + width));
+            numbers.add(label);
+        }
+        lines.push_back(numbers);
+        if (long_x_label()) {
+            lines.push_back(centred(figure_.x.label + (x_ticks_.offset.empty() ? "" : " (" + x_ticks_.offset + ")")));
+        }
+    }
+
+    [[nodiscard]] TextLine stuck_line() const {
+        const auto width = static_cast<std::size_t>(columns_);
+        std::vector<bool> stuck(width, false);
+        for (const Range& span : figure_.stuck) {
+            const double from = std::max(view_.x(span.low), 0.0) * (box_.width - 1);
+            const double to = std::min(view_.x(span.high), 1.0) * (box_.width - 1);
+            for (std::size_t i = column_of(from); to >= from && i <= column_of(to) && i < width; ++i) {
+                stuck[i] = true;
+            }
+        }
+        TextLine line = empty_line();
+        line.pad(label_width_ - 5);
+        line.add("stuck  ");
+        for (const bool here : stuck) {
+            line.add(here ? frame_.stuck : " ");
+        }
+        return line;
+    }
+
+    const Figure& figure_;
+    const TextFormat& format_;
+    const View seen_;  // of the figure
+    View view_;        // on the canvas
+    Frame frame_;
+    Ticks x_ticks_, y_ticks_;
+    TextBlock head_;
+    std::size_t label_width_ = 0;
+    int columns_ = 0, rows_ = 0;  // of the canvas
+    Box box_{1, 1};               // of the canvas in dots
+};
+
+}  // namespace
+
+std::string text_plot(std::span<const Figure> figures, const TextFormat& format) {
+    TextFormat each = format;
+    const int count = std::max(1, static_cast<int>(figures.size()));
+    const bool together = (format.columns - 2 * (count - 1)) / count >= narrowest_panel;
+    if (together) {
+        each.columns = (format.columns - 2 * (count - 1)) / count;
+    }
+    std::vector<TextBlock> blocks;
+    std::string text;
+    for (const Figure& figure : figures) {
+        blocks.push_back(TextPlot(figure, each).block());
+        text += together ? "" : text_of(blocks.back());
+    }
+    return together ? text_of(beside(blocks, format.colours)) : text;
+}
+
+}  // namespace dinal
