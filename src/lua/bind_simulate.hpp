@@ -6,7 +6,7 @@
 #include "motion/simulate.hpp"
 #include "lua/bind.hpp"
 #include "lua/options.hpp"
-#include "lua/origin.hpp"
+#include "source/origin.hpp"
 
 namespace dinal {
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "lua/excerpt.hpp"
-#include "lua/function_source.hpp"
+#include "source/function_source.hpp"
 #include "lua/misspelling.hpp"
 #include "lua/source_text.hpp"
 #include "lua/tokens.hpp"

@@ -5,7 +5,7 @@
 
 #include "lua/bind_excitation.hpp"
 #include "lua/cards.hpp"
-#include "lua/function_source.hpp"
+#include "source/function_source.hpp"
 #include "lua/user_function.hpp"
 
 namespace dinal {

@@ -5,7 +5,7 @@
 #include "lua/interrupt.hpp"
 #include "lua/standard_globals.hpp"
 #include "lua/terminal_output.hpp"
-#include "lua/value_text.hpp"
+#include "source/value_text.hpp"
 
 namespace dinal {
 

@@ -9,7 +9,7 @@
 #include "motion/trajectory.hpp"
 #include "lua/bind.hpp"
 #include "lua/memory_limit.hpp"
-#include "lua/origin.hpp"
+#include "source/origin.hpp"
 
 namespace dinal {
 

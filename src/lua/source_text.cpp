@@ -4,7 +4,7 @@
 #include <cctype>
 
 #include "files/file.hpp"
-#include "lua/function_source.hpp"
+#include "source/function_source.hpp"
 #include "lua/tokens.hpp"
 
 namespace dinal {

@@ -2,7 +2,7 @@
 
 #include <unistd.h>
 
-#include "lua/function_source.hpp"
+#include "source/function_source.hpp"
 #include "lua/safe_mode.hpp"
 #include "repl/call.hpp"
 #include "repl/chunk.hpp"

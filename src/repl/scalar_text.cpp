@@ -7,7 +7,7 @@
 #include <string_view>
 
 #include "lua/bind.hpp"
-#include "lua/function_source.hpp"
+#include "source/function_source.hpp"
 #include "lua/interrupt.hpp"
 #include "terminal/quoted.hpp"
 

@@ -15,7 +15,7 @@
 #include <string_view>
 
 #include "files/confinement.hpp"
-#include "lua/function_source.hpp"
+#include "source/function_source.hpp"
 #include "lua/interrupt.hpp"
 #include "lua/library.hpp"
 #include "lua/limits.hpp"

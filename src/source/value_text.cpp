@@ -1,4 +1,4 @@
-#include "lua/value_text.hpp"
+#include "source/value_text.hpp"
 
 #include <fmt/format.h>
 
@@ -6,7 +6,7 @@
 #include <optional>
 
 #include "lua/bind.hpp"
-#include "lua/function_source.hpp"
+#include "source/function_source.hpp"
 #include "lua/standard_globals.hpp"
 #include "lua/vector.hpp"
 

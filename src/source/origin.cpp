@@ -1,4 +1,4 @@
-#include "lua/origin.hpp"
+#include "source/origin.hpp"
 
 #include <fmt/format.h>
 
@@ -6,7 +6,7 @@
 #include "lua/bind_integrator.hpp"
 #include "lua/bind_system.hpp"
 #include "lua/user_function.hpp"
-#include "lua/value_text.hpp"
+#include "source/value_text.hpp"
 
 namespace dinal {
 

@@ -3,9 +3,9 @@
 #include <cmath>
 
 #include "lua/bind_excitation.hpp"
-#include "lua/function_source.hpp"
+#include "source/function_source.hpp"
 #include "lua/user_function.hpp"
-#include "lua/value_text.hpp"
+#include "source/value_text.hpp"
 
 namespace dinal {
 namespace {

@@ -1,4 +1,4 @@
-#include "lua/function_source.hpp"
+#include "source/function_source.hpp"
 
 #include <algorithm>
 #include <vector>
