@@ -5,7 +5,7 @@
 #include <cmath>
 #include <string>
 
-#include "lua/error_remarks.hpp"
+#include "errors/error_remarks.hpp"
 #include "lua/interrupt.hpp"
 
 namespace dinal {

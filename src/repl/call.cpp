@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-#include "lua/error_remarks.hpp"
+#include "errors/error_remarks.hpp"
 #include "lua/interrupt.hpp"
 #include "lua/limits.hpp"
 #include "lua/memory_limit.hpp"

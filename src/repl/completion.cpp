@@ -4,7 +4,7 @@
 
 #include "lua/help_text.hpp"
 #include "lua/lua_text.hpp"
-#include "lua/misspelling.hpp"
+#include "errors/misspelling.hpp"
 #include "lua/signature.hpp"
 #include "repl/commands.hpp"
 #include "repl/meaning.hpp"

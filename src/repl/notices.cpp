@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "lua/help_text.hpp"
-#include "lua/misspelling.hpp"
+#include "errors/misspelling.hpp"
 #include "lua/tokens.hpp"
 #include "repl/meaning.hpp"
 #include "repl/output.hpp"

@@ -1,4 +1,4 @@
-#include "lua/error_remarks.hpp"
+#include "errors/error_remarks.hpp"
 
 #include <fmt/format.h>
 
@@ -6,10 +6,10 @@
 #include <string_view>
 #include <vector>
 
-#include "lua/excerpt.hpp"
+#include "errors/excerpt.hpp"
 #include "source/function_source.hpp"
-#include "lua/misspelling.hpp"
-#include "lua/source_text.hpp"
+#include "errors/misspelling.hpp"
+#include "errors/source_text.hpp"
 #include "lua/tokens.hpp"
 
 namespace dinal {

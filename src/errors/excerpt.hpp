@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-#include "lua/source_text.hpp"
+#include "errors/source_text.hpp"
 
 namespace dinal {
 

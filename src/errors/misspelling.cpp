@@ -1,4 +1,4 @@
-#include "lua/misspelling.hpp"
+#include "errors/misspelling.hpp"
 
 #include <algorithm>
 #include <array>
@@ -7,7 +7,7 @@
 
 #include "text/suggest.hpp"
 #include "lua/bind.hpp"
-#include "lua/habits.hpp"
+#include "errors/habits.hpp"
 #include "lua/tokens.hpp"
 
 namespace dinal {

@@ -1,4 +1,4 @@
-#include "lua/source_text.hpp"
+#include "errors/source_text.hpp"
 
 #include <algorithm>
 #include <cctype>

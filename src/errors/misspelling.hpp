@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "lua/source_text.hpp"
+#include "errors/source_text.hpp"
 
 namespace dinal {
 

@@ -1,4 +1,4 @@
-#include "lua/excerpt.hpp"
+#include "errors/excerpt.hpp"
 
 #include <fmt/format.h>
 #include <unistd.h>

@@ -1,4 +1,4 @@
-#include "lua/habits.hpp"
+#include "errors/habits.hpp"
 
 #include <algorithm>
 #include <array>

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "text/suggest.hpp"
-#include "lua/habits.hpp"
+#include "errors/habits.hpp"
 #include "lua/tokens.hpp"
 
 namespace dinal {
