@@ -4,7 +4,7 @@
 #include "lua/bind.hpp"
 #include "lua/dinal_table.hpp"
 #include "lua/help_text.hpp"
-#include "lua/library.hpp"
+#include "api/library.hpp"
 #include "lua/tour.hpp"
 
 namespace dinal {

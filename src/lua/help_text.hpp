@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "terminal/display.hpp"
-#include "lua/library.hpp"
+#include "api/library.hpp"
 
 namespace dinal {
 

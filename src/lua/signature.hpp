@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-#include "lua/library.hpp"
+#include "api/library.hpp"
 
 namespace dinal {
 

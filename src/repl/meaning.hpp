@@ -4,7 +4,7 @@
 #include <lua.hpp>
 #include <span>
 
-#include "lua/library.hpp"
+#include "api/library.hpp"
 #include "lua/tokens.hpp"
 
 namespace dinal {

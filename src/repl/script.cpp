@@ -17,7 +17,7 @@
 #include "files/confinement.hpp"
 #include "source/function_source.hpp"
 #include "lua/interrupt.hpp"
-#include "lua/library.hpp"
+#include "api/library.hpp"
 #include "lua/limits.hpp"
 #include "lua/safe_mode.hpp"
 #include "lua/time_limit.hpp"

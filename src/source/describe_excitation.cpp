@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "lua/bind_excitation.hpp"
+#include "api/bind_excitation.hpp"
 #include "source/function_source.hpp"
 #include "lua/user_function.hpp"
 #include "source/value_text.hpp"

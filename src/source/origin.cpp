@@ -2,9 +2,9 @@
 
 #include <fmt/format.h>
 
-#include "lua/bind_excitation.hpp"
-#include "lua/bind_integrator.hpp"
-#include "lua/bind_system.hpp"
+#include "api/bind_excitation.hpp"
+#include "api/bind_integrator.hpp"
+#include "api/bind_system.hpp"
 #include "lua/user_function.hpp"
 #include "source/value_text.hpp"
 

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "items.hpp"
-#include "lua/library.hpp"
+#include "api/library.hpp"
 #include "workload.hpp"
 
 namespace bench {

@@ -11,7 +11,7 @@
 #include <string>
 
 #include "lua/interrupt.hpp"
-#include "lua/library.hpp"
+#include "api/library.hpp"
 #include "lua/limits.hpp"
 #include "lua/safe_mode.hpp"
 

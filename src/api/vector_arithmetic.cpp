@@ -1,4 +1,4 @@
-#include "lua/vector_arithmetic.hpp"
+#include "api/vector_arithmetic.hpp"
 
 #include <fmt/format.h>
 

@@ -1,7 +1,7 @@
 // What `excitation.` has to offer, with its documentation; the functions are in excitation_terms.cpp (numbers) and
 // excitation_data.cpp (tables, files, functions).
-#include "lua/bind_excitation.hpp"
-#include "lua/library.hpp"
+#include "api/bind_excitation.hpp"
+#include "api/library.hpp"
 
 namespace dinal {
 namespace {

@@ -4,10 +4,10 @@
 #include <cmath>
 #include <optional>
 
-#include "lua/cards.hpp"
-#include "lua/library.hpp"
+#include "api/cards.hpp"
+#include "api/library.hpp"
 #include "lua/vector.hpp"
-#include "lua/vector_arithmetic.hpp"
+#include "api/vector_arithmetic.hpp"
 
 namespace dinal {
 namespace {

@@ -3,8 +3,8 @@
 
 #include <algorithm>
 
-#include "lua/bind_simulate.hpp"
-#include "lua/run.hpp"
+#include "api/bind_simulate.hpp"
+#include "api/run.hpp"
 
 namespace dinal {
 

@@ -5,9 +5,9 @@
 #include <cmath>
 #include <optional>
 
-#include "lua/bind_integrator.hpp"
-#include "lua/cards.hpp"
-#include "lua/library.hpp"
+#include "api/bind_integrator.hpp"
+#include "api/cards.hpp"
+#include "api/library.hpp"
 #include "lua/options.hpp"
 
 namespace dinal {

@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "files/csv.hpp"
-#include "lua/bind_excitation.hpp"
+#include "api/bind_excitation.hpp"
 #include "lua/interrupt.hpp"
 #include "lua/lua_text.hpp"
 #include "lua/options.hpp"

@@ -1,4 +1,4 @@
-#include "lua/theory_arguments.hpp"
+#include "api/theory_arguments.hpp"
 
 #include <fmt/format.h>
 

@@ -1,4 +1,4 @@
-#include "lua/plot_items.hpp"
+#include "api/plot_items.hpp"
 
 #include <fmt/format.h>
 
@@ -6,7 +6,7 @@
 #include <memory>
 
 #include "lua/options.hpp"
-#include "lua/picture.hpp"
+#include "api/picture.hpp"
 #include "lua/vector.hpp"
 
 namespace dinal {

@@ -1,7 +1,7 @@
 // theory.NAME{...}: the closed forms, documented. What they do is in theory_free_functions.cpp and
 // theory_forced_functions.cpp.
-#include "lua/library.hpp"
-#include "lua/theory_functions.hpp"
+#include "api/library.hpp"
+#include "api/theory_functions.hpp"
 
 namespace dinal {
 

@@ -7,7 +7,7 @@
 #include "files/csv.hpp"
 #include "files/record1989.hpp"
 #include "lua/options.hpp"
-#include "lua/run.hpp"
+#include "api/run.hpp"
 
 namespace dinal {
 

@@ -1,6 +1,6 @@
 // run:explain(): the run told in sentences.
 #include "analysis/explain.hpp"
-#include "lua/run.hpp"
+#include "api/run.hpp"
 
 namespace dinal {
 

@@ -1,4 +1,4 @@
-#include "lua/bind_simulate.hpp"
+#include "api/bind_simulate.hpp"
 
 #include <fmt/format.h>
 #include <unistd.h>
@@ -6,10 +6,10 @@
 #include <algorithm>
 
 #include "terminal/progress.hpp"
-#include "lua/bind_excitation.hpp"
+#include "api/bind_excitation.hpp"
 #include "lua/dinal_table.hpp"
 #include "lua/interrupt.hpp"
-#include "lua/run.hpp"
+#include "api/run.hpp"
 #include "lua/user_function.hpp"
 
 namespace dinal {

@@ -3,8 +3,8 @@
 
 #include <cmath>
 
-#include "lua/bind_excitation.hpp"
-#include "lua/cards.hpp"
+#include "api/bind_excitation.hpp"
+#include "api/cards.hpp"
 #include "source/function_source.hpp"
 #include "lua/user_function.hpp"
 

@@ -1,4 +1,4 @@
-#include "lua/cards.hpp"
+#include "api/cards.hpp"
 
 #include <fmt/format.h>
 
@@ -6,8 +6,8 @@
 
 #include "model/oscillator.hpp"
 #include "lua/bind.hpp"
-#include "lua/bind_integrator.hpp"
-#include "lua/run.hpp"
+#include "api/bind_integrator.hpp"
+#include "api/run.hpp"
 #include "lua/vector.hpp"
 
 namespace dinal {

@@ -1,13 +1,13 @@
-#include "lua/bind_excitation.hpp"
+#include "api/bind_excitation.hpp"
 
 #include <fmt/format.h>
 #include <algorithm>
 #include <cmath>
 #include <span>
 
-#include "lua/cards.hpp"
+#include "api/cards.hpp"
 #include "lua/interrupt.hpp"
-#include "lua/library.hpp"
+#include "api/library.hpp"
 #include "lua/user_function.hpp"
 #include "lua/vector.hpp"
 

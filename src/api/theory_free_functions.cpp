@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "theory/theory_free.hpp"
-#include "lua/theory_arguments.hpp"
-#include "lua/theory_functions.hpp"
+#include "api/theory_arguments.hpp"
+#include "api/theory_functions.hpp"
 
 namespace dinal::theory_functions {
 

@@ -1,14 +1,14 @@
 // system{...}, nondimensional{...} and the systems they make. sys:simulate{...} is in bind_simulate.cpp.
-#include "lua/bind_system.hpp"
+#include "api/bind_system.hpp"
 
 #include <fmt/format.h>
 
 #include <cmath>
 #include <numbers>
 
-#include "lua/bind_simulate.hpp"
-#include "lua/cards.hpp"
-#include "lua/library.hpp"
+#include "api/bind_simulate.hpp"
+#include "api/cards.hpp"
+#include "api/library.hpp"
 #include "lua/options.hpp"
 
 namespace dinal {

@@ -3,7 +3,7 @@
 
 #include <numbers>
 
-#include "lua/bind_excitation.hpp"
+#include "api/bind_excitation.hpp"
 #include "lua/options.hpp"
 
 namespace dinal::excitation_functions {

@@ -1,5 +1,5 @@
 // The list of all that Lua can see. A new class is a bind_*.cpp, a line in each of the two lists here, and its tests.
-#include "lua/library.hpp"
+#include "api/library.hpp"
 
 #include "lua/dinal_table.hpp"
 #include "lua/interrupt.hpp"

@@ -5,8 +5,8 @@
 #include "files/csv.hpp"
 #include "files/record1989.hpp"
 #include "lua/interrupt.hpp"
-#include "lua/library.hpp"
-#include "lua/run.hpp"
+#include "api/library.hpp"
+#include "api/run.hpp"
 
 namespace dinal {
 

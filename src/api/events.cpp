@@ -1,4 +1,4 @@
-#include "lua/events.hpp"
+#include "api/events.hpp"
 
 #include <fmt/format.h>
 

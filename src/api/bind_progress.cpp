@@ -6,7 +6,7 @@
 #include <optional>
 
 #include "terminal/progress.hpp"
-#include "lua/library.hpp"
+#include "api/library.hpp"
 #include "lua/vector.hpp"
 
 namespace dinal {

@@ -5,12 +5,12 @@
 #include <algorithm>
 
 #include "files/table.hpp"
-#include "lua/cards.hpp"
-#include "lua/events.hpp"
+#include "api/cards.hpp"
+#include "api/events.hpp"
 #include "lua/external_memory.hpp"
-#include "lua/library.hpp"
-#include "lua/plot_docs.hpp"
-#include "lua/run.hpp"
+#include "api/library.hpp"
+#include "api/plot_docs.hpp"
+#include "api/run.hpp"
 #include "lua/user_function.hpp"
 #include "lua/vector.hpp"
 

@@ -4,8 +4,8 @@
 #include "motion/integrator.hpp"
 #include "theory/theory_forced.hpp"
 #include "theory/theory_steps.hpp"
-#include "lua/theory_arguments.hpp"
-#include "lua/theory_functions.hpp"
+#include "api/theory_arguments.hpp"
+#include "api/theory_functions.hpp"
 
 namespace dinal::theory_functions {
 

@@ -1,4 +1,4 @@
-#include "lua/picture.hpp"
+#include "api/picture.hpp"
 
 #include <fmt/format.h>
 

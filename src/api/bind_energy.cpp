@@ -2,10 +2,10 @@
 #include <algorithm>
 
 #include "analysis/energy.hpp"
-#include "lua/cards.hpp"
+#include "api/cards.hpp"
 #include "lua/external_memory.hpp"
-#include "lua/library.hpp"
-#include "lua/run.hpp"
+#include "api/library.hpp"
+#include "api/run.hpp"
 #include "lua/vector.hpp"
 
 namespace dinal {

@@ -5,11 +5,11 @@
 
 #include "plots/run_figure.hpp"
 #include "files/table.hpp"
-#include "lua/library.hpp"
-#include "lua/picture.hpp"
-#include "lua/plot_docs.hpp"
-#include "lua/plot_items.hpp"
-#include "lua/run.hpp"
+#include "api/library.hpp"
+#include "api/picture.hpp"
+#include "api/plot_docs.hpp"
+#include "api/plot_items.hpp"
+#include "api/run.hpp"
 
 namespace dinal {
 namespace {
