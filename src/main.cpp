@@ -2,7 +2,7 @@
 #include <clocale>
 #include <cstdio>
 
-#include "lua/manual.hpp"
+#include "help/manual.hpp"
 #include "repl/arguments.hpp"
 #include "repl/output.hpp"
 #include "repl/script.hpp"

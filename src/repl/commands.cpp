@@ -10,7 +10,7 @@
 
 #include "text/suggest.hpp"
 #include "terminal/display.hpp"
-#include "lua/help_text.hpp"
+#include "help/help_text.hpp"
 #include "lua/lua_text.hpp"
 #include "lua/standard_globals.hpp"
 #include "repl/call.hpp"

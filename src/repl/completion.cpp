@@ -2,10 +2,10 @@
 
 #include <algorithm>
 
-#include "lua/help_text.hpp"
+#include "help/help_text.hpp"
 #include "lua/lua_text.hpp"
 #include "errors/misspelling.hpp"
-#include "lua/signature.hpp"
+#include "help/signature.hpp"
 #include "repl/commands.hpp"
 #include "repl/meaning.hpp"
 #include "repl/typed_text.hpp"

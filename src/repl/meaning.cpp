@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "lua/signature.hpp"
+#include "help/signature.hpp"
 
 namespace dinal {
 namespace {

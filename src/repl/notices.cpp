@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <vector>
 
-#include "lua/help_text.hpp"
+#include "help/help_text.hpp"
 #include "errors/misspelling.hpp"
 #include "lua/tokens.hpp"
 #include "repl/meaning.hpp"

@@ -8,9 +8,9 @@
 #include <vector>
 
 #include "terminal/display.hpp"
-#include "lua/help_text.hpp"
+#include "help/help_text.hpp"
 #include "lua/tokens.hpp"
-#include "lua/tour.hpp"
+#include "help/tour.hpp"
 #include "repl/call.hpp"
 #include "repl/meaning.hpp"
 #include "repl/output.hpp"

@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "lua/signature.hpp"
+#include "help/signature.hpp"
 #include "lua/tokens.hpp"
 
 namespace dinal {

@@ -1,11 +1,11 @@
-#include "lua/help_text.hpp"
+#include "help/help_text.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cctype>
 
-#include "lua/signature.hpp"
+#include "help/signature.hpp"
 #include "lua/tokens.hpp"
 
 namespace dinal {

@@ -1,4 +1,4 @@
-#include "lua/signature.hpp"
+#include "help/signature.hpp"
 
 #include <algorithm>
 

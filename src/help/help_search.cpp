@@ -5,8 +5,8 @@
 #include <cctype>
 
 #include "text/suggest.hpp"
-#include "lua/help_text.hpp"
-#include "lua/signature.hpp"
+#include "help/help_text.hpp"
+#include "help/signature.hpp"
 #include "lua/tokens.hpp"
 
 namespace dinal {

@@ -3,9 +3,9 @@
 
 #include "lua/bind.hpp"
 #include "lua/dinal_table.hpp"
-#include "lua/help_text.hpp"
+#include "help/help_text.hpp"
 #include "api/library.hpp"
-#include "lua/tour.hpp"
+#include "help/tour.hpp"
 
 namespace dinal {
 

@@ -1,4 +1,4 @@
-#include "lua/tour.hpp"
+#include "help/tour.hpp"
 
 #include <fmt/core.h>
 

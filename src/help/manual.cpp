@@ -1,10 +1,10 @@
-#include "lua/manual.hpp"
+#include "help/manual.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 
-#include "lua/help_text.hpp"
+#include "help/help_text.hpp"
 
 namespace dinal {
 
