@@ -3,9 +3,9 @@
 #include <cstdio>
 
 #include "help/manual.hpp"
-#include "repl/arguments.hpp"
-#include "repl/output.hpp"
-#include "repl/script.hpp"
+#include "prompt/arguments.hpp"
+#include "prompt/output.hpp"
+#include "prompt/script.hpp"
 
 namespace {
 

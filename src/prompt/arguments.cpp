@@ -1,0 +1,164 @@
+#include "prompt/arguments.hpp"
+
+#include <fmt/core.h>
+
+#include <array>
+#include <optional>
+#include <string_view>
+
+#include "text/suggest.hpp"
+#include "prompt/limit_options.hpp"
+
+namespace dinal {
+namespace {
+
+constexpr std::array<std::string_view, 16> known_options = {
+    "-e", "-l",     "-i",        "-v",       "-W",        "-E",     "-",          "--",
+    "-h", "--help", "--version", "--manual", "--no-init", "--safe", "--max-time", "--max-memory"};
+
+Error unknown(std::string_view option) {
+    return {fmt::format("unknown option '{}'{}", option, did_you_mean(option, known_options))};
+}
+
+Error no_value(char option) {
+    return {option == 'e' ? "option -e needs Lua code after it, for example -e 'print(1 + 1)'"
+                          : "option -l needs the name of a module after it, for example -l lab"};
+}
+
+/// --help and its like, which `lua` does not have. Request::run when it is none of them.
+Request request_of(std::string_view option) {
+    if (option == "--help" || option == "-h") {
+        return Request::help;
+    }
+    if (option == "--version") {
+        return Request::version;
+    }
+    return option == "--manual" ? Request::manual : Request::run;
+}
+
+/// A flag of one letter; false when `lua` does not have it.
+bool set_flag(Arguments& arguments, char letter) {
+    switch (letter) {
+        case 'i':
+            arguments.interactive = arguments.show_version = true;
+            return true;
+        case 'v':
+            arguments.show_version = true;
+            return true;
+        case 'E':
+            arguments.ignore_environment = true;
+            return true;
+        case 'W':
+            arguments.steps.push_back({'W', ""});
+            return true;
+        default:
+            return false;
+    }
+}
+
+/// --max-time 10 or --max-time=10 at place i, which goes to the value.
+std::optional<Error> read_limit(Arguments& arguments, std::string_view option, std::size_t& i) {
+    const std::string_view word = arguments.words[i];
+    if (word.size() > option.size()) {
+        return set_limit(arguments.limits, option, word.substr(option.size() + 1));
+    }
+    ++i;
+    return set_limit(arguments.limits, option, i < arguments.words.size() ? arguments.words[i] : "");
+}
+
+/// What is not possible together; what safe mode brings with it.
+std::optional<Error> settle(Arguments& arguments) {
+    if (!arguments.safe) {
+        return std::nullopt;
+    }
+    for (const Step& step : arguments.steps) {
+        if (step.option == 'l') {
+            return Error{fmt::format("-l {} is not possible with --safe, which loads no modules", step.value)};
+        }
+    }
+    arguments.ignore_environment = true;
+    complete_safe_limits(arguments.limits);
+    return std::nullopt;
+}
+
+}  // namespace
+
+Expected<Arguments> parse_arguments(int count, const char* const* words) {
+    Arguments arguments;
+    arguments.words.assign(words, words + count);
+    std::size_t i = 1;
+    for (; i < arguments.words.size(); ++i) {
+        const std::string_view word = arguments.words[i];
+        if (word.size() < 2 || word[0] != '-') {
+            break;  // a script, or "-" for standard input
+        }
+        if (word == "--") {
+            ++i;
+            break;
+        }
+        if (word == "--no-init") {
+            arguments.no_init = true;
+            continue;
+        }
+        if (const Request request = request_of(word); request != Request::run) {
+            arguments.request = request;
+            return arguments;
+        }
+        if (word == "--safe") {
+            arguments.safe = true;
+        } else if (const std::string_view limit = limit_option(word); !limit.empty()) {
+            if (auto wrong = read_limit(arguments, limit, i)) {
+                return *wrong;
+            }
+        } else if (word[1] == 'e' || word[1] == 'l') {
+            const char* value = arguments.words[i] + 2;
+            if (*value == '\0') {
+                // NOTE: as in lua, a value that begins with a dash must be joined to its option: -e-x.
+                if (i + 1 == arguments.words.size() || arguments.words[i + 1][0] == '-') {
+                    return no_value(word[1]);
+                }
+                value = arguments.words[++i];
+            }
+            arguments.steps.push_back({word[1], value});
+            arguments.executes = arguments.executes || word[1] == 'e';
+        } else if (word.size() != 2 || !set_flag(arguments, word[1])) {
+            return unknown(word);
+        }
+    }
+    arguments.script = i;
+    if (auto wrong = settle(arguments)) {
+        return *wrong;
+    }
+    return arguments;
+}
+
+std::string help_text() {
+    return R"(dinal: a laboratory for oscillators with dry friction, driven from Lua
+
+usage: dinal [options] [script [arguments]]
+
+without a script: a prompt on a terminal, else standard input is run as a script
+  -e code    run a piece of Lua code
+  -l mod     require the module 'mod' into the global 'mod'
+  -l g=mod   require the module 'mod' into the global 'g'
+  -i         a prompt after the script
+  -v         show the version, then go on
+  -W         turn Lua's warnings on
+  -E         ignore environment variables (LUA_INIT, LUA_PATH, LUA_CPATH)
+  --         no more options: what follows is the script
+  -          no more options: run standard input as the script
+  --no-init  a prompt without the file ~/.config/dinal/init.lua
+  --safe     for scripts of strangers: no files outside the current folder, no
+             processes, no modules, and limits: --max-memory 256M --max-time 10
+  --max-memory SIZE  end a script that needs more, for example 256M or 2G
+  --max-time SECONDS end a script that runs longer; at the prompt, an input
+  --help     this text
+  --version  version, licence and what is built in
+  --manual   the whole manual, as Markdown
+
+exit codes: 0 all went well, 1 an error in Lua code, 2 a wrong option, 130 interrupted
+inside: help() shows where to start
+)";
+}
+
+}  // namespace dinal

@@ -1,0 +1,236 @@
+#include "prompt/commands.hpp"
+
+#include <fmt/core.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <vector>
+
+#include "text/suggest.hpp"
+#include "terminal/display.hpp"
+#include "help/help_text.hpp"
+#include "lua/lua_text.hpp"
+#include "lua/standard_globals.hpp"
+#include "prompt/call.hpp"
+#include "prompt/load_file.hpp"
+#include "prompt/output.hpp"
+#include "prompt/printer.hpp"
+#include "prompt/question.hpp"
+#include "prompt/session.hpp"
+
+namespace dinal {
+namespace {
+
+void help(Session& session, const std::string& argument);
+
+void quit(Session& session, const std::string&) {
+    session.leaving = true;
+}
+
+void time(Session& session, const std::string& text) {
+    const auto begin = std::chrono::steady_clock::now();
+    run_text(session, text);
+    const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - begin;
+    say(fmt::format("{:.3g} s\n", taken.count()));
+}
+
+void record(Session& session, const std::string& file) {
+    if (file.empty()) {
+        say(session.record.file().empty() ? "nothing is recorded; :record lab.lua begins\n"
+                                          : fmt::format("recorded into {}\n", session.record.file()));
+        return;
+    }
+    if (const auto begun = session.record.begin(file); !begun) {
+        say_error(":record: " + begun.error().sentence);
+        return;
+    }
+    say(fmt::format("what runs without error from now on goes to {}\n", file));
+}
+
+void save(Session& session, const std::string& argument) {
+    const std::string file = argument.empty() ? session.record.file() : argument;
+    if (file.empty()) {
+        say_error(":save needs the name of a file, for example :save lab.lua");
+        return;
+    }
+    if (const auto saved = session.record.save(file); !saved) {
+        say_error(":save: " + saved.error().sentence);
+        return;
+    }
+    say(fmt::format("what was typed so far, without the errors, is in {}\n", file));
+}
+
+void load(Session& session, const std::string& file) {
+    lua_State* L = session.L;
+    lua_settop(L, 0);
+    if (load_file(L, file.c_str()) != LUA_OK) {
+        say_error(told_error(L, file.c_str()));
+    } else if (evaluate(L, Chunk{Compiled::ready, "", "", true}).fine && !session.record.writes(file)) {
+        session.record.add_statement(fmt::format("dofile({})", quoted(file)));
+    }
+    lua_settop(L, 0);
+}
+
+int print_globals(lua_State* L) {
+    const Display screen = display_of(STDOUT_FILENO);
+    const std::vector<std::string> names = users_globals(L);
+    for (const std::string& name : names) {
+        lua_pushglobaltable(L);
+        lua_pushstring(L, name.c_str());
+        lua_rawget(L, -2);
+        const std::string head = fmt::format("  {:<9} ", name);
+        say(head + show_line(L, -1, screen, screen.width - std::min(columns(head), screen.width / 2) - 1) + "\n");
+        lua_pop(L, 2);
+    }
+    if (names.empty()) {
+        say("no variables of your own yet\n");
+    }
+    return 0;
+}
+
+void who(Session& session, const std::string&) {
+    lua_pushcfunction(session.L, print_globals);
+    if (call(session.L, 0, 0) != LUA_OK) {
+        say_error(take_text(session.L));
+    }
+}
+
+void reset(Session& session, const std::string&) {
+    reset_globals(session.L);
+    session.record.clear();
+    say("all your variables are gone; what Lua and dinal bring is as it was at the start\n");
+}
+
+enum class Argument { none, optional, needed };
+
+struct Command {
+    std::string_view name;
+    Argument argument;
+    std::string_view usage;
+    std::string_view summary;
+    void (*run)(Session&, const std::string&);
+    bool file = false;  // the argument is the name of a file
+};
+
+constexpr std::array<Command, 9> commands = {{
+    {"help", Argument::optional, ":help [name]", "This list, or what help \"name\" says.", help},
+    {"quit", Argument::none, ":quit", "Leaves, as Ctrl-D does.", quit},
+    {"time", Argument::needed, ":time code", "Runs code once and says how long it took.", time},
+    {"record", Argument::optional, ":record file",
+     "Writes what you type from now on, if it runs without error, into a script.", record, true},
+    {"save", Argument::optional, ":save file",
+     "Writes what you typed in this session so far, without the errors, into a script.", save, true},
+    {"load", Argument::needed, ":load file", "Runs a script; what it leaves in globals stays.", load, true},
+    {"who", Argument::none, ":who", "Lists your own variables.", who},
+    {"reset", Argument::none, ":reset", "Forgets all your variables, and what :save would write.", reset},
+    {"q", Argument::none, ":q", "The same as :quit.", quit},
+}};
+
+void help(Session& session, const std::string& argument) {
+    const Display screen = display_of(STDOUT_FILENO);
+    if (!argument.empty() && argument.front() != ':') {
+        answer_question(session.L, argument);
+        return;
+    }
+    std::string text;
+    for (const Command& command : commands) {
+        if (command.name.size() > 1) {
+            text += line_about(command.usage, command.summary, screen);
+        }
+    }
+    text += line_about("?name, name?", "The same as help \"name\".", screen);
+    text += line_about("help()", "A tour of two minutes.", screen);
+    text += line_about("code ;", "A semicolon at the end: the value is not shown.", screen);
+    say(text);
+}
+
+/// The command of that name, or the only one that begins so; nullptr when there is none.
+const Command* find(std::string_view name) {
+    const auto* const exact =
+        std::find_if(commands.begin(), commands.end(), [name](const Command& c) { return c.name == name; });
+    if (exact != commands.end()) {
+        return exact;
+    }
+    const auto begins = [name](const Command& c) { return !name.empty() && c.name.starts_with(name); };
+    const auto* const first = std::find_if(commands.begin(), commands.end(), begins);
+    const bool only = std::count_if(commands.begin(), commands.end(), begins) == 1;
+    return only ? first : nullptr;
+}
+
+std::string trimmed(std::string_view text) {
+    const std::size_t begin = text.find_first_not_of(" \t\r\n");
+    return begin == std::string_view::npos
+               ? ""
+               : std::string(text.substr(begin, text.find_last_not_of(" \t\r\n") - begin + 1));
+}
+
+/// Somebody may write the name of a file as in Lua: :load "lab.lua".
+std::string without_quotes(const std::string& text) {
+    const bool is_quoted =
+        text.size() >= 2 && (text.front() == '"' || text.front() == '\'') && text.back() == text.front();
+    return is_quoted ? text.substr(1, text.size() - 2) : text;
+}
+
+std::string_view name_of(std::string_view line) {
+    return line.substr(1, line.find_first_of(" \t(\"'") - 1);
+}
+
+void tell_unknown(std::string_view name) {
+    std::vector<std::string_view> names;
+    std::transform(commands.begin(), commands.end(), std::back_inserter(names),
+                   [](const Command& c) { return c.name; });
+    const std::string hint = did_you_mean(name, names);
+    say_error(fmt::format("there is no command :{}{}", name, hint.empty() ? "; :help lists them" : hint));
+}
+
+}  // namespace
+
+bool is_command(std::string_view line) {
+    return (line.starts_with(':') && !line.starts_with("::")) || is_question(line);
+}
+
+void run_command(Session& session, const std::string& line) {
+    if (is_question(line)) {
+        answer_question(session.L, line);
+        return;
+    }
+    const std::string_view name = name_of(line);
+    const Command* command = find(name);
+    if (command == nullptr) {
+        tell_unknown(name);
+        return;
+    }
+    std::string argument = trimmed(std::string_view(line).substr(1 + name.size()));
+    argument = command->file ? without_quotes(argument) : argument;
+    if (command->argument == Argument::needed && argument.empty()) {
+        say_error(fmt::format("write {}", command->usage));
+    } else if (command->argument == Argument::none && !argument.empty()) {
+        say_error(fmt::format(":{} stands alone", command->name));
+    } else {
+        command->run(session, argument);
+    }
+}
+
+Completion complete_command(lua_State* L, std::string_view before) {
+    const std::size_t end = before.find(' ');
+    if (end == std::string_view::npos) {
+        Completion completion;
+        for (const Command& command : commands) {
+            if (command.name.starts_with(before.substr(1)) && command.name.size() > 1) {
+                completion.names.push_back(std::string(command.name) + (command.argument == Argument::none ? "" : " "));
+            }
+        }
+        return completion;
+    }
+    const Command* command = find(before.substr(1, end - 1));
+    if (command != nullptr && command->file) {
+        return {{}, true};
+    }
+    const std::string_view argument = before.substr(end + 1);
+    return command != nullptr && command->name == "help" ? complete(L, "?" + std::string(argument))
+                                                         : complete(L, argument);
+}
+
+}  // namespace dinal

@@ -1,0 +1,210 @@
+#include "prompt/completion.hpp"
+
+#include <algorithm>
+
+#include "help/help_text.hpp"
+#include "lua/lua_text.hpp"
+#include "errors/misspelling.hpp"
+#include "help/signature.hpp"
+#include "prompt/commands.hpp"
+#include "prompt/meaning.hpp"
+#include "prompt/typed_text.hpp"
+
+namespace dinal {
+namespace {
+
+/// Those that begin with the word, sorted.
+std::vector<std::string> fitting(std::vector<std::string> names, std::string_view word) {
+    std::erase_if(names, [word](const std::string& name) { return !name.starts_with(word); });
+    std::sort(names.begin(), names.end());
+    names.erase(std::unique(names.begin(), names.end()), names.end());
+    return names;
+}
+
+std::string bracket_after(std::string_view signature) {
+    const char bracket = call_bracket(signature);
+    return bracket == '{' ? "{ " : "(";
+}
+
+/// What comes after a name that holds the value on the top: the bracket of a call, or nothing.
+std::string suffix(lua_State* L) {
+    if (const Documented found = documented(L, -1); found.member != nullptr) {
+        return bracket_after(found.member->doc.signature);
+    }
+    return lua_isfunction(L, -1) ? "(" : "";
+}
+
+void add_members(const Class& description, char separator, bool calls, std::vector<std::string>& names) {
+    for (const Member& member : description.members) {
+        const bool method = member.kind == Kind::method;
+        if (member.kind != Kind::metamethod && (method || separator == '.')) {
+            names.push_back(member.name + (method && calls ? bracket_after(member.doc.signature) : ""));
+        }
+    }
+}
+
+/// Names that may stand behind the value on the top and a separator.
+void add_fields(lua_State* L, char separator, bool calls, std::vector<std::string>& names) {
+    const int value = lua_gettop(L);
+    for (const std::string& name : member_names(L)) {
+        if (!is_name(name)) {
+            continue;
+        }
+        lua_pushnil(L);
+        if (lua_istable(L, value)) {
+            lua_pushstring(L, name.c_str());
+            lua_rawget(L, value);
+        }
+        const bool callable = lua_isfunction(L, -1) || lua_type(L, value) == LUA_TSTRING || !lua_istable(L, value);
+        if (separator == '.' || callable || lua_isnil(L, -1)) {
+            names.push_back(name + (calls && lua_istable(L, value) ? suffix(L) : separator == ':' && calls ? "(" : ""));
+        }
+        lua_settop(L, value);
+    }
+}
+
+std::vector<std::string> members(lua_State* L, const TypedText& typed, bool calls) {
+    std::vector<std::string> names;
+    const int top = lua_gettop(L);
+    const Meaning owner = meaning(L, typed.owner());
+    const Section* held = owner.kind == Meaning::Kind::object ? owner.section : nullptr;
+    if (owner.kind == Meaning::Kind::member && owner.member->kind == Kind::field) {
+        held = result_class(owner.member->doc.signature);
+    }
+    if (held != nullptr) {
+        add_members(*held->description, typed.separator(), calls, names);
+    } else if (owner.kind == Meaning::Kind::value) {
+        add_fields(L, typed.separator(), calls, names);
+    }
+    lua_settop(L, top);
+    return names;
+}
+
+std::vector<std::string> option_names_of(lua_State* L, const OpenCall& call) {
+    const int top = lua_gettop(L);
+    const Meaning function = meaning(L, call.function);
+    lua_settop(L, top);
+    std::vector<std::string> names;
+    if (function.kind == Meaning::Kind::member) {
+        for (const std::string& name : option_names(function.member->doc.signature, call.braces)) {
+            if (std::find(call.given.begin(), call.given.end(), name) == call.given.end()) {
+                names.push_back(name + " = ");
+            }
+        }
+    }
+    return names;
+}
+
+/// Globals, keywords, and the names that the chunk itself uses.
+std::vector<std::string> plain_names(lua_State* L, const TypedText& typed, bool calls) {
+    std::vector<std::string> names;
+    lua_pushglobaltable(L);
+    lua_pushnil(L);
+    while (lua_next(L, -2) != 0) {
+        const std::string name = lua_type(L, -2) == LUA_TSTRING ? lua_tostring(L, -2) : "";
+        if (is_name(name) && (name.front() != '_' || typed.word().starts_with('_'))) {
+            names.push_back(name + (calls ? suffix(L) : ""));
+        }
+        lua_pop(L, 1);
+    }
+    lua_pop(L, 1);
+    if (typed.word().empty()) {
+        return names;
+    }
+    names.insert(names.end(), keywords().begin(), keywords().end());
+    std::string_view before;
+    for (const Token& token : typed.tokens_before()) {
+        const std::string name(token.text);
+        const bool known = std::any_of(names.begin(), names.end(), [&name](const std::string& n) {
+            return n.starts_with(name) && (n.size() == name.size() || !is_name(n));
+        });
+        if (token.kind == TokenKind::name && before != "." && before != ":" && !known) {
+            names.push_back(name);
+        }
+        before = token.text;
+    }
+    return names;
+}
+
+bool calls_help(const std::optional<OpenCall>& call) {
+    return call && call->function.size() == 1 && call->function.front().is("help");
+}
+
+}  // namespace
+
+Completion complete(lua_State* L, std::string_view before) {
+    if (before.starts_with(':')) {
+        return complete_command(L, before);
+    }
+    if (before.starts_with('?')) {
+        const std::size_t begin = std::min(before.find_first_not_of(" ?"), before.size());
+        const std::string_view word = before.substr(begin);
+        const std::size_t last = word.find_last_of(".: ");
+        std::vector<std::string> names = fitting(help_names(), word);
+        for (std::string& name : names) {  // the editor replaces only the last word
+            name.erase(0, last == std::string_view::npos ? 0 : last + 1);
+        }
+        return {names, false};
+    }
+    const TypedText typed(before);
+    const bool help = calls_help(typed.call());
+    Completion completion;
+    switch (typed.cursor()) {
+        case Cursor::string:
+            completion.files = !help;
+            completion.names = help ? help_names() : std::vector<std::string>();
+            break;
+        case Cursor::member:
+            completion.names = members(L, typed, !help);
+            break;
+        case Cursor::option:
+            completion.names = option_names_of(L, *typed.call());
+            if (completion.names.empty()) {
+                completion.names = plain_names(L, typed, !help);
+            }
+            break;
+        case Cursor::name:
+            completion.names = plain_names(L, typed, !help);
+            break;
+        case Cursor::nothing:
+            break;
+    }
+    completion.names = fitting(std::move(completion.names), typed.word());
+    return completion;
+}
+
+std::string signature_hint(lua_State* L, std::string_view before) {
+    const TypedText typed(before);
+    if (!typed.call() || typed.cursor() == Cursor::nothing || typed.call()->braces == Braces::nested) {
+        return "";
+    }
+    const int top = lua_gettop(L);
+    const Meaning function = meaning(L, typed.call()->function);
+    lua_settop(L, top);
+    if (function.kind != Meaning::Kind::member) {
+        return "";
+    }
+    const std::string all = parameters(function.member->doc.signature);
+    std::string hint;
+    std::string part;
+    int depth = 0;
+    for (std::size_t i = 0; i <= all.size(); ++i) {
+        if (i < all.size() && (depth > 0 || all[i] != ',')) {
+            depth += all[i] == '{' ? 1 : all[i] == '}' ? -1 : 0;
+            part += all[i];
+            continue;
+        }
+        const std::vector<Token> words = tokens(part);
+        const auto is_given = [&](const Token& word) {
+            return std::find(typed.call()->given.begin(), typed.call()->given.end(), word.text) !=
+                   typed.call()->given.end();
+        };
+        if (!words.empty() && !std::any_of(words.begin(), words.end(), is_given)) {
+            hint.append(hint.empty() ? "" : ", ").append(part, std::min(part.find_first_not_of(' '), part.size()));
+        }
+        part.clear();
+    }
+    return hint;
+}
+
+}  // namespace dinal

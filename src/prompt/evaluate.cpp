@@ -1,0 +1,117 @@
+#include "prompt/evaluate.hpp"
+
+#include <unistd.h>
+
+#include <string>
+
+#include "terminal/display.hpp"
+#include "lua/dinal_table.hpp"
+#include "lua/interrupt.hpp"
+#include "prompt/call.hpp"
+#include "prompt/notices.hpp"
+#include "prompt/output.hpp"
+#include "prompt/printer.hpp"
+
+namespace dinal {
+namespace {
+
+/// Sets the global ans to the value at `index`.
+void set_ans(lua_State* L, int index) {
+    index = lua_absindex(L, index);
+    lua_pushglobaltable(L);
+    lua_pushliteral(L, "ans");
+    lua_pushvalue(L, index);
+    lua_rawset(L, -3);
+    lua_pop(L, 1);
+}
+
+/// What a run that failed or was stopped has left behind, or nil.
+void push_partial(lua_State* L) {
+    push_dinal_table(L);
+    lua_pushliteral(L, "partial");
+    lua_rawget(L, -2);
+    lua_remove(L, -2);
+}
+
+int print_partial(lua_State* L) {
+    say_error("the part of the run that was done is in ans (ans:continue() goes on):\n" +
+              show(L, 1, display_of(STDERR_FILENO)));
+    return 0;
+}
+
+int print_values(lua_State* L) {
+    const int count = lua_gettop(L);
+    std::string text;
+    for (int i = 1; i <= count; ++i) {
+        text.append(i == 1 ? "" : "\t").append(show(L, i, display_of(STDOUT_FILENO)));
+    }
+    text += '\n';
+    say(text);
+    return 0;
+}
+
+/// Shows the values on top of `base` by one of the two functions above, which take them.
+void show_by(lua_State* L, lua_CFunction function, int base) {
+    luaL_checkstack(L, LUA_MINSTACK, "too many values to show");
+    lua_pushcfunction(L, function);
+    lua_insert(L, base + 1);
+    if (call(L, lua_gettop(L) - base - 1, 0) != LUA_OK) {
+        say_error(take_text(L));
+    }
+}
+
+/// The values on top of `base` become ans (the first) and are shown.
+void show_values(lua_State* L, int base, const Chunk& chunk) {
+    if (lua_gettop(L) == base) {
+        return;
+    }
+    const bool single = lua_gettop(L) == base + 1;
+    if (!lua_isnil(L, base + 1)) {
+        set_ans(L, base + 1);
+    }
+    if (!chunk.silent) {
+        show_by(L, print_values, base);
+    }
+    if (single) {
+        say_notice(name_notice(L, chunk));
+    }
+}
+
+/// The part of a run that was done before the error is worth keeping. `before` is where the earlier one stands.
+void keep_partial_run(lua_State* L, int before) {
+    push_partial(L);
+    if (!lua_isnil(L, -1) && lua_rawequal(L, -1, before) == 0 && luaL_len(L, -1) > 0) {
+        set_ans(L, -1);
+        show_by(L, print_partial, lua_gettop(L) - 1);
+    }
+}
+
+/// Runs the function on the top of the stack and shows its values; false, and the message on the stack, when it failed.
+bool run_and_show(lua_State* L, const Chunk& chunk, Evaluated& result) {
+    const InterruptScope running(L);  // a Ctrl-C meant for the function may come when its values are being shown
+    if (call(L, 0, LUA_MULTRET) != LUA_OK) {
+        return false;
+    }
+    result = {!interrupt_requested(), lua_gettop(L) - 1, lua_gettop(L) > 1 && lua_isnil(L, 2)};
+    if (!result.fine) {
+        say_error("interrupted");
+    }
+    show_values(L, 1, chunk);
+    return true;
+}
+
+}  // namespace
+
+Evaluated evaluate(lua_State* L, const Chunk& chunk) {
+    Evaluated result;
+    push_partial(L);
+    lua_insert(L, 1);
+    if (!run_and_show(L, chunk, result)) {
+        say_error(take_text(L));
+        keep_partial_run(L, 1);
+    }
+    lua_settop(L, 0);
+    return result;
+}
+
+}  // namespace dinal

@@ -1,0 +1,20 @@
+// Runs what was typed, and shows what comes of it.
+#pragma once
+
+#include <lua.hpp>
+
+#include "prompt/chunk.hpp"
+
+namespace dinal {
+
+struct Evaluated {
+    bool fine = false;       ///< no error, no Ctrl-C
+    int values = 0;          ///< how many it returned
+    bool first_nil = false;  ///< the first of them is nil, which ans does not become
+};
+
+/// Runs the function on the top of the stack, which `chunk` describes, and empties the stack. Its values are shown, the
+/// first becomes the global ans; an error is told. After an error in a run, ans is what was done of it.
+Evaluated evaluate(lua_State* L, const Chunk& chunk);
+
+}  // namespace dinal

@@ -1,0 +1,298 @@
+// The only file that knows readline, and the only one that differs when it is not built in.
+#include "prompt/line_editor.hpp"
+
+#ifdef DINAL_READLINE
+#include <fcntl.h>
+#include <poll.h>
+#include <readline/history.h>
+#include <readline/readline.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <csignal>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <string_view>
+#include <vector>
+
+#include "terminal/display.hpp"
+#include "lua/safe_mode.hpp"
+#include "prompt/completion.hpp"
+#include "prompt/output.hpp"
+#include "prompt/typing.hpp"
+#include "prompt/user_files.hpp"
+#endif
+
+namespace dinal {
+
+#ifdef DINAL_READLINE
+
+namespace {
+
+constexpr int longest_history = 5000;  // entries
+constexpr const char* erase_to_end = "\x1b[K";
+
+// What readline's callbacks need to know: there is one editor, and they get no argument.
+struct Editing {
+    lua_State* L = nullptr;
+    bool paints = false;   // colours and hints
+    bool hinting = false;  // a hint stands behind the line
+    bool accepted = false;
+    Line line;
+    std::string prompt;
+    std::string pending;  // earlier lines of the chunk, each with its newline
+    std::vector<std::string> names;
+};
+Editing editing;
+
+void accept(char* text) {
+    editing.accepted = true;
+    editing.line = text == nullptr ? Line{} : Line{Reading::line, text};
+    std::free(text);               // NOLINT: readline allocated it
+    rl_callback_handler_remove();  // now, before readline prints another prompt
+}
+
+void erase_hint() {
+    if (editing.hinting) {
+        static_cast<void>(std::fputs(erase_to_end, rl_outstream));
+        editing.hinting = false;
+    }
+}
+
+int finish_line(int count, int key) {
+    erase_hint();
+    return rl_newline(count, key);
+}
+
+/// readline draws the line; then it is drawn over in colours, with the hint behind it, where it is one simple row.
+void redisplay() {
+    if (InterruptNote::interrupted()) {
+        return;  // the line is being given up: it stays as it is
+    }
+    erase_hint();  // before the cursor moves: it stands where the hint begins
+    rl_redisplay();
+    constexpr unsigned long other_uses = RL_STATE_ISEARCH | RL_STATE_NSEARCH | RL_STATE_SEARCH | RL_STATE_NUMERICARG |
+                                         RL_STATE_COMPLETING | RL_STATE_VIMOTION;
+    if (!editing.paints || RL_ISSTATE(other_uses) || rl_display_prompt != rl_prompt) {
+        return;
+    }
+    const std::string_view line(rl_line_buffer, static_cast<std::size_t>(rl_end));
+    const auto cursor = static_cast<std::size_t>(rl_point);
+    const Painted painted = paint(editing.L, editing.prompt, editing.pending, line, cursor);
+    editing.hinting = painted.hint;
+    if (!painted.text.empty()) {
+        static_cast<void>(std::fputs(painted.text.c_str(), rl_outstream));
+        static_cast<void>(std::fflush(rl_outstream));
+    }
+}
+
+/// readline asks for one name after the other, and wants to free each.
+char* next_name(const char*, int again) {
+    static std::size_t next = 0;
+    next = again == 0 ? 0 : next;
+    return next < editing.names.size() ? strdup(editing.names[next++].c_str()) : nullptr;
+}
+
+bool leads_outside(std::string_view path) {
+    return path.starts_with('/') || path.starts_with('~') || path.find("..") != std::string_view::npos;
+}
+
+char** complete_word(const char* word, int, int end) {
+    erase_hint();
+    rl_attempted_completion_over = 1;  // no names of files where none belong
+    rl_completion_append_character = '\0';
+    const std::string line(rl_line_buffer, static_cast<std::size_t>(end));
+    if (!editing.pending.empty() && line.find_first_not_of(' ') == std::string::npos) {
+        rl_insert_text("  ");  // the key indents a line of a block
+        return nullptr;
+    }
+    Completion completion = complete_safely(editing.L, editing.pending + line);
+    if (completion.files && safe_mode() && leads_outside(word)) {
+        return nullptr;
+    }
+    if (completion.files) {
+        return rl_completion_matches(word, rl_filename_completion_function);
+    }
+    editing.names = std::move(completion.names);
+    return rl_completion_matches(word, next_name);
+}
+
+volatile std::sig_atomic_t resized = 0;
+
+extern "C" void on_resize(int) {
+    resized = 1;
+}
+
+/// NOTE: readline leaves the old line where it is when somebody else draws: so nobody else does meanwhile.
+void fit_to_window() {
+    erase_hint();
+    rl_redisplay_function = rl_redisplay;
+    rl_resize_terminal();
+    if (editing.paints) {
+        rl_redisplay_function = redisplay;
+        redisplay();
+    }
+}
+
+void notice_resizing() {
+    rl_catch_sigwinch = 0;
+    struct sigaction action {};
+    action.sa_handler = on_resize;
+    sigemptyset(&action.sa_mask);
+    action.sa_flags = SA_RESTART;  // it is no matter of the script
+    sigaction(SIGWINCH, &action, nullptr);
+}
+
+/// Waits for a key or a signal, and lets readline see the signal. True when there is a key to read.
+bool key_arrived() {
+    bool arrived = false;
+    sigset_t all;
+    sigset_t before;
+    sigfillset(&all);
+    // All are blocked from the last look until ppoll sleeps, so that none is overlooked.
+    sigprocmask(SIG_BLOCK, &all, &before);
+    if (rl_pending_signal() == 0 && !InterruptNote::interrupted()) {
+        pollfd input{fileno(rl_instream), POLLIN, 0};
+        arrived = ppoll(&input, 1, nullptr, &before) > 0;
+    }
+    sigprocmask(SIG_SETMASK, &before, nullptr);
+    rl_check_signals();  // raises the signal again for the note, with the terminal in order
+    if (resized != 0) {
+        resized = 0;
+        fit_to_window();
+    }
+    return arrived && !InterruptNote::interrupted();
+}
+
+/// What readline reads the keys with. NOTE: Ctrl-C throws away what was typed before it, so a key that was there may be
+/// gone, and one that is waited for would hold up the Ctrl-C: hence no blocking read.
+int read_key(FILE*) {
+    static const int keyboard = open("/proc/self/fd/0", O_RDONLY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC);
+    while (!InterruptNote::interrupted()) {
+        if (!key_arrived()) {
+            continue;
+        }
+        unsigned char key = 0;
+        const ssize_t count = read(keyboard < 0 ? STDIN_FILENO : keyboard, &key, 1);
+        if (count == 1) {
+            return key;
+        }
+        if (count == 0 || (errno != EAGAIN && errno != EINTR)) {
+            break;  // the terminal is gone
+        }
+    }
+    return EOF;
+}
+
+void start_readline(const std::string& history) {
+    rl_readline_name = "dinal";
+    rl_catch_signals = 1;               // it restores the terminal before Ctrl-Z and its like take effect,
+    rl_persistent_signal_handlers = 1;  // also when one comes while we wait for a key
+    rl_getc_function = read_key;
+    rl_attempted_completion_function = complete_word;
+    rl_completer_word_break_characters = const_cast<char*>(" \t\n\"\\'`@$><=;|&{}()[]:.,+-*/%^~#!?");  // only read
+    rl_completer_quote_characters = "\"'";
+    notice_resizing();
+    rl_initialize();
+    // After the user's inputrc. A blinking parenthesis would swallow a Ctrl-C that is typed within its half second.
+    rl_variable_bind("blink-matching-paren", "off");
+    rl_variable_bind("enable-bracketed-paste", obeys_escapes() ? "on" : "off");
+    // With time stamps an entry of several lines is read back as one.
+    history_comment_char = '#';
+    history_write_timestamps = 1;
+    stifle_history(longest_history);
+    if (!history.empty()) {
+        history_truncate_file(history.c_str(), longest_history);
+        read_history(history.c_str());
+    }
+    editing.paints = display_of(STDOUT_FILENO).colour;
+    if (editing.paints) {
+        rl_redisplay_function = redisplay;
+        rl_bind_key('\r', finish_line);
+        rl_bind_key('\n', finish_line);
+    }
+}
+
+void give_up() {
+    if (!editing.accepted) {
+        erase_hint();
+        rl_callback_sigcleanup();
+        rl_free_line_state();
+        rl_callback_handler_remove();
+    }
+    say("\n");  // rl_outstream is standard output
+}
+
+Line read_edited(const std::string& prompt, const std::string& pending) {
+    const InterruptNote note;
+    editing.accepted = false;
+    editing.hinting = false;
+    editing.prompt = prompt;
+    editing.pending = pending.empty() ? "" : pending + "\n";
+    rl_eof_found = 0;  // of an earlier line: readline would end every further one with a blank one
+    using_history();
+    rl_callback_handler_install(prompt.c_str(), accept);
+    while (!editing.accepted) {
+        if (key_arrived()) {
+            rl_callback_read_char();
+        }
+        if (InterruptNote::interrupted()) {  // also when the line was accepted just before: it has not run yet
+            give_up();
+            return {Reading::interrupted, ""};
+        }
+    }
+    return editing.line;
+}
+
+}  // namespace
+
+// NOTE: readline reads a pipe badly (it spins at its end and completes at its tabs): never use it there.
+LineEditor::LineEditor(lua_State* L) : edits_(isatty(STDIN_FILENO) != 0 && isatty(STDOUT_FILENO) != 0) {
+    if (edits_) {
+        editing.L = L;
+        history_file_ = history_file();
+        start_readline(history_file_);
+    }
+}
+
+Line LineEditor::read(const std::string& prompt, const std::string& pending) const {
+    return edits_ ? read_edited(prompt, pending) : read_plain(prompt);
+}
+
+void LineEditor::remember(const std::string& entry) {
+    if (!edits_ || entry.find_first_not_of(" \t\n") == std::string::npos) {
+        return;
+    }
+    const HIST_ENTRY* last = history_length > 0 ? history_get(history_base + history_length - 1) : nullptr;
+    if (last != nullptr && entry == last->line) {
+        return;
+    }
+    add_history(entry.c_str());
+    if (!history_file_.empty()) {
+        append_history(1, history_file_.c_str());  // at once: the session may end by a signal or os.exit
+    }
+}
+
+const char* LineEditor::about() {
+    return "Lines are edited with GNU Readline: this program may be distributed under the GNU GPL, version 3 or later.";
+}
+
+#else
+
+LineEditor::LineEditor(lua_State*) : edits_(false) {}
+
+// NOLINTNEXTLINE(readability-convert-member-functions-to-static): with readline it is none
+Line LineEditor::read(const std::string& prompt, const std::string&) const {
+    return read_plain(prompt);
+}
+
+void LineEditor::remember(const std::string&) {}
+
+const char* LineEditor::about() {
+    return "Built without GNU Readline: this program is under the MIT licence, too.";
+}
+
+#endif
+
+}  // namespace dinal

@@ -1,0 +1,152 @@
+#include "prompt/meaning.hpp"
+
+#include <algorithm>
+
+#include "help/signature.hpp"
+
+namespace dinal {
+namespace {
+
+constexpr int most_metatables = 10;  // an __index may lead to itself
+
+bool closes(const Token& token) {
+    return token.is(")") || token.is("}") || token.is("]");
+}
+
+const Member* member_of(const Class& description, std::string_view name) {
+    const auto found = std::find_if(description.members.begin(), description.members.end(),
+                                    [name](const Member& m) { return m.kind != Kind::metamethod && m.name == name; });
+    return found == description.members.end() ? nullptr : &*found;
+}
+
+/// Walks along the expression. What is known so far is `result`; its value is on the top of the stack.
+class Walk {
+public:
+    explicit Walk(lua_State* L) : L_(L) { lua_pushnil(L_); }
+
+    Meaning result;
+
+    void begin(const Token& token) {
+        if (token.kind == TokenKind::name) {
+            lua_pop(L_, 1);
+            lua_pushglobaltable(L_);
+            raw_field(token.text);
+        }
+    }
+
+    void go_to_field(std::string_view name) {
+        if (result.kind == Meaning::Kind::value) {
+            const Documented found = documented(L_, -1);
+            if (lua_isuserdata(L_, -1) != 0) {
+                found.owner != nullptr ? go_to_member(*found.owner, name) : forget();
+            } else {
+                raw_field(name);
+            }
+        } else if (result.kind == Meaning::Kind::object) {
+            go_to_member(*result.section->description, name);
+        } else if (result.kind == Meaning::Kind::member) {
+            const Section* held =
+                result.member->kind == Kind::field ? result_class(result.member->doc.signature) : nullptr;
+            held != nullptr ? go_to_member(*held->description, name) : forget();
+        }
+    }
+
+    void call() {
+        const Doc* doc = nullptr;
+        if (result.kind == Meaning::Kind::member) {
+            doc = &result.member->doc;
+        } else if (result.kind == Meaning::Kind::value) {
+            const Documented found = documented(L_, -1);
+            const bool module = found.owner != nullptr && found.member == nullptr && lua_istable(L_, -1);
+            doc = found.member != nullptr ? &found.member->doc : module ? &found.owner->doc : nullptr;
+        }
+        const Section* object = doc == nullptr ? nullptr : result_class(doc->signature);
+        forget();
+        if (object != nullptr) {
+            result = {Meaning::Kind::object, object, nullptr};
+        }
+    }
+
+    void forget() {
+        result = {};
+        lua_pop(L_, 1);
+        lua_pushnil(L_);
+    }
+
+private:
+    /// Replaces the table on the top by its field, looked up in the tables of __index, too.
+    void raw_field(std::string_view name) {
+        for (int i = 0; i < most_metatables; ++i) {
+            if (lua_istable(L_, -1)) {
+                lua_pushlstring(L_, name.data(), name.size());
+                if (lua_rawget(L_, -2) != LUA_TNIL) {
+                    lua_replace(L_, -2);
+                    result = {Meaning::Kind::value, nullptr, nullptr};
+                    return;
+                }
+                lua_pop(L_, 1);
+            }
+            if (lua_getmetatable(L_, -1) == 0) {
+                break;
+            }
+            lua_pushliteral(L_, "__index");
+            lua_rawget(L_, -2);
+            lua_replace(L_, -3);
+            lua_pop(L_, 1);
+        }
+        forget();
+    }
+
+    void go_to_member(const Class& description, std::string_view name) {
+        const Member* member = member_of(description, name);
+        forget();
+        if (member != nullptr) {
+            result = {Meaning::Kind::member, section_of(&description), member};
+        }
+    }
+
+    lua_State* L_;
+};
+
+}  // namespace
+
+const Section* section_of(const Class* description) {
+    const auto all = sections();
+    const auto found =
+        std::find_if(all.begin(), all.end(), [description](const Section& s) { return s.description == description; });
+    return found == all.end() ? nullptr : &*found;
+}
+
+Meaning meaning(lua_State* L, std::span<const Token> expression) {
+    luaL_checkstack(L, LUA_MINSTACK, "for the meaning of what is typed");
+    Walk walk(L);
+    if (expression.empty()) {
+        return {};
+    }
+    walk.begin(expression.front());
+    for (std::size_t i = 1; i < expression.size(); ++i) {
+        const Token& token = expression[i];
+        if (token.kind == TokenKind::name) {
+            walk.go_to_field(token.text);
+        } else if (token.kind == TokenKind::string || token.is("(") || token.is("{") || token.is("[")) {
+            token.is("[") ? walk.forget() : walk.call();
+            int depth = token.kind == TokenKind::string ? 0 : 1;
+            while (depth > 0 && i + 1 < expression.size()) {
+                ++i;
+                const Token& inner = expression[i];
+                depth += inner.is("(") || inner.is("{") || inner.is("[") ? 1 : closes(inner) ? -1 : 0;
+            }
+        }
+    }
+    Meaning result = walk.result;
+    if (result.kind == Meaning::Kind::value) {
+        if (const Documented found = documented(L, -1); found.member != nullptr) {
+            result = {Meaning::Kind::member, section_of(found.owner), found.member};
+        } else if (found.owner != nullptr && lua_isuserdata(L, -1) != 0) {
+            result = {Meaning::Kind::object, section_of(found.owner), nullptr};
+        }
+    }
+    return result;
+}
+
+}  // namespace dinal

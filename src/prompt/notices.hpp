@@ -1,0 +1,29 @@
+// Words about what was typed that is no error but probably not what was meant.
+#pragma once
+
+#include <lua.hpp>
+#include <string>
+
+#include "prompt/chunk.hpp"
+
+namespace dinal {
+
+/// The expression is the name of a global that does not exist, or the word help.
+std::string name_notice(lua_State* L, const Chunk& chunk);
+
+/// "run:events" waits for arguments that a field never gets and a method may have been expected to do without.
+std::string colon_notice(lua_State* L, const std::string& text);
+
+/// A local variable at the top level that nothing after it uses: it is lost.
+std::string local_notice(const std::string& text);
+
+/// An option, or a variable, becomes a global that does not exist, integrator = rk4: no error in Lua, but hardly meant.
+std::string nil_notice(lua_State* L, const std::string& text);
+
+/// "x = 1,5"
+std::string comma_notice(const std::string& text);
+
+/// On standard error, unless it is empty.
+void say_notice(const std::string& notice);
+
+}  // namespace dinal

@@ -1,0 +1,61 @@
+#include "prompt/plain_lines.hpp"
+
+#include <cstdio>
+#include <cstdlib>
+
+#include "prompt/output.hpp"
+
+namespace dinal {
+namespace {
+
+volatile std::sig_atomic_t interrupt_seen = 0;
+
+extern "C" void note_interrupt(int) {
+    interrupt_seen = 1;
+}
+
+}  // namespace
+
+InterruptNote::InterruptNote() {
+    interrupt_seen = 0;
+    struct sigaction action {};
+    action.sa_handler = note_interrupt;
+    sigemptyset(&action.sa_mask);
+    action.sa_flags = 0;  // no SA_RESTART: reading must wake up
+    sigaction(SIGINT, &action, &before_);
+}
+
+InterruptNote::~InterruptNote() {
+    sigaction(SIGINT, &before_, nullptr);
+}
+
+bool InterruptNote::interrupted() {
+    return interrupt_seen != 0;
+}
+
+Line read_plain(const std::string& prompt) {
+    say(prompt);
+    flush_output();
+    const InterruptNote note;
+    char* buffer = nullptr;
+    std::size_t capacity = 0;
+    // From the same FILE as io.read, so that Lua code can read the lines that follow its own.
+    const ssize_t size = getline(&buffer, &capacity, stdin);
+    std::string text(buffer == nullptr ? "" : buffer, size > 0 ? static_cast<std::size_t>(size) : 0);
+    std::free(buffer);  // NOLINT: getline allocated it
+    if (InterruptNote::interrupted()) {
+        std::clearerr(stdin);
+        say("\n");
+        return {Reading::interrupted, ""};
+    }
+    if (size < 0) {
+        std::clearerr(stdin);  // Ctrl-D ends this line, not all that may still be typed
+        return {Reading::end, ""};
+    }
+    if (text.back() == '\n') {
+        text.pop_back();
+    }
+    return {Reading::line, text};
+}
+
+}  // namespace dinal

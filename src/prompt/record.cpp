@@ -1,0 +1,149 @@
+#include "prompt/record.hpp"
+
+#include <fmt/core.h>
+#include <unistd.h>
+
+#include <algorithm>
+
+#include "files/file.hpp"
+#include "lua/tokens.hpp"
+
+namespace dinal {
+namespace {
+
+bool has(const std::string& text, std::string_view word) {
+    const std::vector<Token> all = tokens(text);
+    return std::any_of(all.begin(), all.end(), [word](const Token& token) {
+        return (token.kind == TokenKind::name || token.kind == TokenKind::keyword || token.is("::")) &&
+               token.text == word;
+    });
+}
+
+/// It must not reach the inputs that follow: its local variables and labels ended with it.
+bool needs_block(const std::string& statements) {
+    return has(statements, "local") || has(statements, "::");
+}
+
+std::string trimmed(const std::string& text) {
+    const std::size_t begin = text.find_first_not_of(" \t\r\n");
+    return begin == std::string::npos ? "" : text.substr(begin, text.find_last_not_of(" \t\r\n") - begin + 1);
+}
+
+/// The expression between two brackets; a comment at its end must not swallow the second.
+std::string in_call(std::string_view function, const std::string& expression) {
+    const std::vector<Token> all = tokens(expression);
+    const bool comment = !all.empty() && all.back().kind == TokenKind::comment;
+    return fmt::format("{}({}{})", function, expression, comment ? "\n" : "");
+}
+
+/// A call is a statement on its own.
+bool is_call(const std::string& expression) {
+    const std::vector<Token> all = tokens(expression);
+    const auto last =
+        std::find_if(all.rbegin(), all.rend(), [](const Token& t) { return t.kind != TokenKind::comment; });
+    return last != all.rend() && (last->is(")") || last->is("}") || last->kind == TokenKind::string) &&
+           all.size() > 1 && all.front().kind == TokenKind::name;
+}
+
+}  // namespace
+
+void Record::add(const Chunk& chunk, const Evaluated& result) {
+    if (trimmed(chunk.statements + chunk.expression).empty()) {
+        return;
+    }
+    entries_.push_back({chunk, result});
+    update();
+}
+
+void Record::add_statement(const std::string& statement) {
+    add(Chunk{Compiled::ready, statement, "", false}, Evaluated{true, 0, false});
+}
+
+void Record::clear() {
+    entries_.clear();
+    begin_ = 0;
+    update();
+}
+
+bool Record::writes(const std::string& file) const {
+    return std::find(written_.begin(), written_.end(), file) != written_.end();
+}
+
+Expected<bool> Record::may_write(const std::string& file) const {
+    if (!writes(file) && access(file.c_str(), F_OK) == 0) {
+        return Error{fmt::format("{} is there already, and not of this session; choose another name", file)};
+    }
+    return true;
+}
+
+Expected<bool> Record::begin(const std::string& file) {
+    if (auto allowed = may_write(file); !allowed) {
+        return allowed;
+    }
+    begin_ = entries_.size();
+    file_ = file;
+    problem_.clear();
+    update();
+    if (!problem_.empty()) {
+        file_.clear();
+        return Error{problem_};
+    }
+    written_.push_back(file);
+    return true;
+}
+
+Expected<bool> Record::save(const std::string& file) {
+    if (auto allowed = may_write(file); !allowed) {
+        return allowed;
+    }
+    if (auto written = write_file(file, script(0)); !written) {
+        return written.error();
+    }
+    written_.push_back(file);
+    return true;
+}
+
+void Record::update() {
+    if (file_.empty()) {
+        return;
+    }
+    const auto written = write_file(file_, script(begin_));
+    problem_ = written ? "" : written.error().sentence;
+}
+
+/// Before another input sets it.
+bool Record::ans_is_used_after(std::size_t entry) const {
+    for (std::size_t i = entry + 1; i < entries_.size(); ++i) {
+        if (has(entries_[i].chunk.statements, "ans") || has(entries_[i].chunk.expression, "ans")) {
+            return true;
+        }
+        if (entries_[i].result.values > 0 && !entries_[i].result.first_nil) {
+            return false;
+        }
+    }
+    return false;
+}
+
+std::string Record::script(std::size_t first) const {
+    std::string text = "-- typed at the prompt of dinal " DINAL_VERSION "\n";
+    for (std::size_t i = first; i < entries_.size(); ++i) {
+        const auto& [chunk, result] = entries_[i];
+        std::string lines = trimmed(chunk.statements);
+        const std::string expression = trimmed(chunk.expression);
+        if (!expression.empty()) {
+            lines += lines.empty() ? "" : "\n";
+            const bool becomes_ans = result.values > 0 && !result.first_nil;
+            if (becomes_ans && (ans_is_used_after(i) || (chunk.silent && !is_call(expression)))) {
+                lines += "ans = " + expression + (chunk.silent ? "" : "\nprint(ans)");
+            } else if (is_call(expression) && (chunk.silent || result.values == 0)) {
+                lines += expression;
+            } else {
+                lines += in_call("print", expression);
+            }
+        }
+        text += needs_block(chunk.statements) ? fmt::format("do\n{}\nend\n", lines) : lines + "\n";
+    }
+    return text;
+}
+
+}  // namespace dinal

@@ -1,0 +1,127 @@
+#include "prompt/scalar_text.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string_view>
+
+#include "lua/bind.hpp"
+#include "source/function_source.hpp"
+#include "lua/interrupt.hpp"
+#include "terminal/quoted.hpp"
+
+namespace dinal {
+namespace {
+
+constexpr std::size_t longest_string = 1000;
+constexpr std::size_t longest_inner_string = 60;
+constexpr std::size_t longest_text = 4000;  // a text of several lines, as from run:explain(), is shown as it is
+constexpr int most_source_lines = 12;       // of a function
+
+int to_text(lua_State* L) {
+    luaL_tolstring(L, 1, nullptr);
+    return 1;
+}
+
+/// What tostring says, or that it failed.
+std::string told(lua_State* L, int index) {
+    lua_pushvalue(L, index);
+    lua_pushcfunction(L, to_text);
+    lua_insert(L, -2);
+    const bool fine = lua_pcall(L, 1, 1, 0) == LUA_OK;
+    if (!fine && interrupt_requested()) {
+        raise_interrupted(L);
+    }
+    std::size_t size = 0;
+    const char* start = lua_isstring(L, -1) != 0 ? lua_tolstring(L, -1, &size) : nullptr;
+    std::string text = start != nullptr ? std::string(start, size) : std::string(luaL_typename(L, -1));
+    lua_pop(L, 1);
+    return fine ? text : fmt::format("<error in __tostring: {}>", text);
+}
+
+/// Several lines of nothing but printable characters, too long to be read in quotes.
+bool is_text(std::string_view text, const Display& screen) {
+    if (text.find('\n') == std::string_view::npos || text.size() <= screen.width || text.size() > longest_text) {
+        return false;
+    }
+    while (!text.empty()) {
+        const std::size_t length = text[0] == '\n' ? 1 : printable_length(text);
+        if (length == 0) {
+            return false;
+        }
+        text.remove_prefix(length);
+    }
+    return true;
+}
+
+std::string string_text(lua_State* L, int index, Place place, const Display& screen) {
+    std::size_t size = 0;
+    const char* start = lua_tolstring(L, index, &size);
+    if (place == Place::alone && is_text({start, size}, screen)) {
+        return wrapped(spelled({start, size}, screen), screen.width - 1);
+    }
+    const std::size_t limit = place == Place::inside ? longest_inner_string : longest_string;
+    std::string text = quoted({start, size}, limit, screen.unicode);
+    return place == Place::alone && size > limit ? fmt::format("{} ({} bytes)", text, size) : text;
+}
+
+/// A function as its source where that is short, else where it is defined; ours as they are called.
+std::string function_text(lua_State* L, int index, const Display& screen) {
+    if (const Documented found = documented(L, index); found.member != nullptr) {
+        return wrapped(fmt::format("function {}", found.member->doc.signature), screen.width - 1);
+    }
+    const auto source = function_source(L, index);
+    if (lua_iscfunction(L, index) != 0) {
+        return source ? fmt::format("function {} of Lua", *source) : "function written in C";
+    }
+    lua_Debug about{};
+    lua_pushvalue(L, index);
+    lua_getinfo(L, ">S", &about);
+    if (source && std::count(source->begin(), source->end(), '\n') < most_source_lines) {
+        return *source;
+    }
+    return fmt::format("function at {}:{}", about.short_src, about.linedefined);
+}
+
+std::string in_one_line(const std::string& text) {
+    const std::size_t end = text.find('\n');
+    return end == std::string::npos ? text : text.substr(0, end) + "...";
+}
+
+}  // namespace
+
+bool is_plain_table(lua_State* L, int index) {
+    if (!lua_istable(L, index)) {
+        return false;
+    }
+    if (luaL_getmetafield(L, index, "__tostring") == LUA_TNIL) {
+        return true;
+    }
+    lua_pop(L, 1);
+    return false;
+}
+
+std::string scalar_text(lua_State* L, int index, Place place, const Display& screen) {
+    switch (lua_type(L, index)) {
+        case LUA_TNUMBER:
+            return std::isnan(lua_tonumber(L, index)) ? "nan" : told(L, index);
+        case LUA_TSTRING:
+            return string_text(L, index, place, screen);
+        case LUA_TFUNCTION:
+            return place == Place::inside ? "function" : function_text(L, index, screen);
+        default:
+            break;
+    }
+    const Documented found = documented(L, index);
+    if (place == Place::inside) {
+        return spelled(in_one_line(told(L, index)), screen);
+    }
+    if (found.owner != nullptr && found.owner->card != nullptr) {
+        return found.owner->card(L, lua_absindex(L, index), screen);
+    }
+    std::string text = told(L, index);
+    return found.owner != nullptr ? wrapped(spelled(text, screen), screen.width - 1) : text;
+}
+
+}  // namespace dinal

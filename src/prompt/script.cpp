@@ -1,0 +1,269 @@
+#include "prompt/script.hpp"
+
+#include <fmt/core.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <csignal>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <lua.hpp>
+#include <memory>
+#include <string_view>
+
+#include "files/confinement.hpp"
+#include "source/function_source.hpp"
+#include "lua/interrupt.hpp"
+#include "api/library.hpp"
+#include "lua/limits.hpp"
+#include "lua/safe_mode.hpp"
+#include "lua/time_limit.hpp"
+#include "prompt/call.hpp"
+#include "prompt/line_editor.hpp"
+#include "prompt/load_file.hpp"
+#include "prompt/output.hpp"
+#include "prompt/repl.hpp"
+
+namespace dinal {
+namespace {
+
+/// Ends a piece of work whose error, if any, is the text on the top of the stack. `file` is that of the chunk, if it
+/// did not even compile.
+bool finished(lua_State* L, int status, const char* file = nullptr) {
+    if (status != LUA_OK) {
+        const std::string text = status == LUA_ERRSYNTAX || status == LUA_ERRMEM ? told_error(L, file) : take_text(L);
+        complain(stop_requested() == Stop::interrupted && text.rfind("interrupted", 0) != 0 ? "interrupted" : text);
+    } else if (stop_requested() == Stop::interrupted) {
+        complain("interrupted");
+        return false;
+    }
+    return status == LUA_OK;
+}
+
+bool run_loaded(lua_State* L, int status, int arguments = 0) {
+    // NOTE: Ctrl-C while standard input was read as a script is seen only here.
+    const bool go_on = status == LUA_OK && !interrupt_requested();
+    return finished(L, go_on ? call(L, arguments, 0) : status);
+}
+
+/// Text that is in no file. It is kept, so that a file of results can hold the source of the functions in it.
+int load_text(lua_State* L, std::string_view text, const char* name) {
+    const int status = luaL_loadbufferx(L, text.data(), text.size(), name, load_mode());
+    if (status == LUA_OK || status == LUA_ERRSYNTAX) {
+        keep_source(L, name, text);  // an error needs it, too
+    }
+    return status;
+}
+
+bool run_text(lua_State* L, const char* text, const char* name) {
+    return run_loaded(L, load_text(L, text, name));
+}
+
+/// What luaL_loadfile(L, nullptr) does, mark of UTF-8 and `#!` line included, but the text is kept.
+int load_standard_input(lua_State* L) {
+    std::string text;
+    std::array<char, BUFSIZ> piece{};
+    while (const std::size_t size = std::fread(piece.data(), 1, piece.size(), stdin)) {
+        text.append(piece.data(), size);
+    }
+    if (std::ferror(stdin) != 0) {
+        lua_pushfstring(L, "cannot read stdin: %s", std::strerror(errno));  // NOLINT(concurrency-mt-unsafe): one thread
+        return LUA_ERRFILE;
+    }
+    if (text.compare(0, 3, "\xEF\xBB\xBF") == 0) {
+        text.erase(0, 3);
+    }
+    if (text.compare(0, 1, "#") == 0) {
+        text.erase(0, text.find('\n'));  // the end of the line stays: it counts
+    }
+    return load_text(L, text, "=stdin");
+}
+
+bool run_init(lua_State* L) {
+    const char* name = "=LUA_INIT_5_4";
+    const char* init = std::getenv(name + 1);  // NOLINT(concurrency-mt-unsafe): one thread
+    if (init == nullptr) {
+        name = "=LUA_INIT";
+        init = std::getenv(name + 1);  // NOLINT(concurrency-mt-unsafe): one thread
+    }
+    if (init == nullptr) {
+        return true;
+    }
+    return *init == '@' ? run_loaded(L, luaL_loadfile(L, init + 1)) : run_text(L, init, name);
+}
+
+/// -l mod, -l global=mod
+bool require_module(lua_State* L, std::string_view value) {
+    const std::size_t equals = value.find('=');
+    const std::string global(value.substr(0, equals));
+    const std::string module(equals == std::string_view::npos ? value : value.substr(equals + 1));
+    lua_getglobal(L, "require");
+    lua_pushlstring(L, module.data(), module.size());
+    const int status = call(L, 1, 1);
+    if (status == LUA_OK) {
+        lua_setglobal(L, global.c_str());
+    }
+    return finished(L, status);
+}
+
+bool run_step(lua_State* L, const Step& step) {
+    switch (step.option) {
+        case 'e':
+            return run_text(L, step.value, "=(command line)");
+        case 'l':
+            return require_module(L, step.value);
+        default:
+            lua_warning(L, "@on", 0);
+            return true;  // W
+    }
+}
+
+bool run_steps(lua_State* L, const Arguments& arguments) {
+    return std::all_of(arguments.steps.begin(), arguments.steps.end(), [L](const Step& s) { return run_step(L, s); });
+}
+
+/// The global `arg`: the script at 0, its arguments from 1, what stands before it at negative places.
+void set_arg(lua_State* L, const Arguments& arguments) {
+    const auto zero = static_cast<lua_Integer>(arguments.has_script() ? arguments.script : 0);
+    lua_newtable(L);
+    lua_Integer place = -zero;
+    for (const char* word : arguments.words) {
+        lua_pushstring(L, word);
+        lua_rawseti(L, -2, place++);
+    }
+    lua_setglobal(L, "arg");
+}
+
+int push_script_arguments(lua_State* L) {
+    if (lua_getglobal(L, "arg") != LUA_TTABLE) {
+        luaL_error(L, "'arg' is not a table");
+    }
+    const int count = static_cast<int>(luaL_len(L, -1));
+    luaL_checkstack(L, count + 3, "too many arguments to script");
+    for (int i = 1; i <= count; ++i) {
+        lua_rawgeti(L, -i, i);
+    }
+    lua_remove(L, -count - 1);
+    return count;
+}
+
+bool run_script(lua_State* L, const Arguments& arguments) {
+    const char* file = arguments.words[arguments.script];
+    const bool after_dashes = std::string_view(arguments.words[arguments.script - 1]) == "--";
+    const bool standard_input = std::string_view(file) == "-" && !after_dashes;
+    if (!standard_input) {
+        allow_reading(file);
+    }
+    const int status = standard_input ? load_standard_input(L) : load_file(L, file);
+    return status == LUA_OK ? run_loaded(L, status, push_script_arguments(L))
+                            : finished(L, status, standard_input ? nullptr : file);
+}
+
+void open(lua_State* L, const Arguments& arguments) {
+    luaL_checkversion(L);
+    if (arguments.ignore_environment) {
+        lua_pushboolean(L, 1);
+        lua_setfield(L, LUA_REGISTRYINDEX, "LUA_NOENV");
+    }
+    arguments.safe ? open_safe_libraries(L) : luaL_openlibs(L);
+    open_library(L);
+    set_arg(L, arguments);
+    lua_gc(L, LUA_GCGEN, 0, 0);  // as lua does
+    set_limits(L, arguments.limits);
+}
+
+int failure() {
+    return stop_requested() == Stop::interrupted ? exit_code::interrupted : exit_code::script_error;
+}
+
+int prompt(lua_State* L, const Arguments& arguments) {
+    if (!arguments.show_version) {
+        say(greeting() + "\n");
+    }
+    return run_prompt(L, arguments.no_init ? Start::plain : Start::with_init_file) ? exit_code::ok
+                                                                                   : exit_code::interrupted;
+}
+
+int run_all(lua_State* L, const Arguments& arguments) {
+    if (arguments.show_version) {
+        say((arguments.interactive ? greeting() : version_line()) + "\n");
+    }
+    open(L, arguments);
+    if (!arguments.ignore_environment && !run_init(L)) {
+        return failure();
+    }
+    if (!run_steps(L, arguments) || (arguments.has_script() && !run_script(L, arguments))) {
+        return failure();
+    }
+    if (arguments.interactive) {
+        return prompt(L, arguments);
+    }
+    if (arguments.has_script() || arguments.executes || arguments.show_version) {
+        return exit_code::ok;
+    }
+    if (isatty(STDIN_FILENO) != 0) {
+        return prompt(L, arguments);
+    }
+    return run_loaded(L, load_standard_input(L)) ? exit_code::ok : failure();
+}
+
+struct Program {
+    const Arguments* arguments;
+    int code = exit_code::script_error;
+};
+
+int protected_run(lua_State* L) {
+    auto* program = static_cast<Program*>(lua_touserdata(L, 1));
+    lua_settop(L, 0);
+    program->code = run_all(L, *program->arguments);
+    return 0;
+}
+
+void close_state(lua_State* L) {
+    // Finalizers run now, and Lua calls no hook in them: an endless one must not be deaf to Ctrl-C.
+    static_cast<void>(std::signal(SIGINT, SIG_DFL));
+    const TimeAllowance time;
+    lua_close(L);
+}
+
+}  // namespace
+
+int run(const Arguments& arguments) {
+    const std::unique_ptr<lua_State, void (*)(lua_State*)> state(luaL_newstate(), close_state);
+    lua_State* L = state.get();
+    if (L == nullptr) {
+        complain("cannot start Lua: not enough memory");
+        return exit_code::script_error;
+    }
+    install_interrupt_handler();
+    Program program{&arguments};
+    lua_pushcfunction(L, protected_run);
+    lua_pushlightuserdata(L, &program);
+    if (lua_pcall(L, 1, 0, 0) != LUA_OK) {
+        complain(take_text(L));
+        return failure();
+    }
+    if (!reached_limit().empty()) {
+        std::exit(program.code);  // what the script has left open is not closed: that may take for ever, too
+    }
+    return program.code;
+}
+
+void complain(const std::string& text) {
+    say_error("dinal: " + text);
+}
+
+std::string version_line() {
+    return "dinal " DINAL_VERSION " (" LUA_RELEASE ")";
+}
+
+std::string version_text() {
+    return fmt::format("{}\nThe source of dinal is under the MIT licence; Lua is, too, {}.\n{}\n", version_line(),
+                       std::string_view(LUA_COPYRIGHT).substr(std::string_view(LUA_RELEASE).size() + 2),
+                       LineEditor::about());
+}
+
+}  // namespace dinal

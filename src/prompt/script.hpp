@@ -1,0 +1,25 @@
+// Running what the command line asks for, in lua's order: LUA_INIT, -e -l -W, the script, the prompt.
+#pragma once
+
+#include "prompt/arguments.hpp"
+
+namespace dinal {
+
+namespace exit_code {
+constexpr int ok = 0;
+constexpr int script_error = 1;
+constexpr int usage = 2;
+constexpr int interrupted = 130;
+}  // namespace exit_code
+
+/// Returns the exit code; what went wrong has been told on standard error.
+int run(const Arguments& arguments);
+
+/// "dinal: text" on standard error.
+void complain(const std::string& text);
+
+/// The line that -v and the prompt begin with, and what --version prints.
+std::string version_line();
+std::string version_text();
+
+}  // namespace dinal

@@ -1,0 +1,28 @@
+// What one session at the prompt remembers, and what it does with a text that was typed.
+#pragma once
+
+#include <lua.hpp>
+#include <string>
+
+#include "prompt/line_editor.hpp"
+#include "prompt/record.hpp"
+
+namespace dinal {
+
+struct Session {
+    explicit Session(lua_State* state) : L(state), editor(state) {}
+
+    lua_State* L;
+    LineEditor editor;
+    Record record;
+    bool local_noticed = false;  ///< once is enough
+    bool leaving = false;        ///< :quit
+};
+
+/// Compiles and runs a text that is all there is to come, as at the prompt.
+void run_text(Session& session, const std::string& text);
+
+/// Runs the function on the top of the stack, which `chunk` describes.
+void run_chunk(Session& session, const Chunk& chunk, const std::string& text);
+
+}  // namespace dinal

@@ -1,0 +1,126 @@
+#include "prompt/typed_text.hpp"
+
+namespace dinal {
+namespace {
+
+bool opens(const Token& token) {
+    return token.is("(") || token.is("{") || token.is("[");
+}
+bool closes(const Token& token) {
+    return token.is(")") || token.is("}") || token.is("]");
+}
+bool separates(const Token& token) {
+    return token.is(".") || token.is(":");
+}
+
+}  // namespace
+
+TypedText::TypedText(std::string_view before) : tokens_(tokens(before)) {
+    find_cursor(before);
+    find_call();
+}
+
+void TypedText::find_cursor(std::string_view before) {
+    if (!tokens_.empty() && tokens_.back().end() == before.size()) {
+        const Token& last = tokens_.back();
+        if (last.kind == TokenKind::comment || last.kind == TokenKind::number) {
+            return;
+        }
+        if (last.kind == TokenKind::string) {
+            cursor_ = last.open && last.text.front() != '[' ? Cursor::string : Cursor::nothing;
+            word_ = last.text.substr(1);
+            tokens_.pop_back();
+            return;
+        }
+        if (last.kind != TokenKind::symbol) {
+            word_ = last.text;
+            tokens_.pop_back();
+        }
+    }
+    cursor_ = Cursor::name;
+    if (tokens_.size() > 1 && separates(tokens_.back())) {
+        cursor_ = Cursor::member;
+        separator_ = tokens_.back().text.front();
+        owner_ = expression_before(tokens_.size() - 1);
+    }
+}
+
+/// The expression that ends before token `end`: a name, fields, calls, brackets. Empty when none does.
+std::span<const Token> TypedText::expression_before(std::size_t end) const {
+    std::size_t begin = end;
+    while (begin > 0) {
+        const Token& last = tokens_[begin - 1];
+        if (last.kind == TokenKind::name) {
+            --begin;
+            if (begin < 2 || !separates(tokens_[begin - 1])) {
+                break;
+            }
+            --begin;
+        } else if (closes(last)) {
+            int depth = 0;
+            do {
+                --begin;
+                depth += closes(tokens_[begin]) ? 1 : opens(tokens_[begin]) ? -1 : 0;
+            } while (depth > 0 && begin > 0);
+            const bool called = begin > 0 && (tokens_[begin - 1].kind == TokenKind::name || closes(tokens_[begin - 1]));
+            if (!called) {
+                break;
+            }
+        } else if (last.kind == TokenKind::string && begin > 1 && tokens_[begin - 2].kind == TokenKind::name) {
+            --begin;  // f"text"
+        } else {
+            return {};
+        }
+    }
+    return std::span(tokens_).subspan(begin, end - begin);
+}
+
+std::vector<std::size_t> TypedText::open_brackets() const {
+    std::vector<std::size_t> open;
+    for (std::size_t i = 0; i < tokens_.size(); ++i) {
+        if (opens(tokens_[i])) {
+            open.push_back(i);
+        } else if (closes(tokens_[i]) && !open.empty()) {
+            open.pop_back();
+        }
+    }
+    return open;
+}
+
+void TypedText::find_call() {
+    const std::vector<std::size_t> open = open_brackets();
+    if (cursor_ == Cursor::string && !tokens_.empty() && tokens_.back().kind == TokenKind::name) {
+        call_ = OpenCall{.function = expression_before(tokens_.size())};  // f"...
+        return;
+    }
+    if (open.empty()) {
+        return;
+    }
+    const std::size_t bracket = open.back();
+    OpenCall call{.function = expression_before(bracket)};
+    call.options = tokens_[bracket].is("{");
+    if (call.options && call.function.empty() && open.size() > 1) {
+        const Token& outer = tokens_[open[open.size() - 2]];
+        if (tokens_[bracket - 1].is(",") || tokens_[bracket - 1].is(outer.text)) {
+            call.function = expression_before(open[open.size() - 2]);
+            call.braces = outer.is("(") ? Braces::in_parentheses : Braces::nested;
+        }
+    }
+    if (call.function.empty()) {
+        return;
+    }
+    int depth = 0;
+    for (std::size_t i = bracket + 1; i + 1 < tokens_.size(); ++i) {
+        depth += opens(tokens_[i]) ? 1 : closes(tokens_[i]) ? -1 : 0;
+        if (depth == 0 && tokens_[i].kind == TokenKind::name && tokens_[i + 1].is("=")) {
+            call.given.push_back(tokens_[i].text);
+        }
+    }
+    const Token& last = tokens_.back();
+    if (call.options && cursor_ == Cursor::name && (last.is("{") || last.is(",") || last.is(";"))) {
+        cursor_ = Cursor::option;
+    }
+    call_ = call;
+}
+
+}  // namespace dinal

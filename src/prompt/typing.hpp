@@ -1,0 +1,29 @@
+// While a line is typed: its colours, the grey hint behind it, and completion that no error of Lua can leave.
+#pragma once
+
+#include <lua.hpp>
+#include <string>
+#include <string_view>
+
+#include "prompt/completion.hpp"
+
+namespace dinal {
+
+/// What draws a line over in colours, and puts the cursor back.
+struct Painted {
+    std::string text;   ///< empty when the line must stay as it is
+    bool hint = false;  ///< something stands behind the line now
+};
+
+/// The line stands behind the prompt on the row of the cursor; `pending` are the lines before it, `cursor` a place in
+/// it.
+Painted paint(lua_State* L, std::string_view prompt, const std::string& pending, std::string_view line,
+              std::size_t cursor);
+
+/// complete(), with an empty answer where memory runs out.
+Completion complete_safely(lua_State* L, const std::string& before);
+
+/// Lua text with escape sequences for its colours.
+std::string in_colours(std::string_view text);
+
+}  // namespace dinal

@@ -1,0 +1,57 @@
+#include "prompt/user_files.hpp"
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cstdlib>
+
+namespace dinal {
+namespace {
+
+std::string absolute_folder(const char* variable) {
+    const char* value = std::getenv(variable);  // NOLINT(concurrency-mt-unsafe): one thread
+    return value != nullptr && value[0] == '/' ? value : "";
+}
+
+/// Our folder in that of the variable, or in this folder of the home; empty when there is neither.
+std::string own_folder(const char* variable, const char* in_home) {
+    std::string folder = absolute_folder(variable);  // the specification of XDG: ignore it unless absolute
+    if (folder.empty()) {
+        const std::string home = absolute_folder("HOME");
+        folder = home.empty() ? "" : home + in_home;
+    }
+    return folder.empty() ? "" : folder + "/dinal";
+}
+
+void make_folders(const std::string& path) {
+    for (std::size_t i = path.find('/', 1); i != std::string::npos; i = path.find('/', i + 1)) {
+        mkdir(path.substr(0, i).c_str(), S_IRWXU);  // an error shows when the file is opened
+    }
+    mkdir(path.c_str(), S_IRWXU);
+}
+
+}  // namespace
+
+std::string history_file() {
+    const std::string folder = own_folder("XDG_STATE_HOME", "/.local/state");
+    if (folder.empty()) {
+        return "";
+    }
+    make_folders(folder);
+    std::string file = folder + "/history";
+    const int descriptor = open(file.c_str(), O_WRONLY | O_APPEND | O_CREAT | O_CLOEXEC, S_IRUSR | S_IWUSR);
+    if (descriptor < 0) {
+        return "";
+    }
+    close(descriptor);
+    return file;
+}
+
+std::string init_file() {
+    const std::string folder = own_folder("XDG_CONFIG_HOME", "/.config");
+    const std::string file = folder.empty() ? "" : folder + "/init.lua";
+    return !file.empty() && access(file.c_str(), F_OK) == 0 ? file : "";
+}
+
+}  // namespace dinal
