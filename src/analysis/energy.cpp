@@ -6,10 +6,10 @@
 #include <cmath>
 #include <limits>
 
-#include "motion/spectral/panels.hpp"
 #include "analysis/stretches.hpp"
+#include "motion/spectral/panels.hpp"
 
-namespace dinal {
+namespace dinal::analysis {
 
 namespace {
 
@@ -44,11 +44,11 @@ Work operator-(const Work& a, const Work& b) {
     return {a.input - b.input, a.viscous - b.viscous, a.dry - b.dry};
 }
 
-Stored stored(const Oscillator& system, const State& y) {
+Stored stored(const model::Oscillator& system, const model::State& y) {
     return {system.inertia() * y.velocity * y.velocity / 2, system.stiffness() * y.theta * y.theta / 2};
 }
 
-Stored change(const Oscillator& system, const State& from, const State& to) {
+Stored change(const model::Oscillator& system, const model::State& from, const model::State& to) {
     // As products: the difference of two large energies would keep their rounding.
     return {system.inertia() * ((to.velocity - from.velocity) * (to.velocity + from.velocity)) / 2,
             system.stiffness() * ((to.theta - from.theta) * (to.theta + from.theta)) / 2};
@@ -57,43 +57,44 @@ Stored change(const Oscillator& system, const State& from, const State& to) {
 /// The work done on one panel, from its beginning to any place in it.
 class PanelWork {
 public:
-    PanelWork(const Oscillator& system, const Panel& panel) : panel_(&panel) {
+    PanelWork(const model::Oscillator& system, const motion::spectral::Panel& panel) : panel_(&panel) {
         if (standing()) return;
         const auto v = panel.velocity();
-        input_ = chebyshev::integral(chebyshev::product(panel.M, v), 0);
-        way_ = chebyshev::integral(v, 0);
-        dry_ = system.kinetic_friction() * sign_of(panel.motion);
+        input_ = motion::spectral::chebyshev::integral(motion::spectral::chebyshev::product(panel.M, v), 0);
+        way_ = motion::spectral::chebyshev::integral(v, 0);
+        dry_ = system.kinetic_friction() * model::sign_of(panel.motion);
         if (system.damping() == 0) return;
-        squared_ = chebyshev::integral(chebyshev::product(v, v), 0);
+        squared_ = motion::spectral::chebyshev::integral(motion::spectral::chebyshev::product(v, v), 0);
         viscous_ = system.damping() / panel.h;
     }
     /// Up to `since` time units after the beginning of the panel.
     [[nodiscard]] Work until(double since) const {
         if (standing() || !(since > 0)) return {};
         const double x = std::min(since / panel_->h - 1, 1.0);
-        return {chebyshev::value(input_, x), viscous_ == 0 ? 0 : viscous_ * chebyshev::value(squared_, x),
-                dry_ == 0 ? 0 : dry_ * chebyshev::value(way_, x)};
+        return {motion::spectral::chebyshev::value(input_, x),
+                viscous_ == 0 ? 0 : viscous_ * motion::spectral::chebyshev::value(squared_, x),
+                dry_ == 0 ? 0 : dry_ * motion::spectral::chebyshev::value(way_, x)};
     }
     [[nodiscard]] Work all() const { return until(panel_->length); }
 
 private:
-    static constexpr std::size_t points = chebyshev::points;
-    [[nodiscard]] bool standing() const { return panel_->motion == Motion::stuck; }
+    static constexpr std::size_t points = motion::spectral::chebyshev::points;
+    [[nodiscard]] bool standing() const { return panel_->motion == model::Motion::stuck; }
 
-    const Panel* panel_;
+    const motion::spectral::Panel* panel_;
     double dry_ = 0, viscous_ = 0;
-    chebyshev::Series<2 * points + 1> input_{};    // of M v
-    chebyshev::Series<2 * points + 2> squared_{};  // of v^2
-    chebyshev::Series<points + 2> way_{};
+    motion::spectral::chebyshev::Series<2 * points + 1> input_{};    // of M v
+    motion::spectral::chebyshev::Series<2 * points + 2> squared_{};  // of v^2
+    motion::spectral::chebyshev::Series<points + 2> way_{};
 };
 
 /// Adds up panels into half cycles as the stretches of the run cut them.
 class Bookkeeper {
 public:
-    Bookkeeper(const Oscillator& system, const std::vector<Stretch>& stretches)
+    Bookkeeper(const model::Oscillator& system, const std::vector<Stretch>& stretches)
         : system_(system), stretch_(stretches.begin()), last_(stretches.end() - 1) {}
 
-    void add(const Panel& panel) {
+    void add(const motion::spectral::Panel& panel) {
         const PanelWork work(system_, panel);
         Work done;
         // Without friction a turn may lie within the panel; else it is where one begins, to rounding.
@@ -105,7 +106,7 @@ public:
         }
         present_.add(work.all() - done);
     }
-    Energy finish(const State& initial) {
+    Energy finish(const model::State& initial) {
         while (stretch_ != last_) close();
         close();
         energy_.total.work = total_.value();
@@ -120,7 +121,7 @@ private:
         total_.add(work);
         present_ = {};
         if (!stretch_->stuck && stretch_->lasts() > 0) {
-            const State &begin = stretch_->begin, &end = stretch_->end;
+            const model::State &begin = stretch_->begin, &end = stretch_->end;
             const Balance balance{work, change(system_, begin, end)};
             energy_.half_cycles.push_back({stretch_->from, stretch_->to, begin.theta, end.theta, balance});
             // On its way through theta = 0 the spring gives all that it has.
@@ -131,7 +132,7 @@ private:
         ++stretch_;
     }
 
-    const Oscillator& system_;
+    const model::Oscillator& system_;
     std::vector<Stretch>::const_iterator stretch_, last_;
     WorkSum present_, total_;
     Sum flow_;
@@ -144,23 +145,24 @@ double Energy::closure() const {
     return flow > 0 ? std::fabs(total.error()) / flow : 0;
 }
 
-Expected<Energy> energy_of(const Trajectory& trajectory) {
+text::Expected<Energy> energy_of(const motion::Trajectory& trajectory) {
     if (!trajectory.computed) {
-        return Error{"a run that was read from a file has no motion to integrate over: simulate the system again"};
+        return text::Error{
+            "a run that was read from a file has no motion to integrate over: simulate the system again"};
     }
-    const Panels* panels = trajectory.panels.get();
+    const motion::spectral::Panels* panels = trajectory.panels.get();
     if (panels == nullptr) {
-        return Error{
+        return text::Error{
             "the energy is integrated over the motion that integrator.spectral keeps: simulate with that integrator "
             "and without dense = false"};
     }
-    if (panels->size() == 0) return Error{"there is no motion to integrate over: the run ended where it started"};
+    if (panels->size() == 0) return text::Error{"there is no motion to integrate over: the run ended where it started"};
     if (!panels->complete()) {
-        return Error{fmt::format(
+        return text::Error{fmt::format(
             "the motion was kept up to t = {:.6g} only, for want of memory: simulate in parts, each up to that length",
             panels->end())};
     }
-    const Oscillator& system = panels->system();
+    const model::Oscillator& system = panels->system();
     const std::vector<Stretch> cut = stretches(trajectory);
     Bookkeeper books(system, cut);
     for (std::size_t i = 0; i < panels->size(); ++i) books.add((*panels)[i]);
@@ -170,17 +172,17 @@ Expected<Energy> energy_of(const Trajectory& trajectory) {
     energy.finish = stored(system, cut.back().end);
     energy.total.change = change(system, trajectory.initial, cut.back().end);
     if (!std::isfinite(energy.flow) || !std::isfinite(energy.total.error())) {
-        return Error{
+        return text::Error{
             "the energies of this run are beyond the range of numbers: choose larger units of torque or angle"};
     }
     return energy;
 }
 
-Eigen::MatrixXd energy_columns(const Trajectory& trajectory) {
-    const Panels& panels = *trajectory.panels;
-    const Oscillator& system = panels.system();
-    const auto t = trajectory.column(Column::t), theta = trajectory.column(Column::theta),
-               velocity = trajectory.column(Column::velocity);
+Eigen::MatrixXd energy_columns(const motion::Trajectory& trajectory) {
+    const motion::spectral::Panels& panels = *trajectory.panels;
+    const model::Oscillator& system = panels.system();
+    const auto t = trajectory.column(motion::Column::t), theta = trajectory.column(motion::Column::theta),
+               velocity = trajectory.column(motion::Column::velocity);
     Eigen::MatrixXd columns(trajectory.size(), energy_column_count);
     WorkSum before;
     std::size_t i = 0;
@@ -192,7 +194,7 @@ Eigen::MatrixXd energy_columns(const Trajectory& trajectory) {
         }
         WorkSum sum = before;
         sum.add(work.until(std::min(panels[i].start.until(t[row]), panels[i].length)));
-        const State y{theta[row], velocity[row]};
+        const model::State y{theta[row], velocity[row]};
         const Stored s = stored(system, y);
         const Balance balance{sum.value(), change(system, trajectory.initial, y)};
         columns.row(row) << balance.work.input, s.kinetic, s.spring, balance.work.viscous, balance.work.dry,
@@ -222,4 +224,4 @@ std::string text(const Energy& energy) {
     return text;
 }
 
-}  // namespace dinal
+}  // namespace dinal::analysis

@@ -9,10 +9,10 @@
 
 #include <vector>
 
-#include "text/expected.hpp"
 #include "motion/trajectory.hpp"
+#include "text/expected.hpp"
 
-namespace dinal {
+namespace dinal::analysis {
 
 /// Energies in torque times rad.
 struct Stored {
@@ -55,14 +55,14 @@ struct Energy {
 };
 
 /// Of a run of integrator.spectral. Fails with a sentence when the run has not kept its motion.
-Expected<Energy> energy_of(const Trajectory& trajectory);
+text::Expected<Energy> energy_of(const motion::Trajectory& trajectory);
 
 /// The same at the rows: work done since t_start and energy stored at each. Only after energy_of() has succeeded.
 enum class EnergyColumn : int { input, kinetic, spring, viscous, dry, error };
 inline constexpr int energy_column_count = 6;
-Eigen::MatrixXd energy_columns(const Trajectory& trajectory);
+Eigen::MatrixXd energy_columns(const motion::Trajectory& trajectory);
 
 /// The balance as a small table, for people.
 std::string text(const Energy& energy);
 
-}  // namespace dinal
+}  // namespace dinal::analysis

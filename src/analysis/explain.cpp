@@ -2,16 +2,16 @@
 
 #include "analysis/story.hpp"
 
-namespace dinal {
+namespace dinal::analysis {
 
-std::string explain(const Trajectory& trajectory, const Oscillator& system, const Excitation& excitation,
-                    const Integrator& integrator) {
+std::string explain(const motion::Trajectory& trajectory, const model::Oscillator& system,
+                    const model::Excitation& excitation, const motion::Integrator& integrator) {
     return Story(trajectory, system, excitation, integrator).told();
 }
 
-std::string explain_rows(const Trajectory& trajectory) {
+std::string explain_rows(const motion::Trajectory& trajectory) {
     const auto t = trajectory.find("t"), theta = trajectory.find("theta"), velocity = trajectory.find("velocity");
-    std::string text = fmt::format("This run was read from a file: {}", summary(trajectory)) + ".";
+    std::string text = fmt::format("This run was read from a file: {}", motion::summary(trajectory)) + ".";
     if (theta && trajectory.size() > 0) {
         Eigen::Index low = 0, high = 0;
         const auto column = trajectory.rows.col(*theta);
@@ -30,11 +30,11 @@ std::string explain_rows(const Trajectory& trajectory) {
             if (now != 0) before = now;
             if (now == 0) ++still;
         }
-        text += fmt::format(" The velocity changes its sign {} and is exactly 0 in {}.", counted(changes, "time"),
-                            counted(still, "row"));
+        text += fmt::format(" The velocity changes its sign {} and is exactly 0 in {}.", text::counted(changes, "time"),
+                            text::counted(still, "row"));
     }
     text += " Rows do not tell events and their reasons: simulate again for the story.";
-    return wrapped_lines(text);
+    return text::wrapped_lines(text);
 }
 
-}  // namespace dinal
+}  // namespace dinal::analysis

@@ -4,18 +4,18 @@
 #include <string>
 
 #include "model/excitation.hpp"
-#include "motion/integrator.hpp"
 #include "model/oscillator.hpp"
+#include "motion/integrator.hpp"
 #include "motion/trajectory.hpp"
 
-namespace dinal {
+namespace dinal::analysis {
 
 /// Paragraphs of lines that fit 80 columns. Of a long run only the first and the last stops are told one by one. No
 /// user function is called.
-std::string explain(const Trajectory& trajectory, const Oscillator& system, const Excitation& excitation,
-                    const Integrator& integrator);
+std::string explain(const motion::Trajectory& trajectory, const model::Oscillator& system,
+                    const model::Excitation& excitation, const motion::Integrator& integrator);
 
 /// What rows alone tell, of a trajectory that was read from a file.
-std::string explain_rows(const Trajectory& trajectory);
+std::string explain_rows(const motion::Trajectory& trajectory);
 
-}  // namespace dinal
+}  // namespace dinal::analysis

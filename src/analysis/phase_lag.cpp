@@ -7,7 +7,7 @@
 
 #include "motion/spectral/panels.hpp"
 
-namespace dinal {
+namespace dinal::analysis {
 
 namespace {
 
@@ -17,8 +17,8 @@ constexpr int least_rows = 100;       // in a period, to read a motion off rows
 constexpr double least_share = 1e-6;  // of a fundamental in the whole, below which it is rounding
 
 /// M between rows, on a straight line.
-double M_between_rows(const Trajectory& trajectory, double t) {
-    const auto times = trajectory.column(Column::t), M = trajectory.column(Column::M);
+double M_between_rows(const motion::Trajectory& trajectory, double t) {
+    const auto times = trajectory.column(motion::Column::t), M = trajectory.column(motion::Column::M);
     const double* begin = times.data();
     const Eigen::Index n = times.size();
     const Eigen::Index i = std::clamp<Eigen::Index>(std::upper_bound(begin, begin + n, t) - begin, 1, n - 1);
@@ -26,8 +26,8 @@ double M_between_rows(const Trajectory& trajectory, double t) {
     return M[i - 1] + s * (M[i] - M[i - 1]);
 }
 
-bool rows_cover(const Trajectory& trajectory, double from, double until) {
-    const auto t = trajectory.column(Column::t);
+bool rows_cover(const motion::Trajectory& trajectory, double from, double until) {
+    const auto t = trajectory.column(motion::Column::t);
     const Eigen::Index n = t.size();
     if (n < 2 || t[0] > from || t[n - 1] < until) return false;
     const double* begin = t.data();
@@ -36,11 +36,11 @@ bool rows_cover(const Trajectory& trajectory, double from, double until) {
 
 }  // namespace
 
-std::optional<double> phase_lag(const Trajectory& trajectory, const Excitation& excitation, double period,
-                                double until) {
+std::optional<double> phase_lag(const motion::Trajectory& trajectory, const model::Excitation& excitation,
+                                double period, double until) {
     if (excitation.has_feedback()) return {};
     const double from = std::max(until - period, trajectory.t_start);
-    const Panels* panels = trajectory.panels.get();
+    const motion::spectral::Panels* panels = trajectory.panels.get();
     const bool kept = panels != nullptr && panels->size() > 0 && panels->complete();
     if ((!kept || excitation.has_script()) && !rows_cover(trajectory, from, until)) return {};
     std::complex<double> theta_sum, M_sum;
@@ -48,7 +48,7 @@ std::optional<double> phase_lag(const Trajectory& trajectory, const Excitation& 
     for (int i = 0; i < samples; ++i) {
         const double phase = (i + 0.5) / samples;
         const double t = std::min(from + phase * period, until);
-        const double theta = kept ? panels->at(t).theta : between_rows(trajectory, t)->theta;
+        const double theta = kept ? panels->at(t).theta : motion::between_rows(trajectory, t)->theta;
         const double M = excitation.has_script() ? M_between_rows(trajectory, t) : excitation.value(t);
         const auto wave = std::polar(1.0, -2 * pi * phase);
         theta_sum += theta * wave, M_sum += M * wave;
@@ -59,4 +59,4 @@ std::optional<double> phase_lag(const Trajectory& trajectory, const Excitation& 
     return lag - 360 * std::floor((lag + 90) / 360);
 }
 
-}  // namespace dinal
+}  // namespace dinal::analysis

@@ -6,12 +6,12 @@
 #include "model/excitation.hpp"
 #include "motion/trajectory.hpp"
 
-namespace dinal {
+namespace dinal::analysis {
 
 /// The lag of the fundamental of theta behind that of M in the period of M before `until`, degrees, from -90 to 270.
 /// None when M has no fundamental or depends on the motion, or the rows are too few where they are needed. User
 /// functions are not asked again: their M is read off the rows.
-std::optional<double> phase_lag(const Trajectory& trajectory, const Excitation& excitation, double period,
-                                double until);
+std::optional<double> phase_lag(const motion::Trajectory& trajectory, const model::Excitation& excitation,
+                                double period, double until);
 
-}  // namespace dinal
+}  // namespace dinal::analysis

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace dinal {
+namespace dinal::analysis {
 
 namespace {
 
@@ -12,27 +12,28 @@ constexpr double same = 1e-7;             // amplitudes: above the rounding of e
 constexpr double near_enough = 1e-4;      // amplitudes that a steady motion may still be from its limit
 constexpr double settling = 0.1;          // amplitudes that a settling one may
 
-EventKind kind_of(const Event& event) {
+model::EventKind kind_of(const model::Event& event) {
     // A stick that the end of the run did not let end is no other stick.
-    return event.kind == EventKind::rest ? EventKind::stick : event.kind;
+    return event.kind == model::EventKind::rest ? model::EventKind::stick : event.kind;
 }
 
 /// A period of m events, tried on the last three of them.
 class Attempt {
 public:
-    Attempt(const std::vector<Event>& events, std::size_t m, bool drifting) : events_(events), m_(m) {
-        const Event& last = events.back();
-        const Event& before = events[events.size() - 1 - m];
+    Attempt(const std::vector<model::Event>& events, std::size_t m, bool drifting) : events_(events), m_(m) {
+        const model::Event& last = events.back();
+        const model::Event& before = events[events.size() - 1 - m];
         period_ = last.t - before.t;
         if (drifting) drift_ = last.theta - before.theta;
-        const auto [low, high] = std::minmax_element(events.end() - 1 - static_cast<std::ptrdiff_t>(m), events.end(),
-                                                     [](const Event& a, const Event& b) { return a.theta < b.theta; });
+        const auto [low, high] =
+            std::minmax_element(events.end() - 1 - static_cast<std::ptrdiff_t>(m), events.end(),
+                                [](const model::Event& a, const model::Event& b) { return a.theta < b.theta; });
         amplitude_ = (high->theta - low->theta) / 2;
         centre_ = low->theta + amplitude_;
     }
     /// How far event i is from where the event a period before it says; `never` when it is another kind of event.
     [[nodiscard]] double off(std::size_t i) const {
-        const Event &now = events_[i], &then = events_[i - m_];
+        const model::Event &now = events_[i], &then = events_[i - m_];
         if (kind_of(now) != kind_of(then) || !(amplitude_ > 0) || !(period_ > 0)) return never;
         return std::max(std::fabs(now.theta - then.theta - drift_) / amplitude_,
                         std::fabs(now.t - then.t - period_) / period_);
@@ -68,21 +69,21 @@ private:
     void count_stops(Recurrence& found) const {
         const std::size_t n = events_.size();
         for (std::size_t i = n - 1 - m_; i + 1 < n; ++i) {
-            if (kind_of(events_[i]) != EventKind::stick) continue;
+            if (kind_of(events_[i]) != model::EventKind::stick) continue;
             ++found.stops;
             found.stuck += (events_[i + 1].t - events_[i].t) / period_;
         }
     }
 
     static constexpr double never = 1e300;
-    const std::vector<Event>& events_;
+    const std::vector<model::Event>& events_;
     std::size_t m_;
     double period_ = 0, drift_ = 0, amplitude_ = 0, centre_ = 0;
 };
 
 }  // namespace
 
-std::optional<Recurrence> recurrence(const std::vector<Event>& events) {
+std::optional<Recurrence> recurrence(const std::vector<model::Event>& events) {
     const std::size_t most = std::min(events.size() / 3, most_events);
     for (const double allowed : {near_enough, settling}) {
         for (std::size_t m = 2; m <= most; ++m) {
@@ -121,4 +122,4 @@ Swings swings(const std::vector<Stretch>& stretches, double period) {
     return result;
 }
 
-}  // namespace dinal
+}  // namespace dinal::analysis

@@ -8,7 +8,7 @@
 
 #include "analysis/stretches.hpp"
 
-namespace dinal {
+namespace dinal::analysis {
 
 /// The last period of a motion that repeats itself, or is about to.
 struct Recurrence {
@@ -22,7 +22,7 @@ struct Recurrence {
     double stuck = 0;             ///< part of a period
 };
 
-std::optional<Recurrence> recurrence(const std::vector<Event>& events);
+std::optional<Recurrence> recurrence(const std::vector<model::Event>& events);
 
 /// How the amplitude of the last half cycles goes on, when the motion does not repeat itself.
 enum class Trend { unknown, growing, shrinking, irregular };
@@ -35,4 +35,4 @@ struct Swings {
 /// `period` of M, or 0.
 Swings swings(const std::vector<Stretch>& stretches, double period);
 
-}  // namespace dinal
+}  // namespace dinal::analysis

@@ -6,7 +6,7 @@
 
 #include "model/forcing.hpp"
 
-namespace dinal {
+namespace dinal::analysis {
 
 namespace {
 
@@ -16,15 +16,15 @@ constexpr std::size_t most_turns = 4;
 
 }  // namespace
 
-Story::Story(const Trajectory& trajectory, const Oscillator& system, const Excitation& excitation,
-             const Integrator& integrator)
+Story::Story(const motion::Trajectory& trajectory, const model::Oscillator& system, const model::Excitation& excitation,
+             const motion::Integrator& integrator)
     : run_(trajectory),
       system_(system),
       excitation_(excitation),
-      museum_(std::get_if<Dinal1989>(&integrator)),
+      museum_(std::get_if<motion::Dinal1989>(&integrator)),
       stretches_(stretches(trajectory)),
       T0_(system.natural_period()),
-      constant_from_(excitation.has_feedback() ? never : excitation.constant_from()) {
+      constant_from_(excitation.has_feedback() ? model::never : excitation.constant_from()) {
     for (const Stretch& s : stretches_) {
         s.stuck ? void(stuck_ += s.lasts()) : void(++half_cycles_);
         if (s.stuck && s.begun_by) stops_.push_back(&s);
@@ -44,12 +44,12 @@ std::string Story::told() {
 void Story::end_paragraph() {
     if (sentence_.empty()) return;
     text_ += text_.empty() ? "" : "\n";
-    text_ += wrapped_lines(sentence_);
+    text_ += text::wrapped_lines(sentence_);
     sentence_.clear();
 }
 
 /// Whether a torque on a mass at rest is the limit, as far as M, k theta and the time are known.
-bool Story::at_limit(double torque, const Event& event) const {
+bool Story::at_limit(double torque, const model::Event& event) const {
     const double Re = system_.breakaway();
     const double known = Re + std::fabs(event.M) + system_.stiffness() * std::fabs(event.theta);
     const double late = std::numeric_limits<double>::epsilon() * std::fabs(event.t) / T0_;
@@ -57,7 +57,7 @@ bool Story::at_limit(double torque, const Event& event) const {
 }
 
 void Story::tell_setting() {
-    say("The system has T0 = {:.5g}, zeta = {:.4g} ({})", T0_, system_.damping_ratio(), name(system_.regime()));
+    say("The system has T0 = {:.5g}, zeta = {:.4g} ({})", T0_, system_.damping_ratio(), model::name(system_.regime()));
     const double Rd = system_.kinetic_friction(), Re = system_.breakaway();
     if (system_.frictionless()) {
         add(" and no dry friction.");
@@ -66,7 +66,7 @@ void Story::tell_setting() {
     } else {
         add(" and dry friction: Rd = {:.5g} brakes it, up to Re = {:.5g} holds it.", Rd, Re);
     }
-    const double period = period_from(excitation_, run_.t_start);
+    const double period = model::period_from(excitation_, run_.t_start);
     if (excitation_.components().empty()) {
         say("There is no M: the motion is free.");
     } else if (excitation_.has_feedback()) {
@@ -87,14 +87,14 @@ void Story::tell_setting() {
 }
 
 void Story::tell_start() {
-    const State& y = run_.initial;
+    const model::State& y = run_.initial;
     const Stretch& first = stretches_.front();
     say("It started at t = {} from theta = {:.5g} with velocity {:.5g}", at(run_.t_start), y.theta, y.velocity);
-    const bool known = run_.size() > 0 && run_.column(Column::t)[0] == run_.t_start;
+    const bool known = run_.size() > 0 && run_.column(motion::Column::t)[0] == run_.t_start;
     const bool told = y.velocity == 0 && !system_.frictionless() && museum_ == nullptr && known && first.lasts() > 0;
     if (first.stuck) add(" and stuck there");
     if (told) {
-        const double torque = std::fma(-system_.stiffness(), y.theta, run_.column(Column::M)[0]);
+        const double torque = std::fma(-system_.stiffness(), y.theta, run_.column(motion::Column::M)[0]);
         add("{} because {}", first.stuck ? "" : " and moved off", reason(torque));
     }
     if (first.stuck && first.ended_by) {
@@ -112,18 +112,20 @@ void Story::tell_start() {
 void Story::tell_counts() {
     if (half_cycles_ == 0 || stretches_.back().to == run_.t_start) return;
     if (run_.events.empty()) {
-        const State &begin = run_.initial, &end = run_.state_at_stop;
+        const model::State &begin = run_.initial, &end = run_.state_at_stop;
         const bool stayed = begin.velocity == 0 && end.velocity == 0 && begin.theta == end.theta;
         say("{}", stayed ? "It stayed there: M and the spring are in balance." : "It moved one way all the time.");
         return;
     }
-    const auto turns = static_cast<std::size_t>(std::count_if(
-        run_.events.begin(), run_.events.end(), [](const Event& event) { return event.kind == EventKind::turn; }));
-    say("It made {} with {} and {}", counted(half_cycles_, "half cycle"), counted(turns, "turn"),
-        counted(stops_.size(), "stop"));
+    const auto turns =
+        static_cast<std::size_t>(std::count_if(run_.events.begin(), run_.events.end(), [](const model::Event& event) {
+            return event.kind == model::EventKind::turn;
+        }));
+    say("It made {} with {} and {}", text::counted(half_cycles_, "half cycle"), text::counted(turns, "turn"),
+        text::counted(stops_.size(), "stop"));
     if (stuck_ > 0) {
         const double all = run_.t_stop - run_.t_start;
-        add("; it was stuck for {} of {} time units ({})", at(stuck_), at(all), percent(stuck_ / all));
+        add("; it was stuck for {} of {} time units ({})", at(stuck_), at(all), text::percent(stuck_ / all));
     }
     add(".");
 }
@@ -132,7 +134,7 @@ void Story::tell_turns() {
     std::string places;
     std::size_t n = 0;
     for (const Stretch& s : stretches_) {
-        if (!s.ended_by || s.ended_by->kind != EventKind::turn) continue;
+        if (!s.ended_by || s.ended_by->kind != model::EventKind::turn) continue;
         if (n < most_turns) places += fmt::format("{}{} (t = {})", n == 0 ? "" : ", ", place(s), at(s.to));
         ++n;
     }
@@ -143,7 +145,7 @@ void Story::tell_turns() {
 
 /// What the closed forms say about a free motion, as far as it has turned.
 void Story::tell_decay() {
-    const bool swung = stretches_.size() > 1 && stretches_[1].begun_by->kind == EventKind::turn;
+    const bool swung = stretches_.size() > 1 && stretches_[1].begun_by->kind == model::EventKind::turn;
     if (!free() || museum_ != nullptr || !swung) return;
     decay_told_ = true;
     const double zeta = system_.damping_ratio(), step = 2 * system_.kinetic_friction() / system_.stiffness();
@@ -181,7 +183,7 @@ void Story::tell_stops() {
 }
 
 void Story::tell_stop(const Stretch& stop) {
-    const Event& begun = *stop.begun_by;
+    const model::Event& begun = *stop.begun_by;
     say("It stopped at t = {} at theta = {} because {}", at(begun.t), place(*(&stop - 1)), reason(pull(begun)));
     if (stop.ended_by) {
         add("; stuck for {:.5g}, until {}.", stop.lasts(), slip(*stop.ended_by, true));
@@ -197,7 +199,7 @@ void Story::tell_stop(const Stretch& stop) {
 }
 
 /// Why it slipped and which way; after a sentence about |M - k theta| that is "that".
-std::string Story::slip(const Event& event, bool told) const {
+std::string Story::slip(const model::Event& event, bool told) const {
     const double torque = pull(event);
     std::string why = fmt::format("M jumped, {},", reason(torque));
     if (museum_ != nullptr) {
@@ -208,4 +210,4 @@ std::string Story::slip(const Event& event, bool told) const {
     return fmt::format("{} and it slipped {}", why, torque < 0 ? "backward" : "forward");
 }
 
-}  // namespace dinal
+}  // namespace dinal::analysis

@@ -8,18 +8,18 @@
 #include <string>
 #include <vector>
 
+#include "analysis/recurrence.hpp"
 #include "model/excitation.hpp"
 #include "motion/integrator.hpp"
-#include "analysis/recurrence.hpp"
 #include "text/sentences.hpp"
 
-namespace dinal {
+namespace dinal::analysis {
 
 class Story {
 public:
     /// All of it must outlive the story.
-    Story(const Trajectory& trajectory, const Oscillator& system, const Excitation& excitation,
-          const Integrator& integrator);
+    Story(const motion::Trajectory& trajectory, const model::Oscillator& system, const model::Excitation& excitation,
+          const motion::Integrator& integrator);
     std::string told();
 
 private:
@@ -34,17 +34,19 @@ private:
     void add(fmt::format_string<Values...> format, Values&&... values) {
         sentence_ += fmt::format(format, std::forward<Values>(values)...);
     }
-    [[nodiscard]] std::string at(double t) const { return time_text(t, T0_); }
+    [[nodiscard]] std::string at(double t) const { return text::time_text(t, T0_); }
     /// Where a stretch ended.
     [[nodiscard]] static std::string place(const Stretch& s) {
-        return number_text(s.end.theta, std::max(std::fabs(s.begin.theta), std::fabs(s.end.theta)));
+        return text::number_text(s.end.theta, std::max(std::fabs(s.begin.theta), std::fabs(s.end.theta)));
     }
-    [[nodiscard]] bool at_limit(double torque, const Event& event) const;
+    [[nodiscard]] bool at_limit(double torque, const model::Event& event) const;
     /// M - k theta.
-    [[nodiscard]] double pull(const Event& event) const { return std::fma(-system_.stiffness(), event.theta, event.M); }
+    [[nodiscard]] double pull(const model::Event& event) const {
+        return std::fma(-system_.stiffness(), event.theta, event.M);
+    }
     /// "|M - k theta| = 0.155 <= Re = 0.167"
     [[nodiscard]] std::string reason(double pull) const {
-        return "|M - k theta| = " + against_limit(std::fabs(pull), system_.breakaway());
+        return "|M - k theta| = " + text::against_limit(std::fabs(pull), system_.breakaway());
     }
     /// M never changes.
     [[nodiscard]] bool free() const { return constant_from_ <= run_.t_start; }
@@ -57,7 +59,7 @@ private:
     void tell_decay();
     void tell_stops();
     void tell_stop(const Stretch& stop);
-    [[nodiscard]] std::string slip(const Event& event, bool told) const;
+    [[nodiscard]] std::string slip(const model::Event& event, bool told) const;
     // What became of it, in story_end.cpp.
     void tell_end();
     void tell_stillness();
@@ -67,10 +69,10 @@ private:
     void tell_step(const Swings& last);
     void tell_outcome();
 
-    const Trajectory& run_;
-    const Oscillator& system_;
-    const Excitation& excitation_;
-    const Dinal1989* museum_;
+    const motion::Trajectory& run_;
+    const model::Oscillator& system_;
+    const model::Excitation& excitation_;
+    const motion::Dinal1989* museum_;
     std::vector<Stretch> stretches_;
     std::vector<const Stretch*> stops_;
     double T0_, constant_from_;
@@ -81,4 +83,4 @@ private:
     std::string text_, sentence_;
 };
 
-}  // namespace dinal
+}  // namespace dinal::analysis

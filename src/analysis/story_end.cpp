@@ -1,13 +1,13 @@
 // What became of a run: rest, steady motion, growth; and how the run ended.
-#include "model/forcing.hpp"
 #include "analysis/phase_lag.hpp"
 #include "analysis/story.hpp"
+#include "model/forcing.hpp"
 
-namespace dinal {
+namespace dinal::analysis {
 
 void Story::tell_end() {
     const bool over = still_ || (stretches_.back().stuck && constant_from_ <= run_.t_stop);
-    const bool failed = run_.outcome != Outcome::reached_end && run_.outcome != Outcome::at_rest;
+    const bool failed = run_.outcome != model::Outcome::reached_end && run_.outcome != model::Outcome::at_rest;
     if (half_cycles_ > 0 && !over) {
         if (const auto motion = recurrence(run_.events)) {
             tell_recurrence(*motion);
@@ -26,7 +26,7 @@ void Story::tell_end() {
 /// Stuck at the end under a periodic M: if that did not move it in a whole period, it never will.
 void Story::tell_stillness() {
     const Stretch& last = stretches_.back();
-    const double period = excitation_.has_feedback() ? 0 : period_from(excitation_, last.from);
+    const double period = excitation_.has_feedback() ? 0 : model::period_from(excitation_, last.from);
     still_ = period > 0 && last.lasts() > period;
     if (still_) say("M went through a whole period and did not move it, so it never will.");
 }
@@ -37,10 +37,10 @@ void Story::tell_recurrence(const Recurrence& motion) {
         say("In each period it goes on by {:.5g}: stick-slip.", motion.drift);
     } else {
         say("The amplitude is {:.5g} about theta = {}.", motion.amplitude,
-            number_text(motion.centre, 1e7 * motion.amplitude));
+            text::number_text(motion.centre, 1e7 * motion.amplitude));
     }
     // A motion that repeats itself under an M of unknown period tells that period.
-    const double known = period_from(excitation_, motion.since), period = known > 0 ? known : motion.period;
+    const double known = model::period_from(excitation_, motion.since), period = known > 0 ? known : motion.period;
     if (std::fabs(motion.period / period - 1) <= 1e-3 && motion.drift == 0 && constant_from_ > motion.since) {
         if (const auto lag = phase_lag(run_, excitation_, period, motion.until)) {
             say("Theta {} M by {:.1f} degrees (their fundamentals).", *lag < 0 ? "leads" : "lags behind",
@@ -54,13 +54,13 @@ void Story::tell_recurrence(const Recurrence& motion) {
             motion.stops == 1   ? "once"
             : motion.stops == 2 ? "twice"
                                 : fmt::format("{} times", motion.stops),
-            percent(motion.stuck));
+            text::percent(motion.stuck));
     }
     end_paragraph();
 }
 
 void Story::tell_period(const Recurrence& motion) {
-    const double period = period_from(excitation_, motion.since);
+    const double period = model::period_from(excitation_, motion.since);
     const double ratio = period > 0 ? motion.period / period : 0, whole = std::round(ratio);
     std::string of = fmt::format("{:.5g} T0", motion.period / T0_);
     if (whole >= 1 && std::fabs(ratio - whole) <= 1e-3 * ratio) {
@@ -69,7 +69,7 @@ void Story::tell_period(const Recurrence& motion) {
     if (!motion.steady) {
         say("The motion settles: it nearly repeats itself every {} ({}), and the last two times differ by {} of the "
             "amplitude.",
-            at(motion.period), of, percent(motion.change));
+            at(motion.period), of, text::percent(motion.change));
         return;
     }
     const bool always = motion.since == run_.events.front().t;
@@ -80,7 +80,7 @@ void Story::tell_period(const Recurrence& motion) {
 }
 
 void Story::tell_trend() {
-    const double period = period_from(excitation_, stretches_.back().from);
+    const double period = model::period_from(excitation_, stretches_.back().from);
     const Swings last = swings(stretches_, period);
     if (last.trend == Trend::unknown) {
         if (!free() && run_.events.size() > 1) say("That is too short to tell whether it becomes steady.");
@@ -113,11 +113,11 @@ void Story::tell_step(const Swings& last) {
 }
 
 void Story::tell_outcome() {
-    if (run_.outcome == Outcome::interrupted) {
+    if (run_.outcome == model::Outcome::interrupted) {
         say("The run was interrupted at t = {}: this is the story up to there.", at(run_.t_stop));
     } else {
-        say("The run broke off at t = {}: {}.", at(run_.t_stop), sentence(run_.outcome));
+        say("The run broke off at t = {}: {}.", at(run_.t_stop), model::sentence(run_.outcome));
     }
 }
 
-}  // namespace dinal
+}  // namespace dinal::analysis

@@ -2,32 +2,32 @@
 
 #include <algorithm>
 
-namespace dinal {
+namespace dinal::analysis {
 
 namespace {
 
 /// A run that begins with a slip, or in which nothing ever happens and that ends at rest or broke off stuck, was stuck
 /// from its start.
-bool begins_stuck(const Trajectory& trajectory) {
+bool begins_stuck(const motion::Trajectory& trajectory) {
     if (trajectory.initial.velocity != 0) return false;
-    if (!trajectory.events.empty()) return trajectory.events.front().kind == EventKind::slip;
-    if (trajectory.outcome == Outcome::reached_end) return false;
-    return trajectory.outcome == Outcome::at_rest || trajectory.motion_at_stop == Motion::stuck;
+    if (!trajectory.events.empty()) return trajectory.events.front().kind == model::EventKind::slip;
+    if (trajectory.outcome == model::Outcome::reached_end) return false;
+    return trajectory.outcome == model::Outcome::at_rest || trajectory.motion_at_stop == model::Motion::stuck;
 }
 
 }  // namespace
 
-std::vector<Stretch> stretches(const Trajectory& trajectory) {
+std::vector<Stretch> stretches(const motion::Trajectory& trajectory) {
     std::vector<Stretch> list;
     list.reserve(trajectory.events.size() + 1);
     Stretch now{.from = trajectory.t_start, .begin = trajectory.initial, .stuck = begins_stuck(trajectory)};
-    for (const Event& event : trajectory.events) {
+    for (const model::Event& event : trajectory.events) {
         now.to = event.t;
         now.end = {event.theta, 0};
         now.ended_by = event;
         list.push_back(now);
         now = {.from = event.t, .begin = now.end, .begun_by = event};
-        now.stuck = event.kind == EventKind::stick || event.kind == EventKind::rest;
+        now.stuck = event.kind == model::EventKind::stick || event.kind == model::EventKind::rest;
     }
     now.to = std::max(trajectory.t_stop, now.from);
     now.end = now.stuck ? now.begin : trajectory.state_at_stop;
@@ -35,4 +35,4 @@ std::vector<Stretch> stretches(const Trajectory& trajectory) {
     return list;
 }
 
-}  // namespace dinal
+}  // namespace dinal::analysis

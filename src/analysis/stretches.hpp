@@ -6,18 +6,18 @@
 
 #include "motion/trajectory.hpp"
 
-namespace dinal {
+namespace dinal::analysis {
 
 struct Stretch {
     double from = 0, to = 0;
-    State begin = {}, end = {};  ///< at an event the velocity is 0
+    model::State begin = {}, end = {};  ///< at an event the velocity is 0
     bool stuck = false;
-    std::optional<Event> begun_by = {}, ended_by = {};  ///< none at the ends of the run
+    std::optional<model::Event> begun_by = {}, ended_by = {};  ///< none at the ends of the run
 
     [[nodiscard]] double lasts() const { return to - from; }
 };
 
 /// In order and without gaps from t_start to t_stop; a stretch may last no time. Of a computed run only.
-std::vector<Stretch> stretches(const Trajectory& trajectory);
+std::vector<Stretch> stretches(const motion::Trajectory& trajectory);
 
-}  // namespace dinal
+}  // namespace dinal::analysis

@@ -3,18 +3,18 @@
 
 #include "analysis/energy.hpp"
 #include "api/cards.hpp"
-#include "lua/external_memory.hpp"
-#include "api/library.hpp"
+#include "api/classes.hpp"
 #include "api/run.hpp"
+#include "lua/external_memory.hpp"
 #include "lua/vector.hpp"
 
-namespace dinal {
+namespace dinal::api {
 
 namespace {
 
 struct RunEnergy {
     RunHandle run;
-    Energy energy;
+    analysis::Energy energy;
     Eigen::MatrixXd columns = {};  // at the rows; made when first asked for
     bool has_columns = false;
 };
@@ -22,26 +22,26 @@ struct RunEnergy {
 using EnergyHandle = std::shared_ptr<RunEnergy>;
 
 EnergyHandle& energy_self(lua_State* L, const char* call) {
-    return self<EnergyHandle>(L, 1, call);
+    return lua::self<EnergyHandle>(L, 1, call);
 }
 
-template <EnergyColumn which>
+template <analysis::EnergyColumn which>
 int column_field(lua_State* L) {
     const EnergyHandle& handle = energy_self(L, "energy.input");
     if (!handle->has_columns) {
-        handle->columns = energy_columns(handle->run->trajectory);
+        handle->columns = analysis::energy_columns(handle->run->trajectory);
         handle->has_columns = true;
-        note_external_memory(L, static_cast<std::size_t>(handle->columns.size()) * sizeof(double));
+        lua::note_external_memory(L, static_cast<std::size_t>(handle->columns.size()) * sizeof(double));
     }
     const auto column = handle->columns.col(static_cast<Eigen::Index>(which));
-    push(L, Vector(handle, column.data(), static_cast<std::size_t>(column.size())));
+    lua::push(L, lua::Vector(handle, column.data(), static_cast<std::size_t>(column.size())));
     return 1;
 }
 
 int times(lua_State* L) {
     const RunHandle& run = energy_self(L, "energy.t")->run;
-    const auto t = run->trajectory.column(Column::t);
-    push(L, Vector(run, t.data(), static_cast<std::size_t>(t.size())));
+    const auto t = run->trajectory.column(motion::Column::t);
+    lua::push(L, lua::Vector(run, t.data(), static_cast<std::size_t>(t.size())));
     return 1;
 }
 
@@ -50,7 +50,7 @@ void set_number(lua_State* L, const char* name, double value) {
     lua_setfield(L, -2, name);
 }
 
-void set_balance(lua_State* L, const Balance& balance) {
+void set_balance(lua_State* L, const analysis::Balance& balance) {
     set_number(L, "input", balance.work.input);
     set_number(L, "kinetic", balance.change.kinetic);
     set_number(L, "spring", balance.change.spring);
@@ -60,7 +60,7 @@ void set_balance(lua_State* L, const Balance& balance) {
 }
 
 int total(lua_State* L) {
-    const Energy& energy = energy_self(L, "energy.total")->energy;
+    const analysis::Energy& energy = energy_self(L, "energy.total")->energy;
     lua_createtable(L, 0, 8);
     set_balance(L, energy.total);
     set_number(L, "flow", energy.flow);
@@ -70,7 +70,7 @@ int total(lua_State* L) {
 
 template <auto member>
 int stored_field(lua_State* L) {
-    const Energy& energy = energy_self(L, "energy.start")->energy;
+    const analysis::Energy& energy = energy_self(L, "energy.start")->energy;
     lua_createtable(L, 0, 2);
     set_number(L, "kinetic", (energy.*member).kinetic);
     set_number(L, "spring", (energy.*member).spring);
@@ -99,7 +99,7 @@ int half_cycles(lua_State* L) {
 }
 
 int to_string(lua_State* L) {
-    const std::string text = dinal::text(energy_self(L, "tostring(energy)")->energy);
+    const std::string text = dinal::analysis::text(energy_self(L, "tostring(energy)")->energy);
     lua_pushlstring(L, text.data(), text.size());
     return 1;
 }
@@ -108,10 +108,10 @@ int to_string(lua_State* L) {
     "run = system{ I = 1, k = 1, Rd = 0.12 }:simulate{ theta0 = 1, t_end = 20, " \
     "dt = 5 }\nenergy = run:energy()\n"
 
-constexpr Member members[] = {
+constexpr lua::Member members[] = {
     {"total",
-     guarded<total>,
-     Kind::field,
+     lua::guarded<total>,
+     lua::Kind::field,
      {"energy.total -> table",
       "The balance of the whole run, torque times rad: input (work of M on the mass) = kinetic + spring (the changes "
       "of what is stored) + viscous + dry (what the two frictions took) + error (what does not add up); flow is what "
@@ -121,8 +121,8 @@ constexpr Member members[] = {
       "print(string.format(\"%.6f %.6f\", energy.total.dry, energy.total.spring))  --> 0.499200 -0.499200\n"
       "print(energy.total.closure < 1e-12)  --> true"}},
     {"half_cycles",
-     guarded<half_cycles>,
-     Kind::field,
+     lua::guarded<half_cycles>,
+     lua::Kind::field,
      {"energy.half_cycles -> table",
       "A list with the balance of each motion from one velocity zero to the next: { t_start, t_end, theta_start, "
       "theta_end, input, kinetic, spring, viscous, dry, error }. The first and the last one may be cut off by the ends "
@@ -135,53 +135,53 @@ constexpr Member members[] = {
                    "--> 0.52 -0.28 0.0960\n"
                    "--> -0.28 0.04 0.0384"}},
     {"start",
-     guarded<stored_field<&Energy::start>>,
-     Kind::field,
+     lua::guarded<stored_field<&analysis::Energy::start>>,
+     lua::Kind::field,
      {"energy.start -> table", "What was stored at the start: { kinetic, spring }, torque times rad.",
       DINAL_ENERGY "print(energy.start.spring)  --> 0.5"}},
     {"finish",
-     guarded<stored_field<&Energy::finish>>,
-     Kind::field,
+     lua::guarded<stored_field<&analysis::Energy::finish>>,
+     lua::Kind::field,
      {"energy.finish -> table", "What was stored at the end: { kinetic, spring }, torque times rad.",
       DINAL_ENERGY "print(energy.finish.kinetic)  --> 0.0"}},
     {"t",
-     guarded<times>,
-     Kind::field,
+     lua::guarded<times>,
+     lua::Kind::field,
      {"energy.t -> vector", "The times of the rows, run.t.", DINAL_ENERGY "print(energy.t[2])  --> 5.0"}},
     {"input",
-     guarded<column_field<EnergyColumn::input>>,
-     Kind::field,
+     lua::guarded<column_field<analysis::EnergyColumn::input>>,
+     lua::Kind::field,
      {"energy.input -> vector", "The work that M has done since the start, at each row.",
       DINAL_ENERGY "print(energy.input:max())  --> 0.0"}},
     {"kinetic",
-     guarded<column_field<EnergyColumn::kinetic>>,
-     Kind::field,
+     lua::guarded<column_field<analysis::EnergyColumn::kinetic>>,
+     lua::Kind::field,
      {"energy.kinetic -> vector", "The kinetic energy I velocity^2/2 at each row.",
       DINAL_ENERGY "print(energy.kinetic[1])  --> 0.0"}},
     {"spring",
-     guarded<column_field<EnergyColumn::spring>>,
-     Kind::field,
+     lua::guarded<column_field<analysis::EnergyColumn::spring>>,
+     lua::Kind::field,
      {"energy.spring -> vector", "The energy k theta^2/2 of the spring at each row.",
       DINAL_ENERGY "print(energy.spring[1])  --> 0.5"}},
     {"viscous",
-     guarded<column_field<EnergyColumn::viscous>>,
-     Kind::field,
+     lua::guarded<column_field<analysis::EnergyColumn::viscous>>,
+     lua::Kind::field,
      {"energy.viscous -> vector", "What viscous damping has taken since the start, at each row.",
       DINAL_ENERGY "print(energy.viscous:max())  --> 0.0"}},
     {"dry",
-     guarded<column_field<EnergyColumn::dry>>,
-     Kind::field,
+     lua::guarded<column_field<analysis::EnergyColumn::dry>>,
+     lua::Kind::field,
      {"energy.dry -> vector", "What dry friction has taken since the start, at each row.",
       DINAL_ENERGY "print(string.format(\"%.6f\", energy.dry[#run]))  --> 0.499200"}},
     {"error",
-     guarded<column_field<EnergyColumn::error>>,
-     Kind::field,
+     lua::guarded<column_field<analysis::EnergyColumn::error>>,
+     lua::Kind::field,
      {"energy.error -> vector",
       "What does not add up at each row: input less the changes of kinetic and spring, viscous and dry.",
       DINAL_ENERGY "print(energy.error:abs():max() < 1e-12)  --> true"}},
     {"__tostring",
-     guarded<to_string>,
-     Kind::metamethod,
+     lua::guarded<to_string>,
+     lua::Kind::metamethod,
      {"tostring(energy) -> string", "The balance of the whole run as a small table.",
       DINAL_ENERGY "print(tostring(energy):match(\"[^\\n]*\"))\n"
                    "--> energy, t 0 … 20: input = kinetic + spring + viscous + dry"}},
@@ -189,7 +189,7 @@ constexpr Member members[] = {
 
 }  // namespace
 
-const Class energy_class = {
+const lua::Class energy_class = {
     "energy",
     {"run:energy() -> energy",
      "The energy balance of a run: total, half_cycles, and columns beside run.t. It can not be changed.",
@@ -200,31 +200,31 @@ const Class energy_class = {
 
 #undef DINAL_ENERGY
 
-std::string energy_card(lua_State* L, int index, const Display& screen) {
+std::string energy_card(lua_State* L, int index, const terminal::Display& screen) {
     constexpr std::size_t name_and_number = 23;
     std::string card;
-    const std::string whole = spelled(text((*test<EnergyHandle>(L, index))->energy), screen);
+    const std::string whole = terminal::spelled(analysis::text((*lua::test<EnergyHandle>(L, index))->energy), screen);
     for (std::string_view rest = whole; !rest.empty();) {
         const std::string_view line = rest.substr(0, rest.find('\n'));
-        const bool fits = columns(line) < screen.width || !line.starts_with(' ');
+        const bool fits = terminal::columns(line) < screen.width || !line.starts_with(' ');
         card.append(card.empty() ? "" : "\n").append(fits ? line : line.substr(0, name_and_number));
         rest.remove_prefix(std::min(line.size() + 1, rest.size()));
     }
-    return wrapped(card, screen.width - 1);
+    return terminal::wrapped(card, screen.width - 1);
 }
 
 int energy_of_run(lua_State* L) {
-    const RunHandle& run = self<RunHandle>(L, 1, "run:energy()");
-    auto energy = energy_of(run->trajectory);
+    const RunHandle& run = lua::self<RunHandle>(L, 1, "run:energy()");
+    auto energy = analysis::energy_of(run->trajectory);
     if (!energy) {
-        raise(L, "run:energy(): " + energy.error().sentence);
+        lua::raise(L, "run:energy(): " + energy.error().sentence);
     }
-    push<EnergyHandle>(L, std::make_shared<RunEnergy>(RunEnergy{run, std::move(energy).value()}));
+    lua::push<EnergyHandle>(L, std::make_shared<RunEnergy>(RunEnergy{run, std::move(energy).value()}));
     return 1;
 }
 
 void register_energy(lua_State* L) {
-    add_class<EnergyHandle>(L, energy_class);
+    lua::add_class<EnergyHandle>(L, energy_class);
 }
 
-}  // namespace dinal
+}  // namespace dinal::api

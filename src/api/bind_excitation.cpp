@@ -6,58 +6,60 @@
 #include <span>
 
 #include "api/cards.hpp"
+#include "api/classes.hpp"
 #include "lua/interrupt.hpp"
-#include "api/library.hpp"
 #include "lua/user_function.hpp"
 #include "lua/vector.hpp"
+#include "source/describe.hpp"
 
-namespace dinal {
+namespace dinal::api {
 
-Excitation to_excitation(lua_State* L, int index, std::string_view what) {
+model::Excitation to_excitation(lua_State* L, int index, std::string_view what) {
     if (lua_isnoneornil(L, index)) {
         return {};
     }
-    if (const auto* excitation = test<Excitation>(L, index)) {
+    if (const auto* excitation = lua::test<model::Excitation>(L, index)) {
         return *excitation;
     }
-    Term term;
+    model::Term term;
     if (lua_type(L, index) == LUA_TNUMBER) {
-        term = Constant{lua_tonumber(L, index)};
-    } else if (is_callable(L, index)) {
-        const auto function = std::make_shared<LuaFunction>(L, index);
-        term = Scripted{.function = function, .feedback = function->feedback()};
+        term = model::Constant{lua_tonumber(L, index)};
+    } else if (lua::is_callable(L, index)) {
+        const auto function = std::make_shared<lua::LuaFunction>(L, index);
+        term = model::Scripted{.function = function, .feedback = function->feedback()};
     } else {
-        raise(L, fmt::format("{} must be a function, a number or an excitation, got {}", what, describe(L, index)));
+        lua::raise(
+            L, fmt::format("{} must be a function, a number or an excitation, got {}", what, lua::describe(L, index)));
     }
-    auto made = Excitation::make(std::move(term));
+    auto made = model::Excitation::make(std::move(term));
     if (!made) {
-        raise(L, fmt::format("{} must be finite, got {}", what, describe(L, index)));
+        lua::raise(L, fmt::format("{} must be finite, got {}", what, lua::describe(L, index)));
     }
     return std::move(made).value();
 }
 
 namespace {
 
-const Excitation& self_excitation(lua_State* L, std::string_view call) {
-    return self<Excitation>(L, 1, call);
+const model::Excitation& self_excitation(lua_State* L, std::string_view call) {
+    return lua::self<model::Excitation>(L, 1, call);
 }
 
-State state_arguments(lua_State* L, int index) {
-    State state;
+model::State state_arguments(lua_State* L, int index) {
+    model::State state;
     if (!lua_isnoneornil(L, index)) {
-        state.theta = finite_argument(L, index, "e:value(t, theta, velocity): theta");
+        state.theta = lua::finite_argument(L, index, "e:value(t, theta, velocity): theta");
     }
     if (!lua_isnoneornil(L, index + 1)) {
-        state.velocity = finite_argument(L, index + 1, "e:value(t, theta, velocity): velocity");
+        state.velocity = lua::finite_argument(L, index + 1, "e:value(t, theta, velocity): velocity");
     }
     return state;
 }
 
 int value(lua_State* L) {
-    const Excitation& excitation = self_excitation(L, "e:value(t)");
-    const double t = finite_argument(L, 2, "e:value(t): t");
-    const State state = state_arguments(L, 3);
-    CallState call(L);
+    const model::Excitation& excitation = self_excitation(L, "e:value(t)");
+    const double t = lua::finite_argument(L, 2, "e:value(t): t");
+    const model::State state = state_arguments(L, 3);
+    lua::CallState call(L);
     const double M = excitation.value(t, state);
     if (call.failed()) {
         call.raise_error();
@@ -67,13 +69,13 @@ int value(lua_State* L) {
 }
 
 int values(lua_State* L) {
-    const Excitation& excitation = self_excitation(L, "e:values(times)");
+    const model::Excitation& excitation = self_excitation(L, "e:values(times)");
     if (excitation.has_feedback()) {
-        raise(L, "e:values(times): this excitation needs theta and velocity; use e:value(t, theta, velocity)");
+        lua::raise(L, "e:values(times): this excitation needs theta and velocity; use e:value(t, theta, velocity)");
     }
-    const std::vector<double> times = numbers_at(L, 2, "e:values(times): times");
-    std::vector<double> result = new_numbers(L, times.size());
-    CallState call(L);
+    const std::vector<double> times = lua::numbers_at(L, 2, "e:values(times): times");
+    std::vector<double> result = lua::new_numbers(L, times.size());
+    lua::CallState call(L);
     constexpr std::size_t block = std::size_t{1} << 16U;
     for (std::size_t begin = 0; begin < times.size(); begin += block) {
         const std::size_t count = std::min(block, times.size() - begin);
@@ -83,92 +85,92 @@ int values(lua_State* L) {
             call.raise_error();
         }
         if (filled < begin + count) {
-            raise(L,
-                  fmt::format("e:values(times): M = {} at t = {:.14g} is not finite", result[filled], times[filled]));
+            lua::raise(
+                L, fmt::format("e:values(times): M = {} at t = {:.14g} is not finite", result[filled], times[filled]));
         }
-        if (interrupt_requested()) {
-            raise_interrupted(L);
+        if (lua::interrupt_requested()) {
+            lua::raise_interrupted(L);
         }
     }
-    push_vector(L, std::move(result));
+    lua::push_vector(L, std::move(result));
     return 1;
 }
 
 int next_break(lua_State* L) {
-    const Excitation& excitation = self_excitation(L, "e:next_break(t)");
-    lua_pushnumber(L, excitation.next_break(finite_argument(L, 2, "e:next_break(t): t")));
+    const model::Excitation& excitation = self_excitation(L, "e:next_break(t)");
+    lua_pushnumber(L, excitation.next_break(lua::finite_argument(L, 2, "e:next_break(t): t")));
     return 1;
 }
 
 int delay(lua_State* L) {
-    const Excitation& excitation = self_excitation(L, "e:delay(1.5)");
-    push(L, excitation.delayed(finite_argument(L, 2, "e:delay(d): d")));
+    const model::Excitation& excitation = self_excitation(L, "e:delay(1.5)");
+    lua::push(L, excitation.delayed(lua::finite_argument(L, 2, "e:delay(d): d")));
     return 1;
 }
 
 double window_edge(lua_State* L, int index, std::string_view name) {
     const double edge = lua_tonumber(L, index);
     if (lua_type(L, index) != LUA_TNUMBER || std::isnan(edge)) {
-        raise(L, fmt::format("e:window(from, to): {} must be a number, got {}", name, describe(L, index)));
+        lua::raise(L, fmt::format("e:window(from, to): {} must be a number, got {}", name, lua::describe(L, index)));
     }
     return edge;
 }
 
 int window(lua_State* L) {
-    const Excitation& excitation = self_excitation(L, "e:window(0, 10)");
+    const model::Excitation& excitation = self_excitation(L, "e:window(0, 10)");
     const double from = window_edge(L, 2, "from");
     const double to = window_edge(L, 3, "to");
     if (!(from < to)) {
-        raise(L, fmt::format("e:window(from, to): to = {} must be after from = {}", to, from));
+        lua::raise(L, fmt::format("e:window(from, to): to = {} must be after from = {}", to, from));
     }
-    push(L, excitation.windowed(from, to));
+    lua::push(L, excitation.windowed(from, to));
     return 1;
 }
 
 // ---- operators
 
-Excitation operand(lua_State* L, int index) {
+model::Excitation operand(lua_State* L, int index) {
     return to_excitation(L, index, "what is added to an excitation");
 }
 
 int add(lua_State* L) {
-    push(L, operand(L, 1) + operand(L, 2));
+    lua::push(L, operand(L, 1) + operand(L, 2));
     return 1;
 }
 
 int subtract(lua_State* L) {
-    push(L, operand(L, 1) + operand(L, 2).scaled(-1));
+    lua::push(L, operand(L, 1) + operand(L, 2).scaled(-1));
     return 1;
 }
 
 /// The excitation at `index`, scaled by the number at `number_index` (or its inverse).
 int push_scaled(lua_State* L, int index, double gain) {
     if (!std::isfinite(gain)) {
-        raise(L, fmt::format("an excitation can not be scaled by {}", gain));
+        lua::raise(L, fmt::format("an excitation can not be scaled by {}", gain));
     }
-    push(L, test<Excitation>(L, index)->scaled(gain));
+    lua::push(L, lua::test<model::Excitation>(L, index)->scaled(gain));
     return 1;
 }
 
 int multiply(lua_State* L) {
-    const int number = test<Excitation>(L, 1) != nullptr ? 2 : 1;
+    const int number = lua::test<model::Excitation>(L, 1) != nullptr ? 2 : 1;
     if (lua_type(L, number) != LUA_TNUMBER) {
-        raise(L,
-              fmt::format("an excitation can be multiplied by a number only, got {}; a product of two is a function: "
-                          "function(t) return a(t) * b(t) end",
-                          describe(L, number)));
+        lua::raise(
+            L, fmt::format("an excitation can be multiplied by a number only, got {}; a product of two is a function: "
+                           "function(t) return a(t) * b(t) end",
+                           lua::describe(L, number)));
     }
     return push_scaled(L, 3 - number, lua_tonumber(L, number));
 }
 
 int divide(lua_State* L) {
-    if (test<Excitation>(L, 1) == nullptr || lua_type(L, 2) != LUA_TNUMBER) {
-        raise(L, fmt::format("an excitation can be divided by a number only, got {} / {}", describe(L, 1),
-                             describe(L, 2)));
+    if (lua::test<model::Excitation>(L, 1) == nullptr || lua_type(L, 2) != LUA_TNUMBER) {
+        lua::raise(L, fmt::format("an excitation can be divided by a number only, got {} / {}", lua::describe(L, 1),
+                                  lua::describe(L, 2)));
     }
     const double divisor = lua_tonumber(L, 2);
     if (divisor == 0) {
-        raise(L, "an excitation can not be divided by zero");
+        lua::raise(L, "an excitation can not be divided by zero");
     }
     return push_scaled(L, 1, 1 / divisor);
 }
@@ -178,69 +180,69 @@ int negate(lua_State* L) {
 }
 
 int text(lua_State* L) {
-    const std::string result = describe(L, self_excitation(L, "tostring(e)"));
+    const std::string result = source::describe(L, self_excitation(L, "tostring(e)"));
     lua_pushlstring(L, result.data(), result.size());
     return 1;
 }
 
-constexpr Member class_members[] = {
+constexpr lua::Member class_members[] = {
     {"value",
-     guarded<value>,
-     Kind::method,
+     lua::guarded<value>,
+     lua::Kind::method,
      {"e:value(t, theta = 0, velocity = 0) -> number",
       "The torque M at the time t. e(t) is the same. At a jump it is the new value.",
       "print(excitation.ramp{ slope = 3 }:value(2))  --> 6.0"}},
     {"values",
-     guarded<values>,
-     Kind::method,
+     lua::guarded<values>,
+     lua::Kind::method,
      {"e:values(times) -> vector", "The torques at all these times (a table or a vector), without feedback.",
       "print(excitation.ramp{ slope = 3 }:values{ 0, 1, 2 })  --> vector{ 0, 3, 6 }"}},
     {"next_break",
-     guarded<next_break>,
-     Kind::method,
+     lua::guarded<next_break>,
+     lua::Kind::method,
      {"e:next_break(t) -> number",
       "The first time after t at which M is known to jump or kink; math.huge when there is none.",
       "print(excitation.pulse{ at = 1, width = 2 }:next_break(1))  --> 3.0"}},
     {"delay",
-     guarded<delay>,
-     Kind::method,
+     lua::guarded<delay>,
+     lua::Kind::method,
      {"e:delay(d) -> excitation", "The same, later by d: M(t - d).", "print(excitation.ramp{}:delay(2)(5))  --> 3.0"}},
     {"window",
-     guarded<window>,
-     Kind::method,
+     lua::guarded<window>,
+     lua::Kind::method,
      {"e:window(from, to) -> excitation", "The same for from <= t < to, and 0 outside. The ends may be infinite.",
       "M = excitation.ramp{}:window(1, 3)\nprint(M(0.5), M(2), M(3))  --> 0.0\t2.0\t0.0"}},
     {"__call",
-     guarded<value>,
-     Kind::metamethod,
+     lua::guarded<value>,
+     lua::Kind::metamethod,
      {"e(t, theta = 0, velocity = 0) -> number", "The torque M at the time t.",
       "print(excitation.step{ level = 4 }(1))  --> 4.0"}},
     {"__add",
-     guarded<add>,
-     Kind::metamethod,
+     lua::guarded<add>,
+     lua::Kind::metamethod,
      {"e + f -> excitation", "The sum. A function or a number may stand on one side.",
       "M = excitation.step{} + 2 + function(t) return 10 * t end\nprint(M(1))  --> 13.0"}},
     {"__sub",
-     guarded<subtract>,
-     Kind::metamethod,
+     lua::guarded<subtract>,
+     lua::Kind::metamethod,
      {"e - f -> excitation", "The difference. A function or a number may stand on one side.",
       "print((5 - excitation.step{})(1))  --> 4.0"}},
     {"__mul",
-     guarded<multiply>,
-     Kind::metamethod,
+     lua::guarded<multiply>,
+     lua::Kind::metamethod,
      {"number * e -> excitation", "The excitation scaled by a number.", "print((3 * excitation.step{})(1))  --> 3.0"}},
     {"__div",
-     guarded<divide>,
-     Kind::metamethod,
+     lua::guarded<divide>,
+     lua::Kind::metamethod,
      {"e / number -> excitation", "The excitation divided by a number.",
       "print((excitation.step{} / 4)(1))  --> 0.25"}},
     {"__unm",
-     guarded<negate>,
-     Kind::metamethod,
+     lua::guarded<negate>,
+     lua::Kind::metamethod,
      {"-e -> excitation", "The excitation with the other sign.", "print((-excitation.step{})(1))  --> -1.0"}},
     {"__tostring",
-     guarded<text>,
-     Kind::metamethod,
+     lua::guarded<text>,
+     lua::Kind::metamethod,
      {"tostring(e) -> string",
       "Lua text that makes it again, where that is possible: a function by its source text, without the values of its "
       "upvalues; a long table not at all.",
@@ -249,7 +251,7 @@ constexpr Member class_members[] = {
 
 }  // namespace
 
-const Class excitation_class{
+const lua::Class excitation_class{
     "excitation",
     {"e = excitation.NAME{ ... }",
      "A torque M(t), or M(t, theta, velocity) with feedback. It can not be changed; arithmetic makes new ones.",
@@ -260,8 +262,8 @@ const Class excitation_class{
 };
 
 void register_excitation(lua_State* L) {
-    add_class<Excitation>(L, excitation_class);
-    add_module(L, excitation_module);
+    lua::add_class<model::Excitation>(L, excitation_class);
+    lua::add_module(L, excitation_module);
 }
 
-}  // namespace dinal
+}  // namespace dinal::api

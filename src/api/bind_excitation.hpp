@@ -1,24 +1,16 @@
-// Excitations between Lua and C++: what may stand for M, and the Lua text of one.
+// Excitations from Lua: what may stand for M, and the functions that make one.
 #pragma once
 
-#include <string>
 #include <string_view>
 
-#include "model/excitation.hpp"
 #include "lua/bind.hpp"
+#include "model/excitation.hpp"
 
-namespace dinal {
-
-class ValueText;
+namespace dinal::api {
 
 /// What stands at `index` as an excitation: nothing (M = 0), a number, a function or callable table, an excitation.
 /// Raises a sentence headed by `what` for anything else.
-Excitation to_excitation(lua_State* L, int index, std::string_view what = "M");
-
-/// Lua text that makes the excitation again: "0.5 * excitation.pulse{ amplitude = 1, at = 1.5, width = 0.2 }". Where
-/// that is not possible (a long table, a function whose source is not at hand), a comment stands in its place.
-/// With `whole`, functions come with the variables that they take from outside, and tables whole.
-std::string describe(lua_State* L, const Excitation& excitation, ValueText* whole = nullptr);
+model::Excitation to_excitation(lua_State* L, int index, std::string_view what = "M");
 
 /// The functions of the module `excitation`, in two files by what they take; each returns the new object.
 namespace excitation_functions {
@@ -37,7 +29,7 @@ int polynomial(lua_State* L);
 int samples(lua_State* L);
 int scripted(lua_State* L);
 /// Pushes the excitation of one term, or raises what is wrong with it.
-int push_term(lua_State* L, Term term);
+int push_term(lua_State* L, model::Term term);
 }  // namespace excitation_functions
 
-}  // namespace dinal
+}  // namespace dinal::api

@@ -5,16 +5,16 @@
 #include <cmath>
 #include <optional>
 
-#include "api/bind_integrator.hpp"
 #include "api/cards.hpp"
-#include "api/library.hpp"
+#include "api/classes.hpp"
 #include "lua/options.hpp"
+#include "source/describe.hpp"
 
-namespace dinal {
+namespace dinal::api {
 
 namespace {
 
-double step(const Options& options) {
+double step(const lua::Options& options) {
     const double h = options.number("h");
     if (h <= 0) {
         options.fail(fmt::format("h = {:.6g} must be positive", h));
@@ -23,9 +23,9 @@ double step(const Options& options) {
 }
 
 int spectral(lua_State* L) {
-    const Options options(L, 1, "integrator.spectral", "integrator.spectral{ tolerance = 1e-12 }",
-                          {"tolerance", "max_panel"});
-    Spectral method;
+    const lua::Options options(L, 1, "integrator.spectral", "integrator.spectral{ tolerance = 1e-12 }",
+                               {"tolerance", "max_panel"});
+    motion::Spectral method;
     method.tolerance = options.number("tolerance", method.tolerance);
     if (method.tolerance <= 0 || method.tolerance >= 1) {
         options.fail(fmt::format("tolerance = {:.6g} must be between 0 and 1", method.tolerance));
@@ -36,34 +36,34 @@ int spectral(lua_State* L) {
             options.fail(fmt::format("max_panel = {:.6g} must be positive", method.max_panel));
         }
     }
-    push<Integrator>(L, method);
+    lua::push<motion::Integrator>(L, method);
     return 1;
 }
 
 int rk4(lua_State* L) {
-    const Options options(L, 1, "integrator.rk4", "integrator.rk4{ h = 0.001 }", {"h"});
-    push<Integrator>(L, Rk4{step(options)});
+    const lua::Options options(L, 1, "integrator.rk4", "integrator.rk4{ h = 0.001 }", {"h"});
+    lua::push<motion::Integrator>(L, motion::Rk4{step(options)});
     return 1;
 }
 
 int dinal1989(lua_State* L) {
-    const Options options(L, 1, "integrator.dinal1989", "integrator.dinal1989{ h = 0.01 }", {"h", "stop", "slip"});
-    Dinal1989 method;
+    const lua::Options options(L, 1, "integrator.dinal1989", "integrator.dinal1989{ h = 0.01 }", {"h", "stop", "slip"});
+    motion::Dinal1989 method;
     method.h = step(options);
-    method.stop =
-        options.choice("stop", {"listing", "text"}, 0) == 0 ? Dinal1989::Stop::listing : Dinal1989::Stop::text;
+    method.stop = options.choice("stop", {"listing", "text"}, 0) == 0 ? motion::Dinal1989::Stop::listing
+                                                                      : motion::Dinal1989::Stop::text;
     method.slip = options.boolean("slip", false);
-    push<Integrator>(L, method);
+    lua::push<motion::Integrator>(L, method);
     return 1;
 }
 
-Integrator& integrator_self(lua_State* L) {
-    return self<Integrator>(L, 1, "integrator.h");
+motion::Integrator& integrator_self(lua_State* L) {
+    return lua::self<motion::Integrator>(L, 1, "integrator.h");
 }
 
 int name(lua_State* L) {
     constexpr std::array names{"spectral", "rk4", "dinal1989"};  // in the order of the variant
-    static_assert(std::variant_size_v<Integrator> == names.size());
+    static_assert(std::variant_size_v<motion::Integrator> == names.size());
     lua_pushstring(L, names.at(integrator_self(L).index()));
     return 1;
 }
@@ -79,33 +79,33 @@ int push_finite(lua_State* L, std::optional<double> value) {
 }
 
 int h(lua_State* L) {
-    const Integrator& integrator = integrator_self(L);
-    const auto* rk4 = std::get_if<Rk4>(&integrator);
-    const auto* listing = std::get_if<Dinal1989>(&integrator);
+    const motion::Integrator& integrator = integrator_self(L);
+    const auto* rk4 = std::get_if<motion::Rk4>(&integrator);
+    const auto* listing = std::get_if<motion::Dinal1989>(&integrator);
     return push_finite(L, rk4 != nullptr       ? std::optional(rk4->h)
                           : listing != nullptr ? std::optional(listing->h)
                                                : std::nullopt);
 }
 
 int tolerance(lua_State* L) {
-    const auto* method = std::get_if<Spectral>(&integrator_self(L));
+    const auto* method = std::get_if<motion::Spectral>(&integrator_self(L));
     return push_finite(L, method != nullptr ? std::optional(method->tolerance) : std::nullopt);
 }
 
 int max_panel(lua_State* L) {
-    const auto* method = std::get_if<Spectral>(&integrator_self(L));
+    const auto* method = std::get_if<motion::Spectral>(&integrator_self(L));
     return push_finite(L, method != nullptr ? std::optional(method->max_panel) : std::nullopt);
 }
 
 int to_string(lua_State* L) {
-    lua_pushstring(L, lua_text(integrator_self(L)).c_str());
+    lua_pushstring(L, source::lua_text(integrator_self(L)).c_str());
     return 1;
 }
 
-constexpr Member functions[] = {
+constexpr lua::Member functions[] = {
     {"spectral",
-     guarded<spectral>,
-     Kind::function,
+     lua::guarded<spectral>,
+     lua::Kind::function,
      {"integrator.spectral{ tolerance = 1e-12, max_panel = 0.6 T0 } -> integrator",
       "The default: the motion as polynomials on panels between events and breaks of M, right to rounding for any M, "
       "with every event in its place. tolerance is relative, for each panel. A pulse of a scripted M that falls "
@@ -116,8 +116,8 @@ constexpr Member functions[] = {
       "run = sys:simulate{ velocity0 = 2*math.pi, t_end = 3, dt = 0.5, integrator = integrator.spectral{} }\n"
       "print(string.format(\"%.9f\", (run:at(3))))  --> 0.155151392"}},
     {"rk4",
-     guarded<rk4>,
-     Kind::function,
+     lua::guarded<rk4>,
+     lua::Kind::function,
      {"integrator.rk4{ h } -> integrator",
       "The classical Runge-Kutta method of fourth order with step h (time units), which keeps its order through dry "
       "friction: a step is cut where the velocity becomes zero and where M jumps. h must not exceed the stability "
@@ -125,8 +125,8 @@ constexpr Member functions[] = {
       "0.45 T0 without damping.",
       "print(integrator.rk4{ h = 0.001 })  --> integrator.rk4{ h = 0.001 }"}},
     {"dinal1989",
-     guarded<dinal1989>,
-     Kind::function,
+     lua::guarded<dinal1989>,
+     lua::Kind::function,
      {"integrator.dinal1989{ h, stop = \"listing\", slip = false } -> integrator",
       "The program DINAL as it was printed in 1989, with step h (time units) and its own rule for stops; a museum "
       "piece "
@@ -137,54 +137,36 @@ constexpr Member functions[] = {
       "print(string.format(\"%.6f\", run.theta[2]))  --> -0.997964"}},
 };
 
-constexpr Member members[] = {
+constexpr lua::Member members[] = {
     {"name",
-     guarded<name>,
-     Kind::field,
+     lua::guarded<name>,
+     lua::Kind::field,
      {"integrator.name -> string", "The name of the method.", "print(integrator.rk4{ h = 0.001 }.name)  --> rk4"}},
     {"h",
-     guarded<h>,
-     Kind::field,
+     lua::guarded<h>,
+     lua::Kind::field,
      {"integrator.h -> number", "The step, in time units; nil for spectral.",
       "print(integrator.rk4{ h = 0.001 }.h)  --> 0.001"}},
     {"tolerance",
-     guarded<tolerance>,
-     Kind::field,
+     lua::guarded<tolerance>,
+     lua::Kind::field,
      {"integrator.tolerance -> number", "The relative tolerance of spectral; nil for the others.",
       "print(integrator.spectral{}.tolerance)  --> 1e-12"}},
     {"max_panel",
-     guarded<max_panel>,
-     Kind::field,
+     lua::guarded<max_panel>,
+     lua::Kind::field,
      {"integrator.max_panel -> number", "The longest panel of spectral that was asked for, in time units, or nil.",
       "print(integrator.spectral{ max_panel = 0.02 }.max_panel)  --> 0.02"}},
     {"__tostring",
-     guarded<to_string>,
-     Kind::metamethod,
+     lua::guarded<to_string>,
+     lua::Kind::metamethod,
      {"tostring(integrator) -> string", "The Lua text that makes it again.",
       "print(integrator.dinal1989{ h = 0.01 })  --> integrator.dinal1989{ h = 0.01 }"}},
 };
 
 }  // namespace
 
-std::string lua_text(const Integrator& integrator) {
-    if (const auto* method = std::get_if<Spectral>(&integrator)) {
-        std::string options;
-        if (method->tolerance != Spectral{}.tolerance) options = fmt::format("tolerance = {}", method->tolerance);
-        if (std::isfinite(method->max_panel)) {
-            options += fmt::format("{}max_panel = {}", options.empty() ? "" : ", ", method->max_panel);
-        }
-        return options.empty() ? "integrator.spectral{}" : fmt::format("integrator.spectral{{ {} }}", options);
-    }
-    if (const auto* method = std::get_if<Rk4>(&integrator)) {
-        return fmt::format("integrator.rk4{{ h = {} }}", method->h);
-    }
-    const auto& method = std::get<Dinal1989>(integrator);
-    return fmt::format("integrator.dinal1989{{ h = {}{}{} }}", method.h,
-                       method.stop == Dinal1989::Stop::text ? ", stop = \"text\"" : "",
-                       method.slip ? ", slip = true" : "");
-}
-
-const Class integrator_module = {
+const lua::Class integrator_module = {
     "integrator",
     {"integrator.NAME{ ... } -> integrator",
      "The methods a run can use. A run that names none takes integrator.spectral{}.",
@@ -193,7 +175,7 @@ const Class integrator_module = {
      "print(run.integrator)  --> integrator.rk4{ h = 0.01 }"},
     functions};
 
-const Class integrator_class = {
+const lua::Class integrator_class = {
     "integrator",
     {"integrator.rk4{ h = 0.001 } -> integrator",
      "A method with its options, for `integrator =` in sys:simulate{...}. It can not be changed.",
@@ -203,8 +185,8 @@ const Class integrator_class = {
     integrator_card};
 
 void register_integrator(lua_State* L) {
-    add_class<Integrator>(L, integrator_class);
-    add_module(L, integrator_module);
+    lua::add_class<motion::Integrator>(L, integrator_class);
+    lua::add_module(L, integrator_module);
 }
 
-}  // namespace dinal
+}  // namespace dinal::api

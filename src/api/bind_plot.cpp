@@ -3,37 +3,38 @@
 
 #include <optional>
 
-#include "plots/run_figure.hpp"
-#include "files/table.hpp"
-#include "api/library.hpp"
+#include "api/classes.hpp"
 #include "api/picture.hpp"
 #include "api/plot_docs.hpp"
 #include "api/plot_items.hpp"
 #include "api/run.hpp"
+#include "files/table.hpp"
+#include "plots/run_figure.hpp"
 
-namespace dinal {
+namespace dinal::api {
 namespace {
 
-RunData data_of(const RunHandle& run) {
+plots::RunData data_of(const RunHandle& run) {
     return {run, &run->trajectory, run->origin ? &run->origin->system : nullptr};
 }
 
 /// The name or number of a column on the top of the stack, as a name. "M/k" is left to those who know it.
-std::string column_on_top(lua_State* L, const Options& options, std::string_view option, const RunHandle& run) {
+std::string column_on_top(lua_State* L, const lua::Options& options, std::string_view option, const RunHandle& run) {
     if (lua_type(L, -1) != LUA_TSTRING && lua_isinteger(L, -1) == 0) {
-        options.fail(fmt::format("{} must be the name or the number of a column, got {}", option, describe(L, -1)));
+        options.fail(
+            fmt::format("{} must be the name or the number of a column, got {}", option, lua::describe(L, -1)));
     }
     if (lua_type(L, -1) == LUA_TSTRING) {
         return lua_tostring(L, -1);
     }
-    const auto column = find_column(run->trajectory.names, std::int64_t{lua_tointeger(L, -1)});
+    const auto column = files::find_column(run->trajectory.names, std::int64_t{lua_tointeger(L, -1)});
     if (!column) {
         options.fail(column.error().sentence);
     }
     return run->trajectory.names[static_cast<std::size_t>(*column)];
 }
 
-std::vector<std::string> asked_columns(lua_State* L, const Options& options, std::string_view option,
+std::vector<std::string> asked_columns(lua_State* L, const lua::Options& options, std::string_view option,
                                        const RunHandle& run) {
     std::vector<std::string> names;
     options.push(option);
@@ -54,14 +55,14 @@ std::vector<std::string> asked_columns(lua_State* L, const Options& options, std
     return names;
 }
 
-Figure value_or_fail(const Options& options, Expected<Figure> figure) {
+plots::Figure value_or_fail(const lua::Options& options, text::Expected<plots::Figure> figure) {
     if (!figure) {
         options.fail(figure.error().sentence);
     }
     return std::move(figure).value();
 }
 
-void refuse_empty(const Options& options, const RunHandle& run) {
+void refuse_empty(const lua::Options& options, const RunHandle& run) {
     if (run->trajectory.size() == 0) {
         options.fail("the run has no rows to draw; simulate it with dt = ... or times = { ... }");
     }
@@ -69,29 +70,30 @@ void refuse_empty(const Options& options, const RunHandle& run) {
 
 int plot_vectors(lua_State* L) {
     if (lua_gettop(L) != 1 || !lua_istable(L, 1)) {
-        raise(L, fmt::format("plot takes one table of curves and named options, for example {}", plot_example));
+        lua::raise(L, fmt::format("plot takes one table of curves and named options, for example {}", plot_example));
     }
     PlotItems items = plot_items(L, 1);
     if (items.curves.empty() && items.panels.empty()) {
-        raise(L, fmt::format("plot needs a curve, for example {}", plot_example));
+        lua::raise(L, fmt::format("plot needs a curve, for example {}", plot_example));
     }
     constexpr std::size_t most_curves = 1000;
     if (items.curves.size() > most_curves) {
-        raise(L, fmt::format("plot: {} curves are too many, {} can be drawn; one curve may have pieces with 0/0 (nan) "
-                             "between them",
-                             items.curves.size(), most_curves));
+        lua::raise(
+            L, fmt::format("plot: {} curves are too many, {} can be drawn; one curve may have pieces with 0/0 (nan) "
+                           "between them",
+                           items.curves.size(), most_curves));
     }
     push_named(L, 1, static_cast<lua_Integer>(lua_rawlen(L, 1)));
     lua_replace(L, 1);
     if (items.panels.empty()) {
-        const Options options(L, 1, "plot", plot_example, {DINAL_FIGURE_OPTIONS, DINAL_TARGET_OPTIONS});
-        Figure figure;
+        const lua::Options options(L, 1, "plot", plot_example, {DINAL_FIGURE_OPTIONS, DINAL_TARGET_OPTIONS});
+        plots::Figure figure;
         figure.curves = std::move(items.curves);
         apply_options(L, options, figure);
-        std::vector<Figure> figures{std::move(figure)};
+        std::vector<plots::Figure> figures{std::move(figure)};
         return deliver(L, options, std::move(figures));
     }
-    const Options options(L, 1, "plot", "plot{ picture, picture, file = \"both.svg\" }", {DINAL_TARGET_OPTIONS});
+    const lua::Options options(L, 1, "plot", "plot{ picture, picture, file = \"both.svg\" }", {DINAL_TARGET_OPTIONS});
     if (!items.curves.empty()) {
         options.fail(
             "curves and pictures can not stand together: put the curves into a picture of their own, plot{ ..., "
@@ -105,19 +107,19 @@ int plot_vectors(lua_State* L) {
 }
 
 int picture_text(lua_State* L) {
-    const std::string text = text_of_picture(self<Picture>(L, 1, "tostring(picture)"));
+    const std::string text = text_of_picture(lua::self<Picture>(L, 1, "tostring(picture)"));
     lua_pushlstring(L, text.data(), text.size());
     return 1;
 }
 
-constexpr Member functions[] = {
-    {"plot", guarded<plot_vectors>, Kind::function, plot_doc},
+constexpr lua::Member functions[] = {
+    {"plot", lua::guarded<plot_vectors>, lua::Kind::function, plot_doc},
 };
 
-constexpr Member picture_members[] = {
+constexpr lua::Member picture_members[] = {
     {"__tostring",
-     guarded<picture_text>,
-     Kind::metamethod,
+     lua::guarded<picture_text>,
+     lua::Kind::metamethod,
      {"tostring(picture) -> string", "The picture as text, without colours; print(picture) shows it.",
       "x = vector.linspace(-2, 2, 9)\n"
       "p = plot{ { x, x^2 }, width = 40, height = 10, show = false }\n"
@@ -127,39 +129,39 @@ constexpr Member picture_members[] = {
 }  // namespace
 
 int plot_run(lua_State* L) {
-    const RunHandle run = self<RunHandle>(L, 1, "run:plot()");
-    const Options options(L, 2, "run:plot", "run:plot{ y = { \"theta\", \"friction\" }, file = \"run.svg\" }",
-                          {"x", "y", DINAL_FIGURE_OPTIONS, DINAL_TARGET_OPTIONS}, true);
+    const RunHandle run = lua::self<RunHandle>(L, 1, "run:plot()");
+    const lua::Options options(L, 2, "run:plot", "run:plot{ y = { \"theta\", \"friction\" }, file = \"run.svg\" }",
+                               {"x", "y", DINAL_FIGURE_OPTIONS, DINAL_TARGET_OPTIONS}, true);
     refuse_empty(options, run);
     const std::vector<std::string> x = asked_columns(L, options, "x", run);
     if (x.size() > 1) {
         options.fail("x must be one column");
     }
-    Figure figure = value_or_fail(
-        options, column_figure(data_of(run), x.empty() ? "" : x.front(), asked_columns(L, options, "y", run)));
+    plots::Figure figure = value_or_fail(
+        options, plots::column_figure(data_of(run), x.empty() ? "" : x.front(), asked_columns(L, options, "y", run)));
     apply_options(L, options, figure);
-    std::vector<Figure> figures{std::move(figure)};
+    std::vector<plots::Figure> figures{std::move(figure)};
     return deliver(L, options, std::move(figures));
 }
 
 int phase_plot_run(lua_State* L) {
-    const RunHandle run = self<RunHandle>(L, 1, "run:phase_plot()");
-    const Options options(L, 2, "run:phase_plot", "run:phase_plot{ file = \"phase.svg\" }",
-                          {DINAL_FIGURE_OPTIONS, DINAL_TARGET_OPTIONS}, true);
+    const RunHandle run = lua::self<RunHandle>(L, 1, "run:phase_plot()");
+    const lua::Options options(L, 2, "run:phase_plot", "run:phase_plot{ file = \"phase.svg\" }",
+                               {DINAL_FIGURE_OPTIONS, DINAL_TARGET_OPTIONS}, true);
     refuse_empty(options, run);
-    Figure figure = value_or_fail(options, phase_figure(data_of(run)));
+    plots::Figure figure = value_or_fail(options, plots::phase_figure(data_of(run)));
     apply_options(L, options, figure);
-    std::vector<Figure> figures{std::move(figure)};
+    std::vector<plots::Figure> figures{std::move(figure)};
     return deliver(L, options, std::move(figures));
 }
 
-const Class plot_functions = {
+const lua::Class plot_functions = {
     "plot",
     {"plot{ { x, y }, ... }", "Draws vectors; run:plot and run:phase_plot draw runs.",
      "t = vector.linspace(0, 1, 50)\nprint(plot{ { t, (6*t):sin() }, show = false } ~= nil)  --> true"},
     functions};
 
-const Class picture_class = {
+const lua::Class picture_class = {
     "picture",
     {"plot{ ..., show = false }, run:plot{ show = false } -> picture",
      "A picture that was not drawn yet: print(picture) shows it, and plot{ left, right, file = \"both.svg\" } sets "
@@ -170,8 +172,8 @@ const Class picture_class = {
     picture_members};
 
 void register_plot(lua_State* L) {
-    add_class<Picture>(L, picture_class);
-    add_functions(L, plot_functions);
+    lua::add_class<Picture>(L, picture_class);
+    lua::add_functions(L, plot_functions);
 }
 
-}  // namespace dinal
+}  // namespace dinal::api

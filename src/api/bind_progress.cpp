@@ -5,11 +5,11 @@
 #include <limits>
 #include <optional>
 
-#include "terminal/progress.hpp"
-#include "api/library.hpp"
+#include "api/classes.hpp"
 #include "lua/vector.hpp"
+#include "terminal/progress.hpp"
 
-namespace dinal {
+namespace dinal::api {
 
 namespace {
 
@@ -17,15 +17,15 @@ constexpr const char* example = "for i in progress(100, \"sweep\") do ... end";
 
 /// The state of such a loop. Its user value is the list that it goes through, if any.
 struct Loop {
-    std::unique_ptr<Progress> progress;  // none when the loop has ended
+    std::unique_ptr<terminal::Progress> progress;  // none when the loop has ended
     lua_Integer steps = 0;
     bool list = false;
 };
 
 Loop& loop_self(lua_State* L) {
-    auto* loop = test<Loop>(L, 1);
+    auto* loop = lua::test<Loop>(L, 1);
     if (loop == nullptr) {
-        raise(L, fmt::format("progress is for loops: {}", example));
+        lua::raise(L, fmt::format("progress is for loops: {}", example));
     }
     return *loop;
 }
@@ -59,7 +59,7 @@ std::optional<double> steps_of(lua_State* L) {
     if (lua_type(L, 1) == LUA_TTABLE) {
         return static_cast<double>(lua_rawlen(L, 1));
     }
-    if (const auto* vector = test<Vector>(L, 1)) {
+    if (const auto* vector = lua::test<lua::Vector>(L, 1)) {
         return static_cast<double>(vector->size());
     }
     const double n = lua_tonumber(L, 1);
@@ -71,22 +71,24 @@ int progress(lua_State* L) {
     lua_settop(L, 2);
     const auto steps = steps_of(L);
     if (!steps) {
-        raise(L, fmt::format(
-                     "progress needs how many steps there are, math.huge if nobody knows, or a list to go through, "
-                     "got {}; for example {}",
-                     describe(L, 1), example));
+        lua::raise(
+            L,
+            fmt::format("progress needs how many steps there are, math.huge if nobody knows, or a list to go through, "
+                        "got {}; for example {}",
+                        lua::describe(L, 1), example));
     }
     if (!lua_isnil(L, 2) && lua_type(L, 2) != LUA_TSTRING) {
-        raise(L, fmt::format("progress: the label must be a string, got {}; for example {}", describe(L, 2), example));
+        lua::raise(L, fmt::format("progress: the label must be a string, got {}; for example {}", lua::describe(L, 2),
+                                  example));
     }
     const std::string label = lua_isnil(L, 2) ? "" : lua_tostring(L, 2);
-    lua_pushcfunction(L, guarded<next_step>);
-    auto& loop = push(L, Loop{.progress = nullptr,
-                              .steps = std::isinf(*steps) ? std::numeric_limits<lua_Integer>::max()
-                                                          : static_cast<lua_Integer>(*steps),
-                              .list = lua_type(L, 1) != LUA_TNUMBER});
-    loop.progress.reset(
-        new Progress(Progress::of_steps(label, *steps)));  // NOLINT: it can not be moved, only made here
+    lua_pushcfunction(L, lua::guarded<next_step>);
+    auto& loop = lua::push(L, Loop{.progress = nullptr,
+                                   .steps = std::isinf(*steps) ? std::numeric_limits<lua_Integer>::max()
+                                                               : static_cast<lua_Integer>(*steps),
+                                   .list = lua_type(L, 1) != LUA_TNUMBER});
+    loop.progress.reset(new terminal::Progress(
+        terminal::Progress::of_steps(label, *steps)));  // NOLINT: it can not be moved, only made here
     lua_pushvalue(L, 1);
     lua_setiuservalue(L, -2, 1);
     lua_pushinteger(L, 0);
@@ -94,16 +96,16 @@ int progress(lua_State* L) {
     return 4;
 }
 
-constexpr Member loop_members[] = {
-    {"__close", guarded<close_loop>, Kind::metamethod, {"", "The loop was left.", ""}},
+constexpr lua::Member loop_members[] = {
+    {"__close", lua::guarded<close_loop>, lua::Kind::metamethod, {"", "The loop was left.", ""}},
 };
 
-const Class loop_class = {"progress", {example, "The state of a loop that shows its progress.", ""}, loop_members};
+const lua::Class loop_class = {"progress", {example, "The state of a loop that shows its progress.", ""}, loop_members};
 
-constexpr Member functions[] = {
+constexpr lua::Member functions[] = {
     {"progress",
-     guarded<progress>,
-     Kind::function,
+     lua::guarded<progress>,
+     lua::Kind::function,
      {"for i in progress(n, label) do, for i, x in progress(list, label) do",
       "A loop of n steps, or through a list (a table or a vector), that shows how far it is: after half a second one "
       "line "
@@ -122,14 +124,14 @@ constexpr Member functions[] = {
 
 }  // namespace
 
-const Class progress_functions = {
+const lua::Class progress_functions = {
     "progress",
     {"for i in progress(n, label) do", "Loops that show how far they are.", "for i in progress(3, \"sweep\") do end"},
     functions};
 
 void register_progress(lua_State* L) {
-    add_class<Loop>(L, loop_class);
-    add_functions(L, progress_functions);
+    lua::add_class<Loop>(L, loop_class);
+    lua::add_functions(L, progress_functions);
 }
 
-}  // namespace dinal
+}  // namespace dinal::api

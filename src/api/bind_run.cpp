@@ -4,42 +4,42 @@
 
 #include <algorithm>
 
-#include "files/table.hpp"
 #include "api/cards.hpp"
+#include "api/classes.hpp"
 #include "api/events.hpp"
-#include "lua/external_memory.hpp"
-#include "api/library.hpp"
 #include "api/plot_docs.hpp"
 #include "api/run.hpp"
+#include "files/table.hpp"
+#include "lua/external_memory.hpp"
 #include "lua/user_function.hpp"
 #include "lua/vector.hpp"
 
-namespace dinal {
+namespace dinal::api {
 
 namespace {
 
 const RunHandle& run_self(lua_State* L, const char* call) {
-    return self<RunHandle>(L, 1, call);
+    return lua::self<RunHandle>(L, 1, call);
 }
 
 void push_column(lua_State* L, const RunHandle& run, Eigen::Index column) {
     const auto values = run->trajectory.rows.col(column);
-    push(L, Vector(run, values.data(), static_cast<std::size_t>(values.size())));
+    lua::push(L, lua::Vector(run, values.data(), static_cast<std::size_t>(values.size())));
 }
 
 /// Members and columns: what a misspelt name may have meant.
-[[noreturn]] void raise_unknown(lua_State* L, const Trajectory& trajectory, std::string_view wrong) {
+[[noreturn]] void raise_unknown(lua_State* L, const motion::Trajectory& trajectory, std::string_view wrong) {
     std::vector<std::string_view> names(trajectory.names.begin(), trajectory.names.end());
-    for (const Member& member : run_class.members) {
-        const bool column =
-            member.kind == Kind::field && trajectory.find(member.name) == std::nullopt &&
-            std::find(column_names().begin(), column_names().end(), member.name) != column_names().end();
-        if (member.kind != Kind::metamethod && !column) {
+    for (const lua::Member& member : run_class.members) {
+        const bool column = member.kind == lua::Kind::field && trajectory.find(member.name) == std::nullopt &&
+                            std::find(motion::column_names().begin(), motion::column_names().end(), member.name) !=
+                                motion::column_names().end();
+        if (member.kind != lua::Kind::metamethod && !column) {
             names.emplace_back(member.name);
         }
     }
-    raise(L, fmt::format("this run has no field '{}'; its columns are {}{}", wrong, fmt::join(trajectory.names, ", "),
-                         did_you_mean(wrong, names)));
+    lua::raise(L, fmt::format("this run has no field '{}'; its columns are {}{}", wrong,
+                              fmt::join(trajectory.names, ", "), text::did_you_mean(wrong, names)));
 }
 
 int column_by_name(lua_State* L, const char* name) {
@@ -52,9 +52,9 @@ int column_by_name(lua_State* L, const char* name) {
     return 1;
 }
 
-template <Column column>
+template <motion::Column column>
 int column_field(lua_State* L) {
-    return column_by_name(L, column_names()[static_cast<std::size_t>(column)].c_str());
+    return column_by_name(L, motion::column_names()[static_cast<std::size_t>(column)].c_str());
 }
 
 int other_column(lua_State* L) {
@@ -78,12 +78,13 @@ int columns(lua_State* L) {
     luaL_checkstack(L, asked + 5, "too many columns");
     for (int i = 2; i <= asked + 1; ++i) {
         if (lua_type(L, i) != LUA_TSTRING && lua_isinteger(L, i) == 0) {
-            raise(L, "run:columns takes names or numbers of columns, got " + describe(L, i));
+            lua::raise(L, "run:columns takes names or numbers of columns, got " + lua::describe(L, i));
         }
-        const auto column = lua_type(L, i) == LUA_TSTRING ? find_column(names, std::string_view(lua_tostring(L, i)))
-                                                          : find_column(names, std::int64_t{lua_tointeger(L, i)});
+        const auto column = lua_type(L, i) == LUA_TSTRING
+                                ? files::find_column(names, std::string_view(lua_tostring(L, i)))
+                                : files::find_column(names, std::int64_t{lua_tointeger(L, i)});
         if (!column) {
-            raise(L, "run:columns: " + column.error().sentence);
+            lua::raise(L, "run:columns: " + column.error().sentence);
         }
         push_column(L, run, *column);
     }
@@ -114,12 +115,12 @@ int events(lua_State* L) {
 
 int outcome(lua_State* L) {
     const Run& run = *run_self(L, "run.outcome");
-    const std::string_view text = run.origin ? sentence(run.trajectory.outcome) : "read from a file";
+    const std::string_view text = run.origin ? model::sentence(run.trajectory.outcome) : "read from a file";
     lua_pushlstring(L, text.data(), text.size());
     return 1;
 }
 
-template <double Trajectory::*time>
+template <double motion::Trajectory::*time>
 int time_field(lua_State* L) {
     lua_pushnumber(L, run_self(L, "run.t_end")->trajectory.*time);
     return 1;
@@ -128,20 +129,20 @@ int time_field(lua_State* L) {
 template <auto member>
 int origin_field(lua_State* L) {
     const Run& run = *run_self(L, "run.system");
-    run.origin ? static_cast<void>(push(L, (*run.origin).*member)) : lua_pushnil(L);
+    run.origin ? static_cast<void>(lua::push(L, (*run.origin).*member)) : lua_pushnil(L);
     return 1;
 }
 
 int at(lua_State* L) {
     const RunHandle run = run_self(L, "run:at(t)");  // kept: the user's function may drop the last reference
-    const double t = finite_argument(L, 2, "run:at(t): t");
-    CallState call(L);  // between rows the integrator asks the excitation again
+    const double t = lua::finite_argument(L, 2, "run:at(t): t");
+    lua::CallState call(L);  // between rows the integrator asks the excitation again
     const auto state = run->trajectory.at(t);
     if (call.failed()) {
         call.raise_error();
     }
     if (!state) {
-        raise(L, "run:at(t): " + state.error().sentence);
+        lua::raise(L, "run:at(t): " + state.error().sentence);
     }
     lua_pushnumber(L, state->theta);
     lua_pushnumber(L, state->velocity);
@@ -154,30 +155,30 @@ int length(lua_State* L) {
 }
 
 int to_string(lua_State* L) {
-    const std::string text = summary(run_self(L, "tostring(run)")->trajectory);
+    const std::string text = motion::summary(run_self(L, "tostring(run)")->trajectory);
     lua_pushlstring(L, text.data(), text.size());
     return 1;
 }
 
 #define DINAL_RUN "run = nondimensional{}:simulate{ M = 3, theta0 = 1, t_end = 2, dt = 0.5 }\n"
 
-constexpr Member members[] = {
+constexpr lua::Member members[] = {
     {"at",
-     guarded<at>,
-     Kind::method,
+     lua::guarded<at>,
+     lua::Kind::method,
      {"run:at(t) -> theta, velocity",
       "Angle (rad) and velocity (rad per time unit) at any time of the run, between rows at the accuracy of the "
       "integrator. In a run that was read from a file: by cubic interpolation.",
       DINAL_RUN "print(string.format(\"%.6f %.6f\", run:at(0.75)))  --> 3.000000 -12.566371"}},
     {"columns",
-     guarded<columns>,
-     Kind::method,
+     lua::guarded<columns>,
+     lua::Kind::method,
      {"run:columns(name, ...) -> vector, ...",
       "The columns of these names or numbers (t is 1); without arguments all of them. READDIN of 1989 did this.",
       DINAL_RUN "t, M = run:columns(\"t\", \"M\")\nprint(t, M[5])  --> vector{ 0, 0.5, 1, 1.5, 2 }\t3.0"}},
     {"continue",
-     guarded<continue_run>,
-     Kind::method,
+     lua::guarded<continue_run>,
+     lua::Kind::method,
      {"run:continue{ t_end, times } -> run",
       "A new run: this one, and how it goes on from where it ended (reached its end, or stopped by Ctrl-C or an error "
       "in M), with the same rows as if it had never ended. Without t_end a run that was stopped goes on to the t_end "
@@ -185,8 +186,8 @@ constexpr Member members[] = {
       DINAL_RUN "longer = run:continue{ t_end = 3 }\n"
                 "print(#longer, longer.t_end, string.format(\"%.6f\", longer:at(3)))  --> 7\t3.0\t1.000000"}},
     {"energy",
-     guarded<energy_of_run>,
-     Kind::method,
+     lua::guarded<energy_of_run>,
+     lua::Kind::method,
      {"run:energy() -> energy",
       "Where the energy went: the work of M, what is stored in the mass and the spring, what the two frictions took; "
       "in "
@@ -195,15 +196,15 @@ constexpr Member members[] = {
       "run = system{ I = 1, k = 1, Rd = 0.12 }:simulate{ theta0 = 1, t_end = 20, dt = 5 }\n"
       "print(string.format(\"%.6f\", run:energy().total.dry))  --> 0.499200"}},
     {"explain",
-     guarded<explain_run>,
-     Kind::method,
+     lua::guarded<explain_run>,
+     lua::Kind::method,
      {"run:explain() -> string",
       "The run told in sentences: its half cycles, where, when and why it stopped and slipped (|M - k theta| against "
       "Re), and what became of it: at rest, or in steady motion with which period, amplitude, lag and stops.",
       DINAL_RUN "print(run:explain():match(\"It made[^.]*\"))  --> It made 4 half cycles with 3 turns and 0 stops"}},
     {"save",
-     guarded<save_run>,
-     Kind::method,
+     lua::guarded<save_run>,
+     lua::Kind::method,
      {"run:save(file, { columns })",
       "Writes the rows: file.csv gets a comment block with the Lua text that repeats the run, a line of names and the "
       "rows, and with columns = { \"t\", \"theta\" } only these; file.dat gets the record of 1989 (NPUNT, then t, "
@@ -213,41 +214,41 @@ constexpr Member members[] = {
                 "run:save(file, { columns = { \"t\", \"theta\" } })\n"
                 "print(#trajectory.load(file))  --> 5\n"
                 "os.remove(file)"}},
-    {"plot", guarded<plot_run>, Kind::method, plot_run_doc},
-    {"phase_plot", guarded<phase_plot_run>, Kind::method, phase_plot_run_doc},
+    {"plot", lua::guarded<plot_run>, lua::Kind::method, plot_run_doc},
+    {"phase_plot", lua::guarded<phase_plot_run>, lua::Kind::method, phase_plot_run_doc},
     {"t",
-     guarded<column_field<Column::t>>,
-     Kind::field,
+     lua::guarded<column_field<motion::Column::t>>,
+     lua::Kind::field,
      {"run.t -> vector", "The times of the rows, time units.", DINAL_RUN "print(run.t[2])  --> 0.5"}},
     {"theta",
-     guarded<column_field<Column::theta>>,
-     Kind::field,
+     lua::guarded<column_field<motion::Column::theta>>,
+     lua::Kind::field,
      {"run.theta -> vector", "The angle, rad.", DINAL_RUN "print(run.theta[1])  --> 1.0"}},
     {"velocity",
-     guarded<column_field<Column::velocity>>,
-     Kind::field,
+     lua::guarded<column_field<motion::Column::velocity>>,
+     lua::Kind::field,
      {"run.velocity -> vector", "The velocity, rad per time unit; exactly 0 while the mass sticks.",
       DINAL_RUN "print(run.velocity[1])  --> 0.0"}},
     {"M",
-     guarded<column_field<Column::M>>,
-     Kind::field,
+     lua::guarded<column_field<motion::Column::M>>,
+     lua::Kind::field,
      {"run.M -> vector", "The excitation: the torque M on the mass.", DINAL_RUN "print(run.M:max())  --> 3.0"}},
     {"friction",
-     guarded<column_field<Column::friction>>,
-     Kind::field,
+     lua::guarded<column_field<motion::Column::friction>>,
+     lua::Kind::field,
      {"run.friction -> vector",
       "The torque of dry friction on the mass: -Rd sgn(velocity) while it moves, -(M - k theta) while it sticks.",
       "run = system{ I = 1, k = 1, Rd = 2 }:simulate{ theta0 = 1, t_end = 1, dt = 1 }\n"
       "print(run.friction)  --> vector{ 1, 1 }"}},
     {"damping",
-     guarded<column_field<Column::damping>>,
-     Kind::field,
+     lua::guarded<column_field<motion::Column::damping>>,
+     lua::Kind::field,
      {"run.damping -> vector", "The torque of viscous damping on the mass, -C velocity.",
       "run = system{ I = 1, k = 1, C = 3 }:simulate{ velocity0 = 1, t_end = 1, dt = 1 }\n"
       "print(run.damping[1])  --> -3.0"}},
     {"events",
-     guarded<events>,
-     Kind::field,
+     lua::guarded<events>,
+     lua::Kind::field,
      {"run.events -> table",
       "What happened at velocity zero, in order of time: a list of { t, kind, theta, M }. kind is \"turn\" (goes on "
       "the "
@@ -258,47 +259,47 @@ constexpr Member members[] = {
       "--> turn\t0.5000 -1.0000\n"
       "--> turn\t1.0000 1.0000"}},
     {"t_start",
-     guarded<time_field<&Trajectory::t_start>>,
-     Kind::field,
+     lua::guarded<time_field<&motion::Trajectory::t_start>>,
+     lua::Kind::field,
      {"run.t_start -> number", "The time at which the run began.", DINAL_RUN "print(run.t_start)  --> 0.0"}},
     {"t_end",
-     guarded<time_field<&Trajectory::t_stop>>,
-     Kind::field,
+     lua::guarded<time_field<&motion::Trajectory::t_stop>>,
+     lua::Kind::field,
      {"run.t_end -> number", "The time at which the run ended: the t_end it was given, or earlier when it was stopped.",
       DINAL_RUN "print(run.t_end)  --> 2.0"}},
     {"outcome",
-     guarded<outcome>,
-     Kind::field,
+     lua::guarded<outcome>,
+     lua::Kind::field,
      {"run.outcome -> string", "How it ended: \"reached the end\", \"at rest\", \"interrupted\", or what went wrong.",
       DINAL_RUN "print(run.outcome)  --> reached the end"}},
     {"names",
-     guarded<names>,
-     Kind::field,
+     lua::guarded<names>,
+     lua::Kind::field,
      {"run.names -> table", "The names of the columns.",
       DINAL_RUN "print(table.concat(run.names, \" \"))  --> t theta velocity M friction damping"}},
     {"system",
-     guarded<origin_field<&Origin::system>>,
-     Kind::field,
+     lua::guarded<origin_field<&source::Origin::system>>,
+     lua::Kind::field,
      {"run.system -> system or nil", "The system that was simulated; nil in a run that was read from a file.",
       DINAL_RUN "print(run.system.T0)  --> 1.0"}},
     {"excitation",
-     guarded<origin_field<&Origin::excitation>>,
-     Kind::field,
+     lua::guarded<origin_field<&source::Origin::excitation>>,
+     lua::Kind::field,
      {"run.excitation -> excitation or nil", "The excitation M of the run; nil in a run that was read from a file.",
       DINAL_RUN "print(run.excitation)  --> excitation.constant{ level = 3 }"}},
     {"integrator",
-     guarded<origin_field<&Origin::integrator>>,
-     Kind::field,
+     lua::guarded<origin_field<&source::Origin::integrator>>,
+     lua::Kind::field,
      {"run.integrator -> integrator or nil",
       "The integrator that was used, also when none was asked for; nil in a run that was read from a file.",
       DINAL_RUN "print(run.integrator)  --> integrator.spectral{}"}},
     {"__len",
-     guarded<length>,
-     Kind::metamethod,
+     lua::guarded<length>,
+     lua::Kind::metamethod,
      {"#run -> number", "The number of rows.", DINAL_RUN "print(#run)  --> 5"}},
     {"__tostring",
-     guarded<to_string>,
-     Kind::metamethod,
+     lua::guarded<to_string>,
+     lua::Kind::metamethod,
      {"tostring(run) -> string", "A summary in one line.",
       "print(nondimensional{}:simulate{ theta0 = 1, t_end = 1.2, dt = 0.1 })\n"
       "--> 13 rows, t 0 … 1.2; 2 events (2 turns); moving at the end; peak |theta| 1"}},
@@ -306,7 +307,7 @@ constexpr Member members[] = {
 
 }  // namespace
 
-const Class run_class = {
+const lua::Class run_class = {
     "run",
     {"sys:simulate{ ... } or trajectory.load(file) -> run",
      "What a simulation leaves behind: columns that are vectors, events, the outcome, and the motion between the rows. "
@@ -320,13 +321,13 @@ const Class run_class = {
 
 void push_run(lua_State* L, Run run) {
     const auto bytes = static_cast<std::size_t>(run.trajectory.rows.size()) * sizeof(double);
-    run.rows = MemoryCharge(bytes);
-    push<RunHandle>(L, std::make_shared<const Run>(std::move(run)));
-    note_external_memory(L, bytes);
+    run.rows = lua::MemoryCharge(bytes);
+    lua::push<RunHandle>(L, std::make_shared<const Run>(std::move(run)));
+    lua::note_external_memory(L, bytes);
 }
 
 void register_run(lua_State* L) {
-    add_class<RunHandle>(L, run_class);
+    lua::add_class<RunHandle>(L, run_class);
 }
 
-}  // namespace dinal
+}  // namespace dinal::api

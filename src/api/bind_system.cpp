@@ -1,6 +1,4 @@
 // system{...}, nondimensional{...} and the systems they make. sys:simulate{...} is in bind_simulate.cpp.
-#include "api/bind_system.hpp"
-
 #include <fmt/format.h>
 
 #include <cmath>
@@ -8,26 +6,27 @@
 
 #include "api/bind_simulate.hpp"
 #include "api/cards.hpp"
-#include "api/library.hpp"
+#include "api/classes.hpp"
 #include "lua/options.hpp"
+#include "source/describe.hpp"
 
-namespace dinal {
+namespace dinal::api {
 
 namespace {
 
-int push_system(lua_State* L, const Options& options, const OscillatorParameters& parameters) {
-    const auto made = Oscillator::make(parameters);
+int push_system(lua_State* L, const lua::Options& options, const model::OscillatorParameters& parameters) {
+    const auto made = model::Oscillator::make(parameters);
     if (!made) {
         options.fail(made.error().sentence);
     }
-    push<Oscillator>(L, *made);
+    lua::push<model::Oscillator>(L, *made);
     return 1;
 }
 
 int system(lua_State* L) {
-    const Options options(L, 1, "system", "system{ I = 1, k = 39.5, C = 1.5, Rd = 2, Re = 3 }",
-                          {"I", "k", "C", "Rd", "Re"});
-    OscillatorParameters parameters;
+    const lua::Options options(L, 1, "system", "system{ I = 1, k = 39.5, C = 1.5, Rd = 2, Re = 3 }",
+                               {"I", "k", "C", "Rd", "Re"});
+    model::OscillatorParameters parameters;
     parameters.inertia = options.number("I");
     parameters.stiffness = options.number("k");
     parameters.damping = options.number("C", 0);
@@ -37,8 +36,8 @@ int system(lua_State* L) {
 }
 
 int nondimensional(lua_State* L) {
-    const Options options(L, 1, "nondimensional", "nondimensional{ zeta = 0.1, friction_ratio = 0.2 }",
-                          {"zeta", "friction_ratio", "breakaway_ratio"}, true);
+    const lua::Options options(L, 1, "nondimensional", "nondimensional{ zeta = 0.1, friction_ratio = 0.2 }",
+                               {"zeta", "friction_ratio", "breakaway_ratio"}, true);
     const double zeta = options.number("zeta", 0);
     const double friction_ratio = options.number("friction_ratio", 0);
     const double breakaway_ratio = options.number("breakaway_ratio", friction_ratio);
@@ -56,7 +55,7 @@ int nondimensional(lua_State* L) {
     // NOTE: no double is both I = 1/(4 pi^2), for which T0 is 1 to the last bit, and a square, so that C/2 = sqrt(I k)
     // can hold to the last bit, too. zeta = 1 needs the square: it is critical damping then, and not nearly so.
     constexpr double root = 1 / (2 * std::numbers::pi);
-    OscillatorParameters parameters;
+    model::OscillatorParameters parameters;
     parameters.inertia = zeta == 1 ? root * root : 1 / (4 * std::numbers::pi * std::numbers::pi);
     parameters.stiffness = 1;
     parameters.damping = 2 * zeta * std::sqrt(parameters.inertia);
@@ -65,11 +64,11 @@ int nondimensional(lua_State* L) {
     return push_system(L, options, parameters);
 }
 
-const Oscillator& system_self(lua_State* L, const char* call) {
-    return self<Oscillator>(L, 1, call);
+const model::Oscillator& system_self(lua_State* L, const char* call) {
+    return lua::self<model::Oscillator>(L, 1, call);
 }
 
-template <double (Oscillator::*get)() const>
+template <double (model::Oscillator::*get)() const>
 int field(lua_State* L) {
     lua_pushnumber(L, (system_self(L, "sys.omega0").*get)());
     return 1;
@@ -82,43 +81,43 @@ int omega1(lua_State* L) {
 }
 
 int regime(lua_State* L) {
-    const std::string_view text = name(system_self(L, "sys.regime").regime());
+    const std::string_view text = model::name(system_self(L, "sys.regime").regime());
     lua_pushlstring(L, text.data(), text.size());
     return 1;
 }
 
 int friction_ratio(lua_State* L) {
-    const Oscillator& sys = system_self(L, "sys:friction_ratio(Mc)");
-    const double torque = finite_argument(L, 2, "sys:friction_ratio(Mc): Mc");
+    const model::Oscillator& sys = system_self(L, "sys:friction_ratio(Mc)");
+    const double torque = lua::finite_argument(L, 2, "sys:friction_ratio(Mc): Mc");
     if (torque == 0) {
-        raise(L,
-              "sys:friction_ratio(Mc): Mc = 0 must not be zero; for a free motion it is "
-              "sys:characteristic_torque(theta0, velocity0)");
+        lua::raise(L,
+                   "sys:friction_ratio(Mc): Mc = 0 must not be zero; for a free motion it is "
+                   "sys:characteristic_torque(theta0, velocity0)");
     }
     lua_pushnumber(L, sys.friction_ratio(torque));
     return 1;
 }
 
 int characteristic_torque(lua_State* L) {
-    const Oscillator& sys = system_self(L, "sys:characteristic_torque(theta0, velocity0)");
-    State initial;
-    initial.theta = finite_argument(L, 2, "sys:characteristic_torque(theta0, velocity0): theta0");
+    const model::Oscillator& sys = system_self(L, "sys:characteristic_torque(theta0, velocity0)");
+    model::State initial;
+    initial.theta = lua::finite_argument(L, 2, "sys:characteristic_torque(theta0, velocity0): theta0");
     if (!lua_isnoneornil(L, 3)) {
-        initial.velocity = finite_argument(L, 3, "sys:characteristic_torque(theta0, velocity0): velocity0");
+        initial.velocity = lua::finite_argument(L, 3, "sys:characteristic_torque(theta0, velocity0): velocity0");
     }
     lua_pushnumber(L, sys.characteristic_torque(initial));
     return 1;
 }
 
 int to_string(lua_State* L) {
-    lua_pushstring(L, lua_text(system_self(L, "tostring(sys)")).c_str());
+    lua_pushstring(L, source::lua_text(system_self(L, "tostring(sys)")).c_str());
     return 1;
 }
 
-constexpr Member functions[] = {
+constexpr lua::Member functions[] = {
     {"system",
-     guarded<system>,
-     Kind::function,
+     lua::guarded<system>,
+     lua::Kind::function,
      {"system{ I, k, C = 0, Rd = 0, Re = Rd } -> system",
       "A mass on a spring with viscous damping and dry friction: I theta'' + C theta' + Rd sgn(theta') + k theta = "
       "M(t), "
@@ -129,8 +128,8 @@ constexpr Member functions[] = {
       "sys = system{ I = 1, k = 4*math.pi^2, C = 1.5, Rd = 16.5, Re = 18 }\n"
       "print(sys.T0, sys.regime)  --> 1.0\tunderdamped"}},
     {"nondimensional",
-     guarded<nondimensional>,
-     Kind::function,
+     lua::guarded<nondimensional>,
+     lua::Kind::function,
      {"nondimensional{ zeta = 0, friction_ratio = 0, breakaway_ratio = friction_ratio } -> system",
       "The system with k = 1 and I = 1/(4 pi^2): its period T0 is 1 and torques are in units of the characteristic "
       "torque "
@@ -140,103 +139,92 @@ constexpr Member functions[] = {
       "print(sys.k, sys.Rd, string.format(\"%.3f\", sys.zeta))  --> 1.0\t0.418\t0.119"}},
 };
 
-constexpr Member members[] = {
-    {"simulate", guarded<simulate_system>, Kind::method, simulate_doc},
+constexpr lua::Member members[] = {
+    {"simulate", lua::guarded<simulate_system>, lua::Kind::method, simulate_doc},
     {"friction_ratio",
-     guarded<friction_ratio>,
-     Kind::method,
+     lua::guarded<friction_ratio>,
+     lua::Kind::method,
      {"sys:friction_ratio(Mc) -> number", "The dry friction ratio gamma = Rd/|Mc| for the characteristic torque Mc.",
       "print(system{ I = 1, k = 4, Rd = 0.5 }:friction_ratio(2))  --> 0.25"}},
     {"characteristic_torque",
-     guarded<characteristic_torque>,
-     Kind::method,
+     lua::guarded<characteristic_torque>,
+     lua::Kind::method,
      {"sys:characteristic_torque(theta0, velocity0 = 0) -> number",
       "The characteristic torque Mc = k sqrt(theta0^2 + (velocity0/omega0)^2) of the free motion that starts at theta0 "
       "(rad) with velocity0 (rad per time unit).",
       "print(system{ I = 1, k = 4 }:characteristic_torque(3, 8))  --> 20.0"}},
     {"I",
-     guarded<field<&Oscillator::inertia>>,
-     Kind::field,
+     lua::guarded<field<&model::Oscillator::inertia>>,
+     lua::Kind::field,
      {"sys.I -> number", "The moment of inertia.", "print(system{ I = 2, k = 4 }.I)  --> 2.0"}},
     {"k",
-     guarded<field<&Oscillator::stiffness>>,
-     Kind::field,
+     lua::guarded<field<&model::Oscillator::stiffness>>,
+     lua::Kind::field,
      {"sys.k -> number", "The stiffness, torque per rad.", "print(system{ I = 2, k = 4 }.k)  --> 4.0"}},
     {"C",
-     guarded<field<&Oscillator::damping>>,
-     Kind::field,
+     lua::guarded<field<&model::Oscillator::damping>>,
+     lua::Kind::field,
      {"sys.C -> number", "The viscous damping constant, torque per rad per time unit.",
       "print(system{ I = 2, k = 4 }.C)  --> 0.0"}},
     {"Rd",
-     guarded<field<&Oscillator::kinetic_friction>>,
-     Kind::field,
+     lua::guarded<field<&model::Oscillator::kinetic_friction>>,
+     lua::Kind::field,
      {"sys.Rd -> number", "The torque of dry friction while the mass moves.",
       "print(system{ I = 2, k = 4, Rd = 0.5 }.Rd)  --> 0.5"}},
     {"Re",
-     guarded<field<&Oscillator::breakaway>>,
-     Kind::field,
+     lua::guarded<field<&model::Oscillator::breakaway>>,
+     lua::Kind::field,
      {"sys.Re -> number", "The breakaway torque: the most that sticking can hold. Rd unless given.",
       "print(system{ I = 2, k = 4, Rd = 0.5 }.Re)  --> 0.5"}},
     {"omega0",
-     guarded<field<&Oscillator::natural_frequency>>,
-     Kind::field,
+     lua::guarded<field<&model::Oscillator::natural_frequency>>,
+     lua::Kind::field,
      {"sys.omega0 -> number", "The natural frequency sqrt(k/I), rad per time unit.",
       "print(system{ I = 1, k = 4 }.omega0)  --> 2.0"}},
     {"T0",
-     guarded<field<&Oscillator::natural_period>>,
-     Kind::field,
+     lua::guarded<field<&model::Oscillator::natural_period>>,
+     lua::Kind::field,
      {"sys.T0 -> number", "The natural period 2 pi/omega0, time units.",
       "print(system{ I = 1, k = 4*math.pi^2 }.T0)  --> 1.0"}},
     {"omega1",
-     guarded<omega1>,
-     Kind::field,
+     lua::guarded<omega1>,
+     lua::Kind::field,
      {"sys.omega1 -> number or nil",
       "The frequency of the damped swing, omega0 sqrt(1 - zeta^2), rad per time unit; nil unless zeta < 1.",
       "print(system{ I = 1, k = 4 }.omega1, system{ I = 1, k = 4, C = 10 }.omega1)  --> 2.0\tnil"}},
     {"zeta",
-     guarded<field<&Oscillator::damping_ratio>>,
-     Kind::field,
+     lua::guarded<field<&model::Oscillator::damping_ratio>>,
+     lua::Kind::field,
      {"sys.zeta -> number", "The viscous damping ratio C/(2 I omega0).",
       "print(system{ I = 1, k = 4, C = 1 }.zeta)  --> 0.25"}},
     {"regime",
-     guarded<regime>,
-     Kind::field,
+     lua::guarded<regime>,
+     lua::Kind::field,
      {"sys.regime -> string",
       "How the free system without dry friction moves: \"undamped\", \"underdamped\", \"critical\" or \"overdamped\".",
       "print(system{ I = 1, k = 4, C = 4 }.regime)  --> critical"}},
     {"dead_zone",
-     guarded<field<&Oscillator::dead_zone>>,
-     Kind::field,
+     lua::guarded<field<&model::Oscillator::dead_zone>>,
+     lua::Kind::field,
      {"sys.dead_zone -> number", "Re/k, rad: without excitation the mass can stay wherever |theta| is at most this.",
       "print(system{ I = 1, k = 4, Rd = 1, Re = 2 }.dead_zone)  --> 0.5"}},
     {"__tostring",
-     guarded<to_string>,
-     Kind::metamethod,
+     lua::guarded<to_string>,
+     lua::Kind::metamethod,
      {"tostring(sys) -> string", "The Lua text that makes the same system again.",
       "print(system{ I = 1, k = 4, Rd = 0.5 })  --> system{ I = 1, k = 4, Rd = 0.5, Re = 0.5 }"}},
 };
 
 }  // namespace
 
-std::string lua_text(const Oscillator& system) {
-    std::string text = fmt::format("system{{ I = {}, k = {}", system.inertia(), system.stiffness());
-    if (system.damping() != 0) {
-        text += fmt::format(", C = {}", system.damping());
-    }
-    if (!system.frictionless()) {
-        text += fmt::format(", Rd = {}, Re = {}", system.kinetic_friction(), system.breakaway());
-    }
-    return text + " }";
-}
-
-const Class system_functions = {
+const lua::Class system_functions = {
     "system",
     {"system{ I, k, ... } or nondimensional{ ... } -> system",
      "What makes a system: in the units of the user, or in those of the report's nondimensional form.",
      "print(system{ I = 1, k = 4 }.omega0)  --> 2.0"},
     functions};
 
-const Class system_class = {
+const lua::Class system_class = {
     "system",
     {"system{ I, k, C = 0, Rd = 0, Re = Rd } -> system",
      "A valid oscillator. It can not be changed; its parameters and what follows from them are fields.",
@@ -246,8 +234,8 @@ const Class system_class = {
     system_card};
 
 void register_system(lua_State* L) {
-    add_class<Oscillator>(L, system_class);
-    add_functions(L, system_functions);
+    lua::add_class<model::Oscillator>(L, system_class);
+    lua::add_functions(L, system_functions);
 }
 
-}  // namespace dinal
+}  // namespace dinal::api

@@ -2,13 +2,13 @@
 #include <algorithm>
 #include <cctype>
 
+#include "api/classes.hpp"
+#include "api/run.hpp"
 #include "files/csv.hpp"
 #include "files/record1989.hpp"
 #include "lua/interrupt.hpp"
-#include "api/library.hpp"
-#include "api/run.hpp"
 
-namespace dinal {
+namespace dinal::api {
 
 namespace {
 
@@ -18,31 +18,31 @@ bool ends_in(std::string_view text, std::string_view ending) {
                       [](char a, char b) { return a == std::tolower(static_cast<unsigned char>(b)); });
 }
 
-Expected<Table> read(const std::string& file) {
+text::Expected<files::Table> read(const std::string& file) {
     if (ends_in(file, ".dat")) {
-        return read_record1989(file);
+        return files::read_record1989(file);
     }
     if (ends_in(file, ".csv")) {
-        return read_csv(file);
+        return files::read_csv(file);
     }
-    return Error{"the name '" + file + "' must end in .csv (names and numbers) or .dat (the record of 1989)"};
+    return text::Error{"the name '" + file + "' must end in .csv (names and numbers) or .dat (the record of 1989)"};
 }
 
 int load(lua_State* L) {
     if (lua_type(L, 1) != LUA_TSTRING) {
-        raise(L, "trajectory.load: the name of the file must be a string, got " + describe(L, 1));
+        lua::raise(L, "trajectory.load: the name of the file must be a string, got " + lua::describe(L, 1));
     }
     auto table = read(lua_tostring(L, 1));
-    if (interrupt_requested()) {
-        raise_interrupted(L);  // what was read is not all
+    if (lua::interrupt_requested()) {
+        lua::raise_interrupted(L);  // what was read is not all
     }
     if (!table) {
-        raise(L, "trajectory.load: " + table.error().sentence);
+        lua::raise(L, "trajectory.load: " + table.error().sentence);
     }
-    Table content = std::move(table).value();
+    files::Table content = std::move(table).value();
     Run run;
     run.comments = std::move(content.comments);
-    Trajectory& trajectory = run.trajectory;
+    motion::Trajectory& trajectory = run.trajectory;
     trajectory.computed = false;
     trajectory.names = std::move(content.names);
     trajectory.rows = std::move(content.values);
@@ -54,10 +54,10 @@ int load(lua_State* L) {
     return 1;
 }
 
-constexpr Member functions[] = {
+constexpr lua::Member functions[] = {
     {"load",
-     guarded<load>,
-     Kind::function,
+     lua::guarded<load>,
+     lua::Kind::function,
      {"trajectory.load(file) -> run",
       "Reads file.csv or file.dat (the record of 1989) back: the same numbers to the last bit, with the columns of the "
       "file as fields. Those of a .dat file are t, theta, velocity_over_omega0, M_over_k, friction_over_k, "
@@ -72,13 +72,13 @@ constexpr Member functions[] = {
 
 }  // namespace
 
-const Class trajectory_module = {"trajectory",
-                                 {"trajectory.load(file) -> run", "Runs that were saved.",
-                                  "print(select(2, pcall(trajectory.load, \"missing.csv\")) ~= nil)  --> true"},
-                                 functions};
+const lua::Class trajectory_module = {"trajectory",
+                                      {"trajectory.load(file) -> run", "Runs that were saved.",
+                                       "print(select(2, pcall(trajectory.load, \"missing.csv\")) ~= nil)  --> true"},
+                                      functions};
 
 void register_trajectory(lua_State* L) {
-    add_module(L, trajectory_module);
+    lua::add_module(L, trajectory_module);
 }
 
-}  // namespace dinal
+}  // namespace dinal::api

@@ -5,15 +5,15 @@
 #include <optional>
 
 #include "api/cards.hpp"
-#include "api/library.hpp"
-#include "lua/vector.hpp"
+#include "api/classes.hpp"
 #include "api/vector_arithmetic.hpp"
+#include "lua/vector.hpp"
 
-namespace dinal {
+namespace dinal::api {
 namespace {
 
-const Vector& self_vector(lua_State* L, std::string_view call) {
-    return self<Vector>(L, 1, call);
+const lua::Vector& self_vector(lua_State* L, std::string_view call) {
+    return lua::self<lua::Vector>(L, 1, call);
 }
 
 namespace functions = vector_functions;
@@ -21,7 +21,7 @@ namespace functions = vector_functions;
 // ---- one number from many
 
 /// Neumaier's sum: the rounding errors are collected and added at the end.
-double sum_of(const Vector& v) {
+double sum_of(const lua::Vector& v) {
     double sum = 0;
     double lost = 0;
     for (const double x : v) {
@@ -32,17 +32,17 @@ double sum_of(const Vector& v) {
     return std::isfinite(lost) ? sum + lost : sum;
 }
 
-const Vector& not_empty(lua_State* L, std::string_view call) {
-    const Vector& v = self_vector(L, call);
+const lua::Vector& not_empty(lua_State* L, std::string_view call) {
+    const lua::Vector& v = self_vector(L, call);
     if (v.size() == 0) {
-        raise(L, fmt::format("{}: the vector is empty", call));
+        lua::raise(L, fmt::format("{}: the vector is empty", call));
     }
     return v;
 }
 
 template <class Better>
 int extreme(lua_State* L, std::string_view call, Better better) {
-    const Vector& v = not_empty(L, call);
+    const lua::Vector& v = not_empty(L, call);
     double best = *v.begin();
     for (const double x : v) {
         if (better(x, best) || std::isnan(x)) {
@@ -64,7 +64,7 @@ int sum(lua_State* L) {
     return 1;
 }
 int mean(lua_State* L) {
-    const Vector& v = not_empty(L, "v:mean()");
+    const lua::Vector& v = not_empty(L, "v:mean()");
     lua_pushnumber(L, sum_of(v) / static_cast<double>(v.size()));
     return 1;
 }
@@ -72,7 +72,7 @@ int mean(lua_State* L) {
 // ---- elements
 
 /// The index from 0 of element i, counted from 1; none when there is no such one.
-std::optional<std::size_t> position(const Vector& v, lua_Integer i) {
+std::optional<std::size_t> position(const lua::Vector& v, lua_Integer i) {
     const auto n = static_cast<lua_Integer>(v.size());
     if (i < 1 || i > n) {
         return std::nullopt;
@@ -81,14 +81,14 @@ std::optional<std::size_t> position(const Vector& v, lua_Integer i) {
 }
 
 int element(lua_State* L) {
-    const auto* v = test<Vector>(L, 1);
+    const auto* v = lua::test<lua::Vector>(L, 1);
     int is_integer = 0;
     const lua_Integer i = lua_tointegerx(L, 2, &is_integer);
     if (v == nullptr || lua_type(L, 2) != LUA_TNUMBER) {
         return 0;
     }
     if (is_integer != 0 && i < 0) {
-        raise(L, fmt::format("v[{}]: elements are counted from 1; the last one is v[#v]", i));
+        lua::raise(L, fmt::format("v[{}]: elements are counted from 1; the last one is v[#v]", i));
     }
     if (const auto at = position(*v, i); is_integer != 0 && at) {
         lua_pushnumber(L, v->begin()[*at]);
@@ -110,33 +110,33 @@ lua_Integer whole_argument(lua_State* L, int index, std::string_view name, lua_I
     int is_integer = 0;
     const lua_Integer value = lua_tointegerx(L, index, &is_integer);
     if (is_integer == 0 || lua_type(L, index) != LUA_TNUMBER) {
-        raise(L,
-              fmt::format("v:slice(first, last, step): {} must be a whole number, got {}", name, describe(L, index)));
+        lua::raise(L, fmt::format("v:slice(first, last, step): {} must be a whole number, got {}", name,
+                                  lua::describe(L, index)));
     }
     return value;
 }
 
 int slice(lua_State* L) {
-    const Vector& v = self_vector(L, "v:slice(1, 10)");
+    const lua::Vector& v = self_vector(L, "v:slice(1, 10)");
     const auto n = static_cast<lua_Integer>(v.size());
     const lua_Integer first = whole_argument(L, 2, "first", 1);
     const lua_Integer last = whole_argument(L, 3, "last", n);
     const lua_Integer step = whole_argument(L, 4, "step", 1);
     if (first < 1 || last > n || step < 1) {
-        raise(L, fmt::format("v:slice({}, {}, {}): the vector has elements 1 to {}, and step must be at least 1", first,
-                             last, step, n));
+        lua::raise(L, fmt::format("v:slice({}, {}, {}): the vector has elements 1 to {}, and step must be at least 1",
+                                  first, last, step, n));
     }
-    make_room(L, v.size() * sizeof(double));
+    lua::make_room(L, v.size() * sizeof(double));
     std::vector<double> result;
     for (lua_Integer i = first; i <= last; i += std::min(step, n)) {
         result.push_back(v.begin()[i - 1]);
     }
-    push_vector(L, std::move(result));
+    lua::push_vector(L, std::move(result));
     return 1;
 }
 
 int table(lua_State* L) {
-    const Vector& v = self_vector(L, "v:table()");
+    const lua::Vector& v = self_vector(L, "v:table()");
     lua_createtable(L, static_cast<int>(std::min<std::size_t>(v.size(), 1U << 30U)), 0);
     lua_Integer i = 0;
     for (const double x : v) {
@@ -147,7 +147,7 @@ int table(lua_State* L) {
 }
 
 int text(lua_State* L) {
-    const Vector& v = self_vector(L, "tostring(v)");
+    const lua::Vector& v = self_vector(L, "tostring(v)");
     constexpr std::size_t shown_whole = 10;
     constexpr std::size_t ends = 3;
     const auto list = [](std::span<const double> x) { return fmt::format("{:.6g}", fmt::join(x, ", ")); };
@@ -167,177 +167,178 @@ int text(lua_State* L) {
 // ---- the module
 
 int make(lua_State* L) {
-    if (lua_gettop(L) != 2 || (lua_type(L, 2) != LUA_TTABLE && test<Vector>(L, 2) == nullptr)) {
-        raise(L, "vector takes one table of numbers, for example vector{ 1, 2, 3 }");
+    if (lua_gettop(L) != 2 || (lua_type(L, 2) != LUA_TTABLE && lua::test<lua::Vector>(L, 2) == nullptr)) {
+        lua::raise(L, "vector takes one table of numbers, for example vector{ 1, 2, 3 }");
     }
-    push_vector(L, numbers_at(L, 2, "vector"));
+    lua::push_vector(L, lua::numbers_at(L, 2, "vector"));
     return 1;
 }
 
 int linspace(lua_State* L) {
-    const double from = finite_argument(L, 1, "vector.linspace(from, to, n): from");
-    const double to = finite_argument(L, 2, "vector.linspace(from, to, n): to");
-    const double count = finite_argument(L, 3, "vector.linspace(from, to, n): n");
+    const double from = lua::finite_argument(L, 1, "vector.linspace(from, to, n): from");
+    const double to = lua::finite_argument(L, 2, "vector.linspace(from, to, n): to");
+    const double count = lua::finite_argument(L, 3, "vector.linspace(from, to, n): n");
     constexpr double most = 1e9;
     if (count != std::floor(count) || count < 2 || count > most) {
-        raise(L, fmt::format("vector.linspace(from, to, n): n = {} must be a whole number from 2 to {}", count, most));
+        lua::raise(
+            L, fmt::format("vector.linspace(from, to, n): n = {} must be a whole number from 2 to {}", count, most));
     }
     const auto n = static_cast<std::size_t>(count);
-    std::vector<double> values = new_numbers(L, n);
+    std::vector<double> values = lua::new_numbers(L, n);
     for (std::size_t i = 0; i < n; ++i) {
         values[i] = from + (to - from) * (static_cast<double>(i) / (count - 1));
     }
     values.back() = to;
-    push_vector(L, std::move(values));
+    lua::push_vector(L, std::move(values));
     return 1;
 }
 
-constexpr Member class_members[] = {
+constexpr lua::Member class_members[] = {
     {"sin",
-     guarded<functions::sine>,
-     Kind::method,
+     lua::guarded<functions::sine>,
+     lua::Kind::method,
      {"v:sin() -> vector", "Sine of every element (rad).", "print(vector{ 0, 1 }:sin())  --> vector{ 0, 0.841471 }"}},
     {"cos",
-     guarded<functions::cosine>,
-     Kind::method,
+     lua::guarded<functions::cosine>,
+     lua::Kind::method,
      {"v:cos() -> vector", "Cosine of every element (rad).", "print(vector{ 0, 1 }:cos())  --> vector{ 1, 0.540302 }"}},
     {"tan",
-     guarded<functions::tangent>,
-     Kind::method,
+     lua::guarded<functions::tangent>,
+     lua::Kind::method,
      {"v:tan() -> vector", "Tangent of every element (rad).", "print(vector{ 0, 1 }:tan())  --> vector{ 0, 1.55741 }"}},
     {"abs",
-     guarded<functions::absolute>,
-     Kind::method,
+     lua::guarded<functions::absolute>,
+     lua::Kind::method,
      {"v:abs() -> vector", "Absolute value of every element.", "print(vector{ -2, 3 }:abs())  --> vector{ 2, 3 }"}},
     {"sqrt",
-     guarded<functions::square_root>,
-     Kind::method,
+     lua::guarded<functions::square_root>,
+     lua::Kind::method,
      {"v:sqrt() -> vector", "Square root of every element; nan for negative ones.",
       "print(vector{ 4, 9 }:sqrt())  --> vector{ 2, 3 }"}},
     {"exp",
-     guarded<functions::exponential>,
-     Kind::method,
+     lua::guarded<functions::exponential>,
+     lua::Kind::method,
      {"v:exp() -> vector", "e to the power of every element.",
       "print(vector{ 0, 1 }:exp())  --> vector{ 1, 2.71828 }"}},
     {"log",
-     guarded<functions::logarithm>,
-     Kind::method,
+     lua::guarded<functions::logarithm>,
+     lua::Kind::method,
      {"v:log() -> vector", "Natural logarithm of every element; nan for negative ones.",
       "print(vector{ 1, 10 }:log())  --> vector{ 0, 2.30259 }"}},
     {"max",
-     guarded<maximum>,
-     Kind::method,
+     lua::guarded<maximum>,
+     lua::Kind::method,
      {"v:max() -> number", "The greatest element.", "print(vector{ 1, 3, 2 }:max())  --> 3.0"}},
     {"min",
-     guarded<minimum>,
-     Kind::method,
+     lua::guarded<minimum>,
+     lua::Kind::method,
      {"v:min() -> number", "The least element.", "print(vector{ 1, 3, -2 }:min())  --> -2.0"}},
     {"mean",
-     guarded<mean>,
-     Kind::method,
+     lua::guarded<mean>,
+     lua::Kind::method,
      {"v:mean() -> number", "The sum divided by the number of elements.", "print(vector{ 1, 2, 6 }:mean())  --> 3.0"}},
     {"sum",
-     guarded<sum>,
-     Kind::method,
+     lua::guarded<sum>,
+     lua::Kind::method,
      {"v:sum() -> number", "The sum of all elements (0 when there are none), accurate however many there are.",
       "print(vector{ 1e100, 1, -1e100 }:sum())  --> 1.0"}},
     {"slice",
-     guarded<slice>,
-     Kind::method,
+     lua::guarded<slice>,
+     lua::Kind::method,
      {"v:slice(first = 1, last = #v, step = 1) -> vector", "The elements from first to last, every step-th of them.",
       "print(vector{ 10, 20, 30, 40, 50 }:slice(2, 5, 2))  --> vector{ 20, 40 }"}},
     {"table",
-     guarded<table>,
-     Kind::method,
+     lua::guarded<table>,
+     lua::Kind::method,
      {"v:table() -> table", "An ordinary Lua table with the same numbers.",
       "print(table.concat(vector{ 1, 2 }:table(), \" \"))  --> 1.0 2.0"}},
     {"__len",
-     guarded<length>,
-     Kind::metamethod,
+     lua::guarded<length>,
+     lua::Kind::metamethod,
      {"#v -> integer", "How many elements there are. v[1] is the first one, v[#v] the last one; beyond them is nil.",
       "print(#vector{ 4, 5, 6 })  --> 3"}},
     {"__add",
-     guarded<functions::add>,
-     Kind::metamethod,
+     lua::guarded<functions::add>,
+     lua::Kind::metamethod,
      {"v + w, v + number -> vector", "Element by element; two vectors must be equally long.",
       "print(vector{ 1, 2 } + vector{ 10, 20 })  --> vector{ 11, 22 }"}},
     {"__sub",
-     guarded<functions::subtract>,
-     Kind::metamethod,
+     lua::guarded<functions::subtract>,
+     lua::Kind::metamethod,
      {"v - w, v - number -> vector", "Element by element.", "print(10 - vector{ 1, 2 })  --> vector{ 9, 8 }"}},
     {"__mul",
-     guarded<functions::multiply>,
-     Kind::metamethod,
+     lua::guarded<functions::multiply>,
+     lua::Kind::metamethod,
      {"v * w, v * number -> vector", "Element by element.", "print(2 * vector{ 1, 2 })  --> vector{ 2, 4 }"}},
     {"__div",
-     guarded<functions::divide>,
-     Kind::metamethod,
+     lua::guarded<functions::divide>,
+     lua::Kind::metamethod,
      {"v / w, v / number -> vector", "Element by element.", "print(vector{ 1, 2 } / 4)  --> vector{ 0.25, 0.5 }"}},
     {"__pow",
-     guarded<functions::power>,
-     Kind::metamethod,
+     lua::guarded<functions::power>,
+     lua::Kind::metamethod,
      {"v ^ w, v ^ number -> vector", "Element by element.", "print(vector{ 2, 3 } ^ 2)  --> vector{ 4, 9 }"}},
     {"__unm",
-     guarded<functions::negated>,
-     Kind::metamethod,
+     lua::guarded<functions::negated>,
+     lua::Kind::metamethod,
      {"-v -> vector", "Every element with the other sign.", "print(-vector{ 1, -2 })  --> vector{ -1, 2 }"}},
     {"__eq",
-     guarded<functions::equal>,
-     Kind::metamethod,
+     lua::guarded<functions::equal>,
+     lua::Kind::metamethod,
      {"v == w -> boolean", "True when both have the same elements.",
       "print(vector{ 1, 2 } == vector{ 1, 2 })  --> true"}},
     {"__lt",
-     guarded<functions::less>,
-     Kind::metamethod,
+     lua::guarded<functions::less>,
+     lua::Kind::metamethod,
      {"v < w, v < number -> boolean",
       "True when it holds for every element; so v < 3 and v >= 3 can both be false. Also >.",
       "print(vector{ 1, 2 } < 3, vector{ 1, 5 } < 3)  --> true\tfalse"}},
     {"__le",
-     guarded<functions::less_or_equal>,
-     Kind::metamethod,
+     lua::guarded<functions::less_or_equal>,
+     lua::Kind::metamethod,
      {"v <= w, v <= number -> boolean", "True when it holds for every element. Also >=.",
       "print(vector{ 1, 2 } >= 1)  --> true"}},
     {"__tostring",
-     guarded<text>,
-     Kind::metamethod,
+     lua::guarded<text>,
+     lua::Kind::metamethod,
      {"tostring(v) -> string", "The elements to six digits; of a long vector its two ends and its length.",
       "print(vector.linspace(0, 1, 101))  --> vector{ 0, 0.01, 0.02, ..., 0.98, 0.99, 1 }  -- 101 numbers"}},
 };
 
-constexpr Member module_members[] = {
+constexpr lua::Member module_members[] = {
     {"__call",
-     guarded<make>,
-     Kind::metamethod,
+     lua::guarded<make>,
+     lua::Kind::metamethod,
      {"vector{ ... } -> vector", "A vector of these finite numbers.", "print(#vector{ 1, 2, 3 })  --> 3"}},
     {"linspace",
-     guarded<linspace>,
-     Kind::function,
+     lua::guarded<linspace>,
+     lua::Kind::function,
      {"vector.linspace(from, to, n) -> vector", "n >= 2 numbers with even gaps; the ends are exact.",
       "print(vector.linspace(0, 1, 5))  --> vector{ 0, 0.25, 0.5, 0.75, 1 }"}},
 };
 
 }  // namespace
 
-const Class vector_class{
+const lua::Class vector_class{
     "vector",
     {"v",
      "Numbers in a row, such as a column of a run. It can not be changed; arithmetic and mathematics act on all "
      "elements.",
      "v = vector{ 1, 2, 3 }\nprint(v[1], #v, 2 * v)  --> 1.0\t3\tvector{ 2, 4, 6 }"},
     class_members,
-    guarded<element>,
+    lua::guarded<element>,
     vector_card,
 };
 
-const Class vector_module{
+const lua::Class vector_module{
     "vector",
     {"vector{ ... } -> vector", "Makes vectors.", "print(vector{ 1, 2, 3 }:sum())  --> 6.0"},
     module_members,
 };
 
 void register_vector(lua_State* L) {
-    add_class<Vector>(L, vector_class);
-    add_module(L, vector_module);
+    lua::add_class<lua::Vector>(L, vector_class);
+    lua::add_module(L, vector_module);
 }
 
-}  // namespace dinal
+}  // namespace dinal::api

@@ -4,23 +4,23 @@
 
 #include <cmath>
 
-#include "model/oscillator.hpp"
-#include "lua/bind.hpp"
-#include "api/bind_integrator.hpp"
 #include "api/run.hpp"
+#include "lua/bind.hpp"
 #include "lua/vector.hpp"
+#include "model/oscillator.hpp"
+#include "source/describe.hpp"
 
-namespace dinal {
+namespace dinal::api {
 namespace {
 
 /// Name, value and remark in columns; a remark that does not fit is left out.
-std::string row(std::string_view name, double value, std::string_view remark, const Display& screen) {
+std::string row(std::string_view name, double value, std::string_view remark, const terminal::Display& screen) {
     const std::string text = fmt::format("  {:<9}  {:<10.6g}", name, value);
-    const bool fits = columns(text) + columns(remark) + 1 < screen.width;
+    const bool fits = terminal::columns(text) + terminal::columns(remark) + 1 < screen.width;
     return "\n" + (fits ? text + " " + std::string(remark) : text.substr(0, text.find_last_not_of(' ') + 1));
 }
 
-std::string vector_line(const Vector& v, std::size_t ends) {
+std::string vector_line(const lua::Vector& v, std::size_t ends) {
     const auto list = [](std::span<const double> x) { return fmt::format("{:.6g}", fmt::join(x, ", ")); };
     return fmt::format("vector{{ {}, ..., {} }}  -- {} numbers", list(v.values().first(ends)),
                        list(v.values().last(ends)), v.size());
@@ -28,10 +28,10 @@ std::string vector_line(const Vector& v, std::size_t ends) {
 
 }  // namespace
 
-std::string system_card(lua_State* L, int index, const Display& screen) {
-    const Oscillator& system = *test<Oscillator>(L, index);
-    std::string text = spelled("system  I θ'' + C θ' + Rd sgn θ' + k θ = M(t)", screen);
-    text = columns(text) < screen.width ? text : "system";
+std::string system_card(lua_State* L, int index, const terminal::Display& screen) {
+    const model::Oscillator& system = *lua::test<model::Oscillator>(L, index);
+    std::string text = terminal::spelled("system  I θ'' + C θ' + Rd sgn θ' + k θ = M(t)", screen);
+    text = terminal::columns(text) < screen.width ? text : "system";
     text += row("I", system.inertia(), "moment of inertia", screen);
     text += row("k", system.stiffness(), "stiffness", screen);
     text += row("C", system.damping(), "viscous damping", screen);
@@ -39,50 +39,52 @@ std::string system_card(lua_State* L, int index, const Display& screen) {
     text += row("Re", system.breakaway(), "the most that sticking can hold", screen);
     text += row("omega0", system.natural_frequency(), "natural frequency, rad per time unit", screen);
     text += row("T0", system.natural_period(), "natural period", screen);
-    text += row("zeta", system.damping_ratio(), "damping ratio: " + std::string(name(system.regime())), screen);
-    text += row("dead_zone", system.dead_zone(), spelled("it can rest wherever |θ| <= this", screen), screen);
+    text += row("zeta", system.damping_ratio(), "damping ratio: " + std::string(model::name(system.regime())), screen);
+    text += row("dead_zone", system.dead_zone(), terminal::spelled("it can rest wherever |θ| <= this", screen), screen);
     return text;
 }
 
-std::string integrator_card(lua_State* L, int index, const Display& screen) {
-    const Integrator& integrator = *test<Integrator>(L, index);
-    std::string text = lua_text(integrator);
-    if (const auto* method = std::get_if<Spectral>(&integrator)) {
+std::string integrator_card(lua_State* L, int index, const terminal::Display& screen) {
+    const motion::Integrator& integrator = *lua::test<motion::Integrator>(L, index);
+    std::string text = source::lua_text(integrator);
+    if (const auto* method = std::get_if<motion::Spectral>(&integrator)) {
         const std::string panel = std::isfinite(method->max_panel) ? fmt::format("{}", method->max_panel)
-                                                                   : fmt::format("{} T0", longest_panel);
+                                                                   : fmt::format("{} T0", motion::longest_panel);
         text = fmt::format("integrator.spectral{{ tolerance = {}, max_panel = {} }}", method->tolerance, panel);
-    } else if (const auto* listing = std::get_if<Dinal1989>(&integrator)) {
+    } else if (const auto* listing = std::get_if<motion::Dinal1989>(&integrator)) {
         text = fmt::format("integrator.dinal1989{{ h = {}, stop = \"{}\", slip = {} }}", listing->h,
-                           listing->stop == Dinal1989::Stop::text ? "text" : "listing", listing->slip);
+                           listing->stop == motion::Dinal1989::Stop::text ? "text" : "listing", listing->slip);
     }
-    return wrapped(text, screen.width - 1);
+    return terminal::wrapped(text, screen.width - 1);
 }
 
-std::string vector_card(lua_State* L, int index, const Display& screen) {
-    const Vector& v = *test<Vector>(L, index);
+std::string vector_card(lua_State* L, int index, const terminal::Display& screen) {
+    const lua::Vector& v = *lua::test<lua::Vector>(L, index);
     constexpr std::size_t most = 12;  // numbers of a vector that is shown whole
     if (v.size() == 0) {
         return "vector{}";
     }
     if (v.size() <= most) {
         std::string whole = fmt::format("vector{{ {:.6g} }}", fmt::join(v.values(), ", "));
-        if (columns(whole) < screen.width || v.size() < 3) {
+        if (terminal::columns(whole) < screen.width || v.size() < 3) {
             return whole;
         }
     }
     constexpr std::size_t most_ends = 5;
     for (std::size_t ends = std::min(most_ends, (v.size() - 1) / 2); ends > 1; --ends) {
         std::string line = vector_line(v, ends);
-        if (columns(line) < screen.width) {
+        if (terminal::columns(line) < screen.width) {
             return line;
         }
     }
     const std::string line = vector_line(v, 1);
-    return columns(line) < screen.width ? line : fmt::format("{} ({})", line.substr(0, line.find("  --")), v.size());
+    return terminal::columns(line) < screen.width ? line
+                                                  : fmt::format("{} ({})", line.substr(0, line.find("  --")), v.size());
 }
 
-std::string run_card(lua_State* L, int index, const Display& screen) {
-    return wrapped(spelled(summary((*test<RunHandle>(L, index))->trajectory), screen), screen.width - 1);
+std::string run_card(lua_State* L, int index, const terminal::Display& screen) {
+    return terminal::wrapped(terminal::spelled(motion::summary((*lua::test<RunHandle>(L, index))->trajectory), screen),
+                             screen.width - 1);
 }
 
-}  // namespace dinal
+}  // namespace dinal::api

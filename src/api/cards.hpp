@@ -6,24 +6,24 @@
 
 #include "terminal/display.hpp"
 
-namespace dinal {
+namespace dinal::api {
 
 /// The parameters of the system at `index` and what follows from them, a line each.
-std::string system_card(lua_State* L, int index, const Display& screen);
+std::string system_card(lua_State* L, int index, const terminal::Display& screen);
 
 /// M(t) as a formula, a line for each term, and the times at which it jumps or kinks.
-std::string excitation_card(lua_State* L, int index, const Display& screen);
+std::string excitation_card(lua_State* L, int index, const terminal::Display& screen);
 
 /// The method with all its options, those that were not given, too.
-std::string integrator_card(lua_State* L, int index, const Display& screen);
+std::string integrator_card(lua_State* L, int index, const terminal::Display& screen);
 
 /// The ends of the vector that fit on a line, and its length.
-std::string vector_card(lua_State* L, int index, const Display& screen);
+std::string vector_card(lua_State* L, int index, const terminal::Display& screen);
 
 /// The summary, over more than one line when it must be.
-std::string run_card(lua_State* L, int index, const Display& screen);
+std::string run_card(lua_State* L, int index, const terminal::Display& screen);
 
 /// The balance, without the remarks that do not fit.
-std::string energy_card(lua_State* L, int index, const Display& screen);
+std::string energy_card(lua_State* L, int index, const terminal::Display& screen);
 
-}  // namespace dinal
+}  // namespace dinal::api

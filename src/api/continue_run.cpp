@@ -6,7 +6,7 @@
 #include "api/bind_simulate.hpp"
 #include "api/run.hpp"
 
-namespace dinal {
+namespace dinal::api {
 
 namespace {
 
@@ -14,24 +14,25 @@ constexpr std::string_view call = "run:continue";
 constexpr std::string_view example = "run:continue{ t_end = 40 }";
 
 /// The times of the run until it ended, then the new ones; without these, what it had not come to before t_end.
-Grid asked_rows(const Options& options, const Trajectory& so_far, const Task& task, double t_end) {
+motion::Grid asked_rows(const lua::Options& options, const motion::Trajectory& so_far, const source::Task& task,
+                        double t_end) {
     std::vector<double> times = task.rows.times();
     const std::vector<double> more = options.numbers("times");
     if (!more.empty() && more.front() <= so_far.t_stop) {
         options.fail(fmt::format("times[1] = {:.17g} must be after t = {:.6g}, where the run ended", more.front(),
                                  so_far.t_stop));
     }
-    if (const auto wrong = Grid::at(more).within({so_far.t_stop, t_end}); !wrong) {
+    if (const auto wrong = motion::Grid::at(more).within({so_far.t_stop, t_end}); !wrong) {
         options.fail(wrong.error().sentence);
     }
     const double kept = options.has("times") ? so_far.t_stop : t_end;
     times.erase(std::upper_bound(times.begin(), times.end(), kept), times.end());
     times.insert(times.end(), more.begin(), more.end());
-    return Grid::at(std::move(times));
+    return motion::Grid::at(std::move(times));
 }
 
 /// t_end, the last of the times, or where a run that was stopped should have ended.
-double asked_end(const Options& options, const Trajectory& so_far, const Task& task) {
+double asked_end(const lua::Options& options, const motion::Trajectory& so_far, const source::Task& task) {
     if (options.has("t_end")) {
         return options.number("t_end");
     }
@@ -49,15 +50,15 @@ double asked_end(const Options& options, const Trajectory& so_far, const Task& t
 }  // namespace
 
 int continue_run(lua_State* L) {
-    const RunHandle run = self<RunHandle>(L, 1, example.data());  // kept: M may drop the last reference
-    const Options options(L, 2, call, example, {"t_end", "times"}, true);
-    const Trajectory& so_far = run->trajectory;
+    const RunHandle run = lua::self<RunHandle>(L, 1, example.data());  // kept: M may drop the last reference
+    const lua::Options options(L, 2, call, example, {"t_end", "times"}, true);
+    const motion::Trajectory& so_far = run->trajectory;
     if (!run->origin) {
         options.fail(
             "a run that was read from a file can not go on; start one there with sys:simulate{ theta0, "
             "velocity0, t_start, ... }");
     }
-    Origin origin = *run->origin;
+    source::Origin origin = *run->origin;
     const bool spaced = origin.rows.dt() > 0;
     if (spaced && options.has("times")) {
         options.fail(
@@ -69,11 +70,12 @@ int continue_run(lua_State* L) {
     if (!spaced) {
         origin.rows = asked_rows(options, so_far, origin, origin.window.end);
     }
-    const auto compute = [&so_far](const Task& task, const Monitor& monitor, const Limits& limits) {
-        return resume(task.system, task.excitation, so_far, task.window.end, task.rows, task.integrator, monitor,
-                      limits);
+    const auto compute = [&so_far](const source::Task& task, const motion::Monitor& monitor,
+                                   const motion::Limits& limits) {
+        return motion::resume(task.system, task.excitation, so_far, task.window.end, task.rows, task.integrator,
+                              monitor, limits);
     };
     return run_task(L, options, std::move(origin), so_far.t_stop, so_far.dense != nullptr, compute);
 }
 
-}  // namespace dinal
+}  // namespace dinal::api

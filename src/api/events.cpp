@@ -9,7 +9,7 @@
 
 #include "lua/bind.hpp"
 
-namespace dinal {
+namespace dinal::api {
 namespace {
 
 const char event_key = 0;  // registry keys of the two metatables
@@ -100,29 +100,29 @@ void set_metatable(lua_State* L, const void* key, const char* name, lua_CFunctio
     lua_setmetatable(L, -2);
 }
 
-void push_event(lua_State* L, const Event& event) {
+void push_event(lua_State* L, const model::Event& event) {
     lua_createtable(L, 0, 4);
     lua_pushnumber(L, event.t);
     lua_setfield(L, -2, "t");
-    const std::string_view kind = name(event.kind);
+    const std::string_view kind = model::name(event.kind);
     lua_pushlstring(L, kind.data(), kind.size());
     lua_setfield(L, -2, "kind");
     lua_pushnumber(L, event.theta);
     lua_setfield(L, -2, "theta");
     lua_pushnumber(L, event.M);
     lua_setfield(L, -2, "M");
-    set_metatable(L, &event_key, "event", guarded<event_text>);
+    set_metatable(L, &event_key, "event", lua::guarded<event_text>);
 }
 
 }  // namespace
 
-void push_events(lua_State* L, std::span<const Event> events) {
+void push_events(lua_State* L, std::span<const model::Event> events) {
     lua_createtable(L, static_cast<int>(events.size()), 0);
     for (std::size_t i = 0; i < events.size(); ++i) {
         push_event(L, events[i]);
         lua_rawseti(L, -2, static_cast<lua_Integer>(i) + 1);
     }
-    set_metatable(L, &events_key, "events", guarded<events_text>);
+    set_metatable(L, &events_key, "events", lua::guarded<events_text>);
 }
 
-}  // namespace dinal
+}  // namespace dinal::api

@@ -6,9 +6,9 @@
 
 #include "model/event.hpp"
 
-namespace dinal {
+namespace dinal::api {
 
 /// Pushes { { t, kind, theta, M }, ... }.
-void push_events(lua_State* L, std::span<const Event> events);
+void push_events(lua_State* L, std::span<const model::Event> events);
 
-}  // namespace dinal
+}  // namespace dinal::api

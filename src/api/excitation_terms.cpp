@@ -6,12 +6,12 @@
 #include "api/bind_excitation.hpp"
 #include "lua/options.hpp"
 
-namespace dinal::excitation_functions {
+namespace dinal::api::excitation_functions {
 
 namespace {
 
 /// The one of two options that says the same thing in two ways.
-bool first_is_given(const Options& options, std::string_view first, std::string_view second) {
+bool first_is_given(const lua::Options& options, std::string_view first, std::string_view second) {
     if (options.has(first) == options.has(second)) {
         options.fail(options.has(first) ? fmt::format("{} and {} say the same; give one of them", first, second)
                                         : fmt::format("one of {} and {} is needed", first, second));
@@ -19,7 +19,7 @@ bool first_is_given(const Options& options, std::string_view first, std::string_
     return options.has(first);
 }
 
-double omega_of(const Options& options) {
+double omega_of(const lua::Options& options) {
     if (!first_is_given(options, "frequency", "omega")) {
         return options.number("omega");
     }
@@ -30,7 +30,7 @@ double omega_of(const Options& options) {
     return 2 * std::numbers::pi * frequency;
 }
 
-double period_of(const Options& options) {
+double period_of(const lua::Options& options) {
     if (first_is_given(options, "period", "frequency")) {
         return options.number("period");
     }
@@ -43,85 +43,87 @@ double period_of(const Options& options) {
 
 }  // namespace
 
-int push_term(lua_State* L, Term term) {
-    auto made = Excitation::make(std::move(term));
+int push_term(lua_State* L, model::Term term) {
+    auto made = model::Excitation::make(std::move(term));
     if (!made) {
-        raise(L, "excitation." + made.error().sentence);
+        lua::raise(L, "excitation." + made.error().sentence);
     }
-    push(L, std::move(made).value());
+    lua::push(L, std::move(made).value());
     return 1;
 }
 
 int constant(lua_State* L) {
-    const Options o(L, 1, "excitation.constant", "excitation.constant{ level = 1 }", {"level"});
-    return push_term(L, Constant{o.number("level")});
+    const lua::Options o(L, 1, "excitation.constant", "excitation.constant{ level = 1 }", {"level"});
+    return push_term(L, model::Constant{o.number("level")});
 }
 
 int harmonic(lua_State* L) {
-    const Options o(L, 1, "excitation.harmonic", "excitation.harmonic{ amplitude = 1, frequency = 1 }",
-                    {"amplitude", "frequency", "omega", "phase"});
-    return push_term(L, Harmonic{o.number("amplitude", 1), omega_of(o), o.number("phase", 0)});
+    const lua::Options o(L, 1, "excitation.harmonic", "excitation.harmonic{ amplitude = 1, frequency = 1 }",
+                         {"amplitude", "frequency", "omega", "phase"});
+    return push_term(L, model::Harmonic{o.number("amplitude", 1), omega_of(o), o.number("phase", 0)});
 }
 
 int step(lua_State* L) {
-    const Options o(L, 1, "excitation.step", "excitation.step{ level = 1, at = 2 }", {"level", "at"});
-    return push_term(L, Step{o.number("level", 1), o.number("at", 0)});
+    const lua::Options o(L, 1, "excitation.step", "excitation.step{ level = 1, at = 2 }", {"level", "at"});
+    return push_term(L, model::Step{o.number("level", 1), o.number("at", 0)});
 }
 
 int pulse(lua_State* L) {
-    const Options o(L, 1, "excitation.pulse", "excitation.pulse{ at = 1, width = 0.2 }", {"amplitude", "at", "width"});
-    return push_term(L, Pulse{o.number("amplitude", 1), o.number("at", 0), o.number("width")});
+    const lua::Options o(L, 1, "excitation.pulse", "excitation.pulse{ at = 1, width = 0.2 }",
+                         {"amplitude", "at", "width"});
+    return push_term(L, model::Pulse{o.number("amplitude", 1), o.number("at", 0), o.number("width")});
 }
 
 int half_sine(lua_State* L) {
-    const Options o(L, 1, "excitation.half_sine", "excitation.half_sine{ at = 1, width = 0.2 }",
-                    {"amplitude", "at", "width"});
-    return push_term(L, HalfSine{o.number("amplitude", 1), o.number("at", 0), o.number("width")});
+    const lua::Options o(L, 1, "excitation.half_sine", "excitation.half_sine{ at = 1, width = 0.2 }",
+                         {"amplitude", "at", "width"});
+    return push_term(L, model::HalfSine{o.number("amplitude", 1), o.number("at", 0), o.number("width")});
 }
 
 int ramp(lua_State* L) {
-    const Options o(L, 1, "excitation.ramp", "excitation.ramp{ slope = 2, at = 1 }", {"slope", "at", "width"});
-    return push_term(L, Ramp{o.number("slope", 1), o.number("at", 0), o.extended_number("width", never)});
+    const lua::Options o(L, 1, "excitation.ramp", "excitation.ramp{ slope = 2, at = 1 }", {"slope", "at", "width"});
+    return push_term(L, model::Ramp{o.number("slope", 1), o.number("at", 0), o.extended_number("width", model::never)});
 }
 
 int square(lua_State* L) {
-    const Options o(L, 1, "excitation.square", "excitation.square{ period = 2 }",
-                    {"amplitude", "period", "frequency", "duty", "at"});
-    return push_term(L, Square{o.number("amplitude", 1), period_of(o), o.number("duty", 0.5), o.number("at", 0)});
+    const lua::Options o(L, 1, "excitation.square", "excitation.square{ period = 2 }",
+                         {"amplitude", "period", "frequency", "duty", "at"});
+    return push_term(L,
+                     model::Square{o.number("amplitude", 1), period_of(o), o.number("duty", 0.5), o.number("at", 0)});
 }
 
 int sawtooth(lua_State* L) {
-    const Options o(L, 1, "excitation.sawtooth", "excitation.sawtooth{ period = 2 }",
-                    {"amplitude", "period", "frequency", "at"});
-    return push_term(L, Sawtooth{o.number("amplitude", 1), period_of(o), o.number("at", 0)});
+    const lua::Options o(L, 1, "excitation.sawtooth", "excitation.sawtooth{ period = 2 }",
+                         {"amplitude", "period", "frequency", "at"});
+    return push_term(L, model::Sawtooth{o.number("amplitude", 1), period_of(o), o.number("at", 0)});
 }
 
 int triangle(lua_State* L) {
-    const Options o(L, 1, "excitation.triangle", "excitation.triangle{ period = 2 }",
-                    {"amplitude", "period", "frequency", "at"});
-    return push_term(L, Triangle{o.number("amplitude", 1), period_of(o), o.number("at", 0)});
+    const lua::Options o(L, 1, "excitation.triangle", "excitation.triangle{ period = 2 }",
+                         {"amplitude", "period", "frequency", "at"});
+    return push_term(L, model::Triangle{o.number("amplitude", 1), period_of(o), o.number("at", 0)});
 }
 
 int chirp(lua_State* L) {
-    const Options o(L, 1, "excitation.chirp", "excitation.chirp{ from = 0.2, to = 2, duration = 20 }",
-                    {"amplitude", "from", "to", "duration", "at", "phase"});
-    return push_term(L, Chirp{o.number("amplitude", 1), o.number("from"), o.number("to"), o.number("duration"),
-                              o.number("at", 0), o.number("phase", 0)});
+    const lua::Options o(L, 1, "excitation.chirp", "excitation.chirp{ from = 0.2, to = 2, duration = 20 }",
+                         {"amplitude", "from", "to", "duration", "at", "phase"});
+    return push_term(L, model::Chirp{o.number("amplitude", 1), o.number("from"), o.number("to"), o.number("duration"),
+                                     o.number("at", 0), o.number("phase", 0)});
 }
 
 int exponential(lua_State* L) {
-    const Options o(L, 1, "excitation.exponential", "excitation.exponential{ amplitude = 2, tau = 0.5 }",
-                    {"amplitude", "tau", "at"});
-    return push_term(L, Exponential{o.number("amplitude", 1), o.number("tau"), o.number("at", 0)});
+    const lua::Options o(L, 1, "excitation.exponential", "excitation.exponential{ amplitude = 2, tau = 0.5 }",
+                         {"amplitude", "tau", "at"});
+    return push_term(L, model::Exponential{o.number("amplitude", 1), o.number("tau"), o.number("at", 0)});
 }
 
 int polynomial(lua_State* L) {
-    const Options o(L, 1, "excitation.polynomial", "excitation.polynomial{ coefficients = { 1, 0.5 } }",
-                    {"coefficients", "at"});
+    const lua::Options o(L, 1, "excitation.polynomial", "excitation.polynomial{ coefficients = { 1, 0.5 } }",
+                         {"coefficients", "at"});
     if (!o.has("coefficients")) {
         o.missing("coefficients");
     }
-    return push_term(L, Polynomial{o.numbers("coefficients"), o.number("at", 0)});
+    return push_term(L, model::Polynomial{o.numbers("coefficients"), o.number("at", 0)});
 }
 
-}  // namespace dinal::excitation_functions
+}  // namespace dinal::api::excitation_functions

@@ -7,16 +7,16 @@
 #include <cctype>
 
 #include "files/file.hpp"
-#include "plots/gnuplot.hpp"
-#include "plots/screen.hpp"
 #include "lua/external_memory.hpp"
 #include "lua/interrupt.hpp"
 #include "lua/memory_limit.hpp"
+#include "plots/gnuplot.hpp"
+#include "plots/screen.hpp"
 
-namespace dinal {
+namespace dinal::api {
 namespace {
 
-Range asked_range(const Options& options, std::string_view name, bool logarithmic) {
+plots::Interval asked_range(const lua::Options& options, std::string_view name, bool logarithmic) {
     const std::vector<double> ends = options.numbers(name);
     if (ends.size() != 2 || !(ends[0] < ends[1])) {
         options.fail(fmt::format("{} must be two increasing numbers such as {{ 0, 10 }}", name));
@@ -26,7 +26,7 @@ Range asked_range(const Options& options, std::string_view name, bool logarithmi
             fmt::format("{} = {{ {:.6g}, {:.6g} }} must be positive on a logarithmic axis", name, ends[0], ends[1]));
     }
     // So far apart, or so close together, that fractions of the axis could not be told.
-    if (!(ends[1] - ends[0] <= 1e300) || ends[1] - ends[0] < shortest_axis ||
+    if (!(ends[1] - ends[0] <= 1e300) || ends[1] - ends[0] < plots::shortest_axis ||
         ends[1] - ends[0] < 1e-13 * std::max(std::fabs(ends[0]), std::fabs(ends[1]))) {
         options.fail(
             fmt::format("{} = {{ {}, {} }} can not be drawn: its ends must differ by more than 1e-13 of their size, by "
@@ -37,7 +37,7 @@ Range asked_range(const Options& options, std::string_view name, bool logarithmi
 }
 
 /// xticks = 0.5: a tick at each multiple of it; xticks = { 0, 1, 4 }: these.
-void set_ticks(lua_State* L, const Options& options, std::string_view name, Axis& axis) {
+void set_ticks(lua_State* L, const lua::Options& options, std::string_view name, plots::Axis& axis) {
     if (!options.has(name)) {
         return;
     }
@@ -58,7 +58,7 @@ void set_ticks(lua_State* L, const Options& options, std::string_view name, Axis
     }
 }
 
-void set_axis(lua_State* L, const Options& options, char letter, Axis& axis) {
+void set_axis(lua_State* L, const lua::Options& options, char letter, plots::Axis& axis) {
     const auto name = [letter](std::string_view rest) { return letter + std::string(rest); };
     axis.logarithmic = options.boolean(name("log"), axis.logarithmic);
     if (options.has(name("label"))) {
@@ -70,7 +70,7 @@ void set_axis(lua_State* L, const Options& options, char letter, Axis& axis) {
     set_ticks(L, options, name("ticks"), axis);
 }
 
-int whole(const Options& options, std::string_view name, int otherwise, int least, int most) {
+int whole(const lua::Options& options, std::string_view name, int otherwise, int least, int most) {
     if (!options.has(name)) {
         return otherwise;
     }
@@ -83,18 +83,19 @@ int whole(const Options& options, std::string_view name, int otherwise, int leas
 }
 
 /// As wide as the screen, but no wider than one can overlook, and so high that what was typed still stands above it.
-TextFormat asked_format(const Options& options, bool phase) {
-    const Screen seen = screen();
+plots::TextFormat asked_format(const lua::Options& options, bool phase) {
+    const plots::Screen seen = plots::screen();
     constexpr int widest = 120;
-    TextFormat format;
+    plots::TextFormat format;
     format.columns = whole(options, "width", std::clamp(seen.columns - 1, 20, widest), 20, 1000);
     format.rows = whole(options, "height", std::clamp(seen.rows - 2, 10, phase ? 40 : 24), 5, 500);
-    format.charset = options.boolean("ascii", seen.charset == Charset::ascii) ? Charset::ascii : Charset::braille;
+    format.charset = options.boolean("ascii", seen.charset == plots::Charset::ascii) ? plots::Charset::ascii
+                                                                                     : plots::Charset::braille;
     format.colours = seen.colours;
     return format;
 }
 
-PaperSize asked_size(const Options& options) {
+plots::PaperSize asked_size(const lua::Options& options) {
     if (!options.has("size")) {
         return {};
     }
@@ -108,7 +109,7 @@ PaperSize asked_size(const Options& options) {
 
 enum class FileKind { svg, png, pdf, gp, txt };
 
-FileKind kind_of(const Options& options, std::string_view file) {
+FileKind kind_of(const lua::Options& options, std::string_view file) {
     constexpr std::array<std::string_view, 5> endings{".svg", ".png", ".pdf", ".gp", ".txt"};
     std::string ending(file.substr(std::min(file.rfind('.'), file.size())));
     std::transform(ending.begin(), ending.end(), ending.begin(),
@@ -121,48 +122,51 @@ FileKind kind_of(const Options& options, std::string_view file) {
     return static_cast<FileKind>(known - endings.begin());
 }
 
-Expected<std::string> content(const std::vector<Figure>& figures, FileKind kind, PaperSize size, TextFormat format) {
+text::Expected<std::string> content(const std::vector<plots::Figure>& figures, FileKind kind, plots::PaperSize size,
+                                    plots::TextFormat format) {
     if (kind == FileKind::txt) {
         format.colours = false;
-        return text_plot(figures, format);
+        return plots::text_plot(figures, format);
     }
     if (kind == FileKind::gp) {
-        return gnuplot_file(figures, size);
+        return plots::gnuplot_file(figures, size);
     }
-    const Terminal terminal = kind == FileKind::svg   ? Terminal::svg
-                              : kind == FileKind::png ? Terminal::png
-                                                      : Terminal::pdf;
-    return run_gnuplot(gnuplot_input(figures, terminal, size),
-                       {.go_on = [] { return !interrupt_requested(); },
-                        .memory = memory_limit() == 0 ? 0 : std::max<std::size_t>(memory_left(), 1)});
+    const plots::Terminal terminal = kind == FileKind::svg   ? plots::Terminal::svg
+                                     : kind == FileKind::png ? plots::Terminal::png
+                                                             : plots::Terminal::pdf;
+    return plots::run_gnuplot(plots::gnuplot_input(figures, terminal, size),
+                              {.go_on = [] { return !lua::interrupt_requested(); },
+                               .memory = lua::memory_limit() == 0 ? 0 : std::max<std::size_t>(lua::memory_left(), 1)});
 }
 
 template <class T>
-T value_or_fail(const Options& options, Expected<T> expected) {
+T value_or_fail(const lua::Options& options, text::Expected<T> expected) {
     if (!expected) {
         options.fail(expected.error().sentence);
     }
     return std::move(expected).value();
 }
 
-void write_picture(lua_State* L, const Options& options, const std::vector<Figure>& figures, const TextFormat& format) {
+void write_picture(lua_State* L, const lua::Options& options, const std::vector<plots::Figure>& figures,
+                   const plots::TextFormat& format) {
     const std::string name = options.text("file");
     const FileKind kind = kind_of(options, name);
-    const PaperSize size = asked_size(options);
-    OutputFile file = value_or_fail(options, OutputFile::create(name));  // before the work that may be in vain
+    const plots::PaperSize size = asked_size(options);
+    files::OutputFile file =
+        value_or_fail(options, files::OutputFile::create(name));  // before the work that may be in vain
     const auto bytes = content(figures, kind, size, format);
-    if (interrupt_requested()) {
-        raise_interrupted(L);
+    if (lua::interrupt_requested()) {
+        lua::raise_interrupted(L);
     }
     file.write(value_or_fail(options, bytes));
     value_or_fail(options, file.commit());
 }
 
 /// What they may keep alive outside of Lua.
-std::size_t bytes_of(const std::vector<Figure>& figures) {
+std::size_t bytes_of(const std::vector<plots::Figure>& figures) {
     std::size_t numbers = 0;
-    for (const Figure& figure : figures) {
-        for (const Curve& curve : figure.curves) {
+    for (const plots::Figure& figure : figures) {
+        for (const plots::Curve& curve : figure.curves) {
             numbers += curve.x.values.size() + curve.y.values.size();
         }
     }
@@ -170,7 +174,8 @@ std::size_t bytes_of(const std::vector<Figure>& figures) {
 }
 
 /// A user's ticks must be few enough to be told apart.
-void check_ticks(const Options& options, std::string_view name, const Axis& axis, const Scale& scale) {
+void check_ticks(const lua::Options& options, std::string_view name, const plots::Axis& axis,
+                 const plots::Scale& scale) {
     constexpr double most = 200;
     const double count =
         axis.division ? scale.range().length() / *axis.division : static_cast<double>(axis.ticks.size());
@@ -183,7 +188,7 @@ void check_ticks(const Options& options, std::string_view name, const Axis& axis
 
 }  // namespace
 
-void apply_options(lua_State* L, const Options& options, Figure& figure) {
+void apply_options(lua_State* L, const lua::Options& options, plots::Figure& figure) {
     if (options.has("title")) {
         figure.title = options.text("title");
     }
@@ -192,7 +197,7 @@ void apply_options(lua_State* L, const Options& options, Figure& figure) {
     figure.equal = options.boolean("equal", figure.equal);
     figure.axes = options.boolean("axes", figure.axes);
     if (options.has("xticks") || options.has("yticks")) {
-        const View view = view_of(figure);
+        const plots::View view = plots::view_of(figure);
         check_ticks(options, "xticks", figure.x, view.x);
         check_ticks(options, "yticks", figure.y, view.y);
     }
@@ -201,9 +206,10 @@ void apply_options(lua_State* L, const Options& options, Figure& figure) {
     }
 }
 
-int deliver(lua_State* L, const Options& options, std::vector<Figure> figures) {
-    const bool phase = std::any_of(figures.begin(), figures.end(), [](const Figure& figure) { return figure.equal; });
-    const TextFormat format = asked_format(options, phase);
+int deliver(lua_State* L, const lua::Options& options, std::vector<plots::Figure> figures) {
+    const bool phase =
+        std::any_of(figures.begin(), figures.end(), [](const plots::Figure& figure) { return figure.equal; });
+    const plots::TextFormat format = asked_format(options, phase);
     const bool show = options.boolean("show", true);
     if (options.has("file")) {
         if (!show) {
@@ -217,23 +223,23 @@ int deliver(lua_State* L, const Options& options, std::vector<Figure> figures) {
     }
     if (!show) {
         const std::size_t bytes = bytes_of(figures);
-        push(L, Picture{std::move(figures), format});
-        note_external_memory(L, bytes);
+        lua::push(L, Picture{std::move(figures), format});
+        lua::note_external_memory(L, bytes);
         return 1;
     }
-    const std::string text = text_plot(figures, format);
+    const std::string text = plots::text_plot(figures, format);
     lua_writestring(text.data(), text.size());  // as print() does
     return 0;
 }
 
 std::string text_of_picture(const Picture& picture) {
-    TextFormat format = picture.format;
+    plots::TextFormat format = picture.format;
     format.colours = false;
-    std::string text = text_plot(picture.figures, format);
+    std::string text = plots::text_plot(picture.figures, format);
     if (text.ends_with('\n')) {
         text.pop_back();
     }
     return text;
 }
 
-}  // namespace dinal
+}  // namespace dinal::api

@@ -4,16 +4,16 @@
 #include <string>
 #include <vector>
 
+#include "lua/options.hpp"
 #include "plots/figure.hpp"
 #include "plots/gnuplot_script.hpp"
 #include "plots/text_plot.hpp"
-#include "lua/options.hpp"
 
-namespace dinal {
+namespace dinal::api {
 
 struct Picture {
-    std::vector<Figure> figures;
-    TextFormat format;
+    std::vector<plots::Figure> figures;
+    plots::TextFormat format;
 };
 
 /// Options of every call that draws: for the parts of a figure, and for where it goes.
@@ -22,12 +22,12 @@ struct Picture {
 #define DINAL_TARGET_OPTIONS "file", "size", "width", "height", "ascii", "show"
 
 /// Changes the figure as the options say.
-void apply_options(lua_State* L, const Options& options, Figure& figure);
+void apply_options(lua_State* L, const lua::Options& options, plots::Figure& figure);
 
 /// Prints, writes the file, or with show = false leaves the picture on the stack; returns the number of values left.
-int deliver(lua_State* L, const Options& options, std::vector<Figure> figures);
+int deliver(lua_State* L, const lua::Options& options, std::vector<plots::Figure> figures);
 
 /// The text of the picture without the last line end.
 std::string text_of_picture(const Picture& picture);
 
-}  // namespace dinal
+}  // namespace dinal::api

@@ -3,13 +3,13 @@
 
 #include "lua/bind.hpp"
 
-namespace dinal {
+namespace dinal::api {
 
 /// Defined in bind_plot.cpp.
 int plot_run(lua_State* L);
 int phase_plot_run(lua_State* L);
 
-inline constexpr Doc plot_doc{
+inline constexpr lua::Doc plot_doc{
     "plot{ { x, y, label, style, dashes, colour, base }, ..., title, xlabel, ylabel, xlim, ylim, xticks, yticks, "
     "xlog, ylog, equal, axes, file, size, width, height, ascii, show }",
     "Draws curves, each a table with two vectors (or tables) of numbers; what is not finite is a gap. style is "
@@ -36,7 +36,7 @@ inline constexpr Doc plot_doc{
     "-->   +--+--------------+-------------+--\n"
     "-->     -2              0             2"};
 
-inline constexpr Doc plot_run_doc{
+inline constexpr lua::Doc plot_run_doc{
     "run:plot{ x, y, title, xlabel, ylabel, xlim, ylim, xticks, yticks, xlog, ylog, equal, axes, file, size, "
     "width, height, ascii, show }",
     "Draws columns over a column: without options theta, and M/k when there is an excitation, over t, with bars "
@@ -56,7 +56,7 @@ inline constexpr Doc plot_run_doc{
     "-->   ++------------+-------------+------------+------------+\n"
     "-->    0            1             2            3            4 t"};
 
-inline constexpr Doc phase_plot_run_doc{
+inline constexpr lua::Doc phase_plot_run_doc{
     "run:phase_plot{ title, xlabel, ylabel, xlim, ylim, xticks, yticks, axes, file, size, width, height, ascii, "
     "show }",
     "Draws the phase plane, velocity/omega0 over theta, one to one: circles about the origin are lines of equal "
@@ -78,4 +78,4 @@ inline constexpr Doc phase_plot_run_doc{
     "-->                 0          1\n"
     "-->             theta, rad"};
 
-}  // namespace dinal
+}  // namespace dinal::api

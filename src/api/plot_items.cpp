@@ -5,42 +5,42 @@
 #include <cmath>
 #include <memory>
 
-#include "lua/options.hpp"
 #include "api/picture.hpp"
+#include "lua/options.hpp"
 #include "lua/vector.hpp"
 
-namespace dinal {
+namespace dinal::api {
 namespace {
 
-Numbers numbers_on_top(lua_State* L, std::string_view what) {
-    if (const auto* vector = test<Vector>(L, -1)) {
-        const auto kept = std::make_shared<const Vector>(*vector);  // a view; no number is copied
+plots::Numbers numbers_on_top(lua_State* L, std::string_view what) {
+    if (const auto* vector = lua::test<lua::Vector>(L, -1)) {
+        const auto kept = std::make_shared<const lua::Vector>(*vector);  // a view; no number is copied
         return {kept, kept->values()};
     }
     if (!lua_istable(L, -1)) {
-        raise(L, fmt::format("{} must be a vector or a table of numbers, got {}", what, describe(L, -1)));
+        lua::raise(L, fmt::format("{} must be a vector or a table of numbers, got {}", what, lua::describe(L, -1)));
     }
     std::vector<double> values(lua_rawlen(L, -1));
     for (std::size_t i = 0; i < values.size(); ++i) {
         if (lua_rawgeti(L, -1, static_cast<lua_Integer>(i) + 1) != LUA_TNUMBER) {
-            raise(L, fmt::format("{}[{}] must be a number, got {}", what, i + 1, describe(L, -1)));
+            lua::raise(L, fmt::format("{}[{}] must be a number, got {}", what, i + 1, lua::describe(L, -1)));
         }
         values[i] = lua_tonumber(L, -1);  // nan is a gap
         lua_pop(L, 1);
     }
-    return Numbers::own(std::move(values));
+    return plots::Numbers::own(std::move(values));
 }
 
-Curve curve_with_options(lua_State* L, int item, const std::string& call) {
+plots::Curve curve_with_options(lua_State* L, int item, const std::string& call) {
     push_named(L, item, 2);
-    const Options options(L, lua_gettop(L), call, "{ x, y, label = \"theta\", style = \"points\" }",
-                          {"label", "style", "dashes", "colour", "base"});
-    Curve curve;
+    const lua::Options options(L, lua_gettop(L), call, "{ x, y, label = \"theta\", style = \"points\" }",
+                               {"label", "style", "dashes", "colour", "base"});
+    plots::Curve curve;
     if (options.has("label")) {
         curve.label = options.text("label");
     }
-    curve.style = static_cast<Style>(options.choice("style", {"line", "points", "fill"}, 0));
-    curve.dashes = static_cast<Dashes>(options.choice("dashes", {"automatic", "solid", "dashed", "dotted"}, 0));
+    curve.style = static_cast<plots::Style>(options.choice("style", {"line", "points", "fill"}, 0));
+    curve.dashes = static_cast<plots::Dashes>(options.choice("dashes", {"automatic", "solid", "dashed", "dotted"}, 0));
     const double colour = options.number("colour", 0);
     if (colour != std::floor(colour) || colour < 0 || colour > 7) {
         options.fail(fmt::format("colour = {:.6g} must be a whole number from 1 to 7", colour));
@@ -56,28 +56,28 @@ Curve curve_with_options(lua_State* L, int item, const std::string& call) {
 }
 
 /// The curve that the table on the top of the stack describes; the table stays.
-Curve curve_on_top(lua_State* L, const std::string& call) {
+plots::Curve curve_on_top(lua_State* L, const std::string& call) {
     const int item = lua_gettop(L);
-    Curve curve = curve_with_options(L, item, call);
+    plots::Curve curve = curve_with_options(L, item, call);
     const auto vector = [L, item, &call](lua_Integer place, std::string_view name) {
         lua_rawgeti(L, item, place);
-        Numbers numbers = numbers_on_top(L, fmt::format("{}: {}", call, name));
+        plots::Numbers numbers = numbers_on_top(L, fmt::format("{}: {}", call, name));
         lua_pop(L, 1);
         return numbers;
     };
     curve.x = vector(1, "x");
     curve.y = vector(2, "y");
-    const auto same_length = [&](const Numbers& numbers, std::string_view name) {
+    const auto same_length = [&](const plots::Numbers& numbers, std::string_view name) {
         if (numbers.values.size() != curve.x.values.size()) {
-            raise(L, fmt::format("{}: x has {} numbers, but {} has {}", call, curve.x.values.size(), name,
-                                 numbers.values.size()));
+            lua::raise(L, fmt::format("{}: x has {} numbers, but {} has {}", call, curve.x.values.size(), name,
+                                      numbers.values.size()));
         }
     };
     same_length(curve.y, "y");
     if (curve.base) {
         same_length(*curve.base, "base");
-        if (curve.style != Style::fill) {
-            raise(L, call + ": base is the other edge of a fill; add style = \"fill\"");
+        if (curve.style != plots::Style::fill) {
+            lua::raise(L, call + ": base is the other edge of a fill; add style = \"fill\"");
         }
     }
     return curve;
@@ -114,17 +114,17 @@ PlotItems plot_items(lua_State* L, int table) {
     const auto count = static_cast<lua_Integer>(lua_rawlen(L, table));
     for (lua_Integer i = 1; i <= count; ++i) {
         lua_rawgeti(L, table, i);
-        if (const auto* picture = test<Picture>(L, -1)) {
+        if (const auto* picture = lua::test<Picture>(L, -1)) {
             items.panels.insert(items.panels.end(), picture->figures.begin(), picture->figures.end());
         } else if (is_table_of_items(L)) {
             items.curves.push_back(curve_on_top(L, fmt::format("plot: curve {}", i)));
         } else {
-            raise(L, fmt::format("plot: item {} must be a curve {{ x, y }} or a picture, got {}; for example {}", i,
-                                 describe(L, -1), plot_example));
+            lua::raise(L, fmt::format("plot: item {} must be a curve {{ x, y }} or a picture, got {}; for example {}",
+                                      i, lua::describe(L, -1), plot_example));
         }
         lua_pop(L, 1);
     }
     return items;
 }
 
-}  // namespace dinal
+}  // namespace dinal::api

@@ -7,13 +7,13 @@
 
 #include "plots/figure.hpp"
 
-namespace dinal {
+namespace dinal::api {
 
 inline constexpr std::string_view plot_example = "plot{ { t, theta, label = \"theta\" }, xlabel = \"t\" }";
 
 struct PlotItems {
-    std::vector<Curve> curves;
-    std::vector<Figure> panels;  ///< of pictures
+    std::vector<plots::Curve> curves;
+    std::vector<plots::Figure> panels;  ///< of pictures
 };
 
 /// Raises when something in the list of the table at `table` is neither.
@@ -22,4 +22,4 @@ PlotItems plot_items(lua_State* L, int table);
 /// Copies the table at `from` without its first `listed` places to a new table on the top, where Options can check it.
 void push_named(lua_State* L, int from, lua_Integer listed);
 
-}  // namespace dinal
+}  // namespace dinal::api

@@ -6,18 +6,18 @@
 #include <string>
 #include <vector>
 
-#include "motion/trajectory.hpp"
 #include "lua/bind.hpp"
 #include "lua/memory_limit.hpp"
+#include "motion/trajectory.hpp"
 #include "source/origin.hpp"
 
-namespace dinal {
+namespace dinal::api {
 
 struct Run {
-    Trajectory trajectory;
-    std::optional<Origin> origin = {};       ///< none when it was read from a file
-    std::vector<std::string> comments = {};  ///< of the file it was read from
-    MemoryCharge rows = {};                  ///< of the trajectory
+    motion::Trajectory trajectory;
+    std::optional<source::Origin> origin = {};  ///< none when it was read from a file
+    std::vector<std::string> comments = {};     ///< of the file it was read from
+    lua::MemoryCharge rows = {};                ///< of the trajectory
 };
 
 // Shared, because every column that Lua takes out of a run is a view that keeps the whole run alive.
@@ -35,4 +35,4 @@ int energy_of_run(lua_State* L);
 /// run:explain(), in explain_run.cpp.
 int explain_run(lua_State* L);
 
-}  // namespace dinal
+}  // namespace dinal::api

@@ -4,20 +4,21 @@
 #include <algorithm>
 #include <cctype>
 
+#include "api/run.hpp"
 #include "files/csv.hpp"
 #include "files/record1989.hpp"
 #include "lua/options.hpp"
-#include "api/run.hpp"
 
-namespace dinal {
+namespace dinal::api {
 
 namespace {
 
 constexpr const char* example = "run:save(\"run.csv\", { columns = { \"t\", \"theta\" } })";
 
 /// The columns asked for by `columns = { name or number, ... }`, all without it.
-std::vector<NamedColumn> asked_columns(lua_State* L, const Options& options, const Trajectory& trajectory) {
-    std::vector<NamedColumn> all = named_columns(trajectory.names, trajectory.rows);
+std::vector<files::NamedColumn> asked_columns(lua_State* L, const lua::Options& options,
+                                              const motion::Trajectory& trajectory) {
+    std::vector<files::NamedColumn> all = files::named_columns(trajectory.names, trajectory.rows);
     if (!options.has("columns")) {
         return all;
     }
@@ -25,15 +26,15 @@ std::vector<NamedColumn> asked_columns(lua_State* L, const Options& options, con
     if (!lua_istable(L, -1) || lua_rawlen(L, -1) == 0) {
         options.wrong("columns", "a list such as { \"t\", \"theta\" }");
     }
-    std::vector<NamedColumn> asked;
+    std::vector<files::NamedColumn> asked;
     for (lua_Integer i = 1; i <= static_cast<lua_Integer>(lua_rawlen(L, -1)); ++i) {
         const bool named = lua_rawgeti(L, -1, i) == LUA_TSTRING;
         if (!named && lua_isinteger(L, -1) == 0) {
             options.fail(
-                fmt::format("columns[{}] must be the name or the number of a column, got {}", i, describe(L, -1)));
+                fmt::format("columns[{}] must be the name or the number of a column, got {}", i, lua::describe(L, -1)));
         }
-        const auto column = named ? find_column(trajectory.names, std::string_view(lua_tostring(L, -1)))
-                                  : find_column(trajectory.names, std::int64_t{lua_tointeger(L, -1)});
+        const auto column = named ? files::find_column(trajectory.names, std::string_view(lua_tostring(L, -1)))
+                                  : files::find_column(trajectory.names, std::int64_t{lua_tointeger(L, -1)});
         if (!column) {
             options.fail(column.error().sentence);
         }
@@ -44,30 +45,32 @@ std::vector<NamedColumn> asked_columns(lua_State* L, const Options& options, con
     return asked;
 }
 
-Expected<Written> write_record(const std::string& file, const Run& run) {
+text::Expected<files::Written> write_record(const std::string& file, const Run& run) {
     if (run.origin) {
-        return write_record1989(file, run.trajectory, run.origin->system);
+        return files::write_record1989(file, run.trajectory, run.origin->system);
     }
-    if (run.trajectory.names == record1989_names()) {
-        return write_record1989(file, run.trajectory.rows);
+    if (run.trajectory.names == files::record1989_names()) {
+        return files::write_record1989(file, run.trajectory.rows);
     }
-    return Error{"a .dat file needs the system, which a run that was read from a file no longer has; save it as .csv"};
+    return text::Error{
+        "a .dat file needs the system, which a run that was read from a file no longer has; save it as .csv"};
 }
 
-Expected<Written> write(lua_State* L, const Options& options, const std::string& file, const Run& run) {
+text::Expected<files::Written> write(lua_State* L, const lua::Options& options, const std::string& file,
+                                     const Run& run) {
     std::string ending = file.substr(std::min(file.rfind('.'), file.size()));
     std::transform(ending.begin(), ending.end(), ending.begin(),
                    [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
     if (ending == ".csv") {
-        return write_csv(file, asked_columns(L, options, run.trajectory),
-                         run.origin ? repeat_lines(*run.origin) : run.comments);
+        return files::write_csv(file, asked_columns(L, options, run.trajectory),
+                                run.origin ? source::repeat_lines(*run.origin) : run.comments);
     }
     if (ending != ".dat") {
-        return Error{
+        return text::Error{
             fmt::format("the name '{}' must end in .csv (names and numbers) or .dat (the record of 1989)", file)};
     }
     if (options.has("columns")) {
-        return Error{"the record of 1989 always has its six columns; save a choice of columns as .csv"};
+        return text::Error{"the record of 1989 always has its six columns; save a choice of columns as .csv"};
     }
     return write_record(file, run);
 }
@@ -75,12 +78,13 @@ Expected<Written> write(lua_State* L, const Options& options, const std::string&
 }  // namespace
 
 int save_run(lua_State* L) {
-    const RunHandle run = self<RunHandle>(L, 1, "run:save(\"run.csv\")");
+    const RunHandle run = lua::self<RunHandle>(L, 1, "run:save(\"run.csv\")");
     if (lua_type(L, 2) != LUA_TSTRING) {
-        raise(L, "run:save: the name of the file must be a string, got " + describe(L, 2) + "; for example " + example);
+        lua::raise(L, "run:save: the name of the file must be a string, got " + lua::describe(L, 2) + "; for example " +
+                          example);
     }
     const std::string file = lua_tostring(L, 2);
-    const Options options(L, 3, "run:save", example, {"columns"}, true);
+    const lua::Options options(L, 3, "run:save", example, {"columns"}, true);
     const auto written = write(L, options, file, *run);
     if (!written) {
         options.fail(written.error().sentence);
@@ -88,4 +92,4 @@ int save_run(lua_State* L) {
     return 0;
 }
 
-}  // namespace dinal
+}  // namespace dinal::api

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-namespace dinal {
+namespace dinal::api {
 
 TheoryArguments::TheoryArguments(lua_State* L, std::string_view call, std::string_view example,
                                  std::initializer_list<std::string_view> names)
@@ -14,7 +14,7 @@ TheoryArguments::TheoryArguments(lua_State* L, std::string_view call, std::strin
 
 Quantity TheoryArguments::quantity(std::string_view name, const Range& range) {
     options_.push(name);
-    if (const auto* vector = test<Vector>(L_, -1)) {
+    if (const auto* vector = lua::test<lua::Vector>(L_, -1)) {
         lua_pop(L_, 1);  // the table of options holds it on
         check_size(name, vector->size());
         check(name, range, vector->values());
@@ -42,12 +42,12 @@ Quantity TheoryArguments::quantity(std::string_view name, const Range& range, do
     return options_.has(name) ? quantity(name, range) : Quantity(otherwise);
 }
 
-const Oscillator* TheoryArguments::optional_system() const {
+const model::Oscillator* TheoryArguments::optional_system() const {
     if (!options_.has("system")) {
         return nullptr;
     }
     options_.push("system");
-    const auto* system = test<Oscillator>(L_, -1);
+    const auto* system = lua::test<model::Oscillator>(L_, -1);
     if (system == nullptr) {
         options_.wrong("system", "a system such as system{ I = 1, k = 39.5 }");
     }
@@ -55,8 +55,8 @@ const Oscillator* TheoryArguments::optional_system() const {
     return system;
 }
 
-const Oscillator& TheoryArguments::system() const {
-    const Oscillator* system = optional_system();
+const model::Oscillator& TheoryArguments::system() const {
+    const model::Oscillator* system = optional_system();
     if (system == nullptr) {
         options_.missing("system");
     }
@@ -96,4 +96,4 @@ bool TheoryArguments::has_nan(std::size_t i) const {
     return std::any_of(quantities_.begin(), quantities_.end(), [&](const Quantity& x) { return std::isnan(x[i]); });
 }
 
-}  // namespace dinal
+}  // namespace dinal::api

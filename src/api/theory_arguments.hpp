@@ -8,12 +8,12 @@
 #include <string_view>
 #include <vector>
 
-#include "model/oscillator.hpp"
 #include "lua/interrupt.hpp"
 #include "lua/options.hpp"
 #include "lua/vector.hpp"
+#include "model/oscillator.hpp"
 
-namespace dinal {
+namespace dinal::api {
 
 /// What a closed form returns where it does not hold: nil for numbers, nan in a vector.
 inline constexpr double no_value = std::numeric_limits<double>::quiet_NaN();
@@ -45,15 +45,15 @@ public:
     TheoryArguments(lua_State* L, std::string_view call, std::string_view example,
                     std::initializer_list<std::string_view> names);
 
-    [[nodiscard]] const Options& options() const { return options_; }
+    [[nodiscard]] const lua::Options& options() const { return options_; }
 
     /// Vectors and tables of numbers must be equally long. A nan in a vector passes: its result is nan.
     Quantity quantity(std::string_view name, const Range& range);
     Quantity quantity(std::string_view name, const Range& range, double otherwise);
     /// The system that must be there.
-    [[nodiscard]] const Oscillator& system() const;
+    [[nodiscard]] const model::Oscillator& system() const;
     /// system(), or nullptr when there is none.
-    [[nodiscard]] const Oscillator* optional_system() const;
+    [[nodiscard]] const model::Oscillator* optional_system() const;
 
     /// Raises "CALL: NAME[i] = VALUE MUST" for element i from 0 (without [i] when NAME is a number).
     [[noreturn]] void refuse(std::string_view name, std::size_t i, double value, std::string_view must) const;
@@ -75,7 +75,7 @@ private:
     void check(std::string_view name, const Range& range, std::span<const double> values) const;
 
     lua_State* L_;
-    Options options_;
+    lua::Options options_;
     std::deque<std::vector<double>> tables_;  // numbers of Lua tables; a deque does not move them
     std::vector<Quantity> quantities_;
     std::size_t size_ = 1;
@@ -88,14 +88,14 @@ int TheoryArguments::push_results(Function f) const {
     std::array<std::vector<double>, count> columns;
     for (auto& column : columns) column.resize(size_, no_value);
     for (std::size_t i = 0; i < size_; ++i) {
-        if (interrupt_requested()) raise_interrupted(L_);
+        if (lua::interrupt_requested()) lua::raise_interrupted(L_);
         if (has_nan(i)) continue;
         const auto results = f(i);
         for (std::size_t j = 0; j < count; ++j) columns[j][i] = results[j];
     }
     for (auto& column : columns) {
         if (!sized_by_.empty()) {
-            push_vector(L_, std::move(column));
+            lua::push_vector(L_, std::move(column));
         } else if (std::isnan(column[0])) {
             lua_pushnil(L_);
         } else {
@@ -105,4 +105,4 @@ int TheoryArguments::push_results(Function f) const {
     return static_cast<int>(count);
 }
 
-}  // namespace dinal
+}  // namespace dinal::api

@@ -1,13 +1,13 @@
 #include <fmt/format.h>
 
-#include "theory/den_hartog.hpp"
-#include "motion/integrator.hpp"
-#include "theory/theory_forced.hpp"
-#include "theory/theory_steps.hpp"
 #include "api/theory_arguments.hpp"
 #include "api/theory_functions.hpp"
+#include "motion/integrator.hpp"
+#include "theory/den_hartog.hpp"
+#include "theory/theory_forced.hpp"
+#include "theory/theory_steps.hpp"
 
-namespace dinal::theory_functions {
+namespace dinal::api::theory_functions {
 
 namespace {
 
@@ -139,15 +139,15 @@ int stop_boundary(lua_State* L) {
 int step_limit(lua_State* L) {
     TheoryArguments arguments(L, "theory.step_limit", "theory.step_limit{ system = sys, rule = \"rk4\" }",
                               {"system", "rule", "theta0", "velocity0", "Mc"});
-    const Oscillator& system = arguments.system();
+    const model::Oscillator& system = arguments.system();
     const auto rule = arguments.options().choice("rule", {"rk4", "report", "corrected"}, 0);
     const Quantity theta0 = arguments.quantity("theta0", any_number, 0);
     const Quantity velocity0 = arguments.quantity("velocity0", any_number, 0);
     const bool own_torque = !arguments.options().has("Mc");
     const Quantity Mc = arguments.quantity("Mc", not_zero, 0);
     return arguments.push_result([&](std::size_t i) {
-        if (rule == 0) return rk4_stability_limit(system);
-        const State initial{theta0[i], velocity0[i]};
+        if (rule == 0) return motion::rk4_stability_limit(system);
+        const model::State initial{theta0[i], velocity0[i]};
         if (system.kinetic_friction() > 0 && initial.theta == 0 && initial.velocity == 0) {
             arguments.options().fail(
                 "theta0 or velocity0 is needed, because this rule divides by the greatest velocity");
@@ -157,4 +157,4 @@ int step_limit(lua_State* L) {
     });
 }
 
-}  // namespace dinal::theory_functions
+}  // namespace dinal::api::theory_functions

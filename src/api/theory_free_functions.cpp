@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
-#include "theory/theory_free.hpp"
 #include "api/theory_arguments.hpp"
 #include "api/theory_functions.hpp"
+#include "theory/theory_free.hpp"
 
-namespace dinal::theory_functions {
+namespace dinal::api::theory_functions {
 
 namespace {
 
@@ -21,7 +21,7 @@ constexpr Range whole{"must be a whole number, 0 or more",
 
 /// A system set off at t = 0: what time_to_rest{...} and its relatives take.
 struct Start {
-    const Oscillator& system;
+    const model::Oscillator& system;
     Quantity theta0;
     Quantity velocity0;
 
@@ -42,13 +42,13 @@ int free_response_of_system(TheoryArguments& arguments) {
         if (t[i] < 0 && !start.system.frictionless()) {
             arguments.refuse("t", i, t[i], "must not be negative: dry friction does not tell where the mass came from");
         }
-        const State y = start.motion(i).at(t[i]);
+        const model::State y = start.motion(i).at(t[i]);
         return std::array{y.theta, y.velocity};
     });
 }
 
 /// How many extremes extremes{...} returns.
-double asked_count(const Options& options, const FreeMotion& motion) {
+double asked_count(const lua::Options& options, const FreeMotion& motion) {
     constexpr double most = 1e7;
     const double all = motion.extremes();
     if (!options.has("count")) {
@@ -85,16 +85,16 @@ int free_response(lua_State* L) {
     const Quantity velocity0 = arguments.quantity("velocity0", any_number, 0);
     const Quantity t = arguments.quantity("t", any_number);
     return arguments.push_results([&](std::size_t i) {
-        const State y = theory::free_response(omega0[i], zeta[i], {theta0[i], velocity0[i]}, t[i]);
+        const model::State y = theory::free_response(omega0[i], zeta[i], {theta0[i], velocity0[i]}, t[i]);
         return std::array{y.theta, y.velocity};
     });
 }
 
 int extremes(lua_State* L) {
-    const Options options(L, 1, "theory.extremes", "theory.extremes{ system = sys, theta0 = 1 }",
-                          {"system", "theta0", "velocity0", "count"});
+    const lua::Options options(L, 1, "theory.extremes", "theory.extremes{ system = sys, theta0 = 1 }",
+                               {"system", "theta0", "velocity0", "count"});
     options.push("system");
-    const auto* system = test<Oscillator>(L, -1);
+    const auto* system = lua::test<model::Oscillator>(L, -1);
     if (system == nullptr) {
         options.has("system") ? options.wrong("system", "a system such as system{ I = 1, k = 39.5 }")
                               : options.missing("system");
@@ -107,8 +107,8 @@ int extremes(lua_State* L) {
         times[i] = extreme.t;
         angles[i] = extreme.theta;
     }
-    push_vector(L, std::move(times));
-    push_vector(L, std::move(angles));
+    lua::push_vector(L, std::move(times));
+    lua::push_vector(L, std::move(angles));
     return 2;
 }
 
@@ -129,7 +129,7 @@ int rest_position(lua_State* L) {
 int half_cycle(lua_State* L) {
     TheoryArguments arguments(L, "theory.half_cycle", "theory.half_cycle{ X = 1, zeta = 0.1, x_f = 0.05 }",
                               {"X", "zeta", "x_f", "dead_zone", "system", "n"});
-    const Oscillator* system = arguments.optional_system();
+    const model::Oscillator* system = arguments.optional_system();
     for (const char* name : {"zeta", "x_f", "dead_zone"}) {
         if (system != nullptr && arguments.options().has(name)) {
             arguments.options().fail(fmt::format("system excludes {}, which it has of its own", name));
@@ -190,4 +190,4 @@ int identify(lua_State* L) {
     });
 }
 
-}  // namespace dinal::theory_functions
+}  // namespace dinal::api::theory_functions

@@ -3,7 +3,7 @@
 
 #include <lua.hpp>
 
-namespace dinal::theory_functions {
+namespace dinal::api::theory_functions {
 
 // Free motion: theory_free_functions.cpp
 int free_response(lua_State* L);
@@ -30,4 +30,4 @@ int den_hartog_fundamental(lua_State* L);
 int stop_boundary(lua_State* L);
 int step_limit(lua_State* L);
 
-}  // namespace dinal::theory_functions
+}  // namespace dinal::api::theory_functions

@@ -8,7 +8,7 @@
 #include "lua/interrupt.hpp"
 #include "lua/vector.hpp"
 
-namespace dinal::vector_functions {
+namespace dinal::api::vector_functions {
 
 namespace {
 
@@ -17,8 +17,8 @@ template <class Work>
 void for_each_index(lua_State* L, std::size_t n, Work work) {
     constexpr std::size_t block = std::size_t{1} << 16U;
     for (std::size_t begin = 0; begin < n; begin += block) {
-        if (interrupt_requested()) {
-            raise_interrupted(L);
+        if (lua::interrupt_requested()) {
+            lua::raise_interrupted(L);
         }
         const std::size_t end = std::min(n, begin + block);
         for (std::size_t i = begin; i < end; ++i) {
@@ -29,38 +29,38 @@ void for_each_index(lua_State* L, std::size_t n, Work work) {
 
 template <class Function>
 int mapped(lua_State* L, std::string_view call, Function f) {
-    const auto& v = self<Vector>(L, 1, call);
-    std::vector<double> result = new_numbers(L, v.size());
+    const auto& v = lua::self<lua::Vector>(L, 1, call);
+    std::vector<double> result = lua::new_numbers(L, v.size());
     for_each_index(L, v.size(), [&](std::size_t i) { result[i] = f(v.begin()[i]); });
-    push_vector(L, std::move(result));
+    lua::push_vector(L, std::move(result));
     return 1;
 }
 
 /// One side of an operator: a vector, or a number that stands for as many as the other side has.
 struct Operand {
-    const Vector* vector = nullptr;
+    const lua::Vector* vector = nullptr;
     double number = 0;
     double operator[](std::size_t i) const { return vector != nullptr ? vector->begin()[i] : number; }
 };
 
 Operand operand(lua_State* L, int index, const char* symbol) {
-    if (const auto* vector = test<Vector>(L, index)) {
+    if (const auto* vector = lua::test<lua::Vector>(L, index)) {
         return {vector};
     }
     if (lua_type(L, index) != LUA_TNUMBER) {
-        raise(L, fmt::format("a vector {} {} is not possible; the other side must be a number or a vector", symbol,
-                             describe(L, index)));
+        lua::raise(L, fmt::format("a vector {} {} is not possible; the other side must be a number or a vector", symbol,
+                                  lua::describe(L, index)));
     }
     return {nullptr, lua_tonumber(L, index)};
 }
 
 std::size_t common_size(lua_State* L, const Operand& a, const Operand& b, const char* symbol) {
     if (a.vector != nullptr && b.vector != nullptr && a.vector->size() != b.vector->size()) {
-        raise(L, fmt::format("the vectors in v {} w have {} and {} numbers; they must be equally long", symbol,
-                             a.vector->size(), b.vector->size()));
+        lua::raise(L, fmt::format("the vectors in v {} w have {} and {} numbers; they must be equally long", symbol,
+                                  a.vector->size(), b.vector->size()));
     }
     if (a.vector == nullptr && b.vector == nullptr) {  // debug.getmetatable leads here
-        raise(L, fmt::format("x {} y of vectors needs a vector on one side", symbol));
+        lua::raise(L, fmt::format("x {} y of vectors needs a vector on one side", symbol));
     }
     return a.vector != nullptr ? a.vector->size() : b.vector->size();
 }
@@ -69,9 +69,9 @@ template <class Function>
 int combined(lua_State* L, const char* symbol, Function f) {
     const Operand a = operand(L, 1, symbol);
     const Operand b = operand(L, 2, symbol);
-    std::vector<double> result = new_numbers(L, common_size(L, a, b, symbol));
+    std::vector<double> result = lua::new_numbers(L, common_size(L, a, b, symbol));
     for_each_index(L, result.size(), [&](std::size_t i) { result[i] = f(a[i], b[i]); });
-    push_vector(L, std::move(result));
+    lua::push_vector(L, std::move(result));
     return 1;
 }
 
@@ -139,12 +139,12 @@ int less_or_equal(lua_State* L) {
     return holds(L, "<=", [](double a, double b) { return a <= b; });
 }
 int equal(lua_State* L) {
-    const auto* a = test<Vector>(L, 1);
-    const auto* b = test<Vector>(L, 2);
+    const auto* a = lua::test<lua::Vector>(L, 1);
+    const auto* b = lua::test<lua::Vector>(L, 2);
     const bool same =
         a != nullptr && b != nullptr && a->size() == b->size() && std::equal(a->begin(), a->end(), b->begin());
     lua_pushboolean(L, same ? 1 : 0);
     return 1;
 }
 
-}  // namespace dinal::vector_functions
+}  // namespace dinal::api::vector_functions

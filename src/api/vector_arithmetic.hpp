@@ -3,7 +3,7 @@
 
 #include <lua.hpp>
 
-namespace dinal::vector_functions {
+namespace dinal::api::vector_functions {
 
 int sine(lua_State* L);
 int cosine(lua_State* L);
@@ -24,4 +24,4 @@ int less(lua_State* L);
 int less_or_equal(lua_State* L);
 int equal(lua_State* L);
 
-}  // namespace dinal::vector_functions
+}  // namespace dinal::api::vector_functions

@@ -7,12 +7,12 @@
 #include <vector>
 
 #include "errors/excerpt.hpp"
-#include "source/function_source.hpp"
 #include "errors/misspelling.hpp"
 #include "errors/source_text.hpp"
 #include "lua/tokens.hpp"
+#include "source/function_source.hpp"
 
-namespace dinal {
+namespace dinal::errors {
 namespace {
 
 const char memory_key = 0;  // registry key of { error value, suggestion, excerpt, during, raised again }
@@ -124,10 +124,10 @@ void remember_result(lua_State* L, int index) {
     const std::string text = lua_tostring(L, -1);
     const auto message = parse_message(text);
     Remarks remarks;
-    if (const auto function = function_source(L, index); message && function) {
+    if (const auto function = source::function_source(L, index); message && function) {
         const SourceText source{*function, message->line};
-        const std::vector<Token> all = tokens(source.text);
-        const bool returns = std::any_of(all.begin(), all.end(), [](const Token& t) { return t.is("return"); });
+        const std::vector<lua::Token> all = lua::tokens(source.text);
+        const bool returns = std::any_of(all.begin(), all.end(), [](const lua::Token& t) { return t.is("return"); });
         remarks.suggestion =
             message->words.starts_with("M returned nil") && !returns ? "; is the word return missing?" : "";
         remarks.excerpt = excerpt(source, *message, remarks.suggestion);
@@ -152,4 +152,4 @@ void keep_remarks(lua_State* L) {
     lua_pop(L, 1);
 }
 
-}  // namespace dinal
+}  // namespace dinal::errors

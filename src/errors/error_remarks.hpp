@@ -5,7 +5,7 @@
 #include <lua.hpp>
 #include <string>
 
-namespace dinal {
+namespace dinal::errors {
 
 struct Remarks {
     std::string suggestion;  ///< the end of the sentence, "; did you mean 'system'?"
@@ -33,4 +33,4 @@ void remember_time(lua_State* L, double t);
 /// when it then comes out of an outer M.
 void keep_remarks(lua_State* L);
 
-}  // namespace dinal
+}  // namespace dinal::errors

@@ -8,10 +8,10 @@
 #include <optional>
 #include <vector>
 
-#include "terminal/display.hpp"
 #include "lua/tokens.hpp"
+#include "terminal/display.hpp"
 
-namespace dinal {
+namespace dinal::errors {
 namespace {
 
 std::vector<std::string> quoted_words(std::string_view words) {
@@ -41,7 +41,8 @@ std::vector<std::string> suspects(std::string_view words, std::string_view sugge
     }
     if (words.starts_with("there is no ") || words.starts_with("use a colon: ")) {
         const std::string_view name = words.substr(0, words.find_first_of(";{(", 13));
-        for (const Token& token : tokens(name.substr(name.find_first_of(" :") + 1))) {  // the object, then the member
+        for (const lua::Token& token :
+             lua::tokens(name.substr(name.find_first_of(" :") + 1))) {  // the object, then the member
             names.insert(words.starts_with("use") ? names.end() : names.begin(), std::string(token.text));
         }
     }
@@ -53,16 +54,16 @@ std::vector<std::string> suspects(std::string_view words, std::string_view sugge
     }
     const std::size_t head = std::min(words.find(": "), words.find(" needs "));
     if (head != std::string_view::npos) {
-        for (const Token& token : tokens(words.substr(head + 1).substr(0, 60))) {
-            if (token.kind == TokenKind::name && !token.is("needs")) {
+        for (const lua::Token& token : lua::tokens(words.substr(head + 1).substr(0, 60))) {
+            if (token.kind == lua::TokenKind::name && !token.is("needs")) {
                 names.emplace_back(token.text);
                 break;
             }
         }
     }
     const std::string_view call = words.substr(0, words.find_first_of(" ({"));
-    for (const Token& token : tokens(call)) {
-        if (token.kind == TokenKind::name) {
+    for (const lua::Token& token : lua::tokens(call)) {
+        if (token.kind == lua::TokenKind::name) {
             names.insert(names.end(), std::string(token.text));
         }
     }
@@ -76,10 +77,10 @@ struct Mark {
 
 /// Where in the statement the first of the suspects stands. None when nothing is known but the line.
 std::optional<Mark> marked(std::string_view statement, const std::vector<std::string>& names) {
-    const std::vector<Token> all = tokens(statement);
+    const std::vector<lua::Token> all = lua::tokens(statement);
     for (const std::string& name : names) {
-        for (const Token& token : all) {
-            if (token.text == name && token.kind != TokenKind::comment) {
+        for (const lua::Token& token : all) {
+            if (token.text == name && token.kind != lua::TokenKind::comment) {
                 return Mark{token.at, token.text.size()};
             }
         }
@@ -88,23 +89,23 @@ std::optional<Mark> marked(std::string_view statement, const std::vector<std::st
 }
 
 /// The line, cut so that the mark is on the screen, and the mark below it.
-std::string excerpt_of(std::string_view line, int number, Mark mark, const Display& screen) {
-    std::string text = printable(line, screen);
-    mark.at = printable(line.substr(0, mark.at), screen).size();
+std::string excerpt_of(std::string_view line, int number, Mark mark, const terminal::Display& screen) {
+    std::string text = terminal::printable(line, screen);
+    mark.at = terminal::printable(line.substr(0, mark.at), screen).size();
     const std::string head = fmt::format("{:>4} | ", number);
     const std::size_t room = std::max<std::size_t>(screen.width, head.size() + 12) - head.size() - 1;
     std::size_t indent = std::min(text.find_first_not_of(' '), mark.at);
     text.erase(0, indent);
     mark.at -= indent;
-    if (columns(text) > room && mark.at + mark.size > room) {
+    if (terminal::columns(text) > room && mark.at + mark.size > room) {
         const std::size_t cut = std::min(mark.at, mark.at + mark.size + 4 - std::min(room, mark.at + mark.size + 4));
         text = "..." + text.substr(std::min(cut + 3, text.size()));
         mark.at -= std::min(cut, mark.at);
     }
-    while (columns(text) > room) {
+    while (terminal::columns(text) > room) {
         text.pop_back();
     }
-    const std::size_t column = columns(text.substr(0, std::min(mark.at, text.size())));
+    const std::size_t column = terminal::columns(text.substr(0, std::min(mark.at, text.size())));
     const std::size_t size = std::clamp<std::size_t>(mark.size, 1, room > column ? room - column : 1);
     const std::string carets(size, '^');
     return fmt::format("\n{}{}\n     | {}{}{}{}", head, text, std::string(column, ' '), screen.colour ? "\x1b[31m" : "",
@@ -131,7 +132,7 @@ std::string marked_excerpt(std::string_view text, int number, Mark mark) {
         text.remove_prefix(end + 1);
         ++number;
     }
-    return excerpt_of(text.substr(0, text.find('\n')), number, mark, display_of(STDERR_FILENO));
+    return excerpt_of(text.substr(0, text.find('\n')), number, mark, terminal::display_of(STDERR_FILENO));
 }
 
 bool compiles_so_far(lua_State* L, std::string_view text) {
@@ -142,8 +143,8 @@ bool compiles_so_far(lua_State* L, std::string_view text) {
 }
 
 /// The message has the beginning of a malformed number, and of a letter that is not plain its first byte: <\\206>.
-bool may_be(const Token& token, std::string_view near) {
-    return token.text == near || (token.kind == TokenKind::number && token.text.starts_with(near)) ||
+bool may_be(const lua::Token& token, std::string_view near) {
+    return token.text == near || (token.kind == lua::TokenKind::number && token.text.starts_with(near)) ||
            (near.starts_with("<\\") && static_cast<unsigned char>(token.text.front()) >= 0x80);
 }
 
@@ -156,7 +157,7 @@ std::optional<Mark> stumbled_at(lua_State* L, const SourceText& source, const Me
     if (text.starts_with("#!")) {
         text.replace(0, 2, "--");  // Lua skips such a line in files only
     }
-    for (const Token& token : tokens(text)) {
+    for (const lua::Token& token : lua::tokens(text)) {
         const bool candidate = token.line == message.line && !names.empty() && may_be(token, names.front());
         if (candidate && !compiles_so_far(L, std::string_view(text).substr(0, token.end()))) {
             return Mark{token.at, token.text.size()};
@@ -192,4 +193,4 @@ std::string syntax_excerpt(lua_State* L, const SourceText& source, const Message
     return last == std::string_view::npos ? "" : marked_excerpt(line, message.line, {last + 1, 1});
 }
 
-}  // namespace dinal
+}  // namespace dinal::errors

@@ -7,7 +7,7 @@
 
 #include "errors/source_text.hpp"
 
-namespace dinal {
+namespace dinal::errors {
 
 /// "\n  10 | x = sytem{}\n     |     ^^^^^". The mark is found by the names in the message, or in the suggestion of
 /// help_with(). Empty when the line is not there, or was typed just now and no part of it is known to be the culprit.
@@ -16,4 +16,4 @@ std::string excerpt(const SourceText& source, const Message& message, std::strin
 /// The same for a chunk that does not compile.
 std::string syntax_excerpt(lua_State* L, const SourceText& source, const Message& message);
 
-}  // namespace dinal
+}  // namespace dinal::errors

@@ -7,7 +7,7 @@
 
 #include "lua/tokens.hpp"
 
-namespace dinal {
+namespace dinal::errors {
 namespace {
 
 constexpr std::array<std::pair<std::string_view, std::string_view>, 20> foreign_names = {{
@@ -36,12 +36,12 @@ constexpr std::array<std::pair<std::string_view, std::string_view>, 20> foreign_
 constexpr std::array<std::string_view, 8> file_endings = {"csv", "dat", "txt", "svg", "png", "pdf", "gp", "lua"};
 
 /// "k = 0,5" in braces is two entries of a table.
-std::string decimal_comma(std::string_view words, const std::vector<Token>& all) {
+std::string decimal_comma(std::string_view words, const std::vector<lua::Token>& all) {
     if (words.find("named options only") == std::string_view::npos) {
         return "";
     }
     for (std::size_t i = 3; i < all.size(); ++i) {
-        if (all[i].kind == TokenKind::number && all[i - 1].is(",") && all[i - 2].kind == TokenKind::number &&
+        if (all[i].kind == lua::TokenKind::number && all[i - 1].is(",") && all[i - 2].kind == lua::TokenKind::number &&
             all[i - 3].is("=")) {
             return "; a decimal point is a point: " + std::string(all[i - 2].text) + "." + std::string(all[i].text);
         }
@@ -50,12 +50,12 @@ std::string decimal_comma(std::string_view words, const std::vector<Token>& all)
 }
 
 /// run:save(run.csv)
-std::string file_without_quotes(std::string_view words, const std::vector<Token>& all) {
+std::string file_without_quotes(std::string_view words, const std::vector<lua::Token>& all) {
     for (std::size_t i = 2; i < all.size(); ++i) {
         const bool ending = std::find(file_endings.begin(), file_endings.end(), all[i].text) != file_endings.end();
         const std::string key = "'" + std::string(all[i].text) + "'";
         const std::string owner = "'" + std::string(all[i - 2].text) + "'";
-        if (ending && all[i - 1].is(".") && all[i - 2].kind == TokenKind::name &&
+        if (ending && all[i - 1].is(".") && all[i - 2].kind == lua::TokenKind::name &&
             (words.find(key) != std::string_view::npos || words.find(owner) != std::string_view::npos)) {
             return "; the name of a file stands in quotes: \"" + std::string(all[i - 2].text) + "." +
                    std::string(all[i].text) + "\"";
@@ -85,7 +85,7 @@ std::string called_value(std::string_view words) {
 }  // namespace
 
 std::string running_habit(std::string_view words, std::string_view statement) {
-    const std::vector<Token> all = tokens(statement);
+    const std::vector<lua::Token> all = lua::tokens(statement);
     if (words.starts_with("attempt to add a 'string' with a 'string'")) {
         return "; texts are joined with ..";
     }
@@ -103,4 +103,4 @@ std::string foreign_name(std::string_view name) {
     return found == foreign_names.end() ? "" : std::string(found->second);
 }
 
-}  // namespace dinal
+}  // namespace dinal::errors

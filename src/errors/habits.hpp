@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-namespace dinal {
+namespace dinal::errors {
 
 /// The end of a sentence about a chunk that does not compile, "; comparing is ==", or "". `statement` is where the
 /// parser stumbled.
@@ -17,4 +17,4 @@ std::string running_habit(std::string_view words, std::string_view statement);
 /// What to write instead of a global name that other languages have, "; did you mean 'print'?", or "".
 std::string foreign_name(std::string_view name);
 
-}  // namespace dinal
+}  // namespace dinal::errors

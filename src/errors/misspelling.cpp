@@ -5,12 +5,12 @@
 #include <optional>
 #include <utility>
 
-#include "text/suggest.hpp"
-#include "lua/bind.hpp"
 #include "errors/habits.hpp"
+#include "lua/bind.hpp"
 #include "lua/tokens.hpp"
+#include "text/suggest.hpp"
 
-namespace dinal {
+namespace dinal::errors {
 namespace {
 
 constexpr int most_metatables = 10;  // an __index may lead to itself
@@ -38,9 +38,9 @@ bool step_to_index_table(lua_State* L) {
     return lua_istable(L, -1);
 }
 
-std::string likely(std::string_view name, const std::vector<std::string>& names, Likeness likeness) {
+std::string likely(std::string_view name, const std::vector<std::string>& names, text::Likeness likeness) {
     const std::vector<std::string_view> views(names.begin(), names.end());
-    return did_you_mean(name, views, likeness);
+    return text::did_you_mean(name, views, likeness);
 }
 
 /// Calls visit(name) with the value of each local and outer variable of the frame on the top of the stack.
@@ -94,13 +94,14 @@ void push_variable(lua_State* L, lua_Debug* frame, std::string_view wanted) {
 
 /// For "x.y.name" or "x.y:name" in the statement: the names that x.y has.
 std::vector<std::string> siblings(lua_State* L, lua_Debug* frame, std::string_view name, std::string_view statement) {
-    const std::vector<Token> all = tokens(statement);
+    const std::vector<lua::Token> all = lua::tokens(statement);
     for (std::size_t i = 2; i < all.size(); ++i) {
-        if (!all[i].is(name) || !(all[i - 1].is(".") || all[i - 1].is(":")) || all[i - 2].kind != TokenKind::name) {
+        if (!all[i].is(name) || !(all[i - 1].is(".") || all[i - 1].is(":")) ||
+            all[i - 2].kind != lua::TokenKind::name) {
             continue;
         }
         std::size_t first = i - 2;
-        while (first >= 2 && all[first - 1].is(".") && all[first - 2].kind == TokenKind::name) {
+        while (first >= 2 && all[first - 1].is(".") && all[first - 2].kind == lua::TokenKind::name) {
             first -= 2;
         }
         const int top = lua_gettop(L);
@@ -127,14 +128,14 @@ std::string_view named_in(std::string_view words, std::string_view kind) {
 }
 
 /// Names that the statement itself declares: local x, function(x), for x, { x = 1 }.
-bool is_declared(const std::vector<Token>& all, std::string_view name) {
+bool is_declared(const std::vector<lua::Token>& all, std::string_view name) {
     bool declaring = false;
     for (std::size_t i = 0; i < all.size(); ++i) {
-        const Token& token = all[i];
+        const lua::Token& token = all[i];
         declaring = token.is("local") || token.is("for") || token.is("function") ||
-                    (declaring && (token.kind == TokenKind::name || token.is(",") || token.is("(")));
+                    (declaring && (token.kind == lua::TokenKind::name || token.is(",") || token.is("(")));
         const bool assigned = i + 1 < all.size() && all[i + 1].is("=");
-        if (token.kind == TokenKind::name && token.text == name && (declaring || assigned)) {
+        if (token.kind == lua::TokenKind::name && token.text == name && (declaring || assigned)) {
             return true;
         }
     }
@@ -156,11 +157,11 @@ std::string_view missing_in(std::string_view words) {
 std::string nil_global(lua_State* L, lua_Debug* frame, std::string_view words, std::string_view statement) {
     const std::string_view missing = missing_in(words);
     const bool any = words.find("nil") != std::string_view::npos && words.find("nil value (") == std::string_view::npos;
-    const std::vector<Token> all = tokens(statement);
+    const std::vector<lua::Token> all = lua::tokens(statement);
     const std::vector<std::string> local = variables(L, frame);
     for (std::size_t i = 0; i < all.size(); ++i) {
         const bool field = i > 0 && (all[i - 1].is(".") || all[i - 1].is(":") || all[i - 1].is("goto"));
-        if (all[i].kind != TokenKind::name || field || is_declared(all, all[i].text) ||
+        if (all[i].kind != lua::TokenKind::name || field || is_declared(all, all[i].text) ||
             std::find(local.begin(), local.end(), all[i].text) != local.end()) {
             continue;
         }
@@ -205,7 +206,7 @@ std::string qualified(lua_State* L, std::string_view name) {
 std::string meant_by(lua_State* L, std::string_view name, const std::vector<std::string>& names) {
     std::string hint = foreign_name(name);
     hint = hint.empty() ? qualified(L, name) : hint;
-    return hint.empty() ? likely(name, names, Likeness::of_letters) : hint;
+    return hint.empty() ? likely(name, names, text::Likeness::of_letters) : hint;
 }
 
 }  // namespace
@@ -215,9 +216,9 @@ std::vector<std::string> member_names(lua_State* L) {
     luaL_checkstack(L, LUA_MINSTACK, "for the names of members");
     const int top = lua_gettop(L);
     lua_pushvalue(L, -1);
-    if (const Documented found = documented(L, -1); found.owner != nullptr && found.member == nullptr) {
-        for (const Member& member : found.owner->members) {
-            if (member.kind != Kind::metamethod) {
+    if (const lua::Documented found = lua::documented(L, -1); found.owner != nullptr && found.member == nullptr) {
+        for (const lua::Member& member : found.owner->members) {
+            if (member.kind != lua::Kind::metamethod) {
                 names.emplace_back(member.name);
             }
         }
@@ -265,11 +266,11 @@ std::string help_with(lua_State* L, lua_Debug* frame, std::string_view words, st
         }
         for (const char* kind : {"field", "method"}) {
             if (const std::string_view key = named_in(words, kind); !key.empty()) {
-                return likely(key, siblings(L, frame, key, statement), Likeness::of_meaning);
+                return likely(key, siblings(L, frame, key, statement), text::Likeness::of_meaning);
             }
         }
     }
     return nil_global(L, frame, words, statement);
 }
 
-}  // namespace dinal
+}  // namespace dinal::errors

@@ -8,7 +8,7 @@
 
 #include "errors/source_text.hpp"
 
-namespace dinal {
+namespace dinal::errors {
 
 /// The end of a sentence about an error: "; did you mean 'system'?" or what else helps with it, or "". `frame` is where
 /// it happened, nullptr when that is gone; `statement` its text, as far as it is known.
@@ -21,4 +21,4 @@ std::string similar_global(lua_State* L, std::string_view name);
 /// members. Runs no code of the user. The value is on the top of the stack.
 std::vector<std::string> member_names(lua_State* L);
 
-}  // namespace dinal
+}  // namespace dinal::errors

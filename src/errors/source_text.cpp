@@ -4,17 +4,17 @@
 #include <cctype>
 
 #include "files/file.hpp"
-#include "source/function_source.hpp"
 #include "lua/tokens.hpp"
+#include "source/function_source.hpp"
 
-namespace dinal {
+namespace dinal::errors {
 namespace {
 
 bool is_digit(char c) {
     return std::isdigit(static_cast<unsigned char>(c)) != 0;
 }
 
-int opens(const Token& token) {
+int opens(const lua::Token& token) {
     if (token.is("(") || token.is("{") || token.is("[")) {
         return 1;
     }
@@ -72,7 +72,7 @@ std::string_view SourceText::statement(int number) const {
     const std::string_view rest = std::string_view(text).substr(begin);
     constexpr std::size_t longest = 10'000;  // bytes
     int depth = 0;
-    for (const Token& token : tokens(rest.substr(0, longest))) {
+    for (const lua::Token& token : lua::tokens(rest.substr(0, longest))) {
         if (depth <= 0 && token.at > first.size()) {
             return rest.substr(0, std::max(first.size(), token.at - 1));
         }
@@ -91,7 +91,7 @@ std::optional<SourceText> source_of_frame(lua_State* L, lua_Debug& frame) {
         found = SourceText{std::string(source)};  // load("...")
     } else if (frame.what == std::string_view("main")) {
         found = source_kept(L, source.substr(1));
-    } else if (const auto text = function_source(L, -1)) {
+    } else if (const auto text = source::function_source(L, -1)) {
         found = SourceText{*text, frame.linedefined};
     }
     lua_pop(L, 1);
@@ -99,12 +99,12 @@ std::optional<SourceText> source_of_frame(lua_State* L, lua_Debug& frame) {
 }
 
 std::optional<SourceText> source_of_file(const std::string& path) {
-    auto text = read_file(path);
+    auto text = files::read_file(path);
     return text ? std::optional(SourceText{std::move(text).value()}) : std::nullopt;
 }
 
 std::optional<SourceText> source_kept(lua_State* L, std::string_view chunk) {
-    const auto text = last_kept_source(L, "=" + std::string(chunk));
+    const auto text = source::last_kept_source(L, "=" + std::string(chunk));
     return text ? std::optional(SourceText{*text}) : std::nullopt;
 }
 
@@ -119,4 +119,4 @@ std::optional<SourceText> source_running(lua_State* L, std::string_view chunk) {
     return std::nullopt;
 }
 
-}  // namespace dinal
+}  // namespace dinal::errors

@@ -6,7 +6,7 @@
 #include <string>
 #include <string_view>
 
-namespace dinal {
+namespace dinal::errors {
 
 /// "lab.lua:10: what happened", taken apart.
 struct Message {
@@ -41,4 +41,4 @@ std::optional<SourceText> source_kept(lua_State* L, std::string_view chunk);
 /// The text of the file of that name, if a function in it is running: no other is looked at.
 std::optional<SourceText> source_running(lua_State* L, std::string_view chunk);
 
-}  // namespace dinal
+}  // namespace dinal::errors

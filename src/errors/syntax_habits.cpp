@@ -6,11 +6,11 @@
 #include <utility>
 #include <vector>
 
-#include "text/suggest.hpp"
 #include "errors/habits.hpp"
 #include "lua/tokens.hpp"
+#include "text/suggest.hpp"
 
-namespace dinal {
+namespace dinal::errors {
 namespace {
 
 using Cure = std::pair<std::string_view, std::string_view>;
@@ -89,20 +89,20 @@ std::string_view cure(const std::array<Cure, count>& cures, std::string_view wor
 /// "didn't expect" and where: the message, the token, what stands before it.
 struct Stumble {
     std::string_view words;
-    std::vector<Token> all = {};
+    std::vector<lua::Token> all = {};
     std::size_t at = 0;  ///< of the token in `all`; 0 when it is not known or the first
 
-    [[nodiscard]] const Token& token() const { return all[at]; }
-    [[nodiscard]] const Token& before() const { return all[at - 1]; }
+    [[nodiscard]] const lua::Token& token() const { return all[at]; }
+    [[nodiscard]] const lua::Token& before() const { return all[at - 1]; }
 };
 
-bool is_value(const Token& token) {
-    return token.kind == TokenKind::name || token.kind == TokenKind::number;
+bool is_value(const lua::Token& token) {
+    return token.kind == lua::TokenKind::name || token.kind == lua::TokenKind::number;
 }
 
 /// The token of that text that is likeliest: the last one right behind a name or a number, else the first.
 Stumble stumble_in(std::string_view words, std::string_view statement) {
-    Stumble stumble{words, tokens(statement)};
+    Stumble stumble{words, lua::tokens(statement)};
     const std::size_t near = words.find(" near '");
     if (near == std::string_view::npos) {
         return stumble;
@@ -140,7 +140,8 @@ bool is_function_of(lua_State* L, std::string_view name) {
 
 /// "print x", "run:save name", "retrun x", "def f", "2 x": two words where there should be one.
 std::string two_words(lua_State* L, const Stumble& stumble) {
-    if (stumble.at == 0 || stumble.token().kind == TokenKind::symbol || stumble.before().kind != TokenKind::name) {
+    if (stumble.at == 0 || stumble.token().kind == lua::TokenKind::symbol ||
+        stumble.before().kind != lua::TokenKind::name) {
         return "";
     }
     const std::string_view first = stumble.before().text;
@@ -154,22 +155,22 @@ std::string two_words(lua_State* L, const Stumble& stumble) {
         return "; a call needs parentheses: " + std::string(first) + "(...)";
     }
     const bool long_enough = first.size() > 2;
-    return long_enough && stumble.words.starts_with("syntax error") ? did_you_mean(first, keywords()) : "";
+    return long_enough && stumble.words.starts_with("syntax error") ? text::did_you_mean(first, lua::keywords()) : "";
 }
 
 /// "if x then" with a slip in `then`; "fucntion(x)", which is a call, so that its end comes as a surprise.
 std::string misspelt_keyword(const Stumble& stumble) {
     if (stumble.at > 0 && stumble.words.starts_with('\'')) {
         const std::array<std::string_view, 1> wanted = {stumble.words.substr(1, stumble.words.find('\'', 1) - 1)};
-        return did_you_mean(stumble.token().text, wanted);
+        return text::did_you_mean(stumble.token().text, wanted);
     }
     if (stumble.words.starts_with("<eof> expected near 'end'") || stumble.words.starts_with("'<eof>' expected")) {
         constexpr std::array<std::string_view, 1> wanted = {"function"};
         for (std::size_t i = 0; i + 1 < stumble.all.size(); ++i) {
-            const Token& token = stumble.all[i];
-            if (token.kind == TokenKind::name && stumble.all[i + 1].is("(")) {
+            const lua::Token& token = stumble.all[i];
+            if (token.kind == lua::TokenKind::name && stumble.all[i + 1].is("(")) {
                 if (std::string hint =
-                        token.is("fun") ? "; did you mean 'function'?" : did_you_mean(token.text, wanted);
+                        token.is("fun") ? "; did you mean 'function'?" : text::did_you_mean(token.text, wanted);
                     !hint.empty()) {
                     return hint;
                 }
@@ -186,8 +187,8 @@ std::string missing_star(const Stumble& stumble) {
         return "";
     }
     std::string_view word = stumble.words.substr(head.size(), stumble.words.rfind('\'') - head.size());
-    for (const Token& token : stumble.all) {  // the message breaks off at 2p
-        word = token.kind == TokenKind::number && token.text.starts_with(word) ? token.text : word;
+    for (const lua::Token& token : stumble.all) {  // the message breaks off at 2p
+        word = token.kind == lua::TokenKind::number && token.text.starts_with(word) ? token.text : word;
     }
     const std::size_t digits = std::min(word.find_first_not_of("0123456789."), word.size());
     const std::string_view name = word.substr(digits);
@@ -202,8 +203,8 @@ std::string other_grammar(const Stumble& stumble) {
     if (stumble.at == 0) {
         return "";
     }
-    const Token& token = stumble.token();
-    const Token& before = stumble.before();
+    const lua::Token& token = stumble.token();
+    const lua::Token& before = stumble.before();
     const auto& all = stumble.all;
     if (stumble.words.starts_with("<name> expected") && before.is(":")) {
         return token.is("=") ? "; assigning is =" : "; a named value is written with =, I = 1";
@@ -220,10 +221,10 @@ std::string other_grammar(const Stumble& stumble) {
     if (token.is("=") && (before.is("=") || before.is("=="))) {
         return "; comparing is ==";
     }
-    if (token.is("=") && before.is(")") && all.size() > 2 && all[0].kind == TokenKind::name && all[1].is("(")) {
+    if (token.is("=") && before.is(")") && all.size() > 2 && all[0].kind == lua::TokenKind::name && all[1].is("(")) {
         return "; a function is written: " + std::string(all[0].text) + " = function(t) return ... end";
     }
-    const bool number = token.kind == TokenKind::number || before.kind == TokenKind::number;
+    const bool number = token.kind == lua::TokenKind::number || before.kind == lua::TokenKind::number;
     const bool expression = !stumble.words.starts_with('\'') || stumble.words.starts_with("')'");
     if (expression && number && is_value(token) && is_value(before)) {
         return "; is an operator missing there, such as *?";
@@ -250,4 +251,4 @@ std::string syntax_habit(lua_State* L, std::string_view words, std::string_view 
     return "";
 }
 
-}  // namespace dinal
+}  // namespace dinal::errors

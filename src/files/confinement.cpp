@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <system_error>
 
-namespace dinal {
+namespace dinal::files {
 namespace {
 
 namespace fs = std::filesystem;
@@ -62,4 +62,4 @@ std::optional<std::string> outside(const std::string& path, Access access) {
     return std::nullopt;
 }
 
-}  // namespace dinal
+}  // namespace dinal::files

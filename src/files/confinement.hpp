@@ -4,7 +4,7 @@
 #include <optional>
 #include <string>
 
-namespace dinal {
+namespace dinal::files {
 
 /// From now on, for the whole process: OutputFile and read_file refuse what is not a regular file in the current folder
 /// or below it. Links are followed first.
@@ -18,4 +18,4 @@ enum class Access { read, write };
 /// Why this path can not be used, or nothing: files are not confined, or it is within.
 std::optional<std::string> outside(const std::string& path, Access access);
 
-}  // namespace dinal
+}  // namespace dinal::files

@@ -6,7 +6,7 @@
 
 #include "files/text_input.hpp"
 
-namespace dinal {
+namespace dinal::files {
 namespace {
 
 enum class Separator : char { comma = ',', semicolon = ';', tab = '\t', blanks = ' ' };
@@ -79,11 +79,11 @@ class CsvReader {
 public:
     CsvReader(std::string_view text, const std::string& file) : lines_(text), file_(file) {}
 
-    Expected<Table> read() {
+    text::Expected<Table> read() {
         if (!next_line()) {
-            return Error{file_ + ": the file is empty, it has neither names nor numbers"};
+            return text::Error{file_ + ": the file is empty, it has neither names nor numbers"};
         }
-        std::optional<Error> fault = head();
+        std::optional<text::Error> fault = head();
         while (!fault && more_) {
             fault = row();
         }
@@ -118,7 +118,7 @@ private:
     }
 
     /// Takes the line of names when the first line is one; else makes names and leaves the line for row().
-    std::optional<Error> head() {
+    std::optional<text::Error> head() {
         const std::string_view first = lines_.text();
         const std::size_t number = lines_.number();
         const std::optional<Separator> of_first = separator_in(first);
@@ -150,7 +150,7 @@ private:
         return std::nullopt;
     }
 
-    std::optional<Error> row() {
+    std::optional<text::Error> row() {
         split(lines_.text(), separator_, fields_);
         if (fields_.size() != table_.names.size()) {
             return error_at(file_, lines_.number(),
@@ -184,16 +184,16 @@ private:
 
 }  // namespace
 
-Expected<Table> parse_csv(std::string_view text, const std::string& name) {
-    if (std::optional<Error> fault = binary_fault(text, name)) {
+text::Expected<Table> parse_csv(std::string_view text, const std::string& name) {
+    if (std::optional<text::Error> fault = binary_fault(text, name)) {
         return *fault;
     }
     return CsvReader(text, name).read();
 }
 
-Expected<Table> read_csv(const std::string& path) {
-    const Expected<std::string> text = read_file(path);
-    return text ? parse_csv(*text, path) : Expected<Table>(text.error());
+text::Expected<Table> read_csv(const std::string& path) {
+    const text::Expected<std::string> text = read_file(path);
+    return text ? parse_csv(*text, path) : text::Expected<Table>(text.error());
 }
 
-}  // namespace dinal
+}  // namespace dinal::files

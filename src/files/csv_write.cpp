@@ -7,7 +7,7 @@
 #include "files/row_writer.hpp"
 #include "files/text_input.hpp"
 
-namespace dinal {
+namespace dinal::files {
 namespace {
 
 /// A comment may be a whole script: every line of it needs its own sign. A NUL would make the file unreadable.
@@ -39,11 +39,11 @@ void write_name(OutputFile& file, std::string_view name) {
     file.write("\"");
 }
 
-std::optional<Error> unwritable_name(std::span<const NamedColumn> columns) {
+std::optional<text::Error> unwritable_name(std::span<const NamedColumn> columns) {
     using namespace std::string_view_literals;
     for (const NamedColumn& column : columns) {
         if (column.name.find_first_of("\r\n\0"sv) != std::string_view::npos) {
-            return Error{"the name of a column can not hold a line end or a NUL byte"};
+            return text::Error{"the name of a column can not hold a line end or a NUL byte"};
         }
     }
     return std::nullopt;
@@ -51,12 +51,12 @@ std::optional<Error> unwritable_name(std::span<const NamedColumn> columns) {
 
 }  // namespace
 
-Expected<Written> write_csv(const std::string& path, std::span<const NamedColumn> columns,
-                            std::span<const std::string> comments) {
-    if (std::optional<Error> fault = unwritable_name(columns)) {
+text::Expected<Written> write_csv(const std::string& path, std::span<const NamedColumn> columns,
+                                  std::span<const std::string> comments) {
+    if (std::optional<text::Error> fault = unwritable_name(columns)) {
         return *fault;
     }
-    Expected<OutputFile> opened = OutputFile::create(path);
+    text::Expected<OutputFile> opened = OutputFile::create(path);
     if (!opened) {
         return opened.error();
     }
@@ -69,14 +69,14 @@ Expected<Written> write_csv(const std::string& path, std::span<const NamedColumn
         write_name(file, columns[i].name);
     }
     file.write("\n");
-    if (std::optional<Error> fault = write_rows(file, columns, ',')) {
-        return Error{"can not write '" + path + "': " + fault->sentence};
+    if (std::optional<text::Error> fault = write_rows(file, columns, ',')) {
+        return text::Error{"can not write '" + path + "': " + fault->sentence};
     }
     return file.commit();
 }
 
-Expected<Written> write_csv(const std::string& path, const Table& table) {
+text::Expected<Written> write_csv(const std::string& path, const Table& table) {
     return write_csv(path, named_columns(table.names, table.values), table.comments);
 }
 
-}  // namespace dinal
+}  // namespace dinal::files

@@ -11,10 +11,10 @@
 
 #include "text/expected.hpp"
 
-namespace dinal {
+namespace dinal::files {
 
 /// The bytes of a file, a pipe or a device. Fails for a folder, and for what is missing, unreadable or over 4 GiB.
-Expected<std::string> read_file(const std::string& path);
+text::Expected<std::string> read_file(const std::string& path);
 
 /// What a finished file holds.
 struct Written {
@@ -28,7 +28,7 @@ struct Written {
 class OutputFile {
 public:
     /// Fails when the place can not be written: better said before a long computation than after it.
-    static Expected<OutputFile> create(const std::string& path);
+    static text::Expected<OutputFile> create(const std::string& path);
 
     OutputFile(OutputFile&& other) noexcept;
     OutputFile& operator=(OutputFile&&) = delete;
@@ -47,12 +47,13 @@ public:
     [[nodiscard]] bool failed() const { return failure_ != 0; }
 
     /// Writes what is left and makes it the file; only now the old file is gone. To be called once.
-    Expected<Written> commit();
+    text::Expected<Written> commit();
 
 private:
     OutputFile(int descriptor, std::string path);
-    static Expected<OutputFile> directly(int descriptor, const std::string& path);
-    static Expected<OutputFile> beside(const std::string& target, const struct stat* old, const std::string& path);
+    static text::Expected<OutputFile> directly(int descriptor, const std::string& path);
+    static text::Expected<OutputFile> beside(const std::string& target, const struct stat* old,
+                                             const std::string& path);
     void flush();
     void abandon();
 
@@ -68,6 +69,6 @@ private:
 };
 
 /// All of `text` as one file, in the way of OutputFile.
-Expected<Written> write_file(const std::string& path, std::string_view text);
+text::Expected<Written> write_file(const std::string& path, std::string_view text);
 
-}  // namespace dinal
+}  // namespace dinal::files

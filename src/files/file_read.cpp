@@ -10,12 +10,12 @@
 
 #include "files/confinement.hpp"
 
-namespace dinal {
+namespace dinal::files {
 namespace {
 
 constexpr std::size_t largest_file = std::size_t{4} << 30;  // /dev/zero never ends
 
-Error can_not_read(const std::string& path, const std::string& why) {
+text::Error can_not_read(const std::string& path, const std::string& why) {
     return {"can not read '" + path + "': " + why};
 }
 
@@ -38,7 +38,7 @@ private:
 
 }  // namespace
 
-Expected<std::string> read_file(const std::string& path) {
+text::Expected<std::string> read_file(const std::string& path) {
     if (path.find('\0') != std::string::npos) {
         return can_not_read(path.substr(0, path.find('\0')), "its name goes on after a NUL byte");
     }
@@ -76,4 +76,4 @@ Expected<std::string> read_file(const std::string& path) {
     }
 }
 
-}  // namespace dinal
+}  // namespace dinal::files

@@ -15,7 +15,7 @@
 #include "files/confinement.hpp"
 #include "files/stop.hpp"
 
-namespace dinal {
+namespace dinal::files {
 namespace {
 
 constexpr std::size_t buffer_size = std::size_t{1} << 18;  // stays in the second-level cache
@@ -25,7 +25,7 @@ std::string reason(int error) {
     return std::generic_category().message(error);
 }
 
-Error can_not_write(const std::string& path, const std::string& why) {
+text::Error can_not_write(const std::string& path, const std::string& why) {
     return {"can not write '" + path + "': " + why};
 }
 
@@ -91,7 +91,7 @@ int create_temporary(const std::string& folder, std::string& name) {
 
 }  // namespace
 
-Expected<OutputFile> OutputFile::create(const std::string& path) {
+text::Expected<OutputFile> OutputFile::create(const std::string& path) {
     if (has_nul(path)) {
         return can_not_write(path.substr(0, path.find('\0')), "its name goes on after a NUL byte");
     }
@@ -126,14 +126,15 @@ Expected<OutputFile> OutputFile::create(const std::string& path) {
     return beside(target, &status, path);
 }
 
-Expected<OutputFile> OutputFile::directly(int descriptor, const std::string& path) {
+text::Expected<OutputFile> OutputFile::directly(int descriptor, const std::string& path) {
     if (descriptor < 0) {
         return can_not_write(path, reason(errno));
     }
     return OutputFile(descriptor, path);
 }
 
-Expected<OutputFile> OutputFile::beside(const std::string& target, const struct stat* old, const std::string& path) {
+text::Expected<OutputFile> OutputFile::beside(const std::string& target, const struct stat* old,
+                                              const std::string& path) {
     const std::string folder = folder_of(target);
     if (target.empty() || folder.size() == target.size()) {
         return can_not_write(path, "there is no file name");
@@ -230,7 +231,7 @@ void OutputFile::flush() {
     filled_ = 0;
 }
 
-Expected<Written> OutputFile::commit() {
+text::Expected<Written> OutputFile::commit() {
     flush();
     if (::close(std::exchange(descriptor_, -1)) != 0 && failure_ == 0) {
         failure_ = errno;
@@ -249,8 +250,8 @@ Expected<Written> OutputFile::commit() {
     return Written{written_};
 }
 
-Expected<Written> write_file(const std::string& path, std::string_view text) {
-    Expected<OutputFile> opened = OutputFile::create(path);
+text::Expected<Written> write_file(const std::string& path, std::string_view text) {
+    text::Expected<OutputFile> opened = OutputFile::create(path);
     if (!opened) {
         return opened.error();
     }
@@ -259,4 +260,4 @@ Expected<Written> write_file(const std::string& path, std::string_view text) {
     return file.commit();
 }
 
-}  // namespace dinal
+}  // namespace dinal::files

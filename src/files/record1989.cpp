@@ -10,20 +10,20 @@
 #include "files/row_writer.hpp"
 #include "files/text_input.hpp"
 
-namespace dinal {
+namespace dinal::files {
 namespace {
 
 constexpr std::size_t width = 6;
 
-Expected<Written> write_columns(const std::string& path, std::span<const NamedColumn> columns) {
-    Expected<OutputFile> opened = OutputFile::create(path);
+text::Expected<Written> write_columns(const std::string& path, std::span<const NamedColumn> columns) {
+    text::Expected<OutputFile> opened = OutputFile::create(path);
     if (!opened) {
         return opened.error();
     }
     OutputFile file = std::move(opened).value();
     file.write(std::to_string(columns.front().values.size()) + "\n");
-    if (std::optional<Error> fault = write_rows(file, columns, ' ')) {
-        return Error{"can not write '" + path + "': " + fault->sentence};
+    if (std::optional<text::Error> fault = write_rows(file, columns, ' ')) {
+        return text::Error{"can not write '" + path + "': " + fault->sentence};
     }
     return file.commit();
 }
@@ -52,8 +52,8 @@ class RecordReader {
 public:
     RecordReader(std::string_view text, const std::string& file) : lines_(text), file_(file) {}
 
-    Expected<Table> read() {
-        std::optional<Error> fault = take_count();
+    text::Expected<Table> read() {
+        std::optional<text::Error> fault = take_count();
         while (!fault && lines_.next()) {
             fault = take_line();
         }
@@ -66,8 +66,8 @@ public:
         }
         const std::size_t rows = numbers_.size() / width;
         if (rows != promised_) {
-            return Error{file_ + ": NPUNT in the first line is " + std::to_string(promised_) + ", but there are " +
-                         std::to_string(rows) + " rows; correct NPUNT if none is missing"};
+            return text::Error{file_ + ": NPUNT in the first line is " + std::to_string(promised_) +
+                               ", but there are " + std::to_string(rows) + " rows; correct NPUNT if none is missing"};
         }
         Table table;
         table.names = record1989_names();
@@ -78,7 +78,7 @@ public:
 
 private:
     /// NPUNT, alone in the first line that is not blank.
-    std::optional<Error> take_count() {
+    std::optional<text::Error> take_count() {
         while (lines_.next()) {
             const std::string_view line = trimmed(lines_.text());
             if (line.empty()) {
@@ -93,11 +93,11 @@ private:
             promised_ = *count;
             return std::nullopt;
         }
-        return Error{file_ + ": the file is empty, it should begin with NPUNT, the number of rows"};
+        return text::Error{file_ + ": the file is empty, it should begin with NPUNT, the number of rows"};
     }
 
     /// All values of a line. A row begins in a new line, as every Fortran READ does, and may go on in further lines.
-    std::optional<Error> take_line() {
+    std::optional<text::Error> take_line() {
         std::string_view rest = lines_.text();
         if (trimmed(rest).empty()) {
             return std::nullopt;
@@ -107,7 +107,7 @@ private:
         }
         const std::size_t full = (numbers_.size() / width + 1) * width;
         while (!trimmed(rest).empty()) {
-            if (std::optional<Error> fault = take(take_value(rest), full)) {
+            if (std::optional<text::Error> fault = take(take_value(rest), full)) {
                 return fault;
             }
         }
@@ -115,7 +115,7 @@ private:
     }
 
     /// One value, which can stand for several: 3*0.0 is three zeros. `full` is how many numbers end the row.
-    std::optional<Error> take(std::string_view value, std::size_t full) {
+    std::optional<text::Error> take(std::string_view value, std::size_t full) {
         std::size_t repeats = 1;
         if (const std::size_t star = value.find('*'); star != std::string_view::npos) {
             const std::optional<std::size_t> count = parse_integer<std::size_t>(value.substr(0, star));
@@ -153,7 +153,8 @@ const std::vector<std::string>& record1989_names() {
     return names;
 }
 
-Expected<Written> write_record1989(const std::string& path, const Trajectory& trajectory, const Oscillator& system) {
+text::Expected<Written> write_record1989(const std::string& path, const motion::Trajectory& trajectory,
+                                         const model::Oscillator& system) {
     const double w0 = system.natural_frequency();
     const double k = system.stiffness();
     const std::array<std::pair<std::string_view, double>, width> sources = {
@@ -161,34 +162,34 @@ Expected<Written> write_record1989(const std::string& path, const Trajectory& tr
     Eigen::MatrixXd values(trajectory.rows.rows(), static_cast<Eigen::Index>(width));
     for (std::size_t i = 0; i < width; ++i) {
         const auto& [name, unit] = sources[i];
-        const Expected<Eigen::Index> column = find_column(trajectory.names, name);
+        const text::Expected<Eigen::Index> column = find_column(trajectory.names, name);
         if (!column) {
-            return Error{"can not write '" + path + "': the record of 1989 needs six columns and " +
-                         column.error().sentence};
+            return text::Error{"can not write '" + path + "': the record of 1989 needs six columns and " +
+                               column.error().sentence};
         }
         values.col(static_cast<Eigen::Index>(i)) = trajectory.rows.col(*column) / unit;
     }
     return write_columns(path, named_columns(record1989_names(), values));
 }
 
-Expected<Written> write_record1989(const std::string& path, const Eigen::MatrixXd& six_columns) {
+text::Expected<Written> write_record1989(const std::string& path, const Eigen::MatrixXd& six_columns) {
     if (six_columns.cols() != static_cast<Eigen::Index>(width)) {
-        return Error{"can not write '" + path + "': the record of 1989 has six columns, here are " +
-                     std::to_string(six_columns.cols())};
+        return text::Error{"can not write '" + path + "': the record of 1989 has six columns, here are " +
+                           std::to_string(six_columns.cols())};
     }
     return write_columns(path, named_columns(record1989_names(), six_columns));
 }
 
-Expected<Table> parse_record1989(std::string_view text, const std::string& name) {
-    if (std::optional<Error> fault = binary_fault(text, name)) {
+text::Expected<Table> parse_record1989(std::string_view text, const std::string& name) {
+    if (std::optional<text::Error> fault = binary_fault(text, name)) {
         return *fault;
     }
     return RecordReader(text, name).read();
 }
 
-Expected<Table> read_record1989(const std::string& path) {
-    const Expected<std::string> text = read_file(path);
-    return text ? parse_record1989(*text, path) : Expected<Table>(text.error());
+text::Expected<Table> read_record1989(const std::string& path) {
+    const text::Expected<std::string> text = read_file(path);
+    return text ? parse_record1989(*text, path) : text::Expected<Table>(text.error());
 }
 
-}  // namespace dinal
+}  // namespace dinal::files

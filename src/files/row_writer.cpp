@@ -8,7 +8,7 @@
 #include <cstring>
 #include <string>
 
-namespace dinal {
+namespace dinal::files {
 namespace {
 
 constexpr std::size_t cell_size = 32;  // -2.2250738585072014e-308 and a separator take 25; a power of two copies fast
@@ -21,12 +21,12 @@ struct Cell {
     std::array<char, cell_size> text{};
 };
 
-std::optional<Error> unequal_lengths(std::span<const NamedColumn> columns) {
+std::optional<text::Error> unequal_lengths(std::span<const NamedColumn> columns) {
     for (const NamedColumn& column : columns) {
         if (column.values.size() != columns.front().values.size()) {
-            return Error{"column '" + std::string(column.name) + "' has " + std::to_string(column.values.size()) +
-                         " values, but '" + std::string(columns.front().name) + "' has " +
-                         std::to_string(columns.front().values.size())};
+            return text::Error{"column '" + std::string(column.name) + "' has " + std::to_string(column.values.size()) +
+                               " values, but '" + std::string(columns.front().name) + "' has " +
+                               std::to_string(columns.front().values.size())};
         }
     }
     return std::nullopt;
@@ -55,11 +55,11 @@ char* put(char* place, double value, Cell& cell) {
 
 }  // namespace
 
-std::optional<Error> write_rows(OutputFile& file, std::span<const NamedColumn> columns, char separator) {
+std::optional<text::Error> write_rows(OutputFile& file, std::span<const NamedColumn> columns, char separator) {
     if (columns.empty()) {
-        return Error{"there are no columns to write"};
+        return text::Error{"there are no columns to write"};
     }
-    if (std::optional<Error> fault = unequal_lengths(columns)) {
+    if (std::optional<text::Error> fault = unequal_lengths(columns)) {
         return fault;
     }
     const std::size_t rows = columns.front().values.size();
@@ -73,8 +73,9 @@ std::optional<Error> write_rows(OutputFile& file, std::span<const NamedColumn> c
             const double value = columns[i].values[row];
             place = put(place, value, cells[i]);
             if (place == nullptr) {
-                return Error{"row " + std::to_string(row + 1) + " of column '" + std::string(columns[i].name) +
-                             "' is " + (std::isnan(value) ? "nan" : "infinite") + "; only finite numbers can be saved"};
+                return text::Error{"row " + std::to_string(row + 1) + " of column '" + std::string(columns[i].name) +
+                                   "' is " + (std::isnan(value) ? "nan" : "infinite") +
+                                   "; only finite numbers can be saved"};
             }
         }
         file.used(place);
@@ -82,4 +83,4 @@ std::optional<Error> write_rows(OutputFile& file, std::span<const NamedColumn> c
     return std::nullopt;
 }
 
-}  // namespace dinal
+}  // namespace dinal::files

@@ -1,6 +1,6 @@
 #include "files/stop.hpp"
 
-namespace dinal {
+namespace dinal::files {
 namespace {
 
 bool (*stop_question)() noexcept = nullptr;
@@ -15,4 +15,4 @@ bool shall_stop() noexcept {
     return stop_question != nullptr && stop_question();
 }
 
-}  // namespace dinal
+}  // namespace dinal::files

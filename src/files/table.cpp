@@ -4,7 +4,7 @@
 
 #include "text/suggest.hpp"
 
-namespace dinal {
+namespace dinal::files {
 namespace {
 
 /// "t, theta, M"; a long list is cut, because a sentence should stay one.
@@ -30,36 +30,36 @@ std::vector<NamedColumn> named_columns(const std::vector<std::string>& names, co
     return columns;
 }
 
-Expected<Eigen::Index> find_column(std::span<const std::string> names, std::string_view name) {
+text::Expected<Eigen::Index> find_column(std::span<const std::string> names, std::string_view name) {
     const auto found = std::find(names.begin(), names.end(), name);
     if (found == names.end()) {
         const std::vector<std::string_view> known(names.begin(), names.end());
-        return Error{"there is no column '" + std::string(name) + "' among " + list_of(names) +
-                     did_you_mean(name, known)};
+        return text::Error{"there is no column '" + std::string(name) + "' among " + list_of(names) +
+                           text::did_you_mean(name, known)};
     }
     const auto again = std::find(found + 1, names.end(), name);
     if (again != names.end()) {
-        return Error{"the name '" + std::string(name) + "' belongs to column " +
-                     std::to_string(found - names.begin() + 1) + " and to column " +
-                     std::to_string(again - names.begin() + 1) + ": use the number"};
+        return text::Error{"the name '" + std::string(name) + "' belongs to column " +
+                           std::to_string(found - names.begin() + 1) + " and to column " +
+                           std::to_string(again - names.begin() + 1) + ": use the number"};
     }
     return static_cast<Eigen::Index>(found - names.begin());
 }
 
-Expected<Eigen::Index> find_column(std::span<const std::string> names, std::int64_t number) {
+text::Expected<Eigen::Index> find_column(std::span<const std::string> names, std::int64_t number) {
     if (number < 1 || number > static_cast<std::int64_t>(names.size())) {
-        return Error{"there is no column " + std::to_string(number) + ": they are numbered 1 to " +
-                     std::to_string(names.size()) + " (" + list_of(names) + ")"};
+        return text::Error{"there is no column " + std::to_string(number) + ": they are numbered 1 to " +
+                           std::to_string(names.size()) + " (" + list_of(names) + ")"};
     }
     return static_cast<Eigen::Index>(number - 1);
 }
 
-Expected<Eigen::Index> find_column(const Table& table, std::string_view name) {
+text::Expected<Eigen::Index> find_column(const Table& table, std::string_view name) {
     return find_column(std::span<const std::string>(table.names), name);
 }
 
-Expected<Eigen::Index> find_column(const Table& table, std::int64_t number) {
+text::Expected<Eigen::Index> find_column(const Table& table, std::int64_t number) {
     return find_column(std::span<const std::string>(table.names), number);
 }
 
-}  // namespace dinal
+}  // namespace dinal::files

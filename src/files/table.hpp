@@ -10,7 +10,7 @@
 
 #include "text/expected.hpp"
 
-namespace dinal {
+namespace dinal::files {
 
 struct Table {
     std::vector<std::string> names;     ///< one for each column of `values`
@@ -29,9 +29,9 @@ std::vector<NamedColumn> named_columns(const std::vector<std::string>& names, co
 
 /// The index (from 0) of the column with that name, or with that number (from 1, as users count).
 /// Fails with the list of the columns there are, and a suggestion when one is spelt like it.
-Expected<Eigen::Index> find_column(std::span<const std::string> names, std::string_view name);
-Expected<Eigen::Index> find_column(std::span<const std::string> names, std::int64_t number);
-Expected<Eigen::Index> find_column(const Table& table, std::string_view name);
-Expected<Eigen::Index> find_column(const Table& table, std::int64_t number);
+text::Expected<Eigen::Index> find_column(std::span<const std::string> names, std::string_view name);
+text::Expected<Eigen::Index> find_column(std::span<const std::string> names, std::int64_t number);
+text::Expected<Eigen::Index> find_column(const Table& table, std::string_view name);
+text::Expected<Eigen::Index> find_column(const Table& table, std::int64_t number);
 
-}  // namespace dinal
+}  // namespace dinal::files

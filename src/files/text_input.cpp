@@ -9,7 +9,7 @@
 
 #include "files/stop.hpp"
 
-namespace dinal {
+namespace dinal::files {
 namespace {
 
 bool is_digit(char c) {
@@ -84,11 +84,11 @@ std::string_view trimmed(std::string_view text) {
                                            : text.substr(first, text.find_last_not_of(blanks) - first + 1);
 }
 
-Error error_at(const std::string& file, std::size_t line, const std::string& what) {
+text::Error error_at(const std::string& file, std::size_t line, const std::string& what) {
     return {file + ":" + std::to_string(line) + ": " + what};
 }
 
-std::optional<Error> binary_fault(std::string_view text, const std::string& file) {
+std::optional<text::Error> binary_fault(std::string_view text, const std::string& file) {
     const std::size_t place = text.find('\0');
     if (place == std::string_view::npos) {
         return std::nullopt;
@@ -167,4 +167,4 @@ std::string number_fault(std::string_view field) {
     return "is " + shown(field) + ", not a number";
 }
 
-}  // namespace dinal
+}  // namespace dinal::files

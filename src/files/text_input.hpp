@@ -8,7 +8,7 @@
 
 #include "text/expected.hpp"
 
-namespace dinal {
+namespace dinal::files {
 
 /// Walks over the lines of a text: line ends are LF, CRLF or a lone CR, and a UTF-8 byte order mark is skipped.
 class Lines {
@@ -31,10 +31,10 @@ private:
 std::string_view trimmed(std::string_view text);
 
 /// The error at a place of a file: "run.csv:7: ...".
-Error error_at(const std::string& file, std::size_t line, const std::string& what);
+text::Error error_at(const std::string& file, std::size_t line, const std::string& what);
 
 /// Why this can not be a text file: the line of its first NUL byte (UTF-16 is full of them).
-std::optional<Error> binary_fault(std::string_view text, const std::string& file);
+std::optional<text::Error> binary_fault(std::string_view text, const std::string& file);
 
 /// A finite number that is all of the field, without blanks around; a leading + is allowed, nan and inf are not.
 std::optional<double> parse_number(std::string_view field);
@@ -48,4 +48,4 @@ std::string shown(std::string_view field);
 /// What is wrong with a field that parse_number refused: "'abc' is not a number", "is empty", ...
 std::string number_fault(std::string_view field);
 
-}  // namespace dinal
+}  // namespace dinal::files

@@ -1,17 +1,19 @@
 // help(x), at the prompt and in scripts.
+#include "help/help.hpp"
+
 #include <unistd.h>
 
+#include "help/help_text.hpp"
+#include "help/library.hpp"
+#include "help/tour.hpp"
 #include "lua/bind.hpp"
 #include "lua/dinal_table.hpp"
-#include "help/help_text.hpp"
-#include "api/library.hpp"
-#include "help/tour.hpp"
 
-namespace dinal {
+namespace dinal::help {
 
 namespace {
 
-std::string text_about(const Documented& found, const Display& screen) {
+std::string text_about(const lua::Documented& found, const terminal::Display& screen) {
     std::string text;
     for (const Section& section : sections()) {
         if (section.description == found.owner) {
@@ -28,7 +30,7 @@ std::string text_about_page(lua_State* L) {
                                      : "the tour has pages 1 to " + std::to_string(last) + "\n";
 }
 
-std::string text_about_value(lua_State* L, const Display& screen) {
+std::string text_about_value(lua_State* L, const terminal::Display& screen) {
     if (lua_isnone(L, 1)) {
         return tour_page(1);
     }
@@ -43,29 +45,29 @@ std::string text_about_value(lua_State* L, const Display& screen) {
     if (lua_isinteger(L, 1) != 0) {
         return text_about_page(L);
     }
-    push_dinal_table(L);
+    lua::push_dinal_table(L);
     const bool is_library = lua_rawequal(L, 1, -1) != 0;
     lua_pop(L, 1);
     if (is_library) {
         return help_about("contents", screen);
     }
-    if (const Documented found = documented(L, 1); found.owner != nullptr) {
+    if (const lua::Documented found = lua::documented(L, 1); found.owner != nullptr) {
         return text_about(found, screen);
     }
-    return describe(L, 1) + " has no help of its own; put the name in quotes: help \"omega0\"" +
+    return lua::describe(L, 1) + " has no help of its own; put the name in quotes: help \"omega0\"" +
            (lua_isfunction(L, 1) ? ", or see https://www.lua.org/manual/5.4 for Lua's own functions" : "") + "\n";
 }
 
 int help(lua_State* L) {
-    const std::string text = text_about_value(L, display_of(STDOUT_FILENO));
+    const std::string text = text_about_value(L, terminal::display_of(STDOUT_FILENO));
     lua_writestring(text.data(), text.size());  // as print() does
     return 0;
 }
 
-constexpr Member functions[] = {
+constexpr lua::Member functions[] = {
     {"help",
-     guarded<help>,
-     Kind::function,
+     lua::guarded<help>,
+     lua::Kind::function,
      {"help(x) or help \"words\"",
       "Prints what x is and how it is used: a function, a method, a module, an object, or a name in quotes; words that "
       "are no name are searched for in all names and descriptions. help() alone shows where to begin.",
@@ -74,11 +76,11 @@ constexpr Member functions[] = {
 
 }  // namespace
 
-const Class help_functions = {
+const lua::Class help_functions = {
     "help", {"help(x) or help \"words\"", "The manual at the prompt.", "help \"dead zone\""}, functions};
 
 void register_help(lua_State* L) {
-    add_functions(L, help_functions);
+    lua::add_functions(L, help_functions);
 }
 
-}  // namespace dinal
+}  // namespace dinal::help

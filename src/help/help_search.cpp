@@ -4,31 +4,31 @@
 #include <algorithm>
 #include <cctype>
 
-#include "text/suggest.hpp"
 #include "help/help_text.hpp"
 #include "help/signature.hpp"
 #include "lua/tokens.hpp"
+#include "text/suggest.hpp"
 
-namespace dinal {
+namespace dinal::help {
 
 namespace {
 
 struct Hit {
     const Section* section;
-    const Member* member;  // none: the section itself
+    const lua::Member* member;  // none: the section itself
 };
 
-std::string hit_text(const Hit& hit, const Display& screen) {
+std::string hit_text(const Hit& hit, const terminal::Display& screen) {
     return hit.member != nullptr ? member_text(*hit.section, *hit.member, screen) : class_text(*hit.section, screen);
 }
 
-std::string hit_line(const Hit& hit, const Display& screen) {
+std::string hit_line(const Hit& hit, const terminal::Display& screen) {
     return line_about(listed_name(*hit.section, *hit.member), hit.member->doc.summary, screen);
 }
 
 // A user may write sys.simulate, sys:simulate, system:simulate or simulate.
-bool has_name(const Section& section, const Member& member, std::string_view name) {
-    if (member.kind == Kind::metamethod) {
+bool has_name(const Section& section, const lua::Member& member, std::string_view name) {
+    if (member.kind == lua::Kind::metamethod) {
         return false;
     }
     const std::size_t separator = name.find_last_of(".:");
@@ -47,7 +47,7 @@ std::vector<Hit> named(std::string_view name) {
     std::vector<Hit> others;
     for (const Section& section : sections()) {
         const bool is_function_table = *section.prefix == '\0';
-        for (const Member& member : section.description->members) {
+        for (const lua::Member& member : section.description->members) {
             if (has_name(section, member, name)) {
                 (is_function_table ? globals : others).push_back({&section, &member});
             }
@@ -84,7 +84,7 @@ std::vector<Hit> mentioning(std::string_view words) {
     std::vector<Hit> elsewhere;
     const std::string wanted = searchable(words);
     for (const Section& section : sections()) {
-        for (const Member& member : section.description->members) {
+        for (const lua::Member& member : section.description->members) {
             const std::string name = searchable(listed_name(section, member));
             if (has_words(name, wanted)) {
                 in_name.push_back({&section, &member});
@@ -100,7 +100,7 @@ std::vector<Hit> mentioning(std::string_view words) {
 
 std::string likely(std::string_view word, const std::vector<std::string>& known) {
     const std::vector<std::string_view> views(known.begin(), known.end());
-    return did_you_mean(word, views);
+    return text::did_you_mean(word, views);
 }
 
 /// A name or an option, else one of the longer words of all summaries.
@@ -110,14 +110,14 @@ std::string likely(std::string_view word) {
     std::vector<std::string> words;
     for (const Section& section : sections()) {
         names.emplace_back(section.description->name);
-        for (const Member& member : section.description->members) {
-            for (const Token& token : tokens(member.doc.signature)) {
-                if (token.kind == TokenKind::name) {
+        for (const lua::Member& member : section.description->members) {
+            for (const lua::Token& token : lua::tokens(member.doc.signature)) {
+                if (token.kind == lua::TokenKind::name) {
                     names.emplace_back(token.text);
                 }
             }
-            for (const Token& token : tokens(member.doc.summary)) {
-                if (token.kind == TokenKind::name && token.text.size() >= shortest) {
+            for (const lua::Token& token : lua::tokens(member.doc.summary)) {
+                if (token.kind == lua::TokenKind::name && token.text.size() >= shortest) {
                     words.push_back(lower(token.text));
                 }
             }
@@ -128,7 +128,7 @@ std::string likely(std::string_view word) {
 }
 
 std::string no_help(std::string_view words) {
-    if (std::find(keywords().begin(), keywords().end(), words) != keywords().end()) {
+    if (std::find(lua::keywords().begin(), lua::keywords().end(), words) != lua::keywords().end()) {
         return fmt::format("'{}' is a word of Lua: see https://www.lua.org/manual/5.4\n", words);
     }
     std::string hint = likely(words);
@@ -139,17 +139,17 @@ std::string no_help(std::string_view words) {
                        hint.empty() ? "; help \"contents\" lists what there is" : "");
 }
 
-std::string contents(const Display& screen) {
+std::string contents(const terminal::Display& screen) {
     std::string text;
     for (const Section& section : sections()) {
         text += fmt::format("{}{}\n", text.empty() ? "" : "\n", section.title);
         std::string names;
-        for (const Member& member : section.description->members) {
-            if (member.kind != Kind::metamethod) {
+        for (const lua::Member& member : section.description->members) {
+            if (member.kind != lua::Kind::metamethod) {
                 names += (names.empty() ? "" : ", ") + written_name(section, member);
             }
         }
-        text += "  " + wrapped(names, std::min<std::size_t>(screen.width, 80) - 3) + "\n";
+        text += "  " + terminal::wrapped(names, std::min<std::size_t>(screen.width, 80) - 3) + "\n";
     }
     for (std::size_t at = text.find('\n'); at + 1 < text.size(); at = text.find('\n', at + 1)) {
         if (std::islower(static_cast<unsigned char>(text[at + 1])) != 0) {
@@ -167,8 +167,8 @@ std::vector<std::string> help_names() {
         if (*section.prefix != '\0') {
             names.emplace_back(section.description->name);
         }
-        for (const Member& member : section.description->members) {
-            if (member.kind != Kind::metamethod) {
+        for (const lua::Member& member : section.description->members) {
+            if (member.kind != lua::Kind::metamethod) {
                 names.push_back(written_name(section, member));
                 names.emplace_back(member.name);
             }
@@ -179,7 +179,7 @@ std::vector<std::string> help_names() {
     return names;
 }
 
-std::string help_about(std::string_view words, const Display& screen) {
+std::string help_about(std::string_view words, const terminal::Display& screen) {
     constexpr std::size_t most = 10;
     while (!words.empty() && words.back() == ' ') words.remove_suffix(1);
     while (!words.empty() && words.front() == ' ') words.remove_prefix(1);
@@ -206,4 +206,4 @@ std::string help_about(std::string_view words, const Display& screen) {
     return text;
 }
 
-}  // namespace dinal
+}  // namespace dinal::help

@@ -8,13 +8,13 @@
 #include "help/signature.hpp"
 #include "lua/tokens.hpp"
 
-namespace dinal {
+namespace dinal::help {
 
 namespace {
 
 constexpr std::size_t widest = 79;  // longer lines are hard to read, however wide the screen is
 
-std::size_t text_width(const Display& screen) {
+std::size_t text_width(const terminal::Display& screen) {
     return std::min(screen.width - 1, widest);
 }
 
@@ -27,12 +27,12 @@ std::string first_sentence(std::string_view summary) {
 std::string code_in_rows(std::string_view line, std::size_t width) {
     constexpr std::size_t indent = 4;
     std::string rows;
-    for (std::size_t room = width; columns(line) > room; room = width - indent) {
+    for (std::size_t room = width; terminal::columns(line) > room; room = width - indent) {
         const std::size_t arrow = line.find("-->");
         std::size_t cut = arrow != std::string_view::npos && arrow > 0 ? arrow : 0;
         if (cut == 0 || cut > room) {
             cut = 0;
-            for (const Token& token : tokens(line)) {
+            for (const lua::Token& token : lua::tokens(line)) {
                 const bool fits = token.end() <= room && token.end() < line.size() && line[token.end()] == ' ';
                 cut = fits ? token.end() : cut;
             }
@@ -62,11 +62,11 @@ std::string indented(std::string_view text, std::size_t width) {
     return result;
 }
 
-std::string doc_text(const Doc& doc, const Display& screen) {
+std::string doc_text(const lua::Doc& doc, const terminal::Display& screen) {
     const std::size_t width = text_width(screen);
-    return spelled(fmt::format("{}\n\n{}\n\n{}\n", wrapped(doc.signature, width), wrapped(doc.summary, width),
-                               indented(doc.example, width)),
-                   screen);
+    return terminal::spelled(fmt::format("{}\n\n{}\n\n{}\n", terminal::wrapped(doc.signature, width),
+                                         terminal::wrapped(doc.summary, width), indented(doc.example, width)),
+                             screen);
 }
 
 /// Does the text use the name as a name of its own, not as a part of another?
@@ -107,14 +107,14 @@ std::string lower(std::string_view text) {
     return result;
 }
 
-std::string written_name(const Section& section, const Member& member) {
+std::string written_name(const Section& section, const lua::Member& member) {
     const std::string_view prefix = section.prefix;
-    const std::string_view separator = prefix.empty() ? "" : member.kind == Kind::method ? ":" : ".";
+    const std::string_view separator = prefix.empty() ? "" : member.kind == lua::Kind::method ? ":" : ".";
     return fmt::format("{}{}{}", prefix, separator, member.name);
 }
 
-std::string listed_name(const Section& section, const Member& member) {
-    if (member.kind == Kind::metamethod) {
+std::string listed_name(const Section& section, const lua::Member& member) {
+    if (member.kind == lua::Kind::metamethod) {
         const std::string_view signature = member.doc.signature;
         return std::string(signature.substr(0, signature.find(" ->")));
     }
@@ -122,16 +122,16 @@ std::string listed_name(const Section& section, const Member& member) {
 }
 
 // What the entry mentions, what it gives, what mentions it, and its neighbours: nobody has to keep a list of these.
-std::vector<std::string> see_also(const Section& section, const Member& member) {
+std::vector<std::string> see_also(const Section& section, const lua::Member& member) {
     Names names;
     const std::string own = written_name(section, member);
     std::vector<std::string> mentioning;
     std::vector<std::string> alike;  // those after the member, then those before it
     std::size_t before = 0;
     for (const Section& other_section : sections()) {
-        for (const Member& other : other_section.description->members) {
+        for (const lua::Member& other : other_section.description->members) {
             const std::string name = written_name(other_section, other);
-            if (other.kind == Kind::metamethod || name == own) {
+            if (other.kind == lua::Kind::metamethod || name == own) {
                 continue;
             }
             if (telling(name) && mentions(member.doc.summary, name)) {
@@ -157,37 +157,38 @@ std::vector<std::string> see_also(const Section& section, const Member& member) 
     return names.list;
 }
 
-std::string member_text(const Section& section, const Member& member, const Display& screen) {
+std::string member_text(const Section& section, const lua::Member& member, const terminal::Display& screen) {
     std::string text = doc_text(member.doc, screen);
     if (const auto names = see_also(section, member); !names.empty()) {
-        text += "\n" + wrapped(fmt::format("See also: {}", fmt::join(names, ", ")), text_width(screen)) + "\n";
+        text +=
+            "\n" + terminal::wrapped(fmt::format("See also: {}", fmt::join(names, ", ")), text_width(screen)) + "\n";
     }
     return text;
 }
 
-std::string line_about(std::string_view name, std::string_view summary, const Display& screen) {
+std::string line_about(std::string_view name, std::string_view summary, const terminal::Display& screen) {
     constexpr std::size_t indent = 28;
     const std::size_t width = text_width(screen);
     if (width < indent + 24) {  // narrow: the text goes below the name
-        std::string text = wrapped(first_sentence(summary), width - 4);
+        std::string text = terminal::wrapped(first_sentence(summary), width - 4);
         for (std::size_t at = text.find('\n'); at != std::string::npos; at = text.find('\n', at + 1)) {
             text.insert(at + 1, "    ");
         }
-        return fmt::format("  {}\n    {}\n", name, spelled(text, screen));
+        return fmt::format("  {}\n    {}\n", name, terminal::spelled(text, screen));
     }
-    std::string text = wrapped(first_sentence(summary), width - indent);
+    std::string text = terminal::wrapped(first_sentence(summary), width - indent);
     for (std::size_t at = text.find('\n'); at != std::string::npos; at = text.find('\n', at + 1)) {
         text.insert(at + 1, indent, ' ');
     }
-    return spelled(fmt::format("  {:<{}} {}\n", name, indent - 3, text), screen);
+    return terminal::spelled(fmt::format("  {:<{}} {}\n", name, indent - 3, text), screen);
 }
 
-std::string class_text(const Section& section, const Display& screen) {
+std::string class_text(const Section& section, const terminal::Display& screen) {
     std::string text = doc_text(section.description->doc, screen) + "\n";
-    for (const Member& member : section.description->members) {
+    for (const lua::Member& member : section.description->members) {
         text += line_about(listed_name(section, member), member.doc.summary, screen);
     }
     return text;
 }
 
-}  // namespace dinal
+}  // namespace dinal::help

@@ -6,7 +6,7 @@
 
 #include "help/help_text.hpp"
 
-namespace dinal {
+namespace dinal::help {
 
 namespace {
 
@@ -30,13 +30,13 @@ std::string manual() {
     for (const Section& section : sections()) {
         text += fmt::format("- [{}](#{})\n", section.title, anchor(section.title));
     }
-    const auto entry = [&text](const Doc& doc) {
+    const auto entry = [&text](const lua::Doc& doc) {
         text += fmt::format("`{}`\n\n{}\n\n```lua\n{}\n```\n", doc.signature, doc.summary, doc.example);
     };
     for (const Section& section : sections()) {
         text += fmt::format("\n## {}\n\n", section.title);
         entry(section.description->doc);
-        for (const Member& member : section.description->members) {
+        for (const lua::Member& member : section.description->members) {
             text += fmt::format("\n### {}\n\n", listed_name(section, member));
             entry(member.doc);
         }
@@ -44,4 +44,4 @@ std::string manual() {
     return text;
 }
 
-}  // namespace dinal
+}  // namespace dinal::help

@@ -3,8 +3,8 @@
 
 #include <string>
 
-namespace dinal {
+namespace dinal::help {
 
 std::string manual();
 
-}  // namespace dinal
+}  // namespace dinal::help

@@ -4,12 +4,12 @@
 
 #include "lua/tokens.hpp"
 
-namespace dinal {
+namespace dinal::help {
 namespace {
 
 bool is_class_of_objects(const Section& section) {
     return std::none_of(section.description->members.begin(), section.description->members.end(),
-                        [](const Member& member) { return member.kind == Kind::function; });
+                        [](const lua::Member& member) { return member.kind == lua::Kind::function; });
 }
 
 }  // namespace
@@ -19,12 +19,12 @@ std::vector<std::string> option_names(std::string_view signature, Braces braces)
     int parentheses = 0;
     int depth = 0;
     std::string_view before;
-    for (const Token& token : tokens(signature.substr(0, signature.find("->")))) {
+    for (const lua::Token& token : lua::tokens(signature.substr(0, signature.find("->")))) {
         parentheses += token.is("(") ? 1 : token.is(")") ? -1 : 0;
         depth += token.is("{") ? 1 : token.is("}") ? -1 : 0;
         const bool begins = before == "{" || before == "," || before == "|";
         const bool asked = (parentheses > 0) == (braces == Braces::in_parentheses);
-        if (depth == (braces == Braces::nested ? 2 : 1) && asked && begins && token.kind == TokenKind::name) {
+        if (depth == (braces == Braces::nested ? 2 : 1) && asked && begins && token.kind == lua::TokenKind::name) {
             names.emplace_back(token.text);
         }
         before = token.text;
@@ -65,4 +65,4 @@ const Section* result_class(std::string_view signature) {
     return nullptr;
 }
 
-}  // namespace dinal
+}  // namespace dinal::help

@@ -5,9 +5,9 @@
 #include <string_view>
 #include <vector>
 
-#include "api/library.hpp"
+#include "help/library.hpp"
 
-namespace dinal {
+namespace dinal::help {
 
 /// How a table of options is passed: f{ ... }, f(..., { ... }), or f{ { ... } }, as a curve of a plot.
 enum class Braces { alone, in_parentheses, nested };
@@ -24,4 +24,4 @@ char call_bracket(std::string_view signature);
 /// The class of the object that a call gives, a field holds or a constructor makes; nullptr when it is none of ours.
 const Section* result_class(std::string_view signature);
 
-}  // namespace dinal
+}  // namespace dinal::help

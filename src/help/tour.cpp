@@ -5,7 +5,7 @@
 #include <array>
 #include <string_view>
 
-namespace dinal {
+namespace dinal::help {
 namespace {
 
 // No line is longer than 77 columns, no page than 20 lines: they are for a terminal of 80 by 24. A test types them all.
@@ -91,4 +91,4 @@ std::string tour_page(std::size_t page) {
     return fmt::format("Page {} of {}\n\n{}{}", page, pages.size(), text, next);
 }
 
-}  // namespace dinal
+}  // namespace dinal::help

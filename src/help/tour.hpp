@@ -4,11 +4,11 @@
 #include <cstddef>
 #include <string>
 
-namespace dinal {
+namespace dinal::help {
 
 std::size_t tour_pages();
 
 /// Page 1, 2, ... The lines to be typed begin with four blanks and "> ".
 std::string tour_page(std::size_t page);
 
-}  // namespace dinal
+}  // namespace dinal::help

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-namespace dinal {
+namespace dinal::lua {
 
 namespace {
 
@@ -56,7 +56,8 @@ std::vector<std::string_view> visible_names(const Class& description) {
 }
 
 std::string suggestion_for_key(lua_State* L, int index, const Class& description) {
-    return lua_type(L, index) == LUA_TSTRING ? did_you_mean(lua_tostring(L, index), visible_names(description)) : "";
+    return lua_type(L, index) == LUA_TSTRING ? text::did_you_mean(lua_tostring(L, index), visible_names(description))
+                                             : "";
 }
 
 const Class& class_of_closure(lua_State* L, int upvalue) {
@@ -292,4 +293,4 @@ void add_class(lua_State* L, const Class& description, const void* key, lua_CFun
 
 }  // namespace detail
 
-}  // namespace dinal
+}  // namespace dinal::lua

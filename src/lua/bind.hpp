@@ -16,10 +16,14 @@
 #include <utility>
 #include <vector>
 
-#include "text/suggest.hpp"  // did_you_mean, for every unknown name
 #include "lua/memory_limit.hpp"
+#include "text/suggest.hpp"  // did_you_mean, for every unknown name
 
-namespace dinal {
+namespace dinal::terminal {
+struct Display;
+}
+
+namespace dinal::lua {
 
 /// The only place where something that Lua can see is described.
 struct Doc {
@@ -42,8 +46,6 @@ struct Member {
     Doc doc;
 };
 
-struct Display;
-
 /// A Lua class or a Lua module.
 struct Class {
     const char* name;  ///< in sentences: "a system has no field ..."
@@ -53,7 +55,7 @@ struct Class {
     /// 1, or returns 0 for "no such field", which then becomes an error with a suggestion.
     lua_CFunction other_keys = nullptr;
     /// What the prompt shows for the object at `index`; without it, what tostring says.
-    std::string (*card)(lua_State* L, int index, const Display& screen) = nullptr;
+    std::string (*card)(lua_State* L, int index, const terminal::Display& screen) = nullptr;
 };
 
 /// Raises `sentence` as a Lua error, headed by the file and line of the user's code that led here.
@@ -159,4 +161,4 @@ struct Documented {
 };
 Documented documented(lua_State* L, int index);
 
-}  // namespace dinal
+}  // namespace dinal::lua

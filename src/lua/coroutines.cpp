@@ -7,7 +7,7 @@
 #include "lua/interrupt.hpp"
 #include "lua/running_thread.hpp"
 
-namespace dinal {
+namespace dinal::lua {
 
 namespace {
 
@@ -88,4 +88,4 @@ void open_coroutines(lua_State* L) {
     lua_pop(L, 1);
 }
 
-}  // namespace dinal
+}  // namespace dinal::lua

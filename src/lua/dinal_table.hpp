@@ -3,9 +3,12 @@
 
 #include <lua.hpp>
 
-namespace dinal {
+namespace dinal::lua {
 
-/// Pushes the table that open_library() made, whatever the user has done to the global of that name.
+/// Makes the table, and leaves it on the top of the stack.
+void make_dinal_table(lua_State* L);
+
+/// Pushes the table that make_dinal_table() made, whatever the user has done to the global of that name.
 void push_dinal_table(lua_State* L);
 
-}  // namespace dinal
+}  // namespace dinal::lua

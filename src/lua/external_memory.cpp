@@ -1,6 +1,6 @@
 #include "lua/external_memory.hpp"
 
-namespace dinal {
+namespace dinal::lua {
 
 // NOTE: not lua_gc(L, LUA_GCSTEP, kilobytes), which exists for this. In generational mode, the one of the program, each
 // step ages the objects that are just being worked with; after two of them they are old, and old garbage is only
@@ -15,4 +15,4 @@ void note_external_memory(lua_State* L, std::size_t bytes) {
     }
 }
 
-}  // namespace dinal
+}  // namespace dinal::lua

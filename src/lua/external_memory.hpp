@@ -4,10 +4,10 @@
 #include <cstddef>
 #include <lua.hpp>
 
-namespace dinal {
+namespace dinal::lua {
 
 /// To be called after an object was pushed that holds so many bytes outside of Lua. Collects the garbage when that has
 /// added up: otherwise a loop over long vectors would fill the memory with dead ones, 40 bytes each for Lua.
 void note_external_memory(lua_State* L, std::size_t bytes);
 
-}  // namespace dinal
+}  // namespace dinal::lua

@@ -8,11 +8,11 @@
 #include <array>
 #include <atomic>
 
-#include "terminal/progress.hpp"
 #include "files/stop.hpp"
 #include "lua/running_thread.hpp"
+#include "terminal/progress.hpp"
 
-namespace dinal {
+namespace dinal::lua {
 
 namespace {
 
@@ -84,7 +84,7 @@ void install_interrupt_handler() {
     sigemptyset(&action.sa_mask);
     action.sa_flags = 0;  // no SA_RESTART: a script that waits in io.read() must wake up
     sigaction(SIGINT, &action, nullptr);
-    set_stop_question(interrupt_requested);
+    files::set_stop_question(interrupt_requested);
 }
 
 Stop stop_requested() noexcept {
@@ -141,7 +141,7 @@ InterruptScope::InterruptScope(lua_State* L) : L_(L), within_(armed) {
 }
 
 InterruptScope::~InterruptScope() {
-    end_progress();
+    terminal::end_progress();
     if (within_) {
         return;
     }
@@ -169,4 +169,4 @@ RunningThread::~RunningThread() {
     }
 }
 
-}  // namespace dinal
+}  // namespace dinal::lua

@@ -10,7 +10,7 @@
 
 #include "lua/time_limit.hpp"
 
-namespace dinal {
+namespace dinal::lua {
 
 enum class Stop { none, interrupted, time, memory };
 
@@ -57,4 +57,4 @@ private:
 /// Replaces coroutine.resume, wrap and close by functions that do the same and note which thread runs.
 void open_coroutines(lua_State* L);
 
-}  // namespace dinal
+}  // namespace dinal::lua

@@ -8,7 +8,7 @@
 #include "lua/memory_limit.hpp"
 #include "lua/time_limit.hpp"
 
-namespace dinal {
+namespace dinal::lua {
 namespace {
 
 /// 256M, as it is typed.
@@ -45,4 +45,4 @@ std::string reached_limit() {
     return reason == Stop::time || reason == Stop::memory ? limit_sentence(reason, stopped_at()) : "";
 }
 
-}  // namespace dinal
+}  // namespace dinal::lua

@@ -7,7 +7,7 @@
 
 #include "lua/interrupt.hpp"
 
-namespace dinal {
+namespace dinal::lua {
 
 struct ScriptLimits {
     std::size_t memory = 0;  ///< bytes; 0: none
@@ -23,4 +23,4 @@ std::string limit_sentence(Stop reason, const std::string& place);
 /// The sentence when a limit has stopped the last chunk, else empty.
 std::string reached_limit();
 
-}  // namespace dinal
+}  // namespace dinal::lua

@@ -8,7 +8,7 @@
 
 #include "lua/tokens.hpp"
 
-namespace dinal {
+namespace dinal::lua {
 
 bool is_name(std::string_view text) {
     const std::vector<Token> all = tokens(text);
@@ -80,4 +80,4 @@ std::string number_text(double number) {
     return text.find_first_of(".e") == std::string::npos ? text + ".0" : text;
 }
 
-}  // namespace dinal
+}  // namespace dinal::lua

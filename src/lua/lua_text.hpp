@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-namespace dinal {
+namespace dinal::lua {
 
 /// A name as in `t.name = 1`, and no keyword.
 bool is_name(std::string_view text);
@@ -23,4 +23,4 @@ std::string quoted(std::string_view text);
 /// A float that reads back exactly, and as a float.
 std::string number_text(double number);
 
-}  // namespace dinal
+}  // namespace dinal::lua

@@ -12,7 +12,7 @@
 
 #include "lua/interrupt.hpp"
 
-namespace dinal {
+namespace dinal::lua {
 namespace {
 
 using Bytes = std::int64_t;
@@ -127,13 +127,13 @@ MemoryCharge::~MemoryCharge() {
     count(-static_cast<Bytes>(bytes_));
 }
 
-}  // namespace dinal
+}  // namespace dinal::lua
 
 // NOTE: the forms for arrays lead here. Those for over-aligned types do not, which nothing here has.
 void* operator new(std::size_t size) {
-    const bool limited = dinal::limited();
-    if (limited && !dinal::allowed(static_cast<dinal::Bytes>(std::min<std::size_t>(size, 1ULL << 62U)))) {
-        dinal::stop_here(dinal::Stop::memory);
+    const bool limited = dinal::lua::limited();
+    if (limited && !dinal::lua::allowed(static_cast<dinal::lua::Bytes>(std::min<std::size_t>(size, 1ULL << 62U)))) {
+        dinal::lua::stop_here(dinal::lua::Stop::memory);
         throw std::bad_alloc();
     }
     void* block = std::malloc(std::max<std::size_t>(size, 1));  // NOLINT
@@ -141,7 +141,7 @@ void* operator new(std::size_t size) {
         throw std::bad_alloc();
     }
     if (limited) {
-        dinal::count(dinal::size_of(block));
+        dinal::lua::count(dinal::lua::size_of(block));
     }
     return block;
 }
@@ -155,8 +155,8 @@ void* operator new(std::size_t size, const std::nothrow_t&) noexcept {
 }
 
 void operator delete(void* block) noexcept {
-    if (dinal::limited()) {
-        dinal::count(-dinal::size_of(block));
+    if (dinal::lua::limited()) {
+        dinal::lua::count(-dinal::lua::size_of(block));
     }
     std::free(block);  // NOLINT
 }

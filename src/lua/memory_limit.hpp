@@ -7,7 +7,7 @@
 #include <cstddef>
 #include <lua.hpp>
 
-namespace dinal {
+namespace dinal::lua {
 
 /// From now on chunks may take so many bytes more than is taken already. Once, for the whole process.
 void set_memory_limit(lua_State* L, std::size_t bytes);
@@ -39,4 +39,4 @@ private:
     std::size_t bytes_ = 0;
 };
 
-}  // namespace dinal
+}  // namespace dinal::lua

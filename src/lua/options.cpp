@@ -7,7 +7,7 @@
 
 #include "lua/vector.hpp"
 
-namespace dinal {
+namespace dinal::lua {
 
 namespace {
 
@@ -43,7 +43,7 @@ Options::Options(lua_State* L, int index, std::string_view call, std::string_vie
         const std::string_view name = lua_tostring(L, -2);
         if (std::find(known.begin(), known.end(), name) == known.end()) {
             raise(L, fmt::format("{} has no option '{}' among {}{}", call, name, joined(known, " and "),
-                                 did_you_mean(name, known)));
+                                 text::did_you_mean(name, known)));
         }
         lua_pop(L, 1);
     }
@@ -127,7 +127,7 @@ std::size_t Options::choice(std::string_view name, std::initializer_list<std::st
     const auto found = std::find(known.begin(), known.end(), value);
     if (!is_text || found == known.end()) {
         fail(fmt::format("{} must be {}, got {}{}", name, joined(known, " or ", "'"), describe(L_, -1),
-                         is_text ? did_you_mean(value, known) : ""));
+                         is_text ? text::did_you_mean(value, known) : ""));
     }
     lua_pop(L_, 1);
     return static_cast<std::size_t>(found - known.begin());
@@ -156,4 +156,4 @@ void Options::missing(std::string_view name) const {
     raise(L_, fmt::format("{} needs {}, for example {}", call_, name, example_));
 }
 
-}  // namespace dinal
+}  // namespace dinal::lua

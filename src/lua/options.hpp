@@ -9,7 +9,7 @@
 
 #include "lua/bind.hpp"
 
-namespace dinal {
+namespace dinal::lua {
 
 /// Every getter raises a sentence that names the call, the option, its value and what is wanted. Strings are no
 /// numbers.
@@ -58,4 +58,4 @@ private:
     std::string_view example_;
 };
 
-}  // namespace dinal
+}  // namespace dinal::lua

@@ -3,7 +3,7 @@
 
 #include <lua.hpp>
 
-namespace dinal {
+namespace dinal::lua {
 
 /// While it lives, `callee` runs, called from `caller`.
 class RunningThread {
@@ -17,4 +17,4 @@ private:
     lua_State* caller_;
 };
 
-}  // namespace dinal
+}  // namespace dinal::lua

@@ -7,11 +7,11 @@
 #include <string_view>
 
 #include "files/confinement.hpp"
-#include "terminal/progress.hpp"
 #include "lua/bind.hpp"
 #include "lua/interrupt.hpp"
+#include "terminal/progress.hpp"
 
-namespace dinal {
+namespace dinal::lua {
 namespace {
 
 // ---- what there is
@@ -126,7 +126,7 @@ int require(lua_State* L) {
 /// Writes the arguments from `first` on to the stream that the first upvalue names.
 int write_from(lua_State* L, int first) {
     auto* stream = static_cast<std::FILE*>(lua_touserdata(L, lua_upvalueindex(1)));
-    make_way_for_output(lua_isstring(L, -1) != 0 && std::string_view(lua_tostring(L, -1)).ends_with('\n'));
+    terminal::make_way_for_output(lua_isstring(L, -1) != 0 && std::string_view(lua_tostring(L, -1)).ends_with('\n'));
     for (int i = first; i <= lua_gettop(L); ++i) {
         std::size_t length = 0;
         const char* text = luaL_checklstring(L, i, &length);
@@ -246,7 +246,7 @@ void replace_globals(lua_State* L) {
 
 void open_safe_libraries(lua_State* L) {
     is_safe = true;
-    confine_files();
+    files::confine_files();
     replace_globals(L);
     lua_pushglobaltable(L);
     original_load = replace(L, "load", load);
@@ -268,4 +268,4 @@ const char* load_mode() noexcept {
     return is_safe ? "t" : nullptr;
 }
 
-}  // namespace dinal
+}  // namespace dinal::lua

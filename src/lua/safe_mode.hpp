@@ -8,7 +8,7 @@
 
 #include <lua.hpp>
 
-namespace dinal {
+namespace dinal::lua {
 
 /// In the place of luaL_openlibs, before open_library(). For the whole process and for good.
 void open_safe_libraries(lua_State* L);
@@ -18,4 +18,4 @@ void open_safe_libraries(lua_State* L);
 /// The mode for lua_load of every chunk: "t" in safe mode, because bytecode can crash Lua, else null for any.
 [[nodiscard]] const char* load_mode() noexcept;
 
-}  // namespace dinal
+}  // namespace dinal::lua

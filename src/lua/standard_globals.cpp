@@ -5,7 +5,7 @@
 
 #include "lua/dinal_table.hpp"
 
-namespace dinal {
+namespace dinal::lua {
 namespace {
 
 const char standard_key = 0;  // registry key of a copy of _G as it was at the start
@@ -72,4 +72,4 @@ void reset_globals(lua_State* L) {
     lua_settop(L, top);
 }
 
-}  // namespace dinal
+}  // namespace dinal::lua

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-namespace dinal {
+namespace dinal::lua {
 
 /// To be called once all globals of Lua and dinal stand: remembers them.
 void note_standard_globals(lua_State* L);
@@ -19,4 +19,4 @@ std::vector<std::string> users_globals(lua_State* L);
 /// Takes away the user's globals and gives the standard ones back.
 void reset_globals(lua_State* L);
 
-}  // namespace dinal
+}  // namespace dinal::lua

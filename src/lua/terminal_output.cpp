@@ -2,7 +2,7 @@
 
 #include "terminal/progress.hpp"
 
-namespace dinal {
+namespace dinal::lua {
 
 namespace {
 
@@ -19,19 +19,19 @@ bool last_ends_line(lua_State* L) {
 }
 
 int print(lua_State* L) {
-    make_way_for_output(true);
+    terminal::make_way_for_output(true);
     return original_print(L);
 }
 
 int write(lua_State* L) {
-    make_way_for_output(last_ends_line(L));
+    terminal::make_way_for_output(last_ends_line(L));
     return original_write(L);
 }
 
 int file_write(lua_State* L) {
     const auto* file = static_cast<luaL_Stream*>(luaL_testudata(L, 1, LUA_FILEHANDLE));
     if (file != nullptr && (file->f == stdout || file->f == stderr)) {
-        make_way_for_output(last_ends_line(L));
+        terminal::make_way_for_output(last_ends_line(L));
     }
     return original_file_write(L);
 }
@@ -66,4 +66,4 @@ void open_terminal_output(lua_State* L) {
     lua_pop(L, 1);
 }
 
-}  // namespace dinal
+}  // namespace dinal::lua

@@ -3,10 +3,10 @@
 
 #include <lua.hpp>
 
-namespace dinal {
+namespace dinal::lua {
 
 /// Replaces print, io.write and file:write, where they are, by functions that erase the progress line and then do the
 /// same.
 void open_terminal_output(lua_State* L);
 
-}  // namespace dinal
+}  // namespace dinal::lua

@@ -16,7 +16,7 @@
 #include "lua/interrupt.hpp"
 #include "lua/limits.hpp"
 
-namespace dinal {
+namespace dinal::lua {
 namespace {
 
 using Clock = std::chrono::steady_clock;
@@ -115,4 +115,4 @@ TimeAllowance::~TimeAllowance() {
     }
 }
 
-}  // namespace dinal
+}  // namespace dinal::lua

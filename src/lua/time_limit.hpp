@@ -4,7 +4,7 @@
 // stopped so (a search for a pattern that never ends, a finalizer) is ended with the whole program a second later.
 #pragma once
 
-namespace dinal {
+namespace dinal::lua {
 
 /// From now on. Once, for the whole process, from the thread that runs Lua.
 void set_time_limit(double seconds);
@@ -21,4 +21,4 @@ public:
     TimeAllowance& operator=(const TimeAllowance&) = delete;
 };
 
-}  // namespace dinal
+}  // namespace dinal::lua

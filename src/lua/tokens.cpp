@@ -5,7 +5,7 @@
 #include <cctype>
 #include <string>
 
-namespace dinal {
+namespace dinal::lua {
 namespace {
 
 bool is_digit(char c) {
@@ -155,4 +155,4 @@ const std::vector<std::string_view>& keywords() {
     return all;
 }
 
-}  // namespace dinal
+}  // namespace dinal::lua

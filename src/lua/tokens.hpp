@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-namespace dinal {
+namespace dinal::lua {
 
 enum class TokenKind { name, keyword, number, string, comment, symbol };
 
@@ -26,4 +26,4 @@ std::vector<Token> tokens(std::string_view text);
 /// All keywords of Lua.
 const std::vector<std::string_view>& keywords();
 
-}  // namespace dinal
+}  // namespace dinal::lua

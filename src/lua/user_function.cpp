@@ -8,7 +8,7 @@
 #include "errors/error_remarks.hpp"
 #include "lua/interrupt.hpp"
 
-namespace dinal {
+namespace dinal::lua {
 
 namespace {
 
@@ -105,7 +105,7 @@ void CallState::keep_error_on_top() {
 
 void CallState::raise_error() {
     if (outer_ != nullptr) {
-        keep_remarks(L_);
+        errors::keep_remarks(L_);
     }
     lua_rawgetp(L_, LUA_REGISTRYINDEX, this);
     lua_error(L_);
@@ -138,13 +138,13 @@ void LuaFunction::push(lua_State* L) const {
 }
 
 // lua_pcall, although Lua's errors would unwind the integrator just as well: the rows so far are to be kept.
-double LuaFunction::value(double t, const State& state) {
+double LuaFunction::value(double t, const model::State& state) {
     CallState* call = current;
     if (call == nullptr || call->failed_) {
         return failure;
     }
     lua_State* L = call->L_;
-    lua_pushcfunction(L, guarded<remember_remarks>);
+    lua_pushcfunction(L, guarded<errors::remember_remarks>);
     const int handler = lua_gettop(L);
     push(L);
     lua_pushnumber(L, t);
@@ -201,12 +201,12 @@ int LuaFunction::fill_protected(lua_State* L) {
 std::size_t LuaFunction::fill(std::span<const double> times, std::span<double> out) {
     CallState* call = current;
     if (call == nullptr || call->failed_ || feedback_) {
-        return UserFunction::fill(times, out);
+        return model::UserFunction::fill(times, out);
     }
     lua_State* L = call->L_;
     Block block{this, times, out};
     const int top = lua_gettop(L);
-    lua_pushcfunction(L, guarded<remember_remarks>);
+    lua_pushcfunction(L, guarded<errors::remember_remarks>);
     lua_pushcfunction(L, fill_protected);
     lua_pushlightuserdata(L, &block);
     const int status = lua_pcall(L, 1, LUA_MULTRET, top + 1);
@@ -233,13 +233,13 @@ double LuaFunction::fail(CallState& call, int status, double t) const {
         lua_pop(L, 1);
         push(L);
         lua_pushlstring(L, sentence.data(), sentence.size());
-        remember_result(L, -2);
+        errors::remember_result(L, -2);
         lua_remove(L, -2);
     } else {
-        remember_time(L, t);
+        errors::remember_time(L, t);
     }
     call.keep_error_on_top();
     return failure;
 }
 
-}  // namespace dinal
+}  // namespace dinal::lua

@@ -5,10 +5,10 @@
 #include <memory>
 #include <span>
 
-#include "model/excitation.hpp"
 #include "lua/bind.hpp"
+#include "model/excitation.hpp"
 
-namespace dinal {
+namespace dinal::lua {
 
 /// While it lives, user functions run on `L`: the state of the call in progress, which is a coroutine as often as not.
 /// One on the C++ stack of every binding that may ask an excitation (simulate, e:value, run:at). They nest.
@@ -39,13 +39,13 @@ private:
 /// What Lua calls like a function: a Lua function, a C function, a table or userdata with __call.
 [[nodiscard]] bool is_callable(lua_State* L, int index);
 
-class LuaFunction final : public UserFunction {
+class LuaFunction final : public model::UserFunction {
 public:
     /// Of the callable value at `index`, which the registry keeps from now on.
     LuaFunction(lua_State* L, int index);
     ~LuaFunction() override;
 
-    double value(double t, const State& state) override;
+    double value(double t, const model::State& state) override;
     std::size_t fill(std::span<const double> times, std::span<double> out) override;
     bool may_go_on() override;
 
@@ -63,4 +63,4 @@ private:
     bool feedback_;
 };
 
-}  // namespace dinal
+}  // namespace dinal::lua

@@ -7,7 +7,7 @@
 
 #include "lua/external_memory.hpp"
 
-namespace dinal {
+namespace dinal::lua {
 
 std::vector<double> new_numbers(lua_State* L, std::size_t n) {
     make_room(L, n * sizeof(double));
@@ -57,4 +57,4 @@ std::vector<double> numbers_at(lua_State* L, int index, std::string_view what) {
     return numbers;
 }
 
-}  // namespace dinal
+}  // namespace dinal::lua

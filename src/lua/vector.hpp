@@ -10,7 +10,7 @@
 
 #include "lua/bind.hpp"
 
-namespace dinal {
+namespace dinal::lua {
 
 class Vector {
 public:
@@ -44,4 +44,4 @@ void push_vector(lua_State* L, std::vector<double> values);
 /// "sys:simulate: times".
 std::vector<double> numbers_at(lua_State* L, int index, std::string_view what);
 
-}  // namespace dinal
+}  // namespace dinal::lua

@@ -3,7 +3,7 @@
 
 #include <string_view>
 
-namespace dinal {
+namespace dinal::model {
 
 enum class EventKind {
     turn,   ///< the velocity passes zero and the motion goes on the other way
@@ -34,4 +34,4 @@ struct Event {
     double M = 0;  ///< the excitation at t, from the right: with k theta it explains the decision
 };
 
-}  // namespace dinal
+}  // namespace dinal::model

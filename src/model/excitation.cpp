@@ -5,7 +5,7 @@
 #include "model/term_bounds.hpp"
 #include "model/terms.hpp"
 
-namespace dinal {
+namespace dinal::model {
 namespace {
 
 enum class Side { before, at, after };
@@ -205,7 +205,7 @@ double Excitation::value_after(double t, const State& state) const {
 double Excitation::next_break(double t) const {
     double first = never;
     for (const Component& c : components_) {
-        first = std::min(first, dinal::next_break(c, t));
+        first = std::min(first, model::next_break(c, t));
     }
     return first;
 }
@@ -213,7 +213,7 @@ double Excitation::next_break(double t) const {
 double Excitation::constant_from() const {
     double last = -never;
     for (const Component& c : components_) {
-        last = std::max(last, dinal::constant_from(c));
+        last = std::max(last, model::constant_from(c));
     }
     return last;
 }
@@ -294,4 +294,4 @@ Excitation operator+(Excitation a, const Excitation& b) {
     return a;
 }
 
-}  // namespace dinal
+}  // namespace dinal::model

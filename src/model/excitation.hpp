@@ -12,10 +12,10 @@
 #include <variant>
 #include <vector>
 
-#include "text/expected.hpp"
 #include "model/oscillator.hpp"
+#include "text/expected.hpp"
 
-namespace dinal {
+namespace dinal::model {
 
 inline constexpr double never = std::numeric_limits<double>::infinity();
 
@@ -126,7 +126,7 @@ public:
     /// M = 0.
     Excitation() = default;
     /// Fails with a sentence that names the option, its value and its range.
-    static Expected<Excitation> make(Term term);
+    static text::Expected<Excitation> make(Term term);
 
     [[nodiscard]] double value(double t, const State& state = {}) const;
     /// The limit from the left: differs from value(t) only where M jumps.
@@ -161,4 +161,4 @@ private:
     std::vector<Component> components_;
 };
 
-}  // namespace dinal
+}  // namespace dinal::model

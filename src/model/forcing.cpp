@@ -6,7 +6,7 @@
 #include "model/term_bounds.hpp"
 #include "model/terms.hpp"
 
-namespace dinal {
+namespace dinal::model {
 
 namespace {
 
@@ -58,4 +58,4 @@ double period_from(const Excitation& excitation, double t) {
     return 0;
 }
 
-}  // namespace dinal
+}  // namespace dinal::model

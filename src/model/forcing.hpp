@@ -3,10 +3,10 @@
 
 #include "model/excitation.hpp"
 
-namespace dinal {
+namespace dinal::model {
 
 /// The shortest period that all terms have in common from time t on; 0 when a term has none, or none is known, or M is
 /// constant from then on. A feedback counts by the period that its user has named.
 double period_from(const Excitation& excitation, double t);
 
-}  // namespace dinal
+}  // namespace dinal::model

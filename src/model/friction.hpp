@@ -6,7 +6,7 @@
 
 #include "model/oscillator.hpp"
 
-namespace dinal {
+namespace dinal::model {
 
 /// Which way the mass moves. `stuck` is exact: velocity 0, theta constant.
 enum class Motion : int { backward = -1, stuck = 0, forward = 1 };
@@ -51,4 +51,4 @@ inline double friction_torque(const Oscillator& system, Motion motion, double M,
                                    : 0.0 - system.kinetic_friction() * sign_of(motion);  // 0 - x: never -0
 }
 
-}  // namespace dinal
+}  // namespace dinal::model

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace dinal {
+namespace dinal::model {
 
 std::string_view name(Regime regime) {
     switch (regime) {
@@ -21,7 +21,7 @@ std::string_view name(Regime regime) {
     return "";
 }
 
-Expected<Oscillator> Oscillator::make(const OscillatorParameters& p) {
+text::Expected<Oscillator> Oscillator::make(const OscillatorParameters& p) {
     const double breakaway = p.breakaway.value_or(p.kinetic_friction);
     struct Limit {
         const char* name;
@@ -31,15 +31,15 @@ Expected<Oscillator> Oscillator::make(const OscillatorParameters& p) {
     for (const Limit& x : {Limit{"I", p.inertia, true}, Limit{"k", p.stiffness, true}, Limit{"C", p.damping, false},
                            Limit{"Rd", p.kinetic_friction, false}, Limit{"Re", breakaway, false}}) {
         if (!std::isfinite(x.value)) {
-            return Error{fmt::format("{} = {} must be a finite number", x.name, x.value)};
+            return text::Error{fmt::format("{} = {} must be a finite number", x.name, x.value)};
         }
         if (x.positive ? x.value <= 0 : x.value < 0) {
-            return Error{
+            return text::Error{
                 fmt::format("{} = {:.6g} must {}", x.name, x.value, x.positive ? "be positive" : "not be negative")};
         }
     }
     if (breakaway < p.kinetic_friction) {
-        return Error{
+        return text::Error{
             fmt::format("Re = {:.6g} must be at least Rd = {:.6g}: breakaway takes no less than kinetic friction",
                         breakaway, p.kinetic_friction)};
     }
@@ -52,8 +52,9 @@ Expected<Oscillator> Oscillator::make(const OscillatorParameters& p) {
     if (!std::isnormal(o.natural_frequency()) || !std::isnormal(o.natural_period()) ||
         !std::isfinite(o.damping() / o.inertia()) || !std::isfinite(o.dead_zone()) ||
         !std::isfinite(o.damping_ratio())) {
-        return Error{fmt::format("I = {:.6g} and k = {:.6g} are too far apart for double precision: choose other units",
-                                 p.inertia, p.stiffness)};
+        return text::Error{
+            fmt::format("I = {:.6g} and k = {:.6g} are too far apart for double precision: choose other units",
+                        p.inertia, p.stiffness)};
     }
     return o;
 }
@@ -103,4 +104,4 @@ double Oscillator::characteristic_torque(const State& initial) const {
     return stiffness_ * std::hypot(initial.theta, initial.velocity / natural_frequency());
 }
 
-}  // namespace dinal
+}  // namespace dinal::model

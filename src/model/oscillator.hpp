@@ -11,7 +11,7 @@
 
 #include "text/expected.hpp"
 
-namespace dinal {
+namespace dinal::model {
 
 /// What a user says about a system. Ranges: I > 0, k > 0, C >= 0, Rd >= 0, Re >= Rd, all finite.
 struct OscillatorParameters {
@@ -36,7 +36,7 @@ std::string_view name(Regime regime);
 class Oscillator {
 public:
     /// Fails with a sentence that names the parameter, its value and its range.
-    static Expected<Oscillator> make(const OscillatorParameters& parameters);
+    static text::Expected<Oscillator> make(const OscillatorParameters& parameters);
 
     [[nodiscard]] double inertia() const { return inertia_; }
     [[nodiscard]] double stiffness() const { return stiffness_; }
@@ -73,4 +73,4 @@ private:
     double breakaway_ = 0;
 };
 
-}  // namespace dinal
+}  // namespace dinal::model

@@ -3,7 +3,7 @@
 
 #include <string_view>
 
-namespace dinal {
+namespace dinal::model {
 
 #define DINAL_OUTCOMES(X)                                                                    \
     X(reached_end, "reached the end")                                                        \
@@ -31,4 +31,4 @@ constexpr std::string_view sentence(Outcome outcome) {
     return "";
 }
 
-}  // namespace dinal
+}  // namespace dinal::model

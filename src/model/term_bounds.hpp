@@ -7,7 +7,7 @@
 
 #include "model/terms.hpp"
 
-namespace dinal::terms {
+namespace dinal::model::terms {
 
 // ---- from when on a term is constant; -never when it always is
 
@@ -104,4 +104,4 @@ constexpr bool ends_at_zero(const T&) {
     return false;
 }
 
-}  // namespace dinal::terms
+}  // namespace dinal::model::terms

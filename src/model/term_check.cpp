@@ -6,10 +6,10 @@
 
 #include "model/excitation.hpp"
 
-namespace dinal {
+namespace dinal::model {
 namespace {
 
-using Complaint = std::optional<Error>;
+using Complaint = std::optional<text::Error>;
 
 /// Collects the first complaint about the options of one term.
 class Check {
@@ -26,7 +26,7 @@ public:
     }
     Check& require(bool right, std::string_view option, double x, std::string_view limit) {
         if (!right && !complaint_) {
-            complaint_ = Error{fmt::format("{}: {} = {} {}", term_, option, x, limit)};
+            complaint_ = text::Error{fmt::format("{}: {} = {} {}", term_, option, x, limit)};
         }
         return *this;
     }
@@ -34,7 +34,7 @@ public:
     Check& all_finite(std::string_view option, const std::vector<double>& list) {
         for (std::size_t i = 0; i < list.size() && !complaint_; ++i) {
             if (!std::isfinite(list[i])) {
-                complaint_ = Error{fmt::format("{}: {}[{}] = {} must be finite", term_, option, i + 1, list[i])};
+                complaint_ = text::Error{fmt::format("{}: {}[{}] = {} must be finite", term_, option, i + 1, list[i])};
             }
         }
         return *this;
@@ -42,8 +42,9 @@ public:
     Check& increasing(std::string_view option, const std::vector<double>& list) {
         for (std::size_t i = 1; i < list.size() && !complaint_; ++i) {
             if (!(list[i] > list[i - 1])) {
-                complaint_ = Error{fmt::format("{0}: {1}[{2}] = {3} is not after {1}[{4}] = {5}; times must increase",
-                                               term_, option, i + 1, list[i], i, list[i - 1])};
+                complaint_ =
+                    text::Error{fmt::format("{0}: {1}[{2}] = {3} is not after {1}[{4}] = {5}; times must increase",
+                                            term_, option, i + 1, list[i], i, list[i - 1])};
             }
         }
         return *this;
@@ -134,18 +135,18 @@ Complaint check(const Exponential& e) {
 
 Complaint check(const Polynomial& p) {
     if (p.coefficients.empty()) {
-        return Error{"polynomial: coefficients is empty; give at least one, as in coefficients = { 1, 0.5 }"};
+        return text::Error{"polynomial: coefficients is empty; give at least one, as in coefficients = { 1, 0.5 }"};
     }
     return Check("polynomial").all_finite("coefficients", p.coefficients).finite("at", p.at).complaint();
 }
 
 Complaint check(const std::shared_ptr<const Samples>& samples) {
     if (!samples || samples->t.empty()) {
-        return Error{"samples: there are no points; give at least one time and one value"};
+        return text::Error{"samples: there are no points; give at least one time and one value"};
     }
     if (samples->t.size() != samples->M.size()) {
-        return Error{fmt::format("samples: t has {} values and M has {}; they must be equally long", samples->t.size(),
-                                 samples->M.size())};
+        return text::Error{fmt::format("samples: t has {} values and M has {}; they must be equally long",
+                                       samples->t.size(), samples->M.size())};
     }
     return Check("samples")
         .all_finite("t", samples->t)
@@ -156,7 +157,7 @@ Complaint check(const std::shared_ptr<const Samples>& samples) {
 
 Complaint check(const Scripted& s) {
     if (!s.function) {
-        return Error{"scripted: there is no function"};
+        return text::Error{"scripted: there is no function"};
     }
     if (Complaint wrong = Check("scripted")
                               .all_finite("breaks", s.breaks)
@@ -167,7 +168,7 @@ Complaint check(const Scripted& s) {
         return wrong;
     }
     if (s.period > 0 && !s.breaks.empty() && s.breaks.back() - s.breaks.front() > s.period) {
-        return Error{
+        return text::Error{
             fmt::format("scripted: breaks from {} to {} span more than the period {}; give those of one period",
                         s.breaks.front(), s.breaks.back(), s.period)};
     }
@@ -184,7 +185,7 @@ void drop_repeated_corner(Scripted& s) {
 
 }  // namespace
 
-Expected<Excitation> Excitation::make(Term term) {
+text::Expected<Excitation> Excitation::make(Term term) {
     if (const Complaint wrong = std::visit([](const auto& t) { return check(t); }, term)) {
         return *wrong;
     }
@@ -196,4 +197,4 @@ Expected<Excitation> Excitation::make(Term term) {
     return result;
 }
 
-}  // namespace dinal
+}  // namespace dinal::model

@@ -13,7 +13,7 @@
 
 #include "model/excitation.hpp"
 
-namespace dinal::terms {
+namespace dinal::model::terms {
 
 inline constexpr double two_pi = 2 * std::numbers::pi;
 
@@ -263,4 +263,4 @@ void shift(T& term, double d) {
     term.at += d;
 }
 
-}  // namespace dinal::terms
+}  // namespace dinal::model::terms

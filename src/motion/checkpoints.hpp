@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <vector>
 
-namespace dinal {
+namespace dinal::motion {
 
 /// Evenly spaced checkpoints in bounded memory: when full, every second one is dropped. A Checkpoint is an
 /// integrator's own record of where it is, with the number of its `step`.
@@ -42,4 +42,4 @@ private:
     std::vector<Checkpoint> list_;
 };
 
-}  // namespace dinal
+}  // namespace dinal::motion

@@ -7,7 +7,7 @@
 #include <numbers>
 #include <optional>
 
-namespace dinal {
+namespace dinal::motion {
 
 namespace {
 
@@ -31,34 +31,35 @@ double stable_radius(std::complex<double> lambda) {
     return inside;
 }
 
-std::optional<Error> not_positive(const char* name, double value) {
+std::optional<text::Error> not_positive(const char* name, double value) {
     if (value > 0 && std::isfinite(value)) return {};
-    return Error{fmt::format("{} = {:.6g} must be positive and finite", name, value)};
+    return text::Error{fmt::format("{} = {:.6g} must be positive and finite", name, value)};
 }
 
-std::optional<Error> wrong(const Spectral& options, const Oscillator&) {
+std::optional<text::Error> wrong(const Spectral& options, const model::Oscillator&) {
     if (!(options.tolerance > 0) || !(options.tolerance < 1)) {
-        return Error{fmt::format("tolerance = {:.6g} must be between 0 and 1", options.tolerance)};
+        return text::Error{fmt::format("tolerance = {:.6g} must be between 0 and 1", options.tolerance)};
     }
-    if (!(options.max_panel > 0)) return Error{fmt::format("max_panel = {:.6g} must be positive", options.max_panel)};
+    if (!(options.max_panel > 0))
+        return text::Error{fmt::format("max_panel = {:.6g} must be positive", options.max_panel)};
     return {};
 }
-std::optional<Error> wrong(const Rk4& options, const Oscillator& system) {
+std::optional<text::Error> wrong(const Rk4& options, const model::Oscillator& system) {
     if (auto error = not_positive("h", options.h)) return error;
     const double limit = rk4_stability_limit(system);
     // The limit is itself rounded; a step that equals it to the digits shown is let through.
     if (options.h <= limit * (1 + 1e-12)) return {};
-    return Error{fmt::format(
+    return text::Error{fmt::format(
         "h = {:.6g} exceeds the stability limit {:.6g} of rk4 (w0 = {:.6g}, zeta = {:.4g}): use h <= {:.3g}", options.h,
         limit, system.natural_frequency(), system.damping_ratio(), 0.999 * limit)};
 }
-std::optional<Error> wrong(const Dinal1989& options, const Oscillator&) {
+std::optional<text::Error> wrong(const Dinal1989& options, const model::Oscillator&) {
     return not_positive("h", options.h);
 }
 
 }  // namespace
 
-double rk4_stability_limit(const Oscillator& system) {
+double rk4_stability_limit(const model::Oscillator& system) {
     const double w0 = system.natural_frequency();
     const double zeta = system.damping_ratio();
     if (zeta < 1) {
@@ -68,7 +69,7 @@ double rk4_stability_limit(const Oscillator& system) {
     return stable_radius({-1, 0}) / (w0 * (zeta + std::sqrt((zeta - 1) * (zeta + 1))));
 }
 
-double resolution(const Integrator& integrator, const Oscillator& system) {
+double resolution(const Integrator& integrator, const model::Oscillator& system) {
     if (const auto* spectral = std::get_if<Spectral>(&integrator)) {
         return std::min(spectral->max_panel, longest_panel * system.natural_period()) / 16;
     }
@@ -76,10 +77,10 @@ double resolution(const Integrator& integrator, const Oscillator& system) {
     return rk4 != nullptr ? rk4->h : std::get<Dinal1989>(integrator).h;
 }
 
-Expected<Integrator> validated(const Integrator& integrator, const Oscillator& system) {
+text::Expected<Integrator> validated(const Integrator& integrator, const model::Oscillator& system) {
     const auto error = std::visit([&](const auto& options) { return wrong(options, system); }, integrator);
     if (error) return *error;
     return integrator;
 }
 
-}  // namespace dinal
+}  // namespace dinal::motion

@@ -4,10 +4,10 @@
 #include <limits>
 #include <variant>
 
-#include "text/expected.hpp"
 #include "model/oscillator.hpp"
+#include "text/expected.hpp"
 
-namespace dinal {
+namespace dinal::motion {
 
 /// Chebyshev panels between events and breaks of M, each solved to rounding whatever M is.
 struct Spectral {
@@ -37,12 +37,12 @@ struct Dinal1989 {
 using Integrator = std::variant<Spectral, Rk4, Dinal1989>;
 
 /// The largest h for which RK4 does not amplify the free motion of this system (2 sqrt(2) / w0 without damping).
-double rk4_stability_limit(const Oscillator& system);
+double rk4_stability_limit(const model::Oscillator& system);
 
 /// The distance between two evaluations of M, which times must be able to tell apart.
-double resolution(const Integrator& integrator, const Oscillator& system);
+double resolution(const Integrator& integrator, const model::Oscillator& system);
 
 /// Fails when an option is out of its range, or rk4 could not be stable with its h.
-Expected<Integrator> validated(const Integrator& integrator, const Oscillator& system);
+text::Expected<Integrator> validated(const Integrator& integrator, const model::Oscillator& system);
 
-}  // namespace dinal
+}  // namespace dinal::motion

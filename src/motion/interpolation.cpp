@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 
-namespace dinal {
+namespace dinal::motion {
 
 namespace {
 
@@ -52,4 +52,4 @@ std::optional<double> first_velocity_zero(double direction, double h, double v0,
     return {};
 }
 
-}  // namespace dinal
+}  // namespace dinal::motion

@@ -6,13 +6,14 @@
 
 #include "model/oscillator.hpp"
 
-namespace dinal {
+namespace dinal::motion {
 
 /// The quintic through theta, velocity and acceleration at both ends of a step of length h: theta to O(h^6), velocity
 /// to O(h^5), so rows between the steps of a fourth-order method lose nothing.
 class StepInterpolant {
 public:
-    StepInterpolant(double h, const State& y0, double a0, const State& y1, double a1) : h_(h), y0_(y0), a0_(a0) {
+    StepInterpolant(double h, const model::State& y0, double a0, const model::State& y1, double a1)
+        : h_(h), y0_(y0), a0_(a0) {
         const double p = y1.theta - y0.theta - h * (y0.velocity + h * a0 / 2);
         const double q = h * (y1.velocity - y0.velocity - h * a0);
         const double r = h * h * (a1 - a0);
@@ -21,7 +22,7 @@ public:
         c5_ = 6 * p - 3 * q + r / 2;
     }
     /// theta and velocity a time x after the step's beginning.
-    [[nodiscard]] State operator()(double x) const {
+    [[nodiscard]] model::State operator()(double x) const {
         const double s = x / h_;
         return {y0_.theta + x * (y0_.velocity + x * a0_ / 2) + s * s * s * (c3_ + s * (c4_ + s * c5_)),
                 y0_.velocity + x * a0_ + s * s * (3 * c3_ + s * (4 * c4_ + s * 5 * c5_)) / h_};
@@ -29,7 +30,7 @@ public:
 
 private:
     double h_;
-    State y0_;
+    model::State y0_;
     double a0_;
     double c3_, c4_, c5_;
 };
@@ -63,4 +64,4 @@ std::pair<double, double> first_positive(F&& f, double a, double fa, double b, d
 /// returned when the velocity leaves it the wrong way. None if the cubic stays on its side.
 std::optional<double> first_velocity_zero(double direction, double h, double v0, double a0, double v1, double a1);
 
-}  // namespace dinal
+}  // namespace dinal::motion

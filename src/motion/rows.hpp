@@ -8,12 +8,12 @@
 #include "model/friction.hpp"
 #include "motion/simulate.hpp"
 
-namespace dinal {
+namespace dinal::motion {
 
 class RowWriter {
 public:
     /// The grid went through Grid::within; the columns get room for all of it.
-    RowWriter(const Oscillator& system, const Grid& grid, Trajectory& trajectory)
+    RowWriter(const model::Oscillator& system, const Grid& grid, Trajectory& trajectory)
         : grid_(grid), trajectory_(trajectory), damping_(system.damping()) {
         trajectory.names = column_names();
         trajectory.rows.resize(static_cast<Eigen::Index>(grid.count()), column_count);
@@ -27,7 +27,7 @@ public:
     [[nodiscard]] double next_time() const { return next_time_; }
     [[nodiscard]] std::size_t next_row() const { return next_; }
 
-    void put(const State& y, double M, double friction) {
+    void put(const model::State& y, double M, double friction) {
         double* row = column_ + next_;
         const std::size_t stride = grid_.count();
         row[0] = next_time_;
@@ -67,14 +67,14 @@ public:
     }
 
 private:
-    void set_next() { next_time_ = next_ < grid_.count() ? grid_.time(next_) : never; }
+    void set_next() { next_time_ = next_ < grid_.count() ? grid_.time(next_) : model::never; }
 
     const Grid& grid_;
     Trajectory& trajectory_;
     double damping_;
     double* column_ = nullptr;
     std::size_t next_ = 0;
-    double next_time_ = never;
+    double next_time_ = model::never;
 };
 
-}  // namespace dinal
+}  // namespace dinal::motion

@@ -10,22 +10,23 @@
 #include "motion/methods.hpp"
 #include "motion/spectral/panels.hpp"
 
-namespace dinal {
+namespace dinal::motion {
 
 namespace {
 
 /// One sentence about the first wrong entry of a list of times, or none.
-std::optional<Error> wrong_times(const std::vector<double>& times, const Window& window) {
+std::optional<text::Error> wrong_times(const std::vector<double>& times, const Window& window) {
     for (std::size_t i = 0; i < times.size(); ++i) {
         const double t = times[i];
-        if (!std::isfinite(t)) return Error{fmt::format("times[{}] = {} must be a finite number", i + 1, t)};
+        if (!std::isfinite(t)) return text::Error{fmt::format("times[{}] = {} must be a finite number", i + 1, t)};
         if (i > 0 && !(t > times[i - 1])) {
-            return Error{fmt::format("times[{}] = {:.17g} is not after times[{}] = {:.17g}: times must increase", i + 1,
-                                     t, i, times[i - 1])};
+            return text::Error{fmt::format("times[{}] = {:.17g} is not after times[{}] = {:.17g}: times must increase",
+                                           i + 1, t, i, times[i - 1])};
         }
         if (t < window.start || t > window.end) {
-            return Error{fmt::format("times[{}] = {:.17g} is outside the run from t_start = {:.6g} to t_end = {:.6g}",
-                                     i + 1, t, window.start, window.end)};
+            return text::Error{
+                fmt::format("times[{}] = {:.17g} is outside the run from t_start = {:.6g} to t_end = {:.6g}", i + 1, t,
+                            window.start, window.end)};
         }
     }
     return {};
@@ -40,13 +41,13 @@ std::string memory_text(double bytes) {
 }
 
 /// Rows that stay within memory, told in the user's options.
-std::optional<Error> too_many_rows(double count, const Grid& grid, const Window& window, const Limits& limits) {
+std::optional<text::Error> too_many_rows(double count, const Grid& grid, const Window& window, const Limits& limits) {
     const double bytes = count * column_count * sizeof(double);
     if (bytes <= static_cast<double>(limits.memory)) return {};
     const double most = static_cast<double>(limits.memory) / (column_count * sizeof(double));
-    return Error{fmt::format("{:.3g} rows need {} and {} are allowed: use dt >= {:.2g}, or times = {{...}}", count,
-                             memory_text(bytes), memory_text(static_cast<double>(limits.memory)),
-                             std::max(grid.dt(), (window.end - window.start) / most))};
+    return text::Error{fmt::format("{:.3g} rows need {} and {} are allowed: use dt >= {:.2g}, or times = {{...}}",
+                                   count, memory_text(bytes), memory_text(static_cast<double>(limits.memory)),
+                                   std::max(grid.dt(), (window.end - window.start) / most))};
 }
 
 /// Rows of the grid with spacing dt: start + i dt before the end, and the end. As a double, because it may be too many.
@@ -58,24 +59,24 @@ double row_count(const Window& window, double dt) {
 }
 
 /// Times that doubles can tell apart: a spacing well above the rounding of the largest time in the window.
-std::optional<Error> lost_in_time(const char* name, double spacing, const Window& window) {
+std::optional<text::Error> lost_in_time(const char* name, double spacing, const Window& window) {
     const double latest = std::max(std::fabs(window.start), std::fabs(window.end));
     const double least = 16 * std::numeric_limits<double>::epsilon() * latest;
     if (spacing >= least) return {};
-    return Error{fmt::format(
+    return text::Error{fmt::format(
         "{} = {:.6g} is lost in the rounding of times near {:.6g}: use at least {:.2g}, or start nearer to t = 0", name,
         spacing, latest, 1.1 * least)};
 }
 
 }  // namespace
 
-Expected<Grid> Grid::within(const Window& window) const {
+text::Expected<Grid> Grid::within(const Window& window) const {
     Grid grid = *this;
     grid.window_ = window;
     grid.count_ = times_.size();
     if (spaced_) {
         if (!(dt_ > 0) || !std::isfinite(dt_))
-            return Error{fmt::format("dt = {:.6g} must be positive and finite", dt_)};
+            return text::Error{fmt::format("dt = {:.6g} must be positive and finite", dt_)};
         grid.count_ = static_cast<std::size_t>(std::min(row_count(window, dt_), 1e18));
     } else if (auto wrong = wrong_times(times_, window)) {
         return *wrong;
@@ -85,17 +86,27 @@ Expected<Grid> Grid::within(const Window& window) const {
 
 namespace {
 
-Expected<Trajectory> run_from(const std::optional<Motion>& before, const Oscillator& system,
-                              const Excitation& excitation, const State& initial, const Window& window,
-                              const Grid& rows, const Integrator& integrator, const Monitor& monitor,
-                              const Limits& limits) {
-    if (!std::isfinite(initial.theta)) return Error{fmt::format("theta0 = {} must be a finite number", initial.theta)};
+/// Calls the entry point of the chosen integrator.
+struct Run {
+    const Problem& problem;
+    Trajectory operator()(const Spectral& options) const { return spectral::run(problem, options); }
+    Trajectory operator()(const Rk4& options) const { return rk4::run(problem, options); }
+    Trajectory operator()(const Dinal1989& options) const { return dinal1989::run(problem, options); }
+};
+
+text::Expected<Trajectory> run_from(const std::optional<model::Motion>& before, const model::Oscillator& system,
+                                    const model::Excitation& excitation, const model::State& initial,
+                                    const Window& window, const Grid& rows, const Integrator& integrator,
+                                    const Monitor& monitor, const Limits& limits) {
+    if (!std::isfinite(initial.theta))
+        return text::Error{fmt::format("theta0 = {} must be a finite number", initial.theta)};
     if (!std::isfinite(initial.velocity))
-        return Error{fmt::format("velocity0 = {} must be a finite number", initial.velocity)};
-    if (!std::isfinite(window.start)) return Error{fmt::format("t_start = {} must be a finite number", window.start)};
-    if (!std::isfinite(window.end)) return Error{fmt::format("t_end = {} must be a finite number", window.end)};
+        return text::Error{fmt::format("velocity0 = {} must be a finite number", initial.velocity)};
+    if (!std::isfinite(window.start))
+        return text::Error{fmt::format("t_start = {} must be a finite number", window.start)};
+    if (!std::isfinite(window.end)) return text::Error{fmt::format("t_end = {} must be a finite number", window.end)};
     if (!(window.end > window.start)) {
-        return Error{fmt::format("t_end = {:.6g} must be after t_start = {:.6g}", window.end, window.start)};
+        return text::Error{fmt::format("t_end = {:.6g} must be after t_start = {:.6g}", window.end, window.start)};
     }
     auto grid = rows.within(window);
     if (!grid) return grid.error();
@@ -109,7 +120,7 @@ Expected<Trajectory> run_from(const std::optional<Motion>& before, const Oscilla
     if (auto lost = lost_in_time(spectral ? "T0/27" : "h", resolution(*method, system), window)) return *lost;
 
     const Problem problem{system, excitation, initial, window, *grid, monitor, limits, before};
-    Trajectory trajectory = std::visit([&](const auto& options) { return run(problem, options); }, *method);
+    Trajectory trajectory = std::visit(Run{problem}, *method);
     trajectory.initial = initial;
     return trajectory;
 }
@@ -120,10 +131,10 @@ Trajectory joined(const Trajectory& first, Eigen::Index kept, Trajectory second)
     rows << first.rows.topRows(kept), second.rows;
     second.rows = std::move(rows);
 
-    std::vector<Event> events = first.events;
-    if (!events.empty() && events.back().kind == EventKind::rest) events.back().kind = EventKind::stick;
+    std::vector<model::Event> events = first.events;
+    if (!events.empty() && events.back().kind == model::EventKind::rest) events.back().kind = model::EventKind::stick;
     events.insert(events.end(), second.events.begin(), second.events.end());
-    if (second.outcome == Outcome::at_rest && !events.empty()) events.back().kind = EventKind::rest;
+    if (second.outcome == model::Outcome::at_rest && !events.empty()) events.back().kind = model::EventKind::rest;
     second.events = std::move(events);
 
     if (first.dense && second.dense) {
@@ -134,7 +145,7 @@ Trajectory joined(const Trajectory& first, Eigen::Index kept, Trajectory second)
         second.dense = {};
     }
     if (first.panels && second.panels) {
-        auto panels = std::make_shared<Panels>(*first.panels);
+        auto panels = std::make_shared<spectral::Panels>(*first.panels);
         panels->append(*second.panels);
         second.panels = std::move(panels);
     } else {
@@ -147,18 +158,19 @@ Trajectory joined(const Trajectory& first, Eigen::Index kept, Trajectory second)
 
 }  // namespace
 
-Expected<Trajectory> simulate(const Oscillator& system, const Excitation& excitation, const State& initial,
-                              const Window& window, const Grid& rows, const Integrator& integrator,
-                              const Monitor& monitor, const Limits& limits) {
+text::Expected<Trajectory> simulate(const model::Oscillator& system, const model::Excitation& excitation,
+                                    const model::State& initial, const Window& window, const Grid& rows,
+                                    const Integrator& integrator, const Monitor& monitor, const Limits& limits) {
     return run_from({}, system, excitation, initial, window, rows, integrator, monitor, limits);
 }
 
-Expected<Trajectory> resume(const Oscillator& system, const Excitation& excitation, const Trajectory& so_far,
-                            double t_end, const Grid& rows, const Integrator& integrator, const Monitor& monitor,
-                            const Limits& limits) {
+text::Expected<Trajectory> resume(const model::Oscillator& system, const model::Excitation& excitation,
+                                  const Trajectory& so_far, double t_end, const Grid& rows,
+                                  const Integrator& integrator, const Monitor& monitor, const Limits& limits) {
     const Window window{so_far.t_stop, t_end};
     if (!(t_end > window.start)) {
-        return Error{fmt::format("t_end = {:.6g} must be after t = {:.6g}, where the run ended", t_end, window.start)};
+        return text::Error{
+            fmt::format("t_end = {:.6g} must be after t = {:.6g}, where the run ended", t_end, window.start)};
     }
     const auto grid = rows.within({so_far.t_start, t_end});
     if (!grid) return grid.error();
@@ -180,4 +192,4 @@ Expected<Trajectory> resume(const Oscillator& system, const Excitation& excitati
     return joined(so_far, static_cast<Eigen::Index>(kept), std::move(second).value());
 }
 
-}  // namespace dinal
+}  // namespace dinal::motion

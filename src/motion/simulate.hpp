@@ -7,12 +7,12 @@
 #include <vector>
 
 #include "model/excitation.hpp"
-#include "text/expected.hpp"
-#include "motion/integrator.hpp"
 #include "model/oscillator.hpp"
+#include "motion/integrator.hpp"
 #include "motion/trajectory.hpp"
+#include "text/expected.hpp"
 
-namespace dinal {
+namespace dinal::motion {
 
 /// The span of time of a run; start < end, both finite.
 struct Window {
@@ -30,7 +30,7 @@ public:
     static Grid none() { return Grid(false, 0, {}); }
 
     /// Fails when dt is not positive, the times do not increase or leave the window.
-    [[nodiscard]] Expected<Grid> within(const Window& window) const;
+    [[nodiscard]] text::Expected<Grid> within(const Window& window) const;
     [[nodiscard]] double dt() const { return dt_; }
     [[nodiscard]] const std::vector<double>& times() const { return times_; }
 
@@ -61,26 +61,28 @@ struct Limits {
 
 /// One run as its integrator sees it: all of it checked.
 struct Problem {
-    const Oscillator& system;
-    const Excitation& excitation;
-    State initial;
+    const model::Oscillator& system;
+    const model::Excitation& excitation;
+    model::State initial;
     Window window;
     const Grid& rows;
     const Monitor& monitor;
     const Limits& limits;
-    std::optional<Motion> before = {};  ///< of a run that goes on: what the mass did until now; its start is an event
+    std::optional<model::Motion> before =
+        {};  ///< of a run that goes on: what the mass did until now; its start is an event
 };
 
 /// Runs from `initial` at window.start. Fails (before the first step) when the window, the grid or the integrator's
 /// options are wrong or the rows would not fit; whatever happens later is told by the outcome of the trajectory.
-Expected<Trajectory> simulate(const Oscillator& system, const Excitation& excitation, const State& initial,
-                              const Window& window, const Grid& rows, const Integrator& integrator,
-                              const Monitor& monitor = {}, const Limits& limits = {});
+text::Expected<Trajectory> simulate(const model::Oscillator& system, const model::Excitation& excitation,
+                                    const model::State& initial, const Window& window, const Grid& rows,
+                                    const Integrator& integrator, const Monitor& monitor = {},
+                                    const Limits& limits = {});
 
 /// Goes on from where `so_far` ended, to t_end, as if it had not been interrupted: the trajectory of both. `rows` are
 /// those of all of it; the ones that `so_far` has are kept. Fails like simulate().
-Expected<Trajectory> resume(const Oscillator& system, const Excitation& excitation, const Trajectory& so_far,
-                            double t_end, const Grid& rows, const Integrator& integrator, const Monitor& monitor = {},
-                            const Limits& limits = {});
+text::Expected<Trajectory> resume(const model::Oscillator& system, const model::Excitation& excitation,
+                                  const Trajectory& so_far, double t_end, const Grid& rows,
+                                  const Integrator& integrator, const Monitor& monitor = {}, const Limits& limits = {});
 
-}  // namespace dinal
+}  // namespace dinal::motion

@@ -6,7 +6,7 @@
 #include <array>
 #include <cmath>
 
-namespace dinal {
+namespace dinal::motion {
 
 const std::vector<std::string>& column_names() {
     static const std::vector<std::string> names{"t", "theta", "velocity", "M", "friction", "damping"};
@@ -19,14 +19,14 @@ std::optional<Eigen::Index> Trajectory::find(std::string_view name) const {
     return static_cast<Eigen::Index>(it - names.begin());
 }
 
-Expected<State> between_rows(const Trajectory& trajectory, double t) {
+text::Expected<model::State> between_rows(const Trajectory& trajectory, double t) {
     const auto time = trajectory.find("t"), theta = trajectory.find("theta"), velocity = trajectory.find("velocity");
-    if (!time || !theta || !velocity) return Error{"at() needs the columns t, theta and velocity"};
+    if (!time || !theta || !velocity) return text::Error{"at() needs the columns t, theta and velocity"};
     const auto& rows = trajectory.rows;
     const Eigen::Index n = rows.rows();
     const double* begin = rows.col(*time).data();
     if (n == 0 || !(t >= begin[0]) || !(t <= begin[n - 1])) {
-        return Error{
+        return text::Error{
             n == 0 ? "at() needs rows and there are none"
                    : fmt::format("t = {:.6g} is outside the rows from {:.6g} to {:.6g}", t, begin[0], begin[n - 1])};
     }
@@ -34,40 +34,41 @@ Expected<State> between_rows(const Trajectory& trajectory, double t) {
         std::min<Eigen::Index>(std::max<Eigen::Index>(std::upper_bound(begin, begin + n, t) - begin, 1), n - 1);
     if (n == 1 || begin[i - 1] == t) {
         const Eigen::Index row = n == 1 ? 0 : i - 1;
-        return State{rows(row, *theta), rows(row, *velocity)};
+        return model::State{rows(row, *theta), rows(row, *velocity)};
     }
     const double h = begin[i] - begin[i - 1];
     const double s = (t - begin[i - 1]) / h;
     const double y0 = rows(i - 1, *theta), y1 = rows(i, *theta);
     const double v0 = h * rows(i - 1, *velocity), v1 = h * rows(i, *velocity);
     const double c2 = 3 * (y1 - y0) - 2 * v0 - v1, c3 = 2 * (y0 - y1) + v0 + v1;
-    return State{y0 + s * (v0 + s * (c2 + s * c3)), (v0 + s * (2 * c2 + s * 3 * c3)) / h};
+    return model::State{y0 + s * (v0 + s * (c2 + s * c3)), (v0 + s * (2 * c2 + s * 3 * c3)) / h};
 }
 
 namespace {
 
-std::string events_text(const std::vector<Event>& events) {
+std::string events_text(const std::vector<model::Event>& events) {
     if (events.empty()) return "no events";
     std::array<int, 4> counts{};
-    for (const Event& event : events) ++counts.at(static_cast<std::size_t>(event.kind));
+    for (const model::Event& event : events) ++counts.at(static_cast<std::size_t>(event.kind));
     std::string parts;
-    for (const EventKind kind : {EventKind::turn, EventKind::stick, EventKind::slip, EventKind::rest}) {
+    for (const model::EventKind kind :
+         {model::EventKind::turn, model::EventKind::stick, model::EventKind::slip, model::EventKind::rest}) {
         const int n = counts.at(static_cast<std::size_t>(kind));
         if (n == 0) continue;
         if (!parts.empty()) parts += ", ";
-        parts += fmt::format("{} {}{}", n, name(kind), n == 1 || kind == EventKind::rest ? "" : "s");
+        parts += fmt::format("{} {}{}", n, model::name(kind), n == 1 || kind == model::EventKind::rest ? "" : "s");
     }
     return fmt::format("{} event{} ({})", events.size(), events.size() == 1 ? "" : "s", parts);
 }
 
 }  // namespace
 
-Expected<State> Trajectory::at(double t) const {
+text::Expected<model::State> Trajectory::at(double t) const {
     if (!computed) return between_rows(*this, t);
     if (!(t >= t_start) || !(t <= t_stop)) {
-        return Error{fmt::format("t = {:.6g} is outside the run from {:.6g} to {:.6g}", t, t_start, t_stop)};
+        return text::Error{fmt::format("t = {:.6g} is outside the run from {:.6g} to {:.6g}", t, t_start, t_stop)};
     }
-    if (!dense) return Error{"the motion between the rows was not kept: run without dense = false"};
+    if (!dense) return text::Error{"the motion between the rows was not kept: run without dense = false"};
     return dense(t);
 }
 
@@ -82,14 +83,14 @@ std::string summary(const Trajectory& trajectory) {
     text +=
         fmt::format(", t {:.9g} … {:.9g}; {}; ", trajectory.t_start, trajectory.t_stop, events_text(trajectory.events));
     switch (trajectory.outcome) {
-        case Outcome::reached_end:
+        case model::Outcome::reached_end:
             text += "moving at the end";
             break;
-        case Outcome::at_rest:
+        case model::Outcome::at_rest:
             text += "at rest";
             break;
         default:
-            text += sentence(trajectory.outcome);
+            text += model::sentence(trajectory.outcome);
     }
     if (const auto theta = trajectory.find("theta"); theta && rows.rows() > 0) {
         text += fmt::format("; peak |theta| {:.3g}", rows.col(*theta).cwiseAbs().maxCoeff());
@@ -97,4 +98,4 @@ std::string summary(const Trajectory& trajectory) {
     return text;
 }
 
-}  // namespace dinal
+}  // namespace dinal::motion

@@ -10,14 +10,16 @@
 #include <vector>
 
 #include "model/event.hpp"
-#include "text/expected.hpp"
 #include "model/friction.hpp"
 #include "model/oscillator.hpp"
 #include "model/outcome.hpp"
+#include "text/expected.hpp"
 
-namespace dinal {
-
+namespace dinal::motion::spectral {
 class Panels;
+}
+
+namespace dinal::motion {
 
 /// The columns of a computed run, in this order: theta rad, velocity rad per time unit, the rest torques on the mass.
 enum class Column : int { t, theta, velocity, M, friction, damping };
@@ -25,21 +27,21 @@ inline constexpr int column_count = 6;
 const std::vector<std::string>& column_names();
 
 /// theta and velocity at any time the run covers, at the accuracy of its integrator.
-using DenseOutput = std::function<Expected<State>(double t)>;
+using DenseOutput = std::function<text::Expected<model::State>(double t)>;
 
 struct Trajectory {
-    std::vector<std::string> names;  ///< one for each column of `rows`
-    Eigen::MatrixXd rows;            ///< column-major: a column is contiguous. Never NaN.
-    std::vector<Event> events;       ///< in order of time
-    Outcome outcome = Outcome::reached_end;
-    State initial;  ///< at t_start
+    std::vector<std::string> names;    ///< one for each column of `rows`
+    Eigen::MatrixXd rows;              ///< column-major: a column is contiguous. Never NaN.
+    std::vector<model::Event> events;  ///< in order of time
+    model::Outcome outcome = model::Outcome::reached_end;
+    model::State initial;  ///< at t_start
     double t_start = 0;
     double t_stop = 0;  ///< how far it came: t_end unless the outcome says otherwise
-    State state_at_stop;
-    Motion motion_at_stop = Motion::stuck;
-    bool computed = true;                  ///< false when it was read from a file
-    DenseOutput dense;                     ///< empty when it was declined, or the trajectory read from a file
-    std::shared_ptr<const Panels> panels;  ///< the motion itself, of a spectral run with dense output
+    model::State state_at_stop;
+    model::Motion motion_at_stop = model::Motion::stuck;
+    bool computed = true;                            ///< false when it was read from a file
+    DenseOutput dense;                               ///< empty when it was declined, or the trajectory read from a file
+    std::shared_ptr<const spectral::Panels> panels;  ///< the motion itself, of a spectral run with dense output
 
     [[nodiscard]] Eigen::Index size() const { return rows.rows(); }
     [[nodiscard]] std::optional<Eigen::Index> find(std::string_view name) const;
@@ -47,14 +49,14 @@ struct Trajectory {
 
     /// theta and velocity at t: from the integrator when it can, else by cubic interpolation of the rows.
     /// Fails when t is outside the run or there are no such columns.
-    [[nodiscard]] Expected<State> at(double t) const;
+    [[nodiscard]] text::Expected<model::State> at(double t) const;
 };
 
 /// theta and velocity at t by cubic interpolation of the rows, for want of anything better.
-Expected<State> between_rows(const Trajectory& trajectory, double t);
+text::Expected<model::State> between_rows(const Trajectory& trajectory, double t);
 
 /// The one-line summary: "2001 rows, t 0 … 20; 41 events (39 turns, 1 stick, 1 slip); moving at the end; peak
 /// |theta| 1.96".
 std::string summary(const Trajectory& trajectory);
 
-}  // namespace dinal
+}  // namespace dinal::motion

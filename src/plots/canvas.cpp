@@ -8,7 +8,7 @@
 
 #include "plots/line.hpp"
 
-namespace dinal {
+namespace dinal::plots {
 namespace {
 
 // Unicode counts the dots of a braille cell down the left column, down the right one, and then the lowest row.
@@ -150,4 +150,4 @@ void Pen::line(int x, int y, int to_x, int to_y) {  // Bresenham
     }
 }
 
-}  // namespace dinal
+}  // namespace dinal::plots

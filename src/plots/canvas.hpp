@@ -9,7 +9,7 @@
 #include <string_view>
 #include <vector>
 
-namespace dinal {
+namespace dinal::plots {
 
 enum class Charset { braille, ascii };
 
@@ -79,4 +79,4 @@ private:
     int last_x_ = -1, last_y_ = -1;  // the dot that was made last
 };
 
-}  // namespace dinal
+}  // namespace dinal::plots

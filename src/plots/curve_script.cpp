@@ -7,7 +7,7 @@
 
 #include "plots/paper_style.hpp"
 
-namespace dinal {
+namespace dinal::plots {
 namespace {
 
 using Columns = std::vector<std::vector<double>>;
@@ -35,7 +35,7 @@ double in_reach(const Scale& scale, double value) {
     return std::fabs(place) > reach ? scale.at(std::copysign(reach, place)) : value;
 }
 
-Columns columns_of(const Panel& panel, const Curve& curve, const Places& places) {
+Columns columns_of(const PaperPanel& panel, const Curve& curve, const Places& places) {
     Columns columns(2);
     for (const std::size_t place : places) {
         columns[0].push_back(place == gap ? std::nan("") : in_reach(panel.view.x, curve.x.values[place]));
@@ -44,7 +44,7 @@ Columns columns_of(const Panel& panel, const Curve& curve, const Places& places)
     return columns;
 }
 
-Columns columns_of(const Panel& panel, const std::vector<Stroke>& strokes) {
+Columns columns_of(const PaperPanel& panel, const std::vector<Stroke>& strokes) {
     Columns columns(2);
     const double width = panel.right - panel.left;
     for (const Stroke& stroke : strokes) {
@@ -56,7 +56,7 @@ Columns columns_of(const Panel& panel, const std::vector<Stroke>& strokes) {
     return columns;
 }
 
-bool is_dot(const Panel& panel, const Curve& curve, const Places& piece) {
+bool is_dot(const PaperPanel& panel, const Curve& curve, const Places& piece) {
     const auto near = [](double a, double b, double pixels) { return std::fabs(a - b) * pixels < line_width; };
     return std::all_of(piece.begin(), piece.end(), [&](std::size_t place) {
         return near(panel.view.x(curve.x.values[place]), panel.view.x(curve.x.values[piece.front()]),
@@ -67,7 +67,8 @@ bool is_dot(const Panel& panel, const Curve& curve, const Places& piece) {
 }
 
 /// A piece that is no longer than a dot would leave no ink as a line.
-std::vector<std::string> line_elements(const Panel& panel, std::size_t i, const Places& places, GnuplotData& data) {
+std::vector<std::string> line_elements(const PaperPanel& panel, std::size_t i, const Places& places,
+                                       GnuplotData& data) {
     const Curve& curve = panel.figure->curves[i];
     Places dots, lines;
     for (const Places& piece : pieces_of(places)) {
@@ -131,7 +132,8 @@ std::vector<Point> area_in_box(const View& view, const Curve& curve, const Place
 }
 
 /// NaN would close an area where it opens: each piece is drawn for itself.
-std::vector<std::string> fill_elements(const Panel& panel, std::size_t i, const Places& places, GnuplotData& data) {
+std::vector<std::string> fill_elements(const PaperPanel& panel, std::size_t i, const Places& places,
+                                       GnuplotData& data) {
     std::vector<std::string> elements;
     for (const Places& piece : pieces_of(places)) {
         Columns columns(2);
@@ -148,7 +150,8 @@ std::vector<std::string> fill_elements(const Panel& panel, std::size_t i, const 
 
 }  // namespace
 
-std::vector<std::string> curve_elements(const Panel& panel, std::size_t place, const Trace& trace, GnuplotData& data) {
+std::vector<std::string> curve_elements(const PaperPanel& panel, std::size_t place, const Trace& trace,
+                                        GnuplotData& data) {
     const Curve& curve = panel.figure->curves[place];
     if (!trace.ink.all.empty()) {
         constexpr double overlap = 1.6;  // or a screen shows the seams between rows
@@ -167,4 +170,4 @@ std::vector<std::string> curve_elements(const Panel& panel, std::size_t place, c
     return {data.add(columns_of(panel, curve, trace.places)) + " with points " + point_style(*panel.figure, place)};
 }
 
-}  // namespace dinal
+}  // namespace dinal::plots

@@ -8,7 +8,7 @@
 #include "plots/paper_layout.hpp"
 #include "plots/thinning.hpp"
 
-namespace dinal {
+namespace dinal::plots {
 
 /// What is drawn of a curve (io/thinning.hpp).
 struct Trace {
@@ -17,6 +17,7 @@ struct Trace {
 };
 
 /// In the order in which they are to be drawn, for the panel's curve of that place.
-std::vector<std::string> curve_elements(const Panel& panel, std::size_t place, const Trace& trace, GnuplotData& data);
+std::vector<std::string> curve_elements(const PaperPanel& panel, std::size_t place, const Trace& trace,
+                                        GnuplotData& data);
 
-}  // namespace dinal
+}  // namespace dinal::plots

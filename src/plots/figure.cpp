@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <limits>
 
-namespace dinal {
+namespace dinal::plots {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
@@ -23,7 +23,7 @@ struct Extent {
 };
 
 /// An area reaches to its base, or to zero.
-void add_other_edge(const Curve& curve, Range window, bool logarithmic, Extent& y) {
+void add_other_edge(const Curve& curve, Interval window, bool logarithmic, Extent& y) {
     if (!curve.base) {
         if (!logarithmic) {
             y.add(0);
@@ -44,7 +44,7 @@ struct Extents {
 
 /// Of the points that are seen: who looks at a piece of time wants to see the values of that piece.
 Extents extents_of(const Figure& figure) {
-    const Range window = figure.x.limits.value_or(Range{-infinity, infinity});
+    const Interval window = figure.x.limits.value_or(Interval{-infinity, infinity});
     const bool x_log = figure.x.logarithmic, y_log = figure.y.logarithmic;
     Extents all;
     for (const Curve& curve : figure.curves) {
@@ -66,7 +66,7 @@ Extents extents_of(const Figure& figure) {
     return all;
 }
 
-Range widened(Extent extent, double air) {
+Interval widened(Extent extent, double air) {
     if (extent.empty()) {
         return {0, 1};
     }
@@ -80,7 +80,7 @@ Range widened(Extent extent, double air) {
     return {extent.low - air * length, extent.high + air * length};
 }
 
-Range logarithmically_widened(Extent extent, double air) {
+Interval logarithmically_widened(Extent extent, double air) {
     if (extent.empty()) {
         return {1, 10};
     }
@@ -90,7 +90,7 @@ Range logarithmically_widened(Extent extent, double air) {
             std::min(extent.high * factor, std::numeric_limits<double>::max())};
 }
 
-Range with_air(Extent extent, const Axis& axis, double air) {
+Interval with_air(Extent extent, const Axis& axis, double air) {
     if (axis.limits) {
         return *axis.limits;
     }
@@ -110,7 +110,7 @@ void include_origin(Extent& extent) {
 
 }  // namespace
 
-Scale::Scale(Range range, bool logarithmic)
+Scale::Scale(Interval range, bool logarithmic)
     : range_(range),
       logarithmic_(logarithmic),
       low_(logarithmic ? std::log10(range.low) : range.low),
@@ -145,4 +145,4 @@ Box equal_box(View& view, Box most) {
     return {unit() * view.x.range().length(), unit() * view.y.range().length()};
 }
 
-}  // namespace dinal
+}  // namespace dinal::plots

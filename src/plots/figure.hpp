@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-namespace dinal {
+namespace dinal::plots {
 
 /// Numbers to draw: a view and what keeps it alive. Shared, because a picture may outlive the run it shows.
 struct Numbers {
@@ -23,7 +23,7 @@ struct Numbers {
     }
 };
 
-struct Range {
+struct Interval {
     double low = 0;
     double high = 1;
     [[nodiscard]] double length() const { return high - low; }
@@ -46,7 +46,7 @@ struct Curve {
 
 struct Axis {
     std::string label = {};
-    std::optional<Range> limits = {};
+    std::optional<Interval> limits = {};
     std::vector<double> ticks = {};       ///< where they stand; none: at round numbers
     std::optional<double> division = {};  ///< or at the multiples of this (DIVX, DIVY of DRAAR)
     bool logarithmic = false;
@@ -67,8 +67,8 @@ struct Figure {
     bool circles = false;  ///< about the origin, through the ticks: lines of equal energy in a phase plane
     std::vector<Curve> curves;
     std::vector<Mark> marks;
-    std::vector<Range> stuck;             ///< intervals of x, marked at its axis
-    std::optional<Range> dead_zone = {};  ///< of x, marked on y = 0
+    std::vector<Interval> stuck;             ///< intervals of x, marked at its axis
+    std::optional<Interval> dead_zone = {};  ///< of x, marked on y = 0
 };
 
 /// Numbers beyond 1e300 would overflow in differences, and nobody could see them.
@@ -82,8 +82,8 @@ inline constexpr double shortest_axis = 1e-305;
 /// One axis as it is drawn: from a value to its fraction of the axis.
 class Scale {
 public:
-    Scale(Range range, bool logarithmic);
-    [[nodiscard]] Range range() const { return range_; }
+    Scale(Interval range, bool logarithmic);
+    [[nodiscard]] Interval range() const { return range_; }
     [[nodiscard]] bool logarithmic() const { return logarithmic_; }
     /// 0 at the low end, 1 at the high one; NaN for what has no place.
     [[nodiscard]] double operator()(double value) const {
@@ -97,7 +97,7 @@ public:
     }
 
 private:
-    Range range_;
+    Interval range_;
     bool logarithmic_;
     double low_;
     double factor_;
@@ -117,4 +117,4 @@ struct Box {
 };
 Box equal_box(View& view, Box most);
 
-}  // namespace dinal
+}  // namespace dinal::plots

@@ -18,13 +18,13 @@
 #include <utility>
 #include <vector>
 
-namespace dinal {
+namespace dinal::plots {
 namespace {
 
-Error failure(const std::string& what) {
+text::Error failure(const std::string& what) {
     return {"can not run gnuplot: " + what};
 }
-Error failure(int error) {
+text::Error failure(int error) {
     return failure(std::generic_category().message(error));
 }
 
@@ -146,7 +146,7 @@ std::string first_complaint(const std::string& text) {
     return begin == std::string::npos ? "" : text.substr(begin, text.find('\n', begin) - begin);
 }
 
-Error complaint(int status, int errors) {
+text::Error complaint(int status, int errors) {
     if (WIFSIGNALED(status)) {
         return failure("it was stopped by signal " + std::to_string(WTERMSIG(status)));
     }
@@ -159,7 +159,7 @@ Error complaint(int status, int errors) {
 
 }  // namespace
 
-Expected<std::string> run_gnuplot(std::string_view commands, const GnuplotLimits& limits) {
+text::Expected<std::string> run_gnuplot(std::string_view commands, const GnuplotLimits& limits) {
     const Descriptor input(nameless_file()), errors(nameless_file());
     std::array<int, 2> ends{-1, -1};
     if (input.number() < 0 || errors.number() < 0 || !write_all(input.number(), commands) ||
@@ -170,7 +170,7 @@ Expected<std::string> run_gnuplot(std::string_view commands, const GnuplotLimits
     Descriptor to(ends[1]);
     Child child;
     if (const int error = child.start(input.number(), to.number(), errors.number()); error != 0) {
-        return error == ENOENT ? Error{"files .svg, .png and .pdf are drawn by gnuplot, which is not installed: install "
+        return error == ENOENT ? text::Error{"files .svg, .png and .pdf are drawn by gnuplot, which is not installed: install "
                                        "the Debian package gnuplot-nox (plots in the terminal and .gp files need no "
                                        "gnuplot)"}
                                : failure(error);
@@ -192,4 +192,4 @@ Expected<std::string> run_gnuplot(std::string_view commands, const GnuplotLimits
     return std::move(*picture);
 }
 
-}  // namespace dinal
+}  // namespace dinal::plots

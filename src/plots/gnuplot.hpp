@@ -8,7 +8,7 @@
 
 #include "text/expected.hpp"
 
-namespace dinal {
+namespace dinal::plots {
 
 struct GnuplotLimits {
     std::function<bool()> go_on = {};  ///< asked now and then, and after each signal; gnuplot is killed when it says no
@@ -17,6 +17,6 @@ struct GnuplotLimits {
 
 /// What gnuplot writes to its standard output for these commands. It never learns the name of a file, and reads no
 /// settings of its user. Fails when it is not installed, and with its own words when it complains.
-Expected<std::string> run_gnuplot(std::string_view commands, const GnuplotLimits& limits = {});
+text::Expected<std::string> run_gnuplot(std::string_view commands, const GnuplotLimits& limits = {});
 
-}  // namespace dinal
+}  // namespace dinal::plots

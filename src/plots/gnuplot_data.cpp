@@ -7,7 +7,7 @@
 
 #include "text/display_text.hpp"
 
-namespace dinal {
+namespace dinal::plots {
 
 std::string GnuplotData::add(const std::vector<std::vector<double>>& columns) {
     std::string use;
@@ -44,7 +44,7 @@ std::string GnuplotData::take_binary() {
 }
 
 std::string single_quoted(std::string_view text) {
-    const std::string shown = displayable(text);
+    const std::string shown = text::displayable(text);
     std::string_view rest = shown;
     std::string result = "'";
     if (rest.starts_with('\'')) {
@@ -61,4 +61,4 @@ std::string single_quoted(std::string_view text) {
     return result + "'";
 }
 
-}  // namespace dinal
+}  // namespace dinal::plots

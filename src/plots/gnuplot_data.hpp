@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-namespace dinal {
+namespace dinal::plots {
 
 enum class DataForm { binary, text };
 
@@ -34,4 +34,4 @@ private:
 /// command.
 std::string single_quoted(std::string_view text);
 
-}  // namespace dinal
+}  // namespace dinal::plots

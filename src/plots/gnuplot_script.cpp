@@ -10,7 +10,7 @@
 #include "plots/paper_layout.hpp"
 #include "plots/paper_style.hpp"
 
-namespace dinal {
+namespace dinal::plots {
 namespace {
 
 constexpr double fineness = 2;          // to the pixel of 1/96 inch: a line is wider than two of them
@@ -67,7 +67,7 @@ Trace trace_of(const Curve& curve, const Paper& paper, double most) {
 /// What gets too large is made coarser.
 std::vector<Selection> select(const Sheet& sheet) {
     std::size_t curves = 0;
-    for (const Panel& panel : sheet.panels) {
+    for (const PaperPanel& panel : sheet.panels) {
         curves += panel.figure->curves.size();
     }
     double most_each = most_bytes;
@@ -75,7 +75,7 @@ std::vector<Selection> select(const Sheet& sheet) {
     for (int attempt = 0;; ++attempt) {
         std::vector<Selection> all;
         double bytes = 0;
-        for (const Panel& panel : sheet.panels) {
+        for (const PaperPanel& panel : sheet.panels) {
             const Box pixels{(panel.right - panel.left) * fineness, (panel.top - panel.bottom) * fineness};
             const Paper paper{panel.view, pixels, coarseness};
             all.emplace_back();
@@ -150,4 +150,4 @@ std::string gnuplot_file(std::span<const Figure> figures, PaperSize size) {
            terminal_line(Terminal::pdf, sheet) + data.blocks() + text;
 }
 
-}  // namespace dinal
+}  // namespace dinal::plots

@@ -6,7 +6,7 @@
 
 #include "plots/figure.hpp"
 
-namespace dinal {
+namespace dinal::plots {
 
 enum class Terminal { svg, png, pdf };
 
@@ -23,4 +23,4 @@ std::string gnuplot_input(std::span<const Figure> figures, Terminal terminal, Pa
 /// The same as a file for people: data in readable blocks, and a head that says how to draw it.
 std::string gnuplot_file(std::span<const Figure> figures, PaperSize size);
 
-}  // namespace dinal
+}  // namespace dinal::plots

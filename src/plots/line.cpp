@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <array>
 
-namespace dinal {
+namespace dinal::plots {
 
 bool clip(Line& line, Box sheet, double slack) {
     const Point from = line.from;
@@ -33,4 +33,4 @@ bool clip(Line& line, Box sheet, double slack) {
     return true;
 }
 
-}  // namespace dinal
+}  // namespace dinal::plots

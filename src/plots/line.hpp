@@ -3,7 +3,7 @@
 
 #include "plots/figure.hpp"
 
-namespace dinal {
+namespace dinal::plots {
 
 struct Point {
     double x, y;
@@ -17,4 +17,4 @@ struct Line {
 /// is left.
 bool clip(Line& line, Box sheet, double slack);
 
-}  // namespace dinal
+}  // namespace dinal::plots

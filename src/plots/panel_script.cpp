@@ -7,14 +7,14 @@
 #include <numbers>
 
 #include "plots/paper_style.hpp"
-namespace dinal {
+namespace dinal::plots {
 namespace {
 
 constexpr double bar = 0.3 * em;  // how high the bars are for the dead zone and for what is stuck
 
 class PanelScript {
 public:
-    PanelScript(const Sheet& sheet, const Panel& panel, const Selection& kept, GnuplotData& data)
+    PanelScript(const Sheet& sheet, const PaperPanel& panel, const Selection& kept, GnuplotData& data)
         : sheet_(sheet), panel_(panel), figure_(*panel.figure), kept_(kept), data_(data) {}
 
     std::string text() {
@@ -152,9 +152,9 @@ private:
 
     /// Bars below the time axis; thousands of stops that no eye parts become one.
     void add_stuck() {
-        const Range seen = panel_.view.x.range();
+        const Interval seen = panel_.view.x.range();
         const double finest = seen.length() / (2 * (panel_.right - panel_.left));
-        Range all{seen.high, seen.high};
+        Interval all{seen.high, seen.high};
         const auto draw = [&] {
             if (all.high > all.low) {
                 const double top = panel_.bottom - 1;
@@ -162,7 +162,7 @@ private:
                         fmt::format("first {}, screen {:.5f}", all.high, top / sheet_.height), ink_colour);
             }
         };
-        for (const Range& span : figure_.stuck) {
+        for (const Interval& span : figure_.stuck) {
             const double low = std::max(span.low, seen.low);
             const double high = std::min(std::max(span.high, low + finest), seen.high);
             if (low > high) {
@@ -179,7 +179,7 @@ private:
     }
 
     void add_dead_zone() {
-        const Range seen = panel_.view.x.range();
+        const Interval seen = panel_.view.x.range();
         const double half = panel_.view.y.range().length() * (bar / 2) / (panel_.top - panel_.bottom);
         const double low = std::max(figure_.dead_zone->low, seen.low);
         const double high = std::min(figure_.dead_zone->high, seen.high);
@@ -216,7 +216,7 @@ private:
     }
 
     const Sheet& sheet_;
-    const Panel& panel_;
+    const PaperPanel& panel_;
     const Figure& figure_;
     const Selection& kept_;
     GnuplotData& data_;
@@ -226,8 +226,8 @@ private:
 
 }  // namespace
 
-std::string panel_script(const Sheet& sheet, const Panel& panel, const Selection& kept, GnuplotData& data) {
+std::string panel_script(const Sheet& sheet, const PaperPanel& panel, const Selection& kept, GnuplotData& data) {
     return PanelScript(sheet, panel, kept, data).text();
 }
 
-}  // namespace dinal
+}  // namespace dinal::plots

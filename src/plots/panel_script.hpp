@@ -6,10 +6,10 @@
 
 #include "plots/curve_script.hpp"
 
-namespace dinal {
+namespace dinal::plots {
 
 using Selection = std::vector<Trace>;  ///< one for each curve
 
-std::string panel_script(const Sheet& sheet, const Panel& panel, const Selection& kept, GnuplotData& data);
+std::string panel_script(const Sheet& sheet, const PaperPanel& panel, const Selection& kept, GnuplotData& data);
 
-}  // namespace dinal
+}  // namespace dinal::plots

@@ -4,7 +4,7 @@
 
 #include "text/display_text.hpp"
 
-namespace dinal {
+namespace dinal::plots {
 namespace {
 
 constexpr double letter_width = 0.55 * em;  // of the average one in the fonts that will be met
@@ -13,20 +13,21 @@ constexpr double line_height = 1.35 * em;
 constexpr double between_entries = 1.2 * em;
 
 double width_of(std::string_view text) {
-    return letter_width * static_cast<double>(display_width(text));
+    return letter_width * static_cast<double>(text::display_width(text));
 }
 
 double digits_width(const std::string& number) {
-    return digit_width * static_cast<double>(display_width(typeset(number)));
+    return digit_width * static_cast<double>(text::display_width(typeset(number)));
 }
 
 /// What is too long for its place loses its end, so that one sees that it was too long.
 std::string cut(const std::string& text, double width) {
-    std::string shown = displayable(text);
+    std::string shown = text::displayable(text);
     if (width_of(shown) <= width) {
         return shown;
     }
-    return std::string(cut_to_width(shown, static_cast<std::size_t>(std::max(1.0, width / letter_width - 1)))) + "…";
+    return std::string(text::cut_to_width(shown, static_cast<std::size_t>(std::max(1.0, width / letter_width - 1)))) +
+           "…";
 }
 
 double widest(const std::vector<std::string>& texts) {
@@ -95,12 +96,12 @@ int flow(std::vector<LegendEntry>& entries, double width) {
 
 constexpr int most_ticks = 12;  // of an axis: a poster needs no more of them than a page
 
-int x_tick_count(const Panel& panel, double em_each) {
+int x_tick_count(const PaperPanel& panel, double em_each) {
     return std::clamp(static_cast<int>((panel.right - panel.left) / (em_each * em)), 2, most_ticks);
 }
 
 /// The ticks below the box; the last label may not stand out of the sheet.
-void set_x_ticks(Panel& panel, double limit) {
+void set_x_ticks(PaperPanel& panel, double limit) {
     const Figure& figure = *panel.figure;
     const bool free = figure.x.ticks.empty() && !figure.x.division;
     for (int attempt = 0; attempt < 2; ++attempt) {
@@ -123,7 +124,7 @@ void set_x_ticks(Panel& panel, double limit) {
 }
 
 /// The margins of a panel, the ticks that fit between them, and the box.
-void place(Panel& panel, double left, double width, double height) {
+void place(PaperPanel& panel, double left, double width, double height) {
     const Figure& figure = *panel.figure;
     const auto y_ticks = [&](double high) {
         return ticks_of(figure.y, panel.view.y, std::clamp(static_cast<int>(high / (2.6 * em)), 2, most_ticks));
@@ -242,4 +243,4 @@ std::string typeset(const std::string& number) {
     return result;
 }
 
-}  // namespace dinal
+}  // namespace dinal::plots

@@ -9,7 +9,7 @@
 #include "plots/gnuplot_script.hpp"
 #include "plots/ticks.hpp"
 
-namespace dinal {
+namespace dinal::plots {
 
 inline constexpr double font_size = 8;             // points
 inline constexpr double em = font_size * 96 / 72;  // pixels of 1/96 inch, the unit of this file
@@ -36,7 +36,7 @@ struct Words {
 };
 
 /// All places in pixels from the lower left corner of the sheet.
-struct Panel {
+struct PaperPanel {
     const Figure* figure;
     View view;
     Ticks x_ticks = {}, y_ticks = {};
@@ -48,7 +48,7 @@ struct Panel {
 
 struct Sheet {
     double width, height;
-    std::vector<Panel> panels;
+    std::vector<PaperPanel> panels;
 };
 
 Sheet lay_out(std::span<const Figure> figures, PaperSize size);
@@ -56,4 +56,4 @@ Sheet lay_out(std::span<const Figure> figures, PaperSize size);
 /// As a printer sets it: "−0.5", "2·10⁻⁹".
 std::string typeset(const std::string& number);
 
-}  // namespace dinal
+}  // namespace dinal::plots

@@ -4,7 +4,7 @@
 
 #include <array>
 
-namespace dinal {
+namespace dinal::plots {
 namespace {
 
 // Okabe and Ito's colours, which the colour-blind tell apart, without the yellow, which paper swallows.
@@ -57,4 +57,4 @@ std::string mark_style(MarkKind kind) {
     return fmt::format("pt {} ps 0.7 lw 0.8 lc rgb '{}'", kind == MarkKind::start ? 6 : 7, ink_colour);
 }
 
-}  // namespace dinal
+}  // namespace dinal::plots

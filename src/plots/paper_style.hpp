@@ -6,7 +6,7 @@
 
 #include "plots/figure.hpp"
 
-namespace dinal {
+namespace dinal::plots {
 
 /// How broad a line is, in pixels of 1/96 inch.
 inline constexpr double line_width = 1.3;
@@ -24,4 +24,4 @@ std::string dot_style(const Figure& figure, std::size_t curve);
 
 std::string mark_style(MarkKind kind);
 
-}  // namespace dinal
+}  // namespace dinal::plots

@@ -5,7 +5,7 @@
 #include <numbers>
 #include <utility>
 
-namespace dinal {
+namespace dinal::plots {
 
 void Corners::add(std::size_t i, Point point) {
     if (!open_) {
@@ -153,4 +153,4 @@ std::size_t Ink::place(int column, int row) const {
     return static_cast<std::size_t>(row) * static_cast<std::size_t>(columns_) + static_cast<std::size_t>(column);
 }
 
-}  // namespace dinal
+}  // namespace dinal::plots

@@ -6,7 +6,7 @@
 
 #include "plots/line.hpp"
 
-namespace dinal {
+namespace dinal::plots {
 
 /// Leaves out the points between which the curve is straight to within the tolerance: from a corner, a point can be
 /// reached by straight lines of a certain range of directions, and the range narrows with each point on the way.
@@ -66,4 +66,4 @@ private:
     std::vector<bool> inked_;
 };
 
-}  // namespace dinal
+}  // namespace dinal::plots

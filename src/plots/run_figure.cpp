@@ -7,7 +7,7 @@
 
 #include "files/table.hpp"
 
-namespace dinal {
+namespace dinal::plots {
 namespace {
 
 struct Symbol {
@@ -34,8 +34,8 @@ std::string axis_label(std::string_view name) {
     return std::string(symbol.symbol) + (symbol.unit.empty() ? "" : ", " + std::string(symbol.unit));
 }
 
-Expected<Numbers> plain_column(const RunData& run, std::string_view name) {
-    const auto column = find_column(run.trajectory->names, name);
+text::Expected<Numbers> plain_column(const RunData& run, std::string_view name) {
+    const auto column = files::find_column(run.trajectory->names, name);
     if (!column) {
         return column.error();
     }
@@ -56,7 +56,7 @@ std::optional<double> divisor(const RunData& run, std::string_view name) {
     return by == "omega0" ? std::optional(run.system->natural_frequency()) : std::nullopt;
 }
 
-Expected<Numbers> column(const RunData& run, std::string_view name) {
+text::Expected<Numbers> column(const RunData& run, std::string_view name) {
     const std::optional<double> by = divisor(run, name);
     if (!by) {
         return plain_column(run, name);
@@ -97,14 +97,15 @@ std::vector<std::string> usual_columns(const RunData& run, std::string_view x) {
 
 }  // namespace
 
-std::vector<Range> stuck_intervals(const Trajectory& trajectory) {
-    std::vector<Range> intervals;
+std::vector<Interval> stuck_intervals(const motion::Trajectory& trajectory) {
+    std::vector<Interval> intervals;
     const auto& events = trajectory.events;
     // Nothing is recorded at the start: a run that begins with a slip, or ends at rest without any event, began stuck.
-    bool stuck = events.empty() ? trajectory.outcome == Outcome::at_rest : events.front().kind == EventKind::slip;
+    bool stuck =
+        events.empty() ? trajectory.outcome == model::Outcome::at_rest : events.front().kind == model::EventKind::slip;
     double since = trajectory.t_start;
-    for (const Event& event : events) {
-        const bool holds = event.kind == EventKind::stick || event.kind == EventKind::rest;
+    for (const model::Event& event : events) {
+        const bool holds = event.kind == model::EventKind::stick || event.kind == model::EventKind::rest;
         if (holds && !stuck) {
             since = event.t;
         } else if (!holds && stuck) {
@@ -118,9 +119,9 @@ std::vector<Range> stuck_intervals(const Trajectory& trajectory) {
     return intervals;
 }
 
-Expected<Figure> column_figure(const RunData& run, std::string_view x, const std::vector<std::string>& ys) {
+text::Expected<Figure> column_figure(const RunData& run, std::string_view x, const std::vector<std::string>& ys) {
     if (run.trajectory->names.empty()) {
-        return Error{"the run has no columns to draw"};
+        return text::Error{"the run has no columns to draw"};
     }
     const std::string across = !x.empty() ? std::string(x) : has(run, "t") ? "t" : run.trajectory->names.front();
     const std::vector<std::string> names = ys.empty() ? usual_columns(run, across) : ys;
@@ -150,10 +151,10 @@ Expected<Figure> column_figure(const RunData& run, std::string_view x, const std
     return figure;
 }
 
-Expected<Figure> phase_figure(const RunData& run) {
+text::Expected<Figure> phase_figure(const RunData& run) {
     const bool record = run.system == nullptr && has(run, "velocity_over_omega0");
     if (run.system == nullptr && !record) {
-        return Error{
+        return text::Error{
             "the phase plane needs omega0, which a run that was read from a .csv file no longer has; use run:plot{ x = "
             "\"theta\", y = \"velocity\" }"};
     }
@@ -170,9 +171,9 @@ Expected<Figure> phase_figure(const RunData& run) {
                        {motion.x.values[rows - 1], motion.y.values[rows - 1], MarkKind::end}};
     }
     if (run.system != nullptr && run.system->dead_zone() > 0) {
-        plane.dead_zone = Range{-run.system->dead_zone(), run.system->dead_zone()};
+        plane.dead_zone = Interval{-run.system->dead_zone(), run.system->dead_zone()};
     }
     return plane;
 }
 
-}  // namespace dinal
+}  // namespace dinal::plots

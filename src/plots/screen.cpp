@@ -7,7 +7,7 @@
 #include <cstdlib>
 #include <string_view>
 
-namespace dinal {
+namespace dinal::plots {
 namespace {
 
 std::string_view variable(const char* name) {
@@ -33,4 +33,4 @@ Screen screen() {
     return found;
 }
 
-}  // namespace dinal
+}  // namespace dinal::plots

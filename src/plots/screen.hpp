@@ -3,7 +3,7 @@
 
 #include "plots/canvas.hpp"
 
-namespace dinal {
+namespace dinal::plots {
 
 struct Screen {
     bool terminal = false;
@@ -15,4 +15,4 @@ struct Screen {
 
 Screen screen();
 
-}  // namespace dinal
+}  // namespace dinal::plots

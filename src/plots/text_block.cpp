@@ -5,7 +5,7 @@
 
 #include "text/display_text.hpp"
 
-namespace dinal {
+namespace dinal::plots {
 namespace {
 
 // The terminal's own colours: it knows its background. The first curve is plain; none of the others needs a good eye
@@ -29,7 +29,7 @@ void TextLine::add(std::string_view text, std::uint8_t colour) {
     }
     colour_ = colour;
     text_ += text;
-    width_ += display_width(text);
+    width_ += text::display_width(text);
 }
 
 void TextLine::append(const TextLine& line) {
@@ -94,4 +94,4 @@ std::string text_of(const TextBlock& block) {
     return text;
 }
 
-}  // namespace dinal
+}  // namespace dinal::plots

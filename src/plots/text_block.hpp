@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-namespace dinal {
+namespace dinal::plots {
 
 /// A colour is 0 for none, 1, 2, ... for the palette of curves.
 class TextLine {
@@ -35,4 +35,4 @@ TextBlock beside(const std::vector<TextBlock>& blocks, bool colours);
 /// All lines, each ended by a newline and without blanks at its end.
 std::string text_of(const TextBlock& block);
 
-}  // namespace dinal
+}  // namespace dinal::plots

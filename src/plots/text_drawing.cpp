@@ -4,7 +4,7 @@
 #include <array>
 #include <numbers>
 
-namespace dinal {
+namespace dinal::plots {
 namespace {
 
 constexpr std::size_t most_glyphs = 200;  // more points than this are dots
@@ -130,7 +130,7 @@ void draw_background(Canvas& canvas, const Figure& figure, const Projection& pro
 }
 
 /// Only where no curve runs: it is not to be hidden.
-void draw_dead_zone(Canvas& canvas, Range zone, const Projection& projection, std::string_view sign) {
+void draw_dead_zone(Canvas& canvas, Interval zone, const Projection& projection, std::string_view sign) {
     const int row = nearest_dot(projection.y(0));
     const double from = std::max(projection.x(zone.low), 0.0);
     const double to = std::min(projection.x(zone.high), projection.box.width - 1);
@@ -207,4 +207,4 @@ void draw(Canvas& canvas, const Figure& figure, const Projection& projection, co
     }
 }
 
-}  // namespace dinal
+}  // namespace dinal::plots

@@ -8,7 +8,7 @@
 #include "plots/canvas.hpp"
 #include "plots/figure.hpp"
 
-namespace dinal {
+namespace dinal::plots {
 
 /// Where values fall on the canvas, in dots.
 struct Projection {
@@ -40,4 +40,4 @@ std::uint8_t ink_of(std::size_t curve);
 void draw(Canvas& canvas, const Figure& figure, const Projection& projection, const std::vector<double>& circles,
           Charset charset);
 
-}  // namespace dinal
+}  // namespace dinal::plots

@@ -7,7 +7,7 @@
 #include "plots/canvas.hpp"
 #include "plots/figure.hpp"
 
-namespace dinal {
+namespace dinal::plots {
 
 struct TextFormat {
     int columns = 79;
@@ -19,4 +19,4 @@ struct TextFormat {
 /// The lines of the picture. Several figures stand side by side where the columns suffice, else one under the other.
 std::string text_plot(std::span<const Figure> figures, const TextFormat& format);
 
-}  // namespace dinal
+}  // namespace dinal::plots

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-namespace dinal {
+namespace dinal::plots {
 namespace {
 
 constexpr double far = 1e7;  // pixels; what is further away is far enough
@@ -167,4 +167,4 @@ Strokes inked(const Curve& curve, const Paper& paper, double pen, std::size_t mo
     return strokes;
 }
 
-}  // namespace dinal
+}  // namespace dinal::plots

@@ -7,7 +7,7 @@
 
 #include "plots/pen_path.hpp"
 
-namespace dinal {
+namespace dinal::plots {
 
 /// Stands in a list of points where the pen is lifted.
 inline constexpr std::size_t gap = std::numeric_limits<std::size_t>::max();
@@ -32,4 +32,4 @@ std::vector<std::size_t> thinned(const Curve& curve, const Paper& paper);
 /// ink. The fewer strokes, the coarser they are.
 Strokes inked(const Curve& curve, const Paper& paper, double pen, std::size_t most);
 
-}  // namespace dinal
+}  // namespace dinal::plots

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace dinal {
+namespace dinal::plots {
 namespace {
 
 constexpr int most_digits = 6;  // of a label, before it is written another way
@@ -29,7 +29,7 @@ double round_step(double least) {
     return least;
 }
 
-std::vector<double> multiples(double step, Range range) {
+std::vector<double> multiples(double step, Interval range) {
     const double slack = 1e-9 * range.length();
     const double first = std::ceil((range.low - slack) / step);
     const double last = std::floor((range.high + slack) / step);
@@ -41,7 +41,7 @@ std::vector<double> multiples(double step, Range range) {
     return at;
 }
 
-std::vector<double> powers_of_ten(Range range, int most) {
+std::vector<double> powers_of_ten(Interval range, int most) {
     const int low = static_cast<int>(std::ceil(std::log10(range.low) - 1e-9));
     const int high = static_cast<int>(std::floor(std::log10(range.high) + 1e-9));
     std::vector<double> at;
@@ -115,7 +115,7 @@ int finest_digit(const std::vector<double>& at, double length) {
     return least;
 }
 
-void label_linear(Ticks& ticks, Range range) {
+void label_linear(Ticks& ticks, Interval range) {
     const int finest = finest_digit(ticks.at, range.length());
     double largest = 0;
     for (const double value : ticks.at) {
@@ -153,7 +153,7 @@ std::vector<std::string> each_by_itself(const std::vector<double>& at) {
 
 Ticks ticks_of(const Axis& axis, const Scale& scale, int most) {
     Ticks ticks;
-    const Range range = scale.range();
+    const Interval range = scale.range();
     if (!axis.ticks.empty()) {
         std::copy_if(axis.ticks.begin(), axis.ticks.end(), std::back_inserter(ticks.at),
                      [range](double x) { return x >= range.low && x <= range.high; });
@@ -200,4 +200,4 @@ std::vector<double> circles_of(const Figure& figure, const Ticks& x, const Ticks
     return by_x.size() >= by_y.size() ? by_x : by_y;
 }
 
-}  // namespace dinal
+}  // namespace dinal::plots

@@ -6,7 +6,7 @@
 
 #include "plots/figure.hpp"
 
-namespace dinal {
+namespace dinal::plots {
 
 struct Ticks {
     std::vector<double> at;
@@ -21,4 +21,4 @@ Ticks ticks_of(const Axis& axis, const Scale& scale, int most);
 /// The radii of a figure's circles: through the ticks of the axis that has more of them.
 std::vector<double> circles_of(const Figure& figure, const Ticks& x, const Ticks& y);
 
-}  // namespace dinal
+}  // namespace dinal::plots

@@ -6,21 +6,21 @@
 #include <optional>
 #include <string_view>
 
-#include "text/suggest.hpp"
 #include "prompt/limit_options.hpp"
+#include "text/suggest.hpp"
 
-namespace dinal {
+namespace dinal::prompt {
 namespace {
 
 constexpr std::array<std::string_view, 16> known_options = {
     "-e", "-l",     "-i",        "-v",       "-W",        "-E",     "-",          "--",
     "-h", "--help", "--version", "--manual", "--no-init", "--safe", "--max-time", "--max-memory"};
 
-Error unknown(std::string_view option) {
-    return {fmt::format("unknown option '{}'{}", option, did_you_mean(option, known_options))};
+text::Error unknown(std::string_view option) {
+    return {fmt::format("unknown option '{}'{}", option, text::did_you_mean(option, known_options))};
 }
 
-Error no_value(char option) {
+text::Error no_value(char option) {
     return {option == 'e' ? "option -e needs Lua code after it, for example -e 'print(1 + 1)'"
                           : "option -l needs the name of a module after it, for example -l lab"};
 }
@@ -57,7 +57,7 @@ bool set_flag(Arguments& arguments, char letter) {
 }
 
 /// --max-time 10 or --max-time=10 at place i, which goes to the value.
-std::optional<Error> read_limit(Arguments& arguments, std::string_view option, std::size_t& i) {
+std::optional<text::Error> read_limit(Arguments& arguments, std::string_view option, std::size_t& i) {
     const std::string_view word = arguments.words[i];
     if (word.size() > option.size()) {
         return set_limit(arguments.limits, option, word.substr(option.size() + 1));
@@ -67,13 +67,13 @@ std::optional<Error> read_limit(Arguments& arguments, std::string_view option, s
 }
 
 /// What is not possible together; what safe mode brings with it.
-std::optional<Error> settle(Arguments& arguments) {
+std::optional<text::Error> settle(Arguments& arguments) {
     if (!arguments.safe) {
         return std::nullopt;
     }
-    for (const Step& step : arguments.steps) {
+    for (const StartStep& step : arguments.steps) {
         if (step.option == 'l') {
-            return Error{fmt::format("-l {} is not possible with --safe, which loads no modules", step.value)};
+            return text::Error{fmt::format("-l {} is not possible with --safe, which loads no modules", step.value)};
         }
     }
     arguments.ignore_environment = true;
@@ -83,7 +83,7 @@ std::optional<Error> settle(Arguments& arguments) {
 
 }  // namespace
 
-Expected<Arguments> parse_arguments(int count, const char* const* words) {
+text::Expected<Arguments> parse_arguments(int count, const char* const* words) {
     Arguments arguments;
     arguments.words.assign(words, words + count);
     std::size_t i = 1;
@@ -161,4 +161,4 @@ inside: help() shows where to start
 )";
 }
 
-}  // namespace dinal
+}  // namespace dinal::prompt

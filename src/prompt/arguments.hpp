@@ -4,15 +4,15 @@
 #include <string>
 #include <vector>
 
-#include "text/expected.hpp"
 #include "lua/limits.hpp"
+#include "text/expected.hpp"
 
-namespace dinal {
+namespace dinal::prompt {
 
 enum class Request { run, help, version, manual };
 
 /// -e, -l or -W: they are carried out in the order in which they stand.
-struct Step {
+struct StartStep {
     char option;
     const char* value;  ///< of -e and -l
 };
@@ -25,8 +25,8 @@ struct Arguments {
     bool ignore_environment = false;  ///< -E
     bool no_init = false;             ///< --no-init
     bool safe = false;                ///< --safe
-    ScriptLimits limits;              ///< --max-memory, --max-time; in safe mode there are always some
-    std::vector<Step> steps;
+    lua::ScriptLimits limits;         ///< --max-memory, --max-time; in safe mode there are always some
+    std::vector<StartStep> steps;
     std::vector<const char*> words;  ///< the whole command line
     std::size_t script = 0;          ///< its place among the words; words.size() when there is none
 
@@ -34,9 +34,9 @@ struct Arguments {
 };
 
 /// Fails with a sentence about the first option that is not known or lacks its value.
-Expected<Arguments> parse_arguments(int count, const char* const* words);
+text::Expected<Arguments> parse_arguments(int count, const char* const* words);
 
 /// What --help prints.
 std::string help_text();
 
-}  // namespace dinal
+}  // namespace dinal::prompt

@@ -10,7 +10,7 @@
 #include "lua/limits.hpp"
 #include "lua/memory_limit.hpp"
 
-namespace dinal {
+namespace dinal::prompt {
 namespace {
 
 constexpr std::size_t longest_message = 10'000;  // bytes; more only hides the rest
@@ -140,10 +140,10 @@ std::string shortened(std::string message) {
 int message_handler(lua_State* L) {
     const std::vector<Frame> frames = lua_frames(L);
     std::string text;
-    if (interrupt_requested()) {
+    if (lua::interrupt_requested()) {
         text = frames.empty() ? "interrupted" : "interrupted at " + frames.front().place;
     } else {
-        const Remarks remarks = remarks_on(L, 1);
+        const errors::Remarks remarks = errors::remarks_on(L, 1);
         text = shortened(message_of(L)) + remarks.suggestion + remarks.excerpt + remarks.during + trace(frames);
     }
     lua_pushlstring(L, text.data(), text.size());
@@ -158,11 +158,11 @@ int call(lua_State* L, int arguments, int results) {
     lua_insert(L, function);
     int status = LUA_OK;
     {
-        const InterruptScope armed(L);
+        const lua::InterruptScope armed(L);
         status = lua_pcall(L, arguments, results, function);
     }
     lua_remove(L, function);
-    if (const std::string limit = reached_limit(); !limit.empty()) {  // also when a pcall was the last thing
+    if (const std::string limit = lua::reached_limit(); !limit.empty()) {  // also when a pcall was the last thing
         lua_settop(L, function - 1);
         lua_pushlstring(L, limit.data(), limit.size());
         return LUA_ERRRUN;
@@ -181,11 +181,11 @@ int call_with(lua_State* L, lua_CFunction function) {
 }
 
 std::string told_error(lua_State* L, const char* file) {
-    const Remarks remarks = remarks_on_syntax(L, -1, file);
+    const errors::Remarks remarks = errors::remarks_on_syntax(L, -1, file);
     std::string text = take_text(L);
     // Lua's words are good but for bytecode, which its own program would not take either.
-    if (text == "not enough memory" && memory_limit() > 0) {
-        return limit_sentence(Stop::memory, "");
+    if (text == "not enough memory" && lua::memory_limit() > 0) {
+        return lua::limit_sentence(lua::Stop::memory, "");
     }
     if (text.starts_with("attempt to load a binary chunk")) {
         return "the script is Lua bytecode, which safe mode does not take: run its source instead";
@@ -204,4 +204,4 @@ std::string take_text(lua_State* L) {
     return result;
 }
 
-}  // namespace dinal
+}  // namespace dinal::prompt

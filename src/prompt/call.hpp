@@ -5,7 +5,7 @@
 
 #include <string>
 
-namespace dinal {
+namespace dinal::prompt {
 
 /// lua_pcall. After an error the top of the stack is text: the message and, when the error came through more than one
 /// Lua function, a short trace of these, a line for each. interrupt_requested() tells whether Ctrl-C was pressed.
@@ -21,4 +21,4 @@ std::string told_error(lua_State* L, const char* file);
 /// Takes the text from the top of the stack.
 std::string take_text(lua_State* L);
 
-}  // namespace dinal
+}  // namespace dinal::prompt

@@ -7,7 +7,7 @@
 
 #include "lua/tokens.hpp"
 
-namespace dinal {
+namespace dinal::prompt {
 namespace {
 
 // The variable keeps Lua from making a tail call of `return f(x)`, which would take f's name and place from messages.
@@ -50,12 +50,12 @@ std::string returned(std::string_view expression) {
 
 /// The text without the semicolons (and comments) at its end; the same text when there are none.
 std::string_view without_semicolons(std::string_view text) {
-    const std::vector<Token> all = tokens(text);
+    const std::vector<lua::Token> all = lua::tokens(text);
     std::string_view result = text;
     for (auto token = all.rbegin(); token != all.rend(); ++token) {
         if (token->is(";")) {
             result = text.substr(0, token->at);
-        } else if (token->kind != TokenKind::comment) {
+        } else if (token->kind != lua::TokenKind::comment) {
             break;
         }
     }
@@ -68,7 +68,7 @@ std::vector<std::size_t> possible_cuts(const std::string& text) {
     for (std::size_t cut = text.rfind('\n'); cut != std::string::npos && cut > 0; cut = text.rfind('\n', cut - 1)) {
         cuts.push_back(cut);
     }
-    for (const Token& token : tokens(text)) {
+    for (const lua::Token& token : lua::tokens(text)) {
         if (token.is(";")) {
             cuts.push_back(token.at);
         }
@@ -102,7 +102,7 @@ bool load_with_last_value(lua_State* L, Chunk& chunk, const std::string& text, b
 
 /// The words after `return`, when that is the first word.
 std::string_view without_return(std::string_view text) {
-    const std::vector<Token> all = tokens(text);
+    const std::vector<lua::Token> all = lua::tokens(text);
     return !all.empty() && all.front().is("return") ? text.substr(all.front().end()) : text;
 }
 
@@ -137,4 +137,4 @@ Chunk compile(lua_State* L, const std::string& text) {
     return chunk;
 }
 
-}  // namespace dinal
+}  // namespace dinal::prompt

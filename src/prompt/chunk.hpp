@@ -5,7 +5,7 @@
 
 #include <string>
 
-namespace dinal {
+namespace dinal::prompt {
 
 enum class Compiled {
     ready,       ///< the function is on the top of the stack
@@ -25,4 +25,4 @@ inline constexpr const char* prompt_chunk = "=stdin";
 
 Chunk compile(lua_State* L, const std::string& text);
 
-}  // namespace dinal
+}  // namespace dinal::prompt

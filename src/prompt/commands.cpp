@@ -8,8 +8,6 @@
 #include <chrono>
 #include <vector>
 
-#include "text/suggest.hpp"
-#include "terminal/display.hpp"
 #include "help/help_text.hpp"
 #include "lua/lua_text.hpp"
 #include "lua/standard_globals.hpp"
@@ -19,8 +17,10 @@
 #include "prompt/printer.hpp"
 #include "prompt/question.hpp"
 #include "prompt/session.hpp"
+#include "terminal/display.hpp"
+#include "text/suggest.hpp"
 
-namespace dinal {
+namespace dinal::prompt {
 namespace {
 
 void help(Session& session, const std::string& argument);
@@ -68,20 +68,21 @@ void load(Session& session, const std::string& file) {
     if (load_file(L, file.c_str()) != LUA_OK) {
         say_error(told_error(L, file.c_str()));
     } else if (evaluate(L, Chunk{Compiled::ready, "", "", true}).fine && !session.record.writes(file)) {
-        session.record.add_statement(fmt::format("dofile({})", quoted(file)));
+        session.record.add_statement(fmt::format("dofile({})", lua::quoted(file)));
     }
     lua_settop(L, 0);
 }
 
 int print_globals(lua_State* L) {
-    const Display screen = display_of(STDOUT_FILENO);
-    const std::vector<std::string> names = users_globals(L);
+    const terminal::Display screen = terminal::display_of(STDOUT_FILENO);
+    const std::vector<std::string> names = lua::users_globals(L);
     for (const std::string& name : names) {
         lua_pushglobaltable(L);
         lua_pushstring(L, name.c_str());
         lua_rawget(L, -2);
         const std::string head = fmt::format("  {:<9} ", name);
-        say(head + show_line(L, -1, screen, screen.width - std::min(columns(head), screen.width / 2) - 1) + "\n");
+        say(head + show_line(L, -1, screen, screen.width - std::min(terminal::columns(head), screen.width / 2) - 1) +
+            "\n");
         lua_pop(L, 2);
     }
     if (names.empty()) {
@@ -98,7 +99,7 @@ void who(Session& session, const std::string&) {
 }
 
 void reset(Session& session, const std::string&) {
-    reset_globals(session.L);
+    lua::reset_globals(session.L);
     session.record.clear();
     say("all your variables are gone; what Lua and dinal bring is as it was at the start\n");
 }
@@ -129,7 +130,7 @@ constexpr std::array<Command, 9> commands = {{
 }};
 
 void help(Session& session, const std::string& argument) {
-    const Display screen = display_of(STDOUT_FILENO);
+    const terminal::Display screen = terminal::display_of(STDOUT_FILENO);
     if (!argument.empty() && argument.front() != ':') {
         answer_question(session.L, argument);
         return;
@@ -137,12 +138,12 @@ void help(Session& session, const std::string& argument) {
     std::string text;
     for (const Command& command : commands) {
         if (command.name.size() > 1) {
-            text += line_about(command.usage, command.summary, screen);
+            text += help::line_about(command.usage, command.summary, screen);
         }
     }
-    text += line_about("?name, name?", "The same as help \"name\".", screen);
-    text += line_about("help()", "A tour of two minutes.", screen);
-    text += line_about("code ;", "A semicolon at the end: the value is not shown.", screen);
+    text += help::line_about("?name, name?", "The same as help \"name\".", screen);
+    text += help::line_about("help()", "A tour of two minutes.", screen);
+    text += help::line_about("code ;", "A semicolon at the end: the value is not shown.", screen);
     say(text);
 }
 
@@ -181,7 +182,7 @@ void tell_unknown(std::string_view name) {
     std::vector<std::string_view> names;
     std::transform(commands.begin(), commands.end(), std::back_inserter(names),
                    [](const Command& c) { return c.name; });
-    const std::string hint = did_you_mean(name, names);
+    const std::string hint = text::did_you_mean(name, names);
     say_error(fmt::format("there is no command :{}{}", name, hint.empty() ? "; :help lists them" : hint));
 }
 
@@ -233,4 +234,4 @@ Completion complete_command(lua_State* L, std::string_view before) {
                                                          : complete(L, argument);
 }
 
-}  // namespace dinal
+}  // namespace dinal::prompt

@@ -7,7 +7,7 @@
 
 #include "prompt/completion.hpp"
 
-namespace dinal {
+namespace dinal::prompt {
 
 struct Session;
 
@@ -19,4 +19,4 @@ void run_command(Session& session, const std::string& line);
 /// Tab in a line that begins with a colon.
 Completion complete_command(lua_State* L, std::string_view before);
 
-}  // namespace dinal
+}  // namespace dinal::prompt

@@ -2,15 +2,15 @@
 
 #include <algorithm>
 
-#include "help/help_text.hpp"
-#include "lua/lua_text.hpp"
 #include "errors/misspelling.hpp"
+#include "help/help_text.hpp"
 #include "help/signature.hpp"
+#include "lua/lua_text.hpp"
 #include "prompt/commands.hpp"
 #include "prompt/meaning.hpp"
 #include "prompt/typed_text.hpp"
 
-namespace dinal {
+namespace dinal::prompt {
 namespace {
 
 /// Those that begin with the word, sorted.
@@ -22,22 +22,22 @@ std::vector<std::string> fitting(std::vector<std::string> names, std::string_vie
 }
 
 std::string bracket_after(std::string_view signature) {
-    const char bracket = call_bracket(signature);
+    const char bracket = help::call_bracket(signature);
     return bracket == '{' ? "{ " : "(";
 }
 
 /// What comes after a name that holds the value on the top: the bracket of a call, or nothing.
 std::string suffix(lua_State* L) {
-    if (const Documented found = documented(L, -1); found.member != nullptr) {
+    if (const lua::Documented found = lua::documented(L, -1); found.member != nullptr) {
         return bracket_after(found.member->doc.signature);
     }
     return lua_isfunction(L, -1) ? "(" : "";
 }
 
-void add_members(const Class& description, char separator, bool calls, std::vector<std::string>& names) {
-    for (const Member& member : description.members) {
-        const bool method = member.kind == Kind::method;
-        if (member.kind != Kind::metamethod && (method || separator == '.')) {
+void add_members(const lua::Class& description, char separator, bool calls, std::vector<std::string>& names) {
+    for (const lua::Member& member : description.members) {
+        const bool method = member.kind == lua::Kind::method;
+        if (member.kind != lua::Kind::metamethod && (method || separator == '.')) {
             names.push_back(member.name + (method && calls ? bracket_after(member.doc.signature) : ""));
         }
     }
@@ -46,8 +46,8 @@ void add_members(const Class& description, char separator, bool calls, std::vect
 /// Names that may stand behind the value on the top and a separator.
 void add_fields(lua_State* L, char separator, bool calls, std::vector<std::string>& names) {
     const int value = lua_gettop(L);
-    for (const std::string& name : member_names(L)) {
-        if (!is_name(name)) {
+    for (const std::string& name : errors::member_names(L)) {
+        if (!lua::is_name(name)) {
             continue;
         }
         lua_pushnil(L);
@@ -67,9 +67,9 @@ std::vector<std::string> members(lua_State* L, const TypedText& typed, bool call
     std::vector<std::string> names;
     const int top = lua_gettop(L);
     const Meaning owner = meaning(L, typed.owner());
-    const Section* held = owner.kind == Meaning::Kind::object ? owner.section : nullptr;
-    if (owner.kind == Meaning::Kind::member && owner.member->kind == Kind::field) {
-        held = result_class(owner.member->doc.signature);
+    const help::Section* held = owner.kind == Meaning::Kind::object ? owner.section : nullptr;
+    if (owner.kind == Meaning::Kind::member && owner.member->kind == lua::Kind::field) {
+        held = help::result_class(owner.member->doc.signature);
     }
     if (held != nullptr) {
         add_members(*held->description, typed.separator(), calls, names);
@@ -86,7 +86,7 @@ std::vector<std::string> option_names_of(lua_State* L, const OpenCall& call) {
     lua_settop(L, top);
     std::vector<std::string> names;
     if (function.kind == Meaning::Kind::member) {
-        for (const std::string& name : option_names(function.member->doc.signature, call.braces)) {
+        for (const std::string& name : help::option_names(function.member->doc.signature, call.braces)) {
             if (std::find(call.given.begin(), call.given.end(), name) == call.given.end()) {
                 names.push_back(name + " = ");
             }
@@ -102,7 +102,7 @@ std::vector<std::string> plain_names(lua_State* L, const TypedText& typed, bool 
     lua_pushnil(L);
     while (lua_next(L, -2) != 0) {
         const std::string name = lua_type(L, -2) == LUA_TSTRING ? lua_tostring(L, -2) : "";
-        if (is_name(name) && (name.front() != '_' || typed.word().starts_with('_'))) {
+        if (lua::is_name(name) && (name.front() != '_' || typed.word().starts_with('_'))) {
             names.push_back(name + (calls ? suffix(L) : ""));
         }
         lua_pop(L, 1);
@@ -111,14 +111,14 @@ std::vector<std::string> plain_names(lua_State* L, const TypedText& typed, bool 
     if (typed.word().empty()) {
         return names;
     }
-    names.insert(names.end(), keywords().begin(), keywords().end());
+    names.insert(names.end(), lua::keywords().begin(), lua::keywords().end());
     std::string_view before;
-    for (const Token& token : typed.tokens_before()) {
+    for (const lua::Token& token : typed.tokens_before()) {
         const std::string name(token.text);
         const bool known = std::any_of(names.begin(), names.end(), [&name](const std::string& n) {
-            return n.starts_with(name) && (n.size() == name.size() || !is_name(n));
+            return n.starts_with(name) && (n.size() == name.size() || !lua::is_name(n));
         });
-        if (token.kind == TokenKind::name && before != "." && before != ":" && !known) {
+        if (token.kind == lua::TokenKind::name && before != "." && before != ":" && !known) {
             names.push_back(name);
         }
         before = token.text;
@@ -140,7 +140,7 @@ Completion complete(lua_State* L, std::string_view before) {
         const std::size_t begin = std::min(before.find_first_not_of(" ?"), before.size());
         const std::string_view word = before.substr(begin);
         const std::size_t last = word.find_last_of(".: ");
-        std::vector<std::string> names = fitting(help_names(), word);
+        std::vector<std::string> names = fitting(help::help_names(), word);
         for (std::string& name : names) {  // the editor replaces only the last word
             name.erase(0, last == std::string_view::npos ? 0 : last + 1);
         }
@@ -152,7 +152,7 @@ Completion complete(lua_State* L, std::string_view before) {
     switch (typed.cursor()) {
         case Cursor::string:
             completion.files = !help;
-            completion.names = help ? help_names() : std::vector<std::string>();
+            completion.names = help ? help::help_names() : std::vector<std::string>();
             break;
         case Cursor::member:
             completion.names = members(L, typed, !help);
@@ -175,7 +175,7 @@ Completion complete(lua_State* L, std::string_view before) {
 
 std::string signature_hint(lua_State* L, std::string_view before) {
     const TypedText typed(before);
-    if (!typed.call() || typed.cursor() == Cursor::nothing || typed.call()->braces == Braces::nested) {
+    if (!typed.call() || typed.cursor() == Cursor::nothing || typed.call()->braces == help::Braces::nested) {
         return "";
     }
     const int top = lua_gettop(L);
@@ -184,7 +184,7 @@ std::string signature_hint(lua_State* L, std::string_view before) {
     if (function.kind != Meaning::Kind::member) {
         return "";
     }
-    const std::string all = parameters(function.member->doc.signature);
+    const std::string all = help::parameters(function.member->doc.signature);
     std::string hint;
     std::string part;
     int depth = 0;
@@ -194,8 +194,8 @@ std::string signature_hint(lua_State* L, std::string_view before) {
             part += all[i];
             continue;
         }
-        const std::vector<Token> words = tokens(part);
-        const auto is_given = [&](const Token& word) {
+        const std::vector<lua::Token> words = lua::tokens(part);
+        const auto is_given = [&](const lua::Token& word) {
             return std::find(typed.call()->given.begin(), typed.call()->given.end(), word.text) !=
                    typed.call()->given.end();
         };
@@ -207,4 +207,4 @@ std::string signature_hint(lua_State* L, std::string_view before) {
     return hint;
 }
 
-}  // namespace dinal
+}  // namespace dinal::prompt

@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-namespace dinal {
+namespace dinal::prompt {
 
 struct Completion {
     std::vector<std::string> names;  ///< whole words, with what comes next: "simulate{", "theta0 = "
@@ -20,4 +20,4 @@ Completion complete(lua_State* L, std::string_view before);
 /// when no such call is known.
 std::string signature_hint(lua_State* L, std::string_view before);
 
-}  // namespace dinal
+}  // namespace dinal::prompt

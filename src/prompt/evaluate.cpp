@@ -4,15 +4,15 @@
 
 #include <string>
 
-#include "terminal/display.hpp"
 #include "lua/dinal_table.hpp"
 #include "lua/interrupt.hpp"
 #include "prompt/call.hpp"
 #include "prompt/notices.hpp"
 #include "prompt/output.hpp"
 #include "prompt/printer.hpp"
+#include "terminal/display.hpp"
 
-namespace dinal {
+namespace dinal::prompt {
 namespace {
 
 /// Sets the global ans to the value at `index`.
@@ -27,7 +27,7 @@ void set_ans(lua_State* L, int index) {
 
 /// What a run that failed or was stopped has left behind, or nil.
 void push_partial(lua_State* L) {
-    push_dinal_table(L);
+    lua::push_dinal_table(L);
     lua_pushliteral(L, "partial");
     lua_rawget(L, -2);
     lua_remove(L, -2);
@@ -35,7 +35,7 @@ void push_partial(lua_State* L) {
 
 int print_partial(lua_State* L) {
     say_error("the part of the run that was done is in ans (ans:continue() goes on):\n" +
-              show(L, 1, display_of(STDERR_FILENO)));
+              show(L, 1, terminal::display_of(STDERR_FILENO)));
     return 0;
 }
 
@@ -43,7 +43,7 @@ int print_values(lua_State* L) {
     const int count = lua_gettop(L);
     std::string text;
     for (int i = 1; i <= count; ++i) {
-        text.append(i == 1 ? "" : "\t").append(show(L, i, display_of(STDOUT_FILENO)));
+        text.append(i == 1 ? "" : "\t").append(show(L, i, terminal::display_of(STDOUT_FILENO)));
     }
     text += '\n';
     say(text);
@@ -88,11 +88,11 @@ void keep_partial_run(lua_State* L, int before) {
 
 /// Runs the function on the top of the stack and shows its values; false, and the message on the stack, when it failed.
 bool run_and_show(lua_State* L, const Chunk& chunk, Evaluated& result) {
-    const InterruptScope running(L);  // a Ctrl-C meant for the function may come when its values are being shown
+    const lua::InterruptScope running(L);  // a Ctrl-C meant for the function may come when its values are being shown
     if (call(L, 0, LUA_MULTRET) != LUA_OK) {
         return false;
     }
-    result = {!interrupt_requested(), lua_gettop(L) - 1, lua_gettop(L) > 1 && lua_isnil(L, 2)};
+    result = {!lua::interrupt_requested(), lua_gettop(L) - 1, lua_gettop(L) > 1 && lua_isnil(L, 2)};
     if (!result.fine) {
         say_error("interrupted");
     }
@@ -114,4 +114,4 @@ Evaluated evaluate(lua_State* L, const Chunk& chunk) {
     return result;
 }
 
-}  // namespace dinal
+}  // namespace dinal::prompt

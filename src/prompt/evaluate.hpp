@@ -5,7 +5,7 @@
 
 #include "prompt/chunk.hpp"
 
-namespace dinal {
+namespace dinal::prompt {
 
 struct Evaluated {
     bool fine = false;       ///< no error, no Ctrl-C
@@ -17,4 +17,4 @@ struct Evaluated {
 /// first becomes the global ans; an error is told. After an error in a run, ans is what was done of it.
 Evaluated evaluate(lua_State* L, const Chunk& chunk);
 
-}  // namespace dinal
+}  // namespace dinal::prompt

@@ -4,14 +4,14 @@
 
 #include <charconv>
 
-namespace dinal {
+namespace dinal::prompt {
 namespace {
 
 constexpr std::string_view time_option = "--max-time";
 constexpr std::string_view memory_option = "--max-memory";
 constexpr double longest = 1e9;                         // seconds: 30 years
 constexpr std::size_t largest = std::size_t{1} << 40U;  // a terabyte
-constexpr ScriptLimits safe{.memory = std::size_t{256} << 20U, .seconds = 10};
+constexpr lua::ScriptLimits safe{.memory = std::size_t{256} << 20U, .seconds = 10};
 
 /// "10", "0.5"; 0 when it is no positive number.
 double seconds_of(std::string_view text) {
@@ -38,21 +38,21 @@ std::string_view limit_option(std::string_view word) {
     return name == time_option || name == memory_option ? name : std::string_view();
 }
 
-std::optional<Error> set_limit(ScriptLimits& limits, std::string_view option, std::string_view value) {
+std::optional<text::Error> set_limit(lua::ScriptLimits& limits, std::string_view option, std::string_view value) {
     const bool time = option == time_option;
     limits.seconds = time ? seconds_of(value) : limits.seconds;
     limits.memory = time ? limits.memory : size_of(value);
     if (time ? limits.seconds > 0 : limits.memory > 0) {
         return std::nullopt;
     }
-    return Error{fmt::format("option {} needs {} after it, for example {}{}", option,
-                             time ? "a time in seconds" : "a size", time ? "--max-time 10" : "--max-memory 256M",
-                             value.empty() ? "" : fmt::format("; '{}' is none", value))};
+    return text::Error{fmt::format("option {} needs {} after it, for example {}{}", option,
+                                   time ? "a time in seconds" : "a size", time ? "--max-time 10" : "--max-memory 256M",
+                                   value.empty() ? "" : fmt::format("; '{}' is none", value))};
 }
 
-void complete_safe_limits(ScriptLimits& limits) {
+void complete_safe_limits(lua::ScriptLimits& limits) {
     limits.memory = limits.memory > 0 ? limits.memory : safe.memory;
     limits.seconds = limits.seconds > 0 ? limits.seconds : safe.seconds;
 }
 
-}  // namespace dinal
+}  // namespace dinal::prompt

@@ -16,15 +16,15 @@
 #include <string_view>
 #include <vector>
 
-#include "terminal/display.hpp"
 #include "lua/safe_mode.hpp"
 #include "prompt/completion.hpp"
 #include "prompt/output.hpp"
 #include "prompt/typing.hpp"
 #include "prompt/user_files.hpp"
+#include "terminal/display.hpp"
 #endif
 
-namespace dinal {
+namespace dinal::prompt {
 
 #ifdef DINAL_READLINE
 
@@ -39,7 +39,7 @@ struct Editing {
     bool paints = false;   // colours and hints
     bool hinting = false;  // a hint stands behind the line
     bool accepted = false;
-    Line line;
+    TypedLine line;
     std::string prompt;
     std::string pending;  // earlier lines of the chunk, each with its newline
     std::vector<std::string> names;
@@ -48,7 +48,7 @@ Editing editing;
 
 void accept(char* text) {
     editing.accepted = true;
-    editing.line = text == nullptr ? Line{} : Line{Reading::line, text};
+    editing.line = text == nullptr ? TypedLine{} : TypedLine{Reading::line, text};
     std::free(text);               // NOLINT: readline allocated it
     rl_callback_handler_remove();  // now, before readline prints another prompt
 }
@@ -108,7 +108,7 @@ char** complete_word(const char* word, int, int end) {
         return nullptr;
     }
     Completion completion = complete_safely(editing.L, editing.pending + line);
-    if (completion.files && safe_mode() && leads_outside(word)) {
+    if (completion.files && lua::safe_mode() && leads_outside(word)) {
         return nullptr;
     }
     if (completion.files) {
@@ -197,7 +197,7 @@ void start_readline(const std::string& history) {
     rl_initialize();
     // After the user's inputrc. A blinking parenthesis would swallow a Ctrl-C that is typed within its half second.
     rl_variable_bind("blink-matching-paren", "off");
-    rl_variable_bind("enable-bracketed-paste", obeys_escapes() ? "on" : "off");
+    rl_variable_bind("enable-bracketed-paste", terminal::obeys_escapes() ? "on" : "off");
     // With time stamps an entry of several lines is read back as one.
     history_comment_char = '#';
     history_write_timestamps = 1;
@@ -206,7 +206,7 @@ void start_readline(const std::string& history) {
         history_truncate_file(history.c_str(), longest_history);
         read_history(history.c_str());
     }
-    editing.paints = display_of(STDOUT_FILENO).colour;
+    editing.paints = terminal::display_of(STDOUT_FILENO).colour;
     if (editing.paints) {
         rl_redisplay_function = redisplay;
         rl_bind_key('\r', finish_line);
@@ -224,7 +224,7 @@ void give_up() {
     say("\n");  // rl_outstream is standard output
 }
 
-Line read_edited(const std::string& prompt, const std::string& pending) {
+TypedLine read_edited(const std::string& prompt, const std::string& pending) {
     const InterruptNote note;
     editing.accepted = false;
     editing.hinting = false;
@@ -256,7 +256,7 @@ LineEditor::LineEditor(lua_State* L) : edits_(isatty(STDIN_FILENO) != 0 && isatt
     }
 }
 
-Line LineEditor::read(const std::string& prompt, const std::string& pending) const {
+TypedLine LineEditor::read(const std::string& prompt, const std::string& pending) const {
     return edits_ ? read_edited(prompt, pending) : read_plain(prompt);
 }
 
@@ -283,7 +283,7 @@ const char* LineEditor::about() {
 LineEditor::LineEditor(lua_State*) : edits_(false) {}
 
 // NOLINTNEXTLINE(readability-convert-member-functions-to-static): with readline it is none
-Line LineEditor::read(const std::string& prompt, const std::string&) const {
+TypedLine LineEditor::read(const std::string& prompt, const std::string&) const {
     return read_plain(prompt);
 }
 
@@ -295,4 +295,4 @@ const char* LineEditor::about() {
 
 #endif
 
-}  // namespace dinal
+}  // namespace dinal::prompt

@@ -6,7 +6,7 @@
 
 #include "prompt/plain_lines.hpp"
 
-namespace dinal {
+namespace dinal::prompt {
 
 /// One lives at a time. Lua code may read standard input between two lines.
 class LineEditor {
@@ -15,7 +15,7 @@ public:
     explicit LineEditor(lua_State* L);
 
     /// `pending` are the lines before it of a chunk that goes on.
-    [[nodiscard]] Line read(const std::string& prompt, const std::string& pending = "") const;
+    [[nodiscard]] TypedLine read(const std::string& prompt, const std::string& pending = "") const;
 
     /// Adds an entry, which may have several lines, to the history of this and of later sessions.
     void remember(const std::string& entry);
@@ -28,4 +28,4 @@ private:
     std::string history_file_;     // empty when there is none
 };
 
-}  // namespace dinal
+}  // namespace dinal::prompt

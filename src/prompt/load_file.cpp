@@ -8,19 +8,19 @@
 #include "lua/safe_mode.hpp"
 #include "prompt/call.hpp"
 
-namespace dinal {
+namespace dinal::prompt {
 namespace {
 
 /// As a function that Lua can call; returns the chunk or the message, and the status.
 int load_named(lua_State* L) {
-    lua_pushinteger(L, luaL_loadfilex(L, lua_tostring(L, 1), load_mode()));
+    lua_pushinteger(L, luaL_loadfilex(L, lua_tostring(L, 1), lua::load_mode()));
     return 2;
 }
 
 }  // namespace
 
 int load_file(lua_State* L, const char* file) {
-    if (const auto why = outside(file, Access::read)) {
+    if (const auto why = files::outside(file, files::Access::read)) {
         const std::string text = fmt::format("cannot open {}: {}", file, *why);
         lua_pushlstring(L, text.data(), text.size());
         return LUA_ERRFILE;
@@ -35,4 +35,4 @@ int load_file(lua_State* L, const char* file) {
     return status;
 }
 
-}  // namespace dinal
+}  // namespace dinal::prompt

@@ -3,10 +3,10 @@
 
 #include <lua.hpp>
 
-namespace dinal {
+namespace dinal::prompt {
 
 /// luaL_loadfile, which takes its time and memory like any other code. In safe mode no bytecode, and only files that a
 /// script may read.
 int load_file(lua_State* L, const char* file);
 
-}  // namespace dinal
+}  // namespace dinal::prompt

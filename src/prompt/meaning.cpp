@@ -4,18 +4,19 @@
 
 #include "help/signature.hpp"
 
-namespace dinal {
+namespace dinal::prompt {
 namespace {
 
 constexpr int most_metatables = 10;  // an __index may lead to itself
 
-bool closes(const Token& token) {
+bool closes(const lua::Token& token) {
     return token.is(")") || token.is("}") || token.is("]");
 }
 
-const Member* member_of(const Class& description, std::string_view name) {
-    const auto found = std::find_if(description.members.begin(), description.members.end(),
-                                    [name](const Member& m) { return m.kind != Kind::metamethod && m.name == name; });
+const lua::Member* member_of(const lua::Class& description, std::string_view name) {
+    const auto found =
+        std::find_if(description.members.begin(), description.members.end(),
+                     [name](const lua::Member& m) { return m.kind != lua::Kind::metamethod && m.name == name; });
     return found == description.members.end() ? nullptr : &*found;
 }
 
@@ -26,8 +27,8 @@ public:
 
     Meaning result;
 
-    void begin(const Token& token) {
-        if (token.kind == TokenKind::name) {
+    void begin(const lua::Token& token) {
+        if (token.kind == lua::TokenKind::name) {
             lua_pop(L_, 1);
             lua_pushglobaltable(L_);
             raw_field(token.text);
@@ -36,7 +37,7 @@ public:
 
     void go_to_field(std::string_view name) {
         if (result.kind == Meaning::Kind::value) {
-            const Documented found = documented(L_, -1);
+            const lua::Documented found = lua::documented(L_, -1);
             if (lua_isuserdata(L_, -1) != 0) {
                 found.owner != nullptr ? go_to_member(*found.owner, name) : forget();
             } else {
@@ -45,22 +46,22 @@ public:
         } else if (result.kind == Meaning::Kind::object) {
             go_to_member(*result.section->description, name);
         } else if (result.kind == Meaning::Kind::member) {
-            const Section* held =
-                result.member->kind == Kind::field ? result_class(result.member->doc.signature) : nullptr;
+            const help::Section* held =
+                result.member->kind == lua::Kind::field ? help::result_class(result.member->doc.signature) : nullptr;
             held != nullptr ? go_to_member(*held->description, name) : forget();
         }
     }
 
     void call() {
-        const Doc* doc = nullptr;
+        const lua::Doc* doc = nullptr;
         if (result.kind == Meaning::Kind::member) {
             doc = &result.member->doc;
         } else if (result.kind == Meaning::Kind::value) {
-            const Documented found = documented(L_, -1);
+            const lua::Documented found = lua::documented(L_, -1);
             const bool module = found.owner != nullptr && found.member == nullptr && lua_istable(L_, -1);
             doc = found.member != nullptr ? &found.member->doc : module ? &found.owner->doc : nullptr;
         }
-        const Section* object = doc == nullptr ? nullptr : result_class(doc->signature);
+        const help::Section* object = doc == nullptr ? nullptr : help::result_class(doc->signature);
         forget();
         if (object != nullptr) {
             result = {Meaning::Kind::object, object, nullptr};
@@ -97,8 +98,8 @@ private:
         forget();
     }
 
-    void go_to_member(const Class& description, std::string_view name) {
-        const Member* member = member_of(description, name);
+    void go_to_member(const lua::Class& description, std::string_view name) {
+        const lua::Member* member = member_of(description, name);
         forget();
         if (member != nullptr) {
             result = {Meaning::Kind::member, section_of(&description), member};
@@ -110,14 +111,14 @@ private:
 
 }  // namespace
 
-const Section* section_of(const Class* description) {
-    const auto all = sections();
-    const auto found =
-        std::find_if(all.begin(), all.end(), [description](const Section& s) { return s.description == description; });
+const help::Section* section_of(const lua::Class* description) {
+    const auto all = help::sections();
+    const auto found = std::find_if(all.begin(), all.end(),
+                                    [description](const help::Section& s) { return s.description == description; });
     return found == all.end() ? nullptr : &*found;
 }
 
-Meaning meaning(lua_State* L, std::span<const Token> expression) {
+Meaning meaning(lua_State* L, std::span<const lua::Token> expression) {
     luaL_checkstack(L, LUA_MINSTACK, "for the meaning of what is typed");
     Walk walk(L);
     if (expression.empty()) {
@@ -125,22 +126,22 @@ Meaning meaning(lua_State* L, std::span<const Token> expression) {
     }
     walk.begin(expression.front());
     for (std::size_t i = 1; i < expression.size(); ++i) {
-        const Token& token = expression[i];
-        if (token.kind == TokenKind::name) {
+        const lua::Token& token = expression[i];
+        if (token.kind == lua::TokenKind::name) {
             walk.go_to_field(token.text);
-        } else if (token.kind == TokenKind::string || token.is("(") || token.is("{") || token.is("[")) {
+        } else if (token.kind == lua::TokenKind::string || token.is("(") || token.is("{") || token.is("[")) {
             token.is("[") ? walk.forget() : walk.call();
-            int depth = token.kind == TokenKind::string ? 0 : 1;
+            int depth = token.kind == lua::TokenKind::string ? 0 : 1;
             while (depth > 0 && i + 1 < expression.size()) {
                 ++i;
-                const Token& inner = expression[i];
+                const lua::Token& inner = expression[i];
                 depth += inner.is("(") || inner.is("{") || inner.is("[") ? 1 : closes(inner) ? -1 : 0;
             }
         }
     }
     Meaning result = walk.result;
     if (result.kind == Meaning::Kind::value) {
-        if (const Documented found = documented(L, -1); found.member != nullptr) {
+        if (const lua::Documented found = lua::documented(L, -1); found.member != nullptr) {
             result = {Meaning::Kind::member, section_of(found.owner), found.member};
         } else if (found.owner != nullptr && lua_isuserdata(L, -1) != 0) {
             result = {Meaning::Kind::object, section_of(found.owner), nullptr};
@@ -149,4 +150,4 @@ Meaning meaning(lua_State* L, std::span<const Token> expression) {
     return result;
 }
 
-}  // namespace dinal
+}  // namespace dinal::prompt

@@ -4,10 +4,10 @@
 #include <lua.hpp>
 #include <span>
 
-#include "api/library.hpp"
+#include "help/library.hpp"
 #include "lua/tokens.hpp"
 
-namespace dinal {
+namespace dinal::prompt {
 
 struct Meaning {
     enum class Kind {
@@ -17,14 +17,14 @@ struct Meaning {
         member,  ///< it is the method or field `member` of `section`, or one of our functions
     };
     Kind kind = Kind::unknown;
-    const Section* section = nullptr;
-    const Member* member = nullptr;
+    const help::Section* section = nullptr;
+    const lua::Member* member = nullptr;
 };
 
 /// Pushes exactly one value: that of Kind::value, else nil.
-Meaning meaning(lua_State* L, std::span<const Token> expression);
+Meaning meaning(lua_State* L, std::span<const lua::Token> expression);
 
 /// The section that describes a class, nullptr when none does.
-const Section* section_of(const Class* description);
+const help::Section* section_of(const lua::Class* description);
 
-}  // namespace dinal
+}  // namespace dinal::prompt

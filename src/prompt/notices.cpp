@@ -5,28 +5,28 @@
 #include <algorithm>
 #include <vector>
 
-#include "help/help_text.hpp"
 #include "errors/misspelling.hpp"
+#include "help/help_text.hpp"
 #include "lua/tokens.hpp"
 #include "prompt/meaning.hpp"
 #include "prompt/output.hpp"
 #include "prompt/typed_text.hpp"
 
-namespace dinal {
+namespace dinal::prompt {
 namespace {
 
-bool opens_block(const Token& token) {
+bool opens_block(const lua::Token& token) {
     return token.is("function") || token.is("do") || token.is("if") || token.is("repeat");
 }
-bool closes_block(const Token& token) {
+bool closes_block(const lua::Token& token) {
     return token.is("end") || token.is("until");
 }
 
 /// The names that `local`, which is token `at`, declares.
-std::vector<std::string_view> declared(const std::vector<Token>& all, std::size_t at) {
+std::vector<std::string_view> declared(const std::vector<lua::Token>& all, std::size_t at) {
     std::vector<std::string_view> names;
     std::size_t i = at + 1 + (at + 1 < all.size() && all[at + 1].is("function") ? 1 : 0);
-    for (; i < all.size() && all[i].kind == TokenKind::name; i += 2) {
+    for (; i < all.size() && all[i].kind == lua::TokenKind::name; i += 2) {
         names.push_back(all[i].text);
         if (i + 1 >= all.size() || !all[i + 1].is(",")) {
             break;
@@ -36,9 +36,9 @@ std::vector<std::string_view> declared(const std::vector<Token>& all, std::size_
 }
 
 /// How often a name stands there. Once only: where it is declared.
-std::ptrdiff_t uses(const std::vector<Token>& all, std::string_view name) {
+std::ptrdiff_t uses(const std::vector<lua::Token>& all, std::string_view name) {
     return std::count_if(all.begin(), all.end(),
-                         [name](const Token& t) { return t.kind == TokenKind::name && t.text == name; });
+                         [name](const lua::Token& t) { return t.kind == lua::TokenKind::name && t.text == name; });
 }
 
 /// Raw: to ask must not run the code of a strict _G.
@@ -53,11 +53,11 @@ bool is_global(lua_State* L, std::string_view name) {
 }  // namespace
 
 std::string name_notice(lua_State* L, const Chunk& chunk) {
-    const std::vector<Token> all = tokens(chunk.expression);
+    const std::vector<lua::Token> all = lua::tokens(chunk.expression);
     if (all.size() == 1 && all.front().is("help")) {
         return "help() starts a tour; ?name explains a name";
     }
-    if (all.size() != 1 || all.front().kind != TokenKind::name || all.front().is("ans")) {
+    if (all.size() != 1 || all.front().kind != lua::TokenKind::name || all.front().is("ans")) {
         return "";
     }
     const std::string_view name = all.front().text;
@@ -70,7 +70,7 @@ std::string name_notice(lua_State* L, const Chunk& chunk) {
     if (name == "clear" || name == "cls") {
         return "there is no such variable; Ctrl-L clears the screen, :reset forgets your variables";
     }
-    const std::string hint = similar_global(L, name);
+    const std::string hint = errors::similar_global(L, name);
     return hint.empty() ? "" : fmt::format("there is no variable '{}'{}", name, hint);
 }
 
@@ -79,23 +79,23 @@ std::string colon_notice(lua_State* L, const std::string& text) {
     if (typed.cursor() != Cursor::member || typed.separator() != ':' || typed.word().empty()) {
         return "";
     }
-    std::vector<Token> expression(typed.owner().begin(), typed.owner().end());
-    expression.push_back({TokenKind::symbol, ":"});
-    expression.push_back({TokenKind::name, typed.word()});
+    std::vector<lua::Token> expression(typed.owner().begin(), typed.owner().end());
+    expression.push_back({lua::TokenKind::symbol, ":"});
+    expression.push_back({lua::TokenKind::name, typed.word()});
     const int top = lua_gettop(L);
     const Meaning found = meaning(L, expression);
     lua_settop(L, top);
-    if (found.kind != Meaning::Kind::member || found.member->kind == Kind::function) {
+    if (found.kind != Meaning::Kind::member || found.member->kind == lua::Kind::function) {
         return "";
     }
-    return found.member->kind == Kind::field
+    return found.member->kind == lua::Kind::field
                ? fmt::format("{} is a field: write it with a point, {}", found.member->name,
-                             written_name(*found.section, *found.member))
+                             help::written_name(*found.section, *found.member))
                : fmt::format("{} is a method, which is called: {}", found.member->name, found.member->doc.signature);
 }
 
 std::string local_notice(const std::string& text) {
-    const std::vector<Token> all = tokens(text);
+    const std::vector<lua::Token> all = lua::tokens(text);
     int depth = 0;
     for (std::size_t i = 0; i < all.size(); ++i) {
         if (all[i].is("local") && depth == 0) {
@@ -113,19 +113,19 @@ std::string local_notice(const std::string& text) {
 }
 
 std::string nil_notice(lua_State* L, const std::string& text) {
-    const std::vector<Token> all = tokens(text);
+    const std::vector<lua::Token> all = lua::tokens(text);
     int braces = 0;
     for (std::size_t i = 0; i < all.size(); ++i) {
         braces += all[i].is("{") ? 1 : all[i].is("}") ? -1 : 0;
         if (all[i].is("function")) {
             break;  // what it uses may come later
         }
-        const bool assigned = i > 1 && all[i - 1].is("=") && all[i - 2].kind == TokenKind::name;
+        const bool assigned = i > 1 && all[i - 1].is("=") && all[i - 2].kind == lua::TokenKind::name;
         const bool alone = i + 1 == all.size() || all[i + 1].is(",") || all[i + 1].is("}") || all[i + 1].is(";") ||
                            all[i + 1].line > all[i].line;
-        if (all[i].kind == TokenKind::name && assigned && alone && uses(all, all[i].text) == 1 &&
+        if (all[i].kind == lua::TokenKind::name && assigned && alone && uses(all, all[i].text) == 1 &&
             !is_global(L, all[i].text)) {
-            const std::string hint = similar_global(L, all[i].text);
+            const std::string hint = errors::similar_global(L, all[i].text);
             if (braces > 0) {
                 return fmt::format("'{}' is nil, so {} is not given{}", all[i].text, all[i - 2].text, hint);
             }
@@ -136,9 +136,9 @@ std::string nil_notice(lua_State* L, const std::string& text) {
 }
 
 std::string comma_notice(const std::string& text) {
-    const std::vector<Token> all = tokens(text);
-    const bool shape = all.size() == 5 && all[0].kind == TokenKind::name && all[1].is("=") && all[3].is(",") &&
-                       all[2].kind == TokenKind::number && all[4].kind == TokenKind::number;
+    const std::vector<lua::Token> all = lua::tokens(text);
+    const bool shape = all.size() == 5 && all[0].kind == lua::TokenKind::name && all[1].is("=") && all[3].is(",") &&
+                       all[2].kind == lua::TokenKind::number && all[4].kind == lua::TokenKind::number;
     if (!shape || all[2].end() + 1 != all[4].at) {
         return "";
     }
@@ -152,4 +152,4 @@ void say_notice(const std::string& notice) {
     }
 }
 
-}  // namespace dinal
+}  // namespace dinal::prompt

@@ -6,7 +6,7 @@
 
 #include "prompt/chunk.hpp"
 
-namespace dinal {
+namespace dinal::prompt {
 
 /// The expression is the name of a global that does not exist, or the word help.
 std::string name_notice(lua_State* L, const Chunk& chunk);
@@ -26,4 +26,4 @@ std::string comma_notice(const std::string& text);
 /// On standard error, unless it is empty.
 void say_notice(const std::string& notice);
 
-}  // namespace dinal
+}  // namespace dinal::prompt

@@ -7,7 +7,7 @@
 
 #include "terminal/display.hpp"
 
-namespace dinal {
+namespace dinal::prompt {
 void say(std::string_view text) {
     static_cast<void>(std::fwrite(text.data(), 1, text.size(), stdout));
 }
@@ -18,11 +18,11 @@ void flush_output() {
 
 void say_error(std::string_view text) {
     flush_output();
-    const Display screen = display_of(STDERR_FILENO);
-    const std::string fitting = screen.terminal ? wrapped(text, screen.width - 1) : "";
+    const terminal::Display screen = terminal::display_of(STDERR_FILENO);
+    const std::string fitting = screen.terminal ? terminal::wrapped(text, screen.width - 1) : "";
     text = screen.terminal ? fitting : text;
     static_cast<void>(std::fwrite(text.data(), 1, text.size(), stderr));
     static_cast<void>(std::fputc('\n', stderr));
 }
 
-}  // namespace dinal
+}  // namespace dinal::prompt

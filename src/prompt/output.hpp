@@ -3,7 +3,7 @@
 
 #include <string_view>
 
-namespace dinal {
+namespace dinal::prompt {
 
 /// Whether it arrives is asked once, at the end of the program (main.cpp).
 void say(std::string_view text);
@@ -12,4 +12,4 @@ void flush_output();
 /// A line on standard error, after all that was said before.
 void say_error(std::string_view text);
 
-}  // namespace dinal
+}  // namespace dinal::prompt

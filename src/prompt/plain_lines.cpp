@@ -5,7 +5,7 @@
 
 #include "prompt/output.hpp"
 
-namespace dinal {
+namespace dinal::prompt {
 namespace {
 
 volatile std::sig_atomic_t interrupt_seen = 0;
@@ -33,7 +33,7 @@ bool InterruptNote::interrupted() {
     return interrupt_seen != 0;
 }
 
-Line read_plain(const std::string& prompt) {
+TypedLine read_plain(const std::string& prompt) {
     say(prompt);
     flush_output();
     const InterruptNote note;
@@ -58,4 +58,4 @@ Line read_plain(const std::string& prompt) {
     return {Reading::line, text};
 }
 
-}  // namespace dinal
+}  // namespace dinal::prompt

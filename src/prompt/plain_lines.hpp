@@ -4,7 +4,7 @@
 #include <csignal>
 #include <string>
 
-namespace dinal {
+namespace dinal::prompt {
 
 enum class Reading {
     line,
@@ -12,12 +12,12 @@ enum class Reading {
     interrupted,  ///< Ctrl-C
 };
 
-struct Line {
+struct TypedLine {
     Reading reading = Reading::end;
     std::string text;  ///< without its newline; a pasted block has newlines inside
 };
 
-Line read_plain(const std::string& prompt);
+TypedLine read_plain(const std::string& prompt);
 
 /// While it lives, Ctrl-C belongs to the line that is typed, and to nobody else. One at a time.
 class InterruptNote {
@@ -33,4 +33,4 @@ private:
     struct sigaction before_ {};
 };
 
-}  // namespace dinal
+}  // namespace dinal::prompt

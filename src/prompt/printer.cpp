@@ -10,7 +10,7 @@
 #include "prompt/scalar_text.hpp"
 #include "prompt/table_items.hpp"
 
-namespace dinal {
+namespace dinal::prompt {
 namespace {
 
 constexpr std::size_t deepest = 3;            // tables within tables; further ones are {...}
@@ -25,7 +25,7 @@ bool is_fraction(lua_State* L, int index) {
 /// The first columns of a text, and three dots. Letters of several bytes stay whole.
 std::string shortened(std::string text, std::size_t width) {
     const auto inside = [&text] { return !text.empty() && (static_cast<unsigned char>(text.back()) & 0xC0U) == 0x80U; };
-    while (!text.empty() && columns(text) + 3 > width) {
+    while (!text.empty() && terminal::columns(text) + 3 > width) {
         while (inside()) {
             text.pop_back();
         }
@@ -41,7 +41,7 @@ struct Piece {
 
 class Printer {
 public:
-    Printer(lua_State* L, const Display& screen) : L_(L), screen_(screen), width_(screen.width - 1) {}
+    Printer(lua_State* L, const terminal::Display& screen) : L_(L), screen_(screen), width_(screen.width - 1) {}
 
     std::string value(int index) {
         if (!is_plain_table(L_, index)) {
@@ -53,7 +53,7 @@ public:
 
     std::string line(int index, std::size_t width) {
         std::string text = is_plain_table(L_, index) ? table_line(index, width).text : scalar(index);
-        return columns(text) > width ? shortened(std::move(text), width) : text;
+        return terminal::columns(text) > width ? shortened(std::move(text), width) : text;
     }
 
 private:
@@ -64,7 +64,8 @@ private:
         if (!is_plain_table(L_, index)) {
             const bool short_number = brief_ && is_fraction(L_, index);
             Piece item{short_number ? fmt::format("{:.6g}", lua_tonumber(L_, index)) : scalar(index)};
-            if (lua_isuserdata(L_, index) != 0 && columns(item.text) > room) {  // of our objects the beginning will do
+            if (lua_isuserdata(L_, index) != 0 &&
+                terminal::columns(item.text) > room) {  // of our objects the beginning will do
                 item = {shortened(std::move(item.text), room), false};
             }
             return item;
@@ -87,14 +88,14 @@ private:
         for (std::size_t i = 0; i < items.size(); ++i) {
             const std::size_t left = room > used + 2 ? room - used - 2 : 0;
             Piece item = left > 0 && i < items.shown() ? next_item(items, i, left) : Piece{"", false};
-            if (i >= items.shown() || columns(item.text) > left || left == 0) {
+            if (i >= items.shown() || terminal::columns(item.text) > left || left == 0) {
                 line.text += fmt::format("{}... {} more", i == 0 ? " " : ", ", items.size() - i);
                 line.whole = false;
                 break;
             }
             line.whole = line.whole && item.whole;
             line.text.append(i == 0 ? " " : ", ").append(item.text);
-            used += columns(item.text) + 2;
+            used += terminal::columns(item.text) + 2;
         }
         open_.pop_back();
         lua_settop(L_, top);
@@ -106,7 +107,7 @@ private:
         if (lua_type(L_, index) == LUA_TSTRING) {
             std::size_t size = 0;
             const char* start = lua_tolstring(L_, index, &size);
-            if (is_name({start, size})) {
+            if (lua::is_name({start, size})) {
                 return {start, size};
             }
         }
@@ -117,7 +118,7 @@ private:
     Piece next_item(const TableItems& items, std::size_t i, std::size_t room) {
         items.push(i);
         const std::string head = items.in_list(i) ? "" : key_text(lua_gettop(L_) - 1) + " = ";
-        const std::size_t left = room > columns(head) ? room - columns(head) : 1;
+        const std::size_t left = room > terminal::columns(head) ? room - terminal::columns(head) : 1;
         Piece value = inner(lua_gettop(L_), left);
         lua_pop(L_, 2);
         return {head + value.text, value.whole};
@@ -145,7 +146,8 @@ private:
         for (; i < items.shown(); ++i) {
             const Piece item = line_item(items, i);
             const bool simple = item.text.empty() || item.text.back() != '}';
-            const bool joins = joinable && simple && columns(lines.back()) + columns(item.text) + 4 <= width_;
+            const bool joins =
+                joinable && simple && terminal::columns(lines.back()) + terminal::columns(item.text) + 4 <= width_;
             if (!joins && lines.size() == (joinable && simple && items.in_list(i) ? most_joined_lines : most_lines)) {
                 break;
             }
@@ -173,7 +175,7 @@ private:
     }
 
     lua_State* L_;
-    Display screen_;
+    terminal::Display screen_;
     std::size_t width_;
     bool brief_ = false;             // numbers with six digits
     std::vector<const void*> open_;  // the tables that are being shown, outermost first
@@ -181,12 +183,12 @@ private:
 
 }  // namespace
 
-std::string show(lua_State* L, int index, const Display& screen) {
+std::string show(lua_State* L, int index, const terminal::Display& screen) {
     return Printer(L, screen).value(lua_absindex(L, index));
 }
 
-std::string show_line(lua_State* L, int index, const Display& screen, std::size_t width) {
+std::string show_line(lua_State* L, int index, const terminal::Display& screen, std::size_t width) {
     return Printer(L, screen).line(lua_absindex(L, index), std::max<std::size_t>(width, 8));
 }
 
-}  // namespace dinal
+}  // namespace dinal::prompt

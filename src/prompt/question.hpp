@@ -4,11 +4,11 @@
 #include <lua.hpp>
 #include <string_view>
 
-namespace dinal {
+namespace dinal::prompt {
 
 /// A line that begins or ends with a question mark, which Lua does not have.
 bool is_question(std::string_view line);
 
 void answer_question(lua_State* L, std::string_view line);
 
-}  // namespace dinal
+}  // namespace dinal::prompt

@@ -8,13 +8,13 @@
 #include "files/file.hpp"
 #include "lua/tokens.hpp"
 
-namespace dinal {
+namespace dinal::prompt {
 namespace {
 
 bool has(const std::string& text, std::string_view word) {
-    const std::vector<Token> all = tokens(text);
-    return std::any_of(all.begin(), all.end(), [word](const Token& token) {
-        return (token.kind == TokenKind::name || token.kind == TokenKind::keyword || token.is("::")) &&
+    const std::vector<lua::Token> all = lua::tokens(text);
+    return std::any_of(all.begin(), all.end(), [word](const lua::Token& token) {
+        return (token.kind == lua::TokenKind::name || token.kind == lua::TokenKind::keyword || token.is("::")) &&
                token.text == word;
     });
 }
@@ -31,18 +31,18 @@ std::string trimmed(const std::string& text) {
 
 /// The expression between two brackets; a comment at its end must not swallow the second.
 std::string in_call(std::string_view function, const std::string& expression) {
-    const std::vector<Token> all = tokens(expression);
-    const bool comment = !all.empty() && all.back().kind == TokenKind::comment;
+    const std::vector<lua::Token> all = lua::tokens(expression);
+    const bool comment = !all.empty() && all.back().kind == lua::TokenKind::comment;
     return fmt::format("{}({}{})", function, expression, comment ? "\n" : "");
 }
 
 /// A call is a statement on its own.
 bool is_call(const std::string& expression) {
-    const std::vector<Token> all = tokens(expression);
+    const std::vector<lua::Token> all = lua::tokens(expression);
     const auto last =
-        std::find_if(all.rbegin(), all.rend(), [](const Token& t) { return t.kind != TokenKind::comment; });
-    return last != all.rend() && (last->is(")") || last->is("}") || last->kind == TokenKind::string) &&
-           all.size() > 1 && all.front().kind == TokenKind::name;
+        std::find_if(all.rbegin(), all.rend(), [](const lua::Token& t) { return t.kind != lua::TokenKind::comment; });
+    return last != all.rend() && (last->is(")") || last->is("}") || last->kind == lua::TokenKind::string) &&
+           all.size() > 1 && all.front().kind == lua::TokenKind::name;
 }
 
 }  // namespace
@@ -69,14 +69,14 @@ bool Record::writes(const std::string& file) const {
     return std::find(written_.begin(), written_.end(), file) != written_.end();
 }
 
-Expected<bool> Record::may_write(const std::string& file) const {
+text::Expected<bool> Record::may_write(const std::string& file) const {
     if (!writes(file) && access(file.c_str(), F_OK) == 0) {
-        return Error{fmt::format("{} is there already, and not of this session; choose another name", file)};
+        return text::Error{fmt::format("{} is there already, and not of this session; choose another name", file)};
     }
     return true;
 }
 
-Expected<bool> Record::begin(const std::string& file) {
+text::Expected<bool> Record::begin(const std::string& file) {
     if (auto allowed = may_write(file); !allowed) {
         return allowed;
     }
@@ -86,17 +86,17 @@ Expected<bool> Record::begin(const std::string& file) {
     update();
     if (!problem_.empty()) {
         file_.clear();
-        return Error{problem_};
+        return text::Error{problem_};
     }
     written_.push_back(file);
     return true;
 }
 
-Expected<bool> Record::save(const std::string& file) {
+text::Expected<bool> Record::save(const std::string& file) {
     if (auto allowed = may_write(file); !allowed) {
         return allowed;
     }
-    if (auto written = write_file(file, script(0)); !written) {
+    if (auto written = files::write_file(file, script(0)); !written) {
         return written.error();
     }
     written_.push_back(file);
@@ -107,7 +107,7 @@ void Record::update() {
     if (file_.empty()) {
         return;
     }
-    const auto written = write_file(file_, script(begin_));
+    const auto written = files::write_file(file_, script(begin_));
     problem_ = written ? "" : written.error().sentence;
 }
 
@@ -146,4 +146,4 @@ std::string Record::script(std::size_t first) const {
     return text;
 }
 
-}  // namespace dinal
+}  // namespace dinal::prompt

@@ -4,11 +4,11 @@
 #include <string>
 #include <vector>
 
-#include "text/expected.hpp"
 #include "prompt/chunk.hpp"
 #include "prompt/evaluate.hpp"
+#include "text/expected.hpp"
 
-namespace dinal {
+namespace dinal::prompt {
 
 class Record {
 public:
@@ -18,9 +18,9 @@ public:
     void clear();
 
     /// From now on the file is kept up to date. What is recorded so far is left out.
-    Expected<bool> begin(const std::string& file);
+    text::Expected<bool> begin(const std::string& file);
     /// All of the session so far, into this file.
-    Expected<bool> save(const std::string& file);
+    text::Expected<bool> save(const std::string& file);
 
     [[nodiscard]] const std::string& file() const { return file_; }
     /// The file is one of this session: a script that loads itself would never end.
@@ -35,7 +35,7 @@ private:
     };
     [[nodiscard]] std::string script(std::size_t first) const;
     [[nodiscard]] bool ans_is_used_after(std::size_t entry) const;
-    [[nodiscard]] Expected<bool> may_write(const std::string& file) const;
+    [[nodiscard]] text::Expected<bool> may_write(const std::string& file) const;
     void update();
 
     std::vector<Entry> entries_;
@@ -45,4 +45,4 @@ private:
     std::vector<std::string> written_;  // files of this session: they may be written again
 };
 
-}  // namespace dinal
+}  // namespace dinal::prompt

@@ -2,7 +2,6 @@
 
 #include <unistd.h>
 
-#include "source/function_source.hpp"
 #include "lua/safe_mode.hpp"
 #include "prompt/call.hpp"
 #include "prompt/chunk.hpp"
@@ -12,8 +11,9 @@
 #include "prompt/script.hpp"
 #include "prompt/session.hpp"
 #include "prompt/user_files.hpp"
+#include "source/function_source.hpp"
 
-namespace dinal {
+namespace dinal::prompt {
 namespace {
 
 /// As in lua, a string in the global _PROMPT or _PROMPT2 replaces ours. Raw: a strict _G must not make it an error.
@@ -28,15 +28,15 @@ std::string prompt_text(lua_State* L, const char* global, const char* ours) {
 
 /// Tells the message on the top of the stack, of a text that does not compile.
 void reject(Session& session, const std::string& text) {
-    keep_source(session.L, prompt_chunk, text);  // the message shows the line
+    source::keep_source(session.L, prompt_chunk, text);  // the message shows the line
     say_error(told_error(session.L, nullptr));
 }
 
 /// Reads the lines that are missing of a chunk, and compiles it: its function is then on the stack.
-Line read_rest(Session& session, Chunk& chunk, Line input) {
+TypedLine read_rest(Session& session, Chunk& chunk, TypedLine input) {
     lua_State* L = session.L;
     while (chunk.result == Compiled::incomplete) {
-        Line more = session.editor.read(prompt_text(L, "_PROMPT2", ">> "), input.text);
+        TypedLine more = session.editor.read(prompt_text(L, "_PROMPT2", ">> "), input.text);
         if (more.reading == Reading::end) {
             say("\n");
             chunk.result = Compiled::wrong;
@@ -55,7 +55,7 @@ Line read_rest(Session& session, Chunk& chunk, Line input) {
 /// Reads one input and does what it says.
 Reading read_and_run(Session& session) {
     lua_State* L = session.L;
-    Line input = session.editor.read(prompt_text(L, "_PROMPT", "> "));
+    TypedLine input = session.editor.read(prompt_text(L, "_PROMPT", "> "));
     if (input.reading != Reading::line) {
         return input.reading;
     }
@@ -85,7 +85,7 @@ void run_init_file(lua_State* L) {
     if (file.empty()) {
         return;
     }
-    if (luaL_loadfilex(L, file.c_str(), load_mode()) != LUA_OK) {
+    if (luaL_loadfilex(L, file.c_str(), lua::load_mode()) != LUA_OK) {
         say_error(told_error(L, file.c_str()));
     } else if (call(L, 0, 0) != LUA_OK) {
         say_error(take_text(L));
@@ -96,8 +96,8 @@ void run_init_file(lua_State* L) {
 }  // namespace
 
 void run_chunk(Session& session, const Chunk& chunk, const std::string& text) {
-    keep_source(session.L, prompt_chunk,
-                text);  // errors and files of results may need the text of what is defined here
+    source::keep_source(session.L, prompt_chunk,
+                        text);  // errors and files of results may need the text of what is defined here
     const Evaluated result = evaluate(session.L, chunk);
     if (!result.fine) {
         return;
@@ -147,4 +147,4 @@ bool run_prompt(lua_State* L, Start start) {
     return true;
 }
 
-}  // namespace dinal
+}  // namespace dinal::prompt

@@ -5,7 +5,7 @@
 
 #include <string>
 
-namespace dinal {
+namespace dinal::prompt {
 
 /// The first line of a session.
 std::string greeting();
@@ -15,4 +15,4 @@ enum class Start { with_init_file, plain };
 /// Until the end of input. False when Ctrl-C ended it, which happens only where no terminal is.
 bool run_prompt(lua_State* L, Start start);
 
-}  // namespace dinal
+}  // namespace dinal::prompt

@@ -7,11 +7,11 @@
 #include <string_view>
 
 #include "lua/bind.hpp"
-#include "source/function_source.hpp"
 #include "lua/interrupt.hpp"
+#include "source/function_source.hpp"
 #include "terminal/quoted.hpp"
 
-namespace dinal {
+namespace dinal::prompt {
 namespace {
 
 constexpr std::size_t longest_string = 1000;
@@ -30,8 +30,8 @@ std::string told(lua_State* L, int index) {
     lua_pushcfunction(L, to_text);
     lua_insert(L, -2);
     const bool fine = lua_pcall(L, 1, 1, 0) == LUA_OK;
-    if (!fine && interrupt_requested()) {
-        raise_interrupted(L);
+    if (!fine && lua::interrupt_requested()) {
+        lua::raise_interrupted(L);
     }
     std::size_t size = 0;
     const char* start = lua_isstring(L, -1) != 0 ? lua_tolstring(L, -1, &size) : nullptr;
@@ -41,12 +41,12 @@ std::string told(lua_State* L, int index) {
 }
 
 /// Several lines of nothing but printable characters, too long to be read in quotes.
-bool is_text(std::string_view text, const Display& screen) {
+bool is_text(std::string_view text, const terminal::Display& screen) {
     if (text.find('\n') == std::string_view::npos || text.size() <= screen.width || text.size() > longest_text) {
         return false;
     }
     while (!text.empty()) {
-        const std::size_t length = text[0] == '\n' ? 1 : printable_length(text);
+        const std::size_t length = text[0] == '\n' ? 1 : terminal::printable_length(text);
         if (length == 0) {
             return false;
         }
@@ -55,23 +55,23 @@ bool is_text(std::string_view text, const Display& screen) {
     return true;
 }
 
-std::string string_text(lua_State* L, int index, Place place, const Display& screen) {
+std::string string_text(lua_State* L, int index, Place place, const terminal::Display& screen) {
     std::size_t size = 0;
     const char* start = lua_tolstring(L, index, &size);
     if (place == Place::alone && is_text({start, size}, screen)) {
-        return wrapped(spelled({start, size}, screen), screen.width - 1);
+        return terminal::wrapped(terminal::spelled({start, size}, screen), screen.width - 1);
     }
     const std::size_t limit = place == Place::inside ? longest_inner_string : longest_string;
-    std::string text = quoted({start, size}, limit, screen.unicode);
+    std::string text = terminal::quoted({start, size}, limit, screen.unicode);
     return place == Place::alone && size > limit ? fmt::format("{} ({} bytes)", text, size) : text;
 }
 
 /// A function as its source where that is short, else where it is defined; ours as they are called.
-std::string function_text(lua_State* L, int index, const Display& screen) {
-    if (const Documented found = documented(L, index); found.member != nullptr) {
-        return wrapped(fmt::format("function {}", found.member->doc.signature), screen.width - 1);
+std::string function_text(lua_State* L, int index, const terminal::Display& screen) {
+    if (const lua::Documented found = lua::documented(L, index); found.member != nullptr) {
+        return terminal::wrapped(fmt::format("function {}", found.member->doc.signature), screen.width - 1);
     }
-    const auto source = function_source(L, index);
+    const auto source = source::function_source(L, index);
     if (lua_iscfunction(L, index) != 0) {
         return source ? fmt::format("function {} of Lua", *source) : "function written in C";
     }
@@ -102,7 +102,7 @@ bool is_plain_table(lua_State* L, int index) {
     return false;
 }
 
-std::string scalar_text(lua_State* L, int index, Place place, const Display& screen) {
+std::string scalar_text(lua_State* L, int index, Place place, const terminal::Display& screen) {
     switch (lua_type(L, index)) {
         case LUA_TNUMBER:
             return std::isnan(lua_tonumber(L, index)) ? "nan" : told(L, index);
@@ -113,15 +113,15 @@ std::string scalar_text(lua_State* L, int index, Place place, const Display& scr
         default:
             break;
     }
-    const Documented found = documented(L, index);
+    const lua::Documented found = lua::documented(L, index);
     if (place == Place::inside) {
-        return spelled(in_one_line(told(L, index)), screen);
+        return terminal::spelled(in_one_line(told(L, index)), screen);
     }
     if (found.owner != nullptr && found.owner->card != nullptr) {
         return found.owner->card(L, lua_absindex(L, index), screen);
     }
     std::string text = told(L, index);
-    return found.owner != nullptr ? wrapped(spelled(text, screen), screen.width - 1) : text;
+    return found.owner != nullptr ? terminal::wrapped(terminal::spelled(text, screen), screen.width - 1) : text;
 }
 
-}  // namespace dinal
+}  // namespace dinal::prompt

@@ -6,7 +6,7 @@
 
 #include "terminal/display.hpp"
 
-namespace dinal {
+namespace dinal::prompt {
 
 /// Alone on the screen, a value may take several lines; inside a table it gets a short form on one line.
 enum class Place { alone, inside };
@@ -15,6 +15,6 @@ enum class Place { alone, inside };
 bool is_plain_table(lua_State* L, int index);
 
 /// The text for the value at `index`. Runs __tostring, whose errors become part of the text; Ctrl-C is a Lua error.
-std::string scalar_text(lua_State* L, int index, Place place, const Display& screen);
+std::string scalar_text(lua_State* L, int index, Place place, const terminal::Display& screen);
 
-}  // namespace dinal
+}  // namespace dinal::prompt

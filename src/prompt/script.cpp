@@ -15,9 +15,8 @@
 #include <string_view>
 
 #include "files/confinement.hpp"
-#include "source/function_source.hpp"
+#include "help/library.hpp"
 #include "lua/interrupt.hpp"
-#include "api/library.hpp"
 #include "lua/limits.hpp"
 #include "lua/safe_mode.hpp"
 #include "lua/time_limit.hpp"
@@ -26,8 +25,9 @@
 #include "prompt/load_file.hpp"
 #include "prompt/output.hpp"
 #include "prompt/repl.hpp"
+#include "source/function_source.hpp"
 
-namespace dinal {
+namespace dinal::prompt {
 namespace {
 
 /// Ends a piece of work whose error, if any, is the text on the top of the stack. `file` is that of the chunk, if it
@@ -35,8 +35,9 @@ namespace {
 bool finished(lua_State* L, int status, const char* file = nullptr) {
     if (status != LUA_OK) {
         const std::string text = status == LUA_ERRSYNTAX || status == LUA_ERRMEM ? told_error(L, file) : take_text(L);
-        complain(stop_requested() == Stop::interrupted && text.rfind("interrupted", 0) != 0 ? "interrupted" : text);
-    } else if (stop_requested() == Stop::interrupted) {
+        complain(lua::stop_requested() == lua::Stop::interrupted && text.rfind("interrupted", 0) != 0 ? "interrupted"
+                                                                                                      : text);
+    } else if (lua::stop_requested() == lua::Stop::interrupted) {
         complain("interrupted");
         return false;
     }
@@ -45,15 +46,15 @@ bool finished(lua_State* L, int status, const char* file = nullptr) {
 
 bool run_loaded(lua_State* L, int status, int arguments = 0) {
     // NOTE: Ctrl-C while standard input was read as a script is seen only here.
-    const bool go_on = status == LUA_OK && !interrupt_requested();
+    const bool go_on = status == LUA_OK && !lua::interrupt_requested();
     return finished(L, go_on ? call(L, arguments, 0) : status);
 }
 
 /// Text that is in no file. It is kept, so that a file of results can hold the source of the functions in it.
 int load_text(lua_State* L, std::string_view text, const char* name) {
-    const int status = luaL_loadbufferx(L, text.data(), text.size(), name, load_mode());
+    const int status = luaL_loadbufferx(L, text.data(), text.size(), name, lua::load_mode());
     if (status == LUA_OK || status == LUA_ERRSYNTAX) {
-        keep_source(L, name, text);  // an error needs it, too
+        source::keep_source(L, name, text);  // an error needs it, too
     }
     return status;
 }
@@ -109,7 +110,7 @@ bool require_module(lua_State* L, std::string_view value) {
     return finished(L, status);
 }
 
-bool run_step(lua_State* L, const Step& step) {
+bool run_step(lua_State* L, const StartStep& step) {
     switch (step.option) {
         case 'e':
             return run_text(L, step.value, "=(command line)");
@@ -122,7 +123,8 @@ bool run_step(lua_State* L, const Step& step) {
 }
 
 bool run_steps(lua_State* L, const Arguments& arguments) {
-    return std::all_of(arguments.steps.begin(), arguments.steps.end(), [L](const Step& s) { return run_step(L, s); });
+    return std::all_of(arguments.steps.begin(), arguments.steps.end(),
+                       [L](const StartStep& s) { return run_step(L, s); });
 }
 
 /// The global `arg`: the script at 0, its arguments from 1, what stands before it at negative places.
@@ -155,7 +157,7 @@ bool run_script(lua_State* L, const Arguments& arguments) {
     const bool after_dashes = std::string_view(arguments.words[arguments.script - 1]) == "--";
     const bool standard_input = std::string_view(file) == "-" && !after_dashes;
     if (!standard_input) {
-        allow_reading(file);
+        files::allow_reading(file);
     }
     const int status = standard_input ? load_standard_input(L) : load_file(L, file);
     return status == LUA_OK ? run_loaded(L, status, push_script_arguments(L))
@@ -168,15 +170,15 @@ void open(lua_State* L, const Arguments& arguments) {
         lua_pushboolean(L, 1);
         lua_setfield(L, LUA_REGISTRYINDEX, "LUA_NOENV");
     }
-    arguments.safe ? open_safe_libraries(L) : luaL_openlibs(L);
-    open_library(L);
+    arguments.safe ? lua::open_safe_libraries(L) : luaL_openlibs(L);
+    help::open_library(L);
     set_arg(L, arguments);
     lua_gc(L, LUA_GCGEN, 0, 0);  // as lua does
-    set_limits(L, arguments.limits);
+    lua::set_limits(L, arguments.limits);
 }
 
 int failure() {
-    return stop_requested() == Stop::interrupted ? exit_code::interrupted : exit_code::script_error;
+    return lua::stop_requested() == lua::Stop::interrupted ? exit_code::interrupted : exit_code::script_error;
 }
 
 int prompt(lua_State* L, const Arguments& arguments) {
@@ -225,7 +227,7 @@ int protected_run(lua_State* L) {
 void close_state(lua_State* L) {
     // Finalizers run now, and Lua calls no hook in them: an endless one must not be deaf to Ctrl-C.
     static_cast<void>(std::signal(SIGINT, SIG_DFL));
-    const TimeAllowance time;
+    const lua::TimeAllowance time;
     lua_close(L);
 }
 
@@ -238,7 +240,7 @@ int run(const Arguments& arguments) {
         complain("cannot start Lua: not enough memory");
         return exit_code::script_error;
     }
-    install_interrupt_handler();
+    lua::install_interrupt_handler();
     Program program{&arguments};
     lua_pushcfunction(L, protected_run);
     lua_pushlightuserdata(L, &program);
@@ -246,7 +248,7 @@ int run(const Arguments& arguments) {
         complain(take_text(L));
         return failure();
     }
-    if (!reached_limit().empty()) {
+    if (!lua::reached_limit().empty()) {
         std::exit(program.code);  // what the script has left open is not closed: that may take for ever, too
     }
     return program.code;
@@ -266,4 +268,4 @@ std::string version_text() {
                        LineEditor::about());
 }
 
-}  // namespace dinal
+}  // namespace dinal::prompt

@@ -3,7 +3,7 @@
 
 #include "prompt/arguments.hpp"
 
-namespace dinal {
+namespace dinal::prompt {
 
 namespace exit_code {
 constexpr int ok = 0;
@@ -22,4 +22,4 @@ void complain(const std::string& text);
 std::string version_line();
 std::string version_text();
 
-}  // namespace dinal
+}  // namespace dinal::prompt

@@ -7,7 +7,7 @@
 #include "prompt/line_editor.hpp"
 #include "prompt/record.hpp"
 
-namespace dinal {
+namespace dinal::prompt {
 
 struct Session {
     explicit Session(lua_State* state) : L(state), editor(state) {}
@@ -25,4 +25,4 @@ void run_text(Session& session, const std::string& text);
 /// Runs the function on the top of the stack, which `chunk` describes.
 void run_chunk(Session& session, const Chunk& chunk, const std::string& text);
 
-}  // namespace dinal
+}  // namespace dinal::prompt

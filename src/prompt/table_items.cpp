@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <string_view>
 
-namespace dinal {
+namespace dinal::prompt {
 namespace {
 
 constexpr std::size_t most_sorted_keys = 500;  // beyond, the first that Lua finds are shown
@@ -74,4 +74,4 @@ void TableItems::add_key() {
     lua_rawseti(L_, keys_, place);
 }
 
-}  // namespace dinal
+}  // namespace dinal::prompt

@@ -7,7 +7,7 @@
 #include <tuple>
 #include <vector>
 
-namespace dinal {
+namespace dinal::prompt {
 
 /// 1, 2, ... n, then other numbers, the time t (events have one), other names, and the rest.
 // NOTE: the keys that are not 1 to n stand in a Lua table that this leaves on the stack. No destructor may take it off:
@@ -40,4 +40,4 @@ private:
     std::vector<Key> order_;
 };
 
-}  // namespace dinal
+}  // namespace dinal::prompt

@@ -1,38 +1,38 @@
 #include "prompt/typed_text.hpp"
 
-namespace dinal {
+namespace dinal::prompt {
 namespace {
 
-bool opens(const Token& token) {
+bool opens(const lua::Token& token) {
     return token.is("(") || token.is("{") || token.is("[");
 }
-bool closes(const Token& token) {
+bool closes(const lua::Token& token) {
     return token.is(")") || token.is("}") || token.is("]");
 }
-bool separates(const Token& token) {
+bool separates(const lua::Token& token) {
     return token.is(".") || token.is(":");
 }
 
 }  // namespace
 
-TypedText::TypedText(std::string_view before) : tokens_(tokens(before)) {
+TypedText::TypedText(std::string_view before) : tokens_(lua::tokens(before)) {
     find_cursor(before);
     find_call();
 }
 
 void TypedText::find_cursor(std::string_view before) {
     if (!tokens_.empty() && tokens_.back().end() == before.size()) {
-        const Token& last = tokens_.back();
-        if (last.kind == TokenKind::comment || last.kind == TokenKind::number) {
+        const lua::Token& last = tokens_.back();
+        if (last.kind == lua::TokenKind::comment || last.kind == lua::TokenKind::number) {
             return;
         }
-        if (last.kind == TokenKind::string) {
+        if (last.kind == lua::TokenKind::string) {
             cursor_ = last.open && last.text.front() != '[' ? Cursor::string : Cursor::nothing;
             word_ = last.text.substr(1);
             tokens_.pop_back();
             return;
         }
-        if (last.kind != TokenKind::symbol) {
+        if (last.kind != lua::TokenKind::symbol) {
             word_ = last.text;
             tokens_.pop_back();
         }
@@ -46,11 +46,11 @@ void TypedText::find_cursor(std::string_view before) {
 }
 
 /// The expression that ends before token `end`: a name, fields, calls, brackets. Empty when none does.
-std::span<const Token> TypedText::expression_before(std::size_t end) const {
+std::span<const lua::Token> TypedText::expression_before(std::size_t end) const {
     std::size_t begin = end;
     while (begin > 0) {
-        const Token& last = tokens_[begin - 1];
-        if (last.kind == TokenKind::name) {
+        const lua::Token& last = tokens_[begin - 1];
+        if (last.kind == lua::TokenKind::name) {
             --begin;
             if (begin < 2 || !separates(tokens_[begin - 1])) {
                 break;
@@ -62,11 +62,13 @@ std::span<const Token> TypedText::expression_before(std::size_t end) const {
                 --begin;
                 depth += closes(tokens_[begin]) ? 1 : opens(tokens_[begin]) ? -1 : 0;
             } while (depth > 0 && begin > 0);
-            const bool called = begin > 0 && (tokens_[begin - 1].kind == TokenKind::name || closes(tokens_[begin - 1]));
+            const bool called =
+                begin > 0 && (tokens_[begin - 1].kind == lua::TokenKind::name || closes(tokens_[begin - 1]));
             if (!called) {
                 break;
             }
-        } else if (last.kind == TokenKind::string && begin > 1 && tokens_[begin - 2].kind == TokenKind::name) {
+        } else if (last.kind == lua::TokenKind::string && begin > 1 &&
+                   tokens_[begin - 2].kind == lua::TokenKind::name) {
             --begin;  // f"text"
         } else {
             return {};
@@ -89,7 +91,7 @@ std::vector<std::size_t> TypedText::open_brackets() const {
 
 void TypedText::find_call() {
     const std::vector<std::size_t> open = open_brackets();
-    if (cursor_ == Cursor::string && !tokens_.empty() && tokens_.back().kind == TokenKind::name) {
+    if (cursor_ == Cursor::string && !tokens_.empty() && tokens_.back().kind == lua::TokenKind::name) {
         call_ = OpenCall{.function = expression_before(tokens_.size())};  // f"...
         return;
     }
@@ -100,10 +102,10 @@ void TypedText::find_call() {
     OpenCall call{.function = expression_before(bracket)};
     call.options = tokens_[bracket].is("{");
     if (call.options && call.function.empty() && open.size() > 1) {
-        const Token& outer = tokens_[open[open.size() - 2]];
+        const lua::Token& outer = tokens_[open[open.size() - 2]];
         if (tokens_[bracket - 1].is(",") || tokens_[bracket - 1].is(outer.text)) {
             call.function = expression_before(open[open.size() - 2]);
-            call.braces = outer.is("(") ? Braces::in_parentheses : Braces::nested;
+            call.braces = outer.is("(") ? help::Braces::in_parentheses : help::Braces::nested;
         }
     }
     if (call.function.empty()) {
@@ -112,15 +114,15 @@ void TypedText::find_call() {
     int depth = 0;
     for (std::size_t i = bracket + 1; i + 1 < tokens_.size(); ++i) {
         depth += opens(tokens_[i]) ? 1 : closes(tokens_[i]) ? -1 : 0;
-        if (depth == 0 && tokens_[i].kind == TokenKind::name && tokens_[i + 1].is("=")) {
+        if (depth == 0 && tokens_[i].kind == lua::TokenKind::name && tokens_[i + 1].is("=")) {
             call.given.push_back(tokens_[i].text);
         }
     }
-    const Token& last = tokens_.back();
+    const lua::Token& last = tokens_.back();
     if (call.options && cursor_ == Cursor::name && (last.is("{") || last.is(",") || last.is(";"))) {
         cursor_ = Cursor::option;
     }
     call_ = call;
 }
 
-}  // namespace dinal
+}  // namespace dinal::prompt

@@ -11,16 +11,16 @@
 #include "help/signature.hpp"
 #include "lua/tokens.hpp"
 
-namespace dinal {
+namespace dinal::prompt {
 
 enum class Cursor { name, member, option, string, nothing };
 
 /// A call whose brackets are open at the cursor.
 struct OpenCall {
-    std::span<const Token> function;           ///< the tokens before the bracket: sys : simulate
-    bool options = false;                      ///< the cursor is in a table of options,
-    Braces braces = Braces::alone;             ///< which is passed like this
-    std::vector<std::string_view> given = {};  ///< the options that are there already
+    std::span<const lua::Token> function;       ///< the tokens before the bracket: sys : simulate
+    bool options = false;                       ///< the cursor is in a table of options,
+    help::Braces braces = help::Braces::alone;  ///< which is passed like this
+    std::vector<std::string_view> given = {};   ///< the options that are there already
 };
 
 /// What stands before the cursor. Refers to the text.
@@ -34,23 +34,23 @@ public:
     /// The part of a name, or of a string, that is there already.
     [[nodiscard]] std::string_view word() const { return word_; }
     /// Of Cursor::member: the tokens before the separator, and the separator, '.' or ':'.
-    [[nodiscard]] std::span<const Token> owner() const { return owner_; }
+    [[nodiscard]] std::span<const lua::Token> owner() const { return owner_; }
     [[nodiscard]] char separator() const { return separator_; }
     [[nodiscard]] const std::optional<OpenCall>& call() const { return call_; }
-    [[nodiscard]] const std::vector<Token>& tokens_before() const { return tokens_; }
+    [[nodiscard]] const std::vector<lua::Token>& tokens_before() const { return tokens_; }
 
 private:
     void find_cursor(std::string_view before);
     void find_call();
-    [[nodiscard]] std::span<const Token> expression_before(std::size_t end) const;
+    [[nodiscard]] std::span<const lua::Token> expression_before(std::size_t end) const;
     [[nodiscard]] std::vector<std::size_t> open_brackets() const;
 
-    std::vector<Token> tokens_;  // without the word at the cursor
+    std::vector<lua::Token> tokens_;  // without the word at the cursor
     Cursor cursor_ = Cursor::nothing;
     std::string_view word_;
-    std::span<const Token> owner_;
+    std::span<const lua::Token> owner_;
     char separator_ = ' ';
     std::optional<OpenCall> call_;
 };
 
-}  // namespace dinal
+}  // namespace dinal::prompt

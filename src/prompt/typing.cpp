@@ -5,25 +5,25 @@
 
 #include <algorithm>
 
-#include "terminal/display.hpp"
 #include "lua/bind.hpp"
 #include "lua/tokens.hpp"
+#include "terminal/display.hpp"
 
-namespace dinal {
+namespace dinal::prompt {
 namespace {
 
 constexpr std::string_view grey = "\x1b[90m";
 constexpr std::string_view plain = "\x1b[0m";
 
-std::string_view colour_of(const Token& token) {
+std::string_view colour_of(const lua::Token& token) {
     switch (token.kind) {
-        case TokenKind::keyword:
+        case lua::TokenKind::keyword:
             return "\x1b[35m";
-        case TokenKind::number:
+        case lua::TokenKind::number:
             return "\x1b[36m";
-        case TokenKind::string:
+        case lua::TokenKind::string:
             return token.open ? "\x1b[31m" : "\x1b[32m";
-        case TokenKind::comment:
+        case lua::TokenKind::comment:
             return grey;
         default:
             return "";
@@ -55,7 +55,7 @@ bool is_simple(std::string_view text, bool unicode) {
 
 /// The first `width` columns.
 std::string cut(std::string text, std::size_t width) {
-    while (columns(text) > width) {
+    while (terminal::columns(text) > width) {
         text.pop_back();
     }
     return text;
@@ -66,7 +66,7 @@ std::string cut(std::string text, std::size_t width) {
 std::string in_colours(std::string_view text) {
     std::string result;
     std::size_t at = 0;
-    for (const Token& token : tokens(text)) {
+    for (const lua::Token& token : lua::tokens(text)) {
         result += text.substr(at, token.at - at);
         at = token.end();
         const std::string_view colour = colour_of(token);
@@ -77,9 +77,9 @@ std::string in_colours(std::string_view text) {
 
 Painted paint(lua_State* L, std::string_view prompt, const std::string& pending, std::string_view line,
               std::size_t cursor) {
-    const Display screen = display_of(STDOUT_FILENO);
-    const std::size_t before = columns(prompt);
-    const std::size_t used = before + columns(line);
+    const terminal::Display screen = terminal::display_of(STDOUT_FILENO);
+    const std::size_t before = terminal::columns(prompt);
+    const std::size_t used = before + terminal::columns(line);
     constexpr std::size_t spare = 2;  // a row that is full to its end may have been wrapped already
     if (used + spare >= screen.width || !is_simple(prompt, screen.unicode) || !is_simple(line, screen.unicode)) {
         return {};
@@ -108,4 +108,4 @@ Completion complete_safely(lua_State* L, const std::string& before) {
     return completion;
 }
 
-}  // namespace dinal
+}  // namespace dinal::prompt

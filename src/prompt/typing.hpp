@@ -7,7 +7,7 @@
 
 #include "prompt/completion.hpp"
 
-namespace dinal {
+namespace dinal::prompt {
 
 /// What draws a line over in colours, and puts the cursor back.
 struct Painted {
@@ -26,4 +26,4 @@ Completion complete_safely(lua_State* L, const std::string& before);
 /// Lua text with escape sequences for its colours.
 std::string in_colours(std::string_view text);
 
-}  // namespace dinal
+}  // namespace dinal::prompt

@@ -6,7 +6,7 @@
 
 #include <cstdlib>
 
-namespace dinal {
+namespace dinal::prompt {
 namespace {
 
 std::string absolute_folder(const char* variable) {
@@ -54,4 +54,4 @@ std::string init_file() {
     return !file.empty() && access(file.c_str(), F_OK) == 0 ? file : "";
 }
 
-}  // namespace dinal
+}  // namespace dinal::prompt

@@ -3,7 +3,7 @@
 
 #include <string>
 
-namespace dinal {
+namespace dinal::prompt {
 
 /// ${XDG_STATE_HOME:-~/.local/state}/dinal/history, made (for this user only) with its folders when it is not there;
 /// empty when that is not possible: the prompt works without a history.
@@ -12,4 +12,4 @@ std::string history_file();
 /// ${XDG_CONFIG_HOME:-~/.config}/dinal/init.lua, run before the first prompt; empty when it is not there.
 std::string init_file();
 
-}  // namespace dinal
+}  // namespace dinal::prompt

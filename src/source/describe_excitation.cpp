@@ -2,12 +2,12 @@
 
 #include <cmath>
 
-#include "api/bind_excitation.hpp"
-#include "source/function_source.hpp"
 #include "lua/user_function.hpp"
+#include "source/describe.hpp"
+#include "source/function_source.hpp"
 #include "source/value_text.hpp"
 
-namespace dinal {
+namespace dinal::source {
 namespace {
 
 /// `whole` writes functions down with all that they refer to; without it, text is for the eye.
@@ -45,35 +45,35 @@ std::string call_text(std::string_view term, std::initializer_list<Option> optio
     return fmt::format("excitation.{}{{ {} }}", term, list);
 }
 
-std::string text_of(const Context&, const Constant& c) {
+std::string text_of(const Context&, const model::Constant& c) {
     return call_text("constant", {{"level", c.level}});
 }
-std::string text_of(const Context&, const Harmonic& h) {
+std::string text_of(const Context&, const model::Harmonic& h) {
     return call_text("harmonic", {{"amplitude", h.amplitude}, {"omega", h.omega}, {"phase", h.phase}});
 }
-std::string text_of(const Context&, const Step& s) {
+std::string text_of(const Context&, const model::Step& s) {
     return call_text("step", {{"level", s.level}, {"at", s.at}});
 }
-std::string text_of(const Context&, const Pulse& p) {
+std::string text_of(const Context&, const model::Pulse& p) {
     return call_text("pulse", {{"amplitude", p.amplitude}, {"at", p.at}, {"width", p.width}});
 }
-std::string text_of(const Context&, const HalfSine& h) {
+std::string text_of(const Context&, const model::HalfSine& h) {
     return call_text("half_sine", {{"amplitude", h.amplitude}, {"at", h.at}, {"width", h.width}});
 }
-std::string text_of(const Context&, const Ramp& r) {
-    return r.width == never ? call_text("ramp", {{"slope", r.slope}, {"at", r.at}})
-                            : call_text("ramp", {{"slope", r.slope}, {"at", r.at}, {"width", r.width}});
+std::string text_of(const Context&, const model::Ramp& r) {
+    return r.width == model::never ? call_text("ramp", {{"slope", r.slope}, {"at", r.at}})
+                                   : call_text("ramp", {{"slope", r.slope}, {"at", r.at}, {"width", r.width}});
 }
-std::string text_of(const Context&, const Square& s) {
+std::string text_of(const Context&, const model::Square& s) {
     return call_text("square", {{"amplitude", s.amplitude}, {"period", s.period}, {"duty", s.duty}, {"at", s.at}});
 }
-std::string text_of(const Context&, const Sawtooth& s) {
+std::string text_of(const Context&, const model::Sawtooth& s) {
     return call_text("sawtooth", {{"amplitude", s.amplitude}, {"period", s.period}, {"at", s.at}});
 }
-std::string text_of(const Context&, const Triangle& s) {
+std::string text_of(const Context&, const model::Triangle& s) {
     return call_text("triangle", {{"amplitude", s.amplitude}, {"period", s.period}, {"at", s.at}});
 }
-std::string text_of(const Context&, const Chirp& c) {
+std::string text_of(const Context&, const model::Chirp& c) {
     return call_text("chirp", {{"amplitude", c.amplitude},
                                {"from", c.from},
                                {"to", c.to},
@@ -81,10 +81,10 @@ std::string text_of(const Context&, const Chirp& c) {
                                {"at", c.at},
                                {"phase", c.phase}});
 }
-std::string text_of(const Context&, const Exponential& e) {
+std::string text_of(const Context&, const model::Exponential& e) {
     return call_text("exponential", {{"amplitude", e.amplitude}, {"tau", e.tau}, {"at", e.at}});
 }
-std::string text_of(const Context&, const Polynomial& p) {
+std::string text_of(const Context&, const model::Polynomial& p) {
     return fmt::format("excitation.polynomial{{ coefficients = {}, at = {} }}", list_text(p.coefficients),
                        text_of(p.at));
 }
@@ -93,9 +93,9 @@ std::string delay_text(double delay) {
     return delay == 0 ? "" : fmt::format(":delay({})", text_of(delay));
 }
 
-std::string text_of(const Context& context, const std::shared_ptr<const Samples>& samples) {
+std::string text_of(const Context& context, const std::shared_ptr<const model::Samples>& samples) {
     const std::size_t most_written_out = context.whole != nullptr ? 10'000 : 8;
-    const Samples& s = *samples;
+    const model::Samples& s = *samples;
     if (!s.origin.empty()) {
         return fmt::format("excitation.samples({}){}", s.origin, delay_text(s.delay));
     }
@@ -106,7 +106,7 @@ std::string text_of(const Context& context, const std::shared_ptr<const Samples>
 }
 
 /// The function as text, or a comment that says which one it was.
-std::string function_text(const Context& context, const LuaFunction& function) {
+std::string function_text(const Context& context, const lua::LuaFunction& function) {
     lua_State* L = context.L;
     luaL_checkstack(L, LUA_MINSTACK, "for the text of a function");
     function.push(L);
@@ -116,7 +116,7 @@ std::string function_text(const Context& context, const LuaFunction& function) {
     } else if (const auto source = function_source(L, -1)) {
         text = *source;
     } else if (lua_type(L, -1) != LUA_TFUNCTION) {
-        text = fmt::format("--[[ {} with __call ]]", describe(L, -1));
+        text = fmt::format("--[[ {} with __call ]]", lua::describe(L, -1));
     } else if (lua_iscfunction(L, -1) != 0) {
         text = "--[[ a function written in C ]]";
     } else {
@@ -129,7 +129,7 @@ std::string function_text(const Context& context, const LuaFunction& function) {
     return text;
 }
 
-std::string text_of(const Context& context, const Scripted& s) {
+std::string text_of(const Context& context, const model::Scripted& s) {
     std::string options;
     if (!s.breaks.empty()) {
         options += "breaks = " + list_text(s.breaks);
@@ -137,7 +137,7 @@ std::string text_of(const Context& context, const Scripted& s) {
     if (s.period > 0) {
         options += (options.empty() ? "" : ", ") + std::string("period = ") + text_of(s.period);
     }
-    const auto* function = dynamic_cast<const LuaFunction*>(s.function.get());
+    const auto* function = dynamic_cast<const lua::LuaFunction*>(s.function.get());
     return fmt::format("excitation.scripted({}{}){}",
                        function != nullptr ? function_text(context, *function) : "--[[ a function written in C++ ]]",
                        options.empty() ? "" : ", { " + options + " }", delay_text(s.delay));
@@ -145,10 +145,10 @@ std::string text_of(const Context& context, const Scripted& s) {
 
 }  // namespace
 
-std::string describe(lua_State* L, const Excitation& excitation, ValueText* whole) {
+std::string describe(lua_State* L, const model::Excitation& excitation, ValueText* whole) {
     const Context context{L, whole};
     std::string text;
-    for (const Component& c : excitation.components()) {
+    for (const model::Component& c : excitation.components()) {
         const bool negative = std::signbit(c.gain);
         if (text.empty()) {
             text += negative ? "-" : "";
@@ -159,11 +159,11 @@ std::string describe(lua_State* L, const Excitation& excitation, ValueText* whol
             text += text_of(std::fabs(c.gain)) + " * ";
         }
         text += std::visit([&context](const auto& term) { return text_of(context, term); }, c.term);
-        if (c.from > -never || c.to < never) {
+        if (c.from > -model::never || c.to < model::never) {
             text += fmt::format(":window({}, {})", text_of(c.from), text_of(c.to));
         }
     }
     return text.empty() ? "excitation.constant{ level = 0 }" : text;
 }
 
-}  // namespace dinal
+}  // namespace dinal::source

@@ -7,7 +7,7 @@
 #include "lua/lua_text.hpp"
 #include "lua/standard_globals.hpp"
 
-namespace dinal {
+namespace dinal::source {
 namespace {
 
 const char kept_key = 0;  // registry key of the table of kept texts: name -> list of texts
@@ -89,7 +89,7 @@ struct Found {
 };
 
 void find_in(lua_State* L, std::string_view text, const Shape& wanted, Found& found) {
-    for (const auto function : functions_between(text, wanted.about.linedefined, wanted.about.lastlinedefined)) {
+    for (const auto function : lua::functions_between(text, wanted.about.linedefined, wanted.about.lastlinedefined)) {
         const std::string source = without_name(function);
         const Likeness like = source.empty() ? Likeness::none : likeness(L, source, wanted);
         if (like != Likeness::none) {
@@ -122,7 +122,7 @@ std::optional<std::string> library_name(lua_State* L, int index) {
         if (lua_type(L, top + 2) == LUA_TSTRING && lua_istable(L, top + 3)) {
             const std::string module = lua_tostring(L, top + 2);
             if (module == LUA_GNAME) {  // not under a name that the user has given it
-                push_standard_globals(L);
+                lua::push_standard_globals(L);
                 lua_replace(L, top + 3);
             }
             lua_pushnil(L);
@@ -144,7 +144,8 @@ std::optional<std::string> whole_chunk(std::string_view source) {
     if (source.starts_with('=')) {
         return std::nullopt;
     }
-    return source.starts_with('@') ? "loadfile(" + quoted(source.substr(1)) + ")" : "load(" + quoted(source) + ")";
+    return source.starts_with('@') ? "loadfile(" + lua::quoted(source.substr(1)) + ")"
+                                   : "load(" + lua::quoted(source) + ")";
 }
 
 }  // namespace
@@ -169,7 +170,7 @@ std::optional<std::string> function_source(lua_State* L, int index) {
         find_in_kept(L, wanted, found);
     } else if (!source.starts_with('@')) {
         find_in(L, source, wanted, found);
-    } else if (const auto text = read_file(std::string(source.substr(1)))) {
+    } else if (const auto text = files::read_file(std::string(source.substr(1)))) {
         find_in(L, *text, wanted, found);
     }
     lua_settop(L, top);
@@ -204,4 +205,4 @@ std::optional<std::string> last_kept_source(lua_State* L, const std::string& chu
     return text;
 }
 
-}  // namespace dinal
+}  // namespace dinal::source

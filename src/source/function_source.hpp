@@ -6,7 +6,7 @@
 #include <string>
 #include <string_view>
 
-namespace dinal {
+namespace dinal::source {
 
 /// The function at `index` as a Lua expression: "function(t) return 1 end", "math.sin", "load(...)"; none when its text
 /// is not at hand or it can not be told from others on its lines. Values of upvalues are not in the text.
@@ -19,4 +19,4 @@ void keep_source(lua_State* L, const char* chunk_name, std::string_view text);
 /// The text that was kept last under that name.
 std::optional<std::string> last_kept_source(lua_State* L, const std::string& chunk_name);
 
-}  // namespace dinal
+}  // namespace dinal::source

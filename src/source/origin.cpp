@@ -2,13 +2,11 @@
 
 #include <fmt/format.h>
 
-#include "api/bind_excitation.hpp"
-#include "api/bind_integrator.hpp"
-#include "api/bind_system.hpp"
 #include "lua/user_function.hpp"
+#include "source/describe.hpp"
 #include "source/value_text.hpp"
 
-namespace dinal {
+namespace dinal::source {
 
 namespace {
 
@@ -24,13 +22,14 @@ void append_lines(std::vector<std::string>& lines, std::string_view text) {
 }
 
 /// The function itself where M is nothing else, as its author wrote it.
-std::string excitation_text(lua_State* L, const Excitation& excitation, ValueText& writer) {
+std::string excitation_text(lua_State* L, const model::Excitation& excitation, ValueText& writer) {
     if (excitation.components().size() == 1) {
-        const Component& only = excitation.components().front();
-        const auto* scripted = std::get_if<Scripted>(&only.term);
-        const bool plain = scripted != nullptr && only.gain == 1 && only.from == -never && only.to == never &&
-                           scripted->breaks.empty() && scripted->period == 0 && scripted->delay == 0;
-        if (const auto* function = plain ? dynamic_cast<const LuaFunction*>(scripted->function.get()) : nullptr) {
+        const model::Component& only = excitation.components().front();
+        const auto* scripted = std::get_if<model::Scripted>(&only.term);
+        const bool plain = scripted != nullptr && only.gain == 1 && only.from == -model::never &&
+                           only.to == model::never && scripted->breaks.empty() && scripted->period == 0 &&
+                           scripted->delay == 0;
+        if (const auto* function = plain ? dynamic_cast<const lua::LuaFunction*>(scripted->function.get()) : nullptr) {
             function->push(L);
             std::string text = writer.expression(-1);
             lua_pop(L, 1);
@@ -41,7 +40,7 @@ std::string excitation_text(lua_State* L, const Excitation& excitation, ValueTex
 }
 
 /// "dt = 0.01", or the times themselves, ten to a line.
-std::string rows_text(const Grid& rows) {
+std::string rows_text(const motion::Grid& rows) {
     if (rows.dt() != 0) {
         return fmt::format("dt = {}", rows.dt());
     }
@@ -84,4 +83,4 @@ std::vector<std::string> repeat_lines(const Origin& origin) {
     return lines;
 }
 
-}  // namespace dinal
+}  // namespace dinal::source

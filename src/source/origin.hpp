@@ -7,16 +7,16 @@
 
 #include "motion/simulate.hpp"
 
-namespace dinal {
+namespace dinal::source {
 
 /// All that sys:simulate{...} was told, checked for kind but not yet for sense.
 struct Task {
-    Oscillator system;
-    Excitation excitation;
-    State initial;
-    Window window;
-    Grid rows;
-    Integrator integrator;
+    model::Oscillator system;
+    model::Excitation excitation;
+    model::State initial;
+    motion::Window window;
+    motion::Grid rows;
+    motion::Integrator integrator;
 };
 
 /// What was simulated. A trajectory that was read from a file has none.
@@ -30,4 +30,4 @@ Origin origin_of(lua_State* L, const Task& task);
 /// Lua text that makes the same run again, as lines.
 std::vector<std::string> repeat_lines(const Origin& origin);
 
-}  // namespace dinal
+}  // namespace dinal::source

@@ -6,11 +6,11 @@
 #include <optional>
 
 #include "lua/bind.hpp"
-#include "source/function_source.hpp"
 #include "lua/standard_globals.hpp"
 #include "lua/vector.hpp"
+#include "source/function_source.hpp"
 
-namespace dinal {
+namespace dinal::source {
 
 namespace {
 
@@ -70,11 +70,11 @@ std::string ValueText::expression(int index) {
             return lua_toboolean(L_, index) != 0 ? "true" : "false";
         case LUA_TNUMBER:
             return lua_isinteger(L_, index) != 0 ? fmt::format("{}", lua_tointeger(L_, index))
-                                                 : number_text(lua_tonumber(L_, index));
+                                                 : lua::number_text(lua_tonumber(L_, index));
         case LUA_TSTRING: {
             std::size_t length = 0;
             const char* text = lua_tolstring(L_, index, &length);
-            return quoted({text, length});
+            return lua::quoted({text, length});
         }
         case LUA_TTABLE:
             return table(index);
@@ -83,7 +83,7 @@ std::string ValueText::expression(int index) {
         case LUA_TUSERDATA:
             return object(index);
         default:
-            return nothing(describe(L_, index));
+            return nothing(lua::describe(L_, index));
     }
 }
 
@@ -110,7 +110,7 @@ std::string ValueText::table(int index) {
         const bool listed =
             lua_isinteger(L_, -2) != 0 && lua_tointeger(L_, -2) >= 1 && lua_tointeger(L_, -2) <= sequence;
         if (!listed) {
-            const bool plain = lua_type(L_, -2) == LUA_TSTRING && is_name(lua_tostring(L_, -2));
+            const bool plain = lua_type(L_, -2) == LUA_TSTRING && lua::is_name(lua_tostring(L_, -2));
             const std::string key = plain ? lua_tostring(L_, -2) : "[" + expression(-2) + "]";
             text += (text.empty() ? "" : ", ") + key + " = " + expression(-1);
         }
@@ -122,21 +122,21 @@ std::string ValueText::table(int index) {
 }
 
 std::string ValueText::object(int index) {
-    if (const auto* vector = test<Vector>(L_, index)) {
+    if (const auto* vector = lua::test<lua::Vector>(L_, index)) {
         budget_ -= static_cast<int>(std::min<std::size_t>(vector->size(), 1'000'000));
         if (budget_ < 0) {
             return nothing("a long vector");
         }
         std::string text;
         for (const double x : vector->values()) {
-            text += (text.empty() ? "" : ", ") + number_text(x);
+            text += (text.empty() ? "" : ", ") + lua::number_text(x);
         }
         return "vector{ " + text + " }";
     }
-    const Documented found = documented(L_, index);
+    const lua::Documented found = lua::documented(L_, index);
     const std::string_view name = found.owner != nullptr ? found.owner->name : "";
     if (name != "system" && name != "integrator" && name != "excitation") {
-        return nothing(describe(L_, index));
+        return nothing(lua::describe(L_, index));
     }
     std::string text = luaL_tolstring(L_, index, nullptr);  // these write themselves as Lua text
     lua_pop(L_, 1);
@@ -190,7 +190,7 @@ void ValueText::note_globals(int function_index, std::string_view source) {
     for (int i = 1; const char* name = lua_getupvalue(L_, function_index, i); ++i) {
         if (std::string_view(name) == "_ENV" && lua_istable(L_, -1)) {
             const int environment = lua_gettop(L_);
-            for (const std::string& free : free_names(source)) {
+            for (const std::string& free : lua::free_names(source)) {
                 note_global(environment, free);
             }
         }
@@ -202,7 +202,7 @@ void ValueText::note_global(int environment, const std::string& name) {
     if (std::find(names_.begin(), names_.end(), name) != names_.end()) {
         return;
     }
-    push_standard_globals(L_);
+    lua::push_standard_globals(L_);
     lua_pushlstring(L_, name.data(), name.size());
     lua_pushvalue(L_, -1);
     lua_rawget(L_, environment);
@@ -219,4 +219,4 @@ void ValueText::note_global(int environment, const std::string& name) {
     lua_pop(L_, 2);
 }
 
-}  // namespace dinal
+}  // namespace dinal::source

@@ -8,7 +8,7 @@
 
 #include "lua/lua_text.hpp"
 
-namespace dinal {
+namespace dinal::source {
 
 /// Turns values into Lua expressions, with everything that the functions among them take from outside: local variables
 /// go into the expression, global ones become lines of their own.
@@ -41,4 +41,4 @@ private:
     int budget_ = 10'000;  // values; what is larger belongs into a file of its own
 };
 
-}  // namespace dinal
+}  // namespace dinal::source

@@ -11,7 +11,7 @@
 #include <cwchar>
 #include <utility>
 
-namespace dinal {
+namespace dinal::terminal {
 namespace {
 
 constexpr std::size_t narrowest = 20;  // text laid out for less is unreadable anyway
@@ -164,4 +164,4 @@ std::string wrapped(std::string_view text, std::size_t width) {
     }
 }
 
-}  // namespace dinal
+}  // namespace dinal::terminal

@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-namespace dinal {
+namespace dinal::terminal {
 
 struct Display {
     std::size_t width = 80;
@@ -36,4 +36,4 @@ std::string printable(std::string_view line, const Display& screen);
 /// already, and stays as it is.
 std::string wrapped(std::string_view text, std::size_t width);
 
-}  // namespace dinal
+}  // namespace dinal::terminal

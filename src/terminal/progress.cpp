@@ -14,7 +14,7 @@
 #include <string_view>
 #include <vector>
 
-namespace dinal {
+namespace dinal::terminal {
 
 namespace {
 
@@ -136,4 +136,4 @@ void end_progress() {
     within_line = false;
 }
 
-}  // namespace dinal
+}  // namespace dinal::terminal

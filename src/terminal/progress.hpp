@@ -9,7 +9,7 @@
 
 #include "terminal/progress_text.hpp"
 
-namespace dinal {
+namespace dinal::terminal {
 
 class Progress {
 public:
@@ -43,4 +43,4 @@ void make_way_for_output(bool ends_line);
 /// What ran has ended, however it ended: the line goes, and what was under way is forgotten.
 void end_progress();
 
-}  // namespace dinal
+}  // namespace dinal::terminal

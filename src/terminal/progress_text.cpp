@@ -9,7 +9,7 @@
 #include <string_view>
 #include <vector>
 
-namespace dinal {
+namespace dinal::terminal {
 namespace {
 
 constexpr std::size_t longest_bar = 30;  // columns within its ends
@@ -157,4 +157,4 @@ std::string duration_text(double seconds) {
                         : fmt::format("{}:{:02}:{:02}", whole / 3600, whole / 60 % 60, whole % 60);
 }
 
-}  // namespace dinal
+}  // namespace dinal::terminal

@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <string>
 
-namespace dinal {
+namespace dinal::terminal {
 
 enum class Letters { ascii, utf8 };
 
@@ -23,4 +23,4 @@ std::string progress_text(const ProgressFacts& facts, std::size_t columns, Lette
 /// "8 s", "2:05", "1:02:05"
 std::string duration_text(double seconds);
 
-}  // namespace dinal
+}  // namespace dinal::terminal

@@ -4,7 +4,7 @@
 
 #include "terminal/display.hpp"
 
-namespace dinal {
+namespace dinal::terminal {
 namespace {
 
 std::string escaped(char c) {
@@ -40,4 +40,4 @@ std::string quoted(std::string_view text, std::size_t limit, bool unicode) {
     return result + (i < text.size() ? "\"..." : "\"");
 }
 
-}  // namespace dinal
+}  // namespace dinal::terminal

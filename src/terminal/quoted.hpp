@@ -5,10 +5,10 @@
 #include <string>
 #include <string_view>
 
-namespace dinal {
+namespace dinal::terminal {
 
 /// "..." with Lua's escapes for quotes, control characters and bytes that are not UTF-8; at most `limit` bytes of the
 /// text are shown, and `...` stands for the rest. Without `unicode`, all but ASCII is escaped.
 std::string quoted(std::string_view text, std::size_t limit, bool unicode);
 
-}  // namespace dinal
+}  // namespace dinal::terminal

@@ -4,7 +4,7 @@
 #include <array>
 #include <utility>
 
-namespace dinal {
+namespace dinal::text {
 namespace {
 
 struct Character {
@@ -135,4 +135,4 @@ std::string in_ascii(std::string_view text) {
     return result;
 }
 
-}  // namespace dinal
+}  // namespace dinal::text

@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-namespace dinal {
+namespace dinal::text {
 
 /// One line of valid UTF-8: control characters become blanks, what is no UTF-8 becomes U+FFFD.
 std::string displayable(std::string_view text);
@@ -19,4 +19,4 @@ std::string_view cut_to_width(std::string_view text, std::size_t width);
 /// For a terminal without UTF-8: Greek letters by name, other letters as '?'.
 std::string in_ascii(std::string_view text);
 
-}  // namespace dinal
+}  // namespace dinal::text

@@ -5,7 +5,7 @@
 #include <utility>
 #include <variant>
 
-namespace dinal {
+namespace dinal::text {
 
 /// What is wrong, where the limit is and what to do about it, in one sentence without a final stop.
 struct Error {
@@ -33,4 +33,4 @@ private:
     std::variant<T, Error> content_;
 };
 
-}  // namespace dinal
+}  // namespace dinal::text

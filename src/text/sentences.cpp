@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace dinal {
+namespace dinal::text {
 
 namespace {
 constexpr std::size_t line_width = 79;
@@ -69,4 +69,4 @@ std::string wrapped_lines(std::string_view text) {
     return result;
 }
 
-}  // namespace dinal
+}  // namespace dinal::text

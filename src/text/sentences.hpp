@@ -4,7 +4,7 @@
 #include <string>
 #include <string_view>
 
-namespace dinal {
+namespace dinal::text {
 
 /// A time to a ten-thousandth of `scale` at least: 999.4502 where T0 = 1.
 std::string time_text(double t, double scale);
@@ -24,4 +24,4 @@ std::string percent(double part);
 /// Lines of at most 79 columns.
 std::string wrapped_lines(std::string_view text);
 
-}  // namespace dinal
+}  // namespace dinal::text

@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <utility>
 
-namespace dinal {
+namespace dinal::text {
 namespace {
 
 constexpr std::size_t longest_word = 64;  // nobody mistypes more than that; it bounds the work for odd input
@@ -192,4 +192,4 @@ std::string did_you_mean(std::string_view word, std::span<const std::string_view
     return text + "?";
 }
 
-}  // namespace dinal
+}  // namespace dinal::text

@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-namespace dinal {
+namespace dinal::text {
 
 /// The best matches for a word that is not among the known ones: two at most, none when nothing is close or too much
 /// is. Close is one slip (a letter wrong, missing, too many, two swapped) in words of up to five letters, two in longer
@@ -21,4 +21,4 @@ std::vector<std::string> suggestions(std::string_view word, std::span<const std:
 std::string did_you_mean(std::string_view word, std::span<const std::string_view> known,
                          Likeness likeness = Likeness::of_meaning);
 
-}  // namespace dinal
+}  // namespace dinal::text

@@ -19,13 +19,13 @@ double side_of(double x) {
 }
 
 /// zeta, and 1 whenever the system is critical: the root in damping_ratio() may have rounded.
-double regime_zeta(const Oscillator& system) {
-    return system.regime() == Regime::critical ? 1 : system.damping_ratio();
+double regime_zeta(const model::Oscillator& system) {
+    return system.regime() == model::Regime::critical ? 1 : system.damping_ratio();
 }
 
 }  // namespace
 
-State free_response(double natural_frequency, double zeta, const State& initial, double t) {
+model::State free_response(double natural_frequency, double zeta, const model::State& initial, double t) {
     const Motion2 y =
         free_motion(Modes(zeta), {initial.theta, initial.velocity / natural_frequency}, natural_frequency * t);
     return {y.y, y.dy * natural_frequency};
@@ -62,7 +62,7 @@ double HalfCycles::until_within(double dead_zone, double X) const {
     return n;
 }
 
-FreeMotion::FreeMotion(const Oscillator& system, const State& initial)
+FreeMotion::FreeMotion(const model::Oscillator& system, const model::State& initial)
     : system_(system),
       initial_(initial),
       modes_(regime_zeta(system)),
@@ -86,12 +86,12 @@ double FreeMotion::half_cycles_to_rest() const {
 }
 
 bool FreeMotion::stays(double theta) const {
-    return motion_from_standstill(system_, 0, theta) == Motion::stuck;
+    return model::motion_from_standstill(system_, 0, theta) == model::Motion::stuck;
 }
 
 /// While friction pushes towards `side`: the mass swings about side x_f.
-State FreeMotion::arc(double side, const State& start, double t) const {
-    const State y = free_response(w0_, modes_.zeta(), {start.theta - side * shift_, start.velocity}, t);
+model::State FreeMotion::arc(double side, const model::State& start, double t) const {
+    const model::State y = free_response(w0_, modes_.zeta(), {start.theta - side * shift_, start.velocity}, t);
     return {y.theta + side * shift_, y.velocity};
 }
 
@@ -111,7 +111,7 @@ double FreeMotion::half_cycle() const {
     return pi / (modes_.rate() * w0_);
 }
 
-State FreeMotion::at(double t) const {
+model::State FreeMotion::at(double t) const {
     if (t < first_.t) return arc(-side_of(initial_.velocity), initial_, t);
     if (t >= time_to_rest()) return {extreme(until_rest_).theta, 0};
     const double n = modes_.swings() ? std::min(std::floor((t - first_.t) / half_cycle()), until_rest_ - 1) : 0;

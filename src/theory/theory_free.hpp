@@ -9,7 +9,7 @@
 namespace dinal::theory {
 
 /// Free motion without dry friction at the time t (any sign), from `initial` at t = 0.
-State free_response(double natural_frequency, double zeta, const State& initial, double t);
+model::State free_response(double natural_frequency, double zeta, const model::State& initial, double t);
 
 /// The half-cycle map. From an extreme X (velocity zero) the mass swings to the next one, X' = s x_f - (X - s x_f) e,
 /// e = e^(-pi zeta / sqrt(1 - zeta^2)), s = sgn X, x_f = Rd/k; n half cycles at once by the geometric sum.
@@ -40,10 +40,10 @@ struct Extreme {
 /// costs the same.
 class FreeMotion {
 public:
-    FreeMotion(const Oscillator& system, const State& initial);
+    FreeMotion(const model::Oscillator& system, const model::State& initial);
 
     /// t >= 0.
-    [[nodiscard]] State at(double t) const;
+    [[nodiscard]] model::State at(double t) const;
     /// When it stops for good: infinity when it only tends to a place, or never settles.
     [[nodiscard]] double time_to_rest() const;
     /// Where it stops, or what it tends to; none when it swings for ever.
@@ -57,11 +57,11 @@ private:
     [[nodiscard]] double half_cycles_to_rest() const;
     [[nodiscard]] bool stays(double theta) const;
     [[nodiscard]] double first_zero(double side) const;
-    [[nodiscard]] State arc(double side, const State& start, double t) const;
+    [[nodiscard]] model::State arc(double side, const model::State& start, double t) const;
     [[nodiscard]] double half_cycle() const;
 
-    Oscillator system_;
-    State initial_;
+    model::Oscillator system_;
+    model::State initial_;
     Modes modes_;
     double w0_;
     double shift_;       // x_f = Rd/k

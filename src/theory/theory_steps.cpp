@@ -7,7 +7,7 @@ namespace dinal::theory {
 
 namespace {
 
-double greatest_velocity(const Oscillator& system, const State& initial) {
+double greatest_velocity(const model::Oscillator& system, const model::State& initial) {
     return std::hypot(system.natural_frequency() * initial.theta, initial.velocity);
 }
 
@@ -18,13 +18,13 @@ double friction_term(double friction, double velocity) {
 
 }  // namespace
 
-double printed_step_limit(const Oscillator& system, const State& initial, double characteristic_torque) {
+double printed_step_limit(const model::Oscillator& system, const model::State& initial, double characteristic_torque) {
     const double gamma = system.kinetic_friction() == 0 ? 0 : system.friction_ratio(characteristic_torque);
     return system.natural_period() *
            (system.damping_ratio() + friction_term(gamma, greatest_velocity(system, initial)));
 }
 
-double euler_step_limit(const Oscillator& system, const State& initial) {
+double euler_step_limit(const model::Oscillator& system, const model::State& initial) {
     return system.natural_period() * system.damping_ratio() / std::numbers::pi +
            friction_term(system.kinetic_friction() / system.stiffness(), greatest_velocity(system, initial));
 }

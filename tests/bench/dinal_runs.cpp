@@ -8,6 +8,9 @@
 namespace bench {
 
 using namespace dinal;
+using namespace dinal::model;
+using namespace dinal::motion;
+using namespace dinal::text;
 
 namespace {
 

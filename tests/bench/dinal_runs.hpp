@@ -11,9 +11,10 @@ extern const Peer dinal_rk4;         ///< h = .001
 extern const Peer dinal_rk4_coarse;  ///< h = .01
 extern const Peer dinal_1989;        ///< h = .001
 
-dinal::Oscillator oscillator(const Workload& work);
+dinal::model::Oscillator oscillator(const Workload& work);
 
 /// A run of the work with rows; ends the program with the reason when dinal refuses it.
-dinal::Trajectory trajectory(const Workload& work, const dinal::Integrator& integrator, const dinal::Grid& rows);
+dinal::motion::Trajectory trajectory(const Workload& work, const dinal::motion::Integrator& integrator,
+                                     const dinal::motion::Grid& rows);
 
 }  // namespace bench

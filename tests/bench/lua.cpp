@@ -4,8 +4,8 @@
 #include <memory>
 #include <string>
 
+#include "help/library.hpp"
 #include "items.hpp"
-#include "api/library.hpp"
 #include "workload.hpp"
 
 namespace bench {
@@ -45,7 +45,7 @@ class Script {
 public:
     Script() {
         luaL_openlibs(state());
-        dinal::open_library(state());
+        dinal::help::open_library(state());
         if (luaL_dostring(state(), script) != LUA_OK) {
             failure_ = lua_tostring(state(), -1);
         }

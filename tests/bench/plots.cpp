@@ -6,11 +6,11 @@
 #include <string>
 
 #include "dinal_runs.hpp"
+#include "items.hpp"
 #include "plots/gnuplot.hpp"
 #include "plots/gnuplot_script.hpp"
 #include "plots/run_figure.hpp"
 #include "plots/text_plot.hpp"
-#include "items.hpp"
 
 namespace bench {
 namespace {
@@ -19,11 +19,12 @@ const Workload& driven_motion = workloads[3];
 
 /// W4 with its 1e6 rows, and what run:plot() and run:phase_plot() draw of it.
 struct Pictures {
-    dinal::Oscillator system = oscillator(driven_motion);
-    dinal::Trajectory run = trajectory(driven_motion, dinal::Spectral{}, dinal::Grid::every(0.001));
-    dinal::RunData data{nullptr, &run, &system};
-    dinal::Figure response = *dinal::column_figure(data, "", {});
-    dinal::Figure phase = *dinal::phase_figure(data);
+    dinal::model::Oscillator system = oscillator(driven_motion);
+    dinal::motion::Trajectory run =
+        trajectory(driven_motion, dinal::motion::Spectral{}, dinal::motion::Grid::every(0.001));
+    dinal::plots::RunData data{nullptr, &run, &system};
+    dinal::plots::Figure response = *dinal::plots::column_figure(data, "", {});
+    dinal::plots::Figure phase = *dinal::plots::phase_figure(data);
 };
 
 template <class Draw>
@@ -41,12 +42,13 @@ void measure(benchmark::State& state, const Draw& draw) {
     }
 }
 
-bool in_terminal(const dinal::Figure& figure) {
-    return !dinal::text_plot({&figure, 1}, {}).empty();
+bool in_terminal(const dinal::plots::Figure& figure) {
+    return !dinal::plots::text_plot({&figure, 1}, {}).empty();
 }
 
-bool in_svg(const dinal::Figure& figure) {
-    return static_cast<bool>(dinal::run_gnuplot(dinal::gnuplot_input({&figure, 1}, dinal::Terminal::svg, {})));
+bool in_svg(const dinal::plots::Figure& figure) {
+    return static_cast<bool>(
+        dinal::plots::run_gnuplot(dinal::plots::gnuplot_input({&figure, 1}, dinal::plots::Terminal::svg, {})));
 }
 
 }  // namespace

@@ -17,10 +17,10 @@ namespace {
 const Workload& free_motion = workloads[0];
 const Workload& driven_motion = workloads[3];
 
-void keep_rows(benchmark::State& state, const dinal::Grid& grid) {
-    benchmark::DoNotOptimize(trajectory(free_motion, dinal::Rk4{0.001}, grid).rows.data());  // warms the memory
+void keep_rows(benchmark::State& state, const dinal::motion::Grid& grid) {
+    benchmark::DoNotOptimize(trajectory(free_motion, dinal::motion::Rk4{0.001}, grid).rows.data());  // warms the memory
     for ([[maybe_unused]] auto iteration : state) {
-        benchmark::DoNotOptimize(trajectory(free_motion, dinal::Rk4{0.001}, grid).rows.data());
+        benchmark::DoNotOptimize(trajectory(free_motion, dinal::motion::Rk4{0.001}, grid).rows.data());
     }
 }
 
@@ -30,11 +30,12 @@ std::filesystem::path memory_folder() {
 }
 
 void write_csv(benchmark::State& state, const std::filesystem::path& folder) {
-    const dinal::Trajectory run = trajectory(driven_motion, dinal::Rk4{0.001}, dinal::Grid::every(0.001));
-    const auto columns = dinal::named_columns(run.names, run.rows);
+    const dinal::motion::Trajectory run =
+        trajectory(driven_motion, dinal::motion::Rk4{0.001}, dinal::motion::Grid::every(0.001));
+    const auto columns = dinal::files::named_columns(run.names, run.rows);
     const std::string path = (folder / ("dinal-bench-" + std::to_string(getpid()) + ".csv")).string();
     for ([[maybe_unused]] auto iteration : state) {
-        if (const auto written = dinal::write_csv(path, columns); !written) {
+        if (const auto written = dinal::files::write_csv(path, columns); !written) {
             state.SkipWithError(written.error().sentence.c_str());
             break;
         }
@@ -52,9 +53,9 @@ void register_rows(Results& results) {
         benchmark::RegisterBenchmark((item.group + "/" + name).c_str(), run);
     };
     add(rows_group, "W1 without rows", 1e7, "step",
-        [](benchmark::State& state) { keep_rows(state, dinal::Grid::none()); });
+        [](benchmark::State& state) { keep_rows(state, dinal::motion::Grid::none()); });
     add(rows_group, "W1 with a row a step", 1e7, "step",
-        [](benchmark::State& state) { keep_rows(state, dinal::Grid::every(0.001)); });
+        [](benchmark::State& state) { keep_rows(state, dinal::motion::Grid::every(0.001)); });
     add(files_group, std::string(csv_in_memory), 1e6, "row",
         [](benchmark::State& state) { write_csv(state, memory_folder()); });
     add(files_group, std::string(csv_on_disk), 1e6, "row",

@@ -51,6 +51,8 @@ void operator delete[](void* memory, const std::nothrow_t&) noexcept {
 }
 
 using namespace dinal;
+using namespace dinal::model;
+using namespace dinal::motion;
 using namespace dinal::truth;
 
 namespace {

@@ -12,6 +12,7 @@
 using Catch::Matchers::Contains;
 using Catch::Matchers::Equals;
 using namespace dinal;
+using namespace dinal::files;
 using namespace dinal::testing;
 using Strings = std::vector<std::string>;
 

@@ -9,11 +9,13 @@
 #include <random>
 #include <vector>
 
-#include "theory/theory_forced.hpp"
 #include "support/measure.hpp"
 #include "support/within.hpp"
+#include "theory/theory_forced.hpp"
 
 using namespace dinal;
+using namespace dinal::model;
+using namespace dinal::motion;
 using namespace dinal::theory;
 
 namespace {

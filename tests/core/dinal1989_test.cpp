@@ -9,6 +9,8 @@
 #include "support/within.hpp"
 
 using namespace dinal;
+using namespace dinal::model;
+using namespace dinal::motion;
 using namespace dinal::truth;
 using Stop = Dinal1989::Stop;
 

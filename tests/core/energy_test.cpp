@@ -9,6 +9,9 @@
 #include "support/measure.hpp"
 
 using namespace dinal;
+using namespace dinal::analysis;
+using namespace dinal::model;
+using namespace dinal::motion;
 using namespace dinal::truth;
 
 namespace {

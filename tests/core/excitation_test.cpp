@@ -6,6 +6,7 @@
 #include "support/within.hpp"
 
 using namespace dinal;
+using namespace dinal::model;
 using namespace dinal::excitations;
 
 TEST_CASE("a block is filled with the single values", "[excitation]") {

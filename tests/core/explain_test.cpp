@@ -6,14 +6,18 @@
 #include <numbers>
 #include <sstream>
 
-#include "model/forcing.hpp"
 #include "analysis/phase_lag.hpp"
 #include "analysis/recurrence.hpp"
-#include "text/sentences.hpp"
+#include "model/forcing.hpp"
 #include "support/excitations.hpp"
 #include "support/measure.hpp"
+#include "text/sentences.hpp"
 
 using namespace dinal;
+using namespace dinal::analysis;
+using namespace dinal::model;
+using namespace dinal::motion;
+using namespace dinal::text;
 using namespace dinal::truth;
 using Catch::Contains;
 using excitations::made;

@@ -16,6 +16,7 @@
 using Catch::Matchers::Contains;
 using Catch::Matchers::Equals;
 using namespace dinal;
+using namespace dinal::files;
 using namespace dinal::testing;
 namespace fs = std::filesystem;
 

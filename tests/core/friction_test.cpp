@@ -5,6 +5,7 @@
 #include <limits>
 
 using namespace dinal;
+using namespace dinal::model;
 
 namespace {
 

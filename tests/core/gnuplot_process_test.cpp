@@ -7,6 +7,7 @@
 #include "support/temporary_folder.hpp"
 
 using namespace dinal;
+using namespace dinal::plots;
 
 namespace {
 

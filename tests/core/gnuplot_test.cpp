@@ -11,6 +11,7 @@
 #include "support/temporary_folder.hpp"
 
 using namespace dinal;
+using namespace dinal::plots;
 
 namespace {
 
@@ -37,7 +38,7 @@ Figure spiral(std::size_t n) {
     Figure figure;
     figure.curves.push_back({Numbers::own(x), Numbers::own(y)});
     figure.equal = figure.circles = true;
-    figure.dead_zone = Range{-0.1, 0.1};
+    figure.dead_zone = Interval{-0.1, 0.1};
     figure.marks = {{1, 0, MarkKind::start}, {0, 0, MarkKind::end}};
     return figure;
 }
@@ -149,7 +150,7 @@ TEST_CASE("one point of a million that stands out reaches the top of the SVG", "
         }
         Figure figure;
         figure.curves.push_back({Numbers::own(x), Numbers::own(y)});
-        figure.y.limits = Range{-2, 7};
+        figure.y.limits = Interval{-2, 7};
         const Sheet sheet = lay_out({&figure, 1}, {});
         const std::string picture = svg(figure);
         CHECK(picture.size() < 200'000);
@@ -241,7 +242,7 @@ TEST_CASE("ticks on the ends of an axis are drawn", "[gnuplot]") {
     Figure figure;
     figure.curves.push_back({Numbers::own({10, 100}), Numbers::own({0.3, 0.6})});
     figure.x.logarithmic = true;
-    figure.y.limits = Range{0.3, 0.6};
+    figure.y.limits = Interval{0.3, 0.6};
     const std::string picture = svg(figure);
     for (const char* tick : {">10<", ">100<", ">0.3", ">0.6"}) {
         CHECK(picture.find(tick) != std::string::npos);
@@ -259,7 +260,7 @@ TEST_CASE("a line that leaves the window by far is drawn within it", "[gnuplot]"
     for (const double far : {100.0, 1e12, 1e300}) {
         Figure figure;
         figure.curves.push_back({Numbers::own({0, 1, 2, 3, 4}), Numbers::own({0.5, far, 0.5, -far, 0.5}), ""});
-        figure.y.limits = Range{0, 1};
+        figure.y.limits = Interval{0, 1};
         const std::string picture = svg(figure);
         const std::size_t curve = picture.find("<path stroke='rgb(  0, 114, 178)'");
         REQUIRE(curve != std::string::npos);  // up near 0, down near 2 and up near 4
@@ -270,7 +271,7 @@ TEST_CASE("a line that leaves the window by far is drawn within it", "[gnuplot]"
 TEST_CASE("an area that leaves the window is cut where its edge does", "[gnuplot]") {
     Figure figure;
     figure.curves.push_back({Numbers::own({0, 1, 2}), Numbers::own({0, 4, 0}), "", Style::fill});
-    figure.y.limits = Range{0, 1};
+    figure.y.limits = Interval{0, 1};
     const std::string script = gnuplot_file({&figure, 1}, {});
     CHECK(script.find("$data1 << end\n0 0\n0.25 1\n1.75 1\n2 0\n") != std::string::npos);
 }
@@ -282,10 +283,10 @@ TEST_CASE("a phase plane that is flat or steep gets a sheet that fits it", "[gnu
         return std::stoi(picture.substr(picture.find("height=\"") + 8));
     };
     const int round = height();
-    figure.y.limits = Range{-0.02, 0.02};
+    figure.y.limits = Interval{-0.02, 0.02};
     const int flat = height();
     CHECK(round > 250);
     CHECK(flat < 0.7 * round);
-    figure.y.limits = Range{-20, 20};
+    figure.y.limits = Interval{-20, 20};
     CHECK(height() >= round - 1);
 }

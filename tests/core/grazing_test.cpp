@@ -9,6 +9,8 @@
 namespace {
 
 using namespace dinal;
+using namespace dinal::model;
+using namespace dinal::motion;
 using namespace dinal::truth;
 
 /// Drawn along by a ramp with a sine on top: in the long run the velocity is slope (1 - (1 + depth) sin(...)) / k,

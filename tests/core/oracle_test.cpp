@@ -11,6 +11,8 @@
 #include "support/random_case.hpp"
 
 using namespace dinal;
+using namespace dinal::model;
+using namespace dinal::motion;
 using namespace dinal::truth;
 
 namespace {

@@ -6,6 +6,7 @@
 #include <string>
 
 using namespace dinal;
+using namespace dinal::model;
 
 namespace {
 

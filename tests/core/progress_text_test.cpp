@@ -6,6 +6,7 @@
 #include "terminal/progress_text.hpp"
 
 using namespace dinal;
+using namespace dinal::terminal;
 
 namespace {
 

@@ -8,6 +8,9 @@
 
 using Catch::Matchers::Contains;
 using namespace dinal;
+using namespace dinal::files;
+using namespace dinal::model;
+using namespace dinal::motion;
 using namespace dinal::testing;
 
 namespace {

@@ -5,6 +5,8 @@
 #include "support/measure.hpp"
 
 using namespace dinal;
+using namespace dinal::model;
+using namespace dinal::motion;
 using namespace dinal::truth;
 
 namespace {

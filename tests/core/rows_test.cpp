@@ -8,6 +8,8 @@
 #include "support/within.hpp"
 
 using namespace dinal;
+using namespace dinal::model;
+using namespace dinal::motion;
 using namespace dinal::truth;
 using Catch::Matchers::Contains;
 

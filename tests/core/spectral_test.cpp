@@ -13,6 +13,9 @@
 #include "support/within.hpp"
 
 using namespace dinal;
+using namespace dinal::analysis;
+using namespace dinal::model;
+using namespace dinal::motion;
 using namespace dinal::truth;
 
 namespace {
@@ -36,8 +39,8 @@ double sgn(double x) {
     return x > 0 ? 1 : x < 0 ? -1 : 0;
 }
 
-Trajectory spectral(const Oscillator& system, const Excitation& M, const State& initial, const Window& window,
-                    const Spectral& options = {}) {
+Trajectory by_spectral(const Oscillator& system, const Excitation& M, const State& initial, const Window& window,
+                       const Spectral& options = {}) {
     return must_run(system, M, initial, window, Grid::every((window.end - window.start) / 64), options);
 }
 
@@ -62,11 +65,11 @@ TEST_CASE("a sine of amplitude Re touches the limit at any frequency and phase a
         const Oscillator system = nondimensional(0, Rd, Re);
         const double omega = 2 * pi * lot.power_of_ten(-1, 1.5), phase = lot.between(0, 6.28);
         CAPTURE(i, Re, Rd, omega, phase);
-        REQUIRE(spectral(system, harmonic(Re, omega, phase), {0, 0}, {0, 20}).events.empty());
+        REQUIRE(by_spectral(system, harmonic(Re, omega, phase), {0, 0}, {0, 20}).events.empty());
         const auto same = script([=](double t) { return Re * std::sin(omega * t + phase); });
-        REQUIRE(spectral(system, same.M, {0, 0}, {0, 20}).events.empty());
+        REQUIRE(by_spectral(system, same.M, {0, 0}, {0, 20}).events.empty());
         // The spring takes half of what M may be.
-        REQUIRE(spectral(system, harmonic(Re / 2, omega, phase), {-Re / 2, 0}, {0, 20}).events.empty());
+        REQUIRE(by_spectral(system, harmonic(Re / 2, omega, phase), {-Re / 2, 0}, {0, 20}).events.empty());
     }
 }
 
@@ -76,7 +79,7 @@ TEST_CASE("a sine that passes Re by a part in 1e13 releases, and when it does", 
         for (int i = 0; i < 100; ++i) {
             const double Re = lot.between(0.05, 2), omega = 2 * pi * lot.power_of_ten(-1, 1), A = Re * (1 + excess);
             const Oscillator system = nondimensional(0, Re / 2, Re);
-            const Trajectory run = spectral(system, harmonic(A, omega), {0, 0}, {0, 0.7 * 2 * pi / omega});
+            const Trajectory run = by_spectral(system, harmonic(A, omega), {0, 0}, {0, 0.7 * 2 * pi / omega});
             CAPTURE(excess, i, Re, omega);
             REQUIRE_FALSE(run.events.empty());
             CHECK(run.events[0].kind == EventKind::slip);
@@ -91,7 +94,7 @@ TEST_CASE("a function that rests at Re and then leaves it gently releases when i
     const Oscillator system = nondimensional(0, 0.2, 0.5);
     for (int power = 1; power <= 6; ++power) {
         const auto M = script([power](double t) { return 0.5 + std::pow(std::max(0.0, t - 0.3), power); });
-        const Trajectory run = spectral(system, M.M, {0, 0}, {-0.2, 0.6});
+        const Trajectory run = by_spectral(system, M.M, {0, 0}, {-0.2, 0.6});
         CAPTURE(power);
         REQUIRE(run.events.size() == 1);
         CHECK(run.events[0].kind == EventKind::slip);
@@ -104,7 +107,7 @@ TEST_CASE("a step that comes bare between the samples of short panels releases a
     const Oscillator system = nondimensional(0.05, 0.2, 0.3);
     const auto M = script([](double t) { return t < 1.325 ? 0.0 : 0.7; });
     for (const double max_panel : {0.025, 0.05, 1.0}) {
-        const Trajectory run = spectral(system, M.M, {0, 0}, {0, 2}, {.max_panel = max_panel});
+        const Trajectory run = by_spectral(system, M.M, {0, 0}, {0, 2}, {.max_panel = max_panel});
         CAPTURE(max_panel);
         REQUIRE_FALSE(run.events.empty());
         CHECK(run.events[0].kind == EventKind::slip);
@@ -129,7 +132,7 @@ TEST_CASE("a mass that M is nowhere great enough to move waits for any length of
         CHECK(run.at(7654321.1)->theta == -0.05);
     }
     // An exponential that grows, and a ramp, have no such bound.
-    const Trajectory late = spectral(system, made(Exponential{.amplitude = 1e-9, .tau = -50}), {0, 0}, {0, 2000});
+    const Trajectory late = by_spectral(system, made(Exponential{.amplitude = 1e-9, .tau = -50}), {0, 0}, {0, 2000});
     REQUIRE_FALSE(late.events.empty());
     CHECK(late.events[0].t == within(50 * std::log(0.3e9), 1e-10));
 }
@@ -142,7 +145,7 @@ TEST_CASE("a hard cubic spring made by feedback keeps the energy", "[spectral][f
         const Excitation M =
             feedback([hardness](double, const State& y) { return -hardness * y.theta * y.theta * y.theta; });
         const State initial{1, 0};
-        const Trajectory run = spectral(system, M, initial, {0, 10});
+        const Trajectory run = by_spectral(system, M, initial, {0, 10});
         const auto energy = [&](double theta, double v) {
             return system.inertia() * v * v / 2 + theta * theta / 2 + hardness * std::pow(theta, 4) / 4;
         };
@@ -159,7 +162,7 @@ TEST_CASE("a hard cubic spring made by feedback keeps the energy", "[spectral][f
 TEST_CASE("a stiff relaxation oscillator is followed through its jumps", "[spectral][feedback]") {
     const Oscillator system = nondimensional(0.02, 0);
     const Excitation M = feedback([](double, const State& y) { return 50 * (1 - y.theta * y.theta) * y.velocity; });
-    const Trajectory run = spectral(system, M, {1.5, 0.2}, {0, 20});
+    const Trajectory run = by_spectral(system, M, {1.5, 0.2}, {0, 20});
     // Richardson's limit of classical Runge-Kutta in long double with 2 and 4 million steps.
     CHECK(run.at(10)->theta == within(1.143363102918, 1e-11));
     CHECK(run.at(12)->theta == within(-1.98732282598, 2e-10));
@@ -172,7 +175,7 @@ TEST_CASE("feedback far from t = 0 adds up as it does near it", "[spectral][feed
         const Excitation M = feedback([](double t, const State& y) {
             return std::sin(6.9 * t) - 0.1 * y.velocity - 0.3 * y.theta * y.theta * y.theta;
         });
-        const Trajectory run = spectral(system, M, {1, 0}, {start, start + 20});
+        const Trajectory run = by_spectral(system, M, {1, 0}, {start, start + 20});
         CAPTURE(start);
         CHECK(run.outcome == Outcome::reached_end);
         CHECK(energy_of(run)->closure() < 1e-12);
@@ -186,7 +189,7 @@ TEST_CASE("a motion that runs away in finite time ends with an outcome", "[spect
             const Excitation M = feedback([square](double, const State& y) {
                 return square ? -0.1 * y.velocity * y.velocity : 5 * y.theta * y.theta * y.theta;
             });
-            const Trajectory run = spectral(system, M, {1.5, 0.2}, {0, 20});
+            const Trajectory run = by_spectral(system, M, {1.5, 0.2}, {0, 20});
             CAPTURE(Rd, square);
             CHECK(run.outcome != Outcome::reached_end);
             CHECK(run.outcome != Outcome::at_rest);
@@ -201,7 +204,7 @@ TEST_CASE("negative damping grows beyond all numbers without inventing turns on 
         const Oscillator system = nondimensional(0.05, Rd);
         // Both roots of the free motion are real and positive: it turns once at most.
         const Excitation M = feedback([](double, const State& y) { return 2 * y.velocity; });
-        const Trajectory run = spectral(system, M, {1.5, 0.2}, {0, 20});
+        const Trajectory run = by_spectral(system, M, {1.5, 0.2}, {0, 20});
         CAPTURE(Rd);
         CHECK(run.outcome == Outcome::state_not_finite);
         CHECK(run.events.size() == 1);
@@ -233,7 +236,7 @@ TEST_CASE("a relay that slides along its switching line ends soon, with the outc
     const Excitation M = made(Scripted{.function = relay, .feedback = true});
     for (const double Rd : {0.0, 0.3}) {
         relay->calls = 0;
-        const Trajectory run = spectral(nondimensional(0.02, Rd), M, {0.3, 0.2}, {0, 20});
+        const Trajectory run = by_spectral(nondimensional(0.02, Rd), M, {0.3, 0.2}, {0, 20});
         CHECK(run.outcome == Outcome::chattering);
         CHECK(run.t_stop < 0.1);
         CHECK(relay->calls < 20000000);  // a second or two
@@ -243,7 +246,7 @@ TEST_CASE("a relay that slides along its switching line ends soon, with the outc
 TEST_CASE("at its equilibrium a system under feedback does not turn", "[spectral][feedback]") {
     const Excitation M = feedback([](double, const State& y) { return 100 * (0.5 - y.theta) - 3 * y.velocity; });
     // Damped with 3/(2 sqrt(101) I w0): at rest, to rounding, after some ten swings.
-    const Trajectory run = spectral(nondimensional(0, 0), M, {0, 0}, {0, 200});
+    const Trajectory run = by_spectral(nondimensional(0, 0), M, {0, 0}, {0, 200});
     CHECK(run.outcome == Outcome::reached_end);
     CHECK(run.events.size() < 60);
     CHECK(run.state_at_stop.theta == within(50.0 / 101, 1e-15));
@@ -258,7 +261,7 @@ TEST_CASE("where the spring is next to nothing, stops and turns follow the load,
         const Oscillator system = system_of({.inertia = 1, .stiffness = k, .kinetic_friction = 0.3});
         const auto hidden = script([](double t) { return t - std::floor(t) < 0.5 ? 1.0 : -1.0; });
         for (const Excitation& M : {made(Square{.amplitude = 1, .period = 1}), hidden.M}) {
-            const Trajectory run = spectral(system, M, {0, 0}, {0, 1000});
+            const Trajectory run = by_spectral(system, M, {0, 0}, {0, 1000});
             CAPTURE(k);
             CHECK(run.outcome == Outcome::reached_end);
             REQUIRE(run.events.size() == 1999);
@@ -268,7 +271,7 @@ TEST_CASE("where the spring is next to nothing, stops and turns follow the load,
     // Slow enough for it to stop in each half: 0.3 of friction outweighs a load of 0.25 at rest.
     const Oscillator system = system_of({.inertia = 1, .stiffness = 1e-12, .kinetic_friction = 0.3});
     const Trajectory run =
-        spectral(system, made(Square{.amplitude = 0.4, .period = 1, .duty = 0.25}), {0, 0}, {0, 100000});
+        by_spectral(system, made(Square{.amplitude = 0.4, .period = 1, .duty = 0.25}), {0, 0}, {0, 100000});
     CHECK(run.outcome != Outcome::chattering);
     CHECK(run.events.size() > 100000);
     check_order(run.events);
@@ -297,7 +300,7 @@ TEST_CASE("a function that is rough at every scale ends with its own outcome, so
     for (const std::function<double(double)>& f : {std::function<double(double)>(noise), {staircase}, {single}}) {
         for (const double Rd : {0.0, 0.3}) {
             const auto M = script(f);
-            const Trajectory run = spectral(nondimensional(0.05, Rd), M.M, {0.3, 0}, {0, 20});
+            const Trajectory run = by_spectral(nondimensional(0.05, Rd), M.M, {0.3, 0}, {0, 20});
             CHECK(run.outcome == Outcome::unresolved);
             CHECK(M.probe->calls < 20000000);
         }
@@ -307,7 +310,7 @@ TEST_CASE("a function that is rough at every scale ends with its own outcome, so
 TEST_CASE("a square wave that a function hides costs a hundred calls an edge, from the first one at t_start on",
           "[spectral]") {
     const auto M = script([](double t) { return std::sin(6.9 * t) > 0 ? 1.0 : -1.0; });
-    const Trajectory run = spectral(nondimensional(0.05, 0.3), M.M, {1, 0}, {0, 20});
+    const Trajectory run = by_spectral(nondimensional(0.05, 0.3), M.M, {1, 0}, {0, 20});
     CHECK(run.outcome == Outcome::reached_end);
     CHECK(M.probe->calls < 8000);  // 43 edges and 800 for the panels; the one at 0 is looked for down to 1e-308
 }
@@ -336,7 +339,7 @@ TEST_CASE("a stiff system far from t = 0 is followed like one at t = 0", "[spect
 TEST_CASE("an overdamped mass that creeps to its place is told to be at rest, not to chatter", "[spectral]") {
     for (const double zeta : {1.0, 1.5, 40.0}) {
         const Oscillator system = nondimensional(zeta, 0.3);
-        const Trajectory run = spectral(system, {}, {1.5, 0}, {0, 100 * zeta});
+        const Trajectory run = by_spectral(system, {}, {1.5, 0}, {0, 100 * zeta});
         CAPTURE(zeta);
         CHECK(run.outcome == Outcome::at_rest);
         REQUIRE(run.events.size() == 1);

@@ -3,8 +3,8 @@
 #include <array>
 #include <catch2/catch.hpp>
 
-using dinal::did_you_mean;
-using dinal::suggestions;
+using dinal::text::did_you_mean;
+using dinal::text::suggestions;
 using Names = std::vector<std::string>;
 
 namespace {
@@ -77,7 +77,8 @@ TEST_CASE("other words for the same thing are known, and count more than a liken
     constexpr std::array<std::string_view, 2> of_math = {"sin", "sinh"};
     CHECK(suggestions("sine", of_math) == Names{"sin", "sinh"});  // only what is there
     CHECK(suggestions("x", columns) == Names{"theta"});
-    CHECK(suggestions("x", columns, dinal::Likeness::of_letters).empty());  // a variable of the user may be anything
+    CHECK(suggestions("x", columns, dinal::text::Likeness::of_letters)
+              .empty());  // a variable of the user may be anything
 }
 
 TEST_CASE("short words must be very much alike", "[suggest]") {

@@ -3,6 +3,7 @@
 #include "support/excitations.hpp"
 
 using namespace dinal;
+using namespace dinal::model;
 using namespace dinal::excitations;
 
 TEST_CASE("a term with impossible options is refused with a sentence", "[excitation]") {

@@ -4,6 +4,7 @@
 #include "support/within.hpp"
 
 using namespace dinal;
+using namespace dinal::model;
 using namespace dinal::excitations;
 
 TEST_CASE("no excitation is zero, for ever and without breaks", "[excitation]") {

@@ -5,10 +5,12 @@
 #include <limits>
 #include <sstream>
 
-#include "text/display_text.hpp"
 #include "plots/ticks.hpp"
+#include "text/display_text.hpp"
 
 using namespace dinal;
+using namespace dinal::plots;
+using namespace dinal::text;
 
 namespace {
 
@@ -242,7 +244,7 @@ TEST_CASE("infinity is a gap", "[textplot]") {
 
 TEST_CASE("who looks at a piece of time sees the values of that piece", "[textplot]") {
     Figure zoomed = figure(curve({0, 1, 2, 3}, {100, 1, 2, 100}));
-    zoomed.x.limits = Range{1, 2};
+    zoomed.x.limits = Interval{1, 2};
     CHECK(view_of(zoomed).y.range().high == Approx(2.05));
 }
 
@@ -253,10 +255,10 @@ TEST_CASE("a window far away from the curves is drawn, too", "[textplot]") {
             figure.curves[0].style = style;
             figure.marks = {{1, 1, MarkKind::start}};
             figure.stuck = {{0, 1}};
-            figure.dead_zone = Range{-1, 1};
+            figure.dead_zone = Interval{-1, 1};
             figure.equal = figure.circles = true;
             for (Axis* axis : {&figure.x, &figure.y}) {
-                axis->limits = Range{far, far + std::fabs(far) / 1000};
+                axis->limits = Interval{far, far + std::fabs(far) / 1000};
                 CHECK(drawn(figure, 40, 12).find("(no points)") != std::string::npos);
             }
         }

@@ -10,6 +10,8 @@
 #include "support/within.hpp"
 
 using namespace dinal;
+using namespace dinal::model;
+using namespace dinal::motion;
 using namespace dinal::theory;
 using truth::nondimensional;
 

@@ -6,6 +6,7 @@
 #include <limits>
 
 using namespace dinal;
+using namespace dinal::plots;
 
 namespace {
 

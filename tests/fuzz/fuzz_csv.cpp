@@ -7,7 +7,7 @@
 #include "files/csv.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-    const auto table = dinal::parse_csv({reinterpret_cast<const char*>(data), size}, "fuzz.csv");
+    const auto table = dinal::files::parse_csv({reinterpret_cast<const char*>(data), size}, "fuzz.csv");
     if (!table) {
         return table.error().sentence.empty() ? (std::abort(), 1) : 0;
     }

@@ -7,7 +7,7 @@
 #include "files/record1989.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-    const auto table = dinal::parse_record1989({reinterpret_cast<const char*>(data), size}, "fuzz.dat");
+    const auto table = dinal::files::parse_record1989({reinterpret_cast<const char*>(data), size}, "fuzz.dat");
     if (!table) {
         return table.error().sentence.empty() ? (std::abort(), 1) : 0;
     }

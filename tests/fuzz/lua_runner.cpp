@@ -10,8 +10,8 @@
 #include <filesystem>
 #include <string>
 
+#include "help/library.hpp"
 #include "lua/interrupt.hpp"
-#include "api/library.hpp"
 #include "lua/limits.hpp"
 #include "lua/safe_mode.hpp"
 
@@ -21,7 +21,7 @@ constexpr std::size_t memory = std::size_t{32} << 20U;
 constexpr int milliseconds = 100;  // of this process: the machine may be busy
 
 extern "C" void on_time(int) {
-    dinal::request_stop(dinal::Stop::time);
+    dinal::lua::request_stop(dinal::lua::Stop::time);
 }
 
 /// An empty folder, in which the code may write. Its output is of no interest.
@@ -46,9 +46,9 @@ void set_timer(int interval) {
 }
 
 int open(lua_State* L) {
-    dinal::open_safe_libraries(L);
-    dinal::open_library(L);
-    dinal::set_limits(L, {.memory = memory, .seconds = 0});
+    dinal::lua::open_safe_libraries(L);
+    dinal::help::open_library(L);
+    dinal::lua::set_limits(L, {.memory = memory, .seconds = 0});
     return 0;
 }
 
@@ -65,9 +65,9 @@ void run_stranger(std::string_view code) {
         std::abort();
     }
     {
-        const dinal::InterruptScope armed(L);
+        const dinal::lua::InterruptScope armed(L);
         set_timer(milliseconds);
-        int status = luaL_loadbufferx(L, code.data(), code.size(), "=fuzz", dinal::load_mode());
+        int status = luaL_loadbufferx(L, code.data(), code.size(), "=fuzz", dinal::lua::load_mode());
         status = status == LUA_OK ? lua_pcall(L, 0, 0, 0) : status;
         set_timer(0);
         if (status < 0) {

@@ -62,7 +62,7 @@ std::optional<real> first_descent(F&& f, G&& df, real a, real b, real step) {
 
 }  // namespace
 
-Arc::Arc(const Oscillator& system, const Drive& drive, int sign, real t0, const Motion& start)
+Arc::Arc(const model::Oscillator& system, const Drive& drive, int sign, real t0, const Motion& start)
     : I_(system.inertia()),
       C_(system.damping()),
       k_(system.stiffness()),
@@ -137,8 +137,8 @@ real Arc::acceleration(real t) const {
     return (load - C_ * y.velocity - k_ * y.theta) / I_;
 }
 
-ExactMotion::ExactMotion(const Oscillator& system, std::vector<Piece> drives, const State& initial, double t_start,
-                         double t_end)
+ExactMotion::ExactMotion(const model::Oscillator& system, std::vector<Piece> drives, const model::State& initial,
+                         double t_start, double t_end)
     : system_(system), drives_(std::move(drives)), t_start_(t_start) {
     real fastest = std::sqrt(static_cast<real>(system.stiffness()) / static_cast<real>(system.inertia()));
     for (const Piece& piece : drives_) fastest = std::max(fastest, piece.drive.omega);
@@ -151,13 +151,13 @@ ExactMotion::ExactMotion(const Oscillator& system, std::vector<Piece> drives, co
         if (until <= now.t) continue;
         if (now.sign == 0) {
             now.sign = from_standstill(drives_[i].drive, now.t, now.y.theta);
-            if (now.sign != 0 && now.t > t_start_) events_.push_back({now.t, EventKind::slip, now.y.theta});
+            if (now.sign != 0 && now.t > t_start_) events_.push_back({now.t, model::EventKind::slip, now.y.theta});
         }
         advance(now, drives_[i].drive, until);
     }
     ends_stuck_ = now.sign == 0;
-    if (ends_stuck_ && !events_.empty() && events_.back().kind == EventKind::stick) {
-        events_.back().kind = EventKind::rest;
+    if (ends_stuck_ && !events_.empty() && events_.back().kind == model::EventKind::stick) {
+        events_.back().kind = model::EventKind::rest;
     }
 }
 
@@ -185,7 +185,7 @@ void ExactMotion::move(Cursor& now, const Drive& drive, real until) {
     now.t = *zero;
     now.y = {arc.at(*zero).theta, 0};
     now.sign = from_standstill(drive, now.t, now.y.theta);
-    events_.push_back({now.t, now.sign == 0 ? EventKind::stick : EventKind::turn, now.y.theta});
+    events_.push_back({now.t, now.sign == 0 ? model::EventKind::stick : model::EventKind::turn, now.y.theta});
 }
 
 void ExactMotion::wait(Cursor& now, const Drive& drive, real until) {
@@ -207,7 +207,7 @@ void ExactMotion::wait(Cursor& now, const Drive& drive, real until) {
     const bool forward = up && (!down || *up < *down);
     now.t = forward ? *up : *down;
     now.sign = forward ? 1 : -1;
-    if (now.t > t_start_) events_.push_back({now.t, EventKind::slip, now.y.theta});
+    if (now.t > t_start_) events_.push_back({now.t, model::EventKind::slip, now.y.theta});
 }
 
 int ExactMotion::from_standstill(const Drive& drive, real t, real theta) const {
@@ -221,7 +221,7 @@ int ExactMotion::from_standstill(const Drive& drive, real t, real theta) const {
     return load > 0 ? 1 : -1;
 }
 
-std::size_t ExactMotion::count(EventKind kind) const {
+std::size_t ExactMotion::count(model::EventKind kind) const {
     return static_cast<std::size_t>(
         std::count_if(events_.begin(), events_.end(), [kind](const TrueEvent& event) { return event.kind == kind; }));
 }

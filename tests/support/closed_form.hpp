@@ -27,14 +27,14 @@ struct Motion {
 };
 struct TrueEvent {
     real t = 0;
-    EventKind kind = EventKind::turn;
+    model::EventKind kind = model::EventKind::turn;
     real theta = 0;
 };
 
 /// I theta'' + C theta' + k theta = drive - s Rd, solved exactly from one moment on: any damping, any resonance.
 class Arc {
 public:
-    Arc(const Oscillator& system, const Drive& drive, int sign, real t0, const Motion& start);
+    Arc(const model::Oscillator& system, const Drive& drive, int sign, real t0, const Motion& start);
     [[nodiscard]] Motion at(real t) const;
     [[nodiscard]] real acceleration(real t) const;
     [[nodiscard]] real start() const { return t0_; }
@@ -54,13 +54,13 @@ private:
 class ExactMotion {
 public:
     /// `drives` begins at or before t_start; its later pieces are the breaks of M.
-    ExactMotion(const Oscillator& system, std::vector<Piece> drives, const State& initial, double t_start,
+    ExactMotion(const model::Oscillator& system, std::vector<Piece> drives, const model::State& initial, double t_start,
                 double t_end);
 
     [[nodiscard]] Motion at(double t) const;
     /// As dinal tells them: nothing at t_start, and a stick that is never broken is a rest.
     [[nodiscard]] const std::vector<TrueEvent>& events() const& { return events_; }
-    [[nodiscard]] std::size_t count(EventKind kind) const;
+    [[nodiscard]] std::size_t count(model::EventKind kind) const;
     [[nodiscard]] bool ends_stuck() const { return ends_stuck_; }
     [[nodiscard]] real excitation(double t) const;
 
@@ -81,7 +81,7 @@ private:
     void wait(Cursor& now, const Drive& drive, real until);
     [[nodiscard]] int from_standstill(const Drive& drive, real t, real theta) const;
 
-    Oscillator system_;
+    model::Oscillator system_;
     std::vector<Piece> drives_;
     real t_start_;
     real scan_;  // no two zeros of the velocity or its derivative closer than this go unnoticed

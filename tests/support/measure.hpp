@@ -13,19 +13,21 @@
 
 namespace dinal::truth {
 
-inline Trajectory must_run(const Oscillator& oscillator, const Excitation& excitation, const State& initial,
-                           const Window& window, const Grid& rows, const Integrator& integrator) {
-    auto run = simulate(oscillator, excitation, initial, window, rows, integrator);
+inline motion::Trajectory must_run(const model::Oscillator& oscillator, const model::Excitation& excitation,
+                                   const model::State& initial, const motion::Window& window, const motion::Grid& rows,
+                                   const motion::Integrator& integrator) {
+    auto run = motion::simulate(oscillator, excitation, initial, window, rows, integrator);
     if (!run) FAIL(run.error().sentence);
     return std::move(run).value();
 }
 
-inline Trajectory must_run(const ReferenceSystem& s, const Grid& rows, const Integrator& integrator) {
+inline motion::Trajectory must_run(const ReferenceSystem& s, const motion::Grid& rows,
+                                   const motion::Integrator& integrator) {
     return must_run(s.oscillator, s.excitation, s.initial, s.window, rows, integrator);
 }
 
 /// The greatest error of a row in theta or velocity/w0, in the units of theta.
-inline double error_of(const Trajectory& run, const ExactMotion& exact, const Oscillator& oscillator) {
+inline double error_of(const motion::Trajectory& run, const ExactMotion& exact, const model::Oscillator& oscillator) {
     const double w0 = oscillator.natural_frequency();
     double worst = 0;
     for (Eigen::Index i = 0; i < run.size(); ++i) {

@@ -63,8 +63,8 @@ real least(const F& f, real a, real b) {
 
 }  // namespace
 
-Oracle::Oracle(const Oscillator& system, Load load, const State& initial, const Window& window, double size,
-               std::vector<double> times, real tolerance)
+Oracle::Oracle(const model::Oscillator& system, Load load, const model::State& initial, const motion::Window& window,
+               double size, std::vector<double> times, real tolerance)
     : system_(system),
       load_(std::move(load)),
       size_(size),
@@ -90,14 +90,14 @@ Oracle::Oracle(const Oscillator& system, Load load, const State& initial, const 
         if (!gave_up_) pass({t_, to, t_ + (to - t_) / 2});
     }
     while (motions_.size() < times_.size()) motions_.push_back({y_[0] * size_, y_[1] * size_ * w0_});
-    if (Re_ > 0 && sign_ == 0 && !events_.empty()) events_.back().kind = EventKind::rest;
+    if (Re_ > 0 && sign_ == 0 && !events_.empty()) events_.back().kind = model::EventKind::rest;
 }
 
 /// From one break of M to the next.
 void Oracle::pass(const Stretch& stretch) {
     if (sign_ == 0 && Re_ > 0) {
         sign_ = from_standstill(stretch);
-        if (sign_ != 0) note(EventKind::slip, 1);
+        if (sign_ != 0) note(model::EventKind::slip, 1);
     }
     while (t_ < stretch.to && !gave_up_) {
         sign_ == 0 && Re_ > 0 ? wait(stretch) : move(stretch);
@@ -206,7 +206,7 @@ void Oracle::stand_still(const Stretch& stretch, const Step& step, real length) 
     } else {
         sign_ = -before;
     }
-    if (sign_ != before) note(sign_ == 0 ? EventKind::stick : EventKind::turn, std::fabs(dy[1]));
+    if (sign_ != before) note(sign_ == 0 ? model::EventKind::stick : model::EventKind::turn, std::fabs(dy[1]));
 }
 
 int Oracle::from_standstill(const Stretch& stretch) {
@@ -228,7 +228,7 @@ void Oracle::wait(const Stretch& stretch) {
         real x0 = begin, f0 = left(x0), x1 = x0, f1 = f0;  // the last two points
         for (long i = 1; x1 < stretch.to; ++i) {
             const real x = std::min(begin + static_cast<real>(i) * step, stretch.to), f = left(x);
-            real found = never;
+            real found = model::never;
             if (f <= 0) {
                 found = crossing(left, x1, x);
             } else if (f1 < f0 && f1 < f) {
@@ -236,7 +236,7 @@ void Oracle::wait(const Stretch& stretch) {
                 close_call(left(lowest) / (k_ * size_));
                 if (left(lowest) <= 0) found = crossing(left, x0, lowest);
             }
-            if (found < never) {
+            if (found < model::never) {
                 if (found < released || direction == 0) released = found, direction = side;
                 break;
             }
@@ -250,10 +250,10 @@ void Oracle::wait(const Stretch& stretch) {
     sign_ = direction;
     const real dt = 1e-6L * longest_ / w0_;
     const real before = torque(stretch, t_ - dt, {theta, 0}), after = torque(stretch, t_ + dt, {theta, 0});
-    note(EventKind::slip, std::fabs(after - before) / (2 * dt) / (w0_ * k_ * size_));
+    note(model::EventKind::slip, std::fabs(after - before) / (2 * dt) / (w0_ * k_ * size_));
 }
 
-void Oracle::note(EventKind kind, real sharpness) {
+void Oracle::note(model::EventKind kind, real sharpness) {
     if (t_ > t_start_) events_.push_back({t_, kind, y_[0] * size_, sharpness});
 }
 

@@ -22,7 +22,7 @@ struct Load {
 
 struct OracleEvent {
     real t = 0;
-    EventKind kind = EventKind::turn;
+    model::EventKind kind = model::EventKind::turn;
     real theta = 0;
     /// How fast what decides about t passes zero, in natural units: theta''/(w0^2 size), or M'/(w0 k size) of a slip.
     real sharpness = 0;
@@ -33,8 +33,8 @@ public:
     /// `size` is about the greatest angle to expect; `times`, increasing, are those at which the motion is wanted.
     /// `tolerance` is what a step may be wrong by, over size. A run has some hundred steps: at 1e-16, which long double
     /// still tells from rounding, 1e-13 of the size is certain.
-    Oracle(const Oscillator& system, Load load, const State& initial, const Window& window, double size,
-           std::vector<double> times, real tolerance = 1e-16L);
+    Oracle(const model::Oscillator& system, Load load, const model::State& initial, const motion::Window& window,
+           double size, std::vector<double> times, real tolerance = 1e-16L);
 
     [[nodiscard]] const std::vector<OracleEvent>& events() const { return events_; }
     /// The motion at `times`.
@@ -67,11 +67,11 @@ private:
     [[nodiscard]] Point part_of(const Stretch& stretch, const Step& step, real length) const;
     [[nodiscard]] real torque(const Stretch& stretch, real t, const Motion& y) const;
     [[nodiscard]] int from_standstill(const Stretch& stretch);
-    void note(EventKind kind, real sharpness);
+    void note(model::EventKind kind, real sharpness);
     void tell_until(const Stretch& stretch, const Step& step, real length);
     void close_call(real margin);
 
-    const Oscillator& system_;
+    const model::Oscillator& system_;
     Load load_;
     real size_, k_, w0_, Re_, Rd_;
     real t_start_, t_end_;

@@ -86,17 +86,17 @@ RandomCase random_case(std::uint64_t number) {
     double Rd = lot.once_in(6) ? 0 : lot.between(0, 0.9), Re = lot.once_in(2) ? Rd : Rd * lot.between(1, 1.7);
     if (lot.once_in(10)) Re = lot.between(0.1, 0.6), Rd = 0;
     const double torque = k * angle;
-    const Oscillator system = Oscillator::make({.inertia = I,
-                                                .stiffness = k,
-                                                .damping = 2 * zeta * std::sqrt(I * k),
-                                                .kinetic_friction = Rd * torque,
-                                                .breakaway = Re * torque})
-                                  .value();
+    const model::Oscillator system = model::Oscillator::make({.inertia = I,
+                                                              .stiffness = k,
+                                                              .damping = 2 * zeta * std::sqrt(I * k),
+                                                              .kinetic_friction = Rd * torque,
+                                                              .breakaway = Re * torque})
+                                         .value();
     const double T0 = system.natural_period();
     const double start = lot.once_in(2) ? 0 : T0 * lot.between(-30, 30);
-    const Window window{start, start + T0 * lot.between(2, 14)};
-    const State initial{lot.once_in(4) ? 0 : angle * lot.between(-1.5, 1.5),
-                        lot.once_in(3) ? 0 : angle * system.natural_frequency() * lot.between(-1.5, 1.5)};
+    const motion::Window window{start, start + T0 * lot.between(2, 14)};
+    const model::State initial{lot.once_in(4) ? 0 : angle * lot.between(-1.5, 1.5),
+                               lot.once_in(3) ? 0 : angle * system.natural_frequency() * lot.between(-1.5, 1.5)};
     RandomCase c{
         fmt::format("I {:.17g} k {:.17g} C {:.17g} Rd {:.17g} Re {:.17g} (zeta {:.3g}, Rd {:.3g}, Re {:.3g}; T0 "
                     "{:.6g}) theta {:.17g} velocity {:.17g} t {:.17g} to {:.17g}",

@@ -11,11 +11,11 @@ namespace dinal::truth {
 
 struct RandomCase {
     std::string story;  ///< enough to write the case down elsewhere
-    Oscillator system;
-    Excitation excitation;
+    model::Oscillator system;
+    model::Excitation excitation;
     Load load;  ///< the same excitation
-    State initial;
-    Window window;
+    model::State initial;
+    motion::Window window;
     double size;  ///< about the greatest angle
 
     /// Where it is told: generic times in the window, increasing.
@@ -42,12 +42,12 @@ private:
 /// A term of M, told twice.
 struct Ingredient {
     std::string story;
-    Excitation excitation;
+    model::Excitation excitation;
     Load load;
 };
 /// What a case is measured in.
 struct Units {
-    Window window;
+    motion::Window window;
     double period;  ///< T0
     double angle;
     double torque;  ///< k angle

@@ -22,8 +22,8 @@ Load load_of(Shape shape, std::vector<double> breaks = {}, double quickest = 0) 
             quickest};
 }
 
-Excitation native(Term term) {
-    return Excitation::make(std::move(term)).value();
+model::Excitation native(model::Term term) {
+    return model::Excitation::make(std::move(term)).value();
 }
 
 /// From, from + step, ... all over the window, also when they are delayed later on.
@@ -37,20 +37,20 @@ std::vector<double> every(double from, double step, const Units& u, std::vector<
     return times;
 }
 
-class Written : public UserFunction {
+class Written : public model::UserFunction {
 public:
-    explicit Written(std::function<double(double, const State&)> f) : f_(std::move(f)) {}
-    double value(double t, const State& state) override { return f_(t, state); }
+    explicit Written(std::function<double(double, const model::State&)> f) : f_(std::move(f)) {}
+    double value(double t, const model::State& state) override { return f_(t, state); }
 
 private:
-    std::function<double(double, const State&)> f_;
+    std::function<double(double, const model::State&)> f_;
 };
 
 template <class Shape>
-Excitation script_of(Shape shape, std::vector<double> breaks = {}) {
-    return native(
-        Scripted{.function = std::make_shared<Written>([shape](double t, const State&) { return shape(t, t); }),
-                 .breaks = std::move(breaks)});
+model::Excitation script_of(Shape shape, std::vector<double> breaks = {}) {
+    return native(model::Scripted{
+        .function = std::make_shared<Written>([shape](double t, const model::State&) { return shape(t, t); }),
+        .breaks = std::move(breaks)});
 }
 
 /// n times in the window, at least `apart` from each other.
@@ -76,16 +76,18 @@ Ingredient short_term(Lot& lot, const Units& u) {
     const double width = u.period * lot.power_of_ten(-3, 0.3);
     switch (lot.of(6)) {
         case 0:
-            return {fmt::format("constant {:.17g}", a), native(Constant{a}), load_of([=](auto, auto) { return a; })};
+            return {fmt::format("constant {:.17g}", a), native(model::Constant{a}),
+                    load_of([=](auto, auto) { return a; })};
         case 1:
-            return {fmt::format("step {:.17g} at {:.17g}", a, at), native(Step{a, at}),
+            return {fmt::format("step {:.17g} at {:.17g}", a, at), native(model::Step{a, at}),
                     load_of([=](auto, auto inside) { return inside < at ? 0 : a; }, {at})};
         case 2:
-            return {fmt::format("pulse {:.17g} at {:.17g} width {:.17g}", a, at, width), native(Pulse{a, at, width}),
+            return {fmt::format("pulse {:.17g} at {:.17g} width {:.17g}", a, at, width),
+                    native(model::Pulse{a, at, width}),
                     load_of([=](auto, auto in) { return in < at || in >= at + width ? 0 : a; }, {at, at + width})};
         case 3:
             return {fmt::format("half_sine {:.17g} at {:.17g} width {:.17g}", a, at, width),
-                    native(HalfSine{a, at, width}),
+                    native(model::HalfSine{a, at, width}),
                     load_of(
                         [=](auto t, auto in) -> real {
                             return in < at || in >= at + width ? 0 : a * std::sin(pi * (t - at) / width);
@@ -94,7 +96,7 @@ Ingredient short_term(Lot& lot, const Units& u) {
         case 4: {
             const double slope = a / width;
             return {fmt::format("ramp slope {:.17g} at {:.17g} width {:.17g}", slope, at, width),
-                    native(Ramp{slope, at, width}),
+                    native(model::Ramp{slope, at, width}),
                     load_of(
                         [=](auto t, auto in) -> real {
                             return in < at ? 0 : slope * (in < at + width ? t - at : static_cast<real>(width));
@@ -104,7 +106,8 @@ Ingredient short_term(Lot& lot, const Units& u) {
         default: {
             const double tau = u.period * (lot.once_in(4) ? -lot.between(8, 20) : lot.power_of_ten(-1.5, 1));
             return {
-                fmt::format("exponential {:.17g} at {:.17g} tau {:.17g}", a, at, tau), native(Exponential{a, tau, at}),
+                fmt::format("exponential {:.17g} at {:.17g} tau {:.17g}", a, at, tau),
+                native(model::Exponential{a, tau, at}),
                 load_of([=](auto t, auto in) -> real { return in < at ? 0 : a * std::exp(-(t - at) / tau); }, {at})};
         }
     }
@@ -119,18 +122,18 @@ Ingredient periodic_term(Lot& lot, const Units& u) {
         case 0: {
             const double duty = lot.between(0.05, 0.95);
             return {fmt::format("square {:.17g} period {:.17g} duty {:.17g} at {:.17g}", a, period, duty, at),
-                    native(Square{a, period, duty, at}),
+                    native(model::Square{a, period, duty, at}),
                     load_of([=](auto, auto in) { return (in - at) / period - cycle(in) < duty ? a : -a; },
                             every(at, period, u, {0, duty}))};
         }
         case 1:
             return {fmt::format("sawtooth {:.17g} period {:.17g} at {:.17g}", a, period, at),
-                    native(Sawtooth{a, period, at}),
+                    native(model::Sawtooth{a, period, at}),
                     load_of([=](auto t, auto in) -> real { return -a + 2 * a * ((t - at) / period - cycle(in)); },
                             every(at, period, u))};
         default:
             return {fmt::format("triangle {:.17g} period {:.17g} at {:.17g}", a, period, at),
-                    native(Triangle{a, period, at}),
+                    native(model::Triangle{a, period, at}),
                     load_of(
                         [=](auto t, auto in) -> real {
                             const real x = (t - at) / period - cycle(in), middle = (in - at) / period - cycle(in);
@@ -153,7 +156,8 @@ Ingredient chirp(Lot& lot, const Units& u) {
     };
     return {fmt::format("chirp {:.17g} from {:.17g} to {:.17g} duration {:.17g} at {:.17g} phase {:.17g}", a, f0, f1,
                         duration, at, phase),
-            native(Chirp{a, f0, f1, duration, at, phase}), load_of(shape, {at, at + duration}, 6.3 * std::max(f0, f1))};
+            native(model::Chirp{a, f0, f1, duration, at, phase}),
+            load_of(shape, {at, at + duration}, 6.3 * std::max(f0, f1))};
 }
 
 Ingredient polynomial(Lot& lot, const Units& u) {
@@ -165,7 +169,7 @@ Ingredient polynomial(Lot& lot, const Units& u) {
         for (auto x = c.rbegin(); x != c.rend(); ++x) sum = sum * (t - at) + *x;
         return sum;
     };
-    return {fmt::format("polynomial {:.17g} at {:.17g}", fmt::join(c, ", "), at), native(Polynomial{c, at}),
+    return {fmt::format("polynomial {:.17g} at {:.17g}", fmt::join(c, ", "), at), native(model::Polynomial{c, at}),
             load_of(shape, {}, 3 / length)};
 }
 
@@ -181,14 +185,15 @@ Ingredient table(Lot& lot, const Units& u) {
                (static_cast<real>(M[i]) - M[i - 1]) * ((x - t[i - 1]) / (static_cast<real>(t[i]) - t[i - 1]));
     };
     return {fmt::format("samples t {:.17g} M {:.17g}", fmt::join(t, ", "), fmt::join(M, ", ")),
-            native(std::make_shared<const Samples>(Samples{t, M})), load_of(shape, t)};
+            native(std::make_shared<const model::Samples>(model::Samples{t, M})), load_of(shape, t)};
 }
 
 Ingredient sine(Lot& lot, const Units& u) {
     const double a = u.torque * lot.between(0.2, 1.5), phase = lot.once_in(2) ? 0 : lot.between(0, 6.2);
     const double omega = (lot.once_in(5) ? 1 : lot.between(0.05, 3)) * (6.283185307179586 / u.period);
     return {
-        fmt::format("harmonic {:.17g} omega {:.17g} phase {:.17g}", a, omega, phase), native(Harmonic{a, omega, phase}),
+        fmt::format("harmonic {:.17g} omega {:.17g} phase {:.17g}", a, omega, phase),
+        native(model::Harmonic{a, omega, phase}),
         load_of([=](auto t, auto) -> real { return a * std::sin(omega * static_cast<real>(t) + phase); }, {}, omega)};
 }
 
@@ -297,13 +302,13 @@ Ingredient random_feedback(Lot& lot, const Units& u) {
         }
     };
     const auto function = std::make_shared<Written>(
-        [shape](double t, const State& y) { return static_cast<double>(shape(t, t, y.theta, y.velocity)); });
+        [shape](double t, const model::State& y) { return static_cast<double>(shape(t, t, y.theta, y.velocity)); });
     const Load load{[shape](real t, real in, const Motion& y) -> real { return shape(t, in, y.theta, y.velocity); },
                     kind == 8 ? std::vector<double>{at} : std::vector<double>{}, w};
     return {
         fmt::format("feedback {} a {:.17g} b {:.17g} w {:.17g} at {:.17g} angle {:.17g} speed {:.17g} torque {:.17g}",
                     kind, a, b, w, at, angle, speed, torque),
-        native(Scripted{.function = function, .feedback = true}), load};
+        native(model::Scripted{.function = function, .feedback = true}), load};
 }
 
 }  // namespace dinal::truth

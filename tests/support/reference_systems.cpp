@@ -10,17 +10,17 @@ namespace dinal::truth {
 namespace {
 
 constexpr double pi = 3.141592653589793;
-constexpr State from_origin{0, 2 * pi};  // the report's free cases: unit amplitude without losses
-constexpr State drawn_out{1, 0};         // and its driven ones
+constexpr model::State from_origin{0, 2 * pi};  // the report's free cases: unit amplitude without losses
+constexpr model::State drawn_out{1, 0};         // and its driven ones
 
 const std::vector<Piece> no_drive{{-1, {}}};
 
-Excitation native(Term term) {
-    return Excitation::make(std::move(term)).value();
+model::Excitation native(model::Term term) {
+    return model::Excitation::make(std::move(term)).value();
 }
 
 void add_free(std::vector<ReferenceSystem>& list) {
-    const auto free = [&](std::string name, const Oscillator& system, double t_end) {
+    const auto free = [&](std::string name, const model::Oscillator& system, double t_end) {
         list.push_back({std::move(name), system, {}, no_drive, from_origin, {0, t_end}, 1});
     };
     free("free undamped", nondimensional(0, 0), 10.3);
@@ -33,7 +33,7 @@ void add_free(std::vector<ReferenceSystem>& list) {
 }
 
 void add_driven(std::vector<ReferenceSystem>& list) {
-    const auto driven = [&](std::string name, const Oscillator& system, double r, double t_end, double size) {
+    const auto driven = [&](std::string name, const model::Oscillator& system, double r, double t_end, double size) {
         list.push_back({std::move(name),
                         system,
                         harmonic(1, r * resonance),
@@ -53,14 +53,14 @@ void add_driven(std::vector<ReferenceSystem>& list) {
     driven("Rd = 0 < Re", nondimensional(0.1, 0, 0.9), 0.37, 8.3, 1.5);
 }
 
-Oscillator block() {
+model::Oscillator block() {
     return system_of({.inertia = 10, .stiffness = 4000, .kinetic_friction = 19.62, .breakaway = 29.43});
 }
 
 void add_field_cases(std::vector<ReferenceSystem>& list) {
     // Distance is the angle here: a block of 10 kg, drawn through a spring of 4000 N/m at 0.01 m/s.
     list.push_back(
-        {"spring-pulled block", block(), native(Ramp{.slope = 40}), {{0, {.slope = 40}}}, {0, 0}, {0, 4}, 0.04});
+        {"spring-pulled block", block(), native(model::Ramp{.slope = 40}), {{0, {.slope = 40}}}, {0, 0}, {0, 4}, 0.04});
     list.push_back({"newsgroup oscillator",
                     system_of({.inertia = 1, .stiffness = 1, .kinetic_friction = 10}),
                     {},
@@ -73,7 +73,7 @@ void add_field_cases(std::vector<ReferenceSystem>& list) {
     for (int i = 0; i < 20; ++i) square.push_back({0.75L * i, {.level = i % 2 == 0 ? 1.0L : -1.0L}});
     list.push_back({"square wave with sticking",
                     nondimensional(0.05, 0.45, 0.6),
-                    native(Square{.amplitude = 1, .period = 1.5}),
+                    native(model::Square{.amplitude = 1, .period = 1.5}),
                     square,
                     {0, 0},
                     {0, 9.9},
@@ -81,7 +81,7 @@ void add_field_cases(std::vector<ReferenceSystem>& list) {
 
     list.push_back({"pulse on a resting mass at 20 T0",
                     nondimensional(0, 0.167),
-                    native(Pulse{.amplitude = 3, .at = 20, .width = 0.125}),
+                    native(model::Pulse{.amplitude = 3, .at = 20, .width = 0.125}),
                     {{0, {}}, {20, {.level = 3}}, {20.125L, {}}},
                     {0.05, 0},
                     {0, 24},
@@ -111,11 +111,11 @@ double ReferenceSystem::fastest_rate() const {
     return rate;
 }
 
-Oscillator system_of(const OscillatorParameters& parameters) {
-    return Oscillator::make(parameters).value();
+model::Oscillator system_of(const model::OscillatorParameters& parameters) {
+    return model::Oscillator::make(parameters).value();
 }
 
-Oscillator nondimensional(double zeta, double friction_ratio, double breakaway_ratio) {
+model::Oscillator nondimensional(double zeta, double friction_ratio, double breakaway_ratio) {
     return system_of({.inertia = 1 / (4 * pi * pi),
                       .stiffness = 1,
                       .damping = zeta / pi,  // 2 zeta sqrt(I k)
@@ -123,12 +123,12 @@ Oscillator nondimensional(double zeta, double friction_ratio, double breakaway_r
                       .breakaway = breakaway_ratio});
 }
 
-Excitation harmonic(double amplitude, double omega, double phase) {
-    return native(Harmonic{.amplitude = amplitude, .omega = omega, .phase = phase});
+model::Excitation harmonic(double amplitude, double omega, double phase) {
+    return native(model::Harmonic{.amplitude = amplitude, .omega = omega, .phase = phase});
 }
 
 std::vector<Piece> harmonic_drive(double amplitude, double omega, double phase) {
-    return {{-never, {.amplitude = amplitude, .omega = omega, .phase = phase}}};
+    return {{-model::never, {.amplitude = amplitude, .omega = omega, .phase = phase}}};
 }
 
 ReferenceSystem rescaled(const ReferenceSystem& base, std::string name, double inertia, double stiffness,

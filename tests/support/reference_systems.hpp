@@ -14,11 +14,11 @@ namespace dinal::truth {
 
 struct ReferenceSystem {
     std::string name;
-    Oscillator oscillator;
-    Excitation excitation;
+    model::Oscillator oscillator;
+    model::Excitation excitation;
     std::vector<Piece> drives;  ///< the same excitation, for the closed form
-    State initial;
-    Window window;
+    model::State initial;
+    motion::Window window;
     double size;  ///< the greatest angle to expect: errors are counted in it
 
     [[nodiscard]] ExactMotion exact() const {
@@ -31,14 +31,14 @@ struct ReferenceSystem {
 };
 
 /// k = 1, T0 = 1: the form in which the report states its cases.
-Oscillator nondimensional(double zeta, double friction_ratio, double breakaway_ratio);
-inline Oscillator nondimensional(double zeta, double friction_ratio) {
+model::Oscillator nondimensional(double zeta, double friction_ratio, double breakaway_ratio);
+inline model::Oscillator nondimensional(double zeta, double friction_ratio) {
     return nondimensional(zeta, friction_ratio, friction_ratio);
 }
-Oscillator system_of(const OscillatorParameters& parameters);
+model::Oscillator system_of(const model::OscillatorParameters& parameters);
 
 /// amplitude sin(omega t + phase), as dinal and as the closed form have it.
-Excitation harmonic(double amplitude, double omega, double phase = 0);
+model::Excitation harmonic(double amplitude, double omega, double phase = 0);
 std::vector<Piece> harmonic_drive(double amplitude, double omega, double phase = 0);
 /// M = sin 2 pi t.
 inline constexpr double resonance = 6.283185307179586;

@@ -16,7 +16,7 @@
 #include "motion/methods.hpp"
 #include "motion/rows.hpp"
 
-namespace dinal {
+namespace dinal::motion::dinal1989 {
 
 namespace {
 
@@ -38,7 +38,8 @@ class Dinal {
 public:
     static constexpr std::size_t block_steps = 128;
 
-    Dinal(const Oscillator& system, const Excitation& excitation, const Dinal1989& options, double t_start)
+    Dinal(const model::Oscillator& system, const model::Excitation& excitation, const Dinal1989& options,
+          double t_start)
         : system_(system),
           excitation_(excitation),
           options_(options),
@@ -55,7 +56,7 @@ public:
         }
     }
 
-    [[nodiscard]] Present start(const State& initial) const {
+    [[nodiscard]] Present start(const model::State& initial) const {
         Present p{.U = initial.theta, .V = T0 * initial.velocity};
         p.Z = F(p.T, p.U, p.V);
         return p;
@@ -103,7 +104,7 @@ public:
                 const Change d = change(U, V, Z, Z_[2 * n], Z1);
                 const double U1 = U + d.U, V1 = V + d.V;
                 const bool stopped = stops(V, V1, U1, Z1);
-                if (stopped != p.frozen || !(std::fabs(U1) < never)) break;
+                if (stopped != p.frozen || !(std::fabs(U1) < model::never)) break;
                 if (!stopped) {
                     if (!(V * V1 > 0)) break;
                     U = U1, V = V1;
@@ -123,7 +124,7 @@ public:
     }
 
     /// theta and velocity, in the user's units.
-    [[nodiscard]] State state(const Present& p) const { return {p.U, p.V / T0}; }
+    [[nodiscard]] model::State state(const Present& p) const { return {p.U, p.V / T0}; }
     [[nodiscard]] double M(const Present& p) const { return system_.stiffness() * (p.Z / C); }
     /// As printed: -Rd sgn(V), also while frozen.
     [[nodiscard]] double friction(const Present& p) const { return 0.0 - system_.kinetic_friction() * SG(p.V); }
@@ -131,7 +132,7 @@ public:
     [[nodiscard]] double acceleration(const Present& p) const {
         return (p.Z - A * p.V - B * SG(p.V) - C * p.U) / (T0 * T0);
     }
-    [[nodiscard]] const Excitation& excitation() const { return excitation_; }
+    [[nodiscard]] const model::Excitation& excitation() const { return excitation_; }
 
 private:
     struct Change {
@@ -143,7 +144,7 @@ private:
     };
 
     [[nodiscard]] double F(double T, double U, double V) const {
-        return C * (excitation_.value(t_start_ + T * T0, State{U, V / T0}) / system_.stiffness());
+        return C * (excitation_.value(t_start_ + T * T0, model::State{U, V / T0}) / system_.stiffness());
     }
 
     /// B SG(Y)
@@ -195,8 +196,8 @@ private:
     }
 
     static constexpr double C = PI2 * PI2;
-    const Oscillator& system_;
-    const Excitation& excitation_;
+    const model::Oscillator& system_;
+    const model::Excitation& excitation_;
     Dinal1989 options_;
     double t_start_;
     bool feedback_;
@@ -208,7 +209,7 @@ private:
 };
 
 /// Between two steps, where 1989 knew nothing: the same interpolation as everywhere, or standing still when frozen.
-State between(const Dinal& dinal, const Present& a, const Present& b, double t) {
+model::State between(const Dinal& dinal, const Present& a, const Present& b, double t) {
     if (b.frozen) return dinal.state(a);
     const double t0 = dinal.time(a);
     return StepInterpolant(dinal.time(b) - t0, dinal.state(a), dinal.acceleration(a), dinal.state(b),
@@ -223,7 +224,7 @@ bool on_step(const RowWriter& rows, double t_start, double h, std::size_t step, 
 
 /// A step up to which no row is due; not the last such one where rows and steps do not coincide.
 std::size_t step_before_row(const RowWriter& rows, double t_start, double h, std::size_t steps_per_row) {
-    if (rows.next_time() == never) return std::numeric_limits<std::size_t>::max();
+    if (rows.next_time() == model::never) return std::numeric_limits<std::size_t>::max();
     const std::size_t row_step = rows.next_row() * steps_per_row;
     if (on_step(rows, t_start, h, row_step, steps_per_row)) return row_step;
     return static_cast<std::size_t>(std::max((rows.next_time() - t_start) / h - 2, 0.0));
@@ -234,7 +235,7 @@ bool rows_between(RowWriter& rows, const Dinal& dinal, const Present& a, const P
     const double end = dinal.time(b);
     while (rows.next_time() < end) {
         const double t = rows.next_time();
-        const State y = between(dinal, a, b, t);
+        const model::State y = between(dinal, a, b, t);
         const double M = dinal.excitation().value(t, y);
         if (!std::isfinite(M) || !std::isfinite(y.theta) || !std::isfinite(y.velocity)) return false;
         rows.put(y, M, dinal.friction(a));
@@ -243,18 +244,18 @@ bool rows_between(RowWriter& rows, const Dinal& dinal, const Present& a, const P
 }
 
 /// What the stop rule and the sign of V tell of events, at the step where they are noticed.
-void record_event(std::vector<Event>& events, const Dinal& dinal, const Present& a, const Present& b) {
-    std::optional<EventKind> kind;
+void record_event(std::vector<model::Event>& events, const Dinal& dinal, const Present& a, const Present& b) {
+    std::optional<model::EventKind> kind;
     if (b.frozen != a.frozen) {
-        kind = b.frozen ? EventKind::stick : EventKind::slip;
+        kind = b.frozen ? model::EventKind::stick : model::EventKind::slip;
     } else if (a.V * b.V < 0) {
-        kind = EventKind::turn;
+        kind = model::EventKind::turn;
     }
     if (kind) events.push_back({dinal.time(b), *kind, b.U, dinal.M(b)});
 }
 
-Outcome not_finite(const Present& p) {
-    return std::isfinite(p.Z) ? Outcome::state_not_finite : Outcome::excitation_not_finite;
+model::Outcome not_finite(const Present& p) {
+    return std::isfinite(p.Z) ? model::Outcome::state_not_finite : model::Outcome::excitation_not_finite;
 }
 
 bool finite(const Present& p) {
@@ -263,15 +264,15 @@ bool finite(const Present& p) {
 
 /// What a replay needs; it outlives the run.
 struct Record {
-    Oscillator system;
-    Excitation excitation;
+    model::Oscillator system;
+    model::Excitation excitation;
     Dinal1989 options;
     double t_start;
     Checkpoints<Present> checkpoints;
 };
 
 /// The motion between the rows, from the same steps made again.
-Expected<State> replay(const Record& record, double t) {
+text::Expected<model::State> replay(const Record& record, double t) {
     Dinal dinal(record.system, record.excitation, record.options, record.t_start);
     const auto step = static_cast<std::size_t>(std::max((t - record.t_start) / record.options.h - 1, 0.0));
     Present a = record.checkpoints.before(step);
@@ -289,24 +290,23 @@ Expected<State> replay(const Record& record, double t) {
 Trajectory run(const Problem& problem, const Dinal1989& options) {
     Trajectory trajectory;
     RowWriter rows(problem.system, problem.rows, trajectory);
-    const Window& window = problem.window;
     // A step that would begin within rounding of the end is not made.
-    const double covering = std::min((window.end - window.start) / options.h, 1e18);
+    const double covering = std::min((problem.window.end - problem.window.start) / options.h, 1e18);
     const auto steps = static_cast<std::size_t>(std::ceil(covering - 1e-9));
     const auto record = std::make_shared<Record>(
-        Record{problem.system, problem.excitation, options, window.start, Checkpoints<Present>(steps)});
-    Dinal dinal(record->system, record->excitation, options, window.start);
+        Record{problem.system, problem.excitation, options, problem.window.start, Checkpoints<Present>(steps)});
+    Dinal dinal(record->system, record->excitation, options, problem.window.start);
     const std::size_t steps_per_row = rows.steps_per_row(options.h);
     Present now = dinal.start(problem.initial);
     std::size_t block = 0, block_end = 0, sampled = 0;
     while (finite(now)) {
-        if (on_step(rows, window.start, options.h, now.step, steps_per_row))
+        if (on_step(rows, problem.window.start, options.h, now.step, steps_per_row))
             rows.put(dinal.state(now), dinal.M(now), dinal.friction(now));
         if (now.step == steps) break;
         if (now.step == block_end) {
             record->checkpoints.add(now);
             if (problem.monitor && !problem.monitor(dinal.time(now))) {
-                trajectory.outcome = Outcome::interrupted;
+                trajectory.outcome = model::Outcome::interrupted;
                 break;
             }
             block = now.step;
@@ -314,15 +314,15 @@ Trajectory run(const Problem& problem, const Dinal1989& options) {
             sampled = dinal.sample(now, block_end - block);
         }
         const std::size_t i = now.step - block;
-        const auto before_row = step_before_row(rows, window.start, options.h, steps_per_row);
+        const auto before_row = step_before_row(rows, problem.window.start, options.h, steps_per_row);
         const std::size_t stop = std::min(block + sampled, before_row);
         if (block + i < stop && dinal.plain_steps(now, i, stop - block) > i) continue;
 
         const Present next = i < sampled ? dinal.step(now, i) : dinal.step(now);
         if (finite(next)) {
-            const bool row_at_end = on_step(rows, window.start, options.h, next.step, steps_per_row);
+            const bool row_at_end = on_step(rows, problem.window.start, options.h, next.step, steps_per_row);
             if (!row_at_end && !rows_between(rows, dinal, now, next)) {
-                trajectory.outcome = Outcome::excitation_not_finite;
+                trajectory.outcome = model::Outcome::excitation_not_finite;
                 break;
             }
             record_event(trajectory.events, dinal, now, next);
@@ -330,21 +330,21 @@ Trajectory run(const Problem& problem, const Dinal1989& options) {
         now = next;
     }
     if (!finite(now)) trajectory.outcome = not_finite(now);
-    trajectory.t_start = window.start;
-    trajectory.t_stop = std::min(dinal.time(now), window.end);
-    if (trajectory.outcome == Outcome::reached_end) {
-        while (rows.next_time() < never) rows.put(dinal.state(now), dinal.M(now), dinal.friction(now));
-        trajectory.t_stop = window.end;
+    trajectory.t_start = problem.window.start;
+    trajectory.t_stop = std::min(dinal.time(now), problem.window.end);
+    if (trajectory.outcome == model::Outcome::reached_end) {
+        while (rows.next_time() < model::never) rows.put(dinal.state(now), dinal.M(now), dinal.friction(now));
+        trajectory.t_stop = problem.window.end;
         if (now.frozen) {
-            trajectory.outcome = Outcome::at_rest;
-            if (!trajectory.events.empty()) trajectory.events.back().kind = EventKind::rest;
+            trajectory.outcome = model::Outcome::at_rest;
+            if (!trajectory.events.empty()) trajectory.events.back().kind = model::EventKind::rest;
         }
     }
     rows.finish();
     trajectory.state_at_stop = dinal.state(now);
-    trajectory.motion_at_stop = now.frozen ? Motion::stuck : motion_of(trajectory.state_at_stop.velocity);
+    trajectory.motion_at_stop = now.frozen ? model::Motion::stuck : model::motion_of(trajectory.state_at_stop.velocity);
     if (problem.limits.dense) trajectory.dense = [record](double t) { return replay(*record, t); };
     return trajectory;
 }
 
-}  // namespace dinal
+}  // namespace dinal::motion::dinal1989

@@ -7,23 +7,23 @@
 #include "motion/methods.hpp"
 #include "motion/rk4/rk4_engine.hpp"
 
-namespace dinal {
+namespace dinal::motion::rk4 {
 
 namespace {
 
 /// What a replay needs; it outlives the run.
 struct Record {
-    Oscillator system;
-    Excitation excitation;
+    model::Oscillator system;
+    model::Excitation excitation;
     Rk4 options;
-    State initial;
+    model::State initial;
     Window window;
     Checkpoints<Rk4Checkpoint> checkpoints;
 };
 
 /// Runs the steps around t again from the checkpoint before, which gives what the run itself went through. The next
 /// checkpoint must come out to the last bit; it does not when a scripted M has changed its mind since.
-Expected<State> replay(const Record& record, double t) {
+text::Expected<model::State> replay(const Record& record, double t) {
     const auto grid = Grid::at({t}).within(record.window);
     if (!grid) return grid.error();
     const Monitor monitor;
@@ -41,15 +41,17 @@ Expected<State> replay(const Record& record, double t) {
     const std::size_t last = next != nullptr ? next->step : std::min(step + 1, engine.steps());
     engine.run(record.checkpoints.before(step), last);
     if (trajectory.size() > 0 && rows.next_row() == 0) {
-        return Error{fmt::format("M failed between the rows near t = {:.6g}: it gives no number there any more", t)};
+        return text::Error{
+            fmt::format("M failed between the rows near t = {:.6g}: it gives no number there any more", t)};
     }
     if (next != nullptr) {
         const Rk4Checkpoint here = engine.here(last);
         if (here.state.theta != next->state.theta || here.state.velocity != next->state.velocity) {
-            return Error{"M is no longer what it was during the run: simulate again before asking between the rows"};
+            return text::Error{
+                "M is no longer what it was during the run: simulate again before asking between the rows"};
         }
     }
-    return State{trajectory.rows(0, 1), trajectory.rows(0, 2)};
+    return model::State{trajectory.rows(0, 1), trajectory.rows(0, 2)};
 }
 
 }  // namespace
@@ -66,11 +68,11 @@ Trajectory run(const Problem& problem, const Rk4& options) {
     trajectory.outcome = engine.run();
     rows.finish();
     trajectory.t_start = problem.window.start;
-    trajectory.t_stop = trajectory.outcome == Outcome::at_rest ? problem.window.end : engine.now();
+    trajectory.t_stop = trajectory.outcome == model::Outcome::at_rest ? problem.window.end : engine.now();
     trajectory.state_at_stop = engine.state();
     trajectory.motion_at_stop = engine.motion();
     if (dense) trajectory.dense = [record](double t) { return replay(*record, t); };
     return trajectory;
 }
 
-}  // namespace dinal
+}  // namespace dinal::motion::rk4

@@ -5,7 +5,7 @@
 
 #include "motion/rk4/rk4_engine.hpp"
 
-namespace dinal {
+namespace dinal::motion::rk4 {
 
 namespace {
 
@@ -40,7 +40,7 @@ bool Rk4Engine::careful_step(double end, const Sampled* known) {
         if (breaks) M_ = excitation_.value_after(t_, y_);
         if (!finite()) return false;
         // There may be more breaks within a step than anyone would wait for.
-        if (breaks && monitor_ && !monitor_(t_)) return fail(Outcome::interrupted);
+        if (breaks && monitor_ && !monitor_(t_)) return fail(model::Outcome::interrupted);
         known = nullptr;
     }
     return true;
@@ -49,19 +49,19 @@ bool Rk4Engine::careful_step(double end, const Sampled* known) {
 bool Rk4Engine::piece(double end, bool break_at_end, const Sampled* known) {
     for (int events = 0; t_ < end; ++events) {
         if (events > most_events_in_a_piece || standstills_at_once_ > most_events_in_a_piece) {
-            return fail(Outcome::chattering);
+            return fail(model::Outcome::chattering);
         }
         if (standstill_) leave_standstill();
-        if (!system_.frictionless() && motion_ == Motion::stuck) {
+        if (!system_.frictionless() && motion_ == model::Motion::stuck) {
             if (!stay(end, break_at_end, known)) return false;
             continue;
         }
         const double length = end - t_;
         const Stepped s = step(length, end, break_at_end, known);
-        if (!std::isfinite(s.M)) return fail(Outcome::excitation_not_finite);
-        if (!std::isfinite(s.y.theta) || !std::isfinite(s.y.velocity)) return fail(Outcome::state_not_finite);
+        if (!std::isfinite(s.M)) return fail(model::Outcome::excitation_not_finite);
+        if (!std::isfinite(s.y.theta) || !std::isfinite(s.y.velocity)) return fail(model::Outcome::state_not_finite);
 
-        const double direction = sign_of(motion_);
+        const double direction = model::sign_of(motion_);
         const bool crosses = !(direction * s.y.velocity > 0) || (direction * s.a0 < 0 && direction * s.a1 > 0);
         if (system_.frictionless()) {
             if (crosses) record_turns(t_, length, direction, y_, s.a0, s.y, s.a1);
@@ -86,7 +86,7 @@ Rk4Engine::Stepped Rk4Engine::step(double length, double end, bool break_at_end,
     const double middle = whole ? known->middle : excitation_.value(t_ + length / 2);
     const double M1 = known != nullptr ? known->end : M_at(t_ + length, end, break_at_end, {});
     const double f0 = forcing(M_), f1 = forcing(M1);
-    const State y =
+    const model::State y =
         whole ? full_(y_, f0, forcing(middle), f1) : AffineStep(system_, length)(y_, f0, forcing(middle), f1);
     // A middle that is not a number must be seen, also when the step is too short to show it in y.
     return {y, std::isfinite(middle) ? M1 : middle, acceleration(f0, y_), acceleration(f1, y)};
@@ -94,16 +94,18 @@ Rk4Engine::Stepped Rk4Engine::step(double length, double end, bool break_at_end,
 
 Rk4Engine::Stepped Rk4Engine::feedback_step(double length, double end, bool break_at_end) const {
     const double half = t_ + length / 2, t1 = t_ + length;
-    const auto along = [&](double h, double v, double a) { return State{y_.theta + h * v, y_.velocity + h * a}; };
+    const auto along = [&](double h, double v, double a) {
+        return model::State{y_.theta + h * v, y_.velocity + h * a};
+    };
     const double a0 = acceleration(forcing(M_), y_);
-    const State y2 = along(length / 2, y_.velocity, a0);
+    const model::State y2 = along(length / 2, y_.velocity, a0);
     const double a2 = acceleration(forcing(excitation_.value(half, y2)), y2);
-    const State y3 = along(length / 2, y2.velocity, a2);
+    const model::State y3 = along(length / 2, y2.velocity, a2);
     const double a3 = acceleration(forcing(excitation_.value(half, y3)), y3);
-    const State y4 = along(length, y3.velocity, a3);
+    const model::State y4 = along(length, y3.velocity, a3);
     const double a4 = acceleration(forcing(M_at(t1, end, break_at_end, y4)), y4);
-    const State y1{y_.theta + length / 6 * (y_.velocity + 2 * y2.velocity + 2 * y3.velocity + y4.velocity),
-                   y_.velocity + length / 6 * (a0 + 2 * a2 + 2 * a3 + a4)};
+    const model::State y1{y_.theta + length / 6 * (y_.velocity + 2 * y2.velocity + 2 * y3.velocity + y4.velocity),
+                          y_.velocity + length / 6 * (a0 + 2 * a2 + 2 * a3 + a4)};
     const double M1 = M_at(t1, end, break_at_end, y1);
     return {y1, std::isfinite(a2 + a3 + a4) ? M1 : a2 + a3 + a4, a0, acceleration(forcing(M1), y1)};
 }
@@ -122,7 +124,7 @@ bool Rk4Engine::reach_zero(const Stepped& whole, double zero, double end, bool b
     const bool at_end = t_ + zero >= end;
     const double length = at_end ? end - t_ : zero;
     const Stepped s = at_end ? whole : step(length, end, break_at_end, nullptr);
-    if (!std::isfinite(s.M)) return fail(Outcome::excitation_not_finite);
+    if (!std::isfinite(s.M)) return fail(model::Outcome::excitation_not_finite);
     const double t = at_end ? end : t_ + length;
     rows_until(t, StepInterpolant(length, y_, s.a0, s.y, s.a1));
     // The velocity that the cubic has left over is of fourth order, and is dropped. A Newton step in time to take it
@@ -136,15 +138,15 @@ bool Rk4Engine::reach_zero(const Stepped& whole, double zero, double end, bool b
 
 void Rk4Engine::leave_standstill() {
     watch_for_chatter();
-    const Motion before = motion_;
-    motion_ = motion_from_standstill(system_, M_, y_.theta);
-    friction_ = system_.kinetic_friction() * sign_of(motion_);
+    const model::Motion before = motion_;
+    motion_ = model::motion_from_standstill(system_, M_, y_.theta);
+    friction_ = system_.kinetic_friction() * model::sign_of(motion_);
     standstill_ = false;
     if (!at_start_) {
-        if (motion_ == Motion::stuck) {
-            record(EventKind::stick);
+        if (motion_ == model::Motion::stuck) {
+            record(model::EventKind::stick);
         } else if (motion_ != before) {
-            record(EventKind::turn);  // the same direction again: it only touched zero, which is no event
+            record(model::EventKind::turn);  // the same direction again: it only touched zero, which is no event
         }
     }
 }
@@ -152,16 +154,16 @@ void Rk4Engine::leave_standstill() {
 /// A motion that did not get under way: the excitation only touched the limit. The mass stays where it is.
 void Rk4Engine::hold_still(double end, double M_end) {
     if (events_ != nullptr && !events_->empty() && events_->back().t == t_) {
-        Event& last = events_->back();
-        if (last.kind == EventKind::slip) {
+        model::Event& last = events_->back();
+        if (last.kind == model::EventKind::slip) {
             events_->pop_back();
-        } else if (last.kind == EventKind::turn) {
-            last.kind = EventKind::stick;
+        } else if (last.kind == model::EventKind::turn) {
+            last.kind = model::EventKind::stick;
         }
     } else if (!at_start_) {
-        record(EventKind::stick);  // it was on its way, came to rest, and did not go on
+        record(model::EventKind::stick);  // it was on its way, came to rest, and did not go on
     }
-    motion_ = Motion::stuck;
+    motion_ = model::Motion::stuck;
     friction_ = 0;
     rows_standing_until(end);
     t_ = end, M_ = M_end;
@@ -169,22 +171,22 @@ void Rk4Engine::hold_still(double end, double M_end) {
 
 /// Stuck, up to the end of the piece or the first time that |M - k theta| > Re.
 bool Rk4Engine::stay(double end, bool break_at_end, const Sampled* known) {
-    Motion next = motion_from_standstill(system_, M_, y_.theta);
-    if (next == Motion::stuck) {
+    model::Motion next = model::motion_from_standstill(system_, M_, y_.theta);
+    if (next == model::Motion::stuck) {
         double M_end = M_;
         const auto release = release_time(end, break_at_end, known, M_end);
-        if (!std::isfinite(M_end)) return fail(Outcome::excitation_not_finite);
+        if (!std::isfinite(M_end)) return fail(model::Outcome::excitation_not_finite);
         rows_standing_until(release.value_or(end));
         t_ = release.value_or(end), M_ = M_end;
         at_start_ = false;
         if (!release) return finite();
-        next = motion_from_standstill(system_, M_, y_.theta);
+        next = model::motion_from_standstill(system_, M_, y_.theta);
     }
     watch_for_chatter();
-    record(EventKind::slip);
+    record(model::EventKind::slip);
     at_start_ = false;
     motion_ = next;
-    friction_ = system_.kinetic_friction() * sign_of(motion_);
+    friction_ = system_.kinetic_friction() * model::sign_of(motion_);
     return finite();
 }
 
@@ -193,8 +195,8 @@ std::optional<double> Rk4Engine::release_time(double end, bool break_at_end, con
     const auto M = [&](double t) { return M_at(t, end, break_at_end, y_); };
     // Positive exactly when the friction law lets go.
     const auto excess_of = [&](double torque) {
-        const double excess = breakaway_excess(system_, torque, y_.theta);
-        const bool holds = motion_from_standstill(system_, torque, y_.theta) == Motion::stuck;
+        const double excess = model::breakaway_excess(system_, torque, y_.theta);
+        const bool holds = model::motion_from_standstill(system_, torque, y_.theta) == model::Motion::stuck;
         return holds ? std::min(excess, 0.0) : excess;
     };
     const auto excess = [&](double t) { return excess_of(M(t)); };
@@ -227,21 +229,22 @@ std::optional<double> Rk4Engine::release_time(double end, bool break_at_end, con
 }
 
 /// Whether this is a system at its equilibrium, whose velocity changes sign by rounding alone.
-bool Rk4Engine::lost_in_rounding(const State& y, double a) const {
+bool Rk4Engine::lost_in_rounding(const model::State& y, double a) const {
     constexpr double few_ulps = 32 * std::numeric_limits<double>::epsilon();
     constexpr double nothing = 1e-290;  // products of smaller numbers lose their digits to underflow
     return std::fabs(a) <= few_ulps * full_.w * std::fabs(y.theta) ||
            (std::fabs(y.velocity) < nothing && std::fabs(y.theta) < nothing);
 }
 
-void Rk4Engine::record_turns(double t, double h, double direction, const State& y0, double a0, const State& y1,
-                             double a1) {
+void Rk4Engine::record_turns(double t, double h, double direction, const model::State& y0, double a0,
+                             const model::State& y1, double a1) {
     if (!std::isfinite(y1.theta) || !std::isfinite(y1.velocity)) return;  // no events on the way out of the numbers
     const StepInterpolant motion(h, y0, a0, y1, a1);
-    if (direction == 0) direction = sign_of(motion_of(y0.velocity != 0 ? y0.velocity : a0 != 0 ? a0 : y1.velocity));
+    if (direction == 0)
+        direction = model::sign_of(model::motion_of(y0.velocity != 0 ? y0.velocity : a0 != 0 ? a0 : y1.velocity));
     if (lost_in_rounding(y0, a0) && lost_in_rounding(y1, a1)) direction = 0;
     double from = 0;
-    State y = y0;
+    model::State y = y0;
     double a = a0;
     while (direction != 0) {
         const auto zero = first_velocity_zero(direction, h - from, y.velocity, a, y1.velocity, a1);
@@ -257,16 +260,16 @@ void Rk4Engine::record_turns(double t, double h, double direction, const State& 
         direction = -direction;
         if (events_ != nullptr) {
             const double time = t + x;
-            events_->push_back({time, EventKind::turn, y.theta, excitation_.value(time, y)});
+            events_->push_back({time, model::EventKind::turn, y.theta, excitation_.value(time, y)});
         }
         if (x >= h) break;
         from = x;
     }
     // Whatever was found, the next step begins with the velocity that this one ended with.
-    motion_ = motion_of(y1.velocity != 0 ? y1.velocity : direction);
+    motion_ = model::motion_of(y1.velocity != 0 ? y1.velocity : direction);
 }
 
-void Rk4Engine::record(EventKind kind) {
+void Rk4Engine::record(model::EventKind kind) {
     if (events_ != nullptr) events_->push_back({t_, kind, y_.theta, M_});
 }
 
@@ -278,4 +281,4 @@ void Rk4Engine::watch_for_chatter() {
     last_standstill_ = t_;
 }
 
-}  // namespace dinal
+}  // namespace dinal::motion::rk4

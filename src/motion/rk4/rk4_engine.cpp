@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace dinal {
+namespace dinal::motion::rk4 {
 
 namespace {
 
@@ -17,7 +17,7 @@ std::size_t step_count(const Window& window, double h) {
 
 }  // namespace
 
-Rk4Engine::Rk4Engine(const Problem& problem, const Rk4& options, RowWriter& rows, std::vector<Event>* events,
+Rk4Engine::Rk4Engine(const Problem& problem, const Rk4& options, RowWriter& rows, std::vector<model::Event>* events,
                      Checkpoints<Rk4Checkpoint>* checkpoints)
     : system_(problem.system),
       excitation_(problem.excitation),
@@ -35,28 +35,28 @@ Rk4Engine::Rk4Engine(const Problem& problem, const Rk4& options, RowWriter& rows
       feedback_(problem.excitation.has_feedback()),
       constant_from_(problem.excitation.constant_from()) {}
 
-Outcome Rk4Engine::run() {
+model::Outcome Rk4Engine::run() {
     at_start_ = !before_;
     const double t = window_.start;
-    const bool at_break = excitation_.next_break(std::nextafter(t, -never)) == t;
+    const bool at_break = excitation_.next_break(std::nextafter(t, -model::never)) == t;
     const double M = at_break ? excitation_.value_after(t, initial_) : excitation_.value(t, initial_);
-    const Motion motion = before_.value_or(motion_of(initial_.velocity));
+    const model::Motion motion = before_.value_or(model::motion_of(initial_.velocity));
     const bool standstill = initial_.velocity == 0 && !before_;  // else the law was asked at the end of the part before
     return run({0, initial_, M, motion, standstill}, steps_);
 }
 
-Outcome Rk4Engine::run(const Rk4Checkpoint& from, std::size_t last_step) {
+model::Outcome Rk4Engine::run(const Rk4Checkpoint& from, std::size_t last_step) {
     begin_at(from);
     std::size_t n = from.step;
     bool alive = finite();
     while (alive && n < last_step) {
         if (checkpoints_ != nullptr && checkpoints_->due(n)) checkpoints_->add(here(n));
         if (monitor_ && !monitor_(t_)) {
-            outcome_ = Outcome::interrupted;
+            outcome_ = model::Outcome::interrupted;
             break;
         }
         if (stuck_for_good()) {
-            rows_standing_until(never);  // nothing will ever move it again
+            rows_standing_until(model::never);  // nothing will ever move it again
             t_ = window_.end;
             break;
         }
@@ -71,19 +71,19 @@ Outcome Rk4Engine::run(const Rk4Checkpoint& from, std::size_t last_step) {
             ++n;
         }
     }
-    if (outcome_ == Outcome::reached_end && last_step == steps_) {
-        rows_standing_until(never);
-        if (motion_ == Motion::stuck && !system_.frictionless()) {
-            if (events_ != nullptr && !events_->empty()) events_->back().kind = EventKind::rest;
-            outcome_ = Outcome::at_rest;
+    if (outcome_ == model::Outcome::reached_end && last_step == steps_) {
+        rows_standing_until(model::never);
+        if (motion_ == model::Motion::stuck && !system_.frictionless()) {
+            if (events_ != nullptr && !events_->empty()) events_->back().kind = model::EventKind::rest;
+            outcome_ = model::Outcome::at_rest;
         }
     }
     return outcome_;
 }
 
 bool Rk4Engine::stuck_for_good() const {
-    return !system_.frictionless() && !standstill_ && motion_ == Motion::stuck && constant_from_ <= t_ &&
-           motion_from_standstill(system_, M_, y_.theta) == Motion::stuck;
+    return !system_.frictionless() && !standstill_ && motion_ == model::Motion::stuck && constant_from_ <= t_ &&
+           model::motion_from_standstill(system_, M_, y_.theta) == model::Motion::stuck;
 }
 
 void Rk4Engine::begin_at(const Rk4Checkpoint& from) {
@@ -91,7 +91,7 @@ void Rk4Engine::begin_at(const Rk4Checkpoint& from) {
     y_ = from.state;
     motion_ = from.motion;
     standstill_ = from.standstill && !system_.frictionless();
-    friction_ = system_.kinetic_friction() * sign_of(motion_);
+    friction_ = system_.kinetic_friction() * model::sign_of(motion_);
     M_ = from.M;
 }
 
@@ -121,7 +121,7 @@ bool Rk4Engine::run_block(std::size_t n, std::size_t count) {
             if (system_.frictionless()) {
                 i = move_freely(n, i, count);
             } else {
-                i = motion_ == Motion::stuck ? rest(n, i, count) : move(n, i, count);
+                i = motion_ == model::Motion::stuck ? rest(n, i, count) : move(n, i, count);
             }
             if (!finite()) return false;
         }
@@ -174,7 +174,7 @@ std::size_t Rk4Engine::plain_steps(std::size_t i, std::size_t stop, double direc
 std::size_t Rk4Engine::move(std::size_t n, std::size_t i, std::size_t count) {
     begin_block(i, count);
     const std::size_t first = i;
-    i = plain_steps(i, count, sign_of(motion_));
+    i = plain_steps(i, count, model::sign_of(motion_));
     end_block(n, first, i);
     return i;
 }
@@ -183,13 +183,13 @@ std::size_t Rk4Engine::move_freely(std::size_t n, std::size_t i, std::size_t cou
     begin_block(i, count);
     const std::size_t first = i;
     while (i < count) {
-        i = plain_steps(i, count, sign_of(motion_));
+        i = plain_steps(i, count, model::sign_of(motion_));
         if (i == count) break;
         // The step in which the velocity changes sign is a step like the others, only noted.
-        const State y{theta_[i], velocity_[i]};
-        const State y1 = full_(y, push_theta_[i], push_velocity_[i]);
+        const model::State y{theta_[i], velocity_[i]};
+        const model::State y1 = full_(y, push_theta_[i], push_velocity_[i]);
         const double a = acceleration(forcing_[i], y), a1 = acceleration(forcing_[i + 1], y1);
-        record_turns(time(n + i), full_.h, sign_of(motion_), y, a, y1, a1);
+        record_turns(time(n + i), full_.h, model::sign_of(motion_), y, a, y1, a1);
         theta_[i + 1] = y1.theta;
         velocity_[i + 1] = y1.velocity;
         ++i;
@@ -212,7 +212,7 @@ void Rk4Engine::block_rows(std::size_t n, std::size_t first, std::size_t last) {
         rows_.put_block(last - first, &theta_[first], &velocity_[first], &M_at_step_[first], friction);
         return;
     }
-    for (std::size_t i = first; i < last && rows_.next_time() < never; ++i) {
+    for (std::size_t i = first; i < last && rows_.next_time() < model::never; ++i) {
         const double end = time(n + i + 1);
         if (steps_per_row_ != 0) {
             // Rows that fall on steps: from row to row without looking at the steps between.
@@ -220,7 +220,7 @@ void Rk4Engine::block_rows(std::size_t n, std::size_t first, std::size_t last) {
             if (i >= last) return;
             rows_.put({theta_[i], velocity_[i]}, M_at_step_[i], friction);
         } else if (rows_.next_time() < end) {
-            const State y{theta_[i], velocity_[i]}, y1{theta_[i + 1], velocity_[i + 1]};
+            const model::State y{theta_[i], velocity_[i]}, y1{theta_[i + 1], velocity_[i + 1]};
             t_ = time(n + i), y_ = y, M_ = M_at_step_[i];
             rows_until(
                 end, StepInterpolant(full_.h, y, acceleration(forcing_[i], y), y1, acceleration(forcing_[i + 1], y1)));
@@ -253,7 +253,7 @@ void Rk4Engine::rows_until(double end, const StepInterpolant& motion) {
         if (t <= t_) {
             put_row(y_, M_);
         } else {
-            const State y = motion(t - t_);
+            const model::State y = motion(t - t_);
             put_row(y, excitation_.value(t, y));
         }
     }
@@ -266,4 +266,4 @@ void Rk4Engine::rows_standing_until(double end) {
     }
 }
 
-}  // namespace dinal
+}  // namespace dinal::motion::rk4

@@ -6,32 +6,32 @@
 #include <array>
 #include <vector>
 
-#include "motion/checkpoints.hpp"
 #include "model/friction.hpp"
+#include "motion/checkpoints.hpp"
 #include "motion/interpolation.hpp"
 #include "motion/rk4/rk4_step.hpp"
 #include "motion/rows.hpp"
 #include "motion/simulate.hpp"
 
-namespace dinal {
+namespace dinal::motion::rk4 {
 
 struct Rk4Checkpoint {
     std::size_t step = 0;
-    State state;
+    model::State state;
     double M = 0;
-    Motion motion = Motion::stuck;
+    model::Motion motion = model::Motion::stuck;
     bool standstill = false;  ///< velocity 0 and the friction law not yet asked
 };
 
 class Rk4Engine {
 public:
     /// `events` and `checkpoints` may be null: a replay keeps neither.
-    Rk4Engine(const Problem& problem, const Rk4& options, RowWriter& rows, std::vector<Event>* events,
+    Rk4Engine(const Problem& problem, const Rk4& options, RowWriter& rows, std::vector<model::Event>* events,
               Checkpoints<Rk4Checkpoint>* checkpoints);
 
     /// From a checkpoint to the end of the given step; by default from the beginning to the end of the window.
-    Outcome run();
-    Outcome run(const Rk4Checkpoint& from, std::size_t last_step);
+    model::Outcome run();
+    model::Outcome run(const Rk4Checkpoint& from, std::size_t last_step);
 
     [[nodiscard]] std::size_t steps() const { return steps_; }
     /// The time at which step n begins.
@@ -39,8 +39,8 @@ public:
         return n == steps_ ? window_.end : window_.start + static_cast<double>(n) * full_.h;
     }
     [[nodiscard]] double now() const { return t_; }
-    [[nodiscard]] State state() const { return y_; }
-    [[nodiscard]] Motion motion() const { return motion_; }
+    [[nodiscard]] model::State state() const { return y_; }
+    [[nodiscard]] model::Motion motion() const { return motion_; }
     [[nodiscard]] Rk4Checkpoint here(std::size_t step) const { return {step, y_, M_, motion_, standstill_}; }
 
 private:
@@ -51,7 +51,7 @@ private:
     };
     /// What one smooth step brought.
     struct Stepped {
-        State y;
+        model::State y;
         double M;       ///< M at its end
         double a0, a1;  ///< accelerations at both ends
     };
@@ -78,48 +78,51 @@ private:
     bool reach_zero(const Stepped& whole, double zero, double end, bool break_at_end);
     [[nodiscard]] Stepped step(double length, double end, bool break_at_end, const Sampled* known) const;
     [[nodiscard]] Stepped feedback_step(double length, double end, bool break_at_end) const;
-    [[nodiscard]] bool lost_in_rounding(const State& y, double a) const;
-    void record_turns(double t, double h, double direction, const State& y0, double a0, const State& y1, double a1);
+    [[nodiscard]] bool lost_in_rounding(const model::State& y, double a) const;
+    void record_turns(double t, double h, double direction, const model::State& y0, double a0, const model::State& y1,
+                      double a1);
     [[nodiscard]] std::optional<double> release_time(double end, bool break_at_end, const Sampled* known,
                                                      double& M_end) const;
 
     void rows_until(double end, const StepInterpolant& motion);
     void rows_standing_until(double end);
-    void put_row(const State& y, double M) {
+    void put_row(const model::State& y, double M) {
         if (std::isfinite(M) && std::isfinite(y.theta) && std::isfinite(y.velocity)) {
-            rows_.put(y, M, friction_torque(system_, system_.frictionless() ? Motion::forward : motion_, M, y.theta));
+            rows_.put(
+                y, M,
+                model::friction_torque(system_, system_.frictionless() ? model::Motion::forward : motion_, M, y.theta));
         } else {
             failed_ = true;
         }
     }
-    void record(EventKind kind);
+    void record(model::EventKind kind);
     void watch_for_chatter();
-    bool fail(Outcome outcome) {
+    bool fail(model::Outcome outcome) {
         outcome_ = outcome;
         return false;
     }
     [[nodiscard]] bool finite() {
-        if (!std::isfinite(M_)) return fail(Outcome::excitation_not_finite);
-        if (!std::isfinite(y_.theta) || !std::isfinite(y_.velocity)) return fail(Outcome::state_not_finite);
-        return !failed_ || fail(Outcome::excitation_not_finite);
+        if (!std::isfinite(M_)) return fail(model::Outcome::excitation_not_finite);
+        if (!std::isfinite(y_.theta) || !std::isfinite(y_.velocity)) return fail(model::Outcome::state_not_finite);
+        return !failed_ || fail(model::Outcome::excitation_not_finite);
     }
-    [[nodiscard]] double M_at(double t, double end, bool break_at_end, const State& y) const {
+    [[nodiscard]] double M_at(double t, double end, bool break_at_end, const model::State& y) const {
         return break_at_end && t == end ? excitation_.value_before(t, y) : excitation_.value(t, y);
     }
     /// F/I for the torque M and the present direction of motion.
     [[nodiscard]] double forcing(double M) const { return (M - friction_) * inverse_inertia_; }
-    [[nodiscard]] double acceleration(double f, const State& y) const {
+    [[nodiscard]] double acceleration(double f, const model::State& y) const {
         return f - full_.c * y.velocity - full_.w * y.theta;
     }
 
-    const Oscillator& system_;
-    const Excitation& excitation_;
+    const model::Oscillator& system_;
+    const model::Excitation& excitation_;
     const Monitor& monitor_;
-    State initial_;
-    std::optional<Motion> before_;
+    model::State initial_;
+    std::optional<model::Motion> before_;
     Window window_;
     RowWriter& rows_;
-    std::vector<Event>* events_;
+    std::vector<model::Event>* events_;
     Checkpoints<Rk4Checkpoint>* checkpoints_;
 
     AffineStep full_;
@@ -130,16 +133,16 @@ private:
     double constant_from_;
 
     double t_ = 0;  // the present: time, state, M (from the right), motion
-    State y_;
+    model::State y_;
     double M_ = 0;
-    Motion motion_ = Motion::stuck;
+    model::Motion motion_ = model::Motion::stuck;
     bool standstill_ = false;  // velocity 0: the law must be asked before the next piece
     bool at_start_ = false;    // ... and nothing that it says is an event
     double friction_ = 0;      // Rd sgn(velocity) of the present motion
-    double last_standstill_ = -never;
+    double last_standstill_ = -model::never;
     int standstills_at_once_ = 0;  // one after the other, none more than two steps from the one before
     bool failed_ = false;          // M between the steps, at a row, was not finite
-    Outcome outcome_ = Outcome::reached_end;
+    model::Outcome outcome_ = model::Outcome::reached_end;
 
     // One block: M in the middle and at the end of each step, what follows from it for the present motion, and the
     // states at the steps.
@@ -155,4 +158,4 @@ private:
     Block<block_steps + 1> velocity_{};
 };
 
-}  // namespace dinal
+}  // namespace dinal::motion::rk4

@@ -3,13 +3,13 @@
 
 #include "model/oscillator.hpp"
 
-namespace dinal {
+namespace dinal::motion::rk4 {
 
 /// For a linear system the four stages collapse: y1 = y0 + (R - 1) y0 + P0 f0 + Pm fm + P1 f1, with f = F/I at the
 /// beginning, middle and end of the step, R = 1 + Z + Z^2/2 + Z^3/6 + Z^4/24 and Z = h [0 1; -k/I -C/I]
 /// (docs/theory.md). The increment R - 1 is kept, not R: its rounding is smaller by the factor h w0.
 struct AffineStep {
-    AffineStep(const Oscillator& system, double step)
+    AffineStep(const model::Oscillator& system, double step)
         : h(step), w(system.stiffness() / system.inertia()), c(system.damping() / system.inertia()) {
         // Horner: R - 1 = Z (1 + Z/2 (1 + Z/3 (1 + Z/4))), each product by [0 1; -w -c] h.
         double a11 = 1, a12 = 0, a21 = 0, a22 = 1;
@@ -33,11 +33,11 @@ struct AffineStep {
     [[nodiscard]] double push_theta(double f0, double fm) const { return p0 * f0 + pm * fm; }
     [[nodiscard]] double push_velocity(double f0, double fm, double f1) const { return q0 * f0 + qm * fm + q1 * f1; }
     // NOTE: in this order the chain from step to step is one product and two sums long, and no longer.
-    [[nodiscard]] State operator()(const State& y, double push_theta, double push_velocity) const {
+    [[nodiscard]] model::State operator()(const model::State& y, double push_theta, double push_velocity) const {
         return {(y.theta + push_theta) + (r11 * y.theta + r12 * y.velocity),
                 (y.velocity + push_velocity) + (r21 * y.theta + r22 * y.velocity)};
     }
-    [[nodiscard]] State operator()(const State& y, double f0, double fm, double f1) const {
+    [[nodiscard]] model::State operator()(const model::State& y, double f0, double fm, double f1) const {
         return (*this)(y, push_theta(f0, fm), push_velocity(f0, fm, f1));
     }
 
@@ -48,4 +48,4 @@ struct AffineStep {
     double q0, qm, q1;
 };
 
-}  // namespace dinal
+}  // namespace dinal::motion::rk4

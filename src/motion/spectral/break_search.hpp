@@ -8,7 +8,7 @@
 #include <optional>
 #include <span>
 
-namespace dinal {
+namespace dinal::motion::spectral {
 
 namespace detail {
 
@@ -80,4 +80,4 @@ std::optional<double> find_break(std::span<const double> times, std::span<const 
     return t.middle;
 }
 
-}  // namespace dinal
+}  // namespace dinal::motion::spectral

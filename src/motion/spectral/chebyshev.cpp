@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace dinal::chebyshev {
+namespace dinal::motion::spectral::chebyshev {
 
 namespace {
 
@@ -82,4 +82,4 @@ Samples at_nodes(const Series<points>& c) {
     return f;
 }
 
-}  // namespace dinal::chebyshev
+}  // namespace dinal::motion::spectral::chebyshev

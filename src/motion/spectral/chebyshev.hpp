@@ -6,7 +6,7 @@
 #include <cmath>
 #include <cstddef>
 
-namespace dinal::chebyshev {
+namespace dinal::motion::spectral::chebyshev {
 
 /// Panels are sampled at degree + 1 Chebyshev-Lobatto points; 16 resolves 0.6 natural periods to rounding.
 inline constexpr std::size_t degree = 16;
@@ -139,4 +139,4 @@ double third_derivative_bound(const Series<n>& c) {
     return sum;
 }
 
-}  // namespace dinal::chebyshev
+}  // namespace dinal::motion::spectral::chebyshev

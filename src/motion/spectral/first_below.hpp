@@ -8,14 +8,14 @@
 
 #include "motion/spectral/chebyshev.hpp"
 
-namespace dinal::chebyshev {
+namespace dinal::motion::spectral::chebyshev {
 
 /// A polynomial with its derivative, and what proves that there is no zero between two values.
 template <std::size_t n>
-class Curve {
+class Bounded {
 public:
     /// `sign` * f; `slope` is the derivative of f.
-    Curve(double sign, const Series<n>& f, const Series<n - 1>& slope) : f_(f), slope_(slope) {
+    Bounded(double sign, const Series<n>& f, const Series<n - 1>& slope) : f_(f), slope_(slope) {
         for (double& c : f_) c *= sign;
         for (double& c : slope_) c *= sign;
         second_ = second_derivative_bound(f_);
@@ -112,7 +112,7 @@ std::optional<double> search(const F& f, double a, double fa, double b, double f
 
 }  // namespace detail
 
-enum class Start {
+enum class LeftEnd {
     anywhere,  ///< f(from) may be positive, or zero within rounding
     leaving,   ///< f(from) is zero and f means to become positive; -1 or `from` is the answer when it does not
 };
@@ -121,13 +121,13 @@ enum class Start {
 /// cross it, confirm(x) decides whether that counts. Between two values of f, a bound of f'' proves that there is no
 /// zero; where it can not, the interval is halved until it can, so pairs of zeros close together are not passed over.
 template <class F, class Confirm>
-std::optional<double> first_below(const F& f, double from, Start start, const Confirm& confirm) {
+std::optional<double> first_below(const F& f, double from, LeftEnd start, const Confirm& confirm) {
     const Samples at_node = f.at_nodes();
     std::size_t j = 1;
     while (j < degree && nodes[j] <= from) ++j;
     double left = from;
-    double f_left = start == Start::leaving ? 0 : from == -1 ? at_node[0] : f(from);
-    if (start == Start::leaving) {
+    double f_left = start == LeftEnd::leaving ? 0 : from == -1 ? at_node[0] : f(from);
+    if (start == LeftEnd::leaving) {
         const double right = nodes[j];
         if (from == -1 && f.leaves_upward(right - from)) {
             left = right, f_left = at_node[j], ++j;
@@ -149,4 +149,4 @@ std::optional<double> first_below(const F& f, double from, Start start, const Co
     return {};
 }
 
-}  // namespace dinal::chebyshev
+}  // namespace dinal::motion::spectral::chebyshev

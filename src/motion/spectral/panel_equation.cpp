@@ -1,6 +1,6 @@
 #include "motion/spectral/panel_equation.hpp"
 
-namespace dinal {
+namespace dinal::motion::spectral {
 
 using chebyshev::degree;
 using chebyshev::Series;
@@ -97,4 +97,4 @@ Series<n> PanelEquation::solve(const Series<n>& r, double v0) const {
     return w;
 }
 
-}  // namespace dinal
+}  // namespace dinal::motion::spectral

@@ -3,7 +3,7 @@
 
 #include "motion/spectral/chebyshev.hpp"
 
-namespace dinal {
+namespace dinal::motion::spectral {
 
 /// w + a v + b p = r on -1 <= x <= 1, with v' = w, p' = v and p(-1) = 0, v(-1) = v0: the tau method.
 ///
@@ -32,4 +32,4 @@ private:
     double m00_ = 0, m01_ = 0, m10_ = 0, m11_ = 0;  // inverse of what they become for w[0] and w[1]
 };
 
-}  // namespace dinal
+}  // namespace dinal::motion::spectral

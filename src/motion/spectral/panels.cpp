@@ -2,10 +2,10 @@
 
 #include <algorithm>
 
-namespace dinal {
+namespace dinal::motion::spectral {
 
-State Panel::at(double x) const {
-    if (motion == Motion::stuck && begin.velocity == 0) return begin;
+model::State Panel::at(double x) const {
+    if (motion == model::Motion::stuck && begin.velocity == 0) return begin;
     if (x <= -1) return begin;
     const auto v = velocity();
     return {begin.theta + chebyshev::value(chebyshev::integral(v, 0), x), chebyshev::value(v, x) / h};
@@ -29,7 +29,7 @@ double Panels::end() const {
     return last.start.after(last.length);
 }
 
-State Panels::at(double t) const {
+model::State Panels::at(double t) const {
     // The last panel that begins at or before t.
     std::size_t low = 0, high = size_;
     while (high - low > 1) {
@@ -40,4 +40,4 @@ State Panels::at(double t) const {
     return panel.at(std::min(panel.x(t), 1.0));
 }
 
-}  // namespace dinal
+}  // namespace dinal::motion::spectral

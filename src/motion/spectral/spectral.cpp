@@ -4,17 +4,17 @@
 #include "motion/methods.hpp"
 #include "motion/spectral/spectral_engine.hpp"
 
-namespace dinal {
+namespace dinal::motion::spectral {
 
 namespace {
 
 /// The panels may take this part of the memory that the rows may.
 constexpr std::size_t share_of_panels = 4;
 
-Expected<State> state_at(const Panels& panels, double t) {
-    if (panels.size() == 0) return Error{"the run has no motion to evaluate: it ended where it started"};
+text::Expected<model::State> state_at(const Panels& panels, double t) {
+    if (panels.size() == 0) return text::Error{"the run has no motion to evaluate: it ended where it started"};
     if (t > panels.end() && !panels.complete()) {
-        return Error{fmt::format(
+        return text::Error{fmt::format(
             "the motion was kept up to t = {:.6g} only, for want of memory: take rows, or begin a run there",
             panels.end())};
     }
@@ -40,4 +40,4 @@ Trajectory run(const Problem& problem, const Spectral& options) {
     return trajectory;
 }
 
-}  // namespace dinal
+}  // namespace dinal::motion::spectral

@@ -6,7 +6,7 @@
 
 #include "motion/spectral/first_below.hpp"
 
-namespace dinal {
+namespace dinal::motion::spectral {
 
 namespace {
 
@@ -22,7 +22,7 @@ constexpr std::size_t rows_between_questions = 1U << 16U;
 }  // namespace
 
 SpectralEngine::SpectralEngine(const Problem& problem, const Spectral& options, RowWriter& rows,
-                               std::vector<Event>& events, Panels* panels)
+                               std::vector<model::Event>& events, Panels* panels)
     : system_(problem.system),
       excitation_(problem.excitation),
       monitor_(problem.monitor),
@@ -45,30 +45,30 @@ SpectralEngine::SpectralEngine(const Problem& problem, const Spectral& options, 
       h_(h_max_),
       shortened_since_(problem.window.start) {}
 
-Outcome SpectralEngine::run() {
+model::Outcome SpectralEngine::run() {
     begin();
-    bool alive = std::isfinite(M_) || fail(Outcome::excitation_not_finite);
+    bool alive = std::isfinite(M_) || fail(model::Outcome::excitation_not_finite);
     while (alive && clock_.hi < window_.end) {
         if (pieces_++ % pieces_between_questions == 0 && monitor_ && !monitor_(clock_.hi)) {
-            outcome_ = Outcome::interrupted;
+            outcome_ = model::Outcome::interrupted;
             if (standstill_ && !system_.frictionless()) leave_standstill();
             break;
         }
         alive = advance();
     }
-    if (outcome_ == Outcome::reached_end) finish();
+    if (outcome_ == model::Outcome::reached_end) finish();
     return outcome_;
 }
 
 void SpectralEngine::begin() {
     const double t = window_.start;
-    const bool at_break = excitation_.next_break(std::nextafter(t, -never)) == t;
+    const bool at_break = excitation_.next_break(std::nextafter(t, -model::never)) == t;
     M_ = at_break ? excitation_.value_after(t, y_) : excitation_.value(t, y_);
-    motion_ = before_.value_or(motion_of(y_.velocity));
+    motion_ = before_.value_or(model::motion_of(y_.velocity));
     at_start_ = !before_;
     standstill_ = y_.velocity == 0 && !before_;
-    leaving_ =
-        y_.velocity == 0 && before_ && motion_ != Motion::stuck;  // the law was asked at the end of the part before
+    leaving_ = y_.velocity == 0 && before_ &&
+               motion_ != model::Motion::stuck;  // the law was asked at the end of the part before
 }
 
 bool SpectralEngine::advance() {
@@ -77,7 +77,7 @@ bool SpectralEngine::advance() {
     if (stuck_for_good()) {
         return rest_until_end();
     }
-    return motion_ == Motion::stuck ? stay() : move();
+    return motion_ == model::Motion::stuck ? stay() : move();
 }
 
 /// At rest there is nothing to compute but M at the rows, of which there may be many.
@@ -88,7 +88,7 @@ bool SpectralEngine::rest_until_end() {
         const double M = excitation_.value(t);
         rows_.put(y_, M, friction_of(M));
         if (count % rows_between_questions == 0 && monitor_ && !monitor_(t)) {
-            outcome_ = Outcome::interrupted;
+            outcome_ = model::Outcome::interrupted;
             until = t;
             break;
         }
@@ -97,37 +97,37 @@ bool SpectralEngine::rest_until_end() {
     if (panels_ != nullptr) panels_->add(panel_);
     clock_ = {until, 0};
     M_ = excitation_.value(until);
-    return outcome_ == Outcome::reached_end;
+    return outcome_ == model::Outcome::reached_end;
 }
 
 void SpectralEngine::finish() {
-    while (rows_.next_time() < never) rows_.put(y_, M_, friction_of(M_));
+    while (rows_.next_time() < model::never) rows_.put(y_, M_, friction_of(M_));
     if (!system_.frictionless() && standstill_) leave_standstill();
-    if (!system_.frictionless() && motion_ == Motion::stuck) {
-        if (!events_.empty()) events_.back().kind = EventKind::rest;
-        outcome_ = Outcome::at_rest;
+    if (!system_.frictionless() && motion_ == model::Motion::stuck) {
+        if (!events_.empty()) events_.back().kind = model::EventKind::rest;
+        outcome_ = model::Outcome::at_rest;
     }
 }
 
 /// M can not move it any more, whatever comes: it is constant, or nowhere great enough.
 bool SpectralEngine::stuck_for_good() const {
-    if (motion_ != Motion::stuck) return false;
+    if (motion_ != model::Motion::stuck) return false;
     if (most_M_ + std::fabs(system_.stiffness() * y_.theta) <= system_.breakaway()) return true;
-    return constant_from_ <= clock_.hi && motion_from_standstill(system_, M_, y_.theta) == Motion::stuck;
+    return constant_from_ <= clock_.hi && model::motion_from_standstill(system_, M_, y_.theta) == model::Motion::stuck;
 }
 
 /// Asks the friction law at velocity zero.
 bool SpectralEngine::leave_standstill() {
-    const Motion before = motion_;
-    motion_ = motion_from_standstill(system_, M_, y_.theta);
+    const model::Motion before = motion_;
+    motion_ = model::motion_from_standstill(system_, M_, y_.theta);
     standstill_ = false;
-    leaving_ = motion_ != Motion::stuck;
+    leaving_ = motion_ != model::Motion::stuck;
     holding_ = false;
     if (!at_start_) {
-        if (motion_ == Motion::stuck) {
-            record(EventKind::stick);
+        if (motion_ == model::Motion::stuck) {
+            record(model::EventKind::stick);
         } else if (motion_ != before) {
-            record(EventKind::turn);  // the same direction again: it only touched zero, which is no event
+            record(model::EventKind::turn);  // the same direction again: it only touched zero, which is no event
         }
     }
     return !stopped();
@@ -139,14 +139,14 @@ bool SpectralEngine::stopped() {
     if (!feedback_) return false;
     standstills_at_once_ = clock_.hi - last_standstill_ <= at_once * pace_ ? standstills_at_once_ + 1 : 0;
     last_standstill_ = clock_.hi;
-    return standstills_at_once_ > most_standstills_at_once && !fail(Outcome::chattering);
+    return standstills_at_once_ > most_standstills_at_once && !fail(model::Outcome::chattering);
 }
 
 // ---- moving
 
 bool SpectralEngine::move() {
     choose_panel();
-    panel_.motion = system_.frictionless() ? Motion::forward : motion_;
+    panel_.motion = system_.frictionless() ? model::Motion::forward : motion_;
     if (const Attempt attempt = solve(); attempt != Attempt::resolved) return attempt != Attempt::ended;
     if (system_.frictionless()) record_turns();
     const bool dry = !system_.frictionless(), crept = dry && creeps();
@@ -159,14 +159,14 @@ bool SpectralEngine::move() {
     if (x > -1 && time_at(x) >= end_) x = 1;
     const Clock theta = Clock{y_.theta, theta_rest_}.later(chebyshev::value(p_, x));  // a sum like that of time
     theta_rest_ = theta.lo;
-    const State state{theta.hi, zero || crept ? 0 : chebyshev::value(v_, x) / panel_.h};
+    const model::State state{theta.hi, zero || crept ? 0 : chebyshev::value(v_, x) / panel_.h};
     const double M = x == 1 ? 0 : feedback_ ? excitation_.value(time_at(x), state) : chebyshev::value(panel_.M, x);
     end_piece(x, state, M);
     if (crept) settle();
     leaving_ = false;
     standstill_ = crept || zero;
     standing_from_ = zero && x < 1 && !feedback_ ? x : nowhere;
-    return std::isfinite(M_) || fail(Outcome::excitation_not_finite);
+    return std::isfinite(M_) || fail(model::Outcome::excitation_not_finite);
 }
 
 /// Whether all that goes on in the panel is slower than the rounding of its torques could make it.
@@ -177,7 +177,7 @@ bool SpectralEngine::creeps() const {
 
 /// What has crept to rounding distance from its place is there: at the very limit of sticking, when Re = Rd.
 void SpectralEngine::settle() {
-    const double place = (M_ - system_.kinetic_friction() * sign_of(motion_)) / system_.stiffness();
+    const double place = (M_ - system_.kinetic_friction() * model::sign_of(motion_)) / system_.stiffness();
     const double near = 64 * epsilon * torques() / system_.stiffness();
     if (feedback_ || !(std::fabs(place - y_.theta) <= near)) return;
     y_.theta = place;
@@ -187,14 +187,14 @@ void SpectralEngine::settle() {
 /// Where the velocity is down to zero. At the end of the panel, zero within rounding is zero.
 std::optional<double> SpectralEngine::first_standstill() const {
     using namespace chebyshev;
-    const double sign = sign_of(motion_);
-    Curve<points + 1> velocity(sign, v_, panel_.w);
+    const double sign = model::sign_of(motion_);
+    Bounded<points + 1> velocity(sign, v_, panel_.w);
     // The acceleration is what is left of torques that may balance each other.
     const double w0h = w0_ * panel_.h;
     velocity.raise_slope_floor(w0h * w0h * (64 * epsilon * torques() + lost_in_time()) / system_.stiffness());
     if (feedback_) velocity.raise_floor(rounding_of_motion(lost_in_time()));
     const auto always = [](double) { return true; };
-    const auto zero = first_below(velocity, -1, leaving_ ? Start::leaving : Start::anywhere, always);
+    const auto zero = first_below(velocity, -1, leaving_ ? LeftEnd::leaving : LeftEnd::anywhere, always);
     if (!zero && velocity(1) <= velocity.floor()) return 1;
     return zero;
 }
@@ -207,46 +207,47 @@ void SpectralEngine::record_turns() {
     // At its equilibrium a system changes the sign of its velocity by rounding alone.
     if (moving <= (feedback_ ? rounding_left_by_iteration : 1) * rounding_of_motion(lost_in_time()) || moving < nothing)
         return;
-    if (motion_ == Motion::stuck) {
+    if (motion_ == model::Motion::stuck) {
         // From a start at rest: the first velocity that is not rounding tells the direction.
         const auto v = at_nodes(v_);
         const auto* const first =
             std::find_if(v.begin(), v.end(), [&](double u) { return std::fabs(u) > 1e-14 * moving; });
-        motion_ = motion_of(first == v.end() ? 0 : *first);
+        motion_ = model::motion_of(first == v.end() ? 0 : *first);
     }
     double from = -1;
-    Start start = y_.velocity == 0 ? Start::leaving : Start::anywhere;
+    LeftEnd start = y_.velocity == 0 ? LeftEnd::leaving : LeftEnd::anywhere;
     const auto no = [](double) { return false; };
-    while (motion_ != Motion::stuck) {
-        const Curve<points + 1> velocity(sign_of(motion_), v_, panel_.w);
+    while (motion_ != model::Motion::stuck) {
+        const Bounded<points + 1> velocity(model::sign_of(motion_), v_, panel_.w);
         const auto x = first_below(velocity, from, start, no);
         if (!x) break;
-        motion_ = motion_ == Motion::forward ? Motion::backward : Motion::forward;
+        motion_ = motion_ == model::Motion::forward ? model::Motion::backward : model::Motion::forward;
         // A curve that leaves zero the other way was turned already, when that is told.
-        const bool told =
-            start == Start::leaving && *x <= from && (from > -1 || (!events_.empty() && events_.back().t == clock_.hi));
-        if (!told) events_.push_back({time_at(*x), EventKind::turn, y_.theta + value(p_, *x), value(panel_.M, *x)});
+        const bool told = start == LeftEnd::leaving && *x <= from &&
+                          (from > -1 || (!events_.empty() && events_.back().t == clock_.hi));
+        if (!told)
+            events_.push_back({time_at(*x), model::EventKind::turn, y_.theta + value(p_, *x), value(panel_.M, *x)});
         if (told && from > -1) break;
         from = *x;
-        start = Start::leaving;
+        start = LeftEnd::leaving;
     }
 }
 
 // ---- the present
 
-void SpectralEngine::end_piece(double x, State state, double M) {
+void SpectralEngine::end_piece(double x, model::State state, double M) {
     const bool whole = x == 1;
     // A stuck piece may begin within the panel.
     Panel piece = panel_;
     piece.length = whole ? 2 * panel_.h : panel_.h * (1 + x);
     const bool told = rows_until(piece.length);
     if (panels_ != nullptr) {
-        if (motion_ == Motion::stuck && !system_.frictionless()) {
+        if (motion_ == model::Motion::stuck && !system_.frictionless()) {
             const Clock from = clock_;
             piece.length -= from.hi == panel_.start.hi ? 0 : panel_.start.until(from.hi) + from.lo;
             piece.start = from;
             piece.begin = y_;
-            piece.motion = Motion::stuck;
+            piece.motion = model::Motion::stuck;
         }
         if (piece.length > 0) panels_->add(piece);
     }
@@ -266,13 +267,13 @@ void SpectralEngine::end_piece(double x, State state, double M) {
 
 /// The rows before the end of the piece; the one at its end belongs to the next. False when M fails at one of them.
 bool SpectralEngine::rows_until(double length) {
-    const bool standing = motion_ == Motion::stuck && !system_.frictionless();
-    while (rows_.next_time() < never) {
+    const bool standing = motion_ == model::Motion::stuck && !system_.frictionless();
+    while (rows_.next_time() < model::never) {
         const double t = rows_.next_time();
         const double since = panel_.start.until(t);
         if (!(since < length)) return true;
         const double x = std::clamp(since / panel_.h - 1, -1.0, 1.0);
-        State state = y_;
+        model::State state = y_;
         if (!standing && x > -1) {
             state = {y_.theta + chebyshev::value(p_, x), chebyshev::value(v_, x) / panel_.h};
         }
@@ -284,10 +285,10 @@ bool SpectralEngine::rows_until(double length) {
         }
         if (!std::isfinite(M)) return false;
         rows_.put(state, M,
-                  standing ? friction_torque(system_, Motion::stuck, M, state.theta)
-                           : friction_torque(system_, panel_.motion, M, state.theta));
+                  standing ? model::friction_torque(system_, model::Motion::stuck, M, state.theta)
+                           : model::friction_torque(system_, panel_.motion, M, state.theta));
     }
     return true;
 }
 
-}  // namespace dinal
+}  // namespace dinal::motion::spectral

@@ -7,20 +7,20 @@
 #include <optional>
 #include <vector>
 
-#include "motion/spectral/panel_equation.hpp"
-#include "motion/spectral/panels.hpp"
 #include "motion/rows.hpp"
 #include "motion/simulate.hpp"
+#include "motion/spectral/panel_equation.hpp"
+#include "motion/spectral/panels.hpp"
 
-namespace dinal {
+namespace dinal::motion::spectral {
 
 class SpectralEngine {
 public:
     /// `panels` may be null: then only the rows remain of the motion.
-    SpectralEngine(const Problem& problem, const Spectral& options, RowWriter& rows, std::vector<Event>& events,
+    SpectralEngine(const Problem& problem, const Spectral& options, RowWriter& rows, std::vector<model::Event>& events,
                    Panels* panels);
 
-    Outcome run();
+    model::Outcome run();
     /// Tells how far it came, and in which state.
     void leave(Trajectory& trajectory) const {
         trajectory.t_stop = clock_.hi;
@@ -49,29 +49,31 @@ private:
     bool stopped();
 
     // The present at the end of a piece, which reaches to x in the panel; 1 is exactly the end of the panel.
-    void end_piece(double x, State state, double M);
+    void end_piece(double x, model::State state, double M);
     bool rows_until(double length);
     [[nodiscard]] double time_at(double x) const { return panel_.start.after(panel_.h * (1 + x)); }
-    void record(EventKind kind) { events_.push_back({clock_.hi, kind, y_.theta, M_}); }
+    void record(model::EventKind kind) { events_.push_back({clock_.hi, kind, y_.theta, M_}); }
     [[nodiscard]] double friction_of(double M) const {
-        return friction_torque(system_, system_.frictionless() ? Motion::forward : motion_, M, y_.theta);
+        return model::friction_torque(system_, system_.frictionless() ? model::Motion::forward : motion_, M, y_.theta);
     }
-    bool fail(Outcome outcome) {
+    bool fail(model::Outcome outcome) {
         outcome_ = outcome;
         return false;
     }
 
     // spectral_stuck.cpp: the mass at rest.
     bool stay();
-    [[nodiscard]] std::pair<double, Motion> first_release(double from) const;
-    [[nodiscard]] double release_towards(Motion side, double from) const;
-    [[nodiscard]] bool lets_go(double x, Motion side) const;
-    [[nodiscard]] double moment_of_release(double x, double off, double from, Motion side) const;
-    bool release_at(double x, Motion direction);
+    [[nodiscard]] std::pair<double, model::Motion> first_release(double from) const;
+    [[nodiscard]] double release_towards(model::Motion side, double from) const;
+    [[nodiscard]] bool lets_go(double x, model::Motion side) const;
+    [[nodiscard]] double moment_of_release(double x, double off, double from, model::Motion side) const;
+    bool release_at(double x, model::Motion direction);
     void never_left();
 
     /// Of a run that gets nowhere: whose fault it is.
-    [[nodiscard]] Outcome never_ending() const { return feedback_ ? Outcome::chattering : Outcome::unresolved; }
+    [[nodiscard]] model::Outcome never_ending() const {
+        return feedback_ ? model::Outcome::chattering : model::Outcome::unresolved;
+    }
 
     // spectral_panel.cpp: choosing, sampling and solving a panel.
     enum class Attempt {
@@ -83,8 +85,8 @@ private:
     Attempt sample_standing();
     Attempt solve();
     [[nodiscard]] double next_break() const;
-    [[nodiscard]] double sampled(std::size_t node, const State& state) const;
-    bool sample_all(const State& state);
+    [[nodiscard]] double sampled(std::size_t node, const model::State& state) const;
+    bool sample_all(const model::State& state);
     bool bad_at(std::size_t node);
     Attempt before_failure();
     void solve_for(const Series& torque);
@@ -109,13 +111,13 @@ private:
     bool crawls();
     void lengthen(double unresolved);
 
-    const Oscillator& system_;
-    const Excitation& excitation_;
+    const model::Oscillator& system_;
+    const model::Excitation& excitation_;
     const Monitor& monitor_;
     Window window_;
-    std::optional<Motion> before_;
+    std::optional<model::Motion> before_;
     RowWriter& rows_;
-    std::vector<Event>& events_;
+    std::vector<model::Event>& events_;
     Panels* panels_;
 
     double tolerance_;
@@ -126,20 +128,20 @@ private:
     double constant_from_, most_M_;
 
     Clock clock_;  // the present: time, state, M (from the right), motion
-    State y_;
+    model::State y_;
     double theta_rest_ = 0;  // what was rounded off theta, so that a thousand stops do not add up
     double M_ = 0;
-    Motion motion_ = Motion::stuck;
+    model::Motion motion_ = model::Motion::stuck;
     bool M_sampled_ = true;    // M_ is a value of M, not of its series
     bool standstill_ = false;  // velocity 0: the law must be asked
     bool leaving_ = false;     // velocity 0, and the law has said which way to go
     bool at_start_ = true;     // nothing is an event yet
     bool holding_ = false;     // M is within rounding of the limit, and the motion has been seen not to get under way
 
-    double h_;                                       // half the length of the next panel
-    std::vector<double> found_breaks_;               // of a function that did not announce them, in order
-    double searched_from_ = never, searched_h_ = 0;  // where one was looked for last
-    double bad_time_ = never;                        // M is known to fail here
+    double h_;                                              // half the length of the next panel
+    std::vector<double> found_breaks_;                      // of a function that did not announce them, in order
+    double searched_from_ = model::never, searched_h_ = 0;  // where one was looked for last
+    double bad_time_ = model::never;                        // M is known to fail here
     double chi_ = 0, kappa_ = 0;  // -dM/dvelocity and -dM/dtheta of a feedback: solved for, not iterated
 
     Panel panel_;  // the one at work
@@ -152,14 +154,14 @@ private:
     chebyshev::Series<points + 2> p_{};
     PanelEquation equation_;
 
-    double last_standstill_ = -never;
+    double last_standstill_ = -model::never;
     int standstills_at_once_ = 0;
     int unresolved_in_a_row_ = 0;
     int short_in_a_row_ = 0;
     int shortened_ = 0;  // panels, since then:
     double shortened_since_;
     unsigned pieces_ = 0;
-    Outcome outcome_ = Outcome::reached_end;
+    model::Outcome outcome_ = model::Outcome::reached_end;
 };
 
-}  // namespace dinal
+}  // namespace dinal::motion::spectral

@@ -5,7 +5,7 @@
 
 #include "motion/spectral/spectral_engine.hpp"
 
-namespace dinal {
+namespace dinal::motion::spectral {
 
 namespace {
 
@@ -23,7 +23,7 @@ SpectralEngine::Iteration SpectralEngine::iterate() {
             v[j] = panel_.h * y_.velocity;
             p[j] = (1 + chebyshev::nodes[j]) * v[j];
         }
-        double change = never;
+        double change = model::never;
         for (int i = 0; i < most_iterations; ++i) {
             chebyshev::Samples rest{};
             for (std::size_t j = 0; j < points; ++j) {
@@ -42,9 +42,9 @@ SpectralEngine::Iteration SpectralEngine::iterate() {
             }
             p = p_next, v = v_next;
             const double scale = chebyshev::size(v_) + chebyshev::size(p_);
-            if (!(change < never)) break;
+            if (!(change < model::never)) break;
             // What is left shrinks by change/before once more with the solution just made.
-            const double rate = before < never ? change / before : 1;
+            const double rate = before < model::never ? change / before : 1;
             const double rounding = std::max(16 * epsilon * scale, rounding_of_motion(0));
             bool converged = change <= rounding || change * rate <= 0.01 * tolerance_ * scale;
             if (!converged && i >= 2 && change > 0.5 * before) {
@@ -86,7 +86,7 @@ void SpectralEngine::estimate_slopes() {
     const double d_theta = std::max(std::min(chebyshev::size(p_), 2 * h * fastest), 1e-6 * std::fabs(y_.theta));
     const double d_velocity = std::max(std::min(chebyshev::size(v_) / h, fastest), 1e-6 * std::fabs(y_.velocity));
     const auto slope = [](double above, double below, double d) {
-        const double s = d > 0 && d < never ? (below - above) / (2 * d) : 0;
+        const double s = d > 0 && d < model::never ? (below - above) / (2 * d) : 0;
         return std::isfinite(s) ? s : 0;
     };
     kappa_ = slope(excitation_.value(t, {y_.theta + d_theta, y_.velocity}),
@@ -95,4 +95,4 @@ void SpectralEngine::estimate_slopes() {
                  excitation_.value(t, {y_.theta, y_.velocity - d_velocity}), d_velocity);
 }
 
-}  // namespace dinal
+}  // namespace dinal::motion::spectral

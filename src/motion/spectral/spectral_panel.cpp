@@ -6,7 +6,7 @@
 #include "motion/spectral/break_search.hpp"
 #include "motion/spectral/spectral_engine.hpp"
 
-namespace dinal {
+namespace dinal::motion::spectral {
 
 namespace {
 
@@ -41,7 +41,7 @@ void SpectralEngine::choose_panel() {
     const double breaks = next_break();
     const double limit = std::min(window_.end, breaks);
     const double remaining = clock_.until(limit);
-    if (bad_time_ < never) h_ = std::min(h_, clock_.until(bad_time_) / 4);
+    if (bad_time_ < model::never) h_ = std::min(h_, clock_.until(bad_time_) / 4);
     to_limit_ = remaining <= 2 * h_ * (1 + 1e-9);
     panel_.start = clock_;
     panel_.begin = y_;
@@ -55,13 +55,13 @@ void SpectralEngine::choose_panel() {
     standing_from_ = nowhere;
 }
 
-double SpectralEngine::sampled(std::size_t node, const State& state) const {
+double SpectralEngine::sampled(std::size_t node, const model::State& state) const {
     return node + 1 == points && break_at_end_ ? excitation_.value_before(end_, state)
                                                : excitation_.value(times_[node], state);
 }
 
 /// M at all nodes for one state, of which only a feedback takes notice.
-bool SpectralEngine::sample_all(const State& state) {
+bool SpectralEngine::sample_all(const model::State& state) {
     const std::size_t first = M_sampled_ ? 1 : 0;
     if (M_sampled_) samples_[0] = M_;
     if (feedback_) {
@@ -89,9 +89,9 @@ bool SpectralEngine::bad_at(std::size_t node) {
 /// M has failed ahead: the run goes on in ever shorter panels until it stands before that time, and ends there.
 SpectralEngine::Attempt SpectralEngine::before_failure() {
     const bool there = clock_.until(bad_time_) <= std::max(near_failure * pace_, 64 * epsilon * std::fabs(clock_.hi));
-    if (feedback_) bad_time_ = never;
+    if (feedback_) bad_time_ = model::never;
     if (!there && excitation_.may_go_on()) return Attempt::shorten;
-    fail(Outcome::excitation_not_finite);
+    fail(model::Outcome::excitation_not_finite);
     return Attempt::ended;
 }
 
@@ -107,7 +107,7 @@ void SpectralEngine::solve_for(const Series& torque) {
     const double scale = h * (h / inertia);
     Series r{};
     for (std::size_t k = 1; k < points; ++k) r[k] = scale * torque[k];
-    const double friction = system_.kinetic_friction() * sign_of(panel_.motion);
+    const double friction = system_.kinetic_friction() * model::sign_of(panel_.motion);
     const double k = system_.stiffness();
     r[0] = scale * ((std::fma(-k, y_.theta, torque[0]) - friction) - k * theta_rest_);
     panel_.w = equation_.solve(r, h * y_.velocity);
@@ -133,7 +133,7 @@ SpectralEngine::Attempt SpectralEngine::solve() {
         solve_for(panel_.M);
     }
     if (!within_range()) {
-        fail(Outcome::state_not_finite);
+        fail(model::Outcome::state_not_finite);
         return Attempt::ended;
     }
     return judge(feedback_ ? unresolved_motion() : std::max(unresolved_load(), unresolved_motion()));
@@ -215,7 +215,7 @@ SpectralEngine::Attempt SpectralEngine::pass_over() {
     panel_.M = {};
     panel_.M[0] = samples_[0];
     kappa_ = chi_ = 0;
-    if (panel_.motion != Motion::stuck) solve_for(panel_.M);
+    if (panel_.motion != model::Motion::stuck) solve_for(panel_.M);
     return Attempt::resolved;
 }
 
@@ -244,7 +244,7 @@ SpectralEngine::Attempt SpectralEngine::judge(double unresolved) {
         return Attempt::ended;
     }
     // While the mass is stuck its state is known, and a feedback is a function of time, too.
-    const bool of_time = !feedback_ || (panel_.motion == Motion::stuck);
+    const bool of_time = !feedback_ || (panel_.motion == model::Motion::stuck);
     if (script_ && of_time && unresolved > gross && found_break()) return Attempt::shorten;
     // The last coefficients fall with h^16.
     h_ = panel_.h * std::clamp(0.9 * std::pow(unresolved, -1.0 / chebyshev::degree), 0.5, 0.9);
@@ -266,4 +266,4 @@ void SpectralEngine::lengthen(double unresolved) {
     h_ = std::min(h_max_, std::max(h_, panel_.h * std::min(factor, 8.0)));
 }
 
-}  // namespace dinal
+}  // namespace dinal::motion::spectral

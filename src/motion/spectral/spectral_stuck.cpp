@@ -6,7 +6,7 @@
 #include "motion/spectral/first_below.hpp"
 #include "motion/spectral/spectral_engine.hpp"
 
-namespace dinal {
+namespace dinal::motion::spectral {
 
 namespace {
 
@@ -19,8 +19,8 @@ bool SpectralEngine::stay() {
     double from = standing_from_;
     if (from == nowhere) {
         if (M_sampled_ && !holding_) {
-            const Motion direction = motion_from_standstill(system_, M_, y_.theta);
-            if (direction != Motion::stuck) return release_at(nowhere, direction);
+            const model::Motion direction = model::motion_from_standstill(system_, M_, y_.theta);
+            if (direction != model::Motion::stuck) return release_at(nowhere, direction);
         }
         choose_panel();
         if (const Attempt attempt = sample_standing(); attempt != Attempt::resolved) return attempt != Attempt::ended;
@@ -29,13 +29,13 @@ bool SpectralEngine::stay() {
     const auto [x, direction] = first_release(from);
     if (x < 1) return release_at(x, direction);
     end_piece(1, y_, 0);
-    return std::isfinite(M_) || fail(Outcome::excitation_not_finite);
+    return std::isfinite(M_) || fail(model::Outcome::excitation_not_finite);
 }
 
 /// The first release in [from, 1] and its direction; else `nowhere`.
-std::pair<double, Motion> SpectralEngine::first_release(double from) const {
-    std::pair<double, Motion> first{nowhere, Motion::stuck};
-    for (const Motion side : {Motion::forward, Motion::backward}) {
+std::pair<double, model::Motion> SpectralEngine::first_release(double from) const {
+    std::pair<double, model::Motion> first{nowhere, model::Motion::stuck};
+    for (const model::Motion side : {model::Motion::forward, model::Motion::backward}) {
         if (const double x = release_towards(side, from); x < first.first) first = {x, side};
     }
     if (first.first != nowhere && time_at(first.first) >= end_) first.first = nowhere;  // the next panel's business
@@ -44,9 +44,9 @@ std::pair<double, Motion> SpectralEngine::first_release(double from) const {
 
 /// Where M passes the limit of this side. Its series tells, but where the two meet so gently that the error of the
 /// series matters, M itself is asked: the limit is a razor's edge.
-double SpectralEngine::release_towards(Motion side, double from) const {
+double SpectralEngine::release_towards(model::Motion side, double from) const {
     constexpr double exact_enough = 1e-11;  // natural periods
-    const double sign = sign_of(side), k_theta = system_.stiffness() * y_.theta, Re = system_.breakaway();
+    const double sign = model::sign_of(side), k_theta = system_.stiffness() * y_.theta, Re = system_.breakaway();
     const double doubt = 8 * (epsilon * (Re + std::fabs(k_theta)) + chebyshev::tail(panel_.M));
     double varying = 0;
     for (std::size_t k = 1; k < points; ++k) varying += std::fabs(panel_.M[k]);
@@ -59,7 +59,7 @@ double SpectralEngine::release_towards(Motion side, double from) const {
     for (std::size_t k = 1; k < points; ++k) left[k] = -sign * panel_.M[k];
     for (double& c : slope) c *= -sign;
     left[0] = Re - mean;
-    chebyshev::Curve<points> curve(1, left, slope);
+    chebyshev::Bounded<points> curve(1, left, slope);
     curve.raise_floor(doubt);
     std::optional<double> touch;
     const auto touches = [&](double x) {
@@ -71,19 +71,19 @@ double SpectralEngine::release_towards(Motion side, double from) const {
         }
         return false;
     };
-    const auto x = chebyshev::first_below(curve, from, chebyshev::Start::anywhere, touches);
+    const auto x = chebyshev::first_below(curve, from, chebyshev::LeftEnd::anywhere, touches);
     if (!x) return nowhere;
     const double off = doubt / std::fabs(curve.slope(*x));
     if (holding_ || (!touch && off * panel_.h <= exact_enough * T0_)) return *x;
     return moment_of_release(touch.value_or(*x), off, from, side);
 }
 
-bool SpectralEngine::lets_go(double x, Motion side) const {
-    return motion_from_standstill(system_, excitation_.value(time_at(x), y_), y_.theta) == side;
+bool SpectralEngine::lets_go(double x, model::Motion side) const {
+    return model::motion_from_standstill(system_, excitation_.value(time_at(x), y_), y_.theta) == side;
 }
 
 /// Between a place near x where M still holds and one where it lets go, by halving.
-double SpectralEngine::moment_of_release(double x, double off, double from, Motion side) const {
+double SpectralEngine::moment_of_release(double x, double off, double from, model::Motion side) const {
     constexpr double finest = 1e-15;
     double held = x, gone = x;
     double step = std::clamp(off, 1e-12, 1e-3);
@@ -109,20 +109,20 @@ double SpectralEngine::moment_of_release(double x, double off, double from, Moti
 }
 
 /// Breakaway at x of the panel, or, with `nowhere`, at once.
-bool SpectralEngine::release_at(double x, Motion direction) {
+bool SpectralEngine::release_at(double x, model::Motion direction) {
     const bool at_once_only = x == nowhere;
     if (!at_once_only) {
         const bool feedback = feedback_ && x > -1;
         const double M = feedback ? excitation_.value(time_at(x), y_) : chebyshev::value(panel_.M, x);
-        if (!std::isfinite(M)) return fail(Outcome::excitation_not_finite);
+        if (!std::isfinite(M)) return fail(model::Outcome::excitation_not_finite);
         end_piece(x, y_, M);
-        if (!std::isfinite(M_)) return fail(Outcome::excitation_not_finite);
+        if (!std::isfinite(M_)) return fail(model::Outcome::excitation_not_finite);
         standing_from_ = nowhere;
     }
     motion_ = direction;
     leaving_ = true;
     holding_ = false;
-    record(EventKind::slip);
+    record(model::EventKind::slip);
     at_start_ = false;
     return !stopped();
 }
@@ -130,19 +130,19 @@ bool SpectralEngine::release_at(double x, Motion direction) {
 /// A motion that did not get under way: M only touched the limit. The mass stays where it is.
 void SpectralEngine::never_left() {
     if (!events_.empty() && events_.back().t == clock_.hi) {
-        Event& last = events_.back();
-        if (last.kind == EventKind::slip) {
+        model::Event& last = events_.back();
+        if (last.kind == model::EventKind::slip) {
             events_.pop_back();
-        } else if (last.kind == EventKind::turn) {
-            last.kind = EventKind::stick;
+        } else if (last.kind == model::EventKind::turn) {
+            last.kind = model::EventKind::stick;
         }
     } else if (!at_start_) {
-        record(EventKind::stick);  // it was on its way, came to rest, and did not go on
+        record(model::EventKind::stick);  // it was on its way, came to rest, and did not go on
     }
-    motion_ = Motion::stuck;
+    motion_ = model::Motion::stuck;
     leaving_ = false;
     holding_ = true;
     standing_from_ = nowhere;
 }
 
-}  // namespace dinal
+}  // namespace dinal::motion::spectral

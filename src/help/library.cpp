@@ -1,26 +1,37 @@
 // The list of all that Lua can see. A new class is a bind_*.cpp, a line in each of the two lists here, and its tests.
-#include "api/library.hpp"
+#include "help/library.hpp"
 
+#include "api/classes.hpp"
+#include "help/help.hpp"
 #include "lua/dinal_table.hpp"
 #include "lua/interrupt.hpp"
 #include "lua/standard_globals.hpp"
 #include "lua/terminal_output.hpp"
 #include "source/value_text.hpp"
 
-namespace dinal {
+namespace dinal::help {
 
 namespace {
 
 constexpr void (*register_functions[])(lua_State*) = {
-    register_system, register_excitation, register_integrator, register_run,  register_energy, register_trajectory,
-    register_theory, register_vector,     register_progress,   register_plot, register_help,
+    api::register_system,
+    api::register_excitation,
+    api::register_integrator,
+    api::register_run,
+    api::register_energy,
+    api::register_trajectory,
+    api::register_theory,
+    api::register_vector,
+    api::register_progress,
+    api::register_plot,
+    register_help,
 };
 
 // Plain fields of the table: documented here, set by open_library() and sys:simulate.
-constexpr Member library_members[] = {
+constexpr lua::Member library_members[] = {
     {"partial",
      nullptr,
-     Kind::field,
+     lua::Kind::field,
      {"dinal.partial -> run or nil",
       "What was done of the last run that M broke off with an error, or Ctrl-C: a run like any other.",
       "pcall(function()\n"
@@ -29,40 +40,39 @@ constexpr Member library_members[] = {
       "print(#dinal.partial)  --> 5"}},
     {"version",
      nullptr,
-     Kind::field,
+     lua::Kind::field,
      {"dinal.version -> string", "The version of the program.",
       "print(dinal.version == \"" DINAL_VERSION "\")  --> true"}},
 };
 
-const Class library_class = {"dinal",
-                             {"dinal.NAME, or NAME alone",
-                              "The table in which all of this lives. Its members are plain globals, too, which a user "
-                              "may overwrite; what is below "
-                              "is not.",
-                              "print(dinal.system == system)  --> true"},
-                             library_members};
+const lua::Class library_class = {
+    "dinal",
+    {"dinal.NAME, or NAME alone",
+     "The table in which all of this lives. Its members are plain globals, too, which a user "
+     "may overwrite; what is below "
+     "is not.",
+     "print(dinal.system == system)  --> true"},
+    library_members};
 
 const Section all_sections[] = {
-    {"Systems", "", &system_functions},
-    {"A system", "sys", &system_class},
-    {"Excitations", "excitation", &excitation_module},
-    {"An excitation", "e", &excitation_class},
-    {"Integrators", "integrator", &integrator_module},
-    {"An integrator", "integrator", &integrator_class},
-    {"A run", "run", &run_class},
-    {"The energy of a run", "energy", &energy_class},
-    {"Trajectories from files", "trajectory", &trajectory_module},
-    {"Theory", "theory", &theory_module},
-    {"Vectors", "vector", &vector_module},
-    {"A vector", "v", &vector_class},
-    {"Progress", "", &progress_functions},
-    {"Plots", "", &plot_functions},
-    {"A picture", "picture", &picture_class},
+    {"Systems", "", &api::system_functions},
+    {"A system", "sys", &api::system_class},
+    {"Excitations", "excitation", &api::excitation_module},
+    {"An excitation", "e", &api::excitation_class},
+    {"Integrators", "integrator", &api::integrator_module},
+    {"An integrator", "integrator", &api::integrator_class},
+    {"A run", "run", &api::run_class},
+    {"The energy of a run", "energy", &api::energy_class},
+    {"Trajectories from files", "trajectory", &api::trajectory_module},
+    {"Theory", "theory", &api::theory_module},
+    {"Vectors", "vector", &api::vector_module},
+    {"A vector", "v", &api::vector_class},
+    {"Progress", "", &api::progress_functions},
+    {"Plots", "", &api::plot_functions},
+    {"A picture", "picture", &api::picture_class},
     {"Help", "", &help_functions},
     {"The table dinal", "dinal", &library_class},
 };
-
-const char library_key = 0;  // registry key of the table `dinal`, which a user's `dinal = nil` does not touch
 
 // dinal.partial is nil until a run fails, so a name that is not there can not simply be an error.
 int unknown_name(lua_State* L) {
@@ -80,7 +90,7 @@ int unknown_name(lua_State* L) {
     }
     const std::vector<std::string_view> names(owned.begin(), owned.end());
     const std::string_view wrong = lua_tostring(L, 2);
-    raise(L, "there is no dinal." + std::string(wrong) + did_you_mean(wrong, names));
+    lua::raise(L, "there is no dinal." + std::string(wrong) + text::did_you_mean(wrong, names));
 }
 
 void copy_into_globals(lua_State* L) {
@@ -100,23 +110,17 @@ std::span<const Section> sections() {
     return all_sections;
 }
 
-void push_dinal_table(lua_State* L) {
-    lua_rawgetp(L, LUA_REGISTRYINDEX, &library_key);
-}
-
 void open_library(lua_State* L) {
-    open_coroutines(L);
-    open_terminal_output(L);
-    lua_newtable(L);
-    lua_pushvalue(L, -1);
-    lua_rawsetp(L, LUA_REGISTRYINDEX, &library_key);
+    lua::open_coroutines(L);
+    lua::open_terminal_output(L);
+    lua::make_dinal_table(L);
     for (const auto add : register_functions) {
         add(L);
     }
     copy_into_globals(L);
-    note_standard_globals(L);
+    lua::note_standard_globals(L);
     lua_newtable(L);
-    lua_pushcfunction(L, guarded<unknown_name>);
+    lua_pushcfunction(L, lua::guarded<unknown_name>);
     lua_setfield(L, -2, "__index");
     lua_setmetatable(L, -2);
     lua_pushliteral(L, DINAL_VERSION);
@@ -128,4 +132,4 @@ void open_library(lua_State* L) {
     lua_setglobal(L, "dinal");
 }
 
-}  // namespace dinal
+}  // namespace dinal::help

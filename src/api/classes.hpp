@@ -1,0 +1,37 @@
+// What the files of this room bring to Lua: one function that registers and one or two descriptions each.
+#pragma once
+
+#include "lua/bind.hpp"
+
+namespace dinal::api {
+
+/// One for each bind_*.cpp: called with the table `dinal` on the top of the stack, which it leaves there.
+void register_system(lua_State* L);
+void register_excitation(lua_State* L);
+void register_integrator(lua_State* L);
+void register_run(lua_State* L);
+void register_energy(lua_State* L);
+void register_trajectory(lua_State* L);
+void register_theory(lua_State* L);
+void register_vector(lua_State* L);
+void register_progress(lua_State* L);
+void register_plot(lua_State* L);
+
+// Defined in the bind_*.cpp of that name.
+extern const lua::Class system_functions;    // system, nondimensional
+extern const lua::Class system_class;        // sys
+extern const lua::Class excitation_module;   // excitation.harmonic ...
+extern const lua::Class excitation_class;    // e
+extern const lua::Class integrator_module;   // integrator.rk4 ...
+extern const lua::Class integrator_class;    // what they return
+extern const lua::Class run_class;           // run
+extern const lua::Class energy_class;        // what run:energy() returns
+extern const lua::Class trajectory_module;   // trajectory.load
+extern const lua::Class theory_module;       // theory.magnification ...
+extern const lua::Class vector_module;       // vector{...}, vector.linspace
+extern const lua::Class vector_class;        // v
+extern const lua::Class plot_functions;      // plot
+extern const lua::Class picture_class;       // what plot{ ..., show = false } returns
+extern const lua::Class progress_functions;  // progress
+
+}  // namespace dinal::api

@@ -1,0 +1,26 @@
+// Systems, excitations and integrators as the Lua text that makes them again.
+#pragma once
+
+#include <lua.hpp>
+#include <string>
+
+#include "model/excitation.hpp"
+#include "model/oscillator.hpp"
+#include "motion/integrator.hpp"
+
+namespace dinal::source {
+
+class ValueText;
+
+/// Lua text that makes the excitation again: "0.5 * excitation.pulse{ amplitude = 1, at = 1.5, width = 0.2 }". Where
+/// that is not possible (a long table, a function whose source is not at hand), a comment stands in its place.
+/// With `whole`, functions come with the variables that they take from outside, and tables whole.
+std::string describe(lua_State* L, const model::Excitation& excitation, ValueText* whole = nullptr);
+
+/// "system{ I = 1, k = 39.5, C = 1.5, Rd = 2, Re = 3 }": makes the same system again; parts that are 0 are left out.
+std::string lua_text(const model::Oscillator& system);
+
+/// "integrator.rk4{ h = 0.001 }": makes the same integrator again.
+std::string lua_text(const motion::Integrator& integrator);
+
+}  // namespace dinal::source
