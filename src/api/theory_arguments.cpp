@@ -12,7 +12,7 @@ TheoryArguments::TheoryArguments(lua_State* L, std::string_view call, std::strin
     luaL_checkstack(L, 10, "too many values");
 }
 
-Quantity TheoryArguments::quantity(std::string_view name, const Range& range) {
+Quantity TheoryArguments::quantity(std::string_view name, const text::Range& range) {
     options_.push(name);
     if (const auto* vector = lua::test<lua::Vector>(L_, -1)) {
         lua_pop(L_, 1);  // the table of options holds it on
@@ -33,12 +33,12 @@ Quantity TheoryArguments::quantity(std::string_view name, const Range& range) {
     }
     const double number = options_.number(name);
     if (!range.holds(number)) {
-        options_.fail(fmt::format("{} = {:.6g} {}", name, number, range.must));
+        options_.fail(fmt::format("{} = {:.6g} must {}", name, number, range.must));
     }
     return remembered(Quantity(number));
 }
 
-Quantity TheoryArguments::quantity(std::string_view name, const Range& range, double otherwise) {
+Quantity TheoryArguments::quantity(std::string_view name, const text::Range& range, double otherwise) {
     return options_.has(name) ? quantity(name, range) : Quantity(otherwise);
 }
 
@@ -79,11 +79,11 @@ void TheoryArguments::check_size(std::string_view name, std::size_t size) {
     sized_by_ = name;
 }
 
-void TheoryArguments::check(std::string_view name, const Range& range, std::span<const double> values) const {
+void TheoryArguments::check(std::string_view name, const text::Range& range, std::span<const double> values) const {
     const auto bad =
         std::find_if(values.begin(), values.end(), [&](double x) { return !std::isnan(x) && !range.holds(x); });
     if (bad != values.end()) {
-        refuse(name, static_cast<std::size_t>(bad - values.begin()), *bad, range.must);
+        refuse(name, static_cast<std::size_t>(bad - values.begin()), *bad, fmt::format("must {}", range.must));
     }
 }
 

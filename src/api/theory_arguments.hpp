@@ -12,20 +12,12 @@
 #include "lua/options.hpp"
 #include "lua/vector.hpp"
 #include "model/oscillator.hpp"
+#include "text/option.hpp"
 
 namespace dinal::api {
 
 /// What a closed form returns where it does not hold: nil for numbers, nan in a vector.
 inline constexpr double no_value = std::numeric_limits<double>::quiet_NaN();
-
-/// Which values an option may have, and how the sentence goes on that refuses another one: "r = -1 must ...".
-struct Range {
-    const char* must;
-    bool (*holds)(double);
-};
-inline constexpr Range any_number{"", [](double) { return true; }};
-inline constexpr Range positive{"must be positive", [](double x) { return x > 0; }};
-inline constexpr Range not_negative{"must not be negative", [](double x) { return x >= 0; }};
 
 /// A number, or the numbers of a vector.
 class Quantity {
@@ -48,8 +40,8 @@ public:
     [[nodiscard]] const lua::Options& options() const { return options_; }
 
     /// Vectors and tables of numbers must be equally long. A nan in a vector passes: its result is nan.
-    Quantity quantity(std::string_view name, const Range& range);
-    Quantity quantity(std::string_view name, const Range& range, double otherwise);
+    Quantity quantity(std::string_view name, const text::Range& range);
+    Quantity quantity(std::string_view name, const text::Range& range, double otherwise);
     /// The system that must be there.
     [[nodiscard]] const model::Oscillator& system() const;
     /// system(), or nullptr when there is none.
@@ -72,7 +64,7 @@ private:
     Quantity remembered(const Quantity& quantity);
     [[nodiscard]] bool has_nan(std::size_t i) const;
     void check_size(std::string_view name, std::size_t size);
-    void check(std::string_view name, const Range& range, std::span<const double> values) const;
+    void check(std::string_view name, const text::Range& range, std::span<const double> values) const;
 
     lua_State* L_;
     lua::Options options_;

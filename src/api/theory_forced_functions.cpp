@@ -13,17 +13,17 @@ namespace {
 
 using namespace theory;
 
-constexpr Range not_zero{"must not be zero", [](double x) { return x != 0; }};
-constexpr Range den_hartog_r{"must be 0 or from 0.0001 to 1e6",
-                             [](double x) { return x == 0 || (x >= DenHartog::slowest && x <= DenHartog::fastest); }};
-constexpr Range at_least_one{"must be at least 1: breakaway takes no less than kinetic friction",
-                             [](double x) { return x >= 1; }};
+constexpr text::Range den_hartog_r{"be 0 or from 0.0001 to 1e6", [](double x) {
+                                       return x == 0 || (x >= DenHartog::slowest && x <= DenHartog::fastest);
+                                   }};
+constexpr text::Range at_least_one{"be at least 1: breakaway takes no less than kinetic friction",
+                                   [](double x) { return x >= 1; }};
 
 template <double (*function)(double, double)>
 int of_r_and_zeta(lua_State* L, const char* call, const char* example) {
     TheoryArguments arguments(L, call, example, {"r", "zeta"});
-    const Quantity r = arguments.quantity("r", not_negative);
-    const Quantity zeta = arguments.quantity("zeta", not_negative, 0);
+    const Quantity r = arguments.quantity("r", text::not_negative);
+    const Quantity zeta = arguments.quantity("zeta", text::not_negative, 0);
     return arguments.push_result([&](std::size_t i) { return function(r[i], zeta[i]); });
 }
 
@@ -32,10 +32,10 @@ template <class Select>
 int sliding_motion(lua_State* L, const char* call, const char* example, Select select) {
     TheoryArguments arguments(L, call, example, {"r", "friction_ratio", "zeta", "breakaway_ratio"});
     const Quantity r = arguments.quantity("r", den_hartog_r);
-    const Quantity friction_ratio = arguments.quantity("friction_ratio", not_negative);
-    const Quantity zeta = arguments.quantity("zeta", not_negative, 0);
+    const Quantity friction_ratio = arguments.quantity("friction_ratio", text::not_negative);
+    const Quantity zeta = arguments.quantity("zeta", text::not_negative, 0);
     const Quantity breakaway_ratio = arguments.options().has("breakaway_ratio")
-                                         ? arguments.quantity("breakaway_ratio", not_negative)
+                                         ? arguments.quantity("breakaway_ratio", text::not_negative)
                                          : friction_ratio;
     return arguments.push_results([&](std::size_t i) {
         if (breakaway_ratio[i] < friction_ratio[i]) {
@@ -67,9 +67,9 @@ int equivalent_damping(lua_State* L) {
     TheoryArguments arguments(L, "theory.equivalent_damping",
                               "theory.equivalent_damping{ Rd = 2, omega = 6.28, amplitude = 0.5 }",
                               {"Rd", "omega", "amplitude"});
-    const Quantity Rd = arguments.quantity("Rd", not_negative);
-    const Quantity omega = arguments.quantity("omega", positive);
-    const Quantity amplitude = arguments.quantity("amplitude", positive);
+    const Quantity Rd = arguments.quantity("Rd", text::not_negative);
+    const Quantity omega = arguments.quantity("omega", text::positive);
+    const Quantity amplitude = arguments.quantity("amplitude", text::positive);
     return arguments.push_result(
         [&](std::size_t i) { return theory::equivalent_damping(Rd[i], omega[i], amplitude[i]); });
 }
@@ -78,9 +78,9 @@ int equivalent_zeta(lua_State* L) {
     TheoryArguments arguments(L, "theory.equivalent_zeta",
                               "theory.equivalent_zeta{ friction_ratio = 0.2, r = 0.5, magnification = 1.3 }",
                               {"friction_ratio", "r", "magnification"});
-    const Quantity friction_ratio = arguments.quantity("friction_ratio", not_negative);
-    const Quantity r = arguments.quantity("r", positive);
-    const Quantity phi = arguments.quantity("magnification", positive);
+    const Quantity friction_ratio = arguments.quantity("friction_ratio", text::not_negative);
+    const Quantity r = arguments.quantity("r", text::positive);
+    const Quantity phi = arguments.quantity("magnification", text::positive);
     return arguments.push_result(
         [&](std::size_t i) { return equivalent_damping_ratio(friction_ratio[i], r[i], phi[i]); });
 }
@@ -88,9 +88,9 @@ int equivalent_zeta(lua_State* L) {
 int linearised(lua_State* L) {
     TheoryArguments arguments(L, "theory.linearised", "theory.linearised{ r = 0.5, friction_ratio = 0.1 }",
                               {"r", "friction_ratio", "zeta"});
-    const Quantity r = arguments.quantity("r", not_negative);
-    const Quantity friction_ratio = arguments.quantity("friction_ratio", not_negative);
-    const Quantity zeta = arguments.quantity("zeta", not_negative, 0);
+    const Quantity r = arguments.quantity("r", text::not_negative);
+    const Quantity friction_ratio = arguments.quantity("friction_ratio", text::not_negative);
+    const Quantity zeta = arguments.quantity("zeta", text::not_negative, 0);
     return arguments.push_results([&](std::size_t i) {
         const auto motion = linearised_friction(r[i], zeta[i], friction_ratio[i]);
         return motion ? std::array{motion->amplitude, motion->lag} : std::array{no_value, no_value};
@@ -100,15 +100,15 @@ int linearised(lua_State* L) {
 int friction_work(lua_State* L) {
     TheoryArguments arguments(L, "theory.friction_work", "theory.friction_work{ Rd = 2, amplitude = 0.5 }",
                               {"Rd", "amplitude"});
-    const Quantity Rd = arguments.quantity("Rd", not_negative);
-    const Quantity amplitude = arguments.quantity("amplitude", not_negative);
+    const Quantity Rd = arguments.quantity("Rd", text::not_negative);
+    const Quantity amplitude = arguments.quantity("amplitude", text::not_negative);
     return arguments.push_result([&](std::size_t i) { return theory::friction_work(Rd[i], amplitude[i]); });
 }
 
 int growth_at_resonance(lua_State* L) {
     TheoryArguments arguments(L, "theory.growth_at_resonance", "theory.growth_at_resonance{ friction_ratio = 0.2 }",
                               {"friction_ratio"});
-    const Quantity friction_ratio = arguments.quantity("friction_ratio", not_negative);
+    const Quantity friction_ratio = arguments.quantity("friction_ratio", text::not_negative);
     return arguments.push_result([&](std::size_t i) { return theory::growth_at_resonance(friction_ratio[i]); });
 }
 
@@ -131,7 +131,7 @@ int stop_boundary(lua_State* L) {
     TheoryArguments arguments(L, "theory.stop_boundary", "theory.stop_boundary{ r = 0.75, zeta = 0.1 }",
                               {"r", "zeta", "Re_over_Rd"});
     const Quantity r = arguments.quantity("r", den_hartog_r);
-    const Quantity zeta = arguments.quantity("zeta", not_negative, 0);
+    const Quantity zeta = arguments.quantity("zeta", text::not_negative, 0);
     const Quantity factor = arguments.quantity("Re_over_Rd", at_least_one, 1);
     return arguments.push_result([&](std::size_t i) { return DenHartog(r[i], zeta[i]).stop_boundary(factor[i]); });
 }
@@ -141,10 +141,10 @@ int step_limit(lua_State* L) {
                               {"system", "rule", "theta0", "velocity0", "Mc"});
     const model::Oscillator& system = arguments.system();
     const auto rule = arguments.options().choice("rule", {"rk4", "report", "corrected"}, 0);
-    const Quantity theta0 = arguments.quantity("theta0", any_number, 0);
-    const Quantity velocity0 = arguments.quantity("velocity0", any_number, 0);
+    const Quantity theta0 = arguments.quantity("theta0", text::any_finite, 0);
+    const Quantity velocity0 = arguments.quantity("velocity0", text::any_finite, 0);
     const bool own_torque = !arguments.options().has("Mc");
-    const Quantity Mc = arguments.quantity("Mc", not_zero, 0);
+    const Quantity Mc = arguments.quantity("Mc", text::not_zero, 0);
     return arguments.push_result([&](std::size_t i) {
         if (rule == 0) return motion::rk4_stability_limit(system);
         const model::State initial{theta0[i], velocity0[i]};

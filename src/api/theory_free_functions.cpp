@@ -13,11 +13,10 @@ namespace {
 
 using namespace theory;
 
-constexpr Range swinging{"must be from 0 to less than 1: without a swing there is no next extreme",
-                         [](double x) { return x >= 0 && x < 1; }};
-constexpr Range not_zero{"must not be zero", [](double x) { return x != 0; }};
-constexpr Range whole{"must be a whole number, 0 or more",
-                      [](double x) { return x >= 0 && x == std::floor(x) && std::isfinite(x); }};
+constexpr text::Range swinging{"be from 0 to less than 1: without a swing there is no next extreme",
+                               [](double x) { return x >= 0 && x < 1; }};
+constexpr text::Range whole{"be a whole number, 0 or more",
+                            [](double x) { return x >= 0 && x == std::floor(x) && std::isfinite(x); }};
 
 /// A system set off at t = 0: what time_to_rest{...} and its relatives take.
 struct Start {
@@ -27,14 +26,14 @@ struct Start {
 
     explicit Start(TheoryArguments& arguments)
         : system(arguments.system()),
-          theta0(arguments.quantity("theta0", any_number, 0)),
-          velocity0(arguments.quantity("velocity0", any_number, 0)) {}
+          theta0(arguments.quantity("theta0", text::any_finite, 0)),
+          velocity0(arguments.quantity("velocity0", text::any_finite, 0)) {}
     [[nodiscard]] FreeMotion motion(std::size_t i) const { return {system, {theta0[i], velocity0[i]}}; }
 };
 
 int free_response_of_system(TheoryArguments& arguments) {
     const Start start(arguments);
-    const Quantity t = arguments.quantity("t", any_number);
+    const Quantity t = arguments.quantity("t", text::any_finite);
     if (arguments.options().has("omega0") || arguments.options().has("zeta")) {
         arguments.options().fail("system excludes omega0 and zeta, which it has of its own");
     }
@@ -79,11 +78,11 @@ int free_response(lua_State* L) {
     if (!arguments.options().has("omega0")) {
         arguments.options().missing("system, or omega0 and zeta");
     }
-    const Quantity omega0 = arguments.quantity("omega0", positive);
-    const Quantity zeta = arguments.quantity("zeta", not_negative, 0);
-    const Quantity theta0 = arguments.quantity("theta0", any_number, 0);
-    const Quantity velocity0 = arguments.quantity("velocity0", any_number, 0);
-    const Quantity t = arguments.quantity("t", any_number);
+    const Quantity omega0 = arguments.quantity("omega0", text::positive);
+    const Quantity zeta = arguments.quantity("zeta", text::not_negative, 0);
+    const Quantity theta0 = arguments.quantity("theta0", text::any_finite, 0);
+    const Quantity velocity0 = arguments.quantity("velocity0", text::any_finite, 0);
+    const Quantity t = arguments.quantity("t", text::any_finite);
     return arguments.push_results([&](std::size_t i) {
         const model::State y = theory::free_response(omega0[i], zeta[i], {theta0[i], velocity0[i]}, t[i]);
         return std::array{y.theta, y.velocity};
@@ -139,13 +138,14 @@ int half_cycle(lua_State* L) {
         arguments.options().fail(fmt::format("the system has zeta = {:.6g}: without a swing there is no next extreme",
                                              system->damping_ratio()));
     }
-    const Quantity X = arguments.quantity("X", any_number);
+    const Quantity X = arguments.quantity("X", text::any_finite);
     const Quantity zeta = arguments.quantity("zeta", swinging, system != nullptr ? system->damping_ratio() : 0);
-    const Quantity x_f = arguments.quantity("x_f", not_negative,
+    const Quantity x_f = arguments.quantity("x_f", text::not_negative,
                                             system != nullptr ? system->kinetic_friction() / system->stiffness() : 0);
     const bool own_zone = system == nullptr && !arguments.options().has("dead_zone");
     const Quantity dead_zone =
-        own_zone ? x_f : arguments.quantity("dead_zone", not_negative, system != nullptr ? system->dead_zone() : 0);
+        own_zone ? x_f
+                 : arguments.quantity("dead_zone", text::not_negative, system != nullptr ? system->dead_zone() : 0);
     const Quantity n = arguments.quantity("n", whole, 1);
     return arguments.push_result([&](std::size_t i) {
         if (dead_zone[i] < x_f[i]) {
@@ -166,24 +166,24 @@ int logarithmic_decrement(lua_State* L) {
 int zeta_from_decrement(lua_State* L) {
     TheoryArguments arguments(L, "theory.zeta_from_decrement", "theory.zeta_from_decrement{ decrement = 0.3 }",
                               {"decrement"});
-    const Quantity decrement = arguments.quantity("decrement", not_negative);
+    const Quantity decrement = arguments.quantity("decrement", text::not_negative);
     return arguments.push_result([&](std::size_t i) { return zeta_of_decrement(decrement[i]); });
 }
 
 int friction_decrement(lua_State* L) {
     TheoryArguments arguments(L, "theory.friction_decrement", "theory.friction_decrement{ Rd = 2, k = 40 }",
                               {"Rd", "k"});
-    const Quantity Rd = arguments.quantity("Rd", not_negative);
-    const Quantity k = arguments.quantity("k", positive);
+    const Quantity Rd = arguments.quantity("Rd", text::not_negative);
+    const Quantity k = arguments.quantity("k", text::positive);
     return arguments.push_result([&](std::size_t i) { return theory::friction_decrement(Rd[i], k[i]); });
 }
 
 int identify(lua_State* L) {
     TheoryArguments arguments(L, "theory.identify", "theory.identify{ X0 = 1, X1 = -0.7, X2 = 0.45 }",
                               {"X0", "X1", "X2"});
-    const Quantity X0 = arguments.quantity("X0", not_zero);
-    const Quantity X1 = arguments.quantity("X1", any_number);
-    const Quantity X2 = arguments.quantity("X2", any_number);
+    const Quantity X0 = arguments.quantity("X0", text::not_zero);
+    const Quantity X1 = arguments.quantity("X1", text::any_finite);
+    const Quantity X2 = arguments.quantity("X2", text::any_finite);
     return arguments.push_results([&](std::size_t i) {
         const auto found = theory::identify(X0[i], X1[i], X2[i]);
         return found ? std::array{found->zeta, found->friction_shift} : std::array{no_value, no_value};

@@ -95,7 +95,7 @@ std::optional<std::string> complaint(std::span<const Option> options, const void
     return std::nullopt;
 }
 
-std::string lua_text(std::string_view call, std::span<const Option> options, const void* object, Written written) {
+std::string lua_text(std::string_view call, std::span<const Option> options, const void* object, Defaults defaults) {
     std::string list;
     for (const Option& option : options) {
         if (option.filled.get == nullptr) {
@@ -103,7 +103,7 @@ std::string lua_text(std::string_view call, std::span<const Option> options, con
         }
         const OptionValue value = option.filled.get(object);
         const bool same = option.otherwise != needed && value == option.filled.initial();
-        const std::string text = written == Written::changed && same ? "" : literal(option, value);
+        const std::string text = defaults == Defaults::left_out && same ? "" : literal(option, value);
         if (!text.empty()) {
             list += fmt::format("{}{} = {}", list.empty() ? "" : ", ", option.name, text);
         }

@@ -90,7 +90,8 @@ std::string number_literal(double x);
 /// "{ 1, 2.5 }"
 std::string list_literal(std::span<const double> numbers);
 
-enum class Written { all, changed };  ///< options that have their default are written, too, or left out
+/// Options that have their default, in the text of a value.
+enum class Defaults { written, left_out };
 
 namespace detail {
 
@@ -178,7 +179,7 @@ constexpr OptionTarget function_target() {
 }
 
 std::optional<std::string> complaint(std::span<const Option> options, const void* owner, const void* object);
-std::string lua_text(std::string_view call, std::span<const Option> options, const void* object, Written written);
+std::string lua_text(std::string_view call, std::span<const Option> options, const void* object, Defaults defaults);
 
 }  // namespace detail
 
@@ -205,8 +206,8 @@ std::optional<std::string> complaint(std::span<const Option> options, const T& o
 /// The Lua text that makes the object again: "excitation.pulse{ amplitude = 1, at = 1.5, width = 0.2 }". What is
 /// without limit, or absent, is left out.
 template <class T>
-std::string lua_text(std::string_view call, std::span<const Option> options, const T& object, Written written) {
-    return detail::lua_text(call, options, &object, written);
+std::string lua_text(std::string_view call, std::span<const Option> options, const T& object, Defaults defaults) {
+    return detail::lua_text(call, options, &object, defaults);
 }
 
 }  // namespace dinal::text

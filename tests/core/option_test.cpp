@@ -55,9 +55,9 @@ TEST_CASE("a row of an option fills its member and reads it back", "[option]") {
     CHECK(pump.mode == Pump::Mode::fast);
     CHECK(pump.period == 0.25);
     CHECK(pump.limit == 2.5);
-    CHECK(text::lua_text("pump", options, pump, text::Written::changed) ==
+    CHECK(text::lua_text("pump", options, pump, text::Defaults::left_out) ==
           "pump{ period = 0.25, mode = \"fast\", limit = 2.5 }");
-    CHECK(text::lua_text("pump", options, pump, text::Written::all) ==
+    CHECK(text::lua_text("pump", options, pump, text::Defaults::written) ==
           "pump{ flow = 1, period = 0.25, mode = \"fast\", primed = false, stages = 1, limit = 2.5, breaks = {} }");
 }
 
