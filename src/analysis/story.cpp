@@ -164,8 +164,8 @@ void Story::tell_decay() {
             factor, system_.frictionless() ? "so the motion never quite ends" : "until breakaway holds the rest");
     } else {
         say("Half a cycle makes an extreme X into qX - (1 + q)Rd/k with q = exp(-pi zeta/sqrt(1 - zeta^2)) = {:.5g} "
-            "and Rd/k = {:.5g}: viscous damping takes a part, dry friction the same each time, and that ends the "
-            "motion.",
+            "and Rd/k = {:.5g}: viscous damping takes a part, "
+            "dry friction the same each time, and that ends the motion.",
             factor, step / 2);
     }
 }

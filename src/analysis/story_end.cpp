@@ -67,8 +67,8 @@ void Story::tell_period(const Recurrence& motion) {
         of = whole == 1 ? "the period of M" : fmt::format("{} periods of M", whole);
     }
     if (!motion.steady) {
-        say("The motion settles: it nearly repeats itself every {} ({}), and the last two times differ by {} of the "
-            "amplitude.",
+        say("The motion settles: it nearly repeats itself every {} ({}), "
+            "and the last two times differ by {} of the amplitude.",
             at(motion.period), of, text::percent(motion.change));
         return;
     }

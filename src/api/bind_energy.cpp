@@ -115,8 +115,7 @@ constexpr lua::Member members[] = {
      {"energy.total -> table",
       "The balance of the whole run, torque times rad: input (work of M on the mass) = kinetic + spring (the changes "
       "of what is stored) + viscous + dry (what the two frictions took) + error (what does not add up); flow is what "
-      "M, "
-      "the spring and the moving mass gave in all half cycles together, and closure is |error|/flow.",
+      "M, the spring and the moving mass gave in all half cycles together, and closure is |error|/flow.",
       DINAL_ENERGY
       "print(string.format(\"%.6f %.6f\", energy.total.dry, energy.total.spring))  --> 0.499200 -0.499200\n"
       "print(energy.total.closure < 1e-12)  --> true"}},

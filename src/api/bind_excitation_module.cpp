@@ -18,8 +18,8 @@ constexpr lua::Member module_members[] = {
      lua::guarded<functions::harmonic>,
      lua::Kind::function,
      {"excitation.harmonic{ amplitude = 1, frequency | omega, phase = 0 } -> excitation",
-      "amplitude sin(omega t + phase). Give frequency (cycles per time unit) or omega (rad per time unit); phase is in "
-      "rad.",
+      "amplitude sin(omega t + phase). Give frequency (cycles per time unit) "
+      "or omega (rad per time unit); phase is in rad.",
       "print(excitation.harmonic{ amplitude = 3, frequency = 0.25 }(1))  --> 3.0"}},
     {"step",
      lua::guarded<functions::step>,
@@ -68,8 +68,7 @@ constexpr lua::Member module_members[] = {
      lua::Kind::function,
      {"excitation.chirp{ amplitude = 1, from, to, duration, at = 0, phase = 0 } -> excitation",
       "A sine whose frequency goes evenly from `from` to `to` (cycles per time unit) over `duration`, beginning at "
-      "`at` "
-      "with sin(phase). It keeps the first frequency before that and the last one after it.",
+      "`at` with sin(phase). It keeps the first frequency before that and the last one after it.",
       "print(excitation.chirp{ from = 0, to = 1, duration = 2 }(1))  --> 1.0"}},
     {"exponential",
      lua::guarded<functions::exponential>,

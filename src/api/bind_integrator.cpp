@@ -109,9 +109,8 @@ constexpr lua::Member functions[] = {
      {"integrator.spectral{ tolerance = 1e-12, max_panel = 0.6 T0 } -> integrator",
       "The default: the motion as polynomials on panels between events and breaks of M, right to rounding for any M, "
       "with every event in its place. tolerance is relative, for each panel. A pulse of a scripted M that falls "
-      "between "
-      "the 17 samples of a panel is not seen: announce it by excitation.scripted(f, { breaks = {...} }), or take "
-      "max_panel (time units) a few times as long as the shortest pulse.",
+      "between the 17 samples of a panel is not seen: announce it by excitation.scripted(f, { breaks = {...} }), or "
+      "take max_panel (time units) a few times as long as the shortest pulse.",
       "sys = nondimensional{ friction_ratio = 0.167 }\n"
       "run = sys:simulate{ velocity0 = 2*math.pi, t_end = 3, dt = 0.5, integrator = integrator.spectral{} }\n"
       "print(string.format(\"%.9f\", (run:at(3))))  --> 0.155151392"}},
@@ -121,17 +120,15 @@ constexpr lua::Member functions[] = {
      {"integrator.rk4{ h } -> integrator",
       "The classical Runge-Kutta method of fourth order with step h (time units), which keeps its order through dry "
       "friction: a step is cut where the velocity becomes zero and where M jumps. h must not exceed the stability "
-      "limit, "
-      "0.45 T0 without damping.",
+      "limit, 0.45 T0 without damping.",
       "print(integrator.rk4{ h = 0.001 })  --> integrator.rk4{ h = 0.001 }"}},
     {"dinal1989",
      lua::guarded<dinal1989>,
      lua::Kind::function,
      {"integrator.dinal1989{ h, stop = \"listing\", slip = false } -> integrator",
       "The program DINAL as it was printed in 1989, with step h (time units) and its own rule for stops; a museum "
-      "piece "
-      "for comparison. stop = \"text\" takes the rule that the report's text states instead; slip = true repeats the "
-      "wrong index with which the report's chapter 6 was computed.",
+      "piece for comparison. stop = \"text\" takes the rule that the report's text states instead; slip = true repeats "
+      "the wrong index with which the report's chapter 6 was computed.",
       "sys = nondimensional{}\n"
       "run = sys:simulate{ theta0 = 1, t_end = 0.5, dt = 0.5, integrator = integrator.dinal1989{ h = 0.1 } }\n"
       "print(string.format(\"%.6f\", run.theta[2]))  --> -0.997964"}},

@@ -108,12 +108,9 @@ constexpr lua::Member functions[] = {
      lua::Kind::function,
      {"for i in progress(n, label) do, for i, x in progress(list, label) do",
       "A loop of n steps, or through a list (a table or a vector), that shows how far it is: after half a second one "
-      "line "
-      "on standard error with the label, the fraction, the rate and the time that is left, if that is a terminal; the "
-      "line "
-      "goes when the loop ends. Runs and loops within a step count as parts of it. n may be math.huge; leave such a "
-      "loop "
-      "with break. A run by itself shows the same.",
+      "line on standard error with the label, the fraction, the rate and the time that is left, if that is a terminal; "
+      "the line goes when the loop ends. Runs and loops within a step count as parts of it. n may be math.huge; leave "
+      "such a loop with break. A run by itself shows the same.",
       "peaks = {}\n"
       "for i, f in progress({ 0.5, 1, 2 }, \"sweep\") do\n"
       "    M = excitation.harmonic{ frequency = f }\n"

@@ -190,9 +190,8 @@ constexpr lua::Member members[] = {
      lua::Kind::method,
      {"run:energy() -> energy",
       "Where the energy went: the work of M, what is stored in the mass and the spring, what the two frictions took; "
-      "in "
-      "total, for each half cycle and at the rows. Integrated over the motion that integrator.spectral keeps, so only "
-      "for its runs.",
+      "in total, for each half cycle and at the rows. "
+      "Integrated over the motion that integrator.spectral keeps, so only for its runs.",
       "run = system{ I = 1, k = 1, Rd = 0.12 }:simulate{ theta0 = 1, t_end = 20, dt = 5 }\n"
       "print(string.format(\"%.6f\", run:energy().total.dry))  --> 0.499200"}},
     {"explain",
@@ -208,8 +207,7 @@ constexpr lua::Member members[] = {
      {"run:save(file, { columns })",
       "Writes the rows: file.csv gets a comment block with the Lua text that repeats the run, a line of names and the "
       "rows, and with columns = { \"t\", \"theta\" } only these; file.dat gets the record of 1989 (NPUNT, then t, "
-      "theta, "
-      "velocity/omega0, M/k, friction/k, damping/k). Both read back exactly with trajectory.load.",
+      "theta, velocity/omega0, M/k, friction/k, damping/k). Both read back exactly with trajectory.load.",
       DINAL_RUN "file = os.tmpname() .. \".csv\"\n"
                 "run:save(file, { columns = { \"t\", \"theta\" } })\n"
                 "print(#trajectory.load(file))  --> 5\n"
@@ -251,9 +249,8 @@ constexpr lua::Member members[] = {
      lua::Kind::field,
      {"run.events -> table",
       "What happened at velocity zero, in order of time: a list of { t, kind, theta, M }. kind is \"turn\" (goes on "
-      "the "
-      "other way), \"stick\" (stays), \"slip\" (breaks away) or \"rest\" (sticks to the end of the run). Nothing is "
-      "recorded at t_start. Empty in a run that was read from a file.",
+      "the other way), \"stick\" (stays), \"slip\" (breaks away) or \"rest\" (sticks to the end of the run). Nothing "
+      "is recorded at t_start. Empty in a run that was read from a file.",
       "run = nondimensional{}:simulate{ theta0 = 1, t_end = 1.2, dt = 0.1 }\n"
       "for _, e in ipairs(run.events) do print(e.kind, string.format(\"%.4f %.4f\", e.t, e.theta)) end\n"
       "--> turn\t0.5000 -1.0000\n"

@@ -120,11 +120,9 @@ constexpr lua::Member functions[] = {
      lua::Kind::function,
      {"system{ I, k, C = 0, Rd = 0, Re = Rd } -> system",
       "A mass on a spring with viscous damping and dry friction: I theta'' + C theta' + Rd sgn(theta') + k theta = "
-      "M(t), "
-      "stuck while the velocity is zero and |M - k theta| <= Re. I is the moment of inertia, k the stiffness (torque "
-      "per "
-      "rad), C the viscous damping (torque per rad per time unit), Rd the friction torque while moving, Re the torque "
-      "that sticking can hold. SI or any consistent units; I > 0, k > 0, C >= 0, Rd >= 0, Re >= Rd.",
+      "M(t), stuck while the velocity is zero and |M - k theta| <= Re. I is the moment of inertia, k the stiffness "
+      "(torque per rad), C the viscous damping (torque per rad per time unit), Rd the friction torque while moving, Re "
+      "the torque that sticking can hold. SI or any consistent units; I > 0, k > 0, C >= 0, Rd >= 0, Re >= Rd.",
       "sys = system{ I = 1, k = 4*math.pi^2, C = 1.5, Rd = 16.5, Re = 18 }\n"
       "print(sys.T0, sys.regime)  --> 1.0\tunderdamped"}},
     {"nondimensional",
@@ -132,9 +130,8 @@ constexpr lua::Member functions[] = {
      lua::Kind::function,
      {"nondimensional{ zeta = 0, friction_ratio = 0, breakaway_ratio = friction_ratio } -> system",
       "The system with k = 1 and I = 1/(4 pi^2): its period T0 is 1 and torques are in units of the characteristic "
-      "torque "
-      "Mc, so that M is M* of the report. zeta is the viscous damping ratio, friction_ratio is Rd/Mc, breakaway_ratio "
-      "Re/Mc.",
+      "torque Mc, so that M is M* of the report. zeta is the viscous damping ratio, "
+      "friction_ratio is Rd/Mc, breakaway_ratio Re/Mc.",
       "sys = nondimensional{ zeta = 0.119, friction_ratio = 0.418 }\n"
       "print(sys.k, sys.Rd, string.format(\"%.3f\", sys.zeta))  --> 1.0\t0.418\t0.119"}},
 };

@@ -16,8 +16,7 @@ constexpr lua::Member functions[] = {
      {"theory.free_response{ t, theta0 = 0, velocity0 = 0, system } -> theta, velocity",
       "The free motion at the times t, from theta0 (rad) and velocity0 (rad per time unit) at t = 0: exact in all "
       "regimes, and with the dry friction of the system, turns and rest included (t must not be negative then). "
-      "Instead "
-      "of system, omega0 (rad per time unit) and zeta = 0 give a motion without dry friction.",
+      "Instead of system, omega0 (rad per time unit) and zeta = 0 give a motion without dry friction.",
       "sys = nondimensional{ friction_ratio = 0.167 }\n"
       "print(string.format(\"%.9f %.1f\", theory.free_response{ system = sys, velocity0 = 2*math.pi, t = 5 }))\n"
       "--> 0.155151392 0.0"}},
@@ -51,9 +50,8 @@ constexpr lua::Member functions[] = {
      lua::Kind::function,
      {"theory.half_cycle{ X, zeta = 0, x_f = 0, dead_zone = x_f, n = 1 } -> number or vector",
       "The extreme of a free motion that is n half cycles after the extreme X (rad, with its sign): X' = s x_f - (X - "
-      "s "
-      "x_f) e^(-pi zeta/sqrt(1 - zeta^2)), s = sgn X, x_f = Rd/k. Within dead_zone = Re/k the mass stays where it is. "
-      "Instead of zeta, x_f and dead_zone a system can be given. zeta < 1.",
+      "s x_f) e^(-pi zeta/sqrt(1 - zeta^2)), s = sgn X, x_f = Rd/k. Within dead_zone = Re/k the mass stays where it "
+      "is. Instead of zeta, x_f and dead_zone a system can be given. zeta < 1.",
       "print(theory.half_cycle{ X = 1, x_f = 0.2 }, theory.half_cycle{ X = 1, x_f = 0.2, n = 9 })  --> -0.6\t0.2"}},
     {"logarithmic_decrement",
      lua::guarded<f::logarithmic_decrement>,
@@ -78,20 +76,17 @@ constexpr lua::Member functions[] = {
      lua::Kind::function,
      {"theory.identify{ X0, X1, X2 } -> zeta, x_f",
       "Both dampings from three successive extremes of a free motion (signs do not count), rest not among them: q = "
-      "(X1 "
-      "- X2)/(X0 - X1), zeta/sqrt(1 - zeta^2) = -(ln q)/pi, x_f = Rd/k = (q X0 - X1)/(1 + q). nil unless X0 > X1 > X2. "
-      "A "
-      "negative result says that the extremes are too inaccurate to tell this damping from none.",
+      "(X1 - X2)/(X0 - X1), zeta/sqrt(1 - zeta^2) = -(ln q)/pi, x_f = Rd/k = (q X0 - X1)/(1 + q). nil unless X0 > X1 > "
+      "X2. A negative result says that the extremes are too inaccurate to tell this damping from none.",
       "t, X = theory.extremes{ system = nondimensional{ zeta = 0.119, friction_ratio = 0.06 }, theta0 = 1 }\n"
-      "print(string.format(\"%.6f %.6f\", theory.identify{ X0 = X[1], X1 = X[2], X2 = X[3] }))  --> 0.119000 "
-      "0.060000"}},
+      "print(string.format(\"%.6f %.6f\", theory.identify{ X0 = X[1], X1 = X[2], X2 = X[3] }))"
+      "  --> 0.119000 0.060000"}},
     {"magnification",
      lua::guarded<f::magnification>,
      lua::Kind::function,
      {"theory.magnification{ r, zeta = 0 } -> number or vector",
       "The steady amplitude under M0 sin(omega t) without dry friction, in units of M0/k: 1/sqrt((1 - r^2)^2 + 4 "
-      "zeta^2 "
-      "r^2), r = omega/omega0. math.huge at r = 1 without damping.",
+      "zeta^2 r^2), r = omega/omega0. math.huge at r = 1 without damping.",
       "print(theory.magnification{ r = { 0, 0.5, 2 } })  --> vector{ 1, 1.33333, 0.333333 }"}},
     {"phase_lag",
      lua::guarded<f::phase_lag>,
@@ -127,8 +122,7 @@ constexpr lua::Member functions[] = {
      {"theory.linearised{ r, friction_ratio, zeta = 0 } -> amplitude, lag",
       "The steady motion with dry friction replaced by its equivalent damping, added to zeta: amplitude in units of "
       "M0/k, sqrt(1 - (4 gamma/pi)^2)/|1 - r^2| for zeta = 0, and lag in rad. For small gamma only; theory.den_hartog "
-      "is "
-      "exact. nil, or nan in a vector, from gamma = pi/4 on.",
+      "is exact. nil, or nan in a vector, from gamma = pi/4 on.",
       "print(string.format(\"%.4f %.4f\", theory.linearised{ r = 1.35, friction_ratio = 0.5 }))  --> 0.9376 2.4515"}},
     {"friction_work",
      lua::guarded<f::friction_work>,
@@ -141,30 +135,26 @@ constexpr lua::Member functions[] = {
      lua::Kind::function,
      {"theory.growth_at_resonance{ friction_ratio } -> number or vector",
       "What the amplitude gains in each period at r = 1 without viscous damping, in units of M0/k: pi - 4 gamma, gamma "
-      "= "
-      "Rd/M0; 0 from gamma = pi/4 on, where it does not grow.",
+      "= Rd/M0; 0 from gamma = pi/4 on, where it does not grow.",
       "print(string.format(\"%.6f\", theory.growth_at_resonance{ friction_ratio = 0.167 }))  --> 2.473593"}},
     {"den_hartog",
      lua::guarded<f::den_hartog>,
      lua::Kind::function,
      {"theory.den_hartog{ r, friction_ratio, zeta = 0, breakaway_ratio = friction_ratio } -> amplitude, lag",
       "The exact steady motion under M0 sin(omega t) with dry friction and without stops (Den Hartog 1931): amplitude "
-      "in "
-      "units of M0/k and lag of its peak in rad; r = omega/omega0, friction_ratio = Rd/M0, breakaway_ratio = Re/M0. "
-      "nil, or nan in a vector, beyond theory.stop_boundary, where the mass stops in each cycle. At r = 1 with zeta = "
-      "0 "
-      "the motion grows without bound: math.huge and pi/2. At r = 1/2, 1/4, ... with zeta = 0 the steady motion "
-      "depends "
-      "on its start; this is the symmetric one of them. r is 0 or from 0.0001 to 1e6.",
-      "print(string.format(\"%.9f %.4f\", theory.den_hartog{ r = 0.75, friction_ratio = 0.5 }))  --> 1.972601445 "
-      "0.5296\n"
+      "in units of M0/k and lag of its peak in rad; r = omega/omega0, friction_ratio = Rd/M0, breakaway_ratio = Re/M0. "
+      "nil, or nan in a vector, beyond theory.stop_boundary, where the mass stops in each cycle. At r = 1 with "
+      "zeta = 0 the motion grows without bound: math.huge and pi/2. At r = 1/2, 1/4, ... with zeta = 0 the steady "
+      "motion depends on its start; this is the symmetric one of them. r is 0 or from 0.0001 to 1e6.",
+      "print(string.format(\"%.9f %.4f\", theory.den_hartog{ r = 0.75, friction_ratio = 0.5 }))"
+      "  --> 1.972601445 0.5296\n"
       "print(theory.den_hartog{ r = { 0.75, 0.75 }, friction_ratio = { 0.7, 0.8 } })\n"
       "--> vector{ 1.61591, nan }\tvector{ 0.785606, nan }"}},
     {"den_hartog_fundamental",
      lua::guarded<f::den_hartog_fundamental>,
      lua::Kind::function,
-     {"theory.den_hartog_fundamental{ r, friction_ratio, zeta = 0, breakaway_ratio = friction_ratio } -> amplitude, "
-      "lag",
+     {"theory.den_hartog_fundamental{ r, friction_ratio, zeta = 0, breakaway_ratio = friction_ratio } -> "
+      "amplitude, lag",
       "The harmonic part of that motion that has the frequency of the load: its amplitude in units of M0/k and its lag "
       "in rad. That is what a linear theory can hope to meet.",
       "amplitude, lag = theory.den_hartog_fundamental{ r = 1.35, friction_ratio = 0.5 }\n"
@@ -173,10 +163,8 @@ constexpr lua::Member functions[] = {
      lua::guarded<f::stop_boundary>,
      lua::Kind::function,
      {"theory.stop_boundary{ r, zeta = 0, Re_over_Rd = 1 } -> number or vector",
-      "The friction ratio Rd/M0 up to which the steady motion under M0 sin(omega t) has no stops; r is 0 or from "
-      "0.0001 "
-      "to "
-      "1e6.",
+      "The friction ratio Rd/M0 up to which the steady motion under M0 sin(omega t) "
+      "has no stops; r is 0 or from 0.0001 to 1e6.",
       "print(theory.stop_boundary{ r = { 0.5, 1, 3 } })  --> vector{ 0.333333, 0.785398, 0.5625 }"}},
     {"step_limit",
      lua::guarded<f::step_limit>,
@@ -188,8 +176,8 @@ constexpr lua::Member functions[] = {
       "gives without slips, T0 zeta/pi + Rd/(k VMAX). Only the first one is a limit.",
       "sys = nondimensional{ zeta = 0.02387 }\n"
       "print(string.format(\"%.4f %.4f %.4f\", theory.step_limit{ system = sys },\n"
-      "    theory.step_limit{ system = sys, rule = \"report\" }, theory.step_limit{ system = sys, rule = \"corrected\" "
-      "}))\n"
+      "    theory.step_limit{ system = sys, rule = \"report\" }, "
+      "theory.step_limit{ system = sys, rule = \"corrected\" }))\n"
       "--> 0.4573 0.0239 0.0076"}},
 };
 
@@ -199,11 +187,9 @@ const lua::Class theory_module = {
     "theory",
     {"theory.NAME{ ... } -> numbers or vectors",
      "Closed forms to compare a run with. Each option that is a number can be a vector, or a table of numbers, too: "
-     "then "
-     "the results are vectors (all of them equally long). Where a formula does not hold, the result is nil, and nan in "
-     "a "
-     "vector. docs/theory.md has the formulas. For a system under M0 sin(omega t): r = omega/sys.omega0, zeta = "
-     "sys.zeta, friction_ratio = sys:friction_ratio(M0).",
+     "then the results are vectors (all of them equally long). Where a formula does not hold, the result is nil, and "
+     "nan in a vector. docs/theory.md has the formulas. For a system under M0 sin(omega t): r = omega/sys.omega0, "
+     "zeta = sys.zeta, friction_ratio = sys:friction_ratio(M0).",
      "r = vector.linspace(0.5, 2, 4)\n"
      "print(theory.magnification{ r = r, zeta = 0.1 })  --> vector{ 1.32164, 5, 0.77791, 0.330409 }"},
     functions};

@@ -322,8 +322,8 @@ constexpr lua::Member module_members[] = {
 const lua::Class vector_class{
     "vector",
     {"v",
-     "Numbers in a row, such as a column of a run. It can not be changed; arithmetic and mathematics act on all "
-     "elements.",
+     "Numbers in a row, such as a column of a run. It can not be changed; "
+     "arithmetic and mathematics act on all elements.",
      "v = vector{ 1, 2, 3 }\nprint(v[1], #v, 2 * v)  --> 1.0\t3\tvector{ 2, 4, 6 }"},
     class_members,
     lua::guarded<element>,

@@ -62,8 +62,7 @@ int continue_run(lua_State* L) {
     const bool spaced = origin.rows.dt() > 0;
     if (spaced && options.has("times")) {
         options.fail(
-            fmt::format("this run has a row every dt = {:.6g}, and goes on so; times are for runs that had "
-                        "times",
+            fmt::format("this run has a row every dt = {:.6g}, and goes on so; times are for runs that had times",
                         origin.rows.dt()));
     }
     origin.window.end = asked_end(options, so_far, origin);

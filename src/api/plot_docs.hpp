@@ -57,8 +57,7 @@ inline constexpr lua::Doc plot_run_doc{
     "-->    0            1             2            3            4 t"};
 
 inline constexpr lua::Doc phase_plot_run_doc{
-    "run:phase_plot{ title, xlabel, ylabel, xlim, ylim, xticks, yticks, axes, file, size, width, height, ascii, "
-    "show }",
+    "run:phase_plot{ title, xlabel, ylabel, xlim, ylim, xticks, yticks, axes, file, size, width, height, ascii, show }",
     "Draws the phase plane, velocity/omega0 over theta, one to one: circles about the origin are lines of equal "
     "energy, and a mass that comes to rest within the dead zone stays there. Options as for plot.",
     "run = nondimensional{ friction_ratio = 0.1 }:simulate{ theta0 = 1, t_end = 3, dt = 0.01 }\n"

@@ -22,9 +22,8 @@ std::string manual() {
     std::string text = fmt::format(
         "# dinal {}: manual of the Lua API\n\n"
         "This page is what `dinal --manual` prints; at the prompt `help(x)` prints the same, one entry at a time. "
-        "Everything "
-        "lives in the table `dinal`, and its members are plain globals, too. Options are named; an unknown one is an "
-        "error. "
+        "Everything lives in the table `dinal`, and its members are plain globals, too. "
+        "Options are named; an unknown one is an error. "
         "In the examples `-->` is followed by what the line prints.\n\n",
         DINAL_VERSION);
     for (const Section& section : sections()) {

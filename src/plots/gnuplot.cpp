@@ -170,9 +170,9 @@ text::Expected<std::string> run_gnuplot(std::string_view commands, const Gnuplot
     Descriptor to(ends[1]);
     Child child;
     if (const int error = child.start(input.number(), to.number(), errors.number()); error != 0) {
-        return error == ENOENT ? text::Error{"files .svg, .png and .pdf are drawn by gnuplot, which is not installed: install "
-                                       "the Debian package gnuplot-nox (plots in the terminal and .gp files need no "
-                                       "gnuplot)"}
+        return error == ENOENT ? text::Error{"files .svg, .png and .pdf are drawn by gnuplot, which is not installed: "
+                                       "install the Debian package gnuplot-nox "
+                                       "(plots in the terminal and .gp files need no gnuplot)"}
                                : failure(error);
     }
     if (limits.memory > 0) {

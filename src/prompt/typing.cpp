@@ -90,16 +90,12 @@ Painted paint(lua_State* L, std::string_view prompt, const std::string& pending,
         constexpr std::size_t gap = 2;
         hint = cut(std::move(hint), screen.width - used - spare > gap ? screen.width - used - spare - gap : 0);
     }
-    std::string text =
-        "\x1b"
-        "7\r";
+    // octal where a digit follows: \x1b7 would be one character
+    std::string text = "\0337\r";
     text += before > 0 ? fmt::format("\x1b[{}C", before) : "";
     text += in_colours(line);
     text += hint.empty() ? "" : fmt::format("  {}{}{}", grey, hint, plain);
-    return {text +
-                "\x1b[K\x1b"
-                "8",
-            !hint.empty()};
+    return {text + "\x1b[K\0338", !hint.empty()};
 }
 
 Completion complete_safely(lua_State* L, const std::string& before) {

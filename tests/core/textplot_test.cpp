@@ -154,9 +154,7 @@ TEST_CASE("no line is wider than asked, and there are no more lines", "[textplot
 }
 
 TEST_CASE("a user's words can not reach the terminal as commands", "[textplot]") {
-    Figure hostile = figure(curve({0, 1}, {0, 1},
-                                  "\x1b]0;title\x07\n\x7f\xc2\x9b"
-                                  "31m\xff"));
+    Figure hostile = figure(curve({0, 1}, {0, 1}, "\x1b]0;title\x07\n\x7f\xc2\23331m\xff"));
     hostile.title = hostile.x.label = hostile.y.label = hostile.curves[0].label;
     hostile.curves.push_back(hostile.curves[0]);
     for (const Charset charset : {Charset::braille, Charset::ascii}) {
