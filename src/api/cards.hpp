@@ -1,9 +1,9 @@
 // Objects as the prompt shows them, for the eye: what `tostring` says in Lua text, and what follows from it.
 #pragma once
 
-#include <lua.hpp>
 #include <string>
 
+#include "lua/lua_headers.hpp"
 #include "terminal/display.hpp"
 
 namespace dinal::api {

@@ -1,9 +1,9 @@
 // The list run.events as Lua sees it: plain tables that know how to write themselves.
 #pragma once
 
-#include <lua.hpp>
 #include <span>
 
+#include "lua/lua_headers.hpp"
 #include "model/event.hpp"
 
 namespace dinal::api {

@@ -1,10 +1,10 @@
 // The list part of plot{ ... }: curves made of vectors, or pictures to set side by side.
 #pragma once
 
-#include <lua.hpp>
 #include <string_view>
 #include <vector>
 
+#include "lua/lua_headers.hpp"
 #include "plots/figure.hpp"
 
 namespace dinal::api {

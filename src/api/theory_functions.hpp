@@ -1,7 +1,7 @@
 // What theory.* does, one C function each; bind_theory.cpp documents them.
 #pragma once
 
-#include <lua.hpp>
+#include "lua/lua_headers.hpp"
 
 namespace dinal::api::theory_functions {
 

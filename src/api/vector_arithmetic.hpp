@@ -1,7 +1,7 @@
 // What Lua's operators and mathematics do with whole vectors: the functions behind v + w, v < 3, v:sin().
 #pragma once
 
-#include <lua.hpp>
+#include "lua/lua_headers.hpp"
 
 namespace dinal::api::vector_functions {
 

@@ -2,8 +2,9 @@
 // time for which M was asked.
 #pragma once
 
-#include <lua.hpp>
 #include <string>
+
+#include "lua/lua_headers.hpp"
 
 namespace dinal::errors {
 

@@ -1,11 +1,11 @@
 // The line of source that an error is about, with a mark below it.
 #pragma once
 
-#include <lua.hpp>
 #include <string>
 #include <string_view>
 
 #include "errors/source_text.hpp"
+#include "lua/lua_headers.hpp"
 
 namespace dinal::errors {
 

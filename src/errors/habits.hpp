@@ -1,9 +1,10 @@
 // What people write who know other languages, or other decimal marks, and what to write instead.
 #pragma once
 
-#include <lua.hpp>
 #include <string>
 #include <string_view>
+
+#include "lua/lua_headers.hpp"
 
 namespace dinal::errors {
 

@@ -1,12 +1,12 @@
 // Names that were probably meant: for an error that follows a nil where the user expected something.
 #pragma once
 
-#include <lua.hpp>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "errors/source_text.hpp"
+#include "lua/lua_headers.hpp"
 
 namespace dinal::errors {
 

@@ -1,10 +1,11 @@
 // The text around an error: which chunk it was in, which line, which statement.
 #pragma once
 
-#include <lua.hpp>
 #include <optional>
 #include <string>
 #include <string_view>
+
+#include "lua/lua_headers.hpp"
 
 namespace dinal::errors {
 

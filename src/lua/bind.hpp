@@ -6,7 +6,6 @@
 
 #include <cstddef>
 #include <exception>
-#include <lua.hpp>
 #include <memory>
 #include <new>
 #include <span>
@@ -16,6 +15,7 @@
 #include <utility>
 #include <vector>
 
+#include "lua/lua_headers.hpp"
 #include "lua/memory_limit.hpp"
 #include "text/suggest.hpp"  // did_you_mean, for every unknown name
 

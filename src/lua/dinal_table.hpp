@@ -1,7 +1,7 @@
 // The table `dinal` itself, for those who put something into it.
 #pragma once
 
-#include <lua.hpp>
+#include "lua/lua_headers.hpp"
 
 namespace dinal::lua {
 

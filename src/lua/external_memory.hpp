@@ -2,7 +2,8 @@
 #pragma once
 
 #include <cstddef>
-#include <lua.hpp>
+
+#include "lua/lua_headers.hpp"
 
 namespace dinal::lua {
 

@@ -5,9 +5,9 @@
 // because coroutine.resume, wrap and close are replaced by functions that note it (open_coroutines).
 #pragma once
 
-#include <lua.hpp>
 #include <string>
 
+#include "lua/lua_headers.hpp"
 #include "lua/time_limit.hpp"
 
 namespace dinal::lua {

@@ -2,10 +2,10 @@
 #pragma once
 
 #include <cstddef>
-#include <lua.hpp>
 #include <string>
 
 #include "lua/interrupt.hpp"
+#include "lua/lua_headers.hpp"
 
 namespace dinal::lua {
 

@@ -1,7 +1,7 @@
 // Which Lua thread runs, for the handler of Ctrl-C: interrupt.cpp sets its hook there.
 #pragma once
 
-#include <lua.hpp>
+#include "lua/lua_headers.hpp"
 
 namespace dinal::lua {
 

@@ -6,7 +6,7 @@
 // (io/confinement.hpp), which open_safe_libraries() does.
 #pragma once
 
-#include <lua.hpp>
+#include "lua/lua_headers.hpp"
 
 namespace dinal::lua {
 

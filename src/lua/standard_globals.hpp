@@ -1,9 +1,10 @@
 // The globals that Lua and dinal bring, apart from those that the user makes.
 #pragma once
 
-#include <lua.hpp>
 #include <string>
 #include <vector>
+
+#include "lua/lua_headers.hpp"
 
 namespace dinal::lua {
 

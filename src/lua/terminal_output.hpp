@@ -1,7 +1,7 @@
 // What a script writes to the terminal makes way for no progress line: that one goes first.
 #pragma once
 
-#include <lua.hpp>
+#include "lua/lua_headers.hpp"
 
 namespace dinal::lua {
 

@@ -1,9 +1,9 @@
 // Calls from the program into Lua: with Ctrl-C armed, and with an error turned into the words that the user reads.
 #pragma once
 
-#include <lua.hpp>
-
 #include <string>
+
+#include "lua/lua_headers.hpp"
 
 namespace dinal::prompt {
 

@@ -1,9 +1,9 @@
 // What is typed at the prompt, compiled: statements, and an expression at their end whose values are shown.
 #pragma once
 
-#include <lua.hpp>
-
 #include <string>
+
+#include "lua/lua_headers.hpp"
 
 namespace dinal::prompt {
 

@@ -1,10 +1,10 @@
 // The commands of the prompt, `:help` and its like. Such a line is never valid Lua.
 #pragma once
 
-#include <lua.hpp>
 #include <string>
 #include <string_view>
 
+#include "lua/lua_headers.hpp"
 #include "prompt/completion.hpp"
 
 namespace dinal::prompt {

@@ -1,10 +1,11 @@
 // Tab: what may follow the text before the cursor. Never runs code of the user.
 #pragma once
 
-#include <lua.hpp>
 #include <string>
 #include <string_view>
 #include <vector>
+
+#include "lua/lua_headers.hpp"
 
 namespace dinal::prompt {
 

@@ -1,8 +1,7 @@
 // Runs what was typed, and shows what comes of it.
 #pragma once
 
-#include <lua.hpp>
-
+#include "lua/lua_headers.hpp"
 #include "prompt/chunk.hpp"
 
 namespace dinal::prompt {

@@ -1,9 +1,9 @@
 // Lines typed by the user: with GNU readline at a terminal when it is built in, else plain.
 #pragma once
 
-#include <lua.hpp>
 #include <string>
 
+#include "lua/lua_headers.hpp"
 #include "prompt/plain_lines.hpp"
 
 namespace dinal::prompt {

@@ -1,7 +1,7 @@
 // Loads a file of Lua by its name, for those who start scripts: main's argument, :load, the init file.
 #pragma once
 
-#include <lua.hpp>
+#include "lua/lua_headers.hpp"
 
 namespace dinal::prompt {
 

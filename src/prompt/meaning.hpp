@@ -1,10 +1,10 @@
 // What an expression that is being typed will be, found without running anything: raw tables, and documentation.
 #pragma once
 
-#include <lua.hpp>
 #include <span>
 
 #include "help/library.hpp"
+#include "lua/lua_headers.hpp"
 #include "lua/tokens.hpp"
 
 namespace dinal::prompt {

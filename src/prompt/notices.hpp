@@ -1,9 +1,9 @@
 // Words about what was typed that is no error but probably not what was meant.
 #pragma once
 
-#include <lua.hpp>
 #include <string>
 
+#include "lua/lua_headers.hpp"
 #include "prompt/chunk.hpp"
 
 namespace dinal::prompt {

@@ -1,10 +1,9 @@
 // Values as the prompt shows them: numbers plain, strings quoted, tables short, objects as cards, the rest by tostring.
 #pragma once
 
-#include <lua.hpp>
-
 #include <string>
 
+#include "lua/lua_headers.hpp"
 #include "terminal/display.hpp"
 
 namespace dinal::prompt {

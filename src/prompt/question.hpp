@@ -1,8 +1,9 @@
 // ?name and name? at the prompt: help, by what the name stands for now, else by the name itself.
 #pragma once
 
-#include <lua.hpp>
 #include <string_view>
+
+#include "lua/lua_headers.hpp"
 
 namespace dinal::prompt {
 

@@ -1,9 +1,9 @@
 // The prompt: reads a chunk of Lua, runs it, shows its values, and goes on whatever happens.
 #pragma once
 
-#include <lua.hpp>
-
 #include <string>
+
+#include "lua/lua_headers.hpp"
 
 namespace dinal::prompt {
 

@@ -1,9 +1,9 @@
 // One value as the prompt shows it, when it is no plain table.
 #pragma once
 
-#include <lua.hpp>
 #include <string>
 
+#include "lua/lua_headers.hpp"
 #include "terminal/display.hpp"
 
 namespace dinal::prompt {

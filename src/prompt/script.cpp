@@ -10,7 +10,6 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
-#include <lua.hpp>
 #include <memory>
 #include <string_view>
 
@@ -18,6 +17,7 @@
 #include "help/library.hpp"
 #include "lua/interrupt.hpp"
 #include "lua/limits.hpp"
+#include "lua/lua_headers.hpp"
 #include "lua/safe_mode.hpp"
 #include "lua/time_limit.hpp"
 #include "prompt/call.hpp"

@@ -1,9 +1,9 @@
 // What one session at the prompt remembers, and what it does with a text that was typed.
 #pragma once
 
-#include <lua.hpp>
 #include <string>
 
+#include "lua/lua_headers.hpp"
 #include "prompt/line_editor.hpp"
 #include "prompt/record.hpp"
 

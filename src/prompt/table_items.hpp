@@ -2,10 +2,11 @@
 #pragma once
 
 #include <cstddef>
-#include <lua.hpp>
 #include <string>
 #include <tuple>
 #include <vector>
+
+#include "lua/lua_headers.hpp"
 
 namespace dinal::prompt {
 

@@ -1,10 +1,10 @@
 // While a line is typed: its colours, the grey hint behind it, and completion that no error of Lua can leave.
 #pragma once
 
-#include <lua.hpp>
 #include <string>
 #include <string_view>
 
+#include "lua/lua_headers.hpp"
 #include "prompt/completion.hpp"
 
 namespace dinal::prompt {

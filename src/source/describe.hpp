@@ -1,9 +1,9 @@
 // Systems, excitations and integrators as the Lua text that makes them again.
 #pragma once
 
-#include <lua.hpp>
 #include <string>
 
+#include "lua/lua_headers.hpp"
 #include "model/excitation.hpp"
 #include "model/oscillator.hpp"
 #include "motion/integrator.hpp"

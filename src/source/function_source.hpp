@@ -1,10 +1,11 @@
 // The source text of a Lua function, for whoever writes down what was simulated.
 #pragma once
 
-#include <lua.hpp>
 #include <optional>
 #include <string>
 #include <string_view>
+
+#include "lua/lua_headers.hpp"
 
 namespace dinal::source {
 

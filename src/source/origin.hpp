@@ -1,10 +1,10 @@
 // Where a run came from: what was asked, and the Lua text that asks it again.
 #pragma once
 
-#include <lua.hpp>
 #include <string>
 #include <vector>
 
+#include "lua/lua_headers.hpp"
 #include "motion/simulate.hpp"
 
 namespace dinal::source {

@@ -1,11 +1,11 @@
 // The Lua text of values and functions, so that a file of results can say how to repeat the run.
 #pragma once
 
-#include <lua.hpp>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "lua/lua_headers.hpp"
 #include "lua/lua_text.hpp"
 
 namespace dinal::source {

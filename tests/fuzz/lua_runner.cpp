@@ -5,7 +5,6 @@
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
-#include <lua.hpp>
 
 #include <filesystem>
 #include <string>
@@ -13,6 +12,7 @@
 #include "help/library.hpp"
 #include "lua/interrupt.hpp"
 #include "lua/limits.hpp"
+#include "lua/lua_headers.hpp"
 #include "lua/safe_mode.hpp"
 
 namespace {
