@@ -66,12 +66,44 @@ sed -i s/first/second/ "$small/src/main.cpp"
 expect "an edited source is built" second "$("$small/scripts/dinal" 2>err)"
 expect "and then nothing is stale" "second" "$("$small/scripts/dinal" 2>&1)"
 echo 'nonsense' >"$small/src/core/new.cpp"
+expect "a file that is none of the build's is no reason to build" second "$("$small/scripts/dinal" 2>&1)"
+sed -i s/second/third/ "$small/src/main.cpp"
 expect "a failed build does not start the old program" "" "$("$small/scripts/dinal" 2>err)"
 expect "a failed build shows the compiler's words" 1 "$(grep -c 'new.cpp:1:1: error' err)"
 expect "a failed build ends with a sentence" 1 "$(tail -n 1 err | grep -c 'the build failed')"
+echo 'const char* word();
+const char* word() { return "fourth"; }' >"$small/src/core/new.cpp"
+echo '#include <cstdio>
+const char* word();
+int main() { std::puts(word()); }' >"$small/src/main.cpp"
+expect "a new file is built with the change that uses it" fourth "$("$small/scripts/dinal" 2>err)"
 rm "$small/src/core/new.cpp"
-expect "a removed source is noticed" second "$("$small/scripts/dinal" 2>err)"
+expect "a source that is gone is noticed" 1 "$("$small/scripts/dinal" 2>&1 | grep -c 'undefined reference')"
+echo '#include <cstdio>
+int main() { std::puts("fifth"); }' >"$small/src/main.cpp"
+expect "and the build goes well without it" fifth "$("$small/scripts/dinal" 2>err)"
+
+# Somebody else's build at work: the lock is held.
+touch "$small/src/main.cpp"
+(flock 9 && touch "$work/locked" && sleep 3) 9>"$small/build/lock" &
+while [ ! -e "$work/locked" ]; do sleep 0.05; done
+expect "a good program starts while another start is building" fifth "$("$small/scripts/dinal" 2>err)"
+expect "and says that it is older" 1 "$(grep -c 'another start is building, so this program is older than its sources' err)"
+rm "$small/build/release/good/dinal"
+expect "without a program, a start waits for the other one" fifth "$("$small/scripts/dinal" 2>err)"
+expect "and says so" 1 "$(grep -c 'another start is building, waiting' err)"
+
+# A shared installation, where the build is not ours to make. Root may write everywhere, so it becomes somebody else.
+if [ "$(id -u)" = 0 ] && command -v setpriv >/dev/null; then
+    chmod 755 "$work"
+    touch "$small/src/main.cpp"
+    somebody="setpriv --reuid=65534 --regid=65534 --clear-groups"
+    expect "a build that is not ours is not made" fifth "$($somebody "$small/scripts/dinal" 2>err)"
+    expect "and that is said" 1 "$(grep -c 'nothing can be written to .*, so this program is older' err)"
+    "$small/scripts/dinal" >/dev/null 2>&1
+    expect "nothing is said when it is no older" fifth "$($somebody "$small/scripts/dinal" 2>&1)"
+fi
 mv "$small" "$work/moved" && touch "$work/moved/src/main.cpp"
-expect "a moved folder builds again" second "$("$work/moved/scripts/dinal" 2>err)"
+expect "a moved folder builds again" fifth "$("$work/moved/scripts/dinal" 2>err)"
 
 [ "$failures" = 0 ] || { echo "$failures failed"; exit 1; }
