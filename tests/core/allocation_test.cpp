@@ -1,9 +1,9 @@
 // The stepping loop allocates nothing: operator new of this test program counts.
-#include <catch2/catch.hpp>
 #include <cstdlib>
 #include <memory>
 #include <new>
 
+#include "support/catch.hpp"
 #include "support/measure.hpp"
 
 namespace {

@@ -1,12 +1,12 @@
 #include "files/csv.hpp"
 
 #include <bit>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <cstdint>
 #include <limits>
 #include <random>
 
+#include "support/catch.hpp"
 #include "support/temporary_folder.hpp"
 
 using Catch::Matchers::Contains;

@@ -2,13 +2,13 @@
 #include "theory/den_hartog.hpp"
 
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
 #include <numbers>
 #include <random>
 #include <vector>
 
+#include "support/catch.hpp"
 #include "support/measure.hpp"
 #include "support/within.hpp"
 #include "theory/theory_forced.hpp"

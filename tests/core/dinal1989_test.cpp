@@ -1,10 +1,10 @@
 // The museum piece: what the listing of 1989 computes, what chapter 6 of the report was computed with, and what its
 // stop rule does.
 #include <array>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <numbers>
 
+#include "support/catch.hpp"
 #include "support/measure.hpp"
 #include "support/within.hpp"
 

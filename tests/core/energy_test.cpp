@@ -1,10 +1,10 @@
 // run:energy(): every joule that M puts in is found again, in closed forms and in what adds up.
 #include "analysis/energy.hpp"
 
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <numbers>
 
+#include "support/catch.hpp"
 #include "support/excitations.hpp"
 #include "support/measure.hpp"
 

@@ -1,7 +1,6 @@
 // run:explain(): what the sentences must say, on motions whose story is known.
 #include "analysis/explain.hpp"
 
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <numbers>
 #include <sstream>
@@ -9,6 +8,7 @@
 #include "analysis/phase_lag.hpp"
 #include "analysis/recurrence.hpp"
 #include "model/forcing.hpp"
+#include "support/catch.hpp"
 #include "support/excitations.hpp"
 #include "support/measure.hpp"
 #include "text/sentences.hpp"

@@ -1,8 +1,8 @@
 // Cases from the field that general tools get wrong, with their closed forms.
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <numbers>
 
+#include "support/catch.hpp"
 #include "support/measure.hpp"
 #include "support/within.hpp"
 

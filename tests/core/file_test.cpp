@@ -1,13 +1,13 @@
 #include "files/file.hpp"
 #include "files/csv.hpp"
 #include "files/stop.hpp"
+#include "support/catch.hpp"
 
 #include <fcntl.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include <catch2/catch.hpp>
 #include <csignal>
 #include <thread>
 

@@ -1,8 +1,9 @@
 #include "model/friction.hpp"
 
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
+
+#include "support/catch.hpp"
 
 using namespace dinal;
 using namespace dinal::model;

@@ -1,13 +1,13 @@
 #include "plots/gnuplot.hpp"
 
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <filesystem>
 
 #include "plots/gnuplot_data.hpp"
 #include "plots/gnuplot_script.hpp"
 #include "plots/paper_layout.hpp"
+#include "support/catch.hpp"
 #include "support/temporary_folder.hpp"
 
 using namespace dinal;

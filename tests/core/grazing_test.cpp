@@ -1,8 +1,8 @@
 // Velocities that dip to zero and come back within one step: two events or none, never one.
-#include <catch2/catch.hpp>
 
 #include <cmath>
 
+#include "support/catch.hpp"
 #include "support/measure.hpp"
 #include "support/reference_systems.hpp"
 

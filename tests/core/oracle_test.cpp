@@ -2,10 +2,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <cstdlib>
 
+#include "support/catch.hpp"
 #include "support/measure.hpp"
 #include "support/oracle.hpp"
 #include "support/random_case.hpp"

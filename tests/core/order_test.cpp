@@ -1,8 +1,8 @@
 // rk4 is of fourth order: through turns, sticks and slips, under a load that depends on time, between the rows.
 #include <array>
-#include <catch2/catch.hpp>
 #include <cmath>
 
+#include "support/catch.hpp"
 #include "support/measure.hpp"
 
 using namespace dinal;

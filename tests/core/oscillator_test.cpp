@@ -1,9 +1,10 @@
 #include "model/oscillator.hpp"
 
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
 #include <string>
+
+#include "support/catch.hpp"
 
 using namespace dinal;
 using namespace dinal::model;

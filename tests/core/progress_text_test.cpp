@@ -1,8 +1,8 @@
-#include <catch2/catch.hpp>
 
 #include <clocale>
 #include <string>
 
+#include "support/catch.hpp"
 #include "terminal/progress_text.hpp"
 
 using namespace dinal;

@@ -1,10 +1,10 @@
 // Cases that lie exactly on an edge: the limit of sticking, a break at an event, the beginning and the end.
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
 #include <memory>
 #include <numbers>
 
+#include "support/catch.hpp"
 #include "support/measure.hpp"
 #include "support/within.hpp"
 

@@ -1,9 +1,9 @@
 #include "files/record1989.hpp"
 
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
 
+#include "support/catch.hpp"
 #include "support/temporary_folder.hpp"
 
 using Catch::Matchers::Contains;

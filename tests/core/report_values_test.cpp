@@ -1,10 +1,10 @@
 // The numbers of the report's cases, computed elsewhere in 80 digits, and what spectral and rk4 make of them.
 #include <algorithm>
 #include <array>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <numbers>
 
+#include "support/catch.hpp"
 #include "support/measure.hpp"
 #include "support/within.hpp"
 

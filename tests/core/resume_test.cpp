@@ -1,7 +1,7 @@
 // A run that goes on from where it ended, against the same run without a stop.
-#include <catch2/catch.hpp>
 #include <cmath>
 
+#include "support/catch.hpp"
 #include "support/measure.hpp"
 
 using namespace dinal;

@@ -1,9 +1,9 @@
 // The grid of rows: exactly the times asked for, exactly t_end at the end.
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
 #include <string>
 
+#include "support/catch.hpp"
 #include "support/measure.hpp"
 #include "support/within.hpp"
 

@@ -1,12 +1,12 @@
 // What only the spectral integrator has to answer for: functions that hide their jumps, feedback, and where it gives
 // up.
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
 #include <memory>
 #include <numbers>
 
 #include "analysis/energy.hpp"
+#include "support/catch.hpp"
 #include "support/excitations.hpp"
 #include "support/measure.hpp"
 #include "support/random_case.hpp"

@@ -1,7 +1,8 @@
 #include "text/suggest.hpp"
 
 #include <array>
-#include <catch2/catch.hpp>
+
+#include "support/catch.hpp"
 
 using dinal::text::did_you_mean;
 using dinal::text::suggestions;

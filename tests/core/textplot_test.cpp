@@ -1,11 +1,11 @@
 #include "plots/text_plot.hpp"
 
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
 #include <sstream>
 
 #include "plots/ticks.hpp"
+#include "support/catch.hpp"
 #include "text/display_text.hpp"
 
 using namespace dinal;

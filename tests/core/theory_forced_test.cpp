@@ -1,11 +1,12 @@
 // Closed forms of steady motion without dry friction, and of friction taken for viscous.
 #include "theory/theory_forced.hpp"
 
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <complex>
 #include <limits>
 #include <numbers>
+
+#include "support/catch.hpp"
 
 using namespace dinal::theory;
 

@@ -1,11 +1,11 @@
 // Closed forms of free motion against the report's numbers, an independent exact solution, and rk4.
 #include "theory/theory_free.hpp"
 
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <numbers>
 #include <random>
 
+#include "support/catch.hpp"
 #include "support/measure.hpp"
 #include "support/within.hpp"
 

@@ -1,12 +1,12 @@
 // Step limits: the printed one, its argument carried through, and the true one of rk4.
 #include "theory/theory_steps.hpp"
 
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
 #include <numbers>
 
 #include "motion/integrator.hpp"
+#include "support/catch.hpp"
 #include "support/reference_systems.hpp"
 
 using namespace dinal;

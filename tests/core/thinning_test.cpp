@@ -1,9 +1,10 @@
 #include "plots/thinning.hpp"
 
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
+
+#include "support/catch.hpp"
 
 using namespace dinal;
 using namespace dinal::plots;
