@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "lua/error_memory.hpp"
+
 namespace dinal::lua {
 
 namespace {
@@ -83,24 +85,27 @@ int index_object(lua_State* L) {
     if (description.other_keys != nullptr && description.other_keys(L) == 1) {
         return 1;
     }
-    raise(L,
-          with_article(description.name) + " has no field " + key_text(L, 2) + suggestion_for_key(L, 2, description));
+    raise(L, {.sentence = with_article(description.name) + " has no field " + key_text(L, 2),
+              .culprit = written(L, 2),
+              .cure = suggestion_for_key(L, 2, description)});
 }
 
 int refuse_assignment(lua_State* L) {
     const Class& description = class_of_closure(L, 1);
-    raise(L, with_article(description.name) + " can not be changed, so " + key_text(L, 2) +
-                 " can not be set; make a new one");
+    raise(L, {.sentence = with_article(description.name) + " can not be changed, so " + key_text(L, 2) +
+                          " can not be set; make a new one",
+              .culprit = written(L, 2)});
 }
 
 int index_module(lua_State* L) {
     const Class& module = class_of_closure(L, 1);
+    const std::string name = module.name;
+    const std::string likely = suggestion_for_key(L, 2, module);
     raise(L,
-          "there is no " + std::string(module.name) +
-              (lua_type(L, 2) == LUA_TSTRING ? "." + std::string(lua_tostring(L, 2)) : key_text(L, 2)) +
-              suggestion_for_key(L, 2, module) +
-              (suggestion_for_key(L, 2, module).empty() ? "; help(" + std::string(module.name) + ") lists what there is"
-                                                        : ""));
+          {.sentence = "there is no " + name + (lua_type(L, 2) == LUA_TSTRING ? "." + written(L, 2) : key_text(L, 2)),
+           .call = name,
+           .culprit = written(L, 2),
+           .cure = likely.empty() ? "; help(" + name + ") lists what there is" : likely});
 }
 
 int module_text(lua_State* L) {
@@ -149,14 +154,19 @@ std::string where(lua_State* L) {
     return "";
 }
 
-void raise(lua_State* L, std::string_view sentence) {
+void raise(lua_State* L, const text::Error& error) {
     {
-        const std::string message = where(L) + std::string(sentence);
+        const std::string message = where(L) + error.message();
+        remember_facts(L, error);
         lua_settop(L, 0);  // arguments are of no more use, and make room
         lua_pushlstring(L, message.data(), message.size());
     }
     lua_error(L);
     std::terminate();  // not reached: lua_error does not return, but its declaration does not say so
+}
+
+void raise(lua_State* L, std::string_view sentence) {
+    raise(L, text::Error{std::string(sentence)});
 }
 
 std::string describe(lua_State* L, int index) {
@@ -190,9 +200,19 @@ std::string describe(lua_State* L, int index) {
     return "a " + std::string(luaL_typename(L, index));
 }
 
+std::string written(lua_State* L, int index) {
+    const int type = lua_type(L, index);
+    if (type == LUA_TSTRING) {
+        return lua_tostring(L, index);
+    }
+    return type == LUA_TNUMBER || type == LUA_TBOOLEAN || type <= LUA_TNIL ? describe(L, index) : "";
+}
+
 double finite_argument(lua_State* L, int index, std::string_view what) {
     if (lua_type(L, index) != LUA_TNUMBER || !std::isfinite(lua_tonumber(L, index))) {
-        raise(L, std::string(what) + " must be a finite number, got " + describe(L, index));
+        raise(L, {.sentence = std::string(what) + " must be a finite number, got " + describe(L, index),
+                  .call = std::string(what),
+                  .culprit = written(L, index)});
     }
     return lua_tonumber(L, index);
 }
@@ -245,6 +265,10 @@ Documented documented(lua_State* L, int index) {
 }
 
 namespace detail {
+
+void raise_no_object(lua_State* L, std::string_view call) {
+    raise(L, {.sentence = "use a colon: " + std::string(call), .call = std::string(call)});
+}
 
 void push_message(lua_State* L, const char* text) {
     const std::string message = where(L) + text;

@@ -17,6 +17,7 @@
 
 #include "lua/lua_headers.hpp"
 #include "lua/memory_limit.hpp"
+#include "text/expected.hpp"
 #include "text/suggest.hpp"  // did_you_mean, for every unknown name
 
 namespace dinal::terminal {
@@ -58,7 +59,9 @@ struct Class {
     std::string (*card)(lua_State* L, int index, const terminal::Display& screen) = nullptr;
 };
 
-/// Raises `sentence` as a Lua error, headed by the file and line of the user's code that led here.
+/// Raises the message of the error as a Lua error, headed by the file and line of the user's code that led here. The
+/// facts of it are remembered (error_memory.hpp) for those who mark the culprit and look for a cure.
+[[noreturn]] void raise(lua_State* L, const text::Error& error);
 [[noreturn]] void raise(lua_State* L, std::string_view sentence);
 
 /// "FILE:LINE: " of the nearest Lua function in the call stack, or "".
@@ -67,8 +70,12 @@ std::string where(lua_State* L);
 /// What a value is, for a sentence: "nil", "a table", "the string "1"", "a system", "nan".
 std::string describe(lua_State* L, int index);
 
+/// A value as it may stand in the user's text, for Error::culprit: "nil", "-1", the string itself; "" for others.
+std::string written(lua_State* L, int index);
+
 namespace detail {
 int raise_message_on_top(lua_State* L);
+[[noreturn]] void raise_no_object(lua_State* L, std::string_view call);
 void push_message(lua_State* L, const char* text);
 }  // namespace detail
 
@@ -131,7 +138,7 @@ template <class T>
 [[nodiscard]] T& self(lua_State* L, int index, std::string_view call) {
     T* object = test<T>(L, index);
     if (object == nullptr) {
-        raise(L, "use a colon: " + std::string(call));
+        detail::raise_no_object(L, call);
     }
     return *object;
 }

@@ -137,7 +137,7 @@ std::vector<double> Options::numbers(std::string_view name) const {
     std::vector<double> values;
     push(name);
     if (!lua_isnil(L_, -1)) {
-        values = numbers_at(L_, -1, fmt::format("{}: {}", call_, name));
+        values = numbers_at(L_, -1, call_, name);
     }
     lua_pop(L_, 1);
     return values;

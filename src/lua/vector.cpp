@@ -22,14 +22,23 @@ void push_vector(lua_State* L, std::vector<double> values) {
 
 namespace {
 
-std::vector<double> numbers_of_table(lua_State* L, int index, std::string_view what) {
+/// "sys:simulate: times[2] = inf must be finite"; `index` is that of the value.
+[[noreturn]] void refuse(lua_State* L, int index, std::string_view call, std::string_view option,
+                         const std::string& complaint) {
+    raise(L, {.sentence = fmt::format("{}{}{}{}", call, option.empty() ? "" : ": ", option, complaint),
+              .call = std::string(call),
+              .option = std::string(option),
+              .culprit = written(L, index)});
+}
+
+std::vector<double> numbers_of_table(lua_State* L, int index, std::string_view call, std::string_view option) {
     const std::size_t n = lua_rawlen(L, index);
     make_room(L, n * sizeof(double));
     std::vector<double> numbers;
     numbers.reserve(n);
     for (std::size_t i = 1; i <= n; ++i) {
         if (lua_rawgeti(L, index, static_cast<lua_Integer>(i)) != LUA_TNUMBER) {
-            raise(L, fmt::format("{}[{}] must be a finite number, got {}", what, i, describe(L, -1)));
+            refuse(L, -1, call, option, fmt::format("[{}] must be a finite number, got {}", i, describe(L, -1)));
         }
         numbers.push_back(lua_tonumber(L, -1));
         lua_pop(L, 1);
@@ -39,20 +48,21 @@ std::vector<double> numbers_of_table(lua_State* L, int index, std::string_view w
 
 }  // namespace
 
-std::vector<double> numbers_at(lua_State* L, int index, std::string_view what) {
+std::vector<double> numbers_at(lua_State* L, int index, std::string_view call, std::string_view option) {
     index = lua_absindex(L, index);
     std::vector<double> numbers;
     if (const auto* vector = test<Vector>(L, index)) {
         make_room(L, vector->size() * sizeof(double));
         numbers.assign(vector->begin(), vector->end());
     } else if (lua_type(L, index) == LUA_TTABLE) {
-        numbers = numbers_of_table(L, index, what);
+        numbers = numbers_of_table(L, index, call, option);
     } else {
-        raise(L, fmt::format("{} must be a table of numbers or a vector, got {}", what, describe(L, index)));
+        refuse(L, index, call, option,
+               fmt::format(" must be a table of numbers or a vector, got {}", describe(L, index)));
     }
     const auto bad = std::find_if(numbers.begin(), numbers.end(), [](double x) { return !std::isfinite(x); });
     if (bad != numbers.end()) {
-        raise(L, fmt::format("{}[{}] = {} must be finite", what, bad - numbers.begin() + 1, *bad));
+        refuse(L, index, call, option, fmt::format("[{}] = {} must be finite", bad - numbers.begin() + 1, *bad));
     }
     return numbers;
 }

@@ -40,8 +40,8 @@ std::vector<double> new_numbers(lua_State* L, std::size_t n);
 /// Gives Lua a vector with data of its own, and its garbage collector the news of how much memory that takes.
 void push_vector(lua_State* L, std::vector<double> values);
 
-/// The finite numbers of a table or a vector at `index`. `what` heads the sentence when there is something else:
-/// "sys:simulate: times".
-std::vector<double> numbers_at(lua_State* L, int index, std::string_view what);
+/// The finite numbers of a table or a vector at `index`, which is that option of the call, or all that it takes. They
+/// head the sentence when there is something else: "sys:simulate: times".
+std::vector<double> numbers_at(lua_State* L, int index, std::string_view call, std::string_view option = "");
 
 }  // namespace dinal::lua

@@ -1,16 +1,31 @@
-// A value, or the one sentence that tells the user why there is none.
+// A value, or the error that tells the user why there is none.
 #pragma once
 
 #include <string>
+#include <string_view>
 #include <utility>
 #include <variant>
 
 namespace dinal::text {
 
-/// What is wrong, where the limit is and what to do about it, in one sentence without a final stop.
+/// What is wrong, where the limit is and what to do about it, in one sentence without a final stop; and the facts in
+/// it, so that nobody who marks the culprit or looks for a cure has to find them in the words.
 struct Error {
     std::string sentence;
+    std::string call = {};    ///< what was called, as it is written: "vector", "run:at(t)", "sys:simulate{ t_end = 1 }"
+    std::string option = {};  ///< the option that is wrong or missing: "t_end"
+    std::string culprit = {};  ///< what the user wrote: a name that does not exist, a value; "nil" where nothing is
+    std::string cure = {};     ///< what goes on after the sentence: "; did you mean 'theta0'?"
+
+    [[nodiscard]] std::string message() const { return sentence + cure; }
 };
+
+/// The same error, told by the call in which it came up: "system: I = -1 must be positive".
+inline Error in_call(std::string_view call, Error error) {
+    error.sentence.insert(0, std::string(call) + ": ");
+    error.call = call;
+    return error;
+}
 
 template <class T>
 class [[nodiscard]] Expected {
