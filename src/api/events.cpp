@@ -45,7 +45,7 @@ int event_text(lua_State* L) {
                                  kind_field(L, 1), number_field(L, 1, "theta"), number_field(L, 1, "M")));
 }
 
-/// "41 events: 39 turn, 1 stick, 1 slip", then a table of the first. The user may have changed the list meanwhile.
+/// "41 events: 39 turns, 1 stick, 1 slip", then a table of the first. The user may have changed the list meanwhile.
 int events_text(lua_State* L) {
     luaL_checktype(L, 1, LUA_TTABLE);
     const auto count = static_cast<lua_Integer>(lua_rawlen(L, 1));

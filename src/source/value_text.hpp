@@ -16,7 +16,7 @@ class ValueText {
 public:
     explicit ValueText(lua_State* L) : L_(L) {}
 
-    /// An expression that gives the value at `index` again; `nil` and a remark in comments() when there is none.
+    /// An expression that gives the value at `index` again; `nil` and one of the remarks() when there is none.
     std::string expression(int index);
 
     /// "w = 3": what must stand before the expressions.

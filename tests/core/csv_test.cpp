@@ -148,6 +148,9 @@ TEST_CASE("names that could be mistaken are quoted and read back", "[csv]") {
     const Table table{names, Eigen::MatrixXd::Ones(1, 8), {}};
     REQUIRE(write_csv(folder.file("x.csv"), table));
     CHECK(read_csv(folder.file("x.csv"))->names == names);
+    const Strings leading = {"#t", "x"};  // the line would be a comment
+    REQUIRE(write_csv(folder.file("w.csv"), Table{leading, Eigen::MatrixXd::Ones(1, 2), {}}));
+    CHECK(read_csv(folder.file("w.csv"))->names == leading);
     const Table no_rows{names, Eigen::MatrixXd(0, 8), {}};
     REQUIRE(write_csv(folder.file("y.csv"), no_rows));
     CHECK(read_csv(folder.file("y.csv"))->names == names);

@@ -193,6 +193,9 @@ test("what can not be written down is said in the comment block", function()
     local name = support.temporary ".csv"
     nd:simulate { M = function(t) return thread and 1 or 0 end, t_end = 1, dt = 1 }:save(name)
     assert(support.read(name):find("# -- a thread could not be written down", 1, true))
+    local late = setmetatable({ 3 }, { __index = function() return 2 end })
+    nd:simulate { M = function(t) return late[2] * t end, t_end = 1, dt = 1 }:save(name)
+    assert(support.read(name):find("# -- the metatable of a table could not be written down", 1, true))
 end)
 
 support.finish()

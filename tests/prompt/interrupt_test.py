@@ -41,6 +41,10 @@ LONG = {
     "coroutine.close of a coroutine that was stopped":
         "local co = coroutine.create(function() local x <close> = setmetatable({}, { __close = function() while true "
         "do end end }) while true do end end) while true do pcall(coroutine.resume, co) pcall(coroutine.close, co) end",
+    "coroutine.close that Lua calls on its way out":
+        "local co = coroutine.create(function() local x <close> = setmetatable({}, { __close = function() while true "
+        "do end end }) while true do end end) debug.setmetatable(co, { __close = coroutine.close }) "
+        "local guard <close> = co coroutine.resume(co)",
     "a file being written": "local run = nondimensional{}:simulate{ theta0 = 1, t_end = 1000, dt = 1e-3 } go() while true do "
                             "pcall(run.save, run, TEMPORARY .. '.csv') end",
     "a record of 1989 being written": "local run = nondimensional{}:simulate{ theta0 = 1, t_end = 100, dt = 1e-3, integrator = "
