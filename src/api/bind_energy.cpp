@@ -216,7 +216,7 @@ int energy_of_run(lua_State* L) {
     const RunHandle& run = lua::self<RunHandle>(L, 1, "run:energy()");
     auto energy = analysis::energy_of(run->trajectory);
     if (!energy) {
-        lua::raise(L, "run:energy(): " + energy.error().sentence);
+        lua::raise(L, text::in_call("run:energy()", energy.error()));
     }
     lua::push<EnergyHandle>(L, std::make_shared<RunEnergy>(RunEnergy{run, std::move(energy).value()}));
     return 1;

@@ -14,7 +14,7 @@
 
 namespace dinal::api {
 
-model::Excitation to_excitation(lua_State* L, int index, std::string_view what) {
+model::Excitation to_excitation(lua_State* L, int index, std::string_view what, std::string_view option) {
     if (lua_isnoneornil(L, index)) {
         return {};
     }
@@ -28,12 +28,18 @@ model::Excitation to_excitation(lua_State* L, int index, std::string_view what) 
         const auto function = std::make_shared<lua::LuaFunction>(L, index);
         term = model::Scripted{.function = function, .feedback = function->feedback()};
     } else {
-        lua::raise(
-            L, fmt::format("{} must be a function, a number or an excitation, got {}", what, lua::describe(L, index)));
+        lua::raise(L, {.sentence = fmt::format("{} must be a function, a number or an excitation, got {}", what,
+                                               lua::describe(L, index)),
+                       .call = std::string(what),
+                       .option = std::string(option),
+                       .culprit = lua::written(L, index)});
     }
     auto made = model::Excitation::make(std::move(term));
     if (!made) {
-        lua::raise(L, fmt::format("{} must be finite, got {}", what, lua::describe(L, index)));
+        lua::raise(L, {.sentence = fmt::format("{} must be finite, got {}", what, lua::describe(L, index)),
+                       .call = std::string(what),
+                       .option = std::string(option),
+                       .culprit = lua::written(L, index)});
     }
     return std::move(made).value();
 }
@@ -71,7 +77,9 @@ int value(lua_State* L) {
 int values(lua_State* L) {
     const model::Excitation& excitation = self_excitation(L, "e:values(times)");
     if (excitation.has_feedback()) {
-        lua::raise(L, "e:values(times): this excitation needs theta and velocity; use e:value(t, theta, velocity)");
+        lua::raise(L, {.sentence =
+                           "e:values(times): this excitation needs theta and velocity; use e:value(t, theta, velocity)",
+                       .call = "e:values(times)"});
     }
     const std::vector<double> times = lua::numbers_at(L, 2, "e:values(times): times");
     std::vector<double> result = lua::new_numbers(L, times.size());
@@ -85,8 +93,9 @@ int values(lua_State* L) {
             call.raise_error();
         }
         if (filled < begin + count) {
-            lua::raise(
-                L, fmt::format("e:values(times): M = {} at t = {:.14g} is not finite", result[filled], times[filled]));
+            lua::raise(L, {.sentence = fmt::format("e:values(times): M = {} at t = {:.14g} is not finite",
+                                                   result[filled], times[filled]),
+                           .call = "e:values(times)"});
         }
         if (lua::interrupt_requested()) {
             lua::raise_interrupted(L);
@@ -111,7 +120,10 @@ int delay(lua_State* L) {
 double window_edge(lua_State* L, int index, std::string_view name) {
     const double edge = lua_tonumber(L, index);
     if (lua_type(L, index) != LUA_TNUMBER || std::isnan(edge)) {
-        lua::raise(L, fmt::format("e:window(from, to): {} must be a number, got {}", name, lua::describe(L, index)));
+        lua::raise(L, {.sentence = fmt::format("e:window(from, to): {} must be a number, got {}", name,
+                                               lua::describe(L, index)),
+                       .call = "e:window(from, to)",
+                       .culprit = lua::written(L, index)});
     }
     return edge;
 }
@@ -121,7 +133,8 @@ int window(lua_State* L) {
     const double from = window_edge(L, 2, "from");
     const double to = window_edge(L, 3, "to");
     if (!(from < to)) {
-        lua::raise(L, fmt::format("e:window(from, to): to = {} must be after from = {}", to, from));
+        lua::raise(L, {.sentence = fmt::format("e:window(from, to): to = {} must be after from = {}", to, from),
+                       .call = "e:window(from, to)"});
     }
     lua::push(L, excitation.windowed(from, to));
     return 1;
@@ -155,18 +168,20 @@ int push_scaled(lua_State* L, int index, double gain) {
 int multiply(lua_State* L) {
     const int number = lua::test<model::Excitation>(L, 1) != nullptr ? 2 : 1;
     if (lua_type(L, number) != LUA_TNUMBER) {
-        lua::raise(
-            L, fmt::format("an excitation can be multiplied by a number only, got {}; a product of two is a function: "
+        lua::raise(L, {.sentence = fmt::format(
+                           "an excitation can be multiplied by a number only, got {}; a product of two is a function: "
                            "function(t) return a(t) * b(t) end",
-                           lua::describe(L, number)));
+                           lua::describe(L, number)),
+                       .culprit = lua::written(L, number)});
     }
     return push_scaled(L, 3 - number, lua_tonumber(L, number));
 }
 
 int divide(lua_State* L) {
     if (lua::test<model::Excitation>(L, 1) == nullptr || lua_type(L, 2) != LUA_TNUMBER) {
-        lua::raise(L, fmt::format("an excitation can be divided by a number only, got {} / {}", lua::describe(L, 1),
-                                  lua::describe(L, 2)));
+        lua::raise(L, {.sentence = fmt::format("an excitation can be divided by a number only, got {} / {}",
+                                               lua::describe(L, 1), lua::describe(L, 2)),
+                       .culprit = lua::written(L, 2)});
     }
     const double divisor = lua_tonumber(L, 2);
     if (divisor == 0) {

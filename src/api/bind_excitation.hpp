@@ -9,8 +9,8 @@
 namespace dinal::api {
 
 /// What stands at `index` as an excitation: nothing (M = 0), a number, a function or callable table, an excitation.
-/// Raises a sentence headed by `what` for anything else.
-model::Excitation to_excitation(lua_State* L, int index, std::string_view what = "M");
+/// Raises a sentence headed by `what` for anything else, about that option if it is one.
+model::Excitation to_excitation(lua_State* L, int index, std::string_view what, std::string_view option = "");
 
 /// The functions of the module `excitation`, in two files by what they take; each returns the new object.
 namespace excitation_functions {

@@ -29,7 +29,7 @@ std::string column_on_top(lua_State* L, const lua::Options& options, std::string
     }
     const auto column = files::find_column(run->trajectory.names, std::int64_t{lua_tointeger(L, -1)});
     if (!column) {
-        options.fail(column.error().sentence);
+        options.fail(column.error());
     }
     return run->trajectory.names[static_cast<std::size_t>(*column)];
 }
@@ -57,7 +57,7 @@ std::vector<std::string> asked_columns(lua_State* L, const lua::Options& options
 
 plots::Figure value_or_fail(const lua::Options& options, text::Expected<plots::Figure> figure) {
     if (!figure) {
-        options.fail(figure.error().sentence);
+        options.fail(figure.error());
     }
     return std::move(figure).value();
 }
@@ -70,18 +70,21 @@ void refuse_empty(const lua::Options& options, const RunHandle& run) {
 
 int plot_vectors(lua_State* L) {
     if (lua_gettop(L) != 1 || !lua_istable(L, 1)) {
-        lua::raise(L, fmt::format("plot takes one table of curves and named options, for example {}", plot_example));
+        lua::raise(L, {.sentence = fmt::format("plot takes one table of curves and named options, for example {}",
+                                               plot_example),
+                       .call = "plot"});
     }
     PlotItems items = plot_items(L, 1);
     if (items.curves.empty() && items.panels.empty()) {
-        lua::raise(L, fmt::format("plot needs a curve, for example {}", plot_example));
+        lua::raise(L, {.sentence = fmt::format("plot needs a curve, for example {}", plot_example), .call = "plot"});
     }
     constexpr std::size_t most_curves = 1000;
     if (items.curves.size() > most_curves) {
-        lua::raise(
-            L, fmt::format("plot: {} curves are too many, {} can be drawn; one curve may have pieces with 0/0 (nan) "
+        lua::raise(L, {.sentence = fmt::format(
+                           "plot: {} curves are too many, {} can be drawn; one curve may have pieces with 0/0 (nan) "
                            "between them",
-                           items.curves.size(), most_curves));
+                           items.curves.size(), most_curves),
+                       .call = "plot"});
     }
     push_named(L, 1, static_cast<lua_Integer>(lua_rawlen(L, 1)));
     lua_replace(L, 1);

@@ -25,7 +25,7 @@ struct Loop {
 Loop& loop_self(lua_State* L) {
     auto* loop = lua::test<Loop>(L, 1);
     if (loop == nullptr) {
-        lua::raise(L, fmt::format("progress is for loops: {}", example));
+        lua::raise(L, {.sentence = fmt::format("progress is for loops: {}", example), .call = "progress"});
     }
     return *loop;
 }
@@ -71,15 +71,19 @@ int progress(lua_State* L) {
     lua_settop(L, 2);
     const auto steps = steps_of(L);
     if (!steps) {
-        lua::raise(
-            L,
-            fmt::format("progress needs how many steps there are, math.huge if nobody knows, or a list to go through, "
+        lua::raise(L,
+                   {.sentence = fmt::format(
+                        "progress needs how many steps there are, math.huge if nobody knows, or a list to go through, "
                         "got {}; for example {}",
-                        lua::describe(L, 1), example));
+                        lua::describe(L, 1), example),
+                    .call = "progress",
+                    .culprit = lua::written(L, 1)});
     }
     if (!lua_isnil(L, 2) && lua_type(L, 2) != LUA_TSTRING) {
-        lua::raise(L, fmt::format("progress: the label must be a string, got {}; for example {}", lua::describe(L, 2),
-                                  example));
+        lua::raise(L, {.sentence = fmt::format("progress: the label must be a string, got {}; for example {}",
+                                               lua::describe(L, 2), example),
+                       .call = "progress",
+                       .culprit = lua::written(L, 2)});
     }
     const std::string label = lua_isnil(L, 2) ? "" : lua_tostring(L, 2);
     lua_pushcfunction(L, lua::guarded<next_step>);

@@ -38,8 +38,10 @@ void push_column(lua_State* L, const RunHandle& run, Eigen::Index column) {
             names.emplace_back(member.name);
         }
     }
-    lua::raise(L, fmt::format("this run has no field '{}'; its columns are {}{}", wrong,
-                              fmt::join(trajectory.names, ", "), text::did_you_mean(wrong, names)));
+    lua::raise(L, {.sentence = fmt::format("this run has no field '{}'; its columns are {}", wrong,
+                                           fmt::join(trajectory.names, ", ")),
+                   .culprit = std::string(wrong),
+                   .cure = text::did_you_mean(wrong, names)});
 }
 
 int column_by_name(lua_State* L, const char* name) {
@@ -78,13 +80,15 @@ int columns(lua_State* L) {
     luaL_checkstack(L, asked + 5, "too many columns");
     for (int i = 2; i <= asked + 1; ++i) {
         if (lua_type(L, i) != LUA_TSTRING && lua_isinteger(L, i) == 0) {
-            lua::raise(L, "run:columns takes names or numbers of columns, got " + lua::describe(L, i));
+            lua::raise(L, {.sentence = "run:columns takes names or numbers of columns, got " + lua::describe(L, i),
+                           .call = "run:columns",
+                           .culprit = lua::written(L, i)});
         }
         const auto column = lua_type(L, i) == LUA_TSTRING
                                 ? files::find_column(names, std::string_view(lua_tostring(L, i)))
                                 : files::find_column(names, std::int64_t{lua_tointeger(L, i)});
         if (!column) {
-            lua::raise(L, "run:columns: " + column.error().sentence);
+            lua::raise(L, text::in_call("run:columns", column.error()));
         }
         push_column(L, run, *column);
     }
@@ -142,7 +146,7 @@ int at(lua_State* L) {
         call.raise_error();
     }
     if (!state) {
-        lua::raise(L, "run:at(t): " + state.error().sentence);
+        lua::raise(L, text::in_call("run:at(t)", state.error()));
     }
     lua_pushnumber(L, state->theta);
     lua_pushnumber(L, state->velocity);

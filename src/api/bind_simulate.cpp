@@ -71,7 +71,7 @@ source::Task asked_task(lua_State* L, const lua::Options& options, const model::
     const motion::Grid rows = asked_rows(options);
     options.push("M");
     source::Task task{.system = system,
-                      .excitation = to_excitation(L, -1, "sys:simulate: M"),
+                      .excitation = to_excitation(L, -1, "sys:simulate: M", "M"),
                       .initial = {.theta = options.number("theta0", 0), .velocity = options.number("velocity0", 0)},
                       .window = {.start = options.number("t_start", 0)},
                       .rows = rows,
@@ -112,7 +112,7 @@ int run_task(lua_State* L, const lua::Options& options, source::Origin origin, d
     };
     auto result = compute(*run.origin, monitor, limits);
     if (!result) {
-        options.fail(result.error().sentence);
+        options.fail(result.error());
     }
     run.trajectory = std::move(result).value();
     if (call.failed() && lua::interrupt_requested()) {

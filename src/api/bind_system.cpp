@@ -17,7 +17,7 @@ namespace {
 int push_system(lua_State* L, const lua::Options& options, const model::OscillatorParameters& parameters) {
     const auto made = model::Oscillator::make(parameters);
     if (!made) {
-        options.fail(made.error().sentence);
+        options.fail(made.error());
     }
     lua::push<model::Oscillator>(L, *made);
     return 1;
@@ -90,9 +90,10 @@ int friction_ratio(lua_State* L) {
     const model::Oscillator& sys = system_self(L, "sys:friction_ratio(Mc)");
     const double torque = lua::finite_argument(L, 2, "sys:friction_ratio(Mc): Mc");
     if (torque == 0) {
-        lua::raise(L,
-                   "sys:friction_ratio(Mc): Mc = 0 must not be zero; for a free motion it is "
-                   "sys:characteristic_torque(theta0, velocity0)");
+        lua::raise(L, {.sentence = "sys:friction_ratio(Mc): Mc = 0 must not be zero; for a free motion it is "
+                                   "sys:characteristic_torque(theta0, velocity0)",
+                       .call = "sys:friction_ratio(Mc)",
+                       .culprit = lua::written(L, 2)});
     }
     lua_pushnumber(L, sys.friction_ratio(torque));
     return 1;

@@ -25,19 +25,23 @@ text::Expected<files::Table> read(const std::string& file) {
     if (ends_in(file, ".csv")) {
         return files::read_csv(file);
     }
-    return text::Error{"the name '" + file + "' must end in .csv (names and numbers) or .dat (the record of 1989)"};
+    return text::Error{
+        .sentence = "the name '" + file + "' must end in .csv (names and numbers) or .dat (the record of 1989)",
+        .culprit = file};
 }
 
 int load(lua_State* L) {
     if (lua_type(L, 1) != LUA_TSTRING) {
-        lua::raise(L, "trajectory.load: the name of the file must be a string, got " + lua::describe(L, 1));
+        lua::raise(L, {.sentence = "trajectory.load: the name of the file must be a string, got " + lua::describe(L, 1),
+                       .call = "trajectory.load",
+                       .culprit = lua::written(L, 1)});
     }
     auto table = read(lua_tostring(L, 1));
     if (lua::interrupt_requested()) {
         lua::raise_interrupted(L);  // what was read is not all
     }
     if (!table) {
-        lua::raise(L, "trajectory.load: " + table.error().sentence);
+        lua::raise(L, text::in_call("trajectory.load", table.error()));
     }
     files::Table content = std::move(table).value();
     Run run;

@@ -35,7 +35,7 @@ double sum_of(const lua::Vector& v) {
 const lua::Vector& not_empty(lua_State* L, std::string_view call) {
     const lua::Vector& v = self_vector(L, call);
     if (v.size() == 0) {
-        lua::raise(L, fmt::format("{}: the vector is empty", call));
+        lua::raise(L, text::in_call(call, {"the vector is empty"}));
     }
     return v;
 }
@@ -88,7 +88,8 @@ int element(lua_State* L) {
         return 0;
     }
     if (is_integer != 0 && i < 0) {
-        lua::raise(L, fmt::format("v[{}]: elements are counted from 1; the last one is v[#v]", i));
+        lua::raise(
+            L, {.sentence = fmt::format("v[{}]: elements are counted from 1; the last one is v[#v]", i), .call = "v"});
     }
     if (const auto at = position(*v, i); is_integer != 0 && at) {
         lua_pushnumber(L, v->begin()[*at]);
@@ -110,8 +111,10 @@ lua_Integer whole_argument(lua_State* L, int index, std::string_view name, lua_I
     int is_integer = 0;
     const lua_Integer value = lua_tointegerx(L, index, &is_integer);
     if (is_integer == 0 || lua_type(L, index) != LUA_TNUMBER) {
-        lua::raise(L, fmt::format("v:slice(first, last, step): {} must be a whole number, got {}", name,
-                                  lua::describe(L, index)));
+        lua::raise(L, text::in_call(
+                          "v:slice(first, last, step)",
+                          {.sentence = fmt::format("{} must be a whole number, got {}", name, lua::describe(L, index)),
+                           .culprit = lua::written(L, index)}));
     }
     return value;
 }
@@ -123,8 +126,8 @@ int slice(lua_State* L) {
     const lua_Integer last = whole_argument(L, 3, "last", n);
     const lua_Integer step = whole_argument(L, 4, "step", 1);
     if (first < 1 || last > n || step < 1) {
-        lua::raise(L, fmt::format("v:slice({}, {}, {}): the vector has elements 1 to {}, and step must be at least 1",
-                                  first, last, step, n));
+        lua::raise(L, text::in_call(fmt::format("v:slice({}, {}, {})", first, last, step),
+                                    {fmt::format("the vector has elements 1 to {}, and step must be at least 1", n)}));
     }
     lua::make_room(L, v.size() * sizeof(double));
     std::vector<double> result;
@@ -168,7 +171,8 @@ int text(lua_State* L) {
 
 int make(lua_State* L) {
     if (lua_gettop(L) != 2 || (lua_type(L, 2) != LUA_TTABLE && lua::test<lua::Vector>(L, 2) == nullptr)) {
-        lua::raise(L, "vector takes one table of numbers, for example vector{ 1, 2, 3 }");
+        lua::raise(L,
+                   {.sentence = "vector takes one table of numbers, for example vector{ 1, 2, 3 }", .call = "vector"});
     }
     lua::push_vector(L, lua::numbers_at(L, 2, "vector"));
     return 1;
@@ -180,8 +184,8 @@ int linspace(lua_State* L) {
     const double count = lua::finite_argument(L, 3, "vector.linspace(from, to, n): n");
     constexpr double most = 1e9;
     if (count != std::floor(count) || count < 2 || count > most) {
-        lua::raise(
-            L, fmt::format("vector.linspace(from, to, n): n = {} must be a whole number from 2 to {}", count, most));
+        lua::raise(L, text::in_call("vector.linspace(from, to, n)",
+                                    {fmt::format("n = {} must be a whole number from 2 to {}", count, most)}));
     }
     const auto n = static_cast<std::size_t>(count);
     std::vector<double> values = lua::new_numbers(L, n);

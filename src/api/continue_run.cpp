@@ -23,7 +23,7 @@ motion::Grid asked_rows(const lua::Options& options, const motion::Trajectory& s
                                  so_far.t_stop));
     }
     if (const auto wrong = motion::Grid::at(more).within({so_far.t_stop, t_end}); !wrong) {
-        options.fail(wrong.error().sentence);
+        options.fail(wrong.error());
     }
     const double kept = options.has("times") ? so_far.t_stop : t_end;
     times.erase(std::upper_bound(times.begin(), times.end(), kept), times.end());

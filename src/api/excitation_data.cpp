@@ -21,8 +21,8 @@ constexpr const char* file_example = "excitation.samples(\"record.csv\", { time 
 template <class T>
 T value_or_raise(lua_State* L, const std::string& file, text::Expected<T> expected) {
     if (!expected) {
-        lua::raise(L,
-                   fmt::format("excitation.samples: {}{}", file.empty() ? "" : file + ": ", expected.error().sentence));
+        const text::Error error = file.empty() ? expected.error() : text::in_call(file, expected.error());
+        lua::raise(L, text::in_call("excitation.samples", error));
     }
     return std::move(expected).value();
 }
@@ -61,10 +61,11 @@ void check_times(lua_State* L, const std::string& file, const files::Table& tabl
     const auto t = table.values.col(column);
     for (Eigen::Index i = 1; i < t.size(); ++i) {
         if (!(t[i] > t[i - 1])) {
-            lua::raise(
-                L, fmt::format("excitation.samples: {}: row {} of the numbers has {} = {}, which is not after {} in "
+            lua::raise(L, {.sentence = fmt::format(
+                               "excitation.samples: {}: row {} of the numbers has {} = {}, which is not after {} in "
                                "the row before; times must increase",
-                               file, i + 1, table.names[static_cast<std::size_t>(column)], t[i], t[i - 1]));
+                               file, i + 1, table.names[static_cast<std::size_t>(column)], t[i], t[i - 1]),
+                           .call = "excitation.samples"});
         }
     }
 }
@@ -83,10 +84,13 @@ int samples_from_file(lua_State* L) {
     }
     const files::Table table = value_or_raise(L, "", std::move(read));
     if (table.values.rows() == 0) {
-        lua::raise(L, fmt::format("excitation.samples: {} has names but no rows of numbers", file));
+        lua::raise(L, {.sentence = fmt::format("excitation.samples: {} has names but no rows of numbers", file),
+                       .call = "excitation.samples"});
     }
     if (table.values.cols() < 2) {
-        lua::raise(L, fmt::format("excitation.samples: {} has only one column; times and values are two", file));
+        lua::raise(
+            L, {.sentence = fmt::format("excitation.samples: {} has only one column; times and values are two", file),
+                .call = "excitation.samples"});
     }
     const auto asked_time = asked_column(L, options, "time", table, file);
     const auto asked_value = asked_column(L, options, "value", table, file);
@@ -122,9 +126,11 @@ int samples(lua_State* L) {
         return samples_from_file(L);
     }
     if (lua_type(L, 1) != LUA_TTABLE) {
-        lua::raise(
-            L, fmt::format("excitation.samples takes the name of a file or a table of points, got {}; for example {}",
-                           lua::describe(L, 1), file_example));
+        lua::raise(L, {.sentence = fmt::format(
+                           "excitation.samples takes the name of a file or a table of points, got {}; for example {}",
+                           lua::describe(L, 1), file_example),
+                       .call = "excitation.samples",
+                       .culprit = lua::written(L, 1)});
     }
     return samples_from_table(L);
 }
@@ -132,8 +138,10 @@ int samples(lua_State* L) {
 int scripted(lua_State* L) {
     constexpr const char* example = "excitation.scripted(f, { breaks = { 0.5, 2 }, period = 3 })";
     if (!lua::is_callable(L, 1) || lua::test<model::Excitation>(L, 1) != nullptr) {
-        lua::raise(L, fmt::format("excitation.scripted needs a function, got {}; for example {}", lua::describe(L, 1),
-                                  example));
+        lua::raise(L, {.sentence = fmt::format("excitation.scripted needs a function, got {}; for example {}",
+                                               lua::describe(L, 1), example),
+                       .call = "excitation.scripted",
+                       .culprit = lua::written(L, 1)});
     }
     const lua::Options options(L, 2, "excitation.scripted", example, {"breaks", "period"}, true);
     const std::optional<double> period = options.optional_number("period");

@@ -46,7 +46,9 @@ double period_of(const lua::Options& options) {
 int push_term(lua_State* L, model::Term term) {
     auto made = model::Excitation::make(std::move(term));
     if (!made) {
-        lua::raise(L, "excitation." + made.error().sentence);
+        text::Error error = made.error();
+        error.sentence.insert(0, "excitation.");
+        lua::raise(L, error);
     }
     lua::push(L, std::move(made).value());
     return 1;

@@ -116,8 +116,9 @@ FileKind kind_of(const lua::Options& options, std::string_view file) {
                    [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
     const auto* const known = std::find(endings.begin(), endings.end(), ending);
     if (known == endings.end()) {
-        options.fail(
-            fmt::format("the name '{}' must end in .svg, .png, .pdf, .gp (gnuplot commands and data) or .txt", file));
+        options.fail({.sentence = fmt::format(
+                          "the name '{}' must end in .svg, .png, .pdf, .gp (gnuplot commands and data) or .txt", file),
+                      .culprit = std::string(file)});
     }
     return static_cast<FileKind>(known - endings.begin());
 }
@@ -142,7 +143,7 @@ text::Expected<std::string> content(const std::vector<plots::Figure>& figures, F
 template <class T>
 T value_or_fail(const lua::Options& options, text::Expected<T> expected) {
     if (!expected) {
-        options.fail(expected.error().sentence);
+        options.fail(expected.error());
     }
     return std::move(expected).value();
 }

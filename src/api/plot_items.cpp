@@ -18,12 +18,16 @@ plots::Numbers numbers_on_top(lua_State* L, std::string_view what) {
         return {kept, kept->values()};
     }
     if (!lua_istable(L, -1)) {
-        lua::raise(L, fmt::format("{} must be a vector or a table of numbers, got {}", what, lua::describe(L, -1)));
+        lua::raise(L, {.sentence =
+                           fmt::format("{} must be a vector or a table of numbers, got {}", what, lua::describe(L, -1)),
+                       .call = std::string(what)});
     }
     std::vector<double> values(lua_rawlen(L, -1));
     for (std::size_t i = 0; i < values.size(); ++i) {
         if (lua_rawgeti(L, -1, static_cast<lua_Integer>(i) + 1) != LUA_TNUMBER) {
-            lua::raise(L, fmt::format("{}[{}] must be a number, got {}", what, i + 1, lua::describe(L, -1)));
+            lua::raise(L,
+                       {.sentence = fmt::format("{}[{}] must be a number, got {}", what, i + 1, lua::describe(L, -1)),
+                        .call = std::string(what)});
         }
         values[i] = lua_tonumber(L, -1);  // nan is a gap
         lua_pop(L, 1);
@@ -69,15 +73,19 @@ plots::Curve curve_on_top(lua_State* L, const std::string& call) {
     curve.y = vector(2, "y");
     const auto same_length = [&](const plots::Numbers& numbers, std::string_view name) {
         if (numbers.values.size() != curve.x.values.size()) {
-            lua::raise(L, fmt::format("{}: x has {} numbers, but {} has {}", call, curve.x.values.size(), name,
-                                      numbers.values.size()));
+            lua::raise(L, {.sentence = fmt::format("{}: x has {} numbers, but {} has {}", call, curve.x.values.size(),
+                                                   name, numbers.values.size()),
+                           .call = call,
+                           .option = std::string(name)});
         }
     };
     same_length(curve.y, "y");
     if (curve.base) {
         same_length(*curve.base, "base");
         if (curve.style != plots::Style::fill) {
-            lua::raise(L, call + ": base is the other edge of a fill; add style = \"fill\"");
+            lua::raise(L, {.sentence = call + ": base is the other edge of a fill; add style = \"fill\"",
+                           .call = call,
+                           .option = "base"});
         }
     }
     return curve;
@@ -119,8 +127,11 @@ PlotItems plot_items(lua_State* L, int table) {
         } else if (is_table_of_items(L)) {
             items.curves.push_back(curve_on_top(L, fmt::format("plot: curve {}", i)));
         } else {
-            lua::raise(L, fmt::format("plot: item {} must be a curve {{ x, y }} or a picture, got {}; for example {}",
-                                      i, lua::describe(L, -1), plot_example));
+            lua::raise(L, {.sentence = fmt::format(
+                               "plot: item {} must be a curve {{ x, y }} or a picture, got {}; for example {}", i,
+                               lua::describe(L, -1), plot_example),
+                           .call = "plot",
+                           .culprit = lua::written(L, -1)});
         }
         lua_pop(L, 1);
     }

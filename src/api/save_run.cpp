@@ -36,7 +36,7 @@ std::vector<files::NamedColumn> asked_columns(lua_State* L, const lua::Options& 
         const auto column = named ? files::find_column(trajectory.names, std::string_view(lua_tostring(L, -1)))
                                   : files::find_column(trajectory.names, std::int64_t{lua_tointeger(L, -1)});
         if (!column) {
-            options.fail(column.error().sentence);
+            options.fail(column.error());
         }
         asked.push_back(all[static_cast<std::size_t>(*column)]);
         lua_pop(L, 1);
@@ -66,8 +66,9 @@ text::Expected<files::Written> write(lua_State* L, const lua::Options& options, 
                                 run.origin ? source::repeat_lines(*run.origin) : run.comments);
     }
     if (ending != ".dat") {
-        return text::Error{
-            fmt::format("the name '{}' must end in .csv (names and numbers) or .dat (the record of 1989)", file)};
+        return text::Error{.sentence = fmt::format(
+                               "the name '{}' must end in .csv (names and numbers) or .dat (the record of 1989)", file),
+                           .culprit = file};
     }
     if (options.has("columns")) {
         return text::Error{"the record of 1989 always has its six columns; save a choice of columns as .csv"};
@@ -80,14 +81,16 @@ text::Expected<files::Written> write(lua_State* L, const lua::Options& options, 
 int save_run(lua_State* L) {
     const RunHandle run = lua::self<RunHandle>(L, 1, "run:save(\"run.csv\")");
     if (lua_type(L, 2) != LUA_TSTRING) {
-        lua::raise(L, "run:save: the name of the file must be a string, got " + lua::describe(L, 2) + "; for example " +
-                          example);
+        lua::raise(L, {.sentence = "run:save: the name of the file must be a string, got " + lua::describe(L, 2) +
+                                   "; for example " + example,
+                       .call = "run:save",
+                       .culprit = lua::written(L, 2)});
     }
     const std::string file = lua_tostring(L, 2);
     const lua::Options options(L, 3, "run:save", example, {"columns"}, true);
     const auto written = write(L, options, file, *run);
     if (!written) {
-        options.fail(written.error().sentence);
+        options.fail(written.error());
     }
     return 0;
 }

@@ -36,10 +36,8 @@ constexpr std::array<std::pair<std::string_view, std::string_view>, 20> foreign_
 constexpr std::array<std::string_view, 8> file_endings = {"csv", "dat", "txt", "svg", "png", "pdf", "gp", "lua"};
 
 /// "k = 0,5" in braces is two entries of a table.
-std::string decimal_comma(std::string_view words, const std::vector<lua::Token>& all) {
-    if (words.find("named options only") == std::string_view::npos) {
-        return "";
-    }
+std::string decimal_comma(std::string_view statement) {
+    const std::vector<lua::Token> all = lua::tokens(statement);
     for (std::size_t i = 3; i < all.size(); ++i) {
         if (all[i].kind == lua::TokenKind::number && all[i - 1].is(",") && all[i - 2].kind == lua::TokenKind::number &&
             all[i - 3].is("=")) {
@@ -49,14 +47,13 @@ std::string decimal_comma(std::string_view words, const std::vector<lua::Token>&
     return "";
 }
 
-/// run:save(run.csv)
-std::string file_without_quotes(std::string_view words, const std::vector<lua::Token>& all) {
+/// run:save(run.csv); `name` is what was not found.
+std::string file_without_quotes(std::string_view name, std::string_view statement) {
+    const std::vector<lua::Token> all = lua::tokens(statement);
     for (std::size_t i = 2; i < all.size(); ++i) {
         const bool ending = std::find(file_endings.begin(), file_endings.end(), all[i].text) != file_endings.end();
-        const std::string key = "'" + std::string(all[i].text) + "'";
-        const std::string owner = "'" + std::string(all[i - 2].text) + "'";
         if (ending && all[i - 1].is(".") && all[i - 2].kind == lua::TokenKind::name &&
-            (words.find(key) != std::string_view::npos || words.find(owner) != std::string_view::npos)) {
+            (all[i].text == name || all[i - 2].text == name)) {
             return "; the name of a file stands in quotes: \"" + std::string(all[i - 2].text) + "." +
                    std::string(all[i].text) + "\"";
         }
@@ -65,36 +62,36 @@ std::string file_without_quotes(std::string_view words, const std::vector<lua::T
 }
 
 /// A number, a string, a list that is called.
-std::string called_value(std::string_view words) {
-    constexpr std::string_view head = "attempt to call a ";
-    if (!words.starts_with(head)) {
-        return "";
+std::string called_value(const lua::LuaMessage& message) {
+    if (message.kind == "for iterator") {
+        return message.type == "number" ? "; counting is: for i = 1, 10 do"
+                                        : "; going through a list is: for i, x in ipairs(list) do";
     }
-    const std::string_view type = words.substr(head.size(), words.find(" value") - head.size());
-    if (words.find("for iterator") != std::string_view::npos) {
-        return type == "number" ? "; counting is: for i = 1, 10 do"
-                                : "; going through a list is: for i, x in ipairs(list) do";
-    }
-    if (type == "vector" || type == "table") {
+    if (message.type == "vector" || message.type == "table") {
         return "; its elements are in brackets: v[1]";
     }
-    const bool simple = type == "number" || type == "string" || type == "boolean";
+    const bool simple = message.type == "number" || message.type == "string" || message.type == "boolean";
     return simple ? "; it is a value and no function: leave out the parentheses" : "";
+}
+
+bool is_number(std::string_view text) {
+    return !text.empty() && text.find_first_not_of("0123456789.") == std::string_view::npos;
 }
 
 }  // namespace
 
-std::string running_habit(std::string_view words, std::string_view statement) {
-    const std::vector<lua::Token> all = lua::tokens(statement);
-    if (words.starts_with("attempt to add a 'string' with a 'string'")) {
+std::string running_habit(const text::Error& error, std::string_view statement) {
+    if (error.option.empty() && is_number(error.culprit)) {
+        return decimal_comma(statement);
+    }
+    return file_without_quotes(error.culprit, statement);
+}
+
+std::string running_habit(const lua::LuaMessage& message, std::string_view statement) {
+    if (message.adds_texts) {
         return "; texts are joined with ..";
     }
-    for (std::string advice : {decimal_comma(words, all), file_without_quotes(words, all), called_value(words)}) {
-        if (!advice.empty()) {
-            return advice;
-        }
-    }
-    return "";
+    return message.calls ? called_value(message) : file_without_quotes(message.name, statement);
 }
 
 std::string foreign_name(std::string_view name) {

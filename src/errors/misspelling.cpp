@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <optional>
 #include <utility>
 
 #include "errors/habits.hpp"
@@ -117,16 +116,6 @@ std::vector<std::string> siblings(lua_State* L, lua_Debug* frame, std::string_vi
     return {};
 }
 
-/// The word in "... (KIND 'word')".
-std::string_view named_in(std::string_view words, std::string_view kind) {
-    const std::size_t at = words.find("(" + std::string(kind) + " '");
-    if (at == std::string_view::npos) {
-        return {};
-    }
-    const std::size_t begin = at + kind.size() + 3;
-    return words.substr(begin, words.find('\'', begin) - begin);
-}
-
 /// Names that the statement itself declares: local x, function(x), for x, { x = 1 }.
 bool is_declared(const std::vector<lua::Token>& all, std::string_view name) {
     bool declaring = false;
@@ -142,21 +131,9 @@ bool is_declared(const std::vector<lua::Token>& all, std::string_view name) {
     return false;
 }
 
-/// The word in "sys:simulate needs t_end, for example ..." or "system: I must be ..., got nil".
-std::string_view missing_in(std::string_view words) {
-    const std::size_t needs = words.find(" needs ");
-    const std::size_t colon =
-        words.ends_with("must be a finite number, got nil") ? words.find(": ") : std::string_view::npos;
-    const std::size_t begin = needs != std::string_view::npos ? needs + 7 : colon + 2;
-    const bool there = needs != std::string_view::npos || colon != std::string_view::npos;
-    return there ? words.substr(begin, words.find_first_of(" ,", begin) - begin) : std::string_view();
-}
-
-/// A global that is nil, in the statement: the value of the option that is missing; else one with a likely other
-/// spelling or, when the words speak of nil without saying of which, any.
-std::string nil_global(lua_State* L, lua_Debug* frame, std::string_view words, std::string_view statement) {
-    const std::string_view missing = missing_in(words);
-    const bool any = words.find("nil") != std::string_view::npos && words.find("nil value (") == std::string_view::npos;
+/// A global that is nil, in the statement: the value of the option that is missing, `option = x`; without one, one with
+/// a likely other spelling or, when it is known that something is nil, any.
+Advice nil_global(lua_State* L, lua_Debug* frame, std::string_view statement, std::string_view option, bool any) {
     const std::vector<lua::Token> all = lua::tokens(statement);
     const std::vector<std::string> local = variables(L, frame);
     for (std::size_t i = 0; i < all.size(); ++i) {
@@ -169,12 +146,12 @@ std::string nil_global(lua_State* L, lua_Debug* frame, std::string_view words, s
         const bool is_nil = lua_isnil(L, -1);
         lua_pop(L, 1);
         const std::string hint = is_nil ? similar_global(L, all[i].text) : "";
-        const bool its_value = i > 1 && all[i - 1].is("=") && all[i - 2].is(missing);
-        if (is_nil && (missing.empty() ? any || !hint.empty() : its_value)) {
-            return "; '" + std::string(all[i].text) + "' is nil" + hint;
+        const bool its_value = i > 1 && all[i - 1].is("=") && all[i - 2].is(option);
+        if (is_nil && (option.empty() ? any || !hint.empty() : its_value)) {
+            return {"; '" + std::string(all[i].text) + "' is nil" + hint, std::string(all[i].text)};
         }
     }
-    return "";
+    return {};
 }
 
 /// Names of that spelling in the libraries: sin is math.sin, rk4 is integrator.rk4. Two at most.
@@ -245,32 +222,34 @@ std::string similar_global(lua_State* L, std::string_view name) {
     return meant_by(L, name, names);
 }
 
-std::string help_with(lua_State* L, lua_Debug* frame, std::string_view words, std::string_view statement) {
+Advice help_with(lua_State* L, lua_Debug* frame, const text::Error& error, std::string_view statement) {
     luaL_checkstack(L, LUA_MINSTACK, "for the help with an error");
-    if (words.find("did you mean") != std::string_view::npos) {
-        return "";
+    if (!error.cure.empty()) {
+        return {};
     }
-    if (words.find(" near ") != std::string_view::npos) {
-        return syntax_habit(L, words, statement);
+    if (std::string habit = running_habit(error, statement); !habit.empty()) {
+        return {habit};
     }
-    if (std::string habit = running_habit(words, statement); !habit.empty()) {
-        return habit;
+    const bool is_nil = error.culprit == "nil";
+    return nil_global(L, frame, statement, is_nil ? error.option : "", is_nil);
+}
+
+Advice help_with(lua_State* L, lua_Debug* frame, const lua::LuaMessage& message, std::string_view statement) {
+    luaL_checkstack(L, LUA_MINSTACK, "for the help with an error");
+    if (std::string habit = running_habit(message, statement); !habit.empty()) {
+        return {habit};
     }
-    if (words.find("nil value") != std::string_view::npos) {
-        if (const std::string_view name = named_in(words, "global"); !name.empty()) {
-            std::vector<std::string> names = variables(L, frame);
-            lua_pushglobaltable(L);
-            add_keys(L, names);
-            lua_pop(L, 1);
-            return meant_by(L, name, names);
-        }
-        for (const char* kind : {"field", "method"}) {
-            if (const std::string_view key = named_in(words, kind); !key.empty()) {
-                return likely(key, siblings(L, frame, key, statement), text::Likeness::of_meaning);
-            }
-        }
+    if (message.type == "nil" && message.kind == "global") {
+        std::vector<std::string> names = variables(L, frame);
+        lua_pushglobaltable(L);
+        add_keys(L, names);
+        lua_pop(L, 1);
+        return {meant_by(L, message.name, names)};
     }
-    return nil_global(L, frame, words, statement);
+    if (message.type == "nil" && (message.kind == "field" || message.kind == "method")) {
+        return {likely(message.name, siblings(L, frame, message.name, statement), text::Likeness::of_meaning)};
+    }
+    return nil_global(L, frame, statement, "", message.misses_a_value);
 }
 
 }  // namespace dinal::errors

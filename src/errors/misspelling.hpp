@@ -5,14 +5,21 @@
 #include <string_view>
 #include <vector>
 
-#include "errors/source_text.hpp"
 #include "lua/lua_headers.hpp"
+#include "lua/lua_message.hpp"
+#include "text/expected.hpp"
 
 namespace dinal::errors {
 
-/// The end of a sentence about an error: "; did you mean 'system'?" or what else helps with it, or "". `frame` is where
-/// it happened, nullptr when that is gone; `statement` its text, as far as it is known.
-std::string help_with(lua_State* L, lua_Debug* frame, std::string_view words, std::string_view statement);
+/// What helps with an error.
+struct Advice {
+    std::string end_of_sentence;  ///< "; did you mean 'system'?", or ""
+    std::string culprit = {};     ///< what it has found out to be the reason: "; 'tend' is nil"
+};
+
+/// `frame` is where it happened, nullptr when that is gone; `statement` its text, as far as it is known.
+Advice help_with(lua_State* L, lua_Debug* frame, const text::Error& error, std::string_view statement);
+Advice help_with(lua_State* L, lua_Debug* frame, const lua::LuaMessage& message, std::string_view statement);
 
 /// The global names that a misspelt one may stand for, as the end of a sentence.
 std::string similar_global(lua_State* L, std::string_view name);

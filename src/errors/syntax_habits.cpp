@@ -15,27 +15,34 @@ namespace {
 
 using Cure = std::pair<std::string_view, std::string_view>;
 
-constexpr std::array<Cure, 20> symptoms = {{
-    {"near '!'", "; in Lua 'not equal' is ~= and 'not' is a word"},
-    {"near '+'", "; in Lua that is x = x + 1"},
-    {"syntax error near '-'", "; in Lua that is x = x - 1"},
-    {"syntax error near '*'", "; in Lua that is x = x * 2"},
-    {"syntax error near '/'", "; in Lua that is x = x / 2"},
-    {"near '&'", "; in Lua that is the word and"},
-    {"near '|'", "; in Lua that is the word or"},
-    {"near '?'", "; in Lua that is: condition and this or that"},
-    {"near '#'", "; a remark begins with --"},
-    {"unexpected symbol near '/", "; a remark begins with --"},
-    {"unexpected symbol near '*'", "; a power is x^2"},
-    {"unexpected symbol near '>'", "; in Lua 'not equal' is ~="},
-    {"symbol near '['", "; a list is { 1, 2, 3 }"},
-    {"'then' expected near '='", "; comparing is =="},
-    {"'do' expected near '='", "; comparing is =="},
-    {"'do' expected near '", "; a loop is: for i = 1, 10 do ... end, or: while x < 3 do ... end"},
-    {"')' expected near '='", "; named options stand in braces: system{ I = 1, k = 4 }"},
-    {"unfinished string", "; its closing quote is missing"},
-    {"'}' expected near", "; is a comma missing there?"},
-    {"expected (to close '{' at line", "; is a comma missing there, or a brace?"},
+/// What Lua complains of, "" for anything, and near what: "" for any word.
+struct Symptom {
+    std::string_view complaint;
+    std::string_view near;
+    std::string_view cure;
+};
+
+constexpr std::array<Symptom, 20> symptoms = {{
+    {"", "!", "; in Lua 'not equal' is ~= and 'not' is a word"},
+    {"", "+", "; in Lua that is x = x + 1"},
+    {"syntax error", "-", "; in Lua that is x = x - 1"},
+    {"syntax error", "*", "; in Lua that is x = x * 2"},
+    {"syntax error", "/", "; in Lua that is x = x / 2"},
+    {"", "&", "; in Lua that is the word and"},
+    {"", "|", "; in Lua that is the word or"},
+    {"", "?", "; in Lua that is: condition and this or that"},
+    {"", "#", "; a remark begins with --"},
+    {"unexpected symbol", "/", "; a remark begins with --"},
+    {"unexpected symbol", "//", "; a remark begins with --"},
+    {"unexpected symbol", "*", "; a power is x^2"},
+    {"unexpected symbol", ">", "; in Lua 'not equal' is ~="},
+    {"unexpected symbol", "[", "; a list is { 1, 2, 3 }"},
+    {"'then' expected", "=", "; comparing is =="},
+    {"'do' expected", "=", "; comparing is =="},
+    {"'do' expected", "", "; a loop is: for i = 1, 10 do ... end, or: while x < 3 do ... end"},
+    {"')' expected", "=", "; named options stand in braces: system{ I = 1, k = 4 }"},
+    {"unfinished string", "", "; its closing quote is missing"},
+    {"'}' expected", "", "; is a comma missing there?"},
 }};
 
 /// What stands before a name in other languages: "def f", "var x", "import math".
@@ -88,7 +95,7 @@ std::string_view cure(const std::array<Cure, count>& cures, std::string_view wor
 
 /// "didn't expect" and where: the message, the token, what stands before it.
 struct Stumble {
-    std::string_view words;
+    const lua::SyntaxMessage& message;
     std::vector<lua::Token> all = {};
     std::size_t at = 0;  ///< of the token in `all`; 0 when it is not known or the first
 
@@ -101,15 +108,10 @@ bool is_value(const lua::Token& token) {
 }
 
 /// The token of that text that is likeliest: the last one right behind a name or a number, else the first.
-Stumble stumble_in(std::string_view words, std::string_view statement) {
-    Stumble stumble{words, lua::tokens(statement)};
-    const std::size_t near = words.find(" near '");
-    if (near == std::string_view::npos) {
-        return stumble;
-    }
-    const std::string_view text = words.substr(near + 7, words.rfind('\'') - near - 7);
+Stumble stumble_in(const lua::SyntaxMessage& message, std::string_view statement) {
+    Stumble stumble{message, lua::tokens(statement)};
     for (std::size_t i = 1; i < stumble.all.size(); ++i) {
-        if (stumble.all[i].text == text &&
+        if (stumble.all[i].text == message.near &&
             (stumble.at == 0 || (is_value(stumble.all[i]) && is_value(stumble.all[i - 1])))) {
             stumble.at = i;
         }
@@ -117,8 +119,8 @@ Stumble stumble_in(std::string_view words, std::string_view statement) {
     return stumble;
 }
 
-std::string printed_sign(std::string_view words, std::string_view statement) {
-    if (words.find("near '<\\") == std::string_view::npos) {
+std::string printed_sign(const lua::SyntaxMessage& message, std::string_view statement) {
+    if (!message.near.starts_with("<\\")) {
         return "";
     }
     for (const auto& [sign, meant] : printed_signs) {
@@ -148,23 +150,23 @@ std::string two_words(lua_State* L, const Stumble& stumble) {
     if (const std::string_view known = cure(leading_words, first); !known.empty()) {
         return std::string(known);
     }
-    if (stumble.words.starts_with("function arguments expected")) {
+    if (stumble.message.complaint == "function arguments expected") {
         return "; a method is called with parentheses: " + std::string(first) + "(...)";
     }
     if (is_function_of(L, first)) {
         return "; a call needs parentheses: " + std::string(first) + "(...)";
     }
     const bool long_enough = first.size() > 2;
-    return long_enough && stumble.words.starts_with("syntax error") ? text::did_you_mean(first, lua::keywords()) : "";
+    return long_enough && stumble.message.complaint == "syntax error" ? text::did_you_mean(first, lua::keywords()) : "";
 }
 
 /// "if x then" with a slip in `then`; "fucntion(x)", which is a call, so that its end comes as a surprise.
 std::string misspelt_keyword(const Stumble& stumble) {
-    if (stumble.at > 0 && stumble.words.starts_with('\'')) {
-        const std::array<std::string_view, 1> wanted = {stumble.words.substr(1, stumble.words.find('\'', 1) - 1)};
+    if (stumble.at > 0 && !stumble.message.expected.empty()) {
+        const std::array<std::string_view, 1> wanted = {stumble.message.expected};
         return text::did_you_mean(stumble.token().text, wanted);
     }
-    if (stumble.words.starts_with("<eof> expected near 'end'") || stumble.words.starts_with("'<eof>' expected")) {
+    if (stumble.message.complaint == "<eof> expected" && stumble.message.near == "end") {
         constexpr std::array<std::string_view, 1> wanted = {"function"};
         for (std::size_t i = 0; i + 1 < stumble.all.size(); ++i) {
             const lua::Token& token = stumble.all[i];
@@ -182,11 +184,10 @@ std::string misspelt_keyword(const Stumble& stumble) {
 
 /// "3t", "2pi"
 std::string missing_star(const Stumble& stumble) {
-    constexpr std::string_view head = "malformed number near '";
-    if (!stumble.words.starts_with(head)) {
+    if (stumble.message.complaint != "malformed number") {
         return "";
     }
-    std::string_view word = stumble.words.substr(head.size(), stumble.words.rfind('\'') - head.size());
+    std::string_view word = stumble.message.near;
     for (const lua::Token& token : stumble.all) {  // the message breaks off at 2p
         word = token.kind == lua::TokenKind::number && token.text.starts_with(word) ? token.text : word;
     }
@@ -206,13 +207,14 @@ std::string other_grammar(const Stumble& stumble) {
     const lua::Token& token = stumble.token();
     const lua::Token& before = stumble.before();
     const auto& all = stumble.all;
-    if (stumble.words.starts_with("<name> expected") && before.is(":")) {
+    const std::string_view complaint = stumble.message.complaint;
+    if (complaint == "<name> expected" && before.is(":")) {
         return token.is("=") ? "; assigning is =" : "; a named value is written with =, I = 1";
     }
-    if (stumble.words.starts_with("<name> expected near '('") && before.is("for")) {
+    if (complaint == "<name> expected" && token.is("(") && before.is("for")) {
         return "; a loop is: for i = 1, 10 do ... end";
     }
-    if (stumble.words.starts_with("'then' expected") && (token.is("{") || token.is(":"))) {
+    if (stumble.message.expected == "then" && (token.is("{") || token.is(":"))) {
         return "; in Lua: if x > 3 then ... end";
     }
     if (token.is("{") && before.is(")")) {
@@ -225,7 +227,7 @@ std::string other_grammar(const Stumble& stumble) {
         return "; a function is written: " + std::string(all[0].text) + " = function(t) return ... end";
     }
     const bool number = token.kind == lua::TokenKind::number || before.kind == lua::TokenKind::number;
-    const bool expression = !stumble.words.starts_with('\'') || stumble.words.starts_with("')'");
+    const bool expression = stumble.message.expected.empty() || stumble.message.expected == ")";
     if (expression && number && is_value(token) && is_value(before)) {
         return "; is an operator missing there, such as *?";
     }
@@ -234,21 +236,22 @@ std::string other_grammar(const Stumble& stumble) {
 
 }  // namespace
 
-std::string syntax_habit(lua_State* L, std::string_view words, std::string_view statement) {
+std::string syntax_habit(lua_State* L, const lua::SyntaxMessage& message, std::string_view statement) {
     luaL_checkstack(L, LUA_MINSTACK, "for the habits of others");
-    const Stumble stumble = stumble_in(words, statement);
-    for (std::string advice : {printed_sign(words, statement), two_words(L, stumble), misspelt_keyword(stumble),
+    const Stumble stumble = stumble_in(message, statement);
+    for (std::string advice : {printed_sign(message, statement), two_words(L, stumble), misspelt_keyword(stumble),
                                missing_star(stumble), other_grammar(stumble)}) {
         if (!advice.empty()) {
             return advice;
         }
     }
-    for (const auto& [symptom, advice] : symptoms) {
-        if (words.find(symptom) != std::string_view::npos) {
-            return std::string(advice);
-        }
+    if (message.opened == "{") {
+        return "; is a comma missing there, or a brace?";
     }
-    return "";
+    const auto* const symptom = std::find_if(symptoms.begin(), symptoms.end(), [&message](const Symptom& s) {
+        return (s.complaint.empty() || s.complaint == message.complaint) && (s.near.empty() || s.near == message.near);
+    });
+    return symptom == symptoms.end() ? "" : std::string(symptom->cure);
 }
 
 }  // namespace dinal::errors

@@ -70,7 +70,7 @@ text::Expected<Written> write_csv(const std::string& path, std::span<const Named
     }
     file.write("\n");
     if (std::optional<text::Error> fault = write_rows(file, columns, ',')) {
-        return text::Error{"can not write '" + path + "': " + fault->sentence};
+        return text::Error{.sentence = "can not write '" + path + "': " + fault->sentence, .culprit = path};
     }
     return file.commit();
 }

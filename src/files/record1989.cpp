@@ -23,7 +23,7 @@ text::Expected<Written> write_columns(const std::string& path, std::span<const N
     OutputFile file = std::move(opened).value();
     file.write(std::to_string(columns.front().values.size()) + "\n");
     if (std::optional<text::Error> fault = write_rows(file, columns, ' ')) {
-        return text::Error{"can not write '" + path + "': " + fault->sentence};
+        return text::Error{.sentence = "can not write '" + path + "': " + fault->sentence, .culprit = path};
     }
     return file.commit();
 }
@@ -165,7 +165,7 @@ text::Expected<Written> write_record1989(const std::string& path, const motion::
         const text::Expected<Eigen::Index> column = find_column(trajectory.names, name);
         if (!column) {
             return text::Error{"can not write '" + path + "': the record of 1989 needs six columns and " +
-                               column.error().sentence};
+                               column.error().message()};
         }
         values.col(static_cast<Eigen::Index>(i)) = trajectory.rows.col(*column) / unit;
     }

@@ -34,8 +34,9 @@ text::Expected<Eigen::Index> find_column(std::span<const std::string> names, std
     const auto found = std::find(names.begin(), names.end(), name);
     if (found == names.end()) {
         const std::vector<std::string_view> known(names.begin(), names.end());
-        return text::Error{"there is no column '" + std::string(name) + "' among " + list_of(names) +
-                           text::did_you_mean(name, known)};
+        return text::Error{.sentence = "there is no column '" + std::string(name) + "' among " + list_of(names),
+                           .culprit = std::string(name),
+                           .cure = text::did_you_mean(name, known)};
     }
     const auto again = std::find(found + 1, names.end(), name);
     if (again != names.end()) {

@@ -2,6 +2,7 @@
 #include "help/library.hpp"
 
 #include "api/classes.hpp"
+#include "errors/error_remarks.hpp"
 #include "help/help.hpp"
 #include "lua/dinal_table.hpp"
 #include "lua/interrupt.hpp"
@@ -88,7 +89,10 @@ int unknown_name(lua_State* L) {
     }
     const std::vector<std::string_view> names(owned.begin(), owned.end());
     const std::string_view wrong = lua_tostring(L, 2);
-    lua::raise(L, "there is no dinal." + std::string(wrong) + text::did_you_mean(wrong, names));
+    lua::raise(L, {.sentence = "there is no dinal." + std::string(wrong),
+                   .call = "dinal",
+                   .culprit = std::string(wrong),
+                   .cure = text::did_you_mean(wrong, names)});
 }
 
 void copy_into_globals(lua_State* L) {
@@ -109,6 +113,7 @@ std::span<const Section> sections() {
 }
 
 void open_library(lua_State* L) {
+    lua::set_witness(L, errors::first_remarks);
     lua::open_coroutines(L);
     lua::open_terminal_output(L);
     lua::make_dinal_table(L);

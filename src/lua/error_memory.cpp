@@ -1,5 +1,7 @@
 #include "lua/error_memory.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <deque>
 #include <memory>
@@ -9,11 +11,14 @@ namespace {
 
 const char memory_key = 0;  // registry key of the ErrorMemory; false once lua_close has taken it
 
-constexpr std::size_t most_facts =
-    20;  // an error that was kept while so many others were raised is told without a mark
+constexpr std::size_t most_facts = 20;  // an error that is kept while so many others are raised is told without a mark
 
 struct ErrorMemory {
     std::deque<text::Error> facts;  // the latest first
+    Witness witness = nullptr;
+    Remarks remarks;            // on the error value that the userdata has as its user value
+    bool is_witnessed = false;  // there is such a value, which may be nil
+    bool raised_again = false;
 };
 
 /// The finalizer. What the registry has is taken, and not the argument, which is a user's when he calls it by hand.
@@ -43,19 +48,52 @@ ErrorMemory* push_memory(lua_State* L) {
     return static_cast<ErrorMemory*>(lua_touserdata(L, -1));
 }
 
-}  // namespace
+ErrorMemory* memory_of(lua_State* L) {
+    ErrorMemory* memory = push_memory(L);
+    lua_pop(L, 1);  // the registry keeps it
+    return memory;
+}
 
-void remember_facts(lua_State* L, const text::Error& error) {
-    if (ErrorMemory* memory = push_memory(L)) {
-        memory->facts.push_front(error);
-        memory->facts.resize(std::min(memory->facts.size(), most_facts));
+/// The memory, if it is about the error value at the index.
+ErrorMemory* memory_about(lua_State* L, int index) {
+    index = lua_absindex(L, index);
+    ErrorMemory* memory = push_memory(L);
+    bool same = false;
+    if (memory != nullptr && memory->is_witnessed) {
+        lua_getiuservalue(L, -1, 1);
+        same = lua_rawequal(L, -1, index) != 0;
+        lua_pop(L, 1);
+    }
+    lua_pop(L, 1);
+    return same ? memory : nullptr;
+}
+
+/// What the witness says about the error value at the index.
+void witness(lua_State* L, int error, int function) {
+    error = lua_absindex(L, error);
+    function = function == 0 ? 0 : lua_absindex(L, function);
+    ErrorMemory* memory = push_memory(L);
+    if (memory != nullptr) {
+        memory->remarks = memory->witness != nullptr ? memory->witness(L, error, function) : Remarks();
+        memory->is_witnessed = true;
+        memory->raised_again = false;
+        lua_pushvalue(L, error);
+        lua_setiuservalue(L, -2, 1);
     }
     lua_pop(L, 1);
 }
 
+}  // namespace
+
+void remember_facts(lua_State* L, const text::Error& error) {
+    if (ErrorMemory* memory = memory_of(L)) {
+        memory->facts.push_front(error);
+        memory->facts.resize(std::min(memory->facts.size(), most_facts));
+    }
+}
+
 const text::Error* facts_of(lua_State* L, std::string_view message) {
-    const ErrorMemory* memory = push_memory(L);
-    lua_pop(L, 1);  // the registry keeps it
+    const ErrorMemory* memory = memory_of(L);
     if (memory == nullptr) {
         return nullptr;
     }
@@ -63,6 +101,45 @@ const text::Error* facts_of(lua_State* L, std::string_view message) {
         return message.find(error.message()) != std::string_view::npos;
     });
     return told == memory->facts.end() ? nullptr : &*told;
+}
+
+void set_witness(lua_State* L, Witness witness) {
+    if (ErrorMemory* memory = memory_of(L)) {
+        memory->witness = witness;
+    }
+}
+
+int witness_error(lua_State* L) {
+    lua_settop(L, 1);
+    // NOTE: texts that are equal may be two errors; it is the same one only when it has been raised again.
+    ErrorMemory* memory = memory_about(L, 1);
+    if (memory != nullptr && memory->raised_again) {
+        memory->raised_again = false;
+    } else {
+        witness(L, 1, 0);
+    }
+    return 1;
+}
+
+void witness_result(lua_State* L, int function) {
+    witness(L, -1, function);
+}
+
+void remember_time(lua_State* L, double t) {
+    if (ErrorMemory* memory = memory_about(L, -1)) {
+        memory->remarks.during += fmt::format("\n  in M at t = {:.14g}", t);
+    }
+}
+
+void keep_remarks(lua_State* L) {
+    if (ErrorMemory* memory = memory_of(L)) {
+        memory->raised_again = true;
+    }
+}
+
+const Remarks* remembered_remarks(lua_State* L, int index) {
+    const ErrorMemory* memory = memory_about(L, index);
+    return memory == nullptr ? nullptr : &memory->remarks;
 }
 
 }  // namespace dinal::lua

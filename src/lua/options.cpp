@@ -32,18 +32,23 @@ Options::Options(lua_State* L, int index, std::string_view call, std::string_vie
         lua_newtable(L);
     }
     if (lua_type(L, index) != LUA_TTABLE || lua_gettop(L) > index) {
-        raise(L, fmt::format("{} takes one table of named options, for example {}", call, example));
+        raise(L, {.sentence = fmt::format("{} takes one table of named options, for example {}", call, example),
+                  .call = std::string(call)});
     }
     const std::vector<std::string_view> known(names);
     lua_pushnil(L);
     while (lua_next(L, index) != 0) {
         if (lua_type(L, -2) != LUA_TSTRING) {
-            raise(L, fmt::format("{} takes named options only, for example {}", call, example));
+            raise(L, {.sentence = fmt::format("{} takes named options only, for example {}", call, example),
+                      .call = std::string(call),
+                      .culprit = written(L, -1)});
         }
         const std::string_view name = lua_tostring(L, -2);
         if (std::find(known.begin(), known.end(), name) == known.end()) {
-            raise(L, fmt::format("{} has no option '{}' among {}{}", call, name, joined(known, " and "),
-                                 text::did_you_mean(name, known)));
+            raise(L, {.sentence = fmt::format("{} has no option '{}' among {}", call, name, joined(known, " and ")),
+                      .call = std::string(call),
+                      .culprit = std::string(name),
+                      .cure = text::did_you_mean(name, known)});
         }
         lua_pop(L, 1);
     }
@@ -126,8 +131,10 @@ std::size_t Options::choice(std::string_view name, std::initializer_list<std::st
     const std::string value = is_text ? lua_tostring(L_, -1) : "";
     const auto found = std::find(known.begin(), known.end(), value);
     if (!is_text || found == known.end()) {
-        fail(fmt::format("{} must be {}, got {}{}", name, joined(known, " or ", "'"), describe(L_, -1),
-                         is_text ? text::did_you_mean(value, known) : ""));
+        fail({.sentence = fmt::format("{} must be {}, got {}", name, joined(known, " or ", "'"), describe(L_, -1)),
+              .option = std::string(name),
+              .culprit = written(L_, -1),
+              .cure = is_text ? text::did_you_mean(value, known) : ""});
     }
     lua_pop(L_, 1);
     return static_cast<std::size_t>(found - known.begin());
@@ -143,17 +150,26 @@ std::vector<double> Options::numbers(std::string_view name) const {
     return values;
 }
 
+void Options::fail(text::Error error) const {
+    raise(L_, text::in_call(call_, std::move(error)));
+}
+
 void Options::fail(std::string_view sentence) const {
-    raise(L_, fmt::format("{}: {}", call_, sentence));
+    fail(text::Error{std::string(sentence)});
 }
 
 void Options::wrong(std::string_view name, std::string_view wanted) const {
     push(name);
-    fail(fmt::format("{} must be {}, got {}", name, wanted, describe(L_, -1)));
+    fail({.sentence = fmt::format("{} must be {}, got {}", name, wanted, describe(L_, -1)),
+          .option = std::string(name),
+          .culprit = written(L_, -1)});
 }
 
 void Options::missing(std::string_view name) const {
-    raise(L_, fmt::format("{} needs {}, for example {}", call_, name, example_));
+    raise(L_, {.sentence = fmt::format("{} needs {}, for example {}", call_, name, example_),
+               .call = std::string(call_),
+               .option = std::string(name),
+               .culprit = "nil"});
 }
 
 }  // namespace dinal::lua

@@ -42,7 +42,8 @@ public:
     /// Pushes the option as it stands, nil when absent.
     void push(std::string_view name) const;
 
-    /// Raises "CALL: SENTENCE".
+    /// Raises the error as one of this call: "CALL: SENTENCE".
+    [[noreturn]] void fail(text::Error error) const;
     [[noreturn]] void fail(std::string_view sentence) const;
     /// Raises "CALL: NAME must be WANTED, got ...".
     [[noreturn]] void wrong(std::string_view name, std::string_view wanted) const;

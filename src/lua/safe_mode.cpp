@@ -66,7 +66,8 @@ int set_metatable(lua_State* L) {
     if (lua_type(L, 2) == LUA_TTABLE) {
         lua_pushliteral(L, "__gc");
         if (lua_rawget(L, 2) != LUA_TNIL) {
-            raise(L, "setmetatable: a metatable with __gc is not possible in safe mode");
+            raise(L, {.sentence = "setmetatable: a metatable with __gc is not possible in safe mode",
+                      .call = "setmetatable"});
         }
         lua_pop(L, 1);
     }
@@ -100,7 +101,8 @@ int collect_garbage(lua_State* L) {
         return 1;
     }
     if (what != "collect") {
-        raise(L, "collectgarbage: only \"collect\" and \"count\" are possible in safe mode");
+        raise(L, {.sentence = "collectgarbage: only \"collect\" and \"count\" are possible in safe mode",
+                  .call = "collectgarbage"});
     }
     lua_pushinteger(L, lua_gc(L, LUA_GCCOLLECT));
     return 1;
@@ -112,8 +114,10 @@ int require(lua_State* L) {
     lua_settop(L, 1);
     lua_pushvalue(L, 1);
     if (lua_rawget(L, lua_upvalueindex(1)) == LUA_TNIL) {
-        raise(L,
-              "require: there is no module '" + std::string(lua_tostring(L, 1)) + "' in safe mode, which loads none");
+        raise(L, {.sentence = "require: there is no module '" + std::string(lua_tostring(L, 1)) +
+                              "' in safe mode, which loads none",
+                  .call = "require",
+                  .culprit = written(L, 1)});
     }
     return 1;
 }

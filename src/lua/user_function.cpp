@@ -5,8 +5,9 @@
 #include <cmath>
 #include <string>
 
-#include "errors/error_remarks.hpp"
+#include "lua/error_memory.hpp"
 #include "lua/interrupt.hpp"
+#include "lua/lua_message.hpp"
 
 namespace dinal::lua {
 
@@ -64,15 +65,6 @@ std::string definition(lua_State* L) {
     return fmt::format("{}:{}: ", about.short_src, about.linedefined);
 }
 
-bool is_about_yield(lua_State* L, int index) {
-    if (lua_type(L, index) != LUA_TSTRING) {
-        return false;
-    }
-    const std::string_view message = lua_tostring(L, index);
-    return message == "attempt to yield across a C-call boundary" ||
-           message == "attempt to yield from outside a coroutine";
-}
-
 /// A finite number on the top of the stack; a string that looks like one is none.
 bool is_good(lua_State* L, double& M) {
     M = lua_tonumber(L, -1);
@@ -105,7 +97,7 @@ void CallState::keep_error_on_top() {
 
 void CallState::raise_error() {
     if (outer_ != nullptr) {
-        errors::keep_remarks(L_);
+        keep_remarks(L_);
     }
     lua_rawgetp(L_, LUA_REGISTRYINDEX, this);
     lua_error(L_);
@@ -144,7 +136,7 @@ double LuaFunction::value(double t, const model::State& state) {
         return failure;
     }
     lua_State* L = call->L_;
-    lua_pushcfunction(L, guarded<errors::remember_remarks>);
+    lua_pushcfunction(L, guarded<witness_error>);
     const int handler = lua_gettop(L);
     push(L);
     lua_pushnumber(L, t);
@@ -206,7 +198,7 @@ std::size_t LuaFunction::fill(std::span<const double> times, std::span<double> o
     lua_State* L = call->L_;
     Block block{this, times, out};
     const int top = lua_gettop(L);
-    lua_pushcfunction(L, guarded<errors::remember_remarks>);
+    lua_pushcfunction(L, guarded<witness_error>);
     lua_pushcfunction(L, fill_protected);
     lua_pushlightuserdata(L, &block);
     const int status = lua_pcall(L, 1, LUA_MULTRET, top + 1);
@@ -220,23 +212,27 @@ std::size_t LuaFunction::fill(std::span<const double> times, std::span<double> o
 /// The result or the error value stands on the top of the stack.
 double LuaFunction::fail(CallState& call, int status, double t) const {
     lua_State* L = call.L_;
-    std::string sentence;
+    text::Error error;
     if (status == LUA_OK) {
-        sentence = fmt::format("M returned {} at t = {:.14g}; it must return a finite number", describe(L, -1), t);
-    } else if (is_about_yield(L, -1)) {
-        sentence =
+        error.sentence =
+            fmt::format("M returned {} at t = {:.14g}; it must return a finite number", describe(L, -1), t);
+        error.culprit = written(L, -1);
+    } else if (lua_type(L, -1) == LUA_TSTRING && is_about_yield(lua_tostring(L, -1))) {
+        error.sentence =
             fmt::format("M can not yield, as it did at t = {:.14g} (attempt to yield across a C-call boundary)", t);
+        error.culprit = "yield";
     }
-    if (!sentence.empty()) {
+    if (!error.sentence.empty()) {
         push(L);
-        sentence = definition(L) + sentence;
+        const std::string message = definition(L) + error.message();
         lua_pop(L, 1);
+        remember_facts(L, error);
         push(L);
-        lua_pushlstring(L, sentence.data(), sentence.size());
-        errors::remember_result(L, -2);
+        lua_pushlstring(L, message.data(), message.size());
+        witness_result(L, -2);
         lua_remove(L, -2);
     } else {
-        errors::remember_time(L, t);
+        remember_time(L, t);
     }
     call.keep_error_on_top();
     return failure;

@@ -31,17 +31,21 @@ text::Expected<Oscillator> Oscillator::make(const OscillatorParameters& p) {
     for (const Limit& x : {Limit{"I", p.inertia, true}, Limit{"k", p.stiffness, true}, Limit{"C", p.damping, false},
                            Limit{"Rd", p.kinetic_friction, false}, Limit{"Re", breakaway, false}}) {
         if (!std::isfinite(x.value)) {
-            return text::Error{fmt::format("{} = {} must be a finite number", x.name, x.value)};
+            return text::Error{.sentence = fmt::format("{} = {} must be a finite number", x.name, x.value),
+                               .option = x.name};
         }
         if (x.positive ? x.value <= 0 : x.value < 0) {
-            return text::Error{
-                fmt::format("{} = {:.6g} must {}", x.name, x.value, x.positive ? "be positive" : "not be negative")};
+            return text::Error{.sentence = fmt::format("{} = {:.6g} must {}", x.name, x.value,
+                                                       x.positive ? "be positive" : "not be negative"),
+                               .option = x.name};
         }
     }
     if (breakaway < p.kinetic_friction) {
         return text::Error{
-            fmt::format("Re = {:.6g} must be at least Rd = {:.6g}: breakaway takes no less than kinetic friction",
-                        breakaway, p.kinetic_friction)};
+            .sentence =
+                fmt::format("Re = {:.6g} must be at least Rd = {:.6g}: breakaway takes no less than kinetic friction",
+                            breakaway, p.kinetic_friction),
+            .option = "Re"};
     }
     Oscillator o;
     o.inertia_ = p.inertia;
@@ -52,9 +56,10 @@ text::Expected<Oscillator> Oscillator::make(const OscillatorParameters& p) {
     if (!std::isnormal(o.natural_frequency()) || !std::isnormal(o.natural_period()) ||
         !std::isfinite(o.damping() / o.inertia()) || !std::isfinite(o.dead_zone()) ||
         !std::isfinite(o.damping_ratio())) {
-        return text::Error{
-            fmt::format("I = {:.6g} and k = {:.6g} are too far apart for double precision: choose other units",
-                        p.inertia, p.stiffness)};
+        return text::Error{.sentence = fmt::format(
+                               "I = {:.6g} and k = {:.6g} are too far apart for double precision: choose other units",
+                               p.inertia, p.stiffness),
+                           .option = "I"};
     }
     return o;
 }

@@ -26,7 +26,7 @@ public:
     }
     Check& require(bool right, std::string_view option, double x, std::string_view limit) {
         if (!right && !complaint_) {
-            complaint_ = text::Error{fmt::format("{}: {} = {} {}", term_, option, x, limit)};
+            complaint_ = error(option, fmt::format(" = {} {}", x, limit));
         }
         return *this;
     }
@@ -34,7 +34,7 @@ public:
     Check& all_finite(std::string_view option, const std::vector<double>& list) {
         for (std::size_t i = 0; i < list.size() && !complaint_; ++i) {
             if (!std::isfinite(list[i])) {
-                complaint_ = text::Error{fmt::format("{}: {}[{}] = {} must be finite", term_, option, i + 1, list[i])};
+                complaint_ = error(option, fmt::format("[{}] = {} must be finite", i + 1, list[i]));
             }
         }
         return *this;
@@ -42,9 +42,8 @@ public:
     Check& increasing(std::string_view option, const std::vector<double>& list) {
         for (std::size_t i = 1; i < list.size() && !complaint_; ++i) {
             if (!(list[i] > list[i - 1])) {
-                complaint_ =
-                    text::Error{fmt::format("{0}: {1}[{2}] = {3} is not after {1}[{4}] = {5}; times must increase",
-                                            term_, option, i + 1, list[i], i, list[i - 1])};
+                complaint_ = error(option, fmt::format("[{}] = {} is not after {}[{}] = {}; times must increase", i + 1,
+                                                       list[i], option, i, list[i - 1]));
             }
         }
         return *this;
@@ -52,6 +51,10 @@ public:
     [[nodiscard]] Complaint complaint() const { return complaint_; }
 
 private:
+    [[nodiscard]] text::Error error(std::string_view option, const std::string& what) const {
+        return text::in_call(term_, {.sentence = std::string(option) + what, .option = std::string(option)});
+    }
+
     std::string_view term_;
     Complaint complaint_;
 };

@@ -33,15 +33,17 @@ double stable_radius(std::complex<double> lambda) {
 
 std::optional<text::Error> not_positive(const char* name, double value) {
     if (value > 0 && std::isfinite(value)) return {};
-    return text::Error{fmt::format("{} = {:.6g} must be positive and finite", name, value)};
+    return text::Error{.sentence = fmt::format("{} = {:.6g} must be positive and finite", name, value), .option = name};
 }
 
 std::optional<text::Error> wrong(const Spectral& options, const model::Oscillator&) {
     if (!(options.tolerance > 0) || !(options.tolerance < 1)) {
-        return text::Error{fmt::format("tolerance = {:.6g} must be between 0 and 1", options.tolerance)};
+        return text::Error{.sentence = fmt::format("tolerance = {:.6g} must be between 0 and 1", options.tolerance),
+                           .option = "tolerance"};
     }
     if (!(options.max_panel > 0))
-        return text::Error{fmt::format("max_panel = {:.6g} must be positive", options.max_panel)};
+        return text::Error{.sentence = fmt::format("max_panel = {:.6g} must be positive", options.max_panel),
+                           .option = "max_panel"};
     return {};
 }
 std::optional<text::Error> wrong(const Rk4& options, const model::Oscillator& system) {
@@ -49,9 +51,11 @@ std::optional<text::Error> wrong(const Rk4& options, const model::Oscillator& sy
     const double limit = rk4_stability_limit(system);
     // The limit is itself rounded; a step that equals it to the digits shown is let through.
     if (options.h <= limit * (1 + 1e-12)) return {};
-    return text::Error{fmt::format(
-        "h = {:.6g} exceeds the stability limit {:.6g} of rk4 (w0 = {:.6g}, zeta = {:.4g}): use h <= {:.3g}", options.h,
-        limit, system.natural_frequency(), system.damping_ratio(), 0.999 * limit)};
+    return text::Error{
+        .sentence = fmt::format(
+            "h = {:.6g} exceeds the stability limit {:.6g} of rk4 (w0 = {:.6g}, zeta = {:.4g}): use h <= {:.3g}",
+            options.h, limit, system.natural_frequency(), system.damping_ratio(), 0.999 * limit),
+        .option = "h"};
 }
 std::optional<text::Error> wrong(const Dinal1989& options, const model::Oscillator&) {
     return not_positive("h", options.h);

@@ -18,15 +18,20 @@ namespace {
 std::optional<text::Error> wrong_times(const std::vector<double>& times, const Window& window) {
     for (std::size_t i = 0; i < times.size(); ++i) {
         const double t = times[i];
-        if (!std::isfinite(t)) return text::Error{fmt::format("times[{}] = {} must be a finite number", i + 1, t)};
+        if (!std::isfinite(t))
+            return text::Error{.sentence = fmt::format("times[{}] = {} must be a finite number", i + 1, t),
+                               .option = "times"};
         if (i > 0 && !(t > times[i - 1])) {
-            return text::Error{fmt::format("times[{}] = {:.17g} is not after times[{}] = {:.17g}: times must increase",
-                                           i + 1, t, i, times[i - 1])};
+            return text::Error{
+                .sentence = fmt::format("times[{}] = {:.17g} is not after times[{}] = {:.17g}: times must increase",
+                                        i + 1, t, i, times[i - 1]),
+                .option = "times"};
         }
         if (t < window.start || t > window.end) {
-            return text::Error{
-                fmt::format("times[{}] = {:.17g} is outside the run from t_start = {:.6g} to t_end = {:.6g}", i + 1, t,
-                            window.start, window.end)};
+            return text::Error{.sentence = fmt::format(
+                                   "times[{}] = {:.17g} is outside the run from t_start = {:.6g} to t_end = {:.6g}",
+                                   i + 1, t, window.start, window.end),
+                               .option = "times"};
         }
     }
     return {};
@@ -63,9 +68,11 @@ std::optional<text::Error> lost_in_time(const char* name, double spacing, const 
     const double latest = std::max(std::fabs(window.start), std::fabs(window.end));
     const double least = 16 * std::numeric_limits<double>::epsilon() * latest;
     if (spacing >= least) return {};
-    return text::Error{fmt::format(
-        "{} = {:.6g} is lost in the rounding of times near {:.6g}: use at least {:.2g}, or start nearer to t = 0", name,
-        spacing, latest, 1.1 * least)};
+    return text::Error{
+        .sentence = fmt::format(
+            "{} = {:.6g} is lost in the rounding of times near {:.6g}: use at least {:.2g}, or start nearer to t = 0",
+            name, spacing, latest, 1.1 * least),
+        .option = name};
 }
 
 }  // namespace
@@ -76,7 +83,7 @@ text::Expected<Grid> Grid::within(const Window& window) const {
     grid.count_ = times_.size();
     if (spaced_) {
         if (!(dt_ > 0) || !std::isfinite(dt_))
-            return text::Error{fmt::format("dt = {:.6g} must be positive and finite", dt_)};
+            return text::Error{.sentence = fmt::format("dt = {:.6g} must be positive and finite", dt_), .option = "dt"};
         grid.count_ = static_cast<std::size_t>(std::min(row_count(window, dt_), 1e18));
     } else if (auto wrong = wrong_times(times_, window)) {
         return *wrong;
@@ -99,14 +106,21 @@ text::Expected<Trajectory> run_from(const std::optional<model::Motion>& before, 
                                     const Window& window, const Grid& rows, const Integrator& integrator,
                                     const Monitor& monitor, const Limits& limits) {
     if (!std::isfinite(initial.theta))
-        return text::Error{fmt::format("theta0 = {} must be a finite number", initial.theta)};
+        return text::Error{.sentence = fmt::format("theta0 = {} must be a finite number", initial.theta),
+                           .option = "theta0"};
     if (!std::isfinite(initial.velocity))
-        return text::Error{fmt::format("velocity0 = {} must be a finite number", initial.velocity)};
+        return text::Error{.sentence = fmt::format("velocity0 = {} must be a finite number", initial.velocity),
+                           .option = "velocity0"};
     if (!std::isfinite(window.start))
-        return text::Error{fmt::format("t_start = {} must be a finite number", window.start)};
-    if (!std::isfinite(window.end)) return text::Error{fmt::format("t_end = {} must be a finite number", window.end)};
+        return text::Error{.sentence = fmt::format("t_start = {} must be a finite number", window.start),
+                           .option = "t_start"};
+    if (!std::isfinite(window.end))
+        return text::Error{.sentence = fmt::format("t_end = {} must be a finite number", window.end),
+                           .option = "t_end"};
     if (!(window.end > window.start)) {
-        return text::Error{fmt::format("t_end = {:.6g} must be after t_start = {:.6g}", window.end, window.start)};
+        return text::Error{
+            .sentence = fmt::format("t_end = {:.6g} must be after t_start = {:.6g}", window.end, window.start),
+            .option = "t_end"};
     }
     auto grid = rows.within(window);
     if (!grid) return grid.error();
@@ -169,8 +183,9 @@ text::Expected<Trajectory> resume(const model::Oscillator& system, const model::
                                   const Integrator& integrator, const Monitor& monitor, const Limits& limits) {
     const Window window{so_far.t_stop, t_end};
     if (!(t_end > window.start)) {
-        return text::Error{
-            fmt::format("t_end = {:.6g} must be after t = {:.6g}, where the run ended", t_end, window.start)};
+        return text::Error{.sentence = fmt::format("t_end = {:.6g} must be after t = {:.6g}, where the run ended",
+                                                   t_end, window.start),
+                           .option = "t_end"};
     }
     const auto grid = rows.within({so_far.t_start, t_end});
     if (!grid) return grid.error();

@@ -66,7 +66,9 @@ std::string events_text(const std::vector<model::Event>& events) {
 text::Expected<model::State> Trajectory::at(double t) const {
     if (!computed) return between_rows(*this, t);
     if (!(t >= t_start) || !(t <= t_stop)) {
-        return text::Error{fmt::format("t = {:.6g} is outside the run from {:.6g} to {:.6g}", t, t_start, t_stop)};
+        return text::Error{
+            .sentence = fmt::format("t = {:.6g} is outside the run from {:.6g} to {:.6g}", t, t_start, t_stop),
+            .option = "t"};
     }
     if (!dense) return text::Error{"the motion between the rows was not kept: run without dense = false"};
     return dense(t);

@@ -8,6 +8,7 @@
 #include "errors/error_remarks.hpp"
 #include "lua/interrupt.hpp"
 #include "lua/limits.hpp"
+#include "lua/lua_message.hpp"
 #include "lua/memory_limit.hpp"
 
 namespace dinal::prompt {
@@ -143,7 +144,7 @@ int message_handler(lua_State* L) {
     if (lua::interrupt_requested()) {
         text = frames.empty() ? "interrupted" : "interrupted at " + frames.front().place;
     } else {
-        const errors::Remarks remarks = errors::remarks_on(L, 1);
+        const lua::Remarks remarks = errors::remarks_on(L, 1);
         text = shortened(message_of(L)) + remarks.suggestion + remarks.excerpt + remarks.during + trace(frames);
     }
     lua_pushlstring(L, text.data(), text.size());
@@ -181,16 +182,16 @@ int call_with(lua_State* L, lua_CFunction function) {
 }
 
 std::string told_error(lua_State* L, const char* file) {
-    const errors::Remarks remarks = errors::remarks_on_syntax(L, -1, file);
+    const lua::Remarks remarks = errors::remarks_on_syntax(L, -1, file);
     std::string text = take_text(L);
     // Lua's words are good but for bytecode, which its own program would not take either.
     if (text == "not enough memory" && lua::memory_limit() > 0) {
         return lua::limit_sentence(lua::Stop::memory, "");
     }
-    if (text.starts_with("attempt to load a binary chunk")) {
+    if (lua::is_about_forbidden_bytecode(text)) {
         return "the script is Lua bytecode, which safe mode does not take: run its source instead";
     }
-    if (text.find("bad binary format") != std::string::npos) {
+    if (lua::is_about_foreign_bytecode(text)) {
         text += "; it is Lua bytecode that this Lua (" LUA_RELEASE ") can not run: run its source instead";
     }
     return text + remarks.suggestion + remarks.excerpt;

@@ -5,6 +5,7 @@
 #include <string_view>
 #include <vector>
 
+#include "lua/lua_message.hpp"
 #include "lua/tokens.hpp"
 
 namespace dinal::prompt {
@@ -35,13 +36,11 @@ bool goes_on(std::string_view text) {
 
 /// The message on the top of the stack says that the chunk ended too early.
 bool ended_early(lua_State* L, std::string_view chunk) {
-    constexpr std::string_view mark = "<eof>";
     std::size_t size = 0;
     const char* text = lua_tolstring(L, -1, &size);
     const std::string_view message(text, size);
     // A string in quotes ends on its line, unless a backslash takes the newline in.
-    const bool open_string = message.find("unfinished string near") != std::string_view::npos;
-    return message.ends_with(mark) && !(open_string && !goes_on(chunk));
+    return lua::is_about_end(message) && (!lua::is_about_unfinished_string(message) || goes_on(chunk));
 }
 
 std::string returned(std::string_view expression) {

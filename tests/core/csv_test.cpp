@@ -299,7 +299,7 @@ TEST_CASE("a column is found by name or by number from 1", "[table]") {
     CHECK(*find_column(table, "M") == 2);
     CHECK(*find_column(table, 1) == 0);
     CHECK(*find_column(table, 3) == 2);
-    CHECK(find_column(table, "tetha").error().sentence ==
+    CHECK(find_column(table, "tetha").error().message() ==
           "there is no column 'tetha' among t, theta, M; did you mean 'theta'?");
     CHECK(find_column(table, "velocity").error().sentence == "there is no column 'velocity' among t, theta, M");
     CHECK(find_column(table, 0).error().sentence == "there is no column 0: they are numbered 1 to 3 (t, theta, M)");
