@@ -7,9 +7,12 @@
 #include <limits>
 
 #include "analysis/stretches.hpp"
+#include "model/lowered.hpp"
 #include "motion/spectral/panels.hpp"
 
 namespace dinal::analysis {
+
+namespace chebyshev = motion::spectral::chebyshev;
 
 namespace {
 
@@ -44,11 +47,11 @@ Work operator-(const Work& a, const Work& b) {
     return {a.input - b.input, a.viscous - b.viscous, a.dry - b.dry};
 }
 
-Stored stored(const model::Oscillator& system, const model::State& y) {
+Stored stored(const model::Lowered& system, const model::State& y) {
     return {system.inertia() * y.velocity * y.velocity / 2, system.stiffness() * y.theta * y.theta / 2};
 }
 
-Stored change(const model::Oscillator& system, const model::State& from, const model::State& to) {
+Stored change(const model::Lowered& system, const model::State& from, const model::State& to) {
     // As products: the difference of two large energies would keep their rounding.
     return {system.inertia() * ((to.velocity - from.velocity) * (to.velocity + from.velocity)) / 2,
             system.stiffness() * ((to.theta - from.theta) * (to.theta + from.theta)) / 2};
@@ -57,41 +60,54 @@ Stored change(const model::Oscillator& system, const model::State& from, const m
 /// The work done on one panel, from its beginning to any place in it.
 class PanelWork {
 public:
-    PanelWork(const model::Oscillator& system, const motion::spectral::Panel& panel) : panel_(&panel) {
+    PanelWork(const model::Lowered& system, const motion::spectral::Panel& panel) : panel_(&panel) {
         if (standing()) return;
         const auto v = panel.velocity();
-        input_ = motion::spectral::chebyshev::integral(motion::spectral::chebyshev::product(panel.M, v), 0);
-        way_ = motion::spectral::chebyshev::integral(v, 0);
-        dry_ = system.kinetic_friction() * model::sign_of(panel.motion);
+        input_ = chebyshev::integral(chebyshev::product(panel.M, v), 0);
+        way_ = chebyshev::integral(v, 0);
+        dry_ = system.braking(panel.motion);
+        if (system.has_remainder()) add_remainder(system, v);
         if (system.damping() == 0) return;
-        squared_ = motion::spectral::chebyshev::integral(motion::spectral::chebyshev::product(v, v), 0);
+        squared_ = chebyshev::integral(chebyshev::product(v, v), 0);
         viscous_ = system.damping() / panel.h;
     }
     /// Up to `since` time units after the beginning of the panel.
     [[nodiscard]] Work until(double since) const {
         if (standing() || !(since > 0)) return {};
         const double x = std::min(since / panel_->h - 1, 1.0);
-        return {motion::spectral::chebyshev::value(input_, x),
-                viscous_ == 0 ? 0 : viscous_ * motion::spectral::chebyshev::value(squared_, x),
-                dry_ == 0 ? 0 : dry_ * motion::spectral::chebyshev::value(way_, x)};
+        return {chebyshev::value(input_, x), viscous_ == 0 ? 0 : viscous_ * chebyshev::value(squared_, x),
+                (dry_ == 0 ? 0 : dry_ * chebyshev::value(way_, x)) + (changes_ ? chebyshev::value(changing_, x) : 0)};
     }
     [[nodiscard]] Work all() const { return until(panel_->length); }
 
 private:
-    static constexpr std::size_t points = motion::spectral::chebyshev::points;
+    static constexpr std::size_t points = chebyshev::points;
     [[nodiscard]] bool standing() const { return panel_->motion == model::Motion::stuck; }
+
+    /// The part of the friction that changes with speed.
+    void add_remainder(const model::Lowered& system, const chebyshev::Series<points + 1>& v) {
+        const auto v_at = chebyshev::at_nodes(v), theta_at = chebyshev::at_nodes(way_);
+        chebyshev::Samples friction{};
+        for (std::size_t j = 0; j < points; ++j) {
+            friction[j] = system.remainder(panel_->motion, {panel_->begin.theta + theta_at[j], v_at[j] / panel_->h});
+        }
+        changing_ = chebyshev::integral(chebyshev::product(chebyshev::fit(friction), v), 0);
+        changes_ = true;
+    }
 
     const motion::spectral::Panel* panel_;
     double dry_ = 0, viscous_ = 0;
-    motion::spectral::chebyshev::Series<2 * points + 1> input_{};    // of M v
-    motion::spectral::chebyshev::Series<2 * points + 2> squared_{};  // of v^2
-    motion::spectral::chebyshev::Series<points + 2> way_{};
+    bool changes_ = false;
+    chebyshev::Series<2 * points + 1> input_{};     // of M v
+    chebyshev::Series<2 * points + 1> changing_{};  // of the changing part of friction and v
+    chebyshev::Series<2 * points + 2> squared_{};   // of v^2
+    chebyshev::Series<points + 2> way_{};
 };
 
 /// Adds up panels into half cycles as the stretches of the run cut them.
 class Bookkeeper {
 public:
-    Bookkeeper(const model::Oscillator& system, const std::vector<Stretch>& stretches)
+    Bookkeeper(const model::Lowered& system, const std::vector<Stretch>& stretches)
         : system_(system), stretch_(stretches.begin()), last_(stretches.end() - 1) {}
 
     void add(const motion::spectral::Panel& panel) {
@@ -132,7 +148,7 @@ private:
         ++stretch_;
     }
 
-    const model::Oscillator& system_;
+    const model::Lowered& system_;
     std::vector<Stretch>::const_iterator stretch_, last_;
     WorkSum present_, total_;
     Sum flow_;
@@ -162,7 +178,7 @@ text::Expected<Energy> energy_of(const motion::Trajectory& trajectory) {
             "the motion was kept up to t = {:.6g} only, for want of memory: simulate in parts, each up to that length",
             panels->end())};
     }
-    const model::Oscillator& system = panels->system();
+    const model::Lowered system(panels->system());
     const std::vector<Stretch> cut = stretches(trajectory);
     Bookkeeper books(system, cut);
     for (std::size_t i = 0; i < panels->size(); ++i) books.add((*panels)[i]);
@@ -180,7 +196,7 @@ text::Expected<Energy> energy_of(const motion::Trajectory& trajectory) {
 
 Eigen::MatrixXd energy_columns(const motion::Trajectory& trajectory) {
     const motion::spectral::Panels& panels = *trajectory.panels;
-    const model::Oscillator& system = panels.system();
+    const model::Lowered system(panels.system());
     const auto t = trajectory.column(motion::Column::t), theta = trajectory.column(motion::Column::theta),
                velocity = trajectory.column(motion::Column::velocity);
     Eigen::MatrixXd columns(trajectory.size(), energy_column_count);

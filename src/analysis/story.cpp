@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "model/forcing.hpp"
+#include "model/laws/coulomb.hpp"
 
 namespace dinal::analysis {
 
@@ -50,7 +51,7 @@ void Story::end_paragraph() {
 
 /// Whether a torque on a mass at rest is the limit, as far as M, k theta and the time are known.
 bool Story::at_limit(double torque, const model::Event& event) const {
-    const double Re = system_.breakaway();
+    const double Re = limit(torque);
     const double known = Re + std::fabs(event.M) + system_.stiffness() * std::fabs(event.theta);
     const double late = std::numeric_limits<double>::epsilon() * std::fabs(event.t) / T0_;
     return std::fabs(std::fabs(torque) - Re) <= (1e-9 + 64 * late) * known;
@@ -58,14 +59,7 @@ bool Story::at_limit(double torque, const model::Event& event) const {
 
 void Story::tell_setting() {
     say("The system has T0 = {:.5g}, zeta = {:.4g} ({})", T0_, system_.damping_ratio(), model::name(system_.regime()));
-    const double Rd = system_.kinetic_friction(), Re = system_.breakaway();
-    if (system_.frictionless()) {
-        add(" and no dry friction.");
-    } else if (Rd == Re) {
-        add(" and dry friction Rd = Re = {:.5g}.", Rd);
-    } else {
-        add(" and dry friction: Rd = {:.5g} brakes it, up to Re = {:.5g} holds it.", Rd, Re);
-    }
+    tell_friction();
     const double period = model::period_from(excitation_, run_.t_start);
     if (excitation_.components().empty()) {
         say("There is no M: the motion is free.");
@@ -86,12 +80,31 @@ void Story::tell_setting() {
     end_paragraph();
 }
 
+void Story::tell_friction() {
+    const model::Friction& law = system_.friction();
+    const auto Rd = [&](model::Motion way) { return law.sliding(way, 0); };
+    const auto Re = [&](model::Motion way) { return law.holding(way); };
+    using enum model::Motion;
+    if (law.none()) {
+        add(" and no dry friction.");
+    } else if (Rd(forward) != Rd(backward) || Re(forward) != Re(backward)) {
+        add(" and dry friction: Rd = {:.5g} brakes it on the way forward, {:.5g} backward; up to Re = {:.5g} holds it "
+            "against a pull forward, {:.5g} backward.",
+            Rd(forward), Rd(backward), Re(forward), Re(backward));
+    } else if (Rd(forward) == Re(forward)) {
+        add(" and dry friction Rd = Re = {:.5g}.", Rd(forward));
+    } else {
+        add(" and dry friction: Rd = {:.5g} brakes it, up to Re = {:.5g} holds it.", Rd(forward), Re(forward));
+    }
+    if (law.depends_on_speed()) say("That is near standstill: friction changes with the speed.");
+}
+
 void Story::tell_start() {
     const model::State& y = run_.initial;
     const Stretch& first = stretches_.front();
     say("It started at t = {} from theta = {:.5g} with velocity {:.5g}", at(run_.t_start), y.theta, y.velocity);
     const bool known = run_.size() > 0 && run_.column(motion::Column::t)[0] == run_.t_start;
-    const bool told = y.velocity == 0 && !system_.frictionless() && museum_ == nullptr && known && first.lasts() > 0;
+    const bool told = y.velocity == 0 && !system_.friction().none() && museum_ == nullptr && known && first.lasts() > 0;
     if (first.stuck) add(" and stuck there");
     if (told) {
         const double torque = std::fma(-system_.stiffness(), y.theta, run_.column(motion::Column::M)[0]);
@@ -146,7 +159,8 @@ void Story::tell_turns() {
 /// What the closed forms say about a free motion, as far as it has turned.
 void Story::tell_decay() {
     const bool swung = stretches_.size() > 1 && stretches_[1].begun_by->kind == model::EventKind::turn;
-    if (!free() || museum_ != nullptr || !swung) return;
+    const bool closed_form = system_.friction().none() || system_.friction().as<model::laws::Coulomb>() != nullptr;
+    if (!free() || museum_ != nullptr || !swung || !closed_form) return;
     decay_told_ = true;
     const double zeta = system_.damping_ratio(), step = 2 * system_.kinetic_friction() / system_.stiffness();
     const double factor = zeta < 1 ? std::exp(-std::numbers::pi * zeta / std::sqrt(1 - zeta * zeta)) : 0;
@@ -161,7 +175,7 @@ void Story::tell_decay() {
     } else if (step == 0) {
         say("Each extreme is {:.5g} = exp(-pi zeta/sqrt(1 - zeta^2)) of the one before: viscous damping takes a part "
             "of what is left, {}.",
-            factor, system_.frictionless() ? "so the motion never quite ends" : "until breakaway holds the rest");
+            factor, system_.friction().none() ? "so the motion never quite ends" : "until breakaway holds the rest");
     } else {
         say("Half a cycle makes an extreme X into qX - (1 + q)Rd/k with q = exp(-pi zeta/sqrt(1 - zeta^2)) = {:.5g} "
             "and Rd/k = {:.5g}: viscous damping takes a part, "

@@ -44,15 +44,20 @@ private:
     [[nodiscard]] double pull(const model::Event& event) const {
         return std::fma(-system_.stiffness(), event.theta, event.M);
     }
+    /// Re, against a pull this way.
+    [[nodiscard]] double limit(double pull) const {
+        return system_.friction().holding(pull < 0 ? model::Motion::backward : model::Motion::forward);
+    }
     /// "|M - k theta| = 0.155 <= Re = 0.167"
     [[nodiscard]] std::string reason(double pull) const {
-        return "|M - k theta| = " + text::against_limit(std::fabs(pull), system_.breakaway());
+        return "|M - k theta| = " + text::against_limit(std::fabs(pull), limit(pull));
     }
     /// M never changes.
     [[nodiscard]] bool free() const { return constant_from_ <= run_.t_start; }
 
     // How it began and went on, in story.cpp.
     void tell_setting();
+    void tell_friction();
     void tell_start();
     void tell_counts();
     void tell_turns();

@@ -48,7 +48,7 @@ void Story::tell_recurrence(const Recurrence& motion) {
         }
     }
     if (motion.stops == 0) {
-        if (!system_.frictionless()) say("It does not stop on its way.");
+        if (!system_.friction().none()) say("It does not stop on its way.");
     } else {
         say("It stops {} in each period and is stuck for {} of the time.",
             motion.stops == 1   ? "once"

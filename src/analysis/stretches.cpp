@@ -4,23 +4,10 @@
 
 namespace dinal::analysis {
 
-namespace {
-
-/// A run that begins with a slip, or in which nothing ever happens and that ends at rest or broke off stuck, was stuck
-/// from its start.
-bool begins_stuck(const motion::Trajectory& trajectory) {
-    if (trajectory.initial.velocity != 0) return false;
-    if (!trajectory.events.empty()) return trajectory.events.front().kind == model::EventKind::slip;
-    if (trajectory.outcome == model::Outcome::reached_end) return false;
-    return trajectory.outcome == model::Outcome::at_rest || trajectory.motion_at_stop == model::Motion::stuck;
-}
-
-}  // namespace
-
 std::vector<Stretch> stretches(const motion::Trajectory& trajectory) {
     std::vector<Stretch> list;
     list.reserve(trajectory.events.size() + 1);
-    Stretch now{.from = trajectory.t_start, .begin = trajectory.initial, .stuck = begins_stuck(trajectory)};
+    Stretch now{.from = trajectory.t_start, .begin = trajectory.initial, .stuck = trajectory.began_stuck};
     for (const model::Event& event : trajectory.events) {
         now.to = event.t;
         now.end = {event.theta, 0};

@@ -38,7 +38,7 @@ int free_response_of_system(TheoryArguments& arguments) {
         arguments.options().fail("system excludes omega0 and zeta, which it has of its own");
     }
     return arguments.push_results([&](std::size_t i) {
-        if (t[i] < 0 && !start.system.frictionless()) {
+        if (t[i] < 0 && !start.system.friction().none()) {
             arguments.refuse("t", i, t[i], "must not be negative: dry friction does not tell where the mass came from");
         }
         const model::State y = start.motion(i).at(t[i]);

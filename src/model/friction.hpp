@@ -1,10 +1,15 @@
-// The stick/slip law, once, for every integrator but the museum piece of 1989.
+// Dry friction as a value: the torque that brakes a sliding mass, and the torque that a standing one can be held by.
+//
+// A law is a struct of model/laws (FrictionLaw says what it must answer); a Friction is any of them, cheap to copy.
 #pragma once
 
-#include <cmath>
-#include <limits>
+#include <algorithm>
+#include <concepts>
+#include <memory>
+#include <optional>
+#include <string_view>
 
-#include "model/oscillator.hpp"
+#include "text/expected.hpp"
 
 namespace dinal::model {
 
@@ -19,36 +24,74 @@ inline Motion motion_of(double velocity) {
     return velocity > 0 ? Motion::forward : velocity < 0 ? Motion::backward : Motion::stuck;
 }
 
-/// How far the torque on a mass at velocity zero is past what sticking can hold: |M - k theta| - Re.
-/// The limit is a razor's edge, so M -+ Re is kept in two parts and the product is fused: what is left near the limit
-/// is the exact difference, rounded once.
-inline double breakaway_excess(const Oscillator& system, double M, double theta) {
-    const double k = system.stiffness();
-    const double side = std::fma(-k, theta, M) < 0 ? -1 : 1;
-    const double m = side * M;
-    const double sum = m - system.breakaway();
-    const double part = sum - m;
-    const double rest = (m - (sum - part)) - (system.breakaway() + part);
-    return std::fma(-k, side * theta, sum) + rest;
-}
+/// `way` is forward or backward. Torques are magnitudes: friction is against the motion, whatever its law.
+template <class Law>
+concept FrictionLaw = requires(const Law& law, Motion way, double speed) {
+    /// Against a motion this way at this speed; no more than holding(way) at speed 0, where it is the limit from above.
+    /// An integrator looks a little beyond the end of a motion: below speed 0 it wants the smooth continuation.
+    { law.sliding(way, speed) } -> std::same_as<double>;
+    /// The most that sticking can hold against a pull this way.
+    { law.holding(way) } -> std::same_as<double>;
+    { Law::depends_on_speed } -> std::convertible_to<bool>;
+    /// What is wrong with its numbers, for the person who gave them.
+    { law.complaint() } -> std::same_as<std::optional<text::Error>>;
+};
 
-/// What a mass at velocity zero does under the torque M: stay (|M - k theta| <= Re), or move off towards M - k theta.
-// NOTE: a stored theta stands for all angles within half a unit of its last place. So k theta is known to within
-// 2^-53 |k theta| only, and an excess below that is no breakaway; otherwise theta0 = Re/k would stick or not
-// depending on how the quotient was rounded. M itself is taken to the letter.
-inline Motion motion_from_standstill(const Oscillator& system, double M, double theta) {
-    constexpr double half_ulp = std::numeric_limits<double>::epsilon() / 2;
-    const double excess = breakaway_excess(system, M, theta);
-    if (!(excess > 0) || excess < half_ulp * std::fabs(system.stiffness() * theta)) {
-        return Motion::stuck;
+/// For a law's complaint(): what is wrong with a sliding torque Rd and a holding torque Re. `of` stands before their
+/// names: "forward.".
+std::optional<text::Error> wrong_torques(std::string_view of, double Rd, double Re);
+
+class Friction {
+public:
+    /// None.
+    Friction() = default;
+    template <FrictionLaw Law>
+    Friction(const Law& law)  // NOLINT(google-explicit-constructor): a law is a friction
+        : law_(std::make_shared<const Held<Law>>(law)) {}
+
+    [[nodiscard]] double sliding(Motion way, double speed) const { return law_ ? law_->sliding(way, speed) : 0; }
+    [[nodiscard]] double holding(Motion way) const { return law_ ? law_->holding(way) : 0; }
+    [[nodiscard]] bool depends_on_speed() const { return law_ && law_->depends_on_speed(); }
+    [[nodiscard]] std::optional<text::Error> complaint() const {
+        return law_ ? law_->complaint() : std::optional<text::Error>();
     }
-    return motion_of(std::fma(-system.stiffness(), theta, M));
-}
+    /// Nothing brakes and nothing holds: velocity zero means nothing.
+    [[nodiscard]] bool none() const { return !depends_on_speed() && greatest_holding() == 0; }
+    /// The greater torque of both ways.
+    [[nodiscard]] double greatest_sliding() const {
+        return std::max(sliding(Motion::forward, 0), sliding(Motion::backward, 0));
+    }
+    [[nodiscard]] double greatest_holding() const {
+        return std::max(holding(Motion::forward), holding(Motion::backward));
+    }
+    /// The law itself, if it is of this kind.
+    template <FrictionLaw Law>
+    [[nodiscard]] const Law* as() const {
+        const auto* held = dynamic_cast<const Held<Law>*>(law_.get());
+        return held != nullptr ? &held->law : nullptr;
+    }
 
-/// The true friction torque on the mass: -Rd sgn(velocity) while moving, -(M - k theta) while stuck.
-inline double friction_torque(const Oscillator& system, Motion motion, double M, double theta) {
-    return motion == Motion::stuck ? std::fma(system.stiffness(), theta, -M)
-                                   : 0.0 - system.kinetic_friction() * sign_of(motion);  // 0 - x: never -0
-}
+private:
+    struct Any {
+        Any() = default;
+        Any(const Any&) = delete;
+        Any& operator=(const Any&) = delete;
+        virtual ~Any() = default;
+        [[nodiscard]] virtual double sliding(Motion way, double speed) const = 0;
+        [[nodiscard]] virtual double holding(Motion way) const = 0;
+        [[nodiscard]] virtual bool depends_on_speed() const = 0;
+        [[nodiscard]] virtual std::optional<text::Error> complaint() const = 0;
+    };
+    template <class Law>
+    struct Held final : Any {
+        explicit Held(const Law& given) : law(given) {}
+        [[nodiscard]] double sliding(Motion way, double speed) const override { return law.sliding(way, speed); }
+        [[nodiscard]] double holding(Motion way) const override { return law.holding(way); }
+        [[nodiscard]] bool depends_on_speed() const override { return Law::depends_on_speed; }
+        [[nodiscard]] std::optional<text::Error> complaint() const override { return law.complaint(); }
+        Law law;
+    };
+    std::shared_ptr<const Any> law_;  // shared by the copies of a system, which never change it
+};
 
 }  // namespace dinal::model

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "model/laws/coulomb.hpp"
+
 namespace dinal::model {
 
 std::string_view name(Regime regime) {
@@ -22,14 +24,14 @@ std::string_view name(Regime regime) {
 }
 
 text::Expected<Oscillator> Oscillator::make(const OscillatorParameters& p) {
-    const double breakaway = p.breakaway.value_or(p.kinetic_friction);
+    const Friction friction =
+        p.friction.value_or(laws::Coulomb{p.kinetic_friction, p.breakaway.value_or(p.kinetic_friction)});
     struct Limit {
         const char* name;
         double value;
         bool positive;
     };
-    for (const Limit& x : {Limit{"I", p.inertia, true}, Limit{"k", p.stiffness, true}, Limit{"C", p.damping, false},
-                           Limit{"Rd", p.kinetic_friction, false}, Limit{"Re", breakaway, false}}) {
+    for (const Limit& x : {Limit{"I", p.inertia, true}, Limit{"k", p.stiffness, true}, Limit{"C", p.damping, false}}) {
         if (!std::isfinite(x.value)) {
             return text::Error{.sentence = fmt::format("{} = {} must be a finite number", x.name, x.value),
                                .option = x.name};
@@ -40,19 +42,12 @@ text::Expected<Oscillator> Oscillator::make(const OscillatorParameters& p) {
                                .option = x.name};
         }
     }
-    if (breakaway < p.kinetic_friction) {
-        return text::Error{
-            .sentence =
-                fmt::format("Re = {:.6g} must be at least Rd = {:.6g}: breakaway takes no less than kinetic friction",
-                            breakaway, p.kinetic_friction),
-            .option = "Re"};
-    }
+    if (auto wrong = friction.complaint()) return *wrong;
     Oscillator o;
     o.inertia_ = p.inertia;
     o.stiffness_ = p.stiffness;
     o.damping_ = p.damping;
-    o.kinetic_friction_ = p.kinetic_friction;
-    o.breakaway_ = breakaway;
+    o.friction_ = friction;
     if (!std::isnormal(o.natural_frequency()) || !std::isnormal(o.natural_period()) ||
         !std::isfinite(o.damping() / o.inertia()) || !std::isfinite(o.dead_zone()) ||
         !std::isfinite(o.damping_ratio())) {
@@ -102,7 +97,7 @@ Regime Oscillator::regime() const {
 }
 
 double Oscillator::friction_ratio(double characteristic_torque) const {
-    return kinetic_friction_ / std::fabs(characteristic_torque);
+    return kinetic_friction() / std::fabs(characteristic_torque);
 }
 
 double Oscillator::characteristic_torque(const State& initial) const {

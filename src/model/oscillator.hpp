@@ -8,18 +8,21 @@
 
 #include <optional>
 #include <string_view>
+#include <utility>
 
+#include "model/friction.hpp"
 #include "text/expected.hpp"
 
 namespace dinal::model {
 
 /// What a user says about a system. Ranges: I > 0, k > 0, C >= 0, Rd >= 0, Re >= Rd, all finite.
 struct OscillatorParameters {
-    double inertia = 0;                    ///< I, moment of inertia
-    double stiffness = 0;                  ///< k, torque per rad
-    double damping = 0;                    ///< C, torque per rad/time
-    double kinetic_friction = 0;           ///< Rd, torque of dry friction while moving
-    std::optional<double> breakaway = {};  ///< Re, torque that sticking can hold; Rd when not given
+    double inertia = 0;                     ///< I, moment of inertia
+    double stiffness = 0;                   ///< k, torque per rad
+    double damping = 0;                     ///< C, torque per rad/time
+    double kinetic_friction = 0;            ///< Rd, torque of dry friction while moving
+    std::optional<double> breakaway = {};   ///< Re, torque that sticking can hold; Rd when not given
+    std::optional<Friction> friction = {};  ///< another law than Coulomb's with Rd and Re, which then say nothing
 };
 
 /// Position and speed of the mass: rad, rad per time unit.
@@ -41,8 +44,11 @@ public:
     [[nodiscard]] double inertia() const { return inertia_; }
     [[nodiscard]] double stiffness() const { return stiffness_; }
     [[nodiscard]] double damping() const { return damping_; }
-    [[nodiscard]] double kinetic_friction() const { return kinetic_friction_; }
-    [[nodiscard]] double breakaway() const { return breakaway_; }
+    [[nodiscard]] const Friction& friction() const { return friction_; }
+    /// Rd; of a law with other numbers each way the greater one, of one that depends on speed that at speed 0.
+    [[nodiscard]] double kinetic_friction() const { return friction_.greatest_sliding(); }
+    /// Re; of a law with other numbers each way the greater one.
+    [[nodiscard]] double breakaway() const { return friction_.greatest_holding(); }
 
     /// w0 = sqrt(k / I), rad per time unit.
     [[nodiscard]] double natural_frequency() const;
@@ -55,13 +61,15 @@ public:
     /// Decided on C^2 against 4 I k, so that an exactly critical system is called so.
     [[nodiscard]] Regime regime() const;
     /// Re / k: without excitation the mass can stay anywhere with |theta| <= this.
-    [[nodiscard]] double dead_zone() const { return breakaway_ / stiffness_; }
+    [[nodiscard]] double dead_zone() const { return breakaway() / stiffness_; }
+    /// The lowest and the highest theta at which the mass can stay without excitation.
+    [[nodiscard]] std::pair<double, double> resting_places() const {
+        return {-friction_.holding(Motion::forward) / stiffness_, friction_.holding(Motion::backward) / stiffness_};
+    }
     /// gamma = Rd / |Mc| for the characteristic torque Mc.
     [[nodiscard]] double friction_ratio(double characteristic_torque) const;
     /// Mc of a free motion: k sqrt(theta0^2 + (velocity0 / w0)^2) (report, section 5).
     [[nodiscard]] double characteristic_torque(const State& initial) const;
-    /// No dry friction at all: turns are recorded, but nothing ever sticks or restarts.
-    [[nodiscard]] bool frictionless() const { return breakaway_ == 0; }
 
 private:
     Oscillator() = default;
@@ -69,8 +77,7 @@ private:
     double inertia_ = 1;
     double stiffness_ = 1;
     double damping_ = 0;
-    double kinetic_friction_ = 0;
-    double breakaway_ = 0;
+    Friction friction_;
 };
 
 }  // namespace dinal::model

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <cstddef>
 
-#include "model/friction.hpp"
 #include "motion/simulate.hpp"
 
 namespace dinal::motion {

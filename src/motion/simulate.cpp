@@ -166,6 +166,7 @@ Trajectory joined(const Trajectory& first, Eigen::Index kept, Trajectory second)
         second.panels = {};
     }
     second.initial = first.initial;
+    second.began_stuck = first.began_stuck;
     second.t_start = first.t_start;
     return second;
 }

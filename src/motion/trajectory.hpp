@@ -39,6 +39,7 @@ struct Trajectory {
     double t_stop = 0;  ///< how far it came: t_end unless the outcome says otherwise
     model::State state_at_stop;
     model::Motion motion_at_stop = model::Motion::stuck;
+    bool began_stuck = false;                        ///< until something moved it
     bool computed = true;                            ///< false when it was read from a file
     DenseOutput dense;                               ///< empty when it was declined, or the trajectory read from a file
     std::shared_ptr<const spectral::Panels> panels;  ///< the motion itself, of a spectral run with dense output

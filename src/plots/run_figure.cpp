@@ -100,9 +100,7 @@ std::vector<std::string> usual_columns(const RunData& run, std::string_view x) {
 std::vector<Interval> stuck_intervals(const motion::Trajectory& trajectory) {
     std::vector<Interval> intervals;
     const auto& events = trajectory.events;
-    // Nothing is recorded at the start: a run that begins with a slip, or ends at rest without any event, began stuck.
-    bool stuck =
-        events.empty() ? trajectory.outcome == model::Outcome::at_rest : events.front().kind == model::EventKind::slip;
+    bool stuck = trajectory.began_stuck;
     double since = trajectory.t_start;
     for (const model::Event& event : events) {
         const bool holds = event.kind == model::EventKind::stick || event.kind == model::EventKind::rest;
@@ -171,7 +169,8 @@ text::Expected<Figure> phase_figure(const RunData& run) {
                        {motion.x.values[rows - 1], motion.y.values[rows - 1], MarkKind::end}};
     }
     if (run.system != nullptr && run.system->dead_zone() > 0) {
-        plane.dead_zone = Interval{-run.system->dead_zone(), run.system->dead_zone()};
+        const auto [lowest, highest] = run.system->resting_places();
+        plane.dead_zone = Interval{lowest, highest};
     }
     return plane;
 }

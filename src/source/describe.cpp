@@ -11,7 +11,7 @@ std::string lua_text(const model::Oscillator& system) {
     if (system.damping() != 0) {
         text += fmt::format(", C = {}", system.damping());
     }
-    if (!system.frictionless()) {
+    if (!system.friction().none()) {
         text += fmt::format(", Rd = {}, Re = {}", system.kinetic_friction(), system.breakaway());
     }
     return text + " }";

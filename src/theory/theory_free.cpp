@@ -5,7 +5,7 @@
 #include <limits>
 #include <numbers>
 
-#include "model/friction.hpp"
+#include "model/sticking.hpp"
 
 namespace dinal::theory {
 

@@ -1,4 +1,4 @@
-#include "model/friction.hpp"
+#include "model/sticking.hpp"
 
 #include <cmath>
 #include <limits>
@@ -72,10 +72,10 @@ TEST_CASE("theta = Re/k is within the dead zone however the quotient was rounded
 
 TEST_CASE("the friction torque opposes the motion with Rd, and holds what there is to hold at rest", "[friction]") {
     const Oscillator system = system_with(2, 1, 1.5);
-    CHECK(friction_torque(system, Motion::forward, 0.3, 0.1) == -1);
-    CHECK(friction_torque(system, Motion::backward, 0.3, 0.1) == 1);
-    CHECK(friction_torque(system, Motion::stuck, 0.75, 0.25) == -0.25);
-    CHECK(friction_torque(system, Motion::stuck, 0.5, 0.25) == 0);
+    CHECK(friction_torque(system, Motion::forward, 0.3, {0.1, 1}) == -1);
+    CHECK(friction_torque(system, Motion::backward, 0.3, {0.1, 1}) == 1);
+    CHECK(friction_torque(system, Motion::stuck, 0.75, {0.25, 0}) == -0.25);
+    CHECK(friction_torque(system, Motion::stuck, 0.5, {0.25, 0}) == 0);
 }
 
 TEST_CASE("a torque that is no number moves nothing", "[friction]") {

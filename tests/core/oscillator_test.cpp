@@ -34,7 +34,7 @@ TEST_CASE("the derived values of the contract's system", "[oscillator]") {
     CHECK(name(system->regime()) == "underdamped");
     CHECK(system->dead_zone() == Approx(0.455945).epsilon(1e-6));
     CHECK(*system->damped_frequency() == Approx(system->natural_frequency() * 0.99285).epsilon(1e-5));
-    CHECK_FALSE(system->frictionless());
+    CHECK_FALSE(system->friction().none());
 }
 
 TEST_CASE("C and Rd default to 0 and Re to Rd", "[oscillator]") {
@@ -43,14 +43,14 @@ TEST_CASE("C and Rd default to 0 and Re to Rd", "[oscillator]") {
     CHECK(plain->damping() == 0);
     CHECK(plain->kinetic_friction() == 0);
     CHECK(plain->breakaway() == 0);
-    CHECK(plain->frictionless());
+    CHECK(plain->friction().none());
     const auto dry = Oscillator::make({.inertia = 2, .stiffness = 8, .kinetic_friction = 3});
     REQUIRE(dry);
     CHECK(dry->breakaway() == 3);
     // Sticking without kinetic friction is unusual and allowed.
     const auto sticky = Oscillator::make({.inertia = 2, .stiffness = 8, .breakaway = 3});
     REQUIRE(sticky);
-    CHECK_FALSE(sticky->frictionless());
+    CHECK_FALSE(sticky->friction().none());
 }
 
 TEST_CASE("the regime is decided exactly, not within a tolerance", "[oscillator]") {

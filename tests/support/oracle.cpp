@@ -70,8 +70,8 @@ Oracle::Oracle(const model::Oscillator& system, Load load, const model::State& i
       size_(size),
       k_(system.stiffness()),
       w0_(std::sqrt(static_cast<real>(system.stiffness()) / static_cast<real>(system.inertia()))),
-      Re_(system.breakaway()),
-      Rd_(system.kinetic_friction()),
+      Re_{system.friction().holding(model::Motion::backward), system.friction().holding(model::Motion::forward)},
+      Rd_{system.friction().sliding(model::Motion::backward, 0), system.friction().sliding(model::Motion::forward, 0)},
       t_start_(window.start),
       t_end_(window.end),
       longest_(1 / (steps_per_radian * std::max<real>(1, static_cast<real>(load_.quickest) / w0_))),
@@ -90,17 +90,17 @@ Oracle::Oracle(const model::Oscillator& system, Load load, const model::State& i
         if (!gave_up_) pass({t_, to, t_ + (to - t_) / 2});
     }
     while (motions_.size() < times_.size()) motions_.push_back({y_[0] * size_, y_[1] * size_ * w0_});
-    if (Re_ > 0 && sign_ == 0 && !events_.empty()) events_.back().kind = model::EventKind::rest;
+    if (dry() && sign_ == 0 && !events_.empty()) events_.back().kind = model::EventKind::rest;
 }
 
 /// From one break of M to the next.
 void Oracle::pass(const Stretch& stretch) {
-    if (sign_ == 0 && Re_ > 0) {
+    if (sign_ == 0 && dry()) {
         sign_ = from_standstill(stretch);
         if (sign_ != 0) note(model::EventKind::slip, 1);
     }
     while (t_ < stretch.to && !gave_up_) {
-        sign_ == 0 && Re_ > 0 ? wait(stretch) : move(stretch);
+        sign_ == 0 && dry() ? wait(stretch) : move(stretch);
         gave_up_ = gave_up_ || steps_ > most_steps || events_.size() > most_events;
     }
 }
@@ -114,7 +114,7 @@ void Oracle::slope(const Stretch& stretch, const Point& y, Point& dy, real tau) 
     const real M = torque(stretch, stretch.from + tau / w0_, motion);
     const real C = system_.damping();
     dy[0] = y[1];
-    dy[1] = (M - static_cast<real>(sign_) * Rd_ - C * motion.velocity - k_ * motion.theta) / (k_ * size_);
+    dy[1] = (M - static_cast<real>(sign_) * of(Rd_, sign_) - C * motion.velocity - k_ * motion.theta) / (k_ * size_);
 }
 
 Oracle::Point Oracle::part_of(const Stretch& stretch, const Step& step, real length) const {
@@ -199,7 +199,7 @@ void Oracle::stand_still(const Stretch& stretch, const Step& step, real length) 
     t_ = at_end ? stretch.to : stretch.from + (step.from + length) / w0_;
     y_ = {y[0], 0};
     const int before = sign_;
-    if (Re_ > 0) {
+    if (dry()) {
         sign_ = from_standstill(stretch);
         for (const double b : load_.breaks) close_call(std::fabs(t_ - b) * w0_);
         close_call((t_end_ - t_) * w0_);
@@ -211,8 +211,9 @@ void Oracle::stand_still(const Stretch& stretch, const Step& step, real length) 
 
 int Oracle::from_standstill(const Stretch& stretch) {
     const real net = torque(stretch, t_, {y_[0] * size_, 0}) - k_ * y_[0] * size_;
-    close_call((std::fabs(net) - Re_) / (k_ * size_));
-    return std::fabs(net) <= Re_ ? 0 : net > 0 ? 1 : -1;
+    const int towards = net > 0 ? 1 : -1;
+    close_call((std::fabs(net) - of(Re_, towards)) / (k_ * size_));
+    return std::fabs(net) <= of(Re_, towards) ? 0 : towards;
 }
 
 /// Stuck up to a release or the end of the stretch.
@@ -222,7 +223,7 @@ void Oracle::wait(const Stretch& stretch) {
     int direction = 0;
     for (const int side : {1, -1}) {
         const auto left = [&](real t) {
-            return Re_ - static_cast<real>(side) * (torque(stretch, t, {theta, 0}) - k_ * theta);
+            return of(Re_, side) - static_cast<real>(side) * (torque(stretch, t, {theta, 0}) - k_ * theta);
         };
         const real step = std::min(longest_ / w0_, (stretch.to - stretch.from) / least_steps);
         real x0 = begin, f0 = left(x0), x1 = x0, f1 = f0;  // the last two points

@@ -4,6 +4,7 @@
 // Nothing of src/core is used but the names of its types; what M is and where it jumps it is told anew.
 #pragma once
 
+#include <array>
 #include <functional>
 #include <vector>
 
@@ -14,7 +15,8 @@ namespace dinal::truth {
 
 /// M as the oracle sees it: stretches of time between breaks, smooth in each.
 struct Load {
-    /// M at t by the formulas that hold at the time `inside`, so that both ends of a stretch can be asked.
+    /// M at t by the formulas that hold at the time `inside`, so that both ends of a stretch can be asked; less what
+    /// friction has beside its constant, 0 at velocity 0.
     std::function<real(real t, real inside, const Motion&)> torque;
     std::vector<double> breaks = {};  ///< increasing
     double quickest = 0;              ///< rad per time unit of the fastest oscillation in it
@@ -73,7 +75,12 @@ private:
 
     const model::Oscillator& system_;
     Load load_;
-    real size_, k_, w0_, Re_, Rd_;
+    using Sides = std::array<real, 2>;  // of a friction that is constant each way: backward, forward
+    [[nodiscard]] static real of(const Sides& sides, int sign) { return sides[sign > 0 ? 1 : 0]; }
+    [[nodiscard]] bool dry() const { return Re_[0] > 0 || Re_[1] > 0; }
+
+    real size_, k_, w0_;
+    Sides Re_, Rd_;
     real t_start_, t_end_;
     real longest_;  // step, radians
     real tolerance_;

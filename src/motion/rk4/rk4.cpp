@@ -68,9 +68,7 @@ Trajectory run(const Problem& problem, const Rk4& options) {
     trajectory.outcome = engine.run();
     rows.finish();
     trajectory.t_start = problem.window.start;
-    trajectory.t_stop = trajectory.outcome == model::Outcome::at_rest ? problem.window.end : engine.now();
-    trajectory.state_at_stop = engine.state();
-    trajectory.motion_at_stop = engine.motion();
+    engine.leave(trajectory);
     if (dense) trajectory.dense = [record](double t) { return replay(*record, t); };
     return trajectory;
 }

@@ -9,9 +9,6 @@ namespace dinal::motion::rk4 {
 
 namespace {
 
-/// More events than this in one step are a feedback that chatters, not a motion.
-constexpr int most_events_in_a_piece = 200;
-
 /// Where f is greatest in [a, b], by golden sections, as soon as it is positive; f may be any unimodal function.
 template <class F>
 std::pair<double, double> positive_peak(F&& f, double a, double b) {
@@ -47,12 +44,9 @@ bool Rk4Engine::careful_step(double end, const Sampled* known) {
 }
 
 bool Rk4Engine::piece(double end, bool break_at_end, const Sampled* known) {
-    for (int events = 0; t_ < end; ++events) {
-        if (events > most_events_in_a_piece || standstills_at_once_ > most_events_in_a_piece) {
-            return fail(model::Outcome::chattering);
-        }
-        if (standstill_) leave_standstill();
-        if (!system_.frictionless() && motion_ == model::Motion::stuck) {
+    while (t_ < end) {
+        if (standstill_.phase() == Standstill::Phase::arrived && !go_on(standstill_.ask(moment()))) return false;
+        if (standstill_.stuck()) {
             if (!stay(end, break_at_end, known)) return false;
             continue;
         }
@@ -61,9 +55,9 @@ bool Rk4Engine::piece(double end, bool break_at_end, const Sampled* known) {
         if (!std::isfinite(s.M)) return fail(model::Outcome::excitation_not_finite);
         if (!std::isfinite(s.y.theta) || !std::isfinite(s.y.velocity)) return fail(model::Outcome::state_not_finite);
 
-        const double direction = model::sign_of(motion_);
+        const double direction = model::sign_of(standstill_.motion());
         const bool crosses = !(direction * s.y.velocity > 0) || (direction * s.a0 < 0 && direction * s.a1 > 0);
-        if (system_.frictionless()) {
+        if (standstill_.passes()) {
             if (crosses) record_turns(t_, length, direction, y_, s.a0, s.y, s.a1);
         } else if (crosses) {
             const auto zero = first_velocity_zero(direction, length, y_.velocity, s.a0, s.y.velocity, s.a1);
@@ -74,13 +68,13 @@ bool Rk4Engine::piece(double end, bool break_at_end, const Sampled* known) {
         }
         rows_until(end, StepInterpolant(length, y_, s.a0, s.y, s.a1));
         t_ = end, y_ = s.y, M_ = s.M;
-        at_start_ = false;
+        standstill_.go_on();
     }
     return finite();
 }
 
 Rk4Engine::Stepped Rk4Engine::step(double length, double end, bool break_at_end, const Sampled* known) const {
-    if (feedback_) return feedback_step(length, end, break_at_end);
+    if (feedback_) return feedback_step(length, end, break_at_end, Asks::freely);
     // Only the whole step has its samples ready; its end serves every piece that reaches it.
     const bool whole = known != nullptr && length > full_.h * (1 - 1e-9);
     const double middle = whole ? known->middle : excitation_.value(t_ + length / 2);
@@ -92,22 +86,31 @@ Rk4Engine::Stepped Rk4Engine::step(double length, double end, bool break_at_end,
     return {y, std::isfinite(middle) ? M1 : middle, acceleration(f0, y_), acceleration(f1, y)};
 }
 
-Rk4Engine::Stepped Rk4Engine::feedback_step(double length, double end, bool break_at_end) const {
+Rk4Engine::Stepped Rk4Engine::feedback_step(double length, double end, bool break_at_end, Asks asks) const {
     const double half = t_ + length / 2, t1 = t_ + length;
     const auto along = [&](double h, double v, double a) {
         return model::State{y_.theta + h * v, y_.velocity + h * a};
     };
-    const double a0 = acceleration(forcing(M_), y_);
+    const auto M = [&](double t, const model::State& y) {
+        return M_at(t, end, break_at_end, asks == Asks::beside ? standstill_.on_its_way(y) : y);
+    };
+    const bool leaving = standstill_.phase() == Standstill::Phase::leaving;
+    const double a0 = acceleration_at(y_, leaving ? excitation_.value(t_, standstill_.on_its_way(y_)) : M_);
     const model::State y2 = along(length / 2, y_.velocity, a0);
-    const double a2 = acceleration(forcing(excitation_.value(half, y2)), y2);
+    const double a2 = acceleration_at(y2, M(half, y2));
     const model::State y3 = along(length / 2, y2.velocity, a2);
-    const double a3 = acceleration(forcing(excitation_.value(half, y3)), y3);
+    const double a3 = acceleration_at(y3, M(half, y3));
     const model::State y4 = along(length, y3.velocity, a3);
-    const double a4 = acceleration(forcing(M_at(t1, end, break_at_end, y4)), y4);
+    const double a4 = acceleration_at(y4, M(t1, y4));
     const model::State y1{y_.theta + length / 6 * (y_.velocity + 2 * y2.velocity + 2 * y3.velocity + y4.velocity),
                           y_.velocity + length / 6 * (a0 + 2 * a2 + 2 * a3 + a4)};
-    const double M1 = M_at(t1, end, break_at_end, y1);
-    return {y1, std::isfinite(a2 + a3 + a4) ? M1 : a2 + a3 + a4, a0, acceleration(forcing(M1), y1)};
+    const double way = model::sign_of(standstill_.motion());
+    const double least = std::min({way * y1.velocity, way * y2.velocity, way * y3.velocity, way * y4.velocity});
+    if (asks == Asks::freely && !(least > 0) && standstill_.jumps(t1, y1.theta)) {
+        return feedback_step(length, end, break_at_end, Asks::beside);
+    }
+    const double M1 = M(t1, y1);
+    return {y1, std::isfinite(a2 + a3 + a4) ? M1 : a2 + a3 + a4, a0, acceleration_at(y1, M1)};
 }
 
 /// The velocity is down to zero a time `zero` into the piece: goes there, and leaves the rest to the friction law.
@@ -115,10 +118,14 @@ bool Rk4Engine::reach_zero(const Stepped& whole, double zero, double end, bool b
     if (zero <= 0 || t_ + zero <= t_) {
         if (y_.velocity != 0) {  // so close to zero that no time passes
             y_.velocity = 0;
-            standstill_ = true;
-        } else {
-            hold_still(end, whole.M);
+            M_ = standstill_.M_at_rest(t_, y_.theta, M_);
+            standstill_.arrive();
+            return finite();
         }
+        if (!go_on(standstill_.never_left(moment()))) return false;
+        rows_standing_until(end);
+        t_ = end, M_ = feedback_ ? M_at(end, end, break_at_end, y_) : whole.M;
+        standstill_.go_on();
         return finite();
     }
     const bool at_end = t_ + zero >= end;
@@ -130,75 +137,30 @@ bool Rk4Engine::reach_zero(const Stepped& whole, double zero, double end, bool b
     // The velocity that the cubic has left over is of fourth order, and is dropped. A Newton step in time to take it
     // away was tried and changed no error by more than a twentieth.
     y_ = {s.y.theta, 0};
-    t_ = t, M_ = s.M;
-    at_start_ = false;
-    standstill_ = true;
+    t_ = t, M_ = standstill_.M_at_rest(t, y_.theta, s.M);
+    standstill_.arrive();
     return finite();
-}
-
-void Rk4Engine::leave_standstill() {
-    watch_for_chatter();
-    const model::Motion before = motion_;
-    motion_ = model::motion_from_standstill(system_, M_, y_.theta);
-    friction_ = system_.kinetic_friction() * model::sign_of(motion_);
-    standstill_ = false;
-    if (!at_start_) {
-        if (motion_ == model::Motion::stuck) {
-            record(model::EventKind::stick);
-        } else if (motion_ != before) {
-            record(model::EventKind::turn);  // the same direction again: it only touched zero, which is no event
-        }
-    }
-}
-
-/// A motion that did not get under way: the excitation only touched the limit. The mass stays where it is.
-void Rk4Engine::hold_still(double end, double M_end) {
-    if (events_ != nullptr && !events_->empty() && events_->back().t == t_) {
-        model::Event& last = events_->back();
-        if (last.kind == model::EventKind::slip) {
-            events_->pop_back();
-        } else if (last.kind == model::EventKind::turn) {
-            last.kind = model::EventKind::stick;
-        }
-    } else if (!at_start_) {
-        record(model::EventKind::stick);  // it was on its way, came to rest, and did not go on
-    }
-    motion_ = model::Motion::stuck;
-    friction_ = 0;
-    rows_standing_until(end);
-    t_ = end, M_ = M_end;
 }
 
 /// Stuck, up to the end of the piece or the first time that |M - k theta| > Re.
 bool Rk4Engine::stay(double end, bool break_at_end, const Sampled* known) {
-    model::Motion next = model::motion_from_standstill(system_, M_, y_.theta);
+    model::Motion next = standstill_.pulled(M_, y_.theta);
     if (next == model::Motion::stuck) {
         double M_end = M_;
         const auto release = release_time(end, break_at_end, known, M_end);
         if (!std::isfinite(M_end)) return fail(model::Outcome::excitation_not_finite);
         rows_standing_until(release.value_or(end));
         t_ = release.value_or(end), M_ = M_end;
-        at_start_ = false;
         if (!release) return finite();
-        next = model::motion_from_standstill(system_, M_, y_.theta);
+        next = standstill_.pulled(M_, y_.theta);
     }
-    watch_for_chatter();
-    record(model::EventKind::slip);
-    at_start_ = false;
-    motion_ = next;
-    friction_ = system_.kinetic_friction() * model::sign_of(motion_);
-    return finite();
+    return go_on(standstill_.release(moment(), next));
 }
 
 std::optional<double> Rk4Engine::release_time(double end, bool break_at_end, const Sampled* known,
                                               double& M_end) const {
     const auto M = [&](double t) { return M_at(t, end, break_at_end, y_); };
-    // Positive exactly when the friction law lets go.
-    const auto excess_of = [&](double torque) {
-        const double excess = model::breakaway_excess(system_, torque, y_.theta);
-        const bool holds = model::motion_from_standstill(system_, torque, y_.theta) == model::Motion::stuck;
-        return holds ? std::min(excess, 0.0) : excess;
-    };
+    const auto excess_of = [&](double torque) { return standstill_.excess(torque, y_.theta); };
     const auto excess = [&](double t) { return excess_of(M(t)); };
     const bool whole = known != nullptr && end - t_ > full_.h * (1 - 1e-9);
     const double middle = t_ + (end - t_) / 2;
@@ -257,28 +219,14 @@ void Rk4Engine::record_turns(double t, double h, double direction, const model::
         if (std::fabs(better - x) < 0.1 * h && better > from && better <= h) x = better;
         y = {motion(x).theta, 0};
         a = slope;
+        standstill_.head(model::motion_of(direction));
+        standstill_.turned({t + x, y.theta, excitation_.value(t + x, y)});
         direction = -direction;
-        if (events_ != nullptr) {
-            const double time = t + x;
-            events_->push_back({time, model::EventKind::turn, y.theta, excitation_.value(time, y)});
-        }
         if (x >= h) break;
         from = x;
     }
     // Whatever was found, the next step begins with the velocity that this one ended with.
-    motion_ = model::motion_of(y1.velocity != 0 ? y1.velocity : direction);
-}
-
-void Rk4Engine::record(model::EventKind kind) {
-    if (events_ != nullptr) events_->push_back({t_, kind, y_.theta, M_});
-}
-
-/// Feedback that pushes at rest and holds in motion would come to a standstill in every step for ever.
-// NOTE: a step too long for its system may have as many honest events, so only short ones are judged.
-void Rk4Engine::watch_for_chatter() {
-    const bool at_once = t_ - last_standstill_ < 2 * full_.h && full_.h * full_.h * full_.w < 0.01;
-    standstills_at_once_ = feedback_ && at_once ? standstills_at_once_ + 1 : 0;
-    last_standstill_ = t_;
+    standstill_.head(model::motion_of(y1.velocity != 0 ? y1.velocity : direction));
 }
 
 }  // namespace dinal::motion::rk4

@@ -15,6 +15,14 @@ std::size_t step_count(const Window& window, double h) {
     return static_cast<std::size_t>(std::clamp(count, 1.0, 9e18));
 }
 
+/// How soon one standstill follows another at once: every second step, under a feedback that makes a step of it.
+// NOTE: a step too long for its system may have as many honest events, so only short ones are judged by that.
+double at_once(const Problem& problem, double h) {
+    constexpr double a_piece = 1.0 / 256;  // of a step with more events than anyone can tell
+    const bool is_short = h * h * (problem.system.stiffness() / problem.system.inertia()) < 0.01;
+    return problem.excitation.has_feedback() && is_short ? 2 * h : a_piece * h;
+}
+
 }  // namespace
 
 Rk4Engine::Rk4Engine(const Problem& problem, const Rk4& options, RowWriter& rows, std::vector<model::Event>* events,
@@ -23,26 +31,21 @@ Rk4Engine::Rk4Engine(const Problem& problem, const Rk4& options, RowWriter& rows
       excitation_(problem.excitation),
       monitor_(problem.monitor),
       initial_(problem.initial),
-      before_(problem.before),
       window_(problem.window),
       rows_(rows),
-      events_(events),
       checkpoints_(checkpoints),
       full_(problem.system, options.h),
       steps_(step_count(problem.window, options.h)),
       steps_per_row_(rows.steps_per_row(options.h)),
       inverse_inertia_(1 / problem.system.inertia()),
-      feedback_(problem.excitation.has_feedback()),
-      constant_from_(problem.excitation.constant_from()) {}
+      feedback_(problem.excitation.has_feedback() || system_.has_remainder()),
+      standstill_(problem, events, at_once(problem, options.h)) {}
 
 model::Outcome Rk4Engine::run() {
-    at_start_ = !before_;
     const double t = window_.start;
     const bool at_break = excitation_.next_break(std::nextafter(t, -model::never)) == t;
     const double M = at_break ? excitation_.value_after(t, initial_) : excitation_.value(t, initial_);
-    const model::Motion motion = before_.value_or(model::motion_of(initial_.velocity));
-    const bool standstill = initial_.velocity == 0 && !before_;  // else the law was asked at the end of the part before
-    return run({0, initial_, M, motion, standstill}, steps_);
+    return run({0, initial_, M, standstill_.mark()}, steps_);
 }
 
 model::Outcome Rk4Engine::run(const Rk4Checkpoint& from, std::size_t last_step) {
@@ -55,14 +58,14 @@ model::Outcome Rk4Engine::run(const Rk4Checkpoint& from, std::size_t last_step) 
             outcome_ = model::Outcome::interrupted;
             break;
         }
-        if (stuck_for_good()) {
+        if (standstill_.for_good(moment())) {
             rows_standing_until(model::never);  // nothing will ever move it again
             t_ = window_.end;
             break;
         }
         const std::size_t stop =
             checkpoints_ != nullptr ? std::min(last_step, std::max(checkpoints_->next(), n + 1)) : last_step;
-        const std::size_t count = standstill_ ? 0 : sample_block(n, stop);
+        const std::size_t count = standstill_.phase() == Standstill::Phase::arrived ? 0 : sample_block(n, stop);
         if (count > 0) {
             alive = run_block(n, count);
             n += count;
@@ -73,25 +76,16 @@ model::Outcome Rk4Engine::run(const Rk4Checkpoint& from, std::size_t last_step) 
     }
     if (outcome_ == model::Outcome::reached_end && last_step == steps_) {
         rows_standing_until(model::never);
-        if (motion_ == model::Motion::stuck && !system_.frictionless()) {
-            if (events_ != nullptr && !events_->empty()) events_->back().kind = model::EventKind::rest;
-            outcome_ = model::Outcome::at_rest;
-        }
+        if (standstill_.finish()) outcome_ = model::Outcome::at_rest;
     }
     return outcome_;
-}
-
-bool Rk4Engine::stuck_for_good() const {
-    return !system_.frictionless() && !standstill_ && motion_ == model::Motion::stuck && constant_from_ <= t_ &&
-           model::motion_from_standstill(system_, M_, y_.theta) == model::Motion::stuck;
 }
 
 void Rk4Engine::begin_at(const Rk4Checkpoint& from) {
     t_ = time(from.step);
     y_ = from.state;
-    motion_ = from.motion;
-    standstill_ = from.standstill && !system_.frictionless();
-    friction_ = system_.kinetic_friction() * model::sign_of(motion_);
+    standstill_.return_to(from.mark);
+    friction_ = system_.braking(standstill_.motion());
     M_ = from.M;
 }
 
@@ -117,12 +111,10 @@ std::size_t Rk4Engine::sample_block(std::size_t n, std::size_t last_step) {
 bool Rk4Engine::run_block(std::size_t n, std::size_t count) {
     std::size_t i = 0;
     while (i < count) {
-        if (!standstill_) {
-            if (system_.frictionless()) {
-                i = move_freely(n, i, count);
-            } else {
-                i = motion_ == model::Motion::stuck ? rest(n, i, count) : move(n, i, count);
-            }
+        if (standstill_.phase() != Standstill::Phase::arrived) {
+            i = standstill_.passes()  ? move_freely(n, i, count)
+                : standstill_.stuck() ? rest(n, i, count)
+                                      : move(n, i, count);
             if (!finite()) return false;
         }
         if (i < count) {
@@ -174,7 +166,8 @@ std::size_t Rk4Engine::plain_steps(std::size_t i, std::size_t stop, double direc
 std::size_t Rk4Engine::move(std::size_t n, std::size_t i, std::size_t count) {
     begin_block(i, count);
     const std::size_t first = i;
-    i = plain_steps(i, count, model::sign_of(motion_));
+    i = plain_steps(i, count, model::sign_of(standstill_.motion()));
+    if (i > first) standstill_.go_on();
     end_block(n, first, i);
     return i;
 }
@@ -183,13 +176,13 @@ std::size_t Rk4Engine::move_freely(std::size_t n, std::size_t i, std::size_t cou
     begin_block(i, count);
     const std::size_t first = i;
     while (i < count) {
-        i = plain_steps(i, count, model::sign_of(motion_));
+        i = plain_steps(i, count, model::sign_of(standstill_.motion()));
         if (i == count) break;
         // The step in which the velocity changes sign is a step like the others, only noted.
         const model::State y{theta_[i], velocity_[i]};
         const model::State y1 = full_(y, push_theta_[i], push_velocity_[i]);
         const double a = acceleration(forcing_[i], y), a1 = acceleration(forcing_[i + 1], y1);
-        record_turns(time(n + i), full_.h, model::sign_of(motion_), y, a, y1, a1);
+        record_turns(time(n + i), full_.h, model::sign_of(standstill_.motion()), y, a, y1, a1);
         theta_[i + 1] = y1.theta;
         velocity_[i + 1] = y1.velocity;
         ++i;
@@ -231,11 +224,13 @@ void Rk4Engine::block_rows(std::size_t n, std::size_t first, std::size_t last) {
 std::size_t Rk4Engine::rest(std::size_t n, std::size_t i, std::size_t count) {
     // Well within the limit, also between the samples: a parabola through three of them rises above the highest by
     // no more than an eighth of their second difference; a quarter is the careful side.
-    const double limit = system_.breakaway() * (1 - 1e-9);
-    const double k_theta = system_.stiffness() * y_.theta;
-    double e = std::fabs(M_ - k_theta);
+    const double forward = system_.holding(model::Motion::forward), backward = system_.holding(model::Motion::backward);
+    const double limit = (forward + backward) / 2 * (1 - 1e-9);
+    const double middle_of_hold = system_.stiffness() * y_.theta + (forward - backward) / 2;
+    double e = std::fabs(M_ - middle_of_hold);
     for (; i < count; ++i) {
-        const double em = std::fabs(samples_[2 * i] - k_theta), e1 = std::fabs(samples_[2 * i + 1] - k_theta);
+        const double em = std::fabs(samples_[2 * i] - middle_of_hold),
+                     e1 = std::fabs(samples_[2 * i + 1] - middle_of_hold);
         if (!(std::max({e, em, e1}) + std::fabs(e - 2 * em + e1) / 4 < limit)) break;
         if (rows_.next_time() < time(n + i + 1)) {
             t_ = time(n + i);

@@ -6,12 +6,11 @@
 #include <array>
 #include <vector>
 
-#include "model/friction.hpp"
 #include "motion/checkpoints.hpp"
 #include "motion/interpolation.hpp"
 #include "motion/rk4/rk4_step.hpp"
 #include "motion/rows.hpp"
-#include "motion/simulate.hpp"
+#include "motion/standstill.hpp"
 
 namespace dinal::motion::rk4 {
 
@@ -19,8 +18,7 @@ struct Rk4Checkpoint {
     std::size_t step = 0;
     model::State state;
     double M = 0;
-    model::Motion motion = model::Motion::stuck;
-    bool standstill = false;  ///< velocity 0 and the friction law not yet asked
+    Standstill::Mark mark;
 };
 
 class Rk4Engine {
@@ -38,10 +36,14 @@ public:
     [[nodiscard]] double time(std::size_t n) const {
         return n == steps_ ? window_.end : window_.start + static_cast<double>(n) * full_.h;
     }
-    [[nodiscard]] double now() const { return t_; }
-    [[nodiscard]] model::State state() const { return y_; }
-    [[nodiscard]] model::Motion motion() const { return motion_; }
-    [[nodiscard]] Rk4Checkpoint here(std::size_t step) const { return {step, y_, M_, motion_, standstill_}; }
+    [[nodiscard]] Rk4Checkpoint here(std::size_t step) const { return {step, y_, M_, standstill_.mark()}; }
+    /// Tells how far it came, and in which state.
+    void leave(Trajectory& trajectory) const {
+        trajectory.t_stop = t_;
+        trajectory.state_at_stop = y_;
+        trajectory.motion_at_stop = standstill_.motion();
+        trajectory.began_stuck = standstill_.began_stuck();
+    }
 
 private:
     static constexpr std::size_t block_steps = 128;
@@ -56,7 +58,6 @@ private:
         double a0, a1;  ///< accelerations at both ends
     };
 
-    [[nodiscard]] bool stuck_for_good() const;
     void begin_at(const Rk4Checkpoint& from);
     /// Fills the samples of the steps n, n + 1, ... that end before the next break; returns for how many.
     std::size_t sample_block(std::size_t n, std::size_t last_step);
@@ -73,11 +74,11 @@ private:
     bool careful_step(double end, const Sampled* known);
     bool piece(double end, bool break_at_end, const Sampled* known);
     bool stay(double end, bool break_at_end, const Sampled* known);
-    void hold_still(double end, double M_end);
-    void leave_standstill();
     bool reach_zero(const Stepped& whole, double zero, double end, bool break_at_end);
     [[nodiscard]] Stepped step(double length, double end, bool break_at_end, const Sampled* known) const;
-    [[nodiscard]] Stepped feedback_step(double length, double end, bool break_at_end) const;
+    /// Asks M at the states that the step tries, or, `beside` a jump at velocity zero, on this side of it.
+    enum class Asks { freely, beside };
+    [[nodiscard]] Stepped feedback_step(double length, double end, bool break_at_end, Asks asks) const;
     [[nodiscard]] bool lost_in_rounding(const model::State& y, double a) const;
     void record_turns(double t, double h, double direction, const model::State& y0, double a0, const model::State& y1,
                       double a1);
@@ -88,15 +89,17 @@ private:
     void rows_standing_until(double end);
     void put_row(const model::State& y, double M) {
         if (std::isfinite(M) && std::isfinite(y.theta) && std::isfinite(y.velocity)) {
-            rows_.put(
-                y, M,
-                model::friction_torque(system_, system_.frictionless() ? model::Motion::forward : motion_, M, y.theta));
+            rows_.put(y, M, model::friction_torque(system_, standstill_.motion(), M, y));
         } else {
             failed_ = true;
         }
     }
-    void record(model::EventKind kind);
-    void watch_for_chatter();
+    [[nodiscard]] Standstill::Moment moment() const { return {t_, y_.theta, M_}; }
+    /// After a word with the standstill, which may have seen enough; the motion may be another now.
+    bool go_on(bool sane) {
+        friction_ = system_.braking(standstill_.motion());
+        return sane ? finite() : fail(model::Outcome::chattering);
+    }
     bool fail(model::Outcome outcome) {
         outcome_ = outcome;
         return false;
@@ -111,18 +114,20 @@ private:
     }
     /// F/I for the torque M and the present direction of motion.
     [[nodiscard]] double forcing(double M) const { return (M - friction_) * inverse_inertia_; }
+    /// theta'' under a torque that depends on the motion: M, given for this state, and a friction's remainder.
+    [[nodiscard]] double acceleration_at(const model::State& y, double M) const {
+        return acceleration(forcing(M - system_.remainder(standstill_.motion(), y)), y);
+    }
     [[nodiscard]] double acceleration(double f, const model::State& y) const {
         return f - full_.c * y.velocity - full_.w * y.theta;
     }
 
-    const model::Oscillator& system_;
+    model::Lowered system_;
     const model::Excitation& excitation_;
     const Monitor& monitor_;
     model::State initial_;
-    std::optional<model::Motion> before_;
     Window window_;
     RowWriter& rows_;
-    std::vector<model::Event>* events_;
     Checkpoints<Rk4Checkpoint>* checkpoints_;
 
     AffineStep full_;
@@ -130,18 +135,13 @@ private:
     std::size_t steps_per_row_;
     double inverse_inertia_;
     bool feedback_;
-    double constant_from_;
 
     double t_ = 0;  // the present: time, state, M (from the right), motion
     model::State y_;
     double M_ = 0;
-    model::Motion motion_ = model::Motion::stuck;
-    bool standstill_ = false;  // velocity 0: the law must be asked before the next piece
-    bool at_start_ = false;    // ... and nothing that it says is an event
-    double friction_ = 0;      // Rd sgn(velocity) of the present motion
-    double last_standstill_ = -model::never;
-    int standstills_at_once_ = 0;  // one after the other, none more than two steps from the one before
-    bool failed_ = false;          // M between the steps, at a row, was not finite
+    Standstill standstill_;
+    double friction_ = 0;  // the constant torque that brakes the present motion
+    bool failed_ = false;  // M between the steps, at a row, was not finite
     model::Outcome outcome_ = model::Outcome::reached_end;
 
     // One block: M in the middle and at the end of each step, what follows from it for the present motion, and the

@@ -1,7 +1,7 @@
 // One classical Runge-Kutta step of I theta'' + C theta' + k theta = F(t) as the affine map that it is.
 #pragma once
 
-#include "model/oscillator.hpp"
+#include "model/lowered.hpp"
 
 namespace dinal::motion::rk4 {
 
@@ -9,7 +9,7 @@ namespace dinal::motion::rk4 {
 /// beginning, middle and end of the step, R = 1 + Z + Z^2/2 + Z^3/6 + Z^4/24 and Z = h [0 1; -k/I -C/I]
 /// (docs/theory.md). The increment R - 1 is kept, not R: its rounding is smaller by the factor h w0.
 struct AffineStep {
-    AffineStep(const model::Oscillator& system, double step)
+    AffineStep(const model::Lowered& system, double step)
         : h(step), w(system.stiffness() / system.inertia()), c(system.damping() / system.inertia()) {
         // Horner: R - 1 = Z (1 + Z/2 (1 + Z/3 (1 + Z/4))), each product by [0 1; -w -c] h.
         double a11 = 1, a12 = 0, a21 = 0, a22 = 1;

@@ -11,9 +11,8 @@ namespace dinal::motion::spectral {
 namespace {
 
 constexpr double epsilon = std::numeric_limits<double>::epsilon();
-/// More standstills than this, each at once after the one before, are a feedback that chatters, not a motion.
-constexpr int most_standstills_at_once = 200;
-/// Within this time, in units of pace_, one standstill follows another at once.
+/// Within this time, in units of pace_, one standstill follows another at once, under a feedback. A function of time
+/// moves the mass as often as it says.
 constexpr double at_once = 1e-6;
 /// Between two questions to the monitor: pieces, and rows at rest.
 constexpr unsigned pieces_between_questions = 16;
@@ -27,21 +26,18 @@ SpectralEngine::SpectralEngine(const Problem& problem, const Spectral& options, 
       excitation_(problem.excitation),
       monitor_(problem.monitor),
       window_(problem.window),
-      before_(problem.before),
       rows_(rows),
-      events_(events),
       panels_(panels),
       tolerance_(options.tolerance),
       w0_(problem.system.natural_frequency()),
       T0_(problem.system.natural_period()),
       pace_(std::min(T0_, problem.window.end - problem.window.start)),
       h_max_(std::min(options.max_panel, longest_panel * T0_) / 2),
-      feedback_(problem.excitation.has_feedback()),
+      feedback_(problem.excitation.has_feedback() || system_.has_remainder()),
       script_(problem.excitation.has_script()),
-      constant_from_(problem.excitation.constant_from()),
-      most_M_(problem.excitation.most()),
       clock_{problem.window.start, 0},
       y_(problem.initial),
+      standstill_(problem, &events, feedback_ ? at_once * pace_ : -model::never),
       h_(h_max_),
       shortened_since_(problem.window.start) {}
 
@@ -51,12 +47,14 @@ model::Outcome SpectralEngine::run() {
     while (alive && clock_.hi < window_.end) {
         if (pieces_++ % pieces_between_questions == 0 && monitor_ && !monitor_(clock_.hi)) {
             outcome_ = model::Outcome::interrupted;
-            if (standstill_ && !system_.frictionless()) leave_standstill();
+            if (standstill_.phase() == Standstill::Phase::arrived) standstill_.ask(moment());
             break;
         }
         alive = advance();
     }
     if (outcome_ == model::Outcome::reached_end) finish();
+    // The row of this very moment belongs to a piece that did not come about.
+    if (outcome_ == model::Outcome::chattering && rows_.next_time() <= clock_.hi) put_row(M_);
     return outcome_;
 }
 
@@ -64,20 +62,12 @@ void SpectralEngine::begin() {
     const double t = window_.start;
     const bool at_break = excitation_.next_break(std::nextafter(t, -model::never)) == t;
     M_ = at_break ? excitation_.value_after(t, y_) : excitation_.value(t, y_);
-    motion_ = before_.value_or(model::motion_of(y_.velocity));
-    at_start_ = !before_;
-    standstill_ = y_.velocity == 0 && !before_;
-    leaving_ = y_.velocity == 0 && before_ &&
-               motion_ != model::Motion::stuck;  // the law was asked at the end of the part before
 }
 
 bool SpectralEngine::advance() {
-    if (system_.frictionless()) return move();
-    if (standstill_ && !leave_standstill()) return false;
-    if (stuck_for_good()) {
-        return rest_until_end();
-    }
-    return motion_ == model::Motion::stuck ? stay() : move();
+    if (standstill_.phase() == Standstill::Phase::arrived && !go_on(standstill_.ask(moment()))) return false;
+    if (!standstill_.stuck()) return move();
+    return standstill_.for_good(moment()) ? rest_until_end() : stay();
 }
 
 /// At rest there is nothing to compute but M at the rows, of which there may be many.
@@ -86,7 +76,7 @@ bool SpectralEngine::rest_until_end() {
     for (std::size_t count = 1; rows_.next_time() < window_.end; ++count) {
         const double t = rows_.next_time();
         const double M = excitation_.value(t);
-        rows_.put(y_, M, friction_of(M));
+        put_row(M);
         if (count % rows_between_questions == 0 && monitor_ && !monitor_(t)) {
             outcome_ = model::Outcome::interrupted;
             until = t;
@@ -101,59 +91,21 @@ bool SpectralEngine::rest_until_end() {
 }
 
 void SpectralEngine::finish() {
-    while (rows_.next_time() < model::never) rows_.put(y_, M_, friction_of(M_));
-    if (!system_.frictionless() && standstill_) leave_standstill();
-    if (!system_.frictionless() && motion_ == model::Motion::stuck) {
-        if (!events_.empty()) events_.back().kind = model::EventKind::rest;
-        outcome_ = model::Outcome::at_rest;
-    }
-}
-
-/// M can not move it any more, whatever comes: it is constant, or nowhere great enough.
-bool SpectralEngine::stuck_for_good() const {
-    if (motion_ != model::Motion::stuck) return false;
-    if (most_M_ + std::fabs(system_.stiffness() * y_.theta) <= system_.breakaway()) return true;
-    return constant_from_ <= clock_.hi && model::motion_from_standstill(system_, M_, y_.theta) == model::Motion::stuck;
-}
-
-/// Asks the friction law at velocity zero.
-bool SpectralEngine::leave_standstill() {
-    const model::Motion before = motion_;
-    motion_ = model::motion_from_standstill(system_, M_, y_.theta);
-    standstill_ = false;
-    leaving_ = motion_ != model::Motion::stuck;
-    holding_ = false;
-    if (!at_start_) {
-        if (motion_ == model::Motion::stuck) {
-            record(model::EventKind::stick);
-        } else if (motion_ != before) {
-            record(model::EventKind::turn);  // the same direction again: it only touched zero, which is no event
-        }
-    }
-    return !stopped();
-}
-
-/// Feedback that pushes at rest and holds in motion would come to a standstill for ever. A function of time moves the
-/// mass as often as it says.
-bool SpectralEngine::stopped() {
-    if (!feedback_) return false;
-    standstills_at_once_ = clock_.hi - last_standstill_ <= at_once * pace_ ? standstills_at_once_ + 1 : 0;
-    last_standstill_ = clock_.hi;
-    return standstills_at_once_ > most_standstills_at_once && !fail(model::Outcome::chattering);
+    while (rows_.next_time() < model::never) put_row(M_);
+    if (standstill_.phase() == Standstill::Phase::arrived) standstill_.ask(moment());
+    if (standstill_.finish()) outcome_ = model::Outcome::at_rest;
 }
 
 // ---- moving
 
 bool SpectralEngine::move() {
     choose_panel();
-    panel_.motion = system_.frictionless() ? model::Motion::forward : motion_;
     if (const Attempt attempt = solve(); attempt != Attempt::resolved) return attempt != Attempt::ended;
-    if (system_.frictionless()) record_turns();
-    const bool dry = !system_.frictionless(), crept = dry && creeps();
-    const std::optional<double> zero = dry && !crept ? first_standstill() : std::nullopt;
-    if (leaving_ && (crept || (zero && *zero <= -1))) {
-        never_left();
-        return !stopped();
+    const bool stops = !standstill_.passes(), crept = stops && creeps();
+    if (!stops) record_turns();
+    const std::optional<double> zero = stops && !crept ? first_standstill() : std::nullopt;
+    if (standstill_.phase() == Standstill::Phase::leaving && (crept || (zero && *zero <= -1))) {
+        return go_on(standstill_.never_left(moment()));
     }
     double x = zero.value_or(1);
     if (x > -1 && time_at(x) >= end_) x = 1;
@@ -163,8 +115,7 @@ bool SpectralEngine::move() {
     const double M = x == 1 ? 0 : feedback_ ? excitation_.value(time_at(x), state) : chebyshev::value(panel_.M, x);
     end_piece(x, state, M);
     if (crept) settle();
-    leaving_ = false;
-    standstill_ = crept || zero;
+    if (crept || zero) standstill_.arrive();
     standing_from_ = zero && x < 1 && !feedback_ ? x : nowhere;
     return std::isfinite(M_) || fail(model::Outcome::excitation_not_finite);
 }
@@ -177,7 +128,7 @@ bool SpectralEngine::creeps() const {
 
 /// What has crept to rounding distance from its place is there: at the very limit of sticking, when Re = Rd.
 void SpectralEngine::settle() {
-    const double place = (M_ - system_.kinetic_friction() * model::sign_of(motion_)) / system_.stiffness();
+    const double place = (M_ - system_.braking(standstill_.motion())) / system_.stiffness();
     const double near = 64 * epsilon * torques() / system_.stiffness();
     if (feedback_ || !(std::fabs(place - y_.theta) <= near)) return;
     y_.theta = place;
@@ -187,14 +138,15 @@ void SpectralEngine::settle() {
 /// Where the velocity is down to zero. At the end of the panel, zero within rounding is zero.
 std::optional<double> SpectralEngine::first_standstill() const {
     using namespace chebyshev;
-    const double sign = model::sign_of(motion_);
+    const double sign = model::sign_of(standstill_.motion());
+    const bool leaving = standstill_.phase() == Standstill::Phase::leaving;
     Bounded<points + 1> velocity(sign, v_, panel_.w);
     // The acceleration is what is left of torques that may balance each other.
     const double w0h = w0_ * panel_.h;
     velocity.raise_slope_floor(w0h * w0h * (64 * epsilon * torques() + lost_in_time()) / system_.stiffness());
     if (feedback_) velocity.raise_floor(rounding_of_motion(lost_in_time()));
     const auto always = [](double) { return true; };
-    const auto zero = first_below(velocity, -1, leaving_ ? LeftEnd::leaving : LeftEnd::anywhere, always);
+    const auto zero = first_below(velocity, -1, leaving ? LeftEnd::leaving : LeftEnd::anywhere, always);
     if (!zero && velocity(1) <= velocity.floor()) return 1;
     return zero;
 }
@@ -207,26 +159,29 @@ void SpectralEngine::record_turns() {
     // At its equilibrium a system changes the sign of its velocity by rounding alone.
     if (moving <= (feedback_ ? rounding_left_by_iteration : 1) * rounding_of_motion(lost_in_time()) || moving < nothing)
         return;
-    if (motion_ == model::Motion::stuck) {
+    if (standstill_.motion() == model::Motion::stuck) {
         // From a start at rest: the first velocity that is not rounding tells the direction.
         const auto v = at_nodes(v_);
         const auto* const first =
             std::find_if(v.begin(), v.end(), [&](double u) { return std::fabs(u) > 1e-14 * moving; });
-        motion_ = model::motion_of(first == v.end() ? 0 : *first);
+        standstill_.head(model::motion_of(first == v.end() ? 0 : *first));
     }
     double from = -1;
     LeftEnd start = y_.velocity == 0 ? LeftEnd::leaving : LeftEnd::anywhere;
     const auto no = [](double) { return false; };
-    while (motion_ != model::Motion::stuck) {
-        const Bounded<points + 1> velocity(model::sign_of(motion_), v_, panel_.w);
+    while (standstill_.motion() != model::Motion::stuck) {
+        const model::Motion motion = standstill_.motion();
+        const Bounded<points + 1> velocity(model::sign_of(motion), v_, panel_.w);
         const auto x = first_below(velocity, from, start, no);
         if (!x) break;
-        motion_ = motion_ == model::Motion::forward ? model::Motion::backward : model::Motion::forward;
         // A curve that leaves zero the other way was turned already, when that is told.
-        const bool told = start == LeftEnd::leaving && *x <= from &&
-                          (from > -1 || (!events_.empty() && events_.back().t == clock_.hi));
-        if (!told)
-            events_.push_back({time_at(*x), model::EventKind::turn, y_.theta + value(p_, *x), value(panel_.M, *x)});
+        const bool told =
+            start == LeftEnd::leaving && *x <= from && (from > -1 || standstill_.last_told() == clock_.hi);
+        if (told) {
+            standstill_.head(motion == model::Motion::forward ? model::Motion::backward : model::Motion::forward);
+        } else {
+            standstill_.turned({time_at(*x), y_.theta + value(p_, *x), value(panel_.M, *x)});
+        }
         if (told && from > -1) break;
         from = *x;
         start = LeftEnd::leaving;
@@ -242,7 +197,7 @@ void SpectralEngine::end_piece(double x, model::State state, double M) {
     piece.length = whole ? 2 * panel_.h : panel_.h * (1 + x);
     const bool told = rows_until(piece.length);
     if (panels_ != nullptr) {
-        if (motion_ == model::Motion::stuck && !system_.frictionless()) {
+        if (standstill_.stuck()) {
             const Clock from = clock_;
             piece.length -= from.hi == panel_.start.hi ? 0 : panel_.start.until(from.hi) + from.lo;
             piece.start = from;
@@ -258,16 +213,15 @@ void SpectralEngine::end_piece(double x, model::State state, double M) {
     M_ = !whole ? M : break_at_end_ ? excitation_.value_after(end_, y_) : samples_[points - 1];
     if (whole && feedback_ && !break_at_end_) M_ = excitation_.value(end_, y_);
     if (!told) M_ = std::numeric_limits<double>::quiet_NaN();
-    if (clock_.hi > window_.start) at_start_ = false;
     if (whole) {
         std::erase_if(found_breaks_, [&](double b) { return b <= end_; });
-        holding_ = false;
+        standstill_.go_on();
     }
 }
 
 /// The rows before the end of the piece; the one at its end belongs to the next. False when M fails at one of them.
 bool SpectralEngine::rows_until(double length) {
-    const bool standing = motion_ == model::Motion::stuck && !system_.frictionless();
+    const bool standing = standstill_.stuck();
     while (rows_.next_time() < model::never) {
         const double t = rows_.next_time();
         const double since = panel_.start.until(t);
@@ -284,9 +238,7 @@ bool SpectralEngine::rows_until(double length) {
             M = chebyshev::value(panel_.M, x);
         }
         if (!std::isfinite(M)) return false;
-        rows_.put(state, M,
-                  standing ? model::friction_torque(system_, model::Motion::stuck, M, state.theta)
-                           : model::friction_torque(system_, panel_.motion, M, state.theta));
+        rows_.put(state, M, model::friction_torque(system_, standing ? model::Motion::stuck : panel_.motion, M, state));
     }
     return true;
 }

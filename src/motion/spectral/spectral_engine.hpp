@@ -8,9 +8,9 @@
 #include <vector>
 
 #include "motion/rows.hpp"
-#include "motion/simulate.hpp"
 #include "motion/spectral/panel_equation.hpp"
 #include "motion/spectral/panels.hpp"
+#include "motion/standstill.hpp"
 
 namespace dinal::motion::spectral {
 
@@ -25,7 +25,8 @@ public:
     void leave(Trajectory& trajectory) const {
         trajectory.t_stop = clock_.hi;
         trajectory.state_at_stop = y_;
-        trajectory.motion_at_stop = motion_;
+        trajectory.motion_at_stop = standstill_.motion();
+        trajectory.began_stuck = standstill_.began_stuck();
     }
 
 private:
@@ -39,23 +40,24 @@ private:
     bool advance();
     bool move();
     void finish();
-    [[nodiscard]] bool stuck_for_good() const;
     bool rest_until_end();
-    bool leave_standstill();
     [[nodiscard]] std::optional<double> first_standstill() const;
     [[nodiscard]] bool creeps() const;
     void settle();
     void record_turns();
-    bool stopped();
+    [[nodiscard]] Standstill::Moment moment() const { return {clock_.hi, y_.theta, M_}; }
+    /// After a word with the standstill, which may have seen enough.
+    bool go_on(bool sane) { return sane || fail(model::Outcome::chattering); }
+    /// Which friction acts on a panel from here: without any, the same both ways.
+    [[nodiscard]] model::Motion sliding() const {
+        return standstill_.passes() ? model::Motion::forward : standstill_.motion();
+    }
 
     // The present at the end of a piece, which reaches to x in the panel; 1 is exactly the end of the panel.
     void end_piece(double x, model::State state, double M);
     bool rows_until(double length);
     [[nodiscard]] double time_at(double x) const { return panel_.start.after(panel_.h * (1 + x)); }
-    void record(model::EventKind kind) { events_.push_back({clock_.hi, kind, y_.theta, M_}); }
-    [[nodiscard]] double friction_of(double M) const {
-        return model::friction_torque(system_, system_.frictionless() ? model::Motion::forward : motion_, M, y_.theta);
-    }
+    void put_row(double M) { rows_.put(y_, M, model::friction_torque(system_, standstill_.motion(), M, y_)); }
     bool fail(model::Outcome outcome) {
         outcome_ = outcome;
         return false;
@@ -68,7 +70,6 @@ private:
     [[nodiscard]] bool lets_go(double x, model::Motion side) const;
     [[nodiscard]] double moment_of_release(double x, double off, double from, model::Motion side) const;
     bool release_at(double x, model::Motion direction);
-    void never_left();
 
     /// Of a run that gets nowhere: whose fault it is.
     [[nodiscard]] model::Outcome never_ending() const {
@@ -94,11 +95,13 @@ private:
     enum class Iteration { converged, diverges, failed };
     Iteration iterate();
     [[nodiscard]] bool well_conditioned() const;
-    void take_linear_part(const Series& rest);
+    void take_M(const Series& iterated);
+    /// The friction that is not in the linear part and its constant.
+    [[nodiscard]] double remainder(const model::State& state) const { return system_.remainder(panel_.motion, state); }
     void estimate_slopes();
     /// The size of the torques that are at play on the panel.
     [[nodiscard]] double torques() const {
-        return chebyshev::size(panel_.M) + system_.breakaway() + system_.stiffness() * std::fabs(y_.theta);
+        return chebyshev::size(panel_.M) + system_.greatest_holding() + system_.stiffness() * std::fabs(y_.theta);
     }
     /// What M may differ by because times far from t = 0 are rounded.
     [[nodiscard]] double lost_in_time() const;
@@ -111,13 +114,11 @@ private:
     bool crawls();
     void lengthen(double unresolved);
 
-    const model::Oscillator& system_;
+    model::Lowered system_;
     const model::Excitation& excitation_;
     const Monitor& monitor_;
     Window window_;
-    std::optional<model::Motion> before_;
     RowWriter& rows_;
-    std::vector<model::Event>& events_;
     Panels* panels_;
 
     double tolerance_;
@@ -125,18 +126,13 @@ private:
     double pace_;  ///< what short times are measured in: T0, or all of a run that is shorter
     double h_max_;
     bool feedback_, script_;
-    double constant_from_, most_M_;
 
     Clock clock_;  // the present: time, state, M (from the right), motion
     model::State y_;
     double theta_rest_ = 0;  // what was rounded off theta, so that a thousand stops do not add up
     double M_ = 0;
-    model::Motion motion_ = model::Motion::stuck;
-    bool M_sampled_ = true;    // M_ is a value of M, not of its series
-    bool standstill_ = false;  // velocity 0: the law must be asked
-    bool leaving_ = false;     // velocity 0, and the law has said which way to go
-    bool at_start_ = true;     // nothing is an event yet
-    bool holding_ = false;     // M is within rounding of the limit, and the motion has been seen not to get under way
+    bool M_sampled_ = true;  // M_ is a value of M, not of its series
+    Standstill standstill_;
 
     double h_;                                              // half the length of the next panel
     std::vector<double> found_breaks_;                      // of a function that did not announce them, in order
@@ -154,8 +150,6 @@ private:
     chebyshev::Series<points + 2> p_{};
     PanelEquation equation_;
 
-    double last_standstill_ = -model::never;
-    int standstills_at_once_ = 0;
     int unresolved_in_a_row_ = 0;
     int short_in_a_row_ = 0;
     int shortened_ = 0;  // panels, since then:

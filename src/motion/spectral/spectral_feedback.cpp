@@ -14,8 +14,10 @@ constexpr int most_iterations = 25;
 
 }  // namespace
 
-/// M(t, theta, velocity) and the motion, each from the other until they agree.
+/// The torque that depends on the motion, M(t, theta, velocity) and a friction's remainder, and the motion: each from
+/// the other until they agree.
 SpectralEngine::Iteration SpectralEngine::iterate() {
+    const bool leaving = standstill_.phase() == Standstill::Phase::leaving;
     for (const bool again : {false, true}) {
         if (!well_conditioned()) break;
         chebyshev::Samples p{}, v{};
@@ -27,9 +29,10 @@ SpectralEngine::Iteration SpectralEngine::iterate() {
         for (int i = 0; i < most_iterations; ++i) {
             chebyshev::Samples rest{};
             for (std::size_t j = 0; j < points; ++j) {
-                samples_[j] = sampled(j, {y_.theta + p[j], v[j] / panel_.h});
+                const model::State state{y_.theta + p[j], v[j] / panel_.h};
+                samples_[j] = sampled(j, j == 0 && leaving ? standstill_.on_its_way(state) : state);
                 if (!std::isfinite(samples_[j])) return Iteration::failed;
-                rest[j] = samples_[j] + kappa_ * p[j] + chi_ * (v[j] / panel_.h);
+                rest[j] = samples_[j] - remainder(state) + kappa_ * p[j] + chi_ * state.velocity;
             }
             panel_.M = chebyshev::fit(samples_);  // its size is wanted if this is to go on
             const Series torque = chebyshev::fit(rest);
@@ -52,7 +55,7 @@ SpectralEngine::Iteration SpectralEngine::iterate() {
                 converged = true;  // it does not get better than that
             }
             if (converged) {
-                take_linear_part(torque);
+                take_M(torque);
                 return Iteration::converged;
             }
         }
@@ -71,9 +74,16 @@ bool SpectralEngine::well_conditioned() const {
     return a >= -most && std::fabs(b) <= most;
 }
 
-/// M as it acts on the motion just found: what was iterated and the linear part, which was solved for.
-void SpectralEngine::take_linear_part(const Series& rest) {
-    for (std::size_t k = 0; k < points; ++k) panel_.M[k] = rest[k] - kappa_ * p_[k] - chi_ * (v_[k] / panel_.h);
+/// M as it acts on the motion just found: what was iterated and the linear part, which was solved for, but for what
+/// of them is friction.
+void SpectralEngine::take_M(const Series& iterated) {
+    for (std::size_t k = 0; k < points; ++k) panel_.M[k] = iterated[k] - kappa_ * p_[k] - chi_ * (v_[k] / panel_.h);
+    if (!system_.has_remainder()) return;
+    const auto p = chebyshev::at_nodes(p_), v = chebyshev::at_nodes(v_);
+    chebyshev::Samples friction{};
+    for (std::size_t j = 0; j < points; ++j) friction[j] = remainder({y_.theta + p[j], v[j] / panel_.h});
+    const Series series = chebyshev::fit(friction);
+    for (std::size_t k = 0; k < points; ++k) panel_.M[k] += series[k];
 }
 
 /// How M depends on theta and velocity, by secants as wide as the motion on this panel: that of the last iteration, but
@@ -81,7 +91,7 @@ void SpectralEngine::take_linear_part(const Series& rest) {
 void SpectralEngine::estimate_slopes() {
     const double t = clock_.hi, h = panel_.h;
     const double torque =
-        std::fabs(samples_[0]) + system_.stiffness() * std::fabs(y_.theta) + system_.kinetic_friction();
+        std::fabs(samples_[0]) + system_.stiffness() * std::fabs(y_.theta) + std::fabs(system_.braking(panel_.motion));
     const double fastest = std::fabs(y_.velocity) + h * torque / system_.inertia();
     const double d_theta = std::max(std::min(chebyshev::size(p_), 2 * h * fastest), 1e-6 * std::fabs(y_.theta));
     const double d_velocity = std::max(std::min(chebyshev::size(v_) / h, fastest), 1e-6 * std::fabs(y_.velocity));
@@ -89,10 +99,10 @@ void SpectralEngine::estimate_slopes() {
         const double s = d > 0 && d < model::never ? (below - above) / (2 * d) : 0;
         return std::isfinite(s) ? s : 0;
     };
-    kappa_ = slope(excitation_.value(t, {y_.theta + d_theta, y_.velocity}),
-                   excitation_.value(t, {y_.theta - d_theta, y_.velocity}), d_theta);
-    chi_ = slope(excitation_.value(t, {y_.theta, y_.velocity + d_velocity}),
-                 excitation_.value(t, {y_.theta, y_.velocity - d_velocity}), d_velocity);
+    const auto torque_at = [&](const model::State& state) { return excitation_.value(t, state) - remainder(state); };
+    kappa_ = slope(torque_at({y_.theta + d_theta, y_.velocity}), torque_at({y_.theta - d_theta, y_.velocity}), d_theta);
+    chi_ = slope(torque_at({y_.theta, y_.velocity + d_velocity}), torque_at({y_.theta, y_.velocity - d_velocity}),
+                 d_velocity);
 }
 
 }  // namespace dinal::motion::spectral

@@ -45,7 +45,7 @@ void SpectralEngine::choose_panel() {
     to_limit_ = remaining <= 2 * h_ * (1 + 1e-9);
     panel_.start = clock_;
     panel_.begin = y_;
-    panel_.motion = motion_;
+    panel_.motion = sliding();
     // Two panels of equal length rather than a long and a very short one.
     panel_.h = to_limit_ ? remaining / 2 : remaining < 4 * h_ ? remaining / 4 : h_;
     end_ = to_limit_ ? limit : clock_.after(2 * panel_.h);
@@ -107,7 +107,7 @@ void SpectralEngine::solve_for(const Series& torque) {
     const double scale = h * (h / inertia);
     Series r{};
     for (std::size_t k = 1; k < points; ++k) r[k] = scale * torque[k];
-    const double friction = system_.kinetic_friction() * model::sign_of(panel_.motion);
+    const double friction = system_.braking(panel_.motion);
     const double k = system_.stiffness();
     r[0] = scale * ((std::fma(-k, y_.theta, torque[0]) - friction) - k * theta_rest_);
     panel_.w = equation_.solve(r, h * y_.velocity);

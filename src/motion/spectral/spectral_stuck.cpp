@@ -18,8 +18,8 @@ constexpr double epsilon = std::numeric_limits<double>::epsilon();
 bool SpectralEngine::stay() {
     double from = standing_from_;
     if (from == nowhere) {
-        if (M_sampled_ && !holding_) {
-            const model::Motion direction = model::motion_from_standstill(system_, M_, y_.theta);
+        if (M_sampled_ && standstill_.phase() != Standstill::Phase::held) {
+            const model::Motion direction = standstill_.pulled(M_, y_.theta);
             if (direction != model::Motion::stuck) return release_at(nowhere, direction);
         }
         choose_panel();
@@ -46,7 +46,7 @@ std::pair<double, model::Motion> SpectralEngine::first_release(double from) cons
 /// series matters, M itself is asked: the limit is a razor's edge.
 double SpectralEngine::release_towards(model::Motion side, double from) const {
     constexpr double exact_enough = 1e-11;  // natural periods
-    const double sign = model::sign_of(side), k_theta = system_.stiffness() * y_.theta, Re = system_.breakaway();
+    const double sign = model::sign_of(side), k_theta = system_.stiffness() * y_.theta, Re = system_.holding(side);
     const double doubt = 8 * (epsilon * (Re + std::fabs(k_theta)) + chebyshev::tail(panel_.M));
     double varying = 0;
     for (std::size_t k = 1; k < points; ++k) varying += std::fabs(panel_.M[k]);
@@ -61,9 +61,10 @@ double SpectralEngine::release_towards(model::Motion side, double from) const {
     left[0] = Re - mean;
     chebyshev::Bounded<points> curve(1, left, slope);
     curve.raise_floor(doubt);
+    const bool held = standstill_.phase() == Standstill::Phase::held;
     std::optional<double> touch;
     const auto touches = [&](double x) {
-        if (holding_) return false;
+        if (held) return false;
         for (const double place : {x, curve.lowest_near(x)}) {
             if (!lets_go(place, side)) continue;
             touch = place;
@@ -74,12 +75,12 @@ double SpectralEngine::release_towards(model::Motion side, double from) const {
     const auto x = chebyshev::first_below(curve, from, chebyshev::LeftEnd::anywhere, touches);
     if (!x) return nowhere;
     const double off = doubt / std::fabs(curve.slope(*x));
-    if (holding_ || (!touch && off * panel_.h <= exact_enough * T0_)) return *x;
+    if (held || (!touch && off * panel_.h <= exact_enough * T0_)) return *x;
     return moment_of_release(touch.value_or(*x), off, from, side);
 }
 
 bool SpectralEngine::lets_go(double x, model::Motion side) const {
-    return model::motion_from_standstill(system_, excitation_.value(time_at(x), y_), y_.theta) == side;
+    return standstill_.pulled(excitation_.value(time_at(x), y_), y_.theta) == side;
 }
 
 /// Between a place near x where M still holds and one where it lets go, by halving.
@@ -119,30 +120,7 @@ bool SpectralEngine::release_at(double x, model::Motion direction) {
         if (!std::isfinite(M_)) return fail(model::Outcome::excitation_not_finite);
         standing_from_ = nowhere;
     }
-    motion_ = direction;
-    leaving_ = true;
-    holding_ = false;
-    record(model::EventKind::slip);
-    at_start_ = false;
-    return !stopped();
-}
-
-/// A motion that did not get under way: M only touched the limit. The mass stays where it is.
-void SpectralEngine::never_left() {
-    if (!events_.empty() && events_.back().t == clock_.hi) {
-        model::Event& last = events_.back();
-        if (last.kind == model::EventKind::slip) {
-            events_.pop_back();
-        } else if (last.kind == model::EventKind::turn) {
-            last.kind = model::EventKind::stick;
-        }
-    } else if (!at_start_) {
-        record(model::EventKind::stick);  // it was on its way, came to rest, and did not go on
-    }
-    motion_ = model::Motion::stuck;
-    leaving_ = false;
-    holding_ = true;
-    standing_from_ = nowhere;
+    return go_on(standstill_.release(moment(), direction));
 }
 
 }  // namespace dinal::motion::spectral

@@ -1,0 +1,199 @@
+// Friction laws other than one number each for sliding and holding: every law in every integrator that knows friction.
+#include <cmath>
+#include <numbers>
+
+#include "analysis/energy.hpp"
+#include "analysis/explain.hpp"
+#include "model/laws/asymmetric.hpp"
+#include "model/sticking.hpp"
+#include "support/catch.hpp"
+#include "support/measure.hpp"
+#include "support/oracle.hpp"
+#include "support/stribeck.hpp"
+#include "support/within.hpp"
+
+using namespace dinal;
+using namespace dinal::model;
+using namespace dinal::motion;
+using namespace dinal::truth;
+using model::laws::AsymmetricCoulomb;
+using model::laws::Coulomb;
+
+namespace {
+
+constexpr double pi = std::numbers::pi;
+
+/// A law, and what it has beside its constant at standstill, once more and independently: against the motion.
+struct LawCase {
+    const char* name;
+    Friction law;
+    real (*remainder)(real velocity);
+};
+
+real none(real) {
+    return 0;
+}
+real of_stribeck(real v) {
+    const real fall = (0.6L - 0.25L) * (std::exp(-(v / 0.4L) * (v / 0.4L)) - 1);
+    return v < 0 ? -fall : fall;
+}
+
+const std::vector<LawCase>& law_cases() {
+    static const std::vector<LawCase> cases = {
+        {"coulomb", Coulomb{0.25, 0.6}, none},
+        {"asymmetric", AsymmetricCoulomb{.forward = {0.1, 0.3}, .backward = {0.35, 0.5}}, none},
+        {"stribeck", Stribeck{.kinetic = 0.25, .breakaway = 0.6, .speed = 0.4}, of_stribeck},
+    };
+    return cases;
+}
+
+Oscillator with_law(const Friction& law, double damping = 0) {
+    return system_of({.inertia = 1, .stiffness = 1, .damping = damping, .friction = law});
+}
+
+std::string kinds(const std::vector<Event>& events) {
+    std::string text;
+    for (const Event& event : events) text.append(name(event.kind)) += ' ';
+    return text;
+}
+
+/// Against the oracle; a position may be off by `tolerance`, an event's time by its root for want of a slope.
+void check_against_oracle(const LawCase& c, const Integrator& integrator, double tolerance) {
+    const Oscillator system = with_law(c.law, 0.02);
+    const Window window{0, 60};
+    const State initial{1.3, 0.2};
+    const Excitation M = harmonic(0.8, 0.3, 0.4);
+    const Trajectory run = must_run(system, M, initial, window, Grid::every(0.83), integrator);
+    Load load{.torque =
+                  [&](real t, real, const truth::Motion& y) {
+                      return 0.8L * std::sin(static_cast<real>(0.3) * t + static_cast<real>(0.4)) -
+                             c.remainder(y.velocity);
+                  },
+              .quickest = 0.3};
+    std::vector<double> times(run.column(Column::t).begin(), run.column(Column::t).end());
+    const Oracle oracle(system, load, initial, window, 2, times);
+    REQUIRE(oracle.narrowest() > 1e-6);  // nothing that a small error would decide otherwise
+    std::string expected;
+    for (const OracleEvent& event : oracle.events()) expected.append(name(event.kind)) += ' ';
+    REQUIRE(kinds(run.events) == expected);
+    CHECK_THAT(expected, Catch::Contains("stick") && Catch::Contains("slip"));
+    for (std::size_t i = 0; i < run.events.size(); ++i) {
+        CAPTURE(i, run.events[i].t);
+        // A time is the error of the velocity over its slope, which falls to a twentieth in these runs.
+        CHECK(run.events[i].t == within(static_cast<double>(oracle.events()[i].t), 40 * tolerance));
+        CHECK(run.events[i].theta == within(static_cast<double>(oracle.events()[i].theta), tolerance));
+    }
+    const Lowered lowered(system);
+    for (Eigen::Index i = 0; i < run.size(); ++i) {
+        const auto& y = oracle.motions()[static_cast<std::size_t>(i)];
+        CAPTURE(i, run.rows(i, 0));
+        CHECK(run.rows(i, 1) == within(static_cast<double>(y.theta), tolerance));
+        CHECK(run.rows(i, 2) == within(static_cast<double>(y.velocity), tolerance));
+        const double v = run.rows(i, 2);
+        if (v != 0) CHECK(run.rows(i, 4) == -sign_of(motion_of(v)) * c.law.sliding(motion_of(v), std::fabs(v)));
+    }
+}
+
+}  // namespace
+
+TEST_CASE("every friction law moves as an independent integrator says, in spectral and in rk4", "[laws]") {
+    for (const LawCase& c : law_cases()) {
+        CAPTURE(c.name);
+        check_against_oracle(c, Spectral{}, 1e-11);  // a hundred panels, each to 1e-13 and some roundings
+        check_against_oracle(c, Rk4{0.002}, 1e-9);   // (w0 h)^4/120 of 60 radians, and as much for the events
+    }
+}
+
+TEST_CASE("the energy adds up under every friction law", "[laws][energy]") {
+    for (const LawCase& c : law_cases()) {
+        CAPTURE(c.name);
+        const Trajectory run =
+            must_run(with_law(c.law, 0.02), harmonic(0.8, 0.7), {1.3, 0}, {0, 60}, Grid::every(0.5), Spectral{});
+        const auto energy = analysis::energy_of(run);
+        REQUIRE(energy);
+        CHECK(energy->closure() < 1e-12);
+        CHECK(energy->total.work.dry > 0.1 * energy->flow);
+        CHECK(energy->total.work.input > 0.1 * energy->flow);  // what M did, not what it did less friction
+        const auto columns = analysis::energy_columns(run);
+        CHECK(columns.col(static_cast<Eigen::Index>(analysis::EnergyColumn::error)).cwiseAbs().maxCoeff() <
+              1e-12 * energy->flow);
+    }
+}
+
+TEST_CASE("asymmetric friction: each half cycle ends 2 Rd/k of its own way nearer to the middle", "[laws]") {
+    const double forward = 0.04, backward = 0.11;
+    const Oscillator system = with_law(AsymmetricCoulomb{.forward = {forward, 0.2}, .backward = {backward, 0.3}});
+    for (const Integrator& integrator : std::vector<Integrator>{Spectral{}, Rk4{0.001}}) {
+        const double near = std::holds_alternative<Spectral>(integrator) ? 1e-13 : 1e-10;
+        const Trajectory run = must_run(system, {}, {1, 0}, {0, 30}, Grid::every(0.3), integrator);
+        double theta = 1, t = 0;
+        std::size_t n = 0;
+        for (bool back = true;; back = !back) {
+            theta = back ? -(theta - 2 * backward) : -(theta + 2 * forward);
+            t += pi;
+            REQUIRE(n < run.events.size());
+            CHECK(run.events[n].t == within(t, near));
+            CHECK(run.events[n].theta == within(theta, near));
+            ++n;
+            if (theta >= -0.2 && theta <= 0.3) break;  // -k theta pulls forward against 0.2, backward against 0.3
+            CHECK(run.events[n - 1].kind == EventKind::turn);
+        }
+        CHECK(n == 5);
+        REQUIRE(run.events.size() == n);
+        CHECK(run.events.back().kind == EventKind::rest);
+    }
+    CHECK(system.resting_places() == std::pair{-0.2, 0.3});
+}
+
+TEST_CASE("asymmetric friction lets go at the limit of each side", "[laws]") {
+    const Oscillator system = with_law(AsymmetricCoulomb{.forward = {0.1, 0.25}, .backward = {0.2, 0.75}});
+    const auto ramp = [](double slope) { return Excitation::make(Ramp{.slope = slope, .at = 0}).value(); };
+    for (const Integrator& integrator : std::vector<Integrator>{Spectral{}, Rk4{0.01}}) {
+        for (const auto& [slope, when] : {std::pair{0.1, 2.5}, std::pair{-0.1, 7.5}}) {
+            const Trajectory run = must_run(system, ramp(slope), {0, 0}, {0, 9}, Grid::none(), integrator);
+            REQUIRE_FALSE(run.events.empty());
+            CHECK(run.events[0].kind == EventKind::slip);
+            CHECK(run.events[0].t == within(when, 1e-14));
+        }
+        // Between the limits of both sides nothing ever moves it, and the program knows.
+        const Trajectory held = must_run(system, harmonic(0.25, 1), {0, 0}, {0, 100}, Grid::none(), integrator);
+        CHECK(held.events.empty());
+        CHECK(held.outcome == Outcome::at_rest);
+    }
+}
+
+TEST_CASE("a law with the same numbers each way is Coulomb's, bit for bit", "[laws]") {
+    const Oscillator plain = system_of({.inertia = 1, .stiffness = 1, .kinetic_friction = 0.1, .breakaway = 0.2});
+    const Oscillator twice = with_law(AsymmetricCoulomb{.forward = {0.1, 0.2}, .backward = {0.1, 0.2}});
+    for (const Integrator& integrator : std::vector<Integrator>{Spectral{}, Rk4{0.01}}) {
+        const auto run = [&](const Oscillator& system) {
+            return must_run(system, harmonic(0.5, 1.3), {1, 0}, {0, 50}, Grid::every(0.1), integrator).rows;
+        };
+        CHECK(run(plain) == run(twice));
+    }
+}
+
+TEST_CASE("what is wrong with a friction law is said with the side it is about", "[laws]") {
+    const auto complaint = [](const Friction& law) {
+        const auto made = Oscillator::make({.inertia = 1, .stiffness = 1, .friction = law});
+        return made ? "" : made.error().sentence;
+    };
+    CHECK(complaint(AsymmetricCoulomb{.forward = {0.2, 0.1}, .backward = {}}) ==
+          "forward.Re = 0.1 must be at least forward.Rd = 0.2: breakaway takes no less than kinetic friction");
+    CHECK(complaint(AsymmetricCoulomb{.forward = {}, .backward = {-1, 0}}) == "backward.Rd = -1 must not be negative");
+    CHECK(complaint(Coulomb{0, NAN}) == "Re = nan must be a finite number");
+}
+
+TEST_CASE("the story names both sides of a friction, and no closed form that does not hold", "[laws][explain]") {
+    const auto story = [](const Friction& law) {
+        const Oscillator system = with_law(law);
+        const Excitation M;
+        return analysis::explain(must_run(system, M, {2, 0}, {0, 30}, Grid::every(0.1), Spectral{}), system, M,
+                                 Spectral{});
+    };
+    const std::string asymmetric = story(AsymmetricCoulomb{.forward = {0.1, 0.3}, .backward = {0.35, 0.5}});
+    CHECK_THAT(asymmetric, Catch::Contains("forward, 0.35 backward") && Catch::Contains("forward, 0.5 backward"));
+    CHECK_THAT(asymmetric, !Catch::Contains("2 Rd/k"));
+    CHECK_THAT(story(Stribeck{0.1, 0.3, 0.4}), Catch::Contains("changes with the speed"));
+    CHECK_THAT(story(Coulomb{0.1, 0.3}), Catch::Contains("2 Rd/k"));
+}
