@@ -35,8 +35,9 @@ namespace {
 bool finished(lua_State* L, int status, const char* file = nullptr) {
     if (status != LUA_OK) {
         const std::string text = status == LUA_ERRSYNTAX || status == LUA_ERRMEM ? told_error(L, file) : take_text(L);
-        complain(lua::stop_requested() == lua::Stop::interrupted && text.rfind("interrupted", 0) != 0 ? "interrupted"
-                                                                                                      : text);
+        // What an error of a chunk that ran left there tells of the interruption itself, and where.
+        const bool untold = lua::stop_requested() == lua::Stop::interrupted && status != LUA_ERRRUN;
+        complain(untold ? "interrupted" : text);
     } else if (lua::stop_requested() == lua::Stop::interrupted) {
         complain("interrupted");
         return false;
