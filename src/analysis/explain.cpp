@@ -1,6 +1,7 @@
 #include "analysis/explain.hpp"
 
 #include "analysis/story.hpp"
+#include "text/characters.hpp"
 
 namespace dinal::analysis {
 
@@ -34,7 +35,7 @@ std::string explain_rows(const motion::Trajectory& trajectory) {
                             text::counted(still, "row"));
     }
     text += " Rows do not tell events and their reasons: simulate again for the story.";
-    return text::wrapped_lines(text);
+    return text::wrapped(text);
 }
 
 }  // namespace dinal::analysis

@@ -6,6 +6,7 @@
 
 #include "model/forcing.hpp"
 #include "model/laws/coulomb.hpp"
+#include "text/characters.hpp"
 
 namespace dinal::analysis {
 
@@ -45,7 +46,7 @@ std::string Story::told() {
 void Story::end_paragraph() {
     if (sentence_.empty()) return;
     text_ += text_.empty() ? "" : "\n";
-    text_ += text::wrapped_lines(sentence_);
+    text_ += text::wrapped(sentence_);
     sentence_.clear();
 }
 

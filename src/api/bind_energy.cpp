@@ -7,6 +7,7 @@
 #include "api/run.hpp"
 #include "lua/external_memory.hpp"
 #include "lua/vector.hpp"
+#include "text/characters.hpp"
 
 namespace dinal::api {
 
@@ -205,11 +206,11 @@ std::string energy_card(lua_State* L, int index, const terminal::Display& screen
     const std::string whole = terminal::spelled(analysis::text((*lua::test<EnergyHandle>(L, index))->energy), screen);
     for (std::string_view rest = whole; !rest.empty();) {
         const std::string_view line = rest.substr(0, rest.find('\n'));
-        const bool fits = terminal::columns(line) < screen.width || !line.starts_with(' ');
+        const bool fits = text::columns(line) < screen.width || !line.starts_with(' ');
         card.append(card.empty() ? "" : "\n").append(fits ? line : line.substr(0, name_and_number));
         rest.remove_prefix(std::min(line.size() + 1, rest.size()));
     }
-    return terminal::wrapped(card, screen.width - 1);
+    return text::wrapped(card, screen.width - 1);
 }
 
 int energy_of_run(lua_State* L) {

@@ -7,22 +7,17 @@
 #include "files/csv.hpp"
 #include "files/record1989.hpp"
 #include "lua/interrupt.hpp"
+#include "text/words.hpp"
 
 namespace dinal::api {
 
 namespace {
 
-bool ends_in(std::string_view text, std::string_view ending) {
-    return text.size() >= ending.size() &&
-           std::equal(ending.begin(), ending.end(), text.end() - static_cast<std::ptrdiff_t>(ending.size()),
-                      [](char a, char b) { return a == std::tolower(static_cast<unsigned char>(b)); });
-}
-
 text::Expected<files::Table> read(const std::string& file) {
-    if (ends_in(file, ".dat")) {
+    if (text::ending_of(file) == ".dat") {
         return files::read_record1989(file);
     }
-    if (ends_in(file, ".csv")) {
+    if (text::ending_of(file) == ".csv") {
         return files::read_csv(file);
     }
     return text::Error{

@@ -9,6 +9,7 @@
 #include "lua/vector.hpp"
 #include "model/oscillator.hpp"
 #include "source/describe.hpp"
+#include "text/characters.hpp"
 
 namespace dinal::api {
 namespace {
@@ -16,7 +17,7 @@ namespace {
 /// Name, value and remark in columns; a remark that does not fit is left out.
 std::string row(std::string_view name, double value, std::string_view remark, const terminal::Display& screen) {
     const std::string text = fmt::format("  {:<9}  {:<10.6g}", name, value);
-    const bool fits = terminal::columns(text) + terminal::columns(remark) + 1 < screen.width;
+    const bool fits = text::columns(text) + text::columns(remark) + 1 < screen.width;
     return "\n" + (fits ? text + " " + std::string(remark) : text.substr(0, text.find_last_not_of(' ') + 1));
 }
 
@@ -31,7 +32,7 @@ std::string vector_line(const lua::Vector& v, std::size_t ends) {
 std::string system_card(lua_State* L, int index, const terminal::Display& screen) {
     const model::Oscillator& system = *lua::test<model::Oscillator>(L, index);
     std::string text = terminal::spelled("system  I θ'' + C θ' + Rd sgn θ' + k θ = M(t)", screen);
-    text = terminal::columns(text) < screen.width ? text : "system";
+    text = text::columns(text) < screen.width ? text : "system";
     text += row("I", system.inertia(), "moment of inertia", screen);
     text += row("k", system.stiffness(), "stiffness", screen);
     text += row("C", system.damping(), "viscous damping", screen);
@@ -55,7 +56,7 @@ std::string integrator_card(lua_State* L, int index, const terminal::Display& sc
         text = fmt::format("integrator.dinal1989{{ h = {}, stop = \"{}\", slip = {} }}", listing->h,
                            listing->stop == motion::Dinal1989::Stop::text ? "text" : "listing", listing->slip);
     }
-    return terminal::wrapped(text, screen.width - 1);
+    return text::wrapped(text, screen.width - 1);
 }
 
 std::string vector_card(lua_State* L, int index, const terminal::Display& screen) {
@@ -66,25 +67,25 @@ std::string vector_card(lua_State* L, int index, const terminal::Display& screen
     }
     if (v.size() <= most) {
         std::string whole = fmt::format("vector{{ {:.6g} }}", fmt::join(v.values(), ", "));
-        if (terminal::columns(whole) < screen.width || v.size() < 3) {
+        if (text::columns(whole) < screen.width || v.size() < 3) {
             return whole;
         }
     }
     constexpr std::size_t most_ends = 5;
     for (std::size_t ends = std::min(most_ends, (v.size() - 1) / 2); ends > 1; --ends) {
         std::string line = vector_line(v, ends);
-        if (terminal::columns(line) < screen.width) {
+        if (text::columns(line) < screen.width) {
             return line;
         }
     }
     const std::string line = vector_line(v, 1);
-    return terminal::columns(line) < screen.width ? line
-                                                  : fmt::format("{} ({})", line.substr(0, line.find("  --")), v.size());
+    return text::columns(line) < screen.width ? line
+                                              : fmt::format("{} ({})", line.substr(0, line.find("  --")), v.size());
 }
 
 std::string run_card(lua_State* L, int index, const terminal::Display& screen) {
-    return terminal::wrapped(terminal::spelled(motion::summary((*lua::test<RunHandle>(L, index))->trajectory), screen),
-                             screen.width - 1);
+    return text::wrapped(terminal::spelled(motion::summary((*lua::test<RunHandle>(L, index))->trajectory), screen),
+                         screen.width - 1);
 }
 
 }  // namespace dinal::api

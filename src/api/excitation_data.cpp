@@ -11,6 +11,7 @@
 #include "lua/lua_text.hpp"
 #include "lua/options.hpp"
 #include "lua/user_function.hpp"
+#include "text/characters.hpp"
 
 namespace dinal::api::excitation_functions {
 
@@ -99,12 +100,12 @@ int samples_from_file(lua_State* L) {
     check_times(L, file, table, time);
     // The columns by name, so that the text still means the same when the file gets another one; numbers where it has
     // no names are found by these names, too.
-    const auto name = [&](Eigen::Index column) { return lua::quoted(table.names[static_cast<std::size_t>(column)]); };
+    const auto name = [&](Eigen::Index column) { return text::quoted(table.names[static_cast<std::size_t>(column)]); };
     return push_term(
         L, std::make_shared<const model::Samples>(model::Samples{
                .t = column_values(table, time),
                .M = column_values(table, value),
-               .origin = fmt::format("{}, {{ time = {}, value = {} }}", lua::quoted(file), name(time), name(value))}));
+               .origin = fmt::format("{}, {{ time = {}, value = {} }}", text::quoted(file), name(time), name(value))}));
 }
 
 int samples_from_table(lua_State* L) {

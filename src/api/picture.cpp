@@ -1,17 +1,18 @@
 #include "api/picture.hpp"
 
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 
 #include "files/file.hpp"
 #include "lua/external_memory.hpp"
 #include "lua/interrupt.hpp"
 #include "lua/memory_limit.hpp"
 #include "plots/gnuplot.hpp"
-#include "plots/screen.hpp"
+#include "terminal/display.hpp"
+#include "text/words.hpp"
 
 namespace dinal::api {
 namespace {
@@ -84,14 +85,13 @@ int whole(const lua::Options& options, std::string_view name, int otherwise, int
 
 /// As wide as the screen, but no wider than one can overlook, and so high that what was typed still stands above it.
 plots::TextFormat asked_format(const lua::Options& options, bool phase) {
-    const plots::Screen seen = plots::screen();
+    const terminal::Display seen = terminal::display_of(STDOUT_FILENO);
     constexpr int widest = 120;
     plots::TextFormat format;
     format.columns = whole(options, "width", std::clamp(seen.columns - 1, 20, widest), 20, 1000);
     format.rows = whole(options, "height", std::clamp(seen.rows - 2, 10, phase ? 40 : 24), 5, 500);
-    format.charset = options.boolean("ascii", seen.charset == plots::Charset::ascii) ? plots::Charset::ascii
-                                                                                     : plots::Charset::braille;
-    format.colours = seen.colours;
+    format.charset = options.boolean("ascii", !seen.draws) ? plots::Charset::ascii : plots::Charset::braille;
+    format.colours = seen.colour;
     return format;
 }
 
@@ -111,10 +111,7 @@ enum class FileKind { svg, png, pdf, gp, txt };
 
 FileKind kind_of(const lua::Options& options, std::string_view file) {
     constexpr std::array<std::string_view, 5> endings{".svg", ".png", ".pdf", ".gp", ".txt"};
-    std::string ending(file.substr(std::min(file.rfind('.'), file.size())));
-    std::transform(ending.begin(), ending.end(), ending.begin(),
-                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-    const auto* const known = std::find(endings.begin(), endings.end(), ending);
+    const auto* const known = std::find(endings.begin(), endings.end(), text::ending_of(file));
     if (known == endings.end()) {
         options.fail({.sentence = fmt::format(
                           "the name '{}' must end in .svg, .png, .pdf, .gp (gnuplot commands and data) or .txt", file),

@@ -8,6 +8,7 @@
 #include "files/csv.hpp"
 #include "files/record1989.hpp"
 #include "lua/options.hpp"
+#include "text/words.hpp"
 
 namespace dinal::api {
 
@@ -58,9 +59,7 @@ text::Expected<files::Written> write_record(const std::string& file, const Run& 
 
 text::Expected<files::Written> write(lua_State* L, const lua::Options& options, const std::string& file,
                                      const Run& run) {
-    std::string ending = file.substr(std::min(file.rfind('.'), file.size()));
-    std::transform(ending.begin(), ending.end(), ending.begin(),
-                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    const std::string ending = text::ending_of(file);
     if (ending == ".csv") {
         return files::write_csv(file, asked_columns(L, options, run.trajectory),
                                 run.origin ? source::repeat_lines(*run.origin) : run.comments);

@@ -9,6 +9,7 @@
 
 #include "lua/tokens.hpp"
 #include "terminal/display.hpp"
+#include "text/characters.hpp"
 
 namespace dinal::errors {
 namespace {
@@ -47,22 +48,20 @@ std::optional<Mark> marked(std::string_view statement, const std::vector<std::st
 
 /// The line, cut so that the mark is on the screen, and the mark below it.
 std::string excerpt_of(std::string_view line, int number, Mark mark, const terminal::Display& screen) {
-    std::string text = terminal::printable(line, screen);
-    mark.at = terminal::printable(line.substr(0, mark.at), screen).size();
+    std::string text = terminal::spelled(text::displayable(line), screen);
+    mark.at = terminal::spelled(text::displayable(line.substr(0, mark.at)), screen).size();
     const std::string head = fmt::format("{:>4} | ", number);
     const std::size_t room = std::max<std::size_t>(screen.width, head.size() + 12) - head.size() - 1;
     std::size_t indent = std::min(text.find_first_not_of(' '), mark.at);
     text.erase(0, indent);
     mark.at -= indent;
-    if (terminal::columns(text) > room && mark.at + mark.size > room) {
+    if (text::columns(text) > room && mark.at + mark.size > room) {
         const std::size_t cut = std::min(mark.at, mark.at + mark.size + 4 - std::min(room, mark.at + mark.size + 4));
         text = "..." + text.substr(std::min(cut + 3, text.size()));
         mark.at -= std::min(cut, mark.at);
     }
-    while (terminal::columns(text) > room) {
-        text.pop_back();
-    }
-    const std::size_t column = terminal::columns(text.substr(0, std::min(mark.at, text.size())));
+    text = text::cut_to_columns(text, room);
+    const std::size_t column = text::columns(text.substr(0, std::min(mark.at, text.size())));
     const std::size_t size = std::clamp<std::size_t>(mark.size, 1, room > column ? room - column : 1);
     const std::string carets(size, '^');
     return fmt::format("\n{}{}\n     | {}{}{}{}", head, text, std::string(column, ' '), screen.colour ? "\x1b[31m" : "",

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "files/text_input.hpp"
+#include "text/words.hpp"
 
 namespace dinal::files {
 namespace {
@@ -15,7 +16,7 @@ enum class Separator : char { comma = ',', semicolon = ';', tab = '\t', blanks =
 std::optional<Separator> separator_in(std::string_view line) {
     std::string bare;
     bool inside = false;
-    for (const char c : trimmed(line)) {
+    for (const char c : text::trimmed(line)) {
         inside = inside != (c == '"');
         if (!inside) {
             bare += c;
@@ -46,17 +47,17 @@ std::size_t field_end(std::string_view line, Separator separator) {
 void split(std::string_view line, Separator separator, std::vector<std::string_view>& fields) {
     fields.clear();
     if (separator == Separator::blanks) {
-        line = trimmed(line);
+        line = text::trimmed(line);
     }
     for (;;) {
         const std::size_t end = field_end(line, separator);
-        fields.push_back(trimmed(line.substr(0, end)));
+        fields.push_back(text::trimmed(line.substr(0, end)));
         if (end == line.size()) {
             return;
         }
         line.remove_prefix(end + 1);
         if (separator == Separator::blanks) {
-            line = trimmed(line);  // any number of them is one
+            line = text::trimmed(line);  // any number of them is one
         }
     }
 }
@@ -102,7 +103,7 @@ private:
     bool next_line() {
         more_ = false;
         while (!more_ && lines_.next()) {
-            const std::string_view line = trimmed(lines_.text());
+            const std::string_view line = text::trimmed(lines_.text());
             if (line.starts_with('#')) {
                 keep_comment(lines_.text());
             } else {

@@ -9,6 +9,7 @@
 
 #include "files/row_writer.hpp"
 #include "files/text_input.hpp"
+#include "text/words.hpp"
 
 namespace dinal::files {
 namespace {
@@ -38,10 +39,10 @@ std::optional<Integer> parse_integer(std::string_view text) {
 
 /// The next value of a line, cut off its front: values are separated by blanks or by a comma. Empty at the end.
 std::string_view take_value(std::string_view& line) {
-    line = trimmed(line);
+    line = text::trimmed(line);
     const std::size_t end = std::min(line.find_first_of(" \t,"), line.size());
     const std::string_view value = line.substr(0, end);
-    line = trimmed(line.substr(end));
+    line = text::trimmed(line.substr(end));
     if (line.starts_with(',')) {
         line.remove_prefix(1);
     }
@@ -80,7 +81,7 @@ private:
     /// NPUNT, alone in the first line that is not blank.
     std::optional<text::Error> take_count() {
         while (lines_.next()) {
-            const std::string_view line = trimmed(lines_.text());
+            const std::string_view line = text::trimmed(lines_.text());
             if (line.empty()) {
                 continue;
             }
@@ -99,14 +100,14 @@ private:
     /// All values of a line. A row begins in a new line, as every Fortran READ does, and may go on in further lines.
     std::optional<text::Error> take_line() {
         std::string_view rest = lines_.text();
-        if (trimmed(rest).empty()) {
+        if (text::trimmed(rest).empty()) {
             return std::nullopt;
         }
         if (numbers_.size() % width == 0) {
             row_begin_ = lines_.number();
         }
         const std::size_t full = (numbers_.size() / width + 1) * width;
-        while (!trimmed(rest).empty()) {
+        while (!text::trimmed(rest).empty()) {
             if (std::optional<text::Error> fault = take(take_value(rest), full)) {
                 return fault;
             }

@@ -8,17 +8,15 @@
 #include <system_error>
 
 #include "files/stop.hpp"
+#include "text/characters.hpp"
+#include "text/words.hpp"
 
 namespace dinal::files {
 namespace {
 
-bool is_digit(char c) {
-    return c >= '0' && c <= '9';
-}
-
 /// The field without its leading +, unless another sign follows.
 std::string_view without_plus(std::string_view field) {
-    const bool plus = field.size() > 1 && field[0] == '+' && (is_digit(field[1]) || field[1] == '.');
+    const bool plus = field.size() > 1 && field[0] == '+' && (text::is_digit(field[1]) || field[1] == '.');
     return plus ? field.substr(1) : field;
 }
 
@@ -75,13 +73,6 @@ bool Lines::next() {
     const std::size_t length_of_end = rest_.substr(end).starts_with("\r\n") ? 2 : 1;
     rest_.remove_prefix(std::min(end + length_of_end, rest_.size()));
     return true;
-}
-
-std::string_view trimmed(std::string_view text) {
-    constexpr std::string_view blanks = " \t";
-    const std::size_t first = text.find_first_not_of(blanks);
-    return first == std::string_view::npos ? text.substr(0, 0)
-                                           : text.substr(first, text.find_last_not_of(blanks) - first + 1);
 }
 
 text::Error error_at(const std::string& file, std::size_t line, const std::string& what) {
@@ -142,13 +133,9 @@ std::optional<double> parse_fortran_number(std::string_view field) {
 
 std::string shown(std::string_view field) {
     constexpr std::size_t most = 40;
-    std::string text(field.substr(0, most));
-    for (char& c : text) {
-        if (static_cast<unsigned char>(c) < ' ' || c == '\x7f') {
-            c = '?';
-        }
-    }
-    return "'" + text + (field.size() > most ? "...'" : "'");
+    const std::string text = text::displayable(field);
+    const std::string_view beginning = text::cut_to_columns(text, most);
+    return "'" + std::string(beginning) + (beginning.size() < text.size() ? "...'" : "'");
 }
 
 std::string number_fault(std::string_view field) {

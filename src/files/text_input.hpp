@@ -27,9 +27,6 @@ private:
     bool has_lone_cr_;
 };
 
-/// Without blanks and tabs at both ends.
-std::string_view trimmed(std::string_view text);
-
 /// The error at a place of a file: "run.csv:7: ...".
 text::Error error_at(const std::string& file, std::size_t line, const std::string& what);
 

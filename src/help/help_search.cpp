@@ -7,7 +7,9 @@
 #include "help/help_text.hpp"
 #include "help/signature.hpp"
 #include "lua/tokens.hpp"
+#include "text/characters.hpp"
 #include "text/suggest.hpp"
+#include "text/words.hpp"
 
 namespace dinal::help {
 
@@ -61,7 +63,7 @@ std::vector<Hit> named(std::string_view name) {
 
 /// Lower case, and dead_zone is found as "dead zone".
 std::string searchable(std::string_view text) {
-    std::string result = lower(text);
+    std::string result = text::lower(text);
     std::replace(result.begin(), result.end(), '_', ' ');
     return result;
 }
@@ -118,7 +120,7 @@ std::string likely(std::string_view word) {
             }
             for (const lua::Token& token : lua::tokens(member.doc.summary)) {
                 if (token.kind == lua::TokenKind::name && token.text.size() >= shortest) {
-                    words.push_back(lower(token.text));
+                    words.push_back(text::lower(token.text));
                 }
             }
         }
@@ -149,12 +151,8 @@ std::string contents(const terminal::Display& screen) {
                 names += (names.empty() ? "" : ", ") + written_name(section, member);
             }
         }
-        text += "  " + terminal::wrapped(names, std::min<std::size_t>(screen.width, 80) - 3) + "\n";
-    }
-    for (std::size_t at = text.find('\n'); at + 1 < text.size(); at = text.find('\n', at + 1)) {
-        if (std::islower(static_cast<unsigned char>(text[at + 1])) != 0) {
-            text.insert(at + 1, "  ");
-        }
+        const std::size_t width = std::min(screen.width - 1, text::readable_width) - 2;
+        text += "  " + text::indented(text::wrapped(names, width), 2) + "\n";
     }
     return text + "\nhelp \"name\" says more about each of them.\n";
 }

@@ -3,19 +3,18 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 
 #include "help/signature.hpp"
 #include "lua/tokens.hpp"
+#include "text/characters.hpp"
+#include "text/words.hpp"
 
 namespace dinal::help {
 
 namespace {
 
-constexpr std::size_t widest = 79;  // longer lines are hard to read, however wide the screen is
-
 std::size_t text_width(const terminal::Display& screen) {
-    return std::min(screen.width - 1, widest);
+    return std::min(screen.width - 1, text::readable_width);
 }
 
 std::string first_sentence(std::string_view summary) {
@@ -27,7 +26,7 @@ std::string first_sentence(std::string_view summary) {
 std::string code_in_rows(std::string_view line, std::size_t width) {
     constexpr std::size_t indent = 4;
     std::string rows;
-    for (std::size_t room = width; terminal::columns(line) > room; room = width - indent) {
+    for (std::size_t room = width; text::columns(line) > room; room = width - indent) {
         const std::size_t arrow = line.find("-->");
         std::size_t cut = arrow != std::string_view::npos && arrow > 0 ? arrow : 0;
         if (cut == 0 || cut > room) {
@@ -52,11 +51,8 @@ std::string indented(std::string_view text, std::size_t width) {
     std::string result;
     for (std::size_t begin = 0; begin <= text.size();) {
         const std::size_t end = std::min(text.find('\n', begin), text.size());
-        std::string rows = code_in_rows(text.substr(begin, end - begin), width - margin.size());
-        for (std::size_t at = rows.find('\n'); at != std::string::npos; at = rows.find('\n', at + 1)) {
-            rows.insert(at + 1, margin);
-        }
-        result.append(begin == 0 ? "" : "\n").append(margin).append(rows);
+        const std::string rows = code_in_rows(text.substr(begin, end - begin), width - margin.size());
+        result.append(begin == 0 ? "" : "\n").append(margin).append(text::indented(rows, margin.size()));
         begin = end + 1;
     }
     return result;
@@ -64,18 +60,18 @@ std::string indented(std::string_view text, std::size_t width) {
 
 std::string doc_text(const lua::Doc& doc, const terminal::Display& screen) {
     const std::size_t width = text_width(screen);
-    return terminal::spelled(fmt::format("{}\n\n{}\n\n{}\n", terminal::wrapped(doc.signature, width),
-                                         terminal::wrapped(doc.summary, width), indented(doc.example, width)),
+    return terminal::spelled(fmt::format("{}\n\n{}\n\n{}\n", text::wrapped(doc.signature, width),
+                                         text::wrapped(doc.summary, width), indented(doc.example, width)),
                              screen);
 }
 
 /// Does the text use the name as a name of its own, not as a part of another?
 bool mentions(std::string_view text, std::string_view name) {
-    const auto is_part = [](char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_'; };
     for (std::size_t at = text.find(name); at != std::string_view::npos; at = text.find(name, at + 1)) {
         const std::size_t end = at + name.size();
-        const bool begins = at == 0 || (!is_part(text[at - 1]) && text[at - 1] != '.' && text[at - 1] != ':');
-        if (begins && (end == text.size() || !is_part(text[end]))) {
+        const bool begins =
+            at == 0 || (!text::is_name_char(text[at - 1]) && text[at - 1] != '.' && text[at - 1] != ':');
+        if (begins && (end == text.size() || !text::is_name_char(text[end]))) {
             return true;
         }
     }
@@ -99,13 +95,6 @@ bool telling(std::string_view name) {
 }
 
 }  // namespace
-
-std::string lower(std::string_view text) {
-    std::string result(text);
-    std::transform(result.begin(), result.end(), result.begin(),
-                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-    return result;
-}
 
 std::string written_name(const Section& section, const lua::Member& member) {
     const std::string_view prefix = section.prefix;
@@ -160,8 +149,7 @@ std::vector<std::string> see_also(const Section& section, const lua::Member& mem
 std::string member_text(const Section& section, const lua::Member& member, const terminal::Display& screen) {
     std::string text = doc_text(member.doc, screen);
     if (const auto names = see_also(section, member); !names.empty()) {
-        text +=
-            "\n" + terminal::wrapped(fmt::format("See also: {}", fmt::join(names, ", ")), text_width(screen)) + "\n";
+        text += "\n" + text::wrapped(fmt::format("See also: {}", fmt::join(names, ", ")), text_width(screen)) + "\n";
     }
     return text;
 }
@@ -170,16 +158,10 @@ std::string line_about(std::string_view name, std::string_view summary, const te
     constexpr std::size_t indent = 28;
     const std::size_t width = text_width(screen);
     if (width < indent + 24) {  // narrow: the text goes below the name
-        std::string text = terminal::wrapped(first_sentence(summary), width - 4);
-        for (std::size_t at = text.find('\n'); at != std::string::npos; at = text.find('\n', at + 1)) {
-            text.insert(at + 1, "    ");
-        }
+        const std::string text = text::indented(text::wrapped(first_sentence(summary), width - 4), 4);
         return fmt::format("  {}\n    {}\n", name, terminal::spelled(text, screen));
     }
-    std::string text = terminal::wrapped(first_sentence(summary), width - indent);
-    for (std::size_t at = text.find('\n'); at != std::string::npos; at = text.find('\n', at + 1)) {
-        text.insert(at + 1, indent, ' ');
-    }
+    const std::string text = text::indented(text::wrapped(first_sentence(summary), width - indent), indent);
     return terminal::spelled(fmt::format("  {:<{}} {}\n", name, indent - 3, text), screen);
 }
 

@@ -10,8 +10,6 @@
 
 namespace dinal::help {
 
-std::string lower(std::string_view text);
-
 /// How a user writes a member: "sys:simulate", "sys.omega0", "excitation.harmonic", "system".
 std::string written_name(const Section& section, const lua::Member& member);
 

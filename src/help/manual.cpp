@@ -5,13 +5,14 @@
 #include <algorithm>
 
 #include "help/help_text.hpp"
+#include "text/words.hpp"
 
 namespace dinal::help {
 
 namespace {
 
 std::string anchor(std::string_view title) {
-    std::string text = lower(title);
+    std::string text = text::lower(title);
     std::replace(text.begin(), text.end(), ' ', '-');
     return text;
 }

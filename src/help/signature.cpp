@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "lua/tokens.hpp"
+#include "text/words.hpp"
 
 namespace dinal::help {
 namespace {
@@ -38,11 +39,7 @@ std::string parameters(std::string_view signature) {
     if (open == std::string_view::npos || close == std::string_view::npos || close < open) {
         return "";
     }
-    const std::string_view inside = signature.substr(open + 1, close - open - 1);
-    const std::size_t first = inside.find_first_not_of(' ');
-    return first == std::string_view::npos
-               ? ""
-               : std::string(inside.substr(first, inside.find_last_not_of(' ') - first + 1));
+    return std::string(text::trimmed(signature.substr(open + 1, close - open - 1), " "));
 }
 
 char call_bracket(std::string_view signature) {

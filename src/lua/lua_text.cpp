@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 
 #include "lua/tokens.hpp"
@@ -54,22 +53,7 @@ std::vector<std::string_view> functions_between(std::string_view text, int first
     return found;
 }
 
-std::string quoted(std::string_view text) {
-    std::string result = "\"";
-    for (const char c : text) {
-        const auto byte = static_cast<unsigned char>(c);
-        if (c == '"' || c == '\\') {
-            result += {'\\', c};
-        } else if (c == '\n') {
-            result += "\\n";
-        } else {
-            result += std::iscntrl(byte) != 0 ? fmt::format("\\{:03}", static_cast<int>(byte)) : std::string(1, c);
-        }
-    }
-    return result + "\"";
-}
-
-std::string number_text(double number) {
+std::string float_text(double number) {
     if (std::isnan(number)) {
         return "0/0";
     }

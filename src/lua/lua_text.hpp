@@ -1,4 +1,4 @@
-// Small pieces of Lua text: names, functions, strings, numbers.
+// Small pieces of Lua text: names, functions, numbers.
 #pragma once
 
 #include <string>
@@ -17,10 +17,7 @@ std::vector<std::string> free_names(std::string_view source);
 /// the other (counted from 1).
 std::vector<std::string_view> functions_between(std::string_view text, int first_line, int last_line);
 
-/// The text in quotes, with what Lua must escape.
-std::string quoted(std::string_view text);
-
 /// A float that reads back exactly, and as a float.
-std::string number_text(double number);
+std::string float_text(double number);
 
 }  // namespace dinal::lua

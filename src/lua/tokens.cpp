@@ -5,15 +5,13 @@
 #include <cctype>
 #include <string>
 
+#include "text/words.hpp"
+
 namespace dinal::lua {
 namespace {
 
-bool is_digit(char c) {
-    return std::isdigit(static_cast<unsigned char>(c)) != 0;
-}
-bool is_name_char(char c) {
-    return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_';
-}
+using text::is_digit;
+using text::is_name_char;
 
 constexpr std::array<std::string_view, 10> long_symbols = {"...", "..", "==", "~=", "<=", ">=", "//", "::", "<<", ">>"};
 
@@ -88,7 +86,7 @@ private:
         const bool hexadecimal = peek(at_) == '0' && (peek(at_ + 1) == 'x' || peek(at_ + 1) == 'X');
         std::size_t end = at_;
         while (is_name_char(peek(end)) || (peek(end) == '.' && peek(end + 1) != '.')) {
-            const int letter = std::tolower(static_cast<unsigned char>(peek(end)));
+            const int letter = text::lower(peek(end));
             const bool exponent = letter == (hexadecimal ? 'p' : 'e');
             ++end;
             if (exponent && (peek(end) == '+' || peek(end) == '-')) {

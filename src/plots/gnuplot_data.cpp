@@ -5,7 +5,7 @@
 #include <cmath>
 #include <utility>
 
-#include "text/display_text.hpp"
+#include "text/characters.hpp"
 
 namespace dinal::plots {
 

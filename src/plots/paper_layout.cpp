@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "text/display_text.hpp"
+#include "text/characters.hpp"
 
 namespace dinal::plots {
 namespace {
@@ -13,11 +13,11 @@ constexpr double line_height = 1.35 * em;
 constexpr double between_entries = 1.2 * em;
 
 double width_of(std::string_view text) {
-    return letter_width * static_cast<double>(text::display_width(text));
+    return letter_width * static_cast<double>(text::columns(text));
 }
 
 double digits_width(const std::string& number) {
-    return digit_width * static_cast<double>(text::display_width(typeset(number)));
+    return digit_width * static_cast<double>(text::columns(typeset(number)));
 }
 
 /// What is too long for its place loses its end, so that one sees that it was too long.
@@ -26,7 +26,7 @@ std::string cut(const std::string& text, double width) {
     if (width_of(shown) <= width) {
         return shown;
     }
-    return std::string(text::cut_to_width(shown, static_cast<std::size_t>(std::max(1.0, width / letter_width - 1)))) +
+    return std::string(text::cut_to_columns(shown, static_cast<std::size_t>(std::max(1.0, width / letter_width - 1)))) +
            "…";
 }
 

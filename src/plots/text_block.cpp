@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <array>
 
-#include "text/display_text.hpp"
+#include "text/characters.hpp"
 
 namespace dinal::plots {
 namespace {
@@ -29,7 +29,7 @@ void TextLine::add(std::string_view text, std::uint8_t colour) {
     }
     colour_ = colour;
     text_ += text;
-    width_ += text::display_width(text);
+    width_ += text::columns(text);
 }
 
 void TextLine::append(const TextLine& line) {

@@ -6,7 +6,7 @@
 #include "plots/text_block.hpp"
 #include "plots/text_drawing.hpp"
 #include "plots/ticks.hpp"
-#include "text/display_text.hpp"
+#include "text/characters.hpp"
 
 namespace dinal::plots {
 namespace {
@@ -88,7 +88,7 @@ private:
         }
     }
 
-    [[nodiscard]] bool long_x_label() const { return text::display_width(x_label()) > letters_at_end - 1; }
+    [[nodiscard]] bool long_x_label() const { return text::columns(x_label()) > letters_at_end - 1; }
     [[nodiscard]] std::string x_label() const {
         return shown(figure_.x.label + (x_ticks_.offset.empty() ? "" : " (" + x_ticks_.offset + ")"));
     }
@@ -127,12 +127,12 @@ private:
         const std::string name = figure_.axes ? y_label() : "";
         const std::size_t start = figure_.axes ? label_width_ + 2 : 0;
         const auto width = static_cast<std::size_t>(format_.columns);
-        line.pad(!name.empty() && text::display_width(name) < start ? start - 1 - text::display_width(name) : 0);
-        line.add(text::cut_to_width(name, width));
+        line.pad(!name.empty() && text::columns(name) < start ? start - 1 - text::columns(name) : 0);
+        line.add(text::cut_to_columns(name, width));
         const std::vector<Entry> list = entries();
         for (std::size_t i = 0; i < list.size(); ++i) {
             constexpr std::size_t gap = 3;
-            if (line.width() > 0 && line.width() + gap + text::display_width(list[i].text) > width) {
+            if (line.width() > 0 && line.width() + gap + text::columns(list[i].text) > width) {
                 lines.push_back(line);
                 line = empty_line();
                 if (lines.size() == most_legend_lines) {
@@ -142,7 +142,7 @@ private:
                 }
             }
             line.pad(line.width() == 0 ? start : std::max(start, line.width() + gap));
-            line.add(text::cut_to_width(list[i].text, width > line.width() ? width - line.width() : 0), list[i].ink);
+            line.add(text::cut_to_columns(list[i].text, width > line.width() ? width - line.width() : 0), list[i].ink);
         }
         if (line.width() > 0) {
             lines.push_back(line);
@@ -152,10 +152,10 @@ private:
 
     [[nodiscard]] TextLine centred(const std::string& words) const {
         const std::string whole = shown(words);
-        const std::string_view text = text::cut_to_width(whole, static_cast<std::size_t>(format_.columns));
+        const std::string_view text = text::cut_to_columns(whole, static_cast<std::size_t>(format_.columns));
         const std::size_t before = figure_.axes ? label_width_ + 2 : 0;
         const std::size_t middle = before + static_cast<std::size_t>(columns_) / 2;
-        const std::size_t width = text::display_width(text);
+        const std::size_t width = text::columns(text);
         TextLine line = empty_line();
         line.pad(
             std::min(middle > width / 2 ? middle - width / 2 : 0, static_cast<std::size_t>(format_.columns) - width));

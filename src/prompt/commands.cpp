@@ -18,7 +18,9 @@
 #include "prompt/question.hpp"
 #include "prompt/session.hpp"
 #include "terminal/display.hpp"
+#include "text/characters.hpp"
 #include "text/suggest.hpp"
+#include "text/words.hpp"
 
 namespace dinal::prompt {
 namespace {
@@ -68,7 +70,7 @@ void load(Session& session, const std::string& file) {
     if (load_file(L, file.c_str()) != LUA_OK) {
         say_error(told_error(L, file.c_str()));
     } else if (evaluate(L, Chunk{Compiled::ready, "", "", true}).fine && !session.record.writes(file)) {
-        session.record.add_statement(fmt::format("dofile({})", lua::quoted(file)));
+        session.record.add_statement(fmt::format("dofile({})", text::quoted(file)));
     }
     lua_settop(L, 0);
 }
@@ -81,8 +83,7 @@ int print_globals(lua_State* L) {
         lua_pushstring(L, name.c_str());
         lua_rawget(L, -2);
         const std::string head = fmt::format("  {:<9} ", name);
-        say(head + show_line(L, -1, screen, screen.width - std::min(terminal::columns(head), screen.width / 2) - 1) +
-            "\n");
+        say(head + show_line(L, -1, screen, screen.width - std::min(text::columns(head), screen.width / 2) - 1) + "\n");
         lua_pop(L, 2);
     }
     if (names.empty()) {
@@ -160,13 +161,6 @@ const Command* find(std::string_view name) {
     return only ? first : nullptr;
 }
 
-std::string trimmed(std::string_view text) {
-    const std::size_t begin = text.find_first_not_of(" \t\r\n");
-    return begin == std::string_view::npos
-               ? ""
-               : std::string(text.substr(begin, text.find_last_not_of(" \t\r\n") - begin + 1));
-}
-
 /// Somebody may write the name of a file as in Lua: :load "lab.lua".
 std::string without_quotes(const std::string& text) {
     const bool is_quoted =
@@ -203,7 +197,7 @@ void run_command(Session& session, const std::string& line) {
         tell_unknown(name);
         return;
     }
-    std::string argument = trimmed(std::string_view(line).substr(1 + name.size()));
+    std::string argument(text::trimmed(std::string_view(line).substr(1 + name.size())));
     argument = command->file ? without_quotes(argument) : argument;
     if (command->argument == Argument::needed && argument.empty()) {
         say_error(fmt::format("write {}", command->usage));

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "terminal/display.hpp"
+#include "text/characters.hpp"
 
 namespace dinal::prompt {
 void say(std::string_view text) {
@@ -19,7 +20,7 @@ void flush_output() {
 void say_error(std::string_view text) {
     flush_output();
     const terminal::Display screen = terminal::display_of(STDERR_FILENO);
-    const std::string fitting = screen.terminal ? terminal::wrapped(text, screen.width - 1) : "";
+    const std::string fitting = screen.terminal ? text::wrapped(text, screen.width - 1) : "";
     text = screen.terminal ? fitting : text;
     static_cast<void>(std::fwrite(text.data(), 1, text.size(), stderr));
     static_cast<void>(std::fputc('\n', stderr));

@@ -9,6 +9,7 @@
 #include "lua/lua_text.hpp"
 #include "prompt/scalar_text.hpp"
 #include "prompt/table_items.hpp"
+#include "text/characters.hpp"
 
 namespace dinal::prompt {
 namespace {
@@ -22,16 +23,9 @@ bool is_fraction(lua_State* L, int index) {
     return std::isfinite(number) && number != std::floor(number);
 }
 
-/// The first columns of a text, and three dots. Letters of several bytes stay whole.
-std::string shortened(std::string text, std::size_t width) {
-    const auto inside = [&text] { return !text.empty() && (static_cast<unsigned char>(text.back()) & 0xC0U) == 0x80U; };
-    while (!text.empty() && terminal::columns(text) + 3 > width) {
-        while (inside()) {
-            text.pop_back();
-        }
-        text.pop_back();
-    }
-    return text + "...";
+/// The first columns of a text, and three dots.
+std::string shortened(std::string_view text, std::size_t width) {
+    return std::string(text::cut_to_columns(text, width > 3 ? width - 3 : 0)) + "...";
 }
 
 struct Piece {
@@ -53,7 +47,7 @@ public:
 
     std::string line(int index, std::size_t width) {
         std::string text = is_plain_table(L_, index) ? table_line(index, width).text : scalar(index);
-        return terminal::columns(text) > width ? shortened(std::move(text), width) : text;
+        return text::columns(text) > width ? shortened(text, width) : text;
     }
 
 private:
@@ -65,8 +59,8 @@ private:
             const bool short_number = brief_ && is_fraction(L_, index);
             Piece item{short_number ? fmt::format("{:.6g}", lua_tonumber(L_, index)) : scalar(index)};
             if (lua_isuserdata(L_, index) != 0 &&
-                terminal::columns(item.text) > room) {  // of our objects the beginning will do
-                item = {shortened(std::move(item.text), room), false};
+                text::columns(item.text) > room) {  // of our objects the beginning will do
+                item = {shortened(item.text, room), false};
             }
             return item;
         }
@@ -88,14 +82,14 @@ private:
         for (std::size_t i = 0; i < items.size(); ++i) {
             const std::size_t left = room > used + 2 ? room - used - 2 : 0;
             Piece item = left > 0 && i < items.shown() ? next_item(items, i, left) : Piece{"", false};
-            if (i >= items.shown() || terminal::columns(item.text) > left || left == 0) {
+            if (i >= items.shown() || text::columns(item.text) > left || left == 0) {
                 line.text += fmt::format("{}... {} more", i == 0 ? " " : ", ", items.size() - i);
                 line.whole = false;
                 break;
             }
             line.whole = line.whole && item.whole;
             line.text.append(i == 0 ? " " : ", ").append(item.text);
-            used += terminal::columns(item.text) + 2;
+            used += text::columns(item.text) + 2;
         }
         open_.pop_back();
         lua_settop(L_, top);
@@ -118,7 +112,7 @@ private:
     Piece next_item(const TableItems& items, std::size_t i, std::size_t room) {
         items.push(i);
         const std::string head = items.in_list(i) ? "" : key_text(lua_gettop(L_) - 1) + " = ";
-        const std::size_t left = room > terminal::columns(head) ? room - terminal::columns(head) : 1;
+        const std::size_t left = room > text::columns(head) ? room - text::columns(head) : 1;
         Piece value = inner(lua_gettop(L_), left);
         lua_pop(L_, 2);
         return {head + value.text, value.whole};
@@ -147,7 +141,7 @@ private:
             const Piece item = line_item(items, i);
             const bool simple = item.text.empty() || item.text.back() != '}';
             const bool joins =
-                joinable && simple && terminal::columns(lines.back()) + terminal::columns(item.text) + 4 <= width_;
+                joinable && simple && text::columns(lines.back()) + text::columns(item.text) + 4 <= width_;
             if (!joins && lines.size() == (joinable && simple && items.in_list(i) ? most_joined_lines : most_lines)) {
                 break;
             }

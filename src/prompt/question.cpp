@@ -15,16 +15,10 @@
 #include "prompt/output.hpp"
 #include "prompt/printer.hpp"
 #include "terminal/display.hpp"
+#include "text/words.hpp"
 
 namespace dinal::prompt {
 namespace {
-
-std::string without_marks(std::string_view text) {
-    const std::size_t begin = text.find_first_not_of(" ?\"'");
-    return begin == std::string_view::npos
-               ? ""
-               : std::string(text.substr(begin, text.find_last_not_of(" ?\"'(){}") - begin + 1));
-}
 
 /// Pushes nothing. The entry for what the words are, if they are an expression of the user's that we know.
 std::string entry(const Meaning& meaning, const terminal::Display& screen) {
@@ -51,7 +45,7 @@ bool is_question(std::string_view line) {
 
 void answer_question(lua_State* L, std::string_view line) {
     const terminal::Display screen = terminal::display_of(STDOUT_FILENO);
-    const std::string words = without_marks(line);
+    const std::string_view words = text::trimmed(line, " ?\"'", " ?\"'(){}");
     if (words.empty()) {
         say(help::tour_page(1));
         return;

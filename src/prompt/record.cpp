@@ -7,6 +7,7 @@
 
 #include "files/file.hpp"
 #include "lua/tokens.hpp"
+#include "text/words.hpp"
 
 namespace dinal::prompt {
 namespace {
@@ -22,11 +23,6 @@ bool has(const std::string& text, std::string_view word) {
 /// It must not reach the inputs that follow: its local variables and labels ended with it.
 bool needs_block(const std::string& statements) {
     return has(statements, "local") || has(statements, "::");
-}
-
-std::string trimmed(const std::string& text) {
-    const std::size_t begin = text.find_first_not_of(" \t\r\n");
-    return begin == std::string::npos ? "" : text.substr(begin, text.find_last_not_of(" \t\r\n") - begin + 1);
 }
 
 /// The expression between two brackets; a comment at its end must not swallow the second.
@@ -48,7 +44,7 @@ bool is_call(const std::string& expression) {
 }  // namespace
 
 void Record::add(const Chunk& chunk, const Evaluated& result) {
-    if (trimmed(chunk.statements + chunk.expression).empty()) {
+    if (text::trimmed(chunk.statements + chunk.expression).empty()) {
         return;
     }
     entries_.push_back({chunk, result});
@@ -128,8 +124,8 @@ std::string Record::script(std::size_t first) const {
     std::string text = "-- typed at the prompt of dinal " DINAL_VERSION "\n";
     for (std::size_t i = first; i < entries_.size(); ++i) {
         const auto& [chunk, result] = entries_[i];
-        std::string lines = trimmed(chunk.statements);
-        const std::string expression = trimmed(chunk.expression);
+        std::string lines(text::trimmed(chunk.statements));
+        const std::string expression(text::trimmed(chunk.expression));
         if (!expression.empty()) {
             lines += lines.empty() ? "" : "\n";
             const bool becomes_ans = result.values > 0 && !result.first_nil;

@@ -9,7 +9,7 @@
 #include "lua/bind.hpp"
 #include "lua/interrupt.hpp"
 #include "source/function_source.hpp"
-#include "terminal/quoted.hpp"
+#include "text/characters.hpp"
 
 namespace dinal::prompt {
 namespace {
@@ -42,34 +42,25 @@ std::string told(lua_State* L, int index) {
 
 /// Several lines of nothing but printable characters, too long to be read in quotes.
 bool is_text(std::string_view text, const terminal::Display& screen) {
-    if (text.find('\n') == std::string_view::npos || text.size() <= screen.width || text.size() > longest_text) {
-        return false;
-    }
-    while (!text.empty()) {
-        const std::size_t length = text[0] == '\n' ? 1 : terminal::printable_length(text);
-        if (length == 0) {
-            return false;
-        }
-        text.remove_prefix(length);
-    }
-    return true;
+    const bool is_long = text.find('\n') != std::string_view::npos && text.size() > screen.width;
+    return is_long && text.size() <= longest_text && text::is_printable(text);
 }
 
 std::string string_text(lua_State* L, int index, Place place, const terminal::Display& screen) {
     std::size_t size = 0;
     const char* start = lua_tolstring(L, index, &size);
     if (place == Place::alone && is_text({start, size}, screen)) {
-        return terminal::wrapped(terminal::spelled({start, size}, screen), screen.width - 1);
+        return text::wrapped(terminal::spelled({start, size}, screen), screen.width - 1);
     }
     const std::size_t limit = place == Place::inside ? longest_inner_string : longest_string;
-    std::string text = terminal::quoted({start, size}, limit, screen.unicode);
+    std::string text = text::quoted({start, size}, limit, screen.unicode);
     return place == Place::alone && size > limit ? fmt::format("{} ({} bytes)", text, size) : text;
 }
 
 /// A function as its source where that is short, else where it is defined; ours as they are called.
 std::string function_text(lua_State* L, int index, const terminal::Display& screen) {
     if (const lua::Documented found = lua::documented(L, index); found.member != nullptr) {
-        return terminal::wrapped(fmt::format("function {}", found.member->doc.signature), screen.width - 1);
+        return text::wrapped(fmt::format("function {}", found.member->doc.signature), screen.width - 1);
     }
     const auto source = source::function_source(L, index);
     if (lua_iscfunction(L, index) != 0) {
@@ -121,7 +112,7 @@ std::string scalar_text(lua_State* L, int index, Place place, const terminal::Di
         return found.owner->card(L, lua_absindex(L, index), screen);
     }
     std::string text = told(L, index);
-    return found.owner != nullptr ? terminal::wrapped(terminal::spelled(text, screen), screen.width - 1) : text;
+    return found.owner != nullptr ? text::wrapped(terminal::spelled(text, screen), screen.width - 1) : text;
 }
 
 }  // namespace dinal::prompt

@@ -8,6 +8,7 @@
 #include "lua/bind.hpp"
 #include "lua/tokens.hpp"
 #include "terminal/display.hpp"
+#include "text/characters.hpp"
 
 namespace dinal::prompt {
 namespace {
@@ -53,14 +54,6 @@ bool is_simple(std::string_view text, bool unicode) {
     });
 }
 
-/// The first `width` columns.
-std::string cut(std::string text, std::size_t width) {
-    while (terminal::columns(text) > width) {
-        text.pop_back();
-    }
-    return text;
-}
-
 }  // namespace
 
 std::string in_colours(std::string_view text) {
@@ -78,8 +71,8 @@ std::string in_colours(std::string_view text) {
 Painted paint(lua_State* L, std::string_view prompt, const std::string& pending, std::string_view line,
               std::size_t cursor) {
     const terminal::Display screen = terminal::display_of(STDOUT_FILENO);
-    const std::size_t before = terminal::columns(prompt);
-    const std::size_t used = before + terminal::columns(line);
+    const std::size_t before = text::columns(prompt);
+    const std::size_t used = before + text::columns(line);
     constexpr std::size_t spare = 2;  // a row that is full to its end may have been wrapped already
     if (used + spare >= screen.width || !is_simple(prompt, screen.unicode) || !is_simple(line, screen.unicode)) {
         return {};
@@ -88,7 +81,7 @@ Painted paint(lua_State* L, std::string_view prompt, const std::string& pending,
     if (cursor == line.size() && !line.empty()) {
         safely(L, [&](lua_State* state) { hint = signature_hint(state, pending + std::string(line)); });
         constexpr std::size_t gap = 2;
-        hint = cut(std::move(hint), screen.width - used - spare > gap ? screen.width - used - spare - gap : 0);
+        hint = text::cut_to_columns(hint, screen.width - used - spare > gap ? screen.width - used - spare - gap : 0);
     }
     // octal where a digit follows: \x1b7 would be one character
     std::string text = "\0337\r";

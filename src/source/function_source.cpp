@@ -6,6 +6,7 @@
 #include "files/file.hpp"
 #include "lua/lua_text.hpp"
 #include "lua/standard_globals.hpp"
+#include "text/characters.hpp"
 
 namespace dinal::source {
 namespace {
@@ -144,8 +145,8 @@ std::optional<std::string> whole_chunk(std::string_view source) {
     if (source.starts_with('=')) {
         return std::nullopt;
     }
-    return source.starts_with('@') ? "loadfile(" + lua::quoted(source.substr(1)) + ")"
-                                   : "load(" + lua::quoted(source) + ")";
+    return source.starts_with('@') ? "loadfile(" + text::quoted(source.substr(1)) + ")"
+                                   : "load(" + text::quoted(source) + ")";
 }
 
 }  // namespace

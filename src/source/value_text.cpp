@@ -9,6 +9,7 @@
 #include "lua/standard_globals.hpp"
 #include "lua/vector.hpp"
 #include "source/function_source.hpp"
+#include "text/characters.hpp"
 
 namespace dinal::source {
 
@@ -70,11 +71,11 @@ std::string ValueText::expression(int index) {
             return lua_toboolean(L_, index) != 0 ? "true" : "false";
         case LUA_TNUMBER:
             return lua_isinteger(L_, index) != 0 ? fmt::format("{}", lua_tointeger(L_, index))
-                                                 : lua::number_text(lua_tonumber(L_, index));
+                                                 : lua::float_text(lua_tonumber(L_, index));
         case LUA_TSTRING: {
             std::size_t length = 0;
             const char* text = lua_tolstring(L_, index, &length);
-            return lua::quoted({text, length});
+            return text::quoted({text, length});
         }
         case LUA_TTABLE:
             return table(index);
@@ -129,7 +130,7 @@ std::string ValueText::object(int index) {
         }
         std::string text;
         for (const double x : vector->values()) {
-            text += (text.empty() ? "" : ", ") + lua::number_text(x);
+            text += (text.empty() ? "" : ", ") + lua::float_text(x);
         }
         return "vector{ " + text + " }";
     }

@@ -1,18 +1,16 @@
 #include "terminal/progress.hpp"
 
 #include <fmt/format.h>
-#include <langinfo.h>
-#include <sys/ioctl.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <cstdlib>
 #include <ctime>
 #include <limits>
-#include <string_view>
 #include <vector>
+
+#include "terminal/display.hpp"
 
 namespace dinal::terminal {
 
@@ -34,23 +32,6 @@ long now_ms() {
     return static_cast<long>(now.tv_sec) * 1000 + now.tv_nsec / 1'000'000;
 }
 
-std::string_view terminal() {
-    const char* name = std::getenv("TERM");  // NOLINT(concurrency-mt-unsafe): one thread
-    return name == nullptr ? "" : name;
-}
-
-Letters letters() {
-    const bool utf8 = std::string_view(nl_langinfo(CODESET)) == "UTF-8";  // NOLINT(concurrency-mt-unsafe)
-    return utf8 && terminal() != "dumb" ? Letters::utf8 : Letters::ascii;
-}
-
-/// Without the last column, in which some terminals go on to the next line.
-std::size_t columns() {
-    winsize size{};
-    const bool known = ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0;
-    return known ? size.ws_col - 1U : 79U;
-}
-
 void write_line(const std::string& text) {
     static_cast<void>(std::fwrite(text.data(), 1, text.size(), stderr));
     static_cast<void>(std::fflush(stderr));
@@ -58,8 +39,7 @@ void write_line(const std::string& text) {
 
 void erase() {
     if (drawn > 0) {
-        const bool plain = terminal().empty() || terminal() == "dumb";
-        write_line(plain ? "\r" + std::string(drawn, ' ') + "\r" : "\r\x1b[K");
+        write_line(obeys_escapes() ? "\r\x1b[K" : "\r" + std::string(drawn, ' ') + "\r");
         drawn = 0;
     }
 }
@@ -119,10 +99,13 @@ void Progress::advance(double reached) {
     if (next_ms == never_ms || within_line) {
         return;
     }
-    const std::string text = progress_text(facts(), columns(), letters());
+    const Display screen = display_of(STDERR_FILENO);
+    // Without the last column, in which some terminals go on to the next line.
+    const auto columns = static_cast<std::size_t>(screen.columns) - 1;
+    const std::string text = progress_text(facts(), columns, screen.draws ? Letters::utf8 : Letters::ascii);
     erase();
     write_line(text + "\r");  // at its beginning, so that the ^C of the terminal is not put behind it and wraps
-    drawn = columns();
+    drawn = columns;
 }
 
 void make_way_for_output(bool ends_line) {

@@ -5,50 +5,16 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cwchar>
 #include <string_view>
 #include <vector>
+
+#include "text/characters.hpp"
 
 namespace dinal::terminal {
 namespace {
 
 constexpr std::size_t longest_bar = 30;  // columns within its ends
 constexpr std::size_t shortest_bar = 6;
-
-/// One character of a label as it can be shown, and its columns on the screen.
-struct Character {
-    std::string bytes;
-    std::size_t width = 1;
-};
-
-/// In the locale of the program. What is no text, or steers the terminal, becomes a question mark.
-std::vector<Character> characters_of(std::string_view text, Letters letters) {
-    std::vector<Character> list;
-    std::mbstate_t state{};
-    while (!text.empty()) {
-        wchar_t wide = 0;
-        std::size_t size = std::mbrtowc(&wide, text.data(), text.size(), &state);
-        const bool readable = size > 0 && size <= text.size();
-        const int width = readable ? wcwidth(wide) : -1;
-        if (!readable) {
-            size = 1;
-            state = {};
-        }
-        const bool shown = width >= 0 && (letters == Letters::utf8 || static_cast<unsigned char>(text[0]) < 128);
-        list.push_back(shown ? Character{std::string(text.substr(0, size)), static_cast<std::size_t>(width)}
-                             : Character{"?", 1});
-        text.remove_prefix(size);
-    }
-    return list;
-}
-
-std::size_t width_of(const std::vector<Character>& characters) {
-    std::size_t width = 0;
-    for (const Character& character : characters) {
-        width += character.width;
-    }
-    return width;
-}
 
 /// A text and its columns on the screen.
 struct Piece {
@@ -63,20 +29,14 @@ Piece ascii_piece(std::string text) {
 
 /// The label in at most so many columns.
 Piece label_piece(const std::string& label, std::size_t columns, Letters letters) {
-    std::vector<Character> characters = characters_of(label, letters);
-    const bool cut = width_of(characters) > columns;
-    while (!characters.empty() && width_of(characters) + (cut ? 1 : 0) > columns) {
-        characters.pop_back();
+    const std::string clean = text::displayable(label);
+    const std::string shown = letters == Letters::utf8 ? clean : text::in_ascii(clean);
+    if (text::columns(shown) <= columns) {
+        return {shown, text::columns(shown)};
     }
-    Piece piece{"", width_of(characters)};
-    for (const Character& character : characters) {
-        piece.text += character.bytes;
-    }
-    if (cut && columns > 0) {
-        piece.text += letters == Letters::utf8 ? "…" : ".";
-        ++piece.width;
-    }
-    return piece;
+    const std::string_view dots = letters == Letters::utf8 ? "…" : ".";
+    const std::string cut = columns > 0 ? std::string(text::cut_to_columns(shown, columns - 1)).append(dots) : "";
+    return {cut, text::columns(cut)};
 }
 
 /// With its ends `columns` wide.

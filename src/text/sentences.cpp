@@ -7,16 +7,6 @@
 
 namespace dinal::text {
 
-namespace {
-constexpr std::size_t line_width = 79;
-
-/// A sign between the sides of a formula, or a factor.
-bool binds(std::string_view word) {
-    return word == "=" || word == "<=" || word == ">" || word == "-" || word == "+" || word == "k";
-}
-
-}  // namespace
-
 std::string time_text(double t, double scale) {
     const double wanted = t == 0 ? 0 : std::ceil(std::log10(std::fabs(t) / scale)) + 4;
     return fmt::format("{:.{}g}", t, static_cast<int>(std::clamp(wanted, 5.0, 15.0)));
@@ -41,32 +31,6 @@ std::string counted(std::size_t n, std::string_view what) {
 
 std::string percent(double part) {
     return fmt::format("{:.3g} %", 100 * part);
-}
-
-std::string wrapped_lines(std::string_view text) {
-    std::string result;
-    std::size_t column = 0;
-    while (!text.empty()) {
-        // A formula stays on its line: "theta = 0.155" is broken nowhere.
-        std::size_t end = std::min(text.find(' '), text.size());
-        std::string_view word = text.substr(0, end);
-        while (end < text.size()) {
-            const std::size_t next = std::min(text.find(' ', end + 1), text.size());
-            const std::string_view after = text.substr(end + 1, next - end - 1);
-            if (!binds(word) && !binds(after) && after != "%") break;
-            word = after;
-            end = next;
-        }
-        if (column > 0) {
-            const bool fits = column + 1 + end <= line_width;
-            result += fits ? ' ' : '\n';
-            column = fits ? column + 1 : 0;
-        }
-        result += text.substr(0, end);
-        column += end;
-        text.remove_prefix(std::min(end + 1, text.size()));
-    }
-    return result;
 }
 
 }  // namespace dinal::text

@@ -1,4 +1,4 @@
-// Numbers and lines for people: as many digits as say something, paragraphs that fit a terminal.
+// Numbers and counts for people: as many digits as say something.
 #pragma once
 
 #include <string>
@@ -20,8 +20,5 @@ std::string counted(std::size_t n, std::string_view what);
 
 /// 0.1234 -> "12.3 %".
 std::string percent(double part);
-
-/// Lines of at most 79 columns.
-std::string wrapped_lines(std::string_view text);
 
 }  // namespace dinal::text

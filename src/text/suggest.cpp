@@ -5,6 +5,8 @@
 #include <cstddef>
 #include <utility>
 
+#include "text/words.hpp"
+
 namespace dinal::text {
 namespace {
 
@@ -81,16 +83,6 @@ constexpr std::array<std::pair<std::string_view, std::string_view>, 62> synonyms
 
 bool is_synonym(std::string_view small_word, std::string_view name) {
     return std::find(synonyms.begin(), synonyms.end(), std::pair(small_word, name)) != synonyms.end();
-}
-
-char lower(char c) {
-    return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
-}
-
-std::string lower(std::string_view text) {
-    std::string result(text);
-    std::transform(result.begin(), result.end(), result.begin(), [](char c) { return lower(c); });
-    return result;
 }
 
 /// Insertions, deletions, substitutions and swaps of neighbours that turn a into b (optimal string alignment).

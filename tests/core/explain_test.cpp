@@ -11,6 +11,7 @@
 #include "support/catch.hpp"
 #include "support/excitations.hpp"
 #include "support/measure.hpp"
+#include "text/characters.hpp"
 #include "text/sentences.hpp"
 
 using namespace dinal;
@@ -280,13 +281,13 @@ TEST_CASE("numbers for people have as many digits as say something", "[explain]"
 }
 
 TEST_CASE("lines are not broken within a formula", "[explain]") {
-    CHECK(wrapped_lines("").empty());
-    CHECK(wrapped_lines("a b") == "a b");
+    CHECK(wrapped("").empty());
+    CHECK(wrapped("a b") == "a b");
     const std::string seventy(70, 'x');
-    CHECK(wrapped_lines(seventy + " a b cdef") == seventy + " a b cdef");
-    CHECK(wrapped_lines(seventy + " a b cdefg") == seventy + " a b\ncdefg");
-    CHECK(wrapped_lines(seventy + " is theta = 0.155 now") == seventy + " is\ntheta = 0.155 now");
-    CHECK(wrapped_lines(seventy + " |M - k theta| <= Re = 1") == seventy + "\n|M - k theta| <= Re = 1");
-    CHECK(wrapped_lines(seventy + " and 12345 %") == seventy + " and\n12345 %");
-    CHECK(wrapped_lines(std::string(90, 'x') + " y") == std::string(90, 'x') + "\ny");
+    CHECK(wrapped(seventy + " a b cdef") == seventy + " a b cdef");
+    CHECK(wrapped(seventy + " a b cdefg") == seventy + " a b\ncdefg");
+    CHECK(wrapped(seventy + " is theta = 0.155 now") == seventy + " is\ntheta = 0.155 now");
+    CHECK(wrapped(seventy + " |M - k theta| <= Re = 1") == seventy + "\n|M - k theta| <= Re = 1");
+    CHECK(wrapped(seventy + " and 12345 %") == seventy + " and\n12345 %");
+    CHECK(wrapped(std::string(90, 'x') + " y") == std::string(90, 'x') + "\ny");
 }

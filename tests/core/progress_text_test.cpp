@@ -1,5 +1,4 @@
 
-#include <clocale>
 #include <string>
 
 #include "support/catch.hpp"
@@ -70,12 +69,10 @@ TEST_CASE("without a known end there are only the count and the rate", "[progres
 TEST_CASE("a label can neither steer the terminal nor break the line", "[progress]") {
     ProgressFacts odd = sweep;
     odd.label = "a\nb\x1b[2J\tc\xff";
-    CHECK(progress_text(odd, 60, Letters::ascii).substr(0, 11) == "a?b?[2J?c? ");
-    static_cast<void>(std::setlocale(LC_CTYPE, "C.UTF-8"));
+    CHECK(progress_text(odd, 60, Letters::ascii).substr(0, 11) == "a b?[2J c? ");
     odd.label = "Δθ 角";  // the last one takes two columns
     CHECK(progress_text(odd, 26, Letters::utf8) == "Δθ 角  42% 18 s left");
-    CHECK(progress_text(odd, 60, Letters::ascii).substr(0, 5) == "?? ? ");
-    static_cast<void>(std::setlocale(LC_CTYPE, "C"));
+    CHECK(progress_text(odd, 60, Letters::ascii).substr(0, 13) == "Deltatheta ? ");
 }
 
 TEST_CASE("durations are told as on a clock", "[progress]") {

@@ -6,7 +6,7 @@
 
 #include "plots/ticks.hpp"
 #include "support/catch.hpp"
-#include "text/display_text.hpp"
+#include "text/characters.hpp"
 
 using namespace dinal;
 using namespace dinal::plots;
@@ -147,7 +147,7 @@ TEST_CASE("no line is wider than asked, and there are no more lines", "[textplot
             const auto lines = lines_of(drawn(family, columns, 24, charset));
             CHECK(lines.size() <= 24);
             for (const std::string& line : lines) {
-                CHECK(display_width(line) <= static_cast<std::size_t>(columns));
+                CHECK(text::columns(line) <= static_cast<std::size_t>(columns));
             }
         }
     }
@@ -177,7 +177,7 @@ TEST_CASE("a circle is round: as many dots high as wide", "[textplot]") {
     REQUIRE(lines.size() == 20);  // 80 dots high
     std::size_t widest = 0;
     for (const std::string& line : lines) {
-        widest = std::max(widest, display_width(line));
+        widest = std::max(widest, text::columns(line));
     }
     // The box has 6 % of air to the left and right but 5 above and below, so it is a little wider than 40 cells; the
     // right air is cut off as blanks.
@@ -309,7 +309,7 @@ TEST_CASE("a logarithmic axis has powers of ten, or less round numbers when it i
 
 TEST_CASE("text without UTF-8 spells Greek letters", "[textplot]") {
     CHECK(in_ascii("θ'/ω₀, rad") == "theta'/omega0, rad");
-    CHECK(display_width("θ'/ω₀") == 5);
-    CHECK(cut_to_width("θθθ", 2) == "θθ");
+    CHECK(text::columns("θ'/ω₀") == 5);
+    CHECK(cut_to_columns("θθθ", 2) == "θθ");
     CHECK(displayable("a\nb\xff") == "a b\xEF\xBF\xBD");
 }

@@ -1,0 +1,45 @@
+// Letters and words: what every reader of text asks of them.
+#pragma once
+
+#include <algorithm>
+#include <string>
+#include <string_view>
+
+namespace dinal::text {
+
+// Of ASCII, in every locale.
+constexpr bool is_digit(char c) {
+    return c >= '0' && c <= '9';
+}
+constexpr char lower(char c) {
+    return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+}
+/// A letter, a digit or an underscore: what a name is made of.
+constexpr bool is_name_char(char c) {
+    return is_digit(c) || (lower(c) >= 'a' && lower(c) <= 'z') || c == '_';
+}
+
+inline std::string lower(std::string_view text) {
+    std::string result(text);
+    std::transform(result.begin(), result.end(), result.begin(), [](char c) { return lower(c); });
+    return result;
+}
+
+/// ".csv" of "Run.CSV"; empty when the name has none.
+inline std::string ending_of(std::string_view file) {
+    return lower(file.substr(std::min(file.rfind('.'), file.size())));
+}
+
+/// Without any of these at its ends.
+inline std::string_view trimmed(std::string_view text, std::string_view begin, std::string_view end) {
+    const std::size_t first = text.find_first_not_of(begin);
+    const std::size_t last = text.find_last_not_of(end);
+    return first == std::string_view::npos || last == std::string_view::npos || last < first
+               ? text.substr(0, 0)
+               : text.substr(first, last - first + 1);
+}
+inline std::string_view trimmed(std::string_view text, std::string_view blanks = " \t\r\n") {
+    return trimmed(text, blanks, blanks);
+}
+
+}  // namespace dinal::text
