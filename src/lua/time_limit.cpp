@@ -5,13 +5,13 @@
 #include <unistd.h>
 #include <csignal>
 #include <cstdio>
+#include <ctime>
 
-#include <chrono>
-#include <condition_variable>
-#include <mutex>
-#include <optional>
+#include <atomic>
+#include <cerrno>
+#include <cstdint>
 #include <string>
-#include <thread>
+#include <system_error>
 
 #include "lua/interrupt.hpp"
 #include "lua/limits.hpp"
@@ -19,66 +19,65 @@
 namespace dinal::lua {
 namespace {
 
-using Clock = std::chrono::steady_clock;
-constexpr std::chrono::seconds patience{1};  // an integration, a sort or a collection of garbage may be on its way
+using Nanoseconds = std::int64_t;
+constexpr Nanoseconds second = 1'000'000'000;
+constexpr Nanoseconds patience = second;  // an integration, a sort or a collection of garbage may be on its way
 
-struct Watch {
-    double seconds = 0;
-    pthread_t lua_thread = pthread_self();
-    std::mutex mutex;
-    std::condition_variable changed;
-    std::optional<Clock::time_point> deadline = {};
-    int nesting = 0;
-};
+double limit = 0;  // seconds; 0: none
+timer_t timer{};
+pthread_t lua_thread{};
+int nesting = 0;
+std::atomic<Nanoseconds> deadline = 0;  // by CLOCK_MONOTONIC; 0: the time does not run
+static_assert(std::atomic<Nanoseconds>::is_always_lock_free, "a signal handler may use lock-free atomics only");
 
-Watch* watch = nullptr;  // never deleted: its thread lives as long as the process
-
-extern "C" void on_alarm(int) {
-    request_stop(Stop::time);
+bool is_overdue_by(Nanoseconds time) {
+    timespec now{};
+    clock_gettime(CLOCK_MONOTONIC, &now);  // allowed in a signal handler
+    const Nanoseconds end = deadline;
+    return end != 0 && now.tv_sec * second + now.tv_nsec >= end + time;
 }
 
-/// What the script has printed shall be seen. Not when it is just printing, or when nobody reads.
-void flush_if_possible() {
-    pollfd output{STDOUT_FILENO, POLLOUT, 0};
-    if (poll(&output, 1, 0) == 1 && ftrylockfile(stdout) == 0) {
-        static_cast<void>(std::fflush(stdout));
+/// On the thread of Lua. It asks again: the chunk that was meant may have ended meanwhile.
+extern "C" void on_alarm(int) {
+    if (is_overdue_by(0)) {
+        request_stop(Stop::time);
     }
+}
+
+bool takes_text(int descriptor) {
+    pollfd output{descriptor, POLLOUT, 0};
+    return poll(&output, 1, 0) == 1 && (output.revents & POLLOUT) != 0;
 }
 
 [[noreturn]] void end_program() {
-    flush_if_possible();
+    // What the script has printed shall be seen. Not when it is just printing, or when nobody reads.
+    if (takes_text(STDOUT_FILENO) && ftrylockfile(stdout) == 0) {
+        static_cast<void>(std::fflush(stdout));
+    }
     const std::string text = "dinal: " + limit_sentence(Stop::time, "") + "\n";
-    [[maybe_unused]] const ssize_t written = write(STDERR_FILENO, text.data(), text.size());
+    if (takes_text(STDERR_FILENO)) {
+        [[maybe_unused]] const ssize_t written = write(STDERR_FILENO, text.data(), text.size());
+    }
     _exit(1);
 }
 
-/// True when `until` has come and the deadline is still the same.
-bool reached(std::unique_lock<std::mutex>& lock, Clock::time_point deadline, Clock::time_point until) {
-    return !watch->changed.wait_until(lock, until, [=] { return watch->deadline != deadline; });
-}
-
-[[noreturn]] void keep_watch() {
-    std::unique_lock lock(watch->mutex);
-    for (;;) {
-        watch->changed.wait(lock, [] { return watch->deadline.has_value(); });
-        const Clock::time_point deadline = *watch->deadline;
-        if (reached(lock, deadline, deadline)) {
-            pthread_kill(watch->lua_thread, SIGALRM);
-            if (reached(lock, deadline, deadline + patience)) {
-                end_program();
-            }
-        }
+/// On a thread that the timer starts, at the deadline and each second after it: what it does is not bound to what is
+/// allowed in a signal handler.
+void on_expiry(sigval) {
+    if (is_overdue_by(patience)) {
+        end_program();
+    }
+    if (is_overdue_by(0)) {
+        pthread_kill(lua_thread, SIGALRM);
     }
 }
 
-/// All signals go to the thread of Lua.
-void start_watching() {
-    sigset_t all;
-    sigset_t before;
-    sigfillset(&all);
-    pthread_sigmask(SIG_SETMASK, &all, &before);
-    std::thread(keep_watch).detach();
-    pthread_sigmask(SIG_SETMASK, &before, nullptr);
+void set_timer(Nanoseconds start) {
+    deadline = start;
+    itimerspec times{};
+    times.it_value = {start / second, start % second};  // 0 stops it
+    times.it_interval = {patience / second, patience % second};
+    timer_settime(timer, TIMER_ABSTIME, &times, nullptr);
 }
 
 }  // namespace
@@ -89,29 +88,31 @@ void set_time_limit(double seconds) {
     sigemptyset(&action.sa_mask);
     action.sa_flags = 0;  // no SA_RESTART: a script that waits in io.read() must wake up
     sigaction(SIGALRM, &action, nullptr);
-    watch = new Watch;  // NOLINT(cppcoreguidelines-owning-memory): see above
-    watch->seconds = seconds;
-    start_watching();
+    sigevent event{};
+    event.sigev_notify = SIGEV_THREAD;
+    event.sigev_notify_function = on_expiry;
+    if (timer_create(CLOCK_MONOTONIC, &event, &timer) != 0) {
+        throw std::system_error(errno, std::generic_category(), "the time of scripts can not be limited");
+    }
+    lua_thread = pthread_self();
+    limit = seconds;
 }
 
 double time_limit() noexcept {
-    return watch == nullptr ? 0 : watch->seconds;
+    return limit;
 }
 
 TimeAllowance::TimeAllowance() {
-    if (watch != nullptr && watch->nesting++ == 0) {
-        const std::lock_guard lock(watch->mutex);
-        const std::chrono::duration<double> time(watch->seconds);
-        watch->deadline = Clock::now() + std::chrono::duration_cast<Clock::duration>(time);
-        watch->changed.notify_one();
+    if (limit > 0 && nesting++ == 0) {
+        timespec now{};
+        clock_gettime(CLOCK_MONOTONIC, &now);
+        set_timer(now.tv_sec * second + now.tv_nsec + static_cast<Nanoseconds>(limit * 1e9));
     }
 }
 
 TimeAllowance::~TimeAllowance() {
-    if (watch != nullptr && --watch->nesting == 0) {
-        const std::lock_guard lock(watch->mutex);
-        watch->deadline.reset();
-        watch->changed.notify_one();
+    if (limit > 0 && --nesting == 0) {
+        set_timer(0);
     }
 }
 
