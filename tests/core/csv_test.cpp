@@ -109,7 +109,8 @@ TEST_CASE("a file is comments, names and the shortest numbers", "[csv]") {
     const std::vector<double> t = {0, 0.1, 0.2, 0.30000000000000004};
     const std::vector<double> friction = {-16.5, -16.5, -16.5, 0};
     const std::vector<NamedColumn> columns = {{"t", t}, {"friction", friction}};
-    const Strings comments = {"dinal 0.1.0", "M = function(t)\n  return 1\r\nend", ""};
+    // A NUL in a comment would make a file that no reader takes.
+    const Strings comments = {std::string("dinal\0000.1.0", 11), "M = function(t)\n  return 1\r\nend", ""};
     const auto written = write_csv(folder.file("x.csv"), columns, comments);
     REQUIRE(written);
     const std::string expected =
@@ -154,8 +155,23 @@ TEST_CASE("names that could be mistaken are quoted and read back", "[csv]") {
     const Table no_rows{names, Eigen::MatrixXd(0, 8), {}};
     REQUIRE(write_csv(folder.file("y.csv"), no_rows));
     CHECK(read_csv(folder.file("y.csv"))->names == names);
+    // At the head of the line each of them could be a comment, a number, or two columns.
+    for (const char* name :
+         {"#", "#1", "# x", "a b", "a\tb", "a,b", "a;b", "\"", "say \"x\"", "1", "+1", ".5", "1e5"}) {
+        for (const Strings& head : {Strings{name}, Strings{name, "theta"}}) {
+            const Table alone{head, Eigen::MatrixXd::Ones(1, static_cast<Eigen::Index>(head.size())), {}};
+            REQUIRE(write_csv(folder.file("x.csv"), alone));
+            const auto back = read_csv(folder.file("x.csv"));
+            CAPTURE(name);
+            REQUIRE(back);
+            CHECK(back->names == head);
+            CHECK(back->comments.empty());
+        }
+    }
     CHECK_THAT(write_csv(folder.file("z.csv"), Table{{"a\nb"}, Eigen::MatrixXd::Ones(1, 1), {}}).error().sentence,
                Contains("line end"));
+    CHECK_FALSE(write_csv(folder.file("z.csv"), Table{{"a\rb"}, Eigen::MatrixXd::Ones(1, 1), {}}));
+    CHECK_FALSE(write_csv(folder.file("z.csv"), Table{{std::string(1, '\0')}, Eigen::MatrixXd::Ones(1, 1), {}}));
 }
 
 TEST_CASE("a file can have very many columns", "[csv]") {

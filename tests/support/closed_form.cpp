@@ -5,6 +5,8 @@
 #include <optional>
 #include <stdexcept>
 
+#include "support/crossing.hpp"
+
 namespace dinal::truth {
 
 namespace {
@@ -23,17 +25,6 @@ real derivative(const Drive& d, real t) {
     return d.slope + d.amplitude * d.omega * std::cos(d.omega * t + d.phase);
 }
 
-template <class F>
-real bisect(F&& f, real a, real b) {
-    const bool positive = f(a) > 0;
-    for (int i = 0; i < 200; ++i) {
-        const real x = a + (b - a) / 2;
-        if (x <= a || x >= b) break;
-        ((f(x) > 0) == positive ? a : b) = x;
-    }
-    return b;
-}
-
 /// The first t in (a, b] at which f, positive just after a, has come down to zero, given its derivative and a length
 /// within which the derivative changes sign at most once.
 template <class F, class G>
@@ -49,11 +40,11 @@ std::optional<real> first_descent(F&& f, G&& df, real a, real b, real step) {
                 if (f(x) > 0) break;
             }
             if (left == a && f(begin) <= 0) return a;  // nothing but rounding above zero
-            return bisect(f, begin, right);
+            return crossing(f, begin, right);
         }
         if ((left > a || f(a) > 0) && df(left) < 0 && df(right) > 0) {
-            const real low = bisect(df, left, right);
-            if (f(low) <= 0) return bisect(f, left, low);
+            const real low = crossing(df, left, right);
+            if (f(low) <= 0) return crossing(f, left, low);
         }
         left = right;
     }

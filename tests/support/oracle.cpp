@@ -4,6 +4,8 @@
 #include <boost/numeric/odeint/stepper/runge_kutta_fehlberg78.hpp>
 #include <cmath>
 
+#include "support/crossing.hpp"
+
 namespace dinal::truth {
 
 namespace {
@@ -18,48 +20,6 @@ constexpr real least_steps = 12;  // to a stretch
 constexpr long most_steps = 30000;
 constexpr real most_growth = 1e6;
 constexpr std::size_t most_events = 5000;
-
-/// Where f, positive at a and not at b, passes zero.
-template <class F>
-real crossing(const F& f, real a, real b) {
-    for (int i = 0; i < 200; ++i) {
-        const real x = a + (b - a) / 2;
-        if (!(x > a && x < b)) break;
-        (f(x) > 0 ? a : b) = x;
-    }
-    return b;
-}
-
-/// The same by regula falsi (Illinois), for an f that costs something.
-template <class F>
-real smooth_crossing(const F& f, real a, real fa, real b, real fb) {
-    int side = 0;
-    for (int i = 0; i < 60 && fb != 0; ++i) {
-        real x = (fa * b - fb * a) / (fa - fb);
-        if (!(x > a && x < b)) x = a + (b - a) / 2;
-        if (!(x > a && x < b)) break;
-        const real fx = f(x);
-        if (fx > 0) {
-            if (side == 1) fb /= 2;
-            a = x, fa = fx, side = 1;
-        } else {
-            if (b - x < 1e-18L) return x;
-            if (side == -1) fa /= 2;
-            b = x, fb = fx, side = -1;
-        }
-    }
-    return b;
-}
-
-/// Where f is least between a and b, by thirds.
-template <class F>
-real least(const F& f, real a, real b) {
-    for (int i = 0; i < 90; ++i) {
-        const real x = a + (b - a) / 3, y = b - (b - a) / 3;
-        (f(x) < f(y) ? b : a) = f(x) < f(y) ? y : x;
-    }
-    return a + (b - a) / 2;
-}
 
 }  // namespace
 
