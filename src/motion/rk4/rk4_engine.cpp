@@ -97,10 +97,10 @@ std::size_t Rk4Engine::sample_block(std::size_t n, std::size_t last_step) {
     const double next_break = excitation_.next_break(t_);
     while (count > 0 && time(n + count) >= next_break) count /= 2;
     for (std::size_t i = 0; i < count; ++i) {
-        times_[2 * i] = time(n + i) + full_.h / 2;
-        times_[2 * i + 1] = time(n + i + 1);
+        block_.times[2 * i] = time(n + i) + full_.h / 2;
+        block_.times[2 * i + 1] = time(n + i + 1);
     }
-    const std::size_t good = excitation_.fill({times_.data(), 2 * count}, {samples_.data(), 2 * count});
+    const std::size_t good = excitation_.fill({block_.times.data(), 2 * count}, {block_.samples.data(), 2 * count});
     if (good < 2 * count) {
         // Up to the bad one; the careful step that follows meets it and ends the run.
         count = good / 2;
@@ -118,7 +118,7 @@ bool Rk4Engine::run_block(std::size_t n, std::size_t count) {
             if (!finite()) return false;
         }
         if (i < count) {
-            const Sampled known{samples_[2 * i], samples_[2 * i + 1]};
+            const Sampled known{block_.samples[2 * i], block_.samples[2 * i + 1]};
             if (!careful_step(time(n + i + 1), &known)) return false;
             ++i;
         }
@@ -133,31 +133,31 @@ bool Rk4Engine::run_block(std::size_t n, std::size_t count) {
 /// What the samples mean for the present direction of motion; apart from the chain of steps, so that it vectorises.
 void Rk4Engine::begin_block(std::size_t i, std::size_t count) {
     const AffineStep full = full_;
-    M_at_step_[i] = M_;
-    for (std::size_t j = i; j < count; ++j) M_at_step_[j + 1] = samples_[2 * j + 1];
-    for (std::size_t j = i; j <= count; ++j) forcing_[j] = forcing(M_at_step_[j]);
+    block_.M[i] = M_;
+    for (std::size_t j = i; j < count; ++j) block_.M[j + 1] = block_.samples[2 * j + 1];
+    for (std::size_t j = i; j <= count; ++j) block_.forcing[j] = forcing(block_.M[j]);
     for (std::size_t j = i; j < count; ++j) {
-        const double middle = forcing(samples_[2 * j]);
-        push_theta_[j] = full.push_theta(forcing_[j], middle);
-        push_velocity_[j] = full.push_velocity(forcing_[j], middle, forcing_[j + 1]);
+        const double middle = forcing(block_.samples[2 * j]);
+        block_.push_theta[j] = full.push_theta(block_.forcing[j], middle);
+        block_.push_velocity[j] = full.push_velocity(block_.forcing[j], middle, block_.forcing[j + 1]);
     }
-    theta_[i] = y_.theta;
-    velocity_[i] = y_.velocity;
+    block_.theta[i] = y_.theta;
+    block_.velocity[i] = y_.velocity;
 }
 
 /// Steps while the velocity keeps its direction for certain.
 // NOTE: plain local doubles; with a State in the loop g++ 12 carries the motion through memory, at twice the time.
 std::size_t Rk4Engine::plain_steps(std::size_t i, std::size_t stop, double direction) {
     const AffineStep m = full_;
-    double theta = theta_[i], velocity = velocity_[i];
-    double uphill = direction * ((forcing_[i] - m.c * velocity) - m.w * theta);  // acceleration along the motion
+    double theta = block_.theta[i], velocity = block_.velocity[i];
+    double uphill = direction * ((block_.forcing[i] - m.c * velocity) - m.w * theta);  // acceleration along the motion
     for (; i < stop; ++i) {
-        const double theta1 = (theta + push_theta_[i]) + (m.r11 * theta + m.r12 * velocity);
-        const double velocity1 = (velocity + push_velocity_[i]) + (m.r21 * theta + m.r22 * velocity);
-        const double uphill1 = direction * ((forcing_[i + 1] - m.c * velocity1) - m.w * theta1);
+        const double theta1 = (theta + block_.push_theta[i]) + (m.r11 * theta + m.r12 * velocity);
+        const double velocity1 = (velocity + block_.push_velocity[i]) + (m.r21 * theta + m.r22 * velocity);
+        const double uphill1 = direction * ((block_.forcing[i + 1] - m.c * velocity1) - m.w * theta1);
         if (!(direction * velocity1 > 0) || (uphill < 0 && uphill1 > 0)) break;
-        theta_[i + 1] = theta = theta1;
-        velocity_[i + 1] = velocity = velocity1;
+        block_.theta[i + 1] = theta = theta1;
+        block_.velocity[i + 1] = velocity = velocity1;
         uphill = uphill1;
     }
     return i;
@@ -179,12 +179,12 @@ std::size_t Rk4Engine::move_freely(std::size_t n, std::size_t i, std::size_t cou
         i = plain_steps(i, count, model::sign_of(standstill_.motion()));
         if (i == count) break;
         // The step in which the velocity changes sign is a step like the others, only noted.
-        const model::State y{theta_[i], velocity_[i]};
-        const model::State y1 = full_(y, push_theta_[i], push_velocity_[i]);
-        const double a = acceleration(forcing_[i], y), a1 = acceleration(forcing_[i + 1], y1);
+        const model::State y{block_.theta[i], block_.velocity[i]};
+        const model::State y1 = full_(y, block_.push_theta[i], block_.push_velocity[i]);
+        const double a = acceleration(block_.forcing[i], y), a1 = acceleration(block_.forcing[i + 1], y1);
         record_turns(time(n + i), full_.h, model::sign_of(standstill_.motion()), y, a, y1, a1);
-        theta_[i + 1] = y1.theta;
-        velocity_[i + 1] = y1.velocity;
+        block_.theta[i + 1] = y1.theta;
+        block_.velocity[i + 1] = y1.velocity;
         ++i;
     }
     end_block(n, first, i);
@@ -194,15 +194,15 @@ std::size_t Rk4Engine::move_freely(std::size_t n, std::size_t i, std::size_t cou
 /// The state at step i becomes the present, and the rows since step `first` are written.
 void Rk4Engine::end_block(std::size_t n, std::size_t first, std::size_t i) {
     std::size_t good = i;
-    while (good > first && !(std::isfinite(theta_[good]) && std::isfinite(velocity_[good]))) --good;
+    while (good > first && !(std::isfinite(block_.theta[good]) && std::isfinite(block_.velocity[good]))) --good;
     block_rows(n, first, good);
-    t_ = time(n + i), y_ = {theta_[i], velocity_[i]}, M_ = M_at_step_[i];
+    t_ = time(n + i), y_ = {block_.theta[i], block_.velocity[i]}, M_ = block_.M[i];
 }
 
 void Rk4Engine::block_rows(std::size_t n, std::size_t first, std::size_t last) {
     const double friction = 0.0 - friction_;
     if (steps_per_row_ == 1 && rows_.next_row() == n + first) {
-        rows_.put_block(last - first, &theta_[first], &velocity_[first], &M_at_step_[first], friction);
+        rows_.put_block(last - first, &block_.theta[first], &block_.velocity[first], &block_.M[first], friction);
         return;
     }
     for (std::size_t i = first; i < last && rows_.next_time() < model::never; ++i) {
@@ -211,12 +211,12 @@ void Rk4Engine::block_rows(std::size_t n, std::size_t first, std::size_t last) {
             // Rows that fall on steps: from row to row without looking at the steps between.
             i = std::max(i, rows_.next_row() * steps_per_row_ - n);
             if (i >= last) return;
-            rows_.put({theta_[i], velocity_[i]}, M_at_step_[i], friction);
+            rows_.put({block_.theta[i], block_.velocity[i]}, block_.M[i], friction);
         } else if (rows_.next_time() < end) {
-            const model::State y{theta_[i], velocity_[i]}, y1{theta_[i + 1], velocity_[i + 1]};
-            t_ = time(n + i), y_ = y, M_ = M_at_step_[i];
-            rows_until(
-                end, StepInterpolant(full_.h, y, acceleration(forcing_[i], y), y1, acceleration(forcing_[i + 1], y1)));
+            const model::State y{block_.theta[i], block_.velocity[i]}, y1{block_.theta[i + 1], block_.velocity[i + 1]};
+            t_ = time(n + i), y_ = y, M_ = block_.M[i];
+            rows_until(end, StepInterpolant(full_.h, y, acceleration(block_.forcing[i], y), y1,
+                                            acceleration(block_.forcing[i + 1], y1)));
         }
     }
 }
@@ -229,14 +229,14 @@ std::size_t Rk4Engine::rest(std::size_t n, std::size_t i, std::size_t count) {
     const double middle_of_hold = system_.stiffness() * y_.theta + (forward - backward) / 2;
     double e = std::fabs(M_ - middle_of_hold);
     for (; i < count; ++i) {
-        const double em = std::fabs(samples_[2 * i] - middle_of_hold),
-                     e1 = std::fabs(samples_[2 * i + 1] - middle_of_hold);
+        const double em = std::fabs(block_.samples[2 * i] - middle_of_hold),
+                     e1 = std::fabs(block_.samples[2 * i + 1] - middle_of_hold);
         if (!(std::max({e, em, e1}) + std::fabs(e - 2 * em + e1) / 4 < limit)) break;
         if (rows_.next_time() < time(n + i + 1)) {
             t_ = time(n + i);
             rows_standing_until(time(n + i + 1));
         }
-        M_ = samples_[2 * i + 1], e = e1;
+        M_ = block_.samples[2 * i + 1], e = e1;
     }
     t_ = time(n + i);
     return i;

@@ -144,18 +144,20 @@ private:
     bool failed_ = false;  // M between the steps, at a row, was not finite
     model::Outcome outcome_ = model::Outcome::reached_end;
 
-    // One block: M in the middle and at the end of each step, what follows from it for the present motion, and the
+    // M in the middle and at the end of each step of a block, what follows from it for the present motion, and the
     // states at the steps.
     template <std::size_t n>
-    using Block = std::array<double, n>;
-    Block<2 * block_steps> times_{};
-    Block<2 * block_steps> samples_{};
-    Block<block_steps + 1> M_at_step_{};
-    Block<block_steps + 1> forcing_{};
-    Block<block_steps> push_theta_{};
-    Block<block_steps> push_velocity_{};
-    Block<block_steps + 1> theta_{};
-    Block<block_steps + 1> velocity_{};
+    using Each = std::array<double, n>;
+    struct {
+        Each<2 * block_steps> times{};
+        Each<2 * block_steps> samples{};
+        Each<block_steps + 1> M{};
+        Each<block_steps + 1> forcing{};
+        Each<block_steps> push_theta{};
+        Each<block_steps> push_velocity{};
+        Each<block_steps + 1> theta{};
+        Each<block_steps + 1> velocity{};
+    } block_;
 };
 
 }  // namespace dinal::motion::rk4

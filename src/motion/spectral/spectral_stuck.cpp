@@ -18,18 +18,18 @@ constexpr double epsilon = std::numeric_limits<double>::epsilon();
 bool SpectralEngine::stay() {
     double from = standing_from_;
     if (from == nowhere) {
-        if (M_sampled_ && standstill_.phase() != Standstill::Phase::held) {
-            const model::Motion direction = standstill_.pulled(M_, y_.theta);
+        if (now_.M_sampled && standstill_.phase() != Standstill::Phase::held) {
+            const model::Motion direction = standstill_.pulled(now_.M, now_.y.theta);
             if (direction != model::Motion::stuck) return release_at(nowhere, direction);
         }
-        choose_panel();
-        if (const Attempt attempt = sample_standing(); attempt != Attempt::resolved) return attempt != Attempt::ended;
+        const auto attempt = solver_.stand(now_);
+        if (attempt != PanelSolver::Attempt::resolved) return again(attempt);
         from = -1;
     }
     const auto [x, direction] = first_release(from);
     if (x < 1) return release_at(x, direction);
-    end_piece(1, y_, 0);
-    return std::isfinite(M_) || fail(model::Outcome::excitation_not_finite);
+    end_piece(1, now_.y, 0);
+    return std::isfinite(now_.M) || fail(model::Outcome::excitation_not_finite);
 }
 
 /// The first release in [from, 1] and its direction; else `nowhere`.
@@ -38,7 +38,8 @@ std::pair<double, model::Motion> SpectralEngine::first_release(double from) cons
     for (const model::Motion side : {model::Motion::forward, model::Motion::backward}) {
         if (const double x = release_towards(side, from); x < first.first) first = {x, side};
     }
-    if (first.first != nowhere && time_at(first.first) >= end_) first.first = nowhere;  // the next panel's business
+    if (first.first != nowhere && solver_.panel().time(first.first) >= solver_.panel().end)
+        first.first = nowhere;  // the next panel's business
     return first;
 }
 
@@ -46,17 +47,18 @@ std::pair<double, model::Motion> SpectralEngine::first_release(double from) cons
 /// series matters, M itself is asked: the limit is a razor's edge.
 double SpectralEngine::release_towards(model::Motion side, double from) const {
     constexpr double exact_enough = 1e-11;  // natural periods
-    const double sign = model::sign_of(side), k_theta = system_.stiffness() * y_.theta, Re = system_.holding(side);
-    const double doubt = 8 * (epsilon * (Re + std::fabs(k_theta)) + chebyshev::tail(panel_.M));
+    const SolvedPanel& panel = solver_.panel();
+    const double sign = model::sign_of(side), k_theta = system_.stiffness() * now_.y.theta, Re = system_.holding(side);
+    const double doubt = 8 * (epsilon * (Re + std::fabs(k_theta)) + chebyshev::tail(panel.M));
     double varying = 0;
-    for (std::size_t k = 1; k < points; ++k) varying += std::fabs(panel_.M[k]);
-    const double mean = sign * (panel_.M[0] - k_theta);
+    for (std::size_t k = 1; k < points; ++k) varying += std::fabs(panel.M[k]);
+    const double mean = sign * (panel.M[0] - k_theta);
     if (mean + varying < Re - doubt) return nowhere;
 
     // What is left of the limit: Re - side (M - k theta).
     Series left{};
-    chebyshev::Series<points - 1> slope = chebyshev::derivative(panel_.M);
-    for (std::size_t k = 1; k < points; ++k) left[k] = -sign * panel_.M[k];
+    chebyshev::Series<points - 1> slope = chebyshev::derivative(panel.M);
+    for (std::size_t k = 1; k < points; ++k) left[k] = -sign * panel.M[k];
     for (double& c : slope) c *= -sign;
     left[0] = Re - mean;
     chebyshev::Bounded<points> curve(1, left, slope);
@@ -75,12 +77,12 @@ double SpectralEngine::release_towards(model::Motion side, double from) const {
     const auto x = chebyshev::first_below(curve, from, chebyshev::LeftEnd::anywhere, touches);
     if (!x) return nowhere;
     const double off = doubt / std::fabs(curve.slope(*x));
-    if (held || (!touch && off * panel_.h <= exact_enough * T0_)) return *x;
+    if (held || (!touch && off * panel.h <= exact_enough * T0_)) return *x;
     return moment_of_release(touch.value_or(*x), off, from, side);
 }
 
 bool SpectralEngine::lets_go(double x, model::Motion side) const {
-    return standstill_.pulled(excitation_.value(time_at(x), y_), y_.theta) == side;
+    return standstill_.pulled(excitation_.value(solver_.panel().time(x), now_.y), now_.y.theta) == side;
 }
 
 /// Between a place near x where M still holds and one where it lets go, by halving.
@@ -113,11 +115,12 @@ double SpectralEngine::moment_of_release(double x, double off, double from, mode
 bool SpectralEngine::release_at(double x, model::Motion direction) {
     const bool at_once_only = x == nowhere;
     if (!at_once_only) {
-        const bool feedback = feedback_ && x > -1;
-        const double M = feedback ? excitation_.value(time_at(x), y_) : chebyshev::value(panel_.M, x);
+        const bool asked = solver_.iterates() && x > -1;
+        const double M =
+            asked ? excitation_.value(solver_.panel().time(x), now_.y) : chebyshev::value(solver_.panel().M, x);
         if (!std::isfinite(M)) return fail(model::Outcome::excitation_not_finite);
-        end_piece(x, y_, M);
-        if (!std::isfinite(M_)) return fail(model::Outcome::excitation_not_finite);
+        end_piece(x, now_.y, M);
+        if (!std::isfinite(now_.M)) return fail(model::Outcome::excitation_not_finite);
         standing_from_ = nowhere;
     }
     return go_on(standstill_.release(moment(), direction));

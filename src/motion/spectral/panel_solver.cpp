@@ -1,0 +1,147 @@
+#include "motion/spectral/panel_solver.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace dinal::motion::spectral {
+
+namespace {
+
+constexpr double epsilon = std::numeric_limits<double>::epsilon();
+/// Where M fails, the run comes this near to it, in units of pace_.
+constexpr double near_failure = 1e-9;
+
+}  // namespace
+
+PanelSolver::PanelSolver(const Problem& problem, const Spectral& options)
+    : system_(problem.system),
+      excitation_(problem.excitation),
+      end_of_run_(problem.window.end),
+      tolerance_(options.tolerance),
+      pace_(std::min(problem.system.natural_period(), problem.window.end - problem.window.start)),
+      h_max_(std::min(options.max_panel, longest_panel * problem.system.natural_period()) / 2),
+      feedback_(problem.excitation.has_feedback() || system_.has_remainder()),
+      script_(problem.excitation.has_script()),
+      h_(h_max_),
+      patience_{.since = problem.window.start} {}
+
+void PanelSolver::choose(const Present& now, model::Motion way) {
+    const double announced = excitation_.next_break(now.clock.hi);
+    const double breaks = found_breaks_.empty() ? announced : std::min(announced, found_breaks_.front());
+    const double limit = std::min(end_of_run_, breaks);
+    const double remaining = now.clock.until(limit);
+    if (bad_time_ < model::never) h_ = std::min(h_, now.clock.until(bad_time_) / 4);
+    const bool to_limit = remaining <= 2 * h_ * (1 + 1e-9);
+    panel_.ends = !to_limit         ? SolvedPanel::End::inside
+                  : limit == breaks ? SolvedPanel::End::at_break
+                                    : SolvedPanel::End::window;
+    panel_.start = now.clock;
+    panel_.begin = now.y;
+    panel_.motion = way;
+    // Two panels of equal length rather than a long and a very short one.
+    panel_.h = to_limit ? remaining / 2 : remaining < 4 * h_ ? remaining / 4 : h_;
+    panel_.length = 2 * panel_.h;
+    panel_.end = to_limit ? limit : now.clock.after(2 * panel_.h);
+    for (std::size_t j = 0; j + 1 < points; ++j) panel_.times[j] = panel_.time(chebyshev::nodes[j]);
+    panel_.times[points - 1] = panel_.end;
+}
+
+double PanelSolver::sampled(std::size_t node, const model::State& state) const {
+    return node + 1 == points && panel_.ends == SolvedPanel::End::at_break
+               ? excitation_.value_before(panel_.end, state)
+               : excitation_.value(panel_.times[node], state);
+}
+
+/// M at all nodes for the state at the beginning, of which only a feedback takes notice.
+bool PanelSolver::sample_all(const Present& now) {
+    const std::size_t first = now.M_sampled ? 1 : 0;
+    if (now.M_sampled) panel_.samples[0] = now.M;
+    if (feedback_) {
+        for (std::size_t j = first; j < points; ++j) {
+            panel_.samples[j] = sampled(j, now.y);
+            if (!std::isfinite(panel_.samples[j])) return bad_at(j);
+        }
+    } else {
+        const bool at_break = panel_.ends == SolvedPanel::End::at_break;
+        const std::size_t last = at_break ? points - 1 : points;
+        const std::size_t count = last - first;
+        const std::size_t good = excitation_.fill({&panel_.times[first], count}, {&panel_.samples[first], count});
+        if (good < count) return bad_at(first + good);
+        if (at_break) panel_.samples[points - 1] = excitation_.value_before(panel_.end);
+        if (!std::isfinite(panel_.samples[points - 1])) return bad_at(points - 1);
+    }
+    panel_.M = chebyshev::fit(panel_.samples);
+    return true;
+}
+
+bool PanelSolver::bad_at(std::size_t node) {
+    bad_time_ = panel_.times[node];
+    return false;
+}
+
+/// M has failed ahead: the run goes on in ever shorter panels until it stands before that time, and ends there.
+PanelSolver::Attempt PanelSolver::before_failure() {
+    const bool there =
+        panel_.start.until(bad_time_) <= std::max(near_failure * pace_, 64 * epsilon * std::fabs(panel_.start.hi));
+    if (feedback_) bad_time_ = model::never;
+    if (!there && excitation_.may_go_on()) return Attempt::shorten;
+    return end_with(model::Outcome::excitation_not_finite);
+}
+
+PanelSolver::Attempt PanelSolver::stand(const Present& now) {
+    choose(now, model::Motion::stuck);
+    if (!sample_all(now)) return before_failure();
+    return judge(unresolved_load());
+}
+
+/// The motion under this torque (M, or what is not linear in a feedback), from the state at the beginning.
+void PanelSolver::solve_for(const Series& torque) {
+    const double h = panel_.h, inertia = system_.inertia();
+    equation_.prepare(h * ((system_.damping() + falls_.velocity) / inertia),
+                      h * (h * ((system_.stiffness() + falls_.theta) / inertia)));
+    const double scale = h * (h / inertia);
+    Series r{};
+    for (std::size_t k = 1; k < points; ++k) r[k] = scale * torque[k];
+    const double friction = system_.braking(panel_.motion);
+    const double k = system_.stiffness();
+    r[0] = scale * ((std::fma(-k, panel_.begin.theta, torque[0]) - friction) - k * theta_rest_);
+    panel_.w = equation_.solve(r, h * panel_.begin.velocity);
+    panel_.v = chebyshev::integral(panel_.w, h * panel_.begin.velocity);
+    panel_.p = chebyshev::integral(panel_.v, 0.0);
+}
+
+PanelSolver::Attempt PanelSolver::move(const Present& now, model::Motion way, const model::State& departing) {
+    choose(now, way);
+    theta_rest_ = now.theta_rest;
+    if (feedback_) {
+        switch (iterate(departing)) {
+            case Iteration::failed:
+                // Perhaps for a state that only the iteration has been in: a shorter panel will tell.
+                h_ = panel_.h / 2;
+                bad_time_ = panel_.start.after(panel_.h);
+                return before_failure();
+            case Iteration::diverges:
+                return judge(std::numeric_limits<double>::infinity());
+            case Iteration::converged:
+                break;
+        }
+    } else {
+        if (!sample_all(now)) return before_failure();
+        solve_for(panel_.M);
+    }
+    if (!within_range()) return end_with(model::Outcome::state_not_finite);
+    return judge(feedback_ ? unresolved_motion() : std::max(unresolved_load(), unresolved_motion()));
+}
+
+/// Whether the motion on the panel, its torques, and the bounds that prove its events are numbers.
+bool PanelSolver::within_range() const {
+    constexpr double largest = std::numeric_limits<double>::max() / 1e7;  // chebyshev::third_derivative_bound takes 2e6
+    const double farthest = std::fabs(panel_.begin.theta) + chebyshev::size(panel_.p),
+                 fastest = chebyshev::size(panel_.v) / panel_.h;
+    const auto fits = [](double x) { return x < largest; };
+    return fits(farthest) && fits(system_.stiffness() * farthest) && fits(fastest) &&
+           fits(system_.damping() * fastest) && fits(chebyshev::size(panel_.v)) && fits(chebyshev::size(panel_.w));
+}
+
+}  // namespace dinal::motion::spectral

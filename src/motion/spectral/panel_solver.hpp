@@ -1,0 +1,145 @@
+// One panel of the spectral integrator: how long it is, what M is on it, the motion it carries, and whether both are
+// resolved. It knows nothing of what came before but how long the last panels were, and nothing of events.
+//
+// A panel is a stretch of time in which M is smooth and friction keeps its sign. It ends at a break of M, at the end of
+// the window, or where M or the motion could not be resolved any longer.
+#pragma once
+
+#include <vector>
+
+#include "model/lowered.hpp"
+#include "motion/simulate.hpp"
+#include "motion/spectral/panel_equation.hpp"
+#include "motion/spectral/panels.hpp"
+
+namespace dinal::motion::spectral {
+
+/// Where the run stands: a panel begins there.
+struct Present {
+    Clock clock;
+    model::State y;
+    double theta_rest = 0;  ///< what was rounded off theta, so that a thousand stops do not add up
+    double M = 0;           ///< from the right
+    bool M_sampled = true;  ///< M is a value of M, not of its series
+};
+
+/// A panel with all that was computed on it. While the mass is stuck the motion is without meaning.
+struct SolvedPanel : Panel {
+    enum class End {
+        inside,  ///< of a stretch that goes on
+        window,  ///< exactly there
+        at_break,
+    };
+    double end = 0;
+    End ends = End::inside;
+    chebyshev::Samples times{}, samples{};         ///< M as it was given, at the nodes
+    chebyshev::Series<chebyshev::points + 1> v{};  ///< h theta'
+    chebyshev::Series<chebyshev::points + 2> p{};  ///< theta - begin.theta
+
+    [[nodiscard]] double time(double at_x) const { return start.after(h * (1 + at_x)); }
+};
+
+class PanelSolver {
+public:
+    enum class Attempt {
+        resolved,
+        shorten,  ///< the next one will be shorter
+        ended,    ///< the run can not go on: outcome() says why
+    };
+    PanelSolver(const Problem& problem, const Spectral& options);
+
+    /// A panel on which the mass stands.
+    Attempt stand(const Present& now);
+    /// A panel on which it moves under the friction of `way`. A feedback is asked at `departing` at its beginning.
+    Attempt move(const Present& now, model::Motion way, const model::State& departing);
+    [[nodiscard]] const SolvedPanel& panel() const { return panel_; }
+    [[nodiscard]] model::Outcome outcome() const { return outcome_; }
+    /// The run has come to the end of the panel.
+    void passed();
+
+    /// The size of the torques that are at play on the panel.
+    [[nodiscard]] double torques() const {
+        return chebyshev::size(panel_.M) + system_.greatest_holding() +
+               system_.stiffness() * std::fabs(panel_.begin.theta);
+    }
+    /// What h^2 theta'' is off by at least, as a difference of torques that may balance each other.
+    [[nodiscard]] double least_rounding() const {
+        return panel_.h * (panel_.h / system_.inertia()) *
+               (64 * std::numeric_limits<double>::epsilon() * torques() + lost_in_time());
+    }
+    /// What h^2 theta'' may differ by because its torques are rounded, and the times at which M was asked.
+    [[nodiscard]] double rounding() const { return rounding_of_motion(lost_in_time()); }
+    /// The torques depend on the motion, which was found by iteration.
+    [[nodiscard]] bool iterates() const { return feedback_; }
+
+private:
+    static constexpr std::size_t points = chebyshev::points;
+    using Series = chebyshev::Series<points>;
+
+    // panel_solver.cpp
+    void choose(const Present& now, model::Motion way);
+    [[nodiscard]] double sampled(std::size_t node, const model::State& state) const;
+    bool sample_all(const Present& now);
+    bool bad_at(std::size_t node);
+    Attempt before_failure();
+    Attempt end_with(model::Outcome outcome) {
+        outcome_ = outcome;
+        return Attempt::ended;
+    }
+    void solve_for(const Series& torque);
+    [[nodiscard]] bool within_range() const;
+    /// The friction that is not in the linear part and its constant.
+    [[nodiscard]] double remainder(const model::State& state) const { return system_.remainder(panel_.motion, state); }
+
+    // panel_feedback.cpp: torques that depend on the motion.
+    enum class Iteration { converged, diverges, failed };
+    Iteration iterate(const model::State& departing);
+    [[nodiscard]] bool well_conditioned() const;
+    void take_M(const Series& iterated);
+    void estimate_slopes();
+
+    // panel_judge.cpp: resolved?
+    /// What M may differ by because times far from t = 0 are rounded.
+    [[nodiscard]] double lost_in_time() const;
+    [[nodiscard]] double unresolved_load() const;
+    [[nodiscard]] double unresolved_motion() const;
+    [[nodiscard]] double rounding_of_motion(double uncertain) const;
+    bool found_break();
+    Attempt pass_over();
+    Attempt judge(double unresolved);
+    bool crawls();
+    void lengthen(double unresolved);
+    /// Of a run that gets nowhere: whose fault it is.
+    [[nodiscard]] model::Outcome never_ending() const {
+        return feedback_ ? model::Outcome::chattering : model::Outcome::unresolved;
+    }
+
+    model::Lowered system_;
+    const model::Excitation& excitation_;
+    double end_of_run_;
+    double tolerance_;
+    double pace_;   // what short times are measured in: T0, or all of a run that is shorter
+    double h_max_;  // half the length of the longest panel
+    bool feedback_, script_;
+
+    double h_;                          // half the length of the next panel
+    std::vector<double> found_breaks_;  // of a function that did not announce them, in order
+    struct {
+        double from = model::never, h = 0;
+    } searched_;                      // where one was looked for last
+    double bad_time_ = model::never;  // M is known to fail here
+    struct {
+        double theta = 0, velocity = 0;
+    } falls_;  // -dM/dtheta and -dM/dvelocity of a feedback: solved for, not iterated
+    SolvedPanel panel_;
+    double theta_rest_ = 0;  // of its beginning
+    PanelEquation equation_;
+    struct {
+        int unresolved = 0, too_short = 0;  // panels in a row
+        int shortened = 0;                  // panels, since then:
+        double since = 0;
+    } patience_;
+    model::Outcome outcome_ = model::Outcome::reached_end;
+};
+
+}  // namespace dinal::motion::spectral
