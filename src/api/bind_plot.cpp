@@ -7,6 +7,7 @@
 #include "api/picture.hpp"
 #include "api/plot_docs.hpp"
 #include "api/plot_items.hpp"
+#include "api/plot_options.hpp"
 #include "api/run.hpp"
 #include "files/table.hpp"
 #include "plots/run_figure.hpp"
@@ -71,12 +72,13 @@ void refuse_empty(const lua::Options& options, const RunHandle& run) {
 int plot_vectors(lua_State* L) {
     if (lua_gettop(L) != 1 || !lua_istable(L, 1)) {
         lua::raise(L, {.sentence = fmt::format("plot takes one table of curves and named options, for example {}",
-                                               plot_example),
+                                               plot_call.example),
                        .call = "plot"});
     }
     PlotItems items = plot_items(L, 1);
     if (items.curves.empty() && items.panels.empty()) {
-        lua::raise(L, {.sentence = fmt::format("plot needs a curve, for example {}", plot_example), .call = "plot"});
+        lua::raise(L,
+                   {.sentence = fmt::format("plot needs a curve, for example {}", plot_call.example), .call = "plot"});
     }
     constexpr std::size_t most_curves = 1000;
     if (items.curves.size() > most_curves) {
@@ -89,14 +91,14 @@ int plot_vectors(lua_State* L) {
     push_named(L, 1, static_cast<lua_Integer>(lua_rawlen(L, 1)));
     lua_replace(L, 1);
     if (items.panels.empty()) {
-        const lua::Options options(L, 1, "plot", plot_example, {DINAL_FIGURE_OPTIONS, DINAL_TARGET_OPTIONS});
+        const lua::Options options(L, 1, plot_call);
         plots::Figure figure;
         figure.curves = std::move(items.curves);
         apply_options(L, options, figure);
         std::vector<plots::Figure> figures{std::move(figure)};
         return deliver(L, options, std::move(figures));
     }
-    const lua::Options options(L, 1, "plot", "plot{ picture, picture, file = \"both.svg\" }", {DINAL_TARGET_OPTIONS});
+    const lua::Options options(L, 1, pictures_call);
     if (!items.curves.empty()) {
         options.fail(
             "curves and pictures can not stand together: put the curves into a picture of their own, plot{ ..., "
@@ -133,8 +135,7 @@ constexpr lua::Member picture_members[] = {
 
 int plot_run(lua_State* L) {
     const RunHandle run = lua::self<RunHandle>(L, 1, "run:plot()");
-    const lua::Options options(L, 2, "run:plot", "run:plot{ y = { \"theta\", \"friction\" }, file = \"run.svg\" }",
-                               {"x", "y", DINAL_FIGURE_OPTIONS, DINAL_TARGET_OPTIONS}, true);
+    const lua::Options options(L, 2, plot_run_call);
     refuse_empty(options, run);
     const std::vector<std::string> x = asked_columns(L, options, "x", run);
     if (x.size() > 1) {
@@ -149,8 +150,7 @@ int plot_run(lua_State* L) {
 
 int phase_plot_run(lua_State* L) {
     const RunHandle run = lua::self<RunHandle>(L, 1, "run:phase_plot()");
-    const lua::Options options(L, 2, "run:phase_plot", "run:phase_plot{ file = \"phase.svg\" }",
-                               {DINAL_FIGURE_OPTIONS, DINAL_TARGET_OPTIONS}, true);
+    const lua::Options options(L, 2, phase_plot_call);
     refuse_empty(options, run);
     plots::Figure figure = value_or_fail(options, plots::phase_figure(data_of(run)));
     apply_options(L, options, figure);

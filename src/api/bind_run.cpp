@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "api/bind_simulate.hpp"
 #include "api/cards.hpp"
 #include "api/classes.hpp"
 #include "api/events.hpp"
@@ -183,12 +184,12 @@ constexpr lua::Member members[] = {
     {"continue",
      lua::guarded<continue_run>,
      lua::Kind::method,
-     {"run:continue{ t_end, times } -> run",
+     {"run:continue{ OPTIONS } -> run",
       "A new run: this one, and how it goes on from where it ended (reached its end, or stopped by Ctrl-C or an error "
-      "in M), with the same rows as if it had never ended. Without t_end a run that was stopped goes on to the t_end "
-      "it was given. A run with dt keeps its dt; one with `times` gets the new ones.",
+      "in M), with the same rows as if it had never ended. A run with dt keeps its dt.",
       DINAL_RUN "longer = run:continue{ t_end = 3 }\n"
-                "print(#longer, longer.t_end, string.format(\"%.6f\", longer:at(3)))  --> 7\t3.0\t1.000000"}},
+                "print(#longer, longer.t_end, string.format(\"%.6f\", longer:at(3)))  --> 7\t3.0\t1.000000",
+      {&continue_call}}},
     {"energy",
      lua::guarded<energy_of_run>,
      lua::Kind::method,
@@ -208,14 +209,15 @@ constexpr lua::Member members[] = {
     {"save",
      lua::guarded<save_run>,
      lua::Kind::method,
-     {"run:save(file, { columns })",
+     {"run:save(file, { OPTIONS })",
       "Writes the rows: file.csv gets a comment block with the Lua text that repeats the run, a line of names and the "
-      "rows, and with columns = { \"t\", \"theta\" } only these; file.dat gets the record of 1989 (NPUNT, then t, "
-      "theta, velocity/omega0, M/k, friction/k, damping/k). Both read back exactly with trajectory.load.",
+      "rows; file.dat gets the record of 1989 (NPUNT, then t, theta, velocity/omega0, M/k, friction/k, damping/k). "
+      "Both read back exactly with trajectory.load.",
       DINAL_RUN "file = os.tmpname() .. \".csv\"\n"
                 "run:save(file, { columns = { \"t\", \"theta\" } })\n"
                 "print(#trajectory.load(file))  --> 5\n"
-                "os.remove(file)"}},
+                "os.remove(file)",
+      {&save_call}}},
     {"plot", lua::guarded<plot_run>, lua::Kind::method, plot_run_doc},
     {"phase_plot", lua::guarded<phase_plot_run>, lua::Kind::method, phase_plot_run_doc},
     {"t",

@@ -16,8 +16,6 @@ namespace dinal::api {
 
 namespace {
 
-constexpr std::string_view example = "sys:simulate{ M = M, theta0 = 1, t_end = 20, dt = 0.01 }";
-
 /// The bytes that the rows will take; none when the window or the grid is wrong, which simulate() tells.
 std::size_t bytes_of_rows(const source::Task& task) {
     if (!(task.window.start < task.window.end)) {
@@ -39,48 +37,22 @@ motion::Limits limits_of(bool dense) {
     return limits;
 }
 
-motion::Grid asked_rows(const lua::Options& options) {
-    if (options.has("dt") == options.has("times")) {
-        options.fail(options.has("dt") ? "dt and times exclude each other; give one of them"
-                                       : fmt::format("dt or times is needed, for example {}", example));
-    }
-    if (options.has("times")) {
-        return motion::Grid::at(options.numbers("times"));
-    }
-    const double dt = options.number("dt");
-    if (dt <= 0) {
-        options.fail(fmt::format("dt = {:.6g} must be positive", dt));
-    }
-    return motion::Grid::every(dt);
-}
-
-motion::Integrator asked_integrator(lua_State* L, const lua::Options& options) {
-    if (!options.has("integrator")) {
-        return motion::Spectral{};
-    }
-    options.push("integrator");
-    const auto* integrator = lua::test<motion::Integrator>(L, -1);
-    if (integrator == nullptr) {
-        options.wrong("integrator", "an integrator such as integrator.rk4{ h = 0.001 }");
-    }
-    lua_pop(L, 1);  // the table of options holds it on
-    return *integrator;
-}
-
-source::Task asked_task(lua_State* L, const lua::Options& options, const model::Oscillator& system) {
-    const motion::Grid rows = asked_rows(options);
+source::Task asked_task(lua_State* L, const lua::Options& options, const RunOptions& asked,
+                        const model::Oscillator& system) {
+    const auto* integrator = options.object<motion::Integrator>("integrator");
     options.push("M");
     source::Task task{.system = system,
                       .excitation = to_excitation(L, -1, "sys:simulate: M", "M"),
-                      .initial = {.theta = options.number("theta0", 0), .velocity = options.number("velocity0", 0)},
-                      .window = {.start = options.number("t_start", 0)},
-                      .rows = rows,
-                      .integrator = asked_integrator(L, options)};
+                      .initial = {.theta = asked.theta0, .velocity = asked.velocity0},
+                      .window = {.start = asked.t_start},
+                      .rows = asked.dt ? motion::Grid::every(*asked.dt) : motion::Grid::at(asked.times),
+                      .integrator = integrator != nullptr ? *integrator : motion::Integrator{}};
     lua_pop(L, 1);
-    const std::vector<double>& times = rows.times();
+    if (!asked.t_end && asked.times.empty()) {
+        options.missing("t_end");
+    }
     // The latest time and not the last one: times that do not increase are an error of their own.
-    task.window.end =
-        options.has("t_end") || times.empty() ? options.number("t_end") : *std::max_element(times.begin(), times.end());
+    task.window.end = asked.t_end ? *asked.t_end : *std::max_element(asked.times.begin(), asked.times.end());
     return task;
 }
 
@@ -128,16 +100,17 @@ int run_task(lua_State* L, const lua::Options& options, source::Origin origin, d
 }
 
 int simulate_system(lua_State* L) {
-    const model::Oscillator& system = lua::self<model::Oscillator>(L, 1, example);
-    const lua::Options options(L, 2, "sys:simulate", example,
-                               {"M", "theta0", "velocity0", "t_start", "t_end", "dt", "times", "integrator", "dense"});
-    const source::Task task = asked_task(L, options, system);
-    const auto compute = [](const source::Task& asked, const motion::Monitor& monitor, const motion::Limits& limits) {
-        return motion::simulate(asked.system, asked.excitation, asked.initial, asked.window, asked.rows,
-                                asked.integrator, monitor, limits);
+    const model::Oscillator& system = lua::self<model::Oscillator>(L, 1, simulate_call.example);
+    const lua::Options options(L, 2, simulate_call);
+    RunOptions asked;
+    options.fill(asked);
+    const source::Task task = asked_task(L, options, asked, system);
+    const auto compute = [](const source::Task& todo, const motion::Monitor& monitor, const motion::Limits& limits) {
+        return motion::simulate(todo.system, todo.excitation, todo.initial, todo.window, todo.rows, todo.integrator,
+                                monitor, limits);
     };
     // What M refers to is written down before M runs, because it may change that.
-    return run_task(L, options, source::origin_of(L, task), task.window.start, options.boolean("dense", true), compute);
+    return run_task(L, options, source::origin_of(L, task), task.window.start, asked.dense, compute);
 }
 
 }  // namespace dinal::api

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <functional>
+#include <optional>
+#include <vector>
 
 #include "lua/bind.hpp"
 #include "lua/options.hpp"
@@ -22,16 +24,79 @@ using Compute = std::function<text::Expected<motion::Trajectory>(
 int run_task(lua_State* L, const lua::Options& options, source::Origin origin, double from, bool dense,
              const Compute& compute);
 
+/// What is asked of sys:simulate besides the excitation and the integrator.
+struct RunOptions {
+    double theta0 = 0;
+    double velocity0 = 0;
+    double t_start = 0;
+    std::optional<double> t_end = {};
+    std::optional<double> dt = {};
+    std::vector<double> times = {};
+    bool dense = true;
+};
+inline constexpr text::Option simulate_options[] = {
+    {.name = "M",
+     .unit = "torque",
+     .otherwise = "0",
+     .meaning = "the excitation: a number, a Lua function of t or of t, theta, velocity, or an excitation",
+     .object = "excitation"},
+    {.name = "theta0", .unit = "rad", .meaning = "where the mass starts", .filled = text::fills<&RunOptions::theta0>},
+    {.name = "velocity0",
+     .unit = "rad per time unit",
+     .meaning = "how fast it starts",
+     .filled = text::fills<&RunOptions::velocity0>},
+    {.name = "t_start", .unit = "time units", .meaning = "when it starts", .filled = text::fills<&RunOptions::t_start>},
+    {.name = "t_end",
+     .unit = "time units",
+     .meaning = "when the run ends; without it, at the last of the times",
+     .filled = text::fills<&RunOptions::t_end>},
+    {.name = "dt",
+     .unit = "time units",
+     .otherwise = text::needed,
+     .range = text::positive,
+     .meaning = "from row to row; t_end has a row, too",
+     .filled = text::fills<&RunOptions::dt>},
+    {.name = "times",
+     .unit = "time units",
+     .meaning = "where rows are kept: a table or a vector, increasing; {} keeps none",
+     .filled = text::fills<&RunOptions::times>,
+     .instead_of_previous = true},
+    {.name = "integrator",
+     .otherwise = "integrator.spectral{}",
+     .meaning = "the method",
+     .object = "integrator",
+     .wanted = "an integrator such as integrator.rk4{ h = 0.001 }"},
+    {.name = "dense",
+     .meaning = "false keeps nothing between the rows, which saves memory in very long runs and costs run:at(t)",
+     .filled = text::fills<&RunOptions::dense>},
+};
+inline constexpr text::Call simulate_call{"sys:simulate", "sys:simulate{ M = M, theta0 = 1, t_end = 20, dt = 0.01 }",
+                                          simulate_options};
+
+/// What is asked of run:continue.
+struct MoreTime {
+    std::optional<double> t_end = {};
+    std::optional<std::vector<double>> times = {};
+};
+inline constexpr text::Option continue_options[] = {
+    {.name = "t_end",
+     .unit = "time units",
+     .meaning = "how far the run goes on; without it, to the last of the times, or where it should have ended",
+     .filled = text::fills<&MoreTime::t_end>},
+    {.name = "times",
+     .unit = "time units",
+     .meaning = "more rows of a run that had times",
+     .filled = text::fills<&MoreTime::times>},
+};
+inline constexpr text::Call continue_call{"run:continue", "run:continue{ t_end = 40 }", continue_options, true};
+
 inline constexpr lua::Doc simulate_doc = {
-    "sys:simulate{ M = 0, theta0 = 0, velocity0 = 0, t_start = 0, t_end, dt | times, integrator, dense = true } -> run",
-    "Runs the system from theta0 (rad) and velocity0 (rad per time unit) at t_start to t_end. M is the excitation: a "
-    "number, a Lua function of t or of t, theta, velocity, or an excitation. Rows are kept every dt and at t_end, or "
-    "at `times` (a table or a vector, increasing; t_end is then the last of them unless given; {} keeps no rows). The "
-    "integrator is integrator.spectral{} unless given. dense = false keeps nothing between the rows, which saves "
-    "memory in very long runs and costs run:at(t). "
+    "sys:simulate{ OPTIONS } -> run",
+    "Runs the system, by integrator.spectral unless told otherwise. "
     "When M fails or Ctrl-C is pressed, what was done so far is in dinal.partial.",
     "sys = nondimensional{ friction_ratio = 0.167 }\n"
     "run = sys:simulate{ theta0 = 0, velocity0 = 2*math.pi, t_end = 3, dt = 0.01 }\n"
-    "print(run.outcome, string.format(\"%.6f\", run:at(3)))  --> at rest\t0.155151"};
+    "print(run.outcome, string.format(\"%.6f\", run:at(3)))  --> at rest\t0.155151",
+    {&simulate_call}};
 
 }  // namespace dinal::api

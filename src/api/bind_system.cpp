@@ -14,6 +14,32 @@ namespace dinal::api {
 
 namespace {
 
+constexpr text::Call system_call{"system", "system{ I = 1, k = 39.5, C = 1.5, Rd = 2, Re = 3 }",
+                                 model::oscillator_options};
+
+/// Ratios to k = 1 and to the characteristic torque Mc = 1.
+struct Ratios {
+    double zeta = 0;
+    double friction = 0;
+    std::optional<double> breakaway = {};
+};
+constexpr text::Option ratio_options[] = {
+    {.name = "zeta",
+     .range = text::not_negative,
+     .meaning = "viscous damping ratio",
+     .filled = text::fills<&Ratios::zeta>},
+    {.name = "friction_ratio",
+     .range = text::not_negative,
+     .meaning = "Rd/Mc",
+     .filled = text::fills<&Ratios::friction>},
+    {.name = "breakaway_ratio",
+     .otherwise = "friction_ratio",
+     .meaning = "Re/Mc, at least friction_ratio",
+     .filled = text::fills<&Ratios::breakaway>},
+};
+constexpr text::Call nondimensional_call{"nondimensional", "nondimensional{ zeta = 0.1, friction_ratio = 0.2 }",
+                                         ratio_options, true};
+
 int push_system(lua_State* L, const lua::Options& options, const model::OscillatorParameters& parameters) {
     const auto made = model::Oscillator::make(parameters);
     if (!made) {
@@ -24,42 +50,29 @@ int push_system(lua_State* L, const lua::Options& options, const model::Oscillat
 }
 
 int system(lua_State* L) {
-    const lua::Options options(L, 1, "system", "system{ I = 1, k = 39.5, C = 1.5, Rd = 2, Re = 3 }",
-                               {"I", "k", "C", "Rd", "Re"});
+    const lua::Options options(L, 1, system_call);
     model::OscillatorParameters parameters;
-    parameters.inertia = options.number("I");
-    parameters.stiffness = options.number("k");
-    parameters.damping = options.number("C", 0);
-    parameters.kinetic_friction = options.number("Rd", 0);
-    parameters.breakaway = options.optional_number("Re");
+    options.fill(parameters);
     return push_system(L, options, parameters);
 }
 
 int nondimensional(lua_State* L) {
-    const lua::Options options(L, 1, "nondimensional", "nondimensional{ zeta = 0.1, friction_ratio = 0.2 }",
-                               {"zeta", "friction_ratio", "breakaway_ratio"}, true);
-    const double zeta = options.number("zeta", 0);
-    const double friction_ratio = options.number("friction_ratio", 0);
-    const double breakaway_ratio = options.number("breakaway_ratio", friction_ratio);
-    // The core would speak of C, Rd and Re, which the user has not typed.
-    if (zeta < 0) {
-        options.fail(fmt::format("zeta = {:.6g} must not be negative", zeta));
-    }
-    if (friction_ratio < 0) {
-        options.fail(fmt::format("friction_ratio = {:.6g} must not be negative", friction_ratio));
-    }
-    if (breakaway_ratio < friction_ratio) {
+    const lua::Options options(L, 1, nondimensional_call);
+    Ratios ratios;
+    options.fill(ratios);
+    const double breakaway_ratio = ratios.breakaway.value_or(ratios.friction);
+    if (breakaway_ratio < ratios.friction) {  // the core would speak of Rd and Re, which the user has not typed
         options.fail(fmt::format("breakaway_ratio = {:.6g} must be at least friction_ratio = {:.6g}", breakaway_ratio,
-                                 friction_ratio));
+                                 ratios.friction));
     }
     // NOTE: no double is both I = 1/(4 pi^2), for which T0 is 1 to the last bit, and a square, so that C/2 = sqrt(I k)
     // can hold to the last bit, too. zeta = 1 needs the square: it is critical damping then, and not nearly so.
     constexpr double root = 1 / (2 * std::numbers::pi);
     model::OscillatorParameters parameters;
-    parameters.inertia = zeta == 1 ? root * root : 1 / (4 * std::numbers::pi * std::numbers::pi);
+    parameters.inertia = ratios.zeta == 1 ? root * root : 1 / (4 * std::numbers::pi * std::numbers::pi);
     parameters.stiffness = 1;
-    parameters.damping = 2 * zeta * std::sqrt(parameters.inertia);
-    parameters.kinetic_friction = friction_ratio;
+    parameters.damping = 2 * ratios.zeta * std::sqrt(parameters.inertia);
+    parameters.kinetic_friction = ratios.friction;
     parameters.breakaway = breakaway_ratio;
     return push_system(L, options, parameters);
 }
@@ -119,22 +132,21 @@ constexpr lua::Member functions[] = {
     {"system",
      lua::guarded<system>,
      lua::Kind::function,
-     {"system{ I, k, C = 0, Rd = 0, Re = Rd } -> system",
+     {"system{ OPTIONS } -> system",
       "A mass on a spring with viscous damping and dry friction: I theta'' + C theta' + Rd sgn(theta') + k theta = "
-      "M(t), stuck while the velocity is zero and |M - k theta| <= Re. I is the moment of inertia, k the stiffness "
-      "(torque per rad), C the viscous damping (torque per rad per time unit), Rd the friction torque while moving, Re "
-      "the torque that sticking can hold. SI or any consistent units; I > 0, k > 0, C >= 0, Rd >= 0, Re >= Rd.",
+      "M(t), stuck while the velocity is zero and |M - k theta| <= Re. SI or any consistent units.",
       "sys = system{ I = 1, k = 4*math.pi^2, C = 1.5, Rd = 16.5, Re = 18 }\n"
-      "print(sys.T0, sys.regime)  --> 1.0\tunderdamped"}},
+      "print(sys.T0, sys.regime)  --> 1.0\tunderdamped",
+      {&system_call}}},
     {"nondimensional",
      lua::guarded<nondimensional>,
      lua::Kind::function,
-     {"nondimensional{ zeta = 0, friction_ratio = 0, breakaway_ratio = friction_ratio } -> system",
+     {"nondimensional{ OPTIONS } -> system",
       "The system with k = 1 and I = 1/(4 pi^2): its period T0 is 1 and torques are in units of the characteristic "
-      "torque Mc, so that M is M* of the report. zeta is the viscous damping ratio, "
-      "friction_ratio is Rd/Mc, breakaway_ratio Re/Mc.",
+      "torque Mc, so that M is M* of the report.",
       "sys = nondimensional{ zeta = 0.119, friction_ratio = 0.418 }\n"
-      "print(sys.k, sys.Rd, string.format(\"%.3f\", sys.zeta))  --> 1.0\t0.418\t0.119"}},
+      "print(sys.k, sys.Rd, string.format(\"%.3f\", sys.zeta))  --> 1.0\t0.418\t0.119",
+      {&nondimensional_call}}},
 };
 
 constexpr lua::Member members[] = {
@@ -224,7 +236,7 @@ const lua::Class system_functions = {
 
 const lua::Class system_class = {
     "system",
-    {"system{ I, k, C = 0, Rd = 0, Re = Rd } -> system",
+    {"system{ I, k, ... } -> system",
      "A valid oscillator. It can not be changed; its parameters and what follows from them are fields.",
      "sys = system{ I = 1, k = 4, C = 1 }\nprint(sys.omega0, sys.zeta)  --> 2.0\t0.25"},
     members,

@@ -10,14 +10,11 @@ namespace dinal::api {
 
 namespace {
 
-constexpr std::string_view call = "run:continue";
-constexpr std::string_view example = "run:continue{ t_end = 40 }";
-
 /// The times of the run until it ended, then the new ones; without these, what it had not come to before t_end.
-motion::Grid asked_rows(const lua::Options& options, const motion::Trajectory& so_far, const source::Task& task,
-                        double t_end) {
+motion::Grid asked_rows(const lua::Options& options, const MoreTime& asked, const motion::Trajectory& so_far,
+                        const source::Task& task, double t_end) {
     std::vector<double> times = task.rows.times();
-    const std::vector<double> more = options.numbers("times");
+    const std::vector<double> more = asked.times.value_or(std::vector<double>());
     if (!more.empty() && more.front() <= so_far.t_stop) {
         options.fail(fmt::format("times[1] = {:.17g} must be after t = {:.6g}, where the run ended", more.front(),
                                  so_far.t_stop));
@@ -25,33 +22,35 @@ motion::Grid asked_rows(const lua::Options& options, const motion::Trajectory& s
     if (const auto wrong = motion::Grid::at(more).within({so_far.t_stop, t_end}); !wrong) {
         options.fail(wrong.error());
     }
-    const double kept = options.has("times") ? so_far.t_stop : t_end;
+    const double kept = asked.times ? so_far.t_stop : t_end;
     times.erase(std::upper_bound(times.begin(), times.end(), kept), times.end());
     times.insert(times.end(), more.begin(), more.end());
     return motion::Grid::at(std::move(times));
 }
 
 /// t_end, the last of the times, or where a run that was stopped should have ended.
-double asked_end(const lua::Options& options, const motion::Trajectory& so_far, const source::Task& task) {
-    if (options.has("t_end")) {
-        return options.number("t_end");
+double asked_end(const lua::Options& options, const MoreTime& asked, const motion::Trajectory& so_far,
+                 const source::Task& task) {
+    if (asked.t_end) {
+        return *asked.t_end;
     }
-    if (options.has("times")) {
-        const std::vector<double> times = options.numbers("times");
-        if (!times.empty()) return *std::max_element(times.begin(), times.end());
+    if (asked.times && !asked.times->empty()) {
+        return *std::max_element(asked.times->begin(), asked.times->end());
     }
     if (so_far.t_stop < task.window.end) {
         return task.window.end;
     }
     options.fail(fmt::format("the run reached its end at t = {:.6g}: say how far it is to go on, for example {}",
-                             so_far.t_stop, example));
+                             so_far.t_stop, continue_call.example));
 }
 
 }  // namespace
 
 int continue_run(lua_State* L) {
-    const RunHandle run = lua::self<RunHandle>(L, 1, example.data());  // kept: M may drop the last reference
-    const lua::Options options(L, 2, call, example, {"t_end", "times"}, true);
+    const RunHandle run = lua::self<RunHandle>(L, 1, continue_call.example);  // kept: M may drop the last reference
+    const lua::Options options(L, 2, continue_call);
+    MoreTime asked;
+    options.fill(asked);
     const motion::Trajectory& so_far = run->trajectory;
     if (!run->origin) {
         options.fail(
@@ -60,14 +59,14 @@ int continue_run(lua_State* L) {
     }
     source::Origin origin = *run->origin;
     const bool spaced = origin.rows.dt() > 0;
-    if (spaced && options.has("times")) {
+    if (spaced && asked.times) {
         options.fail(
             fmt::format("this run has a row every dt = {:.6g}, and goes on so; times are for runs that had times",
                         origin.rows.dt()));
     }
-    origin.window.end = asked_end(options, so_far, origin);
+    origin.window.end = asked_end(options, asked, so_far, origin);
     if (!spaced) {
-        origin.rows = asked_rows(options, so_far, origin, origin.window.end);
+        origin.rows = asked_rows(options, asked, so_far, origin, origin.window.end);
     }
     const auto compute = [&so_far](const source::Task& task, const motion::Monitor& monitor,
                                    const motion::Limits& limits) {

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 
+#include "api/plot_options.hpp"
 #include "files/file.hpp"
 #include "lua/external_memory.hpp"
 #include "lua/interrupt.hpp"
@@ -17,8 +18,8 @@
 namespace dinal::api {
 namespace {
 
-plots::Interval asked_range(const lua::Options& options, std::string_view name, bool logarithmic) {
-    const std::vector<double> ends = options.numbers(name);
+plots::Interval asked_range(const lua::Options& options, std::string_view name, const std::vector<double>& ends,
+                            bool logarithmic) {
     if (ends.size() != 2 || !(ends[0] < ends[1])) {
         options.fail(fmt::format("{} must be two increasing numbers such as {{ 0, 10 }}", name));
     }
@@ -50,56 +51,28 @@ void set_ticks(lua_State* L, const lua::Options& options, std::string_view name,
         return;
     }
     axis.division = options.number(name);
-    if (*axis.division <= 0) {
-        options.fail(
-            fmt::format("{} = {:.6g} must be positive: it is the distance from tick to tick", name, *axis.division));
-    }
     if (axis.logarithmic) {
         options.fail(fmt::format("{} must be a list of numbers such as {{ 0.1, 1, 10 }} on a logarithmic axis", name));
     }
 }
 
-void set_axis(lua_State* L, const lua::Options& options, char letter, plots::Axis& axis) {
-    const auto name = [letter](std::string_view rest) { return letter + std::string(rest); };
-    axis.logarithmic = options.boolean(name("log"), axis.logarithmic);
-    if (options.has(name("label"))) {
-        axis.label = options.text(name("label"));
-    }
-    if (options.has(name("lim"))) {
-        axis.limits = asked_range(options, name("lim"), axis.logarithmic);
-    }
-    set_ticks(L, options, name("ticks"), axis);
-}
-
-int whole(const lua::Options& options, std::string_view name, int otherwise, int least, int most) {
-    if (!options.has(name)) {
-        return otherwise;
-    }
-    const double value = options.number(name);
-    if (value != std::floor(value) || value < least || value > most) {
-        options.fail(fmt::format("{} = {:.6g} must be a whole number from {} to {}: {} of text", name, value, least,
-                                 most, name == "width" ? "columns" : "lines"));
-    }
-    return static_cast<int>(value);
-}
-
 /// As wide as the screen, but no wider than one can overlook, and so high that what was typed still stands above it.
-plots::TextFormat asked_format(const lua::Options& options, bool phase) {
+plots::TextFormat asked_format(const TargetOptions& asked, bool phase) {
     const terminal::Display seen = terminal::display_of(STDOUT_FILENO);
     constexpr int widest = 120;
     plots::TextFormat format;
-    format.columns = whole(options, "width", std::clamp(seen.columns - 1, 20, widest), 20, 1000);
-    format.rows = whole(options, "height", std::clamp(seen.rows - 2, 10, phase ? 40 : 24), 5, 500);
-    format.charset = options.boolean("ascii", !seen.draws) ? plots::Charset::ascii : plots::Charset::braille;
+    format.columns = asked.width.value_or(std::clamp(seen.columns - 1, 20, widest));
+    format.rows = asked.height.value_or(std::clamp(seen.rows - 2, 10, phase ? 40 : 24));
+    format.charset = asked.ascii.value_or(!seen.draws) ? plots::Charset::ascii : plots::Charset::braille;
     format.colours = seen.colour;
     return format;
 }
 
-plots::PaperSize asked_size(const lua::Options& options) {
-    if (!options.has("size")) {
+plots::PaperSize asked_size(const lua::Options& options, const TargetOptions& asked) {
+    if (!asked.size) {
         return {};
     }
-    const std::vector<double> size = options.numbers("size");
+    const std::vector<double>& size = *asked.size;
     if (size.size() != 2 || *std::min_element(size.begin(), size.end()) < 2 ||
         *std::max_element(size.begin(), size.end()) > 100) {
         options.fail("size must be width and height in cm, each from 2 to 100, such as { 8.5, 6 }");
@@ -145,13 +118,12 @@ T value_or_fail(const lua::Options& options, text::Expected<T> expected) {
     return std::move(expected).value();
 }
 
-void write_picture(lua_State* L, const lua::Options& options, const std::vector<plots::Figure>& figures,
-                   const plots::TextFormat& format) {
-    const std::string name = options.text("file");
-    const FileKind kind = kind_of(options, name);
-    const plots::PaperSize size = asked_size(options);
+void write_picture(lua_State* L, const lua::Options& options, const TargetOptions& asked,
+                   const std::vector<plots::Figure>& figures, const plots::TextFormat& format) {
+    const FileKind kind = kind_of(options, *asked.file);
+    const plots::PaperSize size = asked_size(options, asked);
     files::OutputFile file =
-        value_or_fail(options, files::OutputFile::create(name));  // before the work that may be in vain
+        value_or_fail(options, files::OutputFile::create(*asked.file));  // before the work that may be in vain
     const auto bytes = content(figures, kind, size, format);
     if (lua::interrupt_requested()) {
         lua::raise_interrupted(L);
@@ -187,13 +159,23 @@ void check_ticks(const lua::Options& options, std::string_view name, const plots
 }  // namespace
 
 void apply_options(lua_State* L, const lua::Options& options, plots::Figure& figure) {
-    if (options.has("title")) {
-        figure.title = options.text("title");
+    FigureOptions asked;
+    options.fill(asked);
+    figure.title = asked.title.value_or(figure.title);
+    figure.x.label = asked.xlabel.value_or(figure.x.label);
+    figure.y.label = asked.ylabel.value_or(figure.y.label);
+    figure.x.logarithmic = asked.xlog.value_or(figure.x.logarithmic);
+    figure.y.logarithmic = asked.ylog.value_or(figure.y.logarithmic);
+    if (asked.xlim) {
+        figure.x.limits = asked_range(options, "xlim", *asked.xlim, figure.x.logarithmic);
     }
-    set_axis(L, options, 'x', figure.x);
-    set_axis(L, options, 'y', figure.y);
-    figure.equal = options.boolean("equal", figure.equal);
-    figure.axes = options.boolean("axes", figure.axes);
+    if (asked.ylim) {
+        figure.y.limits = asked_range(options, "ylim", *asked.ylim, figure.y.logarithmic);
+    }
+    set_ticks(L, options, "xticks", figure.x);
+    set_ticks(L, options, "yticks", figure.y);
+    figure.equal = asked.equal.value_or(figure.equal);
+    figure.axes = asked.axes.value_or(figure.axes);
     if (options.has("xticks") || options.has("yticks")) {
         const plots::View view = plots::view_of(figure);
         check_ticks(options, "xticks", figure.x, view.x);
@@ -207,19 +189,20 @@ void apply_options(lua_State* L, const lua::Options& options, plots::Figure& fig
 int deliver(lua_State* L, const lua::Options& options, std::vector<plots::Figure> figures) {
     const bool phase =
         std::any_of(figures.begin(), figures.end(), [](const plots::Figure& figure) { return figure.equal; });
-    const plots::TextFormat format = asked_format(options, phase);
-    const bool show = options.boolean("show", true);
-    if (options.has("file")) {
-        if (!show) {
+    TargetOptions asked;
+    options.fill(asked);
+    const plots::TextFormat format = asked_format(asked, phase);
+    if (asked.file) {
+        if (!asked.show) {
             options.fail("file and show = false exclude each other");
         }
-        write_picture(L, options, figures, format);
+        write_picture(L, options, asked, figures, format);
         return 0;
     }
-    if (options.has("size")) {
+    if (asked.size) {
         options.fail("size is for files; give width and height for a picture in the terminal");
     }
-    if (!show) {
+    if (!asked.show) {
         const std::size_t bytes = bytes_of(figures);
         lua::push(L, Picture{std::move(figures), format});
         lua::note_external_memory(L, bytes);

@@ -16,15 +16,11 @@ struct Picture {
     plots::TextFormat format;
 };
 
-/// Options of every call that draws: for the parts of a figure, and for where it goes.
-#define DINAL_FIGURE_OPTIONS \
-    "title", "xlabel", "ylabel", "xlim", "ylim", "xticks", "yticks", "xlog", "ylog", "equal", "axes"
-#define DINAL_TARGET_OPTIONS "file", "size", "width", "height", "ascii", "show"
-
-/// Changes the figure as the options say.
+/// Changes the figure as its options say (plot_options.hpp).
 void apply_options(lua_State* L, const lua::Options& options, plots::Figure& figure);
 
-/// Prints, writes the file, or with show = false leaves the picture on the stack; returns the number of values left.
+/// As its options say (plot_options.hpp), prints, writes the file, or with show = false leaves the picture on the
+/// stack; returns the number of values left.
 int deliver(lua_State* L, const lua::Options& options, std::vector<plots::Figure> figures);
 
 /// The text of the picture without the last line end.

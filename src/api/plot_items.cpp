@@ -2,10 +2,10 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
 #include <memory>
 
 #include "api/picture.hpp"
+#include "api/plot_options.hpp"
 #include "lua/options.hpp"
 #include "lua/vector.hpp"
 
@@ -37,19 +37,10 @@ plots::Numbers numbers_on_top(lua_State* L, std::string_view what) {
 
 plots::Curve curve_with_options(lua_State* L, int item, const std::string& call) {
     push_named(L, item, 2);
-    const lua::Options options(L, lua_gettop(L), call, "{ x, y, label = \"theta\", style = \"points\" }",
-                               {"label", "style", "dashes", "colour", "base"});
+    const text::Call named{call.c_str(), curve_call.example, curve_call.options};  // which of the curves it is
+    const lua::Options options(L, lua_gettop(L), named);
     plots::Curve curve;
-    if (options.has("label")) {
-        curve.label = options.text("label");
-    }
-    curve.style = static_cast<plots::Style>(options.choice("style", {"line", "points", "fill"}, 0));
-    curve.dashes = static_cast<plots::Dashes>(options.choice("dashes", {"automatic", "solid", "dashed", "dotted"}, 0));
-    const double colour = options.number("colour", 0);
-    if (colour != std::floor(colour) || colour < 0 || colour > 7) {
-        options.fail(fmt::format("colour = {:.6g} must be a whole number from 1 to 7", colour));
-    }
-    curve.colour = static_cast<int>(colour);
+    options.fill(curve);
     if (options.has("base")) {
         options.push("base");
         curve.base = numbers_on_top(L, call + ": base");
@@ -129,7 +120,7 @@ PlotItems plot_items(lua_State* L, int table) {
         } else {
             lua::raise(L, {.sentence = fmt::format(
                                "plot: item {} must be a curve {{ x, y }} or a picture, got {}; for example {}", i,
-                               lua::describe(L, -1), plot_example),
+                               lua::describe(L, -1), plot_call.example),
                            .call = "plot",
                            .culprit = lua::written(L, -1)});
         }

@@ -1,15 +1,12 @@
 // The list part of plot{ ... }: curves made of vectors, or pictures to set side by side.
 #pragma once
 
-#include <string_view>
 #include <vector>
 
 #include "lua/lua_headers.hpp"
 #include "plots/figure.hpp"
 
 namespace dinal::api {
-
-inline constexpr std::string_view plot_example = "plot{ { t, theta, label = \"theta\" }, xlabel = \"t\" }";
 
 struct PlotItems {
     std::vector<plots::Curve> curves;

@@ -27,6 +27,13 @@ using RunHandle = std::shared_ptr<const Run>;
 void push_run(lua_State* L, Run run);
 
 /// run:save(file [, { columns = { "t", "theta" } }]), in save_run.cpp.
+inline constexpr text::Option save_options[] = {
+    {.name = "columns",
+     .meaning = "only these, for a .csv: names or numbers of columns",
+     .wanted = "a list such as { \"t\", \"theta\" }"},
+};
+inline constexpr text::Call save_call{"run:save", "run:save(\"run.csv\", { columns = { \"t\", \"theta\" } })",
+                                      save_options, true};
 int save_run(lua_State* L);
 /// run:continue{ t_end }, in continue_run.cpp.
 int continue_run(lua_State* L);

@@ -14,8 +14,6 @@ namespace dinal::api {
 
 namespace {
 
-constexpr const char* example = "run:save(\"run.csv\", { columns = { \"t\", \"theta\" } })";
-
 /// The columns asked for by `columns = { name or number, ... }`, all without it.
 std::vector<files::NamedColumn> asked_columns(lua_State* L, const lua::Options& options,
                                               const motion::Trajectory& trajectory) {
@@ -25,7 +23,7 @@ std::vector<files::NamedColumn> asked_columns(lua_State* L, const lua::Options& 
     }
     options.push("columns");
     if (!lua_istable(L, -1) || lua_rawlen(L, -1) == 0) {
-        options.wrong("columns", "a list such as { \"t\", \"theta\" }");
+        options.wrong("columns", options.row("columns").wanted);
     }
     std::vector<files::NamedColumn> asked;
     for (lua_Integer i = 1; i <= static_cast<lua_Integer>(lua_rawlen(L, -1)); ++i) {
@@ -81,12 +79,12 @@ int save_run(lua_State* L) {
     const RunHandle run = lua::self<RunHandle>(L, 1, "run:save(\"run.csv\")");
     if (lua_type(L, 2) != LUA_TSTRING) {
         lua::raise(L, {.sentence = "run:save: the name of the file must be a string, got " + lua::describe(L, 2) +
-                                   "; for example " + example,
+                                   "; for example " + save_call.example,
                        .call = "run:save",
                        .culprit = lua::written(L, 2)});
     }
     const std::string file = lua_tostring(L, 2);
-    const lua::Options options(L, 3, "run:save", example, {"columns"}, true);
+    const lua::Options options(L, 3, save_call);
     const auto written = write(L, options, file, *run);
     if (!written) {
         options.fail(written.error());

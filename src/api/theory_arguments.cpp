@@ -3,16 +3,34 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <charconv>
+#include <cstring>
 
 namespace dinal::api {
 
-TheoryArguments::TheoryArguments(lua_State* L, std::string_view call, std::string_view example,
-                                 std::initializer_list<std::string_view> names)
-    : L_(L), options_(L, 1, call, example, names) {
+TheoryArguments::TheoryArguments(lua_State* L, const text::Call& call) : L_(L), call_(call), options_(L, 1, call) {
     luaL_checkstack(L, 10, "too many values");
 }
 
-Quantity TheoryArguments::quantity(std::string_view name, const text::Range& range) {
+Quantity TheoryArguments::quantity(std::string_view name, Quantity otherwise) {
+    return options_.has(name) ? given(name) : otherwise;
+}
+
+Quantity TheoryArguments::quantity(std::string_view name) {
+    if (options_.has(name)) {
+        return given(name);
+    }
+    const char* otherwise = options_.row(name).otherwise;
+    if (otherwise == text::needed) {
+        options_.missing(name);
+    }
+    double number = 0;
+    const auto read = std::from_chars(otherwise, otherwise + std::strlen(otherwise), number);
+    return read.ptr != otherwise ? Quantity(number) : quantity(otherwise);
+}
+
+Quantity TheoryArguments::given(std::string_view name) {
+    const text::Range& range = options_.row(name).range;
     options_.push(name);
     if (const auto* vector = lua::test<lua::Vector>(L_, -1)) {
         lua_pop(L_, 1);  // the table of options holds it on
@@ -31,36 +49,7 @@ Quantity TheoryArguments::quantity(std::string_view name, const text::Range& ran
         check(name, range, tables_.back());
         return remembered(Quantity(tables_.back()));
     }
-    const double number = options_.number(name);
-    if (!range.holds(number)) {
-        options_.fail(fmt::format("{} = {:.6g} must {}", name, number, range.must));
-    }
-    return remembered(Quantity(number));
-}
-
-Quantity TheoryArguments::quantity(std::string_view name, const text::Range& range, double otherwise) {
-    return options_.has(name) ? quantity(name, range) : Quantity(otherwise);
-}
-
-const model::Oscillator* TheoryArguments::optional_system() const {
-    if (!options_.has("system")) {
-        return nullptr;
-    }
-    options_.push("system");
-    const auto* system = lua::test<model::Oscillator>(L_, -1);
-    if (system == nullptr) {
-        options_.wrong("system", "a system such as system{ I = 1, k = 39.5 }");
-    }
-    lua_pop(L_, 1);  // the table of options holds it on
-    return system;
-}
-
-const model::Oscillator& TheoryArguments::system() const {
-    const model::Oscillator* system = optional_system();
-    if (system == nullptr) {
-        options_.missing("system");
-    }
-    return *system;
+    return remembered(Quantity(options_.number(name)));
 }
 
 void TheoryArguments::refuse(std::string_view name, std::size_t i, double value, std::string_view must) const {

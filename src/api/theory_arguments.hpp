@@ -6,6 +6,8 @@
 #include <deque>
 #include <limits>
 #include <string_view>
+#include <tuple>
+#include <utility>
 #include <vector>
 
 #include "lua/interrupt.hpp"
@@ -33,19 +35,21 @@ private:
 
 class TheoryArguments {
 public:
-    /// As Options. `call` is the name of the function: "theory.magnification".
-    TheoryArguments(lua_State* L, std::string_view call, std::string_view example,
-                    std::initializer_list<std::string_view> names);
+    TheoryArguments(lua_State* L, const text::Call& call);
 
     [[nodiscard]] const lua::Options& options() const { return options_; }
 
-    /// Vectors and tables of numbers must be equally long. A nan in a vector passes: its result is nan.
-    Quantity quantity(std::string_view name, const text::Range& range);
-    Quantity quantity(std::string_view name, const text::Range& range, double otherwise);
-    /// The system that must be there.
-    [[nodiscard]] const model::Oscillator& system() const;
-    /// system(), or nullptr when there is none.
-    [[nodiscard]] const model::Oscillator* optional_system() const;
+    /// A number or a vector in the range of its row. Vectors and tables of numbers must be equally long. A nan in a
+    /// vector passes: its result is nan. What is absent is the default of its row, a number or another option.
+    Quantity quantity(std::string_view name);
+    Quantity quantity(std::string_view name, Quantity otherwise);
+    /// All options of a call that takes nothing else.
+    template <std::size_t n>
+    std::array<Quantity, n> quantities() {
+        return quantities(std::make_index_sequence<n>());
+    }
+    /// The system; nullptr when there is none and none is needed.
+    [[nodiscard]] const model::Oscillator* system() const { return options_.object<model::Oscillator>("system"); }
 
     /// Raises "CALL: NAME[i] = VALUE MUST" for element i from 0 (without [i] when NAME is a number).
     [[noreturn]] void refuse(std::string_view name, std::size_t i, double value, std::string_view must) const;
@@ -61,12 +65,18 @@ public:
     }
 
 private:
+    template <std::size_t... i>
+    std::array<Quantity, sizeof...(i)> quantities(std::index_sequence<i...> /*places*/) {
+        return {quantity(call_.options[i].name)...};
+    }
+    Quantity given(std::string_view name);
     Quantity remembered(const Quantity& quantity);
     [[nodiscard]] bool has_nan(std::size_t i) const;
     void check_size(std::string_view name, std::size_t size);
     void check(std::string_view name, const text::Range& range, std::span<const double> values) const;
 
     lua_State* L_;
+    const text::Call& call_;
     lua::Options options_;
     std::deque<std::vector<double>> tables_;  // numbers of Lua tables; a deque does not move them
     std::vector<Quantity> quantities_;
@@ -95,6 +105,16 @@ int TheoryArguments::push_results(Function f) const {
         }
     }
     return static_cast<int>(count);
+}
+
+/// theory.NAME for a function of as many numbers as the call has options, in their order.
+template <const text::Call& call, auto function>
+int closed_form(lua_State* L) {
+    TheoryArguments arguments(L, call);
+    const auto quantities = arguments.quantities<call.options.size()>();
+    return arguments.push_result([&](std::size_t i) {
+        return std::apply([i](const auto&... quantity) { return function(quantity[i]...); }, quantities);
+    });
 }
 
 }  // namespace dinal::api

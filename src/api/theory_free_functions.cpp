@@ -5,6 +5,7 @@
 
 #include "api/theory_arguments.hpp"
 #include "api/theory_functions.hpp"
+#include "api/theory_options.hpp"
 #include "theory/theory_free.hpp"
 
 namespace dinal::api::theory_functions {
@@ -13,10 +14,7 @@ namespace {
 
 using namespace theory;
 
-constexpr text::Range swinging{"be from 0 to less than 1: without a swing there is no next extreme",
-                               [](double x) { return x >= 0 && x < 1; }};
-constexpr text::Range whole{"be a whole number, 0 or more",
-                            [](double x) { return x >= 0 && x == std::floor(x) && std::isfinite(x); }};
+namespace options = theory_options;
 
 /// A system set off at t = 0: what time_to_rest{...} and its relatives take.
 struct Start {
@@ -25,15 +23,15 @@ struct Start {
     Quantity velocity0;
 
     explicit Start(TheoryArguments& arguments)
-        : system(arguments.system()),
-          theta0(arguments.quantity("theta0", text::any_finite, 0)),
-          velocity0(arguments.quantity("velocity0", text::any_finite, 0)) {}
+        : system(*arguments.system()),
+          theta0(arguments.quantity("theta0")),
+          velocity0(arguments.quantity("velocity0")) {}
     [[nodiscard]] FreeMotion motion(std::size_t i) const { return {system, {theta0[i], velocity0[i]}}; }
 };
 
 int free_response_of_system(TheoryArguments& arguments) {
     const Start start(arguments);
-    const Quantity t = arguments.quantity("t", text::any_finite);
+    const Quantity t = arguments.quantity("t");
     if (arguments.options().has("omega0") || arguments.options().has("zeta")) {
         arguments.options().fail("system excludes omega0 and zeta, which it has of its own");
     }
@@ -47,42 +45,33 @@ int free_response_of_system(TheoryArguments& arguments) {
 }
 
 /// How many extremes extremes{...} returns.
-double asked_count(const lua::Options& options, const FreeMotion& motion) {
+double asked_count(const lua::Options& options, std::optional<double> count, const FreeMotion& motion) {
     constexpr double most = 1e7;
     const double all = motion.extremes();
-    if (!options.has("count")) {
-        if (std::isinf(all)) {
-            options.fail("count is needed, because this motion never comes to rest");
-        }
-        if (all > most) {
-            options.fail(fmt::format("count is needed, because there are {:.6g} extremes until rest", all));
-        }
-        return all;
+    if (!count && std::isinf(all)) {
+        options.fail("count is needed, because this motion never comes to rest");
     }
-    const double count = options.number("count");
-    if (!whole.holds(count) || count > most) {
-        options.fail(fmt::format("count = {:.6g} must be a whole number from 0 to {:.0e}", count, most));
+    if (!count && all > most) {
+        options.fail(fmt::format("count is needed, because there are {:.6g} extremes until rest", all));
     }
-    return std::min(count, all);
+    return std::min(count.value_or(all), all);
 }
 
 }  // namespace
 
 int free_response(lua_State* L) {
-    TheoryArguments arguments(L, "theory.free_response",
-                              "theory.free_response{ system = sys, theta0 = 1, t = vector.linspace(0, 5, 501) }",
-                              {"t", "theta0", "velocity0", "system", "omega0", "zeta"});
-    if (arguments.optional_system() != nullptr) {
+    TheoryArguments arguments(L, options::free_response);
+    if (arguments.system() != nullptr) {
         return free_response_of_system(arguments);
     }
     if (!arguments.options().has("omega0")) {
         arguments.options().missing("system, or omega0 and zeta");
     }
-    const Quantity omega0 = arguments.quantity("omega0", text::positive);
-    const Quantity zeta = arguments.quantity("zeta", text::not_negative, 0);
-    const Quantity theta0 = arguments.quantity("theta0", text::any_finite, 0);
-    const Quantity velocity0 = arguments.quantity("velocity0", text::any_finite, 0);
-    const Quantity t = arguments.quantity("t", text::any_finite);
+    const Quantity omega0 = arguments.quantity("omega0");
+    const Quantity zeta = arguments.quantity("zeta");
+    const Quantity theta0 = arguments.quantity("theta0");
+    const Quantity velocity0 = arguments.quantity("velocity0");
+    const Quantity t = arguments.quantity("t");
     return arguments.push_results([&](std::size_t i) {
         const model::State y = theory::free_response(omega0[i], zeta[i], {theta0[i], velocity0[i]}, t[i]);
         return std::array{y.theta, y.velocity};
@@ -90,16 +79,12 @@ int free_response(lua_State* L) {
 }
 
 int extremes(lua_State* L) {
-    const lua::Options options(L, 1, "theory.extremes", "theory.extremes{ system = sys, theta0 = 1 }",
-                               {"system", "theta0", "velocity0", "count"});
-    options.push("system");
-    const auto* system = lua::test<model::Oscillator>(L, -1);
-    if (system == nullptr) {
-        options.has("system") ? options.wrong("system", "a system such as system{ I = 1, k = 39.5 }")
-                              : options.missing("system");
-    }
-    const FreeMotion motion(*system, {options.number("theta0", 0), options.number("velocity0", 0)});
-    const auto n = static_cast<std::size_t>(asked_count(options, motion));
+    const lua::Options table(L, 1, options::extremes);
+    const auto& system = *table.object<model::Oscillator>("system");
+    options::ExtremesOptions asked;
+    table.fill(asked);
+    const FreeMotion motion(system, {asked.theta0, asked.velocity0});
+    const auto n = static_cast<std::size_t>(asked_count(table, asked.count, motion));
     std::vector<double> times(n), angles(n);
     for (std::size_t i = 0; i < n; ++i) {
         const Extreme extreme = motion.extreme(static_cast<double>(i));
@@ -112,23 +97,20 @@ int extremes(lua_State* L) {
 }
 
 int time_to_rest(lua_State* L) {
-    TheoryArguments arguments(L, "theory.time_to_rest", "theory.time_to_rest{ system = sys, theta0 = 1 }",
-                              {"system", "theta0", "velocity0"});
+    TheoryArguments arguments(L, options::time_to_rest);
     const Start start(arguments);
     return arguments.push_result([&](std::size_t i) { return start.motion(i).time_to_rest(); });
 }
 
 int rest_position(lua_State* L) {
-    TheoryArguments arguments(L, "theory.rest_position", "theory.rest_position{ system = sys, theta0 = 1 }",
-                              {"system", "theta0", "velocity0"});
+    TheoryArguments arguments(L, options::rest_position);
     const Start start(arguments);
     return arguments.push_result([&](std::size_t i) { return start.motion(i).rest_position().value_or(no_value); });
 }
 
 int half_cycle(lua_State* L) {
-    TheoryArguments arguments(L, "theory.half_cycle", "theory.half_cycle{ X = 1, zeta = 0.1, x_f = 0.05 }",
-                              {"X", "zeta", "x_f", "dead_zone", "system", "n"});
-    const model::Oscillator* system = arguments.optional_system();
+    TheoryArguments arguments(L, options::half_cycle);
+    const model::Oscillator* system = arguments.system();
     for (const char* name : {"zeta", "x_f", "dead_zone"}) {
         if (system != nullptr && arguments.options().has(name)) {
             arguments.options().fail(fmt::format("system excludes {}, which it has of its own", name));
@@ -138,15 +120,15 @@ int half_cycle(lua_State* L) {
         arguments.options().fail(fmt::format("the system has zeta = {:.6g}: without a swing there is no next extreme",
                                              system->damping_ratio()));
     }
-    const Quantity X = arguments.quantity("X", text::any_finite);
-    const Quantity zeta = arguments.quantity("zeta", swinging, system != nullptr ? system->damping_ratio() : 0);
-    const Quantity x_f = arguments.quantity("x_f", text::not_negative,
-                                            system != nullptr ? system->kinetic_friction() / system->stiffness() : 0);
-    const bool own_zone = system == nullptr && !arguments.options().has("dead_zone");
-    const Quantity dead_zone =
-        own_zone ? x_f
-                 : arguments.quantity("dead_zone", text::not_negative, system != nullptr ? system->dead_zone() : 0);
-    const Quantity n = arguments.quantity("n", whole, 1);
+    const Quantity X = arguments.quantity("X");
+    const Quantity n = arguments.quantity("n");
+    const auto quantity = [&](const char* name, auto of_system) {
+        return system != nullptr ? Quantity(of_system(*system)) : arguments.quantity(name);
+    };
+    const Quantity zeta = quantity("zeta", [](const model::Oscillator& sys) { return sys.damping_ratio(); });
+    const Quantity x_f =
+        quantity("x_f", [](const model::Oscillator& sys) { return sys.kinetic_friction() / sys.stiffness(); });
+    const Quantity dead_zone = quantity("dead_zone", [](const model::Oscillator& sys) { return sys.dead_zone(); });
     return arguments.push_result([&](std::size_t i) {
         if (dead_zone[i] < x_f[i]) {
             arguments.refuse("dead_zone", i, dead_zone[i], fmt::format("must be at least x_f = {:.6g}", x_f[i]));
@@ -156,34 +138,11 @@ int half_cycle(lua_State* L) {
     });
 }
 
-int logarithmic_decrement(lua_State* L) {
-    TheoryArguments arguments(L, "theory.logarithmic_decrement", "theory.logarithmic_decrement{ zeta = 0.1 }",
-                              {"zeta"});
-    const Quantity zeta = arguments.quantity("zeta", swinging);
-    return arguments.push_result([&](std::size_t i) { return theory::logarithmic_decrement(zeta[i]); });
-}
-
-int zeta_from_decrement(lua_State* L) {
-    TheoryArguments arguments(L, "theory.zeta_from_decrement", "theory.zeta_from_decrement{ decrement = 0.3 }",
-                              {"decrement"});
-    const Quantity decrement = arguments.quantity("decrement", text::not_negative);
-    return arguments.push_result([&](std::size_t i) { return zeta_of_decrement(decrement[i]); });
-}
-
-int friction_decrement(lua_State* L) {
-    TheoryArguments arguments(L, "theory.friction_decrement", "theory.friction_decrement{ Rd = 2, k = 40 }",
-                              {"Rd", "k"});
-    const Quantity Rd = arguments.quantity("Rd", text::not_negative);
-    const Quantity k = arguments.quantity("k", text::positive);
-    return arguments.push_result([&](std::size_t i) { return theory::friction_decrement(Rd[i], k[i]); });
-}
-
 int identify(lua_State* L) {
-    TheoryArguments arguments(L, "theory.identify", "theory.identify{ X0 = 1, X1 = -0.7, X2 = 0.45 }",
-                              {"X0", "X1", "X2"});
-    const Quantity X0 = arguments.quantity("X0", text::not_zero);
-    const Quantity X1 = arguments.quantity("X1", text::any_finite);
-    const Quantity X2 = arguments.quantity("X2", text::any_finite);
+    TheoryArguments arguments(L, options::identify);
+    const Quantity X0 = arguments.quantity("X0");
+    const Quantity X1 = arguments.quantity("X1");
+    const Quantity X2 = arguments.quantity("X2");
     return arguments.push_results([&](std::size_t i) {
         const auto found = theory::identify(X0[i], X1[i], X2[i]);
         return found ? std::array{found->zeta, found->friction_shift} : std::array{no_value, no_value};

@@ -80,6 +80,30 @@ bool has_words(const std::string& text, const std::string& wanted) {
     return true;
 }
 
+std::string option_meanings(const lua::Doc& doc) {
+    std::string text;
+    for (const text::Call* call : calls_of(doc)) {
+        for (const text::Option& option : call->options) text.append(option.meaning).append(" ");
+    }
+    return text;
+}
+
+/// What `one` says about each call that has an option of this name.
+template <class One>
+std::string about_option(std::string_view name, const One& one) {
+    std::string text;
+    for (const Section& section : sections()) {
+        for (const lua::Member& member : section.description->members) {
+            for (const text::Call* call : calls_of(member.doc)) {
+                for (const OptionLine& line : option_lines(call->options)) {
+                    text += line.option == name ? one(written_name(section, member), line) : "";
+                }
+            }
+        }
+    }
+    return text;
+}
+
 /// Those with the words in their names first.
 std::vector<Hit> mentioning(std::string_view words) {
     std::vector<Hit> in_name;
@@ -90,7 +114,8 @@ std::vector<Hit> mentioning(std::string_view words) {
             const std::string name = searchable(listed_name(section, member));
             if (has_words(name, wanted)) {
                 in_name.push_back({&section, &member});
-            } else if (has_words(searchable(fmt::format("{} {} {}", name, member.doc.signature, member.doc.summary)),
+            } else if (has_words(searchable(fmt::format("{} {} {} {}", name, signature(member.doc), member.doc.summary,
+                                                        option_meanings(member.doc))),
                                  wanted)) {
                 elsewhere.push_back({&section, &member});
             }
@@ -113,7 +138,8 @@ std::string likely(std::string_view word) {
     for (const Section& section : sections()) {
         names.emplace_back(section.description->name);
         for (const lua::Member& member : section.description->members) {
-            for (const lua::Token& token : lua::tokens(member.doc.signature)) {
+            const std::string whole = signature(member.doc);
+            for (const lua::Token& token : lua::tokens(whole)) {
                 if (token.kind == lua::TokenKind::name) {
                     names.emplace_back(token.text);
                 }
@@ -177,6 +203,18 @@ std::vector<std::string> help_names() {
     return names;
 }
 
+std::vector<std::string> help_option_names() {
+    std::vector<std::string> names;
+    for (const Section& section : sections()) {
+        for (const lua::Member& member : section.description->members) {
+            for (const text::Call* call : calls_of(member.doc)) {
+                for (const text::Option& option : call->options) names.emplace_back(option.name);
+            }
+        }
+    }
+    return names;
+}
+
 std::string help_about(std::string_view words, const terminal::Display& screen) {
     constexpr std::size_t most = 10;
     while (!words.empty() && words.back() == ' ') words.remove_suffix(1);
@@ -188,6 +226,15 @@ std::string help_about(std::string_view words, const terminal::Display& screen) 
     for (const Hit& hit : named(words)) {
         text += (text.empty() ? "" : "\n") + hit_text(hit, screen);
     }
+    if (!text.empty()) {
+        const auto listed = [](const std::string& call, const OptionLine& /*line*/) { return ", " + call; };
+        const std::string calls = about_option(words, listed);
+        const std::size_t width = std::min<std::size_t>(screen.width, 80) - 1;
+        return calls.empty() ? text : text + text::wrapped("An option of: " + calls.substr(2), width) + "\n";
+    }
+    text = about_option(words, [&screen](const std::string& call, const OptionLine& line) {
+        return line_about(fmt::format("{}{{ {} }}", call, line.name), line.meaning, screen);
+    });
     if (!text.empty()) {
         return text;
     }

@@ -58,11 +58,37 @@ std::string indented(std::string_view text, std::size_t width) {
     return result;
 }
 
+/// A name, and the text about it in rows of a column of its own, or below the name where the screen is narrow.
+std::string two_columns(std::string_view name, std::string_view about, std::size_t indent,
+                        const terminal::Display& screen) {
+    const std::size_t width = text_width(screen);
+    const bool narrow = width < indent + 24;
+    const bool below = narrow || name.size() + 3 > indent;
+    const std::size_t margin = narrow ? 4 : indent;
+    const std::string text = text::indented(text::wrapped(about, width - margin), margin);
+    return below ? fmt::format("  {}\n{:{}}{}\n", name, "", margin, text)
+                 : fmt::format("  {:<{}} {}\n", name, indent - 3, text);
+}
+
+std::string options_text(const lua::Doc& doc, const terminal::Display& screen) {
+    constexpr std::size_t widest_name = 24;
+    std::string text;
+    for (const text::Call* call : calls_of(doc)) {
+        const std::vector<OptionLine> lines = option_lines(call->options);
+        std::size_t indent = 0;
+        for (const OptionLine& line : lines) indent = std::max(indent, std::min(line.name.size(), widest_name) + 4);
+        text += "\n";
+        for (const OptionLine& line : lines) text += two_columns(line.name, line.meaning, indent, screen);
+    }
+    return text;
+}
+
 std::string doc_text(const lua::Doc& doc, const terminal::Display& screen) {
     const std::size_t width = text_width(screen);
-    return terminal::spelled(fmt::format("{}\n\n{}\n\n{}\n", text::wrapped(doc.signature, width),
-                                         text::wrapped(doc.summary, width), indented(doc.example, width)),
-                             screen);
+    return terminal::spelled(
+        fmt::format("{}\n\n{}\n{}\n{}\n", text::wrapped(signature(doc), width), text::wrapped(doc.summary, width),
+                    options_text(doc, screen), indented(doc.example, width)),
+        screen);
 }
 
 /// Does the text use the name as a name of its own, not as a part of another?
@@ -155,14 +181,7 @@ std::string member_text(const Section& section, const lua::Member& member, const
 }
 
 std::string line_about(std::string_view name, std::string_view summary, const terminal::Display& screen) {
-    constexpr std::size_t indent = 28;
-    const std::size_t width = text_width(screen);
-    if (width < indent + 24) {  // narrow: the text goes below the name
-        const std::string text = text::indented(text::wrapped(first_sentence(summary), width - 4), 4);
-        return fmt::format("  {}\n    {}\n", name, terminal::spelled(text, screen));
-    }
-    const std::string text = text::indented(text::wrapped(first_sentence(summary), width - indent), indent);
-    return terminal::spelled(fmt::format("  {:<{}} {}\n", name, indent - 3, text), screen);
+    return terminal::spelled(two_columns(name, first_sentence(summary), 28, screen), screen);
 }
 
 std::string class_text(const Section& section, const terminal::Display& screen) {

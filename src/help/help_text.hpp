@@ -31,6 +31,9 @@ std::string help_about(std::string_view words, const terminal::Display& screen);
 /// All names that help_about() knows, as a user writes them.
 std::vector<std::string> help_names();
 
+/// The names of all options, which help_about() knows, too. More than one call may have an option of one name.
+std::vector<std::string> help_option_names();
+
 /// Where to look next: at most five names that help_about() knows.
 std::vector<std::string> see_also(const Section& section, const lua::Member& member);
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "help/help_text.hpp"
+#include "help/signature.hpp"
 #include "text/words.hpp"
 
 namespace dinal::help {
@@ -31,7 +32,14 @@ std::string manual() {
         text += fmt::format("- [{}](#{})\n", section.title, anchor(section.title));
     }
     const auto entry = [&text](const lua::Doc& doc) {
-        text += fmt::format("`{}`\n\n{}\n\n```lua\n{}\n```\n", doc.signature, doc.summary, doc.example);
+        text += fmt::format("`{}`\n\n{}\n\n", signature(doc), doc.summary);
+        for (const text::Call* call : calls_of(doc)) {
+            for (const OptionLine& line : option_lines(call->options)) {
+                text += fmt::format("- `{}`: {}\n", line.name, line.meaning);
+            }
+            text += "\n";
+        }
+        text += fmt::format("```lua\n{}\n```\n", doc.example);
     };
     for (const Section& section : sections()) {
         text += fmt::format("\n## {}\n\n", section.title);

@@ -1,5 +1,7 @@
 #include "help/signature.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "lua/tokens.hpp"
@@ -8,6 +10,23 @@
 namespace dinal::help {
 namespace {
 
+constexpr std::string_view options_mark = "OPTIONS";
+
+std::string with_default(const text::Option& option) {
+    const std::string otherwise = text::default_text(option);
+    return otherwise.empty() ? option.name : fmt::format("{} = {}", option.name, otherwise);
+}
+
+/// "M = 0, t_end, dt | times"
+std::string option_list(std::span<const text::Option> options) {
+    std::string list;
+    for (const text::Option& option : options) {
+        list += list.empty() ? "" : option.instead_of_previous ? " | " : ", ";
+        list += with_default(option);
+    }
+    return list;
+}
+
 bool is_class_of_objects(const Section& section) {
     return std::none_of(section.description->members.begin(), section.description->members.end(),
                         [](const lua::Member& member) { return member.kind == lua::Kind::function; });
@@ -15,8 +34,41 @@ bool is_class_of_objects(const Section& section) {
 
 }  // namespace
 
-std::vector<std::string> option_names(std::string_view signature, Braces braces) {
+std::string signature(const lua::Doc& doc) {
+    std::string text = doc.signature;
+    for (const text::Call* call : calls_of(doc)) {
+        const std::size_t place = text.find(options_mark);
+        text.replace(place, options_mark.size(), option_list(call->options));
+    }
+    return text;
+}
+
+const text::Call* call_with(const lua::Doc& doc, Braces braces) {
+    const std::vector<const text::Call*> calls = calls_of(doc);
+    std::size_t next = 0;
+    int parentheses = 0;
+    int depth = 0;
+    for (const lua::Token& token : lua::tokens(doc.signature)) {
+        parentheses += token.is("(") ? 1 : token.is(")") ? -1 : 0;
+        depth += token.is("{") ? 1 : token.is("}") ? -1 : 0;
+        if (token.is(options_mark)) {
+            const bool asked = (parentheses > 0) == (braces == Braces::in_parentheses);
+            if (asked && depth == (braces == Braces::nested ? 2 : 1)) {
+                return calls[next];
+            }
+            ++next;
+        }
+    }
+    return nullptr;
+}
+
+std::vector<std::string> option_names(const lua::Doc& doc, Braces braces) {
     std::vector<std::string> names;
+    if (const text::Call* call = call_with(doc, braces)) {
+        for (const text::Option& option : call->options) names.emplace_back(option.name);
+        return names;
+    }
+    const std::string_view signature = doc.signature;
     int parentheses = 0;
     int depth = 0;
     std::string_view before;
@@ -31,6 +83,40 @@ std::vector<std::string> option_names(std::string_view signature, Braces braces)
         before = token.text;
     }
     return names;
+}
+
+std::vector<const text::Call*> calls_of(const lua::Doc& doc) {
+    std::vector<const text::Call*> calls(doc.calls.begin(), doc.calls.end());
+    std::erase(calls, nullptr);
+    return calls;
+}
+
+std::vector<OptionLine> option_lines(std::span<const text::Option> options) {
+    std::vector<OptionLine> lines;
+    for (std::size_t i = 0; i < options.size(); ++i) {
+        const text::Option& option = options[i];
+        std::vector<std::string> facts;
+        if (*option.unit != '\0') {
+            facts.emplace_back(option.unit);
+        }
+        if (option.instead_of_previous) {
+            facts.push_back(fmt::format("instead of {}", options[i - 1].name));
+        } else if (option.otherwise == text::needed) {
+            const bool pair = i + 1 < options.size() && options[i + 1].instead_of_previous;
+            facts.push_back(pair ? fmt::format("this or {} is needed", options[i + 1].name) : "needed");
+        }
+        if (option.range.must != std::string_view(text::any_finite.must)) {
+            const std::string_view must = option.range.must;
+            facts.push_back(fmt::format("must {}", must.substr(0, must.find(':'))));  // not why
+        }
+        if (!option.choices.empty()) {
+            facts.push_back(fmt::format("\"{}\"", fmt::join(option.choices, "\", \"")));
+        }
+        lines.push_back(
+            {option.name, with_default(option),
+             facts.empty() ? option.meaning : fmt::format("{} ({})", option.meaning, fmt::join(facts, ", "))});
+    }
+    return lines;
 }
 
 std::string parameters(std::string_view signature) {

@@ -12,8 +12,25 @@ namespace dinal::help {
 /// How a table of options is passed: f{ ... }, f(..., { ... }), or f{ { ... } }, as a curve of a plot.
 enum class Braces { alone, in_parentheses, nested };
 
-/// The names of the options: M, t_end, dt, times.
-std::vector<std::string> option_names(std::string_view signature, Braces braces);
+/// The whole signature: the options of the calls stand where the Doc says OPTIONS.
+std::string signature(const lua::Doc& doc);
+
+/// The call whose table of options is passed like this; nullptr when none is.
+const text::Call* call_with(const lua::Doc& doc, Braces braces);
+
+/// The names of the options that such a table has: of the call, else those that the signature itself lists.
+std::vector<std::string> option_names(const lua::Doc& doc, Braces braces);
+
+/// The calls of a Doc.
+std::vector<const text::Call*> calls_of(const lua::Doc& doc);
+
+/// An option as it is listed.
+struct OptionLine {
+    const char* option;
+    std::string name;     ///< "dt", "theta0 = 0"
+    std::string meaning;  ///< with its unit and its limits: "time from row to row (time units, must be positive)"
+};
+std::vector<OptionLine> option_lines(std::span<const text::Option> options);
 
 /// What stands in the brackets of the call: "M = 0, t_end, dt | times".
 std::string parameters(std::string_view signature);

@@ -4,6 +4,7 @@
 // add_functions() turn it into metatables and tables; help() and docs/manual.md read the very same tables.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <exception>
 #include <memory>
@@ -18,6 +19,7 @@
 #include "lua/lua_headers.hpp"
 #include "lua/memory_limit.hpp"
 #include "text/expected.hpp"
+#include "text/option.hpp"
 #include "text/suggest.hpp"  // did_you_mean, for every unknown name
 
 namespace dinal::terminal {
@@ -28,9 +30,11 @@ namespace dinal::lua {
 
 /// The only place where something that Lua can see is described.
 struct Doc {
-    const char* signature;  ///< how it is called: "sys:simulate{ t_end, dt, ... } -> run"
+    const char* signature;  ///< how it is called: "sys:simulate{ OPTIONS } -> run"
     const char* summary;    ///< one or more sentences, units included
     const char* example;    ///< Lua that runs on its own; `-->` is followed by what the line prints
+    /// Whose options stand for each OPTIONS of the signature, in this order.
+    std::array<const text::Call*, 2> calls = {};
 };
 
 enum class Kind {

@@ -11,9 +11,10 @@ namespace dinal::lua {
 
 namespace {
 
+using Names = std::vector<std::string_view>;
+
 /// "a, b and c", or with `quote` "'a', 'b' or 'c'".
-std::string joined(std::span<const std::string_view> names, std::string_view last_separator,
-                   std::string_view quote = "") {
+std::string joined(const Names& names, std::string_view last_separator, std::string_view quote = "") {
     std::string text;
     for (std::size_t i = 0; i < names.size(); ++i) {
         text += i == 0 ? "" : i + 1 == names.size() ? last_separator : ", ";
@@ -24,33 +25,71 @@ std::string joined(std::span<const std::string_view> names, std::string_view las
 
 }  // namespace
 
+Options::Options(lua_State* L, int index, const text::Call& call) : L_(L), index_(index), call_(call) {
+    check_table();
+}
+
 Options::Options(lua_State* L, int index, std::string_view call, std::string_view example,
                  std::initializer_list<std::string_view> names, bool may_be_absent)
-    : L_(L), index_(index), call_(call), example_(example) {
-    if (may_be_absent && lua_isnoneornil(L, index)) {
-        lua_settop(L, index - 1);
-        lua_newtable(L);
+    : L_(L), index_(index), own_name_(call), own_example_(example), own_names_(names.begin(), names.end()) {
+    for (const std::string& name : own_names_) own_rows_.push_back({.name = name.c_str()});
+    call_ = {own_name_.c_str(), own_example_.c_str(), own_rows_, may_be_absent};
+    check_table();
+}
+
+double Options::extended_number(std::string_view name, double otherwise) const {
+    if (!has(name)) return otherwise;
+    text::Option option = row(name);
+    option.filled.kind = text::OptionKind::number;
+    option.range.unlimited = true;
+    return std::get<double>(value(option));
+}
+
+bool Options::boolean(std::string_view name, bool otherwise) const {
+    if (!has(name)) return otherwise;
+    text::Option option = row(name);
+    option.filled.kind = text::OptionKind::flag;
+    return std::get<bool>(value(option));
+}
+
+std::size_t Options::choice(std::string_view name, std::initializer_list<const char*> choices,
+                            std::size_t otherwise) const {
+    if (!has(name)) return otherwise;
+    text::Option option = row(name);
+    option.filled.kind = text::OptionKind::choice;
+    option.choices = {choices.begin(), choices.size()};
+    return std::get<std::size_t>(value(option));
+}
+
+void Options::check_table() const {
+    if (call_.may_be_bare && lua_isnoneornil(L_, index_)) {
+        lua_settop(L_, index_ - 1);
+        lua_newtable(L_);
     }
-    if (lua_type(L, index) != LUA_TTABLE || lua_gettop(L) > index) {
-        raise(L, {.sentence = fmt::format("{} takes one table of named options, for example {}", call, example),
-                  .call = std::string(call)});
+    if (lua_type(L_, index_) != LUA_TTABLE || lua_gettop(L_) > index_) {
+        raise(L_, {.sentence =
+                       fmt::format("{} takes one table of named options, for example {}", call_.name, call_.example),
+                   .call = call_.name});
     }
-    const std::vector<std::string_view> known(names);
-    lua_pushnil(L);
-    while (lua_next(L, index) != 0) {
-        if (lua_type(L, -2) != LUA_TSTRING) {
-            raise(L, {.sentence = fmt::format("{} takes named options only, for example {}", call, example),
-                      .call = std::string(call),
-                      .culprit = written(L, -1)});
+    Names known;
+    for (const text::Option& option : call_.options) known.emplace_back(option.name);
+    lua_pushnil(L_);
+    while (lua_next(L_, index_) != 0) {
+        if (lua_type(L_, -2) != LUA_TSTRING) {
+            raise(L_,
+                  {.sentence = fmt::format("{} takes named options only, for example {}", call_.name, call_.example),
+                   .call = call_.name,
+                   .culprit = written(L_, -1)});
         }
-        const std::string_view name = lua_tostring(L, -2);
+        const std::string_view name = lua_tostring(L_, -2);
         if (std::find(known.begin(), known.end(), name) == known.end()) {
-            raise(L, {.sentence = fmt::format("{} has no option '{}' among {}", call, name, joined(known, " and ")),
-                      .call = std::string(call),
-                      .culprit = std::string(name),
-                      .cure = text::did_you_mean(name, known)});
+            raise(L_,
+                  {.sentence = fmt::format("{} has no option '{}' among {}", call_.name, name, joined(known, " and ")),
+                   .call = call_.name,
+                   .culprit = std::string(name),
+                   .cure = text::did_you_mean(name, known)});
         }
-        lua_pop(L, 1);
+        lua_pop(L_, 1);
     }
 }
 
@@ -66,92 +105,121 @@ bool Options::has(std::string_view name) const {
     return there;
 }
 
-double Options::checked_number(std::string_view name, bool infinite_too) const {
-    push(name);
-    if (lua_isnil(L_, -1)) {
-        missing(name);
+const text::Option& Options::row(std::string_view name) const {
+    return *std::find_if(call_.options.begin(), call_.options.end(),
+                         [name](const text::Option& option) { return option.name == name; });
+}
+
+void Options::fill(const void* owner, void* object) const {
+    for (std::size_t i = 0; i < call_.options.size(); ++i) {
+        const text::Option& option = call_.options[i];
+        if (option.filled.owner != owner) {
+            continue;
+        }
+        const bool first_of_pair = i + 1 < call_.options.size() && call_.options[i + 1].instead_of_previous;
+        if (first_of_pair) {
+            check_pair(option, call_.options[i + 1]);
+        }
+        if (has(option.name)) {
+            option.filled.set(object, value(option));
+        } else if (option.otherwise == text::needed && !first_of_pair && !option.instead_of_previous) {
+            missing(option.name);
+        }
     }
-    const double number = lua_tonumber(L_, -1);
-    if (lua_type(L_, -1) != LUA_TNUMBER || std::isnan(number) || (!infinite_too && std::isinf(number))) {
-        wrong(name, infinite_too ? "a number" : "a finite number");
+}
+
+void Options::check_pair(const text::Option& first, const text::Option& second) const {
+    if (has(first.name) && has(second.name)) {
+        fail(fmt::format("{} and {} exclude each other; give one of them", first.name, second.name));
+    }
+    if (first.otherwise == text::needed && !has(first.name) && !has(second.name)) {
+        fail(fmt::format("{} or {} is needed, for example {}", first.name, second.name, call_.example));
+    }
+}
+
+text::OptionValue Options::value(const text::Option& option) const {
+    push(option.name);
+    text::OptionValue value;
+    switch (option.filled.kind) {
+        case text::OptionKind::other:
+            break;
+        case text::OptionKind::number:
+            value = number_on_top(option);
+            break;
+        case text::OptionKind::flag:
+            if (!lua_isboolean(L_, -1)) {
+                wrong(option.name, "true or false");
+            }
+            value = lua_toboolean(L_, -1) != 0;
+            break;
+        case text::OptionKind::choice:
+            value = choice_on_top(option);
+            break;
+        case text::OptionKind::text: {
+            if (lua_type(L_, -1) != LUA_TSTRING) {
+                wrong(option.name, "a string");
+            }
+            std::size_t length = 0;
+            const char* start = lua_tolstring(L_, -1, &length);
+            value = std::string(start, length);
+            break;
+        }
+        case text::OptionKind::numbers:
+            value = numbers_at(L_, -1, call_.name, option.name);
+            break;
+    }
+    if (const auto complaint = text::complaint(option, value)) {
+        fail({.sentence = *complaint, .option = option.name, .culprit = written(L_, -1)});
     }
     lua_pop(L_, 1);
+    return value;
+}
+
+double Options::number_on_top(const text::Option& option) const {
+    const double number = lua_tonumber(L_, -1);
+    const bool infinite = option.range.unlimited;
+    if (lua_type(L_, -1) != LUA_TNUMBER || std::isnan(number) || (!infinite && std::isinf(number))) {
+        wrong(option.name, infinite ? "a number" : "a finite number");
+    }
     return number;
 }
 
-double Options::number(std::string_view name) const {
-    return checked_number(name, false);
-}
-
-double Options::number(std::string_view name, double otherwise) const {
-    return has(name) ? checked_number(name, false) : otherwise;
-}
-
-std::optional<double> Options::optional_number(std::string_view name) const {
-    return has(name) ? std::optional(checked_number(name, false)) : std::nullopt;
-}
-
-double Options::extended_number(std::string_view name, double otherwise) const {
-    return has(name) ? checked_number(name, true) : otherwise;
-}
-
-bool Options::boolean(std::string_view name, bool otherwise) const {
-    push(name);
-    if (!lua_isnil(L_, -1) && !lua_isboolean(L_, -1)) {
-        wrong(name, "true or false");
-    }
-    const bool value = lua_isnil(L_, -1) ? otherwise : lua_toboolean(L_, -1) != 0;
-    lua_pop(L_, 1);
-    return value;
-}
-
-std::string Options::text(std::string_view name) const {
-    push(name);
-    if (lua_isnil(L_, -1)) {
-        missing(name);
-    }
-    if (lua_type(L_, -1) != LUA_TSTRING) {
-        wrong(name, "a string");
-    }
-    std::size_t length = 0;
-    const char* start = lua_tolstring(L_, -1, &length);
-    std::string value(start, length);
-    lua_pop(L_, 1);
-    return value;
-}
-
-std::size_t Options::choice(std::string_view name, std::initializer_list<std::string_view> choices,
-                            std::size_t otherwise) const {
-    if (!has(name)) {
-        return otherwise;
-    }
-    const std::vector<std::string_view> known(choices);
-    push(name);
+std::size_t Options::choice_on_top(const text::Option& option) const {
+    const Names known(option.choices.begin(), option.choices.end());
     const bool is_text = lua_type(L_, -1) == LUA_TSTRING;
     const std::string value = is_text ? lua_tostring(L_, -1) : "";
     const auto found = std::find(known.begin(), known.end(), value);
     if (!is_text || found == known.end()) {
-        fail({.sentence = fmt::format("{} must be {}, got {}", name, joined(known, " or ", "'"), describe(L_, -1)),
-              .option = std::string(name),
+        fail({.sentence =
+                  fmt::format("{} must be {}, got {}", option.name, joined(known, " or ", "'"), describe(L_, -1)),
+              .option = option.name,
               .culprit = written(L_, -1),
               .cure = is_text ? text::did_you_mean(value, known) : ""});
     }
-    lua_pop(L_, 1);
     return static_cast<std::size_t>(found - known.begin());
 }
 
-std::vector<double> Options::numbers(std::string_view name) const {
-    std::vector<double> values;
-    push(name);
-    if (!lua_isnil(L_, -1)) {
-        values = numbers_at(L_, -1, call_, name);
+double Options::number(std::string_view name) const {
+    if (!has(name)) {
+        missing(name);
     }
-    lua_pop(L_, 1);
-    return values;
+    text::Option option = row(name);
+    option.filled.kind = text::OptionKind::number;
+    return std::get<double>(value(option));
+}
+
+std::vector<double> Options::numbers(std::string_view name) const {
+    if (!has(name)) {
+        return {};
+    }
+    text::Option option = row(name);
+    option.filled.kind = text::OptionKind::numbers;
+    option.range = text::any_finite;
+    return std::get<std::vector<double>>(value(option));
 }
 
 void Options::fail(text::Error error) const {
-    raise(L_, text::in_call(call_, std::move(error)));
+    raise(L_, text::in_call(call_.name, std::move(error)));
 }
 
 void Options::fail(std::string_view sentence) const {
@@ -166,8 +234,8 @@ void Options::wrong(std::string_view name, std::string_view wanted) const {
 }
 
 void Options::missing(std::string_view name) const {
-    raise(L_, {.sentence = fmt::format("{} needs {}, for example {}", call_, name, example_),
-               .call = std::string(call_),
+    raise(L_, {.sentence = fmt::format("{} needs {}, for example {}", call_.name, name, call_.example),
+               .call = call_.name,
                .option = std::string(name),
                .culprit = "nil"});
 }

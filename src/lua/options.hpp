@@ -1,4 +1,4 @@
-// The one table of named options that a constructor or a method takes, checked strictly and once.
+// The one table of named options that a constructor or a method takes, checked strictly and once against its rows.
 #pragma once
 
 #include <initializer_list>
@@ -8,39 +8,62 @@
 #include <vector>
 
 #include "lua/bind.hpp"
+#include "text/option.hpp"
 
 namespace dinal::lua {
 
-/// Every getter raises a sentence that names the call, the option, its value and what is wanted. Strings are no
-/// numbers.
+/// Whatever is wrong is told by a sentence that names the call, the option, its value and what is wanted. Strings are
+/// no numbers.
 class Options {
 public:
-    /// The table at `index`, which must be the last argument. `call` heads all sentences ("excitation.pulse"),
-    /// `example` shows a right call ("excitation.pulse{ at = 1, width = 0.2 }"), `names` are all the options there are.
-    /// Raises when it is no table, has positional entries or an unknown name. With `may_be_absent`, no argument is an
-    /// empty table.
+    /// The table at `index`, which must be the last argument. Raises when it is no table, has positional entries or a
+    /// name that is in no row. When the call may be bare, no argument is an empty table.
+    Options(lua_State* L, int index, const text::Call& call);
+
+    /// The same for names alone, whose values the call checks itself.
     Options(lua_State* L, int index, std::string_view call, std::string_view example,
             std::initializer_list<std::string_view> names, bool may_be_absent = false);
+    [[nodiscard]] double number(std::string_view name, double otherwise) const {
+        return has(name) ? number(name) : otherwise;
+    }
+    [[nodiscard]] std::optional<double> optional_number(std::string_view name) const {
+        return has(name) ? std::optional(number(name)) : std::nullopt;
+    }
+    [[nodiscard]] double extended_number(std::string_view name, double otherwise) const;
+    [[nodiscard]] bool boolean(std::string_view name, bool otherwise) const;
+    [[nodiscard]] std::size_t choice(std::string_view name, std::initializer_list<const char*> choices,
+                                     std::size_t otherwise) const;
+
+    /// Fills what the rows of a T say. Raises when an option is missing, of another kind, or out of its range.
+    template <class T>
+    void fill(T& object) const {
+        fill(&text::detail::owner_tag<T>, &object);
+    }
 
     [[nodiscard]] bool has(std::string_view name) const;
-
-    /// A finite number that must be there; `name = 1` style hints come from the example of the call.
-    [[nodiscard]] double number(std::string_view name) const;
-    [[nodiscard]] double number(std::string_view name, double otherwise) const;
-    [[nodiscard]] std::optional<double> optional_number(std::string_view name) const;
-    /// Like number(), but inf and -inf pass; NaN never does.
-    [[nodiscard]] double extended_number(std::string_view name, double otherwise) const;
-
-    [[nodiscard]] bool boolean(std::string_view name, bool otherwise) const;
-    [[nodiscard]] std::string text(std::string_view name) const;
-    /// Which of `choices` it is, as an index; `otherwise` when absent. A wrong one gets a suggestion.
-    [[nodiscard]] std::size_t choice(std::string_view name, std::initializer_list<std::string_view> choices,
-                                     std::size_t otherwise) const;
-    /// A sequence of finite numbers: a table or a vector; empty when absent.
-    [[nodiscard]] std::vector<double> numbers(std::string_view name) const;
-
     /// Pushes the option as it stands, nil when absent.
     void push(std::string_view name) const;
+    /// The option as its row wants it, which must not be of the kind `other`.
+    [[nodiscard]] text::OptionValue value(const text::Option& option) const;
+
+    /// Options of the kind `other`: a number in the range of its row; the finite numbers of a table or a vector, none
+    /// when it is absent.
+    [[nodiscard]] double number(std::string_view name) const;
+    [[nodiscard]] std::vector<double> numbers(std::string_view name) const;
+    /// An object of one of our classes; the table of options holds it on. nullptr when it is absent and not needed.
+    template <class T>
+    [[nodiscard]] const T* object(std::string_view name) const {
+        push(name);
+        const auto* found = test<T>(L_, -1);
+        if (found == nullptr && (!lua_isnil(L_, -1) || row(name).otherwise == text::needed)) {
+            lua_isnil(L_, -1) ? missing(name) : wrong(name, row(name).wanted);
+        }
+        lua_pop(L_, 1);
+        return found;
+    }
+
+    /// The row of an option that there is.
+    [[nodiscard]] const text::Option& row(std::string_view name) const;
 
     /// Raises the error as one of this call: "CALL: SENTENCE".
     [[noreturn]] void fail(text::Error error) const;
@@ -51,12 +74,27 @@ public:
     [[noreturn]] void missing(std::string_view name) const;
 
 private:
-    [[nodiscard]] double checked_number(std::string_view name, bool infinite_too) const;
+    void check_table() const;
+    void fill(const void* owner, void* object) const;
+    void check_pair(const text::Option& first, const text::Option& second) const;
+    [[nodiscard]] double number_on_top(const text::Option& option) const;
+    [[nodiscard]] std::size_t choice_on_top(const text::Option& option) const;
 
     lua_State* L_;
     int index_;
-    std::string_view call_;
-    std::string_view example_;
+    std::string own_name_, own_example_;
+    std::vector<std::string> own_names_;
+    std::vector<text::Option> own_rows_;
+    text::Call call_;
 };
+
+/// The table of a call whose options all fill one struct.
+template <class T>
+[[nodiscard]] T read(lua_State* L, int index, const text::Call& call) {
+    const Options options(L, index, call);
+    T object{};
+    options.fill(object);
+    return object;
+}
 
 }  // namespace dinal::lua

@@ -24,24 +24,11 @@ std::string_view name(Regime regime) {
 }
 
 text::Expected<Oscillator> Oscillator::make(const OscillatorParameters& p) {
+    if (auto wrong = text::complaint(oscillator_options, p)) {
+        return text::Error{*wrong};
+    }
     const Friction friction =
         p.friction.value_or(laws::Coulomb{p.kinetic_friction, p.breakaway.value_or(p.kinetic_friction)});
-    struct Limit {
-        const char* name;
-        double value;
-        bool positive;
-    };
-    for (const Limit& x : {Limit{"I", p.inertia, true}, Limit{"k", p.stiffness, true}, Limit{"C", p.damping, false}}) {
-        if (!std::isfinite(x.value)) {
-            return text::Error{.sentence = fmt::format("{} = {} must be a finite number", x.name, x.value),
-                               .option = x.name};
-        }
-        if (x.positive ? x.value <= 0 : x.value < 0) {
-            return text::Error{.sentence = fmt::format("{} = {:.6g} must {}", x.name, x.value,
-                                                       x.positive ? "be positive" : "not be negative"),
-                               .option = x.name};
-        }
-    }
     if (auto wrong = friction.complaint()) return *wrong;
     Oscillator o;
     o.inertia_ = p.inertia;

@@ -12,10 +12,11 @@
 
 #include "model/friction.hpp"
 #include "text/expected.hpp"
+#include "text/option.hpp"
 
 namespace dinal::model {
 
-/// What a user says about a system. Ranges: I > 0, k > 0, C >= 0, Rd >= 0, Re >= Rd, all finite.
+/// What a user says about a system.
 struct OscillatorParameters {
     double inertia = 0;                     ///< I, moment of inertia
     double stiffness = 0;                   ///< k, torque per rad
@@ -23,6 +24,37 @@ struct OscillatorParameters {
     double kinetic_friction = 0;            ///< Rd, torque of dry friction while moving
     std::optional<double> breakaway = {};   ///< Re, torque that sticking can hold; Rd when not given
     std::optional<Friction> friction = {};  ///< another law than Coulomb's with Rd and Re, which then say nothing
+};
+
+inline constexpr text::Option oscillator_options[] = {
+    {.name = "I",
+     .unit = "torque time^2 per rad",
+     .otherwise = text::needed,
+     .range = text::positive,
+     .meaning = "moment of inertia",
+     .filled = text::fills<&OscillatorParameters::inertia>},
+    {.name = "k",
+     .unit = "torque per rad",
+     .otherwise = text::needed,
+     .range = text::positive,
+     .meaning = "stiffness of the spring",
+     .filled = text::fills<&OscillatorParameters::stiffness>},
+    {.name = "C",
+     .unit = "torque time per rad",
+     .range = text::not_negative,
+     .meaning = "viscous damping",
+     .filled = text::fills<&OscillatorParameters::damping>},
+    {.name = "Rd",
+     .unit = "torque",
+     .range = text::not_negative,
+     .meaning = "dry friction while moving",
+     .filled = text::fills<&OscillatorParameters::kinetic_friction>},
+    {.name = "Re",
+     .unit = "torque",
+     .otherwise = "Rd",
+     .range = text::not_negative,
+     .meaning = "what sticking can hold, at least Rd",
+     .filled = text::fills<&OscillatorParameters::breakaway>},
 };
 
 /// Position and speed of the mass: rad, rad per time unit.

@@ -10,6 +10,8 @@
 #include <utility>
 #include <vector>
 
+#include "text/option.hpp"
+
 namespace dinal::plots {
 
 /// Numbers to draw: a view and what keeps it alive. Shared, because a picture may outlive the run it shows.
@@ -42,6 +44,25 @@ struct Curve {
     int colour = 0;                    ///< 1, 2, ... of the palette; 0: by place
     std::optional<Numbers> base = {};  ///< a fill reaches from y to this, to zero without it
     [[nodiscard]] std::size_t size() const { return std::min(x.values.size(), y.values.size()); }
+};
+
+inline constexpr const char* style_names[] = {"line", "points", "fill"};
+inline constexpr const char* dashes_names[] = {"automatic", "solid", "dashed", "dotted"};
+inline constexpr text::Option curve_options[] = {
+    {.name = "label", .meaning = "its name in the picture", .filled = text::fills<&Curve::label>},
+    {.name = "style",
+     .meaning = "how it is drawn; a fill goes down to zero, or to base",
+     .filled = text::fills<&Curve::style>,
+     .choices = style_names},
+    {.name = "dashes",
+     .meaning = "how its line is broken, else another way for each curve",
+     .filled = text::fills<&Curve::dashes>,
+     .choices = dashes_names},
+    {.name = "colour",
+     .range = {"be a whole number from 1 to 7", [](double x) { return text::is_whole(x, 1, 7); }},
+     .meaning = "its colour, else another one for each curve",
+     .filled = text::fills<&Curve::colour>},
+    {.name = "base", .meaning = "the other edge of a fill: a vector as long as x"},
 };
 
 struct Axis {

@@ -80,19 +80,65 @@ std::vector<std::string> members(lua_State* L, const TypedText& typed, bool call
     return names;
 }
 
-std::vector<std::string> option_names_of(lua_State* L, const OpenCall& call) {
+/// The member of ours that is called; nullptr when it is none.
+const lua::Member* called_member(lua_State* L, const OpenCall& call) {
     const int top = lua_gettop(L);
     const Meaning function = meaning(L, call.function);
     lua_settop(L, top);
+    return function.kind == Meaning::Kind::member ? function.member : nullptr;
+}
+
+/// The rows of the options that the call takes; none when it is none of ours.
+std::span<const text::Option> options_of(lua_State* L, const OpenCall& call) {
+    const lua::Member* member = called_member(L, call);
+    const text::Call* known = member != nullptr ? help::call_with(member->doc, call.braces) : nullptr;
+    return known != nullptr ? known->options : std::span<const text::Option>();
+}
+
+std::vector<std::string> option_names_of(lua_State* L, const OpenCall& call) {
     std::vector<std::string> names;
-    if (function.kind == Meaning::Kind::member) {
-        for (const std::string& name : help::option_names(function.member->doc.signature, call.braces)) {
+    if (const lua::Member* member = called_member(L, call)) {
+        for (const std::string& name : help::option_names(member->doc, call.braces)) {
             if (std::find(call.given.begin(), call.given.end(), name) == call.given.end()) {
                 names.push_back(name + " = ");
             }
         }
     }
     return names;
+}
+
+/// Functions of ours that make an object of the class.
+std::vector<std::string> constructors(std::string_view name) {
+    std::vector<std::string> calls;
+    for (const help::Section& section : help::sections()) {
+        for (const lua::Member& member : section.description->members) {
+            const help::Section* made = help::result_class(member.doc.signature);
+            if (member.kind == lua::Kind::function && made != nullptr && made->description->name == name) {
+                calls.push_back(help::written_name(section, member) + bracket_after(member.doc.signature));
+            }
+        }
+    }
+    return calls;
+}
+
+/// What the value of an option may be, as far as its row tells. `quote` stands around choices.
+std::vector<std::string> option_values(lua_State* L, const OpenCall& call, std::string_view quote) {
+    std::vector<std::string> values;
+    for (const text::Option& option : options_of(L, call)) {
+        if (option.name != call.option) {
+            continue;
+        }
+        for (const char* choice : option.choices) {
+            values.push_back(std::string(quote) + choice + "\"");
+        }
+        if (option.filled.kind == text::OptionKind::flag) {
+            values.insert(values.end(), {"true", "false"});
+        }
+        if (*option.object != '\0') {
+            values = constructors(option.object);
+        }
+    }
+    return values;
 }
 
 /// Globals, keywords, and the names that the chunk itself uses.
@@ -140,7 +186,10 @@ Completion complete(lua_State* L, std::string_view before) {
         const std::size_t begin = std::min(before.find_first_not_of(" ?"), before.size());
         const std::string_view word = before.substr(begin);
         const std::size_t last = word.find_last_of(".: ");
-        std::vector<std::string> names = fitting(help::help_names(), word);
+        std::vector<std::string> names = help::help_names();
+        const std::vector<std::string> options = help::help_option_names();
+        names.insert(names.end(), options.begin(), options.end());
+        names = fitting(std::move(names), word);
         for (std::string& name : names) {  // the editor replaces only the last word
             name.erase(0, last == std::string_view::npos ? 0 : last + 1);
         }
@@ -151,8 +200,11 @@ Completion complete(lua_State* L, std::string_view before) {
     Completion completion;
     switch (typed.cursor()) {
         case Cursor::string:
-            completion.files = !help;
-            completion.names = help ? help::help_names() : std::vector<std::string>();
+            if (typed.call() && !help) {
+                completion.names = option_values(L, *typed.call(), "");
+            }
+            completion.files = !help && completion.names.empty();
+            completion.names = help ? help::help_names() : completion.names;
             break;
         case Cursor::member:
             completion.names = members(L, typed, !help);
@@ -161,6 +213,13 @@ Completion complete(lua_State* L, std::string_view before) {
             completion.names = option_names_of(L, *typed.call());
             if (completion.names.empty()) {
                 completion.names = plain_names(L, typed, !help);
+            }
+            break;
+        case Cursor::value:
+            completion.names = option_values(L, *typed.call(), "\"");
+            if (completion.names.empty() || !typed.word().empty()) {
+                const std::vector<std::string> names = plain_names(L, typed, !help);
+                completion.names.insert(completion.names.end(), names.begin(), names.end());
             }
             break;
         case Cursor::name:
@@ -184,7 +243,7 @@ std::string signature_hint(lua_State* L, std::string_view before) {
     if (function.kind != Meaning::Kind::member) {
         return "";
     }
-    const std::string all = help::parameters(function.member->doc.signature);
+    const std::string all = help::parameters(help::signature(function.member->doc));
     std::string hint;
     std::string part;
     int depth = 0;

@@ -7,6 +7,7 @@
 
 #include "errors/misspelling.hpp"
 #include "help/help_text.hpp"
+#include "help/signature.hpp"
 #include "lua/tokens.hpp"
 #include "prompt/meaning.hpp"
 #include "prompt/output.hpp"
@@ -91,7 +92,8 @@ std::string colon_notice(lua_State* L, const std::string& text) {
     return found.member->kind == lua::Kind::field
                ? fmt::format("{} is a field: write it with a point, {}", found.member->name,
                              help::written_name(*found.section, *found.member))
-               : fmt::format("{} is a method, which is called: {}", found.member->name, found.member->doc.signature);
+               : fmt::format("{} is a method, which is called: {}", found.member->name,
+                             help::signature(found.member->doc));
 }
 
 std::string local_notice(const std::string& text) {

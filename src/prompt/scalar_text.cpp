@@ -6,6 +6,7 @@
 #include <cmath>
 #include <string_view>
 
+#include "help/signature.hpp"
 #include "lua/bind.hpp"
 #include "lua/interrupt.hpp"
 #include "source/function_source.hpp"
@@ -60,7 +61,7 @@ std::string string_text(lua_State* L, int index, Place place, const terminal::Di
 /// A function as its source where that is short, else where it is defined; ours as they are called.
 std::string function_text(lua_State* L, int index, const terminal::Display& screen) {
     if (const lua::Documented found = lua::documented(L, index); found.member != nullptr) {
-        return text::wrapped(fmt::format("function {}", found.member->doc.signature), screen.width - 1);
+        return text::wrapped(fmt::format("function {}", help::signature(found.member->doc)), screen.width - 1);
     }
     const auto source = source::function_source(L, index);
     if (lua_iscfunction(L, index) != 0) {

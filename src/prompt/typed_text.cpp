@@ -122,6 +122,10 @@ void TypedText::find_call() {
     if (call.options && cursor_ == Cursor::name && (last.is("{") || last.is(",") || last.is(";"))) {
         cursor_ = Cursor::option;
     }
+    if (call.options && last.is("=") && tokens_.size() > bracket + 2) {
+        call.option = tokens_[tokens_.size() - 2].text;
+        cursor_ = cursor_ == Cursor::name ? Cursor::value : cursor_;
+    }
     call_ = call;
 }
 

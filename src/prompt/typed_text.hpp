@@ -13,7 +13,7 @@
 
 namespace dinal::prompt {
 
-enum class Cursor { name, member, option, string, nothing };
+enum class Cursor { name, member, option, value, string, nothing };
 
 /// A call whose brackets are open at the cursor.
 struct OpenCall {
@@ -21,6 +21,7 @@ struct OpenCall {
     bool options = false;                       ///< the cursor is in a table of options,
     help::Braces braces = help::Braces::alone;  ///< which is passed like this
     std::vector<std::string_view> given = {};   ///< the options that are there already
+    std::string_view option = {};               ///< the one whose value the cursor is at
 };
 
 /// What stands before the cursor. Refers to the text.

@@ -15,7 +15,7 @@ std::optional<std::string> complaint(const Range& range, double x, const std::st
     if (range.holds(x)) {
         return std::nullopt;
     }
-    return fmt::format("{} = {:.6g} must {}{}", name, x, range.must, range.hint);
+    return fmt::format("{} = {:.6g} must {}", name, x, range.must);
 }
 
 /// Empty when there is nothing to write: the value is absent, or a number without limit.
@@ -56,7 +56,7 @@ std::optional<std::string> complaint(const Option& option, const OptionValue& va
 }
 
 std::string default_text(const Option& option) {
-    if (option.otherwise == needed) {
+    if (option.otherwise == needed || option.instead_of_previous) {
         return "";
     }
     if (*option.otherwise != '\0' || option.filled.initial == nullptr) {
@@ -64,7 +64,8 @@ std::string default_text(const Option& option) {
     }
     const OptionValue value = option.filled.initial();
     const auto* text = std::get_if<std::string>(&value);
-    return text != nullptr && text->empty() ? "" : literal(option, value);
+    // A number that a user could not give himself stands for none.
+    return complaint(option, value) || (text != nullptr && text->empty()) ? "" : literal(option, value);
 }
 
 std::string number_literal(double x) {

@@ -10,6 +10,8 @@
 //     };
 #pragma once
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <optional>
@@ -30,8 +32,10 @@ struct Range {
     const char* must;        ///< after "must "
     bool (*holds)(double);   ///< asked of numbers that are not nan
     bool unlimited = false;  ///< inf and -inf are asked, too; else a number must be finite first
-    const char* hint = "";   ///< what else there is to say: "must not be zero; for a free motion ..."
 };
+constexpr bool is_whole(double x, double least, double most) {
+    return x >= least && x <= most && x == static_cast<double>(static_cast<int>(x));
+}
 inline constexpr Range any_finite{"be finite", [](double) { return true; }};
 inline constexpr Range positive{"be positive", [](double x) { return x > 0; }};
 inline constexpr Range positive_or_infinite{"be positive", [](double x) { return x > 0; }, true};
@@ -59,7 +63,7 @@ inline constexpr const char* needed = nullptr;
 inline constexpr const char* its_own = "";  ///< what a new object has; nothing to tell when that is infinite or absent
 
 struct Option {
-    const char* name;
+    const char* name = "";
     const char* unit = "";
     const char* otherwise = its_own;
     Range range = any_finite;  ///< of a number, and of each number of a list
@@ -67,6 +71,7 @@ struct Option {
     OptionTarget filled = {};
     std::span<const char* const> choices = {};  ///< Lua strings, in the order of the enumerators
     bool instead_of_previous = false;           ///< frequency | omega: one of the two is given, never both
+    const char* object = "";                    ///< the class of Lua whose constructors Tab offers: "integrator"
     const char* wanted = "";                    ///< of a kind `other`: "a system such as system{ I = 1, k = 39.5 }"
 };
 
@@ -81,7 +86,17 @@ struct Call {
 /// "width = -1 must be positive", "breaks[2] = inf must be finite"; none when the value may stand.
 std::optional<std::string> complaint(const Option& option, const OptionValue& value);
 
-/// The Lua text of the default: "1", "\"listing\"", "Rd"; empty when there is none to tell, and for a needed option.
+/// Rows one after another, for calls that share some.
+template <std::size_t... N>
+constexpr std::array<Option, (N + ...)> joined(const Option (&... parts)[N]) {
+    std::array<Option, (N + ...)> all{};
+    auto place = all.begin();
+    ((place = std::copy(std::begin(parts), std::end(parts), place)), ...);
+    return all;
+}
+
+/// The Lua text of the default: "1", "\"listing\"", "Rd"; empty when there is none to tell: of an option that
+/// is needed, or stands instead of another.
 std::string default_text(const Option& option);
 
 /// A number as Lua reads it back exactly; "1" and not "1.0", since all options are numbers of the one kind.

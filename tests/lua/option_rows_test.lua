@@ -1,0 +1,102 @@
+-- Every option of every call: a wrong name, a wrong kind and a number out of its range are each told by a sentence that
+-- names the call, the option and the value. The calls and their options are those of the manual, which lists the rows.
+package.path = "tests/lua/?.lua;" .. package.path
+local support = require "support"
+local test = support.test
+
+local calls = {} -- heading -> list of { name, meaning }
+do
+    local pipe <close> = io.popen(('"%s" --manual'):format(support.program()))
+    local heading
+    for line in pipe:lines() do
+        heading = line:match "^### (.+)" or line:match "^## (.+)" or heading
+        local name, meaning = line:match "^%- `([%a_][%w_]*)[^`]*`: (.*)"
+        if name then
+            calls[heading] = calls[heading] or {}
+            table.insert(calls[heading], { name = name, meaning = meaning })
+        end
+    end
+end
+
+--- What the examples speak of.
+local world = setmetatable({}, { __index = _G })
+world.sys = nondimensional { zeta = 0.1, friction_ratio = 0.1 }
+world.run = world.sys:simulate { theta0 = 1, t_end = 1, dt = 0.25 }
+world.M = excitation.constant { level = 1 }
+world.t, world.theta = world.run.t, world.run.theta
+world.f = function() return 1 end
+
+--- The example in the sentence that refuses a call without a table.
+local function example_of(heading)
+    local wrong_call = heading == "run:save" and 'run:save("x.csv", 1)' or heading == "excitation.scripted" and
+        "excitation.scripted(f, 1)" or heading .. "(1)"
+    local message = support.raises(assert(load(wrong_call, "=call", "t", world)))
+    return assert(message:match "for example (.+)$", message)
+end
+
+--- The example with one option changed, as a function: f{ ... } becomes f(changed{ ... }).
+local function call_with(example, change)
+    local before, options, after = example:match "^(.-)(%b{})(%)?)$"
+    world.changed = function(options_given)
+        change(options_given)
+        return options_given
+    end
+    local text = before:sub(-1):find "[%w_]" and ("%s(changed%s)"):format(before, options) or before .. "changed" .. options .. after
+    return (assert(load(text, "=call", "t", world), text))
+end
+
+--- The message of the call, which must name all that is asked.
+local function refused(example, change, ...)
+    local message = support.raises(call_with(example, change))
+    for _, part in ipairs { "call:1: ", ... } do
+        assert(message:find(part, 1, true), ("%s\n  does not say %s"):format(message, part))
+    end
+    return message
+end
+
+--- The options of a pair, of which only one may be given.
+local function partner(option)
+    return option.meaning:match "instead of ([%a_][%w_]*)[,)]" or option.meaning:match "this or ([%a_][%w_]*) is needed"
+end
+
+local tested = 0
+for heading, options in pairs(calls) do
+    test("the options of " .. heading, function()
+        local is_plot = heading == "plot"
+        local example = example_of(heading)
+        refused(example, function(t) t.xyzzy = 1 end, heading .. " has no option 'xyzzy' among ")
+        for _, option in ipairs(options) do
+            local function give(value)
+                return function(t)
+                    local owner = is_plot and ("label style dashes colour base"):find(option.name, 1, true) and t[1] or t
+                    if heading:find "plot" then
+                        t.file, t.show = nil, false -- nothing is to be drawn where a test forgets to fail
+                    end
+                    if option.name == "omega0" or option.name == "zeta" then
+                        t.system = nil -- which has them of its own
+                        t.omega0 = heading == "theory.free_response" and 1 or nil
+                    end
+                    owner[option.name] = value
+                    if partner(option) then
+                        owner[partner(option)] = nil
+                    end
+                end
+            end
+            refused(example, give(coroutine.create(print)), heading .. ": ", option.name, "a thread")
+            if option.meaning:find "must " then
+                local told = false
+                for _, value in ipairs { -1, 0, 0.5, 2, 1e-9 } do
+                    local ok, message = pcall(call_with(example, give(value)))
+                    told = told or not ok and message:find("call:1: " .. heading, 1, true) and
+                        message:find(("%s = %.6g must "):format(option.name, value), 1, true) ~= nil
+                end
+                assert(told, option.name .. " may be anything")
+            end
+            tested = tested + 1
+        end
+    end)
+end
+
+test("there are many of them", function() assert(tested > 100, tested) end)
+
+support.finish()
