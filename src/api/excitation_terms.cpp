@@ -46,9 +46,7 @@ double period_of(const lua::Options& options) {
 int push_term(lua_State* L, model::Term term) {
     auto made = model::Excitation::make(std::move(term));
     if (!made) {
-        text::Error error = made.error();
-        error.sentence.insert(0, "excitation.");
-        lua::raise(L, error);
+        lua::raise(L, made.error());
     }
     lua::push(L, std::move(made).value());
     return 1;

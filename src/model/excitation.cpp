@@ -1,9 +1,10 @@
 #include "model/excitation.hpp"
 
-#include <array>
+#include <fmt/format.h>
 
-#include "model/term_bounds.hpp"
-#include "model/terms.hpp"
+#include <algorithm>
+#include <cmath>
+#include <optional>
 
 namespace dinal::model {
 namespace {
@@ -34,7 +35,7 @@ double ask(const Scripted& s, double t, const State& state, Side side) {
 /// The sum of all components. A component that is off (gain 0, outside its window) is not asked; a failed script ends
 /// the sum, so that no other script is called after it.
 template <Side side>
-double sum_of(const std::vector<Component>& components, double t, const State& state) {
+double sum_of(std::span<const Component> components, double t, const State& state) {
     const double native_t = side == Side::before ? std::nextafter(t, -never) : t;
     double sum = 0;
     for (const Component& c : components) {
@@ -51,10 +52,10 @@ double sum_of(const std::vector<Component>& components, double t, const State& s
         }
         sum += c.gain * std::visit(
                             [native_t](const auto& term) {
-                                if constexpr (std::is_same_v<std::decay_t<decltype(term)>, Scripted>) {
-                                    return 0.0;
+                                if constexpr (terms::NativeTerm<std::decay_t<decltype(term)>>) {
+                                    return term.value(native_t);
                                 } else {
-                                    return terms::value(term, native_t);
+                                    return 0.0;
                                 }
                             },
                             c.term);
@@ -62,149 +63,54 @@ double sum_of(const std::vector<Component>& components, double t, const State& s
     return sum;
 }
 
-template <class T>
-std::size_t add(const T& term, const Component& c, std::span<const double> times, std::span<double> out) {
-    const std::size_t n = times.size();
-    if (c.from == -never && c.to == never) {
-        for (std::size_t i = 0; i < n; ++i) {
-            out[i] += c.gain * terms::value(term, times[i]);
-        }
-        return n;
-    }
-    for (std::size_t i = 0; i < n; ++i) {
-        if (times[i] >= c.from && times[i] < c.to) {
-            out[i] += c.gain * terms::value(term, times[i]);
-        }
-    }
-    return n;
-}
-
-/// Whether the times lie `spacing` apart to within their own rounding.
-bool evenly_spaced(std::span<const double> times, double spacing) {
-    const double first = times.front();
-    const double rounding =
-        2 * std::numeric_limits<double>::epsilon() * std::max(std::fabs(first), std::fabs(times.back()));
-    double worst = 0;
-    for (std::size_t i = 0; i < times.size(); ++i) {
-        worst = std::max(worst, std::fabs(times[i] - (first + static_cast<double>(i) * spacing)));
-    }
-    return worst <= rounding;
-}
-
-/// At evenly spaced times, as a stepping loop has them, a sine costs two products by the addition theorem:
-/// sin(a + b) with `a` at every sixteenth time and `b` from a table of sixteen. Good to the rounding of the times.
-// NOTE: but never above the amplitude, as sin() itself: a load of amplitude Re that rounding lifted would end a stick.
-std::size_t add(const Harmonic& h, const Component& c, std::span<const double> times, std::span<double> out) {
-    constexpr std::size_t stride = 16;
-    const std::size_t n = times.size();
-    const double spacing = n > 1 ? (times[n - 1] - times[0]) / static_cast<double>(n - 1) : 0;
-    if (n < 2 * stride || c.from != -never || c.to != never || !evenly_spaced(times, spacing)) {
-        return add<Harmonic>(h, c, times, out);
-    }
-    std::array<double, stride> sine{}, cosine{};
-    for (std::size_t j = 0; j < stride; ++j) {
-        sine[j] = std::sin(h.omega * (static_cast<double>(j) * spacing));
-        cosine[j] = std::cos(h.omega * (static_cast<double>(j) * spacing));
-    }
-    const double peak = std::fabs(c.gain * h.amplitude);
-    for (std::size_t i = 0; i < n; i += stride) {
-        const double angle = h.omega * times[i] + h.phase;
-        const double s = c.gain * h.amplitude * std::sin(angle), k = c.gain * h.amplitude * std::cos(angle);
-        const std::size_t count = std::min(stride, n - i);
-        for (std::size_t j = 0; j < count; ++j) {
-            out[i + j] += std::clamp(s * cosine[j] + k * sine[j], -peak, peak);
-        }
-    }
-    return n;
-}
-
-/// In blocks, which are short enough for the stack.
-std::size_t add(const Scripted& script, const Component& c, std::span<const double> times, std::span<double> out) {
-    constexpr std::size_t block = 128;
-    std::array<double, block> own_times;
-    std::array<double, block> values;
-    const auto outside = [&c](double t) { return t < c.from || t >= c.to; };
-    std::size_t i = 0;
-    while (i < times.size()) {
-        if (outside(times[i])) {
-            ++i;
-            continue;
-        }
-        std::size_t n = 0;
-        for (; n < block && i + n < times.size() && !outside(times[i + n]); ++n) {
-            own_times[n] = times[i + n] - script.delay;
-        }
-        const std::size_t good = script.function->fill({own_times.data(), n}, {values.data(), n});
-        for (std::size_t j = 0; j < good; ++j) {
-            out[i + j] += c.gain * values[j];
-        }
-        if (good < n) {
-            out[i + good] = values[good];
-            return i + good;
-        }
-        i += n;
-    }
-    return times.size();
-}
-
 bool is_script(const Component& c) {
     return std::holds_alternative<Scripted>(c.term);
 }
 
-auto script_count(const std::vector<Component>& components) {
-    return std::count_if(components.begin(), components.end(), is_script);
-}
-
-/// Two scripts take turns, so that neither is called for times after the other has failed.
-std::size_t fill_in_turn(const Excitation& excitation, std::span<const double> times, std::span<double> out) {
-    for (std::size_t i = 0; i < times.size(); ++i) {
-        out[i] = excitation.value(times[i]);
-        if (!std::isfinite(out[i])) {
-            return i;
+/// What a user may not say about a term.
+template <class T>
+std::optional<text::Error> complaint(const T& term) {
+    if constexpr (requires { term.complaint(); }) {
+        if (auto wrong = term.complaint()) {
+            return wrong;
         }
     }
-    return times.size();
-}
-
-double next_break(const Component& c, double t) {
-    if (c.gain == 0 || t >= c.to) {
-        return never;
+    if constexpr (std::is_same_v<T, Polyline>) {
+        return std::nullopt;  // its options are those of its samples
+    } else {
+        return terms::out_of_range(T::about.call.options, term);
     }
-    if (t < c.from) {
-        return c.from;
-    }
-    return std::min(c.to, std::visit([t](const auto& term) { return terms::next_break(term, t); }, c.term));
-}
-
-double constant_from(const Component& c) {
-    if (c.gain == 0) {
-        return -never;
-    }
-    const double settled = std::visit([](const auto& term) { return terms::constant_from(term); }, c.term);
-    const bool at_zero = std::visit([](const auto& term) { return terms::ends_at_zero(term); }, c.term);
-    if (c.to < never) {
-        return at_zero ? std::min(c.to, settled) : c.to;
-    }
-    return at_zero ? settled : std::max(c.from, settled);
 }
 
 }  // namespace
 
+text::Expected<Excitation> Excitation::make(Term term) {
+    const auto wrong = std::visit([](const auto& t) { return complaint(t); }, term);
+    if (wrong) {
+        const char* call = std::visit([](const auto& t) { return t.about.call.name; }, term);
+        return text::in_call(call, *wrong);
+    }
+    if (auto* script = std::get_if<Scripted>(&term)) {
+        script->drop_repeated_corner();
+    }
+    return Excitation(Components({Component{.gain = 1, .term = std::move(term)}}));
+}
+
 double Excitation::value(double t, const State& state) const {
-    return sum_of<Side::at>(components_, t, state);
+    return sum_of<Side::at>(components(), t, state);
 }
 
 double Excitation::value_before(double t, const State& state) const {
-    return sum_of<Side::before>(components_, t, state);
+    return sum_of<Side::before>(components(), t, state);
 }
 
 double Excitation::value_after(double t, const State& state) const {
-    return sum_of<Side::after>(components_, t, state);
+    return sum_of<Side::after>(components(), t, state);
 }
 
 double Excitation::next_break(double t) const {
     double first = never;
-    for (const Component& c : components_) {
+    for (const Component& c : components()) {
         first = std::min(first, model::next_break(c, t));
     }
     return first;
@@ -212,7 +118,7 @@ double Excitation::next_break(double t) const {
 
 double Excitation::constant_from() const {
     double last = -never;
-    for (const Component& c : components_) {
+    for (const Component& c : components()) {
         last = std::max(last, model::constant_from(c));
     }
     return last;
@@ -220,78 +126,83 @@ double Excitation::constant_from() const {
 
 double Excitation::most() const {
     double sum = 0;
-    for (const Component& c : components_) {
-        if (c.gain != 0)
-            sum += std::fabs(c.gain) * std::visit([](const auto& term) { return terms::most(term); }, c.term);
+    for (const Component& c : components()) {
+        if (c.gain != 0) sum += std::fabs(c.gain) * std::visit([](const auto& term) { return term.most(); }, c.term);
     }
     return sum;
 }
 
+double Excitation::view(double t, double spacing) const {
+    double nearest = never;
+    for (const Component& c : components()) {
+        const auto [from, to, apart] = detail_of(c);
+        if (from < to && t < to) {
+            nearest = std::min(nearest, std::max(from - t, apart / spacing));
+        }
+    }
+    return nearest;
+}
+
+terms::Detail Excitation::finest_detail(double from, double to) const {
+    terms::Detail finest = terms::no_detail;
+    for (const Component& c : components()) {
+        const terms::Detail found = detail_of(c);
+        if (found.apart < finest.apart && found.from < found.to && found.from < to && found.to > from) {
+            finest = found;
+        }
+    }
+    return finest;
+}
+
 bool Excitation::has_feedback() const {
-    return std::any_of(components_.begin(), components_.end(), [](const Component& c) {
+    return std::any_of(components().begin(), components().end(), [](const Component& c) {
         const auto* script = std::get_if<Scripted>(&c.term);
         return script != nullptr && script->feedback;
     });
 }
 
 bool Excitation::has_script() const {
-    return std::any_of(components_.begin(), components_.end(), is_script);
+    return std::any_of(components().begin(), components().end(), is_script);
 }
 
 bool Excitation::may_go_on() const {
-    return std::all_of(components_.begin(), components_.end(), [](const Component& c) {
+    return std::all_of(components().begin(), components().end(), [](const Component& c) {
         const auto* script = std::get_if<Scripted>(&c.term);
         return script == nullptr || script->function->may_go_on();
     });
 }
 
-std::size_t Excitation::fill(std::span<const double> times, std::span<double> out) const {
-    std::size_t n = times.size();
-    if (script_count(components_) > 1) {
-        return fill_in_turn(*this, times, out);
+template <class Change>
+Excitation Excitation::changed(Change change) const {
+    std::vector<Component> all(components().begin(), components().end());
+    for (Component& c : all) {
+        change(c);
     }
-    std::fill_n(out.begin(), n, 0.0);
-    for (const Component& c : components_) {
-        if (c.gain != 0) {
-            n = std::visit([&](const auto& term) { return add(term, c, times.first(n), out.first(n)); }, c.term);
-        }
-    }
-    const auto filled = out.first(n);
-    const auto bad = std::find_if(filled.begin(), filled.end(), [](double x) { return !std::isfinite(x); });
-    return static_cast<std::size_t>(bad - filled.begin());
+    std::erase_if(all, [](const Component& c) { return !(c.from < c.to); });
+    return Excitation(Components(std::move(all)));
 }
 
 Excitation Excitation::scaled(double gain) const {
-    Excitation result = *this;
-    for (Component& c : result.components_) {
-        c.gain *= gain;
-    }
-    return result;
+    return changed([gain](Component& c) { c.gain *= gain; });
 }
 
 Excitation Excitation::delayed(double delay) const {
-    Excitation result = *this;
-    for (Component& c : result.components_) {
-        std::visit([delay](auto& term) { terms::shift(term, delay); }, c.term);
+    return changed([delay](Component& c) {
+        std::visit([delay](auto& term) { term.delay_by(delay); }, c.term);
         c.from += delay;
         c.to += delay;
-    }
-    return result;
+    });
 }
 
 Excitation Excitation::windowed(double from, double to) const {
-    Excitation result = *this;
-    for (Component& c : result.components_) {
+    return changed([from, to](Component& c) {
         c.from = std::max(c.from, from);
         c.to = std::min(c.to, to);
-    }
-    std::erase_if(result.components_, [](const Component& c) { return !(c.from < c.to); });
-    return result;
+    });
 }
 
-Excitation operator+(Excitation a, const Excitation& b) {
-    a.components_.insert(a.components_.end(), b.components_.begin(), b.components_.end());
-    return a;
+Excitation operator+(const Excitation& a, const Excitation& b) {
+    return Excitation(Components::joined(a.components_, b.components_));
 }
 
 }  // namespace dinal::model

@@ -2,33 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-
-#include "model/term_bounds.hpp"
-#include "model/terms.hpp"
+#include <vector>
 
 namespace dinal::model {
 
 namespace {
-
-double period_of(const Harmonic& h) {
-    return h.omega == 0 ? 0 : terms::two_pi / std::fabs(h.omega);
-}
-double period_of(const Square& s) {
-    return s.period;
-}
-double period_of(const Sawtooth& s) {
-    return s.period;
-}
-double period_of(const Triangle& t) {
-    return t.period;
-}
-double period_of(const Scripted& s) {
-    return s.period;
-}
-template <class Other>
-double period_of(const Other&) {
-    return 0;
-}
 
 /// Whether these are whole parts of `common`.
 bool fit(const std::vector<double>& periods, double common) {
@@ -43,9 +21,8 @@ bool fit(const std::vector<double>& periods, double common) {
 double period_from(const Excitation& excitation, double t) {
     std::vector<double> periods;
     for (const Component& c : excitation.components()) {
-        const double settled = std::visit([](const auto& term) { return terms::constant_from(term); }, c.term);
-        if (c.gain == 0 || c.to <= t || (settled <= t && c.from <= t && c.to == never)) continue;
-        const double period = std::visit([](const auto& term) { return period_of(term); }, c.term);
+        if (constant_from(c) <= t) continue;
+        const double period = std::visit([](const auto& term) { return term.repeats_after(); }, c.term);
         if (!(period > 0) || c.from > t || c.to < never) return 0;
         periods.push_back(period);
     }

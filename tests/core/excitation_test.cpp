@@ -211,3 +211,47 @@ TEST_CASE("a script that failed is the last one that is called", "[excitation]")
     CHECK(std::isnan(M.value(1)));
     CHECK(good->calls == 0);
 }
+
+TEST_CASE("a sum that grows term by term copies each term a few times only, at either end", "[excitation]") {
+    const int n = 4000;
+    for (const bool in_front : {false, true}) {
+        const auto f = probe([](double) { return 1.0; });
+        const Excitation term = made(Scripted{.function = f});
+        const long before = f.use_count();
+        Excitation M = term;
+        std::vector<Excitation> all = {M};
+        for (int i = 1; i < n; ++i) {
+            M = in_front ? made(Step{1, 0.5 * i}) + M : M + made(Step{1, 0.5 * i});
+            all.push_back(M);
+        }
+        // All sums live, and share what they have: the term stands once in every list that was outgrown.
+        // Each list is half again as long as the one before: log(4000) / log(1.5) = 20.5.
+        CHECK(f.use_count() - before <= 22);
+        REQUIRE(M.components().size() == static_cast<std::size_t>(n));
+        CHECK(M.value(1e9) == n);
+        for (const int i : {0, 1, 2, 3, 1000, n - 1}) {
+            const Excitation& sum = all[static_cast<std::size_t>(i)];
+            REQUIRE(sum.components().size() == static_cast<std::size_t>(i) + 1);
+            CHECK(sum.value(1e9) == i + 1);
+            CHECK(sum.value(0.5 * i) == i + 1);
+        }
+    }
+}
+
+TEST_CASE("two sums that go on from the same one do not see each other's terms", "[excitation]") {
+    const Excitation common = made(Constant{1}) + made(Constant{2}) + made(Constant{4});
+    const Excitation one = common + made(Constant{8}), other = common + made(Constant{16});
+    const Excitation left = made(Constant{32}) + common, far_left = made(Constant{64}) + common;
+    CHECK(common.value(0) == 7);
+    CHECK(one.value(0) == 15);
+    CHECK(other.value(0) == 23);
+    CHECK(left.value(0) == 39);
+    CHECK(far_left.value(0) == 71);
+    CHECK((one + other).value(0) == 38);
+    CHECK((common + common + common).value(0) == 21);
+    CHECK((left + one).components().size() == 8);
+    CHECK(std::get<Constant>((left + one).components()[0].term).level == 32);
+    CHECK(std::get<Constant>((left + one).components()[7].term).level == 8);
+    CHECK((Excitation() + one).value(0) == 15);
+    CHECK((one + Excitation()).value(0) == 15);
+}

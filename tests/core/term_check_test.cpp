@@ -8,39 +8,40 @@ using namespace dinal::excitations;
 
 TEST_CASE("a term with impossible options is refused with a sentence", "[excitation]") {
     const double nan = std::numeric_limits<double>::quiet_NaN();
-    CHECK(complaint(Constant{nan}) == "constant: level = nan must be finite");
-    CHECK(complaint(Harmonic{1, -2, 0}) == "harmonic: omega = -2 must not be negative");
-    CHECK(complaint(Harmonic{never, 1, 0}) == "harmonic: amplitude = inf must be finite");
-    CHECK(complaint(Step{1, never}) == "step: at = inf must be finite");
-    CHECK(complaint(Pulse{1, 0, -1}) == "pulse: width = -1 must be positive");
-    CHECK(complaint(HalfSine{1, 0, 0}) == "half_sine: width = 0 must be positive");
-    CHECK(complaint(Ramp{1, 0, nan}) == "ramp: width = nan must be positive");
+    CHECK(complaint(Constant{nan}) == "excitation.constant: level = nan must be finite");
+    CHECK(complaint(Harmonic{1, -2, 0}) == "excitation.harmonic: omega = -2 must not be negative");
+    CHECK(complaint(Harmonic{never, 1, 0}) == "excitation.harmonic: amplitude = inf must be finite");
+    CHECK(complaint(Step{1, never}) == "excitation.step: at = inf must be finite");
+    CHECK(complaint(Pulse{1, 0, -1}) == "excitation.pulse: width = -1 must be positive");
+    CHECK(complaint(HalfSine{1, 0, 0}) == "excitation.half_sine: width = 0 must be positive");
+    CHECK(complaint(Ramp{1, 0, nan}) == "excitation.ramp: width = nan must be a number");
     CHECK(complaint(Ramp{1, 0, never}).empty());
-    CHECK(complaint(Square{1, 0}) == "square: period = 0 must be positive");
-    CHECK(complaint(Square{1, 1, 1}) == "square: duty = 1 must lie between 0 and 1");
-    CHECK(complaint(Sawtooth{1, -0.5}) == "sawtooth: period = -0.5 must be positive");
-    CHECK(complaint(Triangle{1, never}) == "triangle: period = inf must be finite");
-    CHECK(complaint(Chirp{1, -1, 2, 3}) == "chirp: from = -1 must not be negative");
-    CHECK(complaint(Chirp{1, 1, 2, 0}) == "chirp: duration = 0 must be positive");
-    CHECK(complaint(Exponential{1, 0}) == "exponential: tau = 0 must not be zero");
-    CHECK(complaint(Polynomial{{1, nan}}) == "polynomial: coefficients[2] = nan must be finite");
+    CHECK(complaint(Square{1, 0}) == "excitation.square: period = 0 must be positive");
+    CHECK(complaint(Square{1, 1, 1}) == "excitation.square: duty = 1 must lie between 0 and 1");
+    CHECK(complaint(Sawtooth{1, -0.5}) == "excitation.sawtooth: period = -0.5 must be positive");
+    CHECK(complaint(Triangle{1, never}) == "excitation.triangle: period = inf must be finite");
+    CHECK(complaint(Chirp{1, -1, 2, 3}) == "excitation.chirp: from = -1 must not be negative");
+    CHECK(complaint(Chirp{1, 1, 2, 0}) == "excitation.chirp: duration = 0 must be positive");
+    CHECK(complaint(Exponential{1, 0}) == "excitation.exponential: tau = 0 must not be zero");
+    CHECK(complaint(Polynomial{{1, nan}}) == "excitation.polynomial: coefficients[2] = nan must be finite");
     CHECK(complaint(Polynomial{}).find("coefficients is empty") != std::string::npos);
 }
 
 TEST_CASE("a record with impossible points is refused and says which", "[excitation]") {
     CHECK(complaint(table({0, 0.4, 0.3}, {0, 1, 2})) ==
-          "samples: t[3] = 0.3 is not after t[2] = 0.4; times must increase");
-    CHECK(complaint(table({0, 1}, {0, 1, 2})) == "samples: t has 2 values and M has 3; they must be equally long");
-    CHECK(complaint(table({}, {})) == "samples: there are no points; give at least one time and one value");
-    CHECK(complaint(table({0, 1}, {0, never})) == "samples: M[2] = inf must be finite");
+          "excitation.samples: t[3] = 0.3 is not after t[2] = 0.4; times must increase");
+    CHECK(complaint(table({0, 1}, {0, 1, 2})) ==
+          "excitation.samples: t has 2 values and M has 3; they must be equally long");
+    CHECK(complaint(table({}, {})) == "excitation.samples: there are no points; give at least one time and one value");
+    CHECK(complaint(table({0, 1}, {0, never})) == "excitation.samples: M[2] = inf must be finite");
 }
 
 TEST_CASE("hints that can not be true of a script are refused", "[excitation]") {
     const auto f = probe([](double) { return 1.0; });
     CHECK(complaint(Scripted{.function = f, .breaks = {2, 1}}) ==
-          "scripted: breaks[2] = 1 is not after breaks[1] = 2; times must increase");
-    CHECK(complaint(Scripted{.function = f, .period = -1}) == "scripted: period = -1 must not be negative");
+          "excitation.scripted: breaks[2] = 1 is not after breaks[1] = 2; times must increase");
+    CHECK(complaint(Scripted{.function = f, .period = -1}) == "excitation.scripted: period = -1 must not be negative");
     CHECK(complaint(Scripted{.function = f, .breaks = {0, 4}, .period = 3}) ==
-          "scripted: breaks from 0 to 4 span more than the period 3; give those of one period");
-    CHECK(complaint(Scripted{}) == "scripted: there is no function");
+          "excitation.scripted: breaks from 0 to 4 span more than the period 3; give those of one period");
+    CHECK(complaint(Scripted{}) == "excitation.scripted: there is no function");
 }

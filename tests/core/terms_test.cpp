@@ -1,5 +1,6 @@
 #include "model/terms.hpp"
 
+#include "model/forcing.hpp"
 #include "support/excitations.hpp"
 #include "support/within.hpp"
 
@@ -241,4 +242,38 @@ TEST_CASE("next_break strictly increases and no jump or kink is without a break"
             }
         }
     }
+}
+
+TEST_CASE("the greatest value and the period that a term tells are its own", "[excitation]") {
+    for (const Excitation& M : one_of_each()) {
+        const Term& term = M.components()[0].term;
+        CAPTURE(term.index());
+        double peak = 0;
+        for (int i = 0; i <= 20000; ++i) peak = std::max(peak, std::fabs(M.value(-5 + 0.0025 * i)));
+        const bool bounded = !std::holds_alternative<Polynomial>(term) && !std::holds_alternative<Scripted>(term);
+        CHECK((M.most() < never) == bounded);
+        CHECK(peak <= M.most());
+        if (bounded) CHECK(peak > 0.9 * M.most());  // the steepest record passes its peak between two of these times
+        CHECK(M.scaled(-0.5).most() == 0.5 * M.most());
+        CHECK((M + M).most() == 2 * M.most());
+        CHECK(M.scaled(0).most() == 0);
+
+        const double period = period_from(M, -9);
+        const bool repeats = std::holds_alternative<Harmonic>(term) || std::holds_alternative<Square>(term) ||
+                             std::holds_alternative<Sawtooth>(term) || std::holds_alternative<Triangle>(term);
+        CHECK((period > 0) == (repeats || std::holds_alternative<Scripted>(term)));
+        if (!repeats) continue;
+        double change = 0, difference = 0;
+        for (const double t : {0.013, 0.117, 0.29}) {
+            difference = std::max(difference, std::fabs(M.value(t + period) - M.value(t)));
+            change = std::max(change, std::fabs(M.value(t + period / 2) - M.value(t)));
+        }
+        CHECK(difference < 1e-12);  // roundings of t on slopes up to 30
+        CHECK(change > 1);
+    }
+    CHECK(made(Exponential{2, -1, 0}).most() == never);
+    CHECK(made(Exponential{0, -1, 0}).most() == 0);
+    CHECK(made(Polynomial{{-3}}).most() == 3);
+    CHECK(made(Ramp{0, 1}).most() == 0);
+    CHECK(made(Ramp{-2, 1}).most() == never);
 }

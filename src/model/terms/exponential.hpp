@@ -1,0 +1,46 @@
+// excitation.exponential: a decay, or a growth, from one time on.
+#pragma once
+
+#include "model/terms/term.hpp"
+
+namespace dinal::model::terms {
+
+/// amplitude exp(-(t - at) / tau) from `at` on, 0 before; tau < 0 grows
+struct Exponential {
+    static const TermText about;
+
+    double amplitude = 1, tau = 0, at = 0;
+
+    [[nodiscard]] double value(double t) const { return t < at ? 0 : amplitude * std::exp(-(t - at) / tau); }
+    [[nodiscard]] double next_break(double t) const { return first_after(t, {at}); }
+    [[nodiscard]] double constant_from() const { return never; }
+    [[nodiscard]] double most() const { return amplitude == 0 ? 0 : tau > 0 ? std::fabs(amplitude) : never; }
+    [[nodiscard]] double repeats_after() const { return 0; }
+    [[nodiscard]] Detail detail() const { return no_detail; }
+    void delay_by(double d) { at += d; }
+    [[nodiscard]] std::string formula(double gain) const {
+        return factor(gain * amplitude) + "exp(-" + since(at) + "/" + number(tau) + ")" + from_on(at);
+    }
+};
+
+inline constexpr text::Option exponential_options[] = {
+    {.name = "amplitude",
+     .unit = "torque",
+     .meaning = "its first value",
+     .filled = text::fills<&Exponential::amplitude>},
+    {.name = "tau",
+     .unit = "time units",
+     .otherwise = text::needed,
+     .range = text::not_zero,
+     .meaning = "in which it falls to 1/e; a negative one grows",
+     .filled = text::fills<&Exponential::tau>},
+    {.name = "at", .unit = "time units", .meaning = "where it begins", .filled = text::fills<&Exponential::at>},
+};
+inline constexpr TermText Exponential::about{
+    {.name = "excitation.exponential",
+     .example = "excitation.exponential{ amplitude = 2, tau = 0.5 }",
+     .options = exponential_options},
+    "amplitude exp(-(t - at)/tau) from `at` on, 0 before. A negative tau grows.",
+    "M = excitation.exponential{ amplitude = 2, tau = 0.5, at = 1 }\nprint(M(0.9), M(1))  --> 0.0\t2.0"};
+
+}  // namespace dinal::model::terms

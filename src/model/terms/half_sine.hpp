@@ -1,0 +1,50 @@
+// excitation.half_sine: a shock.
+#pragma once
+
+#include "model/terms/term.hpp"
+
+namespace dinal::model::terms {
+
+/// one half wave of a sine over [at, at + width], else 0
+struct HalfSine {
+    static const TermText about;
+
+    double amplitude = 1, at = 0, width = 0;
+
+    [[nodiscard]] double value(double t) const {
+        if (t < at || t >= at + width) {
+            return 0;
+        }
+        return amplitude * std::sin(std::numbers::pi * ((t - at) / width));
+    }
+    [[nodiscard]] double next_break(double t) const { return first_after(t, {at, at + width}); }
+    [[nodiscard]] double constant_from() const { return at + width; }
+    [[nodiscard]] double most() const { return std::fabs(amplitude); }
+    [[nodiscard]] double repeats_after() const { return 0; }
+    [[nodiscard]] Detail detail() const { return no_detail; }
+    void delay_by(double d) { at += d; }
+    [[nodiscard]] std::string formula(double gain) const {
+        return factor(gain * amplitude) + "sin(pi " + since(at) + "/" + number(width) + ")" + between(at, at + width);
+    }
+};
+
+inline constexpr text::Option half_sine_options[] = {
+    {.name = "amplitude",
+     .unit = "torque",
+     .meaning = "its greatest value",
+     .filled = text::fills<&HalfSine::amplitude>},
+    {.name = "at", .unit = "time units", .meaning = "where it begins", .filled = text::fills<&HalfSine::at>},
+    {.name = "width",
+     .unit = "time units",
+     .otherwise = text::needed,
+     .range = text::positive,
+     .meaning = "how long it lasts",
+     .filled = text::fills<&HalfSine::width>},
+};
+inline constexpr TermText HalfSine::about{{.name = "excitation.half_sine",
+                                           .example = "excitation.half_sine{ at = 1, width = 0.2 }",
+                                           .options = half_sine_options},
+                                          "One half wave of a sine from `at` to at + width, else 0: a shock.",
+                                          "print(excitation.half_sine{ amplitude = 3, width = 2 }(1))  --> 3.0"};
+
+}  // namespace dinal::model::terms

@@ -1,0 +1,58 @@
+// excitation.harmonic: a sine.
+#pragma once
+
+#include "model/terms/term.hpp"
+
+namespace dinal::model::terms {
+
+/// amplitude sin(omega t + phase)
+struct Harmonic {
+    static const TermText about;
+
+    double amplitude = 1, omega = 0, phase = 0;
+
+    [[nodiscard]] double value(double t) const { return amplitude * std::sin(omega * t + phase); }
+    [[nodiscard]] double next_break(double) const { return never; }
+    [[nodiscard]] double constant_from() const { return omega == 0 ? -never : never; }
+    [[nodiscard]] double most() const { return std::fabs(amplitude); }
+    [[nodiscard]] double repeats_after() const { return omega == 0 ? 0 : two_pi / std::fabs(omega); }
+    [[nodiscard]] Detail detail() const { return no_detail; }
+    void delay_by(double d) { phase -= omega * d; }
+    [[nodiscard]] std::string formula(double gain) const {
+        const std::string shift = phase == 0 ? "" : (phase < 0 ? " - " : " + ") + number(std::fabs(phase));
+        return factor(gain * amplitude) + "sin(" + number(omega) + " t" + shift + ")";
+    }
+};
+
+inline void omega_of_frequency(Harmonic& h, double frequency) {
+    h.omega = two_pi * frequency;
+}
+
+inline constexpr text::Option harmonic_options[] = {
+    {.name = "amplitude",
+     .unit = "torque",
+     .meaning = "its greatest value",
+     .filled = text::fills<&Harmonic::amplitude>},
+    {.name = "frequency",
+     .unit = "cycles per time unit",
+     .otherwise = text::needed,
+     .range = text::not_negative,
+     .meaning = "omega / (2 pi)",
+     .filled = text::sets<omega_of_frequency>},
+    {.name = "omega",
+     .unit = "rad per time unit",
+     .otherwise = text::needed,
+     .range = text::not_negative,
+     .meaning = "its pace",
+     .filled = text::fills<&Harmonic::omega>,
+     .instead_of_previous = true},
+    {.name = "phase", .unit = "rad", .meaning = "at t = 0", .filled = text::fills<&Harmonic::phase>},
+};
+inline constexpr TermText Harmonic::about{{.name = "excitation.harmonic",
+                                           .example = "excitation.harmonic{ amplitude = 1, frequency = 1 }",
+                                           .options = harmonic_options},
+                                          "amplitude sin(omega t + phase). Give frequency (cycles per time unit) or "
+                                          "omega (rad per time unit); phase is in rad.",
+                                          "print(excitation.harmonic{ amplitude = 3, frequency = 0.25 }(1))  --> 3.0"};
+
+}  // namespace dinal::model::terms

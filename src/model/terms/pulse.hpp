@@ -1,0 +1,40 @@
+// excitation.pulse: a level between two times.
+#pragma once
+
+#include "model/terms/term.hpp"
+
+namespace dinal::model::terms {
+
+/// `amplitude` for at <= t < at + width, else 0
+struct Pulse {
+    static const TermText about;
+
+    double amplitude = 1, at = 0, width = 0;
+
+    [[nodiscard]] double value(double t) const { return t >= at && t < at + width ? amplitude : 0; }
+    [[nodiscard]] double next_break(double t) const { return first_after(t, {at, at + width}); }
+    [[nodiscard]] double constant_from() const { return at + width; }
+    [[nodiscard]] double most() const { return std::fabs(amplitude); }
+    [[nodiscard]] double repeats_after() const { return 0; }
+    [[nodiscard]] Detail detail() const { return no_detail; }
+    void delay_by(double d) { at += d; }
+    [[nodiscard]] std::string formula(double gain) const { return number(gain * amplitude) + between(at, at + width); }
+};
+
+inline constexpr text::Option pulse_options[] = {
+    {.name = "amplitude", .unit = "torque", .meaning = "its height", .filled = text::fills<&Pulse::amplitude>},
+    {.name = "at", .unit = "time units", .meaning = "where it begins", .filled = text::fills<&Pulse::at>},
+    {.name = "width",
+     .unit = "time units",
+     .otherwise = text::needed,
+     .range = text::positive,
+     .meaning = "how long it lasts",
+     .filled = text::fills<&Pulse::width>},
+};
+inline constexpr TermText Pulse::about{
+    {.name = "excitation.pulse", .example = "excitation.pulse{ at = 1, width = 0.2 }", .options = pulse_options},
+    "amplitude for at <= t < at + width, else 0. Pulses add up to a train.",
+    "M = excitation.pulse{ at = 1, width = 0.5 } + excitation.pulse{ at = 3, width = 0.5 }\nprint(M(1.2), M(2), "
+    "M(3.2))  --> 1.0\t0.0\t1.0"};
+
+}  // namespace dinal::model::terms

@@ -1,0 +1,51 @@
+// excitation.ramp: a rise, for ever or up to a level.
+#pragma once
+
+#include "model/terms/term.hpp"
+
+namespace dinal::model::terms {
+
+/// 0 before `at`, rising by `slope` per time unit for `width`, then constant
+struct Ramp {
+    static const TermText about;
+
+    double slope = 1, at = 0, width = never;
+
+    [[nodiscard]] double value(double t) const {
+        if (t < at) {
+            return 0;
+        }
+        return slope * (t < at + width ? t - at : width);
+    }
+    [[nodiscard]] double next_break(double t) const { return first_after(t, {at, at + width}); }
+    [[nodiscard]] double constant_from() const { return at + width; }
+    [[nodiscard]] double most() const { return slope == 0 ? 0 : std::fabs(slope * width); }
+    [[nodiscard]] double repeats_after() const { return 0; }
+    [[nodiscard]] Detail detail() const { return no_detail; }
+    void delay_by(double d) { at += d; }
+    [[nodiscard]] std::string formula(double gain) const {
+        const std::string rise = factor(gain * slope) + since(at);
+        return width == never ? rise + from_on(at)
+                              : rise + between(at, at + width) + ", then " + number(gain * slope * width);
+    }
+};
+
+inline constexpr text::Option ramp_options[] = {
+    {.name = "slope",
+     .unit = "torque per time unit",
+     .meaning = "how fast it rises",
+     .filled = text::fills<&Ramp::slope>},
+    {.name = "at", .unit = "time units", .meaning = "where it begins", .filled = text::fills<&Ramp::at>},
+    {.name = "width",
+     .unit = "time units",
+     .otherwise = "math.huge",
+     .range = text::positive_or_infinite,
+     .meaning = "how long it rises",
+     .filled = text::fills<&Ramp::width>},
+};
+inline constexpr TermText Ramp::about{
+    {.name = "excitation.ramp", .example = "excitation.ramp{ slope = 2, at = 1 }", .options = ramp_options},
+    "0 before `at`, then rising by slope per time unit; constant again after width.",
+    "M = excitation.ramp{ slope = 2, at = 1, width = 3 }\nprint(M(0), M(2), M(9))  --> 0.0\t2.0\t6.0"};
+
+}  // namespace dinal::model::terms

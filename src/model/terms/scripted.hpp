@@ -1,0 +1,104 @@
+// excitation.scripted, and every function that stands for M: what a user has written.
+#pragma once
+
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "model/oscillator.hpp"
+#include "model/terms/term.hpp"
+
+namespace dinal::model::terms {
+
+/// A user's function of t or of t, theta, velocity. Virtual because the core must not know who wrote it.
+class UserFunction {
+public:
+    UserFunction() = default;
+    UserFunction(const UserFunction&) = delete;
+    UserFunction& operator=(const UserFunction&) = delete;
+    virtual ~UserFunction() = default;
+    /// NaN says that the function failed (and that its owner knows why): the run ends there.
+    virtual double value(double t, const State& state) = 0;
+    /// out[i] = value(times[i]) in this order, up to and including the first that is not finite; returns how many are.
+    // Virtual, too: the way into the user's language is paid once for a block.
+    virtual std::size_t fill(std::span<const double> times, std::span<double> out) {
+        for (std::size_t i = 0; i < times.size(); ++i) {
+            out[i] = value(times[i], State{});
+            if (!std::isfinite(out[i])) {
+                return i;
+            }
+        }
+        return times.size();
+    }
+    /// After a failure: whether it may be asked again, at other times. What failed stays known to the owner.
+    virtual bool may_go_on() { return true; }
+};
+
+/// A user's function, delayed by `delay`, with what he says about it. The excitation itself asks for its value: it may
+/// need the state, and may fail.
+// Shared ownership: every excitation and every trajectory that contains the function keeps it alive.
+struct Scripted {
+    static const TermText about;
+
+    std::shared_ptr<UserFunction> function;
+    bool feedback = false;            ///< called with theta and velocity, too
+    std::vector<double> breaks = {};  ///< where it jumps or kinks (in its own time), increasing
+    double period = 0;                ///< > 0: the breaks repeat with this period
+    double delay = 0;
+
+    [[nodiscard]] double next_break(double t) const {
+        if (breaks.empty()) {
+            return never;
+        }
+        const auto first_in_cycle = [this, t](double n) {
+            const auto at = [this, n](double b) { return b + n * period + delay; };
+            const auto found = std::partition_point(breaks.begin(), breaks.end(), [&](double b) { return at(b) <= t; });
+            return found == breaks.end() ? never : at(*found);
+        };
+        if (!(period > 0)) {
+            return first_in_cycle(0);
+        }
+        const double n = std::floor((t - delay - breaks.front()) / period);
+        for (int offset = -1; offset <= 2; ++offset) {
+            if (const double found = first_in_cycle(n + offset); found < never) {
+                return found;
+            }
+        }
+        return std::nextafter(t, never);
+    }
+    [[nodiscard]] double constant_from() const { return never; }
+    [[nodiscard]] double most() const { return never; }
+    [[nodiscard]] double repeats_after() const { return period; }
+    [[nodiscard]] Detail detail() const { return no_detail; }
+    void delay_by(double d) { delay += d; }
+    [[nodiscard]] std::optional<text::Error> complaint() const;
+    /// breaks = {0, 1.5, 3} with period = 3 names the same corner twice; to rounding, it must not count twice.
+    void drop_repeated_corner();
+};
+
+inline void repeat_after(Scripted& s, double period) {
+    s.period = period;
+}
+inline constexpr text::Option scripted_options[] = {
+    {.name = "breaks",
+     .unit = "time units",
+     .meaning = "where it jumps or kinks",
+     .filled = text::fills<&Scripted::breaks>},
+    {.name = "period",
+     .unit = "time units",
+     .range = text::positive,
+     .meaning = "after which the breaks repeat",
+     .filled = text::sets<repeat_after>},
+};
+inline constexpr TermText Scripted::about{
+    {.name = "excitation.scripted",
+     .example = "excitation.scripted(f, { breaks = { 0.5, 2 }, period = 3 })",
+     .options = scripted_options,
+     .may_be_bare = true},
+    "Any Lua function of t, or of t, theta, velocity: with two or more parameters (or ...) it is called with all "
+    "three. breaks are times at which it jumps or kinks, so that integrators do not step across them; with a period, "
+    "they repeat. Where M is expected a function alone will do.",
+    "M = excitation.scripted(function(t) return t % 3 < 2 and 1 or 0 end, { breaks = { 0, 2 }, period = 3 "
+    "})\nprint(M(7), M:next_break(7))  --> 1.0\t8.0"};
+
+}  // namespace dinal::model::terms

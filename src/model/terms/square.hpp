@@ -1,0 +1,65 @@
+// excitation.square: two levels in turn.
+#pragma once
+
+#include "model/terms/term.hpp"
+
+namespace dinal::model::terms {
+
+/// +amplitude for the first `duty` part of each period, -amplitude for the rest
+struct Square {
+    static const TermText about;
+
+    double amplitude = 1, period = 0, duty = 0.5, at = 0;
+
+    struct Cycle {
+        double fall, end;
+    };
+    [[nodiscard]] Cycle cycle(double t) const {
+        const auto edge = [this](double n) { return at + n * period; };
+        const double n = cycle_at(t, (t - at) / period, edge);
+        return {edge(n + duty), edge(n + 1)};
+    }
+    [[nodiscard]] double value(double t) const { return t < cycle(t).fall ? amplitude : -amplitude; }
+    [[nodiscard]] double next_break(double t) const {
+        const Cycle c = cycle(t);
+        return later(t, c.fall > t ? c.fall : c.end);
+    }
+    [[nodiscard]] double constant_from() const { return never; }
+    [[nodiscard]] double most() const { return std::fabs(amplitude); }
+    [[nodiscard]] double repeats_after() const { return period; }
+    [[nodiscard]] Detail detail() const { return no_detail; }
+    void delay_by(double d) { at += d; }
+    [[nodiscard]] std::string formula(double gain) const {
+        return wave("square wave", gain * amplitude, period, at) +
+               (duty == 0.5 ? "" : ", positive for " + number(duty) + " of it");
+    }
+};
+
+inline constexpr text::Option square_options[] = {
+    {.name = "amplitude", .unit = "torque", .meaning = "its greatest value", .filled = text::fills<&Square::amplitude>},
+    {.name = "period",
+     .unit = "time units",
+     .otherwise = text::needed,
+     .range = text::positive,
+     .meaning = "after which it begins again",
+     .filled = text::fills<&Square::period>},
+    {.name = "frequency",
+     .unit = "cycles per time unit",
+     .otherwise = text::needed,
+     .range = text::positive,
+     .meaning = "1 / period",
+     .filled = text::sets<period_of_frequency<Square>>,
+     .instead_of_previous = true},
+    {.name = "duty",
+     .unit = "",
+     .range = text::between_0_and_1,
+     .meaning = "the part of a period at which it is positive",
+     .filled = text::fills<&Square::duty>},
+    {.name = "at", .unit = "time units", .meaning = "where a period begins", .filled = text::fills<&Square::at>},
+};
+inline constexpr TermText Square::about{
+    {.name = "excitation.square", .example = "excitation.square{ period = 2 }", .options = square_options},
+    "+amplitude for the first part `duty` of each period, -amplitude for the rest. A period begins at `at`.",
+    "M = excitation.square{ period = 4, duty = 0.25 }\nprint(M(0), M(0.9), M(1))  --> 1.0\t1.0\t-1.0"};
+
+}  // namespace dinal::model::terms

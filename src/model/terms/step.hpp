@@ -1,0 +1,33 @@
+// excitation.step: a level from one time on.
+#pragma once
+
+#include "model/terms/term.hpp"
+
+namespace dinal::model::terms {
+
+/// 0 before `at`, `level` from then on
+struct Step {
+    static const TermText about;
+
+    double level = 1, at = 0;
+
+    [[nodiscard]] double value(double t) const { return t < at ? 0 : level; }
+    [[nodiscard]] double next_break(double t) const { return first_after(t, {at}); }
+    [[nodiscard]] double constant_from() const { return at; }
+    [[nodiscard]] double most() const { return std::fabs(level); }
+    [[nodiscard]] double repeats_after() const { return 0; }
+    [[nodiscard]] Detail detail() const { return no_detail; }
+    void delay_by(double d) { at += d; }
+    [[nodiscard]] std::string formula(double gain) const { return number(gain * level) + from_on(at); }
+};
+
+inline constexpr text::Option step_options[] = {
+    {.name = "level", .unit = "torque", .meaning = "the torque from then on", .filled = text::fills<&Step::level>},
+    {.name = "at", .unit = "time units", .meaning = "the time of the step", .filled = text::fills<&Step::at>},
+};
+inline constexpr TermText Step::about{
+    {.name = "excitation.step", .example = "excitation.step{ level = 1, at = 2 }", .options = step_options},
+    "0 before the time `at`, level from then on.",
+    "M = excitation.step{ level = 2, at = 1 }\nprint(M(0.9), M(1))  --> 0.0\t2.0"};
+
+}  // namespace dinal::model::terms

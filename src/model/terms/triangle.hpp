@@ -1,0 +1,63 @@
+// excitation.triangle: up and down in straight lines.
+#pragma once
+
+#include "model/terms/term.hpp"
+
+namespace dinal::model::terms {
+
+/// a sine's corners joined by straight lines: 0, +amplitude, 0, -amplitude, 0
+struct Triangle {
+    static const TermText about;
+
+    double amplitude = 1, period = 0, at = 0;
+
+    /// A straight piece between two corners, which lie at a quarter and three quarters of each period.
+    struct Side {
+        double start, end;
+        bool falling;
+    };
+    [[nodiscard]] Side side(double t) const {
+        const auto corner = [this](double n) { return at + (0.5 * n + 0.25) * period; };
+        const double n = cycle_at(t, 2 * ((t - at) / period) - 0.5, corner);
+        return {corner(n), corner(n + 1), std::fmod(n, 2) == 0};
+    }
+    [[nodiscard]] double value(double t) const {
+        const Side piece = side(t);
+        const double first = piece.falling ? amplitude : -amplitude;
+        return first - 2 * first * fraction(t, piece.start, piece.end);
+    }
+    [[nodiscard]] double next_break(double t) const { return later(t, side(t).end); }
+    [[nodiscard]] double constant_from() const { return never; }
+    [[nodiscard]] double most() const { return std::fabs(amplitude); }
+    [[nodiscard]] double repeats_after() const { return period; }
+    [[nodiscard]] Detail detail() const { return no_detail; }
+    void delay_by(double d) { at += d; }
+    [[nodiscard]] std::string formula(double gain) const { return wave("triangle wave", gain * amplitude, period, at); }
+};
+
+inline constexpr text::Option triangle_options[] = {
+    {.name = "amplitude",
+     .unit = "torque",
+     .meaning = "its greatest value",
+     .filled = text::fills<&Triangle::amplitude>},
+    {.name = "period",
+     .unit = "time units",
+     .otherwise = text::needed,
+     .range = text::positive,
+     .meaning = "after which it begins again",
+     .filled = text::fills<&Triangle::period>},
+    {.name = "frequency",
+     .unit = "cycles per time unit",
+     .otherwise = text::needed,
+     .range = text::positive,
+     .meaning = "1 / period",
+     .filled = text::sets<period_of_frequency<Triangle>>,
+     .instead_of_previous = true},
+    {.name = "at", .unit = "time units", .meaning = "where a period begins", .filled = text::fills<&Triangle::at>},
+};
+inline constexpr TermText Triangle::about{
+    {.name = "excitation.triangle", .example = "excitation.triangle{ period = 2 }", .options = triangle_options},
+    "The corners of a sine joined by straight lines: 0, amplitude, 0, -amplitude. A period begins at `at`.",
+    "M = excitation.triangle{ period = 4 }\nprint(M(0.5), M(1), M(3))  --> 0.5\t1.0\t-1.0"};
+
+}  // namespace dinal::model::terms
