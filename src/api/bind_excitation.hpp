@@ -19,6 +19,7 @@ int harmonic(lua_State* L);
 int step(lua_State* L);
 int pulse(lua_State* L);
 int half_sine(lua_State* L);
+int gaussian(lua_State* L);
 int ramp(lua_State* L);
 int square(lua_State* L);
 int sawtooth(lua_State* L);

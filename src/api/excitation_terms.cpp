@@ -80,6 +80,12 @@ int half_sine(lua_State* L) {
     return push_term(L, model::HalfSine{o.number("amplitude", 1), o.number("at", 0), o.number("width")});
 }
 
+int gaussian(lua_State* L) {
+    const lua::Options o(L, 1, "excitation.gaussian", "excitation.gaussian{ at = 1, width = 0.2 }",
+                         {"amplitude", "at", "width"});
+    return push_term(L, model::Gaussian{o.number("amplitude", 1), o.number("at", 0), o.number("width")});
+}
+
 int ramp(lua_State* L) {
     const lua::Options o(L, 1, "excitation.ramp", "excitation.ramp{ slope = 2, at = 1 }", {"slope", "at", "width"});
     return push_term(L, model::Ramp{o.number("slope", 1), o.number("at", 0), o.extended_number("width", model::never)});

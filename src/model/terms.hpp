@@ -6,6 +6,7 @@
 #include "model/terms/chirp.hpp"
 #include "model/terms/constant.hpp"
 #include "model/terms/exponential.hpp"
+#include "model/terms/gaussian.hpp"
 #include "model/terms/half_sine.hpp"
 #include "model/terms/harmonic.hpp"
 #include "model/terms/polyline.hpp"
@@ -24,6 +25,7 @@ namespace dinal::model {
 using terms::Chirp;
 using terms::Constant;
 using terms::Exponential;
+using terms::Gaussian;
 using terms::HalfSine;
 using terms::Harmonic;
 using terms::Polyline;
@@ -45,8 +47,8 @@ struct TermList {
 };
 
 /// In the order of the manual.
-using Terms = TermList<Constant, Harmonic, Step, Pulse, HalfSine, Ramp, Square, Sawtooth, Triangle, Chirp, Exponential,
-                       Polynomial, Polyline, Scripted>;
+using Terms = TermList<Constant, Harmonic, Step, Pulse, HalfSine, Gaussian, Ramp, Square, Sawtooth, Triangle, Chirp,
+                       Exponential, Polynomial, Polyline, Scripted>;
 using Term = Terms::Variant;
 
 }  // namespace dinal::model

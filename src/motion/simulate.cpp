@@ -75,6 +75,17 @@ std::optional<text::Error> lost_in_time(const char* name, double spacing, const 
         .option = name};
 }
 
+/// A detail of M that steps this far apart might not see.
+std::optional<text::Error> stepped_over(const char* name, double step, const model::Excitation& M,
+                                        const Window& window) {
+    const auto [from, to, apart] = M.finest_detail(window.start, window.end);
+    if (step <= apart * (1 + 1e-12)) return {};  // to the digits shown
+    return text::Error{fmt::format(
+        "{} = {:.6g} is too long for the narrow bump of M between t = {:.6g} and {:.6g}: use {} <= {:.4g}, or "
+        "integrator.spectral{{}}",
+        name, step, from, to, name, 0.999 * apart)};
+}
+
 }  // namespace
 
 text::Expected<Grid> Grid::within(const Window& window) const {
@@ -132,6 +143,9 @@ text::Expected<Trajectory> run_from(const std::optional<model::Motion>& before, 
     if (!method) return method.error();
     const bool spectral = std::holds_alternative<Spectral>(*method);
     if (auto lost = lost_in_time(spectral ? "T0/27" : "h", resolution(*method, system), window)) return *lost;
+    if (!spectral) {
+        if (auto unseen = stepped_over("h", resolution(*method, system), excitation, window)) return *unseen;
+    }
 
     const Problem problem{system, excitation, initial, window, *grid, monitor, limits, before};
     Trajectory trajectory = std::visit(Run{problem}, *method);

@@ -83,14 +83,14 @@ Finding compare(const RandomCase& c) {
     if (run->outcome != Outcome::reached_end && run->outcome != Outcome::at_rest) {
         return {Verdict::wrong, fmt::format("{} at t = {:.17g}", sentence(run->outcome), run->t_stop)};
     }
-    const double asked = c.excitation.has_feedback() ? accuracy_with_feedback : accuracy;
+    const double asked = (c.excitation.has_feedback() ? accuracy_with_feedback : accuracy) + c.lost_in_time;
     const auto largest = static_cast<double>(oracle.largest());
     for (std::size_t i = 0; i < std::min(events.size(), run->events.size()); ++i) {
         const Event& event = run->events[i];
         const double moved = std::fabs(static_cast<double>(second.events()[i].t - events[i].t)) / nudge;
         const double late = std::fabs(static_cast<double>(event.t - events[i].t));
         const double allowed = asked * (moved + largest / c.size / (w0 * static_cast<double>(events[i].sharpness))) +
-                               1e-15 * std::fabs(event.t);
+                               1e-15 * std::fabs(event.t) + c.late / w0;
         if (event.kind != events[i].kind || late > allowed) {
             return {
                 Verdict::wrong,
@@ -134,6 +134,26 @@ Load load_of(const ReferenceSystem& s) {
     return load;
 }
 
+/// One in `clear` cases may be too close to call.
+void compare_cases(RandomCase (*random)(std::uint64_t number), long cases, long clear) {
+    const long first = number_from("DINAL_ORACLE_FIRST", 0);
+    long ambiguous = 0, beyond_bounds = 0;
+    for (long i = first; i < first + cases; ++i) {
+        const RandomCase c = random(static_cast<std::uint64_t>(i));
+        const Finding finding = compare(c);
+        ambiguous += finding.verdict == Verdict::ambiguous ? 1 : 0;
+        beyond_bounds += finding.verdict == Verdict::beyond_bounds ? 1 : 0;
+        if (finding.verdict == Verdict::wrong) {
+            FAIL_CHECK("case " << i << " (DINAL_ORACLE_FIRST=" << i << " DINAL_ORACLE_CASES=1): " << finding.reason
+                               << "\n"
+                               << c.story);
+        }
+    }
+    INFO(ambiguous << " ambiguous, " << beyond_bounds << " beyond all bounds, of " << cases);
+    CHECK(clear * ambiguous <= cases + clear);
+    CHECK(100 * beyond_bounds <= cases + 100);
+}
+
 }  // namespace
 
 TEST_CASE("the oracle itself agrees with every closed form", "[oracle]") {
@@ -162,20 +182,10 @@ TEST_CASE("the oracle itself agrees with every closed form", "[oracle]") {
 
 TEST_CASE("spectral tells the same motion as an independent integrator, whatever the lot brings",
           "[oracle][spectral]") {
-    const long first = number_from("DINAL_ORACLE_FIRST", 0), cases = number_from("DINAL_ORACLE_CASES", usual_cases);
-    long ambiguous = 0, beyond_bounds = 0;
-    for (long i = first; i < first + cases; ++i) {
-        const RandomCase c = random_case(static_cast<std::uint64_t>(i));
-        const Finding finding = compare(c);
-        ambiguous += finding.verdict == Verdict::ambiguous ? 1 : 0;
-        beyond_bounds += finding.verdict == Verdict::beyond_bounds ? 1 : 0;
-        if (finding.verdict == Verdict::wrong) {
-            FAIL_CHECK("case " << i << " (DINAL_ORACLE_FIRST=" << i << " DINAL_ORACLE_CASES=1): " << finding.reason
-                               << "\n"
-                               << c.story);
-        }
-    }
-    INFO(ambiguous << " ambiguous, " << beyond_bounds << " beyond all bounds, of " << cases);
-    CHECK(20 * ambiguous <= cases + 20);
-    CHECK(100 * beyond_bounds <= cases + 100);
+    compare_cases(random_case, number_from("DINAL_ORACLE_CASES", usual_cases), 20);
+}
+
+TEST_CASE("no bump is too narrow for spectral, whether the mass rests or moves", "[oracle][spectral][gaussian]") {
+    // In so short a time as a bump is long, much is too close to call.
+    compare_cases(random_case_of_bumps, number_from("DINAL_ORACLE_CASES", usual_cases / 4), 6);
 }

@@ -14,6 +14,7 @@ TEST_CASE("a term with impossible options is refused with a sentence", "[excitat
     CHECK(complaint(Step{1, never}) == "excitation.step: at = inf must be finite");
     CHECK(complaint(Pulse{1, 0, -1}) == "excitation.pulse: width = -1 must be positive");
     CHECK(complaint(HalfSine{1, 0, 0}) == "excitation.half_sine: width = 0 must be positive");
+    CHECK(complaint(Gaussian{1, 0, 0}) == "excitation.gaussian: width = 0 must be positive");
     CHECK(complaint(Ramp{1, 0, nan}) == "excitation.ramp: width = nan must be a number");
     CHECK(complaint(Ramp{1, 0, never}).empty());
     CHECK(complaint(Square{1, 0}) == "excitation.square: period = 0 must be positive");

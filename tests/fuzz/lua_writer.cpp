@@ -66,6 +66,7 @@ constexpr std::array<std::string_view, 26> excitations{
     "excitation.pulse{ at = $t, width = $t }",
     "excitation.pulse{ amplitude = $n, at = $t, width = $n }",
     "excitation.half_sine{ amplitude = $n, at = $t, width = $t }",
+    "excitation.gaussian{ amplitude = $n, at = $t, width = $t }",
     "excitation.ramp{ slope = $n, at = $t, width = $t }",
     "excitation.square{ amplitude = $n, period = $t, duty = $n, at = $t }",
     "excitation.square{ frequency = $n }",

@@ -15,6 +15,8 @@ near(e.harmonic{ amplitude = 2, omega = 3, phase = 0.5 }(0.1), 2 * math.sin(0.8)
 assert(e.step{}(0) == 1 and e.step{ level = 5, at = 2 }(1.9) == 0 and e.step{ level = 5, at = 2 }(2) == 5)
 assert(e.pulse{ width = 1 }(0.5) == 1 and e.pulse{ amplitude = 3, at = 1, width = 1 }(2) == 0)
 assert(e.half_sine{ amplitude = 2, at = 1, width = 2 }(2) == 2)
+assert(e.gaussian{ amplitude = 2, at = 3, width = 0.5 }(3) == 2)
+near(e.gaussian{ at = 1, width = 0.5 }(2), math.exp(-2))
 assert(e.ramp{}(7) == 7 and e.ramp{ slope = 2, at = 1, width = 3 }(9) == 6)
 assert(e.square{ period = 2 }(1) == -1 and e.square{ frequency = 0.5, duty = 0.75 }(1) == 1)
 assert(e.sawtooth{ period = 2 }(1) == 0 and e.triangle{ frequency = 0.25 }(1) == 1)
@@ -70,6 +72,8 @@ fails(function() return e.pulse{ width = -1 } end, "excitation.pulse: width = -1
 fails(function() return e.pulse{ widht = 1 } end, "has no option 'widht'", "did you mean 'width'?")
 fails(function() return e.pulse{ width = "1" } end, 'width must be a finite number, got the string "1"')
 fails(function() return e.pulse(3) end, "one table of named options")
+fails(function() return e.gaussian{ at = 1 } end, "excitation.gaussian needs width, for example excitation.gaussian{")
+fails(function() return e.gaussian{ width = 0 } end, "excitation.gaussian: width = 0 must be positive")
 fails(function() return e.harmonic{} end, "one of frequency and omega is needed")
 fails(function() return e.harmonic{ frequency = 1, omega = 2 } end, "frequency and omega say the same; give one of them")
 fails(function() return e.harmonic{ frequency = -1 } end, "frequency = -1 must not be negative")
@@ -205,7 +209,7 @@ assert(churn == 2000 + 2000 * 2001 / 2)
 -- As text, which makes the same again.
 local function rebuilt(M) return assert(load("return " .. tostring(M)))() end
 local all = e.constant{ level = 2 } - e.harmonic{ omega = 2.1, phase = 0.1 } / 3 + 0.5 * e.step{ at = 0.3 }
-    + e.pulse{ at = 0.1, width = 0.7 } + e.half_sine{ width = 2 } - 2 * e.ramp{} + e.ramp{ width = 3 }:window(1, math.huge)
+    + e.pulse{ at = 0.1, width = 0.7 } + e.half_sine{ width = 2 } - e.gaussian{ at = 2, width = 0.3 }:delay(0.1) - 2 * e.ramp{} + e.ramp{ width = 3 }:window(1, math.huge)
     + e.square{ period = 0.3 }:delay(0.1) + e.sawtooth{ frequency = 3 }:window(0, 1) + e.triangle{ period = 0.7 }
     + e.chirp{ from = 0.1, to = 2, duration = 3 } + e.exponential{ tau = 0.7 } - e.polynomial{ coefficients = { 1, 0.1 } }
     + e.samples{ t = { 0, 0.1, 3 }, M = { 1, -1, 2 } } + function(t) return t * t end
@@ -222,6 +226,30 @@ assert(tostring(e.step{}:window(0, math.huge)) == "excitation.step{ level = 1, a
 local many = {}
 for i = 1, 20 do many[i] = i end
 assert(tostring(e.samples{ t = many, M = many }) == "excitation.samples{ --[[ 20 points, t 1 ... 20 ]] }")
+
+-- A sum that grows term by term, and its text, cost in proportion to the terms: eight times as many, not 64 times as
+-- much. (The least of three, for the noise of the machine.)
+local function cost(n)
+    local least = math.huge
+    for _ = 1, 3 do
+        collectgarbage()
+        local before = os.clock()
+        local M = e.step{}
+        for i = 1, n do M = M + e.pulse{ at = i, width = 0.5 } end
+        local _, count = tostring(M):gsub("pulse", "")
+        least = math.min(least, os.clock() - before)
+        assert(count == n and M(n) == 2)
+    end
+    return least
+end
+assert(cost(8000) < 24 * cost(1000))
+
+-- A step that is too long for a bump is refused where spectral sees it.
+local swing = system{ I = 1, k = 40 }
+fails(function() return swing:simulate{ M = e.gaussian{ at = 2, width = 0.01 }, t_end = 4, dt = 1, integrator = integrator.rk4{ h = 0.01 } } end,
+      "h = 0.01 is too long for the narrow bump of M between t = 1.9 and 2.1: use h <= 0.004995, or integrator.spectral{}")
+local seen = swing:simulate{ M = e.gaussian{ amplitude = 100, at = 2, width = 0.01 }, t_end = 4, dt = 0.01 }
+assert(seen.theta:max() > 0.3, "100 * 0.01 * sqrt(2 pi) / sqrt(40) = 0.396")
 
 -- The text of a function is found in its file: behind strings and comments, whatever is named `function` there.
 local long_one = e.scripted(function(t) -- "function(t) end"

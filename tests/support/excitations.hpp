@@ -64,6 +64,7 @@ inline std::vector<model::Excitation> one_of_each() {
             made(model::Step{2, 0.3}),
             made(model::Pulse{2, 0.1, 0.7}),
             made(model::HalfSine{2, 0.1, 0.7}),
+            made(model::Gaussian{2, 0.4, 0.1}),
             made(model::Ramp{2, 0.1, 0.7}),
             made(model::Square{2, 0.3, 0.3, 0.1}),
             made(model::Sawtooth{2, 0.3, 0.1}),

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <numbers>
 
 namespace dinal::truth {
 
@@ -79,8 +81,10 @@ std::uint64_t Lot::next() {
     return z ^ (z >> 31U);
 }
 
-RandomCase random_case(std::uint64_t number) {
-    Lot lot(number * 0x632be59bd9b4e019U + 1);
+namespace {
+
+/// A system, a start and a window; nothing drives it yet.
+RandomCase undriven_case(Lot& lot) {
     const double I = lot.power_of_ten(-6, 5), k = lot.power_of_ten(-3, 3), angle = lot.power_of_ten(-9, 6);
     const double zeta = damping_ratio(lot);
     double Rd = lot.once_in(6) ? 0 : lot.between(0, 0.9), Re = lot.once_in(2) ? Rd : Rd * lot.between(1, 1.7);
@@ -97,27 +101,63 @@ RandomCase random_case(std::uint64_t number) {
     const motion::Window window{start, start + T0 * lot.between(2, 14)};
     const model::State initial{lot.once_in(4) ? 0 : angle * lot.between(-1.5, 1.5),
                                lot.once_in(3) ? 0 : angle * system.natural_frequency() * lot.between(-1.5, 1.5)};
-    RandomCase c{
-        fmt::format("I {:.17g} k {:.17g} C {:.17g} Rd {:.17g} Re {:.17g} (zeta {:.3g}, Rd {:.3g}, Re {:.3g}; T0 "
-                    "{:.6g}) theta {:.17g} velocity {:.17g} t {:.17g} to {:.17g}",
-                    I, k, system.damping(), Rd * torque, Re * torque, zeta, Rd, Re, T0, initial.theta, initial.velocity,
-                    window.start, window.end),
-        system,
-        {},
-        {[](real, real, const Motion&) -> real { return 0; }},
-        initial,
-        window,
-        angle,
-        {}};
-    const Units units{window, T0, angle, torque};
+    return {fmt::format("I {:.17g} k {:.17g} C {:.17g} Rd {:.17g} Re {:.17g} (zeta {:.3g}, Rd {:.3g}, Re {:.3g}; T0 "
+                        "{:.6g}) theta {:.17g} velocity {:.17g} t {:.17g} to {:.17g}",
+                        I, k, system.damping(), Rd * torque, Re * torque, zeta, Rd, Re, T0, initial.theta,
+                        initial.velocity, window.start, window.end),
+            system,
+            {},
+            {[](real, real, const Motion&) -> real { return 0; }},
+            initial,
+            window,
+            angle,
+            {}};
+}
+
+Units units_of(const RandomCase& c) {
+    return {c.window, c.system.natural_period(), c.size, c.system.stiffness() * c.size};
+}
+
+void choose_times(Lot& lot, RandomCase& c) {
+    constexpr int places = 24;
+    const auto [start, end] = c.window;
+    for (int i = 0; i < places; ++i) {
+        c.times.push_back(start + (end - start) * (i + lot.between(0, 1)) / places);
+    }
+}
+
+}  // namespace
+
+RandomCase random_case(std::uint64_t number) {
+    Lot lot(number * 0x632be59bd9b4e019U + 1);
+    RandomCase c = undriven_case(lot);
+    const Units units = units_of(c);
     for (int i = lot.of(4); i > 0; --i) add(c, altered(lot, units, random_native_term(lot, units)));
     if (lot.once_in(3)) add(c, altered(lot, units, random_function_of_time(lot, units)));
     if (lot.once_in(4)) add(c, altered(lot, units, random_feedback(lot, units)));
     std::sort(c.load.breaks.begin(), c.load.breaks.end());
-    constexpr int places = 24;
-    for (int i = 0; i < places; ++i) {
-        c.times.push_back(window.start + (window.end - window.start) * (i + lot.between(0, 1)) / places);
+    choose_times(lot, c);
+    return c;
+}
+
+RandomCase random_case_of_bumps(std::uint64_t number) {
+    Lot lot(number * 0x632be59bd9b4e019U + 7);
+    RandomCase c = undriven_case(lot);
+    const Units units = units_of(c);
+    if (lot.once_in(2)) {
+        c.story += ", but at rest";
+        c.initial = {};
     }
+    for (int i = 1 + lot.of(3); i > 0; --i) {
+        const double width = units.period * lot.power_of_ten(-6, 1);
+        add(c, altered(lot, units, random_bump(lot, units, width)));
+        const double latest = std::max(std::fabs(c.window.start), std::fabs(c.window.end));
+        c.lost_in_time = std::max(c.lost_in_time, 4 * std::numeric_limits<double>::epsilon() * latest / width);
+    }
+    c.late = 2e-11 * std::numbers::pi;  // spectral finds a release to 1e-11 T0
+    if (lot.once_in(3)) add(c, altered(lot, units, random_native_term(lot, units)));
+    std::sort(c.load.breaks.begin(), c.load.breaks.end());
+    choose_times(lot, c);
     return c;
 }
 

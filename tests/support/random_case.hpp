@@ -20,9 +20,16 @@ struct RandomCase {
 
     /// Where it is told: generic times in the window, increasing.
     std::vector<double> times;
+
+    /// Times are rounded: by this part of the narrowest bump.
+    double lost_in_time = 0;
+    /// What an event may be late by, radians. A bump may be so steep that no error of M explains it.
+    double late = 0;
 };
 
 RandomCase random_case(std::uint64_t number);
+/// Driven by smooth bumps, of 1e-6 T0 up to ten; half of them begin at rest.
+RandomCase random_case_of_bumps(std::uint64_t number);
 
 /// Evenly distributed numbers that are the same with every library.
 class Lot {
@@ -53,6 +60,7 @@ struct Units {
     double torque;  ///< k angle
 };
 Ingredient random_native_term(Lot& lot, const Units& units);
+Ingredient random_bump(Lot& lot, const Units& units, double width);
 Ingredient random_function_of_time(Lot& lot, const Units& units);
 Ingredient random_feedback(Lot& lot, const Units& units);
 

@@ -219,6 +219,21 @@ Ingredient random_native_term(Lot& lot, const Units& u) {
     }
 }
 
+/// A narrow one is as great as it must be to be felt. The oracle, which takes some steps between breaks, is told of
+/// breaks on it.
+Ingredient random_bump(Lot& lot, const Units& u, double width) {
+    const double felt = u.torque * std::max(1.0, u.period / (15 * width));
+    const double a = felt * lot.between(-1.5, 1.5), at = lot.between(u.window.start, u.window.end);
+    std::vector<double> steps;
+    for (const double x : {-12, -9, -6, -4, -2, 0, 2, 4, 6, 9, 12}) steps.push_back(at + x * width);
+    const auto shape = [=](auto t, auto) -> real {
+        const real x = (t - at) / width;
+        return a * std::exp(-x * x / 2);
+    };
+    return {fmt::format("gaussian {:.17g} at {:.17g} width {:.17g}", a, at, width),
+            native(model::Gaussian{a, at, width}), load_of(shape, steps)};
+}
+
 /// Smooth, with jumps, with kinks; with its jumps announced or not.
 Ingredient random_function_of_time(Lot& lot, const Units& u) {
     const double a = u.torque * lot.between(0.2, 1.5), w = lot.between(0.2, 8) / u.period, phase = lot.between(0, 6);

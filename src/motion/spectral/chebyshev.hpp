@@ -39,6 +39,9 @@ inline constexpr Samples nodes = [] {
     return x;
 }();
 
+/// The greatest distance between two nodes, as a part of the panel.
+inline constexpr double widest_gap = (nodes[degree / 2 + 1] - nodes[degree / 2]) / 2;
+
 /// The polynomial through values at the nodes. Equal values give a constant, exactly.
 Series<points> fit(const Samples& f);
 /// The values at the nodes.

@@ -11,6 +11,9 @@ namespace dinal::motion::spectral {
 namespace {
 
 constexpr double epsilon = std::numeric_limits<double>::epsilon();
+/// No torque, and no motion: what comes of numbers so small that they have lost their digits. A bump that wakes a mass
+/// at rest begins with these.
+constexpr double underflow = std::numeric_limits<double>::min() / epsilon;
 // Lengths of time are in units of pace_.
 /// A panel so short that what it does not resolve can not be seen in the motion.
 constexpr double shortest = 1e-13;
@@ -42,9 +45,9 @@ double PanelSolver::lost_in_time() const {
 /// The last coefficients of M over what the tolerance allows, in units of the torques that are at play.
 double PanelSolver::unresolved_load() const {
     const Series& M = panel_.M;
-    double allowed = (tolerance_ + 4 * epsilon) * torques();
+    double allowed = (tolerance_ + 4 * epsilon) * torques() + underflow;
     const double last = chebyshev::tail(M);
-    if (last <= allowed) return allowed > 0 ? last / allowed : 0;
+    if (last <= allowed) return last / allowed;
     allowed += lost_in_time();
     return last / allowed;
 }
@@ -54,9 +57,9 @@ double PanelSolver::unresolved_motion() const {
     const auto& w = panel_.w;
     const double last = chebyshev::tail(w);
     const double v = chebyshev::size(panel_.v), acceleration = chebyshev::size(w);
-    double allowed = tolerance_ * std::max(v, acceleration);
-    if (last <= allowed) return allowed > 0 ? last / allowed : 0;
-    allowed += rounding_of_motion(lost_in_time());
+    double allowed = tolerance_ * std::max(v, acceleration) + underflow;
+    if (last <= allowed) return last / allowed;
+    allowed += rounding_of_motion(lost_in_time() + underflow);
     return last / allowed;
 }
 

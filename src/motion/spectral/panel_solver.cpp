@@ -31,6 +31,7 @@ void PanelSolver::choose(const Present& now, model::Motion way) {
     const double breaks = found_breaks_.empty() ? announced : std::min(announced, found_breaks_.front());
     const double limit = std::min(end_of_run_, breaks);
     const double remaining = now.clock.until(limit);
+    h_ = std::min(h_, excitation_.view(now.clock.hi, chebyshev::widest_gap) / 2);
     if (bad_time_ < model::never) h_ = std::min(h_, now.clock.until(bad_time_) / 4);
     const bool to_limit = remaining <= 2 * h_ * (1 + 1e-9);
     panel_.ends = !to_limit         ? SolvedPanel::End::inside

@@ -1,0 +1,57 @@
+// excitation.gaussian: a smooth bump.
+#pragma once
+
+#include "model/terms/term.hpp"
+
+namespace dinal::model::terms {
+
+/// amplitude exp(-((t - at) / width)^2 / 2): `width` is the standard deviation
+struct Gaussian {
+    static const TermText about;
+
+    double amplitude = 1, at = 0, width = 0;
+
+    [[nodiscard]] double value(double t) const {
+        const double x = (t - at) / width;
+        return amplitude * std::exp(-0.5 * x * x);
+    }
+    [[nodiscard]] double next_break(double) const { return never; }
+    [[nodiscard]] double constant_from() const {
+        constexpr double vanished = 39;  // exp(-39^2 / 2) is less than the least double
+        return std::nextafter(at + vanished * width, never);
+    }
+    [[nodiscard]] double most() const { return std::fabs(amplitude); }
+    [[nodiscard]] double repeats_after() const { return 0; }
+    [[nodiscard]] Detail detail() const {
+        constexpr double visible = 10;  // exp(-10^2 / 2) is 2e-22: lost in the rounding of what the bump does later
+        return {at - visible * width, at + visible * width, width / 2};
+    }
+    void delay_by(double d) { at += d; }
+    [[nodiscard]] std::string formula(double gain) const {
+        return factor(gain * amplitude) + "exp(-(" + since(at) + "/" + number(width) + ")^2/2)";
+    }
+};
+
+inline constexpr text::Option gaussian_options[] = {
+    {.name = "amplitude",
+     .unit = "torque",
+     .meaning = "its greatest value",
+     .filled = text::fills<&Gaussian::amplitude>},
+    {.name = "at", .unit = "time units", .meaning = "its middle", .filled = text::fills<&Gaussian::at>},
+    {.name = "width",
+     .unit = "time units",
+     .otherwise = text::needed,
+     .range = text::positive,
+     .meaning = "its standard deviation: half its breadth at 0.61 of its height",
+     .filled = text::fills<&Gaussian::width>},
+};
+inline constexpr TermText Gaussian::about{
+    {.name = "excitation.gaussian",
+     .example = "excitation.gaussian{ at = 1, width = 0.2 }",
+     .options = gaussian_options},
+    "A smooth bump, amplitude exp(-((t - at)/width)^2 / 2): width is the standard deviation. The spectral integrator "
+    "sees it however narrow it is; the others want steps of at most half the width.",
+    "M = excitation.gaussian{ amplitude = 2, at = 3, width = 0.5 }\nprint(M(3), M(3.5) / M(3) == math.exp(-0.5))  --> "
+    "2.0\ttrue"};
+
+}  // namespace dinal::model::terms

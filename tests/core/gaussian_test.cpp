@@ -1,0 +1,140 @@
+// A smooth narrow bump: what it is, and that nobody steps over it without a word.
+#include <cmath>
+
+#include "support/excitations.hpp"
+#include "support/measure.hpp"
+#include "support/random_case.hpp"
+#include "support/within.hpp"
+
+using namespace dinal;
+using namespace dinal::model;
+using namespace dinal::motion;
+using namespace dinal::excitations;
+using truth::Lot;
+using truth::must_run;
+
+namespace {
+
+constexpr double T0 = 1, w0 = 2 * pi;
+
+Oscillator oscillator(double Rd, double Re) {
+    return Oscillator::make({.inertia = 1, .stiffness = w0 * w0, .kinetic_friction = Rd, .breakaway = Re}).value();
+}
+
+std::string refusal(const Excitation& M, const Window& window, const Integrator& integrator) {
+    const auto run = simulate(oscillator(0, 0), M, {}, window, Grid::none(), integrator);
+    return run ? "" : run.error().sentence;
+}
+
+}  // namespace
+
+TEST_CASE("a gaussian is what it is on paper, and exactly 0 far away", "[gaussian]") {
+    const Excitation M = made(Gaussian{3, 2, 0.5});
+    CHECK(M.value(2) == 3);
+    CHECK(M.value(2.5) == near(3 * std::exp(-0.5)));
+    CHECK(M.value(0.5) == near(3 * std::exp(-4.5)));
+    CHECK(M.value(2 - 1.25) == M.value(2 + 1.25));
+    CHECK(M.next_break(-99) == never);
+    CHECK(M.most() == 3);
+    CHECK(M.constant_from() == within(2 + 39 * 0.5, 1e-12));
+    CHECK(M.value(M.constant_from()) == 0);
+    CHECK(M.windowed(0, 1e3).constant_from() == M.constant_from());
+    CHECK(M.windowed(0, 3).constant_from() == 3);
+    // Its time of rest is right also where times are too coarse for its width.
+    const double late = 1e9;
+    const Excitation narrow = made(Gaussian{3, late, 1e-9});
+    CHECK(narrow.value(late) == 3);
+    CHECK(narrow.value(narrow.constant_from()) == 0);
+}
+
+TEST_CASE("how far one may look without missing a bump", "[gaussian]") {
+    const double width = 0.01, spacing = 0.1;
+    const double close = width / 2 / spacing;  // a look of this length has samples half a width apart
+    const Excitation M = made(Gaussian{1, 5, width});
+    CHECK(M.view(2, spacing) == near(5 - 10 * width - 2));
+    CHECK(M.view(5 - 10 * width - close / 2, spacing) == near(close));
+    CHECK(M.view(5, spacing) == near(close));
+    CHECK(M.view(5 + 9.9 * width, spacing) == near(close));
+    CHECK(M.view(5 + 10.1 * width, spacing) == never);
+    CHECK((M + made(Gaussian{1, 3, 1e-3})).view(2.5, spacing) == near(3 - 1e-2 - 2.5));
+    CHECK((M + made(Constant{1})).view(5, spacing) == near(close));
+    CHECK(M.scaled(0).view(5, spacing) == never);
+    CHECK(M.delayed(1).view(6, spacing) == near(close));
+    CHECK(M.windowed(0, 4).view(2, spacing) == never);
+    CHECK(M.windowed(5, 6).view(2, spacing) == near(3));
+    CHECK(M.windowed(0, 5).view(5, spacing) == never);
+    CHECK(made(Harmonic{1, 1, 0}).view(0, spacing) == never);
+}
+
+TEST_CASE("the swing after a bump is that of the closed form, whatever the width", "[gaussian][spectral]") {
+    const Oscillator system = oscillator(0, 0);
+    Lot lot(5);
+    for (int i = 0; i < 40; ++i) {
+        const double width = T0 * lot.power_of_ten(-6, -0.5), at = lot.between(4, 5);
+        CAPTURE(width, at);
+        // The spectrum of the bump at w0: its area, and a gaussian of w0 width.
+        const double swing = 0.7;
+        const double amplitude = swing * w0 * std::exp(w0 * w0 * width * width / 2) / (width * std::sqrt(2 * pi));
+        const Excitation M = made(Gaussian{2 * amplitude, at - 1, width}).scaled(0.5).delayed(1);
+        const Trajectory run = must_run(system, M, {}, {0, 12}, Grid::at({9.3, 10.1}), Spectral{});
+        CAPTURE(sentence(run.outcome), run.t_stop);
+        REQUIRE(run.size() == 2);
+        // Times are rounded, by this part of the width; a slow bump lifts the mass to more than the swing that is left.
+        const double slack = 1e-11 * std::max(1.0, amplitude / (w0 * w0)) + 16 * 1e-16 * at / width;
+        for (Eigen::Index row = 0; row < 2; ++row) {
+            const double t = run.rows(row, 0);
+            CHECK(run.rows(row, 1) == within(swing * std::sin(w0 * (t - at)), slack));
+        }
+    }
+}
+
+TEST_CASE("a load that grows out of nothing moves a mass at rest from nothing on", "[gaussian][spectral]") {
+    // From 1e-308 down numbers lose their digits, and no M is smooth there.
+    for (const double width : {0.01, 0.06}) {
+        const auto bump = probe([width](double t) { return std::exp(-0.5 * std::pow((t - 4.45) / width, 2)); });
+        const Trajectory run = must_run(oscillator(0, 0), made(Scripted{.function = bump}).scaled(1e6), {}, {0, 6},
+                                        Grid::at({6}), Spectral{});
+        REQUIRE(run.outcome == Outcome::reached_end);
+        const double swing = 1e6 * width * std::sqrt(2 * pi) / w0 * std::exp(-w0 * w0 * width * width / 2);
+        CHECK(run.rows(0, 1) == within(swing * std::sin(w0 * 1.55), 1e-10 * swing));
+    }
+}
+
+TEST_CASE("a bump wakes a mass that has been stuck for long", "[gaussian][spectral]") {
+    const Oscillator system = oscillator(1, 2);
+    const double width = GENERATE(1e-6, 1e-4, 1e-2);
+    const double at = 977.123, top = 5 / width;
+    const Excitation bump = made(Gaussian{top, at, width});
+    const double start = 0.01, limit = 2 + w0 * w0 * start;
+    const double slips = at - width * std::sqrt(2 * std::log(top / limit));
+    for (const Excitation& M : {bump, bump + made(Harmonic{0.5, 0.01, 0}).windowed(0, 900),
+                                (bump + bump.delayed(-500).scaled(1e-9)).windowed(100, 2000)}) {
+        const Trajectory run = must_run(system, M, {start, 0}, {0, 1000}, Grid::none(), Spectral{});
+        REQUIRE(run.events.size() > 1);
+        CHECK(run.events[0].kind == EventKind::slip);
+        CHECK(run.events[0].t == within(slips, 1e-11));  // so well are releases found, T0 = 1
+        CHECK(run.outcome == Outcome::at_rest);
+    }
+    // One that does not reach Re wakes nobody.
+    const Trajectory still = must_run(system, made(Gaussian{1.5, at, width}), {start, 0}, {0, 1000}, Grid::none(), {});
+    CHECK(still.events.empty());
+}
+
+TEST_CASE("a method with a step refuses what it would step over, and says which step will do", "[gaussian][rk4]") {
+    const Excitation M = made(Constant{1}) + made(Gaussian{1, 5, 0.01}) + made(Gaussian{1, 8, 0.002});
+    CHECK(refusal(M, {0, 7}, Rk4{0.01}) ==
+          "h = 0.01 is too long for the narrow bump of M between t = 4.9 and 5.1: use h <= 0.004995, or "
+          "integrator.spectral{}");
+    CHECK(refusal(M, {0, 9}, Dinal1989{0.01}).find("between t = 7.98 and 8.02: use h <= 0.000999") !=
+          std::string::npos);
+    CHECK(refusal(M, {0, 7}, Rk4{0.005}).empty());
+    CHECK(refusal(M, {0, 4}, Rk4{0.1}).empty());
+    CHECK(refusal(M, {6, 7}, Rk4{0.1}).empty());
+    CHECK(refusal(M.windowed(0, 4), {0, 9}, Rk4{0.1}).empty());
+    CHECK(refusal(M, {0, 9}, Spectral{}).empty());
+    // The step that is just allowed sees all of it: the error of the rule that it comes to is exp(-pi^2 / h^2 ...).
+    const double swing = 0.01 * std::sqrt(2 * pi) / w0 * std::exp(-w0 * w0 * 1e-4 / 2);
+    const Trajectory run =
+        must_run(oscillator(0, 0), made(Gaussian{1, 5, 0.01}), {}, {0, 7.3}, Grid::at({7.3}), Rk4{0.005});
+    CHECK(run.rows(0, 1) == within(swing * std::sin(w0 * 2.3), 1e-6 * swing));
+}
