@@ -8,11 +8,8 @@
 
 #include "analysis/stretches.hpp"
 #include "model/lowered.hpp"
-#include "motion/spectral/panels.hpp"
 
 namespace dinal::analysis {
-
-namespace chebyshev = motion::spectral::chebyshev;
 
 namespace {
 
@@ -57,70 +54,22 @@ Stored change(const model::Lowered& system, const model::State& from, const mode
             system.stiffness() * ((to.theta - from.theta) * (to.theta + from.theta)) / 2};
 }
 
-/// The work done on one panel, from its beginning to any place in it.
-class PanelWork {
-public:
-    PanelWork(const model::Lowered& system, const motion::spectral::Panel& panel) : panel_(&panel) {
-        if (standing()) return;
-        const auto v = panel.velocity();
-        input_ = chebyshev::integral(chebyshev::product(panel.M, v), 0);
-        way_ = chebyshev::integral(v, 0);
-        dry_ = system.braking(panel.motion);
-        if (system.has_remainder()) add_remainder(system, v);
-        if (system.damping() == 0) return;
-        squared_ = chebyshev::integral(chebyshev::product(v, v), 0);
-        viscous_ = system.damping() / panel.h;
-    }
-    /// Up to `since` time units after the beginning of the panel.
-    [[nodiscard]] Work until(double since) const {
-        if (standing() || !(since > 0)) return {};
-        const double x = std::min(since / panel_->h - 1, 1.0);
-        return {chebyshev::value(input_, x), viscous_ == 0 ? 0 : viscous_ * chebyshev::value(squared_, x),
-                (dry_ == 0 ? 0 : dry_ * chebyshev::value(way_, x)) + (changes_ ? chebyshev::value(changing_, x) : 0)};
-    }
-    [[nodiscard]] Work all() const { return until(panel_->length); }
-
-private:
-    static constexpr std::size_t points = chebyshev::points;
-    [[nodiscard]] bool standing() const { return panel_->motion == model::Motion::stuck; }
-
-    /// The part of the friction that changes with speed.
-    void add_remainder(const model::Lowered& system, const chebyshev::Series<points + 1>& v) {
-        const auto v_at = chebyshev::at_nodes(v), theta_at = chebyshev::at_nodes(way_);
-        chebyshev::Samples friction{};
-        for (std::size_t j = 0; j < points; ++j) {
-            friction[j] = system.remainder(panel_->motion, {panel_->begin.theta + theta_at[j], v_at[j] / panel_->h});
-        }
-        changing_ = chebyshev::integral(chebyshev::product(chebyshev::fit(friction), v), 0);
-        changes_ = true;
-    }
-
-    const motion::spectral::Panel* panel_;
-    double dry_ = 0, viscous_ = 0;
-    bool changes_ = false;
-    chebyshev::Series<2 * points + 1> input_{};     // of M v
-    chebyshev::Series<2 * points + 1> changing_{};  // of the changing part of friction and v
-    chebyshev::Series<2 * points + 2> squared_{};   // of v^2
-    chebyshev::Series<points + 2> way_{};
-};
-
-/// Adds up panels into half cycles as the stretches of the run cut them.
+/// Adds up legs into half cycles as the stretches of the run cut them.
 class Bookkeeper {
 public:
     Bookkeeper(const model::Lowered& system, const std::vector<Stretch>& stretches)
         : system_(system), stretch_(stretches.begin()), last_(stretches.end() - 1) {}
 
-    void add(const motion::spectral::Panel& panel) {
-        const PanelWork work(system_, panel);
+    void add(const motion::Leg& leg) {
         Work done;
-        // Without friction a turn may lie within the panel; else it is where one begins, to rounding.
-        while (stretch_ != last_ && panel.start.until(stretch_->to) < panel.length) {
-            const Work here = work.until(panel.start.until(stretch_->to));
+        // Without friction a turn may lie within the leg; else it is where one begins, to rounding.
+        while (stretch_ != last_ && leg.since_start(stretch_->to) < leg.length()) {
+            const Work here = leg.work(leg.since_start(stretch_->to));
             present_.add(here - done);
             done = here;
             close();
         }
-        present_.add(work.all() - done);
+        present_.add(leg.work(leg.length()) - done);
     }
     Energy finish(const model::State& initial) {
         while (stretch_ != last_) close();
@@ -166,22 +115,24 @@ text::Expected<Energy> energy_of(const motion::Trajectory& trajectory) {
         return text::Error{
             "a run that was read from a file has no motion to integrate over: simulate the system again"};
     }
-    const motion::spectral::Panels* panels = trajectory.panels.get();
-    if (panels == nullptr) {
+    const double whole_until = trajectory.course ? trajectory.course->whole_until() : -model::never;
+    if (whole_until == -model::never) {
         return text::Error{
             "the energy is integrated over the motion that integrator.spectral keeps: simulate with that integrator "
             "and without dense = false"};
     }
-    if (panels->size() == 0) return text::Error{"there is no motion to integrate over: the run ended where it started"};
-    if (!panels->complete()) {
+    if (whole_until < model::never) {
         return text::Error{fmt::format(
             "the motion was kept up to t = {:.6g} only, for want of memory: simulate in parts, each up to that length",
-            panels->end())};
+            whole_until)};
     }
-    const model::Lowered system(panels->system());
+    if (!(trajectory.t_stop > trajectory.t_start)) {
+        return text::Error{"there is no motion to integrate over: the run ended where it started"};
+    }
+    const model::Lowered system(trajectory.course->system());
     const std::vector<Stretch> cut = stretches(trajectory);
     Bookkeeper books(system, cut);
-    for (std::size_t i = 0; i < panels->size(); ++i) books.add((*panels)[i]);
+    trajectory.course->legs([&books](const motion::Leg& leg) { books.add(leg); });
     Energy energy = books.finish(trajectory.initial);
     energy.t_start = trajectory.t_start;
     energy.t_end = trajectory.t_stop;
@@ -195,27 +146,27 @@ text::Expected<Energy> energy_of(const motion::Trajectory& trajectory) {
 }
 
 Eigen::MatrixXd energy_columns(const motion::Trajectory& trajectory) {
-    const motion::spectral::Panels& panels = *trajectory.panels;
-    const model::Lowered system(panels.system());
+    const model::Lowered system(trajectory.course->system());
     const auto t = trajectory.column(motion::Column::t), theta = trajectory.column(motion::Column::theta),
                velocity = trajectory.column(motion::Column::velocity);
     Eigen::MatrixXd columns(trajectory.size(), energy_column_count);
-    WorkSum before;
-    std::size_t i = 0;
-    PanelWork work(system, panels[0]);
-    for (Eigen::Index row = 0; row < trajectory.size(); ++row) {
-        while (i + 1 < panels.size() && panels[i + 1].start.until(t[row]) >= 0) {
-            before.add(work.all());
-            work = PanelWork(system, panels[++i]);
-        }
-        WorkSum sum = before;
-        sum.add(work.until(std::min(panels[i].start.until(t[row]), panels[i].length)));
+    Eigen::Index row = 0;
+    const auto put = [&](WorkSum sum, const Work& last) {
+        sum.add(last);
         const model::State y{theta[row], velocity[row]};
         const Stored s = stored(system, y);
         const Balance balance{sum.value(), change(system, trajectory.initial, y)};
-        columns.row(row) << balance.work.input, s.kinetic, s.spring, balance.work.viscous, balance.work.dry,
+        columns.row(row++) << balance.work.input, s.kinetic, s.spring, balance.work.viscous, balance.work.dry,
             balance.error();
-    }
+    };
+    WorkSum before;
+    trajectory.course->legs([&](const motion::Leg& leg) {
+        while (row < trajectory.size() && leg.since_start(t[row]) < leg.length()) {
+            put(before, leg.work(leg.since_start(t[row])));
+        }
+        before.add(leg.work(leg.length()));
+    });
+    while (row < trajectory.size()) put(before, {});
     return columns;
 }
 

@@ -3,7 +3,7 @@
 //     input = change of kinetic + change of spring + viscous + dry
 //
 // The work of M is the integral of M theta' dt, viscous friction takes that of C theta'^2 and dry friction Rd times the
-// way. All are integrated over the panels on which the motion was computed, products of series and so exactly; the
+// way. All are integrated over the legs in which the motion was computed, by the integrator and so as exactly; the
 // stored energies come from theta and velocity. Nothing is made to add up: the error says how well it does.
 #pragma once
 
@@ -20,11 +20,7 @@ struct Stored {
     double spring = 0;   ///< k theta^2 / 2
 };
 
-struct Work {
-    double input = 0;    ///< of M on the mass
-    double viscous = 0;  ///< lost to viscous damping
-    double dry = 0;      ///< lost to dry friction
-};
+using motion::Work;
 
 struct Balance {
     Work work;
@@ -54,7 +50,7 @@ struct Energy {
     [[nodiscard]] double closure() const;
 };
 
-/// Of a run of integrator.spectral. Fails with a sentence when the run has not kept its motion.
+/// Fails with a sentence when the run has not kept its motion.
 text::Expected<Energy> energy_of(const motion::Trajectory& trajectory);
 
 /// The same at the rows: work done since t_start and energy stored at each. Only after energy_of() has succeeded.

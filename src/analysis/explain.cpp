@@ -6,8 +6,8 @@
 namespace dinal::analysis {
 
 std::string explain(const motion::Trajectory& trajectory, const model::Oscillator& system,
-                    const model::Excitation& excitation, const motion::Integrator& integrator) {
-    return Story(trajectory, system, excitation, integrator).told();
+                    const model::Excitation& excitation, motion::MethodView method) {
+    return Story(trajectory, system, excitation, method).told();
 }
 
 std::string explain_rows(const motion::Trajectory& trajectory) {

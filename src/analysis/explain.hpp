@@ -5,7 +5,7 @@
 
 #include "model/excitation.hpp"
 #include "model/oscillator.hpp"
-#include "motion/integrator.hpp"
+#include "motion/method.hpp"
 #include "motion/trajectory.hpp"
 
 namespace dinal::analysis {
@@ -13,7 +13,7 @@ namespace dinal::analysis {
 /// Paragraphs of lines that fit 80 columns. Of a long run only the first and the last stops are told one by one. No
 /// user function is called.
 std::string explain(const motion::Trajectory& trajectory, const model::Oscillator& system,
-                    const model::Excitation& excitation, const motion::Integrator& integrator);
+                    const model::Excitation& excitation, motion::MethodView method);
 
 /// What rows alone tell, of a trajectory that was read from a file.
 std::string explain_rows(const motion::Trajectory& trajectory);

@@ -5,8 +5,6 @@
 #include <complex>
 #include <numbers>
 
-#include "motion/spectral/panels.hpp"
-
 namespace dinal::analysis {
 
 namespace {
@@ -40,15 +38,14 @@ std::optional<double> phase_lag(const motion::Trajectory& trajectory, const mode
                                 double period, double until) {
     if (excitation.has_feedback()) return {};
     const double from = std::max(until - period, trajectory.t_start);
-    const motion::spectral::Panels* panels = trajectory.panels.get();
-    const bool kept = panels != nullptr && panels->size() > 0 && panels->complete();
+    const bool kept = trajectory.course && trajectory.course->whole_until() == model::never;
     if ((!kept || excitation.has_script()) && !rows_cover(trajectory, from, until)) return {};
     std::complex<double> theta_sum, M_sum;
     double theta_size = 0, M_size = 0;
     for (int i = 0; i < samples; ++i) {
         const double phase = (i + 0.5) / samples;
         const double t = std::min(from + phase * period, until);
-        const double theta = kept ? panels->at(t).theta : motion::between_rows(trajectory, t)->theta;
+        const double theta = (kept ? trajectory.course->at(t) : motion::between_rows(trajectory, t))->theta;
         const double M = excitation.has_script() ? M_between_rows(trajectory, t) : excitation.value(t);
         const auto wave = std::polar(1.0, -2 * pi * phase);
         theta_sum += theta * wave, M_sum += M * wave;

@@ -20,7 +20,7 @@ model::EventKind kind_of(const model::Event& event) {
 /// A period of m events, tried on the last three of them.
 class Attempt {
 public:
-    Attempt(const std::vector<model::Event>& events, std::size_t m, bool drifting) : events_(events), m_(m) {
+    Attempt(std::span<const model::Event> events, std::size_t m, bool drifting) : events_(events), m_(m) {
         const model::Event& last = events.back();
         const model::Event& before = events[events.size() - 1 - m];
         period_ = last.t - before.t;
@@ -76,14 +76,14 @@ private:
     }
 
     static constexpr double never = 1e300;
-    const std::vector<model::Event>& events_;
+    std::span<const model::Event> events_;
     std::size_t m_;
     double period_ = 0, drift_ = 0, amplitude_ = 0, centre_ = 0;
 };
 
 }  // namespace
 
-std::optional<Recurrence> recurrence(const std::vector<model::Event>& events) {
+std::optional<Recurrence> recurrence(std::span<const model::Event> events) {
     const std::size_t most = std::min(events.size() / 3, most_events);
     for (const double allowed : {near_enough, settling}) {
         for (std::size_t m = 2; m <= most; ++m) {

@@ -22,7 +22,7 @@ struct Recurrence {
     double stuck = 0;             ///< part of a period
 };
 
-std::optional<Recurrence> recurrence(const std::vector<model::Event>& events);
+std::optional<Recurrence> recurrence(std::span<const model::Event> events);
 
 /// How the amplitude of the last half cycles goes on, when the motion does not repeat itself.
 enum class Trend { unknown, growing, shrinking, irregular };

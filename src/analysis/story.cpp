@@ -19,11 +19,11 @@ constexpr std::size_t most_turns = 4;
 }  // namespace
 
 Story::Story(const motion::Trajectory& trajectory, const model::Oscillator& system, const model::Excitation& excitation,
-             const motion::Integrator& integrator)
+             motion::MethodView method)
     : run_(trajectory),
       system_(system),
       excitation_(excitation),
-      museum_(std::get_if<motion::Dinal1989>(&integrator)),
+      own_rule_(method.own_rule()),
       stretches_(stretches(trajectory)),
       T0_(system.natural_period()),
       constant_from_(excitation.has_feedback() ? model::never : excitation.constant_from()) {
@@ -73,11 +73,7 @@ void Story::tell_setting() {
     } else if (constant_from_ < run_.t_stop) {
         say("M changes until t = {}, then it is constant.", at(constant_from_));
     }
-    if (museum_ != nullptr) {
-        say("It was integrated as in 1989, in steps of h = {:.5g}: events are noticed at the ends of steps, and a stop "
-            "is what the stop rule of the listing takes for one.",
-            museum_->h);
-    }
+    if (own_rule_) say("{}", own_rule_->setting);
     end_paragraph();
 }
 
@@ -105,7 +101,7 @@ void Story::tell_start() {
     const Stretch& first = stretches_.front();
     say("It started at t = {} from theta = {:.5g} with velocity {:.5g}", at(run_.t_start), y.theta, y.velocity);
     const bool known = run_.size() > 0 && run_.column(motion::Column::t)[0] == run_.t_start;
-    const bool told = y.velocity == 0 && !system_.friction().none() && museum_ == nullptr && known && first.lasts() > 0;
+    const bool told = y.velocity == 0 && !system_.friction().none() && !own_rule_ && known && first.lasts() > 0;
     if (first.stuck) add(" and stuck there");
     if (told) {
         const double torque = std::fma(-system_.stiffness(), y.theta, run_.column(motion::Column::M)[0]);
@@ -161,7 +157,7 @@ void Story::tell_turns() {
 void Story::tell_decay() {
     const bool swung = stretches_.size() > 1 && stretches_[1].begun_by->kind == model::EventKind::turn;
     const bool closed_form = system_.friction().none() || system_.friction().as<model::laws::Coulomb>() != nullptr;
-    if (!free() || museum_ != nullptr || !swung || !closed_form) return;
+    if (!free() || own_rule_ || !swung || !closed_form) return;
     decay_told_ = true;
     const double zeta = system_.damping_ratio(), step = 2 * system_.kinetic_friction() / system_.stiffness();
     const double factor = zeta < 1 ? std::exp(-std::numbers::pi * zeta / std::sqrt(1 - zeta * zeta)) : 0;
@@ -217,8 +213,8 @@ void Story::tell_stop(const Stretch& stop) {
 std::string Story::slip(const model::Event& event, bool told) const {
     const double torque = pull(event);
     std::string why = fmt::format("M jumped, {},", reason(torque));
-    if (museum_ != nullptr) {
-        why = fmt::format("the listing let it go at {}", reason(torque));
+    if (own_rule_) {
+        why = fmt::format("{} {}", own_rule_->release, reason(torque));
     } else if (at_limit(torque, event)) {
         why = fmt::format("{} grew past Re", told ? "that" : "|M - k theta|");
     }

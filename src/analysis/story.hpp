@@ -10,7 +10,7 @@
 
 #include "analysis/recurrence.hpp"
 #include "model/excitation.hpp"
-#include "motion/integrator.hpp"
+#include "motion/method.hpp"
 #include "text/sentences.hpp"
 
 namespace dinal::analysis {
@@ -19,7 +19,7 @@ class Story {
 public:
     /// All of it must outlive the story.
     Story(const motion::Trajectory& trajectory, const model::Oscillator& system, const model::Excitation& excitation,
-          const motion::Integrator& integrator);
+          motion::MethodView method);
     std::string told();
 
 private:
@@ -77,7 +77,7 @@ private:
     const motion::Trajectory& run_;
     const model::Oscillator& system_;
     const model::Excitation& excitation_;
-    const motion::Dinal1989* museum_;
+    std::optional<motion::OwnRule> own_rule_;  // of stops, which are not the law's then
     std::vector<Stretch> stretches_;
     std::vector<const Stretch*> stops_;
     double T0_, constant_from_;

@@ -8,6 +8,7 @@
 #include "api/cards.hpp"
 #include "api/classes.hpp"
 #include "lua/options.hpp"
+#include "motion/integrators.hpp"
 #include "source/describe.hpp"
 
 namespace dinal::api {

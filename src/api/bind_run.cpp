@@ -323,8 +323,7 @@ const lua::Class run_class = {
 #undef DINAL_RUN
 
 void push_run(lua_State* L, Run run) {
-    const auto bytes = static_cast<std::size_t>(run.trajectory.rows.size()) * sizeof(double);
-    run.rows = lua::MemoryCharge(bytes);
+    const std::size_t bytes = run.trajectory.rows.table().own_bytes();
     lua::push<RunHandle>(L, std::make_shared<const Run>(std::move(run)));
     lua::note_external_memory(L, bytes);
 }

@@ -72,9 +72,6 @@ int run_task(lua_State* L, const lua::Options& options, source::Origin origin, d
     Run run{.trajectory = {}, .origin = std::move(origin)};
     lua::make_room(L, bytes);
     const motion::Limits limits = limits_of(dense);
-    if (bytes <= limits.memory) {
-        run.rows = lua::MemoryCharge(bytes);  // now, because M may want memory, too
-    }
 
     lua::CallState call(L);
     terminal::Progress progress = terminal::Progress::of_time(from, to);

@@ -44,7 +44,8 @@ int load(lua_State* L) {
     motion::Trajectory& trajectory = run.trajectory;
     trajectory.computed = false;
     trajectory.names = std::move(content.names);
-    trajectory.rows = std::move(content.values);
+    run.rows = lua::MemoryCharge(static_cast<std::size_t>(content.values.size()) * sizeof(double));
+    trajectory.rows = motion::Rows(std::move(content.values));
     if (const auto time = trajectory.find("t"); time && trajectory.size() > 0) {
         trajectory.t_start = trajectory.rows(0, *time);
         trajectory.t_stop = trajectory.rows(trajectory.size() - 1, *time);

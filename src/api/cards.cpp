@@ -49,8 +49,9 @@ std::string integrator_card(lua_State* L, int index, const terminal::Display& sc
     const motion::Integrator& integrator = *lua::test<motion::Integrator>(L, index);
     std::string text = source::lua_text(integrator);
     if (const auto* method = std::get_if<motion::Spectral>(&integrator)) {
-        const std::string panel = std::isfinite(method->max_panel) ? fmt::format("{}", method->max_panel)
-                                                                   : fmt::format("{} T0", motion::longest_panel);
+        const std::string panel = std::isfinite(method->max_panel)
+                                      ? fmt::format("{}", method->max_panel)
+                                      : fmt::format("{} T0", motion::spectral::longest_panel);
         text = fmt::format("integrator.spectral{{ tolerance = {}, max_panel = {} }}", method->tolerance, panel);
     } else if (const auto* listing = std::get_if<motion::Dinal1989>(&integrator)) {
         text = fmt::format("integrator.dinal1989{{ h = {}, stop = \"{}\", slip = {} }}", listing->h,

@@ -13,8 +13,8 @@ namespace {
 /// The times of the run until it ended, then the new ones; without these, what it had not come to before t_end.
 motion::Grid asked_rows(const lua::Options& options, const MoreTime& asked, const motion::Trajectory& so_far,
                         const source::Task& task, double t_end) {
-    std::vector<double> times = task.rows.times();
-    const std::vector<double> more = asked.times.value_or(std::vector<double>());
+    const std::span<const double> times = task.rows.times();
+    std::vector<double> more = asked.times.value_or(std::vector<double>());
     if (!more.empty() && more.front() <= so_far.t_stop) {
         options.fail(fmt::format("times[1] = {:.17g} must be after t = {:.6g}, where the run ended", more.front(),
                                  so_far.t_stop));
@@ -23,9 +23,8 @@ motion::Grid asked_rows(const lua::Options& options, const MoreTime& asked, cons
         options.fail(wrong.error());
     }
     const double kept = asked.times ? so_far.t_stop : t_end;
-    times.erase(std::upper_bound(times.begin(), times.end(), kept), times.end());
-    times.insert(times.end(), more.begin(), more.end());
-    return motion::Grid::at(std::move(times));
+    const auto end = std::upper_bound(times.begin(), times.end(), kept);
+    return task.rows.followed_by(static_cast<std::size_t>(end - times.begin()), std::move(more));
 }
 
 /// t_end, the last of the times, or where a run that was stopped should have ended.
@@ -73,7 +72,7 @@ int continue_run(lua_State* L) {
         return motion::resume(task.system, task.excitation, so_far, task.window.end, task.rows, task.integrator,
                               monitor, limits);
     };
-    return run_task(L, options, std::move(origin), so_far.t_stop, so_far.dense != nullptr, compute);
+    return run_task(L, options, std::move(origin), so_far.t_stop, so_far.course != nullptr, compute);
 }
 
 }  // namespace dinal::api

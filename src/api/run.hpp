@@ -17,7 +17,7 @@ struct Run {
     motion::Trajectory trajectory;
     std::optional<source::Origin> origin = {};  ///< none when it was read from a file
     std::vector<std::string> comments = {};     ///< of the file it was read from
-    lua::MemoryCharge rows = {};                ///< of the trajectory
+    lua::MemoryCharge rows = {};                ///< of the file it was read from
 };
 
 // Shared, because every column that Lua takes out of a run is a view that keeps the whole run alive.

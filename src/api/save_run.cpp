@@ -17,7 +17,7 @@ namespace {
 /// The columns asked for by `columns = { name or number, ... }`, all without it.
 std::vector<files::NamedColumn> asked_columns(lua_State* L, const lua::Options& options,
                                               const motion::Trajectory& trajectory) {
-    std::vector<files::NamedColumn> all = files::named_columns(trajectory.names, trajectory.rows);
+    std::vector<files::NamedColumn> all = files::named_columns(trajectory.names, trajectory.rows.matrix());
     if (!options.has("columns")) {
         return all;
     }
@@ -49,7 +49,7 @@ text::Expected<files::Written> write_record(const std::string& file, const Run& 
         return files::write_record1989(file, run.trajectory, run.origin->system);
     }
     if (run.trajectory.names == files::record1989_names()) {
-        return files::write_record1989(file, run.trajectory.rows);
+        return files::write_record1989(file, run.trajectory.rows.matrix());
     }
     return text::Error{
         "a .dat file needs the system, which a run that was read from a file no longer has; save it as .csv"};

@@ -3,7 +3,7 @@
 #include "api/theory_arguments.hpp"
 #include "api/theory_functions.hpp"
 #include "api/theory_options.hpp"
-#include "motion/integrator.hpp"
+#include "motion/rk4/rk4.hpp"
 #include "theory/den_hartog.hpp"
 #include "theory/theory_forced.hpp"
 #include "theory/theory_steps.hpp"
@@ -72,7 +72,7 @@ int step_limit(lua_State* L) {
     const bool own_torque = !arguments.options().has("Mc");
     const Quantity Mc = arguments.quantity("Mc", Quantity(0));
     return arguments.push_result([&](std::size_t i) {
-        if (asked.rule == options::StepRule::Name::rk4) return motion::rk4_stability_limit(system);
+        if (asked.rule == options::StepRule::Name::rk4) return motion::rk4::stability_limit(system);
         const model::State initial{theta0[i], velocity0[i]};
         if (system.kinetic_friction() > 0 && initial.theta == 0 && initial.velocity == 0) {
             arguments.options().fail(

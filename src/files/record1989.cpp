@@ -173,7 +173,8 @@ text::Expected<Written> write_record1989(const std::string& path, const motion::
     return write_columns(path, named_columns(record1989_names(), values));
 }
 
-text::Expected<Written> write_record1989(const std::string& path, const Eigen::MatrixXd& six_columns) {
+text::Expected<Written> write_record1989(const std::string& path,
+                                         const Eigen::Ref<const Eigen::MatrixXd>& six_columns) {
     if (six_columns.cols() != static_cast<Eigen::Index>(width)) {
         return text::Error{"can not write '" + path + "': the record of 1989 has six columns, here are " +
                            std::to_string(six_columns.cols())};

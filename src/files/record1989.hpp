@@ -22,7 +22,7 @@ text::Expected<Written> write_record1989(const std::string& path, const motion::
                                          const model::Oscillator& system);
 
 /// Six columns as they are, such as read_record1989 gave them.
-text::Expected<Written> write_record1989(const std::string& path, const Eigen::MatrixXd& six_columns);
+text::Expected<Written> write_record1989(const std::string& path, const Eigen::Ref<const Eigen::MatrixXd>& six_columns);
 
 /// Reads what a Fortran program can have written: 1.5D+00, repeats as 2*0.0, commas, rows that go on in the next line.
 /// Fails when NPUNT is not the number of rows or a row has not six numbers. Errors name the file and the line.

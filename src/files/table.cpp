@@ -19,11 +19,12 @@ std::string list_of(std::span<const std::string> names) {
 
 }  // namespace
 
-std::vector<NamedColumn> named_columns(const std::vector<std::string>& names, const Eigen::MatrixXd& values) {
+std::vector<NamedColumn> named_columns(const std::vector<std::string>& names,
+                                       const Eigen::Ref<const Eigen::MatrixXd>& values) {
     std::vector<NamedColumn> columns;
     const auto count = std::min(static_cast<Eigen::Index>(names.size()), values.cols());
     for (Eigen::Index i = 0; i < count; ++i) {
-        const std::span<const double> numbers(values.data() + i * values.rows(),
+        const std::span<const double> numbers(values.data() + i * values.outerStride(),
                                               static_cast<std::size_t>(values.rows()));
         columns.push_back({names[static_cast<std::size_t>(i)], numbers});
     }

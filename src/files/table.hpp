@@ -25,7 +25,8 @@ struct NamedColumn {
 };
 
 /// All columns of a matrix in their order (to write some of them, pick from the result).
-std::vector<NamedColumn> named_columns(const std::vector<std::string>& names, const Eigen::MatrixXd& values);
+std::vector<NamedColumn> named_columns(const std::vector<std::string>& names,
+                                       const Eigen::Ref<const Eigen::MatrixXd>& values);
 
 /// The index (from 0) of the column with that name, or with that number (from 1, as users count).
 /// Fails with the list of the columns there are, and a suggestion when one is spelt like it.

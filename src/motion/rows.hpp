@@ -15,8 +15,9 @@ public:
     RowWriter(const model::Oscillator& system, const Grid& grid, Trajectory& trajectory)
         : grid_(grid), trajectory_(trajectory), damping_(system.damping()) {
         trajectory.names = column_names();
-        trajectory.rows.resize(static_cast<Eigen::Index>(grid.count()), column_count);
-        column_ = trajectory.rows.data();
+        Growing<double> table(grid.count(), column_count);
+        column_ = table.writable();
+        trajectory.rows = Rows(std::move(table));
         set_next();
     }
     RowWriter(const RowWriter&) = delete;
@@ -55,7 +56,7 @@ public:
     /// A run that ended early keeps only the rows it wrote.
     void finish() {
         if (next_ < grid_.count()) {
-            trajectory_.rows.conservativeResize(static_cast<Eigen::Index>(next_), column_count);
+            trajectory_.rows = Rows(trajectory_.rows.table().first(next_));
         }
     }
     /// How many steps of length h lie between two rows, when rows and steps coincide to rounding; else 0.

@@ -7,16 +7,17 @@
 #include <limits>
 #include <string>
 
-#include "motion/methods.hpp"
-#include "motion/spectral/panels.hpp"
-
 namespace dinal::motion {
 
 namespace {
 
-/// One sentence about the first wrong entry of a list of times, or none.
-std::optional<text::Error> wrong_times(const std::vector<double>& times, const Window& window) {
-    for (std::size_t i = 0; i < times.size(); ++i) {
+/// The rows of a run may take all of the memory that is allowed, the motion between them this part of it.
+constexpr std::size_t share_of_course = 4;
+constexpr std::size_t all_memory = std::numeric_limits<std::size_t>::max();
+
+/// One sentence about the first wrong entry of a list of times, or none. The first ones are known to be right.
+std::optional<text::Error> wrong_times(std::span<const double> times, std::size_t known, const Window& window) {
+    for (std::size_t i = known; i < times.size(); ++i) {
         const double t = times[i];
         if (!std::isfinite(t))
             return text::Error{.sentence = fmt::format("times[{}] = {} must be a finite number", i + 1, t),
@@ -96,26 +97,34 @@ text::Expected<Grid> Grid::within(const Window& window) const {
         if (!(dt_ > 0) || !std::isfinite(dt_))
             return text::Error{.sentence = fmt::format("dt = {:.6g} must be positive and finite", dt_), .option = "dt"};
         grid.count_ = static_cast<std::size_t>(std::min(row_count(window, dt_), 1e18));
-    } else if (auto wrong = wrong_times(times_, window)) {
-        return *wrong;
+    } else {
+        const std::span<const double> times = grid.times_;
+        if (auto wrong = wrong_times(times, known_, window)) return *wrong;
+        grid.known_ = times.size();
+        grid.list_ = times.data();
     }
+    return grid;
+}
+
+Grid Grid::followed_by(std::size_t kept, std::vector<double> more) const {
+    Grid grid = *this;
+    grid.times_ = times_.followed_by(kept, Growing<double>(std::move(more)), all_memory);
+    grid.known_ = kept;
     return grid;
 }
 
 namespace {
 
-/// Calls the entry point of the chosen integrator.
-struct Run {
-    const Problem& problem;
-    Trajectory operator()(const Spectral& options) const { return spectral::run(problem, options); }
-    Trajectory operator()(const Rk4& options) const { return rk4::run(problem, options); }
-    Trajectory operator()(const Dinal1989& options) const { return dinal1989::run(problem, options); }
+/// What a run that goes on has behind it.
+struct Past {
+    std::optional<model::Motion> motion;
+    std::size_t course_bytes = 0;
 };
 
-text::Expected<Trajectory> run_from(const std::optional<model::Motion>& before, const model::Oscillator& system,
+text::Expected<Trajectory> run_from(const Past& past, const model::Oscillator& system,
                                     const model::Excitation& excitation, const model::State& initial,
-                                    const Window& window, const Grid& rows, const Integrator& integrator,
-                                    const Monitor& monitor, const Limits& limits) {
+                                    const Window& window, const Grid& rows, MethodView method, const Monitor& monitor,
+                                    const Limits& limits) {
     if (!std::isfinite(initial.theta))
         return text::Error{.sentence = fmt::format("theta0 = {} must be a finite number", initial.theta),
                            .option = "theta0"};
@@ -139,46 +148,45 @@ text::Expected<Trajectory> run_from(const std::optional<model::Motion>& before, 
     if (grid->dt() > 0) {
         if (auto lost = lost_in_time("dt", grid->dt(), window)) return *lost;
     }
-    auto method = validated(integrator, system);
-    if (!method) return method.error();
-    const bool spectral = std::holds_alternative<Spectral>(*method);
-    if (auto lost = lost_in_time(spectral ? "T0/27" : "h", resolution(*method, system), window)) return *lost;
-    if (!spectral) {
-        if (auto unseen = stepped_over("h", resolution(*method, system), excitation, window)) return *unseen;
+    if (auto wrong = method.wrong(system)) return *wrong;
+    const auto [name, distance, is_step] = method.resolution(system);
+    if (auto lost = lost_in_time(name, distance, window)) return *lost;
+    if (is_step) {
+        if (auto unseen = stepped_over(name, distance, excitation, window)) return *unseen;
     }
 
-    const Problem problem{system, excitation, initial, window, *grid, monitor, limits, before};
-    Trajectory trajectory = std::visit(Run{problem}, *method);
+    const std::size_t course_bytes = limits.memory / share_of_course;
+    const Problem problem{system, excitation,  initial,
+                          window, *grid,       monitor,
+                          limits, past.motion, course_bytes - std::min(course_bytes, past.course_bytes)};
+    Trajectory trajectory = method.run(problem);
     trajectory.initial = initial;
     return trajectory;
 }
 
-/// The rows of the second part under those of the first, of which `kept` remain; and so on for all that a run has.
-Trajectory joined(const Trajectory& first, Eigen::Index kept, Trajectory second) {
-    Eigen::MatrixXd rows(kept + second.rows.rows(), column_count);
-    rows << first.rows.topRows(kept), second.rows;
-    second.rows = std::move(rows);
-
-    std::vector<model::Event> events = first.events;
-    if (!events.empty() && events.back().kind == model::EventKind::rest) events.back().kind = model::EventKind::stick;
-    events.insert(events.end(), second.events.begin(), second.events.end());
-    if (second.outcome == model::Outcome::at_rest && !events.empty()) events.back().kind = model::EventKind::rest;
-    second.events = std::move(events);
-
-    if (first.dense && second.dense) {
-        second.dense = [before = first.dense, split = second.t_start, after = second.dense](double t) {
-            return t < split ? before(t) : after(t);
-        };
-    } else {
-        second.dense = {};
+/// The events of the second part after those of the first, whose rest is none any more.
+Growing<model::Event> joined(const Growing<model::Event>& first, const Trajectory& second) {
+    std::vector<model::Event> later;
+    std::size_t kept = first.size();
+    if (kept > 0 && first.back().kind == model::EventKind::rest) {
+        later.push_back(first.back());
+        later.back().kind = model::EventKind::stick;
+        --kept;
     }
-    if (first.panels && second.panels) {
-        auto panels = std::make_shared<spectral::Panels>(*first.panels);
-        panels->append(*second.panels);
-        second.panels = std::move(panels);
-    } else {
-        second.panels = {};
+    later.insert(later.end(), second.events.begin(), second.events.end());
+    if (second.outcome == model::Outcome::at_rest && kept + later.size() > 0) {
+        if (later.empty()) later.push_back(first[--kept]);
+        later.back().kind = model::EventKind::rest;
     }
+    return first.followed_by(kept, Growing<model::Event>(std::move(later)), all_memory);
+}
+
+/// The second part behind the first, of whose rows `kept` remain.
+Trajectory joined(const Trajectory& first, std::size_t kept, Trajectory second, const Limits& limits) {
+    const std::size_t most = limits.memory / (column_count * sizeof(double));
+    second.rows = Rows(first.rows.table().followed_by(kept, second.rows.table(), most));
+    second.events = joined(first.events, second);
+    second.course = joined(first.course, second.t_start, std::move(second.course));
     second.initial = first.initial;
     second.began_stuck = first.began_stuck;
     second.t_start = first.t_start;
@@ -189,13 +197,13 @@ Trajectory joined(const Trajectory& first, Eigen::Index kept, Trajectory second)
 
 text::Expected<Trajectory> simulate(const model::Oscillator& system, const model::Excitation& excitation,
                                     const model::State& initial, const Window& window, const Grid& rows,
-                                    const Integrator& integrator, const Monitor& monitor, const Limits& limits) {
-    return run_from({}, system, excitation, initial, window, rows, integrator, monitor, limits);
+                                    MethodView method, const Monitor& monitor, const Limits& limits) {
+    return run_from({}, system, excitation, initial, window, rows, method, monitor, limits);
 }
 
 text::Expected<Trajectory> resume(const model::Oscillator& system, const model::Excitation& excitation,
-                                  const Trajectory& so_far, double t_end, const Grid& rows,
-                                  const Integrator& integrator, const Monitor& monitor, const Limits& limits) {
+                                  const Trajectory& so_far, double t_end, const Grid& rows, MethodView method,
+                                  const Monitor& monitor, const Limits& limits) {
     const Window window{so_far.t_stop, t_end};
     if (!(t_end > window.start)) {
         return text::Error{.sentence = fmt::format("t_end = {:.6g} must be after t = {:.6g}, where the run ended",
@@ -206,20 +214,20 @@ text::Expected<Trajectory> resume(const model::Oscillator& system, const model::
     if (!grid) return grid.error();
     if (auto wrong = too_many_rows(static_cast<double>(grid->count()), *grid, window, limits)) return *wrong;
     // The last row of the first part is none of all of it when only the old t_end put it there.
-    std::size_t kept = 0;
-    const auto had = static_cast<std::size_t>(so_far.size());
-    while (kept < had && kept < grid->count() && so_far.rows(static_cast<Eigen::Index>(kept), 0) == grid->time(kept)) {
-        ++kept;
-    }
+    std::size_t kept = std::min(static_cast<std::size_t>(so_far.size()), grid->count());
+    if (kept > 0 && so_far.rows(static_cast<Eigen::Index>(kept) - 1, 0) != grid->time(kept - 1)) --kept;
     std::vector<double> times;
     times.reserve(grid->count() - kept);
     for (std::size_t i = kept; i < grid->count(); ++i) {
-        if (grid->time(i) >= window.start) times.push_back(grid->time(i));
+        // The old t_end may be a row of all but for its rounding, and a little later than that.
+        const bool there = std::fabs(grid->time(i) - window.start) <= 4e-16 * std::fabs(window.start);
+        if (there || grid->time(i) >= window.start) times.push_back(std::max(grid->time(i), window.start));
     }
-    auto second = run_from(so_far.motion_at_stop, system, excitation, so_far.state_at_stop, window,
-                           Grid::at(std::move(times)), integrator, monitor, limits);
+    const Past past{so_far.motion_at_stop, so_far.course ? so_far.course->bytes() : 0};
+    auto second = run_from(past, system, excitation, so_far.state_at_stop, window, Grid::at(std::move(times)), method,
+                           monitor, limits);
     if (!second) return second.error();
-    return joined(so_far, static_cast<Eigen::Index>(kept), std::move(second).value());
+    return joined(so_far, kept, std::move(second).value(), limits);
 }
 
 }  // namespace dinal::motion

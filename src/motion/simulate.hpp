@@ -4,11 +4,13 @@
 #include <cstddef>
 #include <functional>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "model/excitation.hpp"
 #include "model/oscillator.hpp"
-#include "motion/integrator.hpp"
+#include "motion/growing.hpp"
+#include "motion/method.hpp"
 #include "motion/trajectory.hpp"
 #include "text/expected.hpp"
 
@@ -26,37 +28,42 @@ public:
     /// start, start + dt, ... and always end as the last row, exactly.
     static Grid every(double dt) { return Grid(true, dt, {}); }
     /// These times, strictly increasing and within the window; none at all is fine.
-    static Grid at(std::vector<double> times) { return Grid(false, 0, std::move(times)); }
+    static Grid at(std::vector<double> times) { return Grid(false, 0, Growing<double>(std::move(times))); }
     static Grid none() { return Grid(false, 0, {}); }
+
+    /// Of a list of times of which `kept` were rows of a run: these, and then `more` of them.
+    [[nodiscard]] Grid followed_by(std::size_t kept, std::vector<double> more) const;
 
     /// Fails when dt is not positive, the times do not increase or leave the window.
     [[nodiscard]] text::Expected<Grid> within(const Window& window) const;
     [[nodiscard]] double dt() const { return dt_; }
-    [[nodiscard]] const std::vector<double>& times() const { return times_; }
+    [[nodiscard]] std::span<const double> times() const { return times_; }
 
     // Of a grid that went through within():
     [[nodiscard]] std::size_t count() const { return count_; }
     [[nodiscard]] double time(std::size_t row) const {
-        if (!spaced_) return times_[row];
+        if (!spaced_) return list_[row];
         return row + 1 == count_ ? window_.end : window_.start + static_cast<double>(row) * dt_;
     }
 
 private:
-    Grid(bool spaced, double dt, std::vector<double> times) : spaced_(spaced), dt_(dt), times_(std::move(times)) {}
+    Grid(bool spaced, double dt, Growing<double> times) : spaced_(spaced), dt_(dt), times_(std::move(times)) {}
 
     bool spaced_;
     double dt_;
-    std::vector<double> times_;
+    Growing<double> times_;
+    std::size_t known_ = 0;  // so many of the times are right
     Window window_;
     std::size_t count_ = 0;
+    const double* list_ = nullptr;  // the times
 };
 
 /// Called now and then with the time reached; false stops the run, which keeps what it has (Outcome::interrupted).
 using Monitor = std::function<bool(double t)>;
 
 struct Limits {
-    std::size_t memory = std::size_t{4} << 30;  ///< bytes that the rows may take, and the motion between them
-    bool dense = true;                          ///< keep what is needed to evaluate the motion between the rows
+    std::size_t memory = std::size_t{4} << 30;  ///< bytes that the rows may take, and a quarter of it the course
+    bool dense = true;                          ///< keep the course: what the motion between the rows needs
 };
 
 /// One run as its integrator sees it: all of it checked.
@@ -68,21 +75,21 @@ struct Problem {
     const Grid& rows;
     const Monitor& monitor;
     const Limits& limits;
-    std::optional<model::Motion> before =
-        {};  ///< of a run that goes on: what the mass did until now; its start is an event
+    std::optional<model::Motion> before = {};  ///< of a run that goes on: what the mass did until now
+    std::size_t course_bytes = 0;              ///< what the course may take
 };
 
 /// Runs from `initial` at window.start. Fails (before the first step) when the window, the grid or the integrator's
 /// options are wrong or the rows would not fit; whatever happens later is told by the outcome of the trajectory.
 text::Expected<Trajectory> simulate(const model::Oscillator& system, const model::Excitation& excitation,
                                     const model::State& initial, const Window& window, const Grid& rows,
-                                    const Integrator& integrator, const Monitor& monitor = {},
-                                    const Limits& limits = {});
+                                    MethodView method, const Monitor& monitor = {}, const Limits& limits = {});
 
-/// Goes on from where `so_far` ended, to t_end, as if it had not been interrupted: the trajectory of both. `rows` are
-/// those of all of it; the ones that `so_far` has are kept. Fails like simulate().
+/// Goes on from where `so_far` ended, to t_end, as if it had not been interrupted: the trajectory of both, which shares
+/// with `so_far` what that has. `rows` are those of all of it; `so_far` has the first of them, and perhaps one at its
+/// end. Fails like simulate().
 text::Expected<Trajectory> resume(const model::Oscillator& system, const model::Excitation& excitation,
-                                  const Trajectory& so_far, double t_end, const Grid& rows,
-                                  const Integrator& integrator, const Monitor& monitor = {}, const Limits& limits = {});
+                                  const Trajectory& so_far, double t_end, const Grid& rows, MethodView method,
+                                  const Monitor& monitor = {}, const Limits& limits = {});
 
 }  // namespace dinal::motion

@@ -5,12 +5,19 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <span>
 
 namespace dinal::motion {
 
 const std::vector<std::string>& column_names() {
     static const std::vector<std::string> names{"t", "theta", "velocity", "M", "friction", "damping"};
     return names;
+}
+
+Rows::Rows(Eigen::MatrixXd values) {
+    const auto rows = static_cast<std::size_t>(values.rows()), columns = static_cast<std::size_t>(values.cols());
+    auto own = std::make_shared<Eigen::MatrixXd>(std::move(values));
+    table_ = Growing<double>(rows, own->data(), columns, own);
 }
 
 std::optional<Eigen::Index> Trajectory::find(std::string_view name) const {
@@ -46,7 +53,7 @@ text::Expected<model::State> between_rows(const Trajectory& trajectory, double t
 
 namespace {
 
-std::string events_text(const std::vector<model::Event>& events) {
+std::string events_text(std::span<const model::Event> events) {
     if (events.empty()) return "no events";
     std::array<int, 4> counts{};
     for (const model::Event& event : events) ++counts.at(static_cast<std::size_t>(event.kind));
@@ -70,8 +77,8 @@ text::Expected<model::State> Trajectory::at(double t) const {
             .sentence = fmt::format("t = {:.6g} is outside the run from {:.6g} to {:.6g}", t, t_start, t_stop),
             .option = "t"};
     }
-    if (!dense) return text::Error{"the motion between the rows was not kept: run without dense = false"};
-    return dense(t);
+    if (!course) return text::Error{"the motion between the rows was not kept: run without dense = false"};
+    return course->at(t);
 }
 
 std::string summary(const Trajectory& trajectory) {

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -13,11 +12,9 @@
 #include "model/friction.hpp"
 #include "model/oscillator.hpp"
 #include "model/outcome.hpp"
+#include "motion/course.hpp"
+#include "motion/growing.hpp"
 #include "text/expected.hpp"
-
-namespace dinal::motion::spectral {
-class Panels;
-}
 
 namespace dinal::motion {
 
@@ -26,23 +23,47 @@ enum class Column : int { t, theta, velocity, M, friction, damping };
 inline constexpr int column_count = 6;
 const std::vector<std::string>& column_names();
 
-/// theta and velocity at any time the run covers, at the accuracy of its integrator.
-using DenseOutput = std::function<text::Expected<model::State>(double t)>;
+/// A table of numbers, in which every column is contiguous.
+class Rows {
+public:
+    using Matrix = Eigen::Map<const Eigen::MatrixXd, 0, Eigen::OuterStride<>>;
+
+    Rows() = default;
+    explicit Rows(Growing<double> table) : table_(std::move(table)) {}
+    explicit Rows(Eigen::MatrixXd values);
+
+    [[nodiscard]] Eigen::Index rows() const { return static_cast<Eigen::Index>(table_.size()); }
+    [[nodiscard]] Eigen::Index cols() const { return static_cast<Eigen::Index>(table_.columns()); }
+    [[nodiscard]] double operator()(Eigen::Index row, Eigen::Index column) const {
+        return table_(static_cast<std::size_t>(row), static_cast<std::size_t>(column));
+    }
+    [[nodiscard]] Eigen::Map<const Eigen::VectorXd> col(Eigen::Index column) const {
+        return {table_.column(static_cast<std::size_t>(column)).data(), rows()};
+    }
+    [[nodiscard]] Matrix matrix() const {
+        return {rows() == 0 ? nullptr : table_.column(0).data(), rows(), cols(),
+                Eigen::OuterStride<>(static_cast<Eigen::Index>(table_.stride()))};
+    }
+    [[nodiscard]] const Growing<double>& table() const { return table_; }
+    friend bool operator==(const Rows& a, const Rows& b) { return a.matrix() == b.matrix(); }
+
+private:
+    Growing<double> table_;
+};
 
 struct Trajectory {
-    std::vector<std::string> names;    ///< one for each column of `rows`
-    Eigen::MatrixXd rows;              ///< column-major: a column is contiguous. Never NaN.
-    std::vector<model::Event> events;  ///< in order of time
+    std::vector<std::string> names;  ///< one for each column of `rows`
+    Rows rows;                       ///< never NaN
+    Growing<model::Event> events;    ///< in order of time
     model::Outcome outcome = model::Outcome::reached_end;
     model::State initial;  ///< at t_start
     double t_start = 0;
     double t_stop = 0;  ///< how far it came: t_end unless the outcome says otherwise
     model::State state_at_stop;
     model::Motion motion_at_stop = model::Motion::stuck;
-    bool began_stuck = false;                        ///< until something moved it
-    bool computed = true;                            ///< false when it was read from a file
-    DenseOutput dense;                               ///< empty when it was declined, or the trajectory read from a file
-    std::shared_ptr<const spectral::Panels> panels;  ///< the motion itself, of a spectral run with dense output
+    bool began_stuck = false;              ///< until something moved it
+    bool computed = true;                  ///< false when it was read from a file
+    std::shared_ptr<const Course> course;  ///< none when it was declined, or the trajectory read from a file
 
     [[nodiscard]] Eigen::Index size() const { return rows.rows(); }
     [[nodiscard]] std::optional<Eigen::Index> find(std::string_view name) const;

@@ -2,8 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
-
 namespace dinal::source {
 
 std::string lua_text(const model::Oscillator& system) {
@@ -17,23 +15,8 @@ std::string lua_text(const model::Oscillator& system) {
     return text + " }";
 }
 
-std::string lua_text(const motion::Integrator& integrator) {
-    if (const auto* method = std::get_if<motion::Spectral>(&integrator)) {
-        std::string options;
-        if (method->tolerance != motion::Spectral{}.tolerance)
-            options = fmt::format("tolerance = {}", method->tolerance);
-        if (std::isfinite(method->max_panel)) {
-            options += fmt::format("{}max_panel = {}", options.empty() ? "" : ", ", method->max_panel);
-        }
-        return options.empty() ? "integrator.spectral{}" : fmt::format("integrator.spectral{{ {} }}", options);
-    }
-    if (const auto* method = std::get_if<motion::Rk4>(&integrator)) {
-        return fmt::format("integrator.rk4{{ h = {} }}", method->h);
-    }
-    const auto& method = std::get<motion::Dinal1989>(integrator);
-    return fmt::format("integrator.dinal1989{{ h = {}{}{} }}", method.h,
-                       method.stop == motion::Dinal1989::Stop::text ? ", stop = \"text\"" : "",
-                       method.slip ? ", slip = true" : "");
+std::string lua_text(motion::MethodView method) {
+    return method.lua_text(text::Defaults::left_out);
 }
 
 }  // namespace dinal::source

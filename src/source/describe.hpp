@@ -6,7 +6,7 @@
 #include "lua/lua_headers.hpp"
 #include "model/excitation.hpp"
 #include "model/oscillator.hpp"
-#include "motion/integrator.hpp"
+#include "motion/method.hpp"
 
 namespace dinal::source {
 
@@ -21,6 +21,6 @@ std::string describe(lua_State* L, const model::Excitation& excitation, ValueTex
 std::string lua_text(const model::Oscillator& system);
 
 /// "integrator.rk4{ h = 0.001 }": makes the same integrator again.
-std::string lua_text(const motion::Integrator& integrator);
+std::string lua_text(motion::MethodView method);
 
 }  // namespace dinal::source

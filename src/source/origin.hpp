@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "lua/lua_headers.hpp"
+#include "motion/integrators.hpp"
 #include "motion/simulate.hpp"
 
 namespace dinal::source {

@@ -10,7 +10,7 @@ namespace dinal::theory {
 double printed_step_limit(const model::Oscillator& system, const model::State& initial, double characteristic_torque);
 
 /// The argument of the report without its slips: Euler's amplification matrix asks for h < (a + K b)/c, that is
-/// T0 zeta/pi + Rd/(k VMAX), whatever Mc is. It is no limit of Runge-Kutta: see rk4_stability_limit in integrator.hpp.
+/// T0 zeta/pi + Rd/(k VMAX), whatever Mc is. It is no limit of Runge-Kutta: see rk4::stability_limit in motion/rk4.
 double euler_step_limit(const model::Oscillator& system, const model::State& initial);
 
 }  // namespace dinal::theory

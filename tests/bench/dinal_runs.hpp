@@ -1,6 +1,7 @@
 // dinal at the same work as its peers.
 #pragma once
 
+#include "motion/integrators.hpp"
 #include "motion/simulate.hpp"
 #include "peers.hpp"
 

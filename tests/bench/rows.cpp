@@ -18,9 +18,10 @@ const Workload& free_motion = workloads[0];
 const Workload& driven_motion = workloads[3];
 
 void keep_rows(benchmark::State& state, const dinal::motion::Grid& grid) {
-    benchmark::DoNotOptimize(trajectory(free_motion, dinal::motion::Rk4{0.001}, grid).rows.data());  // warms the memory
+    benchmark::DoNotOptimize(
+        trajectory(free_motion, dinal::motion::Rk4{0.001}, grid).rows.col(0).data());  // warms the memory
     for ([[maybe_unused]] auto iteration : state) {
-        benchmark::DoNotOptimize(trajectory(free_motion, dinal::motion::Rk4{0.001}, grid).rows.data());
+        benchmark::DoNotOptimize(trajectory(free_motion, dinal::motion::Rk4{0.001}, grid).rows.col(0).data());
     }
 }
 
@@ -32,7 +33,7 @@ std::filesystem::path memory_folder() {
 void write_csv(benchmark::State& state, const std::filesystem::path& folder) {
     const dinal::motion::Trajectory run =
         trajectory(driven_motion, dinal::motion::Rk4{0.001}, dinal::motion::Grid::every(0.001));
-    const auto columns = dinal::files::named_columns(run.names, run.rows);
+    const auto columns = dinal::files::named_columns(run.names, run.rows.matrix());
     const std::string path = (folder / ("dinal-bench-" + std::to_string(getpid()) + ".csv")).string();
     for ([[maybe_unused]] auto iteration : state) {
         if (const auto written = dinal::files::write_csv(path, columns); !written) {

@@ -1,10 +1,14 @@
-// Every integrator against every reference system.
+// Every integrator against every reference system: a row for each of them, in which its tolerance says why.
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
+#include <variant>
+#include <vector>
 
 #include "support/catch.hpp"
+#include "support/heun.hpp"
 #include "support/measure.hpp"
 #include "support/within.hpp"
 
@@ -14,33 +18,6 @@ using namespace dinal::motion;
 using namespace dinal::truth;
 
 namespace {
-
-/// RK4's own bound: a step of z = rate h makes a relative error of z^5/120, which the swing and the load add up over
-/// `radians`, while a fast mode that dies away hands its error on once. Twice that leaves room for the events, which
-/// are located to the same order, and for transients above `size`.
-double rk4_tolerance(const ReferenceSystem& s, double h) {
-    double swing = s.oscillator.natural_frequency();
-    for (const Piece& piece : s.drives) swing = std::max(swing, static_cast<double>(piece.drive.omega));
-    const double truncation = (s.radians() * std::pow(swing * h, 4) + 2 * std::pow(s.fastest_rate() * h, 4)) / 120;
-    const double rounding = 1e-15 * (s.window.end - s.window.start) / h + 1e-14;
-    return s.size * (2 * truncation + rounding);
-}
-
-/// What each panel leaves out is less than 1e-13 of it, and a rounding or two are added with each: some 2 panels of
-/// three radians. Times are known to half a unit of the last place of t_end, which shifts a load by as much.
-double spectral_tolerance(const ReferenceSystem& s) {
-    return s.size * (1e-13 + 2e-16 * s.radians());
-}
-
-/// The listing looks for zeros of the velocity between whole steps only and its sign changes within a stage: each
-/// passage is noticed up to a step late, while up to Rd + Re pushes the wrong way: w0 h (Rd + Re)/k in velocity/w0.
-/// A mass held by the rule keeps a stale velocity of the same size. Dry friction forgets old errors, so that a few
-/// such errors at once are the most to be seen.
-double dinal1989_tolerance(const ReferenceSystem& s, double h) {
-    const Oscillator& o = s.oscillator;
-    const double once = o.natural_frequency() * h * (o.kinetic_friction() + o.breakaway()) / o.stiffness();
-    return rk4_tolerance(s, h) + 3 * once;
-}
 
 Grid generic_grid(const ReferenceSystem& s) {
     return Grid::every(s.oscillator.natural_period() / 37.7);
@@ -52,13 +29,93 @@ double step_of(const ReferenceSystem& s, double steps_per_period) {
     return s.oscillator.natural_period() / steps_per_period / refined;
 }
 
-/// The rule of 1989 keeps comparing the stale velocity with what a step would make of it. That holds the mass only
-/// while friction Rd outweighs the load: with Re > Rd it lets go at Rd, and no step cures that (dinal1989_test.cpp).
-bool beyond_the_rule_of_1989(const ReferenceSystem& s, const ExactMotion& exact) {
-    const auto& events = exact.events();
-    return s.oscillator.breakaway() > s.oscillator.kinetic_friction() &&
-           std::any_of(events.begin(), events.end(), [](const TrueEvent& e) { return e.kind == EventKind::slip; });
+/// The swing and the load, in rad per time unit.
+double swing_of(const ReferenceSystem& s) {
+    double swing = s.oscillator.natural_frequency();
+    for (const Piece& piece : s.drives) swing = std::max(swing, static_cast<double>(piece.drive.omega));
+    return swing;
 }
+
+/// A step of a method of order p makes a relative error of z^(p+1)/(p+1)! for z = rate h, which the swing and the load
+/// add up over `radians`, while a fast mode that dies away hands its error on once. Twice that leaves room for the
+/// events, which are located to the same order, and for transients above `size`.
+double runge_kutta_tolerance(const ReferenceSystem& s, double h, int order) {
+    const double once = s.radians() * std::pow(swing_of(s) * h, order) + 2 * std::pow(s.fastest_rate() * h, order);
+    const double truncation = once / std::tgamma(order + 2);
+    const double rounding = 1e-15 * (s.window.end - s.window.start) / h + 1e-14;
+    return s.size * (2 * truncation + rounding);
+}
+
+/// One for each method: with which options it is measured, what its error may be, and what it can not follow.
+template <class M>
+struct Row;
+
+template <>
+struct Row<Spectral> {
+    static std::vector<Spectral> methods(const ReferenceSystem& /*s*/) { return {Spectral{}}; }
+    /// What each panel leaves out is less than 1e-13 of it, and a rounding or two are added with each: some 2 panels of
+    /// three radians. Times are known to half a unit of the last place of t_end, which shifts a load by as much.
+    static double tolerance(const ReferenceSystem& s, const Spectral& /*method*/) {
+        return s.size * (1e-13 + 2e-16 * s.radians());
+    }
+    static bool follows(const ReferenceSystem& /*s*/, const ExactMotion& /*exact*/) { return true; }
+    static constexpr bool tells_events = true;
+};
+
+template <>
+struct Row<Rk4> {
+    static std::vector<Rk4> methods(const ReferenceSystem& s) { return {{step_of(s, 1000)}, {step_of(s, 250)}}; }
+    static double tolerance(const ReferenceSystem& s, const Rk4& method) {
+        return runge_kutta_tolerance(s, method.h, 4);
+    }
+    static bool follows(const ReferenceSystem& /*s*/, const ExactMotion& /*exact*/) { return true; }
+    static constexpr bool tells_events = true;
+};
+
+template <>
+struct Row<Dinal1989> {
+    static std::vector<Dinal1989> methods(const ReferenceSystem& s) {
+        std::vector<Dinal1989> methods;
+        for (const double steps : {1000.0, 250.0}) {
+            for (const auto stop : {Dinal1989::Stop::listing, Dinal1989::Stop::text}) {
+                methods.push_back({.h = step_of(s, steps), .stop = stop});
+            }
+        }
+        return methods;
+    }
+    /// The listing looks for zeros of the velocity between whole steps only and its sign changes within a stage: each
+    /// passage is noticed up to a step late, while up to Rd + Re pushes the wrong way: w0 h (Rd + Re)/k in velocity/w0.
+    /// A mass held by the rule keeps a stale velocity of the same size. Dry friction forgets old errors, so that a few
+    /// such errors at once are the most to be seen.
+    static double tolerance(const ReferenceSystem& s, const Dinal1989& method) {
+        const Oscillator& o = s.law();
+        const double once = o.natural_frequency() * method.h * (o.kinetic_friction() + o.breakaway()) / o.stiffness();
+        return runge_kutta_tolerance(s, method.h, 4) + 3 * once;
+    }
+    /// The rule of 1989 keeps comparing the stale velocity with what a step would make of it. That holds the mass only
+    /// while friction Rd outweighs the load: with Re > Rd it lets go at Rd, and no step cures that
+    /// (dinal1989_test.cpp).
+    static bool follows(const ReferenceSystem& s, const ExactMotion& exact) {
+        const auto& events = exact.events();
+        return s.law().breakaway() <= s.law().kinetic_friction() ||
+               std::none_of(events.begin(), events.end(), [](const TrueEvent& e) { return e.kind == EventKind::slip; });
+    }
+    static constexpr bool tells_events = false;  // its own rule tells them, late
+};
+
+template <>
+struct Row<Heun> {
+    static std::vector<Heun> methods(const ReferenceSystem& s) { return {{step_of(s, 4000)}}; }
+    static double tolerance(const ReferenceSystem& s, const Heun& method) {
+        return runge_kutta_tolerance(s, method.h, 2);
+    }
+    static bool follows(const ReferenceSystem& /*s*/, const ExactMotion& /*exact*/) { return true; }
+    static constexpr bool tells_events = true;
+};
+
+template <class... Own>
+std::tuple<Own..., Heun> with_that_of_the_tests(const std::variant<Own...>&);
+using Methods = decltype(with_that_of_the_tests(Integrator()));
 
 void check_events(const ReferenceSystem& s, const Trajectory& run, const ExactMotion& exact, double tolerance) {
     const auto& expected = exact.events();
@@ -82,54 +139,20 @@ void check_events(const ReferenceSystem& s, const Trajectory& run, const ExactMo
 
 }  // namespace
 
-TEST_CASE("rk4 follows every reference system, with its events in kind and order", "[conformance][rk4]") {
+TEMPLATE_LIST_TEST_CASE("an integrator follows every reference system, with its events in kind and order",
+                        "[conformance]", Methods) {
     for (const ReferenceSystem& s : reference_systems()) {
-        for (const double steps : {1000.0, 250.0}) {
-            DYNAMIC_SECTION(s.name << ", " << steps << " steps per period") {
+        for (const TestType& method : Row<TestType>::methods(s)) {
+            DYNAMIC_SECTION(s.name << ", " << MethodView(method).lua_text(text::Defaults::left_out)) {
                 const ExactMotion exact = s.exact();
-                const double h = step_of(s, steps);
-                const Trajectory run = must_run(s, generic_grid(s), Rk4{h});
-                const double tolerance = rk4_tolerance(s, h);
+                if (!Row<TestType>::follows(s, exact)) continue;
+                const Trajectory run = must_run(s, generic_grid(s), method);
+                const double tolerance = Row<TestType>::tolerance(s, method);
                 const double error = error_of(run, exact, s.oscillator);
-                INFO(fmt::format("error {:.2e}, tolerance {:.2e}, h {:.2e}", error, tolerance, h));
+                INFO(fmt::format("error {:.2e}, tolerance {:.2e}", error, tolerance));
                 CHECK(error <= tolerance);
-                check_events(s, run, exact, tolerance);
+                if (Row<TestType>::tells_events) check_events(s, run, exact, tolerance);
             }
-        }
-    }
-}
-
-TEST_CASE("dinal1989 follows every reference system as far as a first-order stop rule can",
-          "[conformance][dinal1989]") {
-    for (const ReferenceSystem& s : reference_systems()) {
-        for (const double steps : {1000.0, 250.0}) {
-            for (const auto stop : {Dinal1989::Stop::listing, Dinal1989::Stop::text}) {
-                DYNAMIC_SECTION(s.name << ", " << steps << " steps per period, rule of the "
-                                       << (stop == Dinal1989::Stop::listing ? "listing" : "text")) {
-                    const ExactMotion exact = s.exact();
-                    if (beyond_the_rule_of_1989(s, exact)) continue;
-                    const double h = step_of(s, steps);
-                    const Trajectory run = must_run(s, generic_grid(s), Dinal1989{.h = h, .stop = stop});
-                    const double tolerance = dinal1989_tolerance(s, h);
-                    const double error = error_of(run, exact, s.oscillator);
-                    INFO(fmt::format("error {:.2e}, tolerance {:.2e}, h {:.2e}", error, tolerance, h));
-                    CHECK(error <= tolerance);
-                }
-            }
-        }
-    }
-}
-
-TEST_CASE("spectral follows every reference system to rounding", "[conformance][spectral]") {
-    for (const ReferenceSystem& s : reference_systems()) {
-        DYNAMIC_SECTION(s.name) {
-            const ExactMotion exact = s.exact();
-            const Trajectory run = must_run(s, generic_grid(s), Spectral{});
-            const double tolerance = spectral_tolerance(s);
-            const double error = error_of(run, exact, s.oscillator);
-            INFO(fmt::format("error {:.2e}, tolerance {:.2e}", error, tolerance));
-            CHECK(error <= tolerance);
-            check_events(s, run, exact, tolerance);
         }
     }
 }

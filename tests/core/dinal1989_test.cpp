@@ -201,7 +201,7 @@ TEST_CASE("a step far beyond stability is a result of dinal1989, not an error", 
     const Trajectory run = must_run(nondimensional(0, 0), {}, {1, 0}, {0, 5000}, Grid::every(1), Dinal1989{.h = 1});
     CHECK(run.outcome == Outcome::state_not_finite);
     CHECK(run.size() > 10);
-    CHECK(run.rows.allFinite());
+    CHECK(run.rows.matrix().allFinite());
     CHECK_FALSE(simulate(nondimensional(0, 0), {}, {1, 0}, {0, 50}, Grid::every(1), Rk4{1}));
 }
 

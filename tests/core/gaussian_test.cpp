@@ -116,7 +116,8 @@ TEST_CASE("a bump wakes a mass that has been stuck for long", "[gaussian][spectr
         CHECK(run.outcome == Outcome::at_rest);
     }
     // One that does not reach Re wakes nobody.
-    const Trajectory still = must_run(system, made(Gaussian{1.5, at, width}), {start, 0}, {0, 1000}, Grid::none(), {});
+    const Trajectory still =
+        must_run(system, made(Gaussian{1.5, at, width}), {start, 0}, {0, 1000}, Grid::none(), Spectral{});
     CHECK(still.events.empty());
 }
 

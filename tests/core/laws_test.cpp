@@ -51,7 +51,7 @@ Oscillator with_law(const Friction& law, double damping = 0) {
     return system_of({.inertia = 1, .stiffness = 1, .damping = damping, .friction = law});
 }
 
-std::string kinds(const std::vector<Event>& events) {
+std::string kinds(std::span<const Event> events) {
     std::string text;
     for (const Event& event : events) text.append(name(event.kind)) += ' ';
     return text;

@@ -72,7 +72,7 @@ Finding compare(const RandomCase& c) {
     const auto run = simulate(c.system, c.excitation, c.initial, c.window, Grid::at(rows), Spectral{}, patience);
     if (!run) return {Verdict::wrong, run.error().sentence};
     if (run->outcome == Outcome::interrupted) return {Verdict::wrong, "it does not come to an end"};
-    if (!run->rows.allFinite()) return {Verdict::wrong, "a row is not finite"};
+    if (!run->rows.matrix().allFinite()) return {Verdict::wrong, "a row is not finite"};
 
     const Oracle oracle(c.system, c.load, c.initial, c.window, c.size, c.times);
     if (oracle.gave_up()) return {Verdict::beyond_bounds};

@@ -139,7 +139,7 @@ TEST_CASE("run.at between the rows keeps the order of rk4", "[order][rk4][rows]"
 TEST_CASE("run.at says what a row there would have said", "[spectral][rk4][dinal1989][rows]") {
     for (const ReferenceSystem& s : reference_systems()) {
         CAPTURE(s.name);
-        const double h = std::min(s.oscillator.natural_period() / 1000, rk4_stability_limit(s.oscillator) / 10);
+        const double h = std::min(s.oscillator.natural_period() / 1000, rk4::stability_limit(s.oscillator) / 10);
         const std::vector<Integrator> all{Spectral{}, Rk4{h}, Dinal1989{.h = h}};
         for (const Integrator& integrator : all) {
             CAPTURE(integrator.index());
@@ -160,7 +160,7 @@ TEST_CASE("run.at says what a row there would have said", "[spectral][rk4][dinal
 TEST_CASE("the rows asked for do not change the motion", "[spectral][rk4][dinal1989][rows]") {
     for (const ReferenceSystem& s : reference_systems()) {
         CAPTURE(s.name);
-        const double h = std::min(s.oscillator.natural_period() / 1000, rk4_stability_limit(s.oscillator) / 10);
+        const double h = std::min(s.oscillator.natural_period() / 1000, rk4::stability_limit(s.oscillator) / 10);
         const std::vector<Integrator> all{Spectral{}, Rk4{h}, Dinal1989{.h = h}};
         for (const Integrator& integrator : all) {
             CAPTURE(integrator.index());

@@ -299,7 +299,7 @@ TEST_CASE("a function that is not a number ends the run with what there is", "[r
             CHECK(run.outcome == Outcome::excitation_not_finite);
             CHECK(run.size() >= 9);
             CHECK(run.size() <= 11);
-            CHECK(run.rows.allFinite());
+            CHECK(run.rows.matrix().allFinite());
             CHECK(run.t_stop <= 1.001);
             CHECK(run.t_stop >= 0.98);
         }
@@ -314,7 +314,7 @@ TEST_CASE("feedback that no damping stops overflows into an outcome, not into a 
     const Excitation M = of(Scripted{.function = std::make_shared<Driving>(), .feedback = true});
     const Trajectory run = run_of(nondimensional(0, 0.1), M, {1, 0}, 100, either());
     CHECK((run.outcome == Outcome::state_not_finite || run.outcome == Outcome::excitation_not_finite));
-    CHECK(run.rows.allFinite());
+    CHECK(run.rows.matrix().allFinite());
 }
 
 TEST_CASE("a motion too large for its derivatives ends the run, also without friction", "[razor]") {
@@ -323,7 +323,7 @@ TEST_CASE("a motion too large for its derivatives ends the run, also without fri
     const double dry = GENERATE(0.0, 0.1);
     const Trajectory run = run_of(nondimensional(0, dry), {}, {0, speed}, 2.5, either());
     CHECK((std::fabs(speed) > 1e300 || run.outcome == Outcome::reached_end));
-    CHECK(run.rows.allFinite());
+    CHECK(run.rows.matrix().allFinite());
 }
 
 TEST_CASE("linear feedback is the damping that it imitates", "[razor]") {

@@ -35,9 +35,10 @@ Oscillator system_with_stiffness_4() {
 Trajectory small_run() {
     Trajectory run;
     run.names = {"t", "theta", "velocity", "M", "friction", "damping"};
-    run.rows.resize(2, 6);
-    run.rows << 0, 1, 0, 2, -0.0, 0,  //
+    Eigen::MatrixXd rows(2, 6);
+    rows << 0, 1, 0, 2, -0.0, 0,  //
         0.1, 0.75, -3, 1, 1, 1.5;
+    run.rows = Rows(rows);
     return run;
 }
 
@@ -53,7 +54,9 @@ TEST_CASE("columns are taken by name, whatever their order", "[record1989]") {
     const TemporaryFolder folder;
     Trajectory run = small_run();
     std::swap(run.names[0], run.names[5]);
-    run.rows.col(0).swap(run.rows.col(5));
+    Eigen::MatrixXd rows = run.rows.matrix();
+    rows.col(0).swap(rows.col(5));
+    run.rows = Rows(rows);
     REQUIRE(write_record1989(folder.file("x.dat"), run, system_with_stiffness_4()));
     CHECK(text_of(folder.file("x.dat")) == "2\n0 1 0 0.5 -0 0\n0.1 0.75 -1.5 0.25 0.25 0.375\n");
     run.names[3] = "load";

@@ -36,7 +36,7 @@ void check_like_whole(const Trajectory& parts, const Trajectory& whole, const Re
 
 TEST_CASE("a run in three parts is the run in one, for every reference system", "[resume][spectral][rk4]") {
     for (const ReferenceSystem& s : reference_systems()) {
-        const double h = std::min(s.oscillator.natural_period() / 1000, rk4_stability_limit(s.oscillator) / 10);
+        const double h = std::min(s.oscillator.natural_period() / 1000, rk4::stability_limit(s.oscillator) / 10);
         const double length = s.window.end - s.window.start;
         const Grid rows = Grid::every(length / 61.3);
         for (const Integrator& integrator : std::vector<Integrator>{Spectral{}, Rk4{h}}) {
@@ -153,4 +153,84 @@ TEST_CASE("a run with very many rows at rest stops when it is told to, and goes 
     REQUIRE(all);
     CHECK(all->outcome == whole.outcome);
     CHECK(all->rows == whole.rows);
+}
+
+TEST_CASE("a run that goes on from what is a row of all but for its rounding has that row once", "[resume]") {
+    const ReferenceSystem& s = reference_system("W4: resonance, both frictions (fig 27)");
+    const Grid rows = Grid::every(0.03);
+    const double middle = 0.1 * 3;
+    REQUIRE(middle != 10 * 0.03);
+    const auto part = simulate(s.oscillator, s.excitation, s.initial, {0, middle}, rows, Spectral{});
+    REQUIRE(part);
+    const auto all = resume(s.oscillator, s.excitation, *part, 0.6, rows, Spectral{});
+    REQUIRE(all);
+    const Trajectory whole = must_run(s.oscillator, s.excitation, s.initial, {0, 0.6}, rows, Spectral{});
+    REQUIRE(all->size() == whole.size());
+    for (Eigen::Index i = 0; i < whole.size(); ++i) {
+        CHECK(std::fabs(all->rows(i, 0) - whole.rows(i, 0)) <= 6e-17);  // one unit of the last place of 0.3
+    }
+}
+
+TEST_CASE("n continuations of a run take memory for it once, and leave the runs before them as they were", "[resume]") {
+    const ReferenceSystem& s = reference_system("W4: resonance, both frictions (fig 27)");
+    const Grid rows = Grid::every(0.03);  // no part ends on a row of all
+    constexpr int parts = 200;
+    const auto end_of = [](int part) { return 0.1 * (part + 1) + 0.005; };
+    std::vector<Trajectory> runs;
+    std::size_t bytes = 0, event_bytes = 0;
+    for (int i = 0; i < parts; ++i) {
+        auto run = i == 0 ? simulate(s.oscillator, s.excitation, s.initial, {0, end_of(0)}, rows, Spectral{})
+                          : resume(s.oscillator, s.excitation, runs.back(), end_of(i), rows, Spectral{});
+        REQUIRE(run);
+        runs.push_back(std::move(run).value());
+        bytes += runs.back().rows.table().own_bytes();
+        event_bytes += runs.back().events.own_bytes();
+    }
+    // Room doubles: all that was ever taken is less than 1 + 1/2 + 1/4 ... of the last, which may be twice too large.
+    const Trajectory& last = runs.back();
+    CHECK(bytes <= 4 * static_cast<std::size_t>(last.size()) * column_count * sizeof(double));
+    CHECK(event_bytes <= 4 * last.events.size() * sizeof(Event));
+
+    for (const int i : {0, 1, 57, 199}) {
+        const auto run = static_cast<std::size_t>(i);
+        CAPTURE(i);
+        REQUIRE(runs[run].t_stop == end_of(i));
+        const Trajectory whole = must_run(s.oscillator, s.excitation, s.initial, {0, end_of(i)}, rows, Spectral{});
+        ReferenceSystem part = s;
+        part.window.end = end_of(i);
+        check_like_whole(runs[run], whole, part, 1e-12);
+    }
+}
+
+TEST_CASE("a run can be continued twice, and neither knows of the other", "[resume]") {
+    const Oscillator system = nondimensional(0.01, 0.05);
+    const Trajectory first = must_run(system, {}, {1, 0}, {0, 1}, Grid::every(0.1), Spectral{});
+    const auto pushed = Excitation::make(Step{.level = 3, .at = 1.2}).value();
+    const auto one = resume(system, {}, first, 2, Grid::every(0.1), Spectral{});
+    const auto middle = resume(system, pushed, *one, 3, Grid::every(0.1), Spectral{});
+    const auto other = resume(system, pushed, *one, 4, Grid::every(0.1), Spectral{});
+    REQUIRE(middle);
+    REQUIRE(other);
+    CHECK(middle->size() == 31);
+    CHECK(other->size() == 41);
+    CHECK(one->size() == 21);
+    for (Eigen::Index i = 0; i < 20; ++i) REQUIRE(middle->rows(i, 1) == other->rows(i, 1));
+    for (Eigen::Index i = 0; i < 20; ++i) REQUIRE(one->rows(i, 1) == other->rows(i, 1));
+    CHECK(one->at(1.5)->theta == other->at(1.5)->theta);
+    CHECK_FALSE(one->at(2.5));
+}
+
+TEST_CASE("rows at given times go on with more of them", "[resume]") {
+    const Oscillator system = nondimensional(0.01, 0.05);
+    const Grid first_times = Grid::at({0, 0.5, 1});
+    const Trajectory first = must_run(system, {}, {1, 0}, {0, 1}, first_times, Spectral{});
+    const Grid all_times = first_times.followed_by(3, {1.25, 2});
+    const auto all = resume(system, {}, first, 2, all_times, Spectral{});
+    REQUIRE(all);
+    REQUIRE(all->size() == 5);
+    CHECK(all->rows(3, 0) == 1.25);
+    CHECK(all_times.times().size() == 5);
+    const auto wrong = resume(system, {}, first, 2, first_times.followed_by(3, {1.25, 1.125}), Spectral{});
+    REQUIRE_FALSE(wrong);
+    CHECK(wrong.error().sentence == "times[5] = 1.125 is not after times[4] = 1.25: times must increase");
 }

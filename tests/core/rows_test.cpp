@@ -176,12 +176,12 @@ TEST_CASE("a spacing that the times themselves can not show is refused", "[rows]
 
 TEST_CASE("a step above the stability limit of rk4 is refused with the limit; the limit itself is not", "[rows][rk4]") {
     const Oscillator system = nondimensional(0, 0);
-    CHECK(rk4_stability_limit(system) == Approx(2 * std::numbers::sqrt2 / (2 * std::numbers::pi)).epsilon(1e-12));
-    CHECK(rk4_stability_limit(nondimensional(0.02387, 0)) == within(0.457, 5e-4));
+    CHECK(rk4::stability_limit(system) == Approx(2 * std::numbers::sqrt2 / (2 * std::numbers::pi)).epsilon(1e-12));
+    CHECK(rk4::stability_limit(nondimensional(0.02387, 0)) == within(0.457, 5e-4));
     const auto run = simulate(system, {}, {1, 0}, {0, 1}, Grid::none(), Rk4{0.5});
     REQUIRE_FALSE(run);
     CHECK_THAT(run.error().sentence, Contains("h = 0.5") && Contains("0.450") && Contains("rk4"));
-    CHECK(simulate(system, {}, {1, 0}, {0, 1}, Grid::none(), Rk4{rk4_stability_limit(system)}));
+    CHECK(simulate(system, {}, {1, 0}, {0, 1}, Grid::none(), Rk4{rk4::stability_limit(system)}));
 }
 
 TEST_CASE("a monitor that says no stops the run, which keeps its rows", "[rows]") {
@@ -194,7 +194,7 @@ TEST_CASE("a monitor that says no stops the run, which keeps its rows", "[rows]"
         CHECK(run->t_stop < 11);
         CHECK(run->size() >= 100);
         CHECK(run->size() < 111);
-        CHECK(run->rows.allFinite());
+        CHECK(run->rows.matrix().allFinite());
         CHECK(run->at(5.05));
         CHECK_FALSE(run->at(500));
     }

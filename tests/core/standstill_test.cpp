@@ -51,7 +51,7 @@ double sgn(double x) {
     return x > 0 ? 1 : x < 0 ? -1 : 0;
 }
 
-std::string kinds(const std::vector<Event>& events) {
+std::string kinds(std::span<const Event> events) {
     std::string text;
     for (const Event& event : events) text.append(name(event.kind)) += ' ';
     return text;

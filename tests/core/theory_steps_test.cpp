@@ -5,7 +5,7 @@
 #include <limits>
 #include <numbers>
 
-#include "motion/integrator.hpp"
+#include "motion/rk4/rk4.hpp"
 #include "support/catch.hpp"
 #include "support/reference_systems.hpp"
 
@@ -46,8 +46,8 @@ TEST_CASE("neither limit of the report is the true one of rk4", "[theory]") {
     const Oscillator system = truth::nondimensional(0.02387, 0);
     CHECK(printed_step_limit(system, {1, 0}, 1) == Approx(0.02387).epsilon(1e-14));
     CHECK(euler_step_limit(system, {1, 0}) == Approx(0.02387 / pi).epsilon(1e-14));
-    CHECK(std::fabs(rk4_stability_limit(system) - 0.457) <= 0.0005);
-    CHECK(std::fabs(rk4_stability_limit(truth::nondimensional(0, 0)) - 0.4502) <= 0.00005);
+    CHECK(std::fabs(rk4::stability_limit(system) - 0.457) <= 0.0005);
+    CHECK(std::fabs(rk4::stability_limit(truth::nondimensional(0, 0)) - 0.4502) <= 0.00005);
 }
 
 TEST_CASE("step limits without friction or without motion", "[theory]") {

@@ -58,7 +58,7 @@ constexpr std::array<std::string_view, 17> vectors{"vector{ 1, 2, 3 }",
                                                    "$r.t",
                                                    "$e:values($v)",
                                                    "$g"};
-constexpr std::array<std::string_view, 26> excitations{
+constexpr std::array<std::string_view, 27> excitations{
     "excitation.constant{ level = $n }",
     "excitation.harmonic{ amplitude = $n, frequency = $n }",
     "excitation.harmonic{ omega = $n, phase = $n }",

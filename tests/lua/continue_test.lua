@@ -90,6 +90,22 @@ test("a run without dense output goes on without", function()
     same_rows(longer, nd:simulate { M = M, theta0 = 2, t_end = 6, dt = 0.1 })
 end)
 
+test("a run that others went on from stays what it was, and so do its columns", function()
+    local first = nd:simulate { M = M, theta0 = 2, t_end = 0.35, dt = 0.1 }
+    local runs, columns = { first }, { first.theta }
+    for i = 2, 60 do
+        runs[i] = runs[i - 1]:continue { t_end = 0.35 * i }
+        if i % 3 == 0 then columns[i] = runs[i].theta end
+    end
+    for i, run in ipairs(runs) do
+        same_rows(run, nd:simulate { M = M, theta0 = 2, t_end = 0.35 * i, dt = 0.1 })
+        if columns[i] then assert(columns[i] == run.theta, "a column has changed") end
+    end
+    local other = runs[7]:continue { t_end = 9 }
+    same_rows(other, nd:simulate { M = M, theta0 = 2, t_end = 9, dt = 0.1 })
+    equal(runs[8].t_end, 0.35 * 8)
+end)
+
 test("wrong uses get a sentence", function()
     local run = nd:simulate { M = M, theta0 = 2, t_end = 3, dt = 0.1 }
     raises_here(function() run:continue() end, "reached its end at t = 3", "run:continue{ t_end = 40 }")

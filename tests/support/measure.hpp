@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "motion/integrators.hpp"
 #include "motion/simulate.hpp"
 #include "support/reference_systems.hpp"
 
@@ -15,15 +16,14 @@ namespace dinal::truth {
 
 inline motion::Trajectory must_run(const model::Oscillator& oscillator, const model::Excitation& excitation,
                                    const model::State& initial, const motion::Window& window, const motion::Grid& rows,
-                                   const motion::Integrator& integrator) {
-    auto run = motion::simulate(oscillator, excitation, initial, window, rows, integrator);
+                                   motion::MethodView method) {
+    auto run = motion::simulate(oscillator, excitation, initial, window, rows, method);
     if (!run) FAIL(run.error().sentence);
     return std::move(run).value();
 }
 
-inline motion::Trajectory must_run(const ReferenceSystem& s, const motion::Grid& rows,
-                                   const motion::Integrator& integrator) {
-    return must_run(s.oscillator, s.excitation, s.initial, s.window, rows, integrator);
+inline motion::Trajectory must_run(const ReferenceSystem& s, const motion::Grid& rows, motion::MethodView method) {
+    return must_run(s.oscillator, s.excitation, s.initial, s.window, rows, method);
 }
 
 /// The greatest error of a row in theta or velocity/w0, in the units of theta.

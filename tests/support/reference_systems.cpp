@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <stdexcept>
 #include <utility>
 
@@ -103,6 +104,37 @@ void add_field_cases(std::vector<ReferenceSystem>& list) {
          0.2});
 }
 
+/// amplitude sin(omega t) - share sgn(velocity)
+class FrictionByHand : public model::UserFunction {
+public:
+    FrictionByHand(double share, double amplitude, double omega)
+        : share_(share), amplitude_(amplitude), omega_(omega) {}
+    double value(double t, const model::State& state) override {
+        const double against = state.velocity == 0 ? 0 : std::copysign(share_, state.velocity);
+        return amplitude_ * std::sin(omega_ * t) - against;
+    }
+
+private:
+    double share_, amplitude_, omega_;
+};
+
+/// `system`, but M brakes by `share` of its sliding friction.
+ReferenceSystem braked_by_hand(std::string name, const ReferenceSystem& s, double share) {
+    const Drive& drive = s.drives.front().drive;
+    const auto function =
+        std::make_shared<FrictionByHand>(share, static_cast<double>(drive.amplitude), static_cast<double>(drive.omega));
+    ReferenceSystem copy = s;
+    copy.name = std::move(name);
+    copy.same_as = s.oscillator;
+    copy.oscillator = system_of({.inertia = s.oscillator.inertia(),
+                                 .stiffness = s.oscillator.stiffness(),
+                                 .damping = s.oscillator.damping(),
+                                 .kinetic_friction = s.oscillator.kinetic_friction() - share,
+                                 .breakaway = s.oscillator.breakaway()});
+    copy.excitation = native(model::Scripted{.function = function, .feedback = true});
+    return copy;
+}
+
 }  // namespace
 
 double ReferenceSystem::fastest_rate() const {
@@ -167,6 +199,26 @@ const std::vector<ReferenceSystem>& reference_systems() {
         list.push_back(rescaled(w3, "W3 with I = 1e5, k = 1, angles of 1e6", 1e5, 1, 1e6));
         list.push_back(rescaled(w4, "W4 with I = 1e-6, k = 1e3, angles of 1e6", 1e-6, 1e3, 1e6));
         list.push_back(rescaled(w4, "W4 with I = 1e5, k = 1, angles of 1e-9", 1e5, 1, 1e-9));
+        return list;
+    }();
+    return systems;
+}
+
+const std::vector<ReferenceSystem>& jumping_feedback_systems() {
+    static const std::vector<ReferenceSystem> systems = [] {
+        std::vector<ReferenceSystem> list;
+        // Rests at t = 3 pi, where k theta = 0.1.
+        const ReferenceSystem free{
+            "", system_of({.inertia = 1, .stiffness = 1, .kinetic_friction = 0.2}), {}, no_drive, {1.1, 0}, {0, 20},
+            1.1};
+        list.push_back(braked_by_hand("free, half of the friction by feedback", free, 0.1));
+        for (const char* name :
+             {"free mixed (fig 26)", "W3: one stop per half cycle (fig 24)", "W4: resonance, both frictions (fig 27)",
+              "slow load, several stops per cycle", "Re = 1.25 Rd at r = 0.6"}) {
+            const ReferenceSystem& s = reference_system(name);
+            list.push_back(
+                braked_by_hand(s.name + ", a third of Rd by feedback", s, s.oscillator.kinetic_friction() / 3));
+        }
         return list;
     }();
     return systems;

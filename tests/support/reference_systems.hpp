@@ -1,6 +1,7 @@
 // Named systems with an exact answer: every integrator is measured against every one of them.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -20,10 +21,12 @@ struct ReferenceSystem {
     model::State initial;
     motion::Window window;
     double size;  ///< the greatest angle to expect: errors are counted in it
+    /// Whose motion it is, where a feedback does what friction would do.
+    std::optional<model::Oscillator> same_as = {};
 
-    [[nodiscard]] ExactMotion exact() const {
-        return ExactMotion(oscillator, drives, initial, window.start, window.end);
-    }
+    /// The system whose closed form it is.
+    [[nodiscard]] const model::Oscillator& law() const { return same_as ? *same_as : oscillator; }
+    [[nodiscard]] ExactMotion exact() const { return ExactMotion(law(), drives, initial, window.start, window.end); }
     /// The fastest thing that goes on, rad per time unit: swing, load, or the creep of an overdamped system.
     [[nodiscard]] double fastest_rate() const;
     /// w0 times the length of the window.
@@ -45,6 +48,9 @@ inline constexpr double resonance = 6.283185307179586;
 
 const std::vector<ReferenceSystem>& reference_systems();
 const ReferenceSystem& reference_system(std::string_view name);
+
+/// Systems in which M takes over a part of sliding friction: it jumps when the velocity is zero.
+const std::vector<ReferenceSystem>& jumping_feedback_systems();
 
 /// The same motion in other units: theta times `angle`, with the given inertia and stiffness.
 ReferenceSystem rescaled(const ReferenceSystem& base, std::string name, double inertia, double stiffness, double angle);

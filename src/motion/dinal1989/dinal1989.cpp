@@ -1,215 +1,24 @@
-// The program DINAL of 1989, statement by statement, in double precision. A museum piece: its stop rule, its stale
-// small velocities and its friction column are kept as they were; nothing else in dinal uses or changes them.
-//
-// Names are the listing's: U = k theta/Mc, V = k T0 theta'/Mc (Mc = k here, as in the report, so U = theta), T = t/T0,
-// K = h/T0, A = 4 pi zeta, B = 4 pi^2 Rd/Mc, C = 4 pi^2, Z = F = 4 pi^2 M*. What the listing computes twice (F at the
-// end of a step is F at the beginning of the next) is computed once; without dry friction the four stages, then
-// linear, are summed beforehand.
-#include <array>
+#include "motion/dinal1989/dinal1989.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <memory>
 #include <optional>
 
 #include "motion/checkpoints.hpp"
+#include "motion/dinal1989/listing.hpp"
 #include "motion/interpolation.hpp"
-#include "motion/methods.hpp"
 #include "motion/rows.hpp"
 
 namespace dinal::motion::dinal1989 {
 
 namespace {
 
-constexpr double PI2 = 6.28318530718;  // as printed: 2 pi to twelve digits
-
-double SG(double x) {
-    return x == 0 ? 0.0 : std::copysign(1.0, x);
-}
-
-/// The variables of the loop DO 80.
-struct Present {
-    std::size_t step = 0;
-    double U = 0, V = 0, T = 0;
-    double Z = 0;         ///< F at T
-    bool frozen = false;  ///< the last step was undone by the stop rule
-};
-
-class Dinal {
-public:
-    static constexpr std::size_t block_steps = 128;
-
-    Dinal(const model::Oscillator& system, const model::Excitation& excitation, const Dinal1989& options,
-          double t_start)
-        : system_(system),
-          excitation_(excitation),
-          options_(options),
-          t_start_(t_start),
-          feedback_(excitation.has_feedback()),
-          T0(PI2 * std::sqrt(system_.inertia() / system_.stiffness())),
-          K(options.h / T0),
-          A(2 * system_.damping_ratio() * PI2),
-          B(system_.kinetic_friction() / system_.stiffness() * (PI2 * PI2)),
-          limit_(system_.breakaway() * (PI2 * PI2) / system_.stiffness()) {
-        if (B == 0) {
-            linear_ = Linear{increment(1, 0, 0, 0, 0), increment(0, 1, 0, 0, 0), increment(0, 0, 1, 0, 0),
-                             increment(0, 0, 0, 1, 0)};
-        }
-    }
-
-    [[nodiscard]] Present start(const model::State& initial) const {
-        Present p{.U = initial.theta, .V = T0 * initial.velocity};
-        p.Z = F(p.T, p.U, p.V);
-        return p;
-    }
-
-    /// F in the middle and at the end of the next steps, from p on; how many were found finite.
-    std::size_t sample(const Present& p, std::size_t count) {
-        if (feedback_) return 0;
-        double T = p.T;
-        for (std::size_t i = 0; i < count; ++i) {
-            times_[2 * i] = t_start_ + (T + K / 2) * T0;
-            times_[2 * i + 1] = t_start_ + (T + K) * T0;
-            T = T + K;
-        }
-        count = excitation_.fill({times_.data(), 2 * count}, {Z_.data(), 2 * count}) / 2;
-        for (std::size_t i = 0; i < 2 * count; ++i) Z_[i] = C * (Z_[i] / system_.stiffness());
-        return count;
-    }
-
-    /// One pass of the loop DO 80; sample number i of the block belongs to it.
-    [[nodiscard]] Present step(const Present& p, std::size_t i) const {
-        if (feedback_) return judged(p, feedback_increment(p), 0);
-        return judged(p,
-                      linear_ ? sum(*linear_, p.U, p.V, p.Z, Z_[2 * i], Z_[2 * i + 1])
-                              : increment(p.U, p.V, p.Z, Z_[2 * i], Z_[2 * i + 1]),
-                      Z_[2 * i + 1]);
-    }
-    /// The same, without samples at hand.
-    [[nodiscard]] Present step(const Present& p) {
-        if (!feedback_) {
-            for (const int end : {0, 1}) {
-                Z_[static_cast<std::size_t>(end)] = F(end == 0 ? p.T + K / 2 : p.T + K, 0, 0);
-            }
-        }
-        return step(p, 0);
-    }
-
-    /// Steps in which the stop rule does not change its mind and the velocity keeps its sign: many passes in one.
-    std::size_t plain_steps(Present& p, std::size_t i, std::size_t stop) const {
-        const auto plain = [&](auto&& change) {
-            double U = p.U, V = p.V, T = p.T, Z = p.Z;
-            std::size_t n = i;
-            for (; n < stop; ++n) {
-                const double Z1 = Z_[2 * n + 1];
-                const Change d = change(U, V, Z, Z_[2 * n], Z1);
-                const double U1 = U + d.U, V1 = V + d.V;
-                const bool stopped = stops(V, V1, U1, Z1);
-                if (stopped != p.frozen || !(std::fabs(U1) < model::never)) break;
-                if (!stopped) {
-                    if (!(V * V1 > 0)) break;
-                    U = U1, V = V1;
-                }
-                Z = Z1, T = T + K;
-            }
-            p = {p.step + (n - i), U, V, T, Z, p.frozen};
-            return n;
-        };
-        if (feedback_) return i;
-        return linear_ ? plain([&, m = *linear_](double U, double V, double Z, double Zm, double Z1) {
-            return sum(m, U, V, Z, Zm, Z1);
-        })
-                       : plain([&](double U, double V, double Z, double Zm, double Z1) {
-                             return increment(U, V, Z, Zm, Z1);
-                         });
-    }
-
-    /// theta and velocity, in the user's units.
-    [[nodiscard]] model::State state(const Present& p) const { return {p.U, p.V / T0}; }
-    [[nodiscard]] double M(const Present& p) const { return system_.stiffness() * (p.Z / C); }
-    /// As printed: -Rd sgn(V), also while frozen.
-    [[nodiscard]] double friction(const Present& p) const { return 0.0 - system_.kinetic_friction() * SG(p.V); }
-    [[nodiscard]] double time(const Present& p) const { return t_start_ + p.T * T0; }
-    [[nodiscard]] double acceleration(const Present& p) const {
-        return (p.Z - A * p.V - B * SG(p.V) - C * p.U) / (T0 * T0);
-    }
-    [[nodiscard]] const model::Excitation& excitation() const { return excitation_; }
-
-private:
-    struct Change {
-        double U, V;
-    };
-    /// The change in one step for U, V, Z and Zm of one each; Z1 only adds K/6 to that of V.
-    struct Linear {
-        Change U, V, Z, Zm;
-    };
-
-    [[nodiscard]] double F(double T, double U, double V) const {
-        return C * (excitation_.value(t_start_ + T * T0, model::State{U, V / T0}) / system_.stiffness());
-    }
-
-    /// B SG(Y)
-    [[nodiscard]] double dry(double Y) const { return Y == 0 ? 0 : std::copysign(B, Y); }
-    // NOTE: the sum is grouped so that the stages, each waiting for the one before, wait as little as possible.
-    [[nodiscard]] double Q2(double X, double Y, double Z) const { return K * ((Z - C * X) - (dry(Y) + A * Y)); }
-
-    /// The four stages; `f(stage, X, Y)` is F there.
-    template <class Force>
-    [[nodiscard]] Change stages(double U, double V, Force&& f) const {
-        const double Q11 = K * V, Q21 = Q2(U, V, f(1, U, V));
-        double X = U + Q11 / 2, Y = V + Q21 / 2;
-        const double Q12 = K * Y, Q22 = Q2(X, Y, f(2, X, Y));
-        X = U + Q12 / 2, Y = V + (options_.slip ? Q21 : Q22) / 2;
-        const double Q13 = K * Y, Q23 = Q2(X, Y, f(3, X, Y));
-        X = U + Q13, Y = V + Q23;
-        const double Q14 = K * Y, Q24 = Q2(X, Y, f(4, X, Y));
-        return {(Q11 + 2 * Q12 + 2 * Q13 + Q14) / 6, (Q21 + 2 * Q22 + 2 * Q23 + Q24) / 6};
-    }
-    [[nodiscard]] Change increment(double U, double V, double Z, double Zm, double Z1) const {
-        return stages(U, V, [=](int stage, double, double) { return stage == 1 ? Z : stage == 4 ? Z1 : Zm; });
-    }
-    [[nodiscard]] Change feedback_increment(const Present& p) const {
-        return stages(p.U, p.V, [&](int stage, double X, double Y) {
-            return stage == 1 ? p.Z : F(p.T + (stage == 4 ? K : K / 2), X, Y);
-        });
-    }
-    [[nodiscard]] Change sum(const Linear& m, double U, double V, double Z, double Zm, double Z1) const {
-        return {m.U.U * U + m.V.U * V + (m.Z.U * Z + m.Zm.U * Zm),
-                m.U.V * U + m.V.V * V + (m.Z.V * Z + m.Zm.V * Zm + K / 6 * Z1)};
-    }
-
-    /// The stop rule, after a step from V to V1.
-    [[nodiscard]] bool stops(double V, double V1, double U1, double Z1) const {
-        const double change = std::fabs(V - V1);
-        const bool slow =
-            options_.stop == Dinal1989::Stop::listing ? std::fabs(V1) <= change : std::fabs(V1) < change / 2;
-        return slow && std::fabs(Z1 - C * U1) <= limit_;
-    }
-    [[nodiscard]] Present judged(const Present& p, const Change& d, double Z1) const {
-        Present next{p.step + 1, p.U + d.U, p.V + d.V, p.T + K, Z1, false};
-        if (feedback_) next.Z = F(next.T, next.U, next.V);
-        if (stops(p.V, next.V, next.U, next.Z)) {
-            next.U = p.U;
-            next.V = p.V;
-            next.frozen = true;
-        }
-        return next;
-    }
-
-    static constexpr double C = PI2 * PI2;
-    const model::Oscillator& system_;
-    const model::Excitation& excitation_;
-    Dinal1989 options_;
-    double t_start_;
-    bool feedback_;
-    double T0, K, A, B;
-    double limit_;                  // the listing's Re 4 pi^2/Mc
-    std::optional<Linear> linear_;  // without dry friction
-    std::array<double, 2 * block_steps> times_{};
-    std::array<double, 2 * block_steps> Z_{};  // F in the middle and at the end of each step of the block
-};
-
 /// Between two steps, where 1989 knew nothing: the same interpolation as everywhere, or standing still when frozen.
-model::State between(const Dinal& dinal, const Present& a, const Present& b, double t) {
+model::State between(const Dinal& dinal, const Loop& a, const Loop& b, double t) {
     if (b.frozen) return dinal.state(a);
     const double t0 = dinal.time(a);
     return StepInterpolant(dinal.time(b) - t0, dinal.state(a), dinal.acceleration(a), dinal.state(b),
@@ -231,7 +40,7 @@ std::size_t step_before_row(const RowWriter& rows, double t_start, double h, std
 }
 
 /// The rows before the step to b; false when M is not finite at one of them.
-bool rows_between(RowWriter& rows, const Dinal& dinal, const Present& a, const Present& b) {
+bool rows_between(RowWriter& rows, const Dinal& dinal, const Loop& a, const Loop& b) {
     const double end = dinal.time(b);
     while (rows.next_time() < end) {
         const double t = rows.next_time();
@@ -244,7 +53,7 @@ bool rows_between(RowWriter& rows, const Dinal& dinal, const Present& a, const P
 }
 
 /// What the stop rule and the sign of V tell of events, at the step where they are noticed.
-void record_event(std::vector<model::Event>& events, const Dinal& dinal, const Present& a, const Present& b) {
+void record_event(std::vector<model::Event>& events, const Dinal& dinal, const Loop& a, const Loop& b) {
     std::optional<model::EventKind> kind;
     if (b.frozen != a.frozen) {
         kind = b.frozen ? model::EventKind::stick : model::EventKind::slip;
@@ -254,57 +63,71 @@ void record_event(std::vector<model::Event>& events, const Dinal& dinal, const P
     if (kind) events.push_back({dinal.time(b), *kind, b.U, dinal.M(b)});
 }
 
-model::Outcome not_finite(const Present& p) {
+model::Outcome not_finite(const Loop& p) {
     return std::isfinite(p.Z) ? model::Outcome::state_not_finite : model::Outcome::excitation_not_finite;
 }
 
-bool finite(const Present& p) {
+bool finite(const Loop& p) {
     return std::isfinite(p.U) && std::isfinite(p.V) && std::isfinite(p.Z);
 }
 
-/// What a replay needs; it outlives the run.
-struct Record {
-    model::Oscillator system;
-    model::Excitation excitation;
-    Dinal1989 options;
-    double t_start;
-    Checkpoints<Present> checkpoints;
-};
-
 /// The motion between the rows, from the same steps made again.
-text::Expected<model::State> replay(const Record& record, double t) {
-    Dinal dinal(record.system, record.excitation, record.options, record.t_start);
-    const auto step = static_cast<std::size_t>(std::max((t - record.t_start) / record.options.h - 1, 0.0));
-    Present a = record.checkpoints.before(step);
-    for (;;) {
-        const Present b = dinal.step(a);
-        if (dinal.time(b) > t || !finite(b)) {
-            return finite(b) ? between(dinal, a, b, t) : dinal.state(a);
+class Replay final : public Course {
+public:
+    Replay(const Problem& problem, const Dinal1989& options, std::size_t steps)
+        : Course(problem.system),
+          checkpoints(steps),
+          excitation_(problem.excitation),
+          options_(options),
+          t_start_(problem.window.start) {}
+
+    [[nodiscard]] text::Expected<model::State> at(double t) const override {
+        Dinal dinal(system(), excitation_, options_, t_start_);
+        const auto step = static_cast<std::size_t>(std::max((t - t_start_) / options_.h - 1, 0.0));
+        Loop a = checkpoints.before(step);
+        for (;;) {
+            const Loop b = dinal.step(a);
+            if (dinal.time(b) > t || !finite(b)) return finite(b) ? between(dinal, a, b, t) : dinal.state(a);
+            a = b;
         }
-        a = b;
     }
-}
+
+    Checkpoints<Loop> checkpoints;
+
+private:
+    model::Excitation excitation_;
+    Dinal1989 options_;
+    double t_start_;
+};
 
 }  // namespace
 
-Trajectory run(const Problem& problem, const Dinal1989& options) {
+OwnRule Dinal1989::own_rule() const {
+    return {
+        fmt::format("It was integrated as in 1989, in steps of h = {:.5g}: events are noticed at the ends of steps, "
+                    "and a stop is what the stop rule of the listing takes for one.",
+                    h),
+        "the listing let it go at"};
+}
+
+Trajectory Dinal1989::run(const Problem& problem) const {
     Trajectory trajectory;
     RowWriter rows(problem.system, problem.rows, trajectory);
     // A step that would begin within rounding of the end is not made.
-    const double covering = std::min((problem.window.end - problem.window.start) / options.h, 1e18);
+    const double covering = std::min((problem.window.end - problem.window.start) / h, 1e18);
     const auto steps = static_cast<std::size_t>(std::ceil(covering - 1e-9));
-    const auto record = std::make_shared<Record>(
-        Record{problem.system, problem.excitation, options, problem.window.start, Checkpoints<Present>(steps)});
-    Dinal dinal(record->system, record->excitation, options, problem.window.start);
-    const std::size_t steps_per_row = rows.steps_per_row(options.h);
-    Present now = dinal.start(problem.initial);
+    const auto replay = std::make_shared<Replay>(problem, *this, steps);
+    std::vector<model::Event> events;
+    Dinal dinal(problem.system, problem.excitation, *this, problem.window.start);
+    const std::size_t steps_per_row = rows.steps_per_row(h);
+    Loop now = dinal.start(problem.initial);
     std::size_t block = 0, block_end = 0, sampled = 0;
     while (finite(now)) {
-        if (on_step(rows, problem.window.start, options.h, now.step, steps_per_row))
+        if (on_step(rows, problem.window.start, h, now.step, steps_per_row))
             rows.put(dinal.state(now), dinal.M(now), dinal.friction(now));
         if (now.step == steps) break;
         if (now.step == block_end) {
-            record->checkpoints.add(now);
+            replay->checkpoints.add(now);
             if (problem.monitor && !problem.monitor(dinal.time(now))) {
                 trajectory.outcome = model::Outcome::interrupted;
                 break;
@@ -314,18 +137,18 @@ Trajectory run(const Problem& problem, const Dinal1989& options) {
             sampled = dinal.sample(now, block_end - block);
         }
         const std::size_t i = now.step - block;
-        const auto before_row = step_before_row(rows, problem.window.start, options.h, steps_per_row);
-        const std::size_t stop = std::min(block + sampled, before_row);
-        if (block + i < stop && dinal.plain_steps(now, i, stop - block) > i) continue;
+        const auto before_row = step_before_row(rows, problem.window.start, h, steps_per_row);
+        const std::size_t until = std::min(block + sampled, before_row);
+        if (block + i < until && dinal.plain_steps(now, i, until - block) > i) continue;
 
-        const Present next = i < sampled ? dinal.step(now, i) : dinal.step(now);
+        const Loop next = i < sampled ? dinal.step(now, i) : dinal.step(now);
         if (finite(next)) {
-            const bool row_at_end = on_step(rows, problem.window.start, options.h, next.step, steps_per_row);
+            const bool row_at_end = on_step(rows, problem.window.start, h, next.step, steps_per_row);
             if (!row_at_end && !rows_between(rows, dinal, now, next)) {
                 trajectory.outcome = model::Outcome::excitation_not_finite;
                 break;
             }
-            record_event(trajectory.events, dinal, now, next);
+            record_event(events, dinal, now, next);
         }
         now = next;
     }
@@ -337,13 +160,14 @@ Trajectory run(const Problem& problem, const Dinal1989& options) {
         trajectory.t_stop = problem.window.end;
         if (now.frozen) {
             trajectory.outcome = model::Outcome::at_rest;
-            if (!trajectory.events.empty()) trajectory.events.back().kind = model::EventKind::rest;
+            if (!events.empty()) events.back().kind = model::EventKind::rest;
         }
     }
     rows.finish();
     trajectory.state_at_stop = dinal.state(now);
     trajectory.motion_at_stop = now.frozen ? model::Motion::stuck : model::motion_of(trajectory.state_at_stop.velocity);
-    if (problem.limits.dense) trajectory.dense = [record](double t) { return replay(*record, t); };
+    trajectory.events = Growing<model::Event>(std::move(events));
+    if (problem.limits.dense) trajectory.course = replay;
     return trajectory;
 }
 

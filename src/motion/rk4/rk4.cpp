@@ -1,45 +1,54 @@
-// integrator.rk4: a run from beginning to end, and its motion between the rows.
+#include "motion/rk4/rk4.hpp"
+
 #include <fmt/format.h>
 
-#include <cmath>
 #include <memory>
 
-#include "motion/methods.hpp"
 #include "motion/rk4/rk4_engine.hpp"
 
 namespace dinal::motion::rk4 {
 
 namespace {
 
-/// What a replay needs; it outlives the run.
-struct Record {
-    model::Oscillator system;
-    model::Excitation excitation;
-    Rk4 options;
-    model::State initial;
-    Window window;
-    Checkpoints<Rk4Checkpoint> checkpoints;
+/// The steps around a time made again from the checkpoint before, which gives what the run itself went through.
+class Replay final : public Course {
+public:
+    Replay(const Problem& problem, const Rk4& method)
+        : Course(problem.system),
+          excitation_(problem.excitation),
+          method_(method),
+          initial_(problem.initial),
+          window_(problem.window) {}
+
+    [[nodiscard]] text::Expected<model::State> at(double t) const override;
+
+    Checkpoints<Rk4Checkpoint> checkpoints{0};
+
+private:
+    model::Excitation excitation_;
+    Rk4 method_;
+    model::State initial_;
+    Window window_;
 };
 
-/// Runs the steps around t again from the checkpoint before, which gives what the run itself went through. The next
-/// checkpoint must come out to the last bit; it does not when a scripted M has changed its mind since.
-text::Expected<model::State> replay(const Record& record, double t) {
-    const auto grid = Grid::at({t}).within(record.window);
+/// The next checkpoint must come out to the last bit; it does not when a scripted M has changed its mind since.
+text::Expected<model::State> Replay::at(double t) const {
+    const auto grid = Grid::at({t}).within(window_);
     if (!grid) return grid.error();
     const Monitor monitor;
     const Limits limits;
-    const Problem problem{record.system, record.excitation, record.initial, record.window, *grid, monitor, limits};
+    const Problem problem{system(), excitation_, initial_, window_, *grid, monitor, limits};
     Trajectory trajectory;
-    RowWriter rows(record.system, *grid, trajectory);
-    Rk4Engine engine(problem, record.options, rows, nullptr, nullptr);
+    RowWriter rows(system(), *grid, trajectory);
+    Rk4Engine engine(problem, method_, rows, nullptr, nullptr);
 
-    auto step = static_cast<std::size_t>((t - record.window.start) / record.options.h);
+    auto step = static_cast<std::size_t>((t - window_.start) / method_.h);
     while (step > 0 && engine.time(step) > t) --step;
     while (step < engine.steps() && engine.time(step + 1) <= t) ++step;
-    const Rk4Checkpoint* next = record.checkpoints.after(step);
+    const Rk4Checkpoint* next = checkpoints.after(step);
     // Only to the step's own end when the run broke off before another checkpoint.
     const std::size_t last = next != nullptr ? next->step : std::min(step + 1, engine.steps());
-    engine.run(record.checkpoints.before(step), last);
+    engine.run(checkpoints.before(step), last);
     if (trajectory.size() > 0 && rows.next_row() == 0) {
         return text::Error{
             fmt::format("M failed between the rows near t = {:.6g}: it gives no number there any more", t)};
@@ -56,20 +65,21 @@ text::Expected<model::State> replay(const Record& record, double t) {
 
 }  // namespace
 
-Trajectory run(const Problem& problem, const Rk4& options) {
+Trajectory Rk4::run(const Problem& problem) const {
     Trajectory trajectory;
     RowWriter rows(problem.system, problem.rows, trajectory);
-    auto record = std::make_shared<Record>(Record{problem.system, problem.excitation, options, problem.initial,
-                                                  problem.window, Checkpoints<Rk4Checkpoint>(0)});
-    const bool dense = problem.limits.dense;
-    Rk4Engine engine(problem, options, rows, &trajectory.events, dense ? &record->checkpoints : nullptr);
-    if (dense) record->checkpoints = Checkpoints<Rk4Checkpoint>(engine.steps());
+    std::shared_ptr<Replay> replay;
+    if (problem.limits.dense) replay = std::make_shared<Replay>(problem, *this);
+    std::vector<model::Event> events;
+    Rk4Engine engine(problem, *this, rows, &events, replay ? &replay->checkpoints : nullptr);
+    if (replay) replay->checkpoints = Checkpoints<Rk4Checkpoint>(engine.steps());
 
     trajectory.outcome = engine.run();
     rows.finish();
     trajectory.t_start = problem.window.start;
     engine.leave(trajectory);
-    if (dense) trajectory.dense = [record](double t) { return replay(*record, t); };
+    trajectory.events = Growing<model::Event>(std::move(events));
+    trajectory.course = std::move(replay);
     return trajectory;
 }
 

@@ -8,6 +8,7 @@
 
 #include "motion/checkpoints.hpp"
 #include "motion/interpolation.hpp"
+#include "motion/rk4/rk4.hpp"
 #include "motion/rk4/rk4_step.hpp"
 #include "motion/rows.hpp"
 #include "motion/standstill.hpp"

@@ -11,6 +11,7 @@
 #include "motion/simulate.hpp"
 #include "motion/spectral/panel_equation.hpp"
 #include "motion/spectral/panels.hpp"
+#include "motion/spectral/spectral.hpp"
 
 namespace dinal::motion::spectral {
 

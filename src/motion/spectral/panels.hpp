@@ -1,11 +1,12 @@
 // The motion of a spectral run as the panels it was computed on: evaluated anywhere, integrated for its energy.
 #pragma once
 
-#include <memory>
+#include <bit>
 #include <vector>
 
 #include "model/friction.hpp"
 #include "model/oscillator.hpp"
+#include "motion/course.hpp"
 #include "motion/spectral/chebyshev.hpp"
 #include "motion/spectral/clock.hpp"
 
@@ -28,38 +29,41 @@ struct Panel {
     [[nodiscard]] model::State at(double x) const;
 };
 
-/// All panels of a run, in order and without gaps. Kept in chunks, so that growing copies nothing.
-class Panels {
+/// All panels of a run, in order and without gaps. Kept in chunks, so that growing copies nothing; small ones at first,
+/// because most runs at a prompt are short.
+class Panels final : public Course {
 public:
     /// `most_bytes` is what they may take; what comes later is not kept.
     Panels(const model::Oscillator& system, std::size_t most_bytes)
-        : system_(system), most_(most_bytes / sizeof(Panel)) {}
-
-    Panels(const Panels& other) : system_(other.system_), most_(other.most_) { append(other); }
-    Panels& operator=(const Panels&) = delete;
-    ~Panels() = default;
+        : Course(system), most_(most_bytes / sizeof(Panel)) {}
 
     void add(const Panel& panel);
-    void append(const Panels& later);
-    [[nodiscard]] const model::Oscillator& system() const { return system_; }
     [[nodiscard]] std::size_t size() const { return size_; }
-    [[nodiscard]] const Panel& operator[](std::size_t i) const { return (*chunks_[i / chunk])[i % chunk]; }
-    /// Until when there are panels; before that time `complete` is not the question.
-    [[nodiscard]] double end() const;
-    /// Whether none had to be left out.
-    [[nodiscard]] bool complete() const { return complete_; }
-    /// theta and velocity at a time that the panels cover.
-    [[nodiscard]] model::State at(double t) const;
+
+    [[nodiscard]] text::Expected<model::State> at(double t) const override;
+    [[nodiscard]] double whole_until() const override;
+    void legs(const std::function<void(const Leg&)>& told) const override;
+    [[nodiscard]] std::size_t bytes() const override { return size_ * sizeof(Panel); }
 
 private:
-    static constexpr std::size_t chunk = 128;  // below the size from which memory comes from the system, untouched
-    using Chunk = std::array<Panel, chunk>;
+    // Chunks of 4, 4, 8, 16 ... panels, from some size on all alike: below the size from which memory comes from the
+    // system, untouched.
+    static constexpr std::size_t first_chunk = 4, last_chunk = 128;
+    static std::size_t chunk_of(std::size_t panel) {
+        if (panel >= last_chunk) return panel / last_chunk + chunk_of(last_chunk - 1);
+        return panel < first_chunk ? 0 : static_cast<std::size_t>(std::bit_width(panel / first_chunk));
+    }
+    static std::size_t begin_of(std::size_t panel) {
+        if (panel >= last_chunk) return panel / last_chunk * last_chunk;
+        return panel < first_chunk ? 0 : std::bit_floor(panel);
+    }
+    [[nodiscard]] const Panel& panel(std::size_t i) const { return chunks_[chunk_of(i)][i - begin_of(i)]; }
+    [[nodiscard]] double end() const;
 
-    model::Oscillator system_;
     std::size_t most_;
     std::size_t size_ = 0;
     bool complete_ = true;
-    std::vector<std::unique_ptr<Chunk>> chunks_;
+    std::vector<std::vector<Panel>> chunks_;
 };
 
 }  // namespace dinal::motion::spectral

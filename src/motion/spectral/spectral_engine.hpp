@@ -7,6 +7,7 @@
 
 #include "motion/rows.hpp"
 #include "motion/spectral/panel_solver.hpp"
+#include "motion/spectral/spectral.hpp"
 #include "motion/standstill.hpp"
 
 namespace dinal::motion::spectral {

@@ -1,0 +1,49 @@
+// integrator.dinal1989: the program DINAL as it was printed in 1989, stop rule included.
+#pragma once
+
+#include "motion/method.hpp"
+
+namespace dinal::motion::dinal1989 {
+
+struct Dinal1989 {
+    enum class Stop {
+        listing,  ///< |v| <= |v' - v| against the step before, and the torque within Re
+        text,     ///< |v| < |v' - v| / 2, as section 6 of the report says
+    };
+    double h = 0;  ///< no upper limit, its divergence is a result
+    Stop stop = Stop::listing;
+    bool slip = false;  ///< the wrong index in stage 3 with which chapter 6 of the report was computed
+
+    static const MethodText about;
+    [[nodiscard]] Resolution resolution(const model::Oscillator& /*system*/) const { return {"h", h}; }
+    [[nodiscard]] Trajectory run(const Problem& problem) const;
+    [[nodiscard]] OwnRule own_rule() const;
+};
+
+inline constexpr const char* stop_rules[] = {"listing", "text"};
+inline constexpr text::Option dinal1989_options[] = {
+    {.name = "h",
+     .unit = "time units",
+     .otherwise = text::needed,
+     .range = text::positive,
+     .meaning = "the step",
+     .filled = text::fills<&Dinal1989::h>},
+    {.name = "stop",
+     .meaning = "whose rule stops the mass: that of the listing, or that of the report's text",
+     .filled = text::fills<&Dinal1989::stop>,
+     .choices = stop_rules},
+    {.name = "slip",
+     .meaning = "with the wrong index of the report's chapter 6",
+     .filled = text::fills<&Dinal1989::slip>},
+};
+
+inline constexpr MethodText Dinal1989::about{
+    {"integrator.dinal1989", "integrator.dinal1989{ h = 0.01 }", dinal1989_options},
+    "The program DINAL as it was printed in 1989, with step h (time units) and its own rule for stops; a museum piece "
+    "for comparison. stop = \"text\" takes the rule that the report's text states instead; slip = true repeats the "
+    "wrong index with which the report's chapter 6 was computed.",
+    "sys = nondimensional{}\n"
+    "run = sys:simulate{ theta0 = 1, t_end = 0.5, dt = 0.5, integrator = integrator.dinal1989{ h = 0.1 } }\n"
+    "print(string.format(\"%.6f\", run.theta[2]))  --> -0.997964"};
+
+}  // namespace dinal::motion::dinal1989

@@ -1,0 +1,113 @@
+// What an integrator is: a value with options that runs a problem. A new one is a folder (or a file) of its own with
+// what `Method` asks for, and a row in integrators.hpp.
+#pragma once
+
+#include <concepts>
+#include <optional>
+#include <string>
+#include <variant>
+
+#include "model/oscillator.hpp"
+#include "motion/trajectory.hpp"
+#include "text/expected.hpp"
+#include "text/option.hpp"
+
+namespace dinal::motion {
+
+struct Problem;
+
+/// What people read about a method, and the options that fill it.
+struct MethodText {
+    text::Call call;      ///< of Lua: "integrator.rk4"
+    const char* summary;  ///< sentences, units included
+    const char* example;  ///< Lua that runs; `-->` is followed by what the line prints
+};
+
+/// The distance between two evaluations of M, which times must be able to tell apart.
+struct Resolution {
+    const char* name;  ///< in sentences: "h"
+    double time;
+    bool is_step = true;  ///< what is shorter is stepped over; else the method looks closely where M says so
+};
+
+/// Of a method that does not ask the friction law at velocity zero: what the story of a run says about that.
+struct OwnRule {
+    std::string setting;  ///< how the run was integrated: a sentence
+    const char* release;  ///< "the listing let it go at", before the torque
+};
+
+/// An option struct with its own run. The ranges of its options are in `about`; it may also have
+///     std::optional<text::Error> wrong_for(const model::Oscillator& system) const;   what this system forbids besides
+///     OwnRule own_rule() const;
+template <class T>
+concept Method = requires(const T& method, const model::Oscillator& system, const Problem& problem) {
+    { T::about } -> std::convertible_to<const MethodText&>;
+    { method.resolution(system) } -> std::same_as<Resolution>;
+    { method.run(problem) } -> std::same_as<Trajectory>;
+};
+
+/// Any method, seen through what all have in common: for arguments only, it does not keep the method alive.
+class MethodView {
+public:
+    template <Method M>
+    MethodView(const M& method)  // NOLINT(google-explicit-constructor): as a string is a string_view
+        : method_(&method), common_(&common_of<M>) {}
+    template <Method... M>
+    MethodView(const std::variant<M...>& one)  // NOLINT(google-explicit-constructor)
+        : MethodView(std::visit([](const auto& method) { return MethodView(method); }, one)) {}
+
+    [[nodiscard]] const MethodText& about() const { return common_->about; }
+    /// The Lua text that makes it again.
+    [[nodiscard]] std::string lua_text(text::Defaults defaults) const { return common_->lua_text(method_, defaults); }
+    /// An option that is out of its range, or wrong for this system.
+    [[nodiscard]] std::optional<text::Error> wrong(const model::Oscillator& system) const {
+        return common_->wrong(method_, system);
+    }
+    [[nodiscard]] Resolution resolution(const model::Oscillator& system) const {
+        return common_->resolution(method_, system);
+    }
+    [[nodiscard]] Trajectory run(const Problem& problem) const { return common_->run(method_, problem); }
+    [[nodiscard]] std::optional<OwnRule> own_rule() const { return common_->own_rule(method_); }
+
+private:
+    struct Common {
+        const MethodText& about;
+        std::string (*lua_text)(const void* method, text::Defaults defaults);
+        std::optional<text::Error> (*wrong)(const void* method, const model::Oscillator& system);
+        Resolution (*resolution)(const void* method, const model::Oscillator& system);
+        Trajectory (*run)(const void* method, const Problem& problem);
+        std::optional<OwnRule> (*own_rule)(const void* method);
+    };
+    template <class M>
+    static const M& as(const void* method) {
+        return *static_cast<const M*>(method);
+    }
+    template <class M>
+    static constexpr Common common_of{
+        M::about,
+        [](const void* method, text::Defaults defaults) {
+            return text::lua_text(M::about.call.name, M::about.call.options, as<M>(method), defaults);
+        },
+        [](const void* method, const model::Oscillator& system) -> std::optional<text::Error> {
+            if (auto sentence = text::complaint(M::about.call.options, as<M>(method))) return text::Error{*sentence};
+            if constexpr (requires { as<M>(method).wrong_for(system); }) {
+                return as<M>(method).wrong_for(system);
+            } else {
+                return std::nullopt;
+            }
+        },
+        [](const void* method, const model::Oscillator& system) { return as<M>(method).resolution(system); },
+        [](const void* method, const Problem& problem) { return as<M>(method).run(problem); },
+        [](const void* method) -> std::optional<OwnRule> {
+            if constexpr (requires { as<M>(method).own_rule(); }) {
+                return as<M>(method).own_rule();
+            } else {
+                return std::nullopt;
+            }
+        }};
+
+    const void* method_;
+    const Common* common_;
+};
+
+}  // namespace dinal::motion

@@ -1,0 +1,37 @@
+// integrator.rk4: classical fourth-order Runge-Kutta, exact about dry friction: sign frozen per piece, step cut at
+// velocity zero and at breaks of M.
+#pragma once
+
+#include "motion/method.hpp"
+
+namespace dinal::motion::rk4 {
+
+/// The largest h for which RK4 does not amplify the free motion of this system (2 sqrt(2) / w0 without damping).
+double stability_limit(const model::Oscillator& system);
+
+struct Rk4 {
+    double h = 0;  ///< the step, at most stability_limit()
+
+    static const MethodText about;
+    [[nodiscard]] std::optional<text::Error> wrong_for(const model::Oscillator& system) const;
+    [[nodiscard]] Resolution resolution(const model::Oscillator& /*system*/) const { return {"h", h}; }
+    [[nodiscard]] Trajectory run(const Problem& problem) const;
+};
+
+inline constexpr text::Option rk4_options[] = {
+    {.name = "h",
+     .unit = "time units",
+     .otherwise = text::needed,
+     .range = text::positive,
+     .meaning = "the step",
+     .filled = text::fills<&Rk4::h>},
+};
+
+inline constexpr MethodText Rk4::about{
+    {"integrator.rk4", "integrator.rk4{ h = 0.001 }", rk4_options},
+    "The classical Runge-Kutta method of fourth order with step h (time units), which keeps its order through dry "
+    "friction: a step is cut where the velocity becomes zero and where M jumps. h must not exceed the stability limit, "
+    "0.45 T0 without damping.",
+    "print(integrator.rk4{ h = 0.001 })  --> integrator.rk4{ h = 0.001 }"};
+
+}  // namespace dinal::motion::rk4

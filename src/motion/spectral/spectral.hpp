@@ -1,0 +1,45 @@
+// integrator.spectral: Chebyshev panels between events and breaks of M, each solved to rounding whatever M is.
+#pragma once
+
+#include <limits>
+
+#include "motion/method.hpp"
+
+namespace dinal::motion::spectral {
+
+/// No panel is longer than this many natural periods, whatever max_panel says.
+inline constexpr double longest_panel = 0.6;
+
+struct Spectral {
+    double tolerance = 1e-12;                                    ///< of the motion, relative, on each panel
+    double max_panel = std::numeric_limits<double>::infinity();  ///< longest panel, time units
+
+    static const MethodText about;
+    [[nodiscard]] Resolution resolution(const model::Oscillator& system) const;
+    [[nodiscard]] Trajectory run(const Problem& problem) const;
+};
+
+inline constexpr text::Option spectral_options[] = {
+    {.name = "tolerance",
+     .range = text::between_0_and_1,
+     .meaning = "relative, of the motion on each panel",
+     .filled = text::fills<&Spectral::tolerance>},
+    {.name = "max_panel",
+     .unit = "time units",
+     .otherwise = "0.6 T0",
+     .range = text::positive_or_infinite,
+     .meaning = "the longest panel",
+     .filled = text::fills<&Spectral::max_panel>},
+};
+
+inline constexpr MethodText Spectral::about{
+    {"integrator.spectral", "integrator.spectral{ tolerance = 1e-12 }", spectral_options},
+    "The motion as polynomials on panels between events and breaks of M, right to rounding for any M, with every event "
+    "in its place. tolerance is relative, for each panel. A pulse of a scripted M that falls between the 17 samples of "
+    "a panel is not seen: announce it by excitation.scripted(f, { breaks = {...} }), or take max_panel (time units) a "
+    "few times as long as the shortest pulse.",
+    "sys = nondimensional{ friction_ratio = 0.167 }\n"
+    "run = sys:simulate{ velocity0 = 2*math.pi, t_end = 3, dt = 0.5, integrator = integrator.spectral{} }\n"
+    "print(string.format(\"%.9f\", (run:at(3))))  --> 0.155151392"};
+
+}  // namespace dinal::motion::spectral
