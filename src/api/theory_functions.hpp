@@ -17,7 +17,7 @@ int identify(lua_State* L);
 int linearised(lua_State* L);
 int den_hartog(lua_State* L);
 int den_hartog_fundamental(lua_State* L);
-double stop_boundary(double r, double zeta, double Re_over_Rd);
+double stop_boundary(double r, double zeta, double factor);
 int step_limit(lua_State* L);
 
 }  // namespace dinal::api::theory_functions

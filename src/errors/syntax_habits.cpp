@@ -103,7 +103,7 @@ struct Stumble {
     [[nodiscard]] const lua::Token& before() const { return all[at - 1]; }
 };
 
-bool is_value(const lua::Token& token) {
+bool is_operand(const lua::Token& token) {
     return token.kind == lua::TokenKind::name || token.kind == lua::TokenKind::number;
 }
 
@@ -112,7 +112,7 @@ Stumble stumble_in(const lua::SyntaxMessage& message, std::string_view statement
     Stumble stumble{message, lua::tokens(statement)};
     for (std::size_t i = 1; i < stumble.all.size(); ++i) {
         if (stumble.all[i].text == message.near &&
-            (stumble.at == 0 || (is_value(stumble.all[i]) && is_value(stumble.all[i - 1])))) {
+            (stumble.at == 0 || (is_operand(stumble.all[i]) && is_operand(stumble.all[i - 1])))) {
             stumble.at = i;
         }
     }
@@ -228,7 +228,7 @@ std::string other_grammar(const Stumble& stumble) {
     }
     const bool number = token.kind == lua::TokenKind::number || before.kind == lua::TokenKind::number;
     const bool expression = stumble.message.expected.empty() || stumble.message.expected == ")";
-    if (expression && number && is_value(token) && is_value(before)) {
+    if (expression && number && is_operand(token) && is_operand(before)) {
         return "; is an operator missing there, such as *?";
     }
     return "";

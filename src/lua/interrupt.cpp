@@ -4,6 +4,7 @@
 #include <csignal>
 #include <cstdio>
 #include <ctime>
+#include <exception>
 
 #include <array>
 #include <atomic>
@@ -24,7 +25,7 @@ std::atomic<Stop> requested = Stop::none;
 std::atomic<bool> armed = false;
 std::atomic<lua_State*> running = nullptr;
 std::atomic<long> first_signal_ms = 0;  // 0: none in this chunk
-std::array<char, LUA_IDSIZE + 20> place{};
+std::array<char, LUA_IDSIZE + 20> stopping_place{};
 
 // Code that can be stopped has stopped by then; a key that is held down, or a finger that trembles, is faster.
 constexpr long patience_ms = 200;
@@ -34,14 +35,15 @@ void note_place(lua_State* L) {
     for (int level = 0; lua_getstack(L, level, &frame) != 0; ++level) {
         lua_getinfo(L, "Sl", &frame);
         if (frame.currentline > 0) {
-            static_cast<void>(std::snprintf(place.data(), place.size(), "%s:%d", frame.short_src, frame.currentline));
+            static_cast<void>(std::snprintf(stopping_place.data(), stopping_place.size(), "%s:%d", frame.short_src,
+                                            frame.currentline));
             return;
         }
     }
 }
 
 void note_first_place(lua_State* L) {
-    if (place[0] == '\0') {
+    if (stopping_place[0] == '\0') {
         note_place(L);
     }
 }
@@ -126,7 +128,7 @@ void raise_interrupted(lua_State* L) {
 }
 
 std::string stopped_at() {
-    return place.data();
+    return stopping_place.data();
 }
 
 InterruptScope::InterruptScope(lua_State* L) : L_(L), within_(armed) {
@@ -135,7 +137,7 @@ InterruptScope::InterruptScope(lua_State* L) : L_(L), within_(armed) {
     }
     requested = Stop::none;
     first_signal_ms = 0;
-    place[0] = '\0';
+    stopping_place[0] = '\0';
     running = L;
     armed = true;
 }

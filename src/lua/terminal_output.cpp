@@ -23,7 +23,7 @@ int print(lua_State* L) {
     return original_print(L);
 }
 
-int write(lua_State* L) {
+int write_below_progress(lua_State* L) {
     terminal::make_way_for_output(last_ends_line(L));
     return original_write(L);
 }
@@ -61,7 +61,7 @@ void open_terminal_output(lua_State* L) {
         lua_getfield(L, -1, "__index");
         replace(L, "write", original_file_write, file_write);
         lua_getglobal(L, LUA_IOLIBNAME);
-        replace(L, "write", original_write, write);
+        replace(L, "write", original_write, write_below_progress);
     }
     lua_pop(L, 1);
 }

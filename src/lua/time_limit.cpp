@@ -20,10 +20,10 @@ namespace dinal::lua {
 namespace {
 
 using Nanoseconds = std::int64_t;
-constexpr Nanoseconds second = 1'000'000'000;
-constexpr Nanoseconds patience = second;  // an integration, a sort or a collection of garbage may be on its way
+constexpr Nanoseconds one_second = 1'000'000'000;
+constexpr Nanoseconds patience = one_second;  // an integration, a sort or a collection of garbage may be on its way
 
-double limit = 0;  // seconds; 0: none
+double allowed_time = 0;  // seconds; 0: none
 timer_t timer{};
 pthread_t lua_thread{};
 int nesting = 0;
@@ -34,7 +34,7 @@ bool is_overdue_by(Nanoseconds time) {
     timespec now{};
     clock_gettime(CLOCK_MONOTONIC, &now);  // allowed in a signal handler
     const Nanoseconds end = deadline;
-    return end != 0 && now.tv_sec * second + now.tv_nsec >= end + time;
+    return end != 0 && now.tv_sec * one_second + now.tv_nsec >= end + time;
 }
 
 /// On the thread of Lua. It asks again: the chunk that was meant may have ended meanwhile.
@@ -56,7 +56,7 @@ bool takes_text(int descriptor) {
     }
     const std::string text = "dinal: " + limit_sentence(Stop::time, "") + "\n";
     if (takes_text(STDERR_FILENO)) {
-        [[maybe_unused]] const ssize_t written = write(STDERR_FILENO, text.data(), text.size());
+        [[maybe_unused]] const ssize_t written = ::write(STDERR_FILENO, text.data(), text.size());
     }
     _exit(1);
 }
@@ -75,8 +75,8 @@ void on_expiry(sigval) {
 void set_timer(Nanoseconds start) {
     deadline = start;
     itimerspec times{};
-    times.it_value = {start / second, start % second};  // 0 stops it
-    times.it_interval = {patience / second, patience % second};
+    times.it_value = {start / one_second, start % one_second};  // 0 stops it
+    times.it_interval = {patience / one_second, patience % one_second};
     timer_settime(timer, TIMER_ABSTIME, &times, nullptr);
 }
 
@@ -95,23 +95,23 @@ void set_time_limit(double seconds) {
         throw std::system_error(errno, std::generic_category(), "the time of scripts can not be limited");
     }
     lua_thread = pthread_self();
-    limit = seconds;
+    allowed_time = seconds;
 }
 
 double time_limit() noexcept {
-    return limit;
+    return allowed_time;
 }
 
 TimeAllowance::TimeAllowance() {
-    if (limit > 0 && nesting++ == 0) {
+    if (allowed_time > 0 && nesting++ == 0) {
         timespec now{};
         clock_gettime(CLOCK_MONOTONIC, &now);
-        set_timer(now.tv_sec * second + now.tv_nsec + static_cast<Nanoseconds>(limit * 1e9));
+        set_timer(now.tv_sec * one_second + now.tv_nsec + static_cast<Nanoseconds>(allowed_time * 1e9));
     }
 }
 
 TimeAllowance::~TimeAllowance() {
-    if (limit > 0 && --nesting == 0) {
+    if (allowed_time > 0 && --nesting == 0) {
         set_timer(0);
     }
 }

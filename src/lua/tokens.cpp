@@ -86,7 +86,7 @@ private:
         const bool hexadecimal = peek(at_) == '0' && (peek(at_ + 1) == 'x' || peek(at_ + 1) == 'X');
         std::size_t end = at_;
         while (is_name_char(peek(end)) || (peek(end) == '.' && peek(end + 1) != '.')) {
-            const int letter = text::lower(peek(end));
+            const char letter = text::lower(peek(end));
             const bool exponent = letter == (hexadecimal ? 'p' : 'e');
             ++end;
             if (exponent && (peek(end) == '+' || peek(end) == '-')) {

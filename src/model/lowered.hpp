@@ -48,7 +48,9 @@ public:
     }
 
 private:
-    static constexpr std::size_t index(Motion way) { return static_cast<std::size_t>(static_cast<int>(way) + 1); }
+    static constexpr std::size_t index(Motion way) {
+        return way == Motion::backward ? 0 : way == Motion::stuck ? 1 : 2;
+    }
 
     double inertia_, damping_, stiffness_;
     std::array<double, 3> braking_{}, holding_{};

@@ -21,7 +21,7 @@ public:
           parts_(std::vector<Part>{{-model::never, first}}),
           whole_until_(first->whole_until()),
           bytes_(first->bytes()) {}
-    JoinedCourse(const JoinedCourse& before, Part last)
+    JoinedCourse(const JoinedCourse& before, const Part& last)
         : Course(before.system()),
           parts_(before.parts_.followed_by(before.parts_.size(), Growing<Part>(std::vector<Part>{last}),
                                            std::numeric_limits<std::size_t>::max())),

@@ -11,13 +11,13 @@ constexpr std::size_t most_glyphs = 200;  // more points than this are dots
 constexpr std::size_t letters = 52;
 constexpr std::string_view alphabet = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ";
 
-struct Stroke {
+struct Dashing {
     int on, period;
 };
 
 /// Solid, dotted, dashed ...: with more curves than that only letters help.
-Stroke stroke_of(const Figure& figure, std::size_t curve, Charset charset) {
-    constexpr std::array<Stroke, 4> strokes{{{1, 1}, {1, 2}, {5, 8}, {1, 4}}};
+Dashing stroke_of(const Figure& figure, std::size_t curve, Charset charset) {
+    constexpr std::array<Dashing, 4> strokes{{{1, 1}, {1, 2}, {5, 8}, {1, 4}}};
     if (charset == Charset::ascii && uses_letters(figure)) {
         return strokes[0];  // each dot is the letter of its curve
     }
@@ -190,7 +190,7 @@ void draw(Canvas& canvas, const Figure& figure, const Projection& projection, co
         } else if (curve.style == Style::fill) {
             draw_fill(canvas, curve, projection, ink);
         } else {
-            const Stroke stroke = stroke_of(figure, i, charset);
+            const Dashing stroke = stroke_of(figure, i, charset);
             draw_line(Pen(canvas, ink, stroke.on, stroke.period), curve, projection);
         }
     }

@@ -9,7 +9,7 @@ namespace dinal::plots {
 namespace {
 
 constexpr int most_digits = 6;  // of a label, before it is written another way
-constexpr double most_ticks = 1000;
+constexpr double most_divisions = 1000;
 
 /// The decimal exponent: 3 for 1000 to 9999. From the text, because log10(1000) may round to 2.999...
 int exponent_of(double value) {
@@ -33,7 +33,7 @@ std::vector<double> multiples(double step, Interval range) {
     const double slack = 1e-9 * range.length();
     const double first = std::ceil((range.low - slack) / step);
     const double last = std::floor((range.high + slack) / step);
-    const double count = std::clamp(last - first + 1, 0.0, most_ticks + 2);
+    const double count = std::clamp(last - first + 1, 0.0, most_divisions + 2);
     std::vector<double> at(static_cast<std::size_t>(count));
     for (std::size_t i = 0; i < at.size(); ++i) {
         at[i] = (first + static_cast<double>(i)) * step + 0.0;  // no minus zero
@@ -158,7 +158,7 @@ Ticks ticks_of(const Axis& axis, const Scale& scale, int most) {
         std::copy_if(axis.ticks.begin(), axis.ticks.end(), std::back_inserter(ticks.at),
                      [range](double x) { return x >= range.low && x <= range.high; });
         std::sort(ticks.at.begin(), ticks.at.end());
-    } else if (axis.division && range.length() / *axis.division < most_ticks) {
+    } else if (axis.division && range.length() / *axis.division < most_divisions) {
         ticks.at = multiples(*axis.division, range);
     } else if (scale.logarithmic()) {
         ticks.at = powers_of_ten(range, most);

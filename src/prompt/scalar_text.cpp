@@ -20,7 +20,7 @@ constexpr std::size_t longest_inner_string = 60;
 constexpr std::size_t longest_text = 4000;  // a text of several lines, as from run:explain(), is shown as it is
 constexpr int most_source_lines = 12;       // of a function
 
-int to_text(lua_State* L) {
+int by_tostring(lua_State* L) {
     luaL_tolstring(L, 1, nullptr);
     return 1;
 }
@@ -28,7 +28,7 @@ int to_text(lua_State* L) {
 /// What tostring says, or that it failed.
 std::string told(lua_State* L, int index) {
     lua_pushvalue(L, index);
-    lua_pushcfunction(L, to_text);
+    lua_pushcfunction(L, by_tostring);
     lua_insert(L, -2);
     const bool fine = lua_pcall(L, 1, 1, 0) == LUA_OK;
     if (!fine && lua::interrupt_requested()) {

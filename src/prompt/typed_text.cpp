@@ -6,7 +6,7 @@ namespace {
 bool opens(const lua::Token& token) {
     return token.is("(") || token.is("{") || token.is("[");
 }
-bool closes(const lua::Token& token) {
+bool closes_bracket(const lua::Token& token) {
     return token.is(")") || token.is("}") || token.is("]");
 }
 bool separates(const lua::Token& token) {
@@ -56,14 +56,14 @@ std::span<const lua::Token> TypedText::expression_before(std::size_t end) const 
                 break;
             }
             --begin;
-        } else if (closes(last)) {
+        } else if (closes_bracket(last)) {
             int depth = 0;
             do {
                 --begin;
-                depth += closes(tokens_[begin]) ? 1 : opens(tokens_[begin]) ? -1 : 0;
+                depth += closes_bracket(tokens_[begin]) ? 1 : opens(tokens_[begin]) ? -1 : 0;
             } while (depth > 0 && begin > 0);
             const bool called =
-                begin > 0 && (tokens_[begin - 1].kind == lua::TokenKind::name || closes(tokens_[begin - 1]));
+                begin > 0 && (tokens_[begin - 1].kind == lua::TokenKind::name || closes_bracket(tokens_[begin - 1]));
             if (!called) {
                 break;
             }
@@ -82,7 +82,7 @@ std::vector<std::size_t> TypedText::open_brackets() const {
     for (std::size_t i = 0; i < tokens_.size(); ++i) {
         if (opens(tokens_[i])) {
             open.push_back(i);
-        } else if (closes(tokens_[i]) && !open.empty()) {
+        } else if (closes_bracket(tokens_[i]) && !open.empty()) {
             open.pop_back();
         }
     }
@@ -113,7 +113,7 @@ void TypedText::find_call() {
     }
     int depth = 0;
     for (std::size_t i = bracket + 1; i + 1 < tokens_.size(); ++i) {
-        depth += opens(tokens_[i]) ? 1 : closes(tokens_[i]) ? -1 : 0;
+        depth += opens(tokens_[i]) ? 1 : closes_bracket(tokens_[i]) ? -1 : 0;
         if (depth == 0 && tokens_[i].kind == lua::TokenKind::name && tokens_[i + 1].is("=")) {
             call.given.push_back(tokens_[i].text);
         }

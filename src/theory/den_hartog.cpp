@@ -11,7 +11,7 @@ namespace dinal::theory {
 
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 /// What the square wave needs of the mode over half a period P, each in a form that keeps its digits.
 struct HalfPeriod {

@@ -7,9 +7,7 @@
 namespace dinal::theory {
 
 namespace {
-
-constexpr double pi = std::numbers::pi;
-
+using std::numbers::pi;
 }  // namespace
 
 double magnification(double r, double zeta) {

@@ -11,7 +11,8 @@ namespace dinal::theory {
 
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
+
 constexpr double never = std::numeric_limits<double>::infinity();
 
 double side_of(double x) {

@@ -51,7 +51,8 @@ struct Polyline {
     [[nodiscard]] double next_break(double t) const {
         const std::vector<double>& times = samples->t;
         const auto next = std::upper_bound(times.begin(), times.end(), t);
-        return times.size() == 1 || next == times.end() ? never : *next;
+        if (times.size() == 1 || next == times.end()) return never;
+        return *next;
     }
     [[nodiscard]] double constant_from() const { return samples->t.size() == 1 ? -never : samples->t.back(); }
     [[nodiscard]] double most() const {

@@ -9,7 +9,6 @@ namespace dinal::motion::spectral {
 
 namespace {
 
-constexpr double epsilon = std::numeric_limits<double>::epsilon();
 constexpr int most_iterations = 25;
 constexpr double rounding_left = 100;  // by an iteration that does not get better
 

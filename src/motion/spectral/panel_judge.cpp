@@ -10,7 +10,6 @@ namespace dinal::motion::spectral {
 
 namespace {
 
-constexpr double epsilon = std::numeric_limits<double>::epsilon();
 /// No torque, and no motion: what comes of numbers so small that they have lost their digits. A bump that wakes a mass
 /// at rest begins with these.
 constexpr double underflow = std::numeric_limits<double>::min() / epsilon;

@@ -8,7 +8,6 @@ namespace dinal::motion::spectral {
 
 namespace {
 
-constexpr double epsilon = std::numeric_limits<double>::epsilon();
 /// Where M fails, the run comes this near to it, in units of pace_.
 constexpr double near_failure = 1e-9;
 

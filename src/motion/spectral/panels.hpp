@@ -2,6 +2,7 @@
 #pragma once
 
 #include <bit>
+#include <limits>
 #include <vector>
 
 #include "model/friction.hpp"
@@ -11,6 +12,8 @@
 #include "motion/spectral/clock.hpp"
 
 namespace dinal::motion::spectral {
+
+inline constexpr double epsilon = std::numeric_limits<double>::epsilon();
 
 /// The motion over one panel, or its beginning when an event ended it there.
 struct Panel {

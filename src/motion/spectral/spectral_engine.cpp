@@ -10,7 +10,6 @@ namespace dinal::motion::spectral {
 
 namespace {
 
-constexpr double epsilon = std::numeric_limits<double>::epsilon();
 /// What an iteration stops at, in roundings.
 constexpr double rounding_left_by_iteration = 100;
 /// Within this time one standstill follows another at once, under a feedback. A function of time moves the mass as

@@ -8,12 +8,6 @@
 
 namespace dinal::motion::spectral {
 
-namespace {
-
-constexpr double epsilon = std::numeric_limits<double>::epsilon();
-
-}  // namespace
-
 /// Stuck, up to the first time that |M - k theta| > Re or the end of the panel.
 bool SpectralEngine::stay() {
     double from = standing_from_;
