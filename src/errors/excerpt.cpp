@@ -113,7 +113,8 @@ std::optional<Mark> stumbled_at(lua_State* L, const SourceText& source, int line
 std::vector<std::string> suspects(const text::Error& error) {
     std::vector<std::string> names;
     add_name(names, error.option.empty() ? error.culprit : error.option);
-    for (const lua::Token& token : lua::tokens(error.call.substr(0, error.call.find_first_of("({")))) {
+    const std::string call = error.call.substr(0, error.call.find_first_of("({"));  // the tokens are views into it
+    for (const lua::Token& token : lua::tokens(call)) {
         if (token.kind == lua::TokenKind::name) {
             names.emplace_back(token.text);
         }
