@@ -52,8 +52,9 @@ private:
     std::vector<Cell> cells_;
 };
 
-/// The dot that a place falls on; what is far from any sheet may be anywhere there.
+/// The dot that a place falls on; what is far from any sheet may be anywhere there, and so may nan.
 inline int nearest_dot(double place) {
+    if (std::isnan(place)) return -1'000'000;
     return static_cast<int>(std::floor(std::clamp(place, -1e6, 1e6) + 0.5));
 }
 
