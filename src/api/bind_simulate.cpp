@@ -102,9 +102,9 @@ int simulate_system(lua_State* L) {
     RunOptions asked;
     options.fill(asked);
     const source::Task task = asked_task(L, options, asked, system);
-    const auto compute = [](const source::Task& todo, const motion::Monitor& monitor, const motion::Limits& limits) {
-        return motion::simulate(todo.system, todo.excitation, todo.initial, todo.window, todo.rows, todo.integrator,
-                                monitor, limits);
+    const auto compute = [](const source::Task& given, const motion::Monitor& monitor, const motion::Limits& limits) {
+        return motion::simulate(given.system, given.excitation, given.initial, given.window, given.rows,
+                                given.integrator, monitor, limits);
     };
     // What M refers to is written down before M runs, because it may change that.
     return run_task(L, options, source::origin_of(L, task), task.window.start, asked.dense, compute);
