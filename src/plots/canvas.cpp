@@ -18,7 +18,7 @@ std::string braille(std::uint8_t dots) {  // U+2800 + dots
     return {'\xE2', static_cast<char>(0xA0U | (dots >> 6U)), static_cast<char>(0x80U | (dots & 0x3FU))};
 }
 
-constexpr double slack = 0.49;  // of a dot: a value on the very limit must not be lost to a rounding
+constexpr double dot_reach = 0.49;  // of a dot: a value on the very limit must not be lost to a rounding
 
 }  // namespace
 
@@ -97,7 +97,7 @@ void Pen::to(double x, double y) {
         down_ = false;
         return;
     }
-    if (down_ && std::fabs(x - last_x_) < slack && std::fabs(y - last_y_) < slack && last_x_ >= 0) {
+    if (down_ && std::fabs(x - last_x_) < dot_reach && std::fabs(y - last_y_) < dot_reach && last_x_ >= 0) {
         x_ = x;
         y_ = y;
         return;  // most of a million points end here
@@ -110,7 +110,7 @@ void Pen::to(double x, double y) {
     const double from_y = std::exchange(y_, y);
     Line line{{down_ ? from_x : x, down_ ? from_y : y}, {x, y}};
     down_ = true;
-    if (clip(line, {canvas_.width() - 1.0, canvas_.height() - 1.0}, slack)) {
+    if (clip(line, {canvas_.width() - 1.0, canvas_.height() - 1.0}, dot_reach)) {
         this->line(nearest_dot(line.from.x), nearest_dot(line.from.y), nearest_dot(line.to.x), nearest_dot(line.to.y));
     }
 }

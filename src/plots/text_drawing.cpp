@@ -8,7 +8,7 @@ namespace dinal::plots {
 namespace {
 
 constexpr std::size_t most_glyphs = 200;  // more points than this are dots
-constexpr std::size_t letters = 52;
+constexpr std::size_t alphabet_size = 52;
 constexpr std::string_view alphabet = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ";
 
 struct Dashing {
@@ -147,7 +147,8 @@ void draw_letters(Canvas& canvas, const Figure& figure, const Projection& projec
             const double x = projection.x(curve.x.values[n]) + 0.5;
             const double y = projection.y(curve.y.values[n]) + 0.5;
             if (x >= 0 && y >= 0 && x < projection.box.width && y < projection.box.height) {
-                canvas.glyph(static_cast<int>(x), static_cast<int>(y), alphabet.substr(i % letters, 1), ink_of(i));
+                canvas.glyph(static_cast<int>(x), static_cast<int>(y), alphabet.substr(i % alphabet_size, 1),
+                             ink_of(i));
                 break;
             }
         }
@@ -161,7 +162,7 @@ Signs signs(Charset charset) {
 }
 
 char letter(std::size_t ink) {
-    return alphabet[(ink - 1) % letters];
+    return alphabet[(ink - 1) % alphabet_size];
 }
 
 bool uses_letters(const Figure& figure) {
@@ -185,7 +186,7 @@ void draw(Canvas& canvas, const Figure& figure, const Projection& projection, co
         const Curve& curve = figure.curves[i];
         const std::uint8_t ink = ink_of(i);
         if (curve.style == Style::points || curve.size() == 1) {
-            const std::string_view own = alphabet.substr(i % letters, 1);
+            const std::string_view own = alphabet.substr(i % alphabet_size, 1);
             draw_points(canvas, curve, projection, ink, uses_letters(figure) ? own : signs(charset).point);
         } else if (curve.style == Style::fill) {
             draw_fill(canvas, curve, projection, ink);

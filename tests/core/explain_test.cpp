@@ -289,5 +289,6 @@ TEST_CASE("lines are not broken within a formula", "[explain]") {
     CHECK(wrapped(seventy + " is theta = 0.155 now") == seventy + " is\ntheta = 0.155 now");
     CHECK(wrapped(seventy + " |M - k theta| <= Re = 1") == seventy + "\n|M - k theta| <= Re = 1");
     CHECK(wrapped(seventy + " and 12345 %") == seventy + " and\n12345 %");
-    CHECK(wrapped(std::string(90, 'x') + " y") == std::string(90, 'x') + "\ny");
+    const std::string ninety(90, 'x');
+    CHECK(wrapped(ninety + " y") == ninety + "\ny");
 }
