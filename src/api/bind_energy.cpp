@@ -99,7 +99,7 @@ int half_cycles(lua_State* L) {
     return 1;
 }
 
-int to_string(lua_State* L) {
+int energy_text(lua_State* L) {
     const std::string text = dinal::analysis::text(energy_self(L, "tostring(energy)")->energy);
     lua_pushlstring(L, text.data(), text.size());
     return 1;
@@ -109,7 +109,7 @@ int to_string(lua_State* L) {
     "run = system{ I = 1, k = 1, Rd = 0.12 }:simulate{ theta0 = 1, t_end = 20, " \
     "dt = 5 }\nenergy = run:energy()\n"
 
-constexpr lua::Member members[] = {
+constexpr lua::Member energy_members[] = {
     {"total",
      lua::guarded<total>,
      lua::Kind::field,
@@ -180,7 +180,7 @@ constexpr lua::Member members[] = {
       "What does not add up at each row: input less the changes of kinetic and spring, viscous and dry.",
       DINAL_ENERGY "print(energy.error:abs():max() < 1e-12)  --> true"}},
     {"__tostring",
-     lua::guarded<to_string>,
+     lua::guarded<energy_text>,
      lua::Kind::metamethod,
      {"tostring(energy) -> string", "The balance of the whole run as a small table.",
       DINAL_ENERGY "print(tostring(energy):match(\"[^\\n]*\"))\n"
@@ -194,7 +194,7 @@ const lua::Class energy_class = {
     {"run:energy() -> energy",
      "The energy balance of a run: total, half_cycles, and columns beside run.t. It can not be changed.",
      DINAL_ENERGY "print(#energy.half_cycles)  --> 4"},
-    members,
+    energy_members,
     nullptr,
     energy_card};
 

@@ -194,13 +194,13 @@ int negate(lua_State* L) {
     return push_scaled(L, 1, -1);
 }
 
-int text(lua_State* L) {
+int excitation_text(lua_State* L) {
     const std::string result = source::describe(L, self_excitation(L, "tostring(e)"));
     lua_pushlstring(L, result.data(), result.size());
     return 1;
 }
 
-constexpr lua::Member class_members[] = {
+constexpr lua::Member excitation_members[] = {
     {"value",
      lua::guarded<value>,
      lua::Kind::method,
@@ -256,7 +256,7 @@ constexpr lua::Member class_members[] = {
      lua::Kind::metamethod,
      {"-e -> excitation", "The excitation with the other sign.", "print((-excitation.step{})(1))  --> -1.0"}},
     {"__tostring",
-     lua::guarded<text>,
+     lua::guarded<excitation_text>,
      lua::Kind::metamethod,
      {"tostring(e) -> string",
       "Lua text that makes it again, where that is possible: a function by its source text, without the values of its "
@@ -271,7 +271,7 @@ const lua::Class excitation_class{
     {"e = excitation.NAME{ ... }",
      "A torque M(t), or M(t, theta, velocity) with feedback. It can not be changed; arithmetic makes new ones.",
      "e = 2 * excitation.step{ at = 1 }\nprint(e(0), e(1))  --> 0.0\t2.0"},
-    class_members,
+    excitation_members,
     nullptr,
     excitation_card,
 };

@@ -98,12 +98,12 @@ int max_panel(lua_State* L) {
     return push_finite(L, method != nullptr ? std::optional(method->max_panel) : std::nullopt);
 }
 
-int to_string(lua_State* L) {
+int integrator_text(lua_State* L) {
     lua_pushstring(L, source::lua_text(integrator_self(L)).c_str());
     return 1;
 }
 
-constexpr lua::Member functions[] = {
+constexpr lua::Member integrator_module_members[] = {
     {"spectral",
      lua::guarded<spectral>,
      lua::Kind::function,
@@ -135,7 +135,7 @@ constexpr lua::Member functions[] = {
       "print(string.format(\"%.6f\", run.theta[2]))  --> -0.997964"}},
 };
 
-constexpr lua::Member members[] = {
+constexpr lua::Member integrator_members[] = {
     {"name",
      lua::guarded<name>,
      lua::Kind::field,
@@ -156,7 +156,7 @@ constexpr lua::Member members[] = {
      {"integrator.max_panel -> number", "The longest panel of spectral that was asked for, in time units, or nil.",
       "print(integrator.spectral{ max_panel = 0.02 }.max_panel)  --> 0.02"}},
     {"__tostring",
-     lua::guarded<to_string>,
+     lua::guarded<integrator_text>,
      lua::Kind::metamethod,
      {"tostring(integrator) -> string", "The Lua text that makes it again.",
       "print(integrator.dinal1989{ h = 0.01 })  --> integrator.dinal1989{ h = 0.01 }"}},
@@ -171,14 +171,14 @@ const lua::Class integrator_module = {
      "sys = nondimensional{ zeta = 0.1 }\n"
      "run = sys:simulate{ theta0 = 1, t_end = 2, dt = 0.5, integrator = integrator.rk4{ h = 0.01 } }\n"
      "print(run.integrator)  --> integrator.rk4{ h = 0.01 }"},
-    functions};
+    integrator_module_members};
 
 const lua::Class integrator_class = {
     "integrator",
     {"integrator.rk4{ h = 0.001 } -> integrator",
      "A method with its options, for `integrator =` in sys:simulate{...}. It can not be changed.",
      "print(integrator.rk4{ h = 0.001 }.h)  --> 0.001"},
-    members,
+    integrator_members,
     nullptr,
     integrator_card};
 

@@ -117,7 +117,7 @@ int picture_text(lua_State* L) {
     return 1;
 }
 
-constexpr lua::Member functions[] = {
+constexpr lua::Member plot_module_members[] = {
     {"plot", lua::guarded<plot_vectors>, lua::Kind::function, plot_doc},
 };
 
@@ -162,7 +162,7 @@ const lua::Class plot_functions = {
     "plot",
     {"plot{ { x, y }, ... }", "Draws vectors; run:plot and run:phase_plot draw runs.",
      "t = vector.linspace(0, 1, 50)\nprint(plot{ { t, (6*t):sin() }, show = false } ~= nil)  --> true"},
-    functions};
+    plot_module_members};
 
 const lua::Class picture_class = {
     "picture",

@@ -106,7 +106,7 @@ constexpr lua::Member loop_members[] = {
 
 const lua::Class loop_class = {"progress", {example, "The state of a loop that shows its progress.", ""}, loop_members};
 
-constexpr lua::Member functions[] = {
+constexpr lua::Member progress_module_members[] = {
     {"progress",
      lua::guarded<progress>,
      lua::Kind::function,
@@ -128,7 +128,7 @@ constexpr lua::Member functions[] = {
 const lua::Class progress_functions = {
     "progress",
     {"for i in progress(n, label) do", "Loops that show how far they are.", "for i in progress(3, \"sweep\") do end"},
-    functions};
+    progress_module_members};
 
 void register_progress(lua_State* L) {
     lua::add_class<Loop>(L, loop_class);

@@ -154,12 +154,12 @@ int at(lua_State* L) {
     return 2;
 }
 
-int length(lua_State* L) {
+int run_length(lua_State* L) {
     lua_pushinteger(L, run_self(L, "#run")->trajectory.size());
     return 1;
 }
 
-int to_string(lua_State* L) {
+int run_text(lua_State* L) {
     const std::string text = motion::summary(run_self(L, "tostring(run)")->trajectory);
     lua_pushlstring(L, text.data(), text.size());
     return 1;
@@ -167,7 +167,7 @@ int to_string(lua_State* L) {
 
 #define DINAL_RUN "run = nondimensional{}:simulate{ M = 3, theta0 = 1, t_end = 2, dt = 0.5 }\n"
 
-constexpr lua::Member members[] = {
+constexpr lua::Member run_members[] = {
     {"at",
      lua::guarded<at>,
      lua::Kind::method,
@@ -297,11 +297,11 @@ constexpr lua::Member members[] = {
       "The integrator that was used, also when none was asked for; nil in a run that was read from a file.",
       DINAL_RUN "print(run.integrator)  --> integrator.spectral{}"}},
     {"__len",
-     lua::guarded<length>,
+     lua::guarded<run_length>,
      lua::Kind::metamethod,
      {"#run -> number", "The number of rows.", DINAL_RUN "print(#run)  --> 5"}},
     {"__tostring",
-     lua::guarded<to_string>,
+     lua::guarded<run_text>,
      lua::Kind::metamethod,
      {"tostring(run) -> string", "A summary in one line.",
       "print(nondimensional{}:simulate{ theta0 = 1, t_end = 1.2, dt = 0.1 })\n"
@@ -316,7 +316,7 @@ const lua::Class run_class = {
      "What a simulation leaves behind: columns that are vectors, events, the outcome, and the motion between the rows. "
      "It can not be changed. A trajectory that was read from a file has the columns of its file as fields.",
      DINAL_RUN "print(run.theta:max() < 5.001)  --> true"},
-    members,
+    run_members,
     other_column,
     run_card};
 

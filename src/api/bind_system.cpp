@@ -123,12 +123,12 @@ int characteristic_torque(lua_State* L) {
     return 1;
 }
 
-int to_string(lua_State* L) {
+int system_text(lua_State* L) {
     lua_pushstring(L, source::lua_text(system_self(L, "tostring(sys)")).c_str());
     return 1;
 }
 
-constexpr lua::Member functions[] = {
+constexpr lua::Member system_module_members[] = {
     {"system",
      lua::guarded<system>,
      lua::Kind::function,
@@ -149,7 +149,7 @@ constexpr lua::Member functions[] = {
       {&nondimensional_call}}},
 };
 
-constexpr lua::Member members[] = {
+constexpr lua::Member system_members[] = {
     {"simulate", lua::guarded<simulate_system>, lua::Kind::method, simulate_doc},
     {"friction_ratio",
      lua::guarded<friction_ratio>,
@@ -219,7 +219,7 @@ constexpr lua::Member members[] = {
      {"sys.dead_zone -> number", "Re/k, rad: without excitation the mass can stay wherever |theta| is at most this.",
       "print(system{ I = 1, k = 4, Rd = 1, Re = 2 }.dead_zone)  --> 0.5"}},
     {"__tostring",
-     lua::guarded<to_string>,
+     lua::guarded<system_text>,
      lua::Kind::metamethod,
      {"tostring(sys) -> string", "The Lua text that makes the same system again.",
       "print(system{ I = 1, k = 4, Rd = 0.5 })  --> system{ I = 1, k = 4, Rd = 0.5, Re = 0.5 }"}},
@@ -232,14 +232,14 @@ const lua::Class system_functions = {
     {"system{ I, k, ... } or nondimensional{ ... } -> system",
      "What makes a system: in the units of the user, or in those of the report's nondimensional form.",
      "print(system{ I = 1, k = 4 }.omega0)  --> 2.0"},
-    functions};
+    system_module_members};
 
 const lua::Class system_class = {
     "system",
     {"system{ I, k, ... } -> system",
      "A valid oscillator. It can not be changed; its parameters and what follows from them are fields.",
      "sys = system{ I = 1, k = 4, C = 1 }\nprint(sys.omega0, sys.zeta)  --> 2.0\t0.25"},
-    members,
+    system_members,
     nullptr,
     system_card};
 

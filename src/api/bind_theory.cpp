@@ -14,7 +14,7 @@ namespace {
 namespace f = theory_functions;
 namespace o = theory_options;
 
-constexpr lua::Member functions[] = {
+constexpr lua::Member theory_module_members[] = {
     {"free_response",
      lua::guarded<f::free_response>,
      lua::Kind::function,
@@ -218,7 +218,7 @@ const lua::Class theory_module = {
      "zeta = sys.zeta, friction_ratio = sys:friction_ratio(M0).",
      "r = vector.linspace(0.5, 2, 4)\n"
      "print(theory.magnification{ r = r, zeta = 0.1 })  --> vector{ 1.32164, 5, 0.77791, 0.330409 }"},
-    functions};
+    theory_module_members};
 
 void register_theory(lua_State* L) {
     lua::add_module(L, theory_module);

@@ -54,7 +54,7 @@ int load(lua_State* L) {
     return 1;
 }
 
-constexpr lua::Member functions[] = {
+constexpr lua::Member trajectory_module_members[] = {
     {"load",
      lua::guarded<load>,
      lua::Kind::function,
@@ -75,7 +75,7 @@ constexpr lua::Member functions[] = {
 const lua::Class trajectory_module = {"trajectory",
                                       {"trajectory.load(file) -> run", "Runs that were saved.",
                                        "print(select(2, pcall(trajectory.load, \"missing.csv\")) ~= nil)  --> true"},
-                                      functions};
+                                      trajectory_module_members};
 
 void register_trajectory(lua_State* L) {
     lua::add_module(L, trajectory_module);

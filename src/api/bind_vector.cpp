@@ -16,8 +16,6 @@ const lua::Vector& self_vector(lua_State* L, std::string_view call) {
     return lua::self<lua::Vector>(L, 1, call);
 }
 
-namespace functions = vector_functions;
-
 // ---- one number from many
 
 /// Neumaier's sum: the rounding errors are collected and added at the end.
@@ -99,7 +97,7 @@ int element(lua_State* L) {
     return 1;
 }
 
-int length(lua_State* L) {
+int vector_length(lua_State* L) {
     lua_pushinteger(L, static_cast<lua_Integer>(self_vector(L, "#v").size()));
     return 1;
 }
@@ -149,7 +147,7 @@ int table(lua_State* L) {
     return 1;
 }
 
-int text(lua_State* L) {
+int vector_text(lua_State* L) {
     const lua::Vector& v = self_vector(L, "tostring(v)");
     constexpr std::size_t shown_whole = 10;
     constexpr std::size_t ends = 3;
@@ -197,35 +195,35 @@ int linspace(lua_State* L) {
     return 1;
 }
 
-constexpr lua::Member class_members[] = {
+constexpr lua::Member vector_members[] = {
     {"sin",
-     lua::guarded<functions::sine>,
+     lua::guarded<vector_functions::sine>,
      lua::Kind::method,
      {"v:sin() -> vector", "Sine of every element (rad).", "print(vector{ 0, 1 }:sin())  --> vector{ 0, 0.841471 }"}},
     {"cos",
-     lua::guarded<functions::cosine>,
+     lua::guarded<vector_functions::cosine>,
      lua::Kind::method,
      {"v:cos() -> vector", "Cosine of every element (rad).", "print(vector{ 0, 1 }:cos())  --> vector{ 1, 0.540302 }"}},
     {"tan",
-     lua::guarded<functions::tangent>,
+     lua::guarded<vector_functions::tangent>,
      lua::Kind::method,
      {"v:tan() -> vector", "Tangent of every element (rad).", "print(vector{ 0, 1 }:tan())  --> vector{ 0, 1.55741 }"}},
     {"abs",
-     lua::guarded<functions::absolute>,
+     lua::guarded<vector_functions::absolute>,
      lua::Kind::method,
      {"v:abs() -> vector", "Absolute value of every element.", "print(vector{ -2, 3 }:abs())  --> vector{ 2, 3 }"}},
     {"sqrt",
-     lua::guarded<functions::square_root>,
+     lua::guarded<vector_functions::square_root>,
      lua::Kind::method,
      {"v:sqrt() -> vector", "Square root of every element; nan for negative ones.",
       "print(vector{ 4, 9 }:sqrt())  --> vector{ 2, 3 }"}},
     {"exp",
-     lua::guarded<functions::exponential>,
+     lua::guarded<vector_functions::exponential>,
      lua::Kind::method,
      {"v:exp() -> vector", "e to the power of every element.",
       "print(vector{ 0, 1 }:exp())  --> vector{ 1, 2.71828 }"}},
     {"log",
-     lua::guarded<functions::logarithm>,
+     lua::guarded<vector_functions::logarithm>,
      lua::Kind::method,
      {"v:log() -> vector", "Natural logarithm of every element; nan for negative ones.",
       "print(vector{ 1, 10 }:log())  --> vector{ 0, 2.30259 }"}},
@@ -257,59 +255,59 @@ constexpr lua::Member class_members[] = {
      {"v:table() -> table", "An ordinary Lua table with the same numbers.",
       "print(table.concat(vector{ 1, 2 }:table(), \" \"))  --> 1.0 2.0"}},
     {"__len",
-     lua::guarded<length>,
+     lua::guarded<vector_length>,
      lua::Kind::metamethod,
      {"#v -> integer", "How many elements there are. v[1] is the first one, v[#v] the last one; beyond them is nil.",
       "print(#vector{ 4, 5, 6 })  --> 3"}},
     {"__add",
-     lua::guarded<functions::add>,
+     lua::guarded<vector_functions::add>,
      lua::Kind::metamethod,
      {"v + w, v + number -> vector", "Element by element; two vectors must be equally long.",
       "print(vector{ 1, 2 } + vector{ 10, 20 })  --> vector{ 11, 22 }"}},
     {"__sub",
-     lua::guarded<functions::subtract>,
+     lua::guarded<vector_functions::subtract>,
      lua::Kind::metamethod,
      {"v - w, v - number -> vector", "Element by element.", "print(10 - vector{ 1, 2 })  --> vector{ 9, 8 }"}},
     {"__mul",
-     lua::guarded<functions::multiply>,
+     lua::guarded<vector_functions::multiply>,
      lua::Kind::metamethod,
      {"v * w, v * number -> vector", "Element by element.", "print(2 * vector{ 1, 2 })  --> vector{ 2, 4 }"}},
     {"__div",
-     lua::guarded<functions::divide>,
+     lua::guarded<vector_functions::divide>,
      lua::Kind::metamethod,
      {"v / w, v / number -> vector", "Element by element.", "print(vector{ 1, 2 } / 4)  --> vector{ 0.25, 0.5 }"}},
     {"__pow",
-     lua::guarded<functions::power>,
+     lua::guarded<vector_functions::power>,
      lua::Kind::metamethod,
      {"v ^ w, v ^ number -> vector", "Element by element.", "print(vector{ 2, 3 } ^ 2)  --> vector{ 4, 9 }"}},
     {"__unm",
-     lua::guarded<functions::negated>,
+     lua::guarded<vector_functions::negated>,
      lua::Kind::metamethod,
      {"-v -> vector", "Every element with the other sign.", "print(-vector{ 1, -2 })  --> vector{ -1, 2 }"}},
     {"__eq",
-     lua::guarded<functions::equal>,
+     lua::guarded<vector_functions::equal>,
      lua::Kind::metamethod,
      {"v == w -> boolean", "True when both have the same elements.",
       "print(vector{ 1, 2 } == vector{ 1, 2 })  --> true"}},
     {"__lt",
-     lua::guarded<functions::less>,
+     lua::guarded<vector_functions::less>,
      lua::Kind::metamethod,
      {"v < w, v < number -> boolean",
       "True when it holds for every element; so v < 3 and v >= 3 can both be false. Also >.",
       "print(vector{ 1, 2 } < 3, vector{ 1, 5 } < 3)  --> true\tfalse"}},
     {"__le",
-     lua::guarded<functions::less_or_equal>,
+     lua::guarded<vector_functions::less_or_equal>,
      lua::Kind::metamethod,
      {"v <= w, v <= number -> boolean", "True when it holds for every element. Also >=.",
       "print(vector{ 1, 2 } >= 1)  --> true"}},
     {"__tostring",
-     lua::guarded<text>,
+     lua::guarded<vector_text>,
      lua::Kind::metamethod,
      {"tostring(v) -> string", "The elements to six digits; of a long vector its two ends and its length.",
       "print(vector.linspace(0, 1, 101))  --> vector{ 0, 0.01, 0.02, ..., 0.98, 0.99, 1 }  -- 101 numbers"}},
 };
 
-constexpr lua::Member module_members[] = {
+constexpr lua::Member vector_module_members[] = {
     {"__call",
      lua::guarded<make>,
      lua::Kind::metamethod,
@@ -329,7 +327,7 @@ const lua::Class vector_class{
      "Numbers in a row, such as a column of a run. It can not be changed; "
      "arithmetic and mathematics act on all elements.",
      "v = vector{ 1, 2, 3 }\nprint(v[1], #v, 2 * v)  --> 1.0\t3\tvector{ 2, 4, 6 }"},
-    class_members,
+    vector_members,
     lua::guarded<element>,
     vector_card,
 };
@@ -337,7 +335,7 @@ const lua::Class vector_class{
 const lua::Class vector_module{
     "vector",
     {"vector{ ... } -> vector", "Makes vectors.", "print(vector{ 1, 2, 3 }:sum())  --> 6.0"},
-    module_members,
+    vector_module_members,
 };
 
 void register_vector(lua_State* L) {
