@@ -51,7 +51,7 @@ LONG = {
                                       "integrator.rk4{ h = 1e-3 } } go() while true do pcall(run.save, run, TEMPORARY .. '.dat') end",
     "vectors": "local v = vector.linspace(0, 1, 3e6) go() while true do pcall(v.sin, v) pcall(function() return v^0.3 end) end",
     "values of an excitation": "local v, e = vector.linspace(0, 1, 3e6), excitation.harmonic{ frequency = 1 } go() while true do pcall(e.values, e, v) end",
-    "the energy of a long run": "local run = nondimensional{ zeta = 0.01 }:simulate{ M = excitation.harmonic{ frequency = 0.7 }, t_end = 1e5, "
+    "the energy of a long run": "local run = nondimensional{ zeta = 0.01 }:simulate{ M = excitation.harmonic{ frequency = 0.7 }, t_end = 2e4, "
                                 "times = {} } go() while true do run:energy() end",
     "plots": "local run = nondimensional{}:simulate{ theta0 = 1, t_end = 1000, dt = 1e-3 } go() while true do run:plot{ show = false } end",
     "__close": "local x <close> = setmetatable({}, { __close = function() while true do end end })",
