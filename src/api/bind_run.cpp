@@ -7,7 +7,7 @@
 #include "api/bind_simulate.hpp"
 #include "api/cards.hpp"
 #include "api/classes.hpp"
-#include "api/events.hpp"
+#include "api/data.hpp"
 #include "api/plot_docs.hpp"
 #include "api/run.hpp"
 #include "files/table.hpp"
@@ -109,7 +109,7 @@ int names(lua_State* L) {
 // Made when first asked for and then kept as the user value of the run, so that a loop over run.events[i] is no trap.
 int events(lua_State* L) {
     const auto& events = run_self(L, "run.events")->trajectory.events;
-    if (lua_getiuservalue(L, 1, 1) == LUA_TTABLE) {
+    if (lua_getiuservalue(L, 1, 1) == LUA_TUSERDATA) {
         return 1;
     }
     push_events(L, events);
@@ -253,8 +253,9 @@ constexpr lua::Member run_members[] = {
     {"events",
      lua::guarded<events>,
      lua::Kind::field,
-     {"run.events -> table",
-      "What happened at velocity zero, in order of time: a list of { t, kind, theta, M }. kind is \"turn\" (goes on "
+     {"run.events -> data",
+      "What happened at velocity zero, in order of time: the columns t, kind, theta and M (run.events.theta is a "
+      "vector), and by number { t, kind, theta, M }. kind is \"turn\" (goes on "
       "the other way), \"stick\" (stays), \"slip\" (breaks away) or \"rest\" (sticks to the end of the run). Nothing "
       "is recorded at t_start. Empty in a run that was read from a file.",
       "run = nondimensional{}:simulate{ theta0 = 1, t_end = 1.2, dt = 0.1 }\n"

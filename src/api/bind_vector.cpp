@@ -1,12 +1,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <optional>
 
 #include "api/cards.hpp"
 #include "api/classes.hpp"
 #include "api/vector_arithmetic.hpp"
+#include "api/vector_queries.hpp"
 #include "lua/vector.hpp"
 
 namespace dinal::api {
@@ -82,6 +84,9 @@ int element(lua_State* L) {
     const auto* v = lua::test<lua::Vector>(L, 1);
     int is_integer = 0;
     const lua_Integer i = lua_tointegerx(L, 2, &is_integer);
+    if (v != nullptr && lua::test<lua::Vector>(L, 2) != nullptr) {
+        return vector_functions::pick(L);
+    }
     if (v == nullptr || lua_type(L, 2) != LUA_TNUMBER) {
         return 0;
     }
@@ -165,35 +170,7 @@ int vector_text(lua_State* L) {
     return 1;
 }
 
-// ---- the module
-
-int make(lua_State* L) {
-    if (lua_gettop(L) != 2 || (lua_type(L, 2) != LUA_TTABLE && lua::test<lua::Vector>(L, 2) == nullptr)) {
-        lua::raise(L,
-                   {.sentence = "vector takes one table of numbers, for example vector{ 1, 2, 3 }", .call = "vector"});
-    }
-    lua::push_vector(L, lua::numbers_at(L, 2, "vector"));
-    return 1;
-}
-
-int linspace(lua_State* L) {
-    const double from = lua::finite_argument(L, 1, "vector.linspace(from, to, n): from");
-    const double to = lua::finite_argument(L, 2, "vector.linspace(from, to, n): to");
-    const double count = lua::finite_argument(L, 3, "vector.linspace(from, to, n): n");
-    constexpr double most = 1e9;
-    if (count != std::floor(count) || count < 2 || count > most) {
-        lua::raise(L, text::in_call("vector.linspace(from, to, n)",
-                                    {fmt::format("n = {} must be a whole number from 2 to {}", count, most)}));
-    }
-    const auto n = static_cast<std::size_t>(count);
-    std::vector<double> values = lua::new_numbers(L, n);
-    for (std::size_t i = 0; i < n; ++i) {
-        values[i] = from + (to - from) * (static_cast<double>(i) / (count - 1));
-    }
-    values.back() = to;
-    lua::push_vector(L, std::move(values));
-    return 1;
-}
+// ---- the class
 
 constexpr lua::Member vector_members[] = {
     {"sin",
@@ -307,35 +284,24 @@ constexpr lua::Member vector_members[] = {
       "print(vector.linspace(0, 1, 101))  --> vector{ 0, 0.01, 0.02, ..., 0.98, 0.99, 1 }  -- 101 numbers"}},
 };
 
-constexpr lua::Member vector_module_members[] = {
-    {"__call",
-     lua::guarded<make>,
-     lua::Kind::metamethod,
-     {"vector{ ... } -> vector", "A vector of these finite numbers.", "print(#vector{ 1, 2, 3 })  --> 3"}},
-    {"linspace",
-     lua::guarded<linspace>,
-     lua::Kind::function,
-     {"vector.linspace(from, to, n) -> vector", "n >= 2 numbers with even gaps; the ends are exact.",
-      "print(vector.linspace(0, 1, 5))  --> vector{ 0, 0.25, 0.5, 0.75, 1 }"}},
-};
+constexpr auto all_vector_members = [] {
+    std::array<lua::Member, std::size(vector_members) + std::size(vector_query_members)> all{};
+    std::copy(std::begin(vector_query_members), std::end(vector_query_members),
+              std::copy(std::begin(vector_members), std::end(vector_members), all.begin()));
+    return all;
+}();
 
 }  // namespace
 
 const lua::Class vector_class{
     "vector",
     {"v",
-     "Numbers in a row, such as a column of a run. It can not be changed; "
+     "Numbers in a row, such as a column of a run. It cannot be changed; "
      "arithmetic and mathematics act on all elements.",
      "v = vector{ 1, 2, 3 }\nprint(v[1], #v, 2 * v)  --> 1.0\t3\tvector{ 2, 4, 6 }"},
-    vector_members,
+    all_vector_members,
     lua::guarded<element>,
     vector_card,
-};
-
-const lua::Class vector_module{
-    "vector",
-    {"vector{ ... } -> vector", "Makes vectors.", "print(vector{ 1, 2, 3 }:sum())  --> 6.0"},
-    vector_module_members,
 };
 
 void register_vector(lua_State* L) {

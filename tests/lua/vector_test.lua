@@ -103,3 +103,49 @@ assert(resident() - before < 1e9, "less than a third of what was made")
 
 -- An operator reached by debug.getmetatable, with no vector on either side.
 fails(function() return debug.getmetatable(vector{ 1 }).__lt(1, 2) end, "needs a vector on one side")
+
+-- Looking for something, putting together, adding up.
+local x = vector{ 3, -1, 2, 3 }
+assert(x:map(function(e, i) return e * i end) == vector{ 3, -2, 6, 12 })
+assert(x:map(function(e) return e > 0 end) == vector{ 1, 0, 1, 1 })
+assert(x:find(function(e) return e == 3 end) == vector{ 1, 4 } and #x:find(function() end) == 0)
+assert(x:argmax() == 1 and x:argmin() == 2)
+assert(math.abs(vector{ 2, 4, 4, 4, 5, 5, 7, 9 }:std() - math.sqrt(32 / 7)) < 1e-15)
+assert(math.abs(vector{ 1e9 + 1, 1e9 + 2, 1e9 + 3 }:std() - 1) < 1e-12, "no difference of large sums")
+assert(x:cumsum() == vector{ 3, 2, 4, 7 } and vector{ 1e100, 1, -1e100 }:cumsum()[3] == 1)
+assert(x:diff() == vector{ -4, 3, 1 } and #vector{}:diff() == 0)
+assert(vector{ -1, 0.25, 1, 5 }:interp(vector{ 0, 1, 2 }, vector{ 0, 4, 6 }) == vector{ 0, 1, 4, 6 })
+assert(x .. vector{ 5 } .. 6 == vector{ 3, -1, 2, 3, 5, 6 } and 0 .. x == vector{ 0, 3, -1, 2, 3 })
+assert(x[x:map(function(e) return e == 3 end)] == vector{ 3, 3 } and x[vector{ 4, 4, 2 }] == vector{ 3, 3, -1 })
+assert(x:dot(x) == 23 and vector{ 1e100, 1, -1e100 }:dot(vector{ 1, 1, 1 }) == 1)
+assert(x:sort() == vector{ -1, 2, 3, 3 })
+for i = 1, #x do
+    assert(x:atan()[i] == math.atan(x[i]) and x:atan(-2)[i] == math.atan(x[i], -2) and x:atan(-x)[i] == math.atan(x[i], -x[i]))
+end
+local spaced = vector.logspace(0.01, 100, 5)
+assert(spaced[1] == 0.01 and spaced[5] == 100 and math.abs(spaced[3] - 1) < 1e-15)
+
+fails(function() return x:map(3) end, "v:map takes a function")
+fails(function() return x:map(function() return "a" end) end, "must return a number, true or false", 'the string "a"')
+fails(function() return vector{ 1 }:std() end, "two numbers are needed")
+fails(function() return vector{}:argmax() end, "the vector is empty")
+fails(function() return x:interp(vector{ 0, 0 }, vector{ 1, 2 }) end, "x[2] = 0 is not after x[1] = 0")
+fails(function() return x:interp(vector{ 0, 1 }, vector{ 1 }) end, "2 and 1 numbers")
+fails(function() return x:dot(vector{ 1 }) end, "4 and 1 numbers")
+fails(function() return x:dot(3) end, "w must be a vector, got 3")
+fails(function() return x .. "a" end, "tostring(v)")
+fails(function() return x[vector{ 5 }] end, "w[1] = 5 is no place")
+fails(function() return vector.logspace(0, 1, 3) end, "must be positive")
+fails(function() return vector.logspace(1, 2, 1) end, "n = 1 must be a whole number")
+
+-- Random numbers: the same for the same seed, on every machine (the first are written down), and of the right kind.
+local u, n = vector.random{ n = 20000, seed = 7 }, vector.normal{ n = 20000, seed = 7, mean = 1, std = 2 }
+assert(u == vector.random{ n = 20000, seed = 7 } and u ~= vector.random{ n = 20000, seed = 8 })
+-- mt19937_64 with its standard seed begins with 14514284786278117030.
+assert(vector.random{ n = 1, seed = 5489 }[1] == (0xc96d191cf6f6aea6 >> 11) * 2.0^-53)
+assert(u:min() >= 0 and u:max() < 1)
+-- Five standard errors: 1/sqrt(12 n) of a mean, std/sqrt(n), std/sqrt(2 n).
+assert(math.abs(u:mean() - 0.5) < 5 / math.sqrt(12 * 20000))
+assert(math.abs(n:mean() - 1) < 5 * 2 / math.sqrt(20000) and math.abs(n:std() - 2) < 5 * 2 / math.sqrt(40000))
+fails(function() return vector.random{ n = 0, seed = 1 } end, "n = 0 must be a whole number from 1")
+fails(function() return vector.normal{ n = 2, seed = 1, std = -1 } end, "std = -1 must not be negative")

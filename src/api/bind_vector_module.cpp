@@ -1,0 +1,191 @@
+// The module `vector`: evenly spaced numbers and random ones.
+#include <fmt/format.h>
+
+#include <cmath>
+#include <numbers>
+#include <random>
+
+#include "api/classes.hpp"
+#include "lua/options.hpp"
+#include "lua/vector.hpp"
+
+namespace dinal::api {
+namespace {
+
+constexpr double most_numbers = 1e9;
+
+int vector_make(lua_State* L) {
+    if (lua_gettop(L) != 2 || (lua_type(L, 2) != LUA_TTABLE && lua::test<lua::Vector>(L, 2) == nullptr)) {
+        lua::raise(L,
+                   {.sentence = "vector takes one table of numbers, for example vector{ 1, 2, 3 }", .call = "vector"});
+    }
+    lua::push_vector(L, lua::numbers_at(L, 2, "vector"));
+    return 1;
+}
+
+std::size_t count_argument(lua_State* L, const std::string& call) {
+    const double count = lua::finite_argument(L, 3, call + ": n");
+    if (count != std::floor(count) || count < 2 || count > most_numbers) {
+        lua::raise(
+            L, text::in_call(call, {fmt::format("n = {} must be a whole number from 2 to {}", count, most_numbers)}));
+    }
+    return static_cast<std::size_t>(count);
+}
+
+std::vector<double> spaced(lua_State* L, double from, double to, std::size_t n) {
+    std::vector<double> values = lua::new_numbers(L, n);
+    for (std::size_t i = 0; i < n; ++i) {
+        values[i] = from + (to - from) * (static_cast<double>(i) / static_cast<double>(n - 1));
+    }
+    values.back() = to;
+    return values;
+}
+
+int vector_linspace(lua_State* L) {
+    const double from = lua::finite_argument(L, 1, "vector.linspace(from, to, n): from");
+    const double to = lua::finite_argument(L, 2, "vector.linspace(from, to, n): to");
+    lua::push_vector(L, spaced(L, from, to, count_argument(L, "vector.linspace(from, to, n)")));
+    return 1;
+}
+
+int vector_logspace(lua_State* L) {
+    const std::string call = "vector.logspace(from, to, n)";
+    const double from = lua::finite_argument(L, 1, call + ": from");
+    const double to = lua::finite_argument(L, 2, call + ": to");
+    const std::size_t n = count_argument(L, call);
+    if (!(from > 0) || !(to > 0)) {
+        lua::raise(L, text::in_call(call, {fmt::format("from = {} and to = {} must be positive: they are the ends "
+                                                       "themselves, not powers of ten",
+                                                       from, to)}));
+    }
+    std::vector<double> values = spaced(L, std::log(from), std::log(to), n);
+    for (double& x : values) x = std::exp(x);
+    values.front() = from;
+    values.back() = to;
+    lua::push_vector(L, std::move(values));
+    return 1;
+}
+
+// ---- random numbers
+
+struct UniformNumbers {
+    double n = 0, seed = 0, from = 0, to = 1;
+};
+struct NormalNumbers {
+    double n = 0, seed = 0, mean = 0, std = 1;
+};
+constexpr text::Range count_range{"be a whole number from 1 to 1e9",
+                                  [](double x) { return x == std::floor(x) && x >= 1 && x <= most_numbers; }};
+constexpr text::Range seed_range{"be a whole number from 0 to 2^53",
+                                 [](double x) { return x == std::floor(x) && x >= 0 && x <= 9007199254740992.0; }};
+constexpr const char* seed_meaning = "chooses the numbers: the same ones each time, on every machine";
+
+constexpr text::Option uniform_options[] = {
+    {.name = "n",
+     .otherwise = text::needed,
+     .range = count_range,
+     .meaning = "how many",
+     .filled = text::fills<&UniformNumbers::n>},
+    {.name = "seed",
+     .otherwise = text::needed,
+     .range = seed_range,
+     .meaning = seed_meaning,
+     .filled = text::fills<&UniformNumbers::seed>},
+    {.name = "from", .meaning = "none is less", .filled = text::fills<&UniformNumbers::from>},
+    {.name = "to", .meaning = "all are less", .filled = text::fills<&UniformNumbers::to>},
+};
+constexpr text::Call uniform_call{"vector.random", "vector.random{ n = 100, seed = 1 }", uniform_options};
+constexpr text::Option normal_options[] = {
+    {.name = "n",
+     .otherwise = text::needed,
+     .range = count_range,
+     .meaning = "how many",
+     .filled = text::fills<&NormalNumbers::n>},
+    {.name = "seed",
+     .otherwise = text::needed,
+     .range = seed_range,
+     .meaning = seed_meaning,
+     .filled = text::fills<&NormalNumbers::seed>},
+    {.name = "mean", .meaning = "their mean", .filled = text::fills<&NormalNumbers::mean>},
+    {.name = "std",
+     .range = text::not_negative,
+     .meaning = "their standard deviation",
+     .filled = text::fills<&NormalNumbers::std>},
+};
+constexpr text::Call normal_call{"vector.normal", "vector.normal{ n = 100, seed = 1, std = 0.02 }", normal_options};
+
+/// From 0 to 1, without 1. NOTE: the distributions of the standard library differ from one library to another.
+double unit(std::mt19937_64& engine) {
+    return static_cast<double>(engine() >> 11U) * 0x1p-53;
+}
+
+std::mt19937_64 engine_of(double seed) {
+    return std::mt19937_64(static_cast<std::uint64_t>(seed));
+}
+
+int vector_random(lua_State* L) {
+    const auto asked = lua::read<UniformNumbers>(L, 1, uniform_call);
+    std::mt19937_64 engine = engine_of(asked.seed);
+    std::vector<double> values = lua::new_numbers(L, static_cast<std::size_t>(asked.n));
+    for (double& x : values) x = asked.from + (asked.to - asked.from) * unit(engine);
+    lua::push_vector(L, std::move(values));
+    return 1;
+}
+
+/// Box and Muller's pairs.
+int vector_normal(lua_State* L) {
+    const auto asked = lua::read<NormalNumbers>(L, 1, normal_call);
+    std::mt19937_64 engine = engine_of(asked.seed);
+    std::vector<double> values = lua::new_numbers(L, static_cast<std::size_t>(asked.n));
+    for (std::size_t i = 0; i < values.size(); i += 2) {
+        const double radius = asked.std * std::sqrt(-2 * std::log(1 - unit(engine)));
+        const double angle = 2 * std::numbers::pi * unit(engine);
+        values[i] = asked.mean + radius * std::cos(angle);
+        if (i + 1 < values.size()) values[i + 1] = asked.mean + radius * std::sin(angle);
+    }
+    lua::push_vector(L, std::move(values));
+    return 1;
+}
+
+constexpr lua::Member vector_module_members[] = {
+    {"__call",
+     lua::guarded<vector_make>,
+     lua::Kind::metamethod,
+     {"vector{ ... } -> vector", "A vector of these finite numbers.", "print(#vector{ 1, 2, 3 })  --> 3"}},
+    {"linspace",
+     lua::guarded<vector_linspace>,
+     lua::Kind::function,
+     {"vector.linspace(from, to, n) -> vector", "n >= 2 numbers with even gaps; the ends are exact.",
+      "print(vector.linspace(0, 1, 5))  --> vector{ 0, 0.25, 0.5, 0.75, 1 }"}},
+    {"logspace",
+     lua::guarded<vector_logspace>,
+     lua::Kind::function,
+     {"vector.logspace(from, to, n) -> vector",
+      "n >= 2 positive numbers with even ratios; the ends, which are exact, are the numbers themselves and not powers "
+      "of ten.",
+      "print(vector.logspace(0.1, 10, 3))  --> vector{ 0.1, 1, 10 }"}},
+    {"normal",
+     lua::guarded<vector_normal>,
+     lua::Kind::function,
+     {"vector.normal{ OPTIONS } -> vector",
+      "Random numbers of the normal distribution, such as noise on a record.",
+      "v = vector.normal{ n = 10000, seed = 1, std = 0.02 }\nprint(math.abs(v:std() - 0.02) < 0.0005)  --> true",
+      {&normal_call}}},
+    {"random",
+     lua::guarded<vector_random>,
+     lua::Kind::function,
+     {"vector.random{ OPTIONS } -> vector",
+      "Random numbers, each as likely as any other between two limits.",
+      "v = vector.random{ n = 1000, seed = 1, from = 2, to = 3 }\nprint(v >= 2, v < 3)  --> true\ttrue",
+      {&uniform_call}}},
+};
+
+}  // namespace
+
+const lua::Class vector_module{
+    "vector",
+    {"vector{ ... } -> vector", "Makes vectors.", "print(vector{ 1, 2, 3 }:sum())  --> 6.0"},
+    vector_module_members,
+};
+
+}  // namespace dinal::api

@@ -1,0 +1,151 @@
+#include "api/data.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "lua/external_memory.hpp"
+#include "text/characters.hpp"
+#include "text/sentences.hpp"
+
+namespace dinal::api {
+namespace {
+
+constexpr std::size_t most_rows = 15;
+constexpr std::size_t widest_word = 24;
+
+/// The lines of a table with the columns that fit; the first column is the number of the row.
+class TableText {
+public:
+    TableText(const Data& data, std::size_t rows) : rows_(rows) {
+        cells_.emplace_back(1, "i");
+        for (std::size_t row = 0; row < rows; ++row) cells_.front().push_back(std::to_string(row + 1));
+        right_.push_back(true);
+        for (const DataColumn& column : data.columns) {
+            std::vector<std::string>& cells = cells_.emplace_back(1, text::displayable(column.name));
+            for (std::size_t row = 0; row < rows; ++row) {
+                cells.emplace_back(text::cut_to_columns(text::displayable(column.text(row)), widest_word));
+            }
+            right_.push_back(column.numbers() != nullptr);
+        }
+    }
+    [[nodiscard]] std::string lines(std::size_t width) const {
+        std::vector<std::string> lines(rows_ + 1);
+        std::size_t used = 0, left_out = 0;
+        for (std::size_t column = 0; column < cells_.size(); ++column) {
+            const std::size_t wide = width_of(cells_[column]) + 2;
+            if (left_out > 0 || (used + wide >= width && column > 1)) {
+                ++left_out;
+                continue;
+            }
+            used += wide;
+            for (std::size_t row = 0; row <= rows_; ++row) {
+                const std::string& cell = cells_[column][row];
+                const std::string blanks(wide - 2 - text::columns(cell), ' ');
+                lines[row] += "  " + (right_[column] ? blanks + cell : cell + blanks);
+            }
+        }
+        std::string all;
+        for (std::string& line : lines) {
+            line.erase(line.find_last_not_of(' ') + 1);
+            all += "\n" + line;
+        }
+        return left_out == 0 ? all : all + fmt::format("\n  ... {}", text::counted(left_out, "more column"));
+    }
+
+private:
+    static std::size_t width_of(const std::vector<std::string>& cells) {
+        std::size_t width = 0;
+        for (const std::string& cell : cells) width = std::max(width, text::columns(cell));
+        return width;
+    }
+
+    std::size_t rows_;
+    std::vector<std::vector<std::string>> cells_;
+    std::vector<bool> right_;
+};
+
+std::size_t bytes_of(const Data& data) {
+    return data.columns.size() * data.size() * sizeof(double);
+}
+
+/// "41 events: 39 turns, 1 stick, 1 slip"
+std::string heading_of(std::span<const model::Event> events) {
+    std::map<model::EventKind, std::size_t> kinds;
+    for (const model::Event& event : events) ++kinds[event.kind];
+    std::string text = text::counted(events.size(), "event");
+    const char* separator = ": ";
+    for (const auto& [kind, count] : kinds) {
+        text += separator + text::counted(count, model::name(kind));
+        separator = ", ";
+    }
+    return text;
+}
+
+}  // namespace
+
+std::size_t DataColumn::size() const {
+    const lua::Vector* vector = numbers();
+    return vector != nullptr ? vector->size() : std::get<Words>(values)->size();
+}
+
+std::string DataColumn::text(std::size_t row) const {
+    if (const lua::Vector* vector = numbers()) {
+        const double x = vector->begin()[row];
+        return std::isnan(x) ? "nan" : fmt::format("{:.6g}", x);
+    }
+    return (*std::get<Words>(values))[row];
+}
+
+const DataColumn* Data::find(std::string_view name) const {
+    const auto found = std::find_if(columns.begin(), columns.end(), [name](const auto& c) { return c.name == name; });
+    return found != columns.end() ? &*found : nullptr;
+}
+
+DataColumn column_of(std::string name, std::vector<double> numbers) {
+    return {std::move(name), lua::Vector(std::move(numbers))};
+}
+
+DataColumn column_of(std::string name, std::vector<std::string> words) {
+    return {std::move(name), std::make_shared<const std::vector<std::string>>(std::move(words))};
+}
+
+void push_data(lua_State* L, Data data) {
+    const std::size_t bytes = bytes_of(data);
+    lua::push<DataHandle>(L, std::make_shared<const Data>(std::move(data)));
+    lua::note_external_memory(L, bytes);
+}
+
+void push_events(lua_State* L, std::span<const model::Event> events) {
+    std::vector<double> t(events.size()), theta(events.size()), M(events.size());
+    std::vector<std::string> kind(events.size());
+    for (std::size_t i = 0; i < events.size(); ++i) {
+        t[i] = events[i].t;
+        kind[i] = model::name(events[i].kind);
+        theta[i] = events[i].theta;
+        M[i] = events[i].M;
+    }
+    Data data;
+    data.columns = {column_of("t", std::move(t)), column_of("kind", std::move(kind)),
+                    column_of("theta", std::move(theta)), column_of("M", std::move(M))};
+    data.heading = heading_of(events);
+    push_data(L, std::move(data));
+}
+
+std::string text_of(const Data& data, std::size_t width) {
+    const std::size_t n = data.size();
+    std::string text = data.heading;
+    if (text.empty()) {
+        text = fmt::format("data: {} of ", text::counted(n, "row"));
+        for (std::size_t i = 0; i < data.columns.size(); ++i) {
+            text += (i == 0 ? "" : ", ") + text::displayable(data.columns[i].name);
+        }
+        text = text::wrapped(text, width);
+    }
+    if (n > 0) text += TableText(data, std::min(n, most_rows)).lines(width);
+    return n > most_rows ? text + fmt::format("\n  ... {}", text::counted(n - most_rows, "more row")) : text;
+}
+
+}  // namespace dinal::api

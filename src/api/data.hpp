@@ -1,0 +1,69 @@
+// Named columns of one length, of numbers or of words, as Lua sees them: data{ ... }, data.load(file), run.events.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include "lua/bind.hpp"
+#include "lua/vector.hpp"
+#include "model/event.hpp"
+
+namespace dinal::api {
+
+using Words = std::shared_ptr<const std::vector<std::string>>;
+
+struct DataColumn {
+    std::string name;
+    std::variant<lua::Vector, Words> values;
+
+    [[nodiscard]] std::size_t size() const;
+    [[nodiscard]] const lua::Vector* numbers() const { return std::get_if<lua::Vector>(&values); }
+    /// As text for people: six digits, a word as it is.
+    [[nodiscard]] std::string text(std::size_t row) const;
+};
+
+struct Data {
+    std::vector<DataColumn> columns;
+    std::string heading = {};  ///< what the first line of its text says, else how many rows of which columns
+
+    [[nodiscard]] std::size_t size() const { return columns.empty() ? 0 : columns.front().size(); }
+    [[nodiscard]] const DataColumn* find(std::string_view name) const;
+};
+// Shared, so that a picture or an iteration keeps what it shows.
+using DataHandle = std::shared_ptr<const Data>;
+
+DataColumn column_of(std::string name, std::vector<double> numbers);
+DataColumn column_of(std::string name, std::vector<std::string> words);
+
+/// The data as a Lua object on the top of the stack.
+void push_data(lua_State* L, Data data);
+
+/// Pushes a row of the data at `index` as a table that knows how to write itself.
+void push_row(lua_State* L, int index, const Data& data, std::size_t row);
+
+/// What happened at velocity zero: t, kind, theta, M.
+void push_events(lua_State* L, std::span<const model::Event> events);
+
+/// Its first line, and a table of its first rows; a column that does not fit into the width is left out.
+std::string text_of(const Data& data, std::size_t width);
+
+/// Methods of the class in bind_data.cpp, which have files of their own.
+namespace data_functions {
+int plot(lua_State* L);
+int filter(lua_State* L);
+int sort(lua_State* L);
+int select(lua_State* L);
+int save(lua_State* L);
+int load(lua_State* L);
+int markdown(lua_State* L);
+/// The data of a call such as d:plot{}.
+const DataHandle& self(lua_State* L, const char* call);
+/// The column of this name, or an error of the call with a suggestion.
+const DataColumn& column_or_fail(lua_State* L, const Data& data, std::string_view call, std::string_view name);
+}  // namespace data_functions
+
+}  // namespace dinal::api

@@ -1,0 +1,264 @@
+// What one does with data: pick and sort rows, pick columns, draw, save, load, write down.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "api/data.hpp"
+#include "api/data_docs.hpp"
+#include "api/picture.hpp"
+#include "files/csv_columns.hpp"
+#include "lua/interrupt.hpp"
+#include "lua/options.hpp"
+#include "text/words.hpp"
+
+namespace dinal::api::data_functions {
+namespace {
+
+/// The same columns with these rows only.
+Data with_rows(const Data& data, const std::vector<std::size_t>& rows) {
+    Data picked;
+    for (const DataColumn& column : data.columns) {
+        if (const lua::Vector* numbers = column.numbers()) {
+            std::vector<double> values(rows.size());
+            std::transform(rows.begin(), rows.end(), values.begin(),
+                           [numbers](std::size_t row) { return numbers->begin()[row]; });
+            picked.columns.push_back(column_of(column.name, std::move(values)));
+        } else {
+            const std::vector<std::string>& words = *std::get<Words>(column.values);
+            std::vector<std::string> values(rows.size());
+            std::transform(rows.begin(), rows.end(), values.begin(), [&words](std::size_t row) { return words[row]; });
+            picked.columns.push_back(column_of(column.name, std::move(values)));
+        }
+    }
+    return picked;
+}
+
+std::string file_argument(lua_State* L, int index, const char* call) {
+    if (lua_type(L, index) != LUA_TSTRING) {
+        lua::raise(L, {.sentence = fmt::format("{}: the name of the file must be a string, got {}", call,
+                                               lua::describe(L, index)),
+                       .call = call,
+                       .culprit = lua::written(L, index)});
+    }
+    std::string file = lua_tostring(L, index);
+    if (text::ending_of(file) == ".dat") {
+        lua::raise(L, {.sentence = fmt::format("{}: '{}' is a name for the record of 1989; data are CSV files, {}",
+                                               call, file, "trajectory.load reads such a record"),
+                       .call = call,
+                       .culprit = file});
+    }
+    return file;
+}
+
+std::string in_markdown(std::string text) {
+    for (std::size_t bar = text.find('|'); bar != std::string::npos; bar = text.find('|', bar + 2)) {
+        text.insert(bar, "\\");
+    }
+    return text;
+}
+
+/// The names that stand under `option`: one or a list of them.
+std::vector<std::string> asked_names(lua_State* L, const lua::Options& options, const char* option) {
+    std::vector<std::string> names;
+    options.push(option);
+    const int place = lua_gettop(L);
+    if (lua_type(L, place) == LUA_TSTRING) {
+        names.emplace_back(lua_tostring(L, place));
+    } else if (lua_istable(L, place) && lua_rawlen(L, place) > 0) {
+        for (lua_Integer i = 1; i <= static_cast<lua_Integer>(lua_rawlen(L, place)); ++i) {
+            if (lua_rawgeti(L, place, i) != LUA_TSTRING) {
+                options.fail(
+                    fmt::format("{}[{}] must be the name of a column, got {}", option, i, lua::describe(L, -1)));
+            }
+            names.emplace_back(lua_tostring(L, -1));
+            lua_pop(L, 1);
+        }
+    } else if (!lua_isnil(L, place)) {
+        options.wrong(option, "the name of a column or a list of them");
+    }
+    lua_pop(L, 1);
+    return names;
+}
+
+plots::Numbers drawn(lua_State* L, const Data& data, const std::string& name) {
+    const DataColumn& column = column_or_fail(L, data, "d:plot", name);
+    if (column.numbers() == nullptr) {
+        lua::raise(L, {.sentence = fmt::format("d:plot: the column '{}' holds words, not numbers", name),
+                       .call = "d:plot",
+                       .culprit = name});
+    }
+    const auto kept = std::make_shared<const lua::Vector>(*column.numbers());
+    return {kept, kept->values()};
+}
+
+}  // namespace
+
+const DataHandle& self(lua_State* L, const char* call) {
+    return lua::self<DataHandle>(L, 1, call);
+}
+
+const DataColumn& column_or_fail(lua_State* L, const Data& data, std::string_view call, std::string_view name) {
+    if (const DataColumn* found = data.find(name)) return *found;
+    std::vector<std::string_view> names;
+    for (const DataColumn& column : data.columns) names.emplace_back(column.name);
+    text::Error error{.sentence = fmt::format("there is no column '{}' among {}", name, fmt::join(names, ", ")),
+                      .culprit = std::string(name),
+                      .cure = text::did_you_mean(name, names)};
+    lua::raise(L, call.empty() ? error : text::in_call(call, error));
+}
+
+int plot(lua_State* L) {
+    const DataHandle data = self(L, "d:plot{ x = \"r\", y = \"A\" }");
+    const lua::Options options(L, 2, plot_data_call);
+    std::vector<std::string> x = asked_names(L, options, "x"), y = asked_names(L, options, "y");
+    if (x.size() > 1) options.fail("x must be one column");
+    if (x.empty()) x.push_back(data->columns.front().name);
+    for (std::size_t i = 0; i < data->columns.size() && y.empty(); ++i) {
+        const DataColumn& column = data->columns[i];
+        if (column.name != x.front() && column.numbers() != nullptr) y.push_back(column.name);
+    }
+    if (y.empty()) options.fail("there is no other column of numbers to draw");
+    if (data->size() == 0) options.fail("there are no rows to draw");
+    plots::Figure figure;
+    figure.x.label = x.front();
+    figure.y.label = y.size() == 1 ? y.front() : "";
+    plots::Curve curve;
+    options.fill(curve);
+    for (const std::string& name : y) {
+        curve.x = drawn(L, *data, x.front());
+        curve.y = drawn(L, *data, name);
+        curve.label = y.size() == 1 ? "" : name;
+        figure.curves.push_back(curve);
+    }
+    apply_options(L, options, figure);
+    std::vector<plots::Figure> figures{std::move(figure)};
+    return deliver(L, options, std::move(figures));
+}
+
+int filter(lua_State* L) {
+    const DataHandle data = self(L, "d:filter(f)");
+    const auto* mask = lua::test<lua::Vector>(L, 2);
+    if (mask == nullptr && lua_type(L, 2) != LUA_TFUNCTION) {
+        lua::raise(L, {.sentence = "d:filter takes a function of a row, or a vector with a number for each row, got " +
+                                   lua::describe(L, 2),
+                       .call = "d:filter",
+                       .culprit = lua::written(L, 2)});
+    }
+    if (mask != nullptr && mask->size() != data->size()) {
+        lua::raise(L, {.sentence = fmt::format("d:filter: the vector has {} numbers, but there are {} rows",
+                                               mask->size(), data->size()),
+                       .call = "d:filter"});
+    }
+    std::vector<std::size_t> rows;
+    for (std::size_t i = 0; i < data->size(); ++i) {
+        bool stays = mask != nullptr && mask->begin()[i] != 0;
+        if (mask == nullptr) {
+            lua_pushvalue(L, 2);
+            push_row(L, 1, *data, i);
+            lua_call(L, 1, 1);
+            stays = lua_toboolean(L, -1) != 0;
+            lua_pop(L, 1);
+        }
+        if (stays) rows.push_back(i);
+    }
+    push_data(L, with_rows(*data, rows));
+    return 1;
+}
+
+int sort(lua_State* L) {
+    const DataHandle data = self(L, "d:sort(\"A\")");
+    if (lua_type(L, 2) != LUA_TSTRING) {
+        lua::raise(L, {.sentence = fmt::format("d:sort: the name of a column must be a string, got {}; for example {}",
+                                               lua::describe(L, 2), sort_call.example),
+                       .call = "d:sort",
+                       .culprit = lua::written(L, 2)});
+    }
+    const DataColumn& column = column_or_fail(L, *data, "d:sort", lua_tostring(L, 2));
+    const bool down = lua::read<SortOptions>(L, 3, sort_call).descending;
+    std::vector<std::size_t> rows(data->size());
+    std::iota(rows.begin(), rows.end(), std::size_t{0});
+    const lua::Vector* numbers = column.numbers();
+    std::stable_sort(rows.begin(), rows.end(), [&](std::size_t i, std::size_t j) {
+        if (numbers == nullptr) {
+            const std::vector<std::string>& words = *std::get<Words>(column.values);
+            return down ? words[j] < words[i] : words[i] < words[j];
+        }
+        const double a = numbers->begin()[i], b = numbers->begin()[j];
+        if (std::isnan(a) || std::isnan(b)) return !std::isnan(a);
+        return down ? b < a : a < b;
+    });
+    push_data(L, with_rows(*data, rows));
+    return 1;
+}
+
+int select(lua_State* L) {
+    const DataHandle data = self(L, "d:select(\"r\", \"A\")");
+    Data picked;
+    for (int i = 2; i <= lua_gettop(L); ++i) {
+        if (lua_type(L, i) != LUA_TSTRING) {
+            lua::raise(L, {.sentence = "d:select takes names of columns, got " + lua::describe(L, i),
+                           .call = "d:select",
+                           .culprit = lua::written(L, i)});
+        }
+        const DataColumn& column = column_or_fail(L, *data, "d:select", lua_tostring(L, i));
+        if (picked.find(column.name) == nullptr) picked.columns.push_back(column);
+    }
+    if (picked.columns.empty()) {
+        lua::raise(L, {.sentence = "d:select needs the name of a column, for example d:select(\"r\", \"A\")",
+                       .call = "d:select"});
+    }
+    push_data(L, std::move(picked));
+    return 1;
+}
+
+int save(lua_State* L) {
+    const DataHandle data = self(L, "d:save(\"table.csv\")");
+    const std::string file = file_argument(L, 2, "d:save");
+    std::vector<files::WordsOrNumbers> columns;
+    for (const DataColumn& column : data->columns) {
+        files::WordsOrNumbers& written = columns.emplace_back(files::WordsOrNumbers{column.name});
+        if (const lua::Vector* numbers = column.numbers()) {
+            written.numbers = numbers->values();
+        } else {
+            written.words = *std::get<Words>(column.values);
+        }
+    }
+    const auto written = files::write_columns(file, columns);
+    if (!written) lua::raise(L, text::in_call("d:save", written.error()));
+    return 0;
+}
+
+int load(lua_State* L) {
+    const std::string file = file_argument(L, 1, "data.load");
+    auto read = files::read_columns(file);
+    if (lua::interrupt_requested()) lua::raise_interrupted(L);  // what was read is not all
+    if (!read) lua::raise(L, text::in_call("data.load", read.error()));
+    files::ReadColumns content = std::move(read).value();
+    Data data;
+    for (files::ReadColumn& column : content.columns) {
+        data.columns.push_back(column.of_words ? column_of(std::move(column.name), std::move(column.words))
+                                               : column_of(std::move(column.name), std::move(column.numbers)));
+    }
+    push_data(L, std::move(data));
+    return 1;
+}
+
+int markdown(lua_State* L) {
+    const Data& data = *self(L, "d:markdown()");
+    std::string text = "|", rule = "\n|";
+    for (const DataColumn& column : data.columns) {
+        text += " " + in_markdown(column.name) + " |";
+        rule += column.numbers() != nullptr ? "---:|" : "---|";
+    }
+    text += rule;
+    for (std::size_t row = 0; row < data.size(); ++row) {
+        text += "\n|";
+        for (const DataColumn& column : data.columns) text += " " + in_markdown(column.text(row)) + " |";
+    }
+    lua_pushlstring(L, text.data(), text.size());
+    return 1;
+}
+
+}  // namespace dinal::api::data_functions

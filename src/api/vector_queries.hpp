@@ -1,0 +1,99 @@
+// Methods of vectors that look for something, put together or add up, with their documentation; the list of all methods
+// is in bind_vector.cpp.
+#pragma once
+
+#include "lua/bind.hpp"
+
+namespace dinal::api::vector_functions {
+
+int map(lua_State* L);
+int find(lua_State* L);
+int deviation(lua_State* L);
+int place_of_maximum(lua_State* L);
+int place_of_minimum(lua_State* L);
+int cumulated(lua_State* L);
+int differences(lua_State* L);
+int interpolated(lua_State* L);
+int joined(lua_State* L);
+int pick(lua_State* L);  ///< v[w]
+int dot(lua_State* L);
+int arctangent(lua_State* L);
+int sorted(lua_State* L);
+
+}  // namespace dinal::api::vector_functions
+
+namespace dinal::api {
+
+inline constexpr lua::Member vector_query_members[] = {
+    {"map",
+     lua::guarded<vector_functions::map>,
+     lua::Kind::method,
+     {"v:map(f) -> vector", "f(x, i) of every element x, i its place: a number, or true for 1 and false for 0.",
+      "print(vector{ 1, 2, 3 }:map(function(x) return 10 * x end))  --> vector{ 10, 20, 30 }"}},
+    {"find",
+     lua::guarded<vector_functions::find>,
+     lua::Kind::method,
+     {"v:find(f) -> vector", "The places, from 1, of the elements x for which f(x, i) is true; v[v:find(f)] has them.",
+      "print(vector{ 5, 1, 7 }:find(function(x) return x > 3 end))  --> vector{ 1, 3 }"}},
+    {"std",
+     lua::guarded<vector_functions::deviation>,
+     lua::Kind::method,
+     {"v:std() -> number", "The standard deviation: the root of the sum of squares about the mean over #v - 1.",
+      "print(vector{ 1, 2, 3 }:std())  --> 1.0"}},
+    {"argmax",
+     lua::guarded<vector_functions::place_of_maximum>,
+     lua::Kind::method,
+     {"v:argmax() -> integer", "The place, from 1, of the greatest element, the first of equal ones.",
+      "print(vector{ 1, 3, 2 }:argmax())  --> 2"}},
+    {"argmin",
+     lua::guarded<vector_functions::place_of_minimum>,
+     lua::Kind::method,
+     {"v:argmin() -> integer", "The place, from 1, of the least element, the first of equal ones.",
+      "print(vector{ 1, 3, -2 }:argmin())  --> 3"}},
+    {"cumsum",
+     lua::guarded<vector_functions::cumulated>,
+     lua::Kind::method,
+     {"v:cumsum() -> vector", "The sums of the first, the first two, ... of all elements.",
+      "print(vector{ 1, 2, 3 }:cumsum())  --> vector{ 1, 3, 6 }"}},
+    {"diff",
+     lua::guarded<vector_functions::differences>,
+     lua::Kind::method,
+     {"v:diff() -> vector", "Each element less the one before it: one number fewer.",
+      "print(vector{ 1, 4, 9 }:diff())  --> vector{ 3, 5 }"}},
+    {"interp",
+     lua::guarded<vector_functions::interpolated>,
+     lua::Kind::method,
+     {"v:interp(x, y) -> vector",
+      "At each element the value of straight lines through the points x, y; x must increase, and beyond its ends the "
+      "first and the last y hold.",
+      "print(vector{ 0.5, 1.5, 9 }:interp(vector{ 0, 1, 2 }, vector{ 0, 10, 30 }))  --> vector{ 5, 20, 30 }"}},
+    {"dot",
+     lua::guarded<vector_functions::dot>,
+     lua::Kind::method,
+     {"v:dot(w) -> number", "The sum of the products of elements in the same place.",
+      "print(vector{ 1, 2 }:dot(vector{ 3, 4 }))  --> 11.0"}},
+    {"atan",
+     lua::guarded<vector_functions::arctangent>,
+     lua::Kind::method,
+     {"v:atan(w = 1) -> vector", "The angle of each point (w, v), rad, from -pi to pi; w is a vector or a number.",
+      "print(vector{ 1, 1 }:atan(vector{ 1, -1 }))  --> vector{ 0.785398, 2.35619 }"}},
+    {"sort",
+     lua::guarded<vector_functions::sorted>,
+     lua::Kind::method,
+     {"v:sort() -> vector", "The elements from the least to the greatest, nan last.",
+      "print(vector{ 3, 1, 2 }:sort())  --> vector{ 1, 2, 3 }"}},
+    {"__concat",
+     lua::guarded<vector_functions::joined>,
+     lua::Kind::metamethod,
+     {"v .. w, v .. number -> vector", "The elements of v, then those of w.",
+      "print(vector{ 1, 2 } .. vector{ 3 } .. 4)  --> vector{ 1, 2, 3, 4 }"}},
+    {"__index",
+     lua::guarded<vector_functions::pick>,
+     lua::Kind::metamethod,
+     {"v[w] -> vector",
+      "The elements that a vector w picks: as long as v and of 0 and 1, it says which; else it has their places.",
+      "v = vector{ 5, 1, 7 }\n"
+      "print(v[vector{ 1, 0, 1 }], v[vector{ 3, 1 }])  --> vector{ 5, 7 }\tvector{ 7, 5 }"}},
+};
+
+}  // namespace dinal::api

@@ -1,0 +1,116 @@
+-- Named columns: made, read, picked, sorted, saved and loaded as a user would. Run by dinal.
+package.path = "tests/lua/?.lua;" .. package.path
+local support = require "support"
+local test, equal, raises, raises_here = support.test, support.equal, support.raises, support.raises_here
+
+local function load(text)
+    local name = support.temporary ".csv"
+    support.write(name, text)
+    return data.load(name), name
+end
+
+test("columns are vectors or tables of words, rows are tables", function()
+    local d = data{ r = { 1, 2, 3 }, A = vector{ 4, 5, 6 }, kind = { "a", "b", "c" } }
+    equal(#d, 3)
+    equal(d.A, vector{ 4, 5, 6 })
+    equal(table.concat(d.kind), "abc")
+    equal(d[2].A, 5.0)
+    equal(d[3].kind, "c")
+    equal(d[0], nil)
+    equal(d[4], nil)
+    equal(tostring(d[1]), '{ A = 4, kind = "a", r = 1 }')
+    equal(table.concat(d.names, " "), "A kind r")
+    equal(table.concat(data{ { "r", { 1 } }, { "A", { 2 } } }.names, " "), "r A")
+    equal(table.concat(d:select("r", "A", "r").names, " "), "r A")
+    local sum = 0
+    for i, row in ipairs(d) do sum = sum + i * row.A end
+    equal(sum, 4 + 10 + 18.0)
+    equal(data{ plot = { 7 } }:column("plot"), vector{ 7 })
+end)
+
+test("rows are filtered by a function or a mask, and sorted by a column with nan last", function()
+    local d = data{ r = { 3, 0/0, 1, 2 }, word = { "c", "x", "a", "b" } }
+    equal(table.concat(d:sort("r").word), "abcx")
+    equal(table.concat(d:sort("r", { descending = true }).word), "cbax")
+    equal(table.concat(d:sort("word").word), "abcx")
+    equal(table.concat(d:filter(function(row) return row.r == row.r end).word), "cab")
+    equal(table.concat(d:filter(d.r:map(function(x) return x > 1 end)).word), "cb")
+    equal(#d:filter(function() return false end), 0)
+    raises(function() d:filter(function(row) error("mine") end) end, "mine")
+    raises_here(function() d:filter(vector{ 1 }) end, "the vector has 1 numbers, but there are 4 rows")
+end)
+
+test("what is saved reads back to the last bit: gaps, infinities, words that look like numbers", function()
+    local d = data{ x = { 1/3, 0/0, -1/0 }, w = { "1.5", "a, \"b\"", "" }, ["a name; #2"] = { 1e-320, -0.0, 1e300 } }
+    local name = support.temporary ".csv"
+    d:save(name)
+    local back = data.load(name)
+    equal(table.concat(back.names, "|"), table.concat(d.names, "|"))
+    equal(back.x[1], 1/3)
+    assert(back.x[2] ~= back.x[2] and back.x[3] == -1/0)
+    equal(table.concat(back.w, "|"), table.concat(d.w, "|"))
+    equal(back["a name; #2"], d["a name; #2"])
+end)
+
+test("files of others: separators, decimal commas, no names, comments, empty fields", function()
+    equal(load("t,x\n0,1\n1,\n2,nan\n").t, vector{ 0, 1, 2 })
+    local d = load("\xEF\xBB\xBF# made by a phone\r\nTime (s);Angle\r\n0,5;1,25\r\n1;2\r\n")
+    equal(d["Time (s)"], vector{ 0.5, 1 })
+    equal(d.Angle, vector{ 1.25, 2 })
+    equal(load("1 2\n3 4\n")["2"], vector{ 2, 4 })
+    equal(table.concat(load("t\tkind\n1\tturn\n2\t\n").kind, "|"), "turn|")
+    equal(#load("only,names\n"), 0)
+    raises(function() load("a,b\n1,2\n3\n") end, ":3: found 1 field, expected 2")
+    raises(function() load("a,a\n1,2\n") end, "belongs to two columns")
+    raises(function() load("") end, "the file is empty")
+    raises(function() data.load("missing.csv") end, "data.load: ", "missing.csv")
+    raises(function() data.load("run.dat") end, "trajectory.load")
+    raises(function() data.load(3) end, "must be a string")
+end)
+
+test("events are data: columns, rows, save and load", function()
+    local run = nondimensional{ friction_ratio = 0.167 }:simulate{ velocity0 = 2*math.pi, t_end = 3, dt = 1 }
+    local events = run.events
+    equal(#events.theta, #events)
+    support.near(events.theta[1], 0.846848608, 1e-9) -- docs/report.md, figure 22
+    equal(events.kind[#events], "rest")
+    equal(events[1].kind, "turn")
+    equal(events:filter(function(e) return e.kind == "turn" end).t[1], events[1].t)
+    assert(tostring(events):find("^4 events: 3 turns, 1 rest\n"), tostring(events))
+    raises(function() return events.tetha end, "did you mean 'theta'?")
+end)
+
+test("a picture of columns", function()
+    local d = data{ r = { 1, 2, 3 }, A = { 1, 0/0, 3 }, B = { 2, 2, 2 }, w = { "a", "b", "c" } }
+    assert(tostring(d:plot{ x = "r", y = { "A", "B" }, show = false }):find("B"))
+    assert(tostring(d:plot{ x = "r", style = "points", title = "T", show = false }):find("T"))
+    raises_here(function() d:plot{ x = "r", y = "w" } end, "holds words")
+    raises_here(function() d:plot{ x = "rr" } end, "there is no column 'rr'")
+    raises_here(function() d:plot{ z = "r" } end, "has no option 'z'")
+    raises_here(function() data{ r = { 1 } }:plot() end, "no other column")
+    raises_here(function() data{ r = {}, A = {} }:plot() end, "no rows")
+end)
+
+test("what is no data is told in a sentence", function()
+    raises_here(function() data{} end, "there is no column")
+    raises_here(function() data(3) end, "data takes one table of columns")
+    raises_here(function() data{ a = 3 } end, "a must be a vector, or a table of numbers or of strings, got 3")
+    raises_here(function() data{ a = { 1, 2 }, b = { 1 } } end, "a has 2 and b has 1")
+    raises_here(function() data{ a = { 1, {} } } end, "a[2] must be a number")
+    raises_here(function() data{ { "a", { 1 } }, a = { 2 } } end, "two columns 'a'")
+    raises_here(function() data{ a = { 1 } }.a = 2 end, "be changed")
+    raises_here(function() return data{ a = { 1 } }[-1] end, "rows are counted from 1")
+    raises_here(function() data{ a = { 1 } }:select() end, "needs the name")
+    raises_here(function() data{ a = { 1 } }:save() end, "must be a string")
+    raises_here(function() data{ a = { 1 } }:save("/no/such/folder/x.csv") end, "/no/such/folder")
+end)
+
+test("a long or wide table is cut, and says so", function()
+    local columns = {}
+    for i = 1, 40 do columns[i] = { "column" .. i, vector.linspace(0, 1, 20) } end
+    local text = tostring(data(columns))
+    assert(text:find("more columns", 1, true) and text:find("... 5 more rows", 1, true), text)
+    for line in text:gmatch("[^\n]+") do assert(#line < 80, line) end
+end)
+
+support.finish()
