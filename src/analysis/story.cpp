@@ -25,7 +25,7 @@ Story::Story(const motion::Trajectory& trajectory, const model::Oscillator& syst
       excitation_(excitation),
       own_rule_(method.own_rule()),
       stretches_(stretches(trajectory)),
-      T0_(system.natural_period()),
+      T0_(system.has_spring() ? system.natural_period() : 1),
       constant_from_(excitation.has_feedback() ? model::never : excitation.constant_from()) {
     for (const Stretch& s : stretches_) {
         s.stuck ? void(stuck_ += s.lasts()) : void(++half_cycles_);
@@ -59,7 +59,13 @@ bool Story::at_limit(double torque, const model::Event& event) const {
 }
 
 void Story::tell_setting() {
-    say("The system has T0 = {:.5g}, zeta = {:.4g} ({})", T0_, system_.damping_ratio(), model::name(system_.regime()));
+    if (system_.has_spring()) {
+        say("The system has T0 = {:.5g}, zeta = {:.4g} ({})", T0_, system_.damping_ratio(),
+            model::name(system_.regime()));
+    } else {
+        say("The system is a block without a spring");
+        if (system_.damping() > 0) add(", with viscous damping C = {:.5g}", system_.damping());
+    }
     tell_friction();
     const double period = model::period_from(excitation_, run_.t_start);
     if (excitation_.components().empty()) {
@@ -67,9 +73,11 @@ void Story::tell_setting() {
     } else if (excitation_.has_feedback()) {
         say("M depends on the motion itself: a feedback.");
     } else if (free()) {
-        say("M is constant: the motion is free, about theta = M/k.");
+        say("M is constant{}", system_.has_spring() ? ": the motion is free, about theta = M/k." : ".");
     } else if (period > 0) {
-        say("M has the period {:.5g} ({:.4g} T0).", period, period / T0_);
+        say("M has the period {:.5g}", period);
+        if (system_.has_spring()) add(" ({:.4g} T0)", period / T0_);
+        add(".");
     } else if (constant_from_ < run_.t_stop) {
         say("M changes until t = {}, then it is constant.", at(constant_from_));
     }
@@ -157,7 +165,7 @@ void Story::tell_turns() {
 void Story::tell_decay() {
     const bool swung = stretches_.size() > 1 && stretches_[1].begun_by->kind == model::EventKind::turn;
     const bool closed_form = system_.friction().none() || system_.friction().as<model::laws::Coulomb>() != nullptr;
-    if (!free() || own_rule_ || !swung || !closed_form) return;
+    if (!free() || own_rule_ || !swung || !closed_form || !system_.has_spring()) return;
     decay_told_ = true;
     const double zeta = system_.damping_ratio(), step = 2 * system_.kinetic_friction() / system_.stiffness();
     const double factor = zeta < 1 ? std::exp(-std::numbers::pi * zeta / std::sqrt(1 - zeta * zeta)) : 0;

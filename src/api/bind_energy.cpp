@@ -6,6 +6,7 @@
 #include "api/classes.hpp"
 #include "api/run.hpp"
 #include "lua/external_memory.hpp"
+#include "lua/user_function.hpp"
 #include "lua/vector.hpp"
 #include "text/characters.hpp"
 
@@ -30,7 +31,12 @@ template <analysis::EnergyColumn which>
 int column_field(lua_State* L) {
     const EnergyHandle& handle = energy_self(L, "energy.input");
     if (!handle->has_columns) {
-        handle->columns = analysis::energy_columns(handle->run->trajectory);
+        lua::CallState call(L);  // a law of friction may be a user's function
+        Eigen::MatrixXd columns = analysis::energy_columns(handle->run->trajectory);
+        if (call.failed()) {
+            call.raise_error();
+        }
+        handle->columns = std::move(columns);
         handle->has_columns = true;
         lua::note_external_memory(L, static_cast<std::size_t>(handle->columns.size()) * sizeof(double));
     }
@@ -215,7 +221,11 @@ std::string energy_card(lua_State* L, int index, const terminal::Display& screen
 
 int energy_of_run(lua_State* L) {
     const RunHandle& run = lua::self<RunHandle>(L, 1, "run:energy()");
+    lua::CallState call(L);
     auto energy = analysis::energy_of(run->trajectory);
+    if (call.failed()) {
+        call.raise_error();
+    }
     if (!energy) {
         lua::raise(L, text::in_call("run:energy()", energy.error()));
     }

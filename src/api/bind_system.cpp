@@ -7,6 +7,7 @@
 #include "api/bind_simulate.hpp"
 #include "api/cards.hpp"
 #include "api/classes.hpp"
+#include "api/system_options.hpp"
 #include "lua/options.hpp"
 #include "source/describe.hpp"
 
@@ -37,22 +38,15 @@ constexpr text::Option ratio_options[] = {
      .meaning = "Re/Mc, at least friction_ratio",
      .filled = text::fills<&Ratios::breakaway>},
 };
+constexpr auto nondimensional_options = text::joined(ratio_options, law_option);
 constexpr text::Call nondimensional_call{"nondimensional", "nondimensional{ zeta = 0.1, friction_ratio = 0.2 }",
-                                         ratio_options, true};
-
-int push_system(lua_State* L, const lua::Options& options, const model::OscillatorParameters& parameters) {
-    const auto made = model::Oscillator::make(parameters);
-    if (!made) {
-        options.fail(made.error());
-    }
-    lua::push<model::Oscillator>(L, *made);
-    return 1;
-}
+                                         nondimensional_options, true};
 
 int system(lua_State* L) {
     const lua::Options options(L, 1, system_call);
     model::OscillatorParameters parameters;
     options.fill(parameters);
+    parameters.friction = asked_law(L, options, {"Rd", "Re"});
     return push_system(L, options, parameters);
 }
 
@@ -74,6 +68,7 @@ int nondimensional(lua_State* L) {
     parameters.damping = 2 * ratios.zeta * std::sqrt(parameters.inertia);
     parameters.kinetic_friction = ratios.friction;
     parameters.breakaway = breakaway_ratio;
+    parameters.friction = asked_law(L, options, {"friction_ratio", "breakaway_ratio"});
     return push_system(L, options, parameters);
 }
 
@@ -87,6 +82,19 @@ int field(lua_State* L) {
     return 1;
 }
 
+/// nil without a spring.
+template <double (model::Oscillator::*get)() const>
+int field_of_spring(lua_State* L) {
+    const model::Oscillator& system = system_self(L, "sys.omega0");
+    system.has_spring() ? lua_pushnumber(L, (system.*get)()) : lua_pushnil(L);
+    return 1;
+}
+
+int friction_of(lua_State* L) {
+    lua::push<model::Friction>(L, system_self(L, "sys.friction").friction());
+    return 1;
+}
+
 int omega1(lua_State* L) {
     const auto frequency = system_self(L, "sys.omega1").damped_frequency();
     frequency ? lua_pushnumber(L, *frequency) : lua_pushnil(L);
@@ -94,7 +102,12 @@ int omega1(lua_State* L) {
 }
 
 int regime(lua_State* L) {
-    const std::string_view text = model::name(system_self(L, "sys.regime").regime());
+    const model::Oscillator& system = system_self(L, "sys.regime");
+    if (!system.has_spring()) {
+        lua_pushnil(L);
+        return 1;
+    }
+    const std::string_view text = model::name(system.regime());
     lua_pushlstring(L, text.data(), text.size());
     return 1;
 }
@@ -124,7 +137,7 @@ int characteristic_torque(lua_State* L) {
 }
 
 int system_text(lua_State* L) {
-    lua_pushstring(L, source::lua_text(system_self(L, "tostring(sys)")).c_str());
+    lua_pushstring(L, source::lua_text(L, system_self(L, "tostring(sys)")).c_str());
     return 1;
 }
 
@@ -151,6 +164,13 @@ constexpr lua::Member system_module_members[] = {
 
 constexpr lua::Member system_members[] = {
     {"simulate", lua::guarded<simulate_system>, lua::Kind::method, simulate_doc},
+    {"with",
+     lua::guarded<system_with>,
+     lua::Kind::method,
+     {"sys:with{ OPTIONS } -> system",
+      "The same system but for what is given.",
+      "sys = system{ I = 1, k = 4, Rd = 0.5 }\nprint(sys:with{ Rd = 1 })  --> system{ I = 1, k = 4, Rd = 1, Re = 1 }",
+      {&with_call}}},
     {"friction_ratio",
      lua::guarded<friction_ratio>,
      lua::Kind::method,
@@ -186,15 +206,20 @@ constexpr lua::Member system_members[] = {
      lua::Kind::field,
      {"sys.Re -> number", "The breakaway torque: the most that sticking can hold. Rd unless given.",
       "print(system{ I = 2, k = 4, Rd = 0.5 }.Re)  --> 0.5"}},
-    {"omega0",
-     lua::guarded<field<&model::Oscillator::natural_frequency>>,
+    {"friction",
+     lua::guarded<friction_of>,
      lua::Kind::field,
-     {"sys.omega0 -> number", "The natural frequency sqrt(k/I), rad per time unit.",
+     {"sys.friction -> law", "The law of friction.",
+      "print(system{ I = 2, k = 4, Rd = 0.5 }.friction)  --> friction.coulomb{ Rd = 0.5, Re = 0.5 }"}},
+    {"omega0",
+     lua::guarded<field_of_spring<&model::Oscillator::natural_frequency>>,
+     lua::Kind::field,
+     {"sys.omega0 -> number", "The natural frequency sqrt(k/I), rad per time unit; nil where k = 0.",
       "print(system{ I = 1, k = 4 }.omega0)  --> 2.0"}},
     {"T0",
-     lua::guarded<field<&model::Oscillator::natural_period>>,
+     lua::guarded<field_of_spring<&model::Oscillator::natural_period>>,
      lua::Kind::field,
-     {"sys.T0 -> number", "The natural period 2 pi/omega0, time units.",
+     {"sys.T0 -> number", "The natural period 2 pi/omega0, time units; nil where k = 0.",
       "print(system{ I = 1, k = 4*math.pi^2 }.T0)  --> 1.0"}},
     {"omega1",
      lua::guarded<omega1>,
@@ -203,18 +228,19 @@ constexpr lua::Member system_members[] = {
       "The frequency of the damped swing, omega0 sqrt(1 - zeta^2), rad per time unit; nil unless zeta < 1.",
       "print(system{ I = 1, k = 4 }.omega1, system{ I = 1, k = 4, C = 10 }.omega1)  --> 2.0\tnil"}},
     {"zeta",
-     lua::guarded<field<&model::Oscillator::damping_ratio>>,
+     lua::guarded<field_of_spring<&model::Oscillator::damping_ratio>>,
      lua::Kind::field,
-     {"sys.zeta -> number", "The viscous damping ratio C/(2 I omega0).",
+     {"sys.zeta -> number", "The viscous damping ratio C/(2 I omega0); nil where k = 0.",
       "print(system{ I = 1, k = 4, C = 1 }.zeta)  --> 0.25"}},
     {"regime",
      lua::guarded<regime>,
      lua::Kind::field,
      {"sys.regime -> string",
-      "How the free system without dry friction moves: \"undamped\", \"underdamped\", \"critical\" or \"overdamped\".",
+      "How the free system without dry friction moves: \"undamped\", \"underdamped\", \"critical\" or \"overdamped\"; "
+      "nil where k = 0.",
       "print(system{ I = 1, k = 4, C = 4 }.regime)  --> critical"}},
     {"dead_zone",
-     lua::guarded<field<&model::Oscillator::dead_zone>>,
+     lua::guarded<field_of_spring<&model::Oscillator::dead_zone>>,
      lua::Kind::field,
      {"sys.dead_zone -> number", "Re/k, rad: without excitation the mass can stay wherever |theta| is at most this.",
       "print(system{ I = 1, k = 4, Rd = 1, Re = 2 }.dead_zone)  --> 0.5"}},

@@ -7,6 +7,7 @@
 #include "api/run.hpp"
 #include "lua/bind.hpp"
 #include "lua/vector.hpp"
+#include "model/laws/coulomb.hpp"
 #include "model/oscillator.hpp"
 #include "source/describe.hpp"
 #include "text/characters.hpp"
@@ -38,6 +39,12 @@ std::string system_card(lua_State* L, int index, const terminal::Display& screen
     text += row("C", system.damping(), "viscous damping", screen);
     text += row("Rd", system.kinetic_friction(), "dry friction while it moves", screen);
     text += row("Re", system.breakaway(), "the most that sticking can hold", screen);
+    if (!system.friction().none() && system.friction().as<model::laws::Coulomb>() == nullptr) {
+        text += "\n  friction   " + source::lua_text(L, system.friction());
+    }
+    if (!system.has_spring()) {
+        return text;
+    }
     text += row("omega0", system.natural_frequency(), "natural frequency, rad per time unit", screen);
     text += row("T0", system.natural_period(), "natural period", screen);
     text += row("zeta", system.damping_ratio(), "damping ratio: " + std::string(model::name(system.regime())), screen);

@@ -6,10 +6,29 @@
 #include <charconv>
 #include <cstring>
 
+#include "model/laws/coulomb.hpp"
+
 namespace dinal::api {
 
 TheoryArguments::TheoryArguments(lua_State* L, const text::Call& call) : L_(L), call_(call), options_(L, 1, call) {
     luaL_checkstack(L, 10, "too many values");
+}
+
+const model::Oscillator* TheoryArguments::system() const {
+    const auto* system = options_.object<model::Oscillator>("system");
+    if (system == nullptr) {
+        return system;
+    }
+    if (!system->has_spring()) {
+        options_.fail({.sentence = "the closed forms are about a mass on a spring, and this system has k = 0",
+                       .option = "system"});
+    }
+    if (!system->friction().none() && system->friction().as<model::laws::Coulomb>() == nullptr) {
+        options_.fail({.sentence = "the closed forms know Coulomb's friction only, with one Rd and one Re for both "
+                                   "ways; simulate this system",
+                       .option = "system"});
+    }
+    return system;
 }
 
 Quantity TheoryArguments::quantity(std::string_view name, Quantity otherwise) {

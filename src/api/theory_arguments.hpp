@@ -49,7 +49,8 @@ public:
         return quantities(std::make_index_sequence<n>());
     }
     /// The system; nullptr when there is none and none is needed.
-    [[nodiscard]] const model::Oscillator* system() const { return options_.object<model::Oscillator>("system"); }
+    /// Raises when no closed form is known for it.
+    [[nodiscard]] const model::Oscillator* system() const;
 
     /// Raises "CALL: NAME[i] = VALUE MUST" for element i from 0 (without [i] when NAME is a number).
     [[noreturn]] void refuse(std::string_view name, std::size_t i, double value, std::string_view must) const;

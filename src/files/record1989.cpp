@@ -156,6 +156,10 @@ const std::vector<std::string>& record1989_names() {
 
 text::Expected<Written> write_record1989(const std::string& path, const motion::Trajectory& trajectory,
                                          const model::Oscillator& system) {
+    if (!system.has_spring()) {
+        return text::Error{"can not write '" + path +
+                           "': the record of 1989 divides by k and omega0, and this system has k = 0; save it as .csv"};
+    }
     const double w0 = system.natural_frequency();
     const double k = system.stiffness();
     const std::array<std::pair<std::string_view, double>, width> sources = {

@@ -15,9 +15,10 @@ namespace dinal::help {
 namespace {
 
 constexpr void (*register_functions[])(lua_State*) = {
-    api::register_system, api::register_excitation, api::register_integrator, api::register_run,
-    api::register_energy, api::register_trajectory, api::register_theory,     api::register_vector,
-    api::register_data,   api::register_progress,   api::register_plot,       register_help,
+    api::register_system, api::register_friction, api::register_excitation, api::register_integrator,
+    api::register_run,    api::register_energy,   api::register_trajectory, api::register_theory,
+    api::register_vector, api::register_data,     api::register_progress,   api::register_plot,
+    register_help,
 };
 
 // Plain fields of the table: documented here, set by open_library() and sys:simulate.
@@ -48,6 +49,8 @@ const lua::Class library_class = {"dinal",
 const Section all_sections[] = {
     {"Systems", "", &api::system_functions},
     {"A system", "sys", &api::system_class},
+    {"Laws of friction", "friction", &api::friction_module},
+    {"A law of friction", "law", &api::friction_class},
     {"Excitations", "excitation", &api::excitation_module},
     {"An excitation", "e", &api::excitation_class},
     {"Integrators", "integrator", &api::integrator_module},

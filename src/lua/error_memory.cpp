@@ -125,9 +125,9 @@ void witness_result(lua_State* L, int function) {
     witness(L, -1, function);
 }
 
-void remember_time(lua_State* L, double t) {
+void remember_argument(lua_State* L, const char* function, const char* argument, double value) {
     if (ErrorMemory* memory = memory_about(L, -1)) {
-        memory->remarks.during += fmt::format("\n  in M at t = {:.14g}", t);
+        memory->remarks.during += fmt::format("\n  in {} at {} = {:.14g}", function, argument, value);
     }
 }
 

@@ -39,8 +39,8 @@ int witness_error(lua_State* L);
 /// The same for the message on the top, which is about what the function at the index has returned.
 void witness_result(lua_State* L, int function);
 
-/// Adds to what is remembered about the error value on the top for which t M was asked.
-void remember_time(lua_State* L, double t);
+/// Adds to what is remembered about the error value on the top for which argument (t) a function (M) was asked.
+void remember_argument(lua_State* L, const char* function, const char* argument, double value);
 
 /// To be called when the error value that is remembered is about to be raised once more: the remarks on it stay, also
 /// when it then comes out of an outer M.

@@ -65,12 +65,6 @@ std::string definition(lua_State* L) {
     return fmt::format("{}:{}: ", about.short_src, about.linedefined);
 }
 
-/// A finite number on the top of the stack; a string that looks like one is none.
-bool is_good(lua_State* L, double& M) {
-    M = lua_tonumber(L, -1);
-    return lua_type(L, -1) == LUA_TNUMBER && std::isfinite(M);
-}
-
 }  // namespace
 
 CallState::CallState(lua_State* L) : L_(L), outer_(current), depth_(outer_ == nullptr ? 1 : outer_->depth_ + 1) {
@@ -87,6 +81,30 @@ CallState::~CallState() {
     if (failed()) {
         lua_pushnil(L_);
         lua_rawsetp(L_, LUA_REGISTRYINDEX, this);
+    }
+    if (!names_.empty()) {
+        lua_pushnil(L_);
+        lua_rawsetp(L_, LUA_REGISTRYINDEX, &names_);
+    }
+}
+
+void CallState::name_states(std::vector<std::string> names) {
+    names_ = std::move(names);
+    lua_createtable(L_, 0, static_cast<int>(names_.size()));
+    for (const std::string& name : names_) {
+        lua_pushnumber(L_, 0);
+        lua_setfield(L_, -2, name.c_str());
+    }
+    lua_rawsetp(L_, LUA_REGISTRYINDEX, &names_);
+}
+
+/// The table is always the same one, so that a call costs no memory.
+void CallState::push_states(std::span<const double> states) const {
+    lua_rawgetp(L_, LUA_REGISTRYINDEX, &names_);
+    for (std::size_t i = 0; i < states.size(); ++i) {
+        lua_pushlstring(L_, names_[i].data(), names_[i].size());
+        lua_pushnumber(L_, states[i]);
+        lua_rawset(L_, -3);
     }
 }
 
@@ -115,7 +133,8 @@ bool is_callable(lua_State* L, int index) {
     return true;
 }
 
-LuaFunction::LuaFunction(lua_State* L, int index) : main_(main_thread(L)), feedback_(wants_state(L, index)) {
+LuaFunction::LuaFunction(lua_State* L, int index, FunctionRole role)
+    : main_(main_thread(L)), role_(role), feedback_(role.of_motion && wants_state(L, index)) {
     lua_pushvalue(L, index);
     reference_ = luaL_ref(L, LUA_REGISTRYINDEX);
 }
@@ -129,8 +148,14 @@ void LuaFunction::push(lua_State* L) const {
     lua_rawgeti(L, LUA_REGISTRYINDEX, reference_);
 }
 
+/// A finite number on the top of the stack; a string that looks like one is none.
+bool LuaFunction::is_good(lua_State* L, double& result) const {
+    result = lua_tonumber(L, -1);
+    return lua_type(L, -1) == LUA_TNUMBER && std::isfinite(result) && (role_.may_be_negative || result >= 0);
+}
+
 // lua_pcall, although Lua's errors would unwind the integrator just as well: the rows so far are to be kept.
-double LuaFunction::value(double t, const model::State& state) {
+double LuaFunction::value_with(double t, const model::State& state, std::span<const double> states) {
     CallState* call = current;
     if (call == nullptr || call->failed_) {
         return failure;
@@ -144,7 +169,11 @@ double LuaFunction::value(double t, const model::State& state) {
         lua_pushnumber(L, state.theta);
         lua_pushnumber(L, state.velocity);
     }
-    const int status = lua_pcall(L, feedback_ ? 3 : 1, 1, handler);
+    const bool has_states = feedback_ && !states.empty() && states.size() == call->names_.size();
+    if (has_states) {
+        call->push_states(states);
+    }
+    const int status = lua_pcall(L, has_states ? 4 : feedback_ ? 3 : 1, 1, handler);
     lua_remove(L, handler);
     double M = 0;
     if (status == LUA_OK && is_good(L, M)) {
@@ -181,7 +210,7 @@ int LuaFunction::fill_protected(lua_State* L) {
         lua_pushvalue(L, 2);
         lua_pushnumber(L, block.times[block.filled]);
         lua_call(L, 1, 1);
-        if (!is_good(L, block.out[block.filled])) {
+        if (!block.function->is_good(L, block.out[block.filled])) {
             return 1;
         }
         lua_pop(L, 1);
@@ -214,12 +243,15 @@ double LuaFunction::fail(CallState& call, int status, double t) const {
     lua_State* L = call.L_;
     text::Error error;
     if (status == LUA_OK) {
-        error.sentence =
-            fmt::format("M returned {} at t = {:.14g}; it must return a finite number", describe(L, -1), t);
+        const bool is_number = lua_type(L, -1) == LUA_TNUMBER && std::isfinite(lua_tonumber(L, -1));
+        error.sentence = fmt::format("{} returned {} at {} = {:.14g}; it must return a finite number{}", role_.name,
+                                     is_number ? fmt::format("{:.6g}", lua_tonumber(L, -1)) : describe(L, -1),
+                                     role_.argument, t, role_.may_be_negative ? "" : " that is not negative");
         error.culprit = written(L, -1);
     } else if (lua_type(L, -1) == LUA_TSTRING && is_about_yield(lua_tostring(L, -1))) {
         error.sentence =
-            fmt::format("M can not yield, as it did at t = {:.14g} (attempt to yield across a C-call boundary)", t);
+            fmt::format("{} can not yield, as it did at {} = {:.14g} (attempt to yield across a C-call boundary)",
+                        role_.name, role_.argument, t);
         error.culprit = "yield";
     }
     if (!error.sentence.empty()) {
@@ -232,7 +264,7 @@ double LuaFunction::fail(CallState& call, int status, double t) const {
         witness_result(L, -2);
         lua_remove(L, -2);
     } else {
-        remember_time(L, t);
+        remember_argument(L, role_.name, role_.argument, t);
     }
     call.keep_error_on_top();
     return failure;

@@ -4,6 +4,8 @@
 #include <cstddef>
 #include <memory>
 #include <span>
+#include <string>
+#include <vector>
 
 #include "lua/bind.hpp"
 #include "model/excitation.hpp"
@@ -22,30 +24,44 @@ public:
 
     /// A user function has failed during this call. From then on none is called, all give NaN, until may_go_on().
     [[nodiscard]] bool failed() const { return failed_ || failed_before_; }
+    /// From now on functions get their states as a table with these names, their fourth argument.
+    void name_states(std::vector<std::string> names);
+
     /// Raises what the user function raised, unchanged, or the sentence about what it returned. Only when failed().
     [[noreturn]] void raise_error();
 
 private:
     friend class LuaFunction;
     void keep_error_on_top();
+    void push_states(std::span<const double> states) const;
 
     lua_State* L_;
     CallState* outer_;
     int depth_;
-    bool failed_ = false;         // and nobody has said that it may go on
-    bool failed_before_ = false;  // the error is kept all the same
+    std::vector<std::string> names_;  // of the states, whose table the registry keeps
+    bool failed_ = false;             // and nobody has said that it may go on
+    bool failed_before_ = false;      // the error is kept all the same
 };
 
 /// What Lua calls like a function: a Lua function, a C function, a table or userdata with __call.
 [[nodiscard]] bool is_callable(lua_State* L, int index);
 
+/// What a function stands for, in sentences: "friction returned nil at speed = 0.3".
+struct FunctionRole {
+    const char* name = "M";
+    const char* argument = "t";
+    bool may_be_negative = true;
+    bool of_motion = true;  ///< it may ask for theta and velocity, too
+};
+
 class LuaFunction final : public model::UserFunction {
 public:
     /// Of the callable value at `index`, which the registry keeps from now on.
-    LuaFunction(lua_State* L, int index);
+    LuaFunction(lua_State* L, int index, FunctionRole role = {});
     ~LuaFunction() override;
 
-    double value(double t, const model::State& state) override;
+    double value(double t, const model::State& state) override { return value_with(t, state, {}); }
+    double value_with(double t, const model::State& state, std::span<const double> states) override;
     std::size_t fill(std::span<const double> times, std::span<double> out) override;
     bool may_go_on() override;
 
@@ -57,9 +73,11 @@ public:
 private:
     static int fill_protected(lua_State* L);
     double fail(CallState& call, int status, double t) const;
+    bool is_good(lua_State* L, double& result) const;
 
     lua_State* main_;  // for the destructor, which runs when the collector pleases
     int reference_;
+    FunctionRole role_;
     bool feedback_;
 };
 

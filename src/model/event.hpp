@@ -1,4 +1,4 @@
-// What can happen to the mass at velocity zero.
+// What can happen to the mass: at velocity zero, at a wall, by a controller that switches, or as a user has said.
 #pragma once
 
 #include <string_view>
@@ -6,11 +6,15 @@
 namespace dinal::model {
 
 enum class EventKind {
-    turn,   ///< the velocity passes zero and the motion goes on the other way
-    stick,  ///< the velocity reaches zero and stays there
-    slip,   ///< breakaway: |M - k theta| has passed Re
-    rest,   ///< a stick that nothing ended within the window
+    turn,      ///< the velocity passes zero and the motion goes on the other way
+    stick,     ///< the velocity reaches zero and stays there
+    slip,      ///< breakaway: |M - k theta| has passed Re
+    rest,      ///< a stick that nothing ended within the window
+    impact,    ///< a wall turned it back
+    switched,  ///< a relay took its other level
+    user,      ///< what a user asked for, by its name
 };
+inline constexpr int event_kind_count = 7;
 
 constexpr std::string_view name(EventKind kind) {
     switch (kind) {
@@ -22,16 +26,23 @@ constexpr std::string_view name(EventKind kind) {
             return "slip";
         case EventKind::rest:
             return "rest";
+        case EventKind::impact:
+            return "impact";
+        case EventKind::switched:
+            return "switch";
+        case EventKind::user:
+            return "user";
     }
     return "";
 }
 
-/// The velocity is exactly 0 at every event.
+/// The velocity is exactly 0 at a turn, stick, slip or rest: that against what it slides on.
 struct Event {
     double t = 0;
     EventKind kind = EventKind::turn;
     double theta = 0;
-    double M = 0;  ///< the excitation at t, from the right: with k theta it explains the decision
+    double M = 0;   ///< the excitation at t, from the right: with k theta it explains the decision
+    int user = -1;  ///< of a user's event: which one
 };
 
 }  // namespace dinal::model

@@ -7,6 +7,7 @@
 #include <concepts>
 #include <memory>
 #include <optional>
+#include <string>
 #include <string_view>
 
 #include "text/expected.hpp"
@@ -37,6 +38,9 @@ concept FrictionLaw = requires(const Law& law, Motion way, double speed) {
     { law.complaint() } -> std::same_as<std::optional<text::Error>>;
 };
 
+// A law may also have
+//     std::string lua_text() const;   the Lua expression that makes it again
+
 /// For a law's complaint(): what is wrong with a sliding torque Rd and a holding torque Re. `of` stands before their
 /// names: "forward.".
 std::optional<text::Error> wrong_torques(std::string_view of, double Rd, double Re);
@@ -55,6 +59,8 @@ public:
     [[nodiscard]] std::optional<text::Error> complaint() const {
         return law_ ? law_->complaint() : std::optional<text::Error>();
     }
+    /// The Lua expression that makes the law again; empty when it knows none.
+    [[nodiscard]] std::string lua_text() const { return law_ ? law_->lua_text() : ""; }
     /// Nothing brakes and nothing holds: velocity zero means nothing.
     [[nodiscard]] bool none() const { return !depends_on_speed() && greatest_holding() == 0; }
     /// The greater torque of both ways.
@@ -81,6 +87,7 @@ private:
         [[nodiscard]] virtual double holding(Motion way) const = 0;
         [[nodiscard]] virtual bool depends_on_speed() const = 0;
         [[nodiscard]] virtual std::optional<text::Error> complaint() const = 0;
+        [[nodiscard]] virtual std::string lua_text() const = 0;
     };
     template <class Law>
     struct Held final : Any {
@@ -89,6 +96,13 @@ private:
         [[nodiscard]] double holding(Motion way) const override { return law.holding(way); }
         [[nodiscard]] bool depends_on_speed() const override { return Law::depends_on_speed; }
         [[nodiscard]] std::optional<text::Error> complaint() const override { return law.complaint(); }
+        [[nodiscard]] std::string lua_text() const override {
+            if constexpr (requires { law.lua_text(); }) {
+                return law.lua_text();
+            } else {
+                return "";
+            }
+        }
         Law law;
     };
     std::shared_ptr<const Any> law_;  // shared by the copies of a system, which never change it

@@ -35,6 +35,14 @@ text::Expected<Oscillator> Oscillator::make(const OscillatorParameters& p) {
     o.stiffness_ = p.stiffness;
     o.damping_ = p.damping;
     o.friction_ = friction;
+    if (!o.has_spring()) {
+        if (std::isfinite(o.damping() / o.inertia())) return o;
+        return text::Error{
+            .sentence = fmt::format("I = {:.6g} and C = {:.6g} are too far apart for double precision: choose other "
+                                    "units",
+                                    p.inertia, p.damping),
+            .option = "I"};
+    }
     if (!std::isnormal(o.natural_frequency()) || !std::isnormal(o.natural_period()) ||
         !std::isfinite(o.damping() / o.inertia()) || !std::isfinite(o.dead_zone()) ||
         !std::isfinite(o.damping_ratio())) {
@@ -57,6 +65,7 @@ double Oscillator::natural_period() const {
 // sqrt(I) sqrt(k) and not sqrt(I k): the product may overflow where its root does not. When I k is a square that
 // doubles hold, the single root is exact, and a critical system shows zeta = 1.
 double Oscillator::damping_ratio() const {
+    if (!has_spring()) return damping_ > 0 ? unlimited : 0;
     const double product = inertia_ * stiffness_;
     const double root = std::isnormal(product) ? std::sqrt(product) : std::sqrt(inertia_) * std::sqrt(stiffness_);
     return damping_ / 2 / root;
@@ -64,12 +73,13 @@ double Oscillator::damping_ratio() const {
 
 std::optional<double> Oscillator::damped_frequency() const {
     const double zeta = damping_ratio();
-    if (regime() == Regime::critical || regime() == Regime::overdamped) return {};
+    if (!has_spring() || regime() == Regime::critical || regime() == Regime::overdamped) return {};
     return natural_frequency() * std::sqrt((1 - zeta) * (1 + zeta));
 }
 
 Regime Oscillator::regime() const {
     if (damping_ == 0) return Regime::undamped;
+    if (!has_spring()) return Regime::overdamped;
     // C/2 against I (k/(C/2)): the squares could overflow or vanish, these quotients do not where it matters.
     const double half = damping_ / 2;
     const double square = half * half;
@@ -89,6 +99,17 @@ double Oscillator::friction_ratio(double characteristic_torque) const {
 
 double Oscillator::characteristic_torque(const State& initial) const {
     return stiffness_ * std::hypot(initial.theta, initial.velocity / natural_frequency());
+}
+
+OscillatorParameters Oscillator::parameters() const {
+    OscillatorParameters p{.inertia = inertia_, .stiffness = stiffness_, .damping = damping_};
+    if (const auto* law = friction_.as<laws::Coulomb>()) {
+        p.kinetic_friction = law->kinetic;
+        p.breakaway = law->breakaway;
+    } else {
+        p.friction = friction_;
+    }
+    return p;
 }
 
 }  // namespace dinal::model

@@ -6,6 +6,7 @@
 // theta in rad, time and torque in any consistent units. docs/theory.md has the derivations.
 #pragma once
 
+#include <limits>
 #include <optional>
 #include <string_view>
 #include <utility>
@@ -36,8 +37,8 @@ inline constexpr text::Option oscillator_options[] = {
     {.name = "k",
      .unit = "torque per rad",
      .otherwise = text::needed,
-     .range = text::positive,
-     .meaning = "stiffness of the spring",
+     .range = text::not_negative,
+     .meaning = "stiffness of the spring; 0 is a block that slides",
      .filled = text::fills<&OscillatorParameters::stiffness>},
     {.name = "C",
      .unit = "torque time per rad",
@@ -55,6 +56,10 @@ inline constexpr text::Option oscillator_options[] = {
      .range = text::not_negative,
      .meaning = "what sticking can hold, at least Rd",
      .filled = text::fills<&OscillatorParameters::breakaway>},
+    {.name = "friction",
+     .meaning = "another law of friction, instead of Rd and Re",
+     .object = "friction",
+     .wanted = "a law such as friction.stribeck{ Rd = 0.3, Re = 0.6, speed = 0.1 }"},
 };
 
 /// Position and speed of the mass: rad, rad per time unit.
@@ -82,20 +87,24 @@ public:
     /// Re; of a law with other numbers each way the greater one.
     [[nodiscard]] double breakaway() const { return friction_.greatest_holding(); }
 
-    /// w0 = sqrt(k / I), rad per time unit.
+    /// Without a spring nothing swings: no natural frequency, period or damping ratio, and nowhere to rest in
+    /// particular.
+    [[nodiscard]] bool has_spring() const { return stiffness_ > 0; }
+    /// w0 = sqrt(k / I), rad per time unit; 0 without a spring.
     [[nodiscard]] double natural_frequency() const;
-    /// T0 = 2 pi / w0.
+    /// T0 = 2 pi / w0; infinite without a spring.
     [[nodiscard]] double natural_period() const;
-    /// zeta = C / (2 I w0) = C / (2 sqrt(I k)): viscous, never dry.
+    /// zeta = C / (2 I w0) = C / (2 sqrt(I k)): viscous, never dry; without a spring infinite, or 0 without damping.
     [[nodiscard]] double damping_ratio() const;
     /// w1 = w0 sqrt(1 - zeta^2); none unless the system swings (zeta < 1).
     [[nodiscard]] std::optional<double> damped_frequency() const;
     /// Decided on C^2 against 4 I k, so that an exactly critical system is called so.
     [[nodiscard]] Regime regime() const;
-    /// Re / k: without excitation the mass can stay anywhere with |theta| <= this.
-    [[nodiscard]] double dead_zone() const { return breakaway() / stiffness_; }
+    /// Re / k: without excitation the mass can stay anywhere with |theta| <= this. Infinite without a spring.
+    [[nodiscard]] double dead_zone() const { return has_spring() ? breakaway() / stiffness_ : unlimited; }
     /// The lowest and the highest theta at which the mass can stay without excitation.
     [[nodiscard]] std::pair<double, double> resting_places() const {
+        if (!has_spring()) return {-unlimited, unlimited};
         return {-friction_.holding(Motion::forward) / stiffness_, friction_.holding(Motion::backward) / stiffness_};
     }
     /// gamma = Rd / |Mc| for the characteristic torque Mc.
@@ -103,8 +112,12 @@ public:
     /// Mc of a free motion: k sqrt(theta0^2 + (velocity0 / w0)^2) (report, section 5).
     [[nodiscard]] double characteristic_torque(const State& initial) const;
 
+    /// What makes it again, another law than Coulomb's included.
+    [[nodiscard]] OscillatorParameters parameters() const;
+
 private:
     Oscillator() = default;
+    static constexpr double unlimited = std::numeric_limits<double>::infinity();
 
     double inertia_ = 1;
     double stiffness_ = 1;

@@ -8,6 +8,7 @@ namespace dinal::model {
 #define DINAL_OUTCOMES(X)                                                                    \
     X(reached_end, "reached the end")                                                        \
     X(at_rest, "at rest")                                                                    \
+    X(stopped, "stopped at an event")                                                        \
     X(interrupted, "interrupted")                                                            \
     X(state_not_finite, "the state stopped being finite: unstable system, feedback or step") \
     X(excitation_not_finite, "M failed or stopped being finite")                             \

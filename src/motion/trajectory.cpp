@@ -55,15 +55,19 @@ namespace {
 
 std::string events_text(std::span<const model::Event> events) {
     if (events.empty()) return "no events";
-    std::array<int, 4> counts{};
+    std::array<int, model::event_kind_count> counts{};
     for (const model::Event& event : events) ++counts.at(static_cast<std::size_t>(event.kind));
     std::string parts;
     for (const model::EventKind kind :
-         {model::EventKind::turn, model::EventKind::stick, model::EventKind::slip, model::EventKind::rest}) {
+         {model::EventKind::turn, model::EventKind::stick, model::EventKind::slip, model::EventKind::rest,
+          model::EventKind::impact, model::EventKind::switched, model::EventKind::user}) {
         const int n = counts.at(static_cast<std::size_t>(kind));
         if (n == 0) continue;
         if (!parts.empty()) parts += ", ";
-        parts += fmt::format("{} {}{}", n, model::name(kind), n == 1 || kind == model::EventKind::rest ? "" : "s");
+        parts += fmt::format("{} {}{}", n, model::name(kind),
+                             n == 1 || kind == model::EventKind::rest ? ""
+                             : kind == model::EventKind::switched     ? "es"
+                                                                      : "s");
     }
     return fmt::format("{} event{} ({})", events.size(), events.size() == 1 ? "" : "s", parts);
 }

@@ -46,7 +46,7 @@ text::Expected<Numbers> plain_column(const RunData& run, std::string_view name) 
 /// "M/k" and its like; nothing when the name is none of these.
 std::optional<double> divisor(const RunData& run, std::string_view name) {
     const std::size_t slash = name.find('/');
-    if (slash == std::string_view::npos || run.system == nullptr) {
+    if (slash == std::string_view::npos || run.system == nullptr || !run.system->has_spring()) {
         return std::nullopt;
     }
     const std::string_view by = name.substr(slash + 1);
@@ -168,7 +168,7 @@ text::Expected<Figure> phase_figure(const RunData& run) {
         plane.marks = {{motion.x.values[0], motion.y.values[0], MarkKind::start},
                        {motion.x.values[rows - 1], motion.y.values[rows - 1], MarkKind::end}};
     }
-    if (run.system != nullptr && run.system->dead_zone() > 0) {
+    if (run.system != nullptr && run.system->has_spring() && run.system->dead_zone() > 0) {
         const auto [lowest, highest] = run.system->resting_places();
         plane.dead_zone = Interval{lowest, highest};
     }

@@ -2,15 +2,35 @@
 
 #include <fmt/format.h>
 
+#include "model/laws/coulomb.hpp"
+#include "model/laws/user_law.hpp"
+
 namespace dinal::source {
 
-std::string lua_text(const model::Oscillator& system) {
+std::string lua_text(lua_State* L, const model::Friction& law, ValueText* whole) {
+    if (const auto* coulomb = law.as<model::laws::Coulomb>()) {
+        return fmt::format("friction.coulomb{{ Rd = {}, Re = {} }}", coulomb->kinetic, coulomb->breakaway);
+    }
+    if (const auto* own = law.as<model::laws::UserLaw>()) {
+        const std::string options = own->breakaway ? fmt::format(", {{ Re = {} }}", *own->breakaway) : "";
+        return fmt::format("friction.law({}{})", function_text(L, *own->function, whole), options);
+    }
+    const std::string text = law.lua_text();
+    return text.empty() ? "--[[ a law of friction written in C++ ]] nil" : text;
+}
+
+std::string lua_text(lua_State* L, const model::Oscillator& system, ValueText* whole) {
     std::string text = fmt::format("system{{ I = {}, k = {}", system.inertia(), system.stiffness());
     if (system.damping() != 0) {
         text += fmt::format(", C = {}", system.damping());
     }
-    if (!system.friction().none()) {
+    if (system.friction().none()) {
+        return text + " }";
+    }
+    if (system.friction().as<model::laws::Coulomb>() != nullptr) {
         text += fmt::format(", Rd = {}, Re = {}", system.kinetic_friction(), system.breakaway());
+    } else {
+        text += ", friction = " + lua_text(L, system.friction(), whole);
     }
     return text + " }";
 }

@@ -18,7 +18,14 @@ class ValueText;
 std::string describe(lua_State* L, const model::Excitation& excitation, ValueText* whole = nullptr);
 
 /// "system{ I = 1, k = 39.5, C = 1.5, Rd = 2, Re = 3 }": makes the same system again; parts that are 0 are left out.
-std::string lua_text(const model::Oscillator& system);
+/// With `whole`, the function of a friction law comes with the variables that it takes from outside.
+std::string lua_text(lua_State* L, const model::Oscillator& system, ValueText* whole = nullptr);
+
+/// "friction.stribeck{ Rd = 0.3, Re = 0.6, speed = 0.1 }".
+std::string lua_text(lua_State* L, const model::Friction& law, ValueText* whole = nullptr);
+
+/// A user's function as text, or a comment that says which one it was.
+std::string function_text(lua_State* L, const model::UserFunction& function, ValueText* whole);
 
 /// "integrator.rk4{ h = 0.001 }": makes the same integrator again.
 std::string lua_text(motion::MethodView method);

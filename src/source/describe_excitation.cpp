@@ -38,14 +38,30 @@ std::string text_of(const Context& context, const model::Polyline& line) {
     return fmt::format("excitation.samples{{ --[[ {} points, t {} ... {} ]] }}", s.t.size(), s.t.front(), s.t.back());
 }
 
-/// The function as text, or a comment that says which one it was.
-std::string function_text(const Context& context, const lua::LuaFunction& function) {
-    lua_State* L = context.L;
+std::string text_of(const Context& context, const model::Scripted& s) {
+    std::string options;
+    if (!s.breaks.empty()) {
+        options += "breaks = " + text::list_literal(s.breaks);
+    }
+    if (s.period > 0) {
+        options += (options.empty() ? "" : ", ") + std::string("period = ") + text::number_literal(s.period);
+    }
+    return fmt::format("excitation.scripted({}{}){}", function_text(context.L, *s.function, context.whole),
+                       options.empty() ? "" : ", { " + options + " }", delay_text(s.delay));
+}
+
+}  // namespace
+
+std::string function_text(lua_State* L, const model::UserFunction& user_function, ValueText* whole) {
+    const auto* function = dynamic_cast<const lua::LuaFunction*>(&user_function);
+    if (function == nullptr) {
+        return "--[[ a function written in C++ ]]";
+    }
     luaL_checkstack(L, LUA_MINSTACK, "for the text of a function");
-    function.push(L);
+    function->push(L);
     std::string text;
-    if (context.whole != nullptr) {
-        text = context.whole->expression(-1);
+    if (whole != nullptr) {
+        text = whole->expression(-1);
     } else if (const auto source = function_source(L, -1)) {
         text = *source;
     } else if (lua_type(L, -1) != LUA_TFUNCTION) {
@@ -61,22 +77,6 @@ std::string function_text(const Context& context, const lua::LuaFunction& functi
     lua_pop(L, 1);
     return text;
 }
-
-std::string text_of(const Context& context, const model::Scripted& s) {
-    std::string options;
-    if (!s.breaks.empty()) {
-        options += "breaks = " + text::list_literal(s.breaks);
-    }
-    if (s.period > 0) {
-        options += (options.empty() ? "" : ", ") + std::string("period = ") + text::number_literal(s.period);
-    }
-    const auto* function = dynamic_cast<const lua::LuaFunction*>(s.function.get());
-    return fmt::format("excitation.scripted({}{}){}",
-                       function != nullptr ? function_text(context, *function) : "--[[ a function written in C++ ]]",
-                       options.empty() ? "" : ", { " + options + " }", delay_text(s.delay));
-}
-
-}  // namespace
 
 std::string describe(lua_State* L, const model::Excitation& excitation, ValueText* whole) {
     const Context context{L, whole};

@@ -60,6 +60,7 @@ Origin origin_of(lua_State* L, const Task& task) {
     ValueText writer(L);
     const bool driven = !task.excitation.components().empty();
     const std::string M = driven ? excitation_text(L, task.excitation, writer) : "";
+    const std::string system = lua_text(L, task.system, &writer);
     for (const std::string& remark : writer.remarks()) {
         append_lines(lines, remark);
     }
@@ -69,7 +70,7 @@ Origin origin_of(lua_State* L, const Task& task) {
     if (driven) {
         append_lines(lines, "local M = " + M);
     }
-    append_lines(lines, "local sys = " + lua_text(task.system));
+    append_lines(lines, "local sys = " + system);
     return origin;
 }
 

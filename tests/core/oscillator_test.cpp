@@ -85,7 +85,8 @@ TEST_CASE("the report's system has the values that DINAL printed", "[oscillator]
 TEST_CASE("wrong parameters are named with their value and their range", "[oscillator]") {
     CHECK_THAT(complaint({.inertia = 0, .stiffness = 1}), Contains("I = 0") && Contains("positive"));
     CHECK_THAT(complaint({.inertia = -2, .stiffness = 1}), Contains("I = -2") && Contains("positive"));
-    CHECK_THAT(complaint({.inertia = 1, .stiffness = 0}), Contains("k = 0") && Contains("positive"));
+    CHECK_THAT(complaint({.inertia = 1, .stiffness = -1}), Contains("k = -1") && Contains("negative"));
+    CHECK(complaint({.inertia = 1, .stiffness = 0}).empty());  // a block without a spring
     CHECK_THAT(complaint({.inertia = 1, .stiffness = 1, .damping = -0.1}), Contains("C = -0.1"));
     CHECK_THAT(complaint({.inertia = 1, .stiffness = 1, .kinetic_friction = -1}), Contains("Rd = -1"));
     CHECK_THAT(complaint({.inertia = 1, .stiffness = 1, .breakaway = -1}), Contains("Re = -1"));

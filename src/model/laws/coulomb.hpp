@@ -2,6 +2,7 @@
 #pragma once
 
 #include "model/friction.hpp"
+#include "text/option.hpp"
 
 namespace dinal::model::laws {
 
@@ -14,5 +15,28 @@ struct Coulomb {
     [[nodiscard]] double holding(Motion /*way*/) const { return breakaway; }
     [[nodiscard]] std::optional<text::Error> complaint() const { return wrong_torques("", kinetic, breakaway); }
 };
+
+/// What a user says about it.
+struct CoulombTorques {
+    double Rd = 0;
+    std::optional<double> Re = {};
+
+    [[nodiscard]] Coulomb law() const { return {Rd, Re.value_or(Rd)}; }
+};
+inline constexpr text::Option coulomb_options[] = {
+    {.name = "Rd",
+     .unit = "torque",
+     .otherwise = text::needed,
+     .range = text::not_negative,
+     .meaning = "dry friction while moving",
+     .filled = text::fills<&CoulombTorques::Rd>},
+    {.name = "Re",
+     .unit = "torque",
+     .otherwise = "Rd",
+     .range = text::not_negative,
+     .meaning = "what sticking can hold, at least Rd",
+     .filled = text::fills<&CoulombTorques::Re>},
+};
+inline constexpr text::Call coulomb_call{"friction.coulomb", "friction.coulomb{ Rd = 0.3, Re = 0.4 }", coulomb_options};
 
 }  // namespace dinal::model::laws

@@ -19,6 +19,10 @@ public:
     virtual ~UserFunction() = default;
     /// NaN says that the function failed (and that its owner knows why): the run ends there.
     virtual double value(double t, const State& state) = 0;
+    /// The same for a run that has states of its own, in the order of their names.
+    virtual double value_with(double t, const State& state, std::span<const double> /*states*/) {
+        return value(t, state);
+    }
     /// out[i] = value(times[i]) in this order, up to and including the first that is not finite; returns how many are.
     // Virtual, too: the way into the user's language is paid once for a block.
     virtual std::size_t fill(std::span<const double> times, std::span<double> out) {

@@ -8,6 +8,7 @@
 #include <memory>
 #include <optional>
 
+#include "model/laws/coulomb.hpp"
 #include "motion/checkpoints.hpp"
 #include "motion/dinal1989/listing.hpp"
 #include "motion/interpolation.hpp"
@@ -108,6 +109,19 @@ OwnRule Dinal1989::own_rule() const {
                     "and a stop is what the stop rule of the listing takes for one.",
                     h),
         "the listing let it go at"};
+}
+
+/// The program of 1989 read six numbers: I, k, C, Rd, Re and Mc.
+std::optional<text::Error> Dinal1989::wrong_for(const model::Oscillator& system) const {
+    if (!system.has_spring()) {
+        return text::Error{.sentence = "integrator.dinal1989 divides by k: with k = 0 take integrator.spectral or rk4",
+                           .option = "integrator"};
+    }
+    if (system.friction().none() || system.friction().as<model::laws::Coulomb>() != nullptr) return std::nullopt;
+    return text::Error{
+        .sentence =
+            "integrator.dinal1989 knows Coulomb's friction only, with Rd and Re: take integrator.spectral or rk4",
+        .option = "integrator"};
 }
 
 Trajectory Dinal1989::run(const Problem& problem) const {

@@ -35,6 +35,7 @@ double stable_radius(std::complex<double> lambda) {
 }  // namespace
 
 double stability_limit(const model::Oscillator& system) {
+    if (!system.has_spring()) return stable_radius({-1, 0}) / (system.damping() / system.inertia());
     const double w0 = system.natural_frequency();
     const double zeta = system.damping_ratio();
     if (zeta < 1) {
@@ -48,6 +49,13 @@ std::optional<text::Error> Rk4::wrong_for(const model::Oscillator& system) const
     const double limit = stability_limit(system);
     // The limit is itself rounded; a step that equals it to the digits shown is let through.
     if (h <= limit * (1 + 1e-12)) return {};
+    if (!system.has_spring()) {
+        return text::Error{
+            .sentence = fmt::format("h = {:.6g} exceeds the stability limit {:.6g} of rk4 (C/I = {:.6g}): "
+                                    "use h <= {:.3g}",
+                                    h, limit, system.damping() / system.inertia(), 0.999 * limit),
+            .option = "h"};
+    }
     return text::Error{
         .sentence = fmt::format(
             "h = {:.6g} exceeds the stability limit {:.6g} of rk4 (w0 = {:.6g}, zeta = {:.4g}): use h <= {:.3g}", h,

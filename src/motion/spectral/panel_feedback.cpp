@@ -32,6 +32,7 @@ PanelSolver::Iteration PanelSolver::iterate(const model::State& departing) {
                 panel_.samples[j] = sampled(j, j == 0 ? departing : state);
                 if (!std::isfinite(panel_.samples[j])) return Iteration::failed;
                 rest[j] = panel_.samples[j] - remainder(state) + falls_.theta * p[j] + falls_.velocity * state.velocity;
+                if (!std::isfinite(rest[j])) return Iteration::failed;  // a law of friction that a user wrote
             }
             panel_.M = chebyshev::fit(panel_.samples);  // its size is wanted if this is to go on
             const Series torque = chebyshev::fit(rest);

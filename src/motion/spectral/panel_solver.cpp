@@ -10,6 +10,8 @@ namespace {
 
 /// Where M fails, the run comes this near to it, in units of pace_.
 constexpr double near_failure = 1e-9;
+/// The longest panel of a block without a spring, which has no period, as a part of its run.
+constexpr double part_of_run = 1.0 / 16;
 
 }  // namespace
 
@@ -19,9 +21,13 @@ PanelSolver::PanelSolver(const Problem& problem, const Spectral& options)
       end_of_run_(problem.window.end),
       tolerance_(options.tolerance),
       pace_(std::min(problem.system.natural_period(), problem.window.end - problem.window.start)),
-      h_max_(std::min(options.max_panel, longest_panel * problem.system.natural_period()) / 2),
+      h_max_(std::min(options.max_panel, problem.system.has_spring()
+                                             ? longest_panel * problem.system.natural_period()
+                                             : part_of_run * (problem.window.end - problem.window.start)) /
+             2),
       feedback_(problem.excitation.has_feedback() || system_.has_remainder()),
       script_(problem.excitation.has_script()),
+      law_(problem.system.friction().as<model::laws::UserLaw>()),
       h_(h_max_),
       patience_{.since = problem.window.start} {}
 
@@ -85,7 +91,8 @@ PanelSolver::Attempt PanelSolver::before_failure() {
     const bool there =
         panel_.start.until(bad_time_) <= std::max(near_failure * pace_, 64 * epsilon * std::fabs(panel_.start.hi));
     if (feedback_) bad_time_ = model::never;
-    if (!there && excitation_.may_go_on()) return Attempt::shorten;
+    const bool may_go_on = excitation_.may_go_on() && (law_ == nullptr || law_->function->may_go_on());
+    if (!there && may_go_on) return Attempt::shorten;
     return end_with(model::Outcome::excitation_not_finite);
 }
 

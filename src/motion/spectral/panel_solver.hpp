@@ -7,6 +7,7 @@
 
 #include <vector>
 
+#include "model/laws/user_law.hpp"
 #include "model/lowered.hpp"
 #include "motion/simulate.hpp"
 #include "motion/spectral/panel_equation.hpp"
@@ -122,6 +123,7 @@ private:
     double pace_;   // what short times are measured in: T0, or all of a run that is shorter
     double h_max_;  // half the length of the longest panel
     bool feedback_, script_;
+    const model::laws::UserLaw* law_;  // of friction, which may fail as M may
 
     double h_;                          // half the length of the next panel
     std::vector<double> found_breaks_;  // of a function that did not announce them, in order

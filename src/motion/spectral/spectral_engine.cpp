@@ -32,7 +32,7 @@ SpectralEngine::SpectralEngine(const Problem& problem, const Spectral& options, 
       window_(problem.window),
       rows_(rows),
       panels_(panels),
-      T0_(problem.system.natural_period()),
+      T0_(std::min(problem.system.natural_period(), problem.window.end - problem.window.start)),
       now_{.clock = {problem.window.start, 0}, .y = problem.initial},
       standstill_(problem, &events, at_once(problem)),
       solver_(problem, options) {}
@@ -133,6 +133,7 @@ bool SpectralEngine::creeps() const {
 
 /// What has crept to rounding distance from its place is there: at the very limit of sticking, when Re = Rd.
 void SpectralEngine::settle() {
+    if (system_.stiffness() == 0) return;
     const double place = (now_.M - system_.braking(standstill_.motion())) / system_.stiffness();
     const double near = 64 * epsilon * solver_.torques() / system_.stiffness();
     if (solver_.iterates() || !(std::fabs(place - now_.y.theta) <= near)) return;
@@ -252,8 +253,10 @@ bool SpectralEngine::rows_until(double length) {
         } else if (x > -1) {
             M = chebyshev::value(panel.M, x);
         }
-        if (!std::isfinite(M)) return false;
-        rows_.put(state, M, model::friction_torque(system_, standing ? model::Motion::stuck : panel.motion, M, state));
+        const double friction =
+            model::friction_torque(system_, standing ? model::Motion::stuck : panel.motion, M, state);
+        if (!std::isfinite(M + friction)) return false;
+        rows_.put(state, M, friction);
     }
     return true;
 }

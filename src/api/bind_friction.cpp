@@ -1,0 +1,206 @@
+// friction.stribeck{...} and its like: laws of friction as values, for `friction =` of a system.
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "api/classes.hpp"
+#include "lua/options.hpp"
+#include "lua/user_function.hpp"
+#include "model/laws/asymmetric.hpp"
+#include "model/laws/coulomb.hpp"
+#include "model/laws/stribeck.hpp"
+#include "model/laws/tabulated.hpp"
+#include "model/laws/user_law.hpp"
+#include "source/describe.hpp"
+
+namespace dinal::api {
+
+namespace {
+
+namespace laws = model::laws;
+
+int push_law(lua_State* L, const lua::Options& options, const model::Friction& law) {
+    if (auto wrong = law.complaint()) {
+        options.fail(*wrong);
+    }
+    lua::push<model::Friction>(L, law);
+    return 1;
+}
+
+int coulomb_law(lua_State* L) {
+    const lua::Options options(L, 1, laws::coulomb_call);
+    laws::CoulombTorques torques;
+    options.fill(torques);
+    return push_law(L, options, torques.law());
+}
+
+int stribeck_law(lua_State* L) {
+    const lua::Options options(L, 1, laws::stribeck_call);
+    laws::Stribeck law;
+    options.fill(law);
+    return push_law(L, options, law);
+}
+
+int tabulated_law(lua_State* L) {
+    const lua::Options options(L, 1, laws::tabulated_call);
+    laws::Tabulated law;
+    options.fill(law);
+    return push_law(L, options, law);
+}
+
+/// One side of asymmetric friction: a table { Rd, Re } of its own.
+laws::Coulomb law_of_side(lua_State* L, const lua::Options& options, const char* name) {
+    options.push(name);
+    if (lua_isnil(L, -1)) {
+        options.missing(name);
+    }
+    if (lua_type(L, -1) != LUA_TTABLE) {
+        options.wrong(name, options.row(name).wanted);
+    }
+    const std::string call = fmt::format("{}: {}", laws::asymmetric_call.name, name);
+    const text::Call own{call.c_str(), "{ Rd = 0.3, Re = 0.4 }", laws::coulomb_options};
+    laws::CoulombTorques torques;
+    lua::Options(L, lua_gettop(L), own).fill(torques);
+    lua_pop(L, 1);
+    return torques.law();
+}
+
+int asymmetric_law(lua_State* L) {
+    const lua::Options options(L, 1, laws::asymmetric_call);
+    const laws::Coulomb forward = law_of_side(L, options, "forward"), backward = law_of_side(L, options, "backward");
+    return push_law(L, options, laws::AsymmetricCoulomb{.forward = forward, .backward = backward});
+}
+
+int law_of_function(lua_State* L) {
+    if (!lua::is_callable(L, 1)) {
+        lua::raise(L, {.sentence = "friction.law takes a function of the speed, got " + lua::describe(L, 1) +
+                                   ", for example " + laws::user_law_call.example,
+                       .call = laws::user_law_call.name,
+                       .culprit = lua::written(L, 1)});
+    }
+    const lua::Options options(L, 2, laws::user_law_call);
+    laws::UserLaw law;
+    options.fill(law);
+    law.function = std::make_shared<lua::LuaFunction>(
+        L, 1, lua::FunctionRole{.name = "friction", .argument = "speed", .may_be_negative = false, .of_motion = false});
+    lua::CallState call(L);
+    law.at_zero = law.function->value(0, {});
+    if (call.failed()) {
+        call.raise_error();
+    }
+    return push_law(L, options, law);
+}
+
+const model::Friction& law_self(lua_State* L, const char* call) {
+    return lua::self<model::Friction>(L, 1, call);
+}
+
+int law_torque(lua_State* L) {
+    const model::Friction& law = law_self(L, "law:torque(velocity)");
+    const double velocity = lua::finite_argument(L, 2, "law:torque(velocity): velocity");
+    lua::CallState call(L);
+    const double torque =
+        law.sliding(velocity < 0 ? model::Motion::backward : model::Motion::forward, std::fabs(velocity));
+    if (call.failed()) {
+        call.raise_error();
+    }
+    lua_pushnumber(L, torque);
+    return 1;
+}
+
+int law_holding(lua_State* L) {
+    lua_pushnumber(L, law_self(L, "law.Re").greatest_holding());
+    return 1;
+}
+
+int law_text(lua_State* L) {
+    lua_pushstring(L, source::lua_text(L, law_self(L, "tostring(law)")).c_str());
+    return 1;
+}
+
+constexpr lua::Member friction_module_members[] = {
+    {"coulomb",
+     lua::guarded<coulomb_law>,
+     lua::Kind::function,
+     {"friction.coulomb{ OPTIONS } -> law",
+      "Coulomb's law: Rd while it moves, at whatever speed, and up to Re while it stands. What system{ Rd, Re } has.",
+      "print(friction.coulomb{ Rd = 0.3 })  --> friction.coulomb{ Rd = 0.3, Re = 0.3 }",
+      {&laws::coulomb_call}}},
+    {"stribeck",
+     lua::guarded<stribeck_law>,
+     lua::Kind::function,
+     {"friction.stribeck{ OPTIONS } -> law",
+      "Friction that falls with the speed, as a lubricant is drawn in: Rd + (Re - Rd) exp(-(|velocity|/speed)^shape).",
+      "law = friction.stribeck{ Rd = 0.3, Re = 0.6, speed = 0.1 }\n"
+      "print(law:torque(0), string.format(\"%.6f\", law:torque(0.1)))  --> 0.6\t0.410364",
+      {&laws::stribeck_call}}},
+    {"asymmetric",
+     lua::guarded<asymmetric_law>,
+     lua::Kind::function,
+     {"friction.asymmetric{ OPTIONS } -> law",
+      "Coulomb's law with other numbers each way, each side a table { Rd, Re }. Re of a side is the most that sticking "
+      "can hold against a pull that way.",
+      "law = friction.asymmetric{ forward = { Rd = 0.1 }, backward = { Rd = 0.3, Re = 0.5 } }\n"
+      "print(law:torque(1), law:torque(-1))  --> 0.1\t0.3",
+      {&laws::asymmetric_call}}},
+    {"table",
+     lua::guarded<tabulated_law>,
+     lua::Kind::function,
+     {"friction.table{ OPTIONS } -> law",
+      "Friction as it was measured: straight lines between torques at some speeds, the same both ways.",
+      "law = friction.table{ speed = { 0, 0.1, 1 }, torque = { 0.5, 0.3, 0.35 } }\n"
+      "print(law:torque(0.05), law:torque(3), law.Re)  --> 0.4\t0.35\t0.5",
+      {&laws::tabulated_call}}},
+    {"law",
+     lua::guarded<law_of_function>,
+     lua::Kind::function,
+     {"friction.law(function(speed), { OPTIONS }) -> law",
+      "Friction as a Lua function of the speed (>= 0, rad per time unit), the same both ways. It may be lower at speed "
+      "0 than Re, and must not be negative.",
+      "law = friction.law(function(speed) return 0.3 + 0.1*speed end, { Re = 0.5 })\n"
+      "print(law:torque(2), law.Re)  --> 0.5\t0.5",
+      {&laws::user_law_call}}},
+};
+
+constexpr lua::Member friction_members[] = {
+    {"torque",
+     lua::guarded<law_torque>,
+     lua::Kind::method,
+     {"law:torque(velocity) -> number",
+      "The friction against a motion with this velocity, rad per time unit; at 0 the limit from above.",
+      "print(friction.coulomb{ Rd = 0.3, Re = 0.4 }:torque(-2))  --> 0.3"}},
+    {"Re",
+     lua::guarded<law_holding>,
+     lua::Kind::field,
+     {"law.Re -> number", "The most that sticking can hold; of two sides the greater one.",
+      "print(friction.coulomb{ Rd = 0.3, Re = 0.4 }.Re)  --> 0.4"}},
+    {"__tostring",
+     lua::guarded<law_text>,
+     lua::Kind::metamethod,
+     {"tostring(law) -> string", "The Lua text that makes it again.",
+      "print(friction.stribeck{ Rd = 0.3, Re = 0.6, speed = 0.1 })\n"
+      "--> friction.stribeck{ Rd = 0.3, Re = 0.6, speed = 0.1 }"}},
+};
+
+}  // namespace
+
+const lua::Class friction_module = {
+    "friction",
+    {"friction.NAME{ ... } -> law",
+     "Laws of dry friction, for `friction =` of system{...} and nondimensional{...}: the torque against a motion by its "
+     "speed, and what sticking can hold.",
+     "sys = system{ I = 1, k = 4, friction = friction.stribeck{ Rd = 0.3, Re = 0.6, speed = 0.1 } }\n"
+     "print(sys.Re)  --> 0.6"},
+    friction_module_members};
+
+const lua::Class friction_class = {"friction",
+                                   {"friction.NAME{ ... } -> law", "A law of friction. It can not be changed.",
+                                    "print(friction.coulomb{ Rd = 0.3 }.Re)  --> 0.3"},
+                                   friction_members};
+
+void register_friction(lua_State* L) {
+    lua::add_class<model::Friction>(L, friction_class);
+    lua::add_module(L, friction_module);
+}
+
+}  // namespace dinal::api

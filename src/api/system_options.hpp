@@ -1,0 +1,63 @@
+// What system{...}, nondimensional{...} and sys:with{...} share.
+#pragma once
+
+#include <initializer_list>
+#include <optional>
+
+#include "lua/options.hpp"
+#include "model/oscillator.hpp"
+
+namespace dinal::api {
+
+/// Pushes the system, or raises what is wrong with it.
+int push_system(lua_State* L, const lua::Options& options, const model::OscillatorParameters& parameters);
+
+/// The law that the option `friction` names, which excludes the options that are Coulomb's.
+std::optional<model::Friction> asked_law(lua_State* L, const lua::Options& options,
+                                         std::initializer_list<const char*> instead_of);
+
+inline constexpr text::Option law_option[] = {
+    {.name = "friction",
+     .meaning = "another law of friction, for example friction.stribeck",
+     .object = "friction",
+     .wanted = "a law such as friction.stribeck{ Rd = 0.3, Re = 0.6, speed = 0.1 }"},
+};
+
+/// What sys:with changes.
+struct SystemChanges {
+    std::optional<double> inertia = {}, stiffness = {}, damping = {}, kinetic = {}, breakaway = {};
+};
+inline constexpr text::Option number_changes[] = {
+    {.name = "I",
+     .unit = "torque time^2 per rad",
+     .range = text::positive,
+     .meaning = "moment of inertia",
+     .filled = text::fills<&SystemChanges::inertia>},
+    {.name = "k",
+     .unit = "torque per rad",
+     .range = text::not_negative,
+     .meaning = "stiffness of the spring",
+     .filled = text::fills<&SystemChanges::stiffness>},
+    {.name = "C",
+     .unit = "torque time per rad",
+     .range = text::not_negative,
+     .meaning = "viscous damping",
+     .filled = text::fills<&SystemChanges::damping>},
+    {.name = "Rd",
+     .unit = "torque",
+     .range = text::not_negative,
+     .meaning = "dry friction while moving; Re goes with it where they were equal",
+     .filled = text::fills<&SystemChanges::kinetic>},
+    {.name = "Re",
+     .unit = "torque",
+     .range = text::not_negative,
+     .meaning = "what sticking can hold, at least Rd",
+     .filled = text::fills<&SystemChanges::breakaway>},
+};
+inline constexpr auto change_options = text::joined(number_changes, law_option);
+inline constexpr text::Call with_call{"sys:with", "sys:with{ Rd = 1 }", change_options};
+
+/// sys:with{ OPTIONS }.
+int system_with(lua_State* L);
+
+}  // namespace dinal::api

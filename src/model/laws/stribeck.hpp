@@ -1,0 +1,69 @@
+// Stribeck's law: friction falls from Re at standstill towards Rd with the speed, as a lubricant is drawn in.
+#pragma once
+
+#include <cmath>
+
+#include "model/friction.hpp"
+#include "text/option.hpp"
+
+namespace dinal::model::laws {
+
+/// Rd + (Re - Rd) exp(-(|v|/speed)^shape); shape 2 is Stribeck's curve after Bo and Pavelescu (1982), 1 Tustin's
+/// (1947).
+struct Stribeck {
+    double kinetic = 0;    ///< Rd, at great speeds
+    double breakaway = 0;  ///< Re >= Rd
+    double speed = 0;      ///< at which the difference has fallen to 1/e
+    double shape = 2;
+
+    static constexpr bool depends_on_speed = true;
+    [[nodiscard]] double sliding(Motion /*way*/, double v) const {
+        if (v == 0) return breakaway;
+        constexpr double farthest = 20;  // below speed 0, where an odd power grows beyond all numbers
+        const double x = std::fabs(v / speed);
+        const double power = shape == 2 ? x * x : shape == 1 ? x : std::pow(x, shape);
+        const bool odd = std::fmod(shape, 2) == 1;
+        return kinetic + (breakaway - kinetic) * std::exp(v < 0 && odd ? std::min(power, farthest) : -power);
+    }
+    [[nodiscard]] double holding(Motion /*way*/) const { return breakaway; }
+    [[nodiscard]] std::optional<text::Error> complaint() const;
+    [[nodiscard]] std::string lua_text() const;
+};
+
+inline constexpr text::Option stribeck_options[] = {
+    {.name = "Rd",
+     .unit = "torque",
+     .otherwise = text::needed,
+     .range = text::not_negative,
+     .meaning = "dry friction at great speeds",
+     .filled = text::fills<&Stribeck::kinetic>},
+    {.name = "Re",
+     .unit = "torque",
+     .otherwise = text::needed,
+     .range = text::not_negative,
+     .meaning = "friction at speed 0 and what sticking can hold, at least Rd",
+     .filled = text::fills<&Stribeck::breakaway>},
+    {.name = "speed",
+     .unit = "rad per time unit",
+     .otherwise = text::needed,
+     .range = text::positive,
+     .meaning = "where the difference of both has fallen to 1/e",
+     .filled = text::fills<&Stribeck::speed>},
+    {.name = "shape",
+     .range = text::positive,
+     .meaning = "the power of the speed in the exponent",
+     .filled = text::fills<&Stribeck::shape>},
+};
+inline constexpr text::Call stribeck_call{"friction.stribeck", "friction.stribeck{ Rd = 0.3, Re = 0.6, speed = 0.1 }",
+                                          stribeck_options};
+
+inline std::optional<text::Error> Stribeck::complaint() const {
+    if (auto wrong = wrong_torques("", kinetic, breakaway)) return wrong;
+    if (auto wrong = text::complaint(stribeck_options, *this)) return text::Error{*wrong};
+    return std::nullopt;
+}
+inline std::string Stribeck::lua_text() const {
+    return text::lua_text(stribeck_call.name, stribeck_options, *this, text::Defaults::left_out);
+}
+
+}  // namespace dinal::model::laws

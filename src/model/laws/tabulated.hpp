@@ -1,0 +1,52 @@
+// Friction as it was measured: straight lines between torques at some speeds, the same both ways.
+#pragma once
+
+#include <algorithm>
+#include <vector>
+
+#include "model/friction.hpp"
+#include "text/option.hpp"
+
+namespace dinal::model::laws {
+
+struct Tabulated {
+    std::vector<double> speed;          ///< increasing from 0
+    std::vector<double> torque;         ///< one for each; the last one holds for all greater speeds
+    std::optional<double> breakaway{};  ///< Re; the first torque when not given
+
+    static constexpr bool depends_on_speed = true;
+    [[nodiscard]] double sliding(Motion /*way*/, double v) const {
+        if (v >= speed.back()) return torque.back();
+        const auto above = std::upper_bound(speed.begin() + 1, speed.end(), v);  // below speed 0 the first line goes on
+        const auto i = static_cast<std::size_t>(above - speed.begin());
+        if (i == speed.size()) return torque.back();
+        const double part = (v - speed[i - 1]) / (speed[i] - speed[i - 1]);
+        return torque[i - 1] + part * (torque[i] - torque[i - 1]);
+    }
+    [[nodiscard]] double holding(Motion /*way*/) const { return breakaway.value_or(torque.front()); }
+    [[nodiscard]] std::optional<text::Error> complaint() const;
+    [[nodiscard]] std::string lua_text() const;
+};
+
+inline constexpr text::Option tabulated_options[] = {
+    {.name = "speed",
+     .unit = "rad per time unit",
+     .otherwise = text::needed,
+     .meaning = "increasing from 0",
+     .filled = text::fills<&Tabulated::speed>},
+    {.name = "torque",
+     .unit = "torque",
+     .otherwise = text::needed,
+     .meaning = "the friction at each of them; the last one holds for greater speeds",
+     .filled = text::fills<&Tabulated::torque>},
+    {.name = "Re",
+     .unit = "torque",
+     .otherwise = "the first torque",
+     .range = text::not_negative,
+     .meaning = "what sticking can hold, at least the first torque",
+     .filled = text::fills<&Tabulated::breakaway>},
+};
+inline constexpr text::Call tabulated_call{
+    "friction.table", "friction.table{ speed = { 0, 0.1, 1 }, torque = { 0.5, 0.3, 0.35 } }", tabulated_options};
+
+}  // namespace dinal::model::laws

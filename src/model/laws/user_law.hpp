@@ -1,0 +1,48 @@
+// A law of friction that a user has written: a function of the speed, the same both ways.
+#pragma once
+
+#include <fmt/format.h>
+
+#include <memory>
+
+#include "model/friction.hpp"
+#include "model/terms/scripted.hpp"
+#include "text/option.hpp"
+
+namespace dinal::model::laws {
+
+struct UserLaw {
+    std::shared_ptr<terms::UserFunction> function;  ///< of the speed, never asked below 0
+    double at_zero = 0;                             ///< its value at speed 0, which many ask and few may call for
+    std::optional<double> breakaway = {};           ///< Re; at_zero when not given
+
+    static constexpr bool depends_on_speed = true;
+    /// NaN where the function fails, or is negative.
+    [[nodiscard]] double sliding(Motion /*way*/, double speed) const {
+        if (speed == 0) return at_zero;
+        if (speed > 0) return function->value(speed, {});
+        return 2 * at_zero - function->value(-speed, {});  // with the slope that it has at 0
+    }
+    [[nodiscard]] double holding(Motion /*way*/) const { return breakaway.value_or(at_zero); }
+    [[nodiscard]] std::optional<text::Error> complaint() const {
+        if (breakaway && *breakaway < at_zero) {
+            return text::Error{.sentence = fmt::format("Re = {:.6g} must be at least the friction at speed 0, {:.6g}",
+                                                       *breakaway, at_zero),
+                               .option = "Re"};
+        }
+        return std::nullopt;
+    }
+};
+
+inline constexpr text::Option user_law_options[] = {
+    {.name = "Re",
+     .unit = "torque",
+     .otherwise = "the friction at speed 0",
+     .range = text::not_negative,
+     .meaning = "what sticking can hold, at least the friction at speed 0",
+     .filled = text::fills<&UserLaw::breakaway>},
+};
+inline constexpr text::Call user_law_call{
+    "friction.law", "friction.law(function(speed) return 0.3 + 0.1*speed end, { Re = 0.5 })", user_law_options, true};
+
+}  // namespace dinal::model::laws

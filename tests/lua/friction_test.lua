@@ -1,0 +1,103 @@
+package.path = "tests/lua/?.lua;" .. package.path
+local support = require "support"
+local test, near, equal, raises_here = support.test, support.near, support.equal, support.raises_here
+
+local stribeck = friction.stribeck { Rd = 0.25, Re = 0.6, speed = 0.4 }
+
+test("a law is an option of a system, and the text of the system makes it again", function()
+    for _, law in ipairs {
+        stribeck, friction.stribeck { Rd = 0.25, Re = 0.6, speed = 0.4, shape = 1 },
+        friction.asymmetric { forward = { Rd = 0.1, Re = 0.3 }, backward = { Rd = 0.2 } },
+        friction.table { speed = { 0, 0.5, 2 }, torque = { 0.45, 0.2, 0.35 }, Re = 0.6 },
+        friction.law(function(speed) return 0.25 + 0.1 * speed ^ 2 end, { Re = 0.6 }),
+    } do
+        local sys = system { I = 1, k = 1, friction = law }
+        equal(tostring(load("return " .. tostring(sys))()), tostring(sys))
+        equal(tostring(sys.friction), tostring(law))
+        local nd = nondimensional { zeta = 0.1, friction = law }
+        equal(tostring(nd.friction), tostring(law))
+        equal(sys.Re, law.Re)
+    end
+    equal(tostring(system { I = 1, k = 1, friction = friction.coulomb { Rd = 0.2, Re = 0.3 } }),
+        "system{ I = 1, k = 1, Rd = 0.2, Re = 0.3 }")
+end)
+
+test("a law written as a Lua function moves as the native one, and allocates nothing for each call", function()
+    local own = friction.law(function(speed) return 0.25 + 0.35 * math.exp(-(speed / 0.4) ^ 2) end)
+    local task = { M = excitation.harmonic { amplitude = 0.8, frequency = 0.05 }, theta0 = 1.3, t_end = 60, dt = 0.5 }
+    local a = system { I = 1, k = 1, friction = stribeck }:simulate(task)
+    local b = system { I = 1, k = 1, friction = own }:simulate(task)
+    equal(#a.events, #b.events)
+    for i, e in ipairs(a.events) do
+        equal(e.kind, b.events[i].kind)
+        near(e.t, b.events[i].t, 1e-9)  -- the same torques but for rounding
+    end
+    near((a.theta - b.theta):abs():max(), 0, 1e-11)
+    near(b:energy().total.error, 0, 1e-11)
+end)
+
+test("a law that fails, or is negative, is told with the speed, and what ran is kept", function()
+    local negative = system { I = 1, k = 1, friction = friction.law(function(speed) return 0.3 - speed end) }
+    local ok, problem = pcall(negative.simulate, negative, { theta0 = 2, t_end = 20, dt = 0.01 })
+    assert(not ok and tostring(problem):find("friction returned %-[%d.e-]+ at speed = 0%.%d+; it must return a finite number that is not negative"), problem)
+    assert(#dinal.partial > 10)  -- 17 rows before it is too fast
+    raises_here(function() friction.law(function() return nil end) end, "friction returned nil at speed = 0")
+    raises_here(function() friction.law(function() error("no law") end) end, "no law")
+    raises_here(function() friction.law(3) end, "friction.law takes a function of the speed, got 3")
+end)
+
+test("what is wrong with a law is one sentence with the name of the option", function()
+    raises_here(function() friction.stribeck { Rd = 0.3, Re = 0.2, speed = 1 } end, "friction.stribeck: Re = 0.2 must be at least Rd = 0.3")
+    raises_here(function() friction.stribeck { Rd = 0.3, Re = 0.4 } end, "friction.stribeck needs speed")
+    raises_here(function() friction.asymmetric { forward = { Rd = 1 } } end, "friction.asymmetric needs backward")
+    raises_here(function() friction.asymmetric { forward = { Rd = 1 }, backward = 2 } end, "backward must be a table such as")
+    raises_here(function() friction.asymmetric { forward = { Rd = 1 }, backward = { Rd = 2, Re = 1 } } end, "backward.Re = 1 must be at least backward.Rd = 2")
+    raises_here(function() friction.asymmetric { forward = { Rd = 1 }, backward = { Rf = 2 } } end, "friction.asymmetric: backward has no option 'Rf'")
+    raises_here(function() friction.table { speed = { 0, 1 }, torque = { 1 } } end, "torque has 1 numbers")
+    raises_here(function() friction.law(function(speed) return 1 + speed end, { Re = 0.5 }) end, "Re = 0.5 must be at least the friction at speed 0, 1")
+    raises_here(function() system { I = 1, k = 1, friction = stribeck, Rd = 1 } end, "friction and Rd exclude each other")
+    raises_here(function() nondimensional { friction = stribeck, friction_ratio = 1 } end, "friction and friction_ratio exclude each other")
+    raises_here(function() system { I = 1, k = 1, friction = 0.3 } end, "friction must be a law such as")
+    raises_here(function() stribeck.Re = 2 end, "a friction can not be changed")
+end)
+
+test("the museum piece and the closed forms know Coulomb's friction only", function()
+    local sys = system { I = 1, k = 1, friction = stribeck }
+    raises_here(function() sys:simulate { t_end = 1, dt = 1, integrator = integrator.dinal1989 { h = 0.1 } } end, "knows Coulomb's friction only")
+    raises_here(function() theory.time_to_rest { system = sys, theta0 = 1 } end, "the closed forms know Coulomb's friction only")
+end)
+
+test("with makes the same system but for what is given", function()
+    local sys = system { I = 2, k = 8, C = 0.5, Rd = 1, Re = 1.5 }
+    equal(tostring(sys:with { I = 3 }), "system{ I = 3, k = 8, C = 0.5, Rd = 1, Re = 1.5 }")
+    equal(tostring(sys:with { Rd = 1.2 }), "system{ I = 2, k = 8, C = 0.5, Rd = 1.2, Re = 1.5 }")
+    equal(sys:with { Re = 2 }.Re, 2.0)
+    equal(system { I = 1, k = 1, Rd = 1 }:with { Rd = 2 }.Re, 2.0)
+    equal(tostring(sys:with { friction = stribeck }.friction), tostring(stribeck))
+    equal(tostring(sys:with { friction = stribeck }:with { k = 9 }.friction), tostring(stribeck))
+    equal(tostring(sys:with { friction = stribeck }:with { Rd = 1, Re = 1.5 }), tostring(sys))
+    raises_here(function() sys:with { Rd = 2 } end, "sys:with: Re = 1.5 must be at least Rd = 2")
+    raises_here(function() sys:with { friction = stribeck }:with { Rd = 2 } end, "the friction of this system is friction.stribeck{")
+    raises_here(function() sys:with { Rf = 2 } end, "sys:with has no option 'Rf'")
+end)
+
+test("k = 0 is a block: nothing that needs a period has a value", function()
+    local block = system { I = 2, k = 0, Rd = 0.3, Re = 0.4 }
+    for _, name in ipairs { "omega0", "T0", "zeta", "omega1", "regime", "dead_zone" } do
+        equal(block[name], nil)
+    end
+    equal(tostring(block), "system{ I = 2, k = 0, Rd = 0.3, Re = 0.4 }")
+    local run = block:simulate { velocity0 = 1.5, t_end = 12, dt = 1 }
+    equal(run.outcome, "at rest")
+    near(run.events[1].t, 10, 1e-12)
+    near((run:at(12)), 7.5, 1e-12)
+    near(run:energy().total.dry, 2.25, 1e-12)
+    assert(run:explain():find("a block without a spring", 1, true))
+    raises_here(function() theory.time_to_rest { system = block, theta0 = 1 } end, "this system has k = 0")
+    raises_here(function() run:save(os.tmpname() .. ".dat") end, "this system has k = 0")
+    raises_here(function() block:simulate { t_end = 1, dt = 1, integrator = integrator.dinal1989 { h = 0.1 } } end, "divides by k")
+    raises_here(function() nondimensional { k = 0 } end, "no option 'k'")
+    raises_here(function() system { I = 1, k = -1 } end, "k = -1 must not be negative")
+end)
+
+support.finish()
