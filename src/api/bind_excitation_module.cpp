@@ -1,108 +1,176 @@
-// What `excitation.` has to offer, with its documentation; the functions are in excitation_terms.cpp (numbers) and
-// excitation_data.cpp (tables, files, functions).
+// What `excitation.` has to offer: a function for each term of the model, which says what its options are and what is
+// told about it. Two terms need more than a table of options: samples a file, and scripted a function.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <type_traits>
+
 #include "api/bind_excitation.hpp"
 #include "api/classes.hpp"
+#include "api/run.hpp"
+#include "files/csv.hpp"
+#include "lua/interrupt.hpp"
+#include "lua/options.hpp"
+#include "lua/user_function.hpp"
+#include "text/characters.hpp"
+#include "text/fixed_text.hpp"
 
 namespace dinal::api {
+
 namespace {
 
-constexpr lua::Member excitation_module_members[] = {
-    {"constant",
-     lua::guarded<excitation_functions::constant>,
-     lua::Kind::function,
-     {"excitation.constant{ level } -> excitation", "The same torque at all times.",
-      "print(excitation.constant{ level = 2 }(10))  --> 2.0"}},
-    {"harmonic",
-     lua::guarded<excitation_functions::harmonic>,
-     lua::Kind::function,
-     {"excitation.harmonic{ amplitude = 1, frequency | omega, phase = 0 } -> excitation",
-      "amplitude sin(omega t + phase). Give frequency (cycles per time unit) "
-      "or omega (rad per time unit); phase is in rad.",
-      "print(excitation.harmonic{ amplitude = 3, frequency = 0.25 }(1))  --> 3.0"}},
-    {"step",
-     lua::guarded<excitation_functions::step>,
-     lua::Kind::function,
-     {"excitation.step{ level = 1, at = 0 } -> excitation", "0 before the time `at`, level from then on.",
-      "M = excitation.step{ level = 2, at = 1 }\nprint(M(0.9), M(1))  --> 0.0\t2.0"}},
-    {"pulse",
-     lua::guarded<excitation_functions::pulse>,
-     lua::Kind::function,
-     {"excitation.pulse{ amplitude = 1, at = 0, width } -> excitation",
-      "amplitude for at <= t < at + width, else 0. Pulses add up to a train.",
-      "M = excitation.pulse{ at = 1, width = 0.5 } + excitation.pulse{ at = 3, width = 0.5 }\n"
-      "print(M(1.2), M(2), M(3.2))  --> 1.0\t0.0\t1.0"}},
-    {"half_sine",
-     lua::guarded<excitation_functions::half_sine>,
-     lua::Kind::function,
-     {"excitation.half_sine{ amplitude = 1, at = 0, width } -> excitation",
-      "One half wave of a sine from `at` to at + width, else 0: a shock.",
-      "print(excitation.half_sine{ amplitude = 3, width = 2 }(1))  --> 3.0"}},
-    {"gaussian",
-     lua::guarded<excitation_functions::gaussian>,
-     lua::Kind::function,
-     {"excitation.gaussian{ amplitude = 1, at = 0, width } -> excitation", model::Gaussian::about.summary,
-      model::Gaussian::about.example}},
-    {"ramp",
-     lua::guarded<excitation_functions::ramp>,
-     lua::Kind::function,
-     {"excitation.ramp{ slope = 1, at = 0, width = math.huge } -> excitation",
-      "0 before `at`, then rising by slope per time unit; constant again after width.",
-      "M = excitation.ramp{ slope = 2, at = 1, width = 3 }\nprint(M(0), M(2), M(9))  --> 0.0\t2.0\t6.0"}},
-    {"square",
-     lua::guarded<excitation_functions::square>,
-     lua::Kind::function,
-     {"excitation.square{ amplitude = 1, period | frequency, duty = 0.5, at = 0 } -> excitation",
-      "+amplitude for the first part `duty` of each period, -amplitude for the rest. A period begins at `at`.",
-      "M = excitation.square{ period = 4, duty = 0.25 }\nprint(M(0), M(0.9), M(1))  --> 1.0\t1.0\t-1.0"}},
-    {"sawtooth",
-     lua::guarded<excitation_functions::sawtooth>,
-     lua::Kind::function,
-     {"excitation.sawtooth{ amplitude = 1, period | frequency, at = 0 } -> excitation",
-      "Rises from -amplitude to amplitude over each period and drops back. A period begins at `at`.",
-      "M = excitation.sawtooth{ period = 2 }\nprint(M(0), M(1), M(1.5))  --> -1.0\t0.0\t0.5"}},
-    {"triangle",
-     lua::guarded<excitation_functions::triangle>,
-     lua::Kind::function,
-     {"excitation.triangle{ amplitude = 1, period | frequency, at = 0 } -> excitation",
-      "The corners of a sine joined by straight lines: 0, amplitude, 0, -amplitude. A period begins at `at`.",
-      "M = excitation.triangle{ period = 4 }\nprint(M(0.5), M(1), M(3))  --> 0.5\t1.0\t-1.0"}},
-    {"chirp",
-     lua::guarded<excitation_functions::chirp>,
-     lua::Kind::function,
-     {"excitation.chirp{ amplitude = 1, from, to, duration, at = 0, phase = 0 } -> excitation",
-      "A sine whose frequency goes evenly from `from` to `to` (cycles per time unit) over `duration`, beginning at "
-      "`at` with sin(phase). It keeps the first frequency before that and the last one after it.",
-      "print(excitation.chirp{ from = 0, to = 1, duration = 2 }(1))  --> 1.0"}},
-    {"exponential",
-     lua::guarded<excitation_functions::exponential>,
-     lua::Kind::function,
-     {"excitation.exponential{ amplitude = 1, tau, at = 0 } -> excitation",
-      "amplitude exp(-(t - at)/tau) from `at` on, 0 before. A negative tau grows.",
-      "M = excitation.exponential{ amplitude = 2, tau = 0.5, at = 1 }\nprint(M(0.9), M(1))  --> 0.0\t2.0"}},
-    {"polynomial",
-     lua::guarded<excitation_functions::polynomial>,
-     lua::Kind::function,
-     {"excitation.polynomial{ coefficients, at = 0 } -> excitation",
-      "c[1] + c[2] (t - at) + c[3] (t - at)^2 + ... at all times; cut a piece out with e:window.",
-      "print(excitation.polynomial{ coefficients = { 1, 0, 2 } }(3))  --> 19.0"}},
-    {"samples",
-     lua::guarded<excitation_functions::samples>,
-     lua::Kind::function,
-     {"excitation.samples(file, { time, value }) or excitation.samples{ t, M } -> excitation",
-      "Straight lines between points, from two columns of a CSV file or from two tables (or vectors). Outside, the "
-      "first and the last value hold. time and value name the columns or number them; without them they are the "
-      "columns t (or time) and M, else the first and the second.",
-      "M = excitation.samples{ t = { 0, 1, 3 }, M = { 0, 2, 0 } }\nprint(M(0.5), M(2), M(9))  --> 1.0\t1.0\t0.0"}},
-    {"scripted",
-     lua::guarded<excitation_functions::scripted>,
-     lua::Kind::function,
-     {"excitation.scripted(f, { breaks = {}, period }) -> excitation",
-      "Any Lua function of t, or of t, theta, velocity: with two or more parameters (or ...) it is called with all "
-      "three. breaks are times at which it jumps or kinks, so that integrators do not step across them; with a period, "
-      "they repeat. Where M is expected a function alone will do.",
-      "M = excitation.scripted(function(t) return t % 3 < 2 and 1 or 0 end, { breaks = { 0, 2 }, period = 3 })\n"
-      "print(M(7), M:next_break(7))  --> 1.0\t8.0"}},
+int push_term(lua_State* L, model::Term term) {
+    auto made = model::Excitation::make(std::move(term));
+    if (!made) {
+        lua::raise(L, made.error());
+    }
+    lua::push(L, std::move(made).value());
+    return 1;
+}
+
+// ---- excitation.samples("record.csv", { time = "t", value = "M" })
+
+constexpr text::Option columns_of_file[] = {
+    {.name = "time", .meaning = "the column of times, by its name or number"},
+    {.name = "value", .meaning = "the column of torques, likewise"},
 };
+constexpr text::Call file_call{
+    "excitation.samples", "excitation.samples(\"record.csv\", { time = \"t\", value = \"M\" })", columns_of_file, true};
+
+/// The column that an option names or numbers, else the first with one of the usual names, else `otherwise`.
+Eigen::Index samples_column(lua_State* L, const lua::Options& options, const std::string& file,
+                            const files::Table& table, std::string_view option,
+                            std::initializer_list<std::string_view> usual, Eigen::Index otherwise) {
+    if (options.has(option)) {
+        options.push(option);
+        const auto found = column_at(L, -1, table.names, option);
+        if (!found) {
+            options.fail(text::in_call(file, found.error()));
+        }
+        lua_pop(L, 1);
+        return *found;
+    }
+    for (const std::string_view name : usual) {
+        if (const auto found = std::find(table.names.begin(), table.names.end(), name); found != table.names.end()) {
+            return found - table.names.begin();
+        }
+    }
+    return otherwise;
+}
+
+/// In files, times are counted by the row, not by the index of a table.
+void check_times(const lua::Options& options, const std::string& file, const files::Table& table, Eigen::Index column) {
+    const auto t = table.values.col(column);
+    for (Eigen::Index i = 1; i < t.size(); ++i) {
+        if (!(t[i] > t[i - 1])) {
+            options.fail(
+                {fmt::format("{}: row {} of the numbers has {} = {}, which is not after {} in the row "
+                             "before; times must increase",
+                             file, i + 1, table.names[static_cast<std::size_t>(column)], t[i], t[i - 1])});
+        }
+    }
+}
+
+int samples_from_file(lua_State* L) {
+    const std::string file = lua_tostring(L, 1);
+    const lua::Options options(L, 2, file_call);
+    auto read = files::read_csv(file);
+    if (lua::interrupt_requested()) {
+        lua::raise_interrupted(L);  // what was read is not all
+    }
+    if (!read) {
+        options.fail(read.error());
+    }
+    const files::Table table = std::move(read).value();
+    if (table.values.rows() == 0) {
+        options.fail({fmt::format("{} has names but no rows of numbers", file)});
+    }
+    if (table.values.cols() < 2) {
+        options.fail({fmt::format("{} has only one column; times and values are two", file)});
+    }
+    const Eigen::Index time = samples_column(L, options, file, table, "time", {"t", "time"}, 0);
+    const Eigen::Index value = samples_column(L, options, file, table, "value", {"M"}, time == 1 ? 0 : 1);
+    check_times(options, file, table, time);
+    const auto numbers = [&](Eigen::Index column) {
+        const auto values = table.values.col(column);
+        return std::vector<double>(values.data(), values.data() + values.size());
+    };
+    // The columns by name, so that the text still means the same when the file gets another one; numbers where it has
+    // no names are found by these names, too.
+    const auto name = [&](Eigen::Index column) { return text::quoted(table.names[static_cast<std::size_t>(column)]); };
+    return push_term(
+        L, std::make_shared<const model::Samples>(model::Samples{
+               .t = numbers(time),
+               .M = numbers(value),
+               .origin = fmt::format("{}, {{ time = {}, value = {} }}", text::quoted(file), name(time), name(value))}));
+}
+
+int samples(lua_State* L) {
+    if (lua_type(L, 1) == LUA_TSTRING) {
+        return samples_from_file(L);
+    }
+    if (lua_type(L, 1) != LUA_TTABLE) {
+        lua::raise(L, {.sentence = fmt::format("{} takes the name of a file or a table of points, got {}; for example "
+                                               "{}",
+                                               file_call.name, lua::describe(L, 1), file_call.example),
+                       .call = file_call.name,
+                       .culprit = lua::written(L, 1)});
+    }
+    return push_term(
+        L, std::make_shared<const model::Samples>(lua::read<model::Samples>(L, 1, model::Polyline::about.call)));
+}
+
+// ---- excitation.scripted(f, { breaks = { 0.5, 2 }, period = 3 })
+
+int scripted(lua_State* L) {
+    constexpr const text::Call& call = model::Scripted::about.call;
+    if (!lua::is_callable(L, 1) || lua::test<model::Excitation>(L, 1) != nullptr) {
+        lua::raise(L, {.sentence = fmt::format("{} needs a function, got {}; for example {}", call.name,
+                                               lua::describe(L, 1), call.example),
+                       .call = call.name,
+                       .culprit = lua::written(L, 1)});
+    }
+    auto term = lua::read<model::Scripted>(L, 2, call);
+    const auto function = std::make_shared<lua::LuaFunction>(L, 1);
+    term.function = function;
+    term.feedback = function->feedback();
+    return push_term(L, std::move(term));
+}
+
+// ---- the functions
+
+/// How Lua makes a term: by one table that fills it, unless it is one of the two below.
+template <class T>
+struct Maker {
+    static constexpr text::FixedText<96> signature{T::about.call.name, "{ OPTIONS } -> excitation"};
+    static constexpr std::array<const text::Call*, 2> calls{&T::about.call};
+    static int make(lua_State* L) { return push_term(L, lua::read<T>(L, 1, T::about.call)); }
+};
+template <>
+struct Maker<model::Polyline> {
+    static constexpr text::FixedText<96> signature{
+        "excitation.samples(file, { OPTIONS }) or excitation.samples{ OPTIONS } -> excitation"};
+    static constexpr std::array<const text::Call*, 2> calls{&file_call, &model::Polyline::about.call};
+    static int make(lua_State* L) { return samples(L); }
+};
+template <>
+struct Maker<model::Scripted> {
+    static constexpr text::FixedText<96> signature{"excitation.scripted(f, { OPTIONS }) -> excitation"};
+    static constexpr std::array<const text::Call*, 2> calls{&model::Scripted::about.call};
+    static int make(lua_State* L) { return scripted(L); }
+};
+
+template <class... T>
+constexpr std::array<lua::Member, sizeof...(T)> functions_of(model::TermList<T...> /*all*/) {
+    constexpr std::string_view module = "excitation.";
+    return {lua::Member{T::about.call.name + module.size(),
+                        lua::guarded<Maker<T>::make>,
+                        lua::Kind::function,
+                        {Maker<T>::signature.c_str(), T::about.summary, T::about.example, Maker<T>::calls}}...};
+}
+
+constexpr auto excitation_module_members = functions_of(model::Terms());
 
 }  // namespace
 

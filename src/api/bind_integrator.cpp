@@ -1,101 +1,166 @@
-// integrator.rk4{...}, integrator.dinal1989{...} and the objects they make.
+// integrator.NAME{...} for every row of motion/integrators.hpp, and the objects they make: their options are fields.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
-#include <optional>
+#include <deque>
+#include <string>
+#include <type_traits>
+#include <vector>
 
 #include "api/cards.hpp"
 #include "api/classes.hpp"
 #include "lua/options.hpp"
 #include "motion/integrators.hpp"
 #include "source/describe.hpp"
+#include "text/fixed_text.hpp"
 
 namespace dinal::api {
 
 namespace {
 
-double step(const lua::Options& options) {
-    const double h = options.number("h");
-    if (h <= 0) {
-        options.fail(fmt::format("h = {:.6g} must be positive", h));
-    }
-    return h;
-}
-
-int spectral(lua_State* L) {
-    const lua::Options options(L, 1, "integrator.spectral", "integrator.spectral{ tolerance = 1e-12 }",
-                               {"tolerance", "max_panel"});
-    motion::Spectral method;
-    method.tolerance = options.number("tolerance", method.tolerance);
-    if (method.tolerance <= 0 || method.tolerance >= 1) {
-        options.fail(fmt::format("tolerance = {:.6g} must be between 0 and 1", method.tolerance));
-    }
-    if (options.has("max_panel")) {
-        method.max_panel = options.number("max_panel");
-        if (method.max_panel <= 0) {
-            options.fail(fmt::format("max_panel = {:.6g} must be positive", method.max_panel));
-        }
-    }
-    lua::push<motion::Integrator>(L, method);
-    return 1;
-}
-
-int rk4(lua_State* L) {
-    const lua::Options options(L, 1, "integrator.rk4", "integrator.rk4{ h = 0.001 }", {"h"});
-    lua::push<motion::Integrator>(L, motion::Rk4{step(options)});
-    return 1;
-}
-
-int dinal1989(lua_State* L) {
-    const lua::Options options(L, 1, "integrator.dinal1989", "integrator.dinal1989{ h = 0.01 }", {"h", "stop", "slip"});
-    motion::Dinal1989 method;
-    method.h = step(options);
-    method.stop = options.choice("stop", {"listing", "text"}, 0) == 0 ? motion::Dinal1989::Stop::listing
-                                                                      : motion::Dinal1989::Stop::text;
-    method.slip = options.boolean("slip", false);
-    lua::push<motion::Integrator>(L, method);
-    return 1;
+constexpr const char* name_of(const motion::MethodText& about) {
+    constexpr std::string_view module = "integrator.";
+    return about.call.name + module.size();
 }
 
 motion::Integrator& integrator_self(lua_State* L) {
     return lua::self<motion::Integrator>(L, 1, "integrator.h");
 }
 
-int name(lua_State* L) {
-    constexpr std::array names{"spectral", "rk4", "dinal1989"};  // in the order of the variant
-    static_assert(std::variant_size_v<motion::Integrator> == names.size());
-    lua_pushstring(L, names.at(integrator_self(L).index()));
+// ---- integrator.rk4{ h = 0.001 }
+
+template <class M>
+int make(lua_State* L) {
+    lua::push<motion::Integrator>(L, lua::read<M>(L, 1, M::about.call));
     return 1;
 }
 
-/// A number, or nil where there is none or it is without limit.
-int push_finite(lua_State* L, std::optional<double> value) {
-    if (value && std::isfinite(*value)) {
-        lua_pushnumber(L, *value);
+template <class M>
+constexpr text::FixedText<64> signature{M::about.call.name, "{ OPTIONS } -> integrator"};
+
+template <class... M>
+constexpr std::array<lua::Member, sizeof...(M)> functions_of(std::type_identity<std::variant<M...>> /*all*/) {
+    return {lua::Member{name_of(M::about),
+                        lua::guarded<make<M>>,
+                        lua::Kind::function,
+                        {signature<M>.c_str(), M::about.summary, M::about.example, {&M::about.call}}}...};
+}
+
+constexpr auto integrator_module_members = functions_of(std::type_identity<motion::Integrator>());
+
+// ---- integrator.h
+
+const text::Option* find_option(const motion::MethodText& about, std::string_view name) {
+    const auto found = std::find_if(about.call.options.begin(), about.call.options.end(),
+                                    [=](const text::Option& option) { return option.name == name; });
+    return found == about.call.options.end() ? nullptr : &*found;
+}
+
+/// An option of one method or of several.
+struct Field {
+    const text::Option* option;
+    const motion::MethodText* method;  ///< the first that has it
+    std::string lacking;               ///< "spectral and rk4"
+};
+
+template <class... M>
+std::vector<Field> fields_of(std::type_identity<std::variant<M...>> /*all*/) {
+    const std::array<const motion::MethodText*, sizeof...(M)> methods{&M::about...};
+    std::vector<Field> fields;
+    for (const motion::MethodText* method : methods) {
+        for (const text::Option& option : method->call.options) {
+            const auto has_it = [&](const auto* other) { return find_option(*other, option.name) != nullptr; };
+            if (*std::find_if(methods.begin(), methods.end(), has_it) != method) continue;
+            std::vector<std::string_view> lacking;
+            for (const motion::MethodText* other : methods) {
+                if (!has_it(other)) lacking.emplace_back(name_of(*other));
+            }
+            fields.push_back({&option, method, fmt::format("{}", fmt::join(lacking, " and "))});
+        }
+    }
+    return fields;
+}
+
+const std::vector<Field>& fields() {
+    static const std::vector<Field> all = fields_of(std::type_identity<motion::Integrator>());
+    return all;
+}
+
+/// A value that is absent or without limit is nil.
+void push_option(lua_State* L, const text::Option& option, const text::OptionValue& value) {
+    if (const auto* number = std::get_if<double>(&value); number != nullptr && std::isfinite(*number)) {
+        lua_pushnumber(L, *number);
+    } else if (const bool* flag = std::get_if<bool>(&value)) {
+        lua_pushboolean(L, *flag ? 1 : 0);
+    } else if (const auto* choice = std::get_if<std::size_t>(&value)) {
+        lua_pushstring(L, option.choices[*choice]);
     } else {
         lua_pushnil(L);
     }
+}
+
+template <std::size_t i>
+int option_field(lua_State* L) {
+    std::visit(
+        [L](const auto& method) {
+            const text::Option* option = find_option(method.about, fields()[i].option->name);
+            option != nullptr ? push_option(L, *option, option->filled.get(&method)) : lua_pushnil(L);
+        },
+        integrator_self(L));
     return 1;
 }
 
-int h(lua_State* L) {
-    const motion::Integrator& integrator = integrator_self(L);
-    const auto* rk4 = std::get_if<motion::Rk4>(&integrator);
-    const auto* listing = std::get_if<motion::Dinal1989>(&integrator);
-    return push_finite(L, rk4 != nullptr       ? std::optional(rk4->h)
-                          : listing != nullptr ? std::optional(listing->h)
-                                               : std::nullopt);
+template <class... M, std::size_t... i>
+constexpr auto getters_of(std::type_identity<std::variant<M...>> /*all*/, std::index_sequence<i...> /*places*/) {
+    return std::array{lua::guarded<option_field<i>>...};
 }
 
-int tolerance(lua_State* L) {
-    const auto* method = std::get_if<motion::Spectral>(&integrator_self(L));
-    return push_finite(L, method != nullptr ? std::optional(method->tolerance) : std::nullopt);
+template <class... M>
+constexpr std::size_t options_of(std::type_identity<std::variant<M...>> /*all*/) {
+    return (M::about.call.options.size() + ...);  // at least as many as there are fields
 }
 
-int max_panel(lua_State* L) {
-    const auto* method = std::get_if<motion::Spectral>(&integrator_self(L));
-    return push_finite(L, method != nullptr ? std::optional(method->max_panel) : std::nullopt);
+constexpr auto getters = getters_of(std::type_identity<motion::Integrator>(),
+                                    std::make_index_sequence<options_of(std::type_identity<motion::Integrator>())>());
+
+/// What the example of the method makes of the option, as Lua text.
+std::string value_in_example(const Field& field) {
+    const std::string_view example = field.method->call.example;
+    const std::string given = fmt::format(" {} = ", field.option->name);
+    if (const auto at = example.find(given); at != std::string_view::npos) {
+        const std::string_view rest = example.substr(at + given.size());
+        return std::string(rest.substr(0, rest.find_first_of(", ")));
+    }
+    text::Option of_new_object = *field.option;
+    of_new_object.otherwise = text::its_own;
+    const std::string value = text::default_text(of_new_object);
+    return value.empty() ? "nil" : value;
+}
+
+lua::Member member_of(std::size_t i) {
+    static std::deque<std::string> texts;  // as long as the program: a Doc only points to its texts
+    const auto kept = [](std::string text) { return texts.emplace_back(std::move(text)).c_str(); };
+    const Field& field = fields()[i];
+    const text::Option& option = *field.option;
+    const char* type = option.filled.kind == text::OptionKind::number ? "number"
+                       : option.filled.kind == text::OptionKind::flag ? "boolean"
+                                                                      : "string";
+    const std::string unit = *option.unit == '\0' ? "" : fmt::format(" ({})", option.unit);
+    const std::string lacking = field.lacking.empty() ? "" : fmt::format("; nil for {}", field.lacking);
+    return {option.name,
+            getters[i],
+            lua::Kind::field,
+            {kept(fmt::format("integrator.{} -> {}", option.name, type)),
+             kept(fmt::format("Its option {}: {}{}{}.", option.name, option.meaning, unit, lacking)),
+             kept(fmt::format("print({}.{} == {})  --> true", field.method->call.example, option.name,
+                              value_in_example(field)))}};
+}
+
+int name(lua_State* L) {
+    lua_pushstring(L, name_of(motion::MethodView(integrator_self(L)).about()));
+    return 1;
 }
 
 int integrator_text(lua_State* L) {
@@ -103,71 +168,32 @@ int integrator_text(lua_State* L) {
     return 1;
 }
 
-constexpr lua::Member integrator_module_members[] = {
-    {"spectral",
-     lua::guarded<spectral>,
-     lua::Kind::function,
-     {"integrator.spectral{ tolerance = 1e-12, max_panel = 0.6 T0 } -> integrator",
-      "The default: the motion as polynomials on panels between events and breaks of M, right to rounding for any M, "
-      "with every event in its place. tolerance is relative, for each panel. A pulse of a scripted M that falls "
-      "between the 17 samples of a panel is not seen: announce it by excitation.scripted(f, { breaks = {...} }), or "
-      "take max_panel (time units) a few times as long as the shortest pulse.",
-      "sys = nondimensional{ friction_ratio = 0.167 }\n"
-      "run = sys:simulate{ velocity0 = 2*math.pi, t_end = 3, dt = 0.5, integrator = integrator.spectral{} }\n"
-      "print(string.format(\"%.9f\", (run:at(3))))  --> 0.155151392"}},
-    {"rk4",
-     lua::guarded<rk4>,
-     lua::Kind::function,
-     {"integrator.rk4{ h } -> integrator",
-      "The classical Runge-Kutta method of fourth order with step h (time units), which keeps its order through dry "
-      "friction: a step is cut where the velocity becomes zero and where M jumps. h must not exceed the stability "
-      "limit, 0.45 T0 without damping.",
-      "print(integrator.rk4{ h = 0.001 })  --> integrator.rk4{ h = 0.001 }"}},
-    {"dinal1989",
-     lua::guarded<dinal1989>,
-     lua::Kind::function,
-     {"integrator.dinal1989{ h, stop = \"listing\", slip = false } -> integrator",
-      "The program DINAL as it was printed in 1989, with step h (time units) and its own rule for stops; a museum "
-      "piece for comparison. stop = \"text\" takes the rule that the report's text states instead; slip = true repeats "
-      "the wrong index with which the report's chapter 6 was computed.",
-      "sys = nondimensional{}\n"
-      "run = sys:simulate{ theta0 = 1, t_end = 0.5, dt = 0.5, integrator = integrator.dinal1989{ h = 0.1 } }\n"
-      "print(string.format(\"%.6f\", run.theta[2]))  --> -0.997964"}},
-};
+std::vector<lua::Member> all_members() {
+    std::vector<lua::Member> members = {
+        {"name",
+         lua::guarded<name>,
+         lua::Kind::field,
+         {"integrator.name -> string", "The name of the method.", "print(integrator.rk4{ h = 0.001 }.name)  --> rk4"}},
+        {"__tostring",
+         lua::guarded<integrator_text>,
+         lua::Kind::metamethod,
+         {"tostring(integrator) -> string", "The Lua text that makes it again.",
+          "print(integrator.dinal1989{ h = 0.01 })  --> integrator.dinal1989{ h = 0.01 }"}},
+    };
+    for (std::size_t i = 0; i < fields().size(); ++i) members.insert(members.end() - 1, member_of(i));
+    return members;
+}
 
-constexpr lua::Member integrator_members[] = {
-    {"name",
-     lua::guarded<name>,
-     lua::Kind::field,
-     {"integrator.name -> string", "The name of the method.", "print(integrator.rk4{ h = 0.001 }.name)  --> rk4"}},
-    {"h",
-     lua::guarded<h>,
-     lua::Kind::field,
-     {"integrator.h -> number", "The step, in time units; nil for spectral.",
-      "print(integrator.rk4{ h = 0.001 }.h)  --> 0.001"}},
-    {"tolerance",
-     lua::guarded<tolerance>,
-     lua::Kind::field,
-     {"integrator.tolerance -> number", "The relative tolerance of spectral; nil for the others.",
-      "print(integrator.spectral{}.tolerance)  --> 1e-12"}},
-    {"max_panel",
-     lua::guarded<max_panel>,
-     lua::Kind::field,
-     {"integrator.max_panel -> number", "The longest panel of spectral that was asked for, in time units, or nil.",
-      "print(integrator.spectral{ max_panel = 0.02 }.max_panel)  --> 0.02"}},
-    {"__tostring",
-     lua::guarded<integrator_text>,
-     lua::Kind::metamethod,
-     {"tostring(integrator) -> string", "The Lua text that makes it again.",
-      "print(integrator.dinal1989{ h = 0.01 })  --> integrator.dinal1989{ h = 0.01 }"}},
-};
+const std::vector<lua::Member> integrator_members = all_members();
+
+constexpr text::FixedText<128> module_summary{"The methods a run can use. A run that names none takes ",
+                                              motion::default_integrator.c_str(), "."};
 
 }  // namespace
 
 const lua::Class integrator_module = {
     "integrator",
-    {"integrator.NAME{ ... } -> integrator",
-     "The methods a run can use. A run that names none takes integrator.spectral{}.",
+    {"integrator.NAME{ ... } -> integrator", module_summary.c_str(),
      "sys = nondimensional{ zeta = 0.1 }\n"
      "run = sys:simulate{ theta0 = 1, t_end = 2, dt = 0.5, integrator = integrator.rk4{ h = 0.01 } }\n"
      "print(run.integrator)  --> integrator.rk4{ h = 0.01 }"},

@@ -20,15 +20,11 @@ plots::RunData data_of(const RunHandle& run) {
 }
 
 /// The name or number of a column on the top of the stack, as a name. "M/k" is left to those who know it.
-std::string column_on_top(lua_State* L, const lua::Options& options, std::string_view option, const RunHandle& run) {
-    if (lua_type(L, -1) != LUA_TSTRING && lua_isinteger(L, -1) == 0) {
-        options.fail(
-            fmt::format("{} must be the name or the number of a column, got {}", option, lua::describe(L, -1)));
-    }
+std::string column_on_top(lua_State* L, const lua::Options& options, std::string_view what, const RunHandle& run) {
     if (lua_type(L, -1) == LUA_TSTRING) {
         return lua_tostring(L, -1);
     }
-    const auto column = files::find_column(run->trajectory.names, std::int64_t{lua_tointeger(L, -1)});
+    const auto column = column_at(L, -1, run->trajectory.names, what);
     if (!column) {
         options.fail(column.error());
     }
@@ -42,7 +38,8 @@ std::vector<std::string> asked_columns(lua_State* L, const lua::Options& options
     if (lua_istable(L, -1)) {
         const auto count = static_cast<lua_Integer>(lua_rawlen(L, -1));
         if (count == 0) {
-            options.fail(fmt::format("{} must name a column at least, such as {{ \"theta\", \"friction\" }}", option));
+            options.fail(option,
+                         fmt::format("{} must name a column at least, such as {{ \"theta\", \"friction\" }}", option));
         }
         for (lua_Integer i = 1; i <= count; ++i) {
             lua_rawgeti(L, -1, i);
@@ -65,7 +62,7 @@ plots::Figure value_or_fail(const lua::Options& options, text::Expected<plots::F
 
 void refuse_empty(const lua::Options& options, const RunHandle& run) {
     if (run->trajectory.size() == 0) {
-        options.fail("the run has no rows to draw; simulate it with dt = ... or times = { ... }");
+        options.fail({"the run has no rows to draw; simulate it with dt = ... or times = { ... }"});
     }
 }
 
@@ -101,12 +98,12 @@ int plot_vectors(lua_State* L) {
     const lua::Options options(L, 1, pictures_call);
     if (!items.curves.empty()) {
         options.fail(
-            "curves and pictures can not stand together: put the curves into a picture of their own, plot{ ..., "
-            "show = false }");
+            {"curves and pictures can not stand together: put the curves into a picture of their own, "
+             "plot{ ..., show = false }"});
     }
     constexpr std::size_t most = 6;
     if (items.panels.size() > most) {
-        options.fail(fmt::format("{} pictures side by side are too many, {} fit", items.panels.size(), most));
+        options.fail({fmt::format("{} pictures side by side are too many, {} fit", items.panels.size(), most)});
     }
     return deliver(L, options, std::move(items.panels));
 }
@@ -139,7 +136,7 @@ int plot_run(lua_State* L) {
     refuse_empty(options, run);
     const std::vector<std::string> x = asked_columns(L, options, "x", run);
     if (x.size() > 1) {
-        options.fail("x must be one column");
+        options.fail("x", "x must be one column");
     }
     plots::Figure figure = value_or_fail(
         options, plots::column_figure(data_of(run), x.empty() ? "" : x.front(), asked_columns(L, options, "y", run)));

@@ -14,6 +14,7 @@
 #include "lua/external_memory.hpp"
 #include "lua/user_function.hpp"
 #include "lua/vector.hpp"
+#include "text/fixed_text.hpp"
 
 namespace dinal::api {
 
@@ -80,14 +81,7 @@ int columns(lua_State* L) {
     }
     luaL_checkstack(L, asked + 5, "too many columns");
     for (int i = 2; i <= asked + 1; ++i) {
-        if (lua_type(L, i) != LUA_TSTRING && lua_isinteger(L, i) == 0) {
-            lua::raise(L, {.sentence = "run:columns takes names or numbers of columns, got " + lua::describe(L, i),
-                           .call = "run:columns",
-                           .culprit = lua::written(L, i)});
-        }
-        const auto column = lua_type(L, i) == LUA_TSTRING
-                                ? files::find_column(names, std::string_view(lua_tostring(L, i)))
-                                : files::find_column(names, std::int64_t{lua_tointeger(L, i)});
+        const auto column = column_at(L, i, names, fmt::format("argument {}", i - 1));
         if (!column) {
             lua::raise(L, text::in_call("run:columns", column.error()));
         }
@@ -166,6 +160,9 @@ int run_text(lua_State* L) {
 }
 
 #define DINAL_RUN "run = nondimensional{}:simulate{ M = 3, theta0 = 1, t_end = 2, dt = 0.5 }\n"
+
+constexpr text::FixedText<160> integrator_example{DINAL_RUN "print(run.integrator)  --> ",
+                                                  motion::default_integrator.c_str()};
 
 constexpr lua::Member run_members[] = {
     {"at",
@@ -296,7 +293,7 @@ constexpr lua::Member run_members[] = {
      lua::Kind::field,
      {"run.integrator -> integrator or nil",
       "The integrator that was used, also when none was asked for; nil in a run that was read from a file.",
-      DINAL_RUN "print(run.integrator)  --> integrator.spectral{}"}},
+      integrator_example.c_str()}},
     {"__len",
      lua::guarded<run_length>,
      lua::Kind::metamethod,
@@ -322,6 +319,19 @@ const lua::Class run_class = {
     run_card};
 
 #undef DINAL_RUN
+
+text::Expected<Eigen::Index> column_at(lua_State* L, int index, std::span<const std::string> names,
+                                       std::string_view what) {
+    if (lua_type(L, index) == LUA_TSTRING) {
+        return files::find_column(names, std::string_view(lua_tostring(L, index)));
+    }
+    if (lua_isinteger(L, index) != 0) {
+        return files::find_column(names, std::int64_t{lua_tointeger(L, index)});
+    }
+    return text::Error{
+        .sentence = fmt::format("{} must be the name or the number of a column, got {}", what, lua::describe(L, index)),
+        .culprit = lua::written(L, index)};
+}
 
 void push_run(lua_State* L, Run run) {
     const std::size_t bytes = run.trajectory.rows.table().own_bytes();

@@ -7,6 +7,7 @@
 
 #include "lua/bind.hpp"
 #include "lua/options.hpp"
+#include "motion/integrators.hpp"
 #include "motion/simulate.hpp"
 #include "source/origin.hpp"
 
@@ -62,7 +63,7 @@ inline constexpr text::Option simulate_options[] = {
      .filled = text::fills<&RunOptions::times>,
      .instead_of_previous = true},
     {.name = "integrator",
-     .otherwise = "integrator.spectral{}",
+     .otherwise = motion::default_integrator.c_str(),
      .meaning = "the method",
      .object = "integrator",
      .wanted = "an integrator such as integrator.rk4{ h = 0.001 }"},
@@ -92,8 +93,7 @@ inline constexpr text::Call continue_call{"run:continue", "run:continue{ t_end =
 
 inline constexpr lua::Doc simulate_doc = {
     "sys:simulate{ OPTIONS } -> run",
-    "Runs the system, by integrator.spectral unless told otherwise. "
-    "When M fails or Ctrl-C is pressed, what was done so far is in dinal.partial.",
+    "Runs the system. When M fails or Ctrl-C is pressed, what was done so far is in dinal.partial.",
     "sys = nondimensional{ friction_ratio = 0.167 }\n"
     "run = sys:simulate{ theta0 = 0, velocity0 = 2*math.pi, t_end = 3, dt = 0.01 }\n"
     "print(run.outcome, string.format(\"%.6f\", run:at(3)))  --> at rest\t0.155151",

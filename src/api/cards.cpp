@@ -53,18 +53,8 @@ std::string system_card(lua_State* L, int index, const terminal::Display& screen
 }
 
 std::string integrator_card(lua_State* L, int index, const terminal::Display& screen) {
-    const motion::Integrator& integrator = *lua::test<motion::Integrator>(L, index);
-    std::string text = source::lua_text(integrator);
-    if (const auto* method = std::get_if<motion::Spectral>(&integrator)) {
-        const std::string panel = std::isfinite(method->max_panel)
-                                      ? fmt::format("{}", method->max_panel)
-                                      : fmt::format("{} T0", motion::spectral::longest_panel);
-        text = fmt::format("integrator.spectral{{ tolerance = {}, max_panel = {} }}", method->tolerance, panel);
-    } else if (const auto* listing = std::get_if<motion::Dinal1989>(&integrator)) {
-        text = fmt::format("integrator.dinal1989{{ h = {}, stop = \"{}\", slip = {} }}", listing->h,
-                           listing->stop == motion::Dinal1989::Stop::text ? "text" : "listing", listing->slip);
-    }
-    return text::wrapped(text, screen.width - 1);
+    const motion::MethodView method = *lua::test<motion::Integrator>(L, index);
+    return text::wrapped(method.lua_text(text::Defaults::told), screen.width - 1);
 }
 
 std::string vector_card(lua_State* L, int index, const terminal::Display& screen) {

@@ -16,8 +16,8 @@ motion::Grid asked_rows(const lua::Options& options, const MoreTime& asked, cons
     const std::span<const double> times = task.rows.times();
     std::vector<double> more = asked.times.value_or(std::vector<double>());
     if (!more.empty() && more.front() <= so_far.t_stop) {
-        options.fail(fmt::format("times[1] = {:.17g} must be after t = {:.6g}, where the run ended", more.front(),
-                                 so_far.t_stop));
+        options.fail("times", fmt::format("times[1] = {:.17g} must be after t = {:.6g}, where the run ended",
+                                          more.front(), so_far.t_stop));
     }
     if (const auto wrong = motion::Grid::at(more).within({so_far.t_stop, t_end}); !wrong) {
         options.fail(wrong.error());
@@ -39,7 +39,8 @@ double asked_end(const lua::Options& options, const MoreTime& asked, const motio
     if (so_far.t_stop < task.window.end) {
         return task.window.end;
     }
-    options.fail(fmt::format("the run reached its end at t = {:.6g}: say how far it is to go on, for example {}",
+    options.fail("t_end",
+                 fmt::format("the run reached its end at t = {:.6g}: say how far it is to go on, for example {}",
                              so_far.t_stop, continue_call.example));
 }
 
@@ -53,15 +54,15 @@ int continue_run(lua_State* L) {
     const motion::Trajectory& so_far = run->trajectory;
     if (!run->origin) {
         options.fail(
-            "a run that was read from a file can not go on; start one there with sys:simulate{ theta0, "
-            "velocity0, t_start, ... }");
+            {"a run that was read from a file can not go on; start one there with sys:simulate{ theta0, "
+             "velocity0, t_start, ... }"});
     }
     source::Origin origin = *run->origin;
     const bool spaced = origin.rows.dt() > 0;
     if (spaced && asked.times) {
-        options.fail(
-            fmt::format("this run has a row every dt = {:.6g}, and goes on so; times are for runs that had times",
-                        origin.rows.dt()));
+        options.fail("times", fmt::format("this run has a row every dt = {:.6g}, and goes on so; times are for runs "
+                                          "that had times",
+                                          origin.rows.dt()));
     }
     origin.window.end = asked_end(options, asked, so_far, origin);
     if (!spaced) {

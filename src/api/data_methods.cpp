@@ -69,8 +69,8 @@ std::vector<std::string> asked_names(lua_State* L, const lua::Options& options, 
     } else if (lua_istable(L, place) && lua_rawlen(L, place) > 0) {
         for (lua_Integer i = 1; i <= static_cast<lua_Integer>(lua_rawlen(L, place)); ++i) {
             if (lua_rawgeti(L, place, i) != LUA_TSTRING) {
-                options.fail(
-                    fmt::format("{}[{}] must be the name of a column, got {}", option, i, lua::describe(L, -1)));
+                options.fail(option, fmt::format("{}[{}] must be the name of a column, got {}", option, i,
+                                                 lua::describe(L, -1)));
             }
             names.emplace_back(lua_tostring(L, -1));
             lua_pop(L, 1);
@@ -113,14 +113,14 @@ int plot(lua_State* L) {
     const DataHandle data = self(L, "d:plot{ x = \"r\", y = \"A\" }");
     const lua::Options options(L, 2, plot_data_call);
     std::vector<std::string> x = asked_names(L, options, "x"), y = asked_names(L, options, "y");
-    if (x.size() > 1) options.fail("x must be one column");
+    if (x.size() > 1) options.fail("x", "x must be one column");
     if (x.empty()) x.push_back(data->columns.front().name);
     for (std::size_t i = 0; i < data->columns.size() && y.empty(); ++i) {
         const DataColumn& column = data->columns[i];
         if (column.name != x.front() && column.numbers() != nullptr) y.push_back(column.name);
     }
-    if (y.empty()) options.fail("there is no other column of numbers to draw");
-    if (data->size() == 0) options.fail("there are no rows to draw");
+    if (y.empty()) options.fail({"there is no other column of numbers to draw"});
+    if (data->size() == 0) options.fail({"there are no rows to draw"});
     plots::Figure figure;
     figure.x.label = x.front();
     figure.y.label = y.size() == 1 ? y.front() : "";

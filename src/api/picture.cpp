@@ -21,19 +21,18 @@ namespace {
 plots::Interval asked_range(const lua::Options& options, std::string_view name, const std::vector<double>& ends,
                             bool logarithmic) {
     if (ends.size() != 2 || !(ends[0] < ends[1])) {
-        options.fail(fmt::format("{} must be two increasing numbers such as {{ 0, 10 }}", name));
+        options.fail(name, fmt::format("{} must be two increasing numbers such as {{ 0, 10 }}", name));
     }
     if (logarithmic && ends[0] <= 0) {
-        options.fail(
-            fmt::format("{} = {{ {:.6g}, {:.6g} }} must be positive on a logarithmic axis", name, ends[0], ends[1]));
+        options.fail(name, fmt::format("{} = {{ {:.6g}, {:.6g} }} must be positive on a logarithmic axis", name,
+                                       ends[0], ends[1]));
     }
     // So far apart, or so close together, that fractions of the axis could not be told.
     if (!(ends[1] - ends[0] <= 1e300) || ends[1] - ends[0] < plots::shortest_axis ||
         ends[1] - ends[0] < 1e-13 * std::max(std::fabs(ends[0]), std::fabs(ends[1]))) {
-        options.fail(
-            fmt::format("{} = {{ {}, {} }} can not be drawn: its ends must differ by more than 1e-13 of their size, by "
-                        "more than 1e-305 and by less than 1e300",
-                        name, ends[0], ends[1]));
+        options.fail(name, fmt::format("{} = {{ {}, {} }} can not be drawn: its ends must differ by more than 1e-13 of "
+                                       "their size, by more than 1e-305 and by less than 1e300",
+                                       name, ends[0], ends[1]));
     }
     return {ends[0], ends[1]};
 }
@@ -52,7 +51,8 @@ void set_ticks(lua_State* L, const lua::Options& options, std::string_view name,
     }
     axis.division = options.number(name);
     if (axis.logarithmic) {
-        options.fail(fmt::format("{} must be a list of numbers such as {{ 0.1, 1, 10 }} on a logarithmic axis", name));
+        options.fail(name,
+                     fmt::format("{} must be a list of numbers such as {{ 0.1, 1, 10 }} on a logarithmic axis", name));
     }
 }
 
@@ -75,7 +75,7 @@ plots::PaperSize asked_size(const lua::Options& options, const TargetOptions& as
     const std::vector<double>& size = *asked.size;
     if (size.size() != 2 || *std::min_element(size.begin(), size.end()) < 2 ||
         *std::max_element(size.begin(), size.end()) > 100) {
-        options.fail("size must be width and height in cm, each from 2 to 100, such as { 8.5, 6 }");
+        options.fail("size", "size must be width and height in cm, each from 2 to 100, such as { 8.5, 6 }");
     }
     return {size[0], size[1]};
 }
@@ -88,6 +88,7 @@ FileKind kind_of(const lua::Options& options, std::string_view file) {
     if (known == endings.end()) {
         options.fail({.sentence = fmt::format(
                           "the name '{}' must end in .svg, .png, .pdf, .gp (gnuplot commands and data) or .txt", file),
+                      .option = "file",
                       .culprit = std::string(file)});
     }
     return static_cast<FileKind>(known - endings.begin());
@@ -151,8 +152,8 @@ void check_ticks(const lua::Options& options, std::string_view name, const plots
         axis.division ? scale.range().length() / *axis.division : static_cast<double>(axis.ticks.size());
     if (count > most) {
         options.fail(
-            fmt::format("{} makes {:.3g} ticks from {:.6g} to {:.6g}, more than {:.0f}: give a larger distance", name,
-                        count, scale.range().low, scale.range().high, most));
+            name, fmt::format("{} makes {:.3g} ticks from {:.6g} to {:.6g}, more than {:.0f}: give a larger distance",
+                              name, count, scale.range().low, scale.range().high, most));
     }
 }
 
@@ -182,7 +183,7 @@ void apply_options(lua_State* L, const lua::Options& options, plots::Figure& fig
         check_ticks(options, "yticks", figure.y, view.y);
     }
     if (figure.equal && (figure.x.logarithmic || figure.y.logarithmic)) {
-        options.fail("equal = true needs linear axes: leave out xlog and ylog");
+        options.fail("equal", "equal = true needs linear axes: leave out xlog and ylog");
     }
 }
 
@@ -194,13 +195,13 @@ int deliver(lua_State* L, const lua::Options& options, std::vector<plots::Figure
     const plots::TextFormat format = asked_format(asked, phase);
     if (asked.file) {
         if (!asked.show) {
-            options.fail("file and show = false exclude each other");
+            options.fail("show", "file and show = false exclude each other");
         }
         write_picture(L, options, asked, figures, format);
         return 0;
     }
     if (asked.size) {
-        options.fail("size is for files; give width and height for a picture in the terminal");
+        options.fail("size", "size is for files; give width and height for a picture in the terminal");
     }
     if (!asked.show) {
         const std::size_t bytes = bytes_of(figures);

@@ -20,14 +20,16 @@ plots::Numbers numbers_on_top(lua_State* L, std::string_view what) {
     if (!lua_istable(L, -1)) {
         lua::raise(L, {.sentence =
                            fmt::format("{} must be a vector or a table of numbers, got {}", what, lua::describe(L, -1)),
-                       .call = std::string(what)});
+                       .call = std::string(what),
+                       .culprit = lua::written(L, -1)});
     }
     std::vector<double> values(lua_rawlen(L, -1));
     for (std::size_t i = 0; i < values.size(); ++i) {
         if (lua_rawgeti(L, -1, static_cast<lua_Integer>(i) + 1) != LUA_TNUMBER) {
             lua::raise(L,
                        {.sentence = fmt::format("{}[{}] must be a number, got {}", what, i + 1, lua::describe(L, -1)),
-                        .call = std::string(what)});
+                        .call = std::string(what),
+                        .culprit = lua::written(L, -1)});
         }
         values[i] = lua_tonumber(L, -1);  // nan is a gap
         lua_pop(L, 1);

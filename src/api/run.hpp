@@ -26,6 +26,10 @@ using RunHandle = std::shared_ptr<const Run>;
 /// The new run as a Lua object on the top of the stack.
 void push_run(lua_State* L, Run run);
 
+/// The column whose name or number stands at `index`; an error names it `what`.
+text::Expected<Eigen::Index> column_at(lua_State* L, int index, std::span<const std::string> names,
+                                       std::string_view what);
+
 /// run:save(file [, { columns = { "t", "theta" } }]), in save_run.cpp.
 inline constexpr text::Option save_options[] = {
     {.name = "columns",

@@ -27,13 +27,8 @@ std::vector<files::NamedColumn> asked_columns(lua_State* L, const lua::Options& 
     }
     std::vector<files::NamedColumn> asked;
     for (lua_Integer i = 1; i <= static_cast<lua_Integer>(lua_rawlen(L, -1)); ++i) {
-        const bool named = lua_rawgeti(L, -1, i) == LUA_TSTRING;
-        if (!named && lua_isinteger(L, -1) == 0) {
-            options.fail(
-                fmt::format("columns[{}] must be the name or the number of a column, got {}", i, lua::describe(L, -1)));
-        }
-        const auto column = named ? files::find_column(trajectory.names, std::string_view(lua_tostring(L, -1)))
-                                  : files::find_column(trajectory.names, std::int64_t{lua_tointeger(L, -1)});
+        lua_rawgeti(L, -1, i);
+        const auto column = column_at(L, -1, trajectory.names, fmt::format("columns[{}]", i));
         if (!column) {
             options.fail(column.error());
         }
@@ -68,7 +63,9 @@ text::Expected<files::Written> write(lua_State* L, const lua::Options& options, 
                            .culprit = file};
     }
     if (options.has("columns")) {
-        return text::Error{"the record of 1989 always has its six columns; save a choice of columns as .csv"};
+        return text::Error{
+            .sentence = "the record of 1989 always has its six columns; save a choice of columns as .csv",
+            .option = "columns"};
     }
     return write_record(file, run);
 }

@@ -75,13 +75,13 @@ void TheoryArguments::refuse(std::string_view name, std::size_t i, double value,
     options_.push(name);
     const bool is_number = lua_type(L_, -1) == LUA_TNUMBER || lua_isnil(L_, -1);
     const std::string element = is_number ? "" : fmt::format("[{}]", i + 1);
-    options_.fail(fmt::format("{}{} = {:.6g} {}", name, element, value, must));
+    options_.fail(name, fmt::format("{}{} = {:.6g} {}", name, element, value, must));
 }
 
 void TheoryArguments::check_size(std::string_view name, std::size_t size) {
     if (!sized_by_.empty() && size != size_) {
-        options_.fail(
-            fmt::format("{} and {} have {} and {} numbers; they must be equally long", sized_by_, name, size_, size));
+        options_.fail(name, fmt::format("{} and {} have {} and {} numbers; they must be equally long", sized_by_, name,
+                                        size_, size));
     }
     size_ = size;
     sized_by_ = name;

@@ -76,7 +76,7 @@ int step_limit(lua_State* L) {
         const model::State initial{theta0[i], velocity0[i]};
         if (system.kinetic_friction() > 0 && initial.theta == 0 && initial.velocity == 0) {
             arguments.options().fail(
-                "theta0 or velocity0 is needed, because this rule divides by the greatest velocity");
+                "theta0", "theta0 or velocity0 is needed, because this rule divides by the greatest velocity");
         }
         if (asked.rule == options::StepRule::Name::corrected) return euler_step_limit(system, initial);
         return printed_step_limit(system, initial, own_torque ? system.characteristic_torque(initial) : Mc[i]);

@@ -33,7 +33,7 @@ int free_response_of_system(TheoryArguments& arguments) {
     const Start start(arguments);
     const Quantity t = arguments.quantity("t");
     if (arguments.options().has("omega0") || arguments.options().has("zeta")) {
-        arguments.options().fail("system excludes omega0 and zeta, which it has of its own");
+        arguments.options().fail("system", "system excludes omega0 and zeta, which it has of its own");
     }
     return arguments.push_results([&](std::size_t i) {
         if (t[i] < 0 && !start.system.friction().none()) {
@@ -49,10 +49,10 @@ double asked_count(const lua::Options& options, std::optional<double> count, con
     constexpr double most = 1e7;
     const double all = motion.extremes();
     if (!count && std::isinf(all)) {
-        options.fail("count is needed, because this motion never comes to rest");
+        options.fail("count", "count is needed, because this motion never comes to rest");
     }
     if (!count && all > most) {
-        options.fail(fmt::format("count is needed, because there are {:.6g} extremes until rest", all));
+        options.fail("count", fmt::format("count is needed, because there are {:.6g} extremes until rest", all));
     }
     return std::min(count.value_or(all), all);
 }
@@ -113,11 +113,12 @@ int half_cycle(lua_State* L) {
     const model::Oscillator* system = arguments.system();
     for (const char* name : {"zeta", "x_f", "dead_zone"}) {
         if (system != nullptr && arguments.options().has(name)) {
-            arguments.options().fail(fmt::format("system excludes {}, which it has of its own", name));
+            arguments.options().fail(name, fmt::format("system excludes {}, which it has of its own", name));
         }
     }
     if (system != nullptr && !system->damped_frequency()) {
-        arguments.options().fail(fmt::format("the system has zeta = {:.6g}: without a swing there is no next extreme",
+        arguments.options().fail("system",
+                                 fmt::format("the system has zeta = {:.6g}: without a swing there is no next extreme",
                                              system->damping_ratio()));
     }
     const Quantity X = arguments.quantity("X");

@@ -56,12 +56,4 @@ text::Expected<Eigen::Index> find_column(std::span<const std::string> names, std
     return static_cast<Eigen::Index>(number - 1);
 }
 
-text::Expected<Eigen::Index> find_column(const Table& table, std::string_view name) {
-    return find_column(std::span<const std::string>(table.names), name);
-}
-
-text::Expected<Eigen::Index> find_column(const Table& table, std::int64_t number) {
-    return find_column(std::span<const std::string>(table.names), number);
-}
-
 }  // namespace dinal::files

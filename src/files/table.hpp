@@ -32,7 +32,5 @@ std::vector<NamedColumn> named_columns(const std::vector<std::string>& names,
 /// Fails with the list of the columns there are, and a suggestion when one is spelt like it.
 text::Expected<Eigen::Index> find_column(std::span<const std::string> names, std::string_view name);
 text::Expected<Eigen::Index> find_column(std::span<const std::string> names, std::int64_t number);
-text::Expected<Eigen::Index> find_column(const Table& table, std::string_view name);
-text::Expected<Eigen::Index> find_column(const Table& table, std::int64_t number);
 
 }  // namespace dinal::files

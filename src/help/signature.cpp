@@ -37,8 +37,9 @@ bool is_class_of_objects(const Section& section) {
 std::string signature(const lua::Doc& doc) {
     std::string text = doc.signature;
     for (const text::Call* call : calls_of(doc)) {
-        const std::size_t place = text.find(options_mark);
-        text.replace(place, options_mark.size(), option_list(call->options));
+        const bool none = call->options.empty();  // then the blanks around them go, too
+        const std::size_t place = text.find(options_mark) - (none ? 1 : 0);
+        text.replace(place, options_mark.size() + (none ? 2 : 0), option_list(call->options));
     }
     return text;
 }
@@ -60,29 +61,6 @@ const text::Call* call_with(const lua::Doc& doc, Braces braces) {
         }
     }
     return nullptr;
-}
-
-std::vector<std::string> option_names(const lua::Doc& doc, Braces braces) {
-    std::vector<std::string> names;
-    if (const text::Call* call = call_with(doc, braces)) {
-        for (const text::Option& option : call->options) names.emplace_back(option.name);
-        return names;
-    }
-    const std::string_view signature = doc.signature;
-    int parentheses = 0;
-    int depth = 0;
-    std::string_view before;
-    for (const lua::Token& token : lua::tokens(signature.substr(0, signature.find("->")))) {
-        parentheses += token.is("(") ? 1 : token.is(")") ? -1 : 0;
-        depth += token.is("{") ? 1 : token.is("}") ? -1 : 0;
-        const bool begins = before == "{" || before == "," || before == "|";
-        const bool asked = (parentheses > 0) == (braces == Braces::in_parentheses);
-        if (depth == (braces == Braces::nested ? 2 : 1) && asked && begins && token.kind == lua::TokenKind::name) {
-            names.emplace_back(token.text);
-        }
-        before = token.text;
-    }
-    return names;
 }
 
 std::vector<const text::Call*> calls_of(const lua::Doc& doc) {

@@ -18,9 +18,6 @@ std::string signature(const lua::Doc& doc);
 /// The call whose table of options is passed like this; nullptr when none is.
 const text::Call* call_with(const lua::Doc& doc, Braces braces);
 
-/// The names of the options that such a table has: of the call, else those that the signature itself lists.
-std::vector<std::string> option_names(const lua::Doc& doc, Braces braces);
-
 /// The calls of a Doc.
 std::vector<const text::Call*> calls_of(const lua::Doc& doc);
 

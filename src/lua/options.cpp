@@ -29,38 +29,6 @@ Options::Options(lua_State* L, int index, const text::Call& call) : L_(L), index
     check_table();
 }
 
-Options::Options(lua_State* L, int index, std::string_view call, std::string_view example,
-                 std::initializer_list<std::string_view> names, bool may_be_absent)
-    : L_(L), index_(index), own_name_(call), own_example_(example), own_names_(names.begin(), names.end()) {
-    for (const std::string& name : own_names_) own_rows_.push_back({.name = name.c_str()});
-    call_ = {own_name_.c_str(), own_example_.c_str(), own_rows_, may_be_absent};
-    check_table();
-}
-
-double Options::extended_number(std::string_view name, double otherwise) const {
-    if (!has(name)) return otherwise;
-    text::Option option = row(name);
-    option.filled.kind = text::OptionKind::number;
-    option.range.unlimited = true;
-    return std::get<double>(value(option));
-}
-
-bool Options::boolean(std::string_view name, bool otherwise) const {
-    if (!has(name)) return otherwise;
-    text::Option option = row(name);
-    option.filled.kind = text::OptionKind::flag;
-    return std::get<bool>(value(option));
-}
-
-std::size_t Options::choice(std::string_view name, std::initializer_list<const char*> choices,
-                            std::size_t otherwise) const {
-    if (!has(name)) return otherwise;
-    text::Option option = row(name);
-    option.filled.kind = text::OptionKind::choice;
-    option.choices = {choices.begin(), choices.size()};
-    return std::get<std::size_t>(value(option));
-}
-
 void Options::check_table() const {
     if (call_.may_be_bare && lua_isnoneornil(L_, index_)) {
         lua_settop(L_, index_ - 1);
@@ -83,11 +51,12 @@ void Options::check_table() const {
         }
         const std::string_view name = lua_tostring(L_, -2);
         if (std::find(known.begin(), known.end(), name) == known.end()) {
-            raise(L_,
-                  {.sentence = fmt::format("{} has no option '{}' among {}", call_.name, name, joined(known, " and ")),
-                   .call = call_.name,
-                   .culprit = std::string(name),
-                   .cure = text::did_you_mean(name, known)});
+            raise(L_, {.sentence = known.empty() ? fmt::format("{} has no options, so no '{}' either", call_.name, name)
+                                                 : fmt::format("{} has no option '{}' among {}", call_.name, name,
+                                                               joined(known, " and ")),
+                       .call = call_.name,
+                       .culprit = std::string(name),
+                       .cure = text::did_you_mean(name, known)});
         }
         lua_pop(L_, 1);
     }
@@ -130,10 +99,10 @@ void Options::fill(const void* owner, void* object) const {
 
 void Options::check_pair(const text::Option& first, const text::Option& second) const {
     if (has(first.name) && has(second.name)) {
-        fail(fmt::format("{} and {} exclude each other; give one of them", first.name, second.name));
+        fail(second.name, fmt::format("{} and {} exclude each other; give one of them", first.name, second.name));
     }
     if (first.otherwise == text::needed && !has(first.name) && !has(second.name)) {
-        fail(fmt::format("{} or {} is needed, for example {}", first.name, second.name, call_.example));
+        fail(first.name, fmt::format("{} or {} is needed, for example {}", first.name, second.name, call_.example));
     }
 }
 
@@ -168,8 +137,9 @@ text::OptionValue Options::value(const text::Option& option) const {
             value = numbers_at(L_, -1, call_.name, option.name);
             break;
     }
-    if (const auto complaint = text::complaint(option, value)) {
-        fail({.sentence = *complaint, .option = option.name, .culprit = written(L_, -1)});
+    if (auto wrong = text::complaint(option, value)) {
+        wrong->culprit = written(L_, -1);
+        fail(*wrong);
     }
     lua_pop(L_, 1);
     return value;
@@ -222,15 +192,14 @@ void Options::fail(text::Error error) const {
     raise(L_, text::in_call(call_.name, std::move(error)));
 }
 
-void Options::fail(std::string_view sentence) const {
-    fail(text::Error{std::string(sentence)});
+void Options::fail(std::string_view option, std::string sentence) const {
+    push(option);
+    fail({.sentence = std::move(sentence), .option = std::string(option), .culprit = written(L_, -1)});
 }
 
 void Options::wrong(std::string_view name, std::string_view wanted) const {
     push(name);
-    fail({.sentence = fmt::format("{} must be {}, got {}", name, wanted, describe(L_, -1)),
-          .option = std::string(name),
-          .culprit = written(L_, -1)});
+    fail(name, fmt::format("{} must be {}, got {}", name, wanted, describe(L_, -1)));
 }
 
 void Options::missing(std::string_view name) const {

@@ -1,8 +1,6 @@
 // The one table of named options that a constructor or a method takes, checked strictly and once against its rows.
 #pragma once
 
-#include <initializer_list>
-#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -19,20 +17,6 @@ public:
     /// The table at `index`, which must be the last argument. Raises when it is no table, has positional entries or a
     /// name that is in no row. When the call may be bare, no argument is an empty table.
     Options(lua_State* L, int index, const text::Call& call);
-
-    /// The same for names alone, whose values the call checks itself.
-    Options(lua_State* L, int index, std::string_view call, std::string_view example,
-            std::initializer_list<std::string_view> names, bool may_be_absent = false);
-    [[nodiscard]] double number(std::string_view name, double otherwise) const {
-        return has(name) ? number(name) : otherwise;
-    }
-    [[nodiscard]] std::optional<double> optional_number(std::string_view name) const {
-        return has(name) ? std::optional(number(name)) : std::nullopt;
-    }
-    [[nodiscard]] double extended_number(std::string_view name, double otherwise) const;
-    [[nodiscard]] bool boolean(std::string_view name, bool otherwise) const;
-    [[nodiscard]] std::size_t choice(std::string_view name, std::initializer_list<const char*> choices,
-                                     std::size_t otherwise) const;
 
     /// Fills what the rows of a T say. Raises when an option is missing, of another kind, or out of its range.
     template <class T>
@@ -67,7 +51,8 @@ public:
 
     /// Raises the error as one of this call: "CALL: SENTENCE".
     [[noreturn]] void fail(text::Error error) const;
-    [[noreturn]] void fail(std::string_view sentence) const;
+    /// The same for what is wrong with that option.
+    [[noreturn]] void fail(std::string_view option, std::string sentence) const;
     /// Raises "CALL: NAME must be WANTED, got ...".
     [[noreturn]] void wrong(std::string_view name, std::string_view wanted) const;
     /// Raises "CALL needs NAME, for example EXAMPLE".
@@ -82,9 +67,6 @@ private:
 
     lua_State* L_;
     int index_;
-    std::string own_name_, own_example_;
-    std::vector<std::string> own_names_;
-    std::vector<text::Option> own_rows_;
     text::Call call_;
 };
 

@@ -75,11 +75,7 @@ std::optional<text::Error> complaint(const T& term) {
             return wrong;
         }
     }
-    if constexpr (std::is_same_v<T, Polyline>) {
-        return std::nullopt;  // its options are those of its samples
-    } else {
-        return terms::out_of_range(T::about.call.options, term);
-    }
+    return text::complaint(T::about.call.options, term);
 }
 
 }  // namespace

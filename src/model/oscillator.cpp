@@ -24,9 +24,7 @@ std::string_view name(Regime regime) {
 }
 
 text::Expected<Oscillator> Oscillator::make(const OscillatorParameters& p) {
-    if (auto wrong = text::complaint(oscillator_options, p)) {
-        return text::Error{*wrong};
-    }
+    if (auto wrong = text::complaint(oscillator_options, p)) return *wrong;
     const Friction friction =
         p.friction.value_or(laws::Coulomb{p.kinetic_friction, p.breakaway.value_or(p.kinetic_friction)});
     if (auto wrong = friction.complaint()) return *wrong;

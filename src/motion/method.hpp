@@ -89,7 +89,7 @@ private:
             return text::lua_text(M::about.call.name, M::about.call.options, as<M>(method), defaults);
         },
         [](const void* method, const model::Oscillator& system) -> std::optional<text::Error> {
-            if (auto sentence = text::complaint(M::about.call.options, as<M>(method))) return text::Error{*sentence};
+            if (auto wrong = text::complaint(M::about.call.options, as<M>(method))) return wrong;
             if constexpr (requires { as<M>(method).wrong_for(system); }) {
                 return as<M>(method).wrong_for(system);
             } else {

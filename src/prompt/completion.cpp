@@ -80,28 +80,26 @@ std::vector<std::string> members(lua_State* L, const TypedText& typed, bool call
     return names;
 }
 
-/// The member of ours that is called; nullptr when it is none.
-const lua::Member* called_member(lua_State* L, const OpenCall& call) {
+/// What is documented about the function of ours that is called; nullptr when it is none.
+const lua::Doc* called_doc(lua_State* L, const OpenCall& call) {
     const int top = lua_gettop(L);
     const Meaning function = meaning(L, call.function);
     lua_settop(L, top);
-    return function.kind == Meaning::Kind::member ? function.member : nullptr;
+    return function.kind == Meaning::Kind::member ? &function.member->doc : nullptr;
 }
 
 /// The rows of the options that the call takes; none when it is none of ours.
 std::span<const text::Option> options_of(lua_State* L, const OpenCall& call) {
-    const lua::Member* member = called_member(L, call);
-    const text::Call* known = member != nullptr ? help::call_with(member->doc, call.braces) : nullptr;
+    const lua::Doc* doc = called_doc(L, call);
+    const text::Call* known = doc != nullptr ? help::call_with(*doc, call.braces) : nullptr;
     return known != nullptr ? known->options : std::span<const text::Option>();
 }
 
-std::vector<std::string> option_names_of(lua_State* L, const OpenCall& call) {
+std::vector<std::string> option_names(lua_State* L, const OpenCall& call) {
     std::vector<std::string> names;
-    if (const lua::Member* member = called_member(L, call)) {
-        for (const std::string& name : help::option_names(member->doc, call.braces)) {
-            if (std::find(call.given.begin(), call.given.end(), name) == call.given.end()) {
-                names.push_back(name + " = ");
-            }
+    for (const text::Option& option : options_of(L, call)) {
+        if (std::find(call.given.begin(), call.given.end(), option.name) == call.given.end()) {
+            names.push_back(std::string(option.name) + " = ");
         }
     }
     return names;
@@ -210,7 +208,7 @@ Completion complete(lua_State* L, std::string_view before) {
             completion.names = members(L, typed, !help);
             break;
         case Cursor::option:
-            completion.names = option_names_of(L, *typed.call());
+            completion.names = option_names(L, *typed.call());
             if (completion.names.empty()) {
                 completion.names = plain_names(L, typed, !help);
             }
@@ -237,13 +235,11 @@ std::string signature_hint(lua_State* L, std::string_view before) {
     if (!typed.call() || typed.cursor() == Cursor::nothing || typed.call()->braces == help::Braces::nested) {
         return "";
     }
-    const int top = lua_gettop(L);
-    const Meaning function = meaning(L, typed.call()->function);
-    lua_settop(L, top);
-    if (function.kind != Meaning::Kind::member) {
+    const lua::Doc* doc = called_doc(L, *typed.call());
+    if (doc == nullptr) {
         return "";
     }
-    const std::string all = help::parameters(help::signature(function.member->doc));
+    const std::string all = help::parameters(help::signature(*doc));
     std::string hint;
     std::string part;
     int depth = 0;

@@ -41,18 +41,17 @@ std::string literal(const Option& option, const OptionValue& value) {
 
 }  // namespace
 
-std::optional<std::string> complaint(const Option& option, const OptionValue& value) {
+std::optional<Error> complaint(const Option& option, const OptionValue& value) {
+    std::optional<std::string> wrong;
     if (const double* number = std::get_if<double>(&value)) {
-        return complaint(option.range, *number, option.name);
+        wrong = complaint(option.range, *number, option.name);
     }
     if (const auto* numbers = std::get_if<std::vector<double>>(&value)) {
-        for (std::size_t i = 0; i < numbers->size(); ++i) {  // counted from 1, as the user does
-            if (auto wrong = complaint(option.range, (*numbers)[i], fmt::format("{}[{}]", option.name, i + 1))) {
-                return wrong;
-            }
+        for (std::size_t i = 0; i < numbers->size() && !wrong; ++i) {  // counted from 1, as the user does
+            wrong = complaint(option.range, (*numbers)[i], fmt::format("{}[{}]", option.name, i + 1));
         }
     }
-    return std::nullopt;
+    return wrong ? std::optional(Error{.sentence = *wrong, .option = option.name}) : std::nullopt;
 }
 
 std::string default_text(const Option& option) {
@@ -85,7 +84,7 @@ std::string list_literal(std::span<const double> numbers) {
 
 namespace detail {
 
-std::optional<std::string> complaint(std::span<const Option> options, const void* owner, const void* object) {
+std::optional<Error> complaint(std::span<const Option> options, const void* owner, const void* object) {
     for (const Option& option : options) {
         if (option.filled.owner == owner && option.filled.get != nullptr) {
             if (auto wrong = text::complaint(option, option.filled.get(object))) {
@@ -104,7 +103,8 @@ std::string lua_text(std::string_view call, std::span<const Option> options, con
         }
         const OptionValue value = option.filled.get(object);
         const bool same = option.otherwise != needed && value == option.filled.initial();
-        const std::string text = defaults == Defaults::left_out && same ? "" : literal(option, value);
+        std::string text = defaults == Defaults::left_out && same ? "" : literal(option, value);
+        if (text.empty() && defaults == Defaults::told) text = default_text(option);
         if (!text.empty()) {
             list += fmt::format("{}{} = {}", list.empty() ? "" : ", ", option.name, text);
         }

@@ -84,7 +84,7 @@ struct Call {
 };
 
 /// "width = -1 must be positive", "breaks[2] = inf must be finite"; none when the value may stand.
-std::optional<std::string> complaint(const Option& option, const OptionValue& value);
+std::optional<Error> complaint(const Option& option, const OptionValue& value);
 
 /// Rows one after another, for calls that share some.
 template <std::size_t... N>
@@ -106,7 +106,11 @@ std::string number_literal(double x);
 std::string list_literal(std::span<const double> numbers);
 
 /// Options that have their default, in the text of a value.
-enum class Defaults { written, left_out };
+enum class Defaults {
+    left_out,
+    written,
+    told,  ///< also what is without limit, in the words of its row, which need not be Lua: "max_panel = 0.6 T0"
+};
 
 namespace detail {
 
@@ -193,7 +197,7 @@ constexpr OptionTarget function_target() {
         nullptr, nullptr};
 }
 
-std::optional<std::string> complaint(std::span<const Option> options, const void* owner, const void* object);
+std::optional<Error> complaint(std::span<const Option> options, const void* owner, const void* object);
 std::string lua_text(std::string_view call, std::span<const Option> options, const void* object, Defaults defaults);
 
 }  // namespace detail
@@ -214,7 +218,7 @@ constexpr bool belongs_to(const Option& option) {
 
 /// The first option of the object that is out of its range: "width = -1 must be positive".
 template <class T>
-std::optional<std::string> complaint(std::span<const Option> options, const T& object) {
+std::optional<Error> complaint(std::span<const Option> options, const T& object) {
     return detail::complaint(options, &detail::owner_tag<T>, &object);
 }
 

@@ -312,23 +312,24 @@ TEST_CASE("a table that can not be written leaves the old file", "[csv]") {
 
 TEST_CASE("a column is found by name or by number from 1", "[table]") {
     const Table table{{"t", "theta", "M"}, Eigen::MatrixXd(0, 3), {}};
-    CHECK(*find_column(table, "M") == 2);
-    CHECK(*find_column(table, 1) == 0);
-    CHECK(*find_column(table, 3) == 2);
-    CHECK(find_column(table, "tetha").error().message() ==
+    CHECK(*find_column(table.names, "M") == 2);
+    CHECK(*find_column(table.names, 1) == 0);
+    CHECK(*find_column(table.names, 3) == 2);
+    CHECK(find_column(table.names, "tetha").error().message() ==
           "there is no column 'tetha' among t, theta, M; did you mean 'theta'?");
-    CHECK(find_column(table, "velocity").error().sentence == "there is no column 'velocity' among t, theta, M");
-    CHECK(find_column(table, 0).error().sentence == "there is no column 0: they are numbered 1 to 3 (t, theta, M)");
-    CHECK_FALSE(find_column(table, 4));
-    CHECK_FALSE(find_column(table, std::numeric_limits<std::int64_t>::min()));
-    CHECK_FALSE(find_column(table, ""));
+    CHECK(find_column(table.names, "velocity").error().sentence == "there is no column 'velocity' among t, theta, M");
+    CHECK(find_column(table.names, 0).error().sentence ==
+          "there is no column 0: they are numbered 1 to 3 (t, theta, M)");
+    CHECK_FALSE(find_column(table.names, 4));
+    CHECK_FALSE(find_column(table.names, std::numeric_limits<std::int64_t>::min()));
+    CHECK_FALSE(find_column(table.names, ""));
 }
 
 TEST_CASE("a name that two columns have is refused, their numbers are not", "[table]") {
     const Table table{{"t", "x", "x"}, Eigen::MatrixXd(0, 3), {}};
-    CHECK(find_column(table, "x").error().sentence ==
+    CHECK(find_column(table.names, "x").error().sentence ==
           "the name 'x' belongs to column 2 and to column 3: use the number");
-    CHECK(*find_column(table, 3) == 2);
+    CHECK(*find_column(table.names, 3) == 2);
 }
 
 TEST_CASE("the columns of a matrix are its columns, not copies", "[table]") {

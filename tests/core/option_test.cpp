@@ -42,7 +42,8 @@ constexpr text::Option options[] = {
 };
 
 std::string complaint(const Pump& pump) {
-    return text::complaint(options, pump).value_or("");
+    const auto wrong = text::complaint(options, pump);
+    return wrong ? wrong->sentence : "";
 }
 
 }  // namespace
@@ -59,6 +60,9 @@ TEST_CASE("a row of an option fills its member and reads it back", "[option]") {
           "pump{ period = 0.25, mode = \"fast\", limit = 2.5 }");
     CHECK(text::lua_text("pump", options, pump, text::Defaults::written) ==
           "pump{ flow = 1, period = 0.25, mode = \"fast\", primed = false, stages = 1, limit = 2.5, breaks = {} }");
+    pump.limit.reset();
+    CHECK(text::lua_text("pump", options, pump, text::Defaults::told) ==
+          "pump{ flow = 1, period = 0.25, mode = \"fast\", primed = false, stages = 1, limit = flow, breaks = {} }");
 }
 
 TEST_CASE("the default of an option is that of a new object unless the row says otherwise", "[option]") {

@@ -12,7 +12,7 @@ std::optional<text::Error> Polyline::complaint() const {
         return text::Error{fmt::format("t has {} values and M has {}; they must be equally long", samples->t.size(),
                                        samples->M.size())};
     }
-    const auto wrong = out_of_range(samples_options, *samples);
+    const auto wrong = text::complaint(samples_options, *samples);
     return wrong ? wrong : not_increasing("t", samples->t);
 }
 

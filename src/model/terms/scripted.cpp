@@ -8,14 +8,10 @@ std::optional<text::Error> Scripted::complaint() const {
     if (!function) {
         return text::Error{"there is no function"};
     }
-    if (auto wrong = out_of_range(scripted_options, *this)) {
-        return wrong;
-    }
-    if (auto wrong = not_increasing("breaks", breaks)) {
-        return wrong;
-    }
+    if (auto wrong = text::complaint(scripted_options, *this)) return wrong;
+    if (auto wrong = not_increasing("breaks", breaks)) return wrong;
     if (auto wrong = text::complaint({.name = "period", .range = text::not_negative}, text::OptionValue(period))) {
-        return text::Error{.sentence = *wrong, .option = "period"};
+        return wrong;
     }
     if (period > 0 && !breaks.empty() && breaks.back() - breaks.front() > period) {
         return text::Error{

@@ -109,18 +109,6 @@ void period_of_frequency(T& term, double frequency) {
 /// "t[3] = 1 is not after t[2] = 2; times must increase", or none.
 std::optional<text::Error> not_increasing(const char* option, std::span<const double> times);
 
-/// The first of the options that is out of its range: "width = -1 must be positive".
-template <class T>
-std::optional<text::Error> out_of_range(std::span<const text::Option> options, const T& object) {
-    for (const text::Option& option : options) {
-        if (option.filled.get == nullptr) continue;
-        if (const auto wrong = text::complaint(option, option.filled.get(&object))) {
-            return text::Error{.sentence = *wrong, .option = option.name};
-        }
-    }
-    return std::nullopt;
-}
-
 /// "2"
 std::string number(double x);
 /// A number as a factor: "2 ", and nothing for 1.

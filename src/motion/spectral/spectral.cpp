@@ -7,8 +7,10 @@
 namespace dinal::motion::spectral {
 
 Resolution Spectral::resolution(const model::Oscillator& system) const {
-    constexpr double samples = chebyshev::degree;
-    return {"T0/27", std::min(max_panel, longest_panel * system.natural_period()) / samples, false};
+    constexpr double parts = chebyshev::degree;
+    const double longest = longest_panel * system.natural_period();
+    return max_panel < longest ? Resolution{"max_panel/16", max_panel / parts, false}
+                               : Resolution{"T0/27", longest / parts, false};
 }
 
 Trajectory Spectral::run(const Problem& problem) const {
