@@ -232,22 +232,22 @@ int data_make(lua_State* L) {
 }
 
 constexpr lua::Member data_members[] = {
-    {"column", lua::guarded<data_column>, lua::Kind::method, column_doc},
-    {"filter", lua::guarded<data_functions::filter>, lua::Kind::method, filter_doc},
-    {"markdown", lua::guarded<data_functions::markdown>, lua::Kind::method, markdown_doc},
-    {"plot", lua::guarded<data_functions::plot>, lua::Kind::method, plot_data_doc},
-    {"save", lua::guarded<data_functions::save>, lua::Kind::method, save_data_doc},
-    {"select", lua::guarded<data_functions::select>, lua::Kind::method, select_doc},
-    {"sort", lua::guarded<data_functions::sort>, lua::Kind::method, sort_doc},
-    {"names", lua::guarded<data_names>, lua::Kind::field, names_doc},
-    {"__len", lua::guarded<data_length>, lua::Kind::metamethod, length_doc},
-    {"__pairs", lua::guarded<data_pairs>, lua::Kind::metamethod, pairs_doc},
-    {"__tostring", lua::guarded<data_to_string>, lua::Kind::metamethod, to_string_doc},
+    {lua::a_method<data_column>, column_doc},
+    {lua::a_method<data_functions::filter>, filter_doc},
+    {lua::a_method<data_functions::markdown>, markdown_doc},
+    {lua::a_method<data_functions::plot>, plot_data_doc},
+    {lua::a_method<data_functions::save>, save_data_doc},
+    {lua::a_method<data_functions::select>, select_doc},
+    {lua::a_method<data_functions::sort>, sort_doc},
+    {lua::a_field<data_names>, names_doc},
+    {lua::a_metamethod<data_length>("__len"), length_doc},
+    {lua::a_metamethod<data_pairs>("__pairs"), pairs_doc},
+    {lua::a_metamethod<data_to_string>("__tostring"), to_string_doc},
 };
 
 constexpr lua::Member data_module_members[] = {
-    {"__call", lua::guarded<data_make>, lua::Kind::metamethod, make_doc},
-    {"load", lua::guarded<data_functions::load>, lua::Kind::function, load_doc},
+    {lua::a_metamethod<data_make>("__call"), make_doc},
+    {lua::a_function<data_functions::load>, load_doc},
 };
 
 }  // namespace

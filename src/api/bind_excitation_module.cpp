@@ -163,10 +163,7 @@ struct Maker<model::Scripted> {
 
 template <class... T>
 constexpr std::array<lua::Member, sizeof...(T)> functions_of(model::TermList<T...> /*all*/) {
-    constexpr std::string_view module = "excitation.";
-    return {lua::Member{T::about.call.name + module.size(),
-                        lua::guarded<Maker<T>::make>,
-                        lua::Kind::function,
+    return {lua::Member{lua::a_function<Maker<T>::make>,
                         {Maker<T>::signature.c_str(), T::about.summary, T::about.example, Maker<T>::calls}}...};
 }
 

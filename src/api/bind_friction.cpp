@@ -119,41 +119,31 @@ int law_text(lua_State* L) {
 }
 
 constexpr lua::Member friction_module_members[] = {
-    {"coulomb",
-     lua::guarded<coulomb_law>,
-     lua::Kind::function,
+    {lua::a_function<coulomb_law>,
      {"friction.coulomb{ OPTIONS } -> law",
       "Coulomb's law: Rd while it moves, at whatever speed, and up to Re while it stands. What system{ Rd, Re } has.",
       "print(friction.coulomb{ Rd = 0.3 })  --> friction.coulomb{ Rd = 0.3, Re = 0.3 }",
       {&laws::coulomb_call}}},
-    {"stribeck",
-     lua::guarded<stribeck_law>,
-     lua::Kind::function,
+    {lua::a_function<stribeck_law>,
      {"friction.stribeck{ OPTIONS } -> law",
       "Friction that falls with the speed, as a lubricant is drawn in: Rd + (Re - Rd) exp(-(|velocity|/speed)^shape).",
       "law = friction.stribeck{ Rd = 0.3, Re = 0.6, speed = 0.1 }\n"
       "print(law:torque(0), string.format(\"%.6f\", law:torque(0.1)))  --> 0.6\t0.410364",
       {&laws::stribeck_call}}},
-    {"asymmetric",
-     lua::guarded<asymmetric_law>,
-     lua::Kind::function,
+    {lua::a_function<asymmetric_law>,
      {"friction.asymmetric{ OPTIONS } -> law",
       "Coulomb's law with other numbers each way, each side a table { Rd, Re }. Re of a side is the most that sticking "
       "can hold against a pull that way.",
       "law = friction.asymmetric{ forward = { Rd = 0.1 }, backward = { Rd = 0.3, Re = 0.5 } }\n"
       "print(law:torque(1), law:torque(-1))  --> 0.1\t0.3",
       {&laws::asymmetric_call}}},
-    {"table",
-     lua::guarded<tabulated_law>,
-     lua::Kind::function,
+    {lua::a_function<tabulated_law>,
      {"friction.table{ OPTIONS } -> law",
       "Friction as it was measured: straight lines between torques at some speeds, the same both ways.",
       "law = friction.table{ speed = { 0, 0.1, 1 }, torque = { 0.5, 0.3, 0.35 } }\n"
       "print(law:torque(0.05), law:torque(3), law.Re)  --> 0.4\t0.35\t0.5",
       {&laws::tabulated_call}}},
-    {"law",
-     lua::guarded<law_of_function>,
-     lua::Kind::function,
+    {lua::a_function<law_of_function>,
      {"friction.law(function(speed), { OPTIONS }) -> law",
       "Friction as a Lua function of the speed (>= 0, rad per time unit), the same both ways. It may be lower at speed "
       "0 than Re, and must not be negative.",
@@ -163,20 +153,14 @@ constexpr lua::Member friction_module_members[] = {
 };
 
 constexpr lua::Member friction_members[] = {
-    {"torque",
-     lua::guarded<law_torque>,
-     lua::Kind::method,
+    {lua::a_method<law_torque>,
      {"law:torque(velocity) -> number",
       "The friction against a motion with this velocity, rad per time unit; at 0 the limit from above.",
       "print(friction.coulomb{ Rd = 0.3, Re = 0.4 }:torque(-2))  --> 0.3"}},
-    {"Re",
-     lua::guarded<law_holding>,
-     lua::Kind::field,
+    {lua::a_field<law_holding>,
      {"law.Re -> number", "The most that sticking can hold; of two sides the greater one.",
       "print(friction.coulomb{ Rd = 0.3, Re = 0.4 }.Re)  --> 0.4"}},
-    {"__tostring",
-     lua::guarded<law_text>,
-     lua::Kind::metamethod,
+    {lua::a_metamethod<law_text>("__tostring"),
      {"tostring(law) -> string", "The Lua text that makes it again.",
       "print(friction.stribeck{ Rd = 0.3, Re = 0.6, speed = 0.1 })\n"
       "--> friction.stribeck{ Rd = 0.3, Re = 0.6, speed = 0.1 }"}},

@@ -42,9 +42,7 @@ constexpr text::FixedText<64> signature{M::about.call.name, "{ OPTIONS } -> inte
 
 template <class... M>
 constexpr std::array<lua::Member, sizeof...(M)> functions_of(std::type_identity<std::variant<M...>> /*all*/) {
-    return {lua::Member{name_of(M::about),
-                        lua::guarded<make<M>>,
-                        lua::Kind::function,
+    return {lua::Member{lua::a_function<make<M>>,
                         {signature<M>.c_str(), M::about.summary, M::about.example, {&M::about.call}}}...};
 }
 
@@ -114,7 +112,7 @@ int option_field(lua_State* L) {
 
 template <class... M, std::size_t... i>
 constexpr auto getters_of(std::type_identity<std::variant<M...>> /*all*/, std::index_sequence<i...> /*places*/) {
-    return std::array{lua::guarded<option_field<i>>...};
+    return std::array{lua::a_field<option_field<i>>...};
 }
 
 template <class... M>
@@ -149,9 +147,7 @@ lua::Member member_of(std::size_t i) {
                                                                       : "string";
     const std::string unit = *option.unit == '\0' ? "" : fmt::format(" ({})", option.unit);
     const std::string lacking = field.lacking.empty() ? "" : fmt::format("; nil for {}", field.lacking);
-    return {option.name,
-            getters[i],
-            lua::Kind::field,
+    return {getters[i],
             {kept(fmt::format("integrator.{} -> {}", option.name, type)),
              kept(fmt::format("Its option {}: {}{}{}.", option.name, option.meaning, unit, lacking)),
              kept(fmt::format("print({}.{} == {})  --> true", field.method->call.example, option.name,
@@ -170,13 +166,9 @@ int integrator_text(lua_State* L) {
 
 std::vector<lua::Member> all_members() {
     std::vector<lua::Member> members = {
-        {"name",
-         lua::guarded<name>,
-         lua::Kind::field,
+        {lua::a_field<name>,
          {"integrator.name -> string", "The name of the method.", "print(integrator.rk4{ h = 0.001 }.name)  --> rk4"}},
-        {"__tostring",
-         lua::guarded<integrator_text>,
-         lua::Kind::metamethod,
+        {lua::a_metamethod<integrator_text>("__tostring"),
          {"tostring(integrator) -> string", "The Lua text that makes it again.",
           "print(integrator.dinal1989{ h = 0.01 })  --> integrator.dinal1989{ h = 0.01 }"}},
     };

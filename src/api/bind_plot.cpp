@@ -115,13 +115,11 @@ int picture_text(lua_State* L) {
 }
 
 constexpr lua::Member plot_module_members[] = {
-    {"plot", lua::guarded<plot_vectors>, lua::Kind::function, plot_doc},
+    {lua::a_function<plot_vectors>, plot_doc},
 };
 
 constexpr lua::Member picture_members[] = {
-    {"__tostring",
-     lua::guarded<picture_text>,
-     lua::Kind::metamethod,
+    {lua::a_metamethod<picture_text>("__tostring"),
      {"tostring(picture) -> string", "The picture as text, without colours; print(picture) shows it.",
       "x = vector.linspace(-2, 2, 9)\n"
       "p = plot{ { x, x^2 }, width = 40, height = 10, show = false }\n"

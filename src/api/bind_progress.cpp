@@ -101,15 +101,13 @@ int progress(lua_State* L) {
 }
 
 constexpr lua::Member loop_members[] = {
-    {"__close", lua::guarded<close_loop>, lua::Kind::metamethod, {"", "The loop was left.", ""}},
+    {lua::a_metamethod<close_loop>("__close"), {"", "The loop was left.", ""}},
 };
 
 const lua::Class loop_class = {"progress", {example, "The state of a loop that shows its progress.", ""}, loop_members};
 
 constexpr lua::Member progress_module_members[] = {
-    {"progress",
-     lua::guarded<progress>,
-     lua::Kind::function,
+    {lua::a_function<progress>,
      {"for i in progress(n, label) do, for i, x in progress(list, label) do",
       "A loop of n steps, or through a list (a table or a vector), that shows how far it is: after half a second one "
       "line on standard error with the label, the fraction, the rate and the time that is left, if that is a terminal; "

@@ -10,6 +10,7 @@
 #include "motion/integrators.hpp"
 #include "motion/simulate.hpp"
 #include "source/origin.hpp"
+#include "text/fixed_text.hpp"
 
 namespace dinal::api {
 
@@ -91,9 +92,12 @@ inline constexpr text::Option continue_options[] = {
 };
 inline constexpr text::Call continue_call{"run:continue", "run:continue{ t_end = 40 }", continue_options, true};
 
+inline constexpr text::FixedText<160> simulate_summary{
+    "Runs the system, by ", motion::default_integrator.c_str(),
+    " unless told otherwise. When M fails or Ctrl-C is pressed, what was done so far is in dinal.partial."};
 inline constexpr lua::Doc simulate_doc = {
     "sys:simulate{ OPTIONS } -> run",
-    "Runs the system. When M fails or Ctrl-C is pressed, what was done so far is in dinal.partial.",
+    simulate_summary.c_str(),
     "sys = nondimensional{ friction_ratio = 0.167 }\n"
     "run = sys:simulate{ theta0 = 0, velocity0 = 2*math.pi, t_end = 3, dt = 0.01 }\n"
     "print(run.outcome, string.format(\"%.6f\", run:at(3)))  --> at rest\t0.155151",

@@ -15,9 +15,7 @@ namespace f = theory_functions;
 namespace o = theory_options;
 
 constexpr lua::Member theory_module_members[] = {
-    {"free_response",
-     lua::guarded<f::free_response>,
-     lua::Kind::function,
+    {lua::a_function<f::free_response>,
      {"theory.free_response{ OPTIONS } -> theta, velocity",
       "The free motion at the times t, from theta0 (rad) and velocity0 (rad per time unit) at t = 0: exact in all "
       "regimes, and with the dry friction of the system, turns and rest included (t must not be negative then). "
@@ -26,9 +24,7 @@ constexpr lua::Member theory_module_members[] = {
       "print(string.format(\"%.9f %.1f\", theory.free_response{ system = sys, velocity0 = 2*math.pi, t = 5 }))\n"
       "--> 0.155151392 0.0",
       {&o::free_response}}},
-    {"extremes",
-     lua::guarded<f::extremes>,
-     lua::Kind::function,
+    {lua::a_function<f::extremes>,
      {"theory.extremes{ OPTIONS } -> t, theta",
       "When and where the velocity of a free motion is zero, by the half-cycle map: two vectors, the last place being "
       "where it rests. A motion that begins with velocity 0 has its start as the first one. count limits how many; "
@@ -37,56 +33,42 @@ constexpr lua::Member theory_module_members[] = {
       "print(theory.extremes{ system = sys, theta0 = 0.55 })  --> vector{ 0, 0.5, 1, 1.5 }\t"
       "vector{ 0.55, -0.35, 0.15, 0.05 }",
       {&o::extremes}}},
-    {"time_to_rest",
-     lua::guarded<f::time_to_rest>,
-     lua::Kind::function,
+    {lua::a_function<f::time_to_rest>,
      {"theory.time_to_rest{ OPTIONS } -> number or vector",
       "When a free motion stops for good (time units); math.huge when it does so never, as without dry friction, or "
       "when it only creeps towards its place, as an overdamped one.",
       "sys = nondimensional{ friction_ratio = 0.167 }\n"
       "print(string.format(\"%.9f\", theory.time_to_rest{ system = sys, velocity0 = 2*math.pi }))  --> 1.723664157",
       {&o::time_to_rest}}},
-    {"rest_position",
-     lua::guarded<f::rest_position>,
-     lua::Kind::function,
+    {lua::a_function<f::rest_position>,
      {"theory.rest_position{ OPTIONS } -> number or nil, or vector",
       "Where a free motion stops, or what it tends to (rad); nil, or nan in a vector, when it swings for ever.",
       "sys = nondimensional{ friction_ratio = 0.1 }\n"
       "print(theory.rest_position{ system = sys, theta0 = { 0.05, 0.15, 1.05 } })  --> vector{ 0.05, 0.05, -0.05 }",
       {&o::rest_position}}},
-    {"half_cycle",
-     lua::guarded<f::half_cycle>,
-     lua::Kind::function,
+    {lua::a_function<f::half_cycle>,
      {"theory.half_cycle{ OPTIONS } -> number or vector",
       "The extreme of a free motion that is n half cycles after the extreme X (rad, with its sign): X' = s x_f - (X - "
       "s x_f) e^(-pi zeta/sqrt(1 - zeta^2)), s = sgn X, x_f = Rd/k. Within dead_zone = Re/k the mass stays where it "
       "is. Instead of zeta, x_f and dead_zone a system can be given. zeta < 1.",
       "print(theory.half_cycle{ X = 1, x_f = 0.2 }, theory.half_cycle{ X = 1, x_f = 0.2, n = 9 })  --> -0.6\t0.2",
       {&o::half_cycle}}},
-    {"logarithmic_decrement",
-     lua::guarded<closed_form<o::logarithmic_decrement, theory::logarithmic_decrement>>,
-     lua::Kind::function,
+    {lua::a_function<closed_form<o::logarithmic_decrement, theory::logarithmic_decrement>>,
      {"theory.logarithmic_decrement{ OPTIONS } -> number or vector",
       "ln(X0/X2) of extremes a full cycle apart, by viscous damping alone: 2 pi zeta/sqrt(1 - zeta^2), zeta < 1.",
       "print(string.format(\"%.6f\", theory.logarithmic_decrement{ zeta = 0.119 }))  --> 0.753050",
       {&o::logarithmic_decrement}}},
-    {"zeta_from_decrement",
-     lua::guarded<closed_form<o::zeta_from_decrement, theory::zeta_of_decrement>>,
-     lua::Kind::function,
+    {lua::a_function<closed_form<o::zeta_from_decrement, theory::zeta_of_decrement>>,
      {"theory.zeta_from_decrement{ OPTIONS } -> number or vector",
       "The viscous damping ratio that has this logarithmic decrement.",
       "print(string.format(\"%.3f\", theory.zeta_from_decrement{ decrement = 0.753050 }))  --> 0.119",
       {&o::zeta_from_decrement}}},
-    {"friction_decrement",
-     lua::guarded<closed_form<o::friction_decrement, theory::friction_decrement>>,
-     lua::Kind::function,
+    {lua::a_function<closed_form<o::friction_decrement, theory::friction_decrement>>,
      {"theory.friction_decrement{ OPTIONS } -> number or vector",
       "What dry friction alone takes from the amplitude in each full cycle: 4 Rd/k, rad.",
       "print(theory.friction_decrement{ Rd = 2, k = 40 })  --> 0.2",
       {&o::friction_decrement}}},
-    {"identify",
-     lua::guarded<f::identify>,
-     lua::Kind::function,
+    {lua::a_function<f::identify>,
      {"theory.identify{ OPTIONS } -> zeta, x_f",
       "Both dampings from three successive extremes of a free motion (signs do not count), rest not among them: q = "
       "(X1 - X2)/(X0 - X1), zeta/sqrt(1 - zeta^2) = -(ln q)/pi, x_f = Rd/k = (q X0 - X1)/(1 + q). nil unless X0 > X1 > "
@@ -95,73 +77,55 @@ constexpr lua::Member theory_module_members[] = {
       "print(string.format(\"%.6f %.6f\", theory.identify{ X0 = X[1], X1 = X[2], X2 = X[3] }))"
       "  --> 0.119000 0.060000",
       {&o::identify}}},
-    {"magnification",
-     lua::guarded<closed_form<o::magnification, theory::magnification>>,
-     lua::Kind::function,
+    {lua::a_function<closed_form<o::magnification, theory::magnification>>,
      {"theory.magnification{ OPTIONS } -> number or vector",
       "The steady amplitude under M0 sin(omega t) without dry friction, in units of M0/k: 1/sqrt((1 - r^2)^2 + 4 "
       "zeta^2 r^2), r = omega/omega0. math.huge at r = 1 without damping.",
       "print(theory.magnification{ r = { 0, 0.5, 2 } })  --> vector{ 1, 1.33333, 0.333333 }",
       {&o::magnification}}},
-    {"phase_lag",
-     lua::guarded<closed_form<o::phase_lag, theory::phase_lag>>,
-     lua::Kind::function,
+    {lua::a_function<closed_form<o::phase_lag, theory::phase_lag>>,
      {"theory.phase_lag{ OPTIONS } -> number or vector",
       "How far that motion is behind its load, rad: atan2(2 zeta r, 1 - r^2), from 0 to pi; pi/2 at r = 1.",
       "print(theory.phase_lag{ r = { 0.5, 1, 2 }, zeta = 0.1 })  --> vector{ 0.132552, 1.5708, 3.00904 }",
       {&o::phase_lag}}},
-    {"transmissibility",
-     lua::guarded<closed_form<o::transmissibility, theory::transmissibility>>,
-     lua::Kind::function,
+    {lua::a_function<closed_form<o::transmissibility, theory::transmissibility>>,
      {"theory.transmissibility{ OPTIONS } -> number or vector",
       "The torque that spring and damper pass on to the support over the torque of the load, and as well the motion of "
       "the mass over the motion of its support: sqrt(1 + 4 zeta^2 r^2) times the magnification. Without dry friction.",
       "print(string.format(\"%.12f\", theory.transmissibility{ r = math.sqrt(2), zeta = 0.3 }))  --> 1.000000000000",
       {&o::transmissibility}}},
-    {"equivalent_damping",
-     lua::guarded<closed_form<o::equivalent_damping, theory::equivalent_damping>>,
-     lua::Kind::function,
+    {lua::a_function<closed_form<o::equivalent_damping, theory::equivalent_damping>>,
      {"theory.equivalent_damping{ OPTIONS } -> number or vector",
       "The viscous damping constant C that takes from each cycle of this amplitude (rad) as much energy as the dry "
       "friction Rd: 4 Rd/(pi omega amplitude).",
       "print(string.format(\"%.6f\", theory.equivalent_damping{ Rd = 1, omega = 2, amplitude = 0.5 }))  --> 1.273240",
       {&o::equivalent_damping}}},
-    {"equivalent_zeta",
-     lua::guarded<closed_form<o::equivalent_zeta, theory::equivalent_damping_ratio>>,
-     lua::Kind::function,
+    {lua::a_function<closed_form<o::equivalent_zeta, theory::equivalent_damping_ratio>>,
      {"theory.equivalent_zeta{ OPTIONS } -> number or vector",
       "The same as a damping ratio: 2 gamma/(pi r Phi), with gamma = Rd/M0 and Phi the amplitude in units of M0/k.",
       "phi = theory.linearised{ r = 1.35, friction_ratio = 0.5 }\n"
       "print(string.format(\"%.4f\", theory.equivalent_zeta{ friction_ratio = 0.5, r = 1.35, magnification = phi }))\n"
       "--> 0.2515",
       {&o::equivalent_zeta}}},
-    {"linearised",
-     lua::guarded<f::linearised>,
-     lua::Kind::function,
+    {lua::a_function<f::linearised>,
      {"theory.linearised{ OPTIONS } -> amplitude, lag",
       "The steady motion with dry friction replaced by its equivalent damping, added to zeta: amplitude in units of "
       "M0/k, sqrt(1 - (4 gamma/pi)^2)/|1 - r^2| for zeta = 0, and lag in rad. For small gamma only; theory.den_hartog "
       "is exact. nil, or nan in a vector, from gamma = pi/4 on.",
       "print(string.format(\"%.4f %.4f\", theory.linearised{ r = 1.35, friction_ratio = 0.5 }))  --> 0.9376 2.4515",
       {&o::linearised}}},
-    {"friction_work",
-     lua::guarded<closed_form<o::friction_work, theory::friction_work>>,
-     lua::Kind::function,
+    {lua::a_function<closed_form<o::friction_work, theory::friction_work>>,
      {"theory.friction_work{ OPTIONS } -> number or vector",
       "The energy that dry friction takes in each cycle of this amplitude (rad): 4 Rd amplitude.",
       "print(theory.friction_work{ Rd = 2, amplitude = { 0.5, 1 } })  --> vector{ 4, 8 }",
       {&o::friction_work}}},
-    {"growth_at_resonance",
-     lua::guarded<closed_form<o::growth_at_resonance, theory::growth_at_resonance>>,
-     lua::Kind::function,
+    {lua::a_function<closed_form<o::growth_at_resonance, theory::growth_at_resonance>>,
      {"theory.growth_at_resonance{ OPTIONS } -> number or vector",
       "What the amplitude gains in each period at r = 1 without viscous damping, in units of M0/k: pi - 4 gamma, gamma "
       "= Rd/M0; 0 from gamma = pi/4 on, where it does not grow.",
       "print(string.format(\"%.6f\", theory.growth_at_resonance{ friction_ratio = 0.167 }))  --> 2.473593",
       {&o::growth_at_resonance}}},
-    {"den_hartog",
-     lua::guarded<f::den_hartog>,
-     lua::Kind::function,
+    {lua::a_function<f::den_hartog>,
      {"theory.den_hartog{ OPTIONS } -> amplitude, lag",
       "The exact steady motion under M0 sin(omega t) with dry friction and without stops (Den Hartog 1931): amplitude "
       "in units of M0/k and lag of its peak in rad; r = omega/omega0, friction_ratio = Rd/M0, breakaway_ratio = Re/M0. "
@@ -173,9 +137,7 @@ constexpr lua::Member theory_module_members[] = {
       "print(theory.den_hartog{ r = { 0.75, 0.75 }, friction_ratio = { 0.7, 0.8 } })\n"
       "--> vector{ 1.61591, nan }\tvector{ 0.785606, nan }",
       {&o::den_hartog}}},
-    {"den_hartog_fundamental",
-     lua::guarded<f::den_hartog_fundamental>,
-     lua::Kind::function,
+    {lua::a_function<f::den_hartog_fundamental>,
      {"theory.den_hartog_fundamental{ OPTIONS } -> "
       "amplitude, lag",
       "The harmonic part of that motion that has the frequency of the load: its amplitude in units of M0/k and its lag "
@@ -183,17 +145,13 @@ constexpr lua::Member theory_module_members[] = {
       "amplitude, lag = theory.den_hartog_fundamental{ r = 1.35, friction_ratio = 0.5 }\n"
       "print(string.format(\"%.4f, %.2f degrees\", amplitude, math.deg(lag)))  --> 0.8649, 140.69 degrees",
       {&o::den_hartog_fundamental}}},
-    {"stop_boundary",
-     lua::guarded<closed_form<o::stop_boundary, f::stop_boundary>>,
-     lua::Kind::function,
+    {lua::a_function<closed_form<o::stop_boundary, f::stop_boundary>>,
      {"theory.stop_boundary{ OPTIONS } -> number or vector",
       "The friction ratio Rd/M0 up to which the steady motion under M0 sin(omega t) "
       "has no stops; r is 0 or from 0.0001 to 1e6.",
       "print(theory.stop_boundary{ r = { 0.5, 1, 3 } })  --> vector{ 0.333333, 0.785398, 0.5625 }",
       {&o::stop_boundary}}},
-    {"step_limit",
-     lua::guarded<f::step_limit>,
-     lua::Kind::function,
+    {lua::a_function<f::step_limit>,
      {"theory.step_limit{ OPTIONS } -> number or vector",
       "The greatest step (time units) by one of three rules: \"rk4\", beyond which integrator.rk4 amplifies a free "
       "motion; \"report\", deltatmax of the program of 1989, T0 (zeta + gamma/VMAX) with gamma = Rd/|Mc| and VMAX the "

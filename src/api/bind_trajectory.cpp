@@ -55,9 +55,7 @@ int load(lua_State* L) {
 }
 
 constexpr lua::Member trajectory_module_members[] = {
-    {"load",
-     lua::guarded<load>,
-     lua::Kind::function,
+    {lua::a_function<load>,
      {"trajectory.load(file) -> run",
       "Reads file.csv or file.dat (the record of 1989) back: the same numbers to the last bit, with the columns of the "
       "file as fields. Those of a .dat file are t, theta, velocity_over_omega0, M_over_k, friction_over_k, "

@@ -65,9 +65,7 @@ int help(lua_State* L) {
 }
 
 constexpr lua::Member functions[] = {
-    {"help",
-     lua::guarded<help>,
-     lua::Kind::function,
+    {lua::a_function<help>,
      {"help(x) or help \"words\"",
       "Prints what x is and how it is used: a function, a method, a module, an object, or a name in quotes; words that "
       "are no name are searched for in all names and descriptions. help() alone shows where to begin.",

@@ -23,18 +23,14 @@ constexpr void (*register_functions[])(lua_State*) = {
 
 // Plain fields of the table: documented here, set by open_library() and sys:simulate.
 constexpr lua::Member library_members[] = {
-    {"partial",
-     nullptr,
-     lua::Kind::field,
+    {{nullptr, lua::Kind::field},
      {"dinal.partial -> run or nil",
       "What was done of the last run that M broke off with an error, or Ctrl-C: a run like any other.",
       "pcall(function()\n"
       "    nondimensional{}:simulate{ M = function(t) assert(t < 0.5) return 1 end, t_end = 1, dt = 0.1 }\n"
       "end)\n"
       "print(#dinal.partial)  --> 5"}},
-    {"version",
-     nullptr,
-     lua::Kind::field,
+    {{nullptr, lua::Kind::field},
      {"dinal.version -> string", "The version of the program.",
       "print(dinal.version == \"" DINAL_VERSION "\")  --> true"}},
 };

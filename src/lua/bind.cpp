@@ -123,7 +123,7 @@ void set_metamethods(lua_State* L, const Class& description) {
     for (const Member& member : description.members) {
         if (member.kind == Kind::metamethod) {
             lua_pushcfunction(L, member.call);
-            lua_setfield(L, -2, member.name);
+            lua_setfield(L, -2, std::string(member.name).c_str());
         }
     }
     lua_pushstring(L, description.name);
@@ -136,7 +136,7 @@ void push_members(lua_State* L, const Class& description, Kind kind) {
         if (member.kind == kind) {
             lua_pushcfunction(L, member.call);
             document(L, description, &member);
-            lua_setfield(L, -2, member.name);
+            lua_setfield(L, -2, std::string(member.name).c_str());
         }
     }
 }
@@ -236,7 +236,7 @@ void add_functions(lua_State* L, const Class& functions) {
     for (const Member& member : functions.members) {
         lua_pushcfunction(L, member.call);
         document(L, functions, &member);
-        lua_setfield(L, -2, member.name);
+        lua_setfield(L, -2, std::string(member.name).c_str());
     }
 }
 

@@ -44,11 +44,35 @@ enum class Kind {
     metamethod,  ///< __add, __len, __call ...: of the objects of a class, or of the table of a module
 };
 
-struct Member {
-    const char* name;
+/// How Lua reaches a member: a_method<at>, a_field<...>, a_function<...>, a_metamethod<...>("__len").
+struct Binding {
     lua_CFunction call;  ///< always guarded<...>
     Kind kind;
-    Doc doc;
+    std::string_view name = {};  ///< of a metamethod; others have it in their signature
+};
+
+struct Member {
+    std::string_view name = {};
+    lua_CFunction call = nullptr;
+    Kind kind = Kind::function;
+    Doc doc = {};
+
+    constexpr Member() = default;
+    constexpr Member(const Binding& binding, const Doc& text)
+        : name(binding.name.empty() ? name_in(text.signature) : binding.name),
+          call(binding.call),
+          kind(binding.kind),
+          doc(text) {}
+    constexpr Member(std::string_view own_name, lua_CFunction function, Kind how, const Doc& text)
+        : name(own_name), call(function), kind(how), doc(text) {}
+
+private:
+    /// "at" of "run:at(t) -> theta, velocity".
+    static constexpr std::string_view name_in(std::string_view signature) {
+        signature = signature.substr(0, signature.find(" ->"));
+        signature = signature.substr(0, signature.find_first_of("({"));
+        return signature.substr(signature.find_last_of(".: ") + 1);
+    }
 };
 
 /// A Lua class or a Lua module.
@@ -96,6 +120,17 @@ int guarded(lua_State* L) {
         detail::push_message(L, problem.what());
     }
     return detail::raise_message_on_top(L);
+}
+
+template <lua_CFunction function>
+inline constexpr Binding a_function{guarded<function>, Kind::function};
+template <lua_CFunction method>
+inline constexpr Binding a_method{guarded<method>, Kind::method};
+template <lua_CFunction getter>
+inline constexpr Binding a_field{guarded<getter>, Kind::field};
+template <lua_CFunction function>
+constexpr Binding a_metamethod(std::string_view name) {
+    return {guarded<function>, Kind::metamethod, name};
 }
 
 namespace detail {

@@ -38,7 +38,7 @@ void add_members(const lua::Class& description, char separator, bool calls, std:
     for (const lua::Member& member : description.members) {
         const bool method = member.kind == lua::Kind::method;
         if (member.kind != lua::Kind::metamethod && (method || separator == '.')) {
-            names.push_back(member.name + (method && calls ? bracket_after(member.doc.signature) : ""));
+            names.push_back(std::string(member.name) + (method && calls ? bracket_after(member.doc.signature) : ""));
         }
     }
 }

@@ -8,13 +8,14 @@ local calls = {} -- heading -> list of { name, meaning }
 do
     local pipe <close> = io.popen(('"%s" --manual'):format(support.program()))
     local heading
-    local list -- excitation.samples has two: "excitation.samples" is of the first, "excitation.samples 2" of the other
+    local list -- of calls that take one of two tables: "excitation.samples 2" is the second
     for line in pipe:lines() do
         heading = line:match "^### (.+)" or line:match "^## (.+)" or heading
         local name, meaning = line:match "^%- `([%a_][%w_]*)[^`]*`: (.*)"
         if name and not list then
-            list = {}
-            calls[calls[heading] and heading .. " 2" or heading] = list
+            local key = calls[heading] and heading ~= "plot" and heading .. " 2" or heading
+            list = calls[key] or {}
+            calls[key] = list
         end
         list = name and list
         if name then
