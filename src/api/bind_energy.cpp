@@ -5,7 +5,7 @@
 #include "api/cards.hpp"
 #include "api/classes.hpp"
 #include "api/run.hpp"
-#include "lua/external_memory.hpp"
+#include "lua/memory_limit.hpp"
 #include "lua/user_function.hpp"
 #include "lua/vector.hpp"
 #include "text/characters.hpp"

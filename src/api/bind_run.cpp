@@ -11,7 +11,7 @@
 #include "api/plot_docs.hpp"
 #include "api/run.hpp"
 #include "files/table.hpp"
-#include "lua/external_memory.hpp"
+#include "lua/memory_limit.hpp"
 #include "lua/user_function.hpp"
 #include "lua/vector.hpp"
 #include "text/fixed_text.hpp"

@@ -7,8 +7,8 @@
 
 #include "api/bind_excitation.hpp"
 #include "api/run.hpp"
-#include "lua/dinal_table.hpp"
 #include "lua/interrupt.hpp"
+#include "lua/standard_globals.hpp"
 #include "lua/user_function.hpp"
 #include "terminal/progress.hpp"
 

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <map>
 
-#include "lua/external_memory.hpp"
+#include "lua/memory_limit.hpp"
 #include "text/characters.hpp"
 #include "text/sentences.hpp"
 

@@ -8,7 +8,6 @@
 
 #include "api/plot_options.hpp"
 #include "files/file.hpp"
-#include "lua/external_memory.hpp"
 #include "lua/interrupt.hpp"
 #include "lua/memory_limit.hpp"
 #include "plots/gnuplot.hpp"

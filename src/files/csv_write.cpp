@@ -4,8 +4,8 @@
 #include <optional>
 #include <utility>
 
-#include "files/row_writer.hpp"
 #include "files/text_input.hpp"
+#include "files/write_rows.hpp"
 
 namespace dinal::files {
 namespace {

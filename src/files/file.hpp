@@ -71,4 +71,9 @@ private:
 /// All of `text` as one file, in the way of OutputFile.
 text::Expected<Written> write_file(const std::string& path, std::string_view text);
 
+/// How Ctrl-C and the limits reach long files: from now on `question` decides, for the whole process, whether what
+/// reads or writes one shall stop. It is asked often.
+void set_stop_question(bool (*question)() noexcept) noexcept;
+[[nodiscard]] bool shall_stop() noexcept;
+
 }  // namespace dinal::files

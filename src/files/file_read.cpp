@@ -36,6 +36,8 @@ private:
     int number_;
 };
 
+bool (*stop_question)() noexcept = nullptr;
+
 }  // namespace
 
 text::Expected<std::string> read_file(const std::string& path) {
@@ -74,6 +76,14 @@ text::Expected<std::string> read_file(const std::string& path) {
             room = std::min(2 * room, largest_file + 1);
         }
     }
+}
+
+void set_stop_question(bool (*question)() noexcept) noexcept {
+    stop_question = question;
+}
+
+bool shall_stop() noexcept {
+    return stop_question != nullptr && stop_question();
 }
 
 }  // namespace dinal::files

@@ -13,7 +13,6 @@
 #include <utility>
 
 #include "files/confinement.hpp"
-#include "files/stop.hpp"
 
 namespace dinal::files {
 namespace {

@@ -7,7 +7,7 @@
 #include <cstdlib>
 #include <system_error>
 
-#include "files/stop.hpp"
+#include "files/file.hpp"
 #include "text/characters.hpp"
 #include "text/words.hpp"
 

@@ -7,7 +7,7 @@
 #include "help/library.hpp"
 #include "help/tour.hpp"
 #include "lua/bind.hpp"
-#include "lua/dinal_table.hpp"
+#include "lua/standard_globals.hpp"
 
 namespace dinal::help {
 

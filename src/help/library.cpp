@@ -4,7 +4,6 @@
 #include "api/classes.hpp"
 #include "errors/error_remarks.hpp"
 #include "help/help.hpp"
-#include "lua/dinal_table.hpp"
 #include "lua/interrupt.hpp"
 #include "lua/standard_globals.hpp"
 #include "lua/terminal_output.hpp"

@@ -5,7 +5,6 @@
 // closes a coroutine that failed before it returns, and in one that was stopped no hook is called any more, so that an
 // endless __close there could not be stopped.
 #include "lua/interrupt.hpp"
-#include "lua/running_thread.hpp"
 
 namespace dinal::lua {
 

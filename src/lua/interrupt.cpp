@@ -9,8 +9,7 @@
 #include <array>
 #include <atomic>
 
-#include "files/stop.hpp"
-#include "lua/running_thread.hpp"
+#include "files/file.hpp"
 #include "terminal/progress.hpp"
 
 namespace dinal::lua {

@@ -57,4 +57,16 @@ private:
 /// Replaces coroutine.resume, wrap and close by functions that do the same and note which thread runs.
 void open_coroutines(lua_State* L);
 
+/// Which Lua thread runs, for the handler of Ctrl-C: while it lives, `callee` does, called from `caller`.
+class RunningThread {
+public:
+    RunningThread(lua_State* caller, lua_State* callee);
+    ~RunningThread();
+    RunningThread(const RunningThread&) = delete;
+    RunningThread& operator=(const RunningThread&) = delete;
+
+private:
+    lua_State* caller_;
+};
+
 }  // namespace dinal::lua

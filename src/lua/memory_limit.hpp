@@ -1,7 +1,8 @@
 // How much memory a script may take: Lua's own, and all that C++ takes with `new` on its behalf.
 //
 // Lua's allocator and operator new count into one number. Past the limit an allocation fails while a chunk runs, and
-// the chunk is stopped, so that no pcall can swallow that. Without a limit nothing is counted.
+// the chunk is stopped, so that no pcall can swallow that. Without a limit nothing is counted. Its last function is for
+// the garbage collector, which sees no memory but Lua's.
 #pragma once
 
 #include <cstddef>
@@ -39,5 +40,9 @@ public:
 private:
     std::size_t bytes_ = 0;
 };
+
+/// To be called after an object was pushed that holds so many bytes outside of Lua. Collects the garbage when that has
+/// added up: otherwise a loop over long vectors would fill the memory with dead ones, 40 bytes each for Lua.
+void note_external_memory(lua_State* L, std::size_t bytes);
 
 }  // namespace dinal::lua

@@ -3,11 +3,10 @@
 #include <algorithm>
 #include <string_view>
 
-#include "lua/dinal_table.hpp"
-
 namespace dinal::lua {
 namespace {
 
+const char dinal_key = 0;     // in the registry, which a user's `dinal = nil` does not touch
 const char standard_key = 0;  // registry key of a copy of _G as it was at the start
 
 /// Copies all fields of one table to another.
@@ -21,6 +20,16 @@ void copy_fields(lua_State* L, int from, int to) {
 }
 
 }  // namespace
+
+void make_dinal_table(lua_State* L) {
+    lua_newtable(L);
+    lua_pushvalue(L, -1);
+    lua_rawsetp(L, LUA_REGISTRYINDEX, &dinal_key);
+}
+
+void push_dinal_table(lua_State* L) {
+    lua_rawgetp(L, LUA_REGISTRYINDEX, &dinal_key);
+}
 
 void note_standard_globals(lua_State* L) {
     lua_newtable(L);

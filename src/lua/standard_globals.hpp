@@ -1,4 +1,4 @@
-// The globals that Lua and dinal bring, apart from those that the user makes.
+// The table `dinal`, and the globals that Lua and dinal bring, apart from those that the user makes.
 #pragma once
 
 #include <string>
@@ -7,6 +7,12 @@
 #include "lua/lua_headers.hpp"
 
 namespace dinal::lua {
+
+/// Makes the table, and leaves it on the top of the stack.
+void make_dinal_table(lua_State* L);
+
+/// Pushes the table that make_dinal_table() made, whatever the user has done to the global of that name.
+void push_dinal_table(lua_State* L);
 
 /// To be called once all globals of Lua and dinal stand: remembers them.
 void note_standard_globals(lua_State* L);

@@ -5,8 +5,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "lua/external_memory.hpp"
-
 namespace dinal::lua {
 
 std::vector<double> new_numbers(lua_State* L, std::size_t n) {

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 
+#include "analysis/stretches.hpp"
 #include "files/table.hpp"
 
 namespace dinal::plots {
@@ -99,20 +100,12 @@ std::vector<std::string> usual_columns(const RunData& run, std::string_view x) {
 
 std::vector<Interval> stuck_intervals(const motion::Trajectory& trajectory) {
     std::vector<Interval> intervals;
-    const auto& events = trajectory.events;
-    bool stuck = trajectory.began_stuck;
-    double since = trajectory.t_start;
-    for (const model::Event& event : events) {
-        const bool holds = event.kind == model::EventKind::stick || event.kind == model::EventKind::rest;
-        if (holds && !stuck) {
-            since = event.t;
-        } else if (!holds && stuck) {
-            intervals.push_back({since, event.t});
+    for (const analysis::Stretch& stretch : analysis::stretches(trajectory)) {
+        if (stretch.stuck && stretch.begun_by && !intervals.empty() && intervals.back().high == stretch.from) {
+            intervals.back().high = stretch.to;  // it stuck, and then it came to rest
+        } else if (stretch.stuck) {
+            intervals.push_back({stretch.from, stretch.to});
         }
-        stuck = holds;
-    }
-    if (stuck) {
-        intervals.push_back({since, trajectory.t_stop});
     }
     return intervals;
 }

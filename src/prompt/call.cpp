@@ -6,10 +6,12 @@
 #include <vector>
 
 #include "errors/error_remarks.hpp"
+#include "files/confinement.hpp"
 #include "lua/interrupt.hpp"
 #include "lua/limits.hpp"
 #include "lua/lua_message.hpp"
 #include "lua/memory_limit.hpp"
+#include "lua/safe_mode.hpp"
 
 namespace dinal::prompt {
 namespace {
@@ -151,6 +153,12 @@ int message_handler(lua_State* L) {
     return 1;
 }
 
+/// As a function that Lua can call; returns the chunk or the message, and the status.
+int load_named(lua_State* L) {
+    lua_pushinteger(L, luaL_loadfilex(L, lua_tostring(L, 1), lua::load_mode()));
+    return 2;
+}
+
 }  // namespace
 
 int call(lua_State* L, int arguments, int results) {
@@ -203,6 +211,22 @@ std::string take_text(lua_State* L) {
     std::string result = text == nullptr ? "(no message)" : std::string(text, size);
     lua_pop(L, 1);
     return result;
+}
+
+int load_file(lua_State* L, const char* file) {
+    if (const auto why = files::outside(file, files::Access::read)) {
+        const std::string text = fmt::format("cannot open {}: {}", file, *why);
+        lua_pushlstring(L, text.data(), text.size());
+        return LUA_ERRFILE;
+    }
+    lua_pushcfunction(L, load_named);
+    lua_pushstring(L, file);
+    int status = call(L, 1, 2);
+    if (status == LUA_OK) {
+        status = static_cast<int>(lua_tointeger(L, -1));
+        lua_pop(L, 1);
+    }
+    return status;
 }
 
 }  // namespace dinal::prompt

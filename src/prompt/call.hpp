@@ -21,4 +21,8 @@ std::string told_error(lua_State* L, const char* file);
 /// Takes the text from the top of the stack.
 std::string take_text(lua_State* L);
 
+/// luaL_loadfile for those who start scripts (the argument of main, :load, the init file), which takes its time and
+/// memory like any other code. In safe mode no bytecode, and only files that a script may read.
+int load_file(lua_State* L, const char* file);
+
 }  // namespace dinal::prompt

@@ -12,7 +12,6 @@
 #include "lua/lua_text.hpp"
 #include "lua/standard_globals.hpp"
 #include "prompt/call.hpp"
-#include "prompt/load_file.hpp"
 #include "prompt/output.hpp"
 #include "prompt/printer.hpp"
 #include "prompt/question.hpp"

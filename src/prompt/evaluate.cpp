@@ -4,8 +4,8 @@
 
 #include <string>
 
-#include "lua/dinal_table.hpp"
 #include "lua/interrupt.hpp"
+#include "lua/standard_globals.hpp"
 #include "prompt/call.hpp"
 #include "prompt/notices.hpp"
 #include "prompt/output.hpp"

@@ -22,7 +22,6 @@
 #include "lua/time_limit.hpp"
 #include "prompt/call.hpp"
 #include "prompt/line_editor.hpp"
-#include "prompt/load_file.hpp"
 #include "prompt/output.hpp"
 #include "prompt/repl.hpp"
 #include "source/function_source.hpp"

@@ -1,6 +1,5 @@
 #include "files/file.hpp"
 #include "files/csv.hpp"
-#include "files/stop.hpp"
 #include "support/catch.hpp"
 
 #include <fcntl.h>

@@ -1,4 +1,4 @@
-#include "files/row_writer.hpp"
+#include "files/write_rows.hpp"
 
 #include <array>
 #include <bit>
