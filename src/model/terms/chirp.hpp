@@ -38,32 +38,15 @@ struct Chirp {
 };
 
 inline constexpr text::Option chirp_options[] = {
-    {.name = "amplitude", .unit = "torque", .meaning = "its greatest value", .filled = text::fills<&Chirp::amplitude>},
-    {.name = "from",
-     .unit = "cycles per time unit",
-     .otherwise = text::needed,
-     .range = text::not_negative,
-     .meaning = "the first frequency",
-     .filled = text::fills<&Chirp::from>},
-    {.name = "to",
-     .unit = "cycles per time unit",
-     .otherwise = text::needed,
-     .range = text::not_negative,
-     .meaning = "the last frequency",
-     .filled = text::fills<&Chirp::to>},
-    {.name = "duration",
-     .unit = "time units",
-     .otherwise = text::needed,
-     .range = text::positive,
-     .meaning = "from the first to the last",
-     .filled = text::fills<&Chirp::duration>},
-    {.name = "at", .unit = "time units", .meaning = "where it begins", .filled = text::fills<&Chirp::at>},
+    rows::amplitude<Chirp>(),
+    {"from", rows::cycles, text::needed, text::not_negative, "the first frequency", text::fills<&Chirp::from>},
+    {"to", rows::cycles, text::needed, text::not_negative, "the last frequency", text::fills<&Chirp::to>},
+    {"duration", rows::time, text::needed, text::positive, "from the first to the last", text::fills<&Chirp::duration>},
+    rows::at<Chirp>(),
     {.name = "phase", .unit = "rad", .meaning = "at the time `at`", .filled = text::fills<&Chirp::phase>},
 };
 inline constexpr TermText Chirp::about{
-    {.name = "excitation.chirp",
-     .example = "excitation.chirp{ from = 0.2, to = 2, duration = 20 }",
-     .options = chirp_options},
+    {"excitation.chirp", "excitation.chirp{ from = 0.2, to = 2, duration = 20 }", chirp_options},
     "A sine whose frequency goes evenly from `from` to `to` (cycles per time unit) over `duration`, beginning at `at` "
     "with sin(phase). It keeps the first frequency before that and the last one after it.",
     "print(excitation.chirp{ from = 0, to = 1, duration = 2 }(1))  --> 1.0"};

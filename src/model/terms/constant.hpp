@@ -21,15 +21,10 @@ struct Constant {
 };
 
 inline constexpr text::Option constant_options[] = {
-    {.name = "level",
-     .unit = "torque",
-     .otherwise = text::needed,
-     .meaning = "the torque",
-     .filled = text::fills<&Constant::level>},
+    {"level", rows::torque, text::needed, text::any_finite, "the torque", text::fills<&Constant::level>},
 };
-inline constexpr TermText Constant::about{
-    {.name = "excitation.constant", .example = "excitation.constant{ level = 1 }", .options = constant_options},
-    "The same torque at all times.",
-    "print(excitation.constant{ level = 2 }(10))  --> 2.0"};
+inline constexpr TermText Constant::about{{"excitation.constant", "excitation.constant{ level = 1 }", constant_options},
+                                          "The same torque at all times.",
+                                          "print(excitation.constant{ level = 2 }(10))  --> 2.0"};
 
 }  // namespace dinal::model::terms

@@ -24,22 +24,13 @@ struct Exponential {
 };
 
 inline constexpr text::Option exponential_options[] = {
-    {.name = "amplitude",
-     .unit = "torque",
-     .meaning = "its first value",
-     .filled = text::fills<&Exponential::amplitude>},
-    {.name = "tau",
-     .unit = "time units",
-     .otherwise = text::needed,
-     .range = text::not_zero,
-     .meaning = "in which it falls to 1/e; a negative one grows",
-     .filled = text::fills<&Exponential::tau>},
-    {.name = "at", .unit = "time units", .meaning = "where it begins", .filled = text::fills<&Exponential::at>},
+    rows::amplitude<Exponential>("its first value"),
+    {"tau", rows::time, text::needed, text::not_zero, "in which it falls to 1/e; a negative one grows",
+     text::fills<&Exponential::tau>},
+    rows::at<Exponential>(),
 };
 inline constexpr TermText Exponential::about{
-    {.name = "excitation.exponential",
-     .example = "excitation.exponential{ amplitude = 2, tau = 0.5 }",
-     .options = exponential_options},
+    {"excitation.exponential", "excitation.exponential{ amplitude = 2, tau = 0.5 }", exponential_options},
     "amplitude exp(-(t - at)/tau) from `at` on, 0 before. A negative tau grows.",
     "M = excitation.exponential{ amplitude = 2, tau = 0.5, at = 1 }\nprint(M(0.9), M(1))  --> 0.0\t2.0"};
 

@@ -33,22 +33,12 @@ struct Gaussian {
 };
 
 inline constexpr text::Option gaussian_options[] = {
-    {.name = "amplitude",
-     .unit = "torque",
-     .meaning = "its greatest value",
-     .filled = text::fills<&Gaussian::amplitude>},
-    {.name = "at", .unit = "time units", .meaning = "its middle", .filled = text::fills<&Gaussian::at>},
-    {.name = "width",
-     .unit = "time units",
-     .otherwise = text::needed,
-     .range = text::positive,
-     .meaning = "its standard deviation: half its breadth at 0.61 of its height",
-     .filled = text::fills<&Gaussian::width>},
+    rows::amplitude<Gaussian>(),
+    rows::at<Gaussian>("its middle"),
+    rows::width<Gaussian>("its standard deviation: half its breadth at 0.61 of its height"),
 };
 inline constexpr TermText Gaussian::about{
-    {.name = "excitation.gaussian",
-     .example = "excitation.gaussian{ at = 1, width = 0.2 }",
-     .options = gaussian_options},
+    {"excitation.gaussian", "excitation.gaussian{ at = 1, width = 0.2 }", gaussian_options},
     "A smooth bump, amplitude exp(-((t - at)/width)^2 / 2): width is the standard deviation. The spectral integrator "
     "sees it however narrow it is; the others want steps of at most half the width.",
     "M = excitation.gaussian{ amplitude = 2, at = 3, width = 0.5 }\nprint(M(3), M(3.5) / M(3) == math.exp(-0.5))  --> "

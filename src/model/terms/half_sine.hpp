@@ -29,22 +29,13 @@ struct HalfSine {
 };
 
 inline constexpr text::Option half_sine_options[] = {
-    {.name = "amplitude",
-     .unit = "torque",
-     .meaning = "its greatest value",
-     .filled = text::fills<&HalfSine::amplitude>},
-    {.name = "at", .unit = "time units", .meaning = "where it begins", .filled = text::fills<&HalfSine::at>},
-    {.name = "width",
-     .unit = "time units",
-     .otherwise = text::needed,
-     .range = text::positive,
-     .meaning = "how long it lasts",
-     .filled = text::fills<&HalfSine::width>},
+    rows::amplitude<HalfSine>(),
+    rows::at<HalfSine>(),
+    rows::width<HalfSine>(),
 };
-inline constexpr TermText HalfSine::about{{.name = "excitation.half_sine",
-                                           .example = "excitation.half_sine{ at = 1, width = 0.2 }",
-                                           .options = half_sine_options},
-                                          "One half wave of a sine from `at` to at + width, else 0: a shock.",
-                                          "print(excitation.half_sine{ amplitude = 3, width = 2 }(1))  --> 3.0"};
+inline constexpr TermText HalfSine::about{
+    {"excitation.half_sine", "excitation.half_sine{ at = 1, width = 0.2 }", half_sine_options},
+    "One half wave of a sine from `at` to at + width, else 0: a shock.",
+    "print(excitation.half_sine{ amplitude = 3, width = 2 }(1))  --> 3.0"};
 
 }  // namespace dinal::model::terms

@@ -29,16 +29,8 @@ inline void omega_of_frequency(Harmonic& h, double frequency) {
 }
 
 inline constexpr text::Option harmonic_options[] = {
-    {.name = "amplitude",
-     .unit = "torque",
-     .meaning = "its greatest value",
-     .filled = text::fills<&Harmonic::amplitude>},
-    {.name = "frequency",
-     .unit = "cycles per time unit",
-     .otherwise = text::needed,
-     .range = text::not_negative,
-     .meaning = "omega / (2 pi)",
-     .filled = text::sets<omega_of_frequency>},
+    rows::amplitude<Harmonic>(),
+    {"frequency", rows::cycles, text::needed, text::not_negative, "omega / (2 pi)", text::sets<omega_of_frequency>},
     {.name = "omega",
      .unit = "rad per time unit",
      .otherwise = text::needed,
@@ -48,11 +40,10 @@ inline constexpr text::Option harmonic_options[] = {
      .instead_of_previous = true},
     {.name = "phase", .unit = "rad", .meaning = "at t = 0", .filled = text::fills<&Harmonic::phase>},
 };
-inline constexpr TermText Harmonic::about{{.name = "excitation.harmonic",
-                                           .example = "excitation.harmonic{ amplitude = 1, frequency = 1 }",
-                                           .options = harmonic_options},
-                                          "amplitude sin(omega t + phase). Give frequency (cycles per time unit) or "
-                                          "omega (rad per time unit); phase is in rad.",
-                                          "print(excitation.harmonic{ amplitude = 3, frequency = 0.25 }(1))  --> 3.0"};
+inline constexpr TermText Harmonic::about{
+    {"excitation.harmonic", "excitation.harmonic{ amplitude = 1, frequency = 1 }", harmonic_options},
+    "amplitude sin(omega t + phase). Give frequency (cycles per time unit) or "
+    "omega (rad per time unit); phase is in rad.",
+    "print(excitation.harmonic{ amplitude = 3, frequency = 0.25 }(1))  --> 3.0"};
 
 }  // namespace dinal::model::terms

@@ -16,16 +16,8 @@ struct Samples {
     double delay = 0;         ///< by how much `t` is later than there
 };
 inline constexpr text::Option samples_options[] = {
-    {.name = "t",
-     .unit = "time units",
-     .otherwise = text::needed,
-     .meaning = "times, which increase",
-     .filled = text::fills<&Samples::t>},
-    {.name = "M",
-     .unit = "torque",
-     .otherwise = text::needed,
-     .meaning = "the torque at these times",
-     .filled = text::fills<&Samples::M>},
+    {"t", "time units", text::needed, text::any_finite, "times, which increase", text::fills<&Samples::t>},
+    {"M", "torque", text::needed, text::any_finite, "the torque at these times", text::fills<&Samples::M>},
 };
 
 /// Straight lines between the samples; the first and last value hold outside.
@@ -94,9 +86,7 @@ private:
 };
 
 inline constexpr TermText Polyline::about{
-    {.name = "excitation.samples",
-     .example = "excitation.samples{ t = { 0, 1, 2 }, M = { 0, 3, 0 } }",
-     .options = samples_options},
+    {"excitation.samples", "excitation.samples{ t = { 0, 1, 2 }, M = { 0, 3, 0 } }", samples_options},
     "Straight lines between points, from two columns of a CSV file or from two tables (or vectors). Outside, the first "
     "and the last value hold. time and value name the columns or number them; without them they are the columns t (or "
     "time) and M, else the first and the second.",

@@ -54,20 +54,12 @@ struct Polynomial {
 };
 
 inline constexpr text::Option polynomial_options[] = {
-    {.name = "coefficients",
-     .unit = "torque, per time unit, ...",
-     .otherwise = text::needed,
-     .meaning = "the constant one first",
-     .filled = text::fills<&Polynomial::coefficients>},
-    {.name = "at",
-     .unit = "time units",
-     .meaning = "from which time is counted",
-     .filled = text::fills<&Polynomial::at>},
+    {"coefficients", "torque, per time unit, ...", text::needed, text::any_finite, "the constant one first",
+     text::fills<&Polynomial::coefficients>},
+    rows::at<Polynomial>("from which time is counted"),
 };
 inline constexpr TermText Polynomial::about{
-    {.name = "excitation.polynomial",
-     .example = "excitation.polynomial{ coefficients = { 1, 0.5 } }",
-     .options = polynomial_options},
+    {"excitation.polynomial", "excitation.polynomial{ coefficients = { 1, 0.5 } }", polynomial_options},
     "c[1] + c[2] (t - at) + c[3] (t - at)^2 + ... at all times; cut a piece out with e:window.",
     "print(excitation.polynomial{ coefficients = { 1, 0, 2 } }(3))  --> 19.0"};
 

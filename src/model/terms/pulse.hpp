@@ -22,17 +22,12 @@ struct Pulse {
 };
 
 inline constexpr text::Option pulse_options[] = {
-    {.name = "amplitude", .unit = "torque", .meaning = "its height", .filled = text::fills<&Pulse::amplitude>},
-    {.name = "at", .unit = "time units", .meaning = "where it begins", .filled = text::fills<&Pulse::at>},
-    {.name = "width",
-     .unit = "time units",
-     .otherwise = text::needed,
-     .range = text::positive,
-     .meaning = "how long it lasts",
-     .filled = text::fills<&Pulse::width>},
+    rows::amplitude<Pulse>("its height"),
+    rows::at<Pulse>(),
+    rows::width<Pulse>(),
 };
 inline constexpr TermText Pulse::about{
-    {.name = "excitation.pulse", .example = "excitation.pulse{ at = 1, width = 0.2 }", .options = pulse_options},
+    {"excitation.pulse", "excitation.pulse{ at = 1, width = 0.2 }", pulse_options},
     "amplitude for at <= t < at + width, else 0. Pulses add up to a train.",
     "M = excitation.pulse{ at = 1, width = 0.5 } + excitation.pulse{ at = 3, width = 0.5 }\nprint(M(1.2), M(2), "
     "M(3.2))  --> 1.0\t0.0\t1.0"};

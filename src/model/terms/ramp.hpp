@@ -35,16 +35,11 @@ inline constexpr text::Option ramp_options[] = {
      .unit = "torque per time unit",
      .meaning = "how fast it rises",
      .filled = text::fills<&Ramp::slope>},
-    {.name = "at", .unit = "time units", .meaning = "where it begins", .filled = text::fills<&Ramp::at>},
-    {.name = "width",
-     .unit = "time units",
-     .otherwise = "math.huge",
-     .range = text::positive_or_infinite,
-     .meaning = "how long it rises",
-     .filled = text::fills<&Ramp::width>},
+    rows::at<Ramp>(),
+    {"width", rows::time, "math.huge", text::positive_or_infinite, "how long it rises", text::fills<&Ramp::width>},
 };
 inline constexpr TermText Ramp::about{
-    {.name = "excitation.ramp", .example = "excitation.ramp{ slope = 2, at = 1 }", .options = ramp_options},
+    {"excitation.ramp", "excitation.ramp{ slope = 2, at = 1 }", ramp_options},
     "0 before `at`, then rising by slope per time unit; constant again after width.",
     "M = excitation.ramp{ slope = 2, at = 1, width = 3 }\nprint(M(0), M(2), M(9))  --> 0.0\t2.0\t6.0"};
 

@@ -33,27 +33,13 @@ struct Sawtooth {
 };
 
 inline constexpr text::Option sawtooth_options[] = {
-    {.name = "amplitude",
-     .unit = "torque",
-     .meaning = "its greatest value",
-     .filled = text::fills<&Sawtooth::amplitude>},
-    {.name = "period",
-     .unit = "time units",
-     .otherwise = text::needed,
-     .range = text::positive,
-     .meaning = "after which it begins again",
-     .filled = text::fills<&Sawtooth::period>},
-    {.name = "frequency",
-     .unit = "cycles per time unit",
-     .otherwise = text::needed,
-     .range = text::positive,
-     .meaning = "1 / period",
-     .filled = text::sets<period_of_frequency<Sawtooth>>,
-     .instead_of_previous = true},
-    {.name = "at", .unit = "time units", .meaning = "where a period begins", .filled = text::fills<&Sawtooth::at>},
+    rows::amplitude<Sawtooth>(),
+    rows::period<Sawtooth>(),
+    rows::frequency<Sawtooth>(),
+    rows::at<Sawtooth>(rows::where_a_period_begins),
 };
 inline constexpr TermText Sawtooth::about{
-    {.name = "excitation.sawtooth", .example = "excitation.sawtooth{ period = 2 }", .options = sawtooth_options},
+    {"excitation.sawtooth", "excitation.sawtooth{ period = 2 }", sawtooth_options},
     "Rises from -amplitude to amplitude over each period and drops back. A period begins at `at`.",
     "M = excitation.sawtooth{ period = 2 }\nprint(M(0), M(1), M(1.5))  --> -1.0\t0.0\t0.5"};
 

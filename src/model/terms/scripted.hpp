@@ -88,17 +88,10 @@ inline constexpr text::Option scripted_options[] = {
      .unit = "time units",
      .meaning = "where it jumps or kinks",
      .filled = text::fills<&Scripted::breaks>},
-    {.name = "period",
-     .unit = "time units",
-     .range = text::positive,
-     .meaning = "after which the breaks repeat",
-     .filled = text::sets<repeat_after>},
+    {"period", "time units", text::its_own, text::positive, "after which the breaks repeat", text::sets<repeat_after>},
 };
 inline constexpr TermText Scripted::about{
-    {.name = "excitation.scripted",
-     .example = "excitation.scripted(f, { breaks = { 0.5, 2 }, period = 3 })",
-     .options = scripted_options,
-     .may_be_bare = true},
+    {"excitation.scripted", "excitation.scripted(f, { breaks = { 0.5, 2 }, period = 3 })", scripted_options, true},
     "Any Lua function of t, or of t, theta, velocity: with two or more parameters (or ...) it is called with all "
     "three. breaks are times at which it jumps or kinks, so that integrators do not step across them; with a period, "
     "they repeat. Where M is expected a function alone will do.",

@@ -36,29 +36,17 @@ struct Square {
 };
 
 inline constexpr text::Option square_options[] = {
-    {.name = "amplitude", .unit = "torque", .meaning = "its greatest value", .filled = text::fills<&Square::amplitude>},
-    {.name = "period",
-     .unit = "time units",
-     .otherwise = text::needed,
-     .range = text::positive,
-     .meaning = "after which it begins again",
-     .filled = text::fills<&Square::period>},
-    {.name = "frequency",
-     .unit = "cycles per time unit",
-     .otherwise = text::needed,
-     .range = text::positive,
-     .meaning = "1 / period",
-     .filled = text::sets<period_of_frequency<Square>>,
-     .instead_of_previous = true},
+    rows::amplitude<Square>(),
+    rows::period<Square>(),
+    rows::frequency<Square>(),
     {.name = "duty",
-     .unit = "",
      .range = text::between_0_and_1,
      .meaning = "the part of a period at which it is positive",
      .filled = text::fills<&Square::duty>},
-    {.name = "at", .unit = "time units", .meaning = "where a period begins", .filled = text::fills<&Square::at>},
+    rows::at<Square>(rows::where_a_period_begins),
 };
 inline constexpr TermText Square::about{
-    {.name = "excitation.square", .example = "excitation.square{ period = 2 }", .options = square_options},
+    {"excitation.square", "excitation.square{ period = 2 }", square_options},
     "+amplitude for the first part `duty` of each period, -amplitude for the rest. A period begins at `at`.",
     "M = excitation.square{ period = 4, duty = 0.25 }\nprint(M(0), M(0.9), M(1))  --> 1.0\t1.0\t-1.0"};
 

@@ -22,12 +22,11 @@ struct Step {
 };
 
 inline constexpr text::Option step_options[] = {
-    {.name = "level", .unit = "torque", .meaning = "the torque from then on", .filled = text::fills<&Step::level>},
-    {.name = "at", .unit = "time units", .meaning = "the time of the step", .filled = text::fills<&Step::at>},
+    {.name = "level", .unit = rows::torque, .meaning = "the torque from then on", .filled = text::fills<&Step::level>},
+    rows::at<Step>("the time of the step"),
 };
-inline constexpr TermText Step::about{
-    {.name = "excitation.step", .example = "excitation.step{ level = 1, at = 2 }", .options = step_options},
-    "0 before the time `at`, level from then on.",
-    "M = excitation.step{ level = 2, at = 1 }\nprint(M(0.9), M(1))  --> 0.0\t2.0"};
+inline constexpr TermText Step::about{{"excitation.step", "excitation.step{ level = 1, at = 2 }", step_options},
+                                      "0 before the time `at`, level from then on.",
+                                      "M = excitation.step{ level = 2, at = 1 }\nprint(M(0.9), M(1))  --> 0.0\t2.0"};
 
 }  // namespace dinal::model::terms

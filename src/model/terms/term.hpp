@@ -100,12 +100,6 @@ inline double fraction(double t, double from, double to) {
 
 // ---- pieces of descriptions
 
-/// The option `frequency` in place of `period`.
-template <class T>
-void period_of_frequency(T& term, double frequency) {
-    term.period = 1 / frequency;
-}
-
 /// "t[3] = 1 is not after t[2] = 2; times must increase", or none.
 std::optional<text::Error> not_increasing(const char* option, std::span<const double> times);
 
@@ -121,5 +115,48 @@ std::string from_on(double at);
 std::string between(double first, double last);
 /// "2 sawtooth of period 3 that begins at 1"
 std::string wave(const char* shape, double amplitude, double period, double at);
+
+// ---- options that more than one term has
+
+namespace rows {
+
+inline constexpr const char* torque = "torque";
+inline constexpr const char* time = "time units";
+inline constexpr const char* cycles = "cycles per time unit";
+inline constexpr const char* where_a_period_begins = "where a period begins";
+
+template <class T>
+constexpr text::Option amplitude(const char* meaning = "its greatest value") {
+    return {.name = "amplitude", .unit = torque, .meaning = meaning, .filled = text::fills<&T::amplitude>};
+}
+template <class T>
+constexpr text::Option at(const char* meaning = "where it begins") {
+    return {.name = "at", .unit = time, .meaning = meaning, .filled = text::fills<&T::at>};
+}
+template <class T>
+constexpr text::Option width(const char* meaning = "how long it lasts") {
+    return {"width", time, text::needed, text::positive, meaning, text::fills<&T::width>};
+}
+template <class T>
+constexpr text::Option period() {
+    return {"period", time, text::needed, text::positive, "after which it begins again", text::fills<&T::period>};
+}
+template <class T>
+void set_frequency(T& term, double frequency) {
+    term.period = 1 / frequency;
+}
+/// In place of the period, the row before.
+template <class T>
+constexpr text::Option frequency() {
+    return {.name = "frequency",
+            .unit = cycles,
+            .otherwise = text::needed,
+            .range = text::positive,
+            .meaning = "1 / period",
+            .filled = text::sets<set_frequency<T>>,
+            .instead_of_previous = true};
+}
+
+}  // namespace rows
 
 }  // namespace dinal::model::terms

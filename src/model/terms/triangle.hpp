@@ -36,27 +36,13 @@ struct Triangle {
 };
 
 inline constexpr text::Option triangle_options[] = {
-    {.name = "amplitude",
-     .unit = "torque",
-     .meaning = "its greatest value",
-     .filled = text::fills<&Triangle::amplitude>},
-    {.name = "period",
-     .unit = "time units",
-     .otherwise = text::needed,
-     .range = text::positive,
-     .meaning = "after which it begins again",
-     .filled = text::fills<&Triangle::period>},
-    {.name = "frequency",
-     .unit = "cycles per time unit",
-     .otherwise = text::needed,
-     .range = text::positive,
-     .meaning = "1 / period",
-     .filled = text::sets<period_of_frequency<Triangle>>,
-     .instead_of_previous = true},
-    {.name = "at", .unit = "time units", .meaning = "where a period begins", .filled = text::fills<&Triangle::at>},
+    rows::amplitude<Triangle>(),
+    rows::period<Triangle>(),
+    rows::frequency<Triangle>(),
+    rows::at<Triangle>(rows::where_a_period_begins),
 };
 inline constexpr TermText Triangle::about{
-    {.name = "excitation.triangle", .example = "excitation.triangle{ period = 2 }", .options = triangle_options},
+    {"excitation.triangle", "excitation.triangle{ period = 2 }", triangle_options},
     "The corners of a sine joined by straight lines: 0, amplitude, 0, -amplitude. A period begins at `at`.",
     "M = excitation.triangle{ period = 4 }\nprint(M(0.5), M(1), M(3))  --> 0.5\t1.0\t-1.0"};
 

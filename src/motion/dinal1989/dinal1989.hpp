@@ -23,12 +23,7 @@ struct Dinal1989 {
 
 inline constexpr const char* stop_rules[] = {"listing", "text"};
 inline constexpr text::Option dinal1989_options[] = {
-    {.name = "h",
-     .unit = "time units",
-     .otherwise = text::needed,
-     .range = text::positive,
-     .meaning = "the step",
-     .filled = text::fills<&Dinal1989::h>},
+    {"h", "time units", text::needed, text::positive, "the step", text::fills<&Dinal1989::h>},
     {.name = "stop",
      .meaning = "whose rule stops the mass: that of the listing, or that of the report's text",
      .filled = text::fills<&Dinal1989::stop>,

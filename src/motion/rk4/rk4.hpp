@@ -19,12 +19,7 @@ struct Rk4 {
 };
 
 inline constexpr text::Option rk4_options[] = {
-    {.name = "h",
-     .unit = "time units",
-     .otherwise = text::needed,
-     .range = text::positive,
-     .meaning = "the step",
-     .filled = text::fills<&Rk4::h>},
+    {"h", "time units", text::needed, text::positive, "the step", text::fills<&Rk4::h>},
 };
 
 inline constexpr MethodText Rk4::about{

@@ -24,12 +24,8 @@ inline constexpr text::Option spectral_options[] = {
      .range = text::between_0_and_1,
      .meaning = "relative, of the motion on each panel",
      .filled = text::fills<&Spectral::tolerance>},
-    {.name = "max_panel",
-     .unit = "time units",
-     .otherwise = "0.6 T0",
-     .range = text::positive_or_infinite,
-     .meaning = "the longest panel",
-     .filled = text::fills<&Spectral::max_panel>},
+    {"max_panel", "time units", "0.6 T0", text::positive_or_infinite, "the longest panel",
+     text::fills<&Spectral::max_panel>},
 };
 
 inline constexpr MethodText Spectral::about{
