@@ -28,9 +28,7 @@ int data_row_text(lua_State* L) {
                                                  : lua::describe(L, -1);
         lua_pop(L, 1);
     }
-    text += " }";
-    lua_pushlstring(L, text.data(), text.size());
-    return 1;
+    return lua::push_text(L, text + " }");
 }
 
 /// The metatable of the rows of the data at `index`, kept with it: it knows the order of the names.
@@ -44,7 +42,7 @@ void push_row_metatable(lua_State* L, int index, const Data& data) {
     lua_setfield(L, -2, "__name");
     lua_createtable(L, static_cast<int>(data.columns.size()), 0);
     for (std::size_t i = 0; i < data.columns.size(); ++i) {
-        lua_pushlstring(L, data.columns[i].name.data(), data.columns[i].name.size());
+        lua::push_text(L, data.columns[i].name);
         lua_rawseti(L, -2, static_cast<lua_Integer>(i) + 1);
     }
     lua_setfield(L, -2, "names");
@@ -55,7 +53,7 @@ void push_row_metatable(lua_State* L, int index, const Data& data) {
 void push_words(lua_State* L, const std::vector<std::string>& words) {
     lua_createtable(L, static_cast<int>(words.size()), 0);
     for (std::size_t i = 0; i < words.size(); ++i) {
-        lua_pushlstring(L, words[i].data(), words[i].size());
+        lua::push_text(L, words[i]);
         lua_rawseti(L, -2, static_cast<lua_Integer>(i) + 1);
     }
 }
@@ -91,9 +89,7 @@ int data_other_key(lua_State* L) {
 int data_column(lua_State* L) {
     const DataHandle& data = data_functions::self(L, "d:column(\"r\")");
     if (lua_type(L, 2) != LUA_TSTRING) {
-        lua::raise(L, {.sentence = "d:column takes the name of a column, got " + lua::describe(L, 2),
-                       .call = "d:column",
-                       .culprit = lua::written(L, 2)});
+        lua::raise_got(L, 2, "d:column", "d:column takes the name of a column");
     }
     return push_column(L, data_functions::column_or_fail(L, *data, "d:column", lua_tostring(L, 2)));
 }
@@ -102,7 +98,7 @@ int data_names(lua_State* L) {
     const DataHandle& data = data_functions::self(L, "d.names");
     lua_createtable(L, static_cast<int>(data->columns.size()), 0);
     for (std::size_t i = 0; i < data->columns.size(); ++i) {
-        lua_pushlstring(L, data->columns[i].name.data(), data->columns[i].name.size());
+        lua::push_text(L, data->columns[i].name);
         lua_rawseti(L, -2, static_cast<lua_Integer>(i) + 1);
     }
     return 1;
@@ -127,9 +123,7 @@ int data_pairs(lua_State* L) {
 }
 
 int data_to_string(lua_State* L) {
-    const std::string text = text_of(*data_functions::self(L, "tostring(d)"), text::readable_width);
-    lua_pushlstring(L, text.data(), text.size());
-    return 1;
+    return lua::push_text(L, text_of(*data_functions::self(L, "tostring(d)"), text::readable_width));
 }
 
 std::string data_card(lua_State* L, int index, const terminal::Display& screen) {
@@ -255,12 +249,11 @@ constexpr lua::Member data_module_members[] = {
 void push_row(lua_State* L, int index, const Data& data, std::size_t row) {
     lua_createtable(L, 0, static_cast<int>(data.columns.size()));
     for (const DataColumn& each : data.columns) {
-        lua_pushlstring(L, each.name.data(), each.name.size());
+        lua::push_text(L, each.name);
         if (const lua::Vector* numbers = each.numbers()) {
             lua_pushnumber(L, numbers->begin()[row]);
         } else {
-            const std::string& word = (*std::get<Words>(each.values))[row];
-            lua_pushlstring(L, word.data(), word.size());
+            lua::push_text(L, (*std::get<Words>(each.values))[row]);
         }
         lua_rawset(L, -3);
     }

@@ -52,10 +52,7 @@ int times(lua_State* L) {
     return 1;
 }
 
-void set_number(lua_State* L, const char* name, double value) {
-    lua_pushnumber(L, value);
-    lua_setfield(L, -2, name);
-}
+using lua::set_number;
 
 void set_balance(lua_State* L, const analysis::Balance& balance) {
     set_number(L, "input", balance.work.input);
@@ -106,9 +103,7 @@ int half_cycles(lua_State* L) {
 }
 
 int energy_text(lua_State* L) {
-    const std::string text = dinal::analysis::text(energy_self(L, "tostring(energy)")->energy);
-    lua_pushlstring(L, text.data(), text.size());
-    return 1;
+    return lua::push_text(L, analysis::text(energy_self(L, "tostring(energy)")->energy));
 }
 
 #define DINAL_ENERGY                                                             \
@@ -202,10 +197,8 @@ int energy_of_run(lua_State* L) {
     if (call.failed()) {
         call.raise_error();
     }
-    if (!energy) {
-        lua::raise(L, text::in_call("run:energy()", energy.error()));
-    }
-    lua::push<EnergyHandle>(L, std::make_shared<RunEnergy>(RunEnergy{run, std::move(energy).value()}));
+    lua::push<EnergyHandle>(
+        L, std::make_shared<RunEnergy>(RunEnergy{run, lua::value_or_raise(L, "run:energy()", std::move(energy))}));
     return 1;
 }
 

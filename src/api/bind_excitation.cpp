@@ -120,10 +120,7 @@ int delay(lua_State* L) {
 double window_edge(lua_State* L, int index, std::string_view name) {
     const double edge = lua_tonumber(L, index);
     if (lua_type(L, index) != LUA_TNUMBER || std::isnan(edge)) {
-        lua::raise(L, {.sentence = fmt::format("e:window(from, to): {} must be a number, got {}", name,
-                                               lua::describe(L, index)),
-                       .call = "e:window(from, to)",
-                       .culprit = lua::written(L, index)});
+        lua::raise_got(L, index, "e:window(from, to)", fmt::format("e:window(from, to): {} must be a number", name));
     }
     return edge;
 }
@@ -168,11 +165,8 @@ int push_scaled(lua_State* L, int index, double gain) {
 int multiply(lua_State* L) {
     const int number = lua::test<model::Excitation>(L, 1) != nullptr ? 2 : 1;
     if (lua_type(L, number) != LUA_TNUMBER) {
-        lua::raise(L, {.sentence = fmt::format(
-                           "an excitation can be multiplied by a number only, got {}; a product of two is a function: "
-                           "function(t) return a(t) * b(t) end",
-                           lua::describe(L, number)),
-                       .culprit = lua::written(L, number)});
+        lua::raise_got(L, number, "", "an excitation can be multiplied by a number only",
+                       "; a product of two is a function: function(t) return a(t) * b(t) end");
     }
     return push_scaled(L, 3 - number, lua_tonumber(L, number));
 }
@@ -195,9 +189,7 @@ int negate(lua_State* L) {
 }
 
 int excitation_text(lua_State* L) {
-    const std::string result = source::describe(L, self_excitation(L, "tostring(e)"));
-    lua_pushlstring(L, result.data(), result.size());
-    return 1;
+    return lua::push_text(L, source::describe(L, self_excitation(L, "tostring(e)")));
 }
 
 constexpr lua::Member excitation_members[] = {

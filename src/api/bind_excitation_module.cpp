@@ -23,7 +23,7 @@ namespace {
 int push_term(lua_State* L, model::Term term) {
     auto made = model::Excitation::make(std::move(term));
     if (!made) {
-        lua::raise(L, made.error());
+        lua::raise(L, made.error());  // it names its call
     }
     lua::push(L, std::move(made).value());
     return 1;
@@ -79,10 +79,7 @@ int samples_from_file(lua_State* L) {
     if (lua::interrupt_requested()) {
         lua::raise_interrupted(L);  // what was read is not all
     }
-    if (!read) {
-        options.fail(read.error());
-    }
-    const files::Table table = std::move(read).value();
+    const files::Table table = options.value_or_fail(std::move(read));
     if (table.values.rows() == 0) {
         options.fail({fmt::format("{} has names but no rows of numbers", file)});
     }
@@ -111,11 +108,8 @@ int samples(lua_State* L) {
         return samples_from_file(L);
     }
     if (lua_type(L, 1) != LUA_TTABLE) {
-        lua::raise(L, {.sentence = fmt::format("{} takes the name of a file or a table of points, got {}; for example "
-                                               "{}",
-                                               file_call.name, lua::describe(L, 1), file_call.example),
-                       .call = file_call.name,
-                       .culprit = lua::written(L, 1)});
+        lua::raise_got(L, 1, file_call.name, "excitation.samples takes the name of a file or a table of points",
+                       fmt::format("; for example {}", file_call.example));
     }
     return push_term(
         L, std::make_shared<const model::Samples>(lua::read<model::Samples>(L, 1, model::Polyline::about.call)));
@@ -126,10 +120,8 @@ int samples(lua_State* L) {
 int scripted(lua_State* L) {
     constexpr const text::Call& call = model::Scripted::about.call;
     if (!lua::is_callable(L, 1) || lua::test<model::Excitation>(L, 1) != nullptr) {
-        lua::raise(L, {.sentence = fmt::format("{} needs a function, got {}; for example {}", call.name,
-                                               lua::describe(L, 1), call.example),
-                       .call = call.name,
-                       .culprit = lua::written(L, 1)});
+        lua::raise_got(L, 1, call.name, "excitation.scripted needs a function",
+                       fmt::format("; for example {}", call.example));
     }
     auto term = lua::read<model::Scripted>(L, 2, call);
     const auto function = std::make_shared<lua::LuaFunction>(L, 1);

@@ -73,10 +73,8 @@ int asymmetric_law(lua_State* L) {
 
 int law_of_function(lua_State* L) {
     if (!lua::is_callable(L, 1)) {
-        lua::raise(L, {.sentence = "friction.law takes a function of the speed, got " + lua::describe(L, 1) +
-                                   ", for example " + laws::user_law_call.example,
-                       .call = laws::user_law_call.name,
-                       .culprit = lua::written(L, 1)});
+        lua::raise_got(L, 1, laws::user_law_call.name, "friction.law takes a function of the speed",
+                       fmt::format(", for example {}", laws::user_law_call.example));
     }
     const lua::Options options(L, 2, laws::user_law_call);
     laws::UserLaw law;
@@ -114,8 +112,7 @@ int law_holding(lua_State* L) {
 }
 
 int law_text(lua_State* L) {
-    lua_pushstring(L, source::lua_text(L, law_self(L, "tostring(law)")).c_str());
-    return 1;
+    return lua::push_text(L, source::lua_text(L, law_self(L, "tostring(law)")));
 }
 
 constexpr lua::Member friction_module_members[] = {

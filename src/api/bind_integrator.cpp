@@ -155,13 +155,11 @@ lua::Member member_of(std::size_t i) {
 }
 
 int name(lua_State* L) {
-    lua_pushstring(L, name_of(motion::MethodView(integrator_self(L)).about()));
-    return 1;
+    return lua::push_text(L, name_of(motion::MethodView(integrator_self(L)).about()));
 }
 
 int integrator_text(lua_State* L) {
-    lua_pushstring(L, source::lua_text(integrator_self(L)).c_str());
-    return 1;
+    return lua::push_text(L, source::lua_text(integrator_self(L)));
 }
 
 std::vector<lua::Member> all_members() {

@@ -24,11 +24,8 @@ std::string column_on_top(lua_State* L, const lua::Options& options, std::string
     if (lua_type(L, -1) == LUA_TSTRING) {
         return lua_tostring(L, -1);
     }
-    const auto column = column_at(L, -1, run->trajectory.names, what);
-    if (!column) {
-        options.fail(column.error());
-    }
-    return run->trajectory.names[static_cast<std::size_t>(*column)];
+    const Eigen::Index column = options.value_or_fail(column_at(L, -1, run->trajectory.names, what));
+    return run->trajectory.names[static_cast<std::size_t>(column)];
 }
 
 std::vector<std::string> asked_columns(lua_State* L, const lua::Options& options, std::string_view option,
@@ -51,13 +48,6 @@ std::vector<std::string> asked_columns(lua_State* L, const lua::Options& options
     }
     lua_pop(L, 1);
     return names;
-}
-
-plots::Figure value_or_fail(const lua::Options& options, text::Expected<plots::Figure> figure) {
-    if (!figure) {
-        options.fail(figure.error());
-    }
-    return std::move(figure).value();
 }
 
 void refuse_empty(const lua::Options& options, const RunHandle& run) {
@@ -109,9 +99,7 @@ int plot_vectors(lua_State* L) {
 }
 
 int picture_text(lua_State* L) {
-    const std::string text = text_of_picture(lua::self<Picture>(L, 1, "tostring(picture)"));
-    lua_pushlstring(L, text.data(), text.size());
-    return 1;
+    return lua::push_text(L, text_of_picture(lua::self<Picture>(L, 1, "tostring(picture)")));
 }
 
 constexpr lua::Member plot_module_members[] = {
@@ -136,8 +124,8 @@ int plot_run(lua_State* L) {
     if (x.size() > 1) {
         options.fail("x", "x must be one column");
     }
-    plots::Figure figure = value_or_fail(
-        options, plots::column_figure(data_of(run), x.empty() ? "" : x.front(), asked_columns(L, options, "y", run)));
+    plots::Figure figure = options.value_or_fail(
+        plots::column_figure(data_of(run), x.empty() ? "" : x.front(), asked_columns(L, options, "y", run)));
     apply_options(L, options, figure);
     std::vector<plots::Figure> figures{std::move(figure)};
     return deliver(L, options, std::move(figures));
@@ -147,7 +135,7 @@ int phase_plot_run(lua_State* L) {
     const RunHandle run = lua::self<RunHandle>(L, 1, "run:phase_plot()");
     const lua::Options options(L, 2, phase_plot_call);
     refuse_empty(options, run);
-    plots::Figure figure = value_or_fail(options, plots::phase_figure(data_of(run)));
+    plots::Figure figure = options.value_or_fail(plots::phase_figure(data_of(run)));
     apply_options(L, options, figure);
     std::vector<plots::Figure> figures{std::move(figure)};
     return deliver(L, options, std::move(figures));

@@ -71,19 +71,13 @@ int progress(lua_State* L) {
     lua_settop(L, 2);
     const auto steps = steps_of(L);
     if (!steps) {
-        lua::raise(L,
-                   {.sentence = fmt::format(
-                        "progress needs how many steps there are, math.huge if nobody knows, or a list to go through, "
-                        "got {}; for example {}",
-                        lua::describe(L, 1), example),
-                    .call = "progress",
-                    .culprit = lua::written(L, 1)});
+        lua::raise_got(L, 1, "progress",
+                       "progress needs how many steps there are, math.huge if nobody knows, or a list to go through",
+                       fmt::format("; for example {}", example));
     }
     if (!lua_isnil(L, 2) && lua_type(L, 2) != LUA_TSTRING) {
-        lua::raise(L, {.sentence = fmt::format("progress: the label must be a string, got {}; for example {}",
-                                               lua::describe(L, 2), example),
-                       .call = "progress",
-                       .culprit = lua::written(L, 2)});
+        lua::raise_got(L, 2, "progress", "progress: the label must be a string",
+                       fmt::format("; for example {}", example));
     }
     const std::string label = lua_isnil(L, 2) ? "" : lua_tostring(L, 2);
     lua_pushcfunction(L, lua::guarded<next_step>);

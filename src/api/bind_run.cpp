@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "analysis/explain.hpp"
 #include "api/bind_simulate.hpp"
 #include "api/cards.hpp"
 #include "api/classes.hpp"
@@ -82,10 +83,7 @@ int columns(lua_State* L) {
     luaL_checkstack(L, asked + 5, "too many columns");
     for (int i = 2; i <= asked + 1; ++i) {
         const auto column = column_at(L, i, names, fmt::format("argument {}", i - 1));
-        if (!column) {
-            lua::raise(L, text::in_call("run:columns", column.error()));
-        }
-        push_column(L, run, *column);
+        push_column(L, run, lua::value_or_raise(L, "run:columns", column));
     }
     return asked;
 }
@@ -94,7 +92,7 @@ int names(lua_State* L) {
     const auto& names = run_self(L, "run.names")->trajectory.names;
     lua_createtable(L, static_cast<int>(names.size()), 0);
     for (std::size_t i = 0; i < names.size(); ++i) {
-        lua_pushlstring(L, names[i].data(), names[i].size());
+        lua::push_text(L, names[i]);
         lua_rawseti(L, -2, static_cast<lua_Integer>(i) + 1);
     }
     return 1;
@@ -114,9 +112,7 @@ int events(lua_State* L) {
 
 int outcome(lua_State* L) {
     const Run& run = *run_self(L, "run.outcome");
-    const std::string_view text = run.origin ? model::sentence(run.trajectory.outcome) : "read from a file";
-    lua_pushlstring(L, text.data(), text.size());
-    return 1;
+    return lua::push_text(L, run.origin ? model::sentence(run.trajectory.outcome) : "read from a file");
 }
 
 template <double motion::Trajectory::*time>
@@ -136,15 +132,13 @@ int at(lua_State* L) {
     const RunHandle run = run_self(L, "run:at(t)");  // kept: the user's function may drop the last reference
     const double t = lua::finite_argument(L, 2, "run:at(t): t");
     lua::CallState call(L);  // between rows the integrator asks the excitation again
-    const auto state = run->trajectory.at(t);
+    const auto found = run->trajectory.at(t);
     if (call.failed()) {
         call.raise_error();
     }
-    if (!state) {
-        lua::raise(L, text::in_call("run:at(t)", state.error()));
-    }
-    lua_pushnumber(L, state->theta);
-    lua_pushnumber(L, state->velocity);
+    const model::State state = lua::value_or_raise(L, "run:at(t)", found);
+    lua_pushnumber(L, state.theta);
+    lua_pushnumber(L, state.velocity);
     return 2;
 }
 
@@ -153,10 +147,15 @@ int run_length(lua_State* L) {
     return 1;
 }
 
+int explain(lua_State* L) {
+    const Run& run = *run_self(L, "run:explain()");
+    return lua::push_text(L, run.origin ? analysis::explain(run.trajectory, run.origin->system, run.origin->excitation,
+                                                            run.origin->integrator)
+                                        : analysis::explain_rows(run.trajectory));
+}
+
 int run_text(lua_State* L) {
-    const std::string text = motion::summary(run_self(L, "tostring(run)")->trajectory);
-    lua_pushlstring(L, text.data(), text.size());
-    return 1;
+    return lua::push_text(L, motion::summary(run_self(L, "tostring(run)")->trajectory));
 }
 
 #define DINAL_RUN "run = nondimensional{}:simulate{ M = 3, theta0 = 1, t_end = 2, dt = 0.5 }\n"
@@ -188,7 +187,7 @@ constexpr lua::Member run_members[] = {
       "Integrated over the motion that integrator.spectral keeps, so only for its runs.",
       "run = system{ I = 1, k = 1, Rd = 0.12 }:simulate{ theta0 = 1, t_end = 20, dt = 5 }\n"
       "print(string.format(\"%.6f\", run:energy().total.dry))  --> 0.499200"}},
-    {lua::a_method<explain_run>,
+    {lua::a_method<explain>,
      {"run:explain() -> string",
       "The run told in sentences: its half cycles, where, when and why it stopped and slipped (|M - k theta| against "
       "Re), and what became of it: at rest, or in steady motion with which period, amplitude, lag and stops.",

@@ -79,11 +79,7 @@ int run_task(lua_State* L, const lua::Options& options, source::Origin origin, d
         progress.advance(t);
         return !lua::interrupt_requested();
     };
-    auto result = compute(*run.origin, monitor, limits);
-    if (!result) {
-        options.fail(result.error());
-    }
-    run.trajectory = std::move(result).value();
+    run.trajectory = options.value_or_fail(compute(*run.origin, monitor, limits));
     if (call.failed() && lua::interrupt_requested()) {
         run.trajectory.outcome = model::Outcome::interrupted;  // M was stopped, it did not fail
     }

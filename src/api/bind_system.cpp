@@ -107,9 +107,7 @@ int regime(lua_State* L) {
         lua_pushnil(L);
         return 1;
     }
-    const std::string_view text = model::name(system.regime());
-    lua_pushlstring(L, text.data(), text.size());
-    return 1;
+    return lua::push_text(L, model::name(system.regime()));
 }
 
 int friction_ratio(lua_State* L) {

@@ -68,7 +68,7 @@ constexpr lua::Member theory_module_members[] = {
       "What dry friction alone takes from the amplitude in each full cycle: 4 Rd/k, rad.",
       "print(theory.friction_decrement{ Rd = 2, k = 40 })  --> 0.2",
       {&o::friction_decrement}}},
-    {lua::a_function<f::identify>,
+    {lua::a_function<closed_form<o::identify, f::identify>>,
      {"theory.identify{ OPTIONS } -> zeta, x_f",
       "Both dampings from three successive extremes of a free motion (signs do not count), rest not among them: q = "
       "(X1 - X2)/(X0 - X1), zeta/sqrt(1 - zeta^2) = -(ln q)/pi, x_f = Rd/k = (q X0 - X1)/(1 + q). nil unless X0 > X1 > "
@@ -107,7 +107,7 @@ constexpr lua::Member theory_module_members[] = {
       "print(string.format(\"%.4f\", theory.equivalent_zeta{ friction_ratio = 0.5, r = 1.35, magnification = phi }))\n"
       "--> 0.2515",
       {&o::equivalent_zeta}}},
-    {lua::a_function<f::linearised>,
+    {lua::a_function<closed_form<o::linearised, f::linearised>>,
      {"theory.linearised{ OPTIONS } -> amplitude, lag",
       "The steady motion with dry friction replaced by its equivalent damping, added to zeta: amplitude in units of "
       "M0/k, sqrt(1 - (4 gamma/pi)^2)/|1 - r^2| for zeta = 0, and lag in rad. For small gamma only; theory.den_hartog "

@@ -27,18 +27,13 @@ text::Expected<files::Table> read(const std::string& file) {
 
 int load(lua_State* L) {
     if (lua_type(L, 1) != LUA_TSTRING) {
-        lua::raise(L, {.sentence = "trajectory.load: the name of the file must be a string, got " + lua::describe(L, 1),
-                       .call = "trajectory.load",
-                       .culprit = lua::written(L, 1)});
+        lua::raise_got(L, 1, "trajectory.load", "trajectory.load: the name of the file must be a string");
     }
     auto table = read(lua_tostring(L, 1));
     if (lua::interrupt_requested()) {
         lua::raise_interrupted(L);  // what was read is not all
     }
-    if (!table) {
-        lua::raise(L, text::in_call("trajectory.load", table.error()));
-    }
-    files::Table content = std::move(table).value();
+    files::Table content = lua::value_or_raise(L, "trajectory.load", std::move(table));
     Run run;
     run.comments = std::move(content.comments);
     motion::Trajectory& trajectory = run.trajectory;

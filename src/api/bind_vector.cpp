@@ -114,10 +114,8 @@ lua_Integer whole_argument(lua_State* L, int index, std::string_view name, lua_I
     int is_integer = 0;
     const lua_Integer value = lua_tointegerx(L, index, &is_integer);
     if (is_integer == 0 || lua_type(L, index) != LUA_TNUMBER) {
-        lua::raise(L, text::in_call(
-                          "v:slice(first, last, step)",
-                          {.sentence = fmt::format("{} must be a whole number, got {}", name, lua::describe(L, index)),
-                           .culprit = lua::written(L, index)}));
+        lua::raise_got(L, index, "v:slice(first, last, step)",
+                       fmt::format("v:slice(first, last, step): {} must be a whole number", name));
     }
     return value;
 }
@@ -166,8 +164,7 @@ int vector_text(lua_State* L) {
         result = fmt::format("vector{{ {}, ..., {} }}  -- {} numbers", list(v.values().first(ends)),
                              list(v.values().last(ends)), v.size());
     }
-    lua_pushlstring(L, result.data(), result.size());
-    return 1;
+    return lua::push_text(L, result);
 }
 
 // ---- the class

@@ -37,10 +37,7 @@ Data with_rows(const Data& data, const std::vector<std::size_t>& rows) {
 
 std::string file_argument(lua_State* L, int index, const char* call) {
     if (lua_type(L, index) != LUA_TSTRING) {
-        lua::raise(L, {.sentence = fmt::format("{}: the name of the file must be a string, got {}", call,
-                                               lua::describe(L, index)),
-                       .call = call,
-                       .culprit = lua::written(L, index)});
+        lua::raise_got(L, index, call, fmt::format("{}: the name of the file must be a string", call));
     }
     std::string file = lua_tostring(L, index);
     if (text::ending_of(file) == ".dat") {
@@ -141,10 +138,7 @@ int filter(lua_State* L) {
     const DataHandle data = self(L, "d:filter(f)");
     const auto* mask = lua::test<lua::Vector>(L, 2);
     if (mask == nullptr && lua_type(L, 2) != LUA_TFUNCTION) {
-        lua::raise(L, {.sentence = "d:filter takes a function of a row, or a vector with a number for each row, got " +
-                                   lua::describe(L, 2),
-                       .call = "d:filter",
-                       .culprit = lua::written(L, 2)});
+        lua::raise_got(L, 2, "d:filter", "d:filter takes a function of a row, or a vector with a number for each row");
     }
     if (mask != nullptr && mask->size() != data->size()) {
         lua::raise(L, {.sentence = fmt::format("d:filter: the vector has {} numbers, but there are {} rows",
@@ -170,10 +164,8 @@ int filter(lua_State* L) {
 int sort(lua_State* L) {
     const DataHandle data = self(L, "d:sort(\"A\")");
     if (lua_type(L, 2) != LUA_TSTRING) {
-        lua::raise(L, {.sentence = fmt::format("d:sort: the name of a column must be a string, got {}; for example {}",
-                                               lua::describe(L, 2), sort_call.example),
-                       .call = "d:sort",
-                       .culprit = lua::written(L, 2)});
+        lua::raise_got(L, 2, "d:sort", "d:sort: the name of a column must be a string",
+                       fmt::format("; for example {}", sort_call.example));
     }
     const DataColumn& column = column_or_fail(L, *data, "d:sort", lua_tostring(L, 2));
     const bool down = lua::read<SortOptions>(L, 3, sort_call).descending;
@@ -198,9 +190,7 @@ int select(lua_State* L) {
     Data picked;
     for (int i = 2; i <= lua_gettop(L); ++i) {
         if (lua_type(L, i) != LUA_TSTRING) {
-            lua::raise(L, {.sentence = "d:select takes names of columns, got " + lua::describe(L, i),
-                           .call = "d:select",
-                           .culprit = lua::written(L, i)});
+            lua::raise_got(L, i, "d:select", "d:select takes names of columns");
         }
         const DataColumn& column = column_or_fail(L, *data, "d:select", lua_tostring(L, i));
         if (picked.find(column.name) == nullptr) picked.columns.push_back(column);
@@ -225,8 +215,7 @@ int save(lua_State* L) {
             written.words = *std::get<Words>(column.values);
         }
     }
-    const auto written = files::write_columns(file, columns);
-    if (!written) lua::raise(L, text::in_call("d:save", written.error()));
+    lua::value_or_raise(L, "d:save", files::write_columns(file, columns));
     return 0;
 }
 
@@ -234,8 +223,7 @@ int load(lua_State* L) {
     const std::string file = file_argument(L, 1, "data.load");
     auto read = files::read_columns(file);
     if (lua::interrupt_requested()) lua::raise_interrupted(L);  // what was read is not all
-    if (!read) lua::raise(L, text::in_call("data.load", read.error()));
-    files::ReadColumns content = std::move(read).value();
+    files::ReadColumns content = lua::value_or_raise(L, "data.load", std::move(read));
     Data data;
     for (files::ReadColumn& column : content.columns) {
         data.columns.push_back(column.of_words ? column_of(std::move(column.name), std::move(column.words))
@@ -257,8 +245,7 @@ int markdown(lua_State* L) {
         text += "\n|";
         for (const DataColumn& column : data.columns) text += " " + in_markdown(column.text(row)) + " |";
     }
-    lua_pushlstring(L, text.data(), text.size());
-    return 1;
+    return lua::push_text(L, text);
 }
 
 }  // namespace dinal::api::data_functions

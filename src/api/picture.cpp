@@ -110,26 +110,18 @@ text::Expected<std::string> content(const std::vector<plots::Figure>& figures, F
                                .memory = lua::memory_limit() == 0 ? 0 : std::max<std::size_t>(lua::memory_left(), 1)});
 }
 
-template <class T>
-T value_or_fail(const lua::Options& options, text::Expected<T> expected) {
-    if (!expected) {
-        options.fail(expected.error());
-    }
-    return std::move(expected).value();
-}
-
 void write_picture(lua_State* L, const lua::Options& options, const TargetOptions& asked,
                    const std::vector<plots::Figure>& figures, const plots::TextFormat& format) {
     const FileKind kind = kind_of(options, *asked.file);
     const plots::PaperSize size = asked_size(options, asked);
     files::OutputFile file =
-        value_or_fail(options, files::OutputFile::create(*asked.file));  // before the work that may be in vain
+        options.value_or_fail(files::OutputFile::create(*asked.file));  // before the work that may be in vain
     const auto bytes = content(figures, kind, size, format);
     if (lua::interrupt_requested()) {
         lua::raise_interrupted(L);
     }
-    file.write(value_or_fail(options, bytes));
-    value_or_fail(options, file.commit());
+    file.write(options.value_or_fail(bytes));
+    options.value_or_fail(file.commit());
 }
 
 /// What they may keep alive outside of Lua.

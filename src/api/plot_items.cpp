@@ -18,18 +18,12 @@ plots::Numbers numbers_on_top(lua_State* L, std::string_view what) {
         return {kept, kept->values()};
     }
     if (!lua_istable(L, -1)) {
-        lua::raise(L, {.sentence =
-                           fmt::format("{} must be a vector or a table of numbers, got {}", what, lua::describe(L, -1)),
-                       .call = std::string(what),
-                       .culprit = lua::written(L, -1)});
+        lua::raise_got(L, -1, what, fmt::format("{} must be a vector or a table of numbers", what));
     }
     std::vector<double> values(lua_rawlen(L, -1));
     for (std::size_t i = 0; i < values.size(); ++i) {
         if (lua_rawgeti(L, -1, static_cast<lua_Integer>(i) + 1) != LUA_TNUMBER) {
-            lua::raise(L,
-                       {.sentence = fmt::format("{}[{}] must be a number, got {}", what, i + 1, lua::describe(L, -1)),
-                        .call = std::string(what),
-                        .culprit = lua::written(L, -1)});
+            lua::raise_got(L, -1, what, fmt::format("{}[{}] must be a number", what, i + 1));
         }
         values[i] = lua_tonumber(L, -1);  // nan is a gap
         lua_pop(L, 1);
@@ -120,11 +114,8 @@ PlotItems plot_items(lua_State* L, int table) {
         } else if (is_table_of_items(L)) {
             items.curves.push_back(curve_on_top(L, fmt::format("plot: curve {}", i)));
         } else {
-            lua::raise(L, {.sentence = fmt::format(
-                               "plot: item {} must be a curve {{ x, y }} or a picture, got {}; for example {}", i,
-                               lua::describe(L, -1), plot_call.example),
-                           .call = "plot",
-                           .culprit = lua::written(L, -1)});
+            lua::raise_got(L, -1, "plot", fmt::format("plot: item {} must be a curve {{ x, y }} or a picture", i),
+                           fmt::format("; for example {}", plot_call.example));
         }
         lua_pop(L, 1);
     }

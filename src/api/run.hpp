@@ -43,7 +43,5 @@ int save_run(lua_State* L);
 int continue_run(lua_State* L);
 /// run:energy(), in bind_energy.cpp.
 int energy_of_run(lua_State* L);
-/// run:explain(), in explain_run.cpp.
-int explain_run(lua_State* L);
 
 }  // namespace dinal::api

@@ -29,10 +29,7 @@ std::vector<files::NamedColumn> asked_columns(lua_State* L, const lua::Options& 
     for (lua_Integer i = 1; i <= static_cast<lua_Integer>(lua_rawlen(L, -1)); ++i) {
         lua_rawgeti(L, -1, i);
         const auto column = column_at(L, -1, trajectory.names, fmt::format("columns[{}]", i));
-        if (!column) {
-            options.fail(column.error());
-        }
-        asked.push_back(all[static_cast<std::size_t>(*column)]);
+        asked.push_back(all[static_cast<std::size_t>(options.value_or_fail(column))]);
         lua_pop(L, 1);
     }
     lua_pop(L, 1);
@@ -75,17 +72,12 @@ text::Expected<files::Written> write(lua_State* L, const lua::Options& options, 
 int save_run(lua_State* L) {
     const RunHandle run = lua::self<RunHandle>(L, 1, "run:save(\"run.csv\")");
     if (lua_type(L, 2) != LUA_TSTRING) {
-        lua::raise(L, {.sentence = "run:save: the name of the file must be a string, got " + lua::describe(L, 2) +
-                                   "; for example " + save_call.example,
-                       .call = "run:save",
-                       .culprit = lua::written(L, 2)});
+        lua::raise_got(L, 2, "run:save", "run:save: the name of the file must be a string",
+                       fmt::format("; for example {}", save_call.example));
     }
     const std::string file = lua_tostring(L, 2);
     const lua::Options options(L, 3, save_call);
-    const auto written = write(L, options, file, *run);
-    if (!written) {
-        options.fail(written.error());
-    }
+    options.value_or_fail(write(L, options, file, *run));
     return 0;
 }
 

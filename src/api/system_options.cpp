@@ -7,11 +7,7 @@
 namespace dinal::api {
 
 int push_system(lua_State* L, const lua::Options& options, const model::OscillatorParameters& parameters) {
-    const auto made = model::Oscillator::make(parameters);
-    if (!made) {
-        options.fail(made.error());
-    }
-    lua::push<model::Oscillator>(L, *made);
+    lua::push(L, options.value_or_fail(model::Oscillator::make(parameters)));
     return 1;
 }
 

@@ -108,13 +108,19 @@ int TheoryArguments::push_results(Function f) const {
     return static_cast<int>(count);
 }
 
-/// theory.NAME for a function of as many numbers as the call has options, in their order.
+/// theory.NAME for a function of as many numbers as the call has options, in their order; its result is a number or
+/// an array of them.
 template <const text::Call& call, auto function>
 int closed_form(lua_State* L) {
     TheoryArguments arguments(L, call);
     const auto quantities = arguments.quantities<call.options.size()>();
-    return arguments.push_result([&](std::size_t i) {
-        return std::apply([i](const auto&... quantity) { return function(quantity[i]...); }, quantities);
+    return arguments.push_results([&](std::size_t i) {
+        const auto result = std::apply([i](const auto&... quantity) { return function(quantity[i]...); }, quantities);
+        if constexpr (std::is_arithmetic_v<std::decay_t<decltype(result)>>) {
+            return std::array{static_cast<double>(result)};
+        } else {
+            return result;
+        }
     });
 }
 

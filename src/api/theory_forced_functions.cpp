@@ -35,15 +35,9 @@ int sliding_motion(lua_State* L, const text::Call& call, Select select) {
 
 }  // namespace
 
-int linearised(lua_State* L) {
-    TheoryArguments arguments(L, options::linearised);
-    const Quantity r = arguments.quantity("r");
-    const Quantity friction_ratio = arguments.quantity("friction_ratio");
-    const Quantity zeta = arguments.quantity("zeta");
-    return arguments.push_results([&](std::size_t i) {
-        const auto motion = linearised_friction(r[i], zeta[i], friction_ratio[i]);
-        return motion ? std::array{motion->amplitude, motion->lag} : std::array{no_value, no_value};
-    });
+std::array<double, 2> linearised(double r, double friction_ratio, double zeta) {
+    const auto motion = linearised_friction(r, zeta, friction_ratio);
+    return motion ? std::array{motion->amplitude, motion->lag} : std::array{no_value, no_value};
 }
 
 int den_hartog(lua_State* L) {

@@ -139,15 +139,9 @@ int half_cycle(lua_State* L) {
     });
 }
 
-int identify(lua_State* L) {
-    TheoryArguments arguments(L, options::identify);
-    const Quantity X0 = arguments.quantity("X0");
-    const Quantity X1 = arguments.quantity("X1");
-    const Quantity X2 = arguments.quantity("X2");
-    return arguments.push_results([&](std::size_t i) {
-        const auto found = theory::identify(X0[i], X1[i], X2[i]);
-        return found ? std::array{found->zeta, found->friction_shift} : std::array{no_value, no_value};
-    });
+std::array<double, 2> identify(double X0, double X1, double X2) {
+    const auto found = theory::identify(X0, X1, X2);
+    return found ? std::array{found->zeta, found->friction_shift} : std::array{no_value, no_value};
 }
 
 }  // namespace dinal::api::theory_functions

@@ -1,5 +1,7 @@
-// What theory.* does beyond a formula of numbers, one C function each; bind_theory.cpp documents them.
+// What theory.* does beyond one formula, a function each; bind_theory.cpp documents them.
 #pragma once
+
+#include <array>
 
 #include "lua/lua_headers.hpp"
 
@@ -11,10 +13,10 @@ int extremes(lua_State* L);
 int time_to_rest(lua_State* L);
 int rest_position(lua_State* L);
 int half_cycle(lua_State* L);
-int identify(lua_State* L);
+std::array<double, 2> identify(double X0, double X1, double X2);
 
 // Steady motion, and steps: theory_forced_functions.cpp
-int linearised(lua_State* L);
+std::array<double, 2> linearised(double r, double friction_ratio, double zeta);
 int den_hartog(lua_State* L);
 int den_hartog_fundamental(lua_State* L);
 double stop_boundary(double r, double zeta, double factor);

@@ -56,23 +56,16 @@ text::Expected<Written> write_csv(const std::string& path, std::span<const Named
     if (std::optional<text::Error> fault = unwritable_name(columns)) {
         return *fault;
     }
-    text::Expected<OutputFile> opened = OutputFile::create(path);
-    if (!opened) {
-        return opened.error();
-    }
-    OutputFile file = std::move(opened).value();
-    for (const std::string& comment : comments) {
-        write_comment(file, comment);
-    }
-    for (std::size_t i = 0; i < columns.size(); ++i) {
-        file.write(i == 0 ? "" : ",");
-        write_name(file, columns[i].name);
-    }
-    file.write("\n");
-    if (std::optional<text::Error> fault = write_rows(file, columns, ',')) {
-        return text::Error{.sentence = "can not write '" + path + "': " + fault->sentence, .culprit = path};
-    }
-    return file.commit();
+    return write_rows(path, columns, ',', [&](OutputFile& file) {
+        for (const std::string& comment : comments) {
+            write_comment(file, comment);
+        }
+        for (std::size_t i = 0; i < columns.size(); ++i) {
+            file.write(i == 0 ? "" : ",");
+            write_name(file, columns[i].name);
+        }
+        file.write("\n");
+    });
 }
 
 text::Expected<Written> write_csv(const std::string& path, const Table& table) {

@@ -13,6 +13,20 @@
 
 namespace dinal::files {
 
+/// A descriptor that closes itself.
+class Descriptor {
+public:
+    explicit Descriptor(int number) : number_(number) {}
+    Descriptor(const Descriptor&) = delete;
+    Descriptor& operator=(const Descriptor&) = delete;
+    ~Descriptor() { close(); }
+    void close();
+    [[nodiscard]] int number() const { return number_; }
+
+private:
+    int number_;
+};
+
 /// The bytes of a file, a pipe or a device. Fails for a folder, and for what is missing, unreadable or over 4 GiB.
 text::Expected<std::string> read_file(const std::string& path);
 

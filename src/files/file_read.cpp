@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cerrno>
 #include <system_error>
+#include <utility>
 
 #include "files/confinement.hpp"
 
@@ -19,26 +20,15 @@ text::Error can_not_read(const std::string& path, const std::string& why) {
     return {.sentence = "can not read '" + path + "': " + why, .culprit = path};
 }
 
-/// A descriptor that closes itself.
-class Descriptor {
-public:
-    explicit Descriptor(int number) : number_(number) {}
-    Descriptor(const Descriptor&) = delete;
-    Descriptor& operator=(const Descriptor&) = delete;
-    ~Descriptor() {
-        if (number_ >= 0) {
-            ::close(number_);
-        }
-    }
-    [[nodiscard]] int number() const { return number_; }
-
-private:
-    int number_;
-};
-
 bool (*stop_question)() noexcept = nullptr;
 
 }  // namespace
+
+void Descriptor::close() {
+    if (number_ >= 0) {
+        ::close(std::exchange(number_, -1));
+    }
+}
 
 text::Expected<std::string> read_file(const std::string& path) {
     if (path.find('\0') != std::string::npos) {

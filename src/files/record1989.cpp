@@ -17,16 +17,9 @@ namespace {
 constexpr std::size_t width = 6;
 
 text::Expected<Written> write_columns(const std::string& path, std::span<const NamedColumn> columns) {
-    text::Expected<OutputFile> opened = OutputFile::create(path);
-    if (!opened) {
-        return opened.error();
-    }
-    OutputFile file = std::move(opened).value();
-    file.write(std::to_string(columns.front().values.size()) + "\n");
-    if (std::optional<text::Error> fault = write_rows(file, columns, ' ')) {
-        return text::Error{.sentence = "can not write '" + path + "': " + fault->sentence, .culprit = path};
-    }
-    return file.commit();
+    return write_rows(path, columns, ' ', [columns](OutputFile& file) {
+        file.write(std::to_string(columns.front().values.size()) + "\n");
+    });
 }
 
 template <class Integer>

@@ -53,9 +53,7 @@ char* put(char* place, double value, Cell& cell) {
     return place + cell.length;
 }
 
-}  // namespace
-
-std::optional<text::Error> write_rows(OutputFile& file, std::span<const NamedColumn> columns, char separator) {
+std::optional<text::Error> write_lines(OutputFile& file, std::span<const NamedColumn> columns, char separator) {
     if (columns.empty()) {
         return text::Error{"there are no columns to write"};
     }
@@ -81,6 +79,22 @@ std::optional<text::Error> write_rows(OutputFile& file, std::span<const NamedCol
         file.used(place);
     }
     return std::nullopt;
+}
+
+}  // namespace
+
+text::Expected<Written> write_rows(const std::string& path, std::span<const NamedColumn> columns, char separator,
+                                   const std::function<void(OutputFile&)>& head) {
+    text::Expected<OutputFile> opened = OutputFile::create(path);
+    if (!opened) {
+        return opened.error();
+    }
+    OutputFile file = std::move(opened).value();
+    head(file);
+    if (std::optional<text::Error> fault = write_lines(file, columns, separator)) {
+        return text::Error{.sentence = "can not write '" + path + "': " + fault->sentence, .culprit = path};
+    }
+    return file.commit();
 }
 
 }  // namespace dinal::files

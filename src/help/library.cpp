@@ -87,17 +87,6 @@ int unknown_name(lua_State* L) {
                    .cure = text::did_you_mean(wrong, names)});
 }
 
-void copy_into_globals(lua_State* L) {
-    lua_pushglobaltable(L);
-    lua_pushnil(L);
-    while (lua_next(L, -3) != 0) {
-        lua_pushvalue(L, -2);
-        lua_insert(L, -2);
-        lua_rawset(L, -4);
-    }
-    lua_pop(L, 1);
-}
-
 }  // namespace
 
 std::span<const Section> sections() {
@@ -112,7 +101,9 @@ void open_library(lua_State* L) {
     for (const auto add : register_functions) {
         add(L);
     }
-    copy_into_globals(L);
+    lua_pushglobaltable(L);
+    lua::copy_fields(L);
+    lua_pop(L, 1);
     lua::note_standard_globals(L);
     lua_newtable(L);
     lua_pushcfunction(L, lua::guarded<unknown_name>);

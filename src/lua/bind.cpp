@@ -115,8 +115,7 @@ int module_text(lua_State* L) {
         text += (text.back() == ':' ? " " : ", ") + std::string(name);
     }
     text += "; help(" + std::string(module.name) + ") says more";
-    lua_pushlstring(L, text.data(), text.size());
-    return 1;
+    return push_text(L, text);
 }
 
 void set_metamethods(lua_State* L, const Class& description) {
@@ -169,6 +168,22 @@ void raise(lua_State* L, std::string_view sentence) {
     raise(L, text::Error{std::string(sentence)});
 }
 
+void raise_got(lua_State* L, int index, std::string_view call, std::string_view wanted, std::string_view end) {
+    raise(L, {.sentence = std::string(wanted) + ", got " + describe(L, index) + std::string(end),
+              .call = std::string(call),
+              .culprit = written(L, index)});
+}
+
+int push_text(lua_State* L, std::string_view text) {
+    lua_pushlstring(L, text.data(), text.size());
+    return 1;
+}
+
+void set_number(lua_State* L, const char* name, double value) {
+    lua_pushnumber(L, value);
+    lua_setfield(L, -2, name);
+}
+
 std::string describe(lua_State* L, int index) {
     switch (lua_type(L, index)) {
         case LUA_TNONE:
@@ -210,9 +225,7 @@ std::string written(lua_State* L, int index) {
 
 double finite_argument(lua_State* L, int index, std::string_view what) {
     if (lua_type(L, index) != LUA_TNUMBER || !std::isfinite(lua_tonumber(L, index))) {
-        raise(L, {.sentence = std::string(what) + " must be a finite number, got " + describe(L, index),
-                  .call = std::string(what),
-                  .culprit = written(L, index)});
+        raise_got(L, index, what, std::string(what) + " must be a finite number");
     }
     return lua_tonumber(L, index);
 }
@@ -273,7 +286,7 @@ void raise_no_object(lua_State* L, std::string_view call) {
 void push_message(lua_State* L, const char* text) {
     const std::string message = where(L) + text;
     lua_settop(L, 0);
-    lua_pushlstring(L, message.data(), message.size());
+    push_text(L, message);
 }
 
 int raise_message_on_top(lua_State* L) {

@@ -92,8 +92,27 @@ struct Class {
 [[noreturn]] void raise(lua_State* L, const text::Error& error);
 [[noreturn]] void raise(lua_State* L, std::string_view sentence);
 
+/// Raises "WANTED, got VALUE" and the end of the sentence, about the value at `index` that was given to the call.
+[[noreturn]] void raise_got(lua_State* L, int index, std::string_view call, std::string_view wanted,
+                            std::string_view end = "");
+
 /// "FILE:LINE: " of the nearest Lua function in the call stack, or "".
 std::string where(lua_State* L);
+
+/// The value, or raises its error as one of that call.
+template <class T>
+T value_or_raise(lua_State* L, std::string_view call, text::Expected<T> expected) {
+    if (!expected) {
+        raise(L, text::in_call(call, expected.error()));
+    }
+    return std::move(expected).value();
+}
+
+/// Pushes a text; returns 1, for functions that leave nothing else.
+int push_text(lua_State* L, std::string_view text);
+
+/// Sets a field of the table on the top.
+void set_number(lua_State* L, const char* name, double value);
 
 /// What a value is, for a sentence: "nil", "a table", "the string "1"", "a system", "nan".
 std::string describe(lua_State* L, int index);

@@ -79,12 +79,16 @@ extern "C" void on_signal(int) {
 
 }  // namespace
 
-void install_interrupt_handler() {
+void set_handler(int signal, void (*handler)(int)) {
     struct sigaction action {};
-    action.sa_handler = on_signal;
+    action.sa_handler = handler;
     sigemptyset(&action.sa_mask);
     action.sa_flags = 0;  // no SA_RESTART: a script that waits in io.read() must wake up
-    sigaction(SIGINT, &action, nullptr);
+    sigaction(signal, &action, nullptr);
+}
+
+void install_interrupt_handler() {
+    set_handler(SIGINT, on_signal);
     files::set_stop_question(interrupt_requested);
 }
 

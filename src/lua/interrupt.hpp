@@ -18,6 +18,9 @@ enum class Stop { none, interrupted, time, memory };
 /// process with exit code 130.
 void install_interrupt_handler();
 
+/// What the process does at a signal, also while it waits in a system call.
+void set_handler(int signal, void (*handler)(int));
+
 /// Why what runs shall stop, since the last InterruptScope began. A stepping loop asks this now and then.
 [[nodiscard]] Stop stop_requested() noexcept;
 /// It shall, whatever the reason.

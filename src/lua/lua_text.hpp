@@ -5,7 +5,16 @@
 #include <string_view>
 #include <vector>
 
+#include "lua/lua_headers.hpp"
+
 namespace dinal::lua {
+
+/// The string at `index`, as long as it stays on the stack; a number there becomes one. Empty when it is neither.
+inline std::string_view text_at(lua_State* L, int index) {
+    std::size_t size = 0;
+    const char* start = lua_tolstring(L, index, &size);
+    return {start, size};
+}
 
 /// A name as in `t.name = 1`, and no keyword.
 bool is_name(std::string_view text);

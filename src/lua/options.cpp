@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "lua/lua_text.hpp"
 #include "lua/vector.hpp"
 
 namespace dinal::lua {
@@ -124,15 +125,12 @@ text::OptionValue Options::value(const text::Option& option) const {
         case text::OptionKind::choice:
             value = choice_on_top(option);
             break;
-        case text::OptionKind::text: {
+        case text::OptionKind::text:
             if (lua_type(L_, -1) != LUA_TSTRING) {
                 wrong(option.name, "a string");
             }
-            std::size_t length = 0;
-            const char* start = lua_tolstring(L_, -1, &length);
-            value = std::string(start, length);
+            value = std::string(text_at(L_, -1));
             break;
-        }
         case text::OptionKind::numbers:
             value = numbers_at(L_, -1, call_.name, option.name);
             break;

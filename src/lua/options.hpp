@@ -53,6 +53,14 @@ public:
     [[noreturn]] void fail(text::Error error) const;
     /// The same for what is wrong with that option.
     [[noreturn]] void fail(std::string_view option, std::string sentence) const;
+    /// The value, or fails with its error.
+    template <class T>
+    T value_or_fail(text::Expected<T> expected) const {
+        if (!expected) {
+            fail(expected.error());
+        }
+        return std::move(expected).value();
+    }
     /// Raises "CALL: NAME must be WANTED, got ...".
     [[noreturn]] void wrong(std::string_view name, std::string_view wanted) const;
     /// Raises "CALL needs NAME, for example EXAMPLE".

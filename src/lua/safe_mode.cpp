@@ -9,6 +9,7 @@
 #include "files/confinement.hpp"
 #include "lua/bind.hpp"
 #include "lua/interrupt.hpp"
+#include "lua/standard_globals.hpp"
 #include "terminal/progress.hpp"
 
 namespace dinal::lua {
@@ -236,12 +237,7 @@ void replace_globals(lua_State* L) {
     push_io(L);
     lua_setfield(L, -2, LUA_IOLIBNAME);
     lua_getfield(L, -1, LUA_GNAME);
-    lua_pushnil(L);
-    while (lua_next(L, -3) != 0) {
-        lua_pushvalue(L, -2);
-        lua_insert(L, -2);
-        lua_rawset(L, -4);
-    }
+    copy_fields(L);
     lua_rawseti(L, LUA_REGISTRYINDEX, LUA_RIDX_GLOBALS);
     lua_setfield(L, LUA_REGISTRYINDEX, LUA_LOADED_TABLE);
 }

@@ -31,6 +31,15 @@ void push_dinal_table(lua_State* L) {
     lua_rawgetp(L, LUA_REGISTRYINDEX, &dinal_key);
 }
 
+void copy_fields(lua_State* L) {
+    lua_pushnil(L);
+    while (lua_next(L, -3) != 0) {
+        lua_pushvalue(L, -2);
+        lua_insert(L, -2);
+        lua_rawset(L, -4);
+    }
+}
+
 void note_standard_globals(lua_State* L) {
     lua_newtable(L);
     lua_pushglobaltable(L);

@@ -14,6 +14,9 @@ void make_dinal_table(lua_State* L);
 /// Pushes the table that make_dinal_table() made, whatever the user has done to the global of that name.
 void push_dinal_table(lua_State* L);
 
+/// Copies all fields of the table below the top into the table on the top.
+void copy_fields(lua_State* L);
+
 /// To be called once all globals of Lua and dinal stand: remembers them.
 void note_standard_globals(lua_State* L);
 

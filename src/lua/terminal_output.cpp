@@ -1,5 +1,6 @@
 #include "lua/terminal_output.hpp"
 
+#include "lua/lua_text.hpp"
 #include "terminal/progress.hpp"
 
 namespace dinal::lua {
@@ -13,9 +14,7 @@ lua_CFunction original_file_write = nullptr;  // file:write
 
 /// The cursor will stand at the beginning of a line.
 bool last_ends_line(lua_State* L) {
-    std::size_t length = 0;
-    const char* text = lua_type(L, -1) == LUA_TSTRING ? lua_tolstring(L, -1, &length) : nullptr;
-    return length > 0 && text[length - 1] == '\n';
+    return lua_type(L, -1) == LUA_TSTRING && text_at(L, -1).ends_with('\n');
 }
 
 int print(lua_State* L) {

@@ -83,11 +83,7 @@ void set_timer(Nanoseconds start) {
 }  // namespace
 
 void set_time_limit(double seconds) {
-    struct sigaction action {};
-    action.sa_handler = on_alarm;
-    sigemptyset(&action.sa_mask);
-    action.sa_flags = 0;  // no SA_RESTART: a script that waits in io.read() must wake up
-    sigaction(SIGALRM, &action, nullptr);
+    set_handler(SIGALRM, on_alarm);
     sigevent event{};
     event.sigev_notify = SIGEV_THREAD;
     event.sigev_notify_function = on_expiry;

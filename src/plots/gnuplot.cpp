@@ -18,6 +18,8 @@
 #include <utility>
 #include <vector>
 
+#include "files/file.hpp"
+
 namespace dinal::plots {
 namespace {
 
@@ -28,22 +30,7 @@ text::Error failure(int error) {
     return failure(std::generic_category().message(error));
 }
 
-class Descriptor {
-public:
-    explicit Descriptor(int number) : number_(number) {}
-    Descriptor(const Descriptor&) = delete;
-    Descriptor& operator=(const Descriptor&) = delete;
-    ~Descriptor() { close(); }
-    void close() {
-        if (number_ >= 0) {
-            ::close(std::exchange(number_, -1));
-        }
-    }
-    [[nodiscard]] int number() const { return number_; }
-
-private:
-    int number_;
-};
+using files::Descriptor;
 
 /// A started program. What is still running when this goes is killed: nobody would read what it writes.
 class Child {

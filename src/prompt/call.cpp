@@ -10,6 +10,7 @@
 #include "lua/interrupt.hpp"
 #include "lua/limits.hpp"
 #include "lua/lua_message.hpp"
+#include "lua/lua_text.hpp"
 #include "lua/memory_limit.hpp"
 #include "lua/safe_mode.hpp"
 
@@ -206,9 +207,7 @@ std::string told_error(lua_State* L, const char* file) {
 }
 
 std::string take_text(lua_State* L) {
-    std::size_t size = 0;
-    const char* text = lua_tolstring(L, -1, &size);
-    std::string result = text == nullptr ? "(no message)" : std::string(text, size);
+    std::string result(lua_isstring(L, -1) != 0 ? lua::text_at(L, -1) : "(no message)");
     lua_pop(L, 1);
     return result;
 }

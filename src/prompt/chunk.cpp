@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "lua/lua_message.hpp"
+#include "lua/lua_text.hpp"
 #include "lua/tokens.hpp"
 
 namespace dinal::prompt {
@@ -36,9 +37,7 @@ bool goes_on(std::string_view text) {
 
 /// The message on the top of the stack says that the chunk ended too early.
 bool ended_early(lua_State* L, std::string_view chunk) {
-    std::size_t size = 0;
-    const char* text = lua_tolstring(L, -1, &size);
-    const std::string_view message(text, size);
+    const std::string_view message = lua::text_at(L, -1);
     // A string in quotes ends on its line, unless a backslash takes the newline in.
     return lua::is_about_end(message) && (!lua::is_about_unfinished_string(message) || goes_on(chunk));
 }

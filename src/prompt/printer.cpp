@@ -98,12 +98,8 @@ private:
     }
 
     std::string key_text(int index) const {
-        if (lua_type(L_, index) == LUA_TSTRING) {
-            std::size_t size = 0;
-            const char* start = lua_tolstring(L_, index, &size);
-            if (lua::is_name({start, size})) {
-                return {start, size};
-            }
+        if (lua_type(L_, index) == LUA_TSTRING && lua::is_name(lua::text_at(L_, index))) {
+            return std::string(lua::text_at(L_, index));
         }
         return "[" + (is_plain_table(L_, index) ? "{...}" : scalar(index)) + "]";
     }

@@ -9,6 +9,7 @@
 #include "help/signature.hpp"
 #include "lua/bind.hpp"
 #include "lua/interrupt.hpp"
+#include "lua/lua_text.hpp"
 #include "source/function_source.hpp"
 #include "text/characters.hpp"
 
@@ -34,9 +35,7 @@ std::string told(lua_State* L, int index) {
     if (!fine && lua::interrupt_requested()) {
         lua::raise_interrupted(L);
     }
-    std::size_t size = 0;
-    const char* start = lua_isstring(L, -1) != 0 ? lua_tolstring(L, -1, &size) : nullptr;
-    std::string text = start != nullptr ? std::string(start, size) : std::string(luaL_typename(L, -1));
+    const std::string text(lua_isstring(L, -1) != 0 ? lua::text_at(L, -1) : luaL_typename(L, -1));
     lua_pop(L, 1);
     return fine ? text : fmt::format("<error in __tostring: {}>", text);
 }
@@ -48,14 +47,13 @@ bool is_text(std::string_view text, const terminal::Display& screen) {
 }
 
 std::string string_text(lua_State* L, int index, Place place, const terminal::Display& screen) {
-    std::size_t size = 0;
-    const char* start = lua_tolstring(L, index, &size);
-    if (place == Place::alone && is_text({start, size}, screen)) {
-        return text::wrapped(terminal::spelled({start, size}, screen), screen.width - 1);
+    const std::string_view string = lua::text_at(L, index);
+    if (place == Place::alone && is_text(string, screen)) {
+        return text::wrapped(terminal::spelled(string, screen), screen.width - 1);
     }
     const std::size_t limit = place == Place::inside ? longest_inner_string : longest_string;
-    std::string text = text::quoted({start, size}, limit, screen.unicode);
-    return place == Place::alone && size > limit ? fmt::format("{} ({} bytes)", text, size) : text;
+    std::string text = text::quoted(string, limit, screen.unicode);
+    return place == Place::alone && string.size() > limit ? fmt::format("{} ({} bytes)", text, string.size()) : text;
 }
 
 /// A function as its source where that is short, else where it is defined; ours as they are called.

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <string_view>
 
+#include "lua/lua_text.hpp"
+
 namespace dinal::prompt {
 namespace {
 
@@ -64,10 +66,8 @@ void TableItems::add_key() {
     if (lua_type(L_, -1) == LUA_TNUMBER) {
         order_.emplace_back(0, lua_tonumber(L_, -1), "", place);
     } else if (lua_type(L_, -1) == LUA_TSTRING) {
-        std::size_t size = 0;
-        const char* text = lua_tolstring(L_, -1, &size);
-        const bool time = std::string_view(text, size) == "t";
-        order_.emplace_back(time ? 1 : 2, 0, std::string(text, size), place);
+        const std::string_view name = lua::text_at(L_, -1);
+        order_.emplace_back(name == "t" ? 1 : 2, 0, std::string(name), place);
     } else {
         order_.emplace_back(3, 0, "", place);
     }

@@ -198,9 +198,7 @@ std::optional<std::string> last_kept_source(lua_State* L, const std::string& chu
     if (lua_rawgetp(L, LUA_REGISTRYINDEX, &kept_key) == LUA_TTABLE &&
         lua_getfield(L, -1, chunk_name.c_str()) == LUA_TTABLE) {
         lua_rawgeti(L, -1, static_cast<lua_Integer>(lua_rawlen(L, -1)));
-        std::size_t size = 0;
-        const char* start = lua_tolstring(L, -1, &size);
-        text = std::string(start, size);
+        text = lua::text_at(L, -1);
     }
     lua_settop(L, top);
     return text;

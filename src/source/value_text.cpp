@@ -43,9 +43,7 @@ std::optional<std::string> known_source(lua_State* L, int index) {
     }
     std::optional<std::string> source;
     if (lua_type(L, -1) == LUA_TSTRING) {
-        std::size_t length = 0;
-        const char* text = lua_tolstring(L, -1, &length);
-        source = std::string(text, length);
+        source = lua::text_at(L, -1);
     }
     lua_pop(L, 2);
     return source;
@@ -72,11 +70,8 @@ std::string ValueText::expression(int index) {
         case LUA_TNUMBER:
             return lua_isinteger(L_, index) != 0 ? fmt::format("{}", lua_tointeger(L_, index))
                                                  : lua::float_text(lua_tonumber(L_, index));
-        case LUA_TSTRING: {
-            std::size_t length = 0;
-            const char* text = lua_tolstring(L_, index, &length);
-            return text::quoted({text, length});
-        }
+        case LUA_TSTRING:
+            return text::quoted(lua::text_at(L_, index));
         case LUA_TTABLE:
             return table(index);
         case LUA_TFUNCTION:

@@ -210,12 +210,6 @@ inline constexpr OptionTarget fills = detail::member_target<member>();
 template <auto function>
 inline constexpr OptionTarget sets = detail::function_target<function>();
 
-/// Does the option fill a T?
-template <class T>
-constexpr bool belongs_to(const Option& option) {
-    return option.filled.owner == &detail::owner_tag<T>;
-}
-
 /// The first option of the object that is out of its range: "width = -1 must be positive".
 template <class T>
 std::optional<Error> complaint(std::span<const Option> options, const T& object) {

@@ -59,7 +59,7 @@ inline constexpr text::Call stribeck_call{"friction.stribeck", "friction.stribec
 
 inline std::optional<text::Error> Stribeck::complaint() const {
     if (auto wrong = wrong_torques("", kinetic, breakaway)) return wrong;
-    if (auto wrong = text::complaint(stribeck_options, *this)) return text::Error{*wrong};
+    if (auto wrong = text::complaint(stribeck_options, *this)) return wrong;
     return std::nullopt;
 }
 inline std::string Stribeck::lua_text() const {

@@ -5,7 +5,7 @@
 namespace dinal::model::laws {
 
 std::optional<text::Error> Tabulated::complaint() const {
-    if (auto wrong = text::complaint(tabulated_options, *this)) return text::Error{*wrong};
+    if (auto wrong = text::complaint(tabulated_options, *this)) return wrong;
     const auto error = [](const char* option, std::string sentence) {
         return text::Error{.sentence = std::move(sentence), .option = option};
     };
