@@ -33,15 +33,20 @@ public:
         input_.add(work.input);
         viscous_.add(work.viscous);
         dry_.add(work.dry);
+        belt_.add(work.belt);
+        base_.add(work.base);
+        acts_.add(work.acts);
     }
-    [[nodiscard]] Work value() const { return {input_.value(), viscous_.value(), dry_.value()}; }
+    [[nodiscard]] Work value() const {
+        return {input_.value(), viscous_.value(), dry_.value(), belt_.value(), base_.value(), acts_.value()};
+    }
 
 private:
-    Sum input_, viscous_, dry_;
+    Sum input_, viscous_, dry_, belt_, base_, acts_;
 };
 
 Work operator-(const Work& a, const Work& b) {
-    return {a.input - b.input, a.viscous - b.viscous, a.dry - b.dry};
+    return {a.input - b.input, a.viscous - b.viscous, a.dry - b.dry, a.belt - b.belt, a.base - b.base, a.acts - b.acts};
 }
 
 Stored stored(const model::Lowered& system, const model::State& y) {
@@ -92,7 +97,9 @@ private:
             // On its way through theta = 0 the spring gives all that it has.
             const bool through = (begin.theta < 0) != (end.theta < 0);
             const double spring = through ? stored(system_, begin).spring : std::max(-balance.change.spring, 0.0);
-            for (const double given : {work.input, spring, -balance.change.kinetic}) flow_.add(std::max(given, 0.0));
+            for (const double given : {work.input, spring, -balance.change.kinetic, work.belt, work.base, work.acts}) {
+                flow_.add(std::max(given, 0.0));
+            }
         }
         ++stretch_;
     }
@@ -157,7 +164,7 @@ Eigen::MatrixXd energy_columns(const motion::Trajectory& trajectory) {
         const Stored s = stored(system, y);
         const Balance balance{sum.value(), change(system, trajectory.initial, y)};
         columns.row(row++) << balance.work.input, s.kinetic, s.spring, balance.work.viscous, balance.work.dry,
-            balance.error();
+            balance.error(), balance.work.belt, balance.work.base, balance.work.acts;
     };
     WorkSum before;
     trajectory.course->legs([&](const motion::Leg& leg) {
@@ -181,6 +188,12 @@ std::string text(const Energy& energy) {
     std::string text = fmt::format("energy, t {:.9g} … {:.9g}: input = kinetic + spring + viscous + dry\n",
                                    energy.t_start, energy.t_end);
     text += fmt::format("  {:<8}{:>13.6g}   work of M on the mass\n", "input", shown(work.input));
+    const auto given_line = [&](const char* name, double given, const char* meaning) {
+        return given == 0 ? "" : fmt::format("  {:<8}{:>13.6g}   {}\n", name, shown(given), meaning);
+    };
+    text += given_line("belt", work.belt, "work of the moving surface on the mass");
+    text += given_line("base", work.base, "work of the shaking support on the mass");
+    text += given_line("acts", work.acts, "what was done to it at events");
     text += stored_line("kinetic", change.kinetic, energy.start.kinetic, energy.finish.kinetic);
     text += stored_line("spring", change.spring, energy.start.spring, energy.finish.spring);
     text += fmt::format("  {:<8}{:>13.6g}   lost to viscous damping\n", "viscous", shown(work.viscous));

@@ -61,6 +61,9 @@ void set_balance(lua_State* L, const analysis::Balance& balance) {
     set_number(L, "viscous", balance.work.viscous);
     set_number(L, "dry", balance.work.dry);
     set_number(L, "error", balance.error());
+    set_number(L, "belt", balance.work.belt);
+    set_number(L, "base", balance.work.base);
+    set_number(L, "acts", balance.work.acts);
 }
 
 int total(lua_State* L) {
@@ -115,7 +118,8 @@ constexpr lua::Member energy_members[] = {
      {"energy.total -> table",
       "The balance of the whole run, torque times rad: input (work of M on the mass) = kinetic + spring (the changes "
       "of what is stored) + viscous + dry (what the two frictions took) + error (what does not add up); flow is what "
-      "M, the spring and the moving mass gave in all half cycles together, and closure is |error|/flow.",
+      "M, the spring and the moving mass gave in all half cycles together, and closure is |error|/flow. What a belt, a "
+      "base and the acts of events gave is belt, base and acts, beside the input.",
       DINAL_ENERGY
       "print(string.format(\"%.6f %.6f\", energy.total.dry, energy.total.spring))  --> 0.499200 -0.499200\n"
       "print(energy.total.closure < 1e-12)  --> true"}},
@@ -158,6 +162,15 @@ constexpr lua::Member energy_members[] = {
      {"energy.error -> vector",
       "What does not add up at each row: input less the changes of kinetic and spring, viscous and dry.",
       DINAL_ENERGY "print(energy.error:abs():max() < 1e-12)  --> true"}},
+    {lua::a_field<column_field<analysis::EnergyColumn::belt>>,
+     {"energy.belt -> vector", "The work that a moving belt has done on the mass since the start, at each row.",
+      DINAL_ENERGY "print(energy.belt:max())  --> 0.0"}},
+    {lua::a_field<column_field<analysis::EnergyColumn::base>>,
+     {"energy.base -> vector", "The work that a shaking base has done on the mass since the start, at each row.",
+      DINAL_ENERGY "print(energy.base:max())  --> 0.0"}},
+    {lua::a_field<column_field<analysis::EnergyColumn::acts>>,
+     {"energy.acts -> vector", "The energy that acts of events have brought since the start, at each row.",
+      DINAL_ENERGY "print(energy.acts:max())  --> 0.0"}},
     {lua::a_metamethod<energy_text>("__tostring"),
      {"tostring(energy) -> string", "The balance of the whole run as a small table.",
       DINAL_ENERGY "print(tostring(energy):match(\"[^\\n]*\"))\n"

@@ -10,6 +10,7 @@
 #include "lua/interrupt.hpp"
 #include "lua/user_function.hpp"
 #include "lua/vector.hpp"
+#include "model/controller.hpp"
 #include "source/describe.hpp"
 
 namespace dinal::api {
@@ -61,10 +62,20 @@ model::State state_arguments(lua_State* L, int index) {
     return state;
 }
 
+/// Of a controller with a memory only a run can tell what it gives.
+void refuse_memory(lua_State* L, const model::Excitation& excitation, const char* call) {
+    if (model::has_memory(excitation)) {
+        lua::raise(L,
+                   {.sentence = fmt::format("{}: a controller with a memory has values in a run only; see run.M", call),
+                    .call = call});
+    }
+}
+
 int value(lua_State* L) {
     const model::Excitation& excitation = self_excitation(L, "e:value(t)");
     const double t = lua::finite_argument(L, 2, "e:value(t): t");
     const model::State state = state_arguments(L, 3);
+    refuse_memory(L, excitation, "e:value(t)");
     lua::CallState call(L);
     const double M = excitation.value(t, state);
     if (call.failed()) {
@@ -76,6 +87,7 @@ int value(lua_State* L) {
 
 int values(lua_State* L) {
     const model::Excitation& excitation = self_excitation(L, "e:values(times)");
+    refuse_memory(L, excitation, "e:values(times)");
     if (excitation.has_feedback()) {
         lua::raise(L, {.sentence =
                            "e:values(times): this excitation needs theta and velocity; use e:value(t, theta, velocity)",
@@ -113,6 +125,12 @@ int next_break(lua_State* L) {
 
 int delay(lua_State* L) {
     const model::Excitation& excitation = self_excitation(L, "e:delay(1.5)");
+    if (model::has_memory(excitation)) {
+        lua::raise(L,
+                   {.sentence = "e:delay(d): what has a memory cannot be delayed as a whole; excitation.sampled has a "
+                                "delay of its own, and excitation.delayed looks back",
+                    .call = "e:delay(d)"});
+    }
     lua::push(L, excitation.delayed(lua::finite_argument(L, 2, "e:delay(d): d")));
     return 1;
 }

@@ -12,4 +12,7 @@ namespace dinal::api {
 /// Raises a sentence headed by `what` for anything else, about that option if it is one.
 model::Excitation to_excitation(lua_State* L, int index, std::string_view what, std::string_view option = "");
 
+/// Pushes the excitation of one term, or raises what is wrong with it.
+int push_term(lua_State* L, model::Term term);
+
 }  // namespace dinal::api

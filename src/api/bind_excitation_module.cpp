@@ -8,6 +8,7 @@
 
 #include "api/bind_excitation.hpp"
 #include "api/classes.hpp"
+#include "api/controller_options.hpp"
 #include "api/run.hpp"
 #include "files/csv.hpp"
 #include "lua/interrupt.hpp"
@@ -18,8 +19,6 @@
 
 namespace dinal::api {
 
-namespace {
-
 int push_term(lua_State* L, model::Term term) {
     auto made = model::Excitation::make(std::move(term));
     if (!made) {
@@ -28,6 +27,8 @@ int push_term(lua_State* L, model::Term term) {
     lua::push(L, std::move(made).value());
     return 1;
 }
+
+namespace {
 
 // ---- excitation.samples("record.csv", { time = "t", value = "M" })
 
@@ -159,7 +160,16 @@ constexpr std::array<lua::Member, sizeof...(T)> functions_of(model::TermList<T..
                         {Maker<T>::signature.c_str(), T::about.summary, T::about.example, Maker<T>::calls}}...};
 }
 
-constexpr auto excitation_module_members = functions_of(model::Terms());
+template <std::size_t n, std::size_t m>
+constexpr std::array<lua::Member, n + m> joined_members(const std::array<lua::Member, n>& a,
+                                                        const lua::Member (&b)[m]) {
+    return [&]<std::size_t... i, std::size_t... j>(std::index_sequence<i...>, std::index_sequence<j...>) {
+        return std::array<lua::Member, n + m>{a[i]..., b[j]...};
+    }
+    (std::make_index_sequence<n>(), std::make_index_sequence<m>());
+}
+
+constexpr auto excitation_module_members = joined_members(functions_of(model::Terms()), controller_functions);
 
 }  // namespace
 

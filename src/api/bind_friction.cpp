@@ -79,8 +79,11 @@ int law_of_function(lua_State* L) {
     const lua::Options options(L, 2, laws::user_law_call);
     laws::UserLaw law;
     options.fill(law);
-    law.function = std::make_shared<lua::LuaFunction>(
-        L, 1, lua::FunctionRole{.name = "friction", .argument = "speed", .may_be_negative = false, .of_motion = false});
+    law.function = std::make_shared<lua::LuaFunction>(L, 1,
+                                                      lua::FunctionRole{.name = "friction",
+                                                                        .argument = "speed",
+                                                                        .may_be_negative = false,
+                                                                        .motion = lua::FunctionRole::Motion::never});
     lua::CallState call(L);
     law.at_zero = law.function->value(0, {});
     if (call.failed()) {

@@ -104,7 +104,7 @@ int events(lua_State* L) {
     if (lua_getiuservalue(L, 1, 1) == LUA_TUSERDATA) {
         return 1;
     }
-    push_events(L, events);
+    push_events(L, events, run_self(L, "run.events")->trajectory.event_names);
     lua_pushvalue(L, -1);
     lua_setiuservalue(L, 1, 1);
     return 1;
@@ -126,20 +126,6 @@ int origin_field(lua_State* L) {
     const Run& run = *run_self(L, "run.system");
     run.origin ? static_cast<void>(lua::push(L, (*run.origin).*member)) : lua_pushnil(L);
     return 1;
-}
-
-int at(lua_State* L) {
-    const RunHandle run = run_self(L, "run:at(t)");  // kept: the user's function may drop the last reference
-    const double t = lua::finite_argument(L, 2, "run:at(t): t");
-    lua::CallState call(L);  // between rows the integrator asks the excitation again
-    const auto found = run->trajectory.at(t);
-    if (call.failed()) {
-        call.raise_error();
-    }
-    const model::State state = lua::value_or_raise(L, "run:at(t)", found);
-    lua_pushnumber(L, state.theta);
-    lua_pushnumber(L, state.velocity);
-    return 2;
 }
 
 int run_length(lua_State* L) {
@@ -164,10 +150,10 @@ constexpr text::FixedText<160> integrator_example{DINAL_RUN "print(run.integrato
                                                   motion::default_integrator.c_str()};
 
 constexpr lua::Member run_members[] = {
-    {lua::a_method<at>,
-     {"run:at(t) -> theta, velocity",
+    {lua::a_method<run_at>,
+     {"run:at(t) -> theta, velocity, z",
       "Angle (rad) and velocity (rad per time unit) at any time of the run, between rows at the accuracy of the "
-      "integrator. In a run that was read from a file: by cubic interpolation.",
+      "integrator; in a run with states, too, the table z of these. In a run that was read from a file: by cubic interpolation.",
       DINAL_RUN "print(string.format(\"%.6f %.6f\", run:at(0.75)))  --> 3.000000 -12.566371"}},
     {lua::a_method<columns>,
      {"run:columns(name, ...) -> vector, ...",
@@ -222,11 +208,18 @@ constexpr lua::Member run_members[] = {
      {"run.damping -> vector", "The torque of viscous damping on the mass, -C velocity.",
       "run = system{ I = 1, k = 1, C = 3 }:simulate{ velocity0 = 1, t_end = 1, dt = 1 }\n"
       "print(run.damping[1])  --> -3.0"}},
+    {lua::a_field<run_states>,
+     {"run.states -> table", "The columns of the run's own states by their names: vectors.",
+      "run = nondimensional{}:simulate{ theta0 = 1, t_end = 1, dt = 0.25,\n"
+      "    states = { way = { rate = function(t, theta, velocity) return math.abs(velocity) end } } }\n"
+      "print(string.format(\"%.6f\", run.states.way[5]))  --> 4.000000"}},
     {lua::a_field<events>,
      {"run.events -> data",
       "What happened at velocity zero, in order of time: the columns t, kind, theta and M (run.events.theta is a "
       "vector), and by number { t, kind, theta, M }. kind is \"turn\" (goes on "
-      "the other way), \"stick\" (stays), \"slip\" (breaks away) or \"rest\" (sticks to the end of the run). Nothing "
+      "the other way), \"stick\" (stays), \"slip\" (breaks away) or \"rest\" (sticks to the end of the run); "
+      "\"switch\" is of a relay, and \"user\" of the option `events`: then there is a column name, too, and, where it "
+      "is not 0 at all of them, velocity. Nothing "
       "is recorded at t_start. Empty in a run that was read from a file.",
       "run = nondimensional{}:simulate{ theta0 = 1, t_end = 1.2, dt = 0.1 }\n"
       "for _, e in ipairs(run.events) do print(e.kind, string.format(\"%.4f %.4f\", e.t, e.theta)) end\n"

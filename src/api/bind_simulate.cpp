@@ -25,6 +25,30 @@ std::size_t bytes_of_rows(const source::Task& task) {
     return grid ? std::min<std::size_t>(grid->count(), 1ULL << 50U) * motion::column_count * sizeof(double) : 0;
 }
 
+std::vector<std::string> names_of(const model::Extras& extras) {
+    std::vector<std::string> names;
+    for (const model::OwnState& state : extras.states) {
+        names.push_back(state.name);
+    }
+    return names;
+}
+
+/// A relay may look at a state of the run, which must be there.
+void check_relays(const lua::Options& options, const source::Task& task) {
+    const std::vector<std::string> names = names_of(task.extras);
+    for (const model::Component& c : task.excitation.components()) {
+        const auto* relay = model::controller_of<model::RelayController>(c);
+        if (relay == nullptr || relay->of != model::RelayController::Of::state ||
+            std::find(names.begin(), names.end(), relay->state) != names.end()) {
+            continue;
+        }
+        options.fail({.sentence = fmt::format("M has a relay of '{}', which is no state of this run; its states are "
+                                              "{{ {} }}",
+                                              relay->state, fmt::join(names, ", ")),
+                      .option = "states"});
+    }
+}
+
 /// A run may take half of the memory of the machine, and most of what the script may still have.
 motion::Limits limits_of(bool dense) {
     motion::Limits limits{.dense = dense};
@@ -46,8 +70,10 @@ source::Task asked_task(lua_State* L, const lua::Options& options, const RunOpti
                       .initial = {.theta = asked.theta0, .velocity = asked.velocity0},
                       .window = {.start = asked.t_start},
                       .rows = asked.dt ? motion::Grid::every(*asked.dt) : motion::Grid::at(asked.times),
-                      .integrator = integrator != nullptr ? *integrator : motion::Integrator{}};
+                      .integrator = integrator != nullptr ? *integrator : motion::Integrator{},
+                      .extras = read_extras(L, options)};
     lua_pop(L, 1);
+    check_relays(options, task);
     if (!asked.t_end && asked.times.empty()) {
         options.missing("t_end");
     }
@@ -74,6 +100,7 @@ int run_task(lua_State* L, const lua::Options& options, source::Origin origin, d
     const motion::Limits limits = limits_of(dense);
 
     lua::CallState call(L);
+    call.name_states(names_of(run.origin->extras));
     terminal::Progress progress = terminal::Progress::of_time(from, to);
     const auto monitor = [&progress](double t) {
         progress.advance(t);
@@ -100,7 +127,7 @@ int simulate_system(lua_State* L) {
     const source::Task task = asked_task(L, options, asked, system);
     const auto compute = [](const source::Task& given, const motion::Monitor& monitor, const motion::Limits& limits) {
         return motion::simulate(given.system, given.excitation, given.initial, given.window, given.rows,
-                                given.integrator, monitor, limits);
+                                given.integrator, monitor, limits, given.extras);
     };
     // What M refers to is written down before M runs, because it may change that.
     return run_task(L, options, source::origin_of(L, task), task.window.start, asked.dense, compute);

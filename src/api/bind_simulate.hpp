@@ -5,6 +5,7 @@
 #include <optional>
 #include <vector>
 
+#include "api/extras_options.hpp"
 #include "lua/bind.hpp"
 #include "lua/options.hpp"
 #include "motion/integrators.hpp"
@@ -36,7 +37,7 @@ struct RunOptions {
     std::vector<double> times = {};
     bool dense = true;
 };
-inline constexpr text::Option simulate_options[] = {
+inline constexpr text::Option plain_simulate_options[] = {
     {.name = "M",
      .unit = "torque",
      .otherwise = "0",
@@ -68,6 +69,7 @@ inline constexpr text::Option simulate_options[] = {
      .meaning = "false keeps nothing between the rows, which saves memory in very long runs and costs run:at(t)",
      .filled = text::fills<&RunOptions::dense>},
 };
+inline constexpr auto simulate_options = text::joined(plain_simulate_options, extras_options);
 inline constexpr text::Call simulate_call{"sys:simulate", "sys:simulate{ M = M, theta0 = 1, t_end = 20, dt = 0.01 }",
                                           simulate_options};
 
@@ -88,9 +90,10 @@ inline constexpr text::Option continue_options[] = {
 };
 inline constexpr text::Call continue_call{"run:continue", "run:continue{ t_end = 40 }", continue_options, true};
 
-inline constexpr text::FixedText<160> simulate_summary{
+inline constexpr text::FixedText<320> simulate_summary{
     "Runs the system, by ", motion::default_integrator.c_str(),
-    " unless told otherwise. When M fails or Ctrl-C is pressed, what was done so far is in dinal.partial."};
+    " unless told otherwise. With states, M is called with (t, theta, velocity, z), and their columns are "
+    "run.states.NAME. When M fails or Ctrl-C is pressed, what was done so far is in dinal.partial."};
 inline constexpr lua::Doc simulate_doc = {
     "sys:simulate{ OPTIONS } -> run",
     simulate_summary.c_str(),

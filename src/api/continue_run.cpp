@@ -71,7 +71,7 @@ int continue_run(lua_State* L) {
     const auto compute = [&so_far](const source::Task& task, const motion::Monitor& monitor,
                                    const motion::Limits& limits) {
         return motion::resume(task.system, task.excitation, so_far, task.window.end, task.rows, task.integrator,
-                              monitor, limits);
+                              monitor, limits, task.extras);
     };
     return run_task(L, options, std::move(origin), so_far.t_stop, so_far.course != nullptr, compute);
 }

@@ -118,18 +118,24 @@ void push_data(lua_State* L, Data data) {
     lua::note_external_memory(L, bytes);
 }
 
-void push_events(lua_State* L, std::span<const model::Event> events) {
-    std::vector<double> t(events.size()), theta(events.size()), M(events.size());
-    std::vector<std::string> kind(events.size());
+void push_events(lua_State* L, std::span<const model::Event> events, std::span<const std::string> user_names) {
+    std::vector<double> t(events.size()), theta(events.size()), M(events.size()), velocity(events.size());
+    std::vector<std::string> kind(events.size()), name(events.size());
+    bool moves = false;
     for (std::size_t i = 0; i < events.size(); ++i) {
         t[i] = events[i].t;
         kind[i] = model::name(events[i].kind);
         theta[i] = events[i].theta;
         M[i] = events[i].M;
+        velocity[i] = events[i].velocity;
+        moves = moves || velocity[i] != 0;
+        if (events[i].user >= 0) name[i] = user_names[static_cast<std::size_t>(events[i].user)];
     }
     Data data;
     data.columns = {column_of("t", std::move(t)), column_of("kind", std::move(kind)),
                     column_of("theta", std::move(theta)), column_of("M", std::move(M))};
+    if (moves) data.columns.push_back(column_of("velocity", std::move(velocity)));
+    if (!user_names.empty()) data.columns.push_back(column_of("name", std::move(name)));
     data.heading = heading_of(events);
     push_data(L, std::move(data));
 }

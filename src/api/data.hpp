@@ -45,8 +45,8 @@ void push_data(lua_State* L, Data data);
 /// Pushes a row of the data at `index` as a table that knows how to write itself.
 void push_row(lua_State* L, int index, const Data& data, std::size_t row);
 
-/// What happened at velocity zero: t, kind, theta, M.
-void push_events(lua_State* L, std::span<const model::Event> events);
+/// What happened: t, kind, theta, M; where there is any, velocity and the names that a user gave.
+void push_events(lua_State* L, std::span<const model::Event> events, std::span<const std::string> user_names);
 
 /// Its first line, and a table of its first rows; a column that does not fit into the width is left out.
 std::string text_of(const Data& data, std::size_t width);

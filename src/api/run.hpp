@@ -43,5 +43,8 @@ int save_run(lua_State* L);
 int continue_run(lua_State* L);
 /// run:energy(), in bind_energy.cpp.
 int energy_of_run(lua_State* L);
+/// run:at(t) and run.states, in run_states.cpp.
+int run_at(lua_State* L);
+int run_states(lua_State* L);
 
 }  // namespace dinal::api

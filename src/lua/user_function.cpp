@@ -133,8 +133,80 @@ bool is_callable(lua_State* L, int index) {
     return true;
 }
 
+bool CallState::read_states(std::span<double> states) const {
+    lua_rawgetp(L_, LUA_REGISTRYINDEX, &names_);
+    bool good = true;
+    for (std::size_t i = 0; i < states.size(); ++i) {
+        lua_pushlstring(L_, names_[i].data(), names_[i].size());
+        lua_rawget(L_, -2);
+        states[i] = lua_tonumber(L_, -1);
+        good = good && lua_type(L_, -1) == LUA_TNUMBER && std::isfinite(states[i]);
+        lua_pop(L_, 1);
+    }
+    lua_pop(L_, 1);
+    return good;
+}
+
+LuaAction::LuaAction(lua_State* L, int index, std::string name) : main_(main_thread(L)), name_(std::move(name)) {
+    lua_pushvalue(L, index);
+    reference_ = luaL_ref(L, LUA_REGISTRYINDEX);
+}
+
+LuaAction::~LuaAction() {
+    luaL_unref(main_, LUA_REGISTRYINDEX, reference_);
+}
+
+bool LuaAction::act(double t, model::State& state, std::span<double> states) {
+    CallState* call = current;
+    if (call == nullptr || call->failed_) {
+        return false;
+    }
+    lua_State* L = call->L_;
+    const int top = lua_gettop(L);
+    lua_pushcfunction(L, guarded<witness_error>);
+    push(L);
+    lua_pushnumber(L, t);
+    lua_pushnumber(L, state.theta);
+    lua_pushnumber(L, state.velocity);
+    states.empty() ? lua_pushnil(L) : call->push_states(states);
+    if (lua_pcall(L, 4, 2, top + 1) != LUA_OK) {
+        remember_argument(L, name_.c_str(), "t", t);
+        call->keep_error_on_top();
+        lua_settop(L, top);
+        return false;
+    }
+    const bool nothing = lua_isnil(L, -2) && lua_isnil(L, -1);
+    const bool numbers = lua_type(L, -2) == LUA_TNUMBER && lua_type(L, -1) == LUA_TNUMBER;
+    const model::State next =
+        nothing ? state : model::State{.theta = lua_tonumber(L, -2), .velocity = lua_tonumber(L, -1)};
+    const bool good = (nothing || numbers) && std::isfinite(next.theta) && std::isfinite(next.velocity);
+    std::string wrong;
+    if (!good) {
+        wrong = fmt::format(
+            "{} returned {} and {} at t = {:.14g}; it must return theta and velocity as finite numbers, "
+            "or nothing",
+            name_, describe(L, -2), describe(L, -1), t);
+    }
+    lua_settop(L, top);
+    if (good && call->read_states(states)) {
+        state = next;
+        return true;
+    }
+    if (good) {
+        wrong = fmt::format("{} left a state that is no finite number at t = {:.14g}", name_, t);
+    }
+    push(L);
+    const std::string message = definition(L) + wrong;
+    lua_pushlstring(L, message.data(), message.size());
+    call->keep_error_on_top();
+    return false;
+}
+
 LuaFunction::LuaFunction(lua_State* L, int index, FunctionRole role)
-    : main_(main_thread(L)), role_(role), feedback_(role.of_motion && wants_state(L, index)) {
+    : main_(main_thread(L)),
+      role_(std::move(role)),
+      feedback_(role_.motion == FunctionRole::Motion::always ||
+                (role_.motion == FunctionRole::Motion::by_parameters && wants_state(L, index))) {
     lua_pushvalue(L, index);
     reference_ = luaL_ref(L, LUA_REGISTRYINDEX);
 }
@@ -264,7 +336,7 @@ double LuaFunction::fail(CallState& call, int status, double t) const {
         witness_result(L, -2);
         lua_remove(L, -2);
     } else {
-        remember_argument(L, role_.name, role_.argument, t);
+        remember_argument(L, role_.name.c_str(), role_.argument, t);
     }
     call.keep_error_on_top();
     return failure;

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "lua/bind.hpp"
-#include "model/excitation.hpp"
+#include "model/extras.hpp"
 
 namespace dinal::lua {
 
@@ -32,8 +32,11 @@ public:
 
 private:
     friend class LuaFunction;
+    friend class LuaAction;
     void keep_error_on_top();
     void push_states(std::span<const double> states) const;
+    /// What a user has made of them.
+    [[nodiscard]] bool read_states(std::span<double> states) const;
 
     lua_State* L_;
     CallState* outer_;
@@ -48,10 +51,14 @@ private:
 
 /// What a function stands for, in sentences: "friction returned nil at speed = 0.3".
 struct FunctionRole {
-    const char* name = "M";
+    std::string name = "M";
     const char* argument = "t";
     bool may_be_negative = true;
-    bool of_motion = true;  ///< it may ask for theta and velocity, too
+    enum class Motion {
+        by_parameters,  ///< it is called with theta and velocity, too, when it has two or more
+        never,
+        always,
+    } motion = Motion::by_parameters;
 };
 
 class LuaFunction final : public model::UserFunction {
@@ -79,6 +86,21 @@ private:
     int reference_;
     FunctionRole role_;
     bool feedback_;
+};
+
+/// What a user does at one of his events: a Lua function of t, theta, velocity, states that returns theta, velocity, or
+/// nothing when they stay as they are.
+class LuaAction final : public model::EventAction {
+public:
+    LuaAction(lua_State* L, int index, std::string name);
+    ~LuaAction() override;
+    bool act(double t, model::State& state, std::span<double> states) override;
+    void push(lua_State* L) const { lua_rawgeti(L, LUA_REGISTRYINDEX, reference_); }
+
+private:
+    lua_State* main_;
+    int reference_;
+    std::string name_;
 };
 
 }  // namespace dinal::lua

@@ -43,6 +43,7 @@ struct Event {
     double theta = 0;
     double M = 0;   ///< the excitation at t, from the right: with k theta it explains the decision
     int user = -1;  ///< of a user's event: which one
+    double velocity = 0;
 };
 
 }  // namespace dinal::model

@@ -34,6 +34,11 @@ public:
                                             [](double time, const Part& part) { return time < part.from; });
         return (after - 1)->course->at(t);
     }
+    [[nodiscard]] std::vector<double> states_at(double t) const override {
+        const auto after = std::upper_bound(parts_.begin() + 1, parts_.end(), t,
+                                            [](double time, const Part& part) { return time < part.from; });
+        return (after - 1)->course->states_at(t);
+    }
     [[nodiscard]] double whole_until() const override { return whole_until_; }
     void legs(const std::function<void(const Leg&)>& told) const override {
         for (const Part& part : parts_) part.course->legs(told);

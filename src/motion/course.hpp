@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <functional>
 #include <memory>
+#include <vector>
 
 #include "model/excitation.hpp"
 #include "model/oscillator.hpp"
@@ -16,6 +17,9 @@ struct Work {
     double input = 0;    ///< of M on the mass
     double viscous = 0;  ///< lost to viscous damping
     double dry = 0;      ///< lost to dry friction
+    double belt = 0;     ///< of the moving surface on the mass
+    double base = 0;     ///< of the shaking support
+    double acts = 0;     ///< of what a user did at his events
 };
 
 /// A stretch of smooth motion, integrated as exactly as it was computed. Times are counted from its beginning.
@@ -43,6 +47,9 @@ public:
     [[nodiscard]] const model::Oscillator& system() const { return system_; }
     /// theta and velocity at a time of the run, at the accuracy of its integrator.
     [[nodiscard]] virtual text::Expected<model::State> at(double t) const = 0;
+
+    /// The states of a run that has some, at a time of the run.
+    [[nodiscard]] virtual std::vector<double> states_at(double /*t*/) const { return {}; }
 
     /// Up to this time the motion is kept whole: at() need not ask M again, and legs() tells it. `never` when that is
     /// all of the run; an integrator that only keeps where to begin again has no such time.

@@ -39,6 +39,7 @@ struct OwnRule {
 /// An option struct with its own run. The ranges of its options are in `about`; it may also have
 ///     std::optional<text::Error> wrong_for(const model::Oscillator& system) const;   what this system forbids besides
 ///     OwnRule own_rule() const;
+///     Trajectory run_more(const Problem& problem) const;   a problem with extras
 template <class T>
 concept Method = requires(const T& method, const model::Oscillator& system, const Problem& problem) {
     { T::about } -> std::convertible_to<const MethodText&>;
@@ -68,6 +69,9 @@ public:
     }
     [[nodiscard]] Trajectory run(const Problem& problem) const { return common_->run(method_, problem); }
     [[nodiscard]] std::optional<OwnRule> own_rule() const { return common_->own_rule(method_); }
+    /// It runs problems with states of their own, events of the user, belts, bases and controllers with a memory.
+    [[nodiscard]] bool knows_more() const { return common_->run_more != nullptr; }
+    [[nodiscard]] Trajectory run_more(const Problem& problem) const { return common_->run_more(method_, problem); }
 
 private:
     struct Common {
@@ -77,7 +81,16 @@ private:
         Resolution (*resolution)(const void* method, const model::Oscillator& system);
         Trajectory (*run)(const void* method, const Problem& problem);
         std::optional<OwnRule> (*own_rule)(const void* method);
+        Trajectory (*run_more)(const void* method, const Problem& problem);
     };
+    template <class M>
+    static constexpr auto more_of() -> Trajectory (*)(const void*, const Problem&) {
+        if constexpr (requires(const M& method, const Problem& problem) { method.run_more(problem); }) {
+            return [](const void* method, const Problem& problem) { return as<M>(method).run_more(problem); };
+        } else {
+            return nullptr;
+        }
+    }
     template <class M>
     static const M& as(const void* method) {
         return *static_cast<const M*>(method);
@@ -104,7 +117,8 @@ private:
             } else {
                 return std::nullopt;
             }
-        }};
+        },
+        more_of<M>()};
 
     const void* method_;
     const Common* common_;

@@ -119,12 +119,13 @@ namespace {
 struct Past {
     std::optional<model::Motion> motion;
     std::size_t course_bytes = 0;
+    const Carried* carried = nullptr;
 };
 
 text::Expected<Trajectory> run_from(const Past& past, const model::Oscillator& system,
                                     const model::Excitation& excitation, const model::State& initial,
                                     const Window& window, const Grid& rows, MethodView method, const Monitor& monitor,
-                                    const Limits& limits) {
+                                    const Limits& limits, const model::Extras& extras) {
     if (!std::isfinite(initial.theta))
         return text::Error{.sentence = fmt::format("theta0 = {} must be a finite number", initial.theta),
                            .option = "theta0"};
@@ -156,10 +157,19 @@ text::Expected<Trajectory> run_from(const Past& past, const model::Oscillator& s
     }
 
     const std::size_t course_bytes = limits.memory / share_of_course;
-    const Problem problem{system, excitation,  initial,
-                          window, *grid,       monitor,
-                          limits, past.motion, course_bytes - std::min(course_bytes, past.course_bytes)};
-    Trajectory trajectory = method.run(problem);
+    Problem problem{system, excitation,  initial,
+                    window, *grid,       monitor,
+                    limits, past.motion, course_bytes - std::min(course_bytes, past.course_bytes)};
+    const bool more = extras.any() || model::has_memory(excitation);
+    if (more && !method.knows_more()) {
+        return text::Error{.sentence = fmt::format("{} knows no states, events, belts, bases and controllers with a "
+                                                   "memory: take integrator.spectral or rk4",
+                                                   method.about().call.name),
+                           .option = "integrator"};
+    }
+    problem.extras = &extras;
+    problem.carried = past.carried;
+    Trajectory trajectory = more ? method.run_more(problem) : method.run(problem);
     trajectory.initial = initial;
     return trajectory;
 }
@@ -168,15 +178,19 @@ text::Expected<Trajectory> run_from(const Past& past, const model::Oscillator& s
 Growing<model::Event> joined(const Growing<model::Event>& first, const Trajectory& second) {
     std::vector<model::Event> later;
     std::size_t kept = first.size();
-    if (kept > 0 && first.back().kind == model::EventKind::rest) {
-        later.push_back(first.back());
-        later.back().kind = model::EventKind::stick;
-        --kept;
+    std::size_t rest = kept;  // what a user asked for may have come after it
+    while (rest > 0 && first[rest - 1].kind > model::EventKind::rest) --rest;
+    if (rest > 0 && first[rest - 1].kind == model::EventKind::rest) {
+        later.assign(first.begin() + static_cast<std::ptrdiff_t>(rest) - 1, first.end());
+        later.front().kind = model::EventKind::stick;
+        kept = rest - 1;
     }
     later.insert(later.end(), second.events.begin(), second.events.end());
     if (second.outcome == model::Outcome::at_rest && kept + later.size() > 0) {
         if (later.empty()) later.push_back(first[--kept]);
-        later.back().kind = model::EventKind::rest;
+        const auto own = [](const model::Event& event) { return event.kind <= model::EventKind::rest; };
+        const auto last = std::find_if(later.rbegin(), later.rend(), own);
+        if (last != later.rend()) last->kind = model::EventKind::rest;
     }
     return first.followed_by(kept, Growing<model::Event>(std::move(later)), all_memory);
 }
@@ -197,13 +211,14 @@ Trajectory joined(const Trajectory& first, std::size_t kept, Trajectory second, 
 
 text::Expected<Trajectory> simulate(const model::Oscillator& system, const model::Excitation& excitation,
                                     const model::State& initial, const Window& window, const Grid& rows,
-                                    MethodView method, const Monitor& monitor, const Limits& limits) {
-    return run_from({}, system, excitation, initial, window, rows, method, monitor, limits);
+                                    MethodView method, const Monitor& monitor, const Limits& limits,
+                                    const model::Extras& extras) {
+    return run_from({}, system, excitation, initial, window, rows, method, monitor, limits, extras);
 }
 
 text::Expected<Trajectory> resume(const model::Oscillator& system, const model::Excitation& excitation,
                                   const Trajectory& so_far, double t_end, const Grid& rows, MethodView method,
-                                  const Monitor& monitor, const Limits& limits) {
+                                  const Monitor& monitor, const Limits& limits, const model::Extras& extras) {
     const Window window{so_far.t_stop, t_end};
     if (!(t_end > window.start)) {
         return text::Error{.sentence = fmt::format("t_end = {:.6g} must be after t = {:.6g}, where the run ended",
@@ -223,9 +238,9 @@ text::Expected<Trajectory> resume(const model::Oscillator& system, const model::
         const bool there = std::fabs(grid->time(i) - window.start) <= 4e-16 * std::fabs(window.start);
         if (there || grid->time(i) >= window.start) times.push_back(std::max(grid->time(i), window.start));
     }
-    const Past past{so_far.motion_at_stop, so_far.course ? so_far.course->bytes() : 0};
+    const Past past{so_far.motion_at_stop, so_far.course ? so_far.course->bytes() : 0, so_far.carried.get()};
     auto second = run_from(past, system, excitation, so_far.state_at_stop, window, Grid::at(std::move(times)), method,
-                           monitor, limits);
+                           monitor, limits, extras);
     if (!second) return second.error();
     return joined(so_far, kept, std::move(second).value(), limits);
 }

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "model/excitation.hpp"
+#include "model/extras.hpp"
 #include "model/oscillator.hpp"
 #include "motion/growing.hpp"
 #include "motion/method.hpp"
@@ -77,19 +78,23 @@ struct Problem {
     const Limits& limits;
     std::optional<model::Motion> before = {};  ///< of a run that goes on: what the mass did until now
     std::size_t course_bytes = 0;              ///< what the course may take
+    const model::Extras* extras = nullptr;     ///< of a run with more in it
+    const Carried* carried = nullptr;          ///< of a run with more in it that goes on
 };
 
 /// Runs from `initial` at window.start. Fails (before the first step) when the window, the grid or the integrator's
 /// options are wrong or the rows would not fit; whatever happens later is told by the outcome of the trajectory.
 text::Expected<Trajectory> simulate(const model::Oscillator& system, const model::Excitation& excitation,
                                     const model::State& initial, const Window& window, const Grid& rows,
-                                    MethodView method, const Monitor& monitor = {}, const Limits& limits = {});
+                                    MethodView method, const Monitor& monitor = {}, const Limits& limits = {},
+                                    const model::Extras& extras = {});
 
 /// Goes on from where `so_far` ended, to t_end, as if it had not been interrupted: the trajectory of both, which shares
 /// with `so_far` what that has. `rows` are those of all of it; `so_far` has the first of them, and perhaps one at its
 /// end. Fails like simulate().
 text::Expected<Trajectory> resume(const model::Oscillator& system, const model::Excitation& excitation,
                                   const Trajectory& so_far, double t_end, const Grid& rows, MethodView method,
-                                  const Monitor& monitor = {}, const Limits& limits = {});
+                                  const Monitor& monitor = {}, const Limits& limits = {},
+                                  const model::Extras& extras = {});
 
 }  // namespace dinal::motion

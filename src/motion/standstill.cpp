@@ -113,7 +113,10 @@ void Standstill::turned(const Moment& now) {
 
 bool Standstill::finish() {
     if (!stuck()) return false;
-    if (events_ != nullptr && !events_->empty()) events_->back().kind = model::EventKind::rest;
+    if (events_ == nullptr) return true;
+    const auto own = [](const model::Event& event) { return event.kind <= model::EventKind::rest; };
+    const auto last = std::find_if(events_->rbegin(), events_->rend(), own);
+    if (last != events_->rend()) last->kind = model::EventKind::rest;
     return true;
 }
 

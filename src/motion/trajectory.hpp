@@ -51,6 +51,16 @@ private:
     Growing<double> table_;
 };
 
+/// What a run leaves to the one that goes on from there, besides the state of the mass: the states of its own.
+struct Carried {
+    Carried() = default;
+    Carried(const Carried&) = default;
+    Carried& operator=(const Carried&) = default;
+    virtual ~Carried() = default;
+
+    std::vector<double> states;
+};
+
 struct Trajectory {
     std::vector<std::string> names;  ///< one for each column of `rows`
     Rows rows;                       ///< never NaN
@@ -61,8 +71,10 @@ struct Trajectory {
     double t_stop = 0;  ///< how far it came: t_end unless the outcome says otherwise
     model::State state_at_stop;
     model::Motion motion_at_stop = model::Motion::stuck;
-    bool began_stuck = false;              ///< until something moved it
-    bool computed = true;                  ///< false when it was read from a file
+    bool began_stuck = false;                          ///< until something moved it
+    bool computed = true;                              ///< false when it was read from a file
+    std::vector<std::string> event_names = {};         ///< of the user's events, by Event::user
+    std::shared_ptr<const Carried> carried = nullptr;  ///< of a run with more in it
     std::shared_ptr<const Course> course;  ///< none when it was declined, or the trajectory read from a file
 
     [[nodiscard]] Eigen::Index size() const { return rows.rows(); }
@@ -72,6 +84,8 @@ struct Trajectory {
     /// theta and velocity at t: from the integrator when it can, else by cubic interpolation of the rows.
     /// Fails when t is outside the run or there are no such columns.
     [[nodiscard]] text::Expected<model::State> at(double t) const;
+    /// How many columns behind the six are states of the run.
+    [[nodiscard]] std::size_t state_count() const { return carried ? carried->states.size() : 0; }
 };
 
 /// theta and velocity at t by cubic interpolation of the rows, for want of anything better.

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "lua/user_function.hpp"
+#include "model/controller.hpp"
 #include "source/describe.hpp"
 #include "source/function_source.hpp"
 #include "source/value_text.hpp"
@@ -38,7 +39,30 @@ std::string text_of(const Context& context, const model::Polyline& line) {
     return fmt::format("excitation.samples{{ --[[ {} points, t {} ... {} ]] }}", s.t.size(), s.t.front(), s.t.back());
 }
 
+/// A controller with a memory.
+std::string text_of(const Context& context, const model::Controller& controller) {
+    const auto function = [&](const auto& own) { return function_text(context.L, *own.function, context.whole); };
+    if (const auto* sampled = dynamic_cast<const model::SampledController*>(&controller)) {
+        return fmt::format("excitation.sampled({}, {{ every = {}, delay = {}, at = {} }})", function(*sampled),
+                           sampled->every, sampled->delay, sampled->at);
+    }
+    if (const auto* delayed = dynamic_cast<const model::DelayedController*>(&controller)) {
+        return fmt::format("excitation.delayed({}, {{ by = {} }})", function(*delayed), delayed->by);
+    }
+    const auto& relay = dynamic_cast<const model::RelayController&>(controller);
+    using Of = model::RelayController::Of;
+    const std::string of = relay.of == Of::theta      ? "\"theta\""
+                           : relay.of == Of::velocity ? "\"velocity\""
+                           : relay.of == Of::state    ? "\"" + relay.state + "\""
+                                                      : function(relay);
+    return fmt::format("excitation.relay{{ on = {}, off = {}, levels = {{ {}, {} }}, of = {}, start = \"{}\" }}",
+                       relay.on, relay.off, relay.levels[0], relay.levels[1], of, relay.starts_on ? "on" : "off");
+}
+
 std::string text_of(const Context& context, const model::Scripted& s) {
+    if (const auto* controller = dynamic_cast<const model::Controller*>(s.function.get())) {
+        return text_of(context, *controller);
+    }
     std::string options;
     if (!s.breaks.empty()) {
         options += "breaks = " + text::list_literal(s.breaks);

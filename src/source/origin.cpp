@@ -5,6 +5,7 @@
 #include "lua/user_function.hpp"
 #include "source/describe.hpp"
 #include "source/value_text.hpp"
+#include "text/characters.hpp"
 
 namespace dinal::source {
 
@@ -51,6 +52,53 @@ std::string rows_text(const motion::Grid& rows) {
     return text + " }";
 }
 
+/// "local states = { ... }" and so on, for what the run has.
+std::vector<std::string> extras_lines(lua_State* L, const model::Extras& extras, ValueText& writer) {
+    std::vector<std::string> lines;
+    if (!extras.states.empty()) {
+        std::string text;
+        for (const model::OwnState& state : extras.states) {
+            text += fmt::format("{} {} = {{ start = {}, rate = {} }}", text.empty() ? "" : ",", state.name, state.start,
+                                function_text(L, *state.rate, &writer));
+        }
+        lines.push_back("local states = {" + text + " }");
+    }
+    if (!extras.events.empty()) {
+        std::string text;
+        for (const model::WantedEvent& wanted : extras.events) {
+            text += fmt::format("{} {{ when = {}", text.empty() ? "" : ",", function_text(L, *wanted.when, &writer));
+            if (wanted.direction != model::Crossing::both) {
+                text += fmt::format(", direction = \"{}\"", wanted.direction == model::Crossing::up ? "up" : "down");
+            }
+            text += wanted.stop ? ", stop = true" : "";
+            text += wanted.name.empty() ? "" : ", name = " + text::quoted(wanted.name);
+            if (const auto* action = dynamic_cast<const lua::LuaAction*>(wanted.act.get())) {
+                action->push(L);
+                text += ", act = " + writer.expression(-1);
+                lua_pop(L, 1);
+            }
+            text += " }";
+        }
+        lines.push_back("local events = {" + text + " }");
+    }
+    for (const auto& [name, motion] : {std::pair{"belt", &extras.belt}, std::pair{"base", &extras.base}}) {
+        if (!motion->components().empty()) {
+            lines.push_back(fmt::format("local {} = {}", name, excitation_text(L, *motion, writer)));
+        }
+    }
+    return lines;
+}
+
+/// "states = states, ": what the run had besides M.
+std::string extras_text(const model::Extras& extras) {
+    std::string text;
+    text += extras.states.empty() ? "" : "states = states, ";
+    text += extras.events.empty() ? "" : "events = events, ";
+    text += extras.belt.components().empty() ? "" : "belt = belt, ";
+    text += extras.base.components().empty() ? "" : "base = base, ";
+    return text;
+}
+
 }  // namespace
 
 Origin origin_of(lua_State* L, const Task& task) {
@@ -61,6 +109,7 @@ Origin origin_of(lua_State* L, const Task& task) {
     const bool driven = !task.excitation.components().empty();
     const std::string M = driven ? excitation_text(L, task.excitation, writer) : "";
     const std::string system = lua_text(L, task.system, &writer);
+    const std::vector<std::string> extras = extras_lines(L, task.extras, writer);
     for (const std::string& remark : writer.remarks()) {
         append_lines(lines, remark);
     }
@@ -70,17 +119,21 @@ Origin origin_of(lua_State* L, const Task& task) {
     if (driven) {
         append_lines(lines, "local M = " + M);
     }
+    for (const std::string& line : extras) {
+        append_lines(lines, line);
+    }
     append_lines(lines, "local sys = " + system);
     return origin;
 }
 
 std::vector<std::string> repeat_lines(const Origin& origin) {
     std::vector<std::string> lines = origin.set_up;
-    append_lines(lines, fmt::format("run = sys:simulate{{ {}theta0 = {}, velocity0 = {}, t_start = {}, t_end = {}, {}, "
-                                    "integrator = {} }}",
-                                    origin.excitation.components().empty() ? "" : "M = M, ", origin.initial.theta,
-                                    origin.initial.velocity, origin.window.start, origin.window.end,
-                                    rows_text(origin.rows), lua_text(origin.integrator)));
+    append_lines(lines,
+                 fmt::format("run = sys:simulate{{ {}{}theta0 = {}, velocity0 = {}, t_start = {}, t_end = {}, {}, "
+                             "integrator = {} }}",
+                             origin.excitation.components().empty() ? "" : "M = M, ", extras_text(origin.extras),
+                             origin.initial.theta, origin.initial.velocity, origin.window.start, origin.window.end,
+                             rows_text(origin.rows), lua_text(origin.integrator)));
     return lines;
 }
 

@@ -18,6 +18,7 @@ struct Task {
     motion::Window window;
     motion::Grid rows;
     motion::Integrator integrator;
+    model::Extras extras = {};
 };
 
 /// What was simulated. A trajectory that was read from a file has none.

@@ -4,6 +4,7 @@
 
 #include <memory>
 
+#include "motion/hybrid/engine.hpp"
 #include "motion/rk4/rk4_engine.hpp"
 
 namespace dinal::motion::rk4 {
@@ -81,6 +82,10 @@ Trajectory Rk4::run(const Problem& problem) const {
     trajectory.events = Growing<model::Event>(std::move(events));
     trajectory.course = std::move(replay);
     return trajectory;
+}
+
+Trajectory Rk4::run_more(const Problem& problem) const {
+    return hybrid::run(problem, {.longest = h, .h = h});
 }
 
 }  // namespace dinal::motion::rk4

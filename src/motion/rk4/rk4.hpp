@@ -16,6 +16,7 @@ struct Rk4 {
     [[nodiscard]] std::optional<text::Error> wrong_for(const model::Oscillator& system) const;
     [[nodiscard]] Resolution resolution(const model::Oscillator& /*system*/) const { return {"h", h}; }
     [[nodiscard]] Trajectory run(const Problem& problem) const;
+    [[nodiscard]] Trajectory run_more(const Problem& problem) const;
 };
 
 inline constexpr text::Option rk4_options[] = {

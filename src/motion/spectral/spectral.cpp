@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "motion/hybrid/engine.hpp"
 #include "motion/spectral/spectral_engine.hpp"
 
 namespace dinal::motion::spectral {
@@ -27,6 +28,14 @@ Trajectory Spectral::run(const Problem& problem) const {
     trajectory.events = Growing<model::Event>(std::move(events));
     trajectory.course = std::move(panels);
     return trajectory;
+}
+
+Trajectory Spectral::run_more(const Problem& problem) const {
+    constexpr double part_of_run = 1.0 / 16;  // the longest piece of a block without a spring
+    const double length = problem.window.end - problem.window.start;
+    const double longest =
+        problem.system.has_spring() ? longest_panel * problem.system.natural_period() : part_of_run * length;
+    return hybrid::run(problem, {.tolerance = tolerance, .longest = std::min(max_panel, longest)});
 }
 
 }  // namespace dinal::motion::spectral

@@ -17,6 +17,7 @@ struct Spectral {
     static const MethodText about;
     [[nodiscard]] Resolution resolution(const model::Oscillator& system) const;
     [[nodiscard]] Trajectory run(const Problem& problem) const;
+    [[nodiscard]] Trajectory run_more(const Problem& problem) const;
 };
 
 inline constexpr text::Option spectral_options[] = {

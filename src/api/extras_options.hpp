@@ -1,0 +1,35 @@
+// The options of sys:simulate{...} for runs with more in them: states, events, belt, base.
+#pragma once
+
+#include "lua/options.hpp"
+#include "model/extras.hpp"
+
+namespace dinal::api {
+
+inline constexpr text::Option extras_options[] = {
+    {.name = "states",
+     .meaning = "variables that go along with the motion: { NAME = { start = 0, rate = function(t, theta, velocity, z) "
+                "... end } }; z.NAME has their values, the fourth argument of M, rates and events",
+     .wanted = "a table such as { e = { start = 0, rate = function(t, theta, velocity, z) return 1 - theta end } }"},
+    {.name = "events",
+     .meaning =
+         "what is to be located: a list of { when = function(t, theta, velocity, z), direction = \"up\" or "
+         "\"down\", stop = true, name = \"...\", act = function(t, theta, velocity, z) return theta, velocity end "
+         "}, told where `when` passes zero",
+     .wanted = "a list such as { { when = function(t, theta) return theta - 1 end, name = \"limit\" } }"},
+    {.name = "belt",
+     .unit = "rad per time unit",
+     .otherwise = "0",
+     .meaning = "velocity of the surface that dry friction acts against: a number, a function of t, or an excitation",
+     .object = "excitation"},
+    {.name = "base",
+     .unit = "rad per time unit^2",
+     .otherwise = "0",
+     .meaning = "acceleration of the support, to which theta is relative: a number, a function of t, or an excitation",
+     .object = "excitation"},
+};
+
+/// What the options say. Raises what is wrong with them.
+model::Extras read_extras(lua_State* L, const lua::Options& options);
+
+}  // namespace dinal::api

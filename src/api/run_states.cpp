@@ -1,0 +1,47 @@
+// run:at(t), and the columns of a run's own states.
+#include "api/run.hpp"
+#include "lua/user_function.hpp"
+#include "lua/vector.hpp"
+
+namespace dinal::api {
+
+int run_at(lua_State* L) {
+    const RunHandle run =
+        lua::self<RunHandle>(L, 1, "run:at(t)");  // kept: the user's function may drop the last reference
+    const double t = lua::finite_argument(L, 2, "run:at(t): t");
+    lua::CallState call(L);  // between rows the integrator asks the excitation again
+    const auto state = run->trajectory.at(t);
+    if (call.failed()) {
+        call.raise_error();
+    }
+    if (!state) {
+        lua::raise(L, text::in_call("run:at(t)", state.error()));
+    }
+    lua_pushnumber(L, state->theta);
+    lua_pushnumber(L, state->velocity);
+    const motion::Trajectory& trajectory = run->trajectory;
+    if (trajectory.state_count() == 0 || trajectory.course == nullptr) {
+        return 2;
+    }
+    const std::vector<double> states = trajectory.course->states_at(t);
+    lua_createtable(L, 0, static_cast<int>(states.size()));
+    for (std::size_t i = 0; i < states.size(); ++i) {
+        lua_pushnumber(L, states[i]);
+        lua_setfield(L, -2, trajectory.names[motion::column_count + i].c_str());
+    }
+    return 3;
+}
+
+int run_states(lua_State* L) {
+    const RunHandle& run = lua::self<RunHandle>(L, 1, "run.states");
+    const std::size_t count = run->trajectory.state_count();
+    lua_createtable(L, 0, static_cast<int>(count));
+    for (std::size_t i = 0; i < count; ++i) {
+        const auto values = run->trajectory.rows.col(static_cast<Eigen::Index>(motion::column_count + i));
+        lua::push(L, lua::Vector(run, values.data(), static_cast<std::size_t>(values.size())));
+        lua_setfield(L, -2, run->trajectory.names[motion::column_count + i].c_str());
+    }
+    return 1;
+}
+
+}  // namespace dinal::api

@@ -1,0 +1,59 @@
+// Terms of M with a memory: a controller that samples, a relay, one with a dead time. What they give depends on the
+// run so far, so only a run can ask them; everywhere else they add and scale like any other term.
+#pragma once
+
+#include <array>
+#include <limits>
+#include <memory>
+#include <string>
+
+#include "model/excitation.hpp"
+
+namespace dinal::model {
+
+class Controller : public terms::UserFunction {
+public:
+    /// Outside of a run there is no value.
+    double value(double /*t*/, const State& /*state*/) final { return std::numeric_limits<double>::quiet_NaN(); }
+    bool may_go_on() final { return false; }
+};
+
+/// Asked once at each instant at + n every, in order; what it says acts `delay` later and is held until the next.
+struct SampledController final : Controller {
+    std::shared_ptr<terms::UserFunction> function;
+    double every = 0, delay = 0;
+    double at = 0;
+};
+
+/// Two levels with hysteresis: past `off`, seen from `on`, it gives levels[1], back past `on` levels[0].
+struct RelayController final : Controller {
+    enum class Of { theta, velocity, state, function };
+    double on = 0, off = 0;
+    std::array<double, 2> levels{};
+    Of of = Of::theta;
+    std::string state;                              ///< the name, of a state
+    std::shared_ptr<terms::UserFunction> function;  ///< of t, theta, velocity, states
+    bool starts_on = true;
+};
+
+/// A function of what was measured `by` ago; before the start that is the initial state.
+struct DelayedController final : Controller {
+    std::shared_ptr<terms::UserFunction> function;
+    double by = 0;
+};
+
+/// The controller that this component is, nullptr when it is none.
+template <class C = Controller>
+const C* controller_of(const Component& component) {
+    const auto* scripted = std::get_if<Scripted>(&component.term);
+    return scripted == nullptr ? nullptr : dynamic_cast<const C*>(scripted->function.get());
+}
+
+inline bool has_memory(const Excitation& excitation) {
+    for (const Component& c : excitation.components()) {
+        if (controller_of(c) != nullptr) return true;
+    }
+    return false;
+}
+
+}  // namespace dinal::model

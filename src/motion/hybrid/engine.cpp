@@ -1,0 +1,315 @@
+#include "motion/hybrid/engine.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace dinal::motion::hybrid {
+
+namespace {
+
+/// In units of the pace: what cannot be seen in the motion, and how near a run comes to where a function fails.
+constexpr double shortest = 1e-13, near_failure = 1e-9;
+/// So many pieces that are not resolved one after the other, or so many in next to no time, lead nowhere.
+constexpr int most_short = 2000, most_attempts = 20000;
+/// How often a delay brings back a kink before it is too smooth to be seen.
+constexpr int most_echoes = 8;
+
+double pace_of(const Problem& problem) {
+    return std::min(problem.system.natural_period(), problem.window.end - problem.window.start);
+}
+
+/// As the Standstill sees the problem: velocities against the belt.
+Problem on_belt(const Problem& problem, double belt) {
+    return {problem.system, problem.excitation, {problem.initial.theta, problem.initial.velocity - belt},
+            problem.window, problem.rows,       problem.monitor,
+            problem.limits, problem.before,     problem.course_bytes};
+}
+
+}  // namespace
+
+Engine::Engine(const Problem& problem, const Cut& cut, Trajectory& trajectory, std::vector<model::Event>& events,
+               const std::shared_ptr<Pieces>& pieces)
+    : problem_(problem),
+      extras_(*problem.extras),
+      system_(problem.system),
+      trajectory_(trajectory),
+      events_(events),
+      pieces_(pieces),
+      field_(problem, *pieces),
+      cut_(cut),
+      solver_(problem, field_, cut),
+      standstill_(on_belt(problem, field_.belt(problem.window.start, Side::after)), &events, 1e-6 * pace_of(problem)),
+      now_{problem.window.start, 0},
+      h_(cut.longest / 2),
+      pace_(pace_of(problem)),
+      attempts_since_(problem.window.start) {
+    trajectory.names = column_names();
+    for (const model::OwnState& state : extras_.states) trajectory.names.push_back(state.name);
+    Growing<double> table(problem.rows.count(), trajectory.names.size());
+    column_ = table.writable();
+    trajectory.rows = Rows(std::move(table));
+}
+
+bool Engine::begin() {
+    y_ = {problem_.initial.theta, problem_.initial.velocity};
+    const auto* left = dynamic_cast<const Left*>(problem_.carried);
+    for (std::size_t i = 0; i < extras_.states.size(); ++i) {
+        y_.push_back(left != nullptr ? left->states[i] : extras_.states[i].start);
+    }
+    const double just_before = std::nextafter(now_.hi, -model::never);
+    after_break_ = field_.next_break(just_before) == now_.hi;
+    halves_.assign(extras_.events.size(), 0);
+    if (left != nullptr) {
+        field_.remember(left->controllers);
+        halves_ = left->halves;
+        echoes_ = left->echoes;
+    } else {
+        field_.begin(here());
+        echo(now_.hi, 1);
+    }
+    return field_.arrive(here()) || fail(model::Outcome::excitation_not_finite);
+}
+
+model::Outcome Engine::run() {
+    bool alive = begin();
+    unsigned pieces = 0;
+    constexpr unsigned between_questions = 16;
+    while (alive && now_.hi < problem_.window.end) {
+        if (pieces++ % between_questions == 0 && problem_.monitor && !problem_.monitor(now_.hi)) {
+            outcome_ = model::Outcome::interrupted;
+            break;
+        }
+        alive = advance();
+    }
+    if (outcome_ == model::Outcome::reached_end || outcome_ == model::Outcome::stopped) {
+        if (standstill_.phase() == Standstill::Phase::arrived && outcome_ == model::Outcome::reached_end) ask();
+        const Grid& rows = problem_.rows;
+        while (next_row_ < rows.count() && rows.time(next_row_) <= now_.hi && put_row(now_.hi, -2)) {
+        }
+    }
+    if (outcome_ == model::Outcome::reached_end && standstill_.finish()) outcome_ = model::Outcome::at_rest;
+    return outcome_;
+}
+
+/// Where the next piece ends.
+bool Engine::choose() {
+    const double breaks = std::min(field_.next_break(now_.hi), echoes_.empty() ? model::never : echoes_.front().first);
+    double limit = std::min(problem_.window.end, breaks);
+    if (cut_.h > 0) {
+        const double steps = std::floor((now_.hi - problem_.window.start) / cut_.h + 1e-9) + 1;
+        limit = std::min(limit, problem_.window.start + steps * cut_.h);
+    }
+    double h = std::min(
+        {h_, field_.view(now_.hi, spectral::chebyshev::widest_gap) / 2, field_.shortest_delay() / 2 * (1 - 1e-12)});
+    if (bad_time_ < model::never) h = std::min(h, now_.until(bad_time_) / 4);
+    const double remaining = now_.until(limit);
+    const bool to_limit = remaining <= 2 * h * (1 + 1e-9);
+    piece_.start = now_;
+    piece_.way = way();
+    piece_.h = to_limit ? remaining / 2 : remaining < 4 * h ? remaining / 4 : h;
+    piece_.end = to_limit ? limit : now_.after(2 * piece_.h);
+    piece_.from_break = after_break_;
+    piece_.to_break = to_limit && limit == breaks;
+    return piece_.h > 0 || fail(model::Outcome::chattering);
+}
+
+void Engine::again(Solver::Attempt attempt) {
+    if (++attempts_ >= most_attempts) {
+        if (now_.hi - attempts_since_ < 1e-7 * most_attempts * pace_) fail(model::Outcome::unresolved);
+        attempts_ = 0, attempts_since_ = now_.hi;
+    }
+    if (attempt == Solver::Attempt::failed) {
+        bad_time_ = solver_.bad_time();
+        const double near = std::max(near_failure * pace_, 64 * rounding * std::fabs(now_.hi));
+        if (cut_.h > 0 || now_.until(bad_time_) <= near || !field_.may_go_on()) {
+            fail(model::Outcome::excitation_not_finite);
+        }
+        h_ = piece_.h / 2;
+        return;
+    }
+    const double unresolved = solver_.unresolved();
+    const double factor = unresolved < model::never ? 0.9 * std::pow(unresolved, -1.0 / 16) : 0;
+    h_ = piece_.h * std::clamp(factor, 0.5, 0.9);
+}
+
+bool Engine::advance() {
+    if (standstill_.phase() == Standstill::Phase::arrived && !ask()) return false;
+    if (standstill_.phase() == Standstill::Phase::stuck) {
+        const double M = field_.load(here());
+        if (!std::isfinite(M)) return fail(model::Outcome::excitation_not_finite);
+        const model::Motion towards = standstill_.pulled(pull(M), y_[0]);
+        if (towards != model::Motion::stuck && !release(towards)) return false;
+    }
+    if (!choose()) return false;
+    const bool leaving = standstill_.phase() == Standstill::Phase::leaving && !standstill_.passes();
+    model::State departing{y_[0], y_[1]};
+    if (leaving) {
+        const double slip = standstill_.on_its_way({y_[0], y_[1] - belt()}).velocity;
+        departing.velocity = belt() + slip;
+    }
+    const auto attempt = solver_.solve(piece_, y_, departing);
+    const double late = std::max(std::fabs(now_.hi), std::fabs(piece_.end));
+    if (attempt == Solver::Attempt::shorten && 2 * piece_.h <= std::max(shortest * pace_, 16 * rounding * late)) {
+        if (++too_short_ > most_short) return fail(model::Outcome::chattering);
+        solver_.pass_over(piece_);
+        h_ = 64 * piece_.h;
+    } else if (attempt != Solver::Attempt::resolved) {
+        again(attempt);
+        return outcome_ == model::Outcome::reached_end;
+    } else {
+        if (2 * piece_.h > 1e-7 * pace_) too_short_ = 0;
+        const double factor = 0.9 * std::pow(std::max(solver_.unresolved(), 1e-16), -1.0 / 16);
+        if (cut_.h == 0) h_ = std::min(cut_.longest / 2, std::max(h_, piece_.h * std::min(factor, 8.0)));
+    }
+
+    Ending ending;
+    if (standstill_.stuck()) {
+        const auto [x, towards] = first_release();
+        if (x < 1) ending = {x, By::surface, 0, towards};
+    } else if (!standstill_.passes()) {
+        const auto zero = first_standstill();
+        if (leaving && zero && *zero <= -1) {
+            return standstill_.never_left({now_.hi, y_[0], pull(field_.load(here()))}) ||
+                   fail(model::Outcome::chattering);
+        }
+        if (zero) ending = {*zero, By::surface};
+    }
+    if (ending.x > -1 && ending.x < 1 && piece_.time(ending.x) >= piece_.end) ending.x = 1;
+    watch(ending);
+    if (outcome_ != model::Outcome::reached_end) return false;
+    if (standstill_.passes()) record_turns(ending.x);
+    return end_piece(ending.x) && handle(ending);
+}
+
+/// The piece has come to an end at x: its rows, and the present.
+bool Engine::end_piece(double x) {
+    const bool whole = x >= 1;
+    const double length = whole ? 2 * piece_.h : piece_.h * (1 + x);
+    if (!rows_until(whole ? piece_.end : piece_.start.after(length), whole)) {
+        return fail(model::Outcome::excitation_not_finite);
+    }
+    keep(length);
+    for (std::size_t k = 0; k < y_.size(); ++k) y_[k] = piece_.at(k, x);
+    now_ = whole && (piece_.to_break || piece_.end == problem_.window.end) ? Clock{piece_.end, 0}
+                                                                           : piece_.start.later(length);
+    after_break_ = whole && piece_.to_break;
+    if (bad_time_ <= now_.hi) bad_time_ = model::never;
+    const double belt_here = whole ? piece_.belt[node_count - 1] : belt();
+    if (standstill_.stuck()) y_[1] = belt_here;
+    if (whole && length > 0) standstill_.go_on();
+    int generation = 0;
+    while (!echoes_.empty() && echoes_.front().first <= now_.hi) {
+        generation = std::max(generation, echoes_.front().second);
+        echoes_.erase(echoes_.begin());
+    }
+    if (generation > 0) echo(now_.hi, generation + 1);
+    if (!whole || (after_break_ && generation == 0)) echo(now_.hi, 1);
+    if (!field_.arrive(here())) return fail(model::Outcome::excitation_not_finite);
+    return !after_break_ || !field_.has_belt() || belt_jumps(belt_here);
+}
+
+/// Jumps and kinks come back when what acts with a delay sees them, each time smoother.
+void Engine::echo(double t, int generation) {
+    if (generation > most_echoes) return;
+    for (const double by : field_.delays()) {
+        const std::pair<double, int> back{t + by, generation};
+        echoes_.insert(std::lower_bound(echoes_.begin(), echoes_.end(), back), back);
+    }
+}
+
+void Engine::keep(double length) {
+    if (!(length > 0) || (!problem_.limits.dense && field_.delays().empty())) return;
+    Piece piece{.start = piece_.start,
+                .h = piece_.h,
+                .length = length,
+                .way = piece_.way,
+                .begin = y_,
+                .series = piece_.series,
+                .M = spectral::chebyshev::fit(piece_.M),
+                .push = spectral::chebyshev::fit(piece_.push),
+                .belt = spectral::chebyshev::fit(piece_.belt),
+                .belt_rate = spectral::chebyshev::fit(piece_.belt_rate)};
+    pieces_->add(std::move(piece));
+    if (problem_.limits.dense) return;
+    const auto delays = field_.delays();
+    pieces_->forget(now_.hi - 2 * *std::max_element(delays.begin(), delays.end()));
+}
+
+bool Engine::rows_until(double end, bool to_the_end) {
+    const Grid& rows = problem_.rows;
+    while (next_row_ < rows.count()) {
+        const double t = rows.time(next_row_);
+        if (!(t < end) && !(to_the_end && t < piece_.end)) return true;
+        if (!put_row(t, std::clamp(piece_.start.until(t) / piece_.h - 1, -1.0, 1.0))) return false;
+    }
+    return true;
+}
+
+/// At x of the piece; -2 is the present.
+bool Engine::put_row(double t, double x) {
+    const bool present = x < -1;
+    const double at = present ? -1 : x;
+    Values y = y_;
+    if (!present) {
+        for (std::size_t k = 0; k < y.size(); ++k) y[k] = at == -1 ? piece_.y[k][0] : piece_.at(k, at);
+    }
+    const Side side = present || at == -1 ? (after_break_ ? Side::after : Side::at) : Side::at;
+    const double belt = field_.belt(t, side);
+    const bool stands = standstill_.stuck();
+    if (stands) y[1] = belt;
+    const double M = field_.load({t, side, {y[0], y[1]}, {y.data() + 2, y.size() - 2}});
+    double friction = 0;
+    if (stands) {
+        const double rate = !field_.has_belt() ? 0
+                            : present          ? field_.belt_rate(t)
+                                      : spectral::chebyshev::value(spectral::chebyshev::fit(piece_.belt_rate), at);
+        friction = system_.inertia() * rate + system_.damping() * belt -
+                   (std::fma(-system_.stiffness(), y[0], M) + field_.push(t, side));
+    } else if (system_.dry()) {
+        const model::Motion motion = way();
+        friction = 0.0 - (system_.braking(motion) + system_.remainder(motion, {y[0], y[1] - belt}));
+    }
+    double* row = column_ + next_row_;
+    const std::size_t stride = problem_.rows.count();
+    const double own[] = {t, y[0], y[1], M, friction, 0.0 - system_.damping() * y[1]};
+    if (!std::isfinite(M + friction) || !std::isfinite(y[0]) || !std::isfinite(y[1])) return false;
+    for (const double value : own) *row = value, row += stride;
+    for (std::size_t k = 2; k < y.size(); ++k) *row = y[k], row += stride;
+    ++next_row_;
+    return true;
+}
+
+void Engine::leave(Trajectory& trajectory) const {
+    trajectory.t_start = problem_.window.start;
+    trajectory.t_stop = now_.hi;
+    trajectory.state_at_stop = {y_[0], y_[1]};
+    trajectory.motion_at_stop = standstill_.motion();
+    trajectory.began_stuck = standstill_.began_stuck();
+    if (next_row_ < problem_.rows.count()) trajectory.rows = Rows(trajectory.rows.table().first(next_row_));
+    auto left = std::make_shared<Left>();
+    left->states.assign(y_.begin() + 2, y_.end());
+    left->controllers = field_.memory();
+    left->halves = halves_;
+    left->echoes = echoes_;
+    if (!field_.delays().empty()) left->past = pieces_;
+    trajectory.carried = std::move(left);
+}
+
+Trajectory run(const Problem& problem, const Cut& cut) {
+    Trajectory trajectory;
+    std::vector<model::Event> events;
+    const auto* left = dynamic_cast<const Left*>(problem.carried);
+    const auto pieces =
+        std::make_shared<Pieces>(problem.system, problem.initial, problem.window.start,
+                                 left != nullptr ? left->past : nullptr, problem.course_bytes, cut.h == 0);
+    Engine engine(problem, cut, trajectory, events, pieces);
+    trajectory.outcome = engine.run();
+    engine.leave(trajectory);
+    for (const model::WantedEvent& wanted : problem.extras->events) trajectory.event_names.push_back(wanted.name);
+    trajectory.events = Growing<model::Event>(std::move(events));
+    if (problem.limits.dense) trajectory.course = pieces;
+    return trajectory;
+}
+
+}  // namespace dinal::motion::hybrid

@@ -1,0 +1,112 @@
+// A run with more in it: piece after piece, each up to the first event in it, whoever watches for that. What happens
+// where the mass stands on its surface is for the Standstill to say, as in every other integrator.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "motion/hybrid/crossing.hpp"
+#include "motion/hybrid/pieces.hpp"
+#include "motion/standstill.hpp"
+
+namespace dinal::motion::hybrid {
+
+/// What a run with more in it leaves to the one that goes on from there.
+struct Left final : Carried {
+    std::vector<ControllerMemory> controllers;
+    std::vector<Half> halves;
+    std::vector<std::pair<double, int>> echoes;
+    std::shared_ptr<const Pieces> past;
+};
+
+/// Runs the problem, which has extras. The columns of its states stand behind the others.
+Trajectory run(const Problem& problem, const Cut& cut);
+
+class Engine {
+public:
+    Engine(const Problem& problem, const Cut& cut, Trajectory& trajectory, std::vector<model::Event>& events,
+           const std::shared_ptr<Pieces>& pieces);
+    model::Outcome run();
+    void leave(Trajectory& trajectory) const;
+
+private:
+    /// Whose event ends a piece.
+    enum class By { nobody, surface, relay, user };
+    struct Ending {
+        double x = 1;
+        By by = By::nobody;
+        std::size_t which = 0;
+        model::Motion towards = model::Motion::stuck;
+    };
+
+    bool begin();
+    bool advance();
+    bool choose();
+    bool handle(const Ending& ending);
+    void again(Solver::Attempt attempt);
+    [[nodiscard]] std::optional<double> first_standstill() const;
+    [[nodiscard]] std::pair<double, model::Motion> first_release() const;
+    void watch(Ending& ending);
+    void record_turns(double until);
+    bool end_piece(double x);
+    bool rows_until(double end, bool to_the_end);
+    bool put_row(double t, double x);
+    void keep(double length);
+    bool belt_jumps(double before);
+    bool ask();
+    bool release(model::Motion towards);
+    bool act(std::size_t which);
+    void tell(model::EventKind kind, int user = -1);
+    bool too_often();
+    void echo(double t, int generation);
+
+    [[nodiscard]] double belt() const { return field_.belt(now_.hi, after_break_ ? Side::after : Side::at); }
+    [[nodiscard]] MotionPoint here() const {
+        return {now_.hi, after_break_ ? Side::after : Side::at, {y_[0], y_[1]}, {y_.data() + 2, y_.size() - 2}};
+    }
+    [[nodiscard]] MotionPoint point(double x) const;
+    /// All that pulls at a mass which rests on its surface but for the spring.
+    [[nodiscard]] double pull(double M) const {
+        return M + field_.push(now_.hi, after_break_ ? Side::after : Side::at) -
+               system_.inertia() * field_.belt_rate(now_.hi) - system_.damping() * belt();
+    }
+    bool fail(model::Outcome outcome) {
+        outcome_ = outcome;
+        return false;
+    }
+    /// Which way friction acts; without any, one is as good as the other.
+    [[nodiscard]] model::Motion way() const {
+        if (standstill_.passes()) return model::Motion::forward;
+        return standstill_.stuck() ? model::Motion::stuck : standstill_.motion();
+    }
+
+    const Problem& problem_;
+    const model::Extras& extras_;
+    model::Lowered system_;
+    Trajectory& trajectory_;
+    std::vector<model::Event>& events_;
+    std::shared_ptr<Pieces> pieces_;
+    Field field_;
+    Cut cut_;
+    Solver solver_;
+    Standstill standstill_;
+
+    Clock now_;
+    Values y_;
+    mutable Values point_states_;
+    bool after_break_ = false;
+    Solved piece_;
+    std::vector<Half> halves_;                    // of the events of the user
+    std::vector<std::pair<double, int>> echoes_;  // breaks that delays bring back, and how often they did, in order
+    double h_, pace_;
+    double bad_time_ = model::never;
+    int attempts_ = 0, too_short_ = 0, often_ = 0;
+    double attempts_since_ = 0, last_event_ = -model::never;
+    std::size_t next_row_ = 0, steps_ = 0;
+    double* column_ = nullptr;
+    model::Outcome outcome_ = model::Outcome::reached_end;
+};
+
+}  // namespace dinal::motion::hybrid

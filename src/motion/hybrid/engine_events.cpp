@@ -1,0 +1,266 @@
+// What ends a piece of a run with more in it: the surface, a relay, an event of the user; and what happens then.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "motion/hybrid/engine.hpp"
+
+namespace dinal::motion::hybrid {
+
+namespace {
+
+/// Events that follow each other within this time, in units of the pace, so often, go on for ever.
+constexpr double at_once = 1e-9;
+constexpr int most_at_once = 200;
+
+}  // namespace
+
+MotionPoint Engine::point(double x) const {
+    point_states_.resize(y_.size() - 2);
+    for (std::size_t k = 2; k < y_.size(); ++k) point_states_[k - 2] = piece_.at(k, x);
+    const Side side = x <= -1 ? piece_.side(0) : x >= 1 ? piece_.side(node_count - 1) : Side::at;
+    return {x >= 1 ? piece_.end : piece_.time(x), side, {piece_.at(0, x), piece_.at(1, x)}, point_states_};
+}
+
+/// Where the mass is as fast as its surface. At the end of the piece, zero within rounding is zero.
+std::optional<double> Engine::first_standstill() const {
+    using namespace spectral::chebyshev;
+    Series slip = piece_.series[1];
+    slip[0] += y_[1];
+    if (field_.has_belt()) {
+        const Series belt = fit(piece_.belt);
+        for (std::size_t k = 0; k < points; ++k) slip[k] -= belt[k];
+    }
+    const double fastest = greatest(piece_.y[1]) + greatest(piece_.belt);
+    const double torques = greatest(piece_.M) + greatest(piece_.push) + system_.greatest_holding() +
+                           system_.stiffness() * greatest(piece_.y[0]);
+    Bounded<points> curve(model::sign_of(standstill_.motion()), slip, derivative(slip));
+    const bool leaving = standstill_.phase() == Standstill::Phase::leaving;
+    if (field_.has_belt() && !leaving) curve.raise_floor(16 * rounding * fastest);
+    curve.raise_slope_floor(piece_.h / system_.inertia() * 64 * rounding * torques);
+    const auto always = [](double) { return true; };
+    const auto zero = first_below(curve, -1, leaving ? LeftEnd::leaving : LeftEnd::anywhere, always);
+    if (!zero && curve(1) <= curve.floor()) return 1;
+    return zero;
+}
+
+/// Where the pull passes the limit of sticking, and which way; 2 when nowhere.
+std::pair<double, model::Motion> Engine::first_release() const {
+    using namespace spectral::chebyshev;
+    std::pair<double, model::Motion> first{2, model::Motion::stuck};
+    const auto pull_at = [&](double M, double push, double rate, double belt) {
+        return M + push - system_.inertia() * rate - system_.damping() * belt;
+    };
+    Nodes pulls{};
+    for (std::size_t j = 0; j < points; ++j) {
+        pulls[j] = pull_at(piece_.M[j], piece_.push[j], piece_.belt_rate[j], piece_.belt[j]) -
+                   system_.stiffness() * piece_.y[0][j];
+    }
+    const Series pull = fit(pulls);
+    const double largest = greatest(piece_.M) + greatest(piece_.push) + system_.stiffness() * greatest(piece_.y[0]);
+    const bool held = standstill_.phase() == Standstill::Phase::held;
+    const Series belt = fit(piece_.belt), rate = fit(piece_.belt_rate);
+    for (const model::Motion side : {model::Motion::forward, model::Motion::backward}) {
+        const double sign = model::sign_of(side), Re = system_.holding(side);
+        Series left{};
+        for (std::size_t k = 0; k < points; ++k) left[k] = -sign * pull[k];
+        left[0] += Re;
+        Bounded<points> curve(1, left, derivative(left));
+        curve.raise_floor(8 * (rounding * (Re + largest) + tail(pull)));
+        const auto lets_go = [&](double x) {
+            const MotionPoint at = point(x);
+            const double M = field_.load(at);
+            return standstill_.pulled(pull_at(M, field_.push(at.t, at.side), value(rate, x), value(belt, x)),
+                                      at.y.theta) == side;
+        };
+        const auto touches = [&](double x) { return !held && (lets_go(x) || lets_go(curve.lowest_near(x))); };
+        const auto x = first_below(curve, -1, LeftEnd::anywhere, touches);
+        if (x && *x < first.first && piece_.time(*x) < piece_.end) first = {*x, side};
+    }
+    return first;
+}
+
+/// Relays and events of the user, if one of them comes before the end that is known so far.
+void Engine::watch(Ending& ending) {
+    Nodes values{};
+    for (std::size_t i = 0; i < field_.component_count(); ++i) {
+        if (field_.relay(i) == nullptr) continue;
+        const auto exact = [&](double x) { return field_.until_switch(i, point(x)); };
+        for (std::size_t j = 0; j < node_count; ++j) values[j] = exact(cheb::nodes[j]);
+        Half half = 1;
+        const auto x = values[0] < 0 ? std::optional(-1.0) : Watched(values, exact).leaves(half, -1);
+        if (x && *x < ending.x) ending = {*x, By::relay, i};
+    }
+    std::vector<std::pair<std::size_t, double>> unwanted;  // passages, which change the half without an event
+    for (std::size_t i = 0; i < extras_.events.size(); ++i) {
+        const model::WantedEvent& wanted = extras_.events[i];
+        const auto exact = [&](double x) {
+            const MotionPoint at = point(x);
+            return wanted.when->value_with(at.t, at.y, at.states);
+        };
+        for (std::size_t j = 0; j < node_count; ++j) {
+            values[j] = exact(cheb::nodes[j]);
+            if (!std::isfinite(values[j])) {
+                fail(model::Outcome::excitation_not_finite);
+                return;
+            }
+        }
+        const Watched watched(values, exact);
+        double from = -1;
+        Half half = halves_[i];
+        while (const auto x = watched.leaves(half, from)) {
+            if (!(*x < ending.x)) break;
+            if (wanted.direction == model::Crossing::both || (half < 0) == (wanted.direction == model::Crossing::up)) {
+                ending = {*x, By::user, i};
+                break;
+            }
+            if (unwanted.size() > most_at_once) break;
+            if (halves_[i] == 0) halves_[i] = half;
+            unwanted.emplace_back(i, *x);
+            half = -half;
+            from = *x;
+        }
+        if (halves_[i] == 0) halves_[i] = half;
+    }
+    for (const auto& [event, x] : unwanted) {
+        if (x <= ending.x) halves_[event] = -halves_[event];
+    }
+}
+
+bool Engine::handle(const Ending& ending) {
+    switch (ending.by) {
+        case By::nobody:
+            return true;
+        case By::surface:
+            if (ending.towards != model::Motion::stuck) return release(ending.towards);
+            y_[1] = belt();
+            standstill_.arrive();
+            return true;
+        case By::relay:
+            field_.toggle(ending.which);
+            tell(model::EventKind::switched);
+            return !too_often() || fail(model::Outcome::chattering);
+        case By::user:
+            halves_[ending.which] = -halves_[ending.which];
+            return act(ending.which);
+    }
+    return true;
+}
+
+bool Engine::act(std::size_t which) {
+    const model::WantedEvent& wanted = extras_.events[which];
+    tell(model::EventKind::user, static_cast<int>(which));
+    if (wanted.act != nullptr) {
+        model::State state{y_[0], y_[1]};
+        if (!wanted.act->act(now_.hi, state, {y_.data() + 2, y_.size() - 2})) {
+            return fail(model::Outcome::excitation_not_finite);
+        }
+        const auto energy = [&](double theta, double velocity) {
+            return (system_.inertia() * velocity * velocity + system_.stiffness() * theta * theta) / 2;
+        };
+        if (problem_.limits.dense) {
+            pieces_->add_act(now_.hi, energy(state.theta, state.velocity) - energy(y_[0], y_[1]));
+        }
+        const bool moved = state.theta != y_[0] || state.velocity != y_[1];
+        y_[0] = state.theta, y_[1] = state.velocity;
+        const double slip = y_[1] - belt();
+        if (moved && !standstill_.passes()) {
+            standstill_.return_to({slip == 0 ? standstill_.motion() : model::motion_of(slip),
+                                   slip == 0 ? Standstill::Phase::arrived : Standstill::Phase::moving});
+        } else if (moved) {
+            standstill_.head(model::motion_of(slip));
+        }
+        // What the user did may have put other watched values on the other side, which is no passing.
+        for (std::size_t i = 0; i < halves_.size(); ++i) {
+            const MotionPoint at = here();
+            const double value = extras_.events[i].when->value_with(at.t, at.y, at.states);
+            if (i != which || std::fabs(value) > 1e-12) halves_[i] = value > 0 ? 1 : value < 0 ? -1 : 0;
+            if (i == which && moved && std::fabs(value) <= 1e-12) halves_[i] = 0;
+        }
+        echo(now_.hi, 1);
+    }
+    if (wanted.stop) return fail(model::Outcome::stopped);
+    return !too_often() || fail(model::Outcome::chattering);
+}
+
+/// A surface that changes its velocity at once leaves the mass behind, or turns the sliding round.
+bool Engine::belt_jumps(double before) {
+    const double slip = y_[1] - belt();
+    if (belt() == before || standstill_.passes()) return true;
+    if (slip == 0) {
+        standstill_.arrive();
+        return true;
+    }
+    const model::Motion motion = model::motion_of(slip);
+    if (standstill_.stuck()) {
+        if (!release(motion)) return false;
+    } else if (motion != standstill_.motion()) {
+        tell(model::EventKind::turn);
+    }
+    standstill_.return_to({motion, Standstill::Phase::moving});
+    return true;
+}
+
+void Engine::tell(model::EventKind kind, int user) {
+    const double M = field_.load(here());
+    events_.push_back({now_.hi, kind, y_[0], M, user, y_[1]});
+}
+
+bool Engine::too_often() {
+    often_ = now_.hi - last_event_ <= at_once * pace_ ? often_ + 1 : 0;
+    last_event_ = now_.hi;
+    return often_ > most_at_once;
+}
+
+bool Engine::ask() {
+    y_[1] = belt();
+    const double M = field_.load(here());
+    if (!std::isfinite(M)) return fail(model::Outcome::excitation_not_finite);
+    const std::size_t told = events_.size();
+    const bool sane = standstill_.ask({now_.hi, y_[0], pull(M)});
+    if (events_.size() > told) events_.back().M = M, events_.back().velocity = y_[1];
+    return sane || fail(model::Outcome::chattering);
+}
+
+bool Engine::release(model::Motion towards) {
+    const double M = field_.load(here());
+    if (!std::isfinite(M)) return fail(model::Outcome::excitation_not_finite);
+    const bool sane = standstill_.release({now_.hi, y_[0], M}, towards);
+    events_.back().velocity = y_[1];
+    return sane || fail(model::Outcome::chattering);
+}
+
+/// Without friction nothing happens at a turn, it is only told.
+void Engine::record_turns(double until) {
+    using namespace spectral::chebyshev;
+    Series v = piece_.series[1];
+    v[0] += y_[1];
+    const double moving = greatest(piece_.y[1]);
+    const double torques = greatest(piece_.M) + greatest(piece_.push) + system_.stiffness() * greatest(piece_.y[0]);
+    if (moving <= 100 * rounding * piece_.h / system_.inertia() * torques) return;
+    if (standstill_.motion() == model::Motion::stuck) {
+        const auto first = std::find_if(piece_.y[1].begin(), piece_.y[1].end(),
+                                        [&](double u) { return std::fabs(u) > 1e-14 * moving; });
+        standstill_.head(model::motion_of(first == piece_.y[1].end() ? 0 : *first));
+    }
+    double from = -1;
+    LeftEnd start = y_[1] == 0 ? LeftEnd::leaving : LeftEnd::anywhere;
+    const auto no = [](double) { return false; };
+    while (standstill_.motion() != model::Motion::stuck) {
+        const model::Motion motion = standstill_.motion();
+        const Bounded<points> curve(model::sign_of(motion), v, derivative(v));
+        const auto x = first_below(curve, from, start, no);
+        if (!x || *x > until) break;
+        if (start == LeftEnd::leaving && *x <= from && (from > -1 || standstill_.last_told() == now_.hi)) {
+            standstill_.head(motion == model::Motion::forward ? model::Motion::backward : model::Motion::forward);
+            if (from > -1) break;
+        } else {
+            const MotionPoint at = point(*x);
+            standstill_.turned({at.t, at.y.theta, field_.load(at)});
+        }
+        from = *x;
+        start = LeftEnd::leaving;
+    }
+}
+
+}  // namespace dinal::motion::hybrid

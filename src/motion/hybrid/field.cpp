@@ -1,0 +1,203 @@
+#include "motion/hybrid/field.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "motion/spectral/chebyshev.hpp"
+
+namespace dinal::motion::hybrid {
+
+namespace {
+
+/// A step to the side that a user's arithmetic cannot swallow (see model/excitation.cpp).
+double hair_of(double t) {
+    constexpr double few_ulps = 4 * std::numeric_limits<double>::epsilon();
+    return std::max(1e-300, few_ulps * std::fabs(t));
+}
+
+double towards(double t, Side side) {
+    return side == Side::before ? t - hair_of(t) : side == Side::after ? t + hair_of(t) : t;
+}
+
+double value_on(const model::Excitation& excitation, double t, Side side) {
+    return side == Side::before  ? excitation.value_before(t)
+           : side == Side::after ? excitation.value_after(t)
+                                 : excitation.value(t);
+}
+
+}  // namespace
+
+Field::Field(const Problem& problem, const Past& past)
+    : excitation_(problem.excitation),
+      extras_(*problem.extras),
+      past_(past),
+      inertia_(problem.system.inertia()),
+      start_(problem.window.start),
+      initial_(problem.initial),
+      memory_(problem.excitation.components().size()) {
+    for (const model::Component& c : excitation_.components()) {
+        if (const auto* delayed = model::controller_of<model::DelayedController>(c)) delays_.push_back(delayed->by);
+    }
+}
+
+double Field::output(std::size_t component, const model::Controller& controller, const MotionPoint& at) const {
+    const ControllerMemory& memory = memory_[component];
+    if (const auto* relay = dynamic_cast<const model::RelayController*>(&controller)) {
+        return relay->levels[memory.on ? 0 : 1];
+    }
+    if (const auto* delayed = dynamic_cast<const model::DelayedController*>(&controller)) {
+        const model::State then = past_.at(at.t - delayed->by, at.side);
+        return delayed->function->value_with(towards(at.t, at.side), then, at.states);
+    }
+    return memory.output;
+}
+
+double Field::load(const MotionPoint& at) const {
+    const double native_t = at.side == Side::before ? std::nextafter(at.t, -model::never) : at.t;
+    double sum = 0;
+    const auto components = excitation_.components();
+    for (std::size_t i = 0; i < components.size(); ++i) {
+        const model::Component& c = components[i];
+        if (c.gain == 0 || native_t < c.from || native_t >= c.to) continue;
+        double value = 0;
+        if (const auto* script = std::get_if<model::Scripted>(&c.term)) {
+            if (const auto* controller = dynamic_cast<const model::Controller*>(script->function.get())) {
+                value = output(i, *controller, at);
+            } else {
+                value = script->function->value_with(towards(at.t - script->delay, at.side), at.y, at.states);
+            }
+            if (std::isnan(value)) return value;
+        } else {
+            value = std::visit(
+                [native_t](const auto& term) {
+                    if constexpr (model::terms::NativeTerm<std::decay_t<decltype(term)>>) {
+                        return term.value(native_t);
+                    } else {
+                        return 0.0;
+                    }
+                },
+                c.term);
+        }
+        sum += c.gain * value;
+    }
+    return sum;
+}
+
+double Field::push(double t, Side side) const {
+    return extras_.base.components().empty() ? 0 : -inertia_ * value_on(extras_.base, t, side);
+}
+
+double Field::belt(double t, Side side) const {
+    return has_belt() ? value_on(extras_.belt, t, side) : 0;
+}
+
+/// By the derivative of a polynomial through a short stretch ahead, which is right to some twelve digits.
+double Field::belt_rate(double t) const {
+    using namespace spectral::chebyshev;
+    if (!has_belt() || extras_.belt.constant_from() <= t) return 0;
+    const double next = extras_.belt.next_break(t);
+    const double h = std::min(0.05, (next - t) / 2);
+    Samples values{};
+    for (std::size_t j = 0; j < points; ++j) {
+        const double at = t + h * (1 + nodes[j]);
+        values[j] = belt(at, j == 0 ? Side::after : at >= next ? Side::before : Side::at);
+    }
+    return value(derivative(fit(values)), -1) / h;
+}
+
+void Field::rates(const MotionPoint& at, double* out) const {
+    MotionPoint asked = at;
+    asked.t = towards(at.t, at.side);
+    for (std::size_t i = 0; i < extras_.states.size(); ++i) {
+        out[i] = extras_.states[i].rate->value_with(asked.t, asked.y, asked.states);
+    }
+}
+
+double Field::next_break(double t) const {
+    double first = std::min({excitation_.next_break(t), extras_.belt.next_break(t), extras_.base.next_break(t)});
+    const auto components = excitation_.components();
+    for (std::size_t i = 0; i < components.size(); ++i) {
+        const auto* sampled = model::controller_of<model::SampledController>(components[i]);
+        if (sampled == nullptr) continue;
+        first = std::min(first, instant(*sampled, memory_[i].instant));
+        if (!memory_[i].pending.empty()) first = std::min(first, memory_[i].pending.front().first);
+    }
+    return first;
+}
+
+double Field::shortest_delay() const {
+    return delays_.empty() ? model::never : *std::min_element(delays_.begin(), delays_.end());
+}
+
+double Field::view(double t, double spacing) const {
+    return std::min({excitation_.view(t, spacing), extras_.belt.view(t, spacing), extras_.base.view(t, spacing)});
+}
+
+void Field::begin(const MotionPoint& at) {
+    for (std::size_t i = 0; i < memory_.size(); ++i) {
+        const model::Component& c = excitation_.components()[i];
+        if (const auto* sampled = model::controller_of<model::SampledController>(c)) {
+            const double n = std::ceil((at.t - sampled->at) / sampled->every - 1e-9);
+            memory_[i].instant = static_cast<std::int64_t>(std::max(n, 0.0));
+            if (instant(*sampled, memory_[i].instant) < at.t) ++memory_[i].instant;
+        } else if (const auto* relay = model::controller_of<model::RelayController>(c)) {
+            memory_[i].on = relay->starts_on;
+            if (until_switch(i, at) < 0) memory_[i].on = !memory_[i].on;
+        }
+    }
+}
+
+bool Field::arrive(const MotionPoint& at) {
+    for (std::size_t i = 0; i < memory_.size(); ++i) {
+        const auto* sampled = model::controller_of<model::SampledController>(excitation_.components()[i]);
+        if (sampled == nullptr) continue;
+        ControllerMemory& memory = memory_[i];
+        const auto take = [&] {
+            while (!memory.pending.empty() && memory.pending.front().first <= at.t) {
+                memory.output = memory.pending.front().second;
+                memory.pending.pop_front();
+            }
+        };
+        take();
+        while (instant(*sampled, memory.instant) <= at.t) {
+            const double output = sampled->function->value_with(at.t, at.y, at.states);
+            if (!std::isfinite(output)) return false;
+            memory.pending.emplace_back(instant(*sampled, memory.instant) + sampled->delay, output);
+            ++memory.instant;
+        }
+        take();
+    }
+    return true;
+}
+
+bool Field::may_go_on() const {
+    for (const model::Component& c : excitation_.components()) {
+        const auto* script = std::get_if<model::Scripted>(&c.term);
+        if (script != nullptr && model::controller_of(c) == nullptr && !script->function->may_go_on()) return false;
+    }
+    return std::all_of(extras_.states.begin(), extras_.states.end(),
+                       [](const model::OwnState& state) { return state.rate->may_go_on(); });
+}
+
+const model::RelayController* Field::relay(std::size_t component) const {
+    return model::controller_of<model::RelayController>(excitation_.components()[component]);
+}
+
+double Field::until_switch(std::size_t component, const MotionPoint& at) const {
+    const model::RelayController& own = *relay(component);
+    double measured = at.y.theta;
+    if (own.of == model::RelayController::Of::velocity) {
+        measured = at.y.velocity;
+    } else if (own.of == model::RelayController::Of::function) {
+        measured = own.function->value_with(at.t, at.y, at.states);
+    } else if (own.of == model::RelayController::Of::state) {
+        for (std::size_t i = 0; i < extras_.states.size(); ++i) {
+            if (extras_.states[i].name == own.state) measured = at.states[i];
+        }
+    }
+    const double way = own.off > own.on ? 1 : -1;
+    return memory_[component].on ? way * (own.off - measured) : way * (measured - own.on);
+}
+
+}  // namespace dinal::motion::hybrid

@@ -1,0 +1,105 @@
+// What acts on the mass of a run with more in it: M with its controllers, the base, the belt, and the rates of states.
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <memory>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "model/extras.hpp"
+#include "model/lowered.hpp"
+#include "motion/simulate.hpp"
+
+namespace dinal::motion::hybrid {
+
+/// Of a break: the limits from the left and from the right differ there.
+enum class Side { before, at, after };
+
+/// Where the mass was, for what acts with a delay.
+class Past {
+public:
+    [[nodiscard]] virtual model::State at(double t, Side side) const = 0;
+
+protected:
+    Past() = default;
+    Past(const Past&) = default;
+    Past& operator=(const Past&) = default;
+    ~Past() = default;
+};
+
+/// What a controller remembers.
+struct ControllerMemory {
+    double output = 0;                                ///< of one that samples: held
+    std::deque<std::pair<double, double>> pending{};  ///< the time from when on, and the output
+    std::int64_t instant = 0;                         ///< the next one
+    bool on = true;                                   ///< of a relay
+};
+
+/// One moment of the motion.
+struct MotionPoint {
+    double t;
+    Side side;
+    model::State y;
+    std::span<const double> states;
+};
+
+class Field {
+public:
+    Field(const Problem& problem, const Past& past);
+
+    [[nodiscard]] std::size_t state_count() const { return extras_.states.size(); }
+    [[nodiscard]] bool has_belt() const { return !extras_.belt.components().empty(); }
+    /// M of the user.
+    [[nodiscard]] double load(const MotionPoint& at) const;
+    /// -I a(t) of the base.
+    [[nodiscard]] double push(double t, Side side) const;
+    /// The velocity of the belt.
+    [[nodiscard]] double belt(double t, Side side) const;
+    /// How fast that changes, from the right.
+    [[nodiscard]] double belt_rate(double t) const;
+    void rates(const MotionPoint& at, double* out) const;
+    /// The first time after t at which anything is known to jump.
+    [[nodiscard]] double next_break(double t) const;
+    /// The shortest delay; `never` when there is none.
+    [[nodiscard]] double shortest_delay() const;
+    [[nodiscard]] std::span<const double> delays() const { return delays_; }
+    /// How far one may look from t and overlook nothing (Excitation::view).
+    [[nodiscard]] double view(double t, double spacing) const;
+
+    /// At the start of a run: where the relays stand, and which instants are still to come.
+    void begin(const MotionPoint& at);
+    /// At the time of `at`: outputs that have waited until now, and the instants of this time. False when one failed.
+    bool arrive(const MotionPoint& at);
+    /// After a value that was not finite: whether the functions may be asked again, at other times.
+    [[nodiscard]] bool may_go_on() const;
+
+    // Relays, by their place among the components.
+    [[nodiscard]] const model::RelayController* relay(std::size_t component) const;
+    [[nodiscard]] std::size_t component_count() const { return excitation_.components().size(); }
+    /// Positive until it is to switch.
+    [[nodiscard]] double until_switch(std::size_t component, const MotionPoint& at) const;
+    void toggle(std::size_t component) { memory_[component].on = !memory_[component].on; }
+
+    [[nodiscard]] const std::vector<ControllerMemory>& memory() const { return memory_; }
+    void remember(const std::vector<ControllerMemory>& memory) { memory_ = memory; }
+
+private:
+    [[nodiscard]] double output(std::size_t component, const model::Controller& controller,
+                                const MotionPoint& at) const;
+    [[nodiscard]] double instant(const model::SampledController& sampled, std::int64_t n) const {
+        return sampled.at + static_cast<double>(n) * sampled.every;
+    }
+
+    const model::Excitation& excitation_;
+    const model::Extras& extras_;
+    const Past& past_;
+    double inertia_;
+    double start_;
+    model::State initial_;
+    std::vector<ControllerMemory> memory_;  // for each component
+    std::vector<double> delays_;
+};
+
+}  // namespace dinal::motion::hybrid

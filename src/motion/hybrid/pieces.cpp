@@ -1,0 +1,154 @@
+#include "motion/hybrid/pieces.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace dinal::motion::hybrid {
+
+namespace {
+
+/// Integrals of products of series are exact.
+class PieceLeg final : public Leg {
+public:
+    PieceLeg(const model::Lowered& system, const Piece& piece) : piece_(piece) {
+        Series theta = piece.series[0], v = piece.series[1];
+        theta[0] += piece.begin[0], v[0] += piece.begin[1];
+        const auto work = [&](const Series& torque) {
+            Integral sum = cheb::integral(cheb::product(torque, v), 0);
+            for (double& c : sum) c *= piece.h;
+            return sum;
+        };
+        input_ = work(piece.M), base_ = work(piece.push);
+        Series damping = v;
+        for (double& c : damping) c *= system.damping();
+        viscous_ = work(damping);
+        const Series friction = friction_on(system, theta, v);
+        belt_ = cheb::integral(cheb::product(friction, piece.belt), 0);
+        Series against = v;
+        for (std::size_t k = 0; k < against.size(); ++k) against[k] = piece.belt[k] - v[k];
+        dry_ = cheb::integral(cheb::product(friction, against), 0);
+        for (double& c : belt_) c *= piece.h;
+        for (double& c : dry_) c *= piece.h;
+        if (piece.way == model::Motion::stuck) dry_ = {};
+    }
+    [[nodiscard]] double length() const override { return piece_.length; }
+    [[nodiscard]] double since_start(double t) const override { return piece_.start.until(t); }
+    [[nodiscard]] Work work(double since_start) const override {
+        if (!(since_start > 0)) return {};
+        const double x = std::min(std::min(since_start, piece_.length) / piece_.h - 1, 1.0);
+        return {cheb::value(input_, x), cheb::value(viscous_, x), cheb::value(dry_, x), cheb::value(belt_, x),
+                cheb::value(base_, x)};
+    }
+
+private:
+    using Integral = cheb::Series<2 * node_count>;
+
+    /// The torque of dry friction on the mass.
+    [[nodiscard]] Series friction_on(const model::Lowered& system, const Series& theta, const Series& v) const {
+        Series friction{};
+        if (piece_.way == model::Motion::stuck) {
+            for (std::size_t k = 0; k < friction.size(); ++k) {
+                friction[k] = system.inertia() * piece_.belt_rate[k] + system.damping() * v[k] +
+                              system.stiffness() * theta[k] - piece_.push[k] - piece_.M[k];
+            }
+            return friction;
+        }
+        const Nodes theta_at = cheb::at_nodes(theta), v_at = cheb::at_nodes(v), belt_at = cheb::at_nodes(piece_.belt);
+        Nodes values{};
+        for (std::size_t j = 0; j < node_count; ++j) {
+            values[j] = -system.braking(piece_.way) - system.remainder(piece_.way, {theta_at[j], v_at[j] - belt_at[j]});
+        }
+        return cheb::fit(values);
+    }
+
+    const Piece& piece_;
+    Integral input_{}, viscous_{}, dry_{}, belt_{}, base_{};
+};
+
+/// No time, but energy.
+class ActLeg final : public Leg {
+public:
+    explicit ActLeg(const std::pair<double, double>& act) : act_(act) {}
+    [[nodiscard]] double length() const override { return 0; }
+    [[nodiscard]] double since_start(double t) const override { return t - act_.first; }
+    [[nodiscard]] Work work(double since_start) const override {
+        return since_start < 0 ? Work{} : Work{.acts = act_.second};
+    }
+
+private:
+    std::pair<double, double> act_;
+};
+
+}  // namespace
+
+Pieces::Pieces(const model::Oscillator& system, const model::State& initial, double t_start,
+               std::shared_ptr<const Pieces> before, std::size_t most_bytes, bool whole)
+    : Course(system),
+      initial_(initial),
+      t_start_(t_start),
+      before_(std::move(before)),
+      most_(most_bytes),
+      whole_(whole) {}
+
+void Pieces::add(Piece piece) {
+    const std::size_t bytes = sizeof(Piece) + piece.begin.size() * (sizeof(Series) + sizeof(double));
+    if (bytes_ + bytes > most_) complete_ = false;
+    if (!complete_) return;
+    bytes_ += bytes;
+    list_.push_back(std::move(piece));
+}
+
+void Pieces::forget(double t) {
+    const auto old = std::partition_point(list_.begin(), list_.end(),
+                                          [t](const Piece& piece) { return piece.start.after(piece.length) < t; });
+    constexpr std::ptrdiff_t worth_it = 256;
+    if (old - list_.begin() < worth_it) return;
+    list_.erase(list_.begin(), old);
+    bytes_ = 0;
+}
+
+const Piece* Pieces::piece_at(double t, Side side) const {
+    // The last piece that begins at or before t; before it, for a limit from the left.
+    const auto after = std::partition_point(list_.begin(), list_.end(), [t, side](const Piece& piece) {
+        const double since = piece.start.until(t);
+        return side == Side::before ? since > 0 : since >= 0;
+    });
+    return after == list_.begin() ? nullptr : &*(after - 1);
+}
+
+model::State Pieces::at(double t, Side side) const {
+    const Piece* piece = t < t_start_ || (t == t_start_ && side == Side::before) ? nullptr : piece_at(t, side);
+    if (piece == nullptr) return before_ != nullptr ? before_->at(t, side) : initial_;
+    const double x = piece->x(t);
+    return {piece->value(0, x), piece->value(1, x)};
+}
+
+text::Expected<model::State> Pieces::at(double t) const {
+    if (list_.empty()) return text::Error{"the run has no motion to evaluate: it ended where it started"};
+    const Piece& last = list_.back();
+    if (!complete_ && t > last.start.after(last.length)) {
+        return text::Error{"the motion was kept in part only, for want of memory: take rows, or begin a run there"};
+    }
+    return at(t, Side::at);
+}
+
+std::vector<double> Pieces::states_at(double t) const {
+    const Piece* piece = piece_at(t, Side::at);
+    std::vector<double> states;
+    if (piece == nullptr) return states;
+    for (std::size_t k = 2; k < piece->begin.size(); ++k) states.push_back(piece->value(k, piece->x(t)));
+    return states;
+}
+
+void Pieces::legs(const std::function<void(const Leg&)>& told) const {
+    const model::Lowered lowered(system());
+    auto act = acts_.begin();
+    for (const Piece& piece : list_) {
+        for (; act != acts_.end() && piece.start.until(act->first) <= 0; ++act) told(ActLeg(*act));
+        told(PieceLeg(lowered, piece));
+    }
+    for (; act != acts_.end(); ++act) told(ActLeg(*act));
+}
+
+}  // namespace dinal::motion::hybrid

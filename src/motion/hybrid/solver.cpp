@@ -1,0 +1,304 @@
+#include "motion/hybrid/solver.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "motion/interpolation.hpp"
+
+namespace dinal::motion::hybrid {
+
+namespace {
+
+constexpr int most_iterations = 40;
+
+/// Row i: the integral from -1 to node i of the polynomial through values at the nodes.
+using Integration = std::array<Nodes, node_count>;
+const Integration& integration() {
+    static const Integration weights = [] {
+        Integration rows{};
+        for (std::size_t j = 0; j < node_count; ++j) {
+            Nodes unit{};
+            unit[j] = 1;
+            const auto F = cheb::integral(cheb::fit(unit), 0.0);
+            for (std::size_t i = 1; i < node_count; ++i) rows[i][j] = cheb::value(F, cheb::nodes[i]);
+        }
+        return rows;
+    }();
+    return weights;
+}
+
+}  // namespace
+
+Solver::Solver(const Problem& problem, const Field& field, const Cut& cut)
+    : system_(problem.system), field_(field), cut_(cut), n_(2 + field.state_count()), point_(n_), rate_(n_) {}
+
+void Solver::sample_surroundings(Solved& piece) const {
+    const bool has_belt = field_.has_belt();
+    for (std::size_t j = 0; j < node_count; ++j) {
+        piece.push[j] = field_.push(piece.times[j], piece.side(j));
+        piece.belt[j] = has_belt ? field_.belt(piece.times[j], piece.side(j)) : 0;
+    }
+    piece.belt_rate = {};
+    if (!has_belt) return;
+    const auto slope = cheb::derivative(cheb::fit(piece.belt));
+    for (std::size_t j = 0; j < node_count; ++j) piece.belt_rate[j] = cheb::value(slope, cheb::nodes[j]) / piece.h;
+}
+
+bool Solver::rates_of(const Solved& piece, double t, Side side, const model::State& asked, const Values& y,
+                      double belt_rate, double* out, double& M, double push, double belt) const {
+    const MotionPoint at{t, side, asked, {y.data() + 2, n_ - 2}};
+    M = field_.load(at);
+    field_.rates(at, out + 2);
+    if (moves(piece)) {
+        const double friction = system_.braking(piece.way) + system_.remainder(piece.way, {y[0], y[1] - belt});
+        out[0] = y[1];
+        out[1] = (((M - friction) + push) - system_.damping() * y[1] - system_.stiffness() * y[0]) / system_.inertia();
+    } else {
+        out[0] = belt;
+        out[1] = belt_rate;
+    }
+    return std::isfinite(M) && std::all_of(out, out + n_, [](double x) { return std::isfinite(x); });
+}
+
+bool Solver::evaluate(Solved& piece, std::size_t node, const model::State& asked) {
+    for (std::size_t k = 0; k < n_; ++k) point_[k] = piece.y[k][node];
+    const bool good = rates_of(piece, piece.times[node], piece.side(node), asked, point_, piece.belt_rate[node],
+                               rate_.data(), piece.M[node], piece.push[node], piece.belt[node]);
+    for (std::size_t k = 0; k < n_; ++k) piece.f[k][node] = rate_[k];
+    if (!good) bad_time_ = piece.times[node];
+    return good;
+}
+
+Solver::Attempt Solver::solve(Solved& piece, const Values& begin, const model::State& departing) {
+    for (std::size_t j = 0; j + 1 < node_count; ++j) piece.times[j] = piece.time(cheb::nodes[j]);
+    piece.times[node_count - 1] = piece.end;
+    piece.y.resize(n_), piece.f.resize(n_), piece.series.resize(n_);
+    for (std::size_t k = 0; k < n_; ++k) piece.y[k].fill(begin[k]);
+    sample_surroundings(piece);
+    const Attempt attempt = cut_.h > 0 ? runge_kutta(piece, departing) : collocate(piece, departing);
+    if (attempt != Attempt::resolved) return attempt;
+    for (std::size_t k = 0; k < n_; ++k) {
+        Nodes change{};
+        for (std::size_t j = 0; j < node_count; ++j) change[j] = piece.y[k][j] - begin[k];
+        piece.series[k] = cheb::fit(change);
+        if (!std::isfinite(greatest(change))) return Attempt::failed;
+    }
+    if (cut_.h > 0) return attempt;
+    judge(piece);
+    return unresolved_ <= 1 ? Attempt::resolved : Attempt::shorten;
+}
+
+/// How the rates depend on the values, by differences at the beginning: as wide as the motion is.
+bool Solver::estimate_jacobian(const Solved& piece) {
+    Linear& linear = moves(piece) ? moving_ : standing_;
+    linear.jacobian = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(n_), static_cast<Eigen::Index>(n_));
+    const std::size_t middle = node_count / 2;
+    Values y(n_), above(n_), below(n_);
+    for (std::size_t k = 0; k < n_; ++k) y[k] = piece.y[k][middle];
+    const auto rates = [&](const Values& values, double* out) {
+        double M = 0;
+        return rates_of(piece, piece.times[middle], Side::at, {values[0], values[1]}, values, piece.belt_rate[middle],
+                        out, M, piece.push[middle], piece.belt[middle]);
+    };
+    for (std::size_t l = moves(piece) ? 0 : 2; l < n_; ++l) {
+        const double spread = greatest(piece.y[l]) + piece.h * greatest(piece.f[l]);
+        const double d = std::max(1e-4 * spread, 1e-9);
+        Values shifted = y;
+        shifted[l] = y[l] + d;
+        if (!rates(shifted, above.data())) return false;
+        shifted[l] = y[l] - d;
+        if (!rates(shifted, below.data())) return false;
+        for (std::size_t k = 0; k < n_; ++k) {
+            linear.jacobian(static_cast<Eigen::Index>(k), static_cast<Eigen::Index>(l)) =
+                (above[k] - below[k]) / (2 * d);
+        }
+    }
+    linear.known = true;
+    linear.ready = false;
+    return true;
+}
+
+/// The matrix of Newton's steps: 1 - h J times the integration.
+void Solver::prepare(const Solved& piece) {
+    Linear& linear = moves(piece) ? moving_ : standing_;
+    if (linear.ready && std::fabs(piece.h / linear.h - 1) < 1e-6) return;
+    const auto size = static_cast<Eigen::Index>(inner), n = static_cast<Eigen::Index>(n_);
+    Eigen::MatrixXd A = Eigen::MatrixXd::Identity(size * n, size * n);
+    const Integration& Q = integration();
+    for (Eigen::Index k = 0; k < n; ++k) {
+        for (Eigen::Index l = 0; l < n; ++l) {
+            const double slope = piece.h * linear.jacobian(k, l);
+            if (slope == 0) continue;
+            for (Eigen::Index i = 0; i < size; ++i) {
+                for (Eigen::Index j = 0; j < size; ++j) {
+                    A(k * size + i, l * size + j) -=
+                        slope * Q[static_cast<std::size_t>(i) + 1][static_cast<std::size_t>(j) + 1];
+                }
+            }
+        }
+    }
+    linear.factors.compute(A);
+    linear.h = piece.h;
+    linear.ready = true;
+}
+
+Solver::Attempt Solver::collocate(Solved& piece, const model::State& departing) {
+    Linear& linear = moves(piece) ? moving_ : standing_;
+    unresolved_ = std::numeric_limits<double>::infinity();
+    const bool nothing_to_find = !moves(piece) && n_ == 2 && !field_.has_belt();
+    const Integration& Q = integration();
+    residual_.resize(static_cast<Eigen::Index>(inner * n_));
+    for (const bool again : {false, true}) {
+        if (!evaluate(piece, 0, departing)) return Attempt::failed;
+        if (!nothing_to_find) {
+            for (std::size_t k = 0; k < n_; ++k) {
+                for (std::size_t j = 1; j < node_count; ++j) {
+                    piece.y[k][j] = piece.y[k][0] + piece.h * (1 + cheb::nodes[j]) * piece.f[k][0];
+                }
+            }
+        }
+        double before = std::numeric_limits<double>::infinity();
+        for (int i = 0; i < most_iterations; ++i) {
+            for (std::size_t j = 1; j < node_count; ++j) {
+                if (!evaluate(piece, j, {piece.y[0][j], piece.y[1][j]})) return Attempt::failed;
+            }
+            if (nothing_to_find) return Attempt::resolved;
+            if (!linear.known && !estimate_jacobian(piece)) return Attempt::failed;
+            prepare(piece);
+            for (std::size_t k = 0; k < n_; ++k) {
+                for (std::size_t j = 1; j < node_count; ++j) {
+                    double sum = 0;
+                    for (std::size_t m = 0; m < node_count; ++m) sum += Q[j][m] * piece.f[k][m];
+                    residual_[static_cast<Eigen::Index>(k * inner + j - 1)] =
+                        (piece.y[k][0] - piece.y[k][j]) + piece.h * sum;
+                }
+            }
+            const Eigen::VectorXd step = linear.factors.solve(residual_);
+            double change = 0;
+            for (std::size_t k = 0; k < n_; ++k) {
+                double most = 0;
+                for (std::size_t j = 1; j < node_count; ++j) {
+                    const double d = step[static_cast<Eigen::Index>(k * inner + j - 1)];
+                    piece.y[k][j] += d;
+                    most = std::max(most, std::fabs(d));
+                }
+                // A velocity matters by how far it carries the mass, and by how fast the mass goes anyway.
+                const double scale = greatest(piece.y[k]) + std::numeric_limits<double>::min() / rounding;
+                change = std::max(change, most / scale);
+            }
+            if (!std::isfinite(change)) break;
+            const double rate = before < std::numeric_limits<double>::infinity() ? change / before : 1;
+            const bool converged = change <= 16 * rounding || (i >= 1 && change * rate <= 4 * rounding) ||
+                                   (i >= 2 && change <= 1e-12 && rate > 0.3);
+            if (converged) return Attempt::resolved;
+            if (i >= 3 && rate > 0.7) break;
+            before = change;
+        }
+        if (again || !estimate_jacobian(piece)) break;
+    }
+    linear.known = false;
+    return Attempt::shorten;
+}
+
+/// One classical step; between its ends theta is the quintic, the others are cubics through values and rates.
+Solver::Attempt Solver::runge_kutta(Solved& piece, const model::State& departing) {
+    const double h = 2 * piece.h;
+    Values y(n_), a(n_), b(n_), c(n_), d(n_), e(n_), z(n_);
+    for (std::size_t k = 0; k < n_; ++k) y[k] = piece.y[k][0];
+    double M = 0;
+    const auto rates = [&](double part, const Values& values, double* out, const model::State* asked) {
+        const double t = part == 1 ? piece.end : piece.start.after(part * h);
+        const Side side = part == 0 ? piece.side(0) : part == 1 ? piece.side(node_count - 1) : Side::at;
+        const std::size_t node = part == 0 ? 0 : part == 1 ? node_count - 1 : node_count / 2;
+        const model::State own{values[0], values[1]};
+        return rates_of(piece, t, side, asked != nullptr ? *asked : own, values, piece.belt_rate[node], out, M,
+                        piece.push[node], piece.belt[node]);
+    };
+    const auto along = [&](double length, const Values& slope) {
+        for (std::size_t k = 0; k < n_; ++k) z[k] = y[k] + length * slope[k];
+    };
+    bad_time_ = piece.end;
+    if (!rates(0, y, a.data(), &departing)) return Attempt::failed;
+    along(h / 2, a);
+    if (!rates(0.5, z, b.data(), nullptr)) return Attempt::failed;
+    along(h / 2, b);
+    if (!rates(0.5, z, c.data(), nullptr)) return Attempt::failed;
+    along(h, c);
+    if (!rates(1, z, d.data(), nullptr)) return Attempt::failed;
+    for (std::size_t k = 0; k < n_; ++k) z[k] = y[k] + h / 6 * (a[k] + 2 * b[k] + 2 * c[k] + d[k]);
+    if (!moves(piece)) z[1] = piece.belt[node_count - 1];
+    if (!rates(1, z, e.data(), nullptr)) return Attempt::failed;
+    const StepInterpolant motion(h, {y[0], y[1]}, a[1], {z[0], z[1]}, e[1]);
+    for (std::size_t j = 0; j < node_count; ++j) {
+        const double x = piece.h * (1 + cheb::nodes[j]), s = x / h;
+        if (moves(piece)) {
+            const model::State state = motion(x);
+            piece.y[0][j] = state.theta, piece.y[1][j] = state.velocity;
+        } else {
+            piece.y[0][j] = motion(x).theta, piece.y[1][j] = piece.belt[j];
+        }
+        for (std::size_t k = 2; k < n_; ++k) {
+            const double p = z[k] - y[k], v0 = h * a[k], v1 = h * e[k];
+            piece.y[k][j] = y[k] + s * (v0 + s * ((3 * p - 2 * v0 - v1) + s * (v0 + v1 - 2 * p)));
+        }
+    }
+    for (std::size_t k = 0; k < n_; ++k) piece.y[k][node_count - 1] = z[k];
+    for (std::size_t j = 0; j < node_count; ++j) {
+        if (!evaluate(piece, j, j == 0 ? departing : model::State{piece.y[0][j], piece.y[1][j]})) {
+            return Attempt::failed;
+        }
+    }
+    return Attempt::resolved;
+}
+
+/// The last coefficients of what drives each value, against what that value is and how it changes.
+void Solver::judge(const Solved& piece) {
+    unresolved_ = 0;
+    const double h = piece.h, per_torque = h * (h / system_.inertia());
+    const Series M = cheb::fit(piece.M);
+    const double torques =
+        cheb::size(M) + system_.greatest_holding() + system_.stiffness() * greatest(piece.y[0]) + greatest(piece.push);
+    const double smallest = std::numeric_limits<double>::min() / rounding;
+    // Times far from t = 0 are rounded, and M with them.
+    double slope = 0;
+    for (std::size_t k = 1; k < node_count; ++k) slope += static_cast<double>(k * k) * std::fabs(M[k]);
+    const double late = std::max(std::fabs(piece.start.hi), std::fabs(piece.end));
+    const double lost = std::min(4 * rounding * late / h * slope, 1e-6 * torques);
+    if (moves(piece)) {
+        Nodes w{};
+        for (std::size_t j = 0; j < node_count; ++j) w[j] = h * h * piece.f[1][j];
+        const Series series = cheb::fit(w);
+        const double size = cheb::size(series);
+        const double allowed = cut_.tolerance * std::max(h * greatest(piece.y[1]), size) +
+                               64 * rounding * (size + per_torque * torques) + per_torque * lost + smallest;
+        unresolved_ = cheb::tail(series) / allowed;
+    } else {
+        unresolved_ = cheb::tail(M) / ((cut_.tolerance + 16 * rounding) * torques + lost + smallest);
+    }
+    if (field_.has_belt()) {
+        unresolved_ = std::max(unresolved_, cheb::tail(cheb::fit(piece.belt)) /
+                                                ((cut_.tolerance + 16 * rounding) * greatest(piece.belt) + smallest));
+    }
+    for (std::size_t k = 2; k < n_; ++k) {
+        Nodes rate{};
+        for (std::size_t j = 0; j < node_count; ++j) rate[j] = h * piece.f[k][j];
+        const Series series = cheb::fit(rate);
+        const double allowed = (cut_.tolerance + 64 * rounding) * std::max(greatest(piece.y[k]), cheb::size(series));
+        unresolved_ = std::max(unresolved_, cheb::tail(series) / (allowed + smallest));
+    }
+}
+
+void Solver::pass_over(Solved& piece) const {
+    for (std::size_t k = 0; k < n_; ++k) {
+        Nodes change{};
+        for (std::size_t j = 1; j < node_count; ++j) {
+            change[j] = piece.h * (1 + cheb::nodes[j]) * piece.f[k][0];
+            piece.y[k][j] = piece.y[k][0] + change[j];
+        }
+        piece.series[k] = cheb::fit(change);
+    }
+    piece.M.fill(piece.M[0]);
+}
+
+}  // namespace dinal::motion::hybrid

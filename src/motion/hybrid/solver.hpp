@@ -1,0 +1,107 @@
+// One piece of a motion with more in it: theta, velocity and the states over a stretch without a jump, found by
+// collocation at Chebyshev points (or a step of Runge-Kutta), and judged.
+#pragma once
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <vector>
+
+#include "motion/hybrid/field.hpp"
+#include "motion/spectral/chebyshev.hpp"
+#include "motion/spectral/clock.hpp"
+
+namespace dinal::motion::hybrid {
+
+using spectral::Clock;
+using Nodes = spectral::chebyshev::Samples;
+using Series = spectral::chebyshev::Series<spectral::chebyshev::points>;
+inline constexpr std::size_t node_count = spectral::chebyshev::points;
+
+namespace cheb = spectral::chebyshev;
+inline constexpr double rounding = std::numeric_limits<double>::epsilon();
+
+inline double greatest(const Nodes& values) {
+    double most = 0;
+    for (const double x : values) most = std::max(most, std::fabs(x));
+    return most;
+}
+
+/// How a run is cut into pieces: by what resolves it, or evenly (h > 0).
+struct Cut {
+    double tolerance = 1e-12;
+    double longest = 0;  ///< piece, time units
+    double h = 0;        ///< of Runge-Kutta
+};
+
+/// theta, velocity, states in this order.
+using Values = std::vector<double>;
+
+struct Solved {
+    Clock start;
+    double h = 0;    ///< half its length
+    double end = 0;  ///< exactly
+    model::Motion way = model::Motion::stuck;
+    bool from_break = false, to_break = false;
+    Nodes times{};
+    std::vector<Nodes> y{}, f{};  ///< of each value: at the nodes, and its rate
+    Nodes M{}, push{}, belt{}, belt_rate{};
+    std::vector<Series> series{};  ///< of each value less its first
+
+    [[nodiscard]] double time(double x) const { return start.after(h * (1 + x)); }
+    [[nodiscard]] double at(std::size_t value, double x) const {
+        return x >= 1 ? y[value][node_count - 1] : y[value][0] + spectral::chebyshev::value(series[value], x);
+    }
+    [[nodiscard]] Side side(std::size_t node) const {
+        return node == 0 && from_break ? Side::after : node + 1 == node_count && to_break ? Side::before : Side::at;
+    }
+};
+
+class Solver {
+public:
+    enum class Attempt { resolved, shorten, failed };
+    Solver(const Problem& problem, const Field& field, const Cut& cut);
+
+    /// The piece from `start` up to `end`, 2 h later, under friction of `way`; `stuck` rests on the belt. A feedback is
+    /// asked at `departing` at its beginning. failed: something is not finite at bad_time().
+    Attempt solve(Solved& piece, const Values& begin, const model::State& departing);
+    [[nodiscard]] double bad_time() const { return bad_time_; }
+    /// Over 1: by how much the last piece was not resolved.
+    [[nodiscard]] double unresolved() const { return unresolved_; }
+    /// A piece too short to matter is a straight line.
+    void pass_over(Solved& piece) const;
+
+private:
+    static constexpr std::size_t inner = node_count - 1;
+    bool evaluate(Solved& piece, std::size_t node, const model::State& asked);
+    bool rates_of(const Solved& piece, double t, Side side, const model::State& asked, const Values& y,
+                  double belt_rate, double* out, double& M, double push, double belt) const;
+    Attempt collocate(Solved& piece, const model::State& departing);
+    Attempt runge_kutta(Solved& piece, const model::State& departing);
+    void sample_surroundings(Solved& piece) const;
+    bool estimate_jacobian(const Solved& piece);
+    void prepare(const Solved& piece);
+    void judge(const Solved& piece);
+    [[nodiscard]] bool moves(const Solved& piece) const { return piece.way != model::Motion::stuck; }
+
+    model::Lowered system_;
+    const Field& field_;
+    Cut cut_;
+    std::size_t n_;  // values
+    double bad_time_ = 0, unresolved_ = 0;
+
+    struct Linear {
+        Eigen::MatrixXd jacobian;
+        Eigen::PartialPivLU<Eigen::MatrixXd> factors;
+        double h = 0;
+        bool known = false, ready = false;
+    };
+    Linear moving_, standing_;
+    Eigen::VectorXd residual_;
+    mutable Values point_;
+    mutable Values rate_;
+};
+
+}  // namespace dinal::motion::hybrid

@@ -1,0 +1,175 @@
+-- Runs with more in them: states, events, belt, base, controllers with a memory.
+package.path = "tests/lua/?.lua;" .. package.path
+local support = require "support"
+local test, near, equal, raises_here = support.test, support.near, support.equal, support.raises_here
+
+local block = system { I = 1, k = 0, Rd = 0.3, Re = 0.5 }
+local function pid(more)
+    local task = {
+        M = function(t, theta, velocity, z) return 8 * (1 - theta) - 2 * velocity + 3 * z.e end,
+        states = { e = { start = 0, rate = function(t, theta) return 1 - theta end } },
+        t_end = 10,
+        dt = 0.5,
+    }
+    for name, value in pairs(more or {}) do task[name] = value end
+    return task
+end
+
+test("states are columns: of the run, of its file, of run:at, and of plots", function()
+    local run = block:simulate(pid())
+    equal(#run.states.e, #run)
+    equal(run.states.e[1], 0.0)
+    equal(run.e, run.states.e)
+    equal(table.concat(run.names, " "), "t theta velocity M friction damping e")
+    local theta, velocity, z = run:at(run.t[7])
+    near(z.e, run.e[7], 1e-13)
+    near(theta, run.theta[7], 1e-13)
+    near(run.M[7], 8 * (1 - run.theta[7]) - 2 * run.velocity[7] + 3 * run.e[7], 1e-12)
+    local name = support.temporary ".csv"
+    run:save(name)
+    local again = trajectory.load(name)
+    equal(again.e[7], run.e[7])
+    assert(run:plot { y = "e", show = false })
+    assert(run:explain():find("feedback", 1, true))
+    assert(run:energy().total.closure < 1e-11)
+end)
+
+test("the header of a file repeats a run with more in it", function()
+    local gain = 0.2
+    local runs = {
+        block:simulate(pid { belt = 0.1, events = { { when = function(t, theta) return theta - 0.5 end, name = "half", direction = "up" } } }),
+        block:simulate { M = excitation.sampled(function(t, theta) return 1 - gain * theta end, { every = 0.1, delay = 0.05 }), t_end = 2, dt = 0.1 },
+        block:simulate { M = 2 * excitation.relay { on = -0.1, off = 0.1, levels = { 1, -1 } } + 0.1, t_end = 4, dt = 0.1 },
+        block:simulate { M = excitation.delayed(function(t, theta) return 1 - theta end, { by = 0.3 }), t_end = 4, dt = 0.1,
+            base = excitation.harmonic { amplitude = 0.1, frequency = 1 } },
+        block:simulate { velocity0 = 1, t_end = 4, dt = 0.1,
+            events = { { when = function(t, theta) return theta - 0.4 end, act = function(t, theta, velocity, z) return theta, -velocity end } } },
+    }
+    for i, run in ipairs(runs) do
+        local name = support.temporary ".csv"
+        run:save(name)
+        local text = support.read(name)
+        local lines = {}
+        for line in text:gmatch "[^\n]+" do
+            if line:sub(1, 2) == "# " then lines[#lines + 1] = line:sub(3) end
+        end
+        local world = setmetatable({}, { __index = _G })
+        assert(load(table.concat(lines, "\n"), "=header", "t", world))()
+        equal(#world.run.events, #run.events)
+        near((world.run.theta - run.theta):abs():max(), 0, 1e-13)
+    end
+end)
+
+test("a run with states goes on with them, and with what its controllers remember", function()
+    local calls = 0
+    local function task(t_end)
+        return { M = excitation.sampled(function(t, theta) calls = calls + 1 return 1 - theta + 0.01 * calls end, { every = 0.1 }), t_end = t_end, dt = 0.1 }
+    end
+    local whole = block:simulate(task(3))
+    equal(calls, 31)
+    calls = 0
+    local both = block:simulate(task(1.23)):continue { t_end = 3 }
+    equal(calls, 31)
+    near((both.theta - whole.theta):abs():max(), 0, 1e-12)
+    near((block:simulate(pid()):continue { t_end = 12 }:at(12)), (block:simulate(pid { t_end = 12 }):at(12)), 1e-11)
+end)
+
+test("events have their names; they are told once, and stop or act", function()
+    local swing = system { I = 1, k = 1 }
+    local bounces = 0
+    local run = swing:simulate {
+        velocity0 = 1, t_end = 20, dt = 0.1,
+        events = {
+            { when = function(t, theta) return theta - 0.5 end, name = "wall", direction = "up",
+                act = function(t, theta, velocity) bounces = bounces + 1 return theta, -velocity end },
+            { when = function(t) return t - 15 end, stop = true, name = "enough" },
+        },
+    }
+    equal(run.outcome, "stopped at an event")
+    near(run.t_end, 15, 1e-13)
+    equal(run.events[#run.events].name, "enough")
+    local first = run.events[1]
+    equal(first.kind, "user")
+    equal(first.name, "wall")
+    near(first.t, math.asin(0.5), 1e-13)
+    near(first.velocity, math.cos(math.asin(0.5)), 1e-12)
+    -- Half a swing below the wall between two of them: pi + 2 asin 0.5.
+    equal(bounces, 1 + math.floor((15 - math.asin(0.5)) / (math.pi + 2 * math.asin(0.5))))
+    near(run:energy().total.error, 0, 1e-12)
+    assert(run.theta:max() <= 0.5)
+end)
+
+test("an act changes states through z, and a storm of acts ends", function()
+    local run = block:simulate {
+        states = { n = { rate = function() return 0 end } }, velocity0 = 1, t_end = 3, dt = 1,
+        events = { { when = function(t, theta) return theta - 0.5 end, act = function(t, theta, velocity, z) z.n = z.n + 7 end } },
+    }
+    equal(run.n[#run], 7.0)
+    local storm = system { I = 1, k = 1 }:simulate {
+        theta0 = 1, t_end = 20, dt = 1,
+        events = { { when = function(t, theta) return theta end, act = function(t, theta, velocity) return theta, -0.5 * velocity end } },
+    }
+    assert(storm.outcome:find("chatters", 1, true) or storm.outcome == "reached the end", storm.outcome)
+end)
+
+test("what fails in a rate, an event or a sampled function is told with its name, and the rows are kept", function()
+    local function fails(task, pattern)
+        local ok, problem = pcall(block.simulate, block, task)
+        assert(not ok and tostring(problem):find(pattern), problem)
+        return dinal.partial
+    end
+    local rate = function(t) return t < 4 and 1 or nil end
+    local partial = fails(pid { states = { e = { rate = rate } } }, "states%.e%.rate returned nil at t = 4")
+    assert(#partial >= 8)
+    fails(pid { states = { e = { rate = function() error "no rate" end } } }, "no rate")
+    fails(pid { states = { e = { rate = coroutine.yield } } }, "states%.e%.rate")
+    partial = fails({ M = excitation.sampled(function(t) return t < 0.95 and 1 or "x" end, { every = 0.1 }), t_end = 2, dt = 0.1 },
+        "the sampled function returned the string \"x\" at t = 1")
+    assert(#partial >= 9)
+    fails({ t_end = 1, dt = 0.1, velocity0 = 1, events = { { when = function(t) return t > 0.5 and {} or 1 end } } }, "events%[1%]%.when returned a table")
+    fails({ t_end = 1, dt = 0.1, velocity0 = 1, events = { { when = function(t) return t - 0.5 end, act = function() return 1 end } } },
+        "events%[1%]%.act returned 1 and nil at t = 0%.5; it must return theta and velocity")
+end)
+
+test("what is wrong is one sentence with the name of the option", function()
+    local function wrong(more, ...) local task = pid(more) raises_here(function() block:simulate(task) end, ...) end
+    wrong({ states = 3 }, "states must be a table such as")
+    wrong({ states = { e = 3 } }, "states must be a table such as")
+    wrong({ states = { theta = { rate = math.sin } } }, "'theta' is a name that a run has already")
+    wrong({ states = { ["a b"] = { rate = math.sin } } }, "'a b' is no name")
+    wrong({ states = { e = { start = 1 } } }, "states.e needs rate")
+    wrong({ states = { e = { rate = 3 } } }, "states.e.rate must be a function of t, theta, velocity, z, got 3")
+    wrong({ states = { e = { start = "x", rate = math.sin } } }, "states.e.start must be a finite number")
+    wrong({ states = { e = { rat = math.sin } } }, "states.e has no 'rat' among start, rate; did you mean 'rate'?")
+    wrong({ events = 3 }, "events must be a list such as")
+    wrong({ events = { {} } }, "events[1] needs when")
+    wrong({ events = { { when = math.sin, direction = "left" } } }, "events[1].direction must be 'up', 'down' or 'both'")
+    wrong({ events = { { when = math.sin, stop = 1 } } }, "events[1].stop must be true or false")
+    wrong({ events = { { when = math.sin, act = 1 } } }, "events[1].act must be a function")
+    wrong({ belt = function(t, theta) return theta end }, "belt must be a number, an excitation or a function of t alone")
+    wrong({ base = "x" }, "base must be a function, a number or an excitation")
+    wrong({ integrator = integrator.dinal1989 { h = 0.1 }, states = false or nil, belt = 1 }, "integrator.dinal1989")
+    raises_here(function() excitation.sampled(3, { every = 1 }) end, "excitation.sampled takes a function of t, theta, velocity, z, got 3")
+    raises_here(function() excitation.sampled(math.sin, { every = 0 }) end, "every = 0 must be positive")
+    raises_here(function() excitation.sampled(math.sin, { every = 1, delay = -1 }) end, "delay = -1 must not be negative")
+    raises_here(function() excitation.sampled(math.sin, {}) end, "excitation.sampled needs every")
+    raises_here(function() excitation.relay { on = 1, off = 1, levels = { 1, 2 } } end, "on = 1 and off = 1 must differ")
+    raises_here(function() excitation.relay { on = 1, off = 2, levels = { 1 } } end, "levels must be two numbers")
+    raises_here(function() excitation.delayed(math.sin, { by = 0 }) end, "by = 0 must be positive")
+    local sampled = excitation.sampled(math.sin, { every = 1 })
+    raises_here(function() return sampled(1) end, "a controller with a memory has values in a run only")
+    raises_here(function() return sampled:delay(1) end, "cannot be delayed")
+    wrong({ M = excitation.relay { on = 1, off = 2, levels = { 1, 2 }, of = "heat" } }, "M has a relay of 'heat', which is no state of this run")
+end)
+
+test("a relay of a state switches where the state is", function()
+    local run = system { I = 1, k = 1 }:simulate {
+        M = excitation.relay { on = 1, off = 2, levels = { 1, -1 }, of = "heat" },
+        states = { heat = { start = 0.5, rate = function() return 1 end } }, t_end = 3, dt = 1,
+    }
+    local switches = run.events:filter(function(e) return e.kind == "switch" end)
+    equal(#switches, 1)
+    near(switches[1].t, 1.5, 1e-13)
+end)
+
+support.finish()

@@ -1,0 +1,40 @@
+// Functions of a user as C++ lambdas, and runs with more in them.
+#pragma once
+
+#include <functional>
+#include <utility>
+
+#include "model/extras.hpp"
+#include "support/catch.hpp"
+#include "support/measure.hpp"
+
+namespace dinal::truth {
+
+using Body = std::function<double(double t, const model::State& y, std::span<const double> z)>;
+
+class Written final : public model::UserFunction {
+public:
+    explicit Written(Body body) : body_(std::move(body)) {}
+    double value(double t, const model::State& y) override { return body_(t, y, {}); }
+    double value_with(double t, const model::State& y, std::span<const double> z) override { return body_(t, y, z); }
+
+private:
+    Body body_;
+};
+
+inline std::shared_ptr<model::UserFunction> written(Body body) {
+    return std::make_shared<Written>(std::move(body));
+}
+inline model::Excitation feedback(Body body) {
+    return model::Excitation::make(model::Scripted{.function = written(std::move(body)), .feedback = true}).value();
+}
+
+inline motion::Trajectory run_more(const model::Oscillator& system, const model::Excitation& M,
+                                   const model::State& initial, double t_end, double dt, motion::MethodView method,
+                                   const model::Extras& extras) {
+    auto run = motion::simulate(system, M, initial, {0, t_end}, motion::Grid::every(dt), method, {}, {}, extras);
+    if (!run) FAIL(run.error().sentence);
+    return std::move(run).value();
+}
+
+}  // namespace dinal::truth
