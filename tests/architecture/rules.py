@@ -180,6 +180,16 @@ def links_lead_somewhere():
                 complain(path, number, f"the link {match[1]} names no heading")
 
 
+def documents_name_what_is_there():
+    """Each source that the page of the house names, by its path or the end of it, exists."""
+    path = "docs/architecture.md"
+    known = ["/" + file for file in files(CODE)]
+    for number, line in lines(path):
+        for name in re.findall(r"`([\w/.-]+\.(?:[ch]pp|lua|py|sh))`", line):
+            if "NAME" not in name and not any(file.endswith("/" + name) for file in known):
+                complain(path, number, f"there is no {name}")
+
+
 def anchors(goal):
     with open(goal, encoding="utf-8") as file:
         text = re.sub(r"```.*?```", "", file.read(), flags=re.S)
@@ -188,8 +198,9 @@ def anchors(goal):
     return set(explicit) | {re.sub(r"[^\w\- ]", "", h.lower()).strip().replace(" ", "-") for h in headings}
 
 
-for rule in (includes_point_down, rooms_are_namespaces, rooms_are_small, types_have_names_of_their_own, forbidden_things_are_absent, headers_say_what_they_hold, files_are_short,
-             names_are_unique, nothing_is_left_for_later, links_lead_somewhere):
+for rule in (includes_point_down, rooms_are_namespaces, rooms_are_small, types_have_names_of_their_own,
+             forbidden_things_are_absent, headers_say_what_they_hold, files_are_short, names_are_unique,
+             nothing_is_left_for_later, links_lead_somewhere, documents_name_what_is_there):
     rule()
 if not any(True for _ in files((".hpp",))):
     complaints.append("no headers found: is the folder right?")
