@@ -44,15 +44,11 @@ inline constexpr text::Option plain_simulate_options[] = {
      .meaning = "the excitation: a number, a Lua function of t or of t, theta, velocity, or an excitation",
      .object = "excitation"},
     {.name = "theta0", .unit = "rad", .meaning = "where the mass starts", .filled = text::fills<&RunOptions::theta0>},
-    {.name = "velocity0",
-     .unit = "rad per time unit",
-     .meaning = "how fast it starts",
-     .filled = text::fills<&RunOptions::velocity0>},
+    {"velocity0", "rad per time unit", text::its_own, text::any_finite, "how fast it starts",
+     text::fills<&RunOptions::velocity0>},
     {.name = "t_start", .unit = "time units", .meaning = "when it starts", .filled = text::fills<&RunOptions::t_start>},
-    {.name = "t_end",
-     .unit = "time units",
-     .meaning = "when the run ends; without it, at the last of the times",
-     .filled = text::fills<&RunOptions::t_end>},
+    {"t_end", "time units", text::its_own, text::any_finite, "when the run ends; without it, at the last of the times",
+     text::fills<&RunOptions::t_end>},
     {"dt", "time units", text::needed, text::positive, "from row to row; t_end has a row, too",
      text::fills<&RunOptions::dt>},
     {.name = "times",
@@ -79,14 +75,11 @@ struct MoreTime {
     std::optional<std::vector<double>> times = {};
 };
 inline constexpr text::Option continue_options[] = {
-    {.name = "t_end",
-     .unit = "time units",
-     .meaning = "how far the run goes on; without it, to the last of the times, or where it should have ended",
-     .filled = text::fills<&MoreTime::t_end>},
-    {.name = "times",
-     .unit = "time units",
-     .meaning = "more rows of a run that had times",
-     .filled = text::fills<&MoreTime::times>},
+    {"t_end", "time units", text::its_own, text::any_finite,
+     "how far the run goes on; without it, to the last of the times, or where it should have ended",
+     text::fills<&MoreTime::t_end>},
+    {"times", "time units", text::its_own, text::any_finite, "more rows of a run that had times",
+     text::fills<&MoreTime::times>},
 };
 inline constexpr text::Call continue_call{"run:continue", "run:continue{ t_end = 40 }", continue_options, true};
 

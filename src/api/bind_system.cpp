@@ -25,18 +25,10 @@ struct Ratios {
     std::optional<double> breakaway = {};
 };
 constexpr text::Option ratio_options[] = {
-    {.name = "zeta",
-     .range = text::not_negative,
-     .meaning = "viscous damping ratio",
-     .filled = text::fills<&Ratios::zeta>},
-    {.name = "friction_ratio",
-     .range = text::not_negative,
-     .meaning = "Rd/Mc",
-     .filled = text::fills<&Ratios::friction>},
-    {.name = "breakaway_ratio",
-     .otherwise = "friction_ratio",
-     .meaning = "Re/Mc, at least friction_ratio",
-     .filled = text::fills<&Ratios::breakaway>},
+    {"zeta", "", text::its_own, text::not_negative, "viscous damping ratio", text::fills<&Ratios::zeta>},
+    {"friction_ratio", "", text::its_own, text::not_negative, "Rd/Mc", text::fills<&Ratios::friction>},
+    {"breakaway_ratio", "", "friction_ratio", text::any_finite, "Re/Mc, at least friction_ratio",
+     text::fills<&Ratios::breakaway>},
 };
 constexpr auto nondimensional_options = text::joined(ratio_options, law_option);
 constexpr text::Call nondimensional_call{"nondimensional", "nondimensional{ zeta = 0.1, friction_ratio = 0.2 }",

@@ -81,36 +81,17 @@ constexpr text::Range seed_range{"be a whole number from 0 to 2^53",
 constexpr const char* seed_meaning = "chooses the numbers: the same ones each time, on every machine";
 
 constexpr text::Option uniform_options[] = {
-    {.name = "n",
-     .otherwise = text::needed,
-     .range = count_range,
-     .meaning = "how many",
-     .filled = text::fills<&UniformNumbers::n>},
-    {.name = "seed",
-     .otherwise = text::needed,
-     .range = seed_range,
-     .meaning = seed_meaning,
-     .filled = text::fills<&UniformNumbers::seed>},
+    {"n", "", text::needed, count_range, "how many", text::fills<&UniformNumbers::n>},
+    {"seed", "", text::needed, seed_range, seed_meaning, text::fills<&UniformNumbers::seed>},
     {.name = "from", .meaning = "none is less", .filled = text::fills<&UniformNumbers::from>},
     {.name = "to", .meaning = "all are less", .filled = text::fills<&UniformNumbers::to>},
 };
 constexpr text::Call uniform_call{"vector.random", "vector.random{ n = 100, seed = 1 }", uniform_options};
 constexpr text::Option normal_options[] = {
-    {.name = "n",
-     .otherwise = text::needed,
-     .range = count_range,
-     .meaning = "how many",
-     .filled = text::fills<&NormalNumbers::n>},
-    {.name = "seed",
-     .otherwise = text::needed,
-     .range = seed_range,
-     .meaning = seed_meaning,
-     .filled = text::fills<&NormalNumbers::seed>},
+    {"n", "", text::needed, count_range, "how many", text::fills<&NormalNumbers::n>},
+    {"seed", "", text::needed, seed_range, seed_meaning, text::fills<&NormalNumbers::seed>},
     {.name = "mean", .meaning = "their mean", .filled = text::fills<&NormalNumbers::mean>},
-    {.name = "std",
-     .range = text::not_negative,
-     .meaning = "their standard deviation",
-     .filled = text::fills<&NormalNumbers::std>},
+    {"std", "", text::its_own, text::not_negative, "their standard deviation", text::fills<&NormalNumbers::std>},
 };
 constexpr text::Call normal_call{"vector.normal", "vector.normal{ n = 100, seed = 1, std = 0.02 }", normal_options};
 

@@ -29,22 +29,11 @@ struct Tabulated {
 };
 
 inline constexpr text::Option tabulated_options[] = {
-    {.name = "speed",
-     .unit = "rad per time unit",
-     .otherwise = text::needed,
-     .meaning = "increasing from 0",
-     .filled = text::fills<&Tabulated::speed>},
-    {.name = "torque",
-     .unit = "torque",
-     .otherwise = text::needed,
-     .meaning = "the friction at each of them; the last one holds for greater speeds",
-     .filled = text::fills<&Tabulated::torque>},
-    {.name = "Re",
-     .unit = "torque",
-     .otherwise = "the first torque",
-     .range = text::not_negative,
-     .meaning = "what sticking can hold, at least the first torque",
-     .filled = text::fills<&Tabulated::breakaway>},
+    {"speed", "rad per time unit", text::needed, text::any_finite, "increasing from 0", text::fills<&Tabulated::speed>},
+    {"torque", "torque", text::needed, text::any_finite,
+     "the friction at each of them; the last one holds for greater speeds", text::fills<&Tabulated::torque>},
+    {"Re", "torque", "the first torque", text::not_negative, "what sticking can hold, at least the first torque",
+     text::fills<&Tabulated::breakaway>},
 };
 inline constexpr text::Call tabulated_call{
     "friction.table", "friction.table{ speed = { 0, 0.1, 1 }, torque = { 0.5, 0.3, 0.35 } }", tabulated_options};

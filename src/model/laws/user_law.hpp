@@ -35,12 +35,8 @@ struct UserLaw {
 };
 
 inline constexpr text::Option user_law_options[] = {
-    {.name = "Re",
-     .unit = "torque",
-     .otherwise = "the friction at speed 0",
-     .range = text::not_negative,
-     .meaning = "what sticking can hold, at least the friction at speed 0",
-     .filled = text::fills<&UserLaw::breakaway>},
+    {"Re", "torque", "the friction at speed 0", text::not_negative,
+     "what sticking can hold, at least the friction at speed 0", text::fills<&UserLaw::breakaway>},
 };
 inline constexpr text::Call user_law_call{
     "friction.law", "friction.law(function(speed) return 0.3 + 0.1*speed end, { Re = 0.5 })", user_law_options, true};

@@ -31,10 +31,7 @@ struct Ramp {
 };
 
 inline constexpr text::Option ramp_options[] = {
-    {.name = "slope",
-     .unit = "torque per time unit",
-     .meaning = "how fast it rises",
-     .filled = text::fills<&Ramp::slope>},
+    {"slope", "torque per time unit", text::its_own, text::any_finite, "how fast it rises", text::fills<&Ramp::slope>},
     rows::at<Ramp>(),
     {"width", rows::time, "math.huge", text::positive_or_infinite, "how long it rises", text::fills<&Ramp::width>},
 };

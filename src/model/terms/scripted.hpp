@@ -84,10 +84,8 @@ inline void repeat_after(Scripted& s, double period) {
     s.period = period;
 }
 inline constexpr text::Option scripted_options[] = {
-    {.name = "breaks",
-     .unit = "time units",
-     .meaning = "where it jumps or kinks",
-     .filled = text::fills<&Scripted::breaks>},
+    {"breaks", "time units", text::its_own, text::any_finite, "where it jumps or kinks",
+     text::fills<&Scripted::breaks>},
     {"period", "time units", text::its_own, text::positive, "after which the breaks repeat", text::sets<repeat_after>},
 };
 inline constexpr TermText Scripted::about{

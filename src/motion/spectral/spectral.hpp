@@ -21,10 +21,8 @@ struct Spectral {
 };
 
 inline constexpr text::Option spectral_options[] = {
-    {.name = "tolerance",
-     .range = text::between_0_and_1,
-     .meaning = "relative, of the motion on each panel",
-     .filled = text::fills<&Spectral::tolerance>},
+    {"tolerance", "", text::its_own, text::between_0_and_1, "relative, of the motion on each panel",
+     text::fills<&Spectral::tolerance>},
     {"max_panel", "time units", "0.6 T0", text::positive_or_infinite, "the longest panel",
      text::fills<&Spectral::max_panel>},
 };
