@@ -11,6 +11,8 @@
 #include "api/data.hpp"
 #include "api/plot_docs.hpp"
 #include "api/run.hpp"
+#include "api/run_questions.hpp"
+#include "api/steady_answer.hpp"
 #include "files/table.hpp"
 #include "lua/memory_limit.hpp"
 #include "lua/user_function.hpp"
@@ -188,6 +190,9 @@ constexpr lua::Member run_members[] = {
                 "print(#trajectory.load(file))  --> 5\n"
                 "os.remove(file)",
       {&save_call}}},
+    {lua::a_method<spectrum_of_run>, spectrum_doc},
+    {lua::a_method<poincare_of_run>, poincare_doc},
+    {lua::a_method<steady_of_run>, steady_run_doc},
     {lua::a_method<plot_run>, plot_run_doc},
     {lua::a_method<phase_plot_run>, phase_plot_run_doc},
     {lua::a_field<column_field<motion::Column::t>>,

@@ -7,6 +7,8 @@
 #include "api/bind_simulate.hpp"
 #include "api/cards.hpp"
 #include "api/classes.hpp"
+#include "api/response.hpp"
+#include "api/steady_answer.hpp"
 #include "api/system_options.hpp"
 #include "lua/options.hpp"
 #include "source/describe.hpp"
@@ -149,6 +151,8 @@ constexpr lua::Member system_module_members[] = {
 };
 
 constexpr lua::Member system_members[] = {
+    {lua::a_method<response_of_system>, response_doc},
+    {lua::a_method<steady_of_system>, steady_doc},
     {lua::a_method<simulate_system>, simulate_doc},
     {lua::a_method<system_with>,
      {"sys:with{ OPTIONS } -> system",

@@ -17,7 +17,7 @@ constexpr void (*register_functions[])(lua_State*) = {
     api::register_system, api::register_friction, api::register_excitation, api::register_integrator,
     api::register_run,    api::register_energy,   api::register_trajectory, api::register_theory,
     api::register_vector, api::register_data,     api::register_progress,   api::register_plot,
-    register_help,
+    api::register_steady, register_help,
 };
 
 // Plain fields of the table: documented here, set by open_library() and sys:simulate.
@@ -51,6 +51,7 @@ const Section all_sections[] = {
     {"Integrators", "integrator", &api::integrator_module},
     {"An integrator", "integrator", &api::integrator_class},
     {"A run", "run", &api::run_class},
+    {"A steady motion", "s", &api::steady_class},
     {"The energy of a run", "energy", &api::energy_class},
     {"Trajectories from files", "trajectory", &api::trajectory_module},
     {"Theory", "theory", &api::theory_module},

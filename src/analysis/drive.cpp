@@ -1,0 +1,122 @@
+#include "analysis/drive.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "model/forcing.hpp"
+
+namespace dinal::analysis {
+namespace {
+
+constexpr double golden = 0.6180339887498949;  // multiples of it, less their whole parts, fill a period evenly
+
+/// The i-th of times that are spread over the period.
+double probe(const Drive& drive, int i) {
+    const double place = (i + 0.5) * golden;
+    return drive.start + drive.period * (place - std::floor(place));
+}
+
+/// The extreme of sign * M near the middle one of three times, which has the greatest value of them.
+double refined(const model::Excitation& excitation, double sign, double a, double b) {
+    for (int i = 0; i < 60 && b - a > 1e-9 * (std::fabs(a) + b - a); ++i) {
+        const double x = b - golden * (b - a), y = a + golden * (b - a);
+        sign* excitation.value(x) > sign* excitation.value(y) ? b = y : a = x;
+    }
+    return sign * excitation.value((a + b) / 2);
+}
+
+}  // namespace
+
+std::optional<Drive> drive_of(const model::Excitation& excitation, double otherwise) {
+    double from = 0;
+    if (excitation.constant_from() <= from) return Drive{from, otherwise};
+    if (const double period = model::period_from(excitation, from); period > 0) return Drive{from, period};
+    for (const model::Component& c : excitation.components()) {
+        for (const double t : {c.from, model::constant_from(c)}) {
+            if (std::isfinite(t)) from = std::max(from, t);
+        }
+    }
+    if (excitation.constant_from() <= from) return Drive{from, otherwise};
+    if (const double period = model::period_from(excitation, from); period > 0) return Drive{from, period};
+    return {};
+}
+
+std::optional<text::Error> not_periodic(const model::Excitation& excitation, const Drive& drive) {
+    constexpr int probes = 50;
+    constexpr double allowed = 1e-9;
+    double worst = 0, at = 0, most = 0;
+    for (int i = 0; i < probes; ++i) {
+        const double t = probe(drive, i);
+        const model::State y{0.1 * (i % 5), 0.1 * (i % 3)};
+        const double now = excitation.value(t, y), later = excitation.value(t + drive.period, y);
+        if (!std::isfinite(now) || !std::isfinite(later)) return {};  // the runs will tell
+        most = std::max({most, std::fabs(now), std::fabs(later)});
+        if (std::fabs(now - later) > worst) {
+            worst = std::fabs(now - later);
+            at = t;
+        }
+    }
+    if (!(worst > allowed * most)) return {};
+    const double later = at + drive.period;
+    return text::Error{
+        .sentence = fmt::format("M does not repeat itself after period = {:.10g}: M({:.6g}) = {:.6g}, but "
+                                "M({:.6g}) = {:.6g}",
+                                drive.period, at, excitation.value(at), later, excitation.value(later)),
+        .option = "period"};
+}
+
+bool is_antisymmetric(const model::Excitation& excitation, const Drive& drive) {
+    constexpr int probes = 24;
+    constexpr double allowed = 1e-12;
+    for (int i = 0; i < probes; ++i) {
+        const double t = probe(drive, i);
+        const model::State y{0.13 * (i % 5 - 2), 0.17 * (i % 7 - 3)}, opposite{-y.theta, -y.velocity};
+        const double now = excitation.value(t, y), half = excitation.value(t + drive.period / 2, opposite);
+        if (!(std::fabs(now + half) <= allowed * std::max(1e-300, std::fabs(now) + std::fabs(half)) +
+                                           1e-13 * std::min(excitation.most(), 1e300))) {
+            return false;
+        }
+    }
+    return true;
+}
+
+std::complex<double> harmonic_of(const model::Excitation& excitation, const Drive& drive, double n) {
+    const double omega = 2 * std::numbers::pi * n / drive.period;
+    const auto sum = integral(excitation, drive.start, drive.start + drive.period, drive.period / 64, [&](double t) {
+        return excitation.value(t) * std::polar(1.0, -omega * (t - drive.start));
+    });
+    return sum * (2 / drive.period);
+}
+
+DriveRange extremes(const model::Excitation& excitation, const Drive& drive) {
+    constexpr int pieces = 512;
+    const double end = drive.start + drive.period, h = drive.period / pieces;
+    DriveRange range{excitation.value(drive.start), excitation.value(drive.start)};
+    const auto see = [&range](double value) {
+        range.low = std::min(range.low, value);
+        range.high = std::max(range.high, value);
+    };
+    for (double t = excitation.next_break(drive.start); t < end; t = excitation.next_break(t)) {
+        see(excitation.value(t));
+        see(excitation.value_before(t));
+    }
+    double before = excitation.value(drive.start - h), now = excitation.value(drive.start);
+    for (int i = 0; i < pieces; ++i) {
+        const double t = drive.start + i * h, next = excitation.value(t + h);
+        see(now);
+        if (now >= before && now >= next && now > range.high - 1e-3 * (range.high - range.low)) {
+            see(refined(excitation, 1, t - h, t + h));
+        }
+        if (now <= before && now <= next && now < range.low + 1e-3 * (range.high - range.low)) {
+            see(-refined(excitation, -1, t - h, t + h));
+        }
+        before = now;
+        now = next;
+    }
+    return range;
+}
+
+}  // namespace dinal::analysis

@@ -1,0 +1,60 @@
+#include "analysis/fixed_point.hpp"
+
+#include <Eigen/SVD>
+#include <algorithm>
+
+namespace dinal::analysis {
+namespace {
+
+constexpr double closed = 1e-12;        // of the size of the motion: what a fixed point may miss
+constexpr double nearly_closed = 1e-9;  // where rounding lets no more be had
+
+}  // namespace
+
+FixedPointSearch::Try FixedPointSearch::at(const Place& x, double size) const {
+    Try result;
+    result.x = x;
+    result.step = map_.with_derivative(x, std::max(size, x.norm()));
+    maps_ += result.step.differentiable ? 1 : 5;
+    result.off = sign_ * result.step.to - x;
+    result.size = std::max({x.norm(), result.step.to.norm(), result.step.high - result.step.low, 1e-300});
+    return result;
+}
+
+std::optional<FixedPointSearch::Try> FixedPointSearch::search(const Place& from, int most) const {
+    Try now = at(from, 0);
+    for (int i = 0; i < most && now.step.finished; ++i) {
+        if (now.at(closed)) return polished(now);
+        const std::optional<Try> next = newton(now);
+        now = next ? *next : at(sign_ * now.step.to, now.size);
+    }
+    return now.at(nearly_closed) ? std::optional(polished(now)) : std::nullopt;
+}
+
+Place FixedPointSearch::step(const Try& now) const {
+    const Eigen::Matrix2d matrix = Eigen::Matrix2d::Identity() - sign_ * now.step.derivative;
+    Eigen::JacobiSVD<Eigen::Matrix2d> parts(matrix, Eigen::ComputeFullU | Eigen::ComputeFullV);
+    parts.setThreshold(1e-9);
+    return parts.solve(now.off);
+}
+
+std::optional<FixedPointSearch::Try> FixedPointSearch::newton(const Try& now) const {
+    if (!now.step.differentiable) return {};
+    const Place whole = step(now);
+    for (const double part : {1.0, 0.25, 0.0625}) {
+        Try next = at(now.x + part * whole, now.size);
+        if (next.step.finished && next.residual() <= (1 - part / 2) * now.residual()) return next;
+    }
+    return {};
+}
+
+FixedPointSearch::Try FixedPointSearch::polished(Try now) const {
+    for (int i = 0; i < 2 && now.step.differentiable && now.residual() > 0; ++i) {
+        Try next = at(now.x + step(now), now.size);
+        if (!next.step.finished || !(next.residual() < now.residual() / 2)) break;
+        now = next;
+    }
+    return now;
+}
+
+}  // namespace dinal::analysis

@@ -1,0 +1,152 @@
+#include "analysis/period_map.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "analysis/stretches.hpp"
+#include "model/lowered.hpp"
+#include "theory/theory_modes.hpp"
+
+namespace dinal::analysis {
+
+PeriodMap::PeriodMap(const model::Oscillator& system, const model::Excitation& excitation, double start, double length,
+                     const motion::Monitor& monitor)
+    : system_(system),
+      excitation_(excitation),
+      start_(start),
+      length_(length),
+      omega_(system.stiffness() > 0 ? system.natural_frequency() : 2 * std::numbers::pi / length),
+      monitor_(monitor) {}
+
+motion::Trajectory PeriodMap::run(const Place& from, double length, bool dense) const {
+    motion::Limits limits;
+    limits.dense = dense;
+    auto result = motion::simulate(system_, excitation_, state(from), {start_, start_ + length}, motion::Grid::none(),
+                                   motion::Integrator{}, monitor_, limits);
+    if (result) return std::move(result).value();
+    motion::Trajectory none;
+    none.outcome = model::Outcome::state_not_finite;
+    return none;
+}
+
+MapStep PeriodMap::operator()(const Place& from) const {
+    MapStep step;
+    const bool finite = from.allFinite() && from.norm() < 1e100;
+    const motion::Trajectory run = finite ? this->run(from, length_, false) : motion::Trajectory{};
+    step.outcome = finite ? run.outcome : model::Outcome::state_not_finite;
+    step.finished = step.outcome == model::Outcome::reached_end || step.outcome == model::Outcome::at_rest;
+    if (!step.finished) {
+        step.to = from;
+        step.differentiable = false;
+        return step;
+    }
+    const model::State end = run.motion_at_stop == model::Motion::stuck && !run.events.empty()
+                                 ? model::State{run.events.back().theta, 0}
+                                 : run.state_at_stop;
+    step.to = {end.theta, end.velocity / omega_};
+    step.moved = !(run.began_stuck && run.events.empty());
+    step.low = std::min(from[0], step.to[0]);
+    step.high = std::max(from[0], step.to[0]);
+    step.t_high = from[0] >= step.to[0] ? start_ : start_ + length_;
+    for (const model::Event& event : run.events) {
+        step.low = std::min(step.low, event.theta);
+        if (event.theta > step.high) {
+            step.high = event.theta;
+            step.t_high = event.t;
+        }
+    }
+    differentiate(run, step);
+    return step;
+}
+
+/// exp(A L) of theta' = omega y, y' = -(k theta + C omega y)/(I omega).
+Eigen::Matrix2d PeriodMap::free_motion(double length) const {
+    Eigen::Matrix2d matrix;
+    if (system_.stiffness() > 0) {
+        const theory::Modes modes(system_.damping_ratio());
+        const double x = omega_ * length, pushed = modes.pushed(x);
+        matrix << modes.released(x), pushed, -pushed, modes.pushed_velocity(x);
+        return matrix;
+    }
+    const double rate = system_.damping() / system_.inertia();
+    const double way = rate > 0 ? -std::expm1(-rate * length) / rate : length;
+    matrix << 1, omega_ * way, 0, std::exp(-rate * length);
+    return matrix;
+}
+
+/// M' from the left, which is where a breakaway comes from.
+double PeriodMap::slope_before(double t) const {
+    const double h = 1e-5 * std::min(length_, 2 * std::numbers::pi / omega_);
+    const double now = excitation_.value_before(t), one = excitation_.value(t - h), two = excitation_.value(t - 2 * h);
+    return (3 * now - 4 * one + two) / (2 * h);
+}
+
+void PeriodMap::differentiate(const motion::Trajectory& run, MapStep& step) const {
+    const model::Lowered system(system_);
+    Eigen::Matrix2d total = Eigen::Matrix2d::Identity();
+    step.differentiable = !system.has_remainder() && !excitation_.has_feedback();
+    for (const Stretch& s : stretches(run)) {
+        if (s.stuck) {
+            step.stops += s.begun_by ? 1U : 0U;
+            step.stuck += s.lasts();
+        }
+        if (!step.differentiable) continue;
+        if (s.stuck) {
+            total.row(1).setZero();
+        } else {
+            total = free_motion(s.lasts()) * total;
+        }
+        if (!s.ended_by) continue;
+        const model::Event& event = *s.ended_by;
+        const double pull = std::fma(-system.stiffness(), event.theta, event.M);
+        switch (event.kind) {
+            case model::EventKind::stick:
+            case model::EventKind::rest:
+                break;
+            case model::EventKind::turn: {
+                if (!system.dry()) break;
+                const model::Motion way =
+                    s.end.theta > s.begin.theta ? model::Motion::forward : model::Motion::backward;
+                const model::Motion back =
+                    way == model::Motion::forward ? model::Motion::backward : model::Motion::forward;
+                const double before =
+                    std::fma(-system.stiffness(), event.theta, excitation_.value_before(event.t)) - system.braking(way);
+                const double after = pull - system.braking(back);
+                step.differentiable = before != 0;
+                total.row(1) *= after / before;
+                break;
+            }
+            case model::EventKind::slip: {
+                const model::Motion way = pull < 0 ? model::Motion::backward : model::Motion::forward;
+                const double after = pull - system.braking(way);
+                const double jump = event.M - excitation_.value_before(event.t);
+                const double least = 1e-9 * system.greatest_holding();
+                const double slope = std::fabs(after) <= least || std::fabs(jump) > least ? 0 : slope_before(event.t);
+                const double turned =
+                    slope == 0 ? 0 : -system.stiffness() * after / (system.inertia() * omega_ * slope);
+                total.row(1) = turned * total.row(0);
+                break;
+            }
+            default:
+                step.differentiable = false;  // what has no matrix here
+        }
+    }
+    step.derivative = total;
+    step.differentiable = step.differentiable && total.allFinite();
+}
+
+MapStep PeriodMap::with_derivative(const Place& from, double scale) const {
+    MapStep step = (*this)(from);
+    if (step.differentiable || !step.finished) return step;
+    const double h = 1e-6 * std::max(scale, 1e-300);
+    step.differentiable = true;
+    for (int i = 0; i < 2; ++i) {
+        const MapStep ahead = (*this)(from + h * Place::Unit(i)), behind = (*this)(from - h * Place::Unit(i));
+        step.differentiable = step.differentiable && ahead.finished && behind.finished;
+        step.derivative.col(i) = (ahead.to - behind.to) / (2 * h);
+    }
+    return step;
+}
+
+}  // namespace dinal::analysis

@@ -1,0 +1,62 @@
+// The period map: where a state of the mass gets in one period of M, with its exact derivative.
+//
+// A free or driven slide is linear, so its derivative is that of the free motion, whatever M is; the derivative of an
+// event is a matrix of its own (Aizerman and Gantmakher's jump matrix). Where friction depends on speed, or M on the
+// motion, the derivative is taken by differences.
+#pragma once
+
+#include <Eigen/Core>
+#include <complex>
+
+#include "model/excitation.hpp"
+#include "motion/integrators.hpp"
+#include "motion/simulate.hpp"
+
+namespace dinal::analysis {
+
+/// theta and velocity/omega, which are of one kind: a distance of these is the root of an energy.
+using Place = Eigen::Vector2d;
+
+struct MapStep {
+    Place to;
+    Eigen::Matrix2d derivative = Eigen::Matrix2d::Identity();
+    bool differentiable = true;  ///< else `derivative` says nothing, and differences must
+    bool finished = true;        ///< the run reached its end, with finite numbers
+    bool moved = true;           ///< at some time
+    double low = 0, high = 0;    ///< the extremes of theta
+    double t_high = 0;           ///< of the highest one
+    std::size_t stops = 0;
+    double stuck = 0;  ///< time
+    model::Outcome outcome = model::Outcome::reached_end;
+};
+
+class PeriodMap {
+public:
+    /// Of `length` time units from `start`. All of it must outlive the map.
+    PeriodMap(const model::Oscillator& system, const model::Excitation& excitation, double start, double length,
+              const motion::Monitor& monitor);
+
+    [[nodiscard]] MapStep operator()(const Place& from) const;
+    /// The step with its derivative by differences, when the step itself has none. `scale` of the motion.
+    [[nodiscard]] MapStep with_derivative(const Place& from, double scale) const;
+
+    [[nodiscard]] double length() const { return length_; }
+    [[nodiscard]] double omega() const { return omega_; }  ///< of Place; w0 where there is a spring
+    [[nodiscard]] model::State state(const Place& place) const { return {place[0], place[1] * omega_}; }
+    [[nodiscard]] motion::Trajectory run(const Place& from, double length, bool dense) const;
+    [[nodiscard]] const model::Oscillator& system() const { return system_; }
+    [[nodiscard]] const model::Excitation& excitation() const { return excitation_; }
+    [[nodiscard]] double start() const { return start_; }
+
+private:
+    void differentiate(const motion::Trajectory& run, MapStep& step) const;
+    [[nodiscard]] Eigen::Matrix2d free_motion(double length) const;
+    [[nodiscard]] double slope_before(double t) const;
+
+    const model::Oscillator& system_;
+    const model::Excitation& excitation_;
+    double start_, length_, omega_;
+    motion::Monitor monitor_;
+};
+
+}  // namespace dinal::analysis

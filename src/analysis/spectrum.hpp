@@ -1,0 +1,23 @@
+// The one-sided amplitude spectrum of evenly spaced values.
+#pragma once
+
+#include <span>
+#include <vector>
+
+namespace dinal::analysis {
+
+enum class SpectrumWindow { hann, rectangle, flat_top };
+
+struct Spectrum {
+    std::vector<double> frequency, amplitude;  ///< cycles per time unit; of a sine in the unit of the values
+    std::size_t used = 0;                      ///< the last so many values: a number without large prime factors
+};
+
+/// Of values dt apart, at least 8. The mean stands at frequency 0; from the rest it is taken away first. A sine of
+/// amplitude A that goes into the time a whole number of times gives A at its frequency, whatever the window.
+Spectrum spectrum_of(std::span<const double> values, double dt, SpectrumWindow window);
+
+/// How many of the times, from the first one, are evenly spaced.
+std::size_t evenly_spaced(std::span<const double> times);
+
+}  // namespace dinal::analysis

@@ -1,0 +1,296 @@
+#include "analysis/steady.hpp"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include "analysis/fixed_point.hpp"
+#include "model/lowered.hpp"
+
+namespace dinal::analysis {
+namespace {
+
+constexpr double neutral_within = 1e-6;  // by how much a multiplier of 1 may miss it
+
+Eigen::Vector2d place_of(const model::State& state, double omega) {
+    return {state.theta, state.velocity / omega};
+}
+
+/// Friction is the same both ways.
+bool acts_evenly(const model::Friction& law, const model::Lowered& system) {
+    using model::Motion;
+    for (const double speed : {1e-3, 0.1, 1.0, 10.0}) {
+        if (law.sliding(Motion::forward, speed) != law.sliding(Motion::backward, speed)) return false;
+    }
+    return system.braking(Motion::forward) == -system.braking(Motion::backward) &&
+           system.holding(Motion::forward) == system.holding(Motion::backward);
+}
+
+/// Sliding and holding torque are the same each way, and M does not depend on the motion: the map brings no two states
+/// farther apart.
+bool contracts(const model::Lowered& system, const model::Excitation& excitation) {
+    using model::Motion;
+    return !system.has_remainder() && !excitation.has_feedback() &&
+           system.holding(Motion::forward) == system.braking(Motion::forward) &&
+           system.holding(Motion::backward) == -system.braking(Motion::backward);
+}
+
+class SteadySearch {
+public:
+    SteadySearch(const SteadyQuestion& question, const motion::Monitor& monitor)
+        : question_(question),
+          system_(question.system),
+          monitor_(monitor),
+          map_(question.system, question.excitation, question.drive.start, question.drive.period, monitor),
+          half_(question.system, question.excitation, question.drive.start, question.drive.period / 2, monitor) {
+        symmetric_ =
+            acts_evenly(question.system.friction(), system_) && is_antisymmetric(question.excitation, question.drive);
+    }
+
+    SteadyMotion found() {
+        const Place start = place_of(question_.initial, map_.omega());
+        answer_.period = question_.drive.period;
+        if (const double growth = resonant_growth(); growth > 0) return growing(start, growth);
+        if (question_.periods > 0) {
+            if (question_.periods > 1) {
+                answer_.status = search_multiple(start, question_.periods, true) ? answer_.status : SteadyStatus::none;
+                return answer_;
+            }
+            if (!search_once(start, symmetric_) && !search_once(start, false)) brute(start, 1);
+            return answer_;
+        }
+        if (contracts(system_, question_.excitation)) {
+            if (search_once(start, symmetric_) || search_once(start, false)) return answer_;
+            brute(start, 1);
+            return answer_;
+        }
+        brute(start, longest_);
+        return answer_;
+    }
+
+    SteadyMotion found_near() {
+        const Place start = place_of(question_.initial, map_.omega());
+        answer_.period = question_.drive.period;
+        if (resonant_growth() > 0) return found();
+        if (search_once(start, symmetric_) && answer_.stable) return answer_;
+        return found();
+    }
+
+private:
+    using Try = FixedPointSearch::Try;
+
+    /// Without viscous damping, a harmonic of M at the natural frequency feeds pi |M_n| / k in each natural period, and
+    /// friction takes 2 (Rd forward + Rd backward) / k.
+    [[nodiscard]] double resonant_growth() const {
+        const model::Oscillator& system = question_.system;
+        if (system.damping() != 0 || !(system.stiffness() > 0)) return 0;
+        if (system_.has_remainder() || question_.excitation.has_feedback()) return 0;
+        const double ratio = question_.drive.period / system.natural_period(), n = std::round(ratio);
+        if (n < 1 || std::fabs(ratio - n) > 1e-12 * n) return 0;
+        const double fed = std::numbers::pi * std::abs(harmonic_of(question_.excitation, question_.drive, n));
+        const double taken = 2 * (system_.braking(model::Motion::forward) - system_.braking(model::Motion::backward));
+        const double growth = n * (fed - taken) / system.stiffness();
+        return growth > 1e-9 * n * fed / system.stiffness() ? growth : 0;
+    }
+
+    SteadyMotion growing(const Place& start, double growth) {
+        constexpr int periods = 30;  // in which friction may have caught it for good
+        Place x = start;
+        MapStep step = map_(x);
+        for (int i = 0; i < periods && step.finished && step.moved; ++i) {
+            step = map_(x = step.to);
+            ++answer_.maps;
+        }
+        if (step.finished && !step.moved) {
+            settle(x, map_, 1);
+            return answer_;
+        }
+        answer_.status = SteadyStatus::grows;
+        answer_.growth = growth;
+        answer_.outcome = step.outcome;
+        answer_.unique = true;
+        return answer_;
+    }
+
+    /// One period of M, or its half when M and friction are the same the other way round.
+    bool search_once(const Place& start, bool half) {
+        const PeriodMap& map = half ? half_ : map_;
+        const auto found = FixedPointSearch(map, half ? -1 : 1, answer_.maps).search(start, 60);
+        return found && settle(found->x, map_, 1);
+    }
+
+    bool search_multiple(const Place& start, int periods, bool any) {
+        const PeriodMap map(question_.system, question_.excitation, question_.drive.start,
+                            periods * question_.drive.period, monitor_);
+        const auto found = FixedPointSearch(map, 1, answer_.maps).search(start, 40);
+        if (!found || (!any && (found->x - start).norm() > 0.2 * found->size)) return false;
+        return settle(found->x, map, periods);
+    }
+
+    /// A motion that creeps up to the edge of where it can rest would take for ever: this is where it gets.
+    [[nodiscard]] std::optional<Place> rest_beside(const Place& x, const MapStep& step) const {
+        const double k = system_.stiffness(), size = system_.greatest_holding() / k;
+        if (!(k > 0) || !(step.high - step.low <= 1e-8 * size) || question_.excitation.has_feedback()) return {};
+        const auto [low, high] = rest_of(x[0]);
+        const double inside = 1e-15 * std::max(std::fabs(low), std::fabs(high));
+        return Place(std::clamp(x[0], std::min(low + inside, high), std::max(high - inside, low)), 0);
+    }
+
+    /// The facts about the motion through x, which is periodic.
+    bool settle(Place x, const PeriodMap& map, int periods) {
+        FixedPointSearch::Try last = FixedPointSearch(map, 1, answer_.maps).at(x, 0);
+        if (const auto rest = last.step.moved ? rest_beside(x, last.step) : std::nullopt) {
+            const FixedPointSearch::Try still = FixedPointSearch(map, 1, answer_.maps).at(*rest, 0);
+            if (!still.step.moved) {
+                x = *rest;
+                last = still;
+            }
+        }
+        const MapStep& step = last.step;
+        answer_.outcome = step.outcome;
+        if (!step.finished || !last.at(1e-6)) return false;
+        answer_.periods = periods;
+        answer_.period = map.length();
+        answer_.start = map.state(x);
+        answer_.low = step.low;
+        answer_.high = step.high;
+        answer_.t_high = step.t_high;
+        answer_.amplitude = (step.high - step.low) / 2;
+        answer_.stops = step.stops;
+        answer_.stuck = std::min(1.0, step.stuck / map.length());
+        answer_.residual = last.residual() / last.size;
+        answer_.differentiable = step.differentiable;
+        const Eigen::Vector2cd values = Eigen::EigenSolver<Eigen::Matrix2d>(step.derivative, false).eigenvalues();
+        answer_.multipliers = {values[0], values[1]};
+        const double slack = contracts(system_, question_.excitation) ? neutral_within : 1e-5;
+        const double largest = std::max(std::abs(values[0]), std::abs(values[1]));
+        answer_.stable = step.differentiable && largest <= 1 + slack;
+        answer_.symmetric = symmetric_ && periods == 1 && is_symmetric(x, last.size);
+        answer_.status = step.moved ? SteadyStatus::steady : SteadyStatus::adheres;
+        if (!step.moved) {
+            answer_.stuck = 1;
+            answer_.stable = true;
+            answer_.rest = rest_of(x[0]);
+            answer_.unique = answer_.rest.first == answer_.rest.second;
+        } else if (contracts(system_, question_.excitation) && step.differentiable) {
+            answer_.unique = std::min(std::abs(values[0] - 1.0), std::abs(values[1] - 1.0)) > neutral_within;
+        } else {
+            answer_.unique.reset();
+        }
+        return true;
+    }
+
+    [[nodiscard]] bool is_symmetric(const Place& x, double size) {
+        const MapStep step = half_(x);
+        ++answer_.maps;
+        return step.finished && (step.to + x).norm() <= 1e-8 * size;
+    }
+
+    /// Every place at which friction holds the mass through all of the period.
+    [[nodiscard]] std::pair<double, double> rest_of(double here) const {
+        const double k = system_.stiffness();
+        if (question_.excitation.has_feedback() || !(k > 0)) return {here, here};
+        const DriveRange M = extremes(question_.excitation, question_.drive);
+        const double low = (M.high - system_.holding(model::Motion::forward)) / k;
+        const double high = (M.low + system_.holding(model::Motion::backward)) / k;
+        return low <= high ? std::pair(low, high) : std::pair(here, here);
+    }
+
+    /// Runs the motion itself, and sees whether it comes back after some periods, or grows.
+    void brute(const Place& start, int longest) {
+        std::vector<Place> places{start};
+        std::vector<double> sizes{start.norm()};
+        for (const std::size_t until : {40U, 120U, 320U}) {
+            while (places.size() <= until) {
+                const MapStep step = map_(places.back());
+                ++answer_.maps;
+                answer_.outcome = step.outcome;
+                if (!step.finished) {
+                    grows(sizes, step.outcome == model::Outcome::state_not_finite);
+                    return;
+                }
+                places.push_back(step.to);
+                sizes.push_back(std::max({std::fabs(step.low), std::fabs(step.high), step.to.norm()}));
+            }
+            if (recurs(places, sizes.back(), longest, 1e-5) || recurs(places, sizes.back(), longest, 3e-2)) return;
+        }
+        if (grows(sizes, false)) return;
+        // Nothing that this motion approaches; a motion that others leave is better than none.
+        const int maps = answer_.maps;
+        if (search_once(places.back(), symmetric_) || search_once(places.back(), false)) return;
+        answer_.maps = std::max(answer_.maps, maps);
+        answer_.status = SteadyStatus::none;
+    }
+
+    bool recurs(const std::vector<Place>& places, double size, int longest, double near) {
+        const Place last = places.back();
+        for (int m = 1; m <= longest && static_cast<std::size_t>(m) < places.size(); ++m) {
+            if ((last - places[places.size() - 1 - static_cast<std::size_t>(m)]).norm() > near * size) continue;
+            if (m == 1 && symmetric_ && search_once(last, true) && answer_.stable && is_near(last, size)) return true;
+            if (search_multiple(last, m, false) && answer_.stable) return true;
+        }
+        return false;
+    }
+    [[nodiscard]] bool is_near(const Place& place, double size) const {
+        return (place_of(answer_.start, map_.omega()) - place).norm() <= 0.2 * size;
+    }
+
+    bool grows(const std::vector<double>& sizes, bool overflow) {
+        const std::size_t n = sizes.size();
+        constexpr std::size_t span = 20;
+        if (n < 3 * span) {
+            if (overflow) answer_.status = SteadyStatus::grows;
+            answer_.growth = overflow && n > 1 ? sizes[n - 1] - sizes[n - 2] : 0;
+            return overflow;
+        }
+        const double last = sizes[n - 1] - sizes[n - 1 - span], before = sizes[n - 1 - span] - sizes[n - 1 - 2 * span];
+        if (!overflow && !(before > 0 && last >= 0.9 * before && last > 1e-3 * sizes[n - 1])) return false;
+        answer_.status = SteadyStatus::grows;
+        answer_.growth = last / static_cast<double>(span);
+        return true;
+    }
+
+    static constexpr int longest_ = 32;
+    const SteadyQuestion& question_;
+    model::Lowered system_;
+    const motion::Monitor& monitor_;
+    PeriodMap map_, half_;
+    bool symmetric_ = false;
+    SteadyMotion answer_;
+};
+
+}  // namespace
+
+SteadyMotion steady_motion(const SteadyQuestion& question, const motion::Monitor& monitor) {
+    return SteadySearch(question, monitor).found();
+}
+
+SteadyMotion steady_motion_near(const SteadyQuestion& question, const motion::Monitor& monitor) {
+    return SteadySearch(question, monitor).found_near();
+}
+
+std::optional<SteadyMotion> another_motion(const SteadyQuestion& question, const SteadyMotion& known,
+                                           const motion::Monitor& monitor) {
+    if (known.unique.value_or(false)) return {};
+    const double omega = question.system.stiffness() > 0 ? question.system.natural_frequency()
+                                                         : 2 * std::numbers::pi / question.drive.period;
+    const double size = std::max({std::fabs(known.low), std::fabs(known.high), 1e-300});
+    for (int i = 0; i < other_starts; ++i) {
+        const double angle = (0.3 + i) * std::numbers::pi / 2, radius = i < other_starts / 2 ? 0.3 : 2.5;
+        SteadyQuestion other = question;
+        other.periods = 0;
+        other.initial = {size * radius * std::cos(angle), size * radius * std::sin(angle) * omega};
+        const SteadyMotion found = steady_motion(other, monitor);
+        if (found.status == SteadyStatus::none || found.outcome == model::Outcome::interrupted) continue;
+        const bool same = found.status == known.status && std::fabs(found.amplitude - known.amplitude) <= 1e-6 * size &&
+                          std::fabs(std::fabs(found.high) - std::fabs(known.high)) +
+                                  std::fabs(std::fabs(found.low) - std::fabs(known.low)) <=
+                              2e-6 * size;
+        if (!same) return found;
+    }
+    return {};
+}
+
+}  // namespace dinal::analysis

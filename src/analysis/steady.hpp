@@ -1,0 +1,73 @@
+// The periodic motion of a system under a periodic M: a fixed point of the period map, found by Newton's method, by
+// waiting where that does not lead on, and by recurrence where the motion is subharmonic. docs/theory.md, section 11.
+#pragma once
+
+#include <array>
+#include <complex>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "analysis/drive.hpp"
+#include "analysis/period_map.hpp"
+
+namespace dinal::analysis {
+
+enum class SteadyStatus { steady, adheres, grows, none };
+constexpr std::string_view name(SteadyStatus status) {
+    constexpr std::array<std::string_view, 4> names{"steady", "adheres", "grows", "none"};
+    return names[static_cast<std::size_t>(status)];
+}
+
+struct SteadyQuestion {
+    model::Oscillator system;
+    model::Excitation excitation;
+    Drive drive;
+    int periods = 0;  ///< of M in one of the motion; 0: as many as it takes
+    model::State initial = {};
+};
+
+struct SteadyMotion {
+    SteadyStatus status = SteadyStatus::none;
+    int periods = 1;     ///< of M in one of the motion
+    double period = 0;   ///< of the motion
+    model::State start;  ///< at the beginning of M's period
+    double amplitude = 0, low = 0, high = 0, t_high = 0;
+    std::size_t stops = 0;
+    double stuck = 0;  ///< part of a period
+    std::array<std::complex<double>, 2> multipliers{};
+    bool differentiable = false;  ///< else there are no multipliers
+    bool stable = false, symmetric = false;
+    std::optional<bool> unique;                            ///< none: other starts must tell
+    std::pair<double, double> rest;                        ///< where it may stand, when it adheres
+    double growth = 0;                                     ///< of the amplitude, in a period of M
+    int maps = 0;                                          ///< periods that were run
+    double residual = 0;                                   ///< what is left of the fixed point, in amplitudes
+    model::Outcome outcome = model::Outcome::reached_end;  ///< of the last run
+};
+
+/// Where the motion from `initial` leads.
+SteadyMotion steady_motion(const SteadyQuestion& question, const motion::Monitor& monitor = {});
+
+/// The same from a place near the answer, as when a parameter has changed a little.
+SteadyMotion steady_motion_near(const SteadyQuestion& question, const motion::Monitor& monitor = {});
+
+/// A motion from another start that is not this one; none was seen from `other_starts` of them.
+inline constexpr int other_starts = 8;
+std::optional<SteadyMotion> another_motion(const SteadyQuestion& question, const SteadyMotion& known,
+                                           const motion::Monitor& monitor = {});
+
+/// What the motion is besides its extremes: integrals over its period, which take a look at all of it.
+struct SteadyShape {
+    double mean = 0;                      ///< of theta, by time
+    std::optional<double> lag = {};       ///< of the fundamental behind that of M, degrees in (-180, 180]
+    std::optional<double> peak_lag = {};  ///< of the highest theta behind the maximum of the fundamental of M
+    double fundamental = 0;               ///< its amplitude
+};
+SteadyShape shape_of(const SteadyQuestion& question, const SteadyMotion& motion, const motion::Monitor& monitor = {});
+
+/// The answer in sentences. `other` was found from another start.
+std::string told(const SteadyQuestion& question, const SteadyMotion& motion, const SteadyShape& shape,
+                 const std::optional<SteadyMotion>& other);
+
+}  // namespace dinal::analysis

@@ -1,0 +1,167 @@
+// The integrals of a steady motion over its period, and the motion told in sentences.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "analysis/steady.hpp"
+#include "analysis/stretches.hpp"
+#include "model/lowered.hpp"
+#include "text/sentences.hpp"
+
+namespace dinal::analysis {
+namespace {
+
+constexpr double least_harmonic = 1e-9;  // of a harmonic in the whole, below which its phase is rounding
+
+/// An angle in degrees, in (-180, 180].
+double in_one_turn(double degrees) {
+    const double turn = degrees - 360 * std::ceil((degrees - 180) / 360);
+    return turn == 0 ? 0 : turn;
+}
+
+}  // namespace
+
+SteadyShape shape_of(const SteadyQuestion& question, const SteadyMotion& motion, const motion::Monitor& monitor) {
+    SteadyShape shape;
+    shape.mean = motion.start.theta;
+    if (motion.status != SteadyStatus::steady) return shape;
+    const Drive& drive = question.drive;
+    const PeriodMap map(question.system, question.excitation, drive.start, motion.period, monitor);
+    const motion::Trajectory run =
+        map.run({motion.start.theta, motion.start.velocity / map.omega()}, motion.period, true);
+    if (run.outcome != model::Outcome::reached_end && run.outcome != model::Outcome::at_rest) return shape;
+    const double omega = 2 * std::numbers::pi / drive.period, middle = (motion.low + motion.high) / 2;
+    const double own = question.system.stiffness() > 0 ? question.system.natural_period() : drive.period;
+    double theta_sum = 0;
+    std::complex<double> theta_wave, M_wave;
+    const auto wave = [&](double t) { return std::polar(1.0, -omega * (t - drive.start)); };
+    for (const Stretch& s : stretches(run)) {
+        if (!(s.lasts() > 0)) continue;
+        const auto off = [&](double t) -> double {
+            if (s.stuck) return s.begin.theta - middle;
+            const auto state = run.at(std::clamp(t, s.from, s.to));
+            return state ? state->theta - middle : 0;
+        };
+        const double longest = std::min({own, drive.period, s.lasts()}) / 12;
+        theta_sum += integral(question.excitation, s.from, s.to, longest, off);
+        theta_wave += integral(question.excitation, s.from, s.to, longest, [&](double t) { return off(t) * wave(t); });
+    }
+    shape.mean = middle + theta_sum / motion.period;
+    shape.fundamental = std::abs(theta_wave) * 2 / motion.period;
+    if (question.excitation.has_feedback()) return shape;
+    M_wave = harmonic_of(question.excitation, drive, 1);
+    const DriveRange M = extremes(question.excitation, drive);
+    if (!(std::abs(M_wave) > least_harmonic * (M.high - M.low))) return shape;
+    if (shape.fundamental > least_harmonic * motion.amplitude) {
+        shape.lag = in_one_turn((std::arg(M_wave) - std::arg(theta_wave)) * 180 / std::numbers::pi);
+    }
+    // The fundamental |M| cos(omega t + arg) is greatest when omega t = -arg.
+    shape.peak_lag = in_one_turn((omega * (motion.t_high - drive.start) + std::arg(M_wave)) * 180 / std::numbers::pi);
+    return shape;
+}
+
+namespace {
+
+class SteadyStory {
+public:
+    SteadyStory(const SteadyQuestion& question, const SteadyMotion& motion, const SteadyShape& shape)
+        : question_(question), motion_(motion), shape_(shape) {}
+
+    std::string told(const std::optional<SteadyMotion>& other) {
+        switch (motion_.status) {
+            case SteadyStatus::steady:
+                tell_motion();
+                tell_stability();
+                break;
+            case SteadyStatus::adheres:
+                say("The mass adheres: M never exceeds what friction can hold, so it stays where it is, anywhere from "
+                    "theta = {} to {}.",
+                    number(motion_.rest.first), number(motion_.rest.second));
+                break;
+            case SteadyStatus::grows:
+                say("There is no steady motion: M feeds more than the frictions take, and the amplitude grows by {} in "
+                    "each period of M ({:.5g}).",
+                    number(motion_.growth), question_.drive.period);
+                break;
+            case SteadyStatus::none:
+                say("Nothing periodic was found in {} periods of M, up to 32 of them in one: the motion is irregular, "
+                    "or it settles very slowly.",
+                    motion_.maps);
+                break;
+        }
+        tell_others(other);
+        return text_;
+    }
+
+private:
+    template <class... Values>
+    void say(fmt::format_string<Values...> format, Values&&... values) {
+        text_ += text_.empty() ? "" : " ";
+        text_ += fmt::format(format, std::forward<Values>(values)...);
+    }
+    [[nodiscard]] std::string number(double x) const {
+        return text::number_text(x, std::max({std::fabs(motion_.low), std::fabs(motion_.high), std::fabs(x)}));
+    }
+    void tell_motion() {
+        say("The motion repeats itself every {:.6g}, {} of M.", motion_.period,
+            motion_.periods == 1 ? "the period" : fmt::format("{} periods", motion_.periods));
+        say("Its amplitude is {}, from theta = {} to {}.", number(motion_.amplitude), number(motion_.low),
+            number(motion_.high));
+        if (shape_.lag) say("Its fundamental lags {:.5g} degrees behind that of M.", *shape_.lag);
+        if (motion_.stops == 0) {
+            say("It never stops.");
+        } else {
+            say("It stops {} a period and is stuck for {} of it.",
+                motion_.stops == 1 ? "once" : fmt::format("{} times", motion_.stops), text::percent(motion_.stuck));
+        }
+        if (motion_.symmetric) say("Each half period is the opposite of the other.");
+    }
+    void tell_stability() {
+        if (!motion_.differentiable) return;
+        const double largest = std::max(std::abs(motion_.multipliers[0]), std::abs(motion_.multipliers[1]));
+        if (!motion_.stable) {
+            say("It is unstable: a disturbance grows {:.4g} times in a period, so that no run stays with it.", largest);
+        } else if (largest > 1 - 1e-6) {
+            say("It is stable, but a disturbance does not die.");
+        } else if (largest < 1e-12) {
+            say("It is stable: a disturbance is gone after one period.");
+        } else {
+            say("It is stable: of a disturbance {} is left after a period.", text::percent(largest));
+        }
+    }
+    void tell_others(const std::optional<SteadyMotion>& other) {
+        if (motion_.status != SteadyStatus::steady && motion_.status != SteadyStatus::adheres) return;
+        if (other && other->status == SteadyStatus::steady) {
+            say("Another motion was seen from another start: amplitude {}, {} of M long.", number(other->amplitude),
+                text::counted(static_cast<std::size_t>(other->periods), "period"));
+        } else if (other && other->status == SteadyStatus::adheres) {
+            say("From another start the mass comes to rest for good.");
+        } else if (other && other->status == SteadyStatus::grows) {
+            say("From another start the motion grows.");
+        } else if (motion_.status == SteadyStatus::steady && motion_.unique.has_value()) {
+            if (*motion_.unique) {
+                say("It is the only one.");
+            } else {
+                say("It is one of a family: others beside it are periodic, too.");
+            }
+        } else if (motion_.status == SteadyStatus::steady) {
+            say("No other motion was seen from {} starts.", other_starts);
+        }
+    }
+
+    const SteadyQuestion& question_;
+    const SteadyMotion& motion_;
+    const SteadyShape& shape_;
+    std::string text_;
+};
+
+}  // namespace
+
+std::string told(const SteadyQuestion& question, const SteadyMotion& motion, const SteadyShape& shape,
+                 const std::optional<SteadyMotion>& other) {
+    return SteadyStory(question, motion, shape).told(other);
+}
+
+}  // namespace dinal::analysis

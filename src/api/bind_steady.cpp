@@ -1,0 +1,326 @@
+// The class of what sys:steady{ ... } and run:steady{ ... } return; the calls are in steady_calls.cpp.
+#include "api/steady_answer.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "api/cards.hpp"
+#include "api/classes.hpp"
+#include "text/characters.hpp"
+#include "text/sentences.hpp"
+
+namespace dinal::api {
+namespace {
+
+using analysis::SteadyStatus;
+
+const SteadyHandle& steady_self(lua_State* L, const char* call) {
+    return lua::self<SteadyHandle>(L, 1, call);
+}
+
+bool is_moving(const Steady& s) {
+    return s.motion.status == SteadyStatus::steady;
+}
+
+const analysis::SteadyShape& steady_shape(lua_State* L, const SteadyHandle& s) {
+    if (!s->shape) {
+        asking(L,
+               [&](const motion::Monitor& monitor) { s->shape = analysis::shape_of(s->question, s->motion, monitor); });
+    }
+    return *s->shape;
+}
+
+void look_around_steady(lua_State* L, const SteadyHandle& s) {
+    if (s->looked_around || s->motion.unique.has_value() || !is_found(*s)) return;
+    asking(L, [&](const motion::Monitor& monitor) {
+        s->other = analysis::another_motion(s->question, s->motion, monitor);
+    });
+    s->looked_around = true;
+}
+
+int push_or_nil(lua_State* L, const std::optional<double>& x) {
+    x ? lua_pushnumber(L, *x) : lua_pushnil(L);
+    return 1;
+}
+
+// ---- fields
+
+int steady_status(lua_State* L) {
+    const std::string_view text = analysis::name(steady_self(L, "s.status")->motion.status);
+    lua_pushlstring(L, text.data(), text.size());
+    return 1;
+}
+
+template <auto fact>
+int steady_found_number(lua_State* L) {
+    const Steady& s = *steady_self(L, "s.amplitude");
+    return push_or_nil(L, is_found(s) ? std::optional<double>(static_cast<double>(s.motion.*fact)) : std::nullopt);
+}
+
+int steady_period(lua_State* L) {
+    const Steady& s = *steady_self(L, "s.period");
+    return push_or_nil(L, s.motion.status == SteadyStatus::none ? std::nullopt : std::optional(s.motion.period));
+}
+
+int steady_peak(lua_State* L) {
+    const Steady& s = *steady_self(L, "s.peak");
+    const double most = std::max(std::fabs(s.motion.low), std::fabs(s.motion.high));
+    return push_or_nil(L, is_found(s) ? std::optional(most) : std::nullopt);
+}
+
+int steady_mean(lua_State* L) {
+    const SteadyHandle s = steady_self(L, "s.mean");
+    return push_or_nil(L, is_found(*s) ? std::optional(steady_shape(L, s).mean) : std::nullopt);
+}
+
+template <auto angle>
+int steady_shape_angle(lua_State* L) {
+    const SteadyHandle s = steady_self(L, "s.lag");
+    return push_or_nil(L, is_moving(*s) ? steady_shape(L, s).*angle : std::nullopt);
+}
+
+int steady_stops(lua_State* L) {
+    const Steady& s = *steady_self(L, "s.stops");
+    is_found(s) ? lua_pushinteger(L, static_cast<lua_Integer>(s.motion.stops)) : lua_pushnil(L);
+    return 1;
+}
+
+int steady_periods(lua_State* L) {
+    const Steady& s = *steady_self(L, "s.periods");
+    is_found(s) ? lua_pushinteger(L, s.motion.periods) : lua_pushnil(L);
+    return 1;
+}
+
+int steady_growth(lua_State* L) {
+    const Steady& s = *steady_self(L, "s.growth");
+    return push_or_nil(L, s.motion.status == SteadyStatus::grows ? std::optional(s.motion.growth) : std::nullopt);
+}
+
+int steady_rest(lua_State* L) {
+    const Steady& s = *steady_self(L, "s.rest");
+    if (s.motion.status != SteadyStatus::adheres) {
+        lua_pushnil(L);
+        return 1;
+    }
+    lua_createtable(L, 2, 2);
+    lua_pushnumber(L, s.motion.rest.first);
+    lua_rawseti(L, -2, 1);
+    lua_pushnumber(L, s.motion.rest.second);
+    lua_rawseti(L, -2, 2);
+    lua_pushnumber(L, s.motion.rest.first);
+    lua_setfield(L, -2, "lower");
+    lua_pushnumber(L, s.motion.rest.second);
+    lua_setfield(L, -2, "upper");
+    return 1;
+}
+
+int steady_multipliers(lua_State* L) {
+    const Steady& s = *steady_self(L, "s.multipliers");
+    if (!is_moving(s) || !s.motion.differentiable) {
+        lua_pushnil(L);
+        return 1;
+    }
+    lua_createtable(L, 2, 0);
+    for (std::size_t i = 0; i < s.motion.multipliers.size(); ++i) {
+        lua_createtable(L, 0, 3);
+        lua_pushnumber(L, s.motion.multipliers[i].real());
+        lua_setfield(L, -2, "re");
+        lua_pushnumber(L, s.motion.multipliers[i].imag());
+        lua_setfield(L, -2, "im");
+        lua_pushnumber(L, std::abs(s.motion.multipliers[i]));
+        lua_setfield(L, -2, "abs");
+        lua_rawseti(L, -2, static_cast<lua_Integer>(i) + 1);
+    }
+    return 1;
+}
+
+template <auto fact>
+int steady_found_flag(lua_State* L) {
+    const Steady& s = *steady_self(L, "s.stable");
+    is_found(s) ? lua_pushboolean(L, s.motion.*fact ? 1 : 0) : lua_pushnil(L);
+    return 1;
+}
+
+int steady_unique(lua_State* L) {
+    const SteadyHandle s = steady_self(L, "s.unique");
+    if (!is_found(*s)) {
+        lua_pushnil(L);
+        return 1;
+    }
+    look_around_steady(L, s);
+    lua_pushboolean(L, s->motion.unique.value_or(!s->other.has_value()) ? 1 : 0);
+    return 1;
+}
+
+std::string steady_story(lua_State* L, const SteadyHandle& s) {
+    look_around_steady(L, s);
+    return analysis::told(s->question, s->motion, steady_shape(L, s), s->other);
+}
+
+int steady_explain(lua_State* L) {
+    const SteadyHandle s = steady_self(L, "s:explain()");
+    const std::string text = text::wrapped(steady_story(L, s));
+    lua_pushlstring(L, text.data(), text.size());
+    return 1;
+}
+
+std::string steady_summary(const Steady& s) {
+    const analysis::SteadyMotion& m = s.motion;
+    switch (m.status) {
+        case SteadyStatus::steady:
+            return fmt::format("steady: period {:.6g}, amplitude {:.6g}, {} a period{}", m.period, m.amplitude,
+                               text::counted(m.stops, "stop"), m.stable || !m.differentiable ? "" : ", unstable");
+        case SteadyStatus::adheres:
+            return fmt::format("adheres: rests anywhere from theta = {:.6g} to {:.6g}", m.rest.first, m.rest.second);
+        case SteadyStatus::grows:
+            return fmt::format("grows: by {:.6g} in each period of M", m.growth);
+        case SteadyStatus::none:
+            break;
+    }
+    return fmt::format("none: nothing periodic was found in {} periods of M", m.maps);
+}
+
+int steady_to_string(lua_State* L) {
+    const std::string text = steady_summary(*steady_self(L, "tostring(s)"));
+    lua_pushlstring(L, text.data(), text.size());
+    return 1;
+}
+
+#define DINAL_STEADY                                 \
+    "sys = nondimensional{ friction_ratio = 0.4 }\n" \
+    "s = sys:steady{ M = excitation.harmonic{ frequency = 0.4 } }\n"
+
+constexpr lua::Member steady_members[] = {
+    {"explain",
+     lua::guarded<steady_explain>,
+     lua::Kind::method,
+     {"s:explain() -> string",
+      "The answer in sentences: the motion, whether it is stable, and whether another one was seen from other starts.",
+      DINAL_STEADY "print(s:explain():match(\"It stops[^.]*\"))  --> It stops 2 times a period and is stuck for 31"}},
+    {"status",
+     lua::guarded<steady_status>,
+     lua::Kind::field,
+     {"s.status -> string",
+      "\"steady\"; \"adheres\": the mass never moves; \"grows\": M feeds more than the frictions take; \"none\": nothing "
+      "periodic was found. What an answer does not have is nil.",
+      DINAL_STEADY "print(s.status)  --> steady"}},
+    {"period",
+     lua::guarded<steady_period>,
+     lua::Kind::field,
+     {"s.period -> number", "The period of the motion, time units.", DINAL_STEADY "print(s.period)  --> 2.5"}},
+    {"periods",
+     lua::guarded<steady_periods>,
+     lua::Kind::field,
+     {"s.periods -> integer", "The periods of M in one of the motion: 1 unless it is subharmonic.",
+      DINAL_STEADY "print(s.periods)  --> 1"}},
+    {"amplitude",
+     lua::guarded<steady_found_number<&analysis::SteadyMotion::amplitude>>,
+     lua::Kind::field,
+     {"s.amplitude -> number", "Half of the way between the extremes of theta, rad.",
+      DINAL_STEADY "print(string.format(\"%.4f\", s.amplitude))  --> 1.1111"}},
+    {"peak",
+     lua::guarded<steady_peak>,
+     lua::Kind::field,
+     {"s.peak -> number", "The greatest |theta|, rad.", DINAL_STEADY "print(s.peak >= s.amplitude)  --> true"}},
+    {"mean",
+     lua::guarded<steady_mean>,
+     lua::Kind::field,
+     {"s.mean -> number", "The mean of theta over time, rad.",
+      DINAL_STEADY "print(math.abs(s.mean) < 1e-9)  --> true"}},
+    {"lag",
+     lua::guarded<steady_shape_angle<&analysis::SteadyShape::lag>>,
+     lua::Kind::field,
+     {"s.lag -> number",
+      "By how much the fundamental of theta (at the period of M) lags behind that of M, degrees in (-180, 180]; nil "
+      "when one of them has none or M depends on the motion.",
+      "s = system{ I = 1, k = 1, C = 0.5 }:steady{ M = excitation.harmonic{ omega = 1 } }\n"
+      "print(string.format(\"%.6f\", s.lag))  --> 90.000000"}},
+    {"peak_lag",
+     lua::guarded<steady_shape_angle<&analysis::SteadyShape::peak_lag>>,
+     lua::Kind::field,
+     {"s.peak_lag -> number", "By how much the highest theta lags behind the crest of the fundamental of M, degrees.",
+      "s = system{ I = 1, k = 1, C = 0.5 }:steady{ M = excitation.harmonic{ omega = 1 } }\n"
+      "print(string.format(\"%.6f\", s.peak_lag))  --> 90.000000"}},
+    {"stops",
+     lua::guarded<steady_stops>,
+     lua::Kind::field,
+     {"s.stops -> integer", "How often it stops in a period.", DINAL_STEADY "print(s.stops)  --> 2"}},
+    {"stuck",
+     lua::guarded<steady_found_number<&analysis::SteadyMotion::stuck>>,
+     lua::Kind::field,
+     {"s.stuck -> number", "The part of a period for which it stands still, from 0 to 1.",
+      DINAL_STEADY "print(string.format(\"%.4f\", s.stuck))  --> 0.3154"}},
+    {"multipliers",
+     lua::guarded<steady_multipliers>,
+     lua::Kind::field,
+     {"s.multipliers -> table",
+      "What becomes of a small disturbance in one period: the two multipliers of Floquet, each { re, im, abs }; below 1 "
+      "it dies. nil where the map has no derivative.",
+      "s = system{ I = 1, k = 1, C = 0.5 }:steady{ M = excitation.harmonic{ omega = 1 } }\n"
+      "print(string.format(\"%.6f %.6f\", s.multipliers[1].abs, math.exp(-math.pi / 2)))  --> 0.207880 0.207880"}},
+    {"stable",
+     lua::guarded<steady_found_flag<&analysis::SteadyMotion::stable>>,
+     lua::Kind::field,
+     {"s.stable -> boolean", "No disturbance grows.", DINAL_STEADY "print(s.stable)  --> true"}},
+    {"unique",
+     lua::guarded<steady_unique>,
+     lua::Kind::field,
+     {"s.unique -> boolean",
+      "There is no other periodic motion. With Re = Rd and an M of time alone that is proven; else it says that none was "
+      "seen from eight other starts.",
+      DINAL_STEADY "print(s.unique)  --> true"}},
+    {"symmetric",
+     lua::guarded<steady_found_flag<&analysis::SteadyMotion::symmetric>>,
+     lua::Kind::field,
+     {"s.symmetric -> boolean", "Each half period is the opposite of the other.",
+      DINAL_STEADY "print(s.symmetric)  --> true"}},
+    {"rest",
+     lua::guarded<steady_rest>,
+     lua::Kind::field,
+     {"s.rest -> table", "When it adheres: { lower, upper }, between which it may stand; rad.",
+      "s = system{ I = 1, k = 2, Rd = 1 }:steady{ M = excitation.harmonic{ amplitude = 0.8, omega = 1 } }\n"
+      "print(s.status, string.format(\"%.4f %.4f\", s.rest[1], s.rest[2]))  --> adheres\t-0.1000 0.1000"}},
+    {"growth",
+     lua::guarded<steady_growth>,
+     lua::Kind::field,
+     {"s.growth -> number", "When it grows: by how much the amplitude does in a period of M, rad.",
+      "s = nondimensional{ friction_ratio = 0.167 }:steady{ M = excitation.harmonic{ frequency = 1 } }\n"
+      "print(string.format(\"%.6f\", s.growth))  --> 2.473593"}},
+    {"run",
+     lua::guarded<run_of_steady>,
+     lua::Kind::field,
+     {"s.run -> run", "One period of the motion as a run with 401 rows.",
+      DINAL_STEADY "print(#s.run, s.run.t_end)  --> 401\t2.5"}},
+    {"__tostring",
+     lua::guarded<steady_to_string>,
+     lua::Kind::metamethod,
+     {"tostring(s) -> string", "The answer in one line.",
+      DINAL_STEADY "print(s)  --> steady: period 2.5, amplitude 1.11113, 2 stops a period"}},
+};
+
+#undef DINAL_STEADY
+
+std::string steady_card(lua_State* L, int index, const terminal::Display& screen) {
+    return text::wrapped(terminal::spelled(steady_summary(**lua::test<SteadyHandle>(L, index)), screen),
+                         screen.width - 1);
+}
+
+}  // namespace
+
+const lua::Class steady_class = {
+    "steady motion",
+    {"sys:steady{ ... }, run:steady{ ... } -> s",
+     "The answer to the question what the motion becomes: a periodic motion and what can be "
+     "said about it, or why there is none. It cannot be changed.",
+     "s = nondimensional{}:steady{}\nprint(s.status)  --> steady"},
+    steady_members,
+    nullptr,
+    steady_card};
+
+void register_steady(lua_State* L) {
+    lua::add_class<SteadyHandle>(L, steady_class);
+}
+
+}  // namespace dinal::api

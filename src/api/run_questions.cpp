@@ -1,0 +1,99 @@
+#include "api/run_questions.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "api/data.hpp"
+#include "api/run.hpp"
+#include "files/table.hpp"
+#include "lua/options.hpp"
+#include "lua/user_function.hpp"
+
+namespace dinal::api {
+namespace {
+
+std::span<const double> column_values(const motion::Trajectory& trajectory, Eigen::Index column) {
+    const auto values = trajectory.rows.col(column);
+    return {values.data(), static_cast<std::size_t>(values.size())};
+}
+
+}  // namespace
+
+int spectrum_of_run(lua_State* L) {
+    const RunHandle run = lua::self<RunHandle>(L, 1, spectrum_call.example);
+    const motion::Trajectory& trajectory = run->trajectory;
+    if (lua_gettop(L) == 1) lua_pushliteral(L, "theta");
+    if (lua_type(L, 2) != LUA_TSTRING) {
+        lua::raise(L,
+                   {.sentence = fmt::format("run:spectrum: the name of a column must be a string, got {}; for example "
+                                            "{}",
+                                            lua::describe(L, 2), spectrum_call.example),
+                    .call = "run:spectrum",
+                    .culprit = lua::written(L, 2)});
+    }
+    const std::string name = lua_tostring(L, 2);
+    const lua::Options options(L, 3, spectrum_call);
+    SpectrumOptions asked;
+    options.fill(asked);
+    const auto column = files::find_column(trajectory.names, std::string_view(name));
+    if (!column) options.fail(column.error());
+    const auto time = trajectory.find("t");
+    if (!time) options.fail({"the run has no column t, so its rows have no times"});
+    std::span<const double> t = column_values(trajectory, *time), values = column_values(trajectory, *column);
+    const auto first = static_cast<std::size_t>(
+        std::lower_bound(t.begin(), t.end(), asked.from.value_or(t.empty() ? 0 : t.front())) - t.begin());
+    t = t.subspan(first);
+    values = values.subspan(first);
+    const std::size_t even = analysis::evenly_spaced(t);
+    constexpr std::size_t least = 8;
+    if (even < least || even + 1 < t.size()) {
+        options.fail({even < least && even == t.size()
+                          ? fmt::format("{} rows are too few, {} are needed at least", t.size(), least)
+                          : fmt::format("rows must be evenly spaced, but row {} is not; simulate with dt = ...",
+                                        first + even + 1)});
+    }
+    analysis::Spectrum found =
+        analysis::spectrum_of(values.first(even), (t[even - 1] - t[0]) / static_cast<double>(even - 1), asked.window);
+    Data data;
+    data.columns = {column_of("frequency", std::move(found.frequency)),
+                    column_of("amplitude", std::move(found.amplitude))};
+    push_data(L, std::move(data));
+    return 1;
+}
+
+int poincare_of_run(lua_State* L) {
+    const RunHandle run = lua::self<RunHandle>(L, 1, poincare_call.example);
+    const lua::Options options(L, 2, poincare_call);
+    PoincareOptions asked;
+    options.fill(asked);
+    const motion::Trajectory& trajectory = run->trajectory;
+    const double from = asked.from.value_or(trajectory.t_start);
+    if (from < trajectory.t_start || from > trajectory.t_stop) {
+        options.fail({.sentence = fmt::format("from = {:.6g} is not in the run, t {:.6g} ... {:.6g}", from,
+                                              trajectory.t_start, trajectory.t_stop),
+                      .option = "from"});
+    }
+    const double looks = std::floor((trajectory.t_stop - from) / asked.period * (1 + 1e-12)) + 1;
+    constexpr double most = 1e7;
+    if (looks > most) options.fail({fmt::format("{:.3g} looks are more than {:.3g}", looks, most)});
+    std::vector<double> t, theta, velocity;
+    lua::CallState call(L);
+    for (double i = 0; i < looks; ++i) {
+        const double at = std::min(from + i * asked.period, trajectory.t_stop);
+        const auto state = trajectory.at(at);
+        if (call.failed()) call.raise_error();
+        if (!state) options.fail(state.error());
+        t.push_back(at);
+        theta.push_back(state->theta);
+        velocity.push_back(state->velocity);
+    }
+    Data data;
+    data.columns = {column_of("t", std::move(t)), column_of("theta", std::move(theta)),
+                    column_of("velocity", std::move(velocity))};
+    push_data(L, std::move(data));
+    return 1;
+}
+
+}  // namespace dinal::api

@@ -1,0 +1,72 @@
+// What a run is asked besides its columns: run:spectrum, run:poincare.
+#pragma once
+
+#include <optional>
+
+#include "analysis/spectrum.hpp"
+#include "lua/bind.hpp"
+#include "text/option.hpp"
+
+namespace dinal::api {
+
+struct SpectrumOptions {
+    analysis::SpectrumWindow window = analysis::SpectrumWindow::hann;
+    std::optional<double> from = {};
+};
+inline constexpr const char* window_names[] = {"hann", "rectangle", "flat top"};
+inline constexpr text::Option spectrum_options[] = {
+    {.name = "window",
+     .meaning =
+         "the weights of the rows: hann for what is unknown, rectangle for whole periods, flat top for amplitudes",
+     .filled = text::fills<&SpectrumOptions::window>,
+     .choices = window_names},
+    {.name = "from",
+     .unit = "time units",
+     .otherwise = "the first row",
+     .meaning = "the time before which rows are left out: the transient",
+     .filled = text::fills<&SpectrumOptions::from>},
+};
+inline constexpr text::Call spectrum_call{"run:spectrum", "run:spectrum(\"theta\", { window = \"hann\" })",
+                                          spectrum_options, true};
+
+struct PoincareOptions {
+    double period = 0;
+    std::optional<double> from = {};
+};
+inline constexpr text::Option poincare_options[] = {
+    {.name = "period",
+     .unit = "time units",
+     .otherwise = text::needed,
+     .range = text::positive,
+     .meaning = "from look to look, mostly that of M",
+     .filled = text::fills<&PoincareOptions::period>},
+    {.name = "from",
+     .unit = "time units",
+     .otherwise = "the beginning",
+     .meaning = "the time of the first look, after the transient",
+     .filled = text::fills<&PoincareOptions::from>},
+};
+inline constexpr text::Call poincare_call{"run:poincare", "run:poincare{ period = 1 }", poincare_options};
+
+int spectrum_of_run(lua_State* L);
+int poincare_of_run(lua_State* L);
+
+inline constexpr lua::Doc spectrum_doc{
+    "run:spectrum(column = \"theta\", { OPTIONS }) -> data",
+    "The one-sided amplitude spectrum of a column: frequency (cycles per time unit) and amplitude (of a sine, in the unit "
+    "of the column), from rows with one dt; a shorter last row is left out. The mean stands at frequency 0.",
+    "run = nondimensional{}:simulate{ theta0 = 1, t_end = 16, dt = 0.125 }\n"
+    "s = run:spectrum(\"theta\", { window = \"rectangle\" })\n"
+    "i = s.amplitude:argmax()\n"
+    "print(string.format(\"%.2f %.2f\", s.frequency[i], s.amplitude[i]))  --> 0.99 0.98",
+    {&spectrum_call}};
+inline constexpr lua::Doc poincare_doc{
+    "run:poincare{ OPTIONS } -> data",
+    "The motion looked at once a period: t, theta and velocity, at the accuracy of run:at. A periodic motion is one "
+    "point, a subharmonic one several, an irregular one a cloud.",
+    "run = nondimensional{ zeta = 0.2 }:simulate{ M = excitation.harmonic{ frequency = 0.5 }, t_end = 60, dt = 1 }\n"
+    "d = run:poincare{ period = 2, from = 40 }\n"
+    "print(#d, d.theta:max() - d.theta:min() < 1e-9)  --> 11\ttrue",
+    {&poincare_call}};
+
+}  // namespace dinal::api

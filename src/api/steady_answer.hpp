@@ -1,0 +1,108 @@
+// What sys:steady{ ... } asks, and the answer as Lua sees it.
+#pragma once
+
+#include <memory>
+#include <optional>
+
+#include "analysis/steady.hpp"
+#include "lua/interrupt.hpp"
+#include "lua/options.hpp"
+#include "lua/user_function.hpp"
+
+namespace dinal::api {
+
+/// What is asked besides M.
+struct SteadyOptions {
+    std::optional<double> period = {};
+    std::optional<int> periods = {};
+    double theta0 = 0;
+    double velocity0 = 0;
+};
+inline constexpr text::Range whole_periods{"be a whole number from 1 to 1000",
+                                           [](double x) { return text::is_whole(x, 1, 1000); }};
+inline constexpr text::Option period_options[] = {
+    {.name = "period",
+     .unit = "time units",
+     .range = text::positive,
+     .meaning = "after which M repeats itself, where M does not know it: native terms do, a Lua function does not",
+     .filled = text::fills<&SteadyOptions::period>},
+    {.name = "periods",
+     .range = whole_periods,
+     .meaning = "of M in one of the motion, for a subharmonic one; without it as many as are found, up to 32",
+     .filled = text::fills<&SteadyOptions::periods>},
+};
+inline constexpr text::Option start_options[] = {
+    {.name = "theta0",
+     .unit = "rad",
+     .meaning = "where the search starts, which says what is found where there are several motions",
+     .filled = text::fills<&SteadyOptions::theta0>},
+    {.name = "velocity0",
+     .unit = "rad per time unit",
+     .meaning = "how fast it starts",
+     .filled = text::fills<&SteadyOptions::velocity0>},
+};
+inline constexpr text::Option drive_options[] = {
+    {.name = "M",
+     .unit = "torque",
+     .otherwise = "0",
+     .meaning = "the excitation: a number, a Lua function of t or of t, theta, velocity, or an excitation",
+     .object = "excitation"},
+};
+inline constexpr auto steady_options = text::joined(drive_options, period_options, start_options);
+inline constexpr text::Call steady_call{"sys:steady", "sys:steady{ M = excitation.harmonic{ frequency = 0.4 } }",
+                                        steady_options};
+inline constexpr text::Call steady_run_call{"run:steady", "run:steady{ period = 2.5 }", period_options, true};
+
+struct Steady {
+    analysis::SteadyQuestion question;
+    analysis::SteadyMotion motion;
+    std::optional<analysis::SteadyShape> shape = {};  ///< made when it is first asked for
+    bool looked_around = false;
+    std::optional<analysis::SteadyMotion> other = {};  ///< of another start, once it was looked for
+};
+// Shared: a user's function may drop the last reference meanwhile.
+using SteadyHandle = std::shared_ptr<Steady>;
+
+/// Facts about a motion, or a rest, that was found.
+inline bool is_found(const Steady& s) {
+    return s.motion.status == analysis::SteadyStatus::steady || s.motion.status == analysis::SteadyStatus::adheres;
+}
+
+/// Runs what may ask M, and raises what came of that.
+template <class Work>
+void asking(lua_State* L, Work work) {
+    lua::CallState call(L);
+    work([](double) { return !lua::interrupt_requested(); });
+    if (lua::interrupt_requested()) lua::raise_interrupted(L);
+    if (call.failed()) call.raise_error();
+}
+
+/// How M repeats itself, as it knows or as the user says. Raises when nobody knows, or it does not.
+analysis::Drive drive_or_fail(lua_State* L, const lua::Options& options, const model::Oscillator& system,
+                              const model::Excitation& excitation, const std::optional<double>& period);
+
+/// sys:steady{ ... } and run:steady{ ... }
+int steady_of_system(lua_State* L);
+int steady_of_run(lua_State* L);
+/// s.run
+int run_of_steady(lua_State* L);
+
+inline constexpr lua::Doc steady_doc{
+    "sys:steady{ OPTIONS } -> steady",
+    "The periodic motion under a periodic M, found without running the transient: a fixed point of the map over one "
+    "period. Where there is none it says why: s.status is \"steady\", \"adheres\" (the mass never moves), \"grows\" or "
+    "\"none\".",
+    "sys = nondimensional{ friction_ratio = 0.5 }\n"
+    "s = sys:steady{ M = excitation.harmonic{ frequency = 1.35 } }\n"
+    "print(string.format(\"%.9f\", s.amplitude), s.stops)  --> 0.860792180\t0",
+    {&steady_call}};
+inline constexpr lua::Doc steady_run_doc{
+    "run:steady{ OPTIONS } -> steady",
+    "The periodic motion that this run leads to: sys:steady of its system and its M, from where the run has got to.",
+    "sys = nondimensional{ friction_ratio = 0.836 }\n"
+    "run = sys:simulate{ M = excitation.harmonic{ frequency = 1 }, theta0 = 1, t_end = 5, dt = 1 }\n"
+    "s = run:steady()\n"
+    "print(string.format(\"%.9f\", s.amplitude), s.stops)  --> 0.129170352\t2",
+    {&steady_run_call}};
+
+}  // namespace dinal::api

@@ -1,0 +1,113 @@
+// sys:steady{ ... } and run:steady{ ... }, and the run of what they found.
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "api/bind_excitation.hpp"
+#include "api/run.hpp"
+#include "api/steady_answer.hpp"
+
+namespace dinal::api {
+namespace {
+
+int push_steady(lua_State* L, const lua::Options& options, analysis::SteadyQuestion question) {
+    const auto steady = std::make_shared<Steady>(Steady{std::move(question), {}});
+    asking(L, [&](const motion::Monitor& monitor) {
+        steady->motion = analysis::steady_motion(steady->question, monitor);
+    });
+    const model::Outcome outcome = steady->motion.outcome;
+    if (outcome == model::Outcome::unresolved || outcome == model::Outcome::chattering ||
+        outcome == model::Outcome::excitation_not_finite) {
+        options.fail({fmt::format("the motion could not be followed: {}", model::sentence(outcome))});
+    }
+    lua::push<SteadyHandle>(L, steady);
+    return 1;
+}
+
+/// The state of the run at the last beginning of a period of M in it.
+model::State state_at_period(const motion::Trajectory& trajectory, const analysis::Drive& drive) {
+    const double n = std::floor((trajectory.t_stop - drive.start) / drive.period);
+    const double t = drive.start + n * drive.period;
+    if (t >= trajectory.t_start) {
+        if (const auto state = trajectory.at(t)) return *state;
+    }
+    return trajectory.state_at_stop;
+}
+
+}  // namespace
+
+/// One period, as a run of 400 rows from row to row; kept, so that s.run is the same run each time.
+int run_of_steady(lua_State* L) {
+    const SteadyHandle s = lua::self<SteadyHandle>(L, 1, "s.run");
+    if (!is_found(*s)) {
+        lua_pushnil(L);
+        return 1;
+    }
+    if (lua_getiuservalue(L, 1, 1) == LUA_TUSERDATA) return 1;
+    constexpr double rows = 400;
+    const double start = s->question.drive.start, length = s->motion.period;
+    source::Task task{.system = s->question.system,
+                      .excitation = s->question.excitation,
+                      .initial = s->motion.start,
+                      .window = {.start = start, .end = start + length},
+                      .rows = motion::Grid::every(length / rows),
+                      .integrator = {}};
+    Run made{.trajectory = {}, .origin = source::origin_of(L, task)};
+    asking(L, [&](const motion::Monitor& monitor) {
+        auto result = motion::simulate(task.system, task.excitation, task.initial, task.window, task.rows,
+                                       task.integrator, monitor);
+        if (result) made.trajectory = std::move(result).value();
+    });
+    push_run(L, std::move(made));
+    lua_pushvalue(L, -1);
+    lua_setiuservalue(L, 1, 1);
+    return 1;
+}
+
+analysis::Drive drive_or_fail(lua_State* L, const lua::Options& options, const model::Oscillator& system,
+                              const model::Excitation& excitation, const std::optional<double>& period) {
+    const double own = system.stiffness() > 0 ? system.natural_period() : 1;
+    auto drive = analysis::drive_of(excitation, period.value_or(own));
+    if (!drive && !period) {
+        options.fail({.sentence = "the period of M is not known; give it with period = ...", .option = "period"});
+    }
+    if (period) drive = analysis::Drive{drive ? drive->start : 0, *period};
+    if (period || excitation.has_script()) {
+        std::optional<text::Error> wrong;
+        asking(L, [&](const motion::Monitor&) { wrong = analysis::not_periodic(excitation, *drive); });
+        if (wrong) options.fail(*wrong);
+    }
+    return *drive;
+}
+
+int steady_of_system(lua_State* L) {
+    const model::Oscillator system = lua::self<model::Oscillator>(L, 1, steady_call.example);
+    const lua::Options options(L, 2, steady_call);
+    SteadyOptions asked;
+    options.fill(asked);
+    options.push("M");
+    analysis::SteadyQuestion question{.system = system,
+                                      .excitation = to_excitation(L, -1, "sys:steady: M", "M"),
+                                      .drive = {},
+                                      .periods = asked.periods.value_or(0),
+                                      .initial = {asked.theta0, asked.velocity0}};
+    lua_pop(L, 1);
+    question.drive = drive_or_fail(L, options, system, question.excitation, asked.period);
+    return push_steady(L, options, std::move(question));
+}
+
+int steady_of_run(lua_State* L) {
+    const RunHandle run = lua::self<RunHandle>(L, 1, steady_run_call.example);
+    const lua::Options options(L, 2, steady_run_call);
+    SteadyOptions asked;
+    options.fill(asked);
+    if (!run->origin) options.fail({"a run that was read from a file does not know its system and its M"});
+    const source::Task& task = *run->origin;
+    analysis::SteadyQuestion question{
+        .system = task.system, .excitation = task.excitation, .drive = {}, .periods = asked.periods.value_or(0)};
+    question.drive = drive_or_fail(L, options, task.system, task.excitation, asked.period);
+    asking(L, [&](const motion::Monitor&) { question.initial = state_at_period(run->trajectory, question.drive); });
+    return push_steady(L, options, std::move(question));
+}
+
+}  // namespace dinal::api

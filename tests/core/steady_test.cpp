@@ -1,0 +1,214 @@
+// Steady motions against Den Hartog's closed form, numbers of 80 digits, linear theory, and motions that were waited
+// for.
+#include "analysis/steady.hpp"
+
+#include <cmath>
+#include <numbers>
+#include <random>
+#include <vector>
+
+#include "support/catch.hpp"
+#include "support/measure.hpp"
+#include "support/within.hpp"
+#include "theory/den_hartog.hpp"
+
+using namespace dinal;
+using namespace dinal::analysis;
+using namespace dinal::model;
+
+namespace {
+
+constexpr double pi = std::numbers::pi;
+
+SteadyQuestion driven(double r, double gamma, double zeta = 0, double breakaway_factor = 1) {
+    return {.system = truth::nondimensional(zeta, gamma, breakaway_factor * gamma),
+            .excitation = truth::harmonic(1, 2 * pi * r),
+            .drive = {0, 1 / r}};
+}
+
+/// The amplitude after `periods` of M, by rk4 with steps of a ten-thousandth: another integrator and no map.
+double waited_for(const SteadyQuestion& question, int periods) {
+    const double T = question.drive.period;
+    const auto run = truth::must_run(question.system, question.excitation, question.initial, {0, periods * T},
+                                     motion::Grid::none(), motion::Rk4{std::min(T, 1.0) / 2000});
+    double low = 1e300, high = -1e300;
+    for (const Event& event : run.events) {
+        if (event.t < (periods - 1.5) * T) continue;
+        low = std::min(low, event.theta);
+        high = std::max(high, event.theta);
+    }
+    return (high - low) / 2;
+}
+
+}  // namespace
+
+TEST_CASE("the steady motion without stops is Den Hartog's, amplitude and lag, all over the plane", "[steady]") {
+    std::mt19937_64 random(1);
+    std::uniform_real_distribution<double> unit(0, 1);
+    int compared = 0;
+    for (int i = 0; i < 300; ++i) {
+        const double r = 0.3 * std::pow(12, unit(random)), gamma = 0.8 * unit(random);
+        const double zeta = i % 3 == 0 ? 0 : 0.4 * unit(random);
+        const auto exact = theory::DenHartog(r, zeta).motion(gamma, gamma);
+        if (!exact) continue;
+        const SteadyQuestion question = driven(r, gamma, zeta);
+        const SteadyMotion found = steady_motion(question);
+        INFO("r = " << r << ", gamma = " << gamma << ", zeta = " << zeta);
+        REQUIRE(found.status == SteadyStatus::steady);
+        // The closed form loses digits near r = 1, where amplitudes of tens are a difference of terms.
+        CHECK(found.amplitude == within(exact->amplitude, 1e-11 * std::max(1.0, exact->amplitude)));
+        CHECK(found.stops == 0);
+        CHECK(found.symmetric);
+        CHECK(found.stable);
+        const SteadyShape shape = shape_of(question, found);
+        REQUIRE(shape.lag);
+        CHECK(*shape.lag == within(exact->fundamental_lag * 180 / pi, 1e-9));
+        // The time of the crest is a turn, known to the root of nothing: 1e-9 of a degree is 3e-12 of a period.
+        REQUIRE(shape.peak_lag);
+        CHECK(*shape.peak_lag == within(exact->lag * 180 / pi, 1e-8));
+        CHECK(std::fabs(shape.mean) < 1e-11);
+        ++compared;
+    }
+    CHECK(compared > 150);
+}
+
+TEST_CASE("steady motions with stops: amplitudes of 80 digits, and how many stops there are", "[steady]") {
+    const SteadyMotion stopping = steady_motion(driven(1, 0.836));
+    CHECK(stopping.amplitude == within(0.1291703518, 5e-11));
+    CHECK(stopping.stops == 2);
+    // Stuck from n/2 + 0.45017942 to (n + 1)/2 + 0.12493764.
+    CHECK(stopping.stuck == within(2 * (0.62493764 - 0.45017942), 2e-8));
+    CHECK(steady_motion(driven(1, 0.418, 0.119)).amplitude == within(1.9611201772, 5e-11));
+    const std::vector<std::pair<double, std::size_t>> stops{{0.10, 6}, {0.15, 4}, {0.20, 4}, {0.25, 2},
+                                                            {0.30, 2}, {0.45, 2}, {0.55, 0}};
+    for (const auto& [r, count] : stops) {
+        INFO("r = " << r);
+        CHECK(steady_motion(driven(r, 0.4)).stops == count);
+    }
+}
+
+TEST_CASE("the steady motion is the one that a long run comes to", "[steady]") {
+    std::mt19937_64 random(2);
+    std::uniform_real_distribution<double> unit(0, 1);
+    for (int i = 0; i < 12; ++i) {
+        SteadyQuestion question =
+            driven(0.25 + unit(random), 0.2 + 0.6 * unit(random), 0.1 + 0.2 * unit(random), i % 2 == 0 ? 1 : 1.2);
+        const double second = 0.5 * unit(random), T = question.drive.period;
+        question.excitation = question.excitation + truth::harmonic(second, 4 * pi / T, 1);
+        const SteadyMotion found = steady_motion(question);
+        if (found.status != SteadyStatus::steady) continue;
+        INFO(i);
+        // rk4 with this step is right to 1e-9; what is left of the transient is less.
+        CHECK(found.amplitude == within(waited_for(question, 60), 1e-8));
+    }
+}
+
+TEST_CASE("without dry friction the multipliers and the lag are those of linear theory", "[steady]") {
+    for (const double zeta : {0.05, 0.3, 1.0, 1.7}) {
+        const double r = 0.7;
+        const SteadyQuestion question = driven(r, 0, zeta);
+        const SteadyMotion found = steady_motion(question);
+        REQUIRE(found.status == SteadyStatus::steady);
+        const std::complex<double> root = std::sqrt(std::complex<double>(zeta * zeta - 1, 0));
+        const double T = 2 * pi / r;  // in units of 1/w0
+        const std::complex<double> slow = std::exp((-zeta + root) * T), fast = std::exp((-zeta - root) * T);
+        const std::complex<double> sum = found.multipliers[0] + found.multipliers[1];
+        CHECK(std::abs(sum - slow - fast) < 1e-13);
+        CHECK(std::abs(found.multipliers[0] * found.multipliers[1] - slow * fast) < 1e-13);
+        CHECK(*shape_of(question, found).lag == within(std::atan2(2 * zeta * r, 1 - r * r) * 180 / pi, 1e-10));
+        CHECK(found.amplitude == within(1 / std::hypot(1 - r * r, 2 * zeta * r), 1e-12));
+    }
+}
+
+TEST_CASE("the exact derivative of the period map is what differences say, through turns, sticks and slips",
+          "[steady]") {
+    std::mt19937_64 random(3);
+    std::uniform_real_distribution<double> unit(0, 1);
+    int compared = 0;
+    for (int i = 0; i < 60; ++i) {
+        const SteadyQuestion question =
+            driven(0.15 + 1.5 * unit(random), 0.7 * unit(random), 0.3 * unit(random), 1 + 0.5 * (i % 3) * unit(random));
+        const PeriodMap map(question.system, question.excitation, 0, question.drive.period, {});
+        const Place x{2 * unit(random) - 1, 2 * unit(random) - 1};
+        const MapStep step = map(x);
+        REQUIRE(step.differentiable);
+        Eigen::Matrix2d differences;
+        bool smooth = true;
+        for (int j = 0; j < 2; ++j) {
+            constexpr double h = 1e-6;
+            const MapStep ahead = map(x + h * Place::Unit(j)), behind = map(x - h * Place::Unit(j));
+            smooth = smooth && ahead.stops == step.stops && behind.stops == step.stops;
+            differences.col(j) = (ahead.to - behind.to) / (2 * h);
+        }
+        if (!smooth) continue;
+        INFO(i << ": " << step.derivative << "\n" << differences);
+        CHECK((step.derivative - differences).cwiseAbs().maxCoeff() < 1e-6 * std::max(1.0, differences.norm()));
+        ++compared;
+    }
+    CHECK(compared > 50);
+}
+
+TEST_CASE("a load that friction can hold moves nothing, and the places of rest are told", "[steady]") {
+    SteadyQuestion question = driven(0.7, 1.3);
+    SteadyMotion found = steady_motion(question);
+    REQUIRE(found.status == SteadyStatus::adheres);
+    CHECK(found.amplitude == 0);
+    CHECK(found.rest.first == within(-0.3, 1e-12));
+    CHECK(found.rest.second == within(0.3, 1e-12));
+    // From outside it slides in and stays at the edge or within.
+    question.initial = {2, 0};
+    found = steady_motion(question);
+    REQUIRE(found.status == SteadyStatus::adheres);
+    CHECK(std::fabs(found.start.theta) <= 0.3 + 1e-12);
+    // A constant part moves the interval.
+    question.excitation = question.excitation + truth::harmonic(0.2, 0, pi / 2);
+    CHECK(steady_motion(question).rest.second == within(0.5, 1e-12));
+}
+
+TEST_CASE("at resonance below gamma = pi/4 it grows by pi - 4 gamma a period, and above it does not", "[steady]") {
+    for (const double gamma : {0.0, 0.167, 0.5, 0.78}) {
+        SteadyQuestion question = driven(1, gamma);
+        question.initial = {1, 0};
+        const SteadyMotion found = steady_motion(question);
+        REQUIRE(found.status == SteadyStatus::grows);
+        CHECK(found.growth == within(pi - 4 * gamma, 1e-12));
+    }
+    CHECK(steady_motion(driven(1, 0.79)).status == SteadyStatus::steady);
+    CHECK(steady_motion(driven(1, 0.5, 1e-3)).status == SteadyStatus::steady);
+}
+
+TEST_CASE("at r = 1/2 without viscous damping the motion is one of a family, and that is said", "[steady]") {
+    const SteadyQuestion question = driven(0.5, 0.1);
+    const SteadyMotion found = steady_motion(question);
+    REQUIRE(found.status == SteadyStatus::steady);
+    CHECK(found.symmetric);
+    CHECK(found.stable);
+    REQUIRE(found.unique);
+    CHECK_FALSE(*found.unique);
+    CHECK(found.amplitude == within(theory::DenHartog(0.5, 0).motion(0.1, 0.1)->amplitude, 1e-10));
+    CHECK(*steady_motion(driven(0.45, 0.1)).unique);
+}
+
+TEST_CASE("with Re > Rd a rest and a motion exist side by side, and the start decides", "[steady]") {
+    SteadyQuestion question = driven(0.6, 0.3, 0.05, 4);
+    const SteadyMotion rest = steady_motion(question);
+    REQUIRE(rest.status == SteadyStatus::adheres);
+    const auto other = another_motion(question, rest);
+    question.initial = {3, 0};
+    const SteadyMotion motion = steady_motion(question);
+    if (motion.status == SteadyStatus::steady) {
+        CHECK(motion.amplitude == within(waited_for(question, 80), 1e-8));
+        CHECK(other.has_value());
+    }
+}
+
+TEST_CASE("M with an offset that begins late, and a square wave: halves, breaks and means", "[steady]") {
+    // Mean of theta: with friction symmetric about an offset motion, that of the load.
+    SteadyQuestion question = driven(0.4, 0.2, 0.1);
+    question.excitation = question.excitation + truth::harmonic(0.7, 0, pi / 2);
+    const SteadyMotion found = steady_motion(question);
+    REQUIRE(found.status == SteadyStatus::steady);
+    CHECK_FALSE(found.symmetric);
+    CHECK(shape_of(question, found).mean == within(0.7, 1e-11));
+    CHECK((found.low + found.high) / 2 == within(0.7, 1e-11));
+}

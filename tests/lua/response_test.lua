@@ -1,0 +1,81 @@
+-- sys:response, run:spectrum and run:poincare against closed forms. Run by dinal.
+package.path = "tests/lua/?.lua;" .. package.path
+local support = require "support"
+local test, equal, near, raises_here = support.test, support.equal, support.near, support.raises_here
+
+test("the response is Den Hartog's where it does not stop, and goes on where it does", function()
+    local c = nondimensional{ friction_ratio = 0.5 }:response{ frequency = { 0.3, 2.1 }, points = 46 }
+    equal(#c, 46)
+    equal(c.frequency[1], 0.3)
+    equal(c.frequency[46], 2.1)
+    local compared = 0
+    for i = 1, #c do
+        local A = theory.den_hartog{ r = c.frequency[i], friction_ratio = 0.5 }
+        if A and A < math.huge then
+            near(c.amplitude[i], A, 1e-10 * math.max(1, A))
+            compared = compared + 1
+        elseif A then
+            equal(c.status[i], "grows")
+        else
+            assert(c.stops[i] >= 2, c.frequency[i])
+        end
+        equal(c.stable[i], c.status[i] == "grows" and 0.0 or 1.0)
+    end
+    assert(compared > 20)
+    assert(tostring(c:plot{ show = false }):find("frequency"))
+end)
+
+test("M may be a function of the frequency, and the amplitude another one", function()
+    local sys = system{ I = 2, k = 50, C = 1.5 }
+    local c = sys:response{ amplitude = 3, frequency = { 0.5, 0.8, 1.1 } }
+    local d = sys:response{ M = function(f) return excitation.harmonic{ amplitude = 3, frequency = f } end, frequency = { 0.5, 0.8, 1.1 } }
+    local e = sys:response{ M = function(f) return function(t) return 3*math.sin(2*math.pi*f*t) end end, frequency = { 0.5, 0.8, 1.1 } }
+    for i, f in ipairs{ 0.5, 0.8, 1.1 } do
+        local w = 2*math.pi*f
+        near(c.amplitude[i], 3 / math.sqrt((50 - 2*w^2)^2 + (1.5*w)^2), 1e-12)
+        near(c.lag[i], math.deg(math.atan(1.5*w, 50 - 2*w^2)), 1e-9)
+        near(d.amplitude[i], c.amplitude[i], 1e-13)
+        near(e.amplitude[i], c.amplitude[i], 1e-11)
+    end
+    raises_here(function() sys:response{ frequency = { 1, 1 } } end, "no range")
+    raises_here(function() sys:response{ frequency = { 1 } } end, "{ from, to }")
+    raises_here(function() sys:response{ frequency = { 1, -1 } } end, "must be positive")
+    raises_here(function() sys:response{ frequency = { 1, 2 }, points = 1 } end, "points = 1 must be a whole number")
+    raises_here(function() sys:response{ M = 3, frequency = { 1, 2 } } end, "a function of the frequency")
+    raises_here(function() sys:response{ M = function() return "x" end, frequency = { 1, 2 } } end, "M(1)")
+end)
+
+test("a spectrum shows each sine with its amplitude, whatever the window", function()
+    local sys = system{ I = 1, k = 400, C = 40 }
+    local M = excitation.harmonic{ amplitude = 4, frequency = 1 } + excitation.harmonic{ amplitude = 2, frequency = 2.5 } + 3
+    local run = sys:simulate{ M = M, t_end = 24, dt = 1/64 }
+    for _, window in ipairs{ "hann", "rectangle", "flat top" } do
+        local s = run:spectrum("M", { window = window, from = 8 + 1/64 })
+        equal(#s, 513)
+        near(s.frequency[17], 1, 1e-9)
+        near(s.amplitude[17], 4, 1e-9)
+        near(s.amplitude[41], 2, 1e-9)
+        near(s.amplitude[1], 3, 1e-9)
+        near(s.amplitude[100], 0, 1e-9)
+    end
+    equal(#run:spectrum(), #run:spectrum("theta"))
+    raises_here(function() run:spectrum("tetha") end, "did you mean 'theta'?")
+    raises_here(function() run:spectrum(3) end, "must be a string")
+    raises_here(function() run:spectrum("theta", { window = "round" }) end, "window")
+    raises_here(function() sys:simulate{ t_end = 3, times = { 0, 1, 1.5, 2, 2.2, 2.3, 2.4, 2.5, 2.6, 2.7, 2.8 } }:spectrum() end, "evenly spaced")
+    raises_here(function() sys:simulate{ t_end = 3, dt = 1 }:spectrum() end, "too few")
+end)
+
+test("a motion looked at once a period", function()
+    local run = nondimensional{ zeta = 0.3 }:simulate{ M = excitation.harmonic{ frequency = 0.8 }, t_end = 50, dt = 10 }
+    local d = run:poincare{ period = 1.25, from = 25 }
+    equal(#d, 21)
+    equal(d.t[21], 50.0)
+    assert((d.theta - d.theta[1]):abs():max() < 1e-10)
+    near(d.velocity[21], run.velocity[#run], 1e-10)
+    raises_here(function() run:poincare{} end, "run:poincare needs period")
+    raises_here(function() run:poincare{ period = 1, from = 60 } end, "is not in the run")
+    raises_here(function() run:poincare{ period = 1e-9 } end, "looks are more than")
+end)
+
+support.finish()

@@ -1,0 +1,109 @@
+-- sys:steady and run:steady as a user sees them: what is found, what is told, what is refused. Run by dinal.
+package.path = "tests/lua/?.lua;" .. package.path
+local support = require "support"
+local test, equal, near, raises, raises_here = support.test, support.equal, support.near, support.raises, support.raises_here
+
+local function harmonic(r) return excitation.harmonic{ frequency = r } end
+local sliding = nondimensional{ friction_ratio = 0.5 }
+
+test("all that is known about a steady motion", function()
+    local s = sliding:steady{ M = harmonic(1.35) }
+    equal(s.status, "steady")
+    near(s.amplitude, 0.860792180, 1e-9) -- 80 digits
+    near(s.lag, 140.69, 5e-3)
+    near(s.period, 1 / 1.35, 1e-15)
+    equal(s.periods, 1)
+    equal(s.stops, 0)
+    equal(s.stuck, 0.0)
+    assert(s.stable and s.unique and s.symmetric)
+    near(s.peak, s.amplitude, 1e-12)
+    near(s.mean, 0, 1e-12)
+    equal(#s.multipliers, 2)
+    assert(s.multipliers[1].abs < 1 and s.multipliers[1].im)
+    equal(s.rest, nil)
+    equal(s.growth, nil)
+    near(s.run:at(s.run.t_end), s.run.theta[1], 1e-11)
+    near((s.run.theta:max() - s.run.theta:min()) / 2, s.amplitude, 1e-4)
+    equal(s.run, s.run)
+    assert(s:explain():find("It is the%s+only one%."), s:explain())
+    equal(tostring(s), "steady: period 0.740741, amplitude 0.860792, 0 stops a period")
+end)
+
+test("where there is no motion, or too much of it, the answer says so", function()
+    local s = sliding:steady{ M = harmonic(1) }
+    equal(s.status, "grows")
+    near(s.growth, math.pi - 2, 1e-12)
+    for _, name in ipairs{ "amplitude", "lag", "peak", "stops", "stuck", "mean", "run", "rest", "stable", "unique", "multipliers" } do
+        equal(s[name], nil, name)
+    end
+    assert(s:explain():find("amplitude%s+grows by 1.1416"), s:explain())
+    s = sliding:steady{ M = 0.4 * harmonic(0.3) }
+    equal(s.status, "adheres")
+    equal(s.amplitude, 0.0)
+    near(s.rest[1], -0.1, 1e-12)
+    near(s.rest.upper, 0.1, 1e-12)
+    assert(not s.unique and s.stuck == 1.0 and s.stops == 0)
+    assert(s:explain():find("adheres", 1, true))
+    assert(nondimensional{ friction_ratio = 0.1 }:steady{ M = harmonic(0.5) }:explain():find("one%s+of%s+a%s+family"))
+end)
+
+test("a Lua function needs a period, which must be true; native sums know theirs", function()
+    local f = function(t) return math.sin(2*math.pi*1.35*t) end
+    near(sliding:steady{ M = f, period = 1 / 1.35 }.amplitude, 0.860792180, 1e-9)
+    near(sliding:steady{ M = harmonic(0.5) + 0.3*harmonic(0.75) }.period, 4, 1e-9)
+    raises_here(function() sliding:steady{ M = f } end, "the period of M is not known")
+    raises_here(function() sliding:steady{ M = harmonic(1) + harmonic(2^0.5) } end, "the period of M is not known")
+    raises_here(function() sliding:steady{ M = f, period = 0.7 } end, "M does not repeat itself after period = 0.7")
+    raises_here(function() sliding:steady{ M = harmonic(1), period = 0.7 } end, "M does not repeat itself")
+    raises_here(function() sliding:steady{ M = f, period = 0 } end, "period = 0 must be positive")
+    raises_here(function() sliding:steady{ M = f, period = 1, periods = 0.5 } end, "periods = 0.5 must be a whole number")
+    raises_here(function() sliding:steady{ m = f } end, "no option 'm'", "did you mean 'M'?")
+    raises(function() sliding:steady{ M = function() error("mine") end, period = 1 } end, "mine")
+    raises(function() sliding:steady{ M = function() return 0/0 end, period = 1 } end, "nan")
+end)
+
+test("a load that begins late is taken when it is periodic", function()
+    local M = harmonic(0.4) + excitation.step{ level = 0.3, at = 5.2 }
+    local s = sliding:steady{ M = M }
+    equal(s.run.t_start, 5.2)
+    near(s.mean, 0.3, 1e-10)
+end)
+
+test("feedback: a motor as a dashpot gives what the dashpot gives", function()
+    local damped = system{ I = 1, k = 40, C = 2, Rd = 0.4 }:steady{ M = excitation.harmonic{ amplitude = 3, frequency = 0.8 } }
+    local fed = system{ I = 1, k = 40, Rd = 0.4 }:steady{
+        M = function(t, theta, velocity) return 3*math.sin(2*math.pi*0.8*t) - 2*velocity end, period = 1.25 }
+    near(fed.amplitude, damped.amplitude, 1e-9)
+    near(fed.multipliers[1].abs, damped.multipliers[1].abs, 1e-6)
+    equal(fed.lag, nil)
+end)
+
+test("a subharmonic motion is found, and periods asks for it", function()
+    -- A swing that is pushed at every third of its turns: 3 periods of M are one of its own.
+    local sys = system{ I = 1, k = 4*math.pi^2, C = 0.05, Rd = 0.02, Re = 0.02 }
+    local s = sys:steady{ M = function(t, theta) return 30*math.sin(6*math.pi*t) - 400*theta^3 end, period = 1/3, theta0 = 0.6 }
+    assert(s.status == "steady" and s.periods >= 1, tostring(s))
+    local again = sys:steady{ M = function(t, theta) return 30*math.sin(6*math.pi*t) - 400*theta^3 end, period = 1/3,
+        periods = s.periods, theta0 = s.run.theta[1], velocity0 = s.run.velocity[1] }
+    near(again.amplitude, s.amplitude, 1e-8)
+end)
+
+test("run:steady goes on from where the run has got to", function()
+    local M = harmonic(1)
+    local run = nondimensional{ friction_ratio = 0.836 }:simulate{ M = M, theta0 = 1, t_end = 7.3, dt = 0.1 }
+    near(run:steady().amplitude, 0.1291703518, 1e-10)
+    local file = support.temporary ".csv"
+    run:save(file)
+    raises_here(function() trajectory.load(file):steady() end, "does not know its system")
+    raises_here(function() run:steady{ theta0 = 1 } end, "no option 'theta0'")
+end)
+
+test("Ctrl-C and limits reach the search: a function that never ends is stopped by its own error", function()
+    local calls = 0
+    raises(function()
+        sliding:steady{ M = function(t) calls = calls + 1 if calls > 500 then error("enough") end return math.sin(t) end,
+            period = 2*math.pi }
+    end, "enough")
+end)
+
+support.finish()
