@@ -284,11 +284,12 @@ std::optional<SteadyMotion> another_motion(const SteadyQuestion& question, const
         other.initial = {size * radius * std::cos(angle), size * radius * std::sin(angle) * omega};
         const SteadyMotion found = steady_motion(other, monitor);
         if (found.status == SteadyStatus::none || found.outcome == model::Outcome::interrupted) continue;
-        const bool same = found.status == known.status && std::fabs(found.amplitude - known.amplitude) <= 1e-6 * size &&
-                          std::fabs(std::fabs(found.high) - std::fabs(known.high)) +
-                                  std::fabs(std::fabs(found.low) - std::fabs(known.low)) <=
-                              2e-6 * size;
-        if (!same) return found;
+        const bool alike = found.status == known.status &&
+                           std::fabs(found.amplitude - known.amplitude) <= 1e-6 * size &&
+                           std::fabs(std::fabs(found.high) - std::fabs(known.high)) +
+                                   std::fabs(std::fabs(found.low) - std::fabs(known.low)) <=
+                               2e-6 * size;
+        if (!alike) return found;
     }
     return {};
 }

@@ -33,7 +33,6 @@ Engine::Engine(const Problem& problem, const Cut& cut, Trajectory& trajectory, s
     : problem_(problem),
       extras_(*problem.extras),
       system_(problem.system),
-      trajectory_(trajectory),
       events_(events),
       pieces_(pieces),
       field_(problem, *pieces),

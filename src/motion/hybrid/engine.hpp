@@ -85,7 +85,6 @@ private:
     const Problem& problem_;
     const model::Extras& extras_;
     model::Lowered system_;
-    Trajectory& trajectory_;
     std::vector<model::Event>& events_;
     std::shared_ptr<Pieces> pieces_;
     Field field_;
@@ -104,7 +103,7 @@ private:
     double bad_time_ = model::never;
     int attempts_ = 0, too_short_ = 0, often_ = 0;
     double attempts_since_ = 0, last_event_ = -model::never;
-    std::size_t next_row_ = 0, steps_ = 0;
+    std::size_t next_row_ = 0;
     double* column_ = nullptr;
     model::Outcome outcome_ = model::Outcome::reached_end;
 };

@@ -33,7 +33,6 @@ Field::Field(const Problem& problem, const Past& past)
       extras_(*problem.extras),
       past_(past),
       inertia_(problem.system.inertia()),
-      start_(problem.window.start),
       initial_(problem.initial),
       memory_(problem.excitation.components().size()) {
     for (const model::Component& c : excitation_.components()) {

@@ -96,7 +96,6 @@ private:
     const model::Extras& extras_;
     const Past& past_;
     double inertia_;
-    double start_;
     model::State initial_;
     std::vector<ControllerMemory> memory_;  // for each component
     std::vector<double> delays_;

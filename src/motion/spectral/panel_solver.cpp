@@ -10,8 +10,6 @@ namespace {
 
 /// Where M fails, the run comes this near to it, in units of pace_.
 constexpr double near_failure = 1e-9;
-/// The longest panel of a block without a spring, which has no period, as a part of its run.
-constexpr double part_of_run = 1.0 / 16;
 
 }  // namespace
 
@@ -21,10 +19,7 @@ PanelSolver::PanelSolver(const Problem& problem, const Spectral& options)
       end_of_run_(problem.window.end),
       tolerance_(options.tolerance),
       pace_(std::min(problem.system.natural_period(), problem.window.end - problem.window.start)),
-      h_max_(std::min(options.max_panel, problem.system.has_spring()
-                                             ? longest_panel * problem.system.natural_period()
-                                             : part_of_run * (problem.window.end - problem.window.start)) /
-             2),
+      h_max_(options.longest(problem) / 2),
       feedback_(problem.excitation.has_feedback() || system_.has_remainder()),
       script_(problem.excitation.has_script()),
       law_(problem.system.friction().as<model::laws::UserLaw>()),

@@ -9,9 +9,15 @@ namespace dinal::motion::spectral {
 
 Resolution Spectral::resolution(const model::Oscillator& system) const {
     constexpr double parts = chebyshev::degree;
-    const double longest = longest_panel * system.natural_period();
-    return max_panel < longest ? Resolution{"max_panel/16", max_panel / parts, false}
-                               : Resolution{"T0/27", longest / parts, false};
+    const double own = longest_panel * system.natural_period();
+    return max_panel < own ? Resolution{"max_panel/16", max_panel / parts, false}
+                           : Resolution{"T0/27", own / parts, false};
+}
+
+double Spectral::longest(const Problem& problem) const {
+    const model::Oscillator& system = problem.system;
+    return std::min(max_panel, system.has_spring() ? longest_panel * system.natural_period()
+                                                   : part_of_run * (problem.window.end - problem.window.start));
 }
 
 Trajectory Spectral::run(const Problem& problem) const {
@@ -31,11 +37,7 @@ Trajectory Spectral::run(const Problem& problem) const {
 }
 
 Trajectory Spectral::run_more(const Problem& problem) const {
-    constexpr double part_of_run = 1.0 / 16;  // the longest piece of a block without a spring
-    const double length = problem.window.end - problem.window.start;
-    const double longest =
-        problem.system.has_spring() ? longest_panel * problem.system.natural_period() : part_of_run * length;
-    return hybrid::run(problem, {.tolerance = tolerance, .longest = std::min(max_panel, longest)});
+    return hybrid::run(problem, {.tolerance = tolerance, .longest = longest(problem)});
 }
 
 }  // namespace dinal::motion::spectral

@@ -9,12 +9,16 @@ namespace dinal::motion::spectral {
 
 /// No panel is longer than this many natural periods, whatever max_panel says.
 inline constexpr double longest_panel = 0.6;
+/// A block without a spring has no period: for its panels this part of the run stands for that length.
+inline constexpr double part_of_run = 1.0 / 16;
 
 struct Spectral {
     double tolerance = 1e-12;                                    ///< of the motion, relative, on each panel
     double max_panel = std::numeric_limits<double>::infinity();  ///< longest panel, time units
 
     static const MethodText about;
+    /// The longest panel of a run, time units.
+    [[nodiscard]] double longest(const Problem& problem) const;
     [[nodiscard]] Resolution resolution(const model::Oscillator& system) const;
     [[nodiscard]] Trajectory run(const Problem& problem) const;
     [[nodiscard]] Trajectory run_more(const Problem& problem) const;
