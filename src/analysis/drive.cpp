@@ -99,9 +99,11 @@ DriveRange extremes(const model::Excitation& excitation, const Drive& drive) {
         range.low = std::min(range.low, value);
         range.high = std::max(range.high, value);
     };
-    for (double t = excitation.next_break(drive.start); t < end; t = excitation.next_break(t)) {
-        see(excitation.value(t));
-        see(excitation.value_before(t));
+    double jump = excitation.next_break(drive.start);
+    while (jump < end) {
+        see(excitation.value(jump));
+        see(excitation.value_before(jump));
+        jump = excitation.next_break(jump);
     }
     double before = excitation.value(drive.start - h), now = excitation.value(drive.start);
     for (int i = 0; i < pieces; ++i) {

@@ -40,10 +40,10 @@ auto integral(const model::Excitation& excitation, double from, double to, doubl
     decltype(f(from)) sum{};
     for (double a = from; a < to;) {
         const double limit = std::min(to, excitation.next_break(a));
-        const double pieces = std::max(1.0, std::ceil((limit - a) / longest));
-        const double h = (limit - a) / pieces / 2;
-        for (double i = 0; i < pieces; ++i) {
-            const double middle = a + (2 * i + 1) * h;
+        const auto pieces = static_cast<std::size_t>(std::max(1.0, std::ceil((limit - a) / longest)));
+        const double h = (limit - a) / static_cast<double>(pieces) / 2;
+        for (std::size_t i = 0; i < pieces; ++i) {
+            const double middle = a + static_cast<double>(2 * i + 1) * h;
             sum += h * (w0 * f(middle) + w1 * (f(middle - x1 * h) + f(middle + x1 * h)) +
                         w2 * (f(middle - x2 * h) + f(middle + x2 * h)));
         }

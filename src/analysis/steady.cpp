@@ -225,7 +225,7 @@ private:
     }
 
     bool recurs(const std::vector<Place>& places, double size, int longest, double near) {
-        const Place last = places.back();
+        const Place& last = places.back();
         for (int m = 1; m <= longest && static_cast<std::size_t>(m) < places.size(); ++m) {
             if ((last - places[places.size() - 1 - static_cast<std::size_t>(m)]).norm() > near * size) continue;
             if (m == 1 && symmetric_ && search_once(last, true) && answer_.stable && is_near(last, size)) return true;

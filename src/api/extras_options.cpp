@@ -192,7 +192,7 @@ std::vector<model::WantedEvent> read_events(lua_State* L, const lua::Options& op
 /// A function of time alone.
 model::Excitation read_motion(lua_State* L, const lua::Options& options, const char* name) {
     options.push(name);
-    const model::Excitation motion = to_excitation(L, -1, fmt::format("sys:simulate: {}", name), name);
+    model::Excitation motion = to_excitation(L, -1, fmt::format("sys:simulate: {}", name), name);
     if (motion.has_feedback() || model::has_memory(motion)) {
         options.fail({.sentence = fmt::format("{} must be a number, an excitation or a function of t alone", name),
                       .option = name});

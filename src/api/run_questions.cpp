@@ -80,8 +80,8 @@ int poincare_of_run(lua_State* L) {
     if (looks > most) options.fail({fmt::format("{:.3g} looks are more than {:.3g}", looks, most)});
     std::vector<double> t, theta, velocity;
     lua::CallState call(L);
-    for (double i = 0; i < looks; ++i) {
-        const double at = std::min(from + i * asked.period, trajectory.t_stop);
+    for (std::size_t i = 0; i < static_cast<std::size_t>(looks); ++i) {
+        const double at = std::min(from + static_cast<double>(i) * asked.period, trajectory.t_stop);
         const auto state = trajectory.at(at);
         if (call.failed()) call.raise_error();
         if (!state) options.fail(state.error());

@@ -147,7 +147,7 @@ int interpolated(lua_State* L) {
     const lua::Vector& y = other(L, 3, call, "y");
     if (x.size() != y.size()) unequal(L, call, x.size(), y.size());
     if (x.size() == 0) lua::raise(L, text::in_call(call, {"there are no points"}));
-    const auto step = std::adjacent_find(x.begin(), x.end(), [](double a, double b) { return !(a < b); });
+    const auto* const step = std::adjacent_find(x.begin(), x.end(), [](double a, double b) { return !(a < b); });
     if (step != x.end()) {
         lua::raise(L, text::in_call(call, {fmt::format("x[{}] = {} is not after x[{}] = {}; x must increase",
                                                        step - x.begin() + 2, step[1], step - x.begin() + 1, *step)}));

@@ -2,6 +2,7 @@
 // run so far, so only a run can ask them; everywhere else they add and scale like any other term.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <limits>
 #include <memory>
@@ -50,10 +51,9 @@ const C* controller_of(const Component& component) {
 }
 
 inline bool has_memory(const Excitation& excitation) {
-    for (const Component& c : excitation.components()) {
-        if (controller_of(c) != nullptr) return true;
-    }
-    return false;
+    const auto& components = excitation.components();
+    return std::any_of(components.begin(), components.end(),
+                       [](const Component& c) { return controller_of(c) != nullptr; });
 }
 
 }  // namespace dinal::model

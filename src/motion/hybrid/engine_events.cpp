@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <span>
 
 #include "motion/hybrid/engine.hpp"
 
@@ -239,9 +240,10 @@ void Engine::record_turns(double until) {
     const double torques = greatest(piece_.M) + greatest(piece_.push) + system_.stiffness() * greatest(piece_.y[0]);
     if (moving <= 100 * rounding * piece_.h / system_.inertia() * torques) return;
     if (standstill_.motion() == model::Motion::stuck) {
-        const auto first = std::find_if(piece_.y[1].begin(), piece_.y[1].end(),
-                                        [&](double u) { return std::fabs(u) > 1e-14 * moving; });
-        standstill_.head(model::motion_of(first == piece_.y[1].end() ? 0 : *first));
+        const std::span<const double> velocities = piece_.y[1];
+        const auto first =
+            std::find_if(velocities.begin(), velocities.end(), [&](double u) { return std::fabs(u) > 1e-14 * moving; });
+        standstill_.head(model::motion_of(first == velocities.end() ? 0 : *first));
     }
     double from = -1;
     LeftEnd start = y_[1] == 0 ? LeftEnd::leaving : LeftEnd::anywhere;

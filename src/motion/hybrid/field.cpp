@@ -126,7 +126,9 @@ double Field::next_break(double t) const {
 }
 
 double Field::shortest_delay() const {
-    return delays_.empty() ? model::never : *std::min_element(delays_.begin(), delays_.end());
+    double shortest = model::never;
+    for (const double delay : delays_) shortest = std::min(shortest, delay);
+    return shortest;
 }
 
 double Field::view(double t, double spacing) const {
