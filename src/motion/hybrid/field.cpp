@@ -126,9 +126,9 @@ double Field::next_break(double t) const {
 }
 
 double Field::shortest_delay() const {
-    double shortest = model::never;
-    for (const double delay : delays_) shortest = std::min(shortest, delay);
-    return shortest;
+    double least = model::never;
+    for (const double delay : delays_) least = std::min(least, delay);
+    return least;
 }
 
 double Field::view(double t, double spacing) const {
