@@ -7,6 +7,8 @@
 #include <cmath>
 #include <span>
 
+#include "text/sentences.hpp"
+
 namespace dinal::motion {
 
 const std::vector<std::string>& column_names() {
@@ -55,21 +57,18 @@ namespace {
 
 std::string events_text(std::span<const model::Event> events) {
     if (events.empty()) return "no events";
-    std::array<int, model::event_kind_count> counts{};
+    std::array<std::size_t, model::event_kind_count> counts{};
     for (const model::Event& event : events) ++counts.at(static_cast<std::size_t>(event.kind));
     std::string parts;
     for (const model::EventKind kind :
          {model::EventKind::turn, model::EventKind::stick, model::EventKind::slip, model::EventKind::rest,
           model::EventKind::impact, model::EventKind::switched, model::EventKind::user}) {
-        const int n = counts.at(static_cast<std::size_t>(kind));
+        const std::size_t n = counts.at(static_cast<std::size_t>(kind));
         if (n == 0) continue;
         if (!parts.empty()) parts += ", ";
-        parts += fmt::format("{} {}{}", n, model::name(kind),
-                             n == 1 || kind == model::EventKind::rest ? ""
-                             : kind == model::EventKind::switched     ? "es"
-                                                                      : "s");
+        parts += text::counted(n, model::name(kind));
     }
-    return fmt::format("{} event{} ({})", events.size(), events.size() == 1 ? "" : "s", parts);
+    return fmt::format("{} ({})", text::counted(events.size(), "event"), parts);
 }
 
 }  // namespace
@@ -87,7 +86,7 @@ text::Expected<model::State> Trajectory::at(double t) const {
 
 std::string summary(const Trajectory& trajectory) {
     const auto& rows = trajectory.rows;
-    std::string text = fmt::format("{} row{}", rows.rows(), rows.rows() == 1 ? "" : "s");
+    std::string text = text::counted(static_cast<std::size_t>(rows.rows()), "row");
     if (!trajectory.computed) {
         for (std::size_t i = 0; i < trajectory.names.size(); ++i)
             text += (i == 0 ? " of " : ", ") + trajectory.names[i];

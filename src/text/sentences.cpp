@@ -26,7 +26,7 @@ std::string against_limit(double torque, double limit) {
 }
 
 std::string counted(std::size_t n, std::string_view what) {
-    return fmt::format("{} {}{}", n, what, n == 1 ? "" : "s");
+    return fmt::format("{} {}{}", n, what, n == 1 ? "" : what.ends_with("ch") ? "es" : "s");
 }
 
 std::string percent(double part) {

@@ -15,7 +15,7 @@ std::string number_text(double x, double scale);
 /// "0.15515 <= Re = 0.167", with as many digits as it takes to see it; "Re = 0.5" when they are equal.
 std::string against_limit(double torque, double limit);
 
-/// "1 stop", "7 stops", "1 half cycle".
+/// "1 stop", "7 stops", "2 switches".
 std::string counted(std::size_t n, std::string_view what);
 
 /// 0.1234 -> "12.3 %".

@@ -276,6 +276,7 @@ TEST_CASE("numbers for people have as many digits as say something", "[explain]"
     CHECK(against_limit(std::nextafter(0.5, 0), 0.5) == "Re = 0.5 but for rounding");
     CHECK(against_limit(5.6e-17, 0.1) == "0 <= Re = 0.1");
     CHECK(counted(1, "stop") == "1 stop");
+    CHECK(counted(2, "switch") == "2 switches");
     CHECK(counted(0, "stop") == "0 stops");
     CHECK(percent(0.3495) == "34.9 %");
 }
