@@ -14,10 +14,11 @@ namespace dinal::help {
 namespace {
 
 constexpr void (*register_functions[])(lua_State*) = {
-    api::register_system, api::register_friction, api::register_excitation, api::register_integrator,
-    api::register_run,    api::register_energy,   api::register_trajectory, api::register_theory,
-    api::register_vector, api::register_data,     api::register_progress,   api::register_plot,
-    api::register_steady, register_help,
+    api::register_system,     api::register_friction, api::register_excitation,
+    api::register_integrator, api::register_run,      api::register_energy,
+    api::register_trajectory, api::register_theory,   api::register_vector,
+    api::register_data,       api::register_progress, api::register_plot,
+    api::register_steady,     api::register_identify, register_help,
 };
 
 // Plain fields of the table: documented here, set by open_library() and sys:simulate.
@@ -59,6 +60,8 @@ const Section all_sections[] = {
     {"A vector", "v", &api::vector_class},
     {"Data", "data", &api::data_module},
     {"Named columns", "d", &api::data_class},
+    {"Identification", "", &api::identify_functions},
+    {"A fit", "fit", &api::fit_class},
     {"Progress", "", &api::progress_functions},
     {"Plots", "", &api::plot_functions},
     {"A picture", "picture", &api::picture_class},

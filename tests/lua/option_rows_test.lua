@@ -30,6 +30,7 @@ world.sys = nondimensional { zeta = 0.1, friction_ratio = 0.1 }
 world.run = world.sys:simulate { theta0 = 1, t_end = 1, dt = 0.25 }
 world.M = excitation.constant { level = 1 }
 world.t, world.theta = world.run.t, world.run.theta
+world.fit = identify { data = world.sys:simulate { theta0 = 1, t_end = 3, dt = 0.1 } }
 world.d = data { r = { 1, 2 }, A = { 3, 4 } }
 world.f = function() return 1 end
 local record = os.tmpname()

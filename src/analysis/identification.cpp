@@ -1,0 +1,262 @@
+#include "analysis/identification.hpp"
+
+#include <fmt/format.h>
+
+#include <Eigen/Eigenvalues>
+
+#include "analysis/identification_search.hpp"
+
+namespace dinal::analysis {
+
+text::Expected<Identified> Identification::identified() {
+    const std::vector<Parameters> starts = question_.M ? forced_starts() : free_starts();
+    for (left_out_ = 0; left_out_ < (question_.M ? 1U : 3U); ++left_out_) {
+        for (const Parameters& start : starts) {
+            if (stopped_ || (best_ && good_enough())) break;
+            try_from(start);
+        }
+    }
+    if (!best_) return text::Error{"no motion of such a system comes near this record"};
+    if (!question_.M && !stopped_) try_breakaway();
+    return result();
+}
+
+void Identification::choose_unknowns() {
+    for (int i = 0; i < unknown_count; ++i) {
+        const auto which = static_cast<Unknown>(i);
+        bool free = !is_given(which);
+        if (!question_.M && which == Unknown::Re) free = false;
+        if (!question_.M && which == Unknown::I) free = free && is_given(Unknown::k);
+        if (free) unknowns_.push_back(which);
+    }
+}
+
+std::optional<Eigen::VectorXd> Identification::predicted(const Parameters& p, std::size_t rows) {
+    ++runs_;
+    model::OscillatorParameters parts;
+    parts.inertia = at(p, Unknown::I);
+    parts.stiffness = at(p, Unknown::k);
+    parts.damping = at(p, Unknown::C);
+    parts.kinetic_friction = at(p, Unknown::Rd);
+    const bool own_breakaway = is_given(Unknown::Re) || question_.M || breakaway_ > 0;
+    if (own_breakaway) {
+        const double Re = question_.M || is_given(Unknown::Re) ? at(p, Unknown::Re) : breakaway_ * parts.stiffness;
+        parts.breakaway = std::max(Re, parts.kinetic_friction);
+    }
+    const auto system = model::Oscillator::make(parts);
+    if (!system) return {};
+    const std::vector<double> times(question_.t.begin(), question_.t.begin() + static_cast<std::ptrdiff_t>(rows));
+    motion::Limits limits;
+    limits.dense = false;
+    const auto run = motion::simulate(
+        *system, question_.M.value_or(model::Excitation()), {at(p, Unknown::theta0), at(p, Unknown::velocity0)},
+        {times.front(), times.back()}, motion::Grid::at(times), motion::Integrator{}, monitor_, limits);
+    if (!run || static_cast<std::size_t>(run->size()) != rows) {
+        stopped_ = stopped_ || (run && (run->outcome == model::Outcome::interrupted ||
+                                        run->outcome == model::Outcome::excitation_not_finite));
+        return {};
+    }
+    return Eigen::VectorXd(run->column(motion::Column::theta).array() + at(p, Unknown::offset));
+}
+
+FitScale Identification::scale_of(const Parameters& start) const {
+    FitScale scale{Eigen::VectorXd(count()), Eigen::VectorXd::Constant(count(), -1e300)};
+    const double k = at(start, Unknown::k), omega = std::sqrt(k / at(start, Unknown::I));
+    for (Eigen::Index i = 0; i < count(); ++i) {
+        switch (unknowns_[static_cast<std::size_t>(i)]) {
+            case Unknown::I:
+                scale.typical[i] = scale.least[i] = 1e-6 * at(start, Unknown::I);
+                break;
+            case Unknown::k:
+                scale.typical[i] = scale.least[i] = 1e-6 * k;
+                break;
+            case Unknown::C:
+                scale.typical[i] = 0.01 * k / omega;
+                scale.least[i] = 0;
+                break;
+            case Unknown::Rd:
+            case Unknown::Re:
+                scale.typical[i] = 0.01 * k * range_;
+                scale.least[i] = 0;
+                break;
+            case Unknown::theta0:
+            case Unknown::offset:
+                scale.typical[i] = 0.1 * range_;
+                break;
+            case Unknown::velocity0:
+                scale.typical[i] = 0.1 * range_ * omega;
+                break;
+        }
+    }
+    return scale;
+}
+
+void Identification::try_from(const Parameters& start) {
+    base_ = start;
+    Eigen::VectorXd p(count());
+    for (std::size_t i = 0; i < unknowns_.size(); ++i) p[static_cast<Eigen::Index>(i)] = at(start, unknowns_[i]);
+    const double period = 2 * std::numbers::pi * std::sqrt(at(start, Unknown::I) / at(start, Unknown::k));
+    const FitScale scale = scale_of(start);
+    const std::size_t least = unknowns_.size() + 4;
+    std::size_t done = least;
+    std::optional<LeastSquares> some;
+    for (const std::size_t rows : stages(period)) {
+        if (rows < done || rows >= question_.t.size()) continue;
+        some = fit(p, rows, scale, 12);
+        if (some) p = some->parameters;
+        done = rows + 1;
+    }
+    keep_if_better(fit(p, question_.t.size(), scale, 40), scale);
+    if (some && !question_.M && best_ && !explains_rest(*some)) look_beside(*some, scale);
+}
+
+/// A swing cannot be taken for the next one where what came before is known already.
+std::vector<std::size_t> Identification::stages(double period) const {
+    std::vector<std::size_t> rows;
+    const double first = question_.t.front();
+    for (double length = 2.2 * period; first + length < question_.t.back(); length *= 2) {
+        const auto until = std::upper_bound(question_.t.begin(), question_.t.end(), first + length);
+        rows.push_back(static_cast<std::size_t>(until - question_.t.begin()));
+        if (!question_.M) break;
+    }
+    if (!question_.M && turns_.size() > left_out_) rows.push_back(turns_[turns_.size() - 1 - left_out_] + 1);
+    return rows;
+}
+
+void Identification::keep_if_better(const std::optional<LeastSquares>& all, const FitScale& scale) {
+    if (!all || (best_ && !(all->sum < best_->sum))) return;
+    best_ = all;
+    best_base_ = base_;
+    best_scale_ = scale;
+    best_breakaway_ = breakaway_;
+}
+
+std::optional<LeastSquares> Identification::fit(const Eigen::VectorXd& p, std::size_t rows, const FitScale& scale,
+                                                int steps) {
+    const auto model = [this, rows](const Eigen::VectorXd& q) { return predicted(filled(q), rows); };
+    return least_squares(model, measured_.head(static_cast<Eigen::Index>(rows)), p, scale, steps);
+}
+
+void Identification::try_breakaway() {
+    if (good_enough() || is_given(Unknown::Re)) return;
+    std::vector<double> amplitudes;
+    const double zero = at(filled_best(), Unknown::offset);
+    for (const std::size_t i : turns_) amplitudes.push_back(std::fabs(question_.theta[i] - zero));
+    amplitudes.push_back(std::fabs(question_.theta.back() - zero));
+    std::sort(amplitudes.begin(), amplitudes.end());
+    const Parameters start = filled_best();
+    for (std::size_t i = 0; i + 1 < std::min<std::size_t>(amplitudes.size(), 4) && !stopped_; ++i) {
+        breakaway_ = (amplitudes[i] + amplitudes[i + 1]) / 2;
+        try_from(start);
+    }
+    breakaway_ = best_breakaway_;
+}
+
+/// No fit can be nearer to the moving part than the one of that part alone, nor to the rest than by a shift.
+bool Identification::explains_rest(const LeastSquares& moving) const {
+    const Eigen::Index n = moving.residual.size(), rest = measured_.size() - n;
+    const double shift = best_->residual.tail(rest).sum();
+    const double lost = best_->residual.head(n).squaredNorm() - moving.sum + shift * shift / static_cast<double>(rest);
+    return lost < 1.5 * moving.sum / static_cast<double>(n - count());
+}
+
+/// Whether a last small swing comes about, and to which side, turns the slope with which the place of rest goes with
+/// the parameters: each case is a valley of its own, and the many samples at rest make its walls steep. So the fit is
+/// begun again around what the moving part of the record tells, along the ways that it tells least.
+void Identification::look_beside(const LeastSquares& moving, const FitScale& scale) {
+    const auto model = [&](const Eigen::VectorXd& q) {
+        return predicted(filled(q), static_cast<std::size_t>(moving.residual.size()));
+    };
+    auto J = derivative(model, moving.parameters, scale, moving.residual.size());
+    if (!J) return;
+    Eigen::VectorXd size(count());
+    for (Eigen::Index i = 0; i < count(); ++i) {
+        size[i] = std::max(std::fabs(moving.parameters[i]), scale.typical[i]);
+        J->col(i) *= size[i];
+    }
+    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> ways(J->transpose() * *J);
+    const double noise = std::sqrt(moving.sum / static_cast<double>(J->rows() - J->cols()));
+    for (Eigen::Index way = 0; way < std::min<Eigen::Index>(2, count()); ++way) {
+        const double length = noise / std::sqrt(std::max(ways.eigenvalues()[way], 1e-300));
+        const Eigen::VectorXd step = std::min(length, 0.3) * ways.eigenvectors().col(way).cwiseProduct(size);
+        for (const double deviations : {0.8, -0.8, 2.0, -2.0}) {
+            keep_if_better(fit(moving.parameters + deviations * step, question_.t.size(), scale, 15), scale);
+        }
+    }
+}
+
+Identified Identification::result() {
+    Identified found;
+    breakaway_ = best_breakaway_;
+    found.value = filled_best();
+    if (!question_.M && !is_given(Unknown::Re)) {
+        at(found.value, Unknown::Re) = std::max(at(found.value, Unknown::Rd), breakaway_ * at(found.value, Unknown::k));
+        found.silent[static_cast<std::size_t>(Unknown::Re)] = true;
+    }
+    const auto J = derivative([this](const Eigen::VectorXd& q) { return predicted(filled(q), question_.t.size()); },
+                              best_->parameters, best_scale_, measured_.size());
+    const Covariance covariance =
+        covariance_of(best_->parameters, J.value_or(Eigen::MatrixXd::Zero(measured_.size(), count())), best_scale_);
+    found.noise = deviation();
+    Eigen::MatrixXd full = Eigen::MatrixXd::Zero(unknown_count, unknown_count);
+    for (Eigen::Index i = 0; i < count(); ++i) {
+        const auto which = static_cast<std::size_t>(unknowns_[static_cast<std::size_t>(i)]);
+        found.fitted[which] = true;
+        found.silent[which] = covariance.silent[static_cast<std::size_t>(i)];
+        found.error[which] = found.noise * std::sqrt(covariance.matrix(i, i));
+        for (Eigen::Index j = 0; j < count(); ++j) {
+            full(static_cast<Eigen::Index>(which), static_cast<Eigen::Index>(unknowns_[static_cast<std::size_t>(j)])) =
+                covariance.matrix(i, j);
+        }
+    }
+    ratios(full, found);
+    const Eigen::VectorXd predicted_all = measured_ - best_->residual;
+    found.predicted.assign(predicted_all.begin(), predicted_all.end());
+    found.runs = runs_;
+    return found;
+}
+
+void Identification::ratios(const Eigen::MatrixXd& covariance, Identified& found) {
+    const double I = at(found.value, Unknown::I), k = at(found.value, Unknown::k);
+    const double C = at(found.value, Unknown::C), Rd = at(found.value, Unknown::Rd);
+    found.omega0 = std::sqrt(k / I);
+    found.zeta = C / (2 * std::sqrt(I * k));
+    found.Rd_over_k = Rd / k;
+    const auto error = [&](double by_I, double by_k, double by_C, double by_Rd) {
+        Eigen::VectorXd by = Eigen::VectorXd::Zero(unknown_count);
+        by.head(4) << by_I, by_k, by_C, by_Rd;
+        return found.noise * std::sqrt(std::max(0.0, by.dot(covariance * by)));
+    };
+    found.omega0_error = error(-found.omega0 / (2 * I), found.omega0 / (2 * k), 0, 0);
+    found.zeta_error = error(-found.zeta / (2 * I), -found.zeta / (2 * k), 1 / (2 * std::sqrt(I * k)), 0);
+    found.Rd_over_k_error = error(0, -Rd / (k * k), 0, 1 / k);
+}
+
+text::Expected<Identified> identify(const IdentifyQuestion& question, const motion::Monitor& monitor) {
+    const std::size_t n = question.t.size();
+    std::size_t unknowns = 0;
+    for (const auto& given : question.given) unknowns += given ? 0U : 1U;
+    const std::size_t least = std::max<std::size_t>(8, unknowns + 1);
+    if (n < least || question.theta.size() != n) {
+        return text::Error{
+            fmt::format("the record has {} samples; for {} unknowns at least {} are needed", n, unknowns, least)};
+    }
+    for (std::size_t i = 0; i < n; ++i) {
+        if (!std::isfinite(question.t[i]) || !std::isfinite(question.theta[i])) {
+            return text::Error{fmt::format("sample {} of the record is not a finite number", i + 1)};
+        }
+        if (i > 0 && !(question.t[i] > question.t[i - 1])) {
+            return text::Error{
+                fmt::format("the times of the record must increase, but sample {} at t = {:.6g} is not "
+                            "after sample {} at t = {:.6g}",
+                            i + 1, question.t[i], i, question.t[i - 1])};
+        }
+    }
+    const auto [low, high] = std::minmax_element(question.theta.begin(), question.theta.end());
+    if (*low == *high) {
+        return text::Error{fmt::format("nothing moves in the record: all samples are {:.6g}", *low)};
+    }
+    return Identification(question, monitor).identified();
+}
+
+}  // namespace dinal::analysis

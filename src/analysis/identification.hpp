@@ -1,0 +1,45 @@
+// Which system made this record: the parameters whose exact motion is nearest to measured angles, and how sure they
+// are.
+//
+// A free decay needs no guess: its extremes say how long a swing lasts and what each one loses. With a known M the weak
+// form of the equation of motion (multiplied by bumps and integrated by parts, so that nothing is differentiated) is
+// linear in I, C, k and Rd. From there Levenberg and Marquardt's method goes on with exact motions.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string_view>
+#include <vector>
+
+#include "model/excitation.hpp"
+#include "motion/simulate.hpp"
+#include "text/expected.hpp"
+
+namespace dinal::analysis {
+
+/// What a record may tell. The last three are of the measured angle, theta + offset, at its first time.
+enum class Unknown : int { I, k, C, Rd, Re, theta0, velocity0, offset };
+inline constexpr int unknown_count = 8;
+inline constexpr std::array<std::string_view, unknown_count> unknown_names{"I",  "k",      "C",         "Rd",
+                                                                           "Re", "theta0", "velocity0", "offset"};
+
+struct IdentifyQuestion {
+    std::vector<double> t, theta;             ///< times increase; at least as many as unknowns, and eight
+    std::optional<model::Excitation> M = {};  ///< none: a free decay, which tells ratios: I = 1 unless I or k is given
+    std::array<std::optional<double>, unknown_count> given = {};  ///< of those that are not fitted
+};
+
+struct Identified {
+    std::array<double, unknown_count> value{}, error{};  ///< error: of one standard deviation; 0 of what was given
+    std::array<bool, unknown_count> fitted{}, silent{};  ///< silent: the record says nothing about it
+    // Ratios, which a free decay tells.
+    double omega0 = 0, zeta = 0, Rd_over_k = 0, omega0_error = 0, zeta_error = 0, Rd_over_k_error = 0;
+    std::vector<double> predicted;  ///< at the times of the record
+    double noise = 0;               ///< standard deviation of what is left
+    int runs = 0;                   ///< motions that were compared with the record
+};
+
+/// Fails when the record cannot be one: too short, constant, times that do not increase.
+text::Expected<Identified> identify(const IdentifyQuestion& question, const motion::Monitor& monitor = {});
+
+}  // namespace dinal::analysis

@@ -1,0 +1,113 @@
+// The search of identify(): a record, its unknowns, and fits from several starts of which the best one is kept.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+#include "analysis/identification.hpp"
+#include "analysis/least_squares.hpp"
+#include "analysis/turning_points.hpp"
+#include "motion/integrators.hpp"
+
+namespace dinal::analysis {
+
+using Parameters = std::array<double, unknown_count>;
+
+inline double& at(Parameters& p, Unknown which) {
+    return p[static_cast<std::size_t>(which)];
+}
+inline double at(const Parameters& p, Unknown which) {
+    return p[static_cast<std::size_t>(which)];
+}
+
+class Identification {
+public:
+    Identification(const IdentifyQuestion& question, const motion::Monitor& monitor)
+        : question_(question), monitor_(monitor), measured_(question.theta.size()) {
+        std::copy(question.theta.begin(), question.theta.end(), measured_.data());
+        const auto [low, high] = std::minmax_element(question.theta.begin(), question.theta.end());
+        range_ = *high - *low;
+        span_ = question.t.back() - question.t.front();
+        noise_ = noise_of(question.theta);
+        turns_ = turning_points(question.theta, std::clamp(6 * noise_, 0.04 * range_, 0.4 * range_));
+        choose_unknowns();
+    }
+
+    text::Expected<Identified> identified();
+
+private:
+    [[nodiscard]] bool is_given(Unknown which) const {
+        return question_.given[static_cast<std::size_t>(which)].has_value();
+    }
+    [[nodiscard]] double given(Unknown which, double otherwise) const {
+        return question_.given[static_cast<std::size_t>(which)].value_or(otherwise);
+    }
+
+    /// In a free decay I sets the unit of torque, and Re shows nowhere but where the mass rests.
+    void choose_unknowns();
+
+    [[nodiscard]] Parameters filled(const Eigen::VectorXd& p) const {
+        Parameters all = base_;
+        for (std::size_t i = 0; i < unknowns_.size(); ++i) at(all, unknowns_[i]) = p[static_cast<Eigen::Index>(i)];
+        return all;
+    }
+
+    [[nodiscard]] std::optional<Eigen::VectorXd> predicted(const Parameters& p, std::size_t rows);
+
+    [[nodiscard]] FitScale scale_of(const Parameters& start) const;
+
+    /// First the beginning of the record, so that no swing is taken for the next one, then all of it.
+    void try_from(const Parameters& start);
+    void look_beside(const LeastSquares& moving, const FitScale& scale);
+    [[nodiscard]] bool explains_rest(const LeastSquares& moving) const;
+    void keep_if_better(const std::optional<LeastSquares>& all, const FitScale& scale);
+    /// How many samples are fitted one after another; the last of a free decay end at its last turn, for behind it the
+    /// motion may end.
+    [[nodiscard]] std::vector<std::size_t> stages(double period) const;
+    [[nodiscard]] std::optional<LeastSquares> fit(const Eigen::VectorXd& p, std::size_t rows, const FitScale& scale,
+                                                  int steps);
+    [[nodiscard]] double deviation() const {
+        return std::sqrt(best_->sum / static_cast<double>(std::max<Eigen::Index>(1, measured_.size() - count())));
+    }
+    [[nodiscard]] bool good_enough() const { return deviation() <= std::max(1.06 * noise_, 1e-9 * range_); }
+    [[nodiscard]] Eigen::Index count() const { return static_cast<Eigen::Index>(unknowns_.size()); }
+
+    // ---- where to start, in identification_starts.cpp
+
+    [[nodiscard]] Parameters common_start(double omega0, double zeta, double dry, double zero) const;
+    [[nodiscard]] Parameters start_of(double q, double dry, double omega1) const;
+    [[nodiscard]] std::vector<Parameters> free_starts() const;
+    [[nodiscard]] std::vector<Parameters> forced_starts() const;
+    [[nodiscard]] Parameters weak_form() const;
+    void add_window(std::size_t first, std::size_t last, double sign, std::vector<std::array<double, 6>>& rows) const;
+
+    /// Where the mass rests beyond what Rd can hold, Re is greater: it rests at one of the last turns.
+    void try_breakaway();
+    [[nodiscard]] Parameters filled_best() {
+        base_ = best_base_;
+        return filled(best_->parameters);
+    }
+
+    [[nodiscard]] Identified result();
+
+    /// omega0, zeta and Rd/k, with the errors that their parts have together.
+    static void ratios(const Eigen::MatrixXd& covariance, Identified& found);
+
+    const IdentifyQuestion& question_;
+    const motion::Monitor& monitor_;
+    Eigen::VectorXd measured_;
+    double range_ = 0, span_ = 0, noise_ = 0;
+    std::vector<std::size_t> turns_;
+    std::vector<Unknown> unknowns_;
+    Parameters base_{}, best_base_{};
+    double breakaway_ = 0, best_breakaway_ = 0;  // Re/k of a free decay; 0: Rd/k
+    std::optional<LeastSquares> best_;
+    FitScale best_scale_;
+    std::size_t left_out_ = 0;  // of the last turns of a free decay: noise, or the motion's end, may have made them
+    int runs_ = 0;
+    bool stopped_ = false;
+};
+
+}  // namespace dinal::analysis

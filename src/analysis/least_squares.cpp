@@ -1,0 +1,119 @@
+#include "analysis/least_squares.hpp"
+
+#include <Eigen/Cholesky>
+#include <Eigen/QR>
+#include <algorithm>
+#include <cmath>
+
+namespace dinal::analysis {
+namespace {
+
+double size_of(const Eigen::VectorXd& p, const FitScale& scale, Eigen::Index i) {
+    return std::max(std::fabs(p[i]), scale.typical[i]);
+}
+
+/// One more run a parameter: enough to go downhill by. Upwards, so that no bound is passed.
+std::optional<Eigen::MatrixXd> slopes(const Prediction& model, const Eigen::VectorXd& p, const FitScale& scale,
+                                      const Eigen::VectorXd& here) {
+    Eigen::MatrixXd J(here.size(), p.size());
+    for (Eigen::Index i = 0; i < p.size(); ++i) {
+        Eigen::VectorXd up = p;
+        up[i] += 1e-7 * size_of(p, scale, i);
+        const auto above = model(up);
+        if (!above) return {};
+        J.col(i) = (*above - here) / (up[i] - p[i]);
+    }
+    return J;
+}
+
+}  // namespace
+
+std::optional<Eigen::MatrixXd> derivative(const Prediction& model, const Eigen::VectorXd& p, const FitScale& scale,
+                                          Eigen::Index rows) {
+    Eigen::MatrixXd J(rows, p.size());
+    for (Eigen::Index i = 0; i < p.size(); ++i) {
+        const double h = 1e-6 * size_of(p, scale, i);
+        Eigen::VectorXd up = p, down = p;
+        up[i] += h;
+        down[i] = std::max(p[i] - h, scale.least[i]);
+        const auto above = model(up), below = model(down);
+        if (!above || !below) return {};
+        J.col(i) = (*above - *below) / (up[i] - down[i]);
+    }
+    return J;
+}
+
+std::optional<LeastSquares> least_squares(const Prediction& model, const Eigen::VectorXd& measured,
+                                          Eigen::VectorXd start, const FitScale& scale, int most_steps) {
+    LeastSquares now{start.cwiseMax(scale.least), {}, 0};
+    const auto first = model(now.parameters);
+    if (!first) return {};
+    now.residual = measured - *first;
+    now.sum = now.residual.squaredNorm();
+    double damping = 1e-3;
+    for (int step = 0; step < most_steps; ++step) {
+        auto J = slopes(model, now.parameters, scale, measured - now.residual);
+        if (!J) return {};
+        Eigen::VectorXd size(start.size());
+        for (Eigen::Index i = 0; i < size.size(); ++i) J->col(i) *= size[i] = size_of(now.parameters, scale, i);
+        Eigen::MatrixXd normal = J->transpose() * *J;
+        Eigen::VectorXd gradient = J->transpose() * now.residual;
+        const double most = normal.diagonal().maxCoeff();
+        for (Eigen::Index i = 0; i < size.size(); ++i) {
+            // A parameter at its bound that wants beyond it stays there, and one that nothing depends on where it is.
+            const bool at_bound = now.parameters[i] <= scale.least[i] && gradient[i] < 0;
+            if (!at_bound && normal(i, i) > 1e-10 * most) continue;
+            normal.row(i).setZero();
+            normal.col(i).setZero();
+            normal(i, i) = 1;
+            gradient[i] = 0;
+        }
+        const double before = now.sum;
+        double moved = 0;
+        bool better = false;
+        for (int tries = 0; tries < 12 && !better; ++tries, damping *= better ? 1 : 4) {
+            Eigen::MatrixXd damped = normal;
+            damped.diagonal() *= 1 + damping;
+            const Eigen::VectorXd way = damped.ldlt().solve(gradient).cwiseProduct(size);
+            const Eigen::VectorXd next = (now.parameters + way).cwiseMax(scale.least);
+            if (!next.allFinite()) continue;
+            const auto predicted = model(next);
+            if (!predicted) continue;
+            const Eigen::VectorXd residual = measured - *predicted;
+            if (!(residual.squaredNorm() < now.sum)) continue;
+            better = true;
+            for (Eigen::Index i = 0; i < next.size(); ++i) {
+                moved = std::max(moved, std::fabs(next[i] - now.parameters[i]) / size_of(next, scale, i));
+            }
+            now.parameters = next;
+            now.residual = residual;
+            now.sum = residual.squaredNorm();
+            damping = std::max(damping / 6, 1e-12);
+        }
+        if (!better || moved < 1e-10 || before - now.sum < 1e-7 * before) break;
+    }
+    return now;
+}
+
+Covariance covariance_of(const Eigen::VectorXd& p, Eigen::MatrixXd J, const FitScale& scale) {
+    const Eigen::Index n = p.size();
+    Covariance result{Eigen::MatrixXd::Zero(n, n), std::vector<bool>(static_cast<std::size_t>(n), false)};
+    // Columns in units of the parameters' own sizes; pivoting takes those first that say most besides the others.
+    for (Eigen::Index i = 0; i < n; ++i) J.col(i) *= size_of(p, scale, i);
+    Eigen::ColPivHouseholderQR<Eigen::MatrixXd> parts(J);
+    parts.setThreshold(1e-7);
+    const Eigen::Index rank = parts.rank();
+    const auto order = parts.colsPermutation().indices();
+    const Eigen::MatrixXd R = parts.matrixR().topLeftCorner(rank, rank);
+    const Eigen::MatrixXd inverse = R.triangularView<Eigen::Upper>().solve(Eigen::MatrixXd::Identity(rank, rank));
+    const Eigen::MatrixXd known = inverse * inverse.transpose();
+    for (Eigen::Index i = 0; i < n; ++i) {
+        if (i >= rank) result.silent[static_cast<std::size_t>(order[i])] = true;
+        for (Eigen::Index j = 0; j < rank && i < rank; ++j) {
+            result.matrix(order[i], order[j]) = known(i, j) * size_of(p, scale, order[i]) * size_of(p, scale, order[j]);
+        }
+    }
+    return result;
+}
+
+}  // namespace dinal::analysis

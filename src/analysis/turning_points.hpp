@@ -1,0 +1,22 @@
+// A measured motion before anything is fitted to it: its noise, its turning points, its swings.
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+namespace dinal::analysis {
+
+/// The standard deviation of the noise of a smooth motion that is sampled about evenly, from fourth differences.
+double noise_of(std::span<const double> theta);
+
+/// Indices of the turning points: from one to the next the motion gets at least `least` far, and back.
+std::vector<std::size_t> turning_points(std::span<const double> theta, double least);
+
+/// The slope of a straight line through the first `count` points, and its value at the first one.
+struct Tangent {
+    double value = 0, slope = 0;
+};
+Tangent first_tangent(std::span<const double> t, std::span<const double> theta, std::size_t count);
+
+}  // namespace dinal::analysis

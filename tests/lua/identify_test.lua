@@ -1,0 +1,139 @@
+-- identify: free decays without a guess, driven records, errors that are true, and records that cannot be one.
+package.path = "tests/lua/?.lua;" .. package.path
+local support = require "support"
+local test, equal, near, raises_here = support.test, support.equal, support.near, support.raises_here
+
+local sys = system{ I = 1, k = 40, C = 0.3, Rd = 0.8 }
+local decay = sys:simulate{ theta0 = 1, t_end = 8, dt = 0.02 }
+local function noisy(run, seed, std) return run.theta + vector.normal{ n = #run, seed = seed, std = std } end
+
+test("an exact record gives the system back, with nothing said about where to look", function()
+    for _, s in ipairs{ sys, system{ I = 1, k = 4, Rd = 0.3 }, system{ I = 1, k = 100, C = 1.5 }, system{ I = 1, k = 9, C = 0.1, Rd = 0.05 } } do
+        local fit = identify{ data = s:simulate{ theta0 = -0.7, velocity0 = 1, t_end = 10, dt = 0.04 } }
+        near(fit.omega0, s.omega0, 1e-7 * s.omega0)
+        near(fit.zeta, s.zeta, 1e-7)
+        near(fit.Rd_over_k, s.Rd / s.k, 1e-7)
+        near(fit.theta0, -0.7, 1e-7)
+        near(fit.velocity0, 1, 1e-6)
+        near(fit.offset, 0, 1e-7)
+        equal(table.concat(fit.silent), "Re")
+    end
+end)
+
+-- What z = (found - true) / error must be: 95 % of all within 1.96, and its root mean square, which is the ratio to the
+-- bound of Cramer and Rao (errors are computed from the exact derivatives at the fit), at most 1.3.
+local function judge()
+    local inside, all, square = 0, 0, 0
+    return function(fit, truth)
+        for name, true_value in pairs(truth) do
+            if fit.error[name] > 0 then
+                local z = (fit[name] - true_value) / fit.error[name]
+                inside, all, square = inside + (math.abs(z) <= 1.96 and 1 or 0), all + 1, square + z * z
+            end
+        end
+        return inside / all, (square / all)^0.5
+    end
+end
+
+test("the errors are true: 95 % intervals hold the truth in 90 to 98 % of 200 records with rest in them", function()
+    local judged, part, ratio = judge()
+    local decay = sys:simulate{ theta0 = 1, t_end = 8, dt = 0.04 }
+    for seed = 1, 200 do
+        local fit = identify{ data = { t = decay.t, theta = noisy(decay, seed, 0.01) + 0.3 } }
+        near(fit.noise, 0.01, 0.0017)  -- of 200 samples it is 5 % of one standard deviation; the worst of 200 within 3.4
+        part, ratio = judged(fit, { omega0 = sys.omega0, zeta = sys.zeta, Rd_over_k = 0.02, offset = 0.3, theta0 = 1, velocity0 = 0 })
+    end
+    assert(part >= 0.90 and part <= 0.98, part)
+    assert(ratio <= 1.3, ratio)
+end)
+
+test("decays of all kinds, with 0.1 to 3 % of noise, from seconds to hours", function()
+    math.randomseed(7)
+    local judged, part, ratio = judge()
+    for seed = 1, 25 do
+        local I, k = 10^(4 * math.random() - 2), 10^(4 * math.random() - 2)
+        local viscous = math.random() < 0.3 and 0 or 0.15 * math.random()^2
+        local dry = math.random() < 0.3 and 0 or 0.1 * math.random()^2
+        local s = system{ I = I, k = k, C = 2 * viscous * (I * k)^0.5, Rd = k * dry }
+        local t_end, std = (2 + 18 * math.random()) * s.T0, 0.001 * 30^math.random()
+        local run = s:simulate{ theta0 = 1, velocity0 = s.omega0 * (2 * math.random() - 1), t_end = t_end,
+            dt = t_end / math.random(100, 600) }
+        local fit = identify{ data = { t = run.t, theta = noisy(run, seed, std) + 0.3 } }
+        assert(fit.noise < std * (1 + 3 / (2 * #run)^0.5), tostring(s))
+        part, ratio = judged(fit, { omega0 = s.omega0, zeta = s.zeta, Rd_over_k = dry, offset = 0.3, theta0 = 1,
+            velocity0 = run.velocity[1] })
+    end
+    assert(part >= 0.90 and ratio <= 1.3, part)
+end)
+
+test("driven records tell eight unknowns, from no guess", function()
+    math.randomseed(11)
+    local judged, part, ratio = judge()
+    for seed = 1, 10 do
+        local I, k = 10^(2 * math.random() - 2), 10^(2 * math.random() - 1)
+        local Rd, slow = k * 0.2 * math.random(), 2 * (I * k)^0.5
+        local s = system{ I = I, k = k, C = slow * 0.2 * math.random(), Rd = Rd, Re = Rd * (1 + 0.5 * math.random()) }
+        local M = excitation.harmonic{ amplitude = 0.6 * k, omega = s.omega0 * (0.3 + math.random()) }
+            + excitation.harmonic{ amplitude = 0.3 * k, omega = s.omega0 * (0.3 + 2 * math.random()), phase = 1 }
+        local t_end = (8 + 12 * math.random()) * s.T0
+        local run = s:simulate{ M = M, theta0 = 0.2, t_end = t_end, dt = t_end / math.random(200, 600) }
+        local std = 0.001 * 20^math.random() * (run.theta:max() - run.theta:min())
+        local fit = identify{ data = { t = run.t, theta = noisy(run, seed, std) + 0.3 }, M = M }
+        assert(fit.noise < std * (1 + 3 / (2 * #run)^0.5), tostring(s))
+        part, ratio = judged(fit, { I = I, k = k, C = s.C, Rd = Rd, Re = s.Re, offset = 0.3, theta0 = 0.2, velocity0 = 0 })
+    end
+    assert(part >= 0.88 and ratio <= 1.3, part)  -- 80 numbers that hang together by records
+end)
+
+test("a phone camera: 30 samples a second, 2 % of noise, an unknown zero", function()
+    local run = system{ I = 1, k = 30, C = 0.1, Rd = 1.2 }:simulate{ theta0 = 1, t_end = 6, dt = 1/30 }
+    local fit = identify{ data = { time = run.t, x = noisy(run, 5, 0.02) - 2 }, velocity0 = 0 }
+    near(fit.omega0, 30^0.5, 4 * fit.error.omega0)
+    near(fit.Rd_over_k, 0.04, 4 * fit.error.Rd_over_k)
+    near(fit.offset, -2, 4 * fit.error.offset)
+    equal(fit.error.velocity0, 0.0)
+    equal(fit.velocity0, 0.0)
+end)
+
+test("with I or k given a free decay tells the torques, too", function()
+    local fit = identify{ data = decay, I = 1 }
+    near(fit.k, 40, 1e-6)
+    near(fit.Rd, 0.8, 1e-6)
+    near(fit.system.C, 0.3, 1e-6)
+    near(identify{ data = decay, k = 20 }.I, 0.5, 1e-7)
+    raises_here(function() return identify{ data = decay }.k end, "a free decay tells ratios", "give I or k")
+end)
+
+test("a driven record with a known M tells the parameters that are asked for", function()
+    local M = function(t) return 0.3*math.sin(4*t) + 0.2*math.sin(9*t) end
+    local s = system{ I = 0.02, k = 0.9, C = 0.01, Rd = 0.06 }
+    local run = s:simulate{ M = M, t_end = 12, dt = 0.02 }
+    local fit = identify{ data = { t = run.t, theta = noisy(run, 3, 0.002) }, M = M, I = 0.02, free = { "k", "C", "Rd" },
+        theta0 = 0, velocity0 = 0 }
+    near(fit.k, 0.9, 4 * fit.error.k)
+    near(fit.C, 0.01, 4 * fit.error.C)
+    near(fit.Rd, 0.06, 4 * fit.error.Rd)
+    assert(fit.noise < 0.0023, fit.noise)
+    equal(fit.I, 0.02)
+    equal(#fit.residual, #run)
+    assert(tostring(fit:plot{ show = false }):find("record"))
+end)
+
+test("what cannot be a record is told in a sentence", function()
+    local t = vector.linspace(0, 1, 20)
+    raises_here(function() identify{} end, "identify needs data")
+    raises_here(function() identify{ data = 3 } end, "data must be data, a run, or a table of columns")
+    raises_here(function() identify{ data = { t = t } } end, "times and angles are needed")
+    raises_here(function() identify{ data = { t = t, theta = t:slice(1, 5) } } end, "20 times, but 5 angles")
+    raises_here(function() identify{ data = { t = t, theta = 0 * t } } end, "nothing moves in the record")
+    raises_here(function() identify{ data = { t = 1 - t, theta = t } } end, "times of the record must increase")
+    raises_here(function() identify{ data = { t = t:slice(1, 4), theta = t:slice(1, 4) } } end, "the record has 4 samples")
+    raises_here(function() identify{ data = { t = t, theta = t }, theta = "y" } end, "no column 'y'")
+    raises_here(function() identify{ data = decay, free = { "Q" } } end, "free[1] is Q")
+    raises_here(function() identify{ data = decay, I = 1, free = { "I" } } end, "I is given")
+    raises_here(function() identify{ data = decay, M = function() return 1 end, free = { "k" } } end, "I is neither given nor in free")
+    raises_here(function() identify{ data = decay, k = -1 } end, "k = -1 must be positive")
+    raises_here(function() return identify{ data = decay }.zetaa end, "has no field")
+end)
+
+support.finish()
