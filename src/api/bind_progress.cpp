@@ -7,6 +7,7 @@
 
 #include "api/classes.hpp"
 #include "lua/vector.hpp"
+#include "lua/worker_state.hpp"
 #include "terminal/progress.hpp"
 
 namespace dinal::api {
@@ -68,6 +69,7 @@ std::optional<double> steps_of(lua_State* L) {
 }
 
 int progress(lua_State* L) {
+    lua::refuse_in_worker(L, "progress");
     lua_settop(L, 2);
     const auto steps = steps_of(L);
     if (!steps) {

@@ -18,6 +18,7 @@ void register_vector(lua_State* L);
 void register_data(lua_State* L);
 void register_steady(lua_State* L);
 void register_identify(lua_State* L);
+void register_sweep(lua_State* L);
 void register_progress(lua_State* L);
 void register_plot(lua_State* L);
 
@@ -41,6 +42,7 @@ extern const lua::Class identify_functions;  // identify
 extern const lua::Class fit_class;           // what it returns
 extern const lua::Class data_module;         // data{ ... }, data.load
 extern const lua::Class data_class;          // d
+extern const lua::Class sweep_functions;     // sweep
 extern const lua::Class plot_functions;      // plot
 extern const lua::Class picture_class;       // what plot{ ..., show = false } returns
 extern const lua::Class progress_functions;  // progress

@@ -11,6 +11,7 @@
 #include "files/csv_columns.hpp"
 #include "lua/interrupt.hpp"
 #include "lua/options.hpp"
+#include "lua/worker_state.hpp"
 #include "text/words.hpp"
 
 namespace dinal::api::data_functions {
@@ -204,6 +205,7 @@ int select(lua_State* L) {
 }
 
 int save(lua_State* L) {
+    lua::refuse_in_worker(L, "d:save");
     const DataHandle data = self(L, "d:save(\"table.csv\")");
     const std::string file = file_argument(L, 2, "d:save");
     std::vector<files::WordsOrNumbers> columns;

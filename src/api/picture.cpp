@@ -10,6 +10,7 @@
 #include "files/file.hpp"
 #include "lua/interrupt.hpp"
 #include "lua/memory_limit.hpp"
+#include "lua/worker_state.hpp"
 #include "plots/gnuplot.hpp"
 #include "terminal/display.hpp"
 #include "text/words.hpp"
@@ -183,6 +184,7 @@ int deliver(lua_State* L, const lua::Options& options, std::vector<plots::Figure
         std::any_of(figures.begin(), figures.end(), [](const plots::Figure& figure) { return figure.equal; });
     TargetOptions asked;
     options.fill(asked);
+    if (asked.show || asked.file) lua::refuse_in_worker(L, "a plot");
     const plots::TextFormat format = asked_format(asked, phase);
     if (asked.file) {
         if (!asked.show) {

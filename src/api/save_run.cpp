@@ -8,6 +8,7 @@
 #include "files/csv.hpp"
 #include "files/record1989.hpp"
 #include "lua/options.hpp"
+#include "lua/worker_state.hpp"
 #include "text/words.hpp"
 
 namespace dinal::api {
@@ -70,6 +71,7 @@ text::Expected<files::Written> write(lua_State* L, const lua::Options& options, 
 }  // namespace
 
 int save_run(lua_State* L) {
+    lua::refuse_in_worker(L, "run:save");
     const RunHandle run = lua::self<RunHandle>(L, 1, "run:save(\"run.csv\")");
     if (lua_type(L, 2) != LUA_TSTRING) {
         lua::raise_got(L, 2, "run:save", "run:save: the name of the file must be a string",

@@ -7,6 +7,7 @@
 #include "lua/interrupt.hpp"
 #include "lua/standard_globals.hpp"
 #include "lua/terminal_output.hpp"
+#include "lua/worker_state.hpp"
 #include "source/value_text.hpp"
 
 namespace dinal::help {
@@ -14,18 +15,18 @@ namespace dinal::help {
 namespace {
 
 constexpr void (*register_functions[])(lua_State*) = {
-    api::register_system,     api::register_friction, api::register_excitation,
-    api::register_integrator, api::register_run,      api::register_energy,
-    api::register_trajectory, api::register_theory,   api::register_vector,
-    api::register_data,       api::register_progress, api::register_plot,
-    api::register_steady,     api::register_identify, register_help,
+    api::register_system, api::register_friction, api::register_excitation, api::register_integrator,
+    api::register_run,    api::register_energy,   api::register_trajectory, api::register_theory,
+    api::register_vector, api::register_data,     api::register_progress,   api::register_plot,
+    api::register_steady, api::register_identify, api::register_sweep,      register_help,
 };
 
 // Plain fields of the table: documented here, set by open_library() and sys:simulate.
 constexpr lua::Member library_members[] = {
     {{nullptr, lua::Kind::field},
-     {"dinal.partial -> run or nil",
-      "What was done of the last run that M broke off with an error, or Ctrl-C: a run like any other.",
+     {"dinal.partial -> run, data or nil",
+      "What was done of the last run that M broke off with an error, or Ctrl-C: a run like any other. Of a sweep that "
+      "Ctrl-C broke off, the points that are done.",
       "pcall(function()\n"
       "    nondimensional{}:simulate{ M = function(t) assert(t < 0.5) return 1 end, t_end = 1, dt = 0.1 }\n"
       "end)\n"
@@ -62,6 +63,7 @@ const Section all_sections[] = {
     {"Named columns", "d", &api::data_class},
     {"Identification", "", &api::identify_functions},
     {"A fit", "fit", &api::fit_class},
+    {"Sweeps", "", &api::sweep_functions},
     {"Progress", "", &api::progress_functions},
     {"Plots", "", &api::plot_functions},
     {"A picture", "picture", &api::picture_class},
@@ -98,6 +100,7 @@ std::span<const Section> sections() {
 }
 
 void open_library(lua_State* L) {
+    lua::set_library(open_library);  // for the workers of a sweep
     lua::set_witness(L, errors::first_remarks);
     lua::open_coroutines(L);
     lua::open_terminal_output(L);

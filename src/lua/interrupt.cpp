@@ -22,12 +22,18 @@ static_assert(std::atomic<lua_State*>::is_always_lock_free && std::atomic<Stop>:
 
 std::atomic<Stop> requested = Stop::none;
 std::atomic<bool> armed = false;
-std::atomic<lua_State*> running = nullptr;
-std::atomic<long> first_signal_ms = 0;  // 0: none in this chunk
+std::atomic<lua_State*> running = nullptr;                          // on the thread of the program
+thread_local std::atomic<lua_State*>* running_in_worker = nullptr;  // on the thread of a WorkerScope
+std::atomic<long> first_signal_ms = 0;                              // 0: none in this chunk
 std::array<char, LUA_IDSIZE + 20> stopping_place{};
 
 // Code that can be stopped has stopped by then; a key that is held down, or a finger that trembles, is faster.
 constexpr long patience_ms = 200;
+
+/// What runs on this thread. A signal handler asks for it, too: the variables above stand from the start.
+std::atomic<lua_State*>& running_here() noexcept {
+    return running_in_worker != nullptr ? *running_in_worker : running;
+}
 
 void note_place(lua_State* L) {
     lua_Debug frame{};
@@ -41,8 +47,9 @@ void note_place(lua_State* L) {
     }
 }
 
+/// Of the program's own thread: where a worker was is told by nobody.
 void note_first_place(lua_State* L) {
-    if (stopping_place[0] == '\0') {
+    if (running_in_worker == nullptr && stopping_place[0] == '\0') {
         note_place(L);
     }
 }
@@ -77,6 +84,13 @@ extern "C" void on_signal(int) {
     request_stop(Stop::interrupted);
 }
 
+/// On the thread of a worker. It may have ended what it was to be stopped in; the hook sees that.
+extern "C" void on_nudge(int) {
+    if (lua_State* L = running_here(); running_in_worker != nullptr && armed && L != nullptr) {
+        set_hook(L);
+    }
+}
+
 }  // namespace
 
 void set_handler(int signal, void (*handler)(int)) {
@@ -89,6 +103,7 @@ void set_handler(int signal, void (*handler)(int)) {
 
 void install_interrupt_handler() {
     set_handler(SIGINT, on_signal);
+    set_handler(SIGURG, on_nudge);
     files::set_stop_question(interrupt_requested);
 }
 
@@ -107,13 +122,13 @@ bool chunk_runs() noexcept {
 void request_stop(Stop reason) noexcept {
     Stop none = Stop::none;
     requested.compare_exchange_strong(none, reason);
-    if (lua_State* L = running; armed && L != nullptr) {
+    if (lua_State* L = running_here(); armed && L != nullptr) {
         set_hook(L);
     }
 }
 
 void stop_here(Stop reason) noexcept {
-    if (lua_State* L = running; chunk_runs() && L != nullptr) {
+    if (lua_State* L = running_here(); chunk_runs() && L != nullptr) {
         note_first_place(L);
     }
     request_stop(reason);
@@ -157,18 +172,46 @@ InterruptScope::~InterruptScope() {
     }
 }
 
+WorkerScope::WorkerScope(lua_State* L) : running_(L), outer_(running_in_worker) {
+    running_in_worker = &running_;
+    terminal::show_no_progress_here();
+}
+
+WorkerScope::~WorkerScope() {
+    running_in_worker = outer_;
+}
+
+bool in_worker() noexcept {
+    return running_in_worker != nullptr;
+}
+
+void nudge(pthread_t worker) noexcept {
+    pthread_kill(worker, SIGURG);
+}
+
+SignalsForOthers::SignalsForOthers() {
+    sigset_t others;
+    sigfillset(&others);
+    sigdelset(&others, SIGURG);
+    pthread_sigmask(SIG_SETMASK, &others, &before_);
+}
+
+SignalsForOthers::~SignalsForOthers() {
+    pthread_sigmask(SIG_SETMASK, &before_, nullptr);
+}
+
 RunningThread::RunningThread(lua_State* caller, lua_State* callee) : caller_(caller) {
     if (lua_gethook(callee) == interrupt_hook && requested == Stop::none) {
         lua_sethook(callee, nullptr, 0, 0);  // it was created or stopped while an earlier chunk was being interrupted
     }
-    running = callee;
+    running_here() = callee;
     if (requested != Stop::none && armed) {
         set_hook(callee);
     }
 }
 
 RunningThread::~RunningThread() {
-    running = caller_;
+    running_here() = caller_;
     if (requested != Stop::none && armed) {
         set_hook(caller_);  // the coroutine died of the stop: its caller must, too
     }

@@ -5,6 +5,10 @@
 // because coroutine.resume, wrap and close are replaced by functions that note it (open_coroutines).
 #pragma once
 
+#include <pthread.h>
+#include <csignal>
+
+#include <atomic>
 #include <string>
 
 #include "lua/lua_headers.hpp"
@@ -55,6 +59,36 @@ private:
     lua_State* L_;
     bool within_;  ///< another one
     TimeAllowance time_;
+};
+
+/// A thread besides the program's own, which runs Lua in a state of its own: while it lives, a stop that is requested
+/// here, or nudged, reaches what runs on `L`, and no progress is shown. The InterruptScope is that of the program.
+class WorkerScope {
+public:
+    explicit WorkerScope(lua_State* L);
+    ~WorkerScope();
+    WorkerScope(const WorkerScope&) = delete;
+    WorkerScope& operator=(const WorkerScope&) = delete;
+
+private:
+    std::atomic<lua_State*> running_;
+    std::atomic<lua_State*>* outer_;
+};
+/// This thread is one.
+[[nodiscard]] bool in_worker() noexcept;
+/// Makes that thread look whether a stop is requested. It must not have been joined.
+void nudge(pthread_t worker) noexcept;
+
+/// While it lives, threads that are started here get no signal but a nudge: Ctrl-C is for the program's own.
+class SignalsForOthers {
+public:
+    SignalsForOthers();
+    ~SignalsForOthers();
+    SignalsForOthers(const SignalsForOthers&) = delete;
+    SignalsForOthers& operator=(const SignalsForOthers&) = delete;
+
+private:
+    sigset_t before_{};
 };
 
 /// Replaces coroutine.resume, wrap and close by functions that do the same and note which thread runs.

@@ -17,7 +17,7 @@ namespace {
 
 using Bytes = std::int64_t;
 
-// Atomic for the sake of other threads that use `new`; only the one of Lua is ever refused anything.
+// Atomic: workers have Lua states of their own, and take from the same memory.
 std::atomic<Bytes> limit = 0;  // 0: none
 std::atomic<Bytes> taken = 0;  // since there is a limit; what was there before counts negative when it goes
 
@@ -53,7 +53,7 @@ bool is_final(std::size_t refused_before, std::size_t size, bool fits) {
 }
 
 void* allocate(void*, void* block, std::size_t, std::size_t size) {
-    static std::size_t refused = 0;
+    thread_local std::size_t refused = 0;
     const Bytes before = size_of(block);
     if (size == 0) {
         count(-before);
@@ -103,7 +103,7 @@ void collect_when_tight(lua_State* L) {
     if (!limited()) {
         return;
     }
-    static Bytes after_last = 0;  // what is taken by what is in use can not be collected again and again
+    thread_local Bytes after_last = 0;  // what is taken by what is in use can not be collected again and again
     const Bytes all = limit.load(std::memory_order_relaxed);
     after_last = std::min(after_last, now_taken());
     if (now_taken() > all / 2 && now_taken() - after_last > all / 8) {

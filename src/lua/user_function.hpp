@@ -74,6 +74,7 @@ public:
 
     /// It wants theta and velocity: a Lua function (or __call) of two or more parameters, or with `...`.
     [[nodiscard]] bool feedback() const { return feedback_; }
+    [[nodiscard]] const FunctionRole& role() const { return role_; }
     /// Pushes the function itself.
     void push(lua_State* L) const;
 

@@ -8,6 +8,7 @@
 #include <cstdio>
 #include <ctime>
 #include <limits>
+#include <mutex>
 #include <vector>
 
 #include "terminal/display.hpp"
@@ -24,6 +25,8 @@ std::vector<Progress*> under_way;  // the outermost first
 long next_ms = never_ms;           // when the line is drawn next
 std::size_t drawn = 0;             // columns of the line that stands there, or more; 0: there is none
 bool within_line = false;          // the script has written a part of a line
+std::mutex drawing;                // what threads beside that of the progress write erases the line, too
+thread_local bool hides_progress = false;
 
 /// Some milliseconds coarse and very quick: a stepping loop asks for it.
 long now_ms() {
@@ -74,7 +77,16 @@ ProgressFacts facts() {
 }
 
 Progress::Progress(std::string label, double start, double end, Kind kind)
-    : label_(std::move(label)), start_(start), end_(end), reached_(start), kind_(kind), began_ms_(now_ms()) {
+    : label_(std::move(label)),
+      start_(start),
+      end_(end),
+      reached_(start),
+      kind_(kind),
+      began_ms_(now_ms()),
+      hidden_(hides_progress) {
+    if (hidden_) {
+        return;
+    }
     if (under_way.empty()) {
         next_ms = began_ms_ + first_ms;
     }
@@ -82,20 +94,28 @@ Progress::Progress(std::string label, double start, double end, Kind kind)
 }
 
 Progress::~Progress() {
+    if (hidden_) {
+        return;
+    }
     const bool outermost = !under_way.empty() && under_way.front() == this;
     under_way.erase(std::remove(under_way.begin(), under_way.end(), this), under_way.end());
     if (outermost) {
+        const std::lock_guard lock(drawing);
         erase();
     }
 }
 
 void Progress::advance(double reached) {
     reached_ = reached;
+    if (hidden_) {
+        return;
+    }
     const long now = now_ms();
     if (now < next_ms || under_way.empty()) {
         return;
     }
     next_ms = isatty(STDERR_FILENO) != 0 ? now + period_ms : never_ms;
+    const std::lock_guard lock(drawing);
     if (next_ms == never_ms || within_line) {
         return;
     }
@@ -108,12 +128,18 @@ void Progress::advance(double reached) {
     drawn = columns;
 }
 
+void show_no_progress_here() {
+    hides_progress = true;
+}
+
 void make_way_for_output(bool ends_line) {
+    const std::lock_guard lock(drawing);
     erase();
     within_line = !ends_line;
 }
 
 void end_progress() {
+    const std::lock_guard lock(drawing);
     erase();
     under_way.clear();
     within_line = false;

@@ -34,7 +34,11 @@ private:
     double start_, end_, reached_;
     Kind kind_;
     long began_ms_;
+    bool hidden_;
 };
+
+/// From now on nothing that is under way on this thread is shown: it is a part of what another thread waits for.
+void show_no_progress_here();
 
 /// Something else is about to be written to the terminal: the line goes, until there is something new to say.
 /// `ends_line` is false when what is written leaves the cursor within a line, which nothing may then write over.

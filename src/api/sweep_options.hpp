@@ -1,0 +1,62 @@
+// What help() and the manual say about sweeps, and their options besides the parameters.
+#pragma once
+
+#include <optional>
+
+#include "lua/bind.hpp"
+#include "text/option.hpp"
+
+namespace dinal::api {
+
+struct SweepOptions {
+    std::optional<double> workers = {};
+    double seed = 0;
+};
+inline constexpr text::Range workers_range{"be a whole number from 1 to 1000",
+                                           [](double x) { return text::is_whole(x, 1, 1000); }};
+inline constexpr text::Range seed_range{"be a whole number from 0 to 1e15",
+                                        [](double x) { return text::is_whole(x, 0, 1e15); }};
+inline constexpr text::Option sweep_options[] = {
+    {.name = "run",
+     .otherwise = text::needed,
+     .meaning = "a function of a point, a table such as { r = 0.5, g = 1 }, that returns a table of named numbers",
+     .wanted = "a function of a point that returns named numbers"},
+    {.name = "workers",
+     .otherwise = "one for each core",
+     .range = workers_range,
+     .meaning = "how many threads share the points; the result is the same for any number",
+     .filled = text::fills<&SweepOptions::workers>},
+    {.name = "seed",
+     .range = seed_range,
+     .meaning = "of math.random: each point has random numbers of its own, the same whenever the sweep is run",
+     .filled = text::fills<&SweepOptions::seed>},
+};
+inline constexpr text::Call sweep_call{
+    "sweep", "sweep{ r = vector.linspace(0.1, 2, 20), run = function(p) return { A = p.r^2 } end }", sweep_options};
+
+inline constexpr lua::Doc sweep_doc{
+    "sweep{ NAME = values, ..., OPTIONS } -> data",
+    "Asks a function at every combination of the values of some parameters, on all cores at once. Values are vectors, "
+    "or tables of numbers or of strings. The result has a row for each point, in the order of the names of the "
+    "parameters, the last one changing fastest ({ \"r\", values }, { \"g\", values } instead of names gives another "
+    "order), and a column for each parameter and for each name that the function returns; true and false count as 1 "
+    "and 0, and what a point does not return is nan. Where the function fails the column `error` has the message.\n"
+    "Each thread has a copy of the function with all that it uses: local variables, globals, tables, vectors, systems, "
+    "excitations. So it cannot change anything outside, and should not remember other points. Runs, coroutines and "
+    "open files cannot be copied. Ctrl-C keeps what is done in dinal.partial, and the same call goes on from there.",
+    "map = sweep{ r = { 0.4, 1.5 }, g = vector.linspace(0.2, 0.6, 3), run = function(p)\n"
+    "    s = nondimensional{ friction_ratio = p.g }:steady{ M = excitation.harmonic{ frequency = p.r } }\n"
+    "    return { A = s.amplitude, stops = s.stops }\n"
+    "end }\n"
+    "print(map:select(\"g\", \"r\", \"A\", \"stops\"))\n"
+    "--> data: 6 rows of g, r, A, stops\n"
+    "-->   i    g    r         A  stops\n"
+    "-->   1  0.2  0.4   1.13218      2\n"
+    "-->   2  0.2  1.5  0.765942      0\n"
+    "-->   3  0.4  0.4   1.11113      2\n"
+    "-->   4  0.4  1.5  0.653197      0\n"
+    "-->   5  0.6  0.4   1.02745      2\n"
+    "-->   6  0.6  1.5       0.4      0",
+    {&sweep_call}};
+
+}  // namespace dinal::api

@@ -1,0 +1,236 @@
+#include "api/sweep_workers.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <memory>
+#include <system_error>
+
+#include "lua/interrupt.hpp"
+#include "lua/lua_text.hpp"
+#include "lua/standard_globals.hpp"
+#include "source/carry.hpp"
+#include "terminal/progress.hpp"
+
+namespace dinal::api {
+namespace {
+
+struct Carrying {
+    lua_State* from;
+    int index;
+    std::optional<text::Error> error = {};
+};
+
+bool carry_data(lua_State* from, int index, lua_State* to) {
+    const auto* data = lua::test<DataHandle>(from, index);
+    if (data != nullptr) lua::push<DataHandle>(to, *data);
+    return data != nullptr;
+}
+
+/// Called in the new state with a Carrying; returns the function.
+int carry_function(lua_State* L) {
+    auto& carrying = *static_cast<Carrying*>(lua_touserdata(L, 1));
+    source::Carrier carrier(carrying.from, L, carry_data);
+    carrying.error = carrier.carry(carrying.index, "run");
+    lua::forbid_exit(L);
+    return carrying.error ? 0 : 1;
+}
+
+/// The same text whichever worker it is: not where a table lies in memory.
+int error_as_text(lua_State* L) {
+    lua_settop(L, 1);
+    if (lua_isstring(L, 1) != 0) return 1;
+    if (luaL_getmetafield(L, 1, "__tostring") == LUA_TNIL) {
+        return lua::push_text(L, fmt::format("(error object is a {} value)", luaL_typename(L, 1)));
+    }
+    luaL_tolstring(L, 1, nullptr);
+    return 1;
+}
+
+/// The loop of one worker: the places of its stack that stay.
+struct PointLoop {
+    static constexpr int handler = 1, function = 2, seed = 3, columns = 4;
+
+    lua_State* L;
+    SweepWork& work;
+
+    void run() {
+        std::size_t first = 0, last = 0;
+        while (take(first, last)) {
+            for (std::size_t i = first; i < last; ++i) {
+                if (lua::interrupt_requested() || !point(work.points[i])) return;
+                work.finished.fetch_add(1, std::memory_order_relaxed);
+            }
+        }
+    }
+
+    /// Many points at once as long as there are many: they may be short, and the last ones must not be waited for.
+    [[nodiscard]] bool take(std::size_t& first, std::size_t& last) const {
+        constexpr std::size_t most = 64;
+        const std::size_t count = work.points.size();
+        const std::size_t left = count - std::min(count, work.next.load(std::memory_order_relaxed));
+        const std::size_t some = std::clamp<std::size_t>(left / (8 * work.workers), 1, most);
+        first = std::min(count, work.next.fetch_add(some));
+        last = std::min(count, first + some);
+        return first < last;
+    }
+
+    /// False when it was stopped.
+    [[nodiscard]] bool point(std::size_t number) const {
+        lua_settop(L, columns);
+        lua_pushvalue(L, seed);
+        lua_pushinteger(L, static_cast<lua_Integer>(number) + 1);
+        lua_pushinteger(L, work.seed);
+        lua_call(L, 2, 0);
+        lua_pushvalue(L, function);
+        lua_createtable(L, 0, static_cast<int>(work.grid.parameters().size()));
+        work.grid.set_fields(L, number);
+        const int status = lua_pcall(L, 1, 1, handler);
+        if (status != LUA_OK && lua::interrupt_requested()) return false;
+        const std::string trouble = status != LUA_OK ? std::string(lua::text_at(L, -1)) : complaint();
+        if (!trouble.empty()) {
+            work.results.fail(number, trouble);
+            return true;
+        }
+        lua_pushnil(L);
+        while (lua_next(L, columns + 1) != 0) {
+            lua_pushvalue(L, -2);
+            lua_rawget(L, columns);
+            static_cast<double*>(lua_touserdata(L, -1))[number] =
+                lua_isboolean(L, -2) ? lua_toboolean(L, -2) : lua_tonumber(L, -2);
+            lua_pop(L, 2);
+        }
+        work.results.finish(number);
+        return true;
+    }
+
+    /// What is wrong with the result on the top of the stack. Afterwards each name in it has its column.
+    [[nodiscard]] std::string complaint() const {
+        if (!lua_istable(L, -1)) {
+            return fmt::format("run must return a table of named numbers such as {{ A = s.amplitude }}, got {}",
+                               lua::describe(L, -1));
+        }
+        lua_pushnil(L);
+        while (lua_next(L, columns + 1) != 0) {
+            if (lua_type(L, -2) != LUA_TSTRING) {
+                return fmt::format("run must return named numbers such as {{ A = s.amplitude }}, but {} has no name",
+                                   lua::describe(L, -1));
+            }
+            if (lua_type(L, -1) != LUA_TNUMBER && !lua_isboolean(L, -1)) {
+                return fmt::format("run returned {} = {}, which is no number", lua_tostring(L, -2),
+                                   lua::describe(L, -1));
+            }
+            lua_pop(L, 1);
+            lua_pushvalue(L, -1);
+            if (lua_rawget(L, columns) == LUA_TNIL) {
+                if (const std::string trouble = new_column(lua::text_at(L, -2)); !trouble.empty()) return trouble;
+            }
+            lua_pop(L, 1);
+        }
+        return "";
+    }
+
+    [[nodiscard]] std::string new_column(std::string_view name) const {
+        for (const DataColumn& parameter : work.grid.parameters()) {
+            if (parameter.name == name) {
+                return fmt::format("run returned '{}', which is the name of a parameter: give it another", name);
+            }
+        }
+        if (name == "error") return "run returned 'error', which is the column of messages: give it another name";
+        double* numbers = work.results.column(name);
+        if (numbers == nullptr) return fmt::format("run returned more than {} names", SweepResults::most_columns);
+        lua::push_text(L, name);
+        lua_pushlightuserdata(L, numbers);
+        lua_rawset(L, columns);
+        return "";
+    }
+};
+
+/// Called with the function and the SweepWork.
+int work_on_points(lua_State* L) {
+    auto& work = *static_cast<SweepWork*>(lua_touserdata(L, 2));
+    lua_settop(L, 1);
+    lua_pushcfunction(L, lua::guarded<error_as_text>);
+    lua_insert(L, 1);
+    lua::push_standard_globals(L);  // a user may have a `math` of his own
+    lua_getfield(L, -1, LUA_MATHLIBNAME);
+    lua_getfield(L, -1, "randomseed");
+    lua_insert(L, 3);
+    lua_settop(L, 3);
+    lua_newtable(L);
+    PointLoop{L, work}.run();
+    return 0;
+}
+
+}  // namespace
+
+SweepWorkers::SweepWorkers(lua_State* L, int index, SweepWork& work) : work_(work) {
+    for (std::size_t i = 0; i < work.workers; ++i) {
+        states_.push_back(lua::new_state_like(L));
+        lua_State* worker = states_.back().get();
+        Carrying carrying{L, lua_absindex(L, index)};
+        lua_pushcfunction(worker, lua::guarded<carry_function>);
+        lua_pushlightuserdata(worker, &carrying);
+        const bool carried = lua_pcall(worker, 1, 1, 0) == LUA_OK;
+        if (carrying.error) lua::raise(L, text::in_call("sweep", *carrying.error));
+        if (!carried) lua::raise(L, "sweep: not enough memory for another worker");
+    }
+}
+
+void SweepWorkers::run_one(lua_State* worker) {
+    std::string trouble;
+    {
+        const lua::WorkerScope scope(worker);
+        lua_pushcfunction(worker, lua::guarded<work_on_points>);
+        lua_insert(worker, -2);
+        lua_pushlightuserdata(worker, &work_);
+        if (lua_pcall(worker, 2, 0, 0) != LUA_OK && !lua::interrupt_requested()) {
+            trouble = lua_isstring(worker, -1) != 0 ? lua::text_at(worker, -1) : "a worker has failed";
+        }
+    }
+    const std::lock_guard lock(ending_);
+    if (!trouble.empty()) trouble_ = trouble;
+    --running_;
+    ended_.notify_one();
+}
+
+/// As many as the system allows; one does all, too.
+void SweepWorkers::start(std::vector<std::thread>& threads) {
+    const lua::SignalsForOthers blocked;
+    for (const lua::OwnedState& state : states_) {
+        {
+            const std::lock_guard lock(ending_);
+            ++running_;
+        }
+        try {
+            threads.emplace_back([this, worker = state.get()] { run_one(worker); });
+        } catch (const std::system_error&) {
+            const std::lock_guard lock(ending_);
+            --running_;
+            return;
+        }
+    }
+}
+
+void SweepWorkers::run(lua_State* L) {
+    using std::chrono::milliseconds;
+    constexpr milliseconds look_again{20};
+    terminal::Progress progress = terminal::Progress::of_steps("sweep", static_cast<double>(work_.points.size()));
+    std::vector<std::thread> threads;
+    threads.reserve(states_.size());
+    start(threads);
+    if (threads.empty()) lua::raise(L, "sweep: the system lets no thread be started");
+    std::unique_lock lock(ending_);
+    while (!ended_.wait_for(lock, look_again, [this] { return running_ == 0; })) {
+        progress.advance(static_cast<double>(work_.finished.load(std::memory_order_relaxed)));
+        if (lua::interrupt_requested()) {
+            for (std::thread& thread : threads) lua::nudge(thread.native_handle());
+        }
+    }
+    lock.unlock();
+    for (std::thread& thread : threads) thread.join();
+    if (!trouble_.empty()) lua::raise(L, "sweep: " + trouble_);
+}
+
+}  // namespace dinal::api

@@ -1,0 +1,48 @@
+// The threads of a sweep, each with a Lua state of its own into which the user's function was carried.
+#pragma once
+
+#include <atomic>
+#include <condition_variable>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "api/sweep_results.hpp"
+#include "lua/worker_state.hpp"
+
+namespace dinal::api {
+
+/// What the workers share.
+struct SweepWork {
+    const SweepGrid& grid;
+    SweepResults& results;
+    std::vector<std::size_t> points;  ///< to be done
+    long long seed = 0;               ///< of math.random, with the number of the point
+    std::atomic<std::size_t> next = 0;
+    std::atomic<std::size_t> finished = 0;
+    std::size_t workers = 1;
+};
+
+class SweepWorkers {
+public:
+    /// Carries the function at `index` to a new state for each worker. Raises when that is not possible.
+    SweepWorkers(lua_State* L, int index, SweepWork& work);
+
+    /// Does all points, or what can be done until a stop is requested. Raises when memory is lacking.
+    void run(lua_State* L);
+
+private:
+    void start(std::vector<std::thread>& threads);
+    void run_one(lua_State* worker);
+
+    SweepWork& work_;
+    std::vector<lua::OwnedState> states_;
+    std::mutex ending_;
+    std::condition_variable ended_;
+    std::size_t running_ = 0;
+    std::string trouble_;
+};
+
+}  // namespace dinal::api

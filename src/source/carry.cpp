@@ -1,0 +1,333 @@
+#include "source/carry.hpp"
+
+#include <fmt/format.h>
+
+#include "lua/bind.hpp"
+#include "lua/lua_text.hpp"
+#include "lua/standard_globals.hpp"
+#include "source/bytecode.hpp"
+
+namespace dinal::source {
+namespace {
+
+constexpr int deepest = 5000;  // tables within tables; each takes some of the C++ stack
+
+const char memory_key = 0;  // registry key, in the state that is carried to
+
+int append(lua_State* /*L*/, const void* piece, std::size_t size, void* text) {
+    static_cast<std::string*>(text)->append(static_cast<const char*>(piece), size);
+    return 0;
+}
+
+bool is_globals(lua_State* L, int index) {
+    lua_pushglobaltable(L);
+    const bool same = lua_rawequal(L, -1, index < 0 ? index - 1 : index) != 0;
+    lua_pop(L, 1);
+    return same;
+}
+
+}  // namespace
+
+Carrier::Carrier(lua_State* from, lua_State* to, CarryObject other_objects)
+    : from_(from), to_(to), other_objects_(other_objects) {
+    luaL_checkstack(from, 10, "to carry values");
+    lua_newtable(to);
+    lua_rawsetp(to, LUA_REGISTRYINDEX, &memory_key);
+    lua::push_standard_globals(from);
+    lua::push_standard_globals(to);
+    lua_pushnil(from);
+    while (lua_next(from, -2) != 0) {
+        const std::string name = lua_type(from, -2) == LUA_TSTRING ? lua_tostring(from, -2) : "";
+        lua_getfield(to, -1, name.c_str());
+        if (!name.empty() && name != "_G") note_standard("", name);
+        lua_pop(to, 1);
+        lua_pop(from, 1);
+    }
+    lua_pop(from, 1);
+    lua_pop(to, 1);
+    lua::push_dinal_table(from);
+    standard_[lua_topointer(from, -1)] = {"", "dinal"};
+    lua_pushglobaltable(from);
+    standard_[lua_topointer(from, -1)] = {"", "_G"};
+    lua_pop(from, 2);
+}
+
+/// What stands on the tops of both states belongs together, if it is the same there.
+void Carrier::note_standard(const std::string& library, const std::string& name) {
+    const int type = lua_type(from_, -1);
+    const bool same_type = type == lua_type(to_, -1);
+    if (type == LUA_TTABLE && same_type) {
+        const bool is_new = standard_.try_emplace(lua_topointer(from_, -1), Place{library, name}).second;
+        if (is_new && library.empty()) note_library(name);
+    } else if (type == LUA_TUSERDATA && same_type) {
+        standard_.try_emplace(lua_topointer(from_, -1), Place{library, name});  // io.stdout
+    } else if (type == LUA_TFUNCTION && same_type && lua_tocfunction(from_, -1) != nullptr &&
+               lua_tocfunction(from_, -1) == lua_tocfunction(to_, -1)) {
+        standard_.try_emplace(lua_topointer(from_, -1), Place{library, name});
+    } else if (!library.empty() && library != LUA_LOADLIBNAME && type == LUA_TFUNCTION) {
+        additions_.push_back({library, name});
+    }
+}
+
+/// The tables of a library stand on the tops of both states.
+void Carrier::note_library(const std::string& name) {
+    lua_pushnil(from_);
+    while (lua_next(from_, -2) != 0) {
+        if (lua_type(from_, -2) == LUA_TSTRING) {
+            const std::string member = lua_tostring(from_, -2);
+            lua_pushlstring(to_, member.data(), member.size());
+            lua_rawget(to_, -2);
+            note_standard(name, member);
+            lua_pop(to_, 1);
+        }
+        lua_pop(from_, 1);
+    }
+}
+
+/// Pushes, in `to`, what stands there.
+void Carrier::push_place(const Place& place) {
+    lua_pushglobaltable(to_);
+    for (const std::string& name : {place.library, place.name}) {
+        if (name.empty() || name == "_G") continue;
+        lua_pushlstring(to_, name.data(), name.size());
+        lua_rawget(to_, -2);
+        lua_remove(to_, -2);
+    }
+}
+
+/// A user's string.trim and its like, which nothing may name where it is called: ("x"):trim(). What cannot be carried
+/// is left out, since it need not be used.
+void Carrier::carry_additions() {
+    for (const Place& place : std::exchange(additions_, {})) {
+        lua::push_standard_globals(from_);
+        lua_getfield(from_, -1, place.library.c_str());
+        lua_getfield(from_, -1, place.name.c_str());
+        way_ = {place.name};
+        if (value(-1)) {
+            push_place({place.library, ""});
+            lua_insert(to_, -2);
+            lua_setfield(to_, -2, place.name.c_str());
+            lua_pop(to_, 1);
+        }
+        lua_pop(from_, 3);
+        error_.reset();
+    }
+}
+
+std::optional<text::Error> Carrier::carry(int index, const std::string& name) {
+    index = lua_absindex(from_, index);
+    lua_rawgetp(to_, LUA_REGISTRYINDEX, &memory_key);
+    memory_ = lua_gettop(to_);
+    carry_additions();
+    way_ = {name};
+    error_.reset();
+    const bool good = value(index);
+    lua_remove(to_, memory_);
+    return good ? std::nullopt : error_;
+}
+
+/// "run > helper > cfg.last"
+std::string Carrier::way() const {
+    std::string text;
+    for (const std::string& step : way_) text += step;
+    return text;
+}
+
+bool Carrier::fail(int index, std::string_view cure) {
+    const std::string what = lua_type(from_, index) == LUA_TFUNCTION ? "a function that is written in C"
+                             : lua_type(from_, index) == LUA_TTHREAD ? "a coroutine"
+                                                                     : lua::describe(from_, index);
+    std::string culprit = way_.back();
+    culprit.erase(0, culprit.find_first_not_of(" >."));
+    const std::string whole = way();
+    const std::string_view first = way_.front();
+    error_ =
+        way_.size() == 1
+            ? text::Error{.sentence = fmt::format("{} is {}, which cannot be in another thread{}", whole, what, cure)}
+            : text::Error{.sentence = fmt::format("{} uses {}, {}, which cannot be in another thread{}", first,
+                                                  whole.substr(first.size() + (whole[first.size()] == ' ' ? 3 : 0)),
+                                                  what, cure),
+                          .culprit = culprit};
+    return false;
+}
+
+/// The value on the top of `to` is what `identity` is in `from`.
+void Carrier::remember(const void* identity) {
+    lua_pushvalue(to_, -1);
+    lua_rawsetp(to_, memory_, identity);
+}
+
+/// Pushes it if it was carried before, or is of a library.
+bool Carrier::known(int index) {
+    const void* identity = lua_topointer(from_, index);
+    if (lua_rawgetp(to_, memory_, identity) != LUA_TNIL) return true;
+    lua_pop(to_, 1);
+    const auto found = standard_.find(identity);
+    if (found == standard_.end()) return false;
+    push_place(found->second);
+    return true;
+}
+
+/// Leaves the value on the top of `to`, or nothing when it fails.
+bool Carrier::value(int index) {
+    luaL_checkstack(from_, 8, "to carry values");
+    luaL_checkstack(to_, 12, "for values that are carried");
+    index = lua_absindex(from_, index);
+    switch (lua_type(from_, index)) {
+        case LUA_TNIL:
+            lua_pushnil(to_);
+            return true;
+        case LUA_TBOOLEAN:
+            lua_pushboolean(to_, lua_toboolean(from_, index));
+            return true;
+        case LUA_TNUMBER:
+            lua_isinteger(from_, index) != 0 ? lua_pushinteger(to_, lua_tointeger(from_, index))
+                                             : lua_pushnumber(to_, lua_tonumber(from_, index));
+            return true;
+        case LUA_TSTRING:
+            lua::push_text(to_, lua::text_at(from_, index));
+            return true;
+        case LUA_TLIGHTUSERDATA:
+            lua_pushlightuserdata(to_, lua_touserdata(from_, index));
+            return true;
+        case LUA_TTABLE:
+            return known(index) || table(index);
+        case LUA_TFUNCTION:
+            return known(index) || (lua_iscfunction(from_, index) != 0 ? c_function(index) : function(index));
+        case LUA_TUSERDATA:
+            return known(index) || object(index);
+        default:
+            return fail(index);
+    }
+}
+
+bool Carrier::table(int index) {
+    if (depth_ >= deepest) return fail(index, fmt::format(": it is within {} others", deepest));
+    ++depth_;
+    const int top = lua_gettop(from_), top_there = lua_gettop(to_);
+    lua_newtable(to_);
+    remember(lua_topointer(from_, index));
+    bool good = true;
+    lua_pushnil(from_);
+    while (good && lua_next(from_, index) != 0) {
+        const bool named = lua_type(from_, -2) == LUA_TSTRING && lua::is_name(lua::text_at(from_, -2));
+        way_.push_back(named ? fmt::format(".{}", lua_tostring(from_, -2))
+                             : fmt::format("[{}]", lua_isinteger(from_, -2) != 0
+                                                       ? std::to_string(lua_tointeger(from_, -2))
+                                                       : lua::describe(from_, -2)));
+        good = value(-2) && value(-1);
+        if (good) {
+            lua_rawset(to_, top_there + 1);
+            way_.pop_back();
+            lua_pop(from_, 1);
+        }
+    }
+    if (good && lua_getmetatable(from_, index) != 0) {
+        way_.emplace_back(" > its metatable");
+        good = value(-1);
+        if (good) {
+            lua_setmetatable(to_, top_there + 1);
+            way_.pop_back();
+        }
+    }
+    lua_settop(from_, top);
+    lua_settop(to_, good ? top_there + 1 : top_there);
+    --depth_;
+    return good;
+}
+
+bool Carrier::c_function(int index) {
+    const bool plain = lua_getupvalue(from_, index, 1) == nullptr;
+    if (!plain) lua_pop(from_, 1);
+    if (!plain || lua::documented(from_, index).member == nullptr) return fail(index);
+    lua_pushcfunction(to_, lua_tocfunction(from_, index));  // a method of ours that was taken out of its object
+    return true;
+}
+
+bool Carrier::function(int index) {
+    if (depth_ >= deepest) return fail(index, fmt::format(": it is within {} others", deepest));
+    int environment = -1;
+    for (int i = 1; lua_getupvalue(from_, index, i) != nullptr; ++i) {
+        if (is_globals(from_, -1)) environment = i - 1;
+        lua_pop(from_, 1);
+    }
+    std::string dumped;
+    lua_pushvalue(from_, index);
+    lua_dump(from_, append, &dumped, 0);
+    lua_pop(from_, 1);
+    if (luaL_loadbufferx(to_, dumped.data(), dumped.size(), "=carried", "b") != LUA_OK) {
+        lua_pop(to_, 1);
+        return fail(index);
+    }
+    remember(lua_topointer(from_, index));
+    ++depth_;
+    bool good = variables(index, lua_gettop(to_));
+    if (const auto facts = facts_of_code(dumped, environment); good && facts && environment >= 0) {
+        for (const std::string& name : facts->globals) good = good && global(name);
+        const std::vector<std::string> here = way_;
+        for (const std::string& name : facts->perhaps) {
+            if (!good || global(name)) continue;
+            way_ = here;  // nobody knows that it is needed
+            error_.reset();
+        }
+    }
+    --depth_;
+    if (!good) lua_pop(to_, 1);
+    return good;
+}
+
+/// The upvalues of the function at `index`, for its copy in `to`.
+bool Carrier::variables(int index, int copy) {
+    for (int i = 1; const char* name = lua_getupvalue(from_, index, i); ++i) {
+        const auto [place, is_new] =
+            variables_.try_emplace(lua_upvalueid(from_, index, i), Variable{lua_topointer(from_, index), i});
+        if (!is_new) {
+            lua_rawgetp(to_, memory_, place->second.function);
+            lua_upvaluejoin(to_, copy, i, -1, place->second.number);
+            lua_pop(to_, 1);
+            lua_pop(from_, 1);
+            continue;
+        }
+        way_.push_back(fmt::format(" > {}", *name == '\0' ? "a variable" : name));
+        if (!value(-1)) {
+            lua_pop(from_, 1);
+            return false;
+        }
+        lua_setupvalue(to_, copy, i);
+        way_.pop_back();
+        lua_pop(from_, 1);
+    }
+    return true;
+}
+
+/// A global that a function names, if it is a user's.
+bool Carrier::global(const std::string& name) {
+    if (!globals_.insert(name).second) return true;
+    lua_pushglobaltable(from_);
+    lua::push_text(from_, name);
+    lua_rawget(from_, -2);
+    lua::push_standard_globals(from_);
+    lua::push_text(from_, name);
+    lua_rawget(from_, -2);
+    const int type = lua_type(from_, -3);
+    const bool standard = type == LUA_TNIL || lua_rawequal(from_, -1, -3) != 0 || name == "dinal" || name == "_G";
+    lua_pop(from_, 2);
+    bool good = true;
+    if (!standard) {
+        way_.push_back(fmt::format(" > {}", name));
+        good = value(-1);
+        if (good) {
+            way_.pop_back();
+            lua_pushglobaltable(to_);
+            lua_insert(to_, -2);
+            lua::push_text(to_, name);
+            lua_insert(to_, -2);
+            lua_rawset(to_, -3);
+            lua_pop(to_, 1);
+        }
+    }
+    lua_pop(from_, 2);
+    return good;
+}
+
+}  // namespace dinal::source

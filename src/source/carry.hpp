@@ -1,0 +1,80 @@
+// Values carried from one Lua state to another, for threads that run users' functions.
+//
+// Functions keep what they take from outside: local variables (those that functions share stay shared), the globals
+// that they name, tables with their metatables, vectors, systems, excitations, laws of friction and integrators. What
+// the libraries provide is found again by its name. What cannot be in two states at once is refused with the way to it.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <unordered_map>
+#include <unordered_set>
+#include <utility>
+#include <vector>
+
+#include "lua/lua_headers.hpp"
+#include "model/excitation.hpp"
+#include "text/expected.hpp"
+
+namespace dinal::source {
+
+/// Pushes to `to` what the userdata of `from` at the index is there, if it is of a class that this room does not know.
+using CarryObject = bool (*)(lua_State* from, int index, lua_State* to);
+
+class Carrier {
+public:
+    /// To a state that was just opened, and has nothing of a user in it.
+    Carrier(lua_State* from, lua_State* to, CarryObject other_objects);
+
+    /// Pushes to `to` what stands at the index in `from`; `name` stands for it in sentences. Raises in neither state
+    /// unless memory is lacking; to be called in a protected call of `to`.
+    std::optional<text::Error> carry(int index, const std::string& name);
+
+private:
+    struct Place {
+        std::string library;  ///< "string"; empty for a global
+        std::string name;     ///< "format"; empty for the library itself
+    };
+    struct Variable {
+        const void* function;  // of `from`
+        int number;
+    };
+
+    void note_standard(const std::string& library, const std::string& name);
+    void note_library(const std::string& name);
+    void push_place(const Place& place);
+    void carry_additions();
+
+    bool value(int index);
+    bool known(int index);
+    bool table(int index);
+    bool function(int index);
+    bool variables(int index, int copy);
+    bool c_function(int index);
+    bool global(const std::string& name);
+    bool object(int index);
+    bool fail(int index, std::string_view cure = "");
+    void remember(const void* identity);
+    [[nodiscard]] std::string way() const;
+
+    std::shared_ptr<model::terms::UserFunction> user_function(const model::terms::UserFunction& function,
+                                                              const char* what);
+    bool excitation(const model::Excitation& own);
+    bool friction(const model::Friction& own, model::Friction& copy);
+    std::shared_ptr<model::terms::UserFunction> controller(const model::terms::UserFunction& function);
+
+    lua_State* from_;
+    lua_State* to_;
+    CarryObject other_objects_;
+    int memory_ = 0;  // index in `to` of the table from identities in `from` to values
+    std::unordered_map<const void*, Place> standard_;
+    std::vector<Place> additions_;  // what a user has put into libraries
+    std::unordered_map<const void*, Variable> variables_;
+    std::unordered_set<std::string> globals_;
+    std::vector<std::string> way_;
+    int depth_ = 0;
+    std::optional<text::Error> error_;
+};
+
+}  // namespace dinal::source

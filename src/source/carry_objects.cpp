@@ -1,0 +1,109 @@
+// Objects of our classes, carried: what is native is shared, a user's functions in them are carried, too.
+#include <fmt/format.h>
+
+#include "lua/user_function.hpp"
+#include "lua/vector.hpp"
+#include "model/controller.hpp"
+#include "model/laws/user_law.hpp"
+#include "motion/integrators.hpp"
+#include "source/carry.hpp"
+
+namespace dinal::source {
+
+bool Carrier::object(int index) {
+    if (const auto* vector = lua::test<lua::Vector>(from_, index)) {
+        lua::push(to_, *vector);
+    } else if (const auto* integrator = lua::test<motion::Integrator>(from_, index)) {
+        lua::push(to_, *integrator);
+    } else if (const auto* law = lua::test<model::Friction>(from_, index)) {
+        model::Friction copy;
+        if (!friction(*law, copy)) return false;
+        lua::push(to_, copy);
+    } else if (const auto* system = lua::test<model::Oscillator>(from_, index)) {
+        model::Friction copy;
+        if (!friction(system->friction(), copy)) return false;
+        model::OscillatorParameters parameters = system->parameters();
+        if (parameters.friction) parameters.friction = copy;
+        lua::push(to_, model::Oscillator::make(parameters).value());
+    } else if (const auto* own = lua::test<model::Excitation>(from_, index)) {
+        if (!excitation(*own)) return false;
+    } else if (!other_objects_(from_, index, to_)) {
+        const lua::Documented found = lua::documented(from_, index);
+        const bool run = found.owner != nullptr && std::string_view(found.owner->name) == "run";
+        return fail(index, run ? "; take what is needed out of it before, such as local theta = run.theta" : "");
+    }
+    remember(lua_topointer(from_, index));
+    return true;
+}
+
+/// nullptr when it fails.
+std::shared_ptr<model::terms::UserFunction> Carrier::user_function(const model::terms::UserFunction& function,
+                                                                   const char* what) {
+    const auto* own = dynamic_cast<const lua::LuaFunction*>(&function);
+    if (own == nullptr) return controller(function);
+    way_.push_back(fmt::format(" > {}", what));
+    own->push(from_);
+    const bool good = value(-1);
+    lua_pop(from_, 1);
+    if (!good) return nullptr;
+    way_.pop_back();
+    auto copy = std::make_shared<lua::LuaFunction>(to_, lua_gettop(to_), own->role());
+    lua_pop(to_, 1);
+    return copy;
+}
+
+std::shared_ptr<model::terms::UserFunction> Carrier::controller(const model::terms::UserFunction& function) {
+    const auto copied = [&](const auto& own) -> std::shared_ptr<model::terms::UserFunction> {
+        auto copy = std::make_shared<std::decay_t<decltype(own)>>();
+        if (own.function != nullptr) {
+            copy->function = user_function(*own.function, "its function");
+            if (copy->function == nullptr) return nullptr;
+        }
+        if constexpr (requires { own.by; }) {
+            copy->by = own.by;
+        } else if constexpr (requires { own.every; }) {
+            copy->every = own.every, copy->delay = own.delay, copy->at = own.at;
+        } else {
+            copy->on = own.on, copy->off = own.off, copy->levels = own.levels;
+            copy->of = own.of, copy->state = own.state, copy->starts_on = own.starts_on;
+        }
+        return copy;
+    };
+    if (const auto* sampled = dynamic_cast<const model::SampledController*>(&function)) return copied(*sampled);
+    if (const auto* delayed = dynamic_cast<const model::DelayedController*>(&function)) return copied(*delayed);
+    return copied(dynamic_cast<const model::RelayController&>(function));
+}
+
+/// Pushes the copy.
+bool Carrier::excitation(const model::Excitation& own) {
+    if (!own.has_script()) {
+        lua::push(to_, own);
+        return true;
+    }
+    model::Excitation sum;
+    for (const model::Component& component : own.components()) {
+        model::Term term = component.term;
+        if (auto* script = std::get_if<model::Scripted>(&term)) {
+            script->function = user_function(*script->function, "its function");
+            if (script->function == nullptr) return false;
+        }
+        // As it was made once, so it is right.
+        const model::Excitation one = model::Excitation::make(std::move(term)).value();
+        sum = sum + one.scaled(component.gain).windowed(component.from, component.to);
+    }
+    lua::push(to_, std::move(sum));
+    return true;
+}
+
+bool Carrier::friction(const model::Friction& own, model::Friction& copy) {
+    copy = own;
+    if (const auto* law = own.as<model::laws::UserLaw>()) {
+        model::laws::UserLaw carried = *law;
+        carried.function = user_function(*law->function, "its function");
+        if (carried.function == nullptr) return false;
+        copy = carried;
+    }
+    return true;
+}
+
+}  // namespace dinal::source

@@ -1,0 +1,292 @@
+-- sweep{ ... }: the grid, what is carried to the workers, errors of points.
+package.path = arg[0]:match("^(.*)/") .. "/?.lua;" .. package.path
+local support = require "support"
+local test, equal, raises, raises_here = support.test, support.equal, support.raises, support.raises_here
+
+--- All columns as one text, every bit of every number.
+local function bits(d)
+    local all = {}
+    for _, name in ipairs(d.names) do
+        local column = d:column(name)
+        for i = 1, #column do
+            local x = column[i]
+            all[#all + 1] = type(x) == "number" and (x ~= x and "nan" or ("%a"):format(x)) or x
+        end
+    end
+    return table.concat(all, "|")
+end
+
+--- What the function gives at one point.
+local function at_one_point(run)
+    return sweep { x = { 7 }, run = run }.y[1]
+end
+
+test("a sweep has a row for each point, the last parameter changing fastest", function()
+    local d = sweep { b = { 1, 2 }, a = vector { 10, 20, 30 }, run = function(p) return { s = p.a + p.b } end }
+    equal(table.concat(d.names, " "), "a b s error")
+    equal(tostring(d.a), "vector{ 10, 10, 20, 20, 30, 30 }")
+    equal(tostring(d.b), "vector{ 1, 2, 1, 2, 1, 2 }")
+    equal(tostring(d.s), "vector{ 11, 12, 21, 22, 31, 32 }")
+    local e = sweep { { "b", { 1, 2 } }, { "a", { 10, 20 } }, run = function(p) return { s = p.a + p.b } end }
+    equal(table.concat(e.names, " "), "b a s error")
+    equal(tostring(e.s), "vector{ 11, 21, 12, 22 }")
+end)
+
+test("words are parameters, too", function()
+    local d = sweep { word = { "a", "bcd" }, run = function(p) return { n = #p.word } end }
+    equal(table.concat(d.word, " "), "a bcd")
+    equal(tostring(d.n), "vector{ 1, 3 }")
+end)
+
+test("the result is the same to the last bit for any number of workers", function()
+    local function map(workers)
+        return bits(sweep { r = vector.linspace(0.3, 1.5, 13), g = vector.linspace(0, 0.9, 10), workers = workers,
+                            run = function(p)
+            if p.r > 1.4 and p.g > 0.8 then error("far away") end
+            local s = nondimensional { friction_ratio = p.g }:steady { M = excitation.harmonic { frequency = p.r } }
+            return { A = s.amplitude, stops = s.stops, chance = math.random(), found = s.amplitude ~= nil }
+        end })
+    end
+    local one = map(1)
+    for workers = 2, 8, 3 do equal(map(workers), one) end
+end)
+
+test("math.random differs from point to point and from seed to seed, and is the same each time", function()
+    local function draws(seed)
+        return sweep { x = vector.linspace(1, 100, 100), seed = seed, run = function() return { u = math.random() } end }.u
+    end
+    local u, seen = draws(), {}
+    for i = 1, #u do seen[u[i]] = true end
+    local different = 0
+    for _ in pairs(seen) do different = different + 1 end
+    equal(different, 100)
+    equal(bits(data { u = draws(0) }), bits(data { u = u }))
+    assert(bits(data { u = draws(1) }) ~= bits(data { u = u }))
+end)
+
+test("what a point does not return is nan, true and false are 1 and 0", function()
+    local d = sweep { x = { 1, 2, 3 }, run = function(p) return { y = p.x > 1 and p.x or nil, big = p.x > 2 } end }
+    assert(d.y[1] ~= d.y[1])
+    equal(d.y[3], 3.0)
+    equal(tostring(d.big), "vector{ 0, 0, 1 }")
+    equal(table.concat(d.error), "")
+end)
+
+-- ---- what is carried
+
+test("a function keeps its local variables, and those of the functions that it calls", function()
+    local a, deep = 2, { { k = 3, [true] = 4, [1.5] = 5 } }
+    local function inner(x) return a * x end
+    equal(at_one_point(function(p) return { y = inner(p.x) + deep[1].k + deep[1][true] + deep[1][1.5] } end), 26.0)
+end)
+
+test("variables that functions share stay shared", function()
+    local count = 0
+    local function up() count = count + 1 end
+    local function get() return count end
+    equal(at_one_point(function() up() up() return { y = get() + 10 * count } end), 22.0)
+    equal(count, 0, "and the sweep changes nothing outside")
+end)
+
+test("functions that call themselves and each other are carried", function()
+    local even
+    local function odd(n) return n > 0 and even(n - 1) end
+    function even(n) return n == 0 or odd(n - 1) end
+    local function factorial(n) return n < 2 and 1 or n * factorial(n - 1) end
+    equal(at_one_point(function() return { y = factorial(5) + (even(10) and 1 or 0) } end), 121.0)
+end)
+
+test("globals that a function names are carried, also those that the functions within it name", function()
+    factor, helper = 3, function(x) return factor * x end
+    equal(at_one_point(function(p) return { y = (function() return helper(p.x) end)() } end), 21.0)
+    equal(at_one_point(function(p) return { y = _G.factor + _ENV["factor"] } end), 6.0)
+    record = nondimensional {}:simulate { theta0 = 1, t_end = 1, dt = 0.5 }
+    equal(at_one_point(function(p) local record = { record = 1 } return { y = record.record } end), 1.0,
+        "a global of the same name as a variable or a field is not looked at")
+    factor, helper, record = nil, nil, nil
+end)
+
+test("a global with a new meaning keeps it, and a library with more in it, too", function()
+    local own = print
+    print = function() return 5 end
+    function string.twice(s) return s .. s end
+    equal(at_one_point(function() return { y = print() + #("ab"):twice() } end), 9.0)
+    print, string.twice = own, nil
+end)
+
+test("a function with an environment of its own keeps it", function()
+    local f = load("return { y = x + p }", "=text", "t", { x = 3, p = 4 })
+    equal(at_one_point(f), 7.0)
+end)
+
+test("a function with more constants than instructions can name finds its globals", function()
+    far_away = 42
+    local text = { "return function(p) local t = {" }
+    for i = 1, 300 do text[#text + 1] = ("%q,"):format("text " .. i) end
+    text[#text + 1] = "} return { y = far_away + #t } end"
+    equal(at_one_point(load(table.concat(text))()), 342.0)
+    far_away = nil
+end)
+
+test("standard functions and tables are found again by their names", function()
+    local sin, library, write, print_it = math.sin, string, io.write, print
+    equal(at_one_point(function()
+        return { y = (sin == math.sin and library == string and write == io.write and print_it == print
+            and io.stdout ~= nil) and 1 or 0 }
+    end), 1.0)
+end)
+
+test("tables keep their metatables, what is in them twice, and circles", function()
+    local class = { get = function(self) return self.value end }
+    class.__index = class
+    local object = setmetatable({ value = 9 }, class)
+    local circle = { object = object, same = object }
+    circle.circle = circle
+    equal(at_one_point(function()
+        return { y = circle.circle.circle.same:get() + (circle.object == circle.same and 1 or 0) }
+    end), 10.0)
+end)
+
+test("a list of ten thousand links is carried", function()
+    local list
+    for i = 1, 4000 do list = { next = list, i = i } end
+    equal(at_one_point(function()
+        local sum, link = 0, list
+        while link do sum, link = sum + link.i, link.next end
+        return { y = sum }
+    end), 4000 * 4001 / 2)
+end)
+
+test("vectors, data, systems, laws, excitations and integrators are carried, with the functions in them", function()
+    local a = 2
+    local v, d = vector { 1, 2, 3 }, data { u = { 4, 5 } }
+    local law = friction.law(function(speed) return 0.1 * a + 0.01 * speed end)
+    local sys = system { I = 1, k = 4, friction = law }
+    local M = (3 * excitation.scripted(function(t) return math.sin(a * t) end, { breaks = { 0.5 } })):window(0, 2)
+        + excitation.harmonic { frequency = 1 } + excitation.samples { t = { 0, 1 }, M = { 0, 1 } }
+    local method = integrator.rk4 { h = 0.001 }
+    local function run()
+        local r = sys:simulate { M = M, t_end = 3, dt = 0.1, integrator = method }
+        return v:sum() + d.u:sum() + law:torque(0.5) + r.theta:sum()
+    end
+    equal(at_one_point(function() return { y = run() } end), run())
+end)
+
+test("controllers with a memory are carried", function()
+    local gain = 3
+    for _, M in ipairs {
+        excitation.sampled(function(t, theta) return gain * (1 - theta) end, { every = 0.1, delay = 0.02 }),
+        excitation.delayed(function(t, theta) return -gain * theta end, { by = 0.05 }),
+        excitation.relay { on = -0.1, off = 0.1, levels = { 1, -1 } },
+        excitation.relay { on = -0.1, off = 0.1, levels = { 1, -1 }, of = function(t, theta) return theta * gain end },
+    } do
+        local function run() return nondimensional { zeta = 0.1 }:simulate { M = M, t_end = 2, dt = 0.1 }.theta:sum() end
+        equal(at_one_point(function() return { y = run() } end), run())
+    end
+end)
+
+test("a method that was taken out of its object is carried", function()
+    local simulate = nondimensional {}.simulate
+    equal(at_one_point(function() return { y = #simulate(nondimensional {}, { theta0 = 1, t_end = 1, dt = 0.5 }) } end), 3.0)
+end)
+
+test("a sweep within a sweep works", function()
+    local d = sweep { n = { 2, 3 }, run = function(p)
+        return { total = sweep { i = vector.linspace(1, p.n, p.n), run = function(q) return { y = q.i } end }.y:sum() }
+    end }
+    equal(tostring(d.total), "vector{ 3, 6 }")
+end)
+
+test("what cannot be carried is refused with the way to it", function()
+    local run = nondimensional {}:simulate { theta0 = 1, t_end = 1, dt = 0.5 }
+    local settings = { last = { run } }
+    local function helper() return settings end
+    raises_here(function() sweep { x = { 1 }, run = function() return { y = #helper() } end } end,
+        "sweep: run uses helper > settings.last[1], a run, which cannot be in another thread", "run.theta")
+    local thread = coroutine.create(print)
+    raises(function() sweep { x = { 1 }, run = function() return thread end } end, "run uses thread, a coroutine")
+    local match = ("a b"):gmatch("%a")
+    raises(function() sweep { x = { 1 }, run = function() return match() end } end,
+        "run uses match, a function that is written in C")
+    raises(function() sweep { x = { 1 }, run = match } end, "run is a function that is written in C")
+    local file = io.tmpfile()
+    raises(function() sweep { x = { 1 }, run = function() return file end } end, "run uses file, a userdata")
+    file:close()
+    local steady = nondimensional { zeta = 0.1 }:steady { M = excitation.harmonic { frequency = 1 } }
+    raises(function() sweep { x = { 1 }, run = function() return steady end } end, "run uses steady, a steady motion")
+end)
+
+-- ---- what goes wrong
+
+test("a point that fails keeps its message, the others go on, and the map says so", function()
+    local d = sweep { x = { 1, 2, 3, 4, 5 }, run = function(p)
+        if p.x == 2 then error("two is bad", 0) end
+        if p.x == 3 then return p.x end
+        if p.x == 4 then return { y = "four" } end
+        if p.x == 5 then error { code = 5 } end
+        return { y = p.x }
+    end }
+    equal(d.error[1], "")
+    equal(d.error[2], "two is bad")
+    equal(d.error[3], "run must return a table of named numbers such as { A = s.amplitude }, got 3.0")
+    equal(d.error[4], 'run returned y = the string "four", which is no number')
+    equal(d.error[5], "(error object is a table value)")
+    assert(d.y[1] == 1 and d.y[2] ~= d.y[2])
+    assert(tostring(d):find("5 points, 4 of them failed; the first one, x = 2: two is bad", 1, true), tostring(d))
+end)
+
+test("when all points fail that is an error, with the message of the first", function()
+    raises_here(function() sweep { x = { 1, 2 }, run = function() return syst {} end } end,
+        "sweep: all 2 points failed; the first one, x = 1: ", "attempt to call a nil value (global 'syst')")
+    raises(function() sweep { x = { 1 }, run = function() return {}, 1 end }; error("fine") end, "fine")
+    raises(function() sweep { x = { 1 }, run = function() end } end, "the point x = 1 failed: run must return a table")
+    raises(function() sweep { x = { 1 }, run = function() return { 3 } end } end, "run must return named numbers")
+    raises(function() sweep { x = { 1 }, run = function() return { x = 3 } end } end, "is the name of a parameter")
+    raises(function() sweep { x = { 1 }, run = function() return { error = 3 } end } end, "the column of messages")
+    raises(function() sweep { x = { 1 }, run = function() coroutine.yield() end } end, "yield")
+    raises(function() sweep { x = { 1 }, run = function()
+        local names = {}
+        for i = 1, 1001 do names["n" .. i] = i end
+        return names
+    end } end, "more than 1000 names")
+end)
+
+test("workers do not draw, save, show progress or end the program", function()
+    local function refused(body, call)
+        raises(function() sweep { x = { 1 }, run = function() body() return {} end } end,
+            call .. " is not possible within ")
+    end
+    local v = vector { 1, 2 }
+    refused(function() plot { { v, v } } end, "a plot")
+    refused(function() plot { { v, v }, file = "never.svg" } end, "a plot")
+    refused(function() data { v = v }:save("never.csv") end, "d:save")
+    refused(function() nondimensional {}:simulate { theta0 = 1, t_end = 1, dt = 0.5 }:save("never.csv") end, "run:save")
+    refused(function() for _ in progress(3) do end end, "progress")
+    refused(function() os.exit(0) end, "os.exit")
+    equal(io.open("never.csv"), nil)
+    equal(at_one_point(function() return { y = #tostring(plot { { v, v }, show = false }) > 100 } end), 1.0)
+end)
+
+test("what is wrong with the call is told at the user's line", function()
+    local function run() return {} end
+    raises_here(function() sweep { x = {}, run = run } end, "sweep: x has no values")
+    raises_here(function() sweep { x = vector {}, run = run } end, "sweep: x has no values")
+    raises_here(function() sweep { x = { 0 / 0 }, run = run } end, "sweep: x[1]", "must be finite")
+    raises_here(function() sweep { x = { 1, "a" }, run = run } end, "sweep: x[2] must be a finite number")
+    raises_here(function() sweep { x = { "a", 1 }, run = run } end, "sweep: x[2] must be a string")
+    raises_here(function() sweep { x = { 1 } } end, "sweep needs run")
+    raises_here(function() sweep { x = { 1 }, run = 3 } end, "run must be a function of a point")
+    raises_here(function() sweep { run = run } end, "there is no parameter")
+    raises_here(function() sweep { x = { 1 }, run = run, workers = 0 } end, "workers = 0 must be a whole number")
+    raises_here(function() sweep { x = { 1 }, run = run, workers = 1.5 } end, "workers = 1.5 must be a whole number")
+    raises_here(function() sweep { x = { 1 }, run = run, worker = 2 } end, "sweep has no option 'worker' among run, workers, seed,",
+        "a parameter must be a vector or a table of values", "did you mean 'workers'?")
+    raises_here(function() sweep { 1, run = run } end, "item 1 must be a name and its values")
+    raises_here(function() sweep { { "x", { 1 } }, x = { 2 }, run = run } end, "two parameters 'x'")
+    raises_here(function() sweep { error = { 1 }, run = run } end, "the column of messages")
+    raises_here(function() sweep { x = vector.linspace(0, 1, 1e5), y = vector.linspace(0, 1, 1e5), run = run } end,
+        "1e+10 points are more")
+    raises_here(function() sweep(3) end, "sweep takes one table")
+end)
+
+support.finish()
