@@ -50,13 +50,15 @@ Work operator-(const Work& a, const Work& b) {
 }
 
 Stored stored(const model::Lowered& system, const model::State& y) {
-    return {system.inertia() * y.velocity * y.velocity / 2, system.stiffness() * y.theta * y.theta / 2};
+    return {system.inertia() * y.velocity * y.velocity / 2,
+            system.stiffness() * y.theta * y.theta / 2 + system.spring_energy(y.theta)};
 }
 
 Stored change(const model::Lowered& system, const model::State& from, const model::State& to) {
     // As products: the difference of two large energies would keep their rounding.
     return {system.inertia() * ((to.velocity - from.velocity) * (to.velocity + from.velocity)) / 2,
-            system.stiffness() * ((to.theta - from.theta) * (to.theta + from.theta)) / 2};
+            system.stiffness() * ((to.theta - from.theta) * (to.theta + from.theta)) / 2 +
+                (system.spring_energy(to.theta) - system.spring_energy(from.theta))};
 }
 
 /// Adds up legs into half cycles as the stretches of the run cut them.

@@ -19,7 +19,7 @@ namespace dinal::analysis {
 /// Energies in torque times rad.
 struct Stored {
     double kinetic = 0;  ///< I theta'^2 / 2
-    double spring = 0;   ///< k theta^2 / 2
+    double spring = 0;   ///< k theta^2 / 2, and what a spring of its own has
 };
 
 using motion::Work;

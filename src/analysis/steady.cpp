@@ -45,8 +45,8 @@ public:
           monitor_(monitor),
           map_(question.system, question.excitation, question.drive.start, question.drive.period, monitor),
           half_(question.system, question.excitation, question.drive.start, question.drive.period / 2, monitor) {
-        symmetric_ =
-            acts_evenly(question.system.friction(), system_) && is_antisymmetric(question.excitation, question.drive);
+        symmetric_ = acts_evenly(question.system.friction(), system_) && question.system.spring().is_odd() &&
+                     is_antisymmetric(question.excitation, question.drive);
     }
 
     SteadyMotion found() {
@@ -132,7 +132,10 @@ private:
     /// A motion that creeps up to the edge of where it can rest would take for ever: this is where it gets.
     [[nodiscard]] std::optional<Place> rest_beside(const Place& x, const MapStep& step) const {
         const double k = system_.stiffness(), size = system_.greatest_holding() / k;
-        if (!(k > 0) || !(step.high - step.low <= 1e-8 * size) || question_.excitation.has_feedback()) return {};
+        if (!question_.system.has_linear_spring() || !(step.high - step.low <= 1e-8 * size) ||
+            question_.excitation.has_feedback()) {
+            return {};
+        }
         const auto [low, high] = rest_of(x[0]);
         const double inside = 1e-15 * std::max(std::fabs(low), std::fabs(high));
         return Place(std::clamp(x[0], std::min(low + inside, high), std::max(high - inside, low)), 0);
@@ -191,11 +194,36 @@ private:
     /// Every place at which friction holds the mass through all of the period.
     [[nodiscard]] std::pair<double, double> rest_of(double here) const {
         const double k = system_.stiffness();
-        if (question_.excitation.has_feedback() || !(k > 0)) return {here, here};
+        const bool own_spring = !question_.system.spring().none();
+        if (question_.excitation.has_feedback() || (!(k > 0) && !own_spring)) return {here, here};
         const DriveRange M = extremes(question_.excitation, question_.drive);
+        if (own_spring) return {edge_of_rest(here, -1, M), edge_of_rest(here, 1, M)};
         const double low = (M.high - system_.holding(model::Motion::forward)) / k;
         const double high = (M.low + system_.holding(model::Motion::backward)) / k;
         return low <= high ? std::pair(low, high) : std::pair(here, here);
+    }
+
+    /// How far from here, this way, the springs pull back with no more than friction can hold through all of the
+    /// period.
+    [[nodiscard]] double edge_of_rest(double here, double way, const DriveRange& M) const {
+        const double least = M.high - system_.holding(model::Motion::forward),
+                     most = M.low + system_.holding(model::Motion::backward);
+        const auto holds = [&](double d) {
+            const double torque = system_.pull_back(here + way * d);
+            return torque >= least && torque <= most;
+        };
+        double inside = 0, outside = 1e-9 * std::max(std::fabs(here), 1e-9);
+        for (int i = 0; holds(outside); ++i, outside *= 2) {
+            constexpr int farthest = 200;
+            if (i == farthest) return here;  // nothing pulls it back
+            inside = outside;
+        }
+        while (outside - inside > 1e-15 * (std::fabs(here) + outside)) {
+            const double middle = inside + (outside - inside) / 2;
+            if (!(middle > inside && middle < outside)) break;
+            (holds(middle) ? inside : outside) = middle;
+        }
+        return here + way * inside;
     }
 
     /// Runs the motion itself, and sees whether it comes back after some periods, or grows.

@@ -53,17 +53,21 @@ void Story::end_paragraph() {
 /// Whether a torque on a mass at rest is the limit, as far as M, k theta and the time are known.
 bool Story::at_limit(double torque, const model::Event& event) const {
     const double Re = limit(torque);
-    const double known = Re + std::fabs(event.M) + system_.stiffness() * std::fabs(event.theta);
+    const double known = Re + std::fabs(event.M) + system_.stiffness() * std::fabs(event.theta) +
+                         std::fabs(system_.spring().torque(event.theta));
     const double late = std::numeric_limits<double>::epsilon() * std::fabs(event.t) / T0_;
     return std::fabs(std::fabs(torque) - Re) <= (1e-9 + 64 * late) * known;
 }
 
 void Story::tell_setting() {
-    if (system_.has_spring()) {
+    if (system_.has_linear_spring()) {
         say("The system has T0 = {:.5g}, zeta = {:.4g} ({})", T0_, system_.damping_ratio(),
             model::name(system_.regime()));
+    } else if (system_.has_spring()) {
+        say("The system has a spring besides k theta, so that T0 = {:.5g} and zeta = {:.4g} are those of k alone,", T0_,
+            system_.damping_ratio());
     } else {
-        say("The system is a block without a spring");
+        say("The system is a block {}", system_.spring().none() ? "without a spring" : "on a spring of its own");
         if (system_.damping() > 0) add(", with viscous damping C = {:.5g}", system_.damping());
     }
     tell_friction();
@@ -73,7 +77,7 @@ void Story::tell_setting() {
     } else if (excitation_.has_feedback()) {
         say("M depends on the motion itself: a feedback.");
     } else if (free()) {
-        say("M is constant{}", system_.has_spring() ? ": the motion is free, about theta = M/k." : ".");
+        say("M is constant{}", system_.has_linear_spring() ? ": the motion is free, about theta = M/k." : ".");
     } else if (period > 0) {
         say("M has the period {:.5g}", period);
         if (system_.has_spring()) add(" ({:.4g} T0)", period / T0_);
@@ -112,7 +116,7 @@ void Story::tell_start() {
     const bool told = y.velocity == 0 && !system_.friction().none() && !own_rule_ && known && first.lasts() > 0;
     if (first.stuck) add(" and stuck there");
     if (told) {
-        const double torque = std::fma(-system_.stiffness(), y.theta, run_.column(motion::Column::M)[0]);
+        const double torque = pull_at(y.theta, run_.column(motion::Column::M)[0]);
         add("{} because {}", first.stuck ? "" : " and moved off", reason(torque));
     }
     if (first.stuck && first.ended_by) {
@@ -165,7 +169,7 @@ void Story::tell_turns() {
 void Story::tell_decay() {
     const bool swung = stretches_.size() > 1 && stretches_[1].begun_by->kind == model::EventKind::turn;
     const bool closed_form = system_.friction().none() || system_.friction().as<model::laws::Coulomb>() != nullptr;
-    if (!free() || own_rule_ || !swung || !closed_form || !system_.has_spring()) return;
+    if (!free() || own_rule_ || !swung || !closed_form || !system_.has_linear_spring()) return;
     decay_told_ = true;
     const double zeta = system_.damping_ratio(), step = 2 * system_.kinetic_friction() / system_.stiffness();
     const double factor = zeta < 1 ? std::exp(-std::numbers::pi * zeta / std::sqrt(1 - zeta * zeta)) : 0;
@@ -224,7 +228,7 @@ std::string Story::slip(const model::Event& event, bool told) const {
     if (own_rule_) {
         why = fmt::format("{} {}", own_rule_->release, reason(torque));
     } else if (at_limit(torque, event)) {
-        why = fmt::format("{} grew past Re", told ? "that" : "|M - k theta|");
+        why = fmt::format("{} grew past Re", told ? "that" : fmt::format("|{}|", pull_name()));
     }
     return fmt::format("{} and it slipped {}", why, torque < 0 ? "backward" : "forward");
 }

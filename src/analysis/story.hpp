@@ -40,9 +40,10 @@ private:
         return text::number_text(s.end.theta, std::max(std::fabs(s.begin.theta), std::fabs(s.end.theta)));
     }
     [[nodiscard]] bool at_limit(double torque, const model::Event& event) const;
-    /// M - k theta.
-    [[nodiscard]] double pull(const model::Event& event) const {
-        return std::fma(-system_.stiffness(), event.theta, event.M);
+    /// M - k theta, and less what another spring pulls back with.
+    [[nodiscard]] double pull(const model::Event& event) const { return pull_at(event.theta, event.M); }
+    [[nodiscard]] double pull_at(double theta, double M) const {
+        return std::fma(-system_.stiffness(), theta, M - system_.spring().torque(theta));
     }
     /// Re, against a pull this way.
     [[nodiscard]] double limit(double pull) const {
@@ -50,7 +51,10 @@ private:
     }
     /// "|M - k theta| = 0.155 <= Re = 0.167"
     [[nodiscard]] std::string reason(double pull) const {
-        return "|M - k theta| = " + text::against_limit(std::fabs(pull), limit(pull));
+        return fmt::format("|{}| = {}", pull_name(), text::against_limit(std::fabs(pull), limit(pull)));
+    }
+    [[nodiscard]] const char* pull_name() const {
+        return system_.spring().none() ? "M - k theta" : system_.has_spring() ? "M - k theta - spring" : "M - spring";
     }
     /// M never changes.
     [[nodiscard]] bool free() const { return constant_from_ <= run_.t_start; }

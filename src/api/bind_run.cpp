@@ -136,10 +136,15 @@ int run_length(lua_State* L) {
 }
 
 int explain(lua_State* L) {
-    const Run& run = *run_self(L, "run:explain()");
-    return lua::push_text(L, run.origin ? analysis::explain(run.trajectory, run.origin->system, run.origin->excitation,
-                                                            run.origin->integrator)
-                                        : analysis::explain_rows(run.trajectory));
+    const RunHandle run = run_self(L, "run:explain()");
+    lua::CallState call(L);  // a spring may be a user's function
+    const std::string text = run->origin ? analysis::explain(run->trajectory, run->origin->system,
+                                                             run->origin->excitation, run->origin->integrator)
+                                         : analysis::explain_rows(run->trajectory);
+    if (call.failed()) {
+        call.raise_error();
+    }
+    return lua::push_text(L, text);
 }
 
 int run_text(lua_State* L) {

@@ -41,6 +41,7 @@ int system(lua_State* L) {
     model::OscillatorParameters parameters;
     options.fill(parameters);
     parameters.friction = asked_law(L, options, {"Rd", "Re"});
+    parameters.spring = asked_spring(L, options).value_or(model::Spring());
     return push_system(L, options, parameters);
 }
 
@@ -86,6 +87,19 @@ int field_of_spring(lua_State* L) {
 
 int friction_of(lua_State* L) {
     lua::push<model::Friction>(L, system_self(L, "sys.friction").friction());
+    return 1;
+}
+
+/// nil where there is only k theta.
+int spring_of(lua_State* L) {
+    const model::Spring& spring = system_self(L, "sys.spring").spring();
+    spring.none() ? lua_pushnil(L) : static_cast<void>(lua::push<model::Spring>(L, spring));
+    return 1;
+}
+
+int dead_zone(lua_State* L) {
+    const model::Oscillator& system = system_self(L, "sys.dead_zone");
+    system.has_linear_spring() ? lua_pushnumber(L, system.dead_zone()) : lua_pushnil(L);
     return 1;
 }
 
@@ -183,8 +197,11 @@ constexpr lua::Member system_members[] = {
     {lua::a_field<friction_of>,
      {"sys.friction -> law", "The law of friction.",
       "print(system{ I = 2, k = 4, Rd = 0.5 }.friction)  --> friction.coulomb{ Rd = 0.5, Re = 0.5 }"}},
+    {lua::a_field<spring_of>,
+     {"sys.spring -> spring or nil", "The spring besides k theta, where there is one.",
+      "print(system{ I = 1, k = 4, spring = spring.polynomial{ [3] = 2 } }.spring:torque(3))  --> 54.0"}},
     {lua::a_field<field_of_spring<&model::Oscillator::natural_frequency>>,
-     {"sys.omega0 -> number", "The natural frequency sqrt(k/I), rad per time unit; nil where k = 0.",
+     {"sys.omega0 -> number", "The natural frequency sqrt(k/I) of k alone, rad per time unit; nil where k = 0.",
       "print(system{ I = 1, k = 4 }.omega0)  --> 2.0"}},
     {lua::a_field<field_of_spring<&model::Oscillator::natural_period>>,
      {"sys.T0 -> number", "The natural period 2 pi/omega0, time units; nil where k = 0.",
@@ -201,8 +218,10 @@ constexpr lua::Member system_members[] = {
       "How the free system without dry friction moves: \"undamped\", \"underdamped\", \"critical\" or \"overdamped\"; "
       "nil where k = 0.",
       "print(system{ I = 1, k = 4, C = 4 }.regime)  --> critical"}},
-    {lua::a_field<field_of_spring<&model::Oscillator::dead_zone>>,
-     {"sys.dead_zone -> number", "Re/k, rad: without excitation the mass can stay wherever |theta| is at most this.",
+    {lua::a_field<dead_zone>,
+     {"sys.dead_zone -> number",
+      "Re/k, rad: without excitation the mass can stay wherever |theta| is at most this; nil where k = 0 or another "
+      "spring acts besides k theta.",
       "print(system{ I = 1, k = 4, Rd = 1, Re = 2 }.dead_zone)  --> 0.5"}},
     {lua::a_metamethod<system_text>("__tostring"),
      {"tostring(sys) -> string", "The Lua text that makes the same system again.",

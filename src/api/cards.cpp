@@ -42,12 +42,18 @@ std::string system_card(lua_State* L, int index, const terminal::Display& screen
     if (!system.friction().none() && system.friction().as<model::laws::Coulomb>() == nullptr) {
         text += "\n  friction   " + source::lua_text(L, system.friction());
     }
+    if (!system.spring().none()) {
+        text += "\n  spring     " + source::lua_text(L, system.spring());
+    }
     if (!system.has_spring()) {
         return text;
     }
     text += row("omega0", system.natural_frequency(), "natural frequency, rad per time unit", screen);
     text += row("T0", system.natural_period(), "natural period", screen);
     text += row("zeta", system.damping_ratio(), "damping ratio: " + std::string(model::name(system.regime())), screen);
+    if (!system.spring().none()) {
+        return text;
+    }
     text += row("dead_zone", system.dead_zone(), terminal::spelled("it can rest wherever |θ| <= this", screen), screen);
     return text;
 }

@@ -8,6 +8,7 @@ namespace dinal::api {
 /// One for each bind_*.cpp: called with the table `dinal` on the top of the stack, which it leaves there.
 void register_system(lua_State* L);
 void register_friction(lua_State* L);
+void register_spring(lua_State* L);
 void register_excitation(lua_State* L);
 void register_integrator(lua_State* L);
 void register_run(lua_State* L);
@@ -27,6 +28,8 @@ extern const lua::Class system_functions;    // system, nondimensional
 extern const lua::Class system_class;        // sys
 extern const lua::Class friction_module;     // friction.stribeck ...
 extern const lua::Class friction_class;      // what they return
+extern const lua::Class spring_module;       // spring.polynomial
+extern const lua::Class spring_class;        // what it returns
 extern const lua::Class excitation_module;   // excitation.harmonic ...
 extern const lua::Class excitation_class;    // e
 extern const lua::Class integrator_module;   // integrator.rk4 ...

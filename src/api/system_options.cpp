@@ -46,6 +46,9 @@ int system_with(lua_State* L) {
     parameters.inertia = changes.inertia.value_or(parameters.inertia);
     parameters.stiffness = changes.stiffness.value_or(parameters.stiffness);
     parameters.damping = changes.damping.value_or(parameters.damping);
+    if (const auto spring = asked_spring(L, options)) {
+        parameters.spring = *spring;
+    }
     const auto law = asked_law(L, options, {"Rd", "Re"});
     if (law) {
         parameters.friction = law;

@@ -16,6 +16,9 @@ int push_system(lua_State* L, const lua::Options& options, const model::Oscillat
 std::optional<model::Friction> asked_law(lua_State* L, const lua::Options& options,
                                          std::initializer_list<const char*> instead_of);
 
+/// What the option `spring` says; none when it is absent.
+std::optional<model::Spring> asked_spring(lua_State* L, const lua::Options& options);
+
 inline constexpr text::Option law_option[] = {
     {.name = "friction",
      .meaning = "another law of friction, for example friction.stribeck",
@@ -39,7 +42,14 @@ inline constexpr text::Option number_changes[] = {
     {"Re", "torque", text::its_own, text::not_negative, "what sticking can hold, at least Rd",
      text::fills<&SystemChanges::breakaway>},
 };
-inline constexpr auto change_options = text::joined(number_changes, law_option);
+inline constexpr text::Option spring_change[] = {
+    {.name = "spring",
+     .unit = "torque",
+     .meaning = "another spring besides k theta; spring.polynomial{} is none",
+     .object = "spring",
+     .wanted = "a function of theta, or a spring such as spring.polynomial{ [3] = 0.5 }"},
+};
+inline constexpr auto change_options = text::joined(number_changes, law_option, spring_change);
 inline constexpr text::Call with_call{"sys:with", "sys:with{ Rd = 1 }", change_options};
 
 /// sys:with{ OPTIONS }.

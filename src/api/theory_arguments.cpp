@@ -23,6 +23,12 @@ const model::Oscillator* TheoryArguments::system() const {
         options_.fail({.sentence = "the closed forms are about a mass on a spring, and this system has k = 0",
                        .option = "system"});
     }
+    if (!system->spring().none()) {
+        options_.fail({.sentence =
+                           "the closed forms know the spring k theta only, and this system has another beside it; "
+                           "simulate it",
+                       .option = "system"});
+    }
     if (!system->friction().none() && system->friction().as<model::laws::Coulomb>() == nullptr) {
         options_.fail({.sentence = "the closed forms know Coulomb's friction only, with one Rd and one Re for both "
                                    "ways; simulate this system",

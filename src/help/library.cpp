@@ -15,10 +15,11 @@ namespace dinal::help {
 namespace {
 
 constexpr void (*register_functions[])(lua_State*) = {
-    api::register_system, api::register_friction, api::register_excitation, api::register_integrator,
+    api::register_system, api::register_friction, api::register_spring,     api::register_excitation,
     api::register_run,    api::register_energy,   api::register_trajectory, api::register_theory,
     api::register_vector, api::register_data,     api::register_progress,   api::register_plot,
-    api::register_steady, api::register_identify, api::register_sweep,      register_help,
+    api::register_steady, api::register_identify, api::register_sweep,      api::register_integrator,
+    register_help,
 };
 
 // Plain fields of the table: documented here, set by open_library() and sys:simulate.
@@ -48,6 +49,8 @@ const Section all_sections[] = {
     {"A system", "sys", &api::system_class},
     {"Laws of friction", "friction", &api::friction_module},
     {"A law of friction", "law", &api::friction_class},
+    {"Springs", "spring", &api::spring_module},
+    {"A spring", "spring", &api::spring_class},
     {"Excitations", "excitation", &api::excitation_module},
     {"An excitation", "e", &api::excitation_class},
     {"Integrators", "integrator", &api::integrator_module},

@@ -2,8 +2,9 @@
 //
 //     I theta'' + C theta' + k theta = M - braking(way) - remainder(way, state)    while it moves this way
 //
-// This is the one place where a model is lowered. An integrator solves the linear part and the constant its own fast
-// way; a remainder that is not empty is asked along with a feedback.
+// The remainder is what friction has beside its constant, and a spring of its own beside k theta. This is the one place
+// where a model is lowered. An integrator solves the linear part and the constant its own fast way; a remainder that is
+// not empty is asked along with a feedback.
 #pragma once
 
 #include <array>
@@ -23,7 +24,8 @@ public:
             holding_[index(way)] = law.holding(way);
         }
         dry_ = !law.none();
-        if (law.depends_on_speed()) remainder_ = &law;
+        if (law.depends_on_speed()) friction_ = &law;
+        if (!system.spring().none()) spring_ = &system.spring();
     }
 
     [[nodiscard]] double inertia() const { return inertia_; }
@@ -39,12 +41,25 @@ public:
     /// Velocity zero means something: the friction law must be asked there. Without it the mass swings through.
     [[nodiscard]] bool dry() const { return dry_; }
 
-    [[nodiscard]] bool has_remainder() const { return remainder_ != nullptr; }
-    /// What the constant torque leaves out, 0 at velocity zero. Only while moving.
+    [[nodiscard]] bool has_remainder() const { return friction_ != nullptr || spring_ != nullptr; }
+    /// What the linear part and the constant torque leave out. Only while moving.
     [[nodiscard]] double remainder(Motion way, const State& state) const {
-        if (remainder_ == nullptr) return 0;
+        return friction_remainder(way, state) + spring(state.theta);
+    }
+    [[nodiscard]] bool has_friction_remainder() const { return friction_ != nullptr; }
+    /// Of the friction alone, 0 at velocity zero.
+    [[nodiscard]] double friction_remainder(Motion way, const State& state) const {
+        if (friction_ == nullptr) return 0;
         const double sign = sign_of(way);
-        return sign * remainder_->sliding(way, sign * state.velocity) - braking(way);
+        return sign * friction_->sliding(way, sign * state.velocity) - braking(way);
+    }
+    /// The torque of the spring besides k theta, against theta where it is positive.
+    [[nodiscard]] double spring(double theta) const { return spring_ == nullptr ? 0 : spring_->torque(theta); }
+    /// What it has stored, torque times rad.
+    [[nodiscard]] double spring_energy(double theta) const { return spring_ == nullptr ? 0 : spring_->energy(theta); }
+    /// All that springs pull back with: k theta and that.
+    [[nodiscard]] double pull_back(double theta) const {
+        return spring_ == nullptr ? stiffness_ * theta : stiffness_ * theta + spring_->torque(theta);
     }
 
 private:
@@ -55,7 +70,8 @@ private:
     double inertia_, damping_, stiffness_;
     std::array<double, 3> braking_{}, holding_{};
     bool dry_ = false;
-    const Friction* remainder_ = nullptr;
+    const Friction* friction_ = nullptr;
+    const Spring* spring_ = nullptr;
 };
 
 }  // namespace dinal::model

@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "model/laws/coulomb.hpp"
+#include "model/laws/user_law.hpp"
 
 namespace dinal::model {
 
@@ -33,6 +34,8 @@ text::Expected<Oscillator> Oscillator::make(const OscillatorParameters& p) {
     o.stiffness_ = p.stiffness;
     o.damping_ = p.damping;
     o.friction_ = friction;
+    if (auto wrong = p.spring.complaint()) return *wrong;
+    o.spring_ = p.spring;
     if (!o.has_spring()) {
         if (std::isfinite(o.damping() / o.inertia())) return o;
         return text::Error{
@@ -99,8 +102,13 @@ double Oscillator::characteristic_torque(const State& initial) const {
     return stiffness_ * std::hypot(initial.theta, initial.velocity / natural_frequency());
 }
 
+bool Oscillator::may_go_on() const {
+    const auto* law = friction_.as<laws::UserLaw>();
+    return (law == nullptr || law->function->may_go_on()) && spring_.may_go_on();
+}
+
 OscillatorParameters Oscillator::parameters() const {
-    OscillatorParameters p{.inertia = inertia_, .stiffness = stiffness_, .damping = damping_};
+    OscillatorParameters p{.inertia = inertia_, .stiffness = stiffness_, .damping = damping_, .spring = spring_};
     if (const auto* law = friction_.as<laws::Coulomb>()) {
         p.kinetic_friction = law->kinetic;
         p.breakaway = law->breakaway;

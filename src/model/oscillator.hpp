@@ -3,6 +3,7 @@
 //     I theta'' + C theta' + Rd sgn(theta') + k theta = M(t)    while moving, or at theta' = 0 when |M - k theta| > Re
 //     theta' = 0                                                while theta' = 0 and |M - k theta| <= Re
 //
+// A spring of its own (model/spring.hpp) pulls back besides k theta, wherever k theta stands.
 // theta in rad, time and torque in any consistent units. docs/theory.md has the derivations.
 #pragma once
 
@@ -12,6 +13,7 @@
 #include <utility>
 
 #include "model/friction.hpp"
+#include "model/spring.hpp"
 #include "text/expected.hpp"
 #include "text/option.hpp"
 
@@ -25,6 +27,7 @@ struct OscillatorParameters {
     double kinetic_friction = 0;            ///< Rd, torque of dry friction while moving
     std::optional<double> breakaway = {};   ///< Re, torque that sticking can hold; Rd when not given
     std::optional<Friction> friction = {};  ///< another law than Coulomb's with Rd and Re, which then say nothing
+    Spring spring = {};                     ///< besides k theta
 };
 
 inline constexpr text::Option oscillator_options[] = {
@@ -42,6 +45,11 @@ inline constexpr text::Option oscillator_options[] = {
      .meaning = "another law of friction, instead of Rd and Re",
      .object = "friction",
      .wanted = "a law such as friction.stribeck{ Rd = 0.3, Re = 0.6, speed = 0.1 }"},
+    {.name = "spring",
+     .unit = "torque",
+     .meaning = "a restoring torque besides k theta: a Lua function of theta, or spring.polynomial{ [3] = 0.5 }",
+     .object = "spring",
+     .wanted = "a function of theta, or a spring such as spring.polynomial{ [3] = 0.5 }"},
 };
 
 /// Position and speed of the mass: rad, rad per time unit.
@@ -64,12 +72,18 @@ public:
     [[nodiscard]] double stiffness() const { return stiffness_; }
     [[nodiscard]] double damping() const { return damping_; }
     [[nodiscard]] const Friction& friction() const { return friction_; }
+    /// The one besides k theta.
+    [[nodiscard]] const Spring& spring() const { return spring_; }
+    /// What is derived from k alone holds: there is k, and no other spring.
+    [[nodiscard]] bool has_linear_spring() const { return has_spring() && spring_.none(); }
+    /// After a torque that was no number: whether what a user has written of the system may be asked again.
+    [[nodiscard]] bool may_go_on() const;
     /// Rd; of a law with other numbers each way the greater one, of one that depends on speed that at speed 0.
     [[nodiscard]] double kinetic_friction() const { return friction_.greatest_sliding(); }
     /// Re; of a law with other numbers each way the greater one.
     [[nodiscard]] double breakaway() const { return friction_.greatest_holding(); }
 
-    /// Without a spring nothing swings: no natural frequency, period or damping ratio, and nowhere to rest in
+    /// Without k nothing swings by itself: no natural frequency, period or damping ratio, and nowhere to rest in
     /// particular.
     [[nodiscard]] bool has_spring() const { return stiffness_ > 0; }
     /// w0 = sqrt(k / I), rad per time unit; 0 without a spring.
@@ -105,6 +119,7 @@ private:
     double stiffness_ = 1;
     double damping_ = 0;
     Friction friction_;
+    Spring spring_;
 };
 
 }  // namespace dinal::model

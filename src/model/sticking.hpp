@@ -8,11 +8,12 @@
 
 namespace dinal::model {
 
-/// How far the torque on a mass at velocity zero is past what sticking can hold: |M - k theta| - Re.
-/// The limit is a razor's edge, so M -+ Re is kept in two parts and the product is fused: what is left near the limit
-/// is the exact difference, rounded once.
+/// How far the torque on a mass at velocity zero is past what sticking can hold: |M - k theta| - Re. A spring of its
+/// own is part of M here. The limit is a razor's edge, so M -+ Re is kept in two parts and the product is fused: what
+/// is left near the limit is the exact difference, rounded once.
 inline double breakaway_excess(const Lowered& system, double M, double theta) {
     const double k = system.stiffness();
+    M -= system.spring(theta);
     const bool back = std::fma(-k, theta, M) < 0;
     const double side = back ? -1 : 1, Re = system.holding(back ? Motion::backward : Motion::forward);
     const double m = side * M;
@@ -28,18 +29,19 @@ inline double breakaway_excess(const Lowered& system, double M, double theta) {
 // depending on how the quotient was rounded. M itself is taken to the letter.
 inline Motion motion_from_standstill(const Lowered& system, double M, double theta) {
     constexpr double half_ulp = std::numeric_limits<double>::epsilon() / 2;
-    const double excess = breakaway_excess(system, M, theta);
-    if (!(excess > 0) || excess < half_ulp * std::fabs(system.stiffness() * theta)) {
+    constexpr double few = 8;  // roundings that a formula of the user makes
+    const double excess = breakaway_excess(system, M, theta), own = system.spring(theta);
+    if (!(excess > 0) || excess < half_ulp * (std::fabs(system.stiffness() * theta) + few * std::fabs(own))) {
         return Motion::stuck;
     }
-    return motion_of(std::fma(-system.stiffness(), theta, M));
+    return motion_of(std::fma(-system.stiffness(), theta, M - own));
 }
 
 /// The true friction torque on the mass: against its motion while moving, -(M - k theta) while stuck.
 inline double friction_torque(const Lowered& system, Motion motion, double M, const State& state) {
     if (!system.dry()) return 0;
-    if (motion == Motion::stuck) return std::fma(system.stiffness(), state.theta, -M);
-    return 0.0 - (system.braking(motion) + system.remainder(motion, state));  // 0 - x: never -0
+    if (motion == Motion::stuck) return std::fma(system.stiffness(), state.theta, system.spring(state.theta) - M);
+    return 0.0 - (system.braking(motion) + system.friction_remainder(motion, state));  // 0 - x: never -0
 }
 
 }  // namespace dinal::model

@@ -41,7 +41,7 @@ double Standstill::excess(double M, double theta) const {
 
 bool Standstill::for_good(const Moment& now) const {
     if (!stuck()) return false;
-    const double k_theta = system_.stiffness() * now.theta;
+    const double k_theta = system_.pull_back(now.theta);
     if (most_M_ - k_theta <= system_.holding(model::Motion::forward) &&
         most_M_ + k_theta <= system_.holding(model::Motion::backward)) {
         return true;

@@ -161,7 +161,7 @@ text::Expected<Figure> phase_figure(const RunData& run) {
         plane.marks = {{motion.x.values[0], motion.y.values[0], MarkKind::start},
                        {motion.x.values[rows - 1], motion.y.values[rows - 1], MarkKind::end}};
     }
-    if (run.system != nullptr && run.system->has_spring() && run.system->dead_zone() > 0) {
+    if (run.system != nullptr && run.system->has_linear_spring() && run.system->dead_zone() > 0) {
         const auto [lowest, highest] = run.system->resting_places();
         plane.dead_zone = Interval{lowest, highest};
     }

@@ -1,8 +1,9 @@
 // Values carried from one Lua state to another, for threads that run users' functions.
 //
 // Functions keep what they take from outside: local variables (those that functions share stay shared), the globals
-// that they name, tables with their metatables, vectors, systems, excitations, laws of friction and integrators. What
-// the libraries provide is found again by its name. What cannot be in two states at once is refused with the way to it.
+// that they name, tables with their metatables, vectors, systems, excitations, laws of friction, springs and
+// integrators. What the libraries provide is found again by its name. What cannot be in two states at once is refused
+// with the way to it.
 #pragma once
 
 #include <optional>
@@ -62,6 +63,7 @@ private:
                                                               const char* what);
     bool excitation(const model::Excitation& own);
     bool friction(const model::Friction& own, model::Friction& copy);
+    bool own_spring(const model::Spring& own, model::Spring& copy);
     std::shared_ptr<model::terms::UserFunction> controller(const model::terms::UserFunction& function);
 
     lua_State* from_;

@@ -5,6 +5,7 @@
 #include "lua/vector.hpp"
 #include "model/controller.hpp"
 #include "model/laws/user_law.hpp"
+#include "model/springs/user_spring.hpp"
 #include "motion/integrators.hpp"
 #include "source/carry.hpp"
 
@@ -19,10 +20,14 @@ bool Carrier::object(int index) {
         model::Friction copy;
         if (!friction(*law, copy)) return false;
         lua::push(to_, copy);
+    } else if (const auto* spring = lua::test<model::Spring>(from_, index)) {
+        model::Spring copy;
+        if (!own_spring(*spring, copy)) return false;
+        lua::push(to_, copy);
     } else if (const auto* system = lua::test<model::Oscillator>(from_, index)) {
         model::Friction copy;
-        if (!friction(system->friction(), copy)) return false;
         model::OscillatorParameters parameters = system->parameters();
+        if (!friction(system->friction(), copy) || !own_spring(system->spring(), parameters.spring)) return false;
         if (parameters.friction) parameters.friction = copy;
         lua::push(to_, model::Oscillator::make(parameters).value());
     } else if (const auto* own = lua::test<model::Excitation>(from_, index)) {
@@ -92,6 +97,16 @@ bool Carrier::excitation(const model::Excitation& own) {
         sum = sum + one.scaled(component.gain).windowed(component.from, component.to);
     }
     lua::push(to_, std::move(sum));
+    return true;
+}
+
+bool Carrier::own_spring(const model::Spring& own, model::Spring& copy) {
+    copy = own;
+    if (const auto* written = own.as<model::springs::UserSpring>()) {
+        const auto carried = user_function(*written->function, "its function");
+        if (carried == nullptr) return false;
+        copy = model::springs::UserSpring{carried};
+    }
     return true;
 }
 

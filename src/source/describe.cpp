@@ -4,6 +4,7 @@
 
 #include "model/laws/coulomb.hpp"
 #include "model/laws/user_law.hpp"
+#include "model/springs/user_spring.hpp"
 
 namespace dinal::source {
 
@@ -19,10 +20,21 @@ std::string lua_text(lua_State* L, const model::Friction& law, ValueText* whole)
     return text.empty() ? "--[[ a law of friction written in C++ ]] nil" : text;
 }
 
+std::string lua_text(lua_State* L, const model::Spring& spring, ValueText* whole) {
+    if (const auto* own = spring.as<model::springs::UserSpring>()) {
+        return function_text(L, *own->function, whole);
+    }
+    const std::string text = spring.lua_text();
+    return text.empty() ? "spring.polynomial{}" : text;
+}
+
 std::string lua_text(lua_State* L, const model::Oscillator& system, ValueText* whole) {
     std::string text = fmt::format("system{{ I = {}, k = {}", system.inertia(), system.stiffness());
     if (system.damping() != 0) {
         text += fmt::format(", C = {}", system.damping());
+    }
+    if (!system.spring().none()) {
+        text += ", spring = " + lua_text(L, system.spring(), whole);
     }
     if (system.friction().none()) {
         return text + " }";

@@ -24,6 +24,9 @@ std::string lua_text(lua_State* L, const model::Oscillator& system, ValueText* w
 /// "friction.stribeck{ Rd = 0.3, Re = 0.6, speed = 0.1 }".
 std::string lua_text(lua_State* L, const model::Friction& law, ValueText* whole = nullptr);
 
+/// "spring.polynomial{ [3] = 0.5 }", or the function that a user wrote.
+std::string lua_text(lua_State* L, const model::Spring& spring, ValueText* whole = nullptr);
+
 /// A user's function as text, or a comment that says which one it was.
 std::string function_text(lua_State* L, const model::UserFunction& function, ValueText* whole);
 

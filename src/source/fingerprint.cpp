@@ -12,6 +12,7 @@
 #include "lua/vector.hpp"
 #include "model/laws/user_law.hpp"
 #include "model/oscillator.hpp"
+#include "model/springs/user_spring.hpp"
 #include "source/bytecode.hpp"
 #include "source/describe.hpp"
 
@@ -163,9 +164,15 @@ std::uint64_t Fingerprint::of_object(int index) {
     }
     if (const auto* excitation = lua::test<model::Excitation>(L_, index)) return of_excitation(*excitation);
     const model::Friction* law = lua::test<model::Friction>(L_, index);
-    if (const auto* system = lua::test<model::Oscillator>(L_, index)) law = &system->friction();
+    const model::Spring* spring = lua::test<model::Spring>(L_, index);
+    if (const auto* system = lua::test<model::Oscillator>(L_, index)) {
+        law = &system->friction();
+        spring = &system->spring();
+    }
     const auto* written = law == nullptr ? nullptr : law->as<model::laws::UserLaw>();
     std::uint64_t digest = written == nullptr ? 0 : of_user_function(*written->function);
+    const auto* own = spring == nullptr ? nullptr : spring->as<model::springs::UserSpring>();
+    if (own != nullptr) digest = joined_digest(digest, of_user_function(*own->function));
     if (lua::documented(L_, index).owner != nullptr) {
         digest = digest_of(lua::text_at(L_, (luaL_tolstring(L_, index, nullptr), -1)), digest);
         lua_pop(L_, 1);

@@ -131,7 +131,7 @@ std::string ValueText::object(int index) {
     }
     const lua::Documented found = lua::documented(L_, index);
     const std::string_view name = found.owner != nullptr ? found.owner->name : "";
-    if (name != "system" && name != "integrator" && name != "excitation" && name != "friction") {
+    if (name != "system" && name != "integrator" && name != "excitation" && name != "friction" && name != "spring") {
         return nothing(lua::describe(L_, index));
     }
     std::string text = luaL_tolstring(L_, index, nullptr);  // these write themselves as Lua text

@@ -121,7 +121,7 @@ void Engine::again(Solver::Attempt attempt) {
     if (attempt == Solver::Attempt::failed) {
         bad_time_ = solver_.bad_time();
         const double near = std::max(near_failure * pace_, 64 * rounding * std::fabs(now_.hi));
-        if (cut_.h > 0 || now_.until(bad_time_) <= near || !field_.may_go_on()) {
+        if (cut_.h > 0 || now_.until(bad_time_) <= near || !field_.may_go_on() || !problem_.system.may_go_on()) {
             fail(model::Outcome::excitation_not_finite);
         }
         h_ = piece_.h / 2;
@@ -264,10 +264,10 @@ bool Engine::put_row(double t, double x) {
                             : present          ? field_.belt_rate(t)
                                       : spectral::chebyshev::value(spectral::chebyshev::fit(piece_.belt_rate), at);
         friction = system_.inertia() * rate + system_.damping() * belt -
-                   (std::fma(-system_.stiffness(), y[0], M) + field_.push(t, side));
+                   (std::fma(-system_.stiffness(), y[0], M - system_.spring(y[0])) + field_.push(t, side));
     } else if (system_.dry()) {
         const model::Motion motion = way();
-        friction = 0.0 - (system_.braking(motion) + system_.remainder(motion, {y[0], y[1] - belt}));
+        friction = 0.0 - (system_.braking(motion) + system_.friction_remainder(motion, {y[0], y[1] - belt}));
     }
     double* row = column_ + next_row_;
     const std::size_t stride = problem_.rows.count();

@@ -34,7 +34,7 @@ std::optional<double> Engine::first_standstill() const {
     }
     const double fastest = greatest(piece_.y[1]) + greatest(piece_.belt);
     const double torques = greatest(piece_.M) + greatest(piece_.push) + system_.greatest_holding() +
-                           system_.stiffness() * greatest(piece_.y[0]);
+                           system_.stiffness() * greatest(piece_.y[0]) + std::fabs(system_.spring(y_[0]));
     Bounded<points> curve(model::sign_of(standstill_.motion()), slip, derivative(slip));
     const bool leaving = standstill_.phase() == Standstill::Phase::leaving;
     if (field_.has_belt() && !leaving) curve.raise_floor(16 * rounding * fastest);
@@ -55,10 +55,11 @@ std::pair<double, model::Motion> Engine::first_release() const {
     Nodes pulls{};
     for (std::size_t j = 0; j < points; ++j) {
         pulls[j] = pull_at(piece_.M[j], piece_.push[j], piece_.belt_rate[j], piece_.belt[j]) -
-                   system_.stiffness() * piece_.y[0][j];
+                   system_.pull_back(piece_.y[0][j]);
     }
     const Series pull = fit(pulls);
-    const double largest = greatest(piece_.M) + greatest(piece_.push) + system_.stiffness() * greatest(piece_.y[0]);
+    const double largest = greatest(piece_.M) + greatest(piece_.push) + system_.stiffness() * greatest(piece_.y[0]) +
+                           std::fabs(system_.spring(y_[0]));
     const bool held = standstill_.phase() == Standstill::Phase::held;
     const Series belt = fit(piece_.belt), rate = fit(piece_.belt_rate);
     for (const model::Motion side : {model::Motion::forward, model::Motion::backward}) {
@@ -157,7 +158,8 @@ bool Engine::act(std::size_t which) {
             return fail(model::Outcome::excitation_not_finite);
         }
         const auto energy = [&](double theta, double velocity) {
-            return (system_.inertia() * velocity * velocity + system_.stiffness() * theta * theta) / 2;
+            return (system_.inertia() * velocity * velocity + system_.stiffness() * theta * theta) / 2 +
+                   problem_.system.spring().energy(theta);
         };
         if (problem_.limits.dense) {
             pieces_->add_act(now_.hi, energy(state.theta, state.velocity) - energy(y_[0], y_[1]));
@@ -237,7 +239,8 @@ void Engine::record_turns(double until) {
     Series v = piece_.series[1];
     v[0] += y_[1];
     const double moving = greatest(piece_.y[1]);
-    const double torques = greatest(piece_.M) + greatest(piece_.push) + system_.stiffness() * greatest(piece_.y[0]);
+    const double torques = greatest(piece_.M) + greatest(piece_.push) + system_.stiffness() * greatest(piece_.y[0]) +
+                           std::fabs(system_.spring(y_[0]));
     if (moving <= 100 * rounding * piece_.h / system_.inertia() * torques) return;
     if (standstill_.motion() == model::Motion::stuck) {
         const std::span<const double> velocities = piece_.y[1];

@@ -48,16 +48,20 @@ private:
     [[nodiscard]] Series friction_on(const model::Lowered& system, const Series& theta, const Series& v) const {
         Series friction{};
         if (piece_.way == model::Motion::stuck) {
+            Nodes own = cheb::at_nodes(theta);
+            for (double& torque : own) torque = system.spring(torque);
+            const Series spring = cheb::fit(own);
             for (std::size_t k = 0; k < friction.size(); ++k) {
                 friction[k] = system.inertia() * piece_.belt_rate[k] + system.damping() * v[k] +
-                              system.stiffness() * theta[k] - piece_.push[k] - piece_.M[k];
+                              (system.stiffness() * theta[k] + spring[k]) - piece_.push[k] - piece_.M[k];
             }
             return friction;
         }
         const Nodes theta_at = cheb::at_nodes(theta), v_at = cheb::at_nodes(v), belt_at = cheb::at_nodes(piece_.belt);
         Nodes values{};
         for (std::size_t j = 0; j < node_count; ++j) {
-            values[j] = -system.braking(piece_.way) - system.remainder(piece_.way, {theta_at[j], v_at[j] - belt_at[j]});
+            values[j] = -system.braking(piece_.way) -
+                        system.friction_remainder(piece_.way, {theta_at[j], v_at[j] - belt_at[j]});
         }
         return cheb::fit(values);
     }

@@ -257,8 +257,8 @@ void Solver::judge(const Solved& piece) {
     unresolved_ = 0;
     const double h = piece.h, per_torque = h * (h / system_.inertia());
     const Series M = cheb::fit(piece.M);
-    const double torques =
-        cheb::size(M) + system_.greatest_holding() + system_.stiffness() * greatest(piece.y[0]) + greatest(piece.push);
+    const double torques = cheb::size(M) + system_.greatest_holding() + system_.stiffness() * greatest(piece.y[0]) +
+                           greatest(piece.push) + std::fabs(system_.spring(piece.y[0][0]));
     const double smallest = std::numeric_limits<double>::min() / rounding;
     // Times far from t = 0 are rounded, and M with them.
     double slope = 0;

@@ -22,7 +22,7 @@ PanelSolver::PanelSolver(const Problem& problem, const Spectral& options)
       h_max_(options.longest(problem) / 2),
       feedback_(problem.excitation.has_feedback() || system_.has_remainder()),
       script_(problem.excitation.has_script()),
-      law_(problem.system.friction().as<model::laws::UserLaw>()),
+      oscillator_(problem.system),
       h_(h_max_),
       patience_{.since = problem.window.start} {}
 
@@ -44,6 +44,7 @@ void PanelSolver::choose(const Present& now, model::Motion way) {
     panel_.h = to_limit ? remaining / 2 : remaining < 4 * h_ ? remaining / 4 : h_;
     panel_.length = 2 * panel_.h;
     panel_.end = to_limit ? limit : now.clock.after(2 * panel_.h);
+    if (system_.has_remainder()) own_spring_ = std::fabs(system_.spring(now.y.theta));
     for (std::size_t j = 0; j + 1 < points; ++j) panel_.times[j] = panel_.time(chebyshev::nodes[j]);
     panel_.times[points - 1] = panel_.end;
 }
@@ -86,7 +87,7 @@ PanelSolver::Attempt PanelSolver::before_failure() {
     const bool there =
         panel_.start.until(bad_time_) <= std::max(near_failure * pace_, 64 * epsilon * std::fabs(panel_.start.hi));
     if (feedback_) bad_time_ = model::never;
-    const bool may_go_on = excitation_.may_go_on() && (law_ == nullptr || law_->function->may_go_on());
+    const bool may_go_on = excitation_.may_go_on() && oscillator_.may_go_on();
     if (!there && may_go_on) return Attempt::shorten;
     return end_with(model::Outcome::excitation_not_finite);
 }

@@ -7,7 +7,6 @@
 
 #include <vector>
 
-#include "model/laws/user_law.hpp"
 #include "model/lowered.hpp"
 #include "motion/simulate.hpp"
 #include "motion/spectral/panel_equation.hpp"
@@ -62,7 +61,7 @@ public:
     /// The size of the torques that are at play on the panel.
     [[nodiscard]] double torques() const {
         return chebyshev::size(panel_.M) + system_.greatest_holding() +
-               system_.stiffness() * std::fabs(panel_.begin.theta);
+               system_.stiffness() * std::fabs(panel_.begin.theta) + own_spring_;
     }
     /// What h^2 theta'' is off by at least, as a difference of torques that may balance each other.
     [[nodiscard]] double least_rounding() const {
@@ -123,7 +122,7 @@ private:
     double pace_;   // what short times are measured in: T0, or all of a run that is shorter
     double h_max_;  // half the length of the longest panel
     bool feedback_, script_;
-    const model::laws::UserLaw* law_;  // of friction, which may fail as M may
+    const model::Oscillator& oscillator_;  // whose functions may fail as M may
 
     double h_;                          // half the length of the next panel
     std::vector<double> found_breaks_;  // of a function that did not announce them, in order
@@ -136,6 +135,7 @@ private:
     } falls_;  // -dM/dtheta and -dM/dvelocity of a feedback: solved for, not iterated
     SolvedPanel panel_;
     double theta_rest_ = 0;  // of its beginning
+    double own_spring_ = 0;  // the torque there of a spring besides k theta, without sign
     PanelEquation equation_;
     struct {
         int unresolved = 0, too_short = 0;  // panels in a row

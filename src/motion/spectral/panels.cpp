@@ -19,7 +19,7 @@ public:
         input_ = chebyshev::integral(chebyshev::product(panel.M, v), 0);
         way_ = chebyshev::integral(v, 0);
         dry_ = system.braking(panel.motion);
-        if (system.has_remainder()) add_remainder(system, v);
+        if (system.has_friction_remainder()) add_remainder(system, v);
         if (system.damping() == 0) return;
         squared_ = chebyshev::integral(chebyshev::product(v, v), 0);
         viscous_ = system.damping() / panel.h;
@@ -42,7 +42,8 @@ private:
         const auto v_at = chebyshev::at_nodes(v), theta_at = chebyshev::at_nodes(way_);
         chebyshev::Samples friction{};
         for (std::size_t j = 0; j < points; ++j) {
-            friction[j] = system.remainder(panel_.motion, {panel_.begin.theta + theta_at[j], v_at[j] / panel_.h});
+            friction[j] =
+                system.friction_remainder(panel_.motion, {panel_.begin.theta + theta_at[j], v_at[j] / panel_.h});
         }
         changing_ = chebyshev::integral(chebyshev::product(chebyshev::fit(friction), v), 0);
         changes_ = true;

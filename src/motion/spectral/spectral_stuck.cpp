@@ -42,7 +42,7 @@ std::pair<double, model::Motion> SpectralEngine::first_release(double from) cons
 double SpectralEngine::release_towards(model::Motion side, double from) const {
     constexpr double exact_enough = 1e-11;  // natural periods
     const SolvedPanel& panel = solver_.panel();
-    const double sign = model::sign_of(side), k_theta = system_.stiffness() * now_.y.theta, Re = system_.holding(side);
+    const double sign = model::sign_of(side), k_theta = system_.pull_back(now_.y.theta), Re = system_.holding(side);
     const double doubt = 8 * (epsilon * (Re + std::fabs(k_theta)) + chebyshev::tail(panel.M));
     double varying = 0;
     for (std::size_t k = 1; k < points; ++k) varying += std::fabs(panel.M[k]);

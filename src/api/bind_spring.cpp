@@ -1,0 +1,155 @@
+// spring.polynomial{...}: springs as values, for `spring =` of a system; and the Lua function that may stand there.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "api/classes.hpp"
+#include "api/system_options.hpp"
+#include "lua/user_function.hpp"
+#include "model/springs/polynomial_spring.hpp"
+#include "model/springs/user_spring.hpp"
+#include "source/describe.hpp"
+
+namespace dinal::api {
+
+namespace {
+
+namespace springs = model::springs;
+
+constexpr const char* polynomial_example = "spring.polynomial{ [3] = 0.5 }";
+
+[[noreturn]] void refuse_power(lua_State* L, std::string sentence, int index) {
+    lua::raise(
+        L, text::in_call("spring.polynomial", {.sentence = std::move(sentence), .culprit = lua::written(L, index)}));
+}
+
+/// The power that the key at `index` is, as a user has written it.
+int power_at(lua_State* L, int index) {
+    const double n = lua_tonumber(L, index);
+    if (lua_type(L, index) == LUA_TNUMBER && n == 0) {
+        refuse_power(L, "the power 0 is a constant torque and no spring; give it as a part of M", index);
+    }
+    if (lua_type(L, index) != LUA_TNUMBER || !text::is_whole(n, 1, springs::PolynomialSpring::highest_power)) {
+        refuse_power(L,
+                     fmt::format("the power {} must be a whole number from 1 to {}, for example {}",
+                                 lua_type(L, index) == LUA_TNUMBER ? fmt::format("{:.6g}", n) : lua::describe(L, index),
+                                 springs::PolynomialSpring::highest_power, polynomial_example),
+                     index);
+    }
+    return static_cast<int>(n);
+}
+
+int polynomial_spring(lua_State* L) {
+    if (lua_type(L, 1) != LUA_TTABLE) {
+        lua::raise_got(L, 1, "spring.polynomial", "spring.polynomial takes a table of powers of theta",
+                       fmt::format(", for example {}", polynomial_example));
+    }
+    springs::PolynomialSpring spring;
+    lua_pushnil(L);
+    while (lua_next(L, 1) != 0) {
+        const int n = power_at(L, -2);
+        const double c = lua_tonumber(L, -1);
+        if (lua_type(L, -1) != LUA_TNUMBER || !std::isfinite(c)) {
+            refuse_power(L, fmt::format("[{}] must be a finite number, got {}", n, lua::describe(L, -1)), -1);
+        }
+        if (c != 0) {
+            spring.terms.emplace_back(n, c);
+        }
+        lua_pop(L, 1);
+    }
+    std::sort(spring.terms.begin(), spring.terms.end());
+    lua::push<model::Spring>(L, spring.terms.empty() ? model::Spring() : model::Spring(spring));
+    return 1;
+}
+
+const model::Spring& spring_self(lua_State* L, const char* call) {
+    return lua::self<model::Spring>(L, 1, call);
+}
+
+/// What a function of theta answers that may be a user's.
+template <double (model::Spring::*get)(double) const>
+int at_theta(lua_State* L) {
+    const model::Spring& spring = spring_self(L, "spring:torque(theta)");
+    const double theta = lua::finite_argument(L, 2, "spring:torque(theta): theta");
+    lua::CallState call(L);
+    const double value = (spring.*get)(theta);
+    if (call.failed()) {
+        call.raise_error();
+    }
+    lua_pushnumber(L, value);
+    return 1;
+}
+
+int spring_text(lua_State* L) {
+    return lua::push_text(L, source::lua_text(L, spring_self(L, "tostring(spring)")));
+}
+
+constexpr lua::Member spring_module_members[] = {
+    {lua::a_function<polynomial_spring>,
+     {"spring.polynomial{ [POWER] = COEFFICIENT, ... } -> spring",
+      "A spring whose restoring torque is a sum of powers of theta, besides k theta: c theta^n for each [n] = c, torque "
+      "per rad^n. Powers are whole numbers from 1 to 31; { [3] = c } is Duffing's spring.",
+      "duffing = spring.polynomial{ [3] = 0.5 }\n"
+      "print(duffing:torque(2), duffing:energy(2))  --> 4.0\t2.0"}},
+};
+
+constexpr lua::Member spring_members[] = {
+    {lua::a_method<at_theta<&model::Spring::torque>>,
+     {"spring:torque(theta) -> number", "The torque with which it pulls back at theta (rad).",
+      "print(spring.polynomial{ [1] = -1, [3] = 1 }:torque(0.5))  --> -0.375"}},
+    {lua::a_method<at_theta<&model::Spring::energy>>,
+     {"spring:energy(theta) -> number",
+      "What it has stored at theta (rad): the integral of the torque from 0, torque times rad. Of a Lua function, by "
+      "quadrature.",
+      "print(spring.polynomial{ [3] = 0.5 }:energy(1))  --> 0.125"}},
+    {lua::a_metamethod<spring_text>("__tostring"),
+     {"tostring(spring) -> string", "The Lua text that makes it again.",
+      "print(spring.polynomial{ [3] = 0.5 })  --> spring.polynomial{ [3] = 0.5 }"}},
+};
+
+}  // namespace
+
+std::optional<model::Spring> asked_spring(lua_State* L, const lua::Options& options) {
+    options.push("spring");
+    const int index = lua_gettop(L);
+    std::optional<model::Spring> asked;
+    if (const auto* spring = lua::test<model::Spring>(L, index)) {
+        asked = *spring;
+    } else if (lua::is_callable(L, index)) {
+        springs::UserSpring own{std::make_shared<lua::LuaFunction>(
+            L, index,
+            lua::FunctionRole{.name = "spring", .argument = "theta", .motion = lua::FunctionRole::Motion::never})};
+        lua::CallState call(L);
+        static_cast<void>(own.torque(0));  // what returns nothing is told here, and not in the middle of a run
+        if (call.failed()) {
+            call.raise_error();
+        }
+        asked = own;
+    } else if (!lua_isnil(L, index)) {
+        options.wrong("spring", options.row("spring").wanted);
+    }
+    lua_pop(L, 1);
+    return asked;
+}
+
+const lua::Class spring_module = {
+    "spring",
+    {"spring.NAME{ ... } -> spring",
+     "Springs besides k theta, for `spring =` of system{...}, where a Lua function of theta may stand, too.",
+     "sys = system{ I = 1, k = 1, spring = spring.polynomial{ [3] = 0.5 } }\n"
+     "print(sys.spring)  --> spring.polynomial{ [3] = 0.5 }"},
+    spring_module_members};
+
+const lua::Class spring_class = {
+    "spring",
+    {"spring.NAME{ ... } -> spring", "A spring. It can not be changed.",
+     "print(system{ I = 1, k = 1, spring = function(theta) return theta^3 end }.spring:torque(2))  --> 8.0"},
+    spring_members};
+
+void register_spring(lua_State* L) {
+    lua::add_class<model::Spring>(L, spring_class);
+    lua::add_module(L, spring_module);
+}
+
+}  // namespace dinal::api

@@ -1,0 +1,83 @@
+// A spring besides k theta, as a value: the torque with which it pulls back at an angle, and the energy that it stores.
+//
+// A kind of spring is a struct of model/springs (SpringLaw says what it must answer); a Spring is any of them, cheap to
+// copy.
+#pragma once
+
+#include <concepts>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "text/expected.hpp"
+
+namespace dinal::model {
+
+/// theta in rad; the torque acts against it where it is positive: I theta'' = ... - torque(theta).
+template <class Law>
+concept SpringLaw = requires(const Law& law, double theta) {
+    { law.torque(theta) } -> std::same_as<double>;
+    /// The integral of the torque from 0 to theta; NaN where it can not be had.
+    { law.energy(theta) } -> std::same_as<double>;
+    /// What is wrong with its numbers, for the person who gave them.
+    { law.complaint() } -> std::same_as<std::optional<text::Error>>;
+    /// It pulls back alike on both sides.
+    { law.is_odd() } -> std::same_as<bool>;
+    /// After a torque that was no number: whether it may be asked again.
+    { law.may_go_on() } -> std::same_as<bool>;
+    /// The Lua expression that makes it again; empty when it knows none.
+    { law.lua_text() } -> std::same_as<std::string>;
+};
+
+class Spring {
+public:
+    /// None.
+    Spring() = default;
+    template <SpringLaw Law>
+    Spring(const Law& law)  // NOLINT(google-explicit-constructor): a law is a spring
+        : law_(std::make_shared<const HeldSpring<Law>>(law)) {}
+
+    [[nodiscard]] bool none() const { return law_ == nullptr; }
+    [[nodiscard]] double torque(double theta) const { return law_ ? law_->torque(theta) : 0; }
+    [[nodiscard]] double energy(double theta) const { return law_ ? law_->energy(theta) : 0; }
+    [[nodiscard]] std::optional<text::Error> complaint() const {
+        return law_ ? law_->complaint() : std::optional<text::Error>();
+    }
+    [[nodiscard]] bool is_odd() const { return !law_ || law_->is_odd(); }
+    [[nodiscard]] bool may_go_on() const { return !law_ || law_->may_go_on(); }
+    [[nodiscard]] std::string lua_text() const { return law_ ? law_->lua_text() : ""; }
+    /// The law itself, if it is of this kind.
+    template <SpringLaw Law>
+    [[nodiscard]] const Law* as() const {
+        const auto* held = dynamic_cast<const HeldSpring<Law>*>(law_.get());
+        return held != nullptr ? &held->law : nullptr;
+    }
+
+private:
+    struct AnySpring {
+        AnySpring() = default;
+        AnySpring(const AnySpring&) = delete;
+        AnySpring& operator=(const AnySpring&) = delete;
+        virtual ~AnySpring() = default;
+        [[nodiscard]] virtual double torque(double theta) const = 0;
+        [[nodiscard]] virtual double energy(double theta) const = 0;
+        [[nodiscard]] virtual std::optional<text::Error> complaint() const = 0;
+        [[nodiscard]] virtual bool is_odd() const = 0;
+        [[nodiscard]] virtual bool may_go_on() const = 0;
+        [[nodiscard]] virtual std::string lua_text() const = 0;
+    };
+    template <class Law>
+    struct HeldSpring final : AnySpring {
+        explicit HeldSpring(const Law& given) : law(given) {}
+        [[nodiscard]] double torque(double theta) const override { return law.torque(theta); }
+        [[nodiscard]] double energy(double theta) const override { return law.energy(theta); }
+        [[nodiscard]] std::optional<text::Error> complaint() const override { return law.complaint(); }
+        [[nodiscard]] bool is_odd() const override { return law.is_odd(); }
+        [[nodiscard]] bool may_go_on() const override { return law.may_go_on(); }
+        [[nodiscard]] std::string lua_text() const override { return law.lua_text(); }
+        Law law;
+    };
+    std::shared_ptr<const AnySpring> law_;  // shared by the copies of a system, which never change it
+};
+
+}  // namespace dinal::model

@@ -1,0 +1,27 @@
+// A spring that a user has written: a function of theta.
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "model/spring.hpp"
+#include "model/terms/scripted.hpp"
+
+namespace dinal::model::springs {
+
+struct UserSpring {
+    std::shared_ptr<terms::UserFunction> function;  ///< of theta
+
+    /// NaN where the function fails.
+    [[nodiscard]] double torque(double theta) const { return function->value(theta, {}); }
+    /// By quadrature, to rounding; NaN where the function is too rough for that, or fails.
+    [[nodiscard]] double energy(double theta) const;
+    [[nodiscard]] static std::optional<text::Error> complaint() { return std::nullopt; }
+    /// Nobody knows.
+    [[nodiscard]] static bool is_odd() { return false; }
+    [[nodiscard]] bool may_go_on() const { return function->may_go_on(); }
+    /// Its text is for those who know its language.
+    [[nodiscard]] static std::string lua_text() { return ""; }
+};
+
+}  // namespace dinal::model::springs

@@ -1,0 +1,111 @@
+package.path = "tests/lua/?.lua;" .. package.path
+local support = require "support"
+local test, near, equal, raises_here = support.test, support.near, support.equal, support.raises_here
+
+local duffing = spring.polynomial { [3] = 0.5 }
+
+test("a spring is an option of a system, and the text of the system makes it again", function()
+    for _, own in ipairs {
+        duffing, spring.polynomial { [1] = -1, [2] = 0.25, [5] = 3 }, function(theta) return 0.5 * theta ^ 3 end,
+    } do
+        local sys = system { I = 1, k = 1, C = 0.1, Rd = 0.2, spring = own }
+        local again = load("return " .. tostring(sys))()
+        equal(tostring(again), tostring(sys))
+        equal(again.spring:torque(2), sys.spring:torque(2))
+    end
+    equal(tostring(system { I = 1, k = 0, spring = duffing }), "system{ I = 1, k = 0, spring = spring.polynomial{ [3] = 0.5 } }")
+    equal(tostring(spring.polynomial { -1, 0, 2 }), "spring.polynomial{ [1] = -1, [3] = 2 }")
+    equal(system { I = 1, k = 1 }.spring, nil)
+    equal(system { I = 1, k = 1, spring = spring.polynomial {} }.spring, nil)
+end)
+
+test("a spring written as a Lua function moves the mass as the native one", function()
+    local task = { M = excitation.harmonic { amplitude = 0.8, frequency = 0.05 }, theta0 = 1.3, t_end = 60, dt = 0.5 }
+    local native = system { I = 1, k = 1, Rd = 0.1, Re = 0.2, spring = duffing }
+    local own = native:with { spring = function(theta) return 0.5 * theta ^ 3 end }
+    local a, b = native:simulate(task), own:simulate(task)
+    equal(#a.events, #b.events)
+    near((a.theta - b.theta):abs():max(), 0, 1e-11)
+    near(b:energy().total.error, 0, 1e-12)
+    near((a:energy().spring - b:energy().spring):abs():max(), 0, 1e-11)
+    assert(b:explain():find "a spring besides k theta")
+    task.integrator = integrator.rk4 { h = 0.005 }
+    near((native:simulate(task).theta - a.theta):abs():max(), 0, 1e-7)
+end)
+
+test("the header of a file repeats a run with a spring that has variables of its own", function()
+    local c = 0.5
+    local run = system { I = 1, k = 1, Rd = 0.1, spring = function(theta) return c * theta ^ 3 end }:simulate {
+        theta0 = 2, t_end = 5, dt = 0.5 }
+    local name = support.temporary ".csv"
+    run:save(name)
+    local lines = {}
+    for line in io.lines(name) do lines[#lines + 1] = line:match "^# (.*)" end
+    local again = load(table.concat(lines, "\n") .. "\nreturn run")()
+    equal(again.theta[11], run.theta[11])
+end)
+
+test("with changes a spring, or takes it away", function()
+    local sys = system { I = 1, k = 1, Rd = 0.1, spring = duffing }
+    equal(tostring(sys:with { k = 2 }.spring), tostring(duffing))
+    equal(sys:with { spring = spring.polynomial {} }.spring, nil)
+    near(nondimensional { zeta = 0.1 }:with { spring = duffing }.spring:torque(2), 4, 0)
+    equal(sys.dead_zone, nil)  -- Re/k is none any more
+end)
+
+test("a run with a spring of its own goes on, with states, to a steady motion", function()
+    local sys = system { I = 1, k = 1, C = 0.2, Rd = 0.05, spring = duffing }
+    local M = excitation.harmonic { frequency = 0.1 }
+    local half = sys:simulate { M = M, t_end = 10, dt = 1 }
+    near(half:continue { t_end = 20 }.theta[21], sys:simulate { M = M, t_end = 20, dt = 1 }.theta[21], 1e-10)
+    local more = sys:simulate { M = M, t_end = 20, dt = 1, states = { z = { rate = function(t, theta) return theta end } } }
+    near(more.theta[21], half:continue { t_end = 20 }.theta[21], 1e-10)
+    local s = sys:steady { M = M }
+    equal(s.status, "steady")
+    near(s.run.theta[#s.run], s.run.theta[1], 1e-8)
+    near(sys:response { frequency = { 0.1, 0.2 }, points = 2 }.amplitude[1], s.amplitude, 1e-7)
+end)
+
+test("a spring goes into the workers of a sweep", function()
+    local c = 0.5
+    local sys = system { I = 1, k = 1, Rd = 0.1, spring = function(theta) return c * theta ^ 3 end }
+    local native = sys:with { spring = duffing }
+    local map = sweep { theta0 = { 1, 2 }, workers = 2, run = function(p)
+        return { own = sys:simulate { theta0 = p.theta0, t_end = 5, times = {} }:at(5),
+            native = native:simulate { theta0 = p.theta0, t_end = 5, times = {} }:at(5) }
+    end }
+    for i = 1, 2 do
+        near(map.own[i], map.native[i], 1e-11)
+    end
+end)
+
+test("a spring that fails is told with the angle and its line, and what ran is kept", function()
+    local soft = system { I = 1, k = 1, spring = function(theta) return theta < 1.5 and theta or nil end }
+    local ok, problem = pcall(soft.simulate, soft, { velocity0 = 4, t_end = 20, dt = 0.01 })
+    assert(not ok and tostring(problem):find "spring_test.lua:%d+: spring returned nil at theta = 1.%d+; it must return a finite number", problem)
+    assert(#dinal.partial > 10)
+    ok, problem = pcall(soft.simulate, soft, { velocity0 = 4, t_end = 20, dt = 0.01, integrator = integrator.rk4 { h = 0.01 } })
+    assert(not ok and tostring(problem):find "spring returned nil at theta = 1", problem)
+    raises_here(function() system { I = 1, k = 1, spring = function() return nil end } end, "spring returned nil at theta = 0")
+    raises_here(function() system { I = 1, k = 1, spring = function() return 0 / 0 end } end, "nan at theta = 0")
+    raises_here(function() system { I = 1, k = 1, spring = function() error("no spring") end } end, "no spring")
+end)
+
+test("what is wrong with a spring is one sentence with the name of the option", function()
+    raises_here(function() system { I = 1, k = 1, spring = 3 } end, "system: spring must be a function of theta, or a spring such as", "got 3")
+    raises_here(function() spring.polynomial(3) end, "spring.polynomial takes a table of powers of theta, got 3")
+    raises_here(function() spring.polynomial { [0.5] = 1 } end, "the power 0.5 must be a whole number from 1 to 31")
+    raises_here(function() spring.polynomial { [-1] = 1 } end, "the power -1 must be a whole number from 1 to 31")
+    raises_here(function() spring.polynomial { [32] = 1 } end, "the power 32 must be")
+    raises_here(function() spring.polynomial { [0] = 1 } end, "the power 0 is a constant torque and no spring")
+    raises_here(function() spring.polynomial { cubic = 1 } end, "the power the string \"cubic\" must be")
+    raises_here(function() spring.polynomial { [3] = "a" } end, "[3] must be a finite number, got the string")
+    raises_here(function() spring.polynomial { [3] = 1 / 0 } end, "[3] must be a finite number, got inf")
+    raises_here(function() duffing.c = 2 end, "a spring can not be changed")
+end)
+
+test("the museum piece and the closed forms know k theta only", function()
+    local sys = system { I = 1, k = 1, spring = duffing }
+    raises_here(function() sys:simulate { t_end = 1, dt = 1, integrator = integrator.dinal1989 { h = 0.1 } } end, "knows the spring k theta only")
+    raises_here(function() theory.time_to_rest { system = sys, theta0 = 1 } end, "the closed forms know the spring k theta only")
+end)
