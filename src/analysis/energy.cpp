@@ -127,8 +127,8 @@ text::Expected<Energy> energy_of(const motion::Trajectory& trajectory) {
     const double whole_until = trajectory.course ? trajectory.course->whole_until() : -model::never;
     if (whole_until == -model::never) {
         return text::Error{
-            "the energy is integrated over the motion that integrator.spectral keeps: simulate with that integrator "
-            "and without dense = false"};
+            "the energy is integrated over the motion that integrator.exact and integrator.spectral keep: simulate with "
+            "one of them and without dense = false"};
     }
     if (whole_until < model::never) {
         return text::Error{fmt::format(

@@ -7,6 +7,7 @@
 #include <deque>
 #include <string>
 #include <type_traits>
+#include <utility>
 #include <vector>
 
 #include "api/cards.hpp"
@@ -60,7 +61,7 @@ const text::Option* find_option(const motion::MethodText& about, std::string_vie
 struct Field {
     const text::Option* option;
     const motion::MethodText* method;  ///< the first that has it
-    std::string lacking;               ///< "spectral and rk4"
+    std::string lacking;               ///< "exact, rk4 and dinal1989"
 };
 
 template <class... M>
@@ -75,7 +76,11 @@ std::vector<Field> fields_of(std::type_identity<std::variant<M...>> /*all*/) {
             for (const motion::MethodText* other : methods) {
                 if (!has_it(other)) lacking.emplace_back(name_of(*other));
             }
-            fields.push_back({&option, method, fmt::format("{}", fmt::join(lacking, " and "))});
+            std::string names;
+            for (std::size_t i = 0; i < lacking.size(); ++i) {
+                names.append(i == 0 ? "" : i + 1 < lacking.size() ? ", " : " and ").append(lacking[i]);
+            }
+            fields.push_back({&option, method, std::move(names)});
         }
     }
     return fields;
@@ -176,7 +181,7 @@ std::vector<lua::Member> all_members() {
 
 const std::vector<lua::Member> integrator_members = all_members();
 
-constexpr text::FixedText<128> module_summary{"The methods a run can use. A run that names none takes ",
+constexpr text::FixedText<160> module_summary{"The methods a run can use. A run that names none takes ",
                                               motion::default_integrator.c_str(), "."};
 
 }  // namespace

@@ -154,7 +154,7 @@ int run_text(lua_State* L) {
 #define DINAL_RUN "run = nondimensional{}:simulate{ M = 3, theta0 = 1, t_end = 2, dt = 0.5 }\n"
 
 constexpr text::FixedText<160> integrator_example{DINAL_RUN "print(run.integrator)  --> ",
-                                                  motion::default_integrator.c_str()};
+                                                  motion::usual_integrator.c_str()};
 
 constexpr lua::Member run_members[] = {
     {lua::a_method<run_at>,
@@ -177,7 +177,7 @@ constexpr lua::Member run_members[] = {
      {"run:energy() -> energy",
       "Where the energy went: the work of M, what is stored in the mass and the spring, what the two frictions took; "
       "in total, for each half cycle and at the rows. "
-      "Integrated over the motion that integrator.spectral keeps, so only for its runs.",
+      "Integrated over the motion that integrator.exact and integrator.spectral keep, so only for their runs.",
       "run = system{ I = 1, k = 1, Rd = 0.12 }:simulate{ theta0 = 1, t_end = 20, dt = 5 }\n"
       "print(string.format(\"%.6f\", run:energy().total.dry))  --> 0.499200"}},
     {lua::a_method<explain>,

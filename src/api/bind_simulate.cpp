@@ -65,13 +65,15 @@ source::Task asked_task(lua_State* L, const lua::Options& options, const RunOpti
                         const model::Oscillator& system) {
     const auto* integrator = options.object<motion::Integrator>("integrator");
     options.push("M");
+    const model::Excitation excitation = to_excitation(L, -1, "sys:simulate: M", "M");
     source::Task task{.system = system,
-                      .excitation = to_excitation(L, -1, "sys:simulate: M", "M"),
+                      .excitation = excitation,
                       .initial = {.theta = asked.theta0, .velocity = asked.velocity0},
                       .window = {.start = asked.t_start},
                       .rows = asked.dt ? motion::Grid::every(*asked.dt) : motion::Grid::at(asked.times),
-                      .integrator = integrator != nullptr ? *integrator : motion::Integrator{},
+                      .integrator = {},
                       .extras = read_extras(L, options)};
+    task.integrator = integrator != nullptr ? *integrator : motion::integrator_for(system, excitation, task.extras);
     lua_pop(L, 1);
     check_relays(options, task);
     if (!asked.t_end && asked.times.empty()) {

@@ -37,6 +37,7 @@ struct RunOptions {
     std::vector<double> times = {};
     bool dense = true;
 };
+inline constexpr text::FixedText<96> integrator_meaning{"the method; without one ", motion::default_integrator.c_str()};
 inline constexpr text::Option plain_simulate_options[] = {
     {.name = "M",
      .unit = "torque",
@@ -57,8 +58,8 @@ inline constexpr text::Option plain_simulate_options[] = {
      .filled = text::fills<&RunOptions::times>,
      .instead_of_previous = true},
     {.name = "integrator",
-     .otherwise = motion::default_integrator.c_str(),
-     .meaning = "the method",
+     .otherwise = "exact or spectral",
+     .meaning = integrator_meaning.c_str(),
      .object = "integrator",
      .wanted = "an integrator such as integrator.rk4{ h = 0.001 }"},
     {.name = "dense",
@@ -83,9 +84,9 @@ inline constexpr text::Option continue_options[] = {
 };
 inline constexpr text::Call continue_call{"run:continue", "run:continue{ t_end = 40 }", continue_options, true};
 
-inline constexpr text::FixedText<320> simulate_summary{
+inline constexpr text::FixedText<384> simulate_summary{
     "Runs the system, by ", motion::default_integrator.c_str(),
-    " unless told otherwise. With states, M is called with (t, theta, velocity, z), and their columns are "
+    ", unless told otherwise. With states, M is called with (t, theta, velocity, z), and their columns are "
     "run.states.NAME. When M fails or Ctrl-C is pressed, what was done so far is in dinal.partial."};
 inline constexpr lua::Doc simulate_doc = {
     "sys:simulate{ OPTIONS } -> run",

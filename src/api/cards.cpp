@@ -88,8 +88,13 @@ std::string vector_card(lua_State* L, int index, const terminal::Display& screen
 }
 
 std::string run_card(lua_State* L, int index, const terminal::Display& screen) {
-    return text::wrapped(terminal::spelled(motion::summary((*lua::test<RunHandle>(L, index))->trajectory), screen),
-                         screen.width - 1);
+    const Run& run = **lua::test<RunHandle>(L, index);
+    std::string text = motion::summary(run.trajectory);
+    if (run.origin) {
+        const std::string_view name = motion::MethodView(run.origin->integrator).about().call.name;
+        text.append("; by ").append(name.substr(name.find('.') + 1));
+    }
+    return text::wrapped(terminal::spelled(text, screen), screen.width - 1);
 }
 
 }  // namespace dinal::api

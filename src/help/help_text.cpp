@@ -77,7 +77,7 @@ std::string options_text(const lua::Doc& doc, const terminal::Display& screen) {
         const std::vector<OptionLine> lines = option_lines(call->options);
         std::size_t indent = 0;
         for (const OptionLine& line : lines) indent = std::max(indent, std::min(line.name.size(), widest_name) + 4);
-        text += "\n";
+        if (!lines.empty()) text += "\n";
         for (const OptionLine& line : lines) text += two_columns(line.name, line.meaning, indent, screen);
     }
     return text;

@@ -37,7 +37,7 @@ std::string manual() {
             for (const OptionLine& line : option_lines(call->options)) {
                 text += fmt::format("- `{}`: {}\n", line.name, line.meaning);
             }
-            text += "\n";
+            if (!call->options.empty()) text += "\n";
         }
         text += fmt::format("```lua\n{}\n```\n", doc.example);
     };

@@ -1,9 +1,11 @@
-// The integrators that a user can choose from, one row each; the first is the one that a run takes which names none.
+// The integrators that a user can choose from, one row each, and which of them a run takes that names none.
 #pragma once
 
 #include <variant>
 
+#include "model/extras.hpp"
 #include "motion/dinal1989/dinal1989.hpp"
+#include "motion/exact/exact.hpp"
 #include "motion/rk4/rk4.hpp"
 #include "motion/spectral/spectral.hpp"
 #include "text/fixed_text.hpp"
@@ -11,15 +13,21 @@
 namespace dinal::motion {
 
 using dinal1989::Dinal1989;
+using exact::Exact;
 using rk4::Rk4;
 using spectral::Spectral;
 
 using Integrator = std::variant<Spectral,  //
+                                Exact,     //
                                 Rk4,       //
                                 Dinal1989>;
 
-/// The Lua text of Integrator().
-inline constexpr text::FixedText<64> default_integrator{std::variant_alternative_t<0, Integrator>::about.call.name,
-                                                        "{}"};
+/// What a run takes that names none: exact where it applies, else spectral, which takes everything.
+Integrator integrator_for(const model::Oscillator& system, const model::Excitation& excitation,
+                          const model::Extras& extras = {});
+/// The same in words, and the Lua text of the first of them.
+inline constexpr text::FixedText<64> usual_integrator{Exact::about.call.name, "{}"};
+inline constexpr text::FixedText<96> default_integrator{usual_integrator.c_str(), " where that takes M, else ",
+                                                        Spectral::about.call.name, "{}"};
 
 }  // namespace dinal::motion

@@ -7,6 +7,7 @@
 #include <string>
 #include <variant>
 
+#include "model/excitation.hpp"
 #include "model/oscillator.hpp"
 #include "motion/trajectory.hpp"
 #include "text/expected.hpp"
@@ -37,7 +38,9 @@ struct OwnRule {
 };
 
 /// An option struct with its own run. The ranges of its options are in `about`; it may also have
-///     std::optional<text::Error> wrong_for(const model::Oscillator& system) const;   what this system forbids besides
+///     std::optional<text::Error> wrong_for(const model::Oscillator& system, const model::Excitation& excitation)
+///     const;
+/// what these forbid besides, and
 ///     OwnRule own_rule() const;
 ///     Trajectory run_more(const Problem& problem) const;   a problem with extras
 template <class T>
@@ -60,9 +63,10 @@ public:
     [[nodiscard]] const MethodText& about() const { return common_->about; }
     /// The Lua text that makes it again.
     [[nodiscard]] std::string lua_text(text::Defaults defaults) const { return common_->lua_text(method_, defaults); }
-    /// An option that is out of its range, or wrong for this system.
-    [[nodiscard]] std::optional<text::Error> wrong(const model::Oscillator& system) const {
-        return common_->wrong(method_, system);
+    /// An option that is out of its range, or wrong for this system under this excitation.
+    [[nodiscard]] std::optional<text::Error> wrong(const model::Oscillator& system,
+                                                   const model::Excitation& excitation) const {
+        return common_->wrong(method_, system, excitation);
     }
     [[nodiscard]] Resolution resolution(const model::Oscillator& system) const {
         return common_->resolution(method_, system);
@@ -77,7 +81,8 @@ private:
     struct Common {
         const MethodText& about;
         std::string (*lua_text)(const void* method, text::Defaults defaults);
-        std::optional<text::Error> (*wrong)(const void* method, const model::Oscillator& system);
+        std::optional<text::Error> (*wrong)(const void* method, const model::Oscillator& system,
+                                            const model::Excitation& excitation);
         Resolution (*resolution)(const void* method, const model::Oscillator& system);
         Trajectory (*run)(const void* method, const Problem& problem);
         std::optional<OwnRule> (*own_rule)(const void* method);
@@ -101,11 +106,14 @@ private:
         [](const void* method, text::Defaults defaults) {
             return text::lua_text(M::about.call.name, M::about.call.options, as<M>(method), defaults);
         },
-        [](const void* method, const model::Oscillator& system) -> std::optional<text::Error> {
+        [](const void* method, const model::Oscillator& system,
+           const model::Excitation& excitation) -> std::optional<text::Error> {
             if (auto wrong = text::complaint(M::about.call.options, as<M>(method))) return wrong;
-            if constexpr (requires { as<M>(method).wrong_for(system); }) {
-                return as<M>(method).wrong_for(system);
+            if constexpr (requires { as<M>(method).wrong_for(system, excitation); }) {
+                return as<M>(method).wrong_for(system, excitation);
             } else {
+                static_assert(
+                    !requires { &M::wrong_for; }, "wrong_for takes the system and the excitation");
                 return std::nullopt;
             }
         },

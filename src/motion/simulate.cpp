@@ -149,7 +149,7 @@ text::Expected<Trajectory> run_from(const Past& past, const model::Oscillator& s
     if (grid->dt() > 0) {
         if (auto lost = lost_in_time("dt", grid->dt(), window)) return *lost;
     }
-    if (auto wrong = method.wrong(system)) return *wrong;
+    if (auto wrong = method.wrong(system, excitation)) return *wrong;
     const auto [name, distance, is_step] = method.resolution(system);
     if (auto lost = lost_in_time(name, distance, window)) return *lost;
     if (is_step) {

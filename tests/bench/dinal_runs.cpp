@@ -60,6 +60,8 @@ double error(const Workload& work, const Integrator& integrator) {
 
 }  // namespace
 
+const Peer dinal_exact = {"dinal exact", [](const Workload& work) { return run(work, Exact{}); },
+                          [](const Workload& work) { return error(work, Exact{}); }};
 const Peer dinal_spectral = {"dinal spectral", [](const Workload& work) { return run(work, Spectral{}); },
                              [](const Workload& work) { return error(work, Spectral{}); }};
 const Peer dinal_rk4 = {"dinal rk4, h = .001", [](const Workload& work) { return run(work, Rk4{0.001}); },

@@ -7,6 +7,7 @@
 
 namespace bench {
 
+extern const Peer dinal_exact;
 extern const Peer dinal_spectral;
 extern const Peer dinal_rk4;         ///< h = .001
 extern const Peer dinal_rk4_coarse;  ///< h = .01

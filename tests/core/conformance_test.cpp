@@ -63,6 +63,18 @@ struct Row<Spectral> {
 };
 
 template <>
+struct Row<Exact> {
+    static std::vector<Exact> methods(const ReferenceSystem& /*s*/) { return {Exact{}}; }
+    /// Closed forms from event to event: each arc adds a rounding or two, and times are known to half a unit of the
+    /// last place of t_end, which shifts a load by as much.
+    static double tolerance(const ReferenceSystem& s, const Exact& /*method*/) {
+        return s.size * (1e-13 + 1e-16 * s.radians());
+    }
+    static bool follows(const ReferenceSystem& /*s*/, const ExactMotion& /*exact*/) { return true; }
+    static constexpr bool tells_events = true;
+};
+
+template <>
 struct Row<Rk4> {
     static std::vector<Rk4> methods(const ReferenceSystem& s) { return {{step_of(s, 1000)}, {step_of(s, 250)}}; }
     static double tolerance(const ReferenceSystem& s, const Rk4& method) {

@@ -1,4 +1,4 @@
-// Spectral against an integrator that shares nothing with it, on systems and excitations by lot.
+// Spectral and exact against an integrator that shares nothing with it, on systems and excitations by lot.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -17,7 +17,7 @@ using namespace dinal::truth;
 
 namespace {
 
-/// What is asked of spectral: to be no more wrong than a load would make it that is off by this part of k size.
+/// What is asked of both: to be no more wrong than a load would make it that is off by this part of k size.
 constexpr double accuracy = 1e-11;
 /// A feedback may have corners in theta, which no panel ends at: each passage costs up to some tolerance of the panel.
 constexpr double accuracy_with_feedback = 1e-10;
@@ -63,13 +63,13 @@ Load nudged(const RandomCase& c) {
 }
 
 /// Half of the places as rows, the other half by run.at.
-Finding compare(const RandomCase& c) {
+Finding compare(const RandomCase& c, MethodView method) {
     const double w0 = c.system.natural_frequency();
     std::vector<double> rows;
     for (std::size_t i = 0; i < c.times.size(); i += 2) rows.push_back(c.times[i]);
     // Whatever happens ends within this many questions, each of sixteen panels.
     const Monitor patience = [asked = 0](double) mutable { return ++asked < 10000; };
-    const auto run = simulate(c.system, c.excitation, c.initial, c.window, Grid::at(rows), Spectral{}, patience);
+    const auto run = simulate(c.system, c.excitation, c.initial, c.window, Grid::at(rows), method, patience);
     if (!run) return {Verdict::wrong, run.error().sentence};
     if (run->outcome == Outcome::interrupted) return {Verdict::wrong, "it does not come to an end"};
     if (!run->rows.matrix().allFinite()) return {Verdict::wrong, "a row is not finite"};
@@ -135,12 +135,12 @@ Load load_of(const ReferenceSystem& s) {
 }
 
 /// One in `clear` cases may be too close to call.
-void compare_cases(RandomCase (*random)(std::uint64_t number), long cases, long clear) {
+void compare_cases(RandomCase (*random)(std::uint64_t number), MethodView method, long cases, long clear) {
     const long first = number_from("DINAL_ORACLE_FIRST", 0);
     long ambiguous = 0, beyond_bounds = 0;
     for (long i = first; i < first + cases; ++i) {
         const RandomCase c = random(static_cast<std::uint64_t>(i));
-        const Finding finding = compare(c);
+        const Finding finding = compare(c, method);
         ambiguous += finding.verdict == Verdict::ambiguous ? 1 : 0;
         beyond_bounds += finding.verdict == Verdict::beyond_bounds ? 1 : 0;
         if (finding.verdict == Verdict::wrong) {
@@ -182,10 +182,16 @@ TEST_CASE("the oracle itself agrees with every closed form", "[oracle]") {
 
 TEST_CASE("spectral tells the same motion as an independent integrator, whatever the lot brings",
           "[oracle][spectral]") {
-    compare_cases(random_case, number_from("DINAL_ORACLE_CASES", usual_cases), 20);
+    compare_cases(random_case, Spectral{}, number_from("DINAL_ORACLE_CASES", usual_cases), 20);
+}
+
+TEST_CASE("exact tells the same motion as an independent integrator, at any damping and near resonance",
+          "[oracle][exact]") {
+    // A quarter of the systems is nearly critical, and creeps.
+    compare_cases(random_case_of_closed_forms, Exact{}, number_from("DINAL_ORACLE_CASES", usual_cases), 10);
 }
 
 TEST_CASE("no bump is too narrow for spectral, whether the mass rests or moves", "[oracle][spectral][gaussian]") {
     // In so short a time as a bump is long, much is too close to call.
-    compare_cases(random_case_of_bumps, number_from("DINAL_ORACLE_CASES", usual_cases / 4), 6);
+    compare_cases(random_case_of_bumps, Spectral{}, number_from("DINAL_ORACLE_CASES", usual_cases / 4), 6);
 }

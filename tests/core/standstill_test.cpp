@@ -223,7 +223,7 @@ TEST_CASE("#3 - a feedback that jumps at velocity zero rests alike in every inte
 
 TEST_CASE("a run knows whether it began stuck, whatever came later", "[standstill]") {
     const Oscillator system = nondimensional(0.05, 0.2, 0.3);
-    for (const Integrator& integrator : std::vector<Integrator>{Spectral{}, Rk4{0.001}}) {
+    for (const Integrator& integrator : std::vector<Integrator>{Exact{}, Spectral{}, Rk4{0.001}}) {
         CAPTURE(integrator.index());
         const auto began_stuck = [&](const Excitation& M, const State& initial, const Oscillator& s) {
             const Trajectory run = must_run(s, M, initial, {0, 3}, Grid::every(0.1), integrator);

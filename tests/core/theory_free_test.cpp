@@ -32,7 +32,7 @@ private:
     std::mt19937 engine_;
 };
 
-truth::ExactMotion exact(const Oscillator& system, const State& initial, double end) {
+truth::ExactMotion true_motion(const Oscillator& system, const State& initial, double end) {
     return {system, {truth::Piece{}}, initial, 0, end};
 }
 
@@ -55,7 +55,7 @@ TEST_CASE("the free response is the exact one in all regimes and on the way betw
         const Oscillator system = nondimensional(zeta, 0);
         const State initial{chance.between(-1, 1), chance.between(-6, 6)};
         const double t = chance.between(0, 3);
-        const truth::Motion y = exact(system, initial, 3).at(t);
+        const truth::Motion y = true_motion(system, initial, 3).at(t);
         const State found = free_response(system.natural_frequency(), system.damping_ratio(), initial, t);
         CAPTURE(zeta, t);
         // A hundred roundings of the size of the motion; the velocity is greater by w0.
@@ -110,7 +110,7 @@ TEST_CASE("free motion with dry friction is the exact one, event by event and in
         const Oscillator system = nondimensional(zeta, gamma, gamma * (i % 2 == 0 ? 1 : chance.between(1, 2)));
         const State initial{chance.between(-1, 1), i % 5 == 0 ? 0 : chance.between(-6, 6)};
         const double end = 12;
-        const truth::ExactMotion y = exact(system, initial, end);
+        const truth::ExactMotion y = true_motion(system, initial, end);
         const FreeMotion motion(system, initial);
         CAPTURE(zeta, gamma, initial.theta, initial.velocity);
         for (int j = 0; j < 20; ++j) {

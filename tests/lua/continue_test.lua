@@ -20,6 +20,7 @@ local function same_rows(a, b)
 end
 
 for name, integrator in pairs {
+    exact = integrator.exact {},
     spectral = integrator.spectral {},
     rk4 = integrator.rk4 { h = 0.001 },
     dinal1989 = integrator.dinal1989 { h = 0.01 },

@@ -46,6 +46,15 @@ test("a long run with a native excitation", function()
     check "nondimensional{ zeta = 0.1 }:simulate{ M = excitation.harmonic{ frequency = 0.7 }, t_end = 1e9, times = {} }"
 end)
 
+test("a run that computes long between two events, or has many rows there", function()
+    local sys = "nondimensional{ friction_ratio = 0.5, breakaway_ratio = 0.9 }:simulate"
+    -- At rest under loads that never reach the limit together, which nobody knows before.
+    check(sys .. "{ M = 0.5*excitation.harmonic{ frequency = 1 } + 0.3*excitation.harmonic{ frequency = 1.1 } + 0.2*"
+        .. "excitation.pulse{ width = 1, at = -3 }, t_end = 1e12, times = {} }")
+    check "nondimensional{}:simulate{ M = 0.1*excitation.harmonic{ frequency = 1e6 }, theta0 = 1, t_end = 1e9, times = {} }"
+    check "nondimensional{}:simulate{ theta0 = 1, t_end = 10, dt = 1e-7 }"
+end)
+
 test("a long run with a scripted excitation, also in a coroutine", function()
     check "nondimensional{ zeta = 0.1 }:simulate{ M = function(t) return math.sin(t) end, t_end = 1e9, times = {} }"
     check [[coroutine.wrap(function()

@@ -66,7 +66,7 @@ end)
 
 test("a run shows where it came from and can not be changed", function()
     equal(tostring(run.system), tostring(nd))
-    equal(tostring(run.integrator), "integrator.spectral{}")
+    equal(tostring(run.integrator), "integrator.exact{}")
     equal(run.outcome, "reached the end")
     raises_here(function() run.theta = 1 end, "a run can not be changed")
     raises_here(function() return run.tetha end, "this run has no field 'tetha'; its columns are", "did you mean 'theta'?")

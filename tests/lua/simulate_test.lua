@@ -79,8 +79,14 @@ test("free motion with dry friction comes to rest where the report's figure 22 s
     equal(run.velocity[#run], 0.0)
 end)
 
-test("the default integrator is spectral", function()
-    equal(tostring(nd:simulate { t_end = 1, dt = 1 }.integrator), "integrator.spectral{}")
+test("the default integrator is exact where that takes M, else spectral", function()
+    equal(tostring(nd:simulate { t_end = 1, dt = 1 }.integrator), "integrator.exact{}")
+    local slow = function(t) return 0 * t end
+    equal(tostring(nd:simulate { M = slow, t_end = 1, dt = 1 }.integrator), "integrator.spectral{}")
+    local chirp = excitation.chirp { from = 0, to = 1, duration = 1 }
+    equal(tostring(nd:simulate { M = chirp, t_end = 1, dt = 1 }.integrator), "integrator.spectral{}")
+    raises_here(function() nd:simulate { M = chirp, t_end = 1, dt = 1, integrator = integrator.exact {} } end,
+      "integrator.exact{} takes an M of native terms other than chirp and gaussian: use integrator.spectral{}")
 end)
 
 test("dinal1989 with its slip reproduces the printed numbers of chapter 6", function()

@@ -53,11 +53,12 @@ class Values(PromptTest):
         terminal = self.start()
         terminal.enter(SYSTEM)
         terminal.enter(RUN)
-        self.assertRegex(terminal.enter("run"), r"^501 rows, t 0 … 5; \d+ events? \(.*rest\)")
+        self.assertRegex(terminal.enter("run"), r"^501 rows, t 0 … 5; \d+ events? \(.*rest\).*; by\s+exact$")
         self.assertRegex(terminal.enter("run.theta"), r"^vector\{ 1, 0\.\d+, .*\.\.\., .* \}  -- 501 numbers$")
         self.assertRegex(terminal.enter("run.events"), r"^\d+ events: .*1 rest.*\n +i +t +kind +theta +M\n +1 ")
         self.assertRegex(terminal.enter("run.events[1]"), r'^\{ t = 0\.\d+, kind = "turn", theta = -?0\.\d+, M = 0 \}$')
-        self.assertRegex(terminal.enter("run.integrator"), r"^integrator\.spectral\{ tolerance = 1e-12, .* \}$")
+        self.assertEqual(terminal.enter("run.integrator"), "integrator.exact{}")
+        self.assertRegex(terminal.enter("integrator.spectral{}"), r"^integrator\.spectral\{ tolerance = 1e-12, .* \}$")
 
     def test_functions_show_their_text_or_how_they_are_called(self):
         terminal = self.start()

@@ -7,6 +7,8 @@
 #include <limits>
 #include <numbers>
 
+#include "model/closed_form.hpp"
+
 namespace dinal::truth {
 
 namespace {
@@ -84,9 +86,9 @@ std::uint64_t Lot::next() {
 namespace {
 
 /// A system, a start and a window; nothing drives it yet.
-RandomCase undriven_case(Lot& lot) {
+RandomCase undriven_case(Lot& lot, double (*damping)(Lot& lot) = damping_ratio) {
     const double I = lot.power_of_ten(-6, 5), k = lot.power_of_ten(-3, 3), angle = lot.power_of_ten(-9, 6);
-    const double zeta = damping_ratio(lot);
+    const double zeta = damping(lot);
     double Rd = lot.once_in(6) ? 0 : lot.between(0, 0.9), Re = lot.once_in(2) ? Rd : Rd * lot.between(1, 1.7);
     if (lot.once_in(10)) Re = lot.between(0.1, 0.6), Rd = 0;
     const double torque = k * angle;
@@ -135,6 +137,29 @@ RandomCase random_case(std::uint64_t number) {
     for (int i = lot.of(4); i > 0; --i) add(c, altered(lot, units, random_native_term(lot, units)));
     if (lot.once_in(3)) add(c, altered(lot, units, random_function_of_time(lot, units)));
     if (lot.once_in(4)) add(c, altered(lot, units, random_feedback(lot, units)));
+    std::sort(c.load.breaks.begin(), c.load.breaks.end());
+    choose_times(lot, c);
+    return c;
+}
+
+namespace {
+
+double any_damping_ratio(Lot& lot) {
+    return lot.once_in(4) ? 1 + (lot.once_in(2) ? 1 : -1) * lot.power_of_ten(-15, -2) : damping_ratio(lot);
+}
+
+}  // namespace
+
+RandomCase random_case_of_closed_forms(std::uint64_t number) {
+    Lot lot(number * 0x632be59bd9b4e019U + 11);
+    RandomCase c = undriven_case(lot, any_damping_ratio);
+    const Units units = units_of(c);
+    for (int i = lot.of(4); i > 0; --i) {
+        Ingredient term = random_native_term(lot, units);
+        while (!model::has_closed_form(term.excitation)) term = random_native_term(lot, units);
+        add(c, altered(lot, units, std::move(term)));
+    }
+    if (lot.once_in(2)) add(c, altered(lot, units, random_resonant_term(lot, units, c.system.damping_ratio())));
     std::sort(c.load.breaks.begin(), c.load.breaks.end());
     choose_times(lot, c);
     return c;

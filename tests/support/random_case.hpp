@@ -30,6 +30,9 @@ struct RandomCase {
 RandomCase random_case(std::uint64_t number);
 /// Driven by smooth bumps, of 1e-6 T0 up to ten; half of them begin at rest.
 RandomCase random_case_of_bumps(std::uint64_t number);
+/// Driven by terms that have closed forms only, some of them at resonance or within 1e-15 ... 0.1 of it; at any
+/// damping, also within 1e-12 of the critical one.
+RandomCase random_case_of_closed_forms(std::uint64_t number);
 
 /// Evenly distributed numbers that are the same with every library.
 class Lot {
@@ -60,6 +63,8 @@ struct Units {
     double torque;  ///< k angle
 };
 Ingredient random_native_term(Lot& lot, const Units& units);
+/// A sine or an exponential that answers to the free motion.
+Ingredient random_resonant_term(Lot& lot, const Units& units, double damping_ratio);
 Ingredient random_bump(Lot& lot, const Units& units, double width);
 Ingredient random_function_of_time(Lot& lot, const Units& units);
 Ingredient random_feedback(Lot& lot, const Units& units);

@@ -219,6 +219,25 @@ Ingredient random_native_term(Lot& lot, const Units& u) {
     }
 }
 
+Ingredient random_resonant_term(Lot& lot, const Units& u, double damping_ratio) {
+    const double w0 = 6.283185307179586 / u.period, off = 1 + (lot.once_in(2) ? 1 : -1) * lot.power_of_ten(-15, -1);
+    const double detuned = lot.once_in(4) ? 1 : off;
+    if (damping_ratio < 1 && !lot.once_in(4)) {
+        const double a = u.torque * lot.between(0.05, 0.5), phase = lot.between(0, 6.2);
+        const double omega = w0 * detuned * std::sqrt((1 - damping_ratio) * (1 + damping_ratio));
+        return {fmt::format("harmonic {:.17g} omega {:.17g} phase {:.17g}", a, omega, phase),
+                native(model::Harmonic{a, omega, phase}),
+                load_of([=](auto t, auto) -> real { return a * std::sin(omega * static_cast<real>(t) + phase); }, {},
+                        omega)};
+    }
+    const double zeta = damping_ratio, root = zeta > 1 ? std::sqrt((zeta - 1) * (zeta + 1)) : 0;
+    const double rate = w0 * detuned * (root > 0 && lot.once_in(2) ? 1 / (zeta + root) : std::max(zeta + root, 0.1));
+    const double a = u.torque * lot.between(-1, 1), at = u.window.start, tau = 1 / rate;
+    return {fmt::format("exponential {:.17g} at {:.17g} tau {:.17g}", a, at, tau),
+            native(model::Exponential{a, tau, at}),
+            load_of([=](auto t, auto in) -> real { return in < at ? 0 : a * std::exp(-(t - at) / tau); }, {at})};
+}
+
 /// A narrow one is as great as it must be to be felt. The oracle, which takes some steps between breaks, is told of
 /// breaks on it.
 Ingredient random_bump(Lot& lot, const Units& u, double width) {

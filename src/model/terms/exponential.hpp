@@ -17,6 +17,10 @@ struct Exponential {
     [[nodiscard]] double most() const { return amplitude == 0 ? 0 : tau > 0 ? std::fabs(amplitude) : never; }
     [[nodiscard]] double repeats_after() const { return 0; }
     [[nodiscard]] Detail detail() const { return no_detail; }
+    template <class Sum>
+    void closed_form(double inside, Sum& sum) const {
+        if (inside >= at) sum.add_exponential(amplitude, -1 / tau, at);
+    }
     void delay_by(double d) { at += d; }
     [[nodiscard]] std::string formula(double gain) const {
         return factor(gain * amplitude) + "exp(-" + since(at) + "/" + number(tau) + ")" + from_on(at);

@@ -22,6 +22,10 @@ struct HalfSine {
     [[nodiscard]] double most() const { return std::fabs(amplitude); }
     [[nodiscard]] double repeats_after() const { return 0; }
     [[nodiscard]] Detail detail() const { return no_detail; }
+    template <class Sum>
+    void closed_form(double inside, Sum& sum) const {
+        if (inside >= at && inside < at + width) sum.add_sine(amplitude, std::numbers::pi / width, at, 0);
+    }
     void delay_by(double d) { at += d; }
     [[nodiscard]] std::string formula(double gain) const {
         return factor(gain * amplitude) + "sin(pi " + since(at) + "/" + number(width) + ")" + between(at, at + width);

@@ -17,6 +17,10 @@ struct Harmonic {
     [[nodiscard]] double most() const { return std::fabs(amplitude); }
     [[nodiscard]] double repeats_after() const { return omega == 0 ? 0 : two_pi / std::fabs(omega); }
     [[nodiscard]] Detail detail() const { return no_detail; }
+    template <class Sum>
+    void closed_form(double /*inside*/, Sum& sum) const {
+        sum.add_sine(amplitude, omega, 0, phase);
+    }
     void delay_by(double d) { phase -= omega * d; }
     [[nodiscard]] std::string formula(double gain) const {
         const std::string shift = phase == 0 ? "" : (phase < 0 ? " - " : " + ") + number(std::fabs(phase));

@@ -42,9 +42,8 @@ struct Polyline {
     }
     [[nodiscard]] double next_break(double t) const {
         const std::vector<double>& times = samples->t;
-        const auto next = std::upper_bound(times.begin(), times.end(), t);
-        if (times.size() == 1 || next == times.end()) return never;
-        return *next;
+        if (times.size() == 1 || t >= times.back()) return never;
+        return t < times.front() ? times.front() : times[segment(t) + 1];
     }
     [[nodiscard]] double constant_from() const { return samples->t.size() == 1 ? -never : samples->t.back(); }
     [[nodiscard]] double most() const {
@@ -54,6 +53,16 @@ struct Polyline {
     }
     [[nodiscard]] double repeats_after() const { return 0; }
     [[nodiscard]] Detail detail() const { return no_detail; }
+    template <class Sum>
+    void closed_form(double inside, Sum& sum) const {
+        const Samples& s = *samples;
+        if (!(inside >= s.t.front()) || inside >= s.t.back()) {
+            sum.add_constant(value(inside));
+            return;
+        }
+        const std::size_t i = segment(inside);
+        sum.add_line(s.t[i], s.M[i], (s.M[i + 1] - s.M[i]) / (s.t[i + 1] - s.t[i]));
+    }
     void delay_by(double d) {
         Samples moved = *samples;
         for (double& t : moved.t) {

@@ -33,6 +33,10 @@ struct Polynomial {
     [[nodiscard]] double most() const { return coefficients.size() < 2 ? std::fabs(value(0)) : never; }
     [[nodiscard]] double repeats_after() const { return 0; }
     [[nodiscard]] Detail detail() const { return no_detail; }
+    template <class Sum>
+    void closed_form(double /*inside*/, Sum& sum) const {
+        sum.add_powers(at, coefficients);
+    }
     void delay_by(double d) { at += d; }
     [[nodiscard]] std::optional<text::Error> complaint() const {
         if (!coefficients.empty()) return std::nullopt;

@@ -17,6 +17,10 @@ struct Pulse {
     [[nodiscard]] double most() const { return std::fabs(amplitude); }
     [[nodiscard]] double repeats_after() const { return 0; }
     [[nodiscard]] Detail detail() const { return no_detail; }
+    template <class Sum>
+    void closed_form(double inside, Sum& sum) const {
+        if (inside >= at && inside < at + width) sum.add_constant(amplitude);
+    }
     void delay_by(double d) { at += d; }
     [[nodiscard]] std::string formula(double gain) const { return number(gain * amplitude) + between(at, at + width); }
 };

@@ -22,6 +22,14 @@ struct Ramp {
     [[nodiscard]] double most() const { return slope == 0 ? 0 : std::fabs(slope * width); }
     [[nodiscard]] double repeats_after() const { return 0; }
     [[nodiscard]] Detail detail() const { return no_detail; }
+    template <class Sum>
+    void closed_form(double inside, Sum& sum) const {
+        if (inside >= at + width) {
+            sum.add_constant(slope * width);
+        } else if (inside >= at) {
+            sum.add_line(at, 0, slope);
+        }
+    }
     void delay_by(double d) { at += d; }
     [[nodiscard]] std::string formula(double gain) const {
         const std::string rise = factor(gain * slope) + since(at);

@@ -28,6 +28,11 @@ struct Sawtooth {
     [[nodiscard]] double most() const { return std::fabs(amplitude); }
     [[nodiscard]] double repeats_after() const { return period; }
     [[nodiscard]] Detail detail() const { return no_detail; }
+    template <class Sum>
+    void closed_form(double inside, Sum& sum) const {
+        const Cycle c = cycle(inside);
+        sum.add_line(c.start, -amplitude, c.end > c.start ? 2 * amplitude / (c.end - c.start) : 0);
+    }
     void delay_by(double d) { at += d; }
     [[nodiscard]] std::string formula(double gain) const { return wave("sawtooth", gain * amplitude, period, at); }
 };

@@ -17,6 +17,10 @@ struct Step {
     [[nodiscard]] double most() const { return std::fabs(level); }
     [[nodiscard]] double repeats_after() const { return 0; }
     [[nodiscard]] Detail detail() const { return no_detail; }
+    template <class Sum>
+    void closed_form(double inside, Sum& sum) const {
+        if (inside >= at) sum.add_constant(level);
+    }
     void delay_by(double d) { at += d; }
     [[nodiscard]] std::string formula(double gain) const { return number(gain * level) + from_on(at); }
 };

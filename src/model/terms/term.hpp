@@ -44,6 +44,7 @@ struct TermText {
 
 /// The answers of a term that is a function of time alone. The ranges of its options are in `about`; it may also have
 ///     std::optional<text::Error> complaint() const;   what is wrong with it besides
+///     void closed_form(double inside, Sum& sum) const;   for any Sum: says what it is, as a formula (closed_form.hpp)
 template <class T>
 concept NativeTerm = requires(const T& term, T& own, double x) {
     { term.value(x) } -> std::same_as<double>;

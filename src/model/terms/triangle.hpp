@@ -31,6 +31,12 @@ struct Triangle {
     [[nodiscard]] double most() const { return std::fabs(amplitude); }
     [[nodiscard]] double repeats_after() const { return period; }
     [[nodiscard]] Detail detail() const { return no_detail; }
+    template <class Sum>
+    void closed_form(double inside, Sum& sum) const {
+        const Side piece = side(inside);
+        const double first = piece.falling ? amplitude : -amplitude;
+        sum.add_line(piece.start, first, piece.end > piece.start ? -2 * first / (piece.end - piece.start) : 0);
+    }
     void delay_by(double d) { at += d; }
     [[nodiscard]] std::string formula(double gain) const { return wave("triangle wave", gain * amplitude, period, at); }
 };

@@ -112,7 +112,8 @@ OwnRule Dinal1989::own_rule() const {
 }
 
 /// The program of 1989 read six numbers: I, k, C, Rd, Re and Mc.
-std::optional<text::Error> Dinal1989::wrong_for(const model::Oscillator& system) const {
+std::optional<text::Error> Dinal1989::wrong_for(const model::Oscillator& system,
+                                                const model::Excitation& /*excitation*/) const {
     if (!system.has_spring()) {
         return text::Error{.sentence = "integrator.dinal1989 divides by k: with k = 0 take integrator.spectral or rk4",
                            .option = "integrator"};

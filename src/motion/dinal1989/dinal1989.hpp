@@ -15,7 +15,8 @@ struct Dinal1989 {
     bool slip = false;  ///< the wrong index in stage 3 with which chapter 6 of the report was computed
 
     static const MethodText about;
-    [[nodiscard]] std::optional<text::Error> wrong_for(const model::Oscillator& system) const;
+    [[nodiscard]] std::optional<text::Error> wrong_for(const model::Oscillator& system,
+                                                       const model::Excitation& excitation) const;
     [[nodiscard]] Resolution resolution(const model::Oscillator& /*system*/) const { return {"h", h}; }
     [[nodiscard]] Trajectory run(const Problem& problem) const;
     [[nodiscard]] OwnRule own_rule() const;

@@ -9,13 +9,12 @@
 #include <optional>
 #include <vector>
 
+#include "motion/clock.hpp"
 #include "motion/hybrid/field.hpp"
 #include "motion/spectral/chebyshev.hpp"
-#include "motion/spectral/clock.hpp"
 
 namespace dinal::motion::hybrid {
 
-using spectral::Clock;
 using Nodes = spectral::chebyshev::Samples;
 using Series = spectral::chebyshev::Series<spectral::chebyshev::points>;
 inline constexpr std::size_t node_count = spectral::chebyshev::points;

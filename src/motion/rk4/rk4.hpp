@@ -13,7 +13,8 @@ struct Rk4 {
     double h = 0;  ///< the step, at most stability_limit()
 
     static const MethodText about;
-    [[nodiscard]] std::optional<text::Error> wrong_for(const model::Oscillator& system) const;
+    [[nodiscard]] std::optional<text::Error> wrong_for(const model::Oscillator& system,
+                                                       const model::Excitation& excitation) const;
     [[nodiscard]] Resolution resolution(const model::Oscillator& /*system*/) const { return {"h", h}; }
     [[nodiscard]] Trajectory run(const Problem& problem) const;
     [[nodiscard]] Trajectory run_more(const Problem& problem) const;

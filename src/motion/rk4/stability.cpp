@@ -45,7 +45,8 @@ double stability_limit(const model::Oscillator& system) {
     return stable_radius({-1, 0}) / (w0 * (zeta + std::sqrt((zeta - 1) * (zeta + 1))));
 }
 
-std::optional<text::Error> Rk4::wrong_for(const model::Oscillator& system) const {
+std::optional<text::Error> Rk4::wrong_for(const model::Oscillator& system,
+                                          const model::Excitation& /*excitation*/) const {
     const double limit = stability_limit(system);
     // The limit is itself rounded; a step that equals it to the digits shown is let through.
     if (h <= limit * (1 + 1e-12)) return {};

@@ -7,9 +7,9 @@
 
 #include "model/friction.hpp"
 #include "model/oscillator.hpp"
+#include "motion/clock.hpp"
 #include "motion/course.hpp"
 #include "motion/spectral/chebyshev.hpp"
-#include "motion/spectral/clock.hpp"
 
 namespace dinal::motion::spectral {
 

@@ -166,11 +166,13 @@ void SpectralEngine::record_turns() {
     const double least = (solver_.iterates() ? rounding_left_by_iteration : 1) * solver_.rounding();
     if (moving <= least || moving < nothing) return;
     if (standstill_.motion() == model::Motion::stuck) {
-        // From a start at rest: the first velocity that is not rounding tells the direction.
+        // From a start at rest: the acceleration tells the direction, or the first velocity that is not rounding.
         const auto v = at_nodes(panel.v);
         const auto* const first =
             std::find_if(v.begin(), v.end(), [&](double u) { return std::fabs(u) > 1e-14 * moving; });
-        standstill_.head(model::motion_of(first == v.end() ? 0 : *first));
+        const double pull = value(panel.w, -1);
+        const bool pulled = std::fabs(pull) > 1e-12 * size(panel.w);
+        standstill_.head(model::motion_of(pulled ? pull : first == v.end() ? 0 : *first));
     }
     double from = -1;
     LeftEnd start = now_.y.velocity == 0 ? LeftEnd::leaving : LeftEnd::anywhere;

@@ -1,7 +1,7 @@
 // A time that twenty thousand restarts do not blur: a double and what it lacks.
 #pragma once
 
-namespace dinal::motion::spectral {
+namespace dinal::motion {
 
 struct Clock {
     double hi = 0;  ///< the time, rounded
@@ -20,4 +20,4 @@ struct Clock {
     }
 };
 
-}  // namespace dinal::motion::spectral
+}  // namespace dinal::motion

@@ -1,0 +1,47 @@
+// The motion on an arc, a stretch on which M has one formula and friction one sign, as a closed form.
+#pragma once
+
+#include "model/closed_form.hpp"
+#include "motion/exact/curve.hpp"
+
+namespace dinal::motion::exact {
+
+class Arc {
+public:
+    explicit Arc(const model::Lowered& system) : system_(system), free_(system), velocity_(free_) {}
+
+    /// How the motion begins: `pull` is M - k theta less the braking of friction.
+    struct Start {
+        double velocity, pull;
+    };
+    /// The arc under M from its origin on, which is wanted for `length`. Returns for how long it holds: less where
+    /// numbers that nearly cancel must be avoided.
+    double begin(const model::ClosedForm& M, const Start& start, double length);
+    /// What a time unit of the arc costs at most, about: radians of its fastest part times the parts that turn.
+    [[nodiscard]] double cost(const model::ClosedForm& M) const {
+        return fastest_rate(M) * static_cast<double>(1 + M.omega().size() + M.rate().size());
+    }
+
+    struct Point {
+        double way;  ///< theta less that of the beginning
+        double velocity;
+    };
+    [[nodiscard]] Point at(double tau) {
+        const double v = velocity_.at(tau).f;
+        return {velocity_.way(), v};
+    }
+    [[nodiscard]] WalkedCurve& velocity() { return velocity_; }
+    [[nodiscard]] const LinearMotion& free() const { return free_; }
+
+private:
+    bool begin_closed(const model::ClosedForm& M, const Start& start, double length);
+    void begin_series(const model::ClosedForm& M, const Start& start, double length, double rate);
+    [[nodiscard]] double fastest_rate(const model::ClosedForm& M) const;
+
+    model::Lowered system_;
+    LinearMotion free_;
+    WalkedCurve velocity_;
+    std::vector<double> way_, load_;  // coefficients at work
+};
+
+}  // namespace dinal::motion::exact

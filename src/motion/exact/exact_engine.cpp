@@ -1,0 +1,275 @@
+#include "motion/exact/exact_engine.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace dinal::motion::exact {
+
+namespace {
+
+/// An arc without events ends after so many natural periods, that what its looks round does not add up.
+constexpr double longest_arc = 16;
+/// A creep is looked for over so many natural periods.
+constexpr double creeps_over = 0.5 * (1 - 1e-9);
+/// An arc costs so many radians of its parts at most, which is a fraction of a second; and between two questions to the
+/// monitor there are so many, or so many arcs, or rows.
+constexpr double greatest_cost = 1e8;
+constexpr double cost_between_questions = 1e7;
+constexpr double cost_of_an_arc = cost_between_questions / 16;
+constexpr std::size_t rows_between_questions = 1U << 16U;
+
+Band inside(model::Motion motion) {
+    return motion == model::Motion::forward ? Band{.low = 0} : Band{.high = 0};
+}
+
+}  // namespace
+
+ExactEngine::ExactEngine(const Problem& problem, RowWriter& rows, std::vector<model::Event>& events, Arcs* arcs)
+    : system_(problem.system),
+      excitation_(problem.excitation),
+      monitor_(problem.monitor),
+      window_(problem.window),
+      rows_(rows),
+      arcs_(arcs),
+      clock_{problem.window.start, 0},
+      y_(problem.initial),
+      piece_end_(problem.window.start),
+      standstill_(problem, &events, -model::never),
+      arc_(system_),
+      load_(arc_.free()) {}
+
+model::Outcome ExactEngine::run() {
+    ask_M();
+    bool alive = std::isfinite(M_) || fail(model::Outcome::excitation_not_finite);
+    while (alive && clock_.hi < window_.end) {
+        if (cost_ >= cost_between_questions && asked_to_stop(clock_.hi)) {
+            if (standstill_.phase() == Standstill::Phase::arrived) standstill_.ask(moment());
+            break;
+        }
+        alive = advance();
+    }
+    if (outcome_ == model::Outcome::reached_end) finish();
+    return outcome_;
+}
+
+bool ExactEngine::asked_to_stop(double t) {
+    cost_ = 0;
+    if (!monitor_ || monitor_(t)) return false;
+    outcome_ = model::Outcome::interrupted;
+    return true;
+}
+
+/// The formula of M from here on, and its value.
+void ExactEngine::ask_M() {
+    if (clock_.hi >= piece_end_) piece_end_ = std::min(excitation_.next_break(clock_.hi), window_.end);
+    model::closed_form(excitation_, clock_.hi, clock_.lo, formula_);
+    M_ = formula_.value();
+}
+
+bool ExactEngine::advance() {
+    if (standstill_.phase() == Standstill::Phase::arrived && !go_on(standstill_.ask(moment()))) return false;
+    if (!standstill_.stuck()) return move();
+    return standstill_.for_good(moment()) ? rest_until_end() : stay();
+}
+
+/// At rest there is nothing to compute but M at the rows, of which there may be many.
+bool ExactEngine::rest_until_end() {
+    double until = window_.end;
+    for (std::size_t count = 1; rows_.next_time() < window_.end; ++count) {
+        const double t = rows_.next_time();
+        M_ = excitation_.value(t);
+        put_row();
+        if (count % rows_between_questions == 0 && asked_to_stop(t)) {
+            until = t;
+            break;
+        }
+    }
+    if (arcs_ != nullptr) arcs_->add({.start = clock_, .length = clock_.until(until), .begin = y_});
+    clock_ = {until, 0};
+    M_ = excitation_.value(until);
+    return outcome_ == model::Outcome::reached_end;
+}
+
+void ExactEngine::finish() {
+    while (rows_.next_time() < model::never) put_row();
+    if (standstill_.phase() == Standstill::Phase::arrived) standstill_.ask(moment());
+    if (standstill_.finish()) outcome_ = model::Outcome::at_rest;
+}
+
+// ---- moving
+
+/// M - k theta less the braking of friction, rounded once: near the limit of sticking it is a small difference.
+double ExactEngine::pull() const {
+    const double braking = system_.braking(standstill_.motion());
+    const double sum = M_ - braking;
+    const double part = sum - M_;
+    const double rest = (M_ - (sum - part)) - (braking + part);
+    return std::fma(-system_.stiffness(), y_.theta, sum) + rest;
+}
+
+bool ExactEngine::move() {
+    const bool leaving = standstill_.phase() == Standstill::Phase::leaving;
+    const double start_pull = pull_at_release_.value_or(pull());
+    pull_at_release_.reset();
+    const double cost = arc_.cost(formula_);
+    asked_ = std::min(
+        {clock_.until(piece_end_), longest_arc * 2 * std::numbers::pi / arc_.free().w0(), greatest_cost / cost});
+    const double length = arc_.begin(formula_, {y_.velocity, start_pull}, asked_);
+    cost_ += cost * length + cost_of_an_arc;
+    if (!within_range(arc_.velocity().fourth_bound(length))) {
+        return fail(std::isfinite(formula_.value(length)) ? model::Outcome::state_not_finite
+                                                          : model::Outcome::excitation_not_finite);
+    }
+    bool crept = false, left = true;
+    std::optional<double> zero;
+    if (!standstill_.passes()) {
+        zero = stop(start_pull, length, crept, left);
+        if (leaving && !left) return go_on(standstill_.never_left(moment()));
+    }
+    double tau = zero.value_or(length);
+    if (zero && clock_.after(tau) >= piece_end_) tau = clock_.until(piece_end_);
+    if (crept) tau = *zero;
+    // At a zero of the velocity the way is what it is next to it, where at() was asked last.
+    const Arc::Point y = zero ? Arc::Point{arc_.velocity().way(), 0} : arc_.at(tau);
+    const Clock theta = Clock{y_.theta, theta_rest_}.later(y.way);
+    if (!std::isfinite(theta.hi) || !std::isfinite(y.velocity)) return fail(model::Outcome::state_not_finite);
+    if (!end_arc(tau, {theta.hi, y.velocity}, start_pull)) return false;
+    theta_rest_ = theta.lo;
+    if (crept) settle();
+    if (zero) {
+        standstill_.arrive();
+    } else {
+        standstill_.go_on();
+    }
+    return std::isfinite(M_) || fail(model::Outcome::excitation_not_finite);
+}
+
+bool ExactEngine::get_under_way(FirstExit& exit, double sign, double start_pull, double length) {
+    const double I = system_.inertia(), C = system_.damping(), k = system_.stiffness();
+    const double first = start_pull / I, second = (formula_.slope() - C * first) / I;
+    const double third = (formula_.bend() - C * second - k * first) / I;
+    return exit.leave(sign * first, sign * second, sign * third, length);
+}
+
+std::optional<double> ExactEngine::stop(double start_pull, double length, bool& crept, bool& left) {
+    const model::Motion motion = standstill_.motion();
+    WalkedCurve& velocity = arc_.velocity();
+    FirstExit exit(velocity, inside(motion), 0);
+    const double torques =
+        std::max({std::fabs(M_), system_.stiffness() * std::fabs(y_.theta), system_.greatest_holding()});
+    exit.watch({system_.damping(), system_.inertia(), creeps_over * 2 * std::numbers::pi / arc_.free().w0(),
+                4 * epsilon * torques});
+    double under_way = 0;
+    if (standstill_.phase() == Standstill::Phase::leaving) {
+        left = get_under_way(exit, model::sign_of(motion), start_pull, length);
+        if (!left) return {};
+        under_way = velocity.place();
+    }
+    const auto found = exit.search(length);
+    crept = exit.crept();
+    if (crept) {
+        velocity.at(velocity.place());
+        return velocity.place();
+    }
+    if (!found) return {};
+    if (!found->crosses) velocity.at(found->tau);
+    if (under_way > 0 && found->tau <= under_way) left = false;
+    return found->tau;
+}
+
+/// What has crept to rounding distance from its place is there: at the very limit of sticking, when Re = Rd.
+void ExactEngine::settle() {
+    const double torques = std::fabs(M_) + system_.stiffness() * std::fabs(y_.theta) + system_.greatest_holding();
+    const double place = (M_ - system_.braking(standstill_.motion())) / system_.stiffness();
+    if (!(std::fabs(place - y_.theta) <= 64 * epsilon * torques / system_.stiffness())) return;
+    y_.theta = place;
+    theta_rest_ = 0;
+}
+
+/// Without friction nothing happens at a turn, it is only told.
+void ExactEngine::record_turns(double start_pull, double length) {
+    WalkedCurve& velocity = arc_.velocity();
+    // At its equilibrium a system changes the sign of its velocity by rounding alone.
+    const double k = system_.stiffness(), w0 = arc_.free().w0();
+    const double floor = 2 * epsilon * w0 * (std::fabs(M_) / k + std::fabs(y_.theta));
+    constexpr double nothing = 1e-290;
+    if (velocity.size(length) <= std::max(floor, nothing)) return;
+    FirstExit exit(velocity, {}, 0);
+    if (y_.velocity == 0) {
+        const double I = system_.inertia(), first = start_pull / I;
+        const double second = (formula_.slope() - system_.damping() * first) / I;
+        const double third = (formula_.bend() - system_.damping() * second - k * first) / I;
+        const model::Motion way = model::motion_of(first != 0 ? first : second != 0 ? second : third);
+        if (way == model::Motion::stuck) return;
+        const bool told = standstill_.motion() == model::Motion::stuck || standstill_.last_told() == clock_.hi;
+        if (way != standstill_.motion()) told ? standstill_.head(way) : standstill_.turned(moment());
+        if (!get_under_way(exit, model::sign_of(way), start_pull, length)) return;
+    } else if (standstill_.motion() == model::Motion::stuck) {
+        standstill_.head(model::motion_of(y_.velocity));
+    }
+    while (velocity.place() < length) {
+        exit.set_band(inside(standstill_.motion()));
+        const auto found = exit.search(length);
+        if (!found) return;
+        if (!found->crosses) continue;
+        velocity.go();
+        // At a zero of the velocity the way is what it is next to it.
+        const double theta = Clock{y_.theta, theta_rest_}.later(velocity.way()).hi;
+        standstill_.turned({clock_.after(found->tau), theta, formula_.value(found->tau)});
+    }
+}
+
+// ---- the present
+
+bool ExactEngine::end_arc(double tau, model::State state, double start_pull) {
+    const bool standing = standstill_.stuck();
+    if (!rows_until(tau, state, standing)) return fail(model::Outcome::excitation_not_finite);
+    if (standstill_.passes()) record_turns(start_pull, tau);
+    if (arcs_ != nullptr) keep(tau, start_pull, standing);
+    const bool whole = clock_.after(tau) >= piece_end_;
+    clock_ = whole ? Clock{piece_end_, 0} : clock_.later(tau);
+    y_ = state;
+    ask_M();
+    return outcome_ != model::Outcome::interrupted;
+}
+
+void ExactEngine::keep(double tau, double start_pull, bool standing) {
+    if (!(tau > 0)) return;
+    arcs_->add({.start = clock_,
+                .length = tau,
+                .asked = asked_,
+                .begin = y_,
+                .theta_rest = theta_rest_,
+                .pull = start_pull,
+                .motion = standing ? model::Motion::stuck : standstill_.motion(),
+                .rests = standing});
+}
+
+/// The rows before the end of the arc; the one at its end belongs to the next. False when M is no number at one of
+/// them. Who stops the run among many rows ends the arc there.
+bool ExactEngine::rows_until(double& tau, model::State& end, bool standing) {
+    for (std::size_t count = 1; rows_.next_time() < model::never; ++count) {
+        const double t = rows_.next_time(), since = clock_.until(t);
+        if (!(since < tau)) return true;
+        model::State state = y_;
+        if (!standing && since > 0) {
+            const Arc::Point y = arc_.at(since);
+            state = {Clock{y_.theta, theta_rest_}.later(y.way).hi, y.velocity};
+        }
+        const double M = excitation_.value(t);
+        if (!std::isfinite(M)) return false;
+        const model::Motion motion = standing               ? model::Motion::stuck
+                                     : standstill_.passes() ? model::Motion::forward
+                                                            : standstill_.motion();
+        rows_.put(state, M, model::friction_torque(system_, motion, M, state));
+        if (count % rows_between_questions == 0 && asked_to_stop(t)) {
+            tau = since;
+            end = state;
+            return true;
+        }
+    }
+    return true;
+}
+
+}  // namespace dinal::motion::exact

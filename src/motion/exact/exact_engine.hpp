@@ -1,0 +1,89 @@
+// The exact integrator at work: arc after arc, each in closed form (arc.hpp), up to the first event in it, which is
+// proven to be the first (first_exit.hpp) and where the friction law is asked (standstill.hpp).
+#pragma once
+
+#include <limits>
+#include <optional>
+#include <vector>
+
+#include "model/closed_form.hpp"
+#include "motion/exact/arc.hpp"
+#include "motion/exact/arcs.hpp"
+#include "motion/exact/first_exit.hpp"
+#include "motion/rows.hpp"
+#include "motion/standstill.hpp"
+
+namespace dinal::motion::exact {
+
+class ExactEngine {
+public:
+    /// `arcs` may be null: then only the rows remain of the motion.
+    ExactEngine(const Problem& problem, RowWriter& rows, std::vector<model::Event>& events, Arcs* arcs);
+
+    model::Outcome run();
+    /// Tells how far it came, and in which state.
+    void leave(Trajectory& trajectory) const {
+        trajectory.t_stop = clock_.hi;
+        trajectory.state_at_stop = y_;
+        trajectory.motion_at_stop = standstill_.motion();
+        trajectory.began_stuck = standstill_.began_stuck();
+    }
+
+private:
+    // One arc after the other. What returns false has ended the run.
+    bool advance();
+    bool move();
+    bool rest_until_end();
+    void finish();
+    [[nodiscard]] Standstill::Moment moment() const { return {clock_.hi, y_.theta, M_}; }
+    /// After a word with the standstill, which may have seen enough.
+    bool go_on(bool sane) { return sane || fail(model::Outcome::chattering); }
+    bool asked_to_stop(double t);
+    bool fail(model::Outcome outcome) {
+        outcome_ = outcome;
+        return false;
+    }
+    [[nodiscard]] double pull() const;
+    /// From a standstill, under way: false when it does not get there.
+    bool get_under_way(FirstExit& exit, double sign, double start_pull, double length);
+    /// The first zero of the velocity, or where it has crept to.
+    std::optional<double> stop(double start_pull, double length, bool& crept, bool& left);
+    void record_turns(double start_pull, double length);
+    void settle();
+
+    // The present moves on: to `tau` after the beginning of the arc, where the state is `state`.
+    bool end_arc(double tau, model::State state, double start_pull);
+    bool rows_until(double& tau, model::State& end, bool standing);
+    void keep(double tau, double start_pull, bool standing);
+    void ask_M();
+    void put_row() { rows_.put(y_, M_, model::friction_torque(system_, standstill_.motion(), M_, y_)); }
+
+    // exact_stuck.cpp: the mass at rest.
+    bool stay();
+    bool stay_held(double length);
+    void make_load();
+    bool release_at(double tau, model::Motion towards, bool crosses);
+
+    model::Lowered system_;
+    const model::Excitation& excitation_;
+    const Monitor& monitor_;
+    Window window_;
+    RowWriter& rows_;
+    Arcs* arcs_;
+
+    Clock clock_;
+    model::State y_;
+    double theta_rest_ = 0;  // what theta lacks
+    double M_ = 0;           // from the right
+    double piece_end_;       // the next break of M, or the end of the run
+    double asked_ = 0;       // for how long the present arc was wanted
+    std::optional<double> pull_at_release_ = {};
+    Standstill standstill_;
+    model::ClosedForm formula_;
+    Arc arc_;
+    WalkedCurve load_;
+    double cost_ = std::numeric_limits<double>::infinity();  // since the monitor was asked last
+    model::Outcome outcome_ = model::Outcome::reached_end;
+};
+
+}  // namespace dinal::motion::exact

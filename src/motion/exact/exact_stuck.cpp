@@ -1,0 +1,94 @@
+// The exact engine's mass at rest: how long M holds it there, and its breakaway.
+#include <algorithm>
+#include <cmath>
+
+#include "motion/exact/exact_engine.hpp"
+
+namespace dinal::motion::exact {
+
+namespace {
+
+/// M is followed for so many radians of its parts at a time, that what its looks round does not add up.
+constexpr double greatest_cost_at_rest = 1e6;
+
+}  // namespace
+
+/// The curve of M from here on.
+void ExactEngine::make_load() {
+    load_.clear();
+    for (const double c : formula_.powers()) load_.add_power(c);
+    for (std::size_t j = 0; j < formula_.omega().size(); ++j) {
+        load_.add_sine(formula_.omega()[j], {formula_.in_phase()[j], formula_.quadrature()[j]});
+    }
+    for (std::size_t j = 0; j < formula_.rate().size(); ++j) {
+        load_.add_exponential(formula_.rate()[j], formula_.amount()[j]);
+    }
+    load_.begin();
+}
+
+/// Stuck, up to the first time that |M - k theta| > Re or the end of the piece.
+bool ExactEngine::stay() {
+    const double cost = formula_.fastest() * static_cast<double>(1 + formula_.omega().size() + formula_.rate().size());
+    const double length = std::min(clock_.until(piece_end_), greatest_cost_at_rest / cost);
+    cost_ += cost * length + 1;
+    const bool held = standstill_.phase() == Standstill::Phase::held;
+    if (!held) {
+        const model::Motion towards = standstill_.pulled(M_, y_.theta);
+        if (towards != model::Motion::stuck) return go_on(standstill_.release(moment(), towards));
+    }
+    make_load();
+    if (!within_range(load_.fourth_bound(length))) return fail(model::Outcome::excitation_not_finite);
+    if (held) return stay_held(length);
+    const double k_theta = system_.stiffness() * y_.theta;
+    const Band band{k_theta - system_.holding(model::Motion::backward),
+                    k_theta + system_.holding(model::Motion::forward)};
+    FirstExit exit(load_, band, 8 * epsilon * (system_.greatest_holding() + std::fabs(k_theta)));
+    while (const auto found = exit.search(length)) {
+        const model::Motion side = found->side > 0 ? model::Motion::forward : model::Motion::backward;
+        if (clock_.after(found->tau) >= piece_end_) break;  // the next piece's business
+        if (found->crosses) return release_at(found->tau, side, true);
+        // It only meets the limit: M itself is asked, to the letter.
+        if (standstill_.pulled(excitation_.value(clock_.after(found->tau)), y_.theta) == side) {
+            return release_at(found->tau, side, false);
+        }
+    }
+    if (!end_arc(length, y_, 0)) return false;
+    standstill_.go_on();
+    return std::isfinite(M_) || fail(model::Outcome::excitation_not_finite);
+}
+
+/// It was let go within rounding of the limit and did not get under way: so it stays until M is clearly beyond the
+/// limit, or clearly below it again.
+bool ExactEngine::stay_held(double length) {
+    const double k_theta = system_.stiffness() * y_.theta, torque = std::fma(-system_.stiffness(), y_.theta, M_);
+    const model::Motion side = torque > 0 ? model::Motion::forward : model::Motion::backward;
+    const double Re = system_.holding(side), limit = k_theta + model::sign_of(side) * Re;
+    const double torques = Re + std::fabs(k_theta) + std::fabs(M_);
+    const double apart = 2 * std::max(standstill_.excess(M_, y_.theta), 0.0) + 64 * epsilon * torques;
+    FirstExit exit(load_, {limit - apart, limit + apart}, 8 * epsilon * torques);
+    std::optional<Exit> found;
+    do {
+        found = exit.search(length);
+    } while (found && !found->crosses);
+    if (found && clock_.after(found->tau) < piece_end_) {
+        const bool beyond = (found->side > 0) == (side == model::Motion::forward);
+        if (beyond) return release_at(found->tau, side, false);
+        if (!end_arc(found->tau, y_, 0)) return false;
+    } else if (!end_arc(length, y_, 0)) {
+        return false;
+    }
+    standstill_.go_on();
+    return std::isfinite(M_) || fail(model::Outcome::excitation_not_finite);
+}
+
+/// Breakaway: where M crosses the limit it is at the limit, whatever it is rounded to.
+bool ExactEngine::release_at(double tau, model::Motion towards, bool crosses) {
+    if (!end_arc(tau, y_, 0)) return false;
+    if (!std::isfinite(M_)) return fail(model::Outcome::excitation_not_finite);
+    if (crosses) {
+        pull_at_release_ = model::sign_of(towards) * system_.holding(towards) - system_.braking(towards);
+    }
+    return go_on(standstill_.release(moment(), towards));
+}
+
+}  // namespace dinal::motion::exact

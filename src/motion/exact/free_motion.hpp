@@ -1,0 +1,54 @@
+// The free motion of the linear part, theta'' + 2 delta theta' + w0^2 theta = 0, over any time and at any damping.
+#pragma once
+
+#include <complex>
+#include <limits>
+
+#include "model/lowered.hpp"
+
+namespace dinal::motion::exact {
+
+inline constexpr double epsilon = std::numeric_limits<double>::epsilon();
+
+/// theta = along theta0 + moved velocity0, velocity = -w0^2 moved theta0 + kept velocity0.
+struct FreeStep {
+    double along, moved, kept;
+};
+
+class LinearMotion {
+public:
+    explicit LinearMotion(const model::Lowered& system);
+
+    [[nodiscard]] double w0() const { return w0_; }
+    [[nodiscard]] double w0_squared() const { return w0_squared_; }
+    [[nodiscard]] double delta() const { return delta_; }
+    /// Of the faster of its two parts, per time unit: no derivative grows faster.
+    [[nodiscard]] double fastest() const { return fastest_; }
+    [[nodiscard]] FreeStep after(double tau) const;
+
+    /// What |the fourth derivative of the velocity| does not exceed from this state on.
+    [[nodiscard]] double fourth_bound(double theta, double velocity) const;
+
+    // Of a system that swings:
+    [[nodiscard]] bool swings() const { return swings_; }
+    /// lambda = -delta + i w1; how far i omega is from it, without the rounding of w1.
+    [[nodiscard]] std::complex<double> root() const { return {-delta_, w1_}; }
+    [[nodiscard]] std::complex<double> from_root(double omega) const { return {delta_, (omega - w1_) - w1_rest_}; }
+    /// exp(lambda tau)
+    [[nodiscard]] std::complex<double> turned(double tau) const;
+    /// The step of that turn.
+    [[nodiscard]] FreeStep step(std::complex<double> turned) const {
+        const double moved = turned.imag() / w1_;
+        return {turned.real() + delta_ * moved, moved, turned.real() - delta_ * moved};
+    }
+
+private:
+    double delta_, w0_, w0_squared_;
+    double w1_ = 0, w1_rest_ = 0;  // sqrt |w0^2 - delta^2|, and what that lacks
+    double slow_ = 0, fast_ = 0;   // of an overdamped system: its two rates
+    bool swings_;
+    double fastest_;
+    double energy_fourth_;  // of |v''''|, for a speed of 1 or an angle of 1/w0
+};
+
+}  // namespace dinal::motion::exact
