@@ -55,9 +55,10 @@ double SpectralEngine::release_towards(model::Motion side, double from) const {
     for (std::size_t k = 1; k < points; ++k) left[k] = -sign * panel.M[k];
     for (double& c : slope) c *= -sign;
     left[0] = Re - mean;
+    const bool held = standstill_.phase() == Standstill::Phase::held;
+    if (held) left[0] += clearly_beyond();
     chebyshev::Bounded<points> curve(1, left, slope);
     curve.raise_floor(doubt);
-    const bool held = standstill_.phase() == Standstill::Phase::held;
     std::optional<double> touch;
     const auto touches = [&](double x) {
         if (held) return false;
@@ -73,6 +74,17 @@ double SpectralEngine::release_towards(model::Motion side, double from) const {
     const double off = doubt / std::fabs(curve.slope(*x));
     if (held || (!touch && off * panel.h <= exact_enough * T0_)) return *x;
     return moment_of_release(touch.value_or(*x), off, from, side);
+}
+
+/// How far M must pass the limit before a mass is let go that did not get under way here: twice as far as it is now, so
+/// that a crest which only comes out of the rounding is tried some fifty times at most. A feedback that is clearly
+/// beyond the limit at rest, and holds in motion, is none.
+double SpectralEngine::clearly_beyond() const {
+    constexpr double crest = 1e-6;
+    const double k_theta = system_.stiffness() * std::fabs(now_.y.theta);
+    const double torques = std::fabs(now_.M) + k_theta + system_.greatest_holding();
+    const double excess = std::max(standstill_.excess(now_.M, now_.y.theta), 0.0);
+    return excess > crest * torques ? 0 : 2 * excess + 64 * epsilon * torques;
 }
 
 bool SpectralEngine::lets_go(double x, model::Motion side) const {
