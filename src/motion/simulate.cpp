@@ -175,15 +175,22 @@ text::Expected<Trajectory> run_from(const Past& past, const model::Oscillator& s
 }
 
 /// The events of the second part after those of the first, whose rest is none any more.
-Growing<model::Event> joined(const Growing<model::Event>& first, const Trajectory& second) {
+Growing<model::Event> joined(const Trajectory& so_far, const Trajectory& second) {
+    const Growing<model::Event>& first = so_far.events;
     std::vector<model::Event> later;
     std::size_t kept = first.size();
     std::size_t rest = kept;  // what a user asked for may have come after it
     while (rest > 0 && first[rest - 1].kind > model::EventKind::rest) --rest;
     if (rest > 0 && first[rest - 1].kind == model::EventKind::rest) {
         later.assign(first.begin() + static_cast<std::ptrdiff_t>(rest) - 1, first.end());
-        later.front().kind = model::EventKind::stick;
         kept = rest - 1;
+        later.front().kind = model::EventKind::stick;
+        if (so_far.motion_at_stop != model::Motion::stuck) {  // it only crept, and may still do so
+            const bool still = second.outcome == model::Outcome::at_rest && second.events.size() == 1 &&
+                               second.events.front().t == so_far.t_stop;
+            if (still) return first;
+            later.erase(later.begin());
+        }
     }
     later.insert(later.end(), second.events.begin(), second.events.end());
     if (second.outcome == model::Outcome::at_rest && kept + later.size() > 0) {
@@ -199,7 +206,7 @@ Growing<model::Event> joined(const Growing<model::Event>& first, const Trajector
 Trajectory joined(const Trajectory& first, std::size_t kept, Trajectory second, const Limits& limits) {
     const std::size_t most = limits.memory / (column_count * sizeof(double));
     second.rows = Rows(first.rows.table().followed_by(kept, second.rows.table(), most));
-    second.events = joined(first.events, second);
+    second.events = joined(first, second);
     second.course = joined(first.course, second.t_start, std::move(second.course));
     second.initial = first.initial;
     second.began_stuck = first.began_stuck;

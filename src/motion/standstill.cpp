@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 namespace dinal::motion {
 
@@ -10,6 +11,12 @@ namespace {
 
 /// More standstills than this, each at once after the one before, lead nowhere.
 constexpr int most_at_once = 200;
+/// A stick that rounding decides lasts no longer, as a part of T0.
+constexpr double briefly = 1e-3;
+/// What the impulse of such a stick is below, in torques times a radian of the free motion.
+constexpr double withheld = 64 * std::numeric_limits<double>::epsilon();
+/// What theta carries of the roundings of a long motion, in torques.
+constexpr double rounding_of_torques = 1024 * std::numeric_limits<double>::epsilon();
 /// A velocity that is only a direction.
 constexpr double hair = std::numeric_limits<double>::min();
 
@@ -23,6 +30,7 @@ Standstill::Standstill(const Problem& problem, std::vector<model::Event>* events
       most_M_(problem.excitation.most()),
       start_(problem.before ? -model::never : problem.window.start),
       at_once_(at_once),
+      pace_(std::min(problem.system.natural_period(), problem.window.end - problem.window.start)),
       events_(events),
       motion_(problem.before.value_or(model::motion_of(problem.initial.velocity))) {
     if (passes()) return;
@@ -35,14 +43,37 @@ Standstill::Standstill(const Problem& problem, std::vector<model::Event>* events
 }
 
 double Standstill::excess(double M, double theta) const {
+    if (phase_ == Phase::creeping) {
+        const double off = model::sign_of(motion_) * std::fma(-system_.stiffness(), theta, M) - balance();
+        return std::fabs(off) - apart_;
+    }
     const double excess = model::breakaway_excess(system_, M, theta);
     return pulled(M, theta) == model::Motion::stuck ? std::min(excess, 0.0) : excess;
+}
+
+model::Motion Standstill::pulled_on(double M, double theta) const {
+    const double off = model::sign_of(motion_) * std::fma(-system_.stiffness(), theta, M) - balance();
+    if (!(std::fabs(off) > apart_)) return model::Motion::stuck;
+    return (off > 0) == (motion_ == model::Motion::forward) ? model::Motion::forward : model::Motion::backward;
+}
+
+bool Standstill::creep(const Moment& now) {
+    if (feedback_ || system_.has_remainder() || passes() || motion_ == model::Motion::stuck) return false;
+    if (!(system_.holding(motion_) > balance())) return false;  // it is held as well as it slides
+    const double off =
+        std::fabs(model::sign_of(motion_) * std::fma(-system_.stiffness(), now.theta, now.M) - balance());
+    if (!(off <= rounding_of_torques * torques(now))) return false;
+    phase_ = Phase::creeping;
+    crept_ = now;
+    constexpr double rounding = 64 * std::numeric_limits<double>::epsilon();
+    apart_ = 2 * off + rounding * torques(now);
+    return true;
 }
 
 bool Standstill::for_good(const Moment& now) const {
     if (!stuck()) return false;
     const double k_theta = system_.pull_back(now.theta);
-    if (most_M_ - k_theta <= system_.holding(model::Motion::forward) &&
+    if (phase_ != Phase::creeping && most_M_ - k_theta <= system_.holding(model::Motion::forward) &&
         most_M_ + k_theta <= system_.holding(model::Motion::backward)) {
         return true;
     }
@@ -66,6 +97,7 @@ bool Standstill::ask(const Moment& now) {
     const model::Motion before = motion_;
     motion_ = pulled(now.M, now.theta);
     phase_ = motion_ == model::Motion::stuck ? Phase::stuck : Phase::leaving;
+    came_ = before, M_stuck_ = now.M;
     if (at_start(now.t)) {
         began_stuck_ = stuck();
     } else if (stuck()) {
@@ -77,10 +109,39 @@ bool Standstill::ask(const Moment& now) {
 }
 
 bool Standstill::release(const Moment& now, model::Motion towards) {
+    if (phase_ == Phase::creeping) {
+        if (towards == motion_) {
+            phase_ = Phase::leaving;
+        } else {
+            came_ = motion_, M_stuck_ = now.M;
+            motion_ = model::Motion::stuck;
+            phase_ = Phase::stuck;
+            tell(model::EventKind::stick, now);
+        }
+        return goes_on_after(now.t);
+    }
     motion_ = towards;
     phase_ = Phase::leaving;
-    tell(model::EventKind::slip, now);
+    if (only_touched(now)) {
+        if (towards == came_) {
+            events_->pop_back();
+        } else {
+            events_->back().kind = model::EventKind::turn;
+        }
+    } else {
+        tell(model::EventKind::slip, now);
+    }
     return goes_on_after(now.t);
+}
+
+/// Whether the stick that ends now was none: the mass came down to velocity zero right at the limit, and friction
+/// withheld an impulse below rounding while M passed it. Which side of the limit it was on is for rounding to say.
+bool Standstill::only_touched(const Moment& now) const {
+    if (events_ == nullptr || events_->empty() || came_ == model::Motion::stuck) return false;
+    const model::Event& last = events_->back();
+    const double part = (now.t - last.t) / pace_;
+    if (last.kind != model::EventKind::stick || part > briefly) return false;
+    return std::fabs(now.M - M_stuck_) * (2 * std::numbers::pi * part) <= withheld * torques(now);
 }
 
 bool Standstill::never_left(const Moment& now) {
@@ -95,6 +156,7 @@ bool Standstill::never_left(const Moment& now) {
         began_stuck_ = true;
     } else {
         tell(model::EventKind::stick, now);  // it was on its way, came to rest, and did not go on
+        came_ = motion_, M_stuck_ = now.M;
     }
     motion_ = model::Motion::stuck;
     phase_ = Phase::held;
@@ -113,11 +175,22 @@ void Standstill::turned(const Moment& now) {
 
 bool Standstill::finish() {
     if (!stuck()) return false;
+    if (phase_ == Phase::creeping) {
+        tell(model::EventKind::rest, crept_);  // nothing came that would have moved it since
+        return true;
+    }
     if (events_ == nullptr) return true;
     const auto own = [](const model::Event& event) { return event.kind <= model::EventKind::rest; };
     const auto last = std::find_if(events_->rbegin(), events_->rend(), own);
     if (last != events_->rend()) last->kind = model::EventKind::rest;
     return true;
+}
+
+void Standstill::forget_chatter() {
+    if (events_ == nullptr) return;
+    while (events_->size() > 1 && events_->back().t - (*events_)[events_->size() - 2].t <= at_once_) {
+        events_->pop_back();
+    }
 }
 
 void Standstill::tell(model::EventKind kind, const Moment& now) {

@@ -4,6 +4,7 @@
 // limit of sticking, says so, and is told what the mass does.
 #pragma once
 
+#include <cmath>
 #include <vector>
 
 #include "model/sticking.hpp"
@@ -18,7 +19,8 @@ public:
         arrived,  ///< velocity zero, and the law has not been asked yet
         leaving,  ///< velocity zero, and the law lets it go
         stuck,
-        held,  ///< stuck within rounding of the limit: it was let go, and did not get under way
+        held,      ///< stuck within rounding of the limit: it was let go, and did not get under way
+        creeping,  ///< slower than rounding, but on its way: friction slides, and balances M and the spring
     };
     /// The mass at velocity zero. M is what a mass at rest is under, from the right where it jumps.
     struct Moment {
@@ -30,14 +32,24 @@ public:
     Standstill(const Problem& problem, std::vector<model::Event>* events, double at_once);
 
     [[nodiscard]] Phase phase() const { return phase_; }
-    [[nodiscard]] bool stuck() const { return phase_ == Phase::stuck || phase_ == Phase::held; }
-    /// Which way the mass moves; before it has moved at all without dry friction, `stuck`.
+    /// It stands, for all that numbers can tell.
+    [[nodiscard]] bool stuck() const {
+        return phase_ == Phase::stuck || phase_ == Phase::held || phase_ == Phase::creeping;
+    }
+    /// Which way the mass moves, or creeps; before it has moved at all without dry friction, `stuck`.
     [[nodiscard]] model::Motion motion() const { return motion_; }
     /// Without dry friction the mass swings through zero: its turns are told by turned(), and nothing is asked.
     [[nodiscard]] bool passes() const { return !system_.dry(); }
-    /// Which way a mass at rest would go under M, or that it sticks.
+    /// Which way a mass at rest would go under M, or that it sticks. Of one that creeps: the way it is on, or the other
+    /// way when it comes to a stop.
     [[nodiscard]] model::Motion pulled(double M, double theta) const {
-        return model::motion_from_standstill(system_, M, theta);
+        return phase_ == Phase::creeping ? pulled_on(M, theta) : model::motion_from_standstill(system_, M, theta);
+    }
+    /// What M - k theta must pass towards this side before something happens: the breakaway torque, or, of a mass that
+    /// creeps, what it is under, but for rounding.
+    [[nodiscard]] double limit(model::Motion side) const {
+        if (phase_ != Phase::creeping) return system_.holding(side);
+        return side == motion_ ? apart_ + balance() : apart_ - balance();
     }
     /// How far M is past the limit; positive exactly when the law lets go.
     [[nodiscard]] double excess(double M, double theta) const;
@@ -58,12 +70,15 @@ public:
 
     /// The velocity is down to zero.
     void arrive() { phase_ = Phase::arrived; }
+    /// The velocity is down to what is rounding. Where more than the friction of sliding would hold a standing mass,
+    /// and that alone balances M and the spring, the mass is on its way for ever, and creeps: else this is false.
+    bool creep(const Moment& now);
 
     // What returns false has seen standstills without end.
 
     /// After arrive(): the law says what the mass does, which is told.
     bool ask(const Moment& now);
-    /// Stuck until now; M has passed the limit of this side.
+    /// Stuck until now, or creeping; M has passed the limit of this side.
     bool release(const Moment& now, model::Motion towards);
     /// It was leaving and did not get under way: M only touched the limit. The mass stays where it is.
     bool never_left(const Moment& now);
@@ -76,14 +91,18 @@ public:
     void turned(const Moment& now);
     /// At the end of the run. Whether it is at rest.
     bool finish();
+    /// At the end of a run that got nowhere for standstills without end: the events of these, each at once after the
+    /// one before, are none, but for the first.
+    void forget_chatter();
 
     /// Where a run may be taken up again.
     struct Mark {
         model::Motion motion = model::Motion::stuck;
         Phase phase = Phase::moving;
+        double apart = 0;
     };
-    [[nodiscard]] Mark mark() const { return {motion_, phase_}; }
-    void return_to(const Mark& mark) { motion_ = mark.motion, phase_ = mark.phase; }
+    [[nodiscard]] Mark mark() const { return {motion_, phase_, apart_}; }
+    void return_to(const Mark& mark) { motion_ = mark.motion, phase_ = mark.phase, apart_ = mark.apart; }
 
     /// From the start of the run until something moved it.
     [[nodiscard]] bool began_stuck() const { return began_stuck_; }
@@ -94,6 +113,13 @@ public:
 
 private:
     [[nodiscard]] bool at_start(double t) const { return t <= start_; }
+    [[nodiscard]] bool only_touched(const Moment& now) const;
+    [[nodiscard]] double torques(const Moment& now) const {
+        return std::fabs(now.M) + std::fabs(system_.pull_back(now.theta)) + system_.greatest_holding();
+    }
+    /// What friction takes while the mass creeps.
+    [[nodiscard]] double balance() const { return model::sign_of(motion_) * system_.braking(motion_); }
+    [[nodiscard]] model::Motion pulled_on(double M, double theta) const;
     void tell(model::EventKind kind, const Moment& now);
     bool goes_on_after(double t);
 
@@ -102,11 +128,15 @@ private:
     bool feedback_;
     double constant_from_, most_M_;
     double start_;  // nothing is an event there
-    double at_once_;
+    double at_once_, pace_;
     std::vector<model::Event>* events_;
 
     model::Motion motion_;
     Phase phase_ = Phase::moving;
+    model::Motion came_ = model::Motion::stuck;  // which way it moved before it stuck,
+    double M_stuck_ = 0;                         // and under which M
+    Moment crept_{};                             // since when it creeps
+    double apart_ = 0;                           // how far M may be from what balances a creep
     bool began_stuck_ = false;
     double last_ = -model::never;  // standstill
     int at_once_in_a_row_ = 0;

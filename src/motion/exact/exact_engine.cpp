@@ -125,7 +125,7 @@ bool ExactEngine::move() {
     std::optional<double> zero;
     if (!standstill_.passes()) {
         zero = stop(start_pull, length, crept, left);
-        if (leaving && !left) return go_on(standstill_.never_left(moment()));
+        if (leaving && !left) return standstill_.creep(moment()) || go_on(standstill_.never_left(moment()));
     }
     double tau = zero.value_or(length);
     if (zero && clock_.after(tau) >= piece_end_) tau = clock_.until(piece_end_);
@@ -134,9 +134,11 @@ bool ExactEngine::move() {
     const Arc::Point y = zero ? Arc::Point{arc_.velocity().way(), 0} : arc_.at(tau);
     const Clock theta = Clock{y_.theta, theta_rest_}.later(y.way);
     if (!std::isfinite(theta.hi) || !std::isfinite(y.velocity)) return fail(model::Outcome::state_not_finite);
+    const double M_before = zero ? formula_.value(tau) : 0;  // from the left
     if (!end_arc(tau, {theta.hi, y.velocity}, start_pull)) return false;
     theta_rest_ = theta.lo;
     if (crept) settle();
+    if (zero && standstill_.creep({clock_.hi, y_.theta, M_before})) return true;
     if (zero) {
         standstill_.arrive();
     } else {

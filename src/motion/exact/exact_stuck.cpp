@@ -40,8 +40,8 @@ bool ExactEngine::stay() {
     if (!within_range(load_.fourth_bound(length))) return fail(model::Outcome::excitation_not_finite);
     if (held) return stay_held(length);
     const double k_theta = system_.stiffness() * y_.theta;
-    const Band band{k_theta - system_.holding(model::Motion::backward),
-                    k_theta + system_.holding(model::Motion::forward)};
+    const Band band{k_theta - standstill_.limit(model::Motion::backward),
+                    k_theta + standstill_.limit(model::Motion::forward)};
     FirstExit exit(load_, band, 8 * epsilon * (system_.greatest_holding() + std::fabs(k_theta)));
     while (const auto found = exit.search(length)) {
         const model::Motion side = found->side > 0 ? model::Motion::forward : model::Motion::backward;
@@ -86,9 +86,11 @@ bool ExactEngine::release_at(double tau, model::Motion towards, bool crosses) {
     if (!end_arc(tau, y_, 0)) return false;
     if (!std::isfinite(M_)) return fail(model::Outcome::excitation_not_finite);
     if (crosses) {
-        pull_at_release_ = model::sign_of(towards) * system_.holding(towards) - system_.braking(towards);
+        pull_at_release_ = model::sign_of(towards) * standstill_.limit(towards) - system_.braking(towards);
     }
-    return go_on(standstill_.release(moment(), towards));
+    const bool sane = standstill_.release(moment(), towards);
+    if (standstill_.stuck()) pull_at_release_.reset();  // it crept, and is at rest now
+    return go_on(sane);
 }
 
 }  // namespace dinal::motion::exact

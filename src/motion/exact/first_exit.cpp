@@ -39,6 +39,19 @@ void FirstExit::choose_level(double bound) {
     while (level_ + 1 < WalkedCurve::levels && !fits(level_)) ++level_;
 }
 
+/// Whether it is slower than rounding already, also where the looks are shorter than a creep.
+bool FirstExit::creeps_from_here(double until) {
+    const double h = creep_->shortest, from = curve_.place();
+    const auto slow = [&](double speed) { return speed * (creep_->damping + creep_->inertia / h) <= creep_->least; };
+    const WalkedCurve::Value here = curve_.here();
+    if (!slow(std::fabs(here.f)) || from + h > until) return false;
+    const double hidden = curve_.fourth_bound(until) * (h * h) * (h * h) * hermite;
+    const Hull cubic = hull(here, curve_.look_at(from + h), h);
+    if (!slow(std::max(std::fabs(cubic.low), std::fabs(cubic.high)) + hidden)) return false;
+    curve_.go();
+    return crept_ = true;
+}
+
 std::optional<Exit> FirstExit::search(double until) {
     int finer = 0;  // halvings of the present look
     double rounding = 0, bound = 0;
@@ -47,6 +60,7 @@ std::optional<Exit> FirstExit::search(double until) {
             bound = curve_.fourth_bound(until);
             rounding = std::max(floor_, 8 * epsilon * curve_.size(until));
         }
+        if (creep_ && creeps_from_here(until)) return {};
         if (finer == 0 && bound != 0) choose_level(bound);
         const int level = level_ + finer;
         const double from = curve_.place(), left = until - from;

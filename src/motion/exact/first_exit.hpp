@@ -62,6 +62,7 @@ private:
                                         double edge) const;
     double polish(double from, double to, double guess, double edge, int side);
     Exit crossing(double tau, int side);
+    bool creeps_from_here(double until);
     void choose_level(double bound);
     [[nodiscard]] double margin(double f) const { return std::min(f - band_.low, band_.high - f); }
 

@@ -228,8 +228,9 @@ bool Engine::ask() {
 bool Engine::release(model::Motion towards) {
     const double M = field_.load(here());
     if (!std::isfinite(M)) return fail(model::Outcome::excitation_not_finite);
-    const bool sane = standstill_.release({now_.hi, y_[0], M}, towards);
-    events_.back().velocity = y_[1];
+    const std::size_t told = events_.size();
+    const bool sane = standstill_.release({now_.hi, y_[0], pull(M)}, towards);
+    if (events_.size() > told) events_.back().M = M, events_.back().velocity = y_[1];
     return sane || fail(model::Outcome::chattering);
 }
 

@@ -119,10 +119,10 @@ bool Rk4Engine::reach_zero(const Stepped& whole, double zero, double end, bool b
         if (y_.velocity != 0) {  // so close to zero that no time passes
             y_.velocity = 0;
             M_ = standstill_.M_at_rest(t_, y_.theta, M_);
-            standstill_.arrive();
+            if (!standstill_.creep(moment())) standstill_.arrive();
             return finite();
         }
-        if (!go_on(standstill_.never_left(moment()))) return false;
+        if (!standstill_.creep(moment()) && !go_on(standstill_.never_left(moment()))) return false;
         rows_standing_until(end);
         t_ = end, M_ = feedback_ ? M_at(end, end, break_at_end, y_) : whole.M;
         standstill_.go_on();
@@ -138,7 +138,7 @@ bool Rk4Engine::reach_zero(const Stepped& whole, double zero, double end, bool b
     // away was tried and changed no error by more than a twentieth.
     y_ = {s.y.theta, 0};
     t_ = t, M_ = standstill_.M_at_rest(t, y_.theta, s.M);
-    standstill_.arrive();
+    if (!standstill_.creep(moment())) standstill_.arrive();
     return finite();
 }
 

@@ -74,6 +74,7 @@ model::Outcome Rk4Engine::run(const Rk4Checkpoint& from, std::size_t last_step) 
             ++n;
         }
     }
+    if (outcome_ == model::Outcome::chattering) standstill_.forget_chatter();
     if (outcome_ == model::Outcome::reached_end && last_step == steps_) {
         rows_standing_until(model::never);
         if (standstill_.finish()) outcome_ = model::Outcome::at_rest;
@@ -224,7 +225,8 @@ void Rk4Engine::block_rows(std::size_t n, std::size_t first, std::size_t last) {
 std::size_t Rk4Engine::rest(std::size_t n, std::size_t i, std::size_t count) {
     // Well within the limit, also between the samples: a parabola through three of them rises above the highest by
     // no more than an eighth of their second difference; a quarter is the careful side.
-    const double forward = system_.holding(model::Motion::forward), backward = system_.holding(model::Motion::backward);
+    const double forward = standstill_.limit(model::Motion::forward);
+    const double backward = standstill_.limit(model::Motion::backward);
     const double limit = (forward + backward) / 2 * (1 - 1e-9);
     const double middle_of_hold = system_.stiffness() * y_.theta + (forward - backward) / 2;
     double e = std::fabs(M_ - middle_of_hold);

@@ -50,7 +50,10 @@ model::Outcome SpectralEngine::run() {
     }
     if (outcome_ == model::Outcome::reached_end) finish();
     // The row of this very moment belongs to a piece that did not come about.
-    if (outcome_ == model::Outcome::chattering && rows_.next_time() <= now_.clock.hi) put_row(now_.M);
+    if (outcome_ == model::Outcome::chattering) {
+        standstill_.forget_chatter();
+        if (rows_.next_time() <= now_.clock.hi) put_row(now_.M);
+    }
     return outcome_;
 }
 
@@ -105,7 +108,7 @@ bool SpectralEngine::move() {
     if (!stops) record_turns();
     const std::optional<double> zero = stops && !crept ? first_standstill() : std::nullopt;
     if (leaving && (crept || (zero && *zero <= -1))) {
-        return go_on(standstill_.never_left(moment()));
+        return standstill_.creep(moment()) || go_on(standstill_.never_left(moment()));
     }
     const SolvedPanel& panel = solver_.panel();
     double x = zero.value_or(1);
@@ -117,9 +120,12 @@ bool SpectralEngine::move() {
     const double M = x == 1               ? 0
                      : solver_.iterates() ? excitation_.value(panel.time(x), state)
                                           : chebyshev::value(panel.M, x);
+    const double M_before = crept || zero ? chebyshev::value(panel.M, x) : 0;  // from the left
     end_piece(x, state, M);
     if (crept) settle();
-    if (crept || zero) standstill_.arrive();
+    const bool stands = crept || zero;
+    const bool creeping = stands && !solver_.iterates() && standstill_.creep({now_.clock.hi, now_.y.theta, M_before});
+    if (stands && !creeping) standstill_.arrive();
     standing_from_ = zero && x < 1 && !solver_.iterates() ? x : nowhere;
     return std::isfinite(now_.M) || fail(model::Outcome::excitation_not_finite);
 }

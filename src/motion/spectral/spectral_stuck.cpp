@@ -42,7 +42,7 @@ std::pair<double, model::Motion> SpectralEngine::first_release(double from) cons
 double SpectralEngine::release_towards(model::Motion side, double from) const {
     constexpr double exact_enough = 1e-11;  // natural periods
     const SolvedPanel& panel = solver_.panel();
-    const double sign = model::sign_of(side), k_theta = system_.pull_back(now_.y.theta), Re = system_.holding(side);
+    const double sign = model::sign_of(side), k_theta = system_.pull_back(now_.y.theta), Re = standstill_.limit(side);
     const double doubt = 8 * (epsilon * (Re + std::fabs(k_theta)) + chebyshev::tail(panel.M));
     double varying = 0;
     for (std::size_t k = 1; k < points; ++k) varying += std::fabs(panel.M[k]);
@@ -81,8 +81,8 @@ double SpectralEngine::release_towards(model::Motion side, double from) const {
 /// beyond the limit at rest, and holds in motion, is none.
 double SpectralEngine::clearly_beyond() const {
     constexpr double crest = 1e-6;
-    const double k_theta = system_.stiffness() * std::fabs(now_.y.theta);
-    const double torques = std::fabs(now_.M) + k_theta + system_.greatest_holding();
+    const double back = std::fabs(system_.pull_back(now_.y.theta));
+    const double torques = std::fabs(now_.M) + back + system_.greatest_holding();
     const double excess = std::max(standstill_.excess(now_.M, now_.y.theta), 0.0);
     return excess > crest * torques ? 0 : 2 * excess + 64 * epsilon * torques;
 }

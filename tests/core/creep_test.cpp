@@ -1,0 +1,96 @@
+// A mass that creeps is still on its way: what moves it next finds the friction of sliding, not that of rest.
+#include <cmath>
+#include <vector>
+
+#include "support/catch.hpp"
+#include "support/measure.hpp"
+#include "support/within.hpp"
+
+namespace {
+
+using namespace dinal;
+using namespace dinal::model;
+using namespace dinal::motion;
+using namespace dinal::truth;
+
+/// Starts at 1.5, creeps down to Rd = 0.3, and is pulled on, or back, by `slope` (a time unit) from t = `at` on.
+struct Creeper {
+    double zeta, slope, at;
+    [[nodiscard]] Oscillator system() const { return nondimensional(zeta, 0.3, 0.5); }
+    [[nodiscard]] Excitation M() const { return Excitation::make(Ramp{.slope = slope, .at = at}).value(); }
+    [[nodiscard]] Trajectory run(double end, const Integrator& method) const {
+        return must_run(system(), M(), {1.5, 0}, {0, end}, Grid::every(0.25), method);
+    }
+};
+
+/// rk4 comes to a velocity of 1e-14 or so, which it keeps.
+std::vector<Integrator> methods() {
+    return {Exact{}, Spectral{}, Rk4{0.0005}};
+}
+
+}  // namespace
+
+TEST_CASE("#4 - a ramp that pulls a creeping mass on moves it at once, though Re > Rd",
+          "[exact][spectral][rk4][creep]") {
+    for (const double zeta : {1.0, 1.5, 4.0}) {
+        const double at = 60 * zeta, slope = -0.04;
+        const Creeper creeper{zeta, slope, at};
+        // From rest at its place, with the friction of sliding all the time: the answer to a ramp without friction.
+        const Oscillator free = nondimensional(zeta, 0);
+        for (const Integrator& method : methods()) {
+            CAPTURE(zeta, method.index());
+            const Trajectory run = creeper.run(at + 10, method);
+            CHECK(run.outcome == Outcome::reached_end);
+            CHECK(run.events.empty());
+            const Trajectory answer =
+                must_run(free, Excitation::make(Ramp{.slope = slope}).value(), {}, {0, 10}, Grid::every(0.25), Exact{});
+            for (Eigen::Index i = 0; i < answer.size(); ++i) {
+                const double theta = run.at(at + answer.rows(i, 0))->theta;
+                CHECK(theta == within(0.3 + answer.rows(i, 1), std::holds_alternative<Rk4>(method) ? 1e-9 : 1e-12));
+            }
+        }
+    }
+}
+
+TEST_CASE("#4 - a ramp that pulls a creeping mass back holds it until Re is passed on the other side",
+          "[exact][spectral][rk4][creep]") {
+    for (const double zeta : {1.0, 2.0}) {
+        const double at = 60 * zeta, slope = 0.4;
+        for (const Integrator& method : methods()) {
+            CAPTURE(zeta, method.index());
+            const Trajectory run = Creeper{zeta, slope, at}.run(at + 4, method);
+            REQUIRE(run.events.size() == 2);
+            CHECK(run.events[0].kind == EventKind::stick);
+            CHECK(run.events[0].t == within(at, 1e-3));
+            CHECK(run.events[1].kind == EventKind::slip);
+            // M - k theta from -0.3 to 0.5.
+            CHECK(run.events[1].t == within(at + 2, 1e-9));
+        }
+    }
+}
+
+TEST_CASE("#4 - what creeps at the end of a run is at rest there, and goes on creeping when the run goes on",
+          "[exact][spectral][creep][resume]") {
+    for (const Integrator& method : std::vector<Integrator>{Exact{}, Spectral{}}) {
+        CAPTURE(method.index());
+        const Creeper creeper{1.5, -0.04, 90};
+        const Trajectory first = creeper.run(80, method);
+        CHECK(first.outcome == Outcome::at_rest);
+        REQUIRE(first.events.size() == 1);
+        CHECK(first.events[0].kind == EventKind::rest);
+        CHECK(first.events[0].t < 60);
+        CHECK(first.state_at_stop.theta == within(0.3, 1e-11));
+        CHECK(first.state_at_stop.velocity == 0);
+        const Trajectory whole = creeper.run(100, method);
+        auto both = resume(creeper.system(), creeper.M(), first, 100, Grid::every(0.25), method);
+        REQUIRE(both);
+        CHECK(both->events.empty());
+        CHECK(both->outcome == Outcome::reached_end);
+        CHECK(both->state_at_stop.theta == within(whole.state_at_stop.theta, 1e-11));
+        auto still = resume(creeper.system(), creeper.M(), first, 85, Grid::every(0.25), method);
+        REQUIRE(still);
+        REQUIRE(still->events.size() == 1);
+        CHECK(still->events[0].kind == EventKind::rest);
+        CHECK(still->events[0].t == first.events[0].t);
+    }
+}
