@@ -4,6 +4,7 @@
 
 #include "help/manual.hpp"
 #include "prompt/arguments.hpp"
+#include "prompt/lab_solutions.hpp"
 #include "prompt/output.hpp"
 #include "prompt/script.hpp"
 
@@ -14,6 +15,15 @@ int print(const std::string& text) {
     return dinal::prompt::exit_code::ok;
 }
 
+int print_solutions(const std::string& student) {
+    const auto text = dinal::prompt::solutions_of(student);
+    if (!text) {
+        dinal::prompt::complain(text.error().sentence);
+        return dinal::prompt::exit_code::script_error;
+    }
+    return print(*text);
+}
+
 int carry_out(const dinal::prompt::Arguments& arguments) {
     switch (arguments.request) {
         case dinal::prompt::Request::help:
@@ -22,6 +32,8 @@ int carry_out(const dinal::prompt::Arguments& arguments) {
             return print(dinal::prompt::version_text());
         case dinal::prompt::Request::manual:
             return print(dinal::help::manual());
+        case dinal::prompt::Request::lab_solutions:
+            return print_solutions(arguments.student);
         case dinal::prompt::Request::run:
             break;
     }

@@ -22,6 +22,7 @@ void register_identify(lua_State* L);
 void register_sweep(lua_State* L);
 void register_progress(lua_State* L);
 void register_plot(lua_State* L);
+void register_lab(lua_State* L);
 
 // Defined in the bind_*.cpp of that name.
 extern const lua::Class system_functions;    // system, nondimensional
@@ -49,5 +50,7 @@ extern const lua::Class sweep_functions;     // sweep
 extern const lua::Class plot_functions;      // plot
 extern const lua::Class picture_class;       // what plot{ ..., show = false } returns
 extern const lua::Class progress_functions;  // progress
+extern const lua::Class lab_module;          // lab.number ...
+extern const lua::Class check_functions;     // check
 
 }  // namespace dinal::api

@@ -19,7 +19,7 @@ constexpr void (*register_functions[])(lua_State*) = {
     api::register_run,    api::register_energy,   api::register_trajectory, api::register_theory,
     api::register_vector, api::register_data,     api::register_progress,   api::register_plot,
     api::register_steady, api::register_identify, api::register_sweep,      api::register_integrator,
-    register_help,
+    api::register_lab,    register_help,
 };
 
 // Plain fields of the table: documented here, set by open_library() and sys:simulate.
@@ -70,6 +70,8 @@ const Section all_sections[] = {
     {"Progress", "", &api::progress_functions},
     {"Plots", "", &api::plot_functions},
     {"A picture", "picture", &api::picture_class},
+    {"The lab", "lab", &api::lab_module},
+    {"Answers in the lab", "", &api::check_functions},
     {"Help", "", &help_functions},
     {"The table dinal", "dinal", &library_class},
 };

@@ -12,12 +12,15 @@
 namespace dinal::prompt {
 namespace {
 
-constexpr std::array<std::string_view, 16> known_options = {
-    "-e", "-l",     "-i",        "-v",       "-W",        "-E",     "-",          "--",
-    "-h", "--help", "--version", "--manual", "--no-init", "--safe", "--max-time", "--max-memory"};
+constexpr std::array<std::string_view, 18> known_options = {
+    "-e",        "-l",     "-i",         "-v",           "-W",          "-E",
+    "-",         "--",     "-h",         "--help",       "--version",   "--manual",
+    "--no-init", "--safe", "--max-time", "--max-memory", "--lab-marks", "--lab-solutions"};
 
 constexpr std::string_view time_option = "--max-time";
 constexpr std::string_view memory_option = "--max-memory";
+constexpr std::string_view marks_option = "--lab-marks";
+constexpr std::string_view solutions_option = "--lab-solutions";
 constexpr double longest = 1e9;                         // seconds: 30 years
 constexpr std::size_t largest = std::size_t{1} << 40U;  // a terabyte
 constexpr lua::ScriptLimits safe{.memory = std::size_t{256} << 20U, .seconds = 10};
@@ -40,10 +43,15 @@ std::size_t size_of(std::string_view text) {
     return good && size <= largest >> (10 * unit) ? size << (10 * unit) : 0;
 }
 
-/// Which of the two a word is, "--max-time" also for "--max-time=10"; empty when it is none.
-std::string_view limit_option(std::string_view word) {
+/// Which of those with a value a word is, "--max-time" also for "--max-time=10"; empty when it is none.
+std::string_view option_with_value(std::string_view word) {
     const std::string_view name = word.substr(0, word.find('='));
-    return name == time_option || name == memory_option ? name : std::string_view();
+    for (const std::string_view option : {time_option, memory_option, marks_option, solutions_option}) {
+        if (name == option) {
+            return option;
+        }
+    }
+    return {};
 }
 
 /// Fails with a sentence about a value that is no size or no time.
@@ -105,14 +113,30 @@ bool set_flag(Arguments& arguments, char letter) {
     }
 }
 
+/// Fails with a sentence about a value that will not do.
+std::optional<text::Error> set_value(Arguments& arguments, std::string_view option, std::string_view value) {
+    if (option == marks_option) {
+        arguments.lab_marks = value;
+        return value.empty() ? std::optional(text::Error{"option --lab-marks needs the name of a file after it, for "
+                                                         "example --lab-marks marks.csv"})
+                             : std::nullopt;
+    }
+    if (option == solutions_option) {
+        arguments.request = Request::lab_solutions;
+        arguments.student = value;
+        return std::nullopt;
+    }
+    return set_limit(arguments.limits, option, value);
+}
+
 /// --max-time 10 or --max-time=10 at place i, which goes to the value.
-std::optional<text::Error> read_limit(Arguments& arguments, std::string_view option, std::size_t& i) {
+std::optional<text::Error> read_value(Arguments& arguments, std::string_view option, std::size_t& i) {
     const std::string_view word = arguments.words[i];
     if (word.size() > option.size()) {
-        return set_limit(arguments.limits, option, word.substr(option.size() + 1));
+        return set_value(arguments, option, word.substr(option.size() + 1));
     }
     ++i;
-    return set_limit(arguments.limits, option, i < arguments.words.size() ? arguments.words[i] : "");
+    return set_value(arguments, option, i < arguments.words.size() ? arguments.words[i] : "");
 }
 
 /// What is not possible together; what safe mode brings with it.
@@ -155,8 +179,8 @@ text::Expected<Arguments> parse_arguments(int count, const char* const* words) {
         }
         if (word == "--safe") {
             arguments.safe = true;
-        } else if (const std::string_view limit = limit_option(word); !limit.empty()) {
-            if (auto wrong = read_limit(arguments, limit, i)) {
+        } else if (const std::string_view option = option_with_value(word); !option.empty()) {
+            if (auto wrong = read_value(arguments, option, i)) {
                 return *wrong;
             }
         } else if (word[1] == 'e' || word[1] == 'l') {
@@ -201,6 +225,8 @@ without a script: a prompt on a terminal, else standard input is run as a script
              processes, no modules, and limits: --max-memory 256M --max-time 10
   --max-memory SIZE  end a script that needs more, for example 256M or 2G
   --max-time SECONDS end a script that runs longer; at the prompt, an input
+  --lab-marks FILE   note at the end of FILE what became of each answer in the lab
+  --lab-solutions NUMBER  the answers of a student number, for instructors
   --help     this text
   --version  version, licence and what is built in
   --manual   the whole manual, as Markdown

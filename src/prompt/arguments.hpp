@@ -9,7 +9,7 @@
 
 namespace dinal::prompt {
 
-enum class Request { run, help, version, manual };
+enum class Request { run, help, version, manual, lab_solutions };
 
 /// -e, -l or -W: they are carried out in the order in which they stand.
 struct StartStep {
@@ -26,6 +26,8 @@ struct Arguments {
     bool no_init = false;             ///< --no-init
     bool safe = false;                ///< --safe
     lua::ScriptLimits limits;         ///< --max-memory, --max-time; in safe mode there are always some
+    std::string lab_marks;            ///< --lab-marks: where answers in the lab are noted; empty: nowhere
+    std::string student;              ///< --lab-solutions: whose
     std::vector<StartStep> steps;
     std::vector<const char*> words;  ///< the whole command line
     std::size_t script = 0;          ///< its place among the words; words.size() when there is none

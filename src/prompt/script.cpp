@@ -13,6 +13,7 @@
 #include <memory>
 #include <string_view>
 
+#include "api/lab_course.hpp"
 #include "files/confinement.hpp"
 #include "help/library.hpp"
 #include "lua/interrupt.hpp"
@@ -234,6 +235,13 @@ void close_state(lua_State* L) {
 }  // namespace
 
 int run(const Arguments& arguments) {
+    if (!arguments.lab_marks.empty()) {
+        const char* script = arguments.has_script() ? arguments.words[arguments.script] : "-";
+        if (const auto wrong = api::note_lab_answers(arguments.lab_marks, script)) {
+            complain(wrong->sentence);
+            return exit_code::script_error;
+        }
+    }
     const std::unique_ptr<lua_State, void (*)(lua_State*)> state(luaL_newstate(), close_state);
     lua_State* L = state.get();
     if (L == nullptr) {

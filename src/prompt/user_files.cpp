@@ -54,4 +54,9 @@ std::string init_file() {
     return !file.empty() && access(file.c_str(), F_OK) == 0 ? file : "";
 }
 
+std::string lab_course_file() {
+    const std::string folder = own_folder("XDG_CONFIG_HOME", "/.config");
+    return folder.empty() ? "" : folder + "/lab-course.lua";
+}
+
 }  // namespace dinal::prompt

@@ -12,4 +12,7 @@ std::string history_file();
 /// ${XDG_CONFIG_HOME:-~/.config}/dinal/init.lua, run before the first prompt; empty when it is not there.
 std::string init_file();
 
+/// ${XDG_CONFIG_HOME:-~/.config}/dinal/lab-course.lua, which instructors have; empty when there is no such folder.
+std::string lab_course_file();
+
 }  // namespace dinal::prompt

@@ -3,7 +3,7 @@
 
     transcripts.py PROGRAM SOURCE [--update]
 
-In README.md, docs/*.md and examples/README.md a block fenced as ```console is run:
+In README.md, docs/*.md, docs/lab/*.md and examples/README.md a block fenced as ```console is run:
   "$ command"   is given to the shell, in a folder of its own for each document, with the project's examples/ and docs/
                 in it; scripts/dinal and dinal are the program under test;
   "> text"      after "$ scripts/dinal" or "$ dinal" alone is typed at the prompt, on a terminal; a block that begins
@@ -150,7 +150,8 @@ def check(path):
 
 def main():
     documents = ["README.md", "examples/README.md"] + sorted(
-        os.path.relpath(path, ROOT) for path in glob.glob(os.path.join(ROOT, "docs", "*.md")))
+        os.path.relpath(path, ROOT) for path in glob.glob(os.path.join(ROOT, "docs", "*.md")) +
+        glob.glob(os.path.join(ROOT, "docs", "lab", "*.md")))
     failed, total = False, 0
     for document in documents:
         path = os.path.join(ROOT, document)

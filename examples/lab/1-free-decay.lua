@@ -1,0 +1,29 @@
+-- Lab 1: free decay, viscous against dry (docs/lab/1-free-decay.md). Take a copy and fill it in.
+lab.number(4711) -- your own number
+
+local given = lab.given(1)
+local viscous, dry = system(given.viscous), system(given.dry)
+
+-- 1.2 The period
+-- check("1a", )
+
+-- 1.3 Viscous damping
+local run = viscous:simulate{ theta0 = given.theta0, t_end = 10*viscous.T0, dt = viscous.T0/100 }
+print(run)
+-- check("1b", )
+-- check("1c", )
+
+-- 1.4 Dry friction
+run = dry:simulate{ theta0 = given.theta0, t_end = 10*dry.T0, dt = dry.T0/100 }
+print(run)
+-- check("1d", )
+-- check("1e", )
+-- check("1f", )
+
+-- 1.5 A record with both
+local record = lab.experiment(1)
+print(record)
+-- check("1g", )
+-- check("1h", )
+
+print(lab.marks())

@@ -1,0 +1,252 @@
+// lab.NAME and check(question, value): the lab course as students see it. docs/lab has its sheets.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <optional>
+
+#include "api/classes.hpp"
+#include "api/data.hpp"
+#include "api/lab_course.hpp"
+#include "terminal/progress.hpp"
+
+namespace dinal::api {
+namespace {
+
+constexpr int most_tries = 12;  // so that no loop finds by trying what nobody has worked out
+
+/// What became of a question so far.
+struct LabAnswer {
+    std::string question;
+    bool right = false;
+    int tries = 0;
+    std::string said = {};
+};
+
+/// The place of a student: one for each Lua state, in its registry.
+struct LabDesk {
+    std::unique_ptr<LabCourse> course;
+    lua_Integer number = 0;  // 0: not said yet
+    std::vector<LabAnswer> answers;
+};
+
+const char desk_key = 0;
+
+const lua::Class desk_class = {"lab desk", {"lab", "The place of a student.", ""}, {}};
+
+LabDesk& desk_of(lua_State* L) {
+    lua_rawgetp(L, LUA_REGISTRYINDEX, &desk_key);
+    auto& desk = *lua::test<LabDesk>(L, -1);
+    lua_pop(L, 1);  // the registry holds it
+    if (desk.course == nullptr) {
+        desk.course = std::make_unique<LabCourse>(L);
+    }
+    return desk;
+}
+
+/// The desk of a student who has said who he is.
+LabDesk& desk_with_number(lua_State* L, const char* call) {
+    LabDesk& desk = desk_of(L);
+    if (desk.number == 0) {
+        lua::raise(L, {.sentence = fmt::format("{}: say first whose lab it is: lab.number(4711), with your own student "
+                                               "number",
+                                               call),
+                       .call = call});
+    }
+    return desk;
+}
+
+/// course.FUNCTION with so many arguments from the top of the stack, called for `call`. What it refuses is `culprit`.
+int ask_course(lua_State* L, LabDesk& desk, const char* call, const char* function, int arguments,
+               const std::string& culprit) {
+    const auto results = desk.course->call(L, function, arguments);
+    if (!results) {
+        text::Error error = text::in_call(call, results.error());
+        error.culprit = culprit;
+        lua::raise(L, error);
+    }
+    return *results;
+}
+
+int lab_number(lua_State* L) {
+    LabDesk& desk = desk_of(L);
+    if (lua_gettop(L) > 0) {
+        int is_whole = 0;
+        const lua_Integer number = lua_tointegerx(L, 1, &is_whole);
+        if (lua_type(L, 1) != LUA_TNUMBER || is_whole == 0 || !is_student_number(number)) {
+            lua::raise_got(
+                L, 1, "lab.number",
+                fmt::format("lab.number: a student number is a whole number from 1 to {}", greatest_student_number),
+                lua_type(L, 1) == LUA_TSTRING ? "; write it without quotes" : "");
+        }
+        desk.number = number;
+    }
+    desk.number == 0 ? lua_pushnil(L) : lua_pushinteger(L, desk.number);
+    return 1;
+}
+
+/// course.FUNCTION(number, sheet, ...) with the sheet that stands at 1.
+int of_sheet(lua_State* L, const char* call, const char* function, int arguments) {
+    LabDesk& desk = desk_with_number(L, call);
+    int is_whole = 0;
+    const lua_Integer sheet = lua_tointegerx(L, 1, &is_whole);
+    if (lua_type(L, 1) != LUA_TNUMBER || is_whole == 0) {
+        lua::raise_got(L, 1, call, fmt::format("{}: the first argument is the number of a sheet", call),
+                       fmt::format("; for example {}(1)", call));
+    }
+    lua_settop(L, arguments);
+    lua_pushinteger(L, sheet);  // an integer: 1.0 is sheet 1, too
+    lua_replace(L, 1);
+    lua_pushinteger(L, desk.number);
+    lua_insert(L, 1);
+    return ask_course(L, desk, call, function, arguments + 1, std::to_string(sheet));
+}
+
+int lab_given(lua_State* L) {
+    return of_sheet(L, "lab.given", "given", 1);
+}
+
+int lab_experiment(lua_State* L) {
+    if (!lua_isnoneornil(L, 2)) {
+        static_cast<void>(lua::finite_argument(L, 2, "lab.experiment(2, x): x"));
+    }
+    return of_sheet(L, "lab.experiment", "experiment", 2);
+}
+
+LabAnswer& answer_of(LabDesk& desk, const std::string& question) {
+    const auto found = std::find_if(desk.answers.begin(), desk.answers.end(),
+                                    [&](const LabAnswer& answer) { return answer.question == question; });
+    return found != desk.answers.end() ? *found : desk.answers.emplace_back(LabAnswer{.question = question});
+}
+
+/// The name of the question at 1 as the course writes it. Raises when there is none.
+std::string question_at_1(lua_State* L, LabDesk& desk) {
+    if (lua_type(L, 1) != LUA_TSTRING) {
+        lua::raise_got(L, 1, "check", "check: the first argument is the name of a question",
+                       "; for example check(\"1a\", 3.2)");
+    }
+    lua_pushinteger(L, desk.number);
+    lua_pushvalue(L, 1);
+    ask_course(L, desk, "check", "name", 2, lua_tostring(L, 1));
+    std::string name = lua_tostring(L, -1);
+    lua_pop(L, 1);
+    return name;
+}
+
+double value_at_2(lua_State* L) {
+    if (lua_type(L, 2) != LUA_TNUMBER) {
+        lua::raise_got(
+            L, 2, "check", "check: the answer is a number",
+            lua_type(L, 2) == LUA_TSTRING ? "; write it without quotes" : "; for example check(\"1a\", 3.2)");
+    }
+    return lua::finite_argument(L, 2, "check: the answer");
+}
+
+/// Lets the course judge, notes what became of it, and returns what is to be said.
+std::string judged(lua_State* L, LabDesk& desk, const std::string& question, double value) {
+    if (LabAnswer& before = answer_of(desk, question); !before.right && before.tries >= most_tries) {
+        return fmt::format(
+            "{}: {} values were wrong, and no more are judged in this session; do the task again, or ask", question,
+            most_tries);
+    }
+    lua_pushinteger(L, desk.number);
+    lua::push_text(L, question);
+    lua_pushnumber(L, value);
+    ask_course(L, desk, "check", "judge", 3, question);
+    const bool right = lua_toboolean(L, -2) != 0;
+    LabAnswer& answer = answer_of(desk, question);
+    answer.said = lua_tostring(L, -1);
+    if (!answer.right) {
+        answer.right = right;
+        ++answer.tries;
+        note_lab_mark({desk.number, question, right ? "right" : "wrong", answer.tries, value});
+    }
+    return answer.said;
+}
+
+int check_answer(lua_State* L) {
+    LabDesk& desk = desk_with_number(L, "check");
+    lua_settop(L, 2);
+    const std::string question = question_at_1(L, desk);
+    const std::string said = judged(L, desk, question, value_at_2(L)) + "\n";
+    terminal::make_way_for_output(true);
+    lua_writestring(said.data(), said.size());  // as print() does
+    return 0;
+}
+
+int lab_marks(lua_State* L) {
+    LabDesk& desk = desk_with_number(L, "lab.marks");
+    std::vector<LabAnswer> answers = desk.answers;
+    std::erase_if(answers, [](const LabAnswer& answer) { return answer.tries == 0; });
+    std::sort(answers.begin(), answers.end(),
+              [](const LabAnswer& a, const LabAnswer& b) { return a.question < b.question; });
+    std::vector<std::string> questions, verdicts, said;
+    std::vector<double> tries;
+    for (const LabAnswer& answer : answers) {
+        questions.push_back(answer.question);
+        verdicts.emplace_back(answer.right ? "right" : "wrong");
+        tries.push_back(answer.tries);
+        said.push_back(answer.said);
+    }
+    const auto right = std::count_if(answers.begin(), answers.end(), [](const LabAnswer& a) { return a.right; });
+    Data data;
+    data.columns = {column_of("question", std::move(questions)), column_of("verdict", std::move(verdicts)),
+                    column_of("tries", std::move(tries)), column_of("said", std::move(said))};
+    data.heading = fmt::format("number {}: {} of {} right", desk.number, right, answers.size());
+    push_data(L, std::move(data));
+    return 1;
+}
+
+constexpr lua::Member lab_module_members[] = {
+    {lua::a_function<lab_number>,
+     {"lab.number(n) -> number",
+      "Says whose lab it is: a student number, a whole number from 1 to 999999999. The systems of the sheets and what is "
+      "right depend on it. lab.number() is the one that was said, nil when none was.",
+      "lab.number(4711)\nprint(lab.number())  --> 4711"}},
+    {lua::a_function<lab_given>,
+     {"lab.given(sheet) -> table",
+      "What the sheet of that number gives to this student: the options of his systems, and other numbers; the sheet "
+      "says what they are.",
+      "lab.number(4711)\nprint(system(lab.given(1).viscous).Rd)  --> 0.0"}},
+    {lua::a_function<lab_experiment>,
+     {"lab.experiment(sheet, x) -> data",
+      "Does the experiment of the sheet and returns its record. x, a number, is what can be set on the bench; the sheet "
+      "says what it is, and whether there is an x.",
+      "lab.number(4711)\nprint(table.concat(lab.experiment(1).names, \" \"))  --> t theta"}},
+    {lua::a_function<lab_marks>,
+     {"lab.marks() -> data",
+      "Where you stand: the questions that were tried, what became of them, after how many tries, and what was said last.",
+      "lab.number(4711)\ncheck(\"0\", 42)\nprint(lab.marks().verdict[1])  --> right"}},
+};
+
+constexpr lua::Member check_members[] = {
+    {lua::a_function<check_answer>,
+     {"check(question, value)",
+      "Prints whether an answer in the lab is right, or else what has probably gone wrong; never the answer. How near is "
+      "near enough fits the method. After twelve wrong values a question is not judged any more. Question \"0\" is for trying it out: six times seven.",
+      "lab.number(4711)\ncheck(\"0\", 42)"}},
+};
+
+}  // namespace
+
+const lua::Class lab_module = {
+    "lab",
+    {"lab.NAME(...)",
+     "The lab course: six sheets of two hours each, in docs/lab, with systems that differ by student number and answers "
+     "that check(question, value) judges.",
+     "lab.number(4711)\nprint(lab.given(1).theta0 > 0)  --> true"},
+    lab_module_members};
+
+const lua::Class check_functions = {
+    "check",
+    {"check(question, value)", "Judges an answer in the lab.", "lab.number(4711)\ncheck(\"0\", 42)"},
+    check_members};
+
+void register_lab(lua_State* L) {
+    lua::add_class<LabDesk>(L, desk_class);
+    lua::push(L, LabDesk{});
+    lua_rawsetp(L, LUA_REGISTRYINDEX, &desk_key);
+    lua::add_module(L, lab_module);
+    lua::add_functions(L, check_functions);
+}
+
+}  // namespace dinal::api

@@ -1,0 +1,187 @@
+-- The lab course: what belongs to a student number, and what is said about an answer.
+-- The files of this folder are put together in the order of their names and run in a Lua state that no script of a
+-- student can reach (src/api/lab_course.cpp). So all here may speak plainly. Each further file is a sheet.
+course = { sheets = {} }
+
+--- A sheet: title, given(pick), secret(given, pick), experiment(given, secret, x) and questions(given, secret), a list of
+--- { name, asks, answer =, unit =, tolerance = (relative) | within = (absolute) | whole = true, task =, how =,
+---   mistakes = { { wrong value or function(value), what is said }, ... } }.
+function course.sheet(number, sheet)
+  sheet.number = number
+  course.sheets[number] = sheet
+end
+
+--- A number with at most ten digits, so that what a student sees is what he types.
+function course.rounded(x, digits) return tonumber(string.format("%." .. (digits or 10) .. "g", x)) end
+
+--- pick(from, to, step): the same for the same student number, whatever the machine (splitmix64).
+local function picker(number, sheet)
+  local state = number * 0x9E3779B97F4A7C15 + sheet * 0x2545F4914F6CDD1D
+  return function(from, to, step)
+    state = state + 0x9E3779B97F4A7C15
+    local z = state
+    z = (z ~ (z >> 30)) * 0xBF58476D1CE4E5B9
+    z = (z ~ (z >> 27)) * 0x94D049BB133111EB
+    local u = ((z ~ (z >> 31)) >> 11) * 2.0^-53
+    local places = math.floor((to - from)/step + 0.5) + 1
+    return course.rounded(from + step*math.floor(u*places))
+  end
+end
+
+local function sheet_of(n)
+  local sheet = course.sheets[n]
+  if not sheet then error(string.format("there are sheets 1 to %d", #course.sheets), 0) end
+  return sheet
+end
+
+local known = {} -- "4711/1" -> what belongs to that number and sheet
+
+local function world_of(number, n)
+  local key = number .. "/" .. n
+  if not known[key] then
+    local sheet, pick = sheet_of(n), picker(number, n)
+    local given = sheet.given(pick)
+    known[key] = { sheet = sheet, given = given, secret = sheet.secret and sheet.secret(given, pick) or {} }
+  end
+  return known[key]
+end
+
+local function questions_of(world)
+  world.questions = world.questions or world.sheet.questions(world.given, world.secret)
+  return world.questions
+end
+
+function course.given(number, n) return world_of(number, n).given end
+
+function course.experiment(number, n, x)
+  local world = world_of(number, n)
+  if not world.sheet.experiment then error(string.format("sheet %d has no experiment: simulate what it asks for", n), 0) end
+  return world.sheet.experiment(world.given, world.secret, x)
+end
+
+-- ---- judging
+
+--- Whether x is y as well as the method can tell; y may be the answer or what a mistake makes of it, some times as great.
+local function near(x, y, question)
+  if question.whole then return x == y end
+  local within = question.within and question.within*math.max(1, math.abs(y/question.answer))
+  return math.abs(x - y) <= (within or question.tolerance*math.abs(y))
+end
+
+-- What goes wrong everywhere: what such a mistake makes of the answer, and what is said. `only` and `never` are units.
+local usual = {
+  { function(x) return -x end, "the size is right, the sign is not" },
+  { function(x) return 2*x end, "that is twice as much: a whole cycle for half of one, both sides for one, peak to peak for an amplitude?" },
+  { function(x) return x/2 end, "that is half of it: half a cycle for a whole one, one side for both, a radius for a diameter?" },
+  { math.deg, "that is in degrees; radians are asked for", never = "degrees" },
+  { math.rad, "that is in radians; degrees are asked for", only = "degrees" },
+  { function(x) return x/(2*math.pi) end, "there is a 2 pi missing in it: cycles per time unit where rad per time unit are meant?" },
+  { function(x) return 2*math.pi*x end, "there is a 2 pi too much in it: rad per time unit where cycles per time unit are meant?" },
+  { function(x) return 1/x end, "that is its reciprocal: a period for a frequency, or the other way round?" },
+  { function(x) return x/100 end, "that is a hundred times too small: a fraction where percent are asked for?", only = "percent" },
+  { function(x) return 100*x end, "that is a hundred times too much: percent where the plain number is asked for?", never = "percent" },
+  { function(x) return 1000*x end, "that is a thousand times too much: a prefix of the unit?" },
+  { function(x) return x/1000 end, "that is a thousand times too small: a prefix of the unit?" },
+}
+
+local function whole_hint(question, value)
+  if value ~= math.floor(value) then return "a whole number is asked for: count" end
+  if value == -question.answer then return usual[1][2] end
+  return nil
+end
+
+local function hint_for(question, value)
+  for _, mistake in ipairs(question.mistakes or {}) do
+    local wrong = mistake[1]
+    local hit = type(wrong) == "function" and wrong(value) or type(wrong) == "number" and near(value, wrong, question)
+    if hit then return mistake[2] end
+  end
+  if question.whole then
+    local said = whole_hint(question, value)
+    if said then return said end
+  end
+  for _, case in ipairs(usual) do
+    local fits = (not case.only or case.only == question.unit) and case.never ~= (question.unit or "")
+    if fits and near(value, case[1](question.answer), question) then return case[2] end
+  end
+  local tolerance = question.within or not question.whole and question.tolerance*math.abs(question.answer)
+  if tolerance and math.abs(value - question.answer) <= 4*tolerance then
+    return string.format("near, but further off than this method need be (%s)", question.within and
+      string.format("%.2g", question.within) or string.format("%.2g %%", 100*question.tolerance))
+  end
+  return nil
+end
+
+local function names_of(n, world)
+  local names = {}
+  for _, question in ipairs(questions_of(world)) do names[#names + 1] = n .. question.name end
+  return names
+end
+
+local function unknown(name, number)
+  local n = tonumber(name:match("^%a?(%d+)"))
+  if n and course.sheets[n] then
+    local names = names_of(n, world_of(number, n))
+    local letter = name:match("^(%a)%d+$")
+    local meant = letter and table.concat(names, " "):find(n .. letter, 1, true)
+    local ending = meant and string.format("; did you mean '%d%s'?", n, letter) or
+                   string.format("; sheet %d asks %s to %s", n, names[1], names[#names])
+    error(string.format("there is no question '%s'%s", name, ending), 0)
+  end
+  error(string.format("there is no question '%s'; they are named after their sheet, '1a' to '%da' and on", name,
+                      #course.sheets), 0)
+end
+
+--- The question of that name, "1a"; "0" is for trying check out.
+local function question_of(number, name)
+  name = name:lower():gsub("%s+", "")
+  if name == "0" then return { name = "", asks = "six times seven", answer = 42, tolerance = 1e-9 }, "0" end
+  local n, letter = name:match("^(%d+)(%a)$")
+  n = tonumber(n)
+  for _, question in ipairs(n and course.sheets[n] and questions_of(world_of(number, n)) or {}) do
+    if question.name == letter then return question, name end
+  end
+  unknown(name, number)
+end
+
+--- Only its name, as it is kept: raises when there is none.
+function course.name(number, name) return (select(2, question_of(number, name))) end
+
+--- Whether the value is right, and what is said about it. The answer is never in it.
+function course.judge(number, name, value)
+  local question
+  question, name = question_of(number, name)
+  if near(value, question.answer, question) then
+    return true, string.format("%s: right%s", name, question.praise and "; " .. question.praise or "")
+  end
+  local hint = hint_for(question, value)
+  if not hint then
+    hint = "not right" .. (question.task and string.format(", and no mistake that is known here; look at task %s again", question.task) or "")
+  end
+  return false, string.format("%s: %s", name, hint)
+end
+
+-- ---- for the instructor
+
+local function tolerance_text(question)
+  if question.whole then return "exactly" end
+  return question.within and string.format("+- %.2g", question.within) or string.format("+- %.2g %%", 100*question.tolerance)
+end
+
+--- All answers of a number, as text.
+function course.solutions(number)
+  local lines = { string.format("The lab of number %d", number) }
+  for n = 1, #course.sheets do
+    local world = world_of(number, n)
+    lines[#lines + 1] = string.format("\nSheet %d: %s", n, world.sheet.title)
+    for _, question in ipairs(questions_of(world)) do
+      local answer = string.format(question.whole and "%.0f" or "%.7g", question.answer)
+      lines[#lines + 1] = string.format("  %d%s  %-52s %12s %-12s %s", n, question.name, question.asks, answer,
+        question.unit or "", tolerance_text(question))
+      lines[#lines + 1] = "      " .. question.how
+    end
+  end
+  return table.concat(lines, "\n") .. "\n"
+end
+
+local sheet, rounded = course.sheet, course.rounded -- for the sheets

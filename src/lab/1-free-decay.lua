@@ -1,0 +1,111 @@
+-- Sheet 1: free decay, viscous against dry.
+sheet(1, {
+  title = "free decay, viscous against dry",
+
+  given = function(pick)
+    local I, k, theta0 = pick(0.5, 2, 0.1), pick(20, 60, 1), pick(0.8, 1.2, 0.05)
+    local zeta = pick(0.04, 0.09, 0.005)
+    -- n half swings, and where in the dead zone the last one ends: never near its edge, nor in the middle
+    local n, s = pick(5, 8, 1), pick(0.35, 0.7, 0.05) * (pick(0, 1, 1) == 0 and 1 or -1)
+    return {
+      theta0 = theta0,
+      viscous = { I = I, k = k, C = rounded(2*zeta*math.sqrt(I*k), 4) },
+      dry = { I = I, k = k, Rd = rounded(k*theta0/(2*n + s), 4) },
+    }
+  end,
+
+  secret = function(given, pick)
+    local mixed = nondimensional{ zeta = pick(0.02, 0.05, 0.002), friction_ratio = pick(0.01, 0.03, 0.001) }
+    return { mixed = mixed }
+  end,
+
+  -- The turns of a motion with both frictions, as a colleague has noted them: five digits.
+  experiment = function(given, secret)
+    local t, X = theory.extremes{ system = secret.mixed, theta0 = 1, count = 5 }
+    local turns = { t = {}, theta = {} }
+    for i = 1, #t do
+      turns.t[i], turns.theta[i] = rounded(t[i], 5), tonumber(string.format("%.5f", X[i]))
+    end
+    return data{ { "t", turns.t }, { "theta", turns.theta } }
+  end,
+
+  questions = function(given, secret)
+    local viscous, dry, mixed = system(given.viscous), system(given.dry), secret.mixed
+    local decrement = theory.logarithmic_decrement{ zeta = viscous.zeta }
+    local x_f, T0 = dry.Rd/dry.k, dry.T0
+    local rest = theory.rest_position{ system = dry, theta0 = given.theta0 }
+    local time = theory.time_to_rest{ system = dry, theta0 = given.theta0 }
+    local _, X = theory.extremes{ system = mixed, theta0 = 1, count = 3 }
+    local X0, X1, X2 = X[1], -X[2], X[3]
+    local q = (X1 - X2)/(X0 - X1)
+    return {
+      { name = "a", asks = "natural period", unit = "time units", answer = T0, tolerance = 0.002, task = "1.2",
+        how = "2 pi sqrt(I/k)",
+        mistakes = {
+          { dry.omega0, "that is omega0, in rad per time unit; the period is asked for" },
+          { 1/T0, "that is the frequency; the period is its reciprocal" },
+          { math.sqrt(dry.I/dry.k), "there is a 2 pi missing in it: 1/omega0 is no period" },
+          { 2*math.pi*math.sqrt(dry.k/dry.I), "I and k have changed places under the root" },
+          { T0/2, "that is half of it: from turn to turn it is half a period" },
+        } },
+      { name = "b", asks = "logarithmic decrement of the viscous system", answer = decrement, tolerance = 0.01, task = "1.3",
+        how = "ln(X0/X2) of two extremes on the same side",
+        mistakes = {
+          { decrement/2, "that is the decrement of half a cycle: two turns that follow each other are half a cycle apart" },
+          { decrement/math.log(10), "that is with the logarithm to base 10; math.log(x) is the natural one" },
+          { math.exp(decrement), "that is the ratio of the extremes; its logarithm is asked for" },
+          { math.exp(-decrement), "that is the ratio of the extremes, the smaller one above; the logarithm of X0/X2 is asked for" },
+          { viscous.zeta, "that is zeta, which is asked for in 1c" },
+        } },
+      { name = "c", asks = "zeta of the viscous system", answer = viscous.zeta, tolerance = 0.01, task = "1.3",
+        how = "zeta = d/sqrt(4 pi^2 + d^2), or C/(2 sqrt(I k))",
+        mistakes = {
+          { viscous.zeta/2, "half of it: is your decrement that of half a cycle, or did the 2 in 2 pi come twice?" },
+          { 2*viscous.zeta, "twice as much: the decrement of a whole cycle belongs to 2 pi, not to pi" },
+          { viscous.zeta/(2*math.pi), "too small by 2 pi: divide the decrement by it once" },
+          { decrement, "that is the decrement; zeta is about d/(2 pi)" },
+        } },
+      { name = "d", asks = "amplitude lost in each half cycle, dry", unit = "rad", answer = 2*x_f, tolerance = 0.005, task = "1.4",
+        how = "2 Rd/k",
+        mistakes = {
+          { 4*x_f, "that is lost in a whole cycle; half a cycle is asked for" },
+          { x_f, "that is Rd/k; the centre of the swing jumps from one side to the other, so it counts twice" },
+          { -2*x_f, "the size is right; a loss is a positive number here" },
+        } },
+      { name = "e", asks = "where it rests, dry (with its sign)", unit = "rad", answer = rest, within = 0.02*x_f, task = "1.4",
+        how = "the first extreme within Rd/k; alternate signs",
+        praise = "off the middle, as dry friction may leave it",
+        mistakes = {
+          { -rest, "the distance is right, the side is not: count the half swings, or look at run.events" },
+          { 0, "nothing brings it back to the middle: within Rd/k friction holds it" },
+          { x_f, "that is the edge of the dead zone; it rests at an extreme somewhere within" },
+          { -x_f, "that is an edge of the dead zone; it rests at an extreme somewhere within" },
+        } },
+      { name = "f", asks = "when it comes to rest, dry", unit = "time units", answer = time, tolerance = 0.005, task = "1.4",
+        how = "n T0/2, n half swings",
+        mistakes = {
+          { 2*time, "twice as long: from turn to turn it is half a period" },
+          { time/2, "half as long: you have counted whole cycles as halves" },
+          { 2*time/T0, "that is the number of half swings; how long do they take?" },
+          { time - T0/2, "one half swing too early: at that turn it still moved on" },
+          { time + T0/2, "one half swing too late: it was at rest before" },
+        } },
+      { name = "g", asks = "zeta of the colleague's record", answer = mixed.zeta, tolerance = 0.03, task = "1.5",
+        how = "q = (X1 - X2)/(X0 - X1); zeta/sqrt(1 - zeta^2) = -ln(q)/pi",
+        mistakes = {
+          { math.log(X0/X1)/math.pi, "that takes all damping for viscous; the dry part must go out first: take differences" },
+          { math.log(X0/X2)/(2*math.pi), "that takes all damping for viscous; the dry part must go out first: take differences" },
+          { -math.log(q)/(2*math.pi), "half of it: X0, X1, X2 are half a cycle apart, so -ln(q) belongs to pi" },
+          { -math.log(q), "that is -ln(q); divide by pi" },
+          { function(x) return x < 0 end, "zeta is positive: q is less than 1, and its logarithm negative" },
+        } },
+      { name = "h", asks = "x_f = Rd/k of the colleague's record", unit = "rad", answer = mixed.Rd/mixed.k, tolerance = 0.03,
+        task = "1.5", how = "x_f = (q X0 - X1)/(1 + q), without sign",
+        mistakes = {
+          { 2*mixed.Rd/mixed.k, "that is 2 x_f, what dry friction alone would take in half a cycle" },
+          { (X0 - X1)/2, "that takes all damping for dry; use q" },
+          { -mixed.Rd/mixed.k, "the sign is wrong: take the extremes without theirs" },
+        } },
+    }
+  end,
+})

@@ -1,0 +1,93 @@
+-- Sheet 2: sticking, dead zone, breakaway.
+sheet(2, {
+  title = "sticking, dead zone, breakaway",
+
+  given = function(pick)
+    local I, k, Rd = pick(1, 3, 0.2), pick(200, 400, 10), pick(12, 20, 0.5)
+    return { I = I, k = k, Rd = Rd }
+  end,
+
+  -- Re of the bench; the start of task 2.4 stops where Re decides; the drive of task 2.5.
+  secret = function(given, pick)
+    local ratio = pick(1.45, 1.6, 0.05)
+    local x_f, a = given.Rd/given.k, (ratio - 1)*given.Rd/given.k
+    given.theta0 = rounded((2*pick(3, 5, 1) + pick(1.1, 1.25, 0.05))*x_f, 4)
+    given.speed = rounded(math.sqrt(given.k/given.I)*a*pick(0.5, 0.7, 0.05), 3)
+    return { Re = rounded(given.Rd*ratio, 6), seed = math.floor(pick(1, 1e6, 1)) }
+  end,
+
+  -- The torque rises by x a time unit until 4 Rd; a sensor of torque with 0.4 % of noise, one of angle that sees 0.0002.
+  experiment = function(given, secret, slope)
+    if not slope then error("give it a slope: by how much the torque rises in a time unit, lab.experiment(2, 5)", 0) end
+    if slope < 0.1 or slope > 2000 then
+      error(string.format("the drive of the bench pulls with slopes from 0.1 to 2000, not %g", slope), 0)
+    end
+    local bench = system{ I = given.I, k = given.k, Rd = given.Rd, Re = secret.Re }
+    local t_end = 4*given.Rd/slope
+    local run = bench:simulate{ M = excitation.ramp{ slope = slope }, t_end = t_end, dt = t_end/2000 }
+    local seed = secret.seed + math.floor(1000*slope)
+    local torque = run.M + vector.normal{ n = #run, seed = seed, std = 0.004*secret.Re }
+    local angle = {}
+    for i = 1, #run do angle[i] = rounded(2e-4*math.floor(run.theta[i]/2e-4), 6) end
+    return data{ { "t", run.t }, { "M", torque }, { "theta", vector(angle) } }
+  end,
+
+  questions = function(given, secret)
+    local Re, Rd, k, v = secret.Re, given.Rd, given.k, given.speed
+    local full = system{ I = given.I, k = k, Rd = Rd, Re = Re }
+    local simple = system{ I = given.I, k = k, Rd = Rd }
+    local rest = theory.rest_position{ system = full, theta0 = given.theta0 }
+    local a = (Re - Rd)/k
+    local lasts = 2*(math.pi - math.atan(full.omega0*a/v))/full.omega0
+    local jump = 2*a + v*lasts
+    return {
+      { name = "a", asks = "Re of the bench", unit = "torque", answer = Re, tolerance = 0.02, task = "2.2",
+        how = "M where theta first moves, pulled slowly; the mean of several pulls",
+        mistakes = {
+          { Rd, "that is Rd, which you were given; it takes more to get it going" },
+          { Re/k, "that is an angle, Re/k; the torque is asked for" },
+          { 4*Rd, "that is where the pull ended; look where theta moved first" },
+          { function(x) return x > 1.02*Re and x < 4*Rd end,
+            "too much: pulled fast, the torque has gone on rising when the angle is seen to move; pull more slowly" },
+          { function(x) return x > Rd and x < 0.98*Re end,
+            "too little: that is before it moved; one noisy reading is not enough, take several pulls" },
+        } },
+      { name = "b", asks = "half width of the dead zone", unit = "rad", answer = Re/k, tolerance = 0.02, task = "2.3",
+        how = "Re/k",
+        mistakes = {
+          { 2*Re/k, "that is its whole width; the dead zone reaches as far to the other side" },
+          { Rd/k, "that is Rd/k: what holds a resting mass is Re" },
+          { Re, "that is the torque; divide by the stiffness" },
+        } },
+      { name = "c", asks = "where it rests, let go at theta0", unit = "rad", answer = rest, tolerance = 0.01, task = "2.4",
+        how = "the first extreme within Re/k: Re decides whether there is one more half swing",
+        praise = "with Re = Rd it would have gone on",
+        mistakes = {
+          { theory.rest_position{ system = simple, theta0 = given.theta0 },
+            "that is with Re = Rd: once it stops there, Re holds it. Give your system the Re that you have measured" },
+          { -rest, "the distance is right, the side is not" },
+          { 0, "nothing brings it back to the middle" },
+        } },
+      { name = "d", asks = "first slip of the drawn block", unit = "time units", answer = Re/(k*v), tolerance = 0.025, task = "2.5",
+        how = "Re/(k v)",
+        mistakes = {
+          { Rd/(k*v), "that is where M passes Rd: at rest it is held by Re" },
+          { Re/v, "the stiffness is missing: the torque of the spring is k v t" },
+        } },
+      { name = "e", asks = "how far it jumps", unit = "rad", answer = jump, tolerance = 0.08, task = "2.5",
+        how = "theta of stick less theta of slip; 2 (Re - Rd)/k + v times how long it lasts",
+        mistakes = {
+          { 2*a, "that is the limit of pulling slowly, 2 (Re - Rd)/k; meanwhile the drive goes on" },
+          { a, "that is (Re - Rd)/k; it swings as far beyond the middle again, and the drive goes on" },
+          { Re/k, "that is where the spring was when it slipped" },
+        } },
+      { name = "f", asks = "from slip to slip", unit = "time units", answer = jump/v, tolerance = 0.08, task = "2.5",
+        how = "jump/v: in the mean it keeps up with the drive",
+        mistakes = {
+          { lasts, "that is how long it slips; the time that it sticks belongs to it, too" },
+          { 2*a/v, "that is how long it sticks; the time that it slips belongs to it, too" },
+          { Re/(k*v), "that is the first slip, from a relaxed spring; from then on the spring is never relaxed again" },
+        } },
+    }
+  end,
+})

@@ -1,0 +1,122 @@
+-- lab and check: whose lab it is, what is refused, and that no answer is to be had but by working.
+package.path = "tests/lua/?.lua;" .. package.path
+local support = require "support"
+local test, equal = support.test, support.equal
+
+local function output(code, options)
+  local name = support.temporary ".lua"
+  support.write(name, code)
+  local pipe <close> = io.popen(('"%s" %s %s 2>&1'):format(support.program(), options or "", name))
+  return (pipe:read "a")
+end
+
+test("before a number is said, nothing is given and nothing judged", function()
+  equal(lab.number(), nil)
+  support.raises_here(function() check("1a", 3) end, "check: say first whose lab it is: lab.number(4711)")
+  support.raises_here(function() lab.given(1) end, "lab.given: say first whose lab it is")
+  support.raises_here(function() lab.experiment(1) end, "lab.experiment: say first whose lab it is")
+  support.raises_here(function() lab.marks() end, "lab.marks: say first whose lab it is")
+end)
+
+test("a number that is none gets one sentence", function()
+  for _, wrong in ipairs { 0, -3, 1.5, 1e9, math.huge, 0/0 } do
+    support.raises_here(function() lab.number(wrong) end, "lab.number: a student number is a whole number from 1 to 999999999, got ")
+  end
+  support.raises_here(function() lab.number("4711") end, 'got the string "4711"; write it without quotes')
+  support.raises_here(function() lab.number(nil) end, "got nil")
+  support.raises_here(function() lab.number({}) end, "got a table")
+  equal(lab.number(), nil)
+  equal(lab.number(4711), 4711)
+  equal(lab.number(4711.0), 4711)
+  equal(math.type(lab.number()), "integer")
+end)
+
+test("what is given depends on the number, and on nothing else", function()
+  local first, again = lab.given(1), lab.given(1.0)
+  assert(first ~= again)
+  equal(first.viscous.k, again.viscous.k)
+  local differ = 0
+  for number = 1, 20 do
+    lab.number(number)
+    if lab.given(1).viscous.k ~= first.viscous.k then differ = differ + 1 end
+  end
+  assert(differ > 12, differ)
+  lab.number(4711)
+  again.viscous.k = 1
+  equal(lab.given(1).viscous.k, first.viscous.k)
+  assert(lab.experiment(1).t == lab.experiment(1).t)
+end)
+
+test("an unknown question, sheet or value is refused in a sentence", function()
+  support.raises_here(function() check("1z", 3) end, "check: there is no question '1z'; sheet 1 asks 1a to 1h")
+  support.raises_here(function() check("a1", 3) end, "check: there is no question 'a1'; did you mean '1a'?")
+  support.raises_here(function() check("9a", 3) end, "check: there is no question '9a'; they are named after their sheet")
+  support.raises_here(function() check("", 3) end, "check: there is no question ''")
+  support.raises_here(function() check("1ä", 3) end, "check: there is no question '1ä'")
+  support.raises_here(function() check(1, 3) end, "the name of a question, got 1; for example check(\"1a\", 3.2)")
+  support.raises_here(function() check("1a") end, "check: the answer is a number, got nil; for example")
+  support.raises_here(function() check("1a", "3.2") end, 'got the string "3.2"; write it without quotes')
+  support.raises_here(function() check("1a", {}) end, "check: the answer is a number, got a table")
+  for _, wrong in ipairs { 0/0, math.huge } do
+    support.raises_here(function() check("1a", wrong) end, "check: the answer must be a finite number")
+  end
+  support.raises_here(function() lab.given(17) end, "lab.given: there are sheets 1 to ")
+  support.raises_here(function() lab.given("1") end, "lab.given: the first argument is the number of a sheet, got the string")
+  support.raises_here(function() lab.given() end, "got nil; for example lab.given(1)")
+  support.raises_here(function() lab.experiment(2, "fast") end, "lab.experiment(2, x): x")
+  equal(#lab.marks(), 0)
+end)
+
+test("twelve wrong values are judged, and no more; a right one stays right", function()
+  local said = output [[
+    lab.number(1)
+    for i = 1, 20 do check("0", i) end
+    lab.number(2)
+    check("0", 42)
+    check("1A", 2*math.pi*math.sqrt(lab.given(1).dry.I/lab.given(1).dry.k))
+    check(" 1a", 3)
+    for _, m in ipairs(lab.marks()) do print(m.question, m.verdict, m.tries) end
+    print(lab.marks())]]
+  equal(select(2, said:gsub("no more are judged in this session", "")), 9) -- also of another number
+  assert(said:find("\n0\twrong\t12.0?\n1a\tright\t1.0?\nnumber 2: 1 of 2 right\n", 1) or
+    said:find("\n0\twrong\t12\n1a\tright\t1\nnumber 2: 1 of 2 right\n", 1, true), said)
+end)
+
+test("no script can look into the course, nor change what it says", function()
+  local spies = [[
+    local seen, find = {}, string.find
+    local function spy(name, f) return function(...) seen[#seen + 1] = name return f(...) end end
+    for name, f in pairs(math) do if type(f) == "function" then math[name] = spy("math." .. name, f) end end
+    for name, f in pairs(string) do string[name] = spy("string." .. name, f) end
+    for _, name in ipairs { "tonumber", "ipairs", "pairs", "error", "system", "nondimensional", "load" } do _G[name] = spy(name, _G[name]) end
+    course = { judge = function() return true, "stolen" end }
+    if debug.sethook then debug.sethook(function() seen[#seen + 1] = debug.getinfo(2, "S").source end, "c") end
+    check("1a", 3)
+    if debug.sethook then debug.sethook() end
+    for i = 1, #seen do assert(not find(seen[i], "course") and not find(seen[i], "^math"), seen[i]) end]]
+  for _, options in ipairs { "", "--safe" } do
+    local said = output("lab.number(4711) " .. spies, options)
+    equal(said, "1a: not right, and no mistake that is known here; look at task 1.2 again\n")
+  end
+end)
+
+test("neither the program nor what students get shows the course", function()
+  local pipe <close> = io.popen("cat src/lab/*.lua")
+  local text = pipe:read "a"
+  local program = support.read(support.program())
+  local looked_for = 0
+  for line in text:gmatch "[^\n]+" do
+    if #line > 40 then
+      looked_for = looked_for + 1
+      assert(not program:find(line, 1, true), line)
+    end
+  end
+  assert(looked_for > 100)
+end)
+
+test("a course that computes is stopped as everything else is", function()
+  local said = output("lab.number(1) while true do lab.experiment(1) end", "--max-time 0.3")
+  assert(said:find("stopped", 1, true) and said:find("--max-time allows", 1, true), said)
+end)
+
+support.finish()
