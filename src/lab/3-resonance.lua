@@ -1,0 +1,80 @@
+-- Sheet 3: resonance with friction, Den Hartog against linearisation.
+sheet(3, {
+  title = "resonance with friction, Den Hartog against linearisation",
+
+  given = function(pick)
+    return { r = pick(1.25, 1.6, 0.05), friction_ratio = pick(0.3, 0.5, 0.02), small_ratio = pick(0.1, 0.6, 0.02),
+             low_r = pick(0.14, 0.4, 0.02), zeta = pick(0.1, 0.2, 0.01) }
+  end,
+
+  questions = function(given)
+    local r, g = given.r, given.friction_ratio
+    local V = 1/math.abs(1 - r^2)
+    local A, peak_lag = theory.den_hartog{ r = r, friction_ratio = g }
+    local linear, linear_lag = theory.linearised{ r = r, friction_ratio = g }
+    local s = nondimensional{ friction_ratio = g }:steady{ M = excitation.harmonic{ frequency = r } }
+    local low = nondimensional{ friction_ratio = g }:steady{ M = excitation.harmonic{ frequency = given.low_r } }
+    local growth = math.pi - 4*given.small_ratio
+    local boundary = theory.stop_boundary{ r = r }
+    local damped = theory.den_hartog{ r = 1, friction_ratio = given.small_ratio, zeta = given.zeta }
+    local error = 100*(linear/A - 1)
+    return {
+      { name = "a", asks = "amplitude at r with friction", unit = "M0/k", answer = A, tolerance = 0.002, task = "3.2",
+        how = "sys:steady, or theory.den_hartog",
+        mistakes = {
+          { 2*A, "that is from peak to peak; an amplitude is half of it" },
+          { V, "that is without friction" },
+          { linear, "that is the linearised one, which 3b asks for" },
+        } },
+      { name = "b", asks = "the same, friction linearised", unit = "M0/k", answer = linear, tolerance = 0.002, task = "3.3",
+        how = "sqrt(1 - (4 gamma/pi)^2)/|1 - r^2|",
+        mistakes = {
+          { A, "that is the true one of 3a" },
+          { -linear, "an amplitude is positive: |1 - r^2|" },
+          { (1 - (4*g/math.pi)^2)*V, "the root is missing" },
+          { math.sqrt(math.max(0, 1 - (math.pi*g/4)^2))*V, "4/pi has become pi/4" },
+          { V, "that is without friction" },
+        } },
+      { name = "c", asks = "how much too great that is", unit = "percent", answer = error, tolerance = 0.03, task = "3.3",
+        how = "100 (linearised/true - 1)",
+        mistakes = {
+          { 100*(1 - A/linear), "the error belongs to the true value: divide by that of 3a" },
+          { -error, "too great is a positive error" },
+          { 100*(V/A - 1), "that compares with no friction at all" },
+        } },
+      { name = "d", asks = "lag of the fundamental", unit = "degrees", answer = s.lag, within = 0.15, task = "3.4", how = "s.lag",
+        mistakes = {
+          { s.peak_lag, "that is how much the greatest angle lags; the fundamental is asked for" },
+          { 180 - s.lag, "180 degrees less this: above resonance the lag is more than 90" },
+          { math.deg(linear_lag), "that is the linearised one: near, but not the same" },
+          { -s.lag, "theta comes after M: a lag is positive here" },
+          { math.rad(s.lag), "that is in radians; degrees are asked for" },
+        } },
+      { name = "e", asks = "growth in each period at resonance", unit = "M0/k", answer = growth, tolerance = 0.005, task = "3.5",
+        how = "pi - 4 gamma",
+        mistakes = {
+          { growth/2, "that is in each half cycle; a period has two" },
+          { math.pi, "that is without friction" },
+          { math.pi - 2*given.small_ratio, "friction takes 2 Rd/k in each half cycle, and a period has two of them" },
+          { math.pi - given.small_ratio, "friction takes 4 Rd/k in each period" },
+        } },
+      { name = "f", asks = "gamma from which on it stops at r", answer = boundary, tolerance = 0.02, task = "3.6",
+        how = "theory.stop_boundary{ r = r }, or trying gammas with steady until s.stops is not 0",
+        mistakes = {
+          { math.pi/4, "that is the boundary at resonance, pi/4; here r is another" },
+        } },
+      { name = "g", asks = "stops in a period at low_r", answer = low.stops, whole = true, task = "3.6", how = "s.stops",
+        mistakes = {
+          { low.stops/2, "that is in half a period" },
+          { 2*low.stops, "that is in two periods" },
+          { 0, "it does stop: so slow a load is followed in steps" },
+        } },
+      { name = "h", asks = "amplitude at resonance with a damper, too", unit = "M0/k", answer = damped, tolerance = 0.002,
+        task = "3.7", how = "sys:steady with zeta and gamma, or theory.den_hartog with both",
+        mistakes = {
+          { 1/(2*given.zeta), "that is without dry friction" },
+          { 2*damped, "that is from peak to peak" },
+        } },
+    }
+  end,
+})

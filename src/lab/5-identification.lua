@@ -1,0 +1,94 @@
+-- Sheet 5: what made this record: identification with error bars.
+
+--- The two records: a decay with noise and an unknown zero; stick-slip under a pull that grows evenly.
+local function decay_of(given, secret)
+  local run = secret.system:simulate{ theta0 = secret.theta0, t_end = 12*secret.system.T0, dt = secret.system.T0/25 }
+  local noise = vector.normal{ n = #run, seed = secret.seed, std = given.noise }
+  return data{ { "t", run.t }, { "theta", run.theta + noise + secret.offset } }
+end
+
+local function pull_of(given, secret)
+  local run = secret.system:simulate{ M = excitation.ramp{ slope = given.slope }, t_end = given.pull_time, dt = given.pull_time/400 }
+  local noise = vector.normal{ n = #run, seed = secret.seed + 1, std = given.noise/10 }
+  return data{ { "t", run.t }, { "theta", run.theta + noise } }
+end
+
+sheet(5, {
+  title = "what made this record",
+
+  given = function(pick)
+    return { I = pick(0.5, 2, 0.1), noise = 0.01 }
+  end,
+
+  secret = function(given, pick)
+    local k, zeta, x_f = pick(20, 60, 1), pick(0.012, 0.03, 0.001), pick(0.01, 0.018, 0.001)
+    local ratio = pick(1.3, 1.6, 0.05)
+    local system = system{ I = given.I, k = k, C = 2*zeta*math.sqrt(given.I*k), Rd = x_f*k, Re = ratio*x_f*k }
+    local a = (ratio - 1)*x_f
+    given.slope = rounded(k*a*system.omega0*0.4, 3)
+    given.pull_time = rounded(6*system.Re/given.slope, 3)
+    return { system = system, theta0 = 1, offset = pick(0.1, 0.4, 0.05)*(pick(0, 1, 1) == 0 and 1 or -1),
+             seed = math.floor(pick(1, 1e6, 1)) }
+  end,
+
+  experiment = function(given, secret, which)
+    if which ~= nil and which ~= 1 and which ~= 2 then
+      error("there are two records: lab.experiment(5, 1), the decay, and lab.experiment(5, 2), the pull", 0)
+    end
+    return which == 2 and pull_of(given, secret) or decay_of(given, secret)
+  end,
+
+  questions = function(given, secret)
+    local true_system = secret.system
+    local decay = decay_of(given, secret)
+    local fit = identify{ data = decay, velocity0 = 0 }
+    local viscous -- takes half a second, so only when it is asked for
+    local function is_viscous(zeta)
+      viscous = viscous or identify{ data = decay, velocity0 = 0, I = given.I, Rd = 0 }
+      return math.abs(zeta - viscous.zeta) <= 4*viscous.error.zeta
+    end
+    local x_f = true_system.Rd/true_system.k
+    -- Honest work has the error of the fit; four of them are missed by one record in ten thousand.
+    local function bars(name) return 4*fit.error[name] end
+    return {
+      { name = "a", asks = "omega0", unit = "rad per time unit", answer = true_system.omega0, within = bars "omega0", task = "5.2",
+        how = "identify{ data = record, velocity0 = 0 }.omega0",
+        mistakes = {
+          { 2*math.pi/true_system.omega0, "that is the period" },
+        } },
+      { name = "b", asks = "zeta", answer = true_system.zeta, within = bars "zeta", task = "5.3", how = "fit.zeta",
+        mistakes = {
+          { is_viscous, "that takes all damping for viscous: leave Rd free" },
+        } },
+      { name = "c", asks = "Rd/k", unit = "rad", answer = x_f, within = bars "Rd_over_k", task = "5.3", how = "fit.Rd_over_k",
+        mistakes = {
+          { 2*x_f, "that is lost in each half cycle, 2 Rd/k" },
+          { true_system.Rd, "that is Rd; the record of a decay tells Rd/k only" },
+        } },
+      { name = "d", asks = "zero of the sensor", unit = "rad", answer = secret.offset, within = bars "offset", task = "5.2", how = "fit.offset",
+        mistakes = {
+          { -secret.offset, "the size is right: the offset is what the record shows where the spring is relaxed" },
+          { function(x) return math.abs(x - secret.offset) < 1.3*true_system.dead_zone end,
+            "that is where it came to rest: with dry friction that is not the middle" },
+        } },
+      { name = "e", asks = "k, from I", unit = "torque per rad", answer = true_system.k, tolerance = 0.01, task = "5.4", how = "I omega0^2, or identify with I",
+        mistakes = {
+          { true_system.omega0^2, "that is k/I" },
+          { true_system.omega0*given.I, "omega0 is to be squared" },
+        } },
+      { name = "f", asks = "standard error of zeta", answer = fit.error.zeta, tolerance = 0.2, task = "5.5", how = "fit.error.zeta",
+        mistakes = {
+          { 2*fit.error.zeta, "that is two of them; one is asked for" },
+          { fit.error.zeta/fit.zeta, "that is relative to zeta; as it stands in fit.error, please" },
+        } },
+      { name = "g", asks = "Re, from the pull", unit = "torque", answer = true_system.Re, tolerance = 0.03, task = "5.6",
+        how = "identify{ data = pull, M = ramp, I, k, C, Rd of the decay, start and offset 0, free = { Re } }",
+        mistakes = {
+          { function(x) return math.abs(x/true_system.Rd - 1) < 0.08 end, "that is Rd, which brakes it once it moves" },
+          { function(x) return x > 1.03*true_system.Re and x < 1.5*true_system.Re end,
+            "too much: it leaves so slowly that the eye sees it late; fit it" },
+          { true_system.Re/true_system.k, "that is an angle, Re/k" },
+        } },
+    }
+  end,
+})
