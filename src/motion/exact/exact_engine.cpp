@@ -134,11 +134,12 @@ bool ExactEngine::move() {
     const Arc::Point y = zero ? Arc::Point{arc_.velocity().way(), 0} : arc_.at(tau);
     const Clock theta = Clock{y_.theta, theta_rest_}.later(y.way);
     if (!std::isfinite(theta.hi) || !std::isfinite(y.velocity)) return fail(model::Outcome::state_not_finite);
-    const double M_before = zero ? formula_.value(tau) : 0;  // from the left
+    const bool at_break = zero && clock_.after(tau) >= piece_end_;
+    const double M_before = at_break ? formula_.value(tau) : 0;  // from the left
     if (!end_arc(tau, {theta.hi, y.velocity}, start_pull)) return false;
     theta_rest_ = theta.lo;
     if (crept) settle();
-    if (zero && standstill_.creep({clock_.hi, y_.theta, M_before})) return true;
+    if (zero && standstill_.creep({clock_.hi, y_.theta, at_break ? M_before : M_})) return true;
     if (zero) {
         standstill_.arrive();
     } else {

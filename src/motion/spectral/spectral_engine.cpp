@@ -120,10 +120,10 @@ bool SpectralEngine::move() {
     const double M = x == 1               ? 0
                      : solver_.iterates() ? excitation_.value(panel.time(x), state)
                                           : chebyshev::value(panel.M, x);
-    const double M_before = crept || zero ? chebyshev::value(panel.M, x) : 0;  // from the left
+    const bool stands = crept || zero;
+    const double M_before = stands && x == 1 ? chebyshev::value(panel.M, 1) : M;  // from the left
     end_piece(x, state, M);
     if (crept) settle();
-    const bool stands = crept || zero;
     const bool creeping = stands && !solver_.iterates() && standstill_.creep({now_.clock.hi, now_.y.theta, M_before});
     if (stands && !creeping) standstill_.arrive();
     standing_from_ = zero && x < 1 && !solver_.iterates() ? x : nowhere;
