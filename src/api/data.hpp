@@ -28,7 +28,8 @@ struct DataColumn {
 
 struct Data {
     std::vector<DataColumn> columns;
-    std::string heading = {};  ///< what the first line of its text says, else how many rows of which columns
+    std::string heading = {};    ///< what the first line of its text says, else how many rows of which columns
+    std::string points_of = {};  ///< d:plot() draws this column as points, unless it is told otherwise
 
     [[nodiscard]] std::size_t size() const { return columns.empty() ? 0 : columns.front().size(); }
     [[nodiscard]] const DataColumn* find(std::string_view name) const;

@@ -10,6 +10,9 @@ namespace dinal::api {
 inline constexpr text::Option data_plot_options[] = {
     {.name = "x", .otherwise = "the first column", .meaning = "name of a column"},
     {.name = "y", .otherwise = "the second column", .meaning = "name of a column, or a list of them"},
+    {.name = "z", .meaning = "name of a column that is drawn as a map over x and y, which form a grid"},
+    {.name = "zlim", .meaning = "{ from, to }: values beyond have the first and the last shade of the map"},
+    {.name = "contours", .meaning = "a list of values of z whose lines are drawn on the map"},
     {.name = "style",
      .meaning = "how the curves are drawn; what is not finite is a gap",
      .filled = text::fills<&plots::Curve::style>,
@@ -47,7 +50,8 @@ inline constexpr lua::Doc markdown_doc{"d:markdown() -> string", "All rows as a 
                                        "--> | 0.3 | 2 |"};
 inline constexpr lua::Doc plot_data_doc{
     "d:plot{ OPTIONS }",
-    "Draws columns over a column.",
+    "Draws columns over a column; with z a map, as of a sweep: in files colours that the colour-blind tell apart, in the "
+    "terminal shades, or digits where z has a few whole numbers.",
     DINAL_DATA "print(#tostring(d:plot{ x = \"r\", y = \"A\", show = false }) > 500)  --> true",
     {&plot_data_call}};
 inline constexpr lua::Doc save_data_doc{

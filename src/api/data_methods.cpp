@@ -7,6 +7,7 @@
 
 #include "api/data.hpp"
 #include "api/data_docs.hpp"
+#include "api/map_figure.hpp"
 #include "api/picture.hpp"
 #include "files/csv_columns.hpp"
 #include "lua/interrupt.hpp"
@@ -119,10 +120,26 @@ int plot(lua_State* L) {
     }
     if (y.empty()) options.fail({"there is no other column of numbers to draw"});
     if (data->size() == 0) options.fail({"there are no rows to draw"});
+    if (const std::vector<std::string> z = asked_names(L, options, "z"); !z.empty()) {
+        if (z.size() > 1) options.fail("z", "z must be one column");
+        if (options.has("y") && y.size() > 1) options.fail("y", "y must be one column where z is drawn over x and y");
+        std::vector<plots::Figure> map{
+            figure_of_map(options, {x.front(), y.front(), z.front()},
+                          {drawn(L, *data, x.front()), drawn(L, *data, y.front()), drawn(L, *data, z.front())})};
+        apply_options(L, options, map.front());
+        return deliver(L, options, std::move(map));
+    }
+    for (const char* option : {"zlim", "contours"}) {
+        if (!options.numbers(option).empty()) {
+            options.fail(option, fmt::format("{} is for maps: name a column z, too", option));
+        }
+    }
     plots::Figure figure;
     figure.x.label = x.front();
-    figure.y.label = y.size() == 1 ? y.front() : "";
     plots::Curve curve;
+    if (!data->points_of.empty() && !options.has("y")) y = {data->points_of};
+    if (!data->points_of.empty()) curve.style = plots::Style::points;
+    figure.y.label = y.size() == 1 ? y.front() : "";
     options.fill(curve);
     for (const std::string& name : y) {
         curve.x = drawn(L, *data, x.front());

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <string>
 
 #include "lua/bind.hpp"
 #include "text/option.hpp"
@@ -11,6 +12,7 @@ namespace dinal::api {
 struct SweepOptions {
     std::optional<double> workers = {};
     double seed = 0;
+    std::string file = {};
 };
 inline constexpr text::Range workers_range{"be a whole number from 1 to 1000",
                                            [](double x) { return text::is_whole(x, 1, 1000); }};
@@ -30,6 +32,11 @@ inline constexpr text::Option sweep_options[] = {
      .range = seed_range,
      .meaning = "of math.random: each point has random numbers of its own, the same whenever the sweep is run",
      .filled = text::fills<&SweepOptions::seed>},
+    {.name = "file",
+     .meaning =
+         "a .csv file for the result; what is done meanwhile is kept in files beside it, so that the same call goes "
+         "on after whatever has ended the program, and several processes share the points (docs/many-machines.md)",
+     .filled = text::fills<&SweepOptions::file>},
 };
 inline constexpr text::Call sweep_call{
     "sweep", "sweep{ r = vector.linspace(0.1, 2, 20), run = function(p) return { A = p.r^2 } end }", sweep_options};

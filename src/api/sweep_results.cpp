@@ -5,6 +5,16 @@
 
 namespace dinal::api {
 
+SweepResults::SweepResults(std::size_t points, std::size_t chunk_size)
+    : chunk_size_(chunk_size), done_(points, 0), done_in_chunk_((points + chunk_size - 1) / chunk_size) {}
+
+SweepResults::Piece SweepResults::piece(std::size_t first, std::size_t last) {
+    const std::lock_guard lock(changing_);
+    Piece piece{.columns = {}, .failures = {failures_.lower_bound(first), failures_.lower_bound(last)}};
+    for (const auto& [name, numbers] : columns_) piece.columns.emplace_back(name, numbers.data());
+    return piece;
+}
+
 double* SweepResults::column(std::string_view name) {
     const std::lock_guard lock(changing_);
     auto found = columns_.find(name);
@@ -17,13 +27,22 @@ double* SweepResults::column(std::string_view name) {
 }
 
 void SweepResults::fail(std::size_t point, std::string message) {
-    const std::lock_guard lock(changing_);
-    failures_[point] = std::move(message);
-    done_[point] = 1;
+    std::replace_if(
+        message.begin(), message.end(), [](char c) { return c == '\n' || c == '\r'; }, ' ');
+    {
+        const std::lock_guard lock(changing_);
+        failures_[point] = std::move(message);
+    }
+    finish(point);
 }
 
 std::size_t SweepResults::done() const {
     return static_cast<std::size_t>(std::count(done_.begin(), done_.end(), 1));
+}
+
+const double* SweepResults::find(std::string_view name) const {
+    const auto found = columns_.find(name);
+    return found == columns_.end() ? nullptr : found->second.data();
 }
 
 std::vector<std::size_t> SweepResults::done_points() const {

@@ -1,12 +1,15 @@
 // What the points of a sweep gave: named columns that several threads fill, each its own points.
 #pragma once
 
+#include <algorithm>
+#include <atomic>
 #include <cstddef>
 #include <map>
 #include <memory>
 #include <mutex>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "api/sweep_grid.hpp"
@@ -15,24 +18,43 @@ namespace dinal::api {
 
 class SweepResults {
 public:
-    explicit SweepResults(std::size_t points) : done_(points, 0) {}
+    /// Told chunk by chunk: so many points each.
+    explicit SweepResults(std::size_t points, std::size_t chunk_size);
 
     /// The numbers of a column, nan until they are set; made when it is first asked for, nullptr when there are too
     /// many. It stays where it is.
     double* column(std::string_view name);
-    static constexpr std::size_t most_columns = 1000;
+    static constexpr std::size_t most_columns = 20'000;
 
     /// The point has all its numbers, or a message instead. Each point is told once, by one thread.
-    void finish(std::size_t point) { done_[point] = 1; }
+    void finish(std::size_t point) {
+        done_[point] = 1;
+        done_in_chunk_[point / chunk_size_].fetch_add(1, std::memory_order_release);
+    }
     void fail(std::size_t point, std::string message);
 
     [[nodiscard]] std::size_t size() const { return done_.size(); }
     [[nodiscard]] bool is_done(std::size_t point) const { return done_[point] != 0; }
+    [[nodiscard]] std::size_t chunk_size() const { return chunk_size_; }
+    [[nodiscard]] std::size_t chunks() const { return done_in_chunk_.size(); }
+    /// Also while others work: once it is true, what the chunk gave does not change any more.
+    [[nodiscard]] bool is_complete(std::size_t chunk) const {
+        const std::size_t first = chunk * chunk_size_;
+        return done_in_chunk_[chunk].load(std::memory_order_acquire) == std::min(chunk_size_, size() - first);
+    }
+    /// A snapshot of its names, their numbers, and the messages of those that failed among the points [first, last).
+    struct Piece {
+        std::vector<std::pair<std::string, const double*>> columns;
+        std::map<std::size_t, std::string> failures;
+    };
+    [[nodiscard]] Piece piece(std::size_t first, std::size_t last);
 
     // What follows is for one thread, while no other changes anything.
 
     [[nodiscard]] const std::map<std::size_t, std::string>& failures() const { return failures_; }
     [[nodiscard]] std::size_t done() const;
+    /// nullptr when there is none of this name.
+    [[nodiscard]] const double* find(std::string_view name) const;
     /// All columns, of these points: the parameters, the results by their names, and `error`, empty where there is
     /// none.
     [[nodiscard]] Data data(const SweepGrid& grid, const std::vector<std::size_t>& points) const;
@@ -40,10 +62,12 @@ public:
     [[nodiscard]] std::vector<std::size_t> done_points() const;
 
 private:
+    std::size_t chunk_size_;
     std::mutex changing_;  // of the columns and the failures, not of the numbers
     std::map<std::string, std::vector<double>, std::less<>> columns_;
     std::map<std::size_t, std::string> failures_;
     std::vector<unsigned char> done_;
+    std::vector<std::atomic<std::size_t>> done_in_chunk_;
 };
 
 }  // namespace dinal::api

@@ -19,6 +19,7 @@ namespace {
 struct Carrying {
     lua_State* from;
     int index;
+    const SweepWork& work;
     std::optional<text::Error> error = {};
 };
 
@@ -34,7 +35,9 @@ int carry_function(lua_State* L) {
     source::Carrier carrier(carrying.from, L, carry_data);
     carrying.error = carrier.carry(carrying.index, "run");
     lua::forbid_exit(L);
-    return carrying.error ? 0 : 1;
+    if (carrying.error) return 0;
+    if (carrying.work.adapt) carrying.work.adapt(L);
+    return 1;
 }
 
 /// The same text whichever worker it is: not where a table lies in memory.
@@ -59,7 +62,7 @@ struct PointLoop {
         std::size_t first = 0, last = 0;
         while (take(first, last)) {
             for (std::size_t i = first; i < last; ++i) {
-                if (lua::interrupt_requested() || !point(work.points[i])) return;
+                if (lua::interrupt_requested() || work.ends || !point(work.points[i])) return;
                 work.finished.fetch_add(1, std::memory_order_relaxed);
             }
         }
@@ -169,12 +172,12 @@ SweepWorkers::SweepWorkers(lua_State* L, int index, SweepWork& work) : work_(wor
     for (std::size_t i = 0; i < work.workers; ++i) {
         states_.push_back(lua::new_state_like(L));
         lua_State* worker = states_.back().get();
-        Carrying carrying{L, lua_absindex(L, index)};
+        Carrying carrying{L, lua_absindex(L, index), work};
         lua_pushcfunction(worker, lua::guarded<carry_function>);
         lua_pushlightuserdata(worker, &carrying);
         const bool carried = lua_pcall(worker, 1, 1, 0) == LUA_OK;
-        if (carrying.error) lua::raise(L, text::in_call("sweep", *carrying.error));
-        if (!carried) lua::raise(L, "sweep: not enough memory for another worker");
+        if (carrying.error) lua::raise(L, text::in_call(work.call, *carrying.error));
+        if (!carried) lua::raise(L, std::string(work.call) + ": not enough memory for another worker");
     }
 }
 
@@ -216,21 +219,23 @@ void SweepWorkers::start(std::vector<std::thread>& threads) {
 void SweepWorkers::run(lua_State* L) {
     using std::chrono::milliseconds;
     constexpr milliseconds look_again{20};
-    terminal::Progress progress = terminal::Progress::of_steps("sweep", static_cast<double>(work_.points.size()));
+    terminal::Progress progress = terminal::Progress::of_steps(work_.call, static_cast<double>(work_.points.size()));
     std::vector<std::thread> threads;
     threads.reserve(states_.size());
     start(threads);
-    if (threads.empty()) lua::raise(L, "sweep: the system lets no thread be started");
+    if (threads.empty()) lua::raise(L, std::string(work_.call) + ": the system lets no thread be started");
     std::unique_lock lock(ending_);
     while (!ended_.wait_for(lock, look_again, [this] { return running_ == 0; })) {
         progress.advance(static_cast<double>(work_.finished.load(std::memory_order_relaxed)));
+        if (work_.look && !work_.ends && !work_.look()) work_.ends = true;
         if (lua::interrupt_requested()) {
             for (std::thread& thread : threads) lua::nudge(thread.native_handle());
         }
     }
     lock.unlock();
     for (std::thread& thread : threads) thread.join();
-    if (!trouble_.empty()) lua::raise(L, "sweep: " + trouble_);
+    if (work_.look && !work_.ends) work_.look();
+    if (!trouble_.empty()) lua::raise(L, std::string(work_.call) + ": " + trouble_);
 }
 
 }  // namespace dinal::api

@@ -3,6 +3,7 @@
 
 #include <atomic>
 #include <condition_variable>
+#include <functional>
 #include <mutex>
 #include <optional>
 #include <string>
@@ -20,8 +21,14 @@ struct SweepWork {
     SweepResults& results;
     std::vector<std::size_t> points;  ///< to be done
     long long seed = 0;               ///< of math.random, with the number of the point
+    const char* call = "sweep";       ///< heads sentences
+    /// In the state of a worker: replaces the carried function on the top by the one that is asked.
+    const std::function<void(lua_State* worker)>& adapt;
+    /// Asked 50 times a second on the thread that waits, and at the end: false ends it all.
+    std::function<bool()> look = {};
     std::atomic<std::size_t> next = 0;
     std::atomic<std::size_t> finished = 0;
+    std::atomic<bool> ends = false;
     std::size_t workers = 1;
 };
 

@@ -166,10 +166,12 @@ text::Expected<ReadColumns> read_columns(const std::string& path) {
     return text ? parse_columns(*text, path) : text::Expected<ReadColumns>(text.error());
 }
 
-text::Expected<Written> write_columns(const std::string& path, std::span<const WordsOrNumbers> columns) {
+text::Expected<Written> write_columns(const std::string& path, std::span<const WordsOrNumbers> columns,
+                                      std::string_view comment) {
     text::Expected<OutputFile> opened = OutputFile::create(path);
     if (!opened) return opened.error();
     OutputFile file = std::move(opened).value();
+    if (!comment.empty()) file.write("# " + std::string(comment) + "\n");
     std::size_t rows = 0;
     for (std::size_t i = 0; i < columns.size(); ++i) {
         file.write((i == 0 ? "" : ",") + field_of(columns[i].name));

@@ -39,7 +39,8 @@ struct WordsOrNumbers {
     std::span<const std::string> words = {};
 };
 
-/// A line of names, and the columns, of one length. read_columns gives back the same.
-text::Expected<Written> write_columns(const std::string& path, std::span<const WordsOrNumbers> columns);
+/// A line of names, and the columns, of one length. read_columns gives back the same. `comment` stands above them.
+text::Expected<Written> write_columns(const std::string& path, std::span<const WordsOrNumbers> columns,
+                                      std::string_view comment = "");
 
 }  // namespace dinal::files

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <limits>
 
+#include "plots/shades.hpp"
+
 namespace dinal::plots {
 namespace {
 
@@ -47,6 +49,11 @@ Extents extents_of(const Figure& figure) {
     const Interval window = figure.x.limits.value_or(Interval{-infinity, infinity});
     const bool x_log = figure.x.logarithmic, y_log = figure.y.logarithmic;
     Extents all;
+    if (figure.shades != nullptr) {
+        for (const double x : edges_between(figure.shades->x, x_log)) all.x.add(x);
+        for (const double y : edges_between(figure.shades->y, y_log)) all.y.add(y);
+        return all;
+    }
     for (const Curve& curve : figure.curves) {
         const double* xs = curve.x.values.data();
         const double* ys = curve.y.values.data();
@@ -124,8 +131,10 @@ View view_of(const Figure& figure) {
         include_origin(extents.x);
         include_origin(extents.y);
     }
-    return {Scale(with_air(extents.x, figure.x, figure.equal || has_points ? 0.06 : 0), figure.x.logarithmic),
-            Scale(with_air(extents.y, figure.y, 0.05), figure.y.logarithmic)};
+    const bool is_map = figure.shades != nullptr;
+    return {
+        Scale(with_air(extents.x, figure.x, !is_map && (figure.equal || has_points) ? 0.06 : 0), figure.x.logarithmic),
+        Scale(with_air(extents.y, figure.y, is_map ? 0 : 0.05), figure.y.logarithmic)};
 }
 
 Box equal_box(View& view, Box most) {

@@ -80,12 +80,15 @@ struct Mark {
     MarkKind kind = MarkKind::start;
 };
 
+struct Shades;  // shades.hpp
+
 struct Figure {
     std::string title = {};
     Axis x, y;
     bool equal = false;    ///< one unit is as long on both axes
     bool axes = true;      ///< frame, ticks, labels and grid
     bool circles = false;  ///< about the origin, through the ticks: lines of equal energy in a phase plane
+    std::shared_ptr<const Shades> shades = {};  ///< a map, behind all the rest
     std::vector<Curve> curves;
     std::vector<Mark> marks;
     std::vector<Interval> stuck;             ///< intervals of x, marked at its axis

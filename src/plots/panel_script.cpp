@@ -7,6 +7,8 @@
 #include <numbers>
 
 #include "plots/paper_style.hpp"
+#include "plots/shades.hpp"
+
 namespace dinal::plots {
 namespace {
 
@@ -26,6 +28,7 @@ public:
         if (figure_.dead_zone) {
             add_dead_zone();
         }
+        add_shades();
         add_circles();
         add_curves();
         if (elements_.empty()) {
@@ -119,6 +122,11 @@ private:
                 case Sample::stuck:
                     add_bar(at(entry.x, entry.y - bar / 2), at(entry.x + width, entry.y + bar / 2), ink_colour);
                     break;
+                case Sample::shade:
+                    line(fmt::format("set object rectangle from {} to {} fc rgb '{}' fs solid noborder",
+                                     at(entry.x, entry.y - 0.35 * em), at(entry.x + width, entry.y + 0.35 * em),
+                                     shade_colour(entry.curve, paper_bands(*figure_.shades).size())));
+                    break;
                 case Sample::curve:
                     add_sample_of_curve(entry);
                     break;
@@ -202,6 +210,34 @@ private:
         }
         if (!x.empty()) {
             elements_.push_back(data_.add({x, y}) + " with lines lt 1 lw 0.6 lc rgb '#C8C8C8'");
+        }
+    }
+
+    /// Boxes, a little larger than they are: else a screen shows the seams between them.
+    void add_shades() {
+        if (figure_.shades == nullptr) return;
+        const Shades& shades = *figure_.shades;
+        const std::vector<ShadeBand> bands = paper_bands(shades);
+        const std::vector<double> x = edges_between(shades.x, panel_.view.x.logarithmic());
+        const std::vector<double> y = edges_between(shades.y, panel_.view.y.logarithmic());
+        constexpr double seam = 0.4;  // pixels
+        const auto place = [](const Scale& scale, double value, double more) {
+            return scale.at(std::clamp(scale(value) + more, 0.0, 1.0));
+        };
+        std::vector<std::vector<std::vector<double>>> columns(bands.size(), std::vector<std::vector<double>>(6));
+        for (const ShadeBox& box : boxes_of(shades, bands)) {
+            const double left = place(panel_.view.x, x[box.left], 0), bottom = place(panel_.view.y, y[box.bottom], 0);
+            const double right = place(panel_.view.x, x[box.right], seam / (panel_.right - panel_.left));
+            const double top = place(panel_.view.y, y[box.top], seam / (panel_.top - panel_.bottom));
+            if (!(left < right && bottom < top)) continue;
+            std::size_t column = 0;
+            for (const double value : {left, bottom, left, right, bottom, top})
+                columns[box.band][column++].push_back(value);
+        }
+        for (std::size_t band = 0; band < bands.size(); ++band) {
+            if (columns[band].front().empty()) continue;
+            elements_.push_back(data_.add(columns[band]) + fmt::format(" with boxxyerror fc rgb '{}' fs solid noborder",
+                                                                       shade_colour(band, bands.size())));
         }
     }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "plots/shades.hpp"
 #include "text/characters.hpp"
 
 namespace dinal::plots {
@@ -44,6 +45,11 @@ std::string with_offset(const std::string& label, const Ticks& ticks) {
 
 std::vector<LegendEntry> legend_of(const Figure& figure) {
     std::vector<LegendEntry> entries;
+    if (figure.shades != nullptr) {
+        if (!figure.shades->label.empty()) entries.push_back({Sample::none, 0, figure.shades->label + ":"});
+        const std::vector<ShadeBand> bands = paper_bands(*figure.shades);
+        for (std::size_t i = 0; i < bands.size(); ++i) entries.push_back({Sample::shade, i, bands[i].text});
+    }
     for (std::size_t i = 0; i < figure.curves.size(); ++i) {
         if (!figure.curves[i].label.empty()) {
             entries.push_back({Sample::curve, i, figure.curves[i].label});

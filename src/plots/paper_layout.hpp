@@ -15,12 +15,12 @@ inline constexpr double font_size = 8;             // points
 inline constexpr double em = font_size * 96 / 72;  // pixels of 1/96 inch, the unit of this file
 inline constexpr double pixels_per_cm = 96 / 2.54;
 
-enum class Sample { curve, start, end, dead_zone, stuck, none };
+enum class Sample { curve, shade, start, end, dead_zone, stuck, none };
 
 /// A line of the legend: a sample, and words to its right.
 struct LegendEntry {
     Sample sample;
-    std::size_t curve;  // which, for a curve
+    std::size_t curve;  // which, for a curve or a shade
     std::string text;
     double x = 0, y = 0;  // of the left end of the sample, in the middle of the line
 };

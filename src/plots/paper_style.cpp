@@ -41,6 +41,8 @@ std::string line_style(const Figure& figure, std::size_t curve) {
 
 std::string point_style(const Figure& figure, std::size_t curve) {
     constexpr std::array<int, 5> shapes{6, 2, 8, 4, 1};  // circle, x, triangle, square, +
+    constexpr std::size_t crowd = 500;                   // in which shapes would hide each other
+    if (figure.curves[curve].size() > crowd) return fmt::format("pt 7 ps 0.12 lc rgb '{}'", colour_of(figure, curve));
     return fmt::format("pt {} ps 0.45 lw 0.6 lc rgb '{}'", shapes[curve % shapes.size()], colour_of(figure, curve));
 }
 

@@ -4,6 +4,8 @@
 #include <array>
 #include <numbers>
 
+#include "plots/shades.hpp"
+
 namespace dinal::plots {
 namespace {
 
@@ -155,6 +157,29 @@ void draw_letters(Canvas& canvas, const Figure& figure, const Projection& projec
     }
 }
 
+/// A character for the value at the middle of each cell, but where curves are.
+void draw_shades(Canvas& canvas, const Shades& shades, const Projection& projection, Charset charset) {
+    const std::vector<ShadeBand> bands = bands_of(shades, most_text_bands);
+    const std::vector<double> x = edges_between(shades.x, projection.view.x.logarithmic());
+    const std::vector<double> y = edges_between(shades.y, projection.view.y.logarithmic());
+    const auto place = [](const std::vector<double>& edges, double value) {
+        return static_cast<std::size_t>(std::upper_bound(edges.begin(), edges.end(), value) - edges.begin());
+    };
+    const int wide = canvas.width() / canvas.columns(), high = canvas.height() / canvas.rows();
+    for (int row = 0; row < canvas.rows(); ++row) {
+        const double dot_y = (row + 0.5) * high - 0.5;
+        const std::size_t j = place(y, projection.view.y.at(1 - dot_y / (projection.box.height - 1)));
+        for (int column = 0; column < canvas.columns(); ++column) {
+            const double dot_x = (column + 0.5) * wide - 0.5;
+            const std::size_t i = place(x, projection.view.x.at(dot_x / (projection.box.width - 1)));
+            if (i == 0 || j == 0 || i > shades.x.size() || j > shades.y.size()) continue;
+            if (const auto band = band_of(bands, shades.at(i - 1, j - 1))) {
+                canvas.glyph_if_free(column * wide, row * high, shade_letter(bands, *band, charset == Charset::ascii));
+            }
+        }
+    }
+}
+
 }  // namespace
 
 Signs signs(Charset charset) {
@@ -194,6 +219,9 @@ void draw(Canvas& canvas, const Figure& figure, const Projection& projection, co
             const Dashing stroke = stroke_of(figure, i, charset);
             draw_line(Pen(canvas, ink, stroke.on, stroke.period), curve, projection);
         }
+    }
+    if (figure.shades != nullptr) {
+        draw_shades(canvas, *figure.shades, projection, charset);
     }
     if (uses_letters(figure) && !letters_at_ends(figure)) {
         draw_letters(canvas, figure, projection);

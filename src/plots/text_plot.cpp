@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "plots/shades.hpp"
 #include "plots/text_block.hpp"
 #include "plots/text_drawing.hpp"
 #include "plots/ticks.hpp"
@@ -103,6 +104,14 @@ private:
 
     [[nodiscard]] std::vector<Entry> entries() const {
         std::vector<Entry> list;
+        if (figure_.shades != nullptr) {
+            if (!figure_.shades->label.empty()) list.push_back({shown(figure_.shades->label + ":"), 0});
+            const std::vector<ShadeBand> bands = bands_of(*figure_.shades, most_text_bands);
+            for (std::size_t i = 0; i < bands.size(); ++i) {
+                const std::string_view sign = shade_letter(bands, i, format_.charset == Charset::ascii);
+                list.push_back({sign == bands[i].text ? bands[i].text : std::string(sign) + " " + bands[i].text, 0});
+            }
+        }
         for (std::size_t i = 0; i < figure_.curves.size(); ++i) {
             if (!figure_.curves[i].label.empty()) {
                 const std::string mark = uses_letters(figure_) ? std::string{letter(ink_of(i)), ' '} : "";
@@ -202,7 +211,7 @@ private:
                 line.add(" ");
                 line.add(label.empty() ? frame_.side : frame_.tick);
             }
-            if (row == rows_ / 2 && !canvas.has_ink()) {
+            if (row == rows_ / 2 && !canvas.has_ink() && figure_.shades == nullptr) {
                 line.add("  (no points)");
             } else {
                 add_cells(line, canvas, row);

@@ -10,11 +10,11 @@
 namespace dinal::source {
 namespace {
 
-constexpr int deepest = 5000;  // tables within tables; each takes some of the C++ stack
+constexpr int deepest_value = 5000;  // tables within tables; each takes some of the C++ stack
 
 const char memory_key = 0;  // registry key, in the state that is carried to
 
-int append(lua_State* /*L*/, const void* piece, std::size_t size, void* text) {
+int append_dump(lua_State* /*L*/, const void* piece, std::size_t size, void* text) {
     static_cast<std::string*>(text)->append(static_cast<const char*>(piece), size);
     return 0;
 }
@@ -202,7 +202,7 @@ bool Carrier::value(int index) {
 }
 
 bool Carrier::table(int index) {
-    if (depth_ >= deepest) return fail(index, fmt::format(": it is within {} others", deepest));
+    if (depth_ >= deepest_value) return fail(index, fmt::format(": it is within {} others", deepest_value));
     ++depth_;
     const int top = lua_gettop(from_), top_there = lua_gettop(to_);
     lua_newtable(to_);
@@ -245,7 +245,7 @@ bool Carrier::c_function(int index) {
 }
 
 bool Carrier::function(int index) {
-    if (depth_ >= deepest) return fail(index, fmt::format(": it is within {} others", deepest));
+    if (depth_ >= deepest_value) return fail(index, fmt::format(": it is within {} others", deepest_value));
     int environment = -1;
     for (int i = 1; lua_getupvalue(from_, index, i) != nullptr; ++i) {
         if (is_globals(from_, -1)) environment = i - 1;
@@ -253,7 +253,7 @@ bool Carrier::function(int index) {
     }
     std::string dumped;
     lua_pushvalue(from_, index);
-    lua_dump(from_, append, &dumped, 0);
+    lua_dump(from_, append_dump, &dumped, 0);
     lua_pop(from_, 1);
     if (luaL_loadbufferx(to_, dumped.data(), dumped.size(), "=carried", "b") != LUA_OK) {
         lua_pop(to_, 1);

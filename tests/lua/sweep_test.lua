@@ -246,9 +246,9 @@ test("when all points fail that is an error, with the message of the first", fun
     raises(function() sweep { x = { 1 }, run = function() coroutine.yield() end } end, "yield")
     raises(function() sweep { x = { 1 }, run = function()
         local names = {}
-        for i = 1, 1001 do names["n" .. i] = i end
+        for i = 1, 20001 do names["n" .. i] = i end
         return names
-    end } end, "more than 1000 names")
+    end } end, "more than 20000 names")
 end)
 
 test("workers do not draw, save, show progress or end the program", function()

@@ -1,0 +1,178 @@
+#include "api/bifurcation.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <limits>
+
+#include "api/classes.hpp"
+#include "api/sweep_parameters.hpp"
+#include "api/sweep_run.hpp"
+#include "lua/lua_text.hpp"
+#include "lua/vector.hpp"
+#include "model/oscillator.hpp"
+
+namespace dinal::api {
+namespace {
+
+/// The results of a point have names: "theta 1", "velocity 1", ...
+std::string look_name(const char* column, std::size_t look) {
+    return fmt::format("{} {}", column, look + 1);
+}
+
+/// Takes the period out of the further options of the run at the index, if it is there.
+double period_of_point(lua_State* L, int more, double otherwise) {
+    if (lua_istable(L, more)) {
+        lua_getfield(L, more, "period");
+        const bool given = !lua_isnil(L, -1);
+        const double period = lua_tonumber(L, -1);
+        if (given && !(lua_type(L, -1) == LUA_TNUMBER && period > 0 && period < 1e300)) {
+            lua::raise(L,
+                       fmt::format("run returned period = {}, which must be a positive number", lua::describe(L, -1)));
+        }
+        lua_pop(L, 1);
+        if (given) return period;
+    }
+    if (!(otherwise > 0)) lua::raise(L, "bifurcation needs period, a number, or run must return { period = ... }");
+    return otherwise;
+}
+
+/// sys:simulate{ M = M, times = ..., dense = false, and what else the table at 4 says }; pushes the run.
+void run_point(lua_State* L, double period, std::size_t skip, std::size_t keep) {
+    lua_newtable(L);
+    const int options = lua_gettop(L);
+    if (lua_istable(L, 4)) {
+        lua_pushnil(L);
+        while (lua_next(L, 4) != 0) {
+            lua_pushvalue(L, -2);
+            lua_insert(L, -2);
+            lua_rawset(L, options);
+        }
+    }
+    lua_pushnil(L);
+    lua_setfield(L, options, "period");
+    lua_getfield(L, options, "t_start");
+    const double start = lua_tonumber(L, -1);
+    lua_pop(L, 1);
+    std::vector<double> times(keep);
+    for (std::size_t i = 0; i < keep; ++i) times[i] = start + period * static_cast<double>(skip + i + 1);
+    lua::push_vector(L, std::move(times));
+    lua_setfield(L, options, "times");
+    lua_pushboolean(L, 0);
+    lua_setfield(L, options, "dense");
+    lua_pushvalue(L, 3);
+    lua_setfield(L, options, "M");
+    lua_getfield(L, 2, "simulate");
+    lua_pushvalue(L, 2);
+    lua_pushvalue(L, options);
+    lua_call(L, 2, 1);
+}
+
+/// The function that the workers ask, with a point; upvalues: the user's function, period, skip, keep.
+int looks_of_point(lua_State* L) {
+    lua_settop(L, 1);
+    lua_pushvalue(L, lua_upvalueindex(1));
+    lua_insert(L, 1);
+    lua_call(L, 1, 3);  // now at 1 to 3
+    lua_insert(L, 1);   // the further options to the front
+    lua_pushvalue(L, 1);
+    // 1: further options, 2: system, 3: M, 4: further options again
+    if (lua::test<model::Oscillator>(L, 2) == nullptr) {
+        lua::raise(L, fmt::format("run must return a system and its M, got {}", lua::describe(L, 2)));
+    }
+    if (!lua_isnoneornil(L, 4) && !lua_istable(L, 4)) {
+        lua::raise(L, fmt::format("what run returns after M must be a table of options, got {}", lua::describe(L, 4)));
+    }
+    const double period = period_of_point(L, 4, lua_tonumber(L, lua_upvalueindex(2)));
+    const auto skip = static_cast<std::size_t>(lua_tointeger(L, lua_upvalueindex(3)));
+    const auto keep = static_cast<std::size_t>(lua_tointeger(L, lua_upvalueindex(4)));
+    run_point(L, period, skip, keep);
+    const int run = lua_gettop(L);
+    lua_createtable(L, 0, static_cast<int>(2 * keep));
+    const int looks = run + 1;
+    for (const char* column : {"theta", "velocity"}) {
+        lua_getfield(L, run, column);
+        const lua::Vector values = *lua::test<lua::Vector>(L, -1);
+        for (std::size_t i = 0; i < std::min(keep, values.size()); ++i) {
+            lua::push_text(L, look_name(column, i));
+            lua_pushnumber(L, values.begin()[i]);
+            lua_rawset(L, looks);
+        }
+        lua_pop(L, 1);
+    }
+    return 1;
+}
+
+/// A row for each look at each point that is done; one for a point that failed.
+Data looks_as_rows(const SweepGrid& grid, const SweepResults& results, std::size_t keep) {
+    std::vector<std::size_t> points;
+    std::vector<double> theta, velocity;
+    std::vector<std::string> errors;
+    std::vector<const double*> thetas, velocities;
+    for (std::size_t look = 0; look < keep; ++look) {
+        thetas.push_back(results.find(look_name("theta", look)));
+        velocities.push_back(results.find(look_name("velocity", look)));
+    }
+    const auto value = [](const double* column, std::size_t point) {
+        return column == nullptr ? std::numeric_limits<double>::quiet_NaN() : column[point];
+    };
+    for (const std::size_t point : results.done_points()) {
+        const auto failed = results.failures().find(point);
+        const bool good = failed == results.failures().end();
+        for (std::size_t look = 0; look < (good ? keep : 1); ++look) {
+            points.push_back(point);
+            theta.push_back(value(good ? thetas[look] : nullptr, point));
+            velocity.push_back(value(good ? velocities[look] : nullptr, point));
+            errors.push_back(good ? "" : failed->second);
+        }
+    }
+    Data data{.columns = grid.columns(points)};
+    data.columns.push_back(column_of("theta", std::move(theta)));
+    data.columns.push_back(column_of("velocity", std::move(velocity)));
+    data.columns.push_back(column_of("error", std::move(errors)));
+    data.heading = heading_of_map(grid, results);
+    data.points_of = "theta";
+    return data;
+}
+
+}  // namespace
+
+int bifurcation(lua_State* L) {
+    std::vector<DataColumn> parameters = take_parameters(L, bifurcation_call);
+    const lua::Options options(L, 1, bifurcation_call);
+    BifurcationOptions asked;
+    SweepOptions of_workers;
+    options.fill(asked);
+    options.fill(of_workers);
+    const int function = push_run_function(L, options);
+    check_parameters(L, bifurcation_call, parameters);
+    for (const DataColumn& parameter : parameters) {
+        if (parameter.name == "theta" || parameter.name == "velocity") {
+            options.fail({.sentence = fmt::format("'{}' is a column of the result: give the parameter another name",
+                                                  parameter.name),
+                          .option = parameter.name});
+        }
+    }
+    const SweepGrid grid(std::move(parameters));
+    const double period = asked.period.value_or(0);
+    const auto adapt = [&](lua_State* worker) {
+        lua_pushnumber(worker, period);
+        lua_pushinteger(worker, static_cast<lua_Integer>(asked.skip));
+        lua_pushinteger(worker, static_cast<lua_Integer>(asked.keep));
+        lua_pushcclosure(worker, lua::guarded<looks_of_point>, 4);
+    };
+    const auto told = [&](const SweepGrid& of, const SweepResults& results) {
+        return looks_as_rows(of, results, static_cast<std::size_t>(asked.keep));
+    };
+    const auto results = swept(L, {.call = bifurcation_call.name,
+                                   .grid = grid,
+                                   .function = function,
+                                   .workers = of_workers.workers,
+                                   .settings = {period, asked.skip, asked.keep},
+                                   .adapt = adapt,
+                                   .told = told});
+    push_data(L, told(grid, *results));
+    return 1;
+}
+
+}  // namespace dinal::api

@@ -1,0 +1,242 @@
+#include "api/sweep_files.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <limits>
+#include <system_error>
+
+#include "files/confinement.hpp"
+#include "files/csv_columns.hpp"
+#include "files/file.hpp"
+
+namespace dinal::api {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* point_column = "point of the grid";
+constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
+
+/// Where a read column has something to say at this row; an empty column of words is one of nan.
+std::string word_at(const files::ReadColumn& column, std::size_t row) {
+    return column.of_words ? column.words[row] : "";
+}
+
+}  // namespace
+
+std::size_t chunk_size_for(std::size_t points) {
+    constexpr std::size_t chunks = 256, most = 100'000;
+    return std::clamp<std::size_t>((points + chunks - 1) / chunks, 1, most);
+}
+
+SweepFiles::SweepFiles(std::string file, const std::string& mark, const SweepGrid& grid, SweepResults& results)
+    : file_(std::move(file)),
+      folder_(file_ + ".parts"),
+      mark_("sweep " + mark),
+      grid_(grid),
+      results_(results),
+      written_(results.chunks()) {}
+
+std::string SweepFiles::chunk_file(std::size_t chunk) const {
+    return fmt::format("{}/{:06}.csv", folder_, chunk);
+}
+
+bool SweepFiles::has_chunks() const {
+    std::error_code error;
+    const fs::directory_iterator all(folder_, error);
+    return std::any_of(begin(all), end(all),
+                       [](const fs::directory_entry& one) { return one.path().extension() == ".csv"; });
+}
+
+std::optional<text::Error> SweepFiles::check_mark() {
+    const std::string path = folder_ + "/mark";
+    if (const auto mark = files::read_file(path)) {
+        if (*mark == mark_ + "\n") return std::nullopt;
+        if (has_chunks())
+            return text::Error{
+                .sentence = fmt::format("'{}' holds the chunks of another sweep: its grid or its function was "
+                                        "another; remove it, or give another file",
+                                        folder_),
+                .option = "file",
+                .culprit = file_};
+    }
+    const auto written = files::write_file(path, mark_ + "\n");
+    return written ? std::nullopt : std::optional(written.error());
+}
+
+std::optional<text::Error> SweepFiles::open() {
+    if (const auto why = files::outside(file_, files::Access::write)) {
+        return text::Error{.sentence = fmt::format("can not write '{}': {}", file_, *why), .option = "file"};
+    }
+    std::error_code error;
+    if (fs::exists(file_, error)) {
+        const auto wrong = take(file_, true);
+        finished_ = !wrong;
+        return wrong;
+    }
+    // Somebody was killed between taking the folder and writing the file.
+    if (!fs::exists(folder_, error) && fs::exists(folder_ + ".merging", error)) {
+        fs::rename(folder_ + ".merging", folder_, error);
+    }
+    fs::create_directory(folder_, error);
+    if (error) {
+        return text::Error{.sentence = fmt::format("can not make the folder '{}': {}", folder_, error.message()),
+                           .option = "file",
+                           .culprit = file_};
+    }
+    if (auto wrong = check_mark()) return wrong;
+    return take_chunks();
+}
+
+std::optional<text::Error> SweepFiles::take_chunks() {
+    for (std::size_t chunk = 0; chunk < results_.chunks(); ++chunk) {
+        std::error_code error;
+        if (results_.is_complete(chunk) || !fs::exists(chunk_file(chunk), error)) continue;
+        if (auto wrong = take(chunk_file(chunk), false)) return wrong;
+        written_[chunk] = results_.is_complete(chunk);
+    }
+    return std::nullopt;
+}
+
+std::optional<text::Error> SweepFiles::take(const std::string& file, bool is_result) {
+    const auto another = [&](std::string_view what) {
+        return text::Error{.sentence = fmt::format("'{}' {}; remove it, or give another file", file, what),
+                           .option = "file",
+                           .culprit = file_};
+    };
+    const auto read = files::read_columns(file);
+    const bool has_mark = read && !read->comments.empty() && read->comments.front() == mark_;
+    if (is_result && !has_mark) return another("is there, and is not the result of this sweep");
+    std::error_code error;
+    if (!read && !fs::exists(folder_, error)) return std::nullopt;  // another process has found all, and took it away
+    if (!read) return read.error();
+    const std::vector<files::ReadColumn>& columns = read->columns;
+    const std::size_t first = is_result ? grid_.parameters().size() : 1;
+    const std::size_t rows = columns.empty() ? 0 : std::max(columns[0].numbers.size(), columns[0].words.size());
+    const bool broken = columns.size() <= first || columns.back().name != "error" ||
+                        (is_result ? rows != results_.size() : columns[0].of_words);
+    if (broken) return another("is no longer as it was written");
+    for (std::size_t row = 0; row < rows; ++row) {
+        const double place = is_result ? static_cast<double>(row) : columns[0].numbers[row];
+        if (!(place >= 0 && place < static_cast<double>(results_.size())))
+            return another("is no longer as it was written");
+        const auto point = static_cast<std::size_t>(place);
+        if (results_.is_done(point)) continue;
+        if (std::string message = word_at(columns.back(), row); !message.empty()) {
+            results_.fail(point, std::move(message));
+            continue;
+        }
+        for (std::size_t i = first; i + 1 < columns.size(); ++i) {
+            if (double* numbers = results_.column(columns[i].name)) {
+                numbers[point] = columns[i].of_words ? nothing : columns[i].numbers[row];
+            }
+        }
+        results_.finish(point);
+    }
+    return std::nullopt;
+}
+
+std::vector<std::size_t> SweepFiles::points(const files::Share& share) const {
+    std::vector<std::size_t> points;
+    for (std::size_t point = 0; point < results_.size(); ++point) {
+        const auto chunk = static_cast<long long>(point / results_.chunk_size());
+        if (chunk % share.size == share.rank && !results_.is_done(point)) points.push_back(point);
+    }
+    return points;
+}
+
+std::optional<text::Error> SweepFiles::write(std::size_t chunk) {
+    const std::size_t first = chunk * results_.chunk_size();
+    const std::size_t last = std::min(first + results_.chunk_size(), results_.size());
+    const SweepResults::Piece piece = results_.piece(first, last);
+    std::vector<std::size_t> points;
+    std::vector<double> places;
+    std::vector<std::string> errors;
+    for (std::size_t point = first; point < last; ++point) {
+        if (!results_.is_done(point)) continue;
+        points.push_back(point);
+        places.push_back(static_cast<double>(point));
+        const auto failed = piece.failures.find(point);
+        errors.push_back(failed == piece.failures.end() ? "" : failed->second);
+    }
+    if (points.empty()) return std::nullopt;
+    std::vector<std::vector<double>> numbers;
+    numbers.reserve(piece.columns.size());
+    std::vector<files::WordsOrNumbers> columns{{.name = point_column, .numbers = places}};
+    for (const auto& [name, all] : piece.columns) {
+        std::vector<double>& own = numbers.emplace_back(points.size());
+        std::transform(points.begin(), points.end(), own.begin(),
+                       [values = all](std::size_t point) { return values[point]; });
+        columns.push_back({.name = name, .numbers = own});
+    }
+    columns.push_back({.name = "error", .words = errors});
+    const auto written = files::write_columns(chunk_file(chunk), columns);
+    return written ? std::nullopt : std::optional(written.error());
+}
+
+std::optional<text::Error> SweepFiles::write_complete() {
+    for (std::size_t chunk = 0; chunk < results_.chunks(); ++chunk) {
+        if (written_[chunk] || !results_.is_complete(chunk)) continue;
+        if (auto wrong = write(chunk)) return wrong;
+        written_[chunk] = true;
+    }
+    return std::nullopt;
+}
+
+std::optional<text::Error> SweepFiles::write_incomplete() {
+    for (std::size_t chunk = 0; chunk < results_.chunks(); ++chunk) {
+        if (written_[chunk]) continue;
+        if (auto wrong = write(chunk)) return wrong;
+    }
+    return std::nullopt;
+}
+
+text::Expected<bool> SweepFiles::take_all() {
+    if (auto wrong = take_chunks()) return *wrong;
+    if (results_.done() < results_.size()) return false;
+    std::error_code error;
+    fs::rename(folder_, folder_ + ".merging", error);
+    return !error;
+}
+
+std::optional<text::Error> SweepFiles::finish() {
+    std::vector<std::size_t> points(results_.size());
+    for (std::size_t point = 0; point < points.size(); ++point) points[point] = point;
+    const Data data = results_.data(grid_, points);
+    std::vector<files::WordsOrNumbers> columns;
+    for (const DataColumn& column : data.columns) {
+        files::WordsOrNumbers& written = columns.emplace_back(files::WordsOrNumbers{.name = column.name});
+        if (const lua::Vector* numbers = column.numbers()) {
+            written.numbers = numbers->values();
+        } else {
+            written.words = *std::get<Words>(column.values);
+        }
+    }
+    const auto written = files::write_columns(file_, columns, mark_);
+    std::error_code error;
+    if (!written) {
+        fs::rename(folder_ + ".merging", folder_, error);
+        return written.error();
+    }
+    remove_folder(folder_ + ".merging");
+    return std::nullopt;
+}
+
+void SweepFiles::discard() {
+    remove_folder(folder_);
+    remove_folder(folder_ + ".merging");
+}
+
+/// With what we have written into it, and nothing else.
+void SweepFiles::remove_folder(const std::string& folder) {
+    std::error_code error;
+    for (std::size_t chunk = 0; chunk < results_.chunks(); ++chunk) {
+        fs::remove(fmt::format("{}/{:06}.csv", folder, chunk), error);
+    }
+    fs::remove(folder + "/mark", error);
+    fs::remove(folder, error);
+}
+
+}  // namespace dinal::api

@@ -1,0 +1,157 @@
+#include "plots/shades.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "plots/ticks.hpp"
+
+namespace dinal::plots {
+namespace {
+
+constexpr std::size_t most_values = 10;  // that have a shade each
+
+std::vector<double> finite_values(const Shades& shades) {
+    std::vector<double> values;
+    std::copy_if(shades.z.begin(), shades.z.end(), std::back_inserter(values),
+                 [](double z) { return std::fabs(z) <= 1e300; });
+    std::sort(values.begin(), values.end());
+    return values;
+}
+
+/// The whole numbers among them, when they are few and there is nothing else.
+std::vector<double> few_whole_numbers(const std::vector<double>& sorted) {
+    std::vector<double> different;
+    for (const double z : sorted) {
+        if (z != std::floor(z) || std::fabs(z) > 1e6) return {};
+        if (different.empty() || different.back() != z) different.push_back(z);
+        if (different.size() > most_values) return {};
+    }
+    return different;
+}
+
+Interval range_of_shades(const std::vector<double>& sorted) {
+    const auto part = [&sorted](double fraction) {
+        return sorted[static_cast<std::size_t>(fraction * static_cast<double>(sorted.size() - 1))];
+    };
+    constexpr double tail = 0.1, much_longer = 3;
+    const Interval all{sorted.front(), sorted.back()}, most{part(tail), part(1 - tail)};
+    return most.length() > 0 && all.length() > much_longer * most.length() ? most : all;
+}
+
+}  // namespace
+
+std::vector<ShadeBand> bands_of(const Shades& shades, int most) {
+    constexpr double infinity = std::numeric_limits<double>::infinity();
+    const std::vector<double> sorted = finite_values(shades);
+    if (sorted.empty()) return {};
+    std::vector<ShadeBand> bands;
+    if (const std::vector<double> whole = few_whole_numbers(sorted); !whole.empty() && !shades.limits) {
+        for (const double z : whole) bands.push_back({z, z + 1, fmt::format("{:g}", z)});
+        return bands;
+    }
+    const Interval range = shades.limits.value_or(range_of_shades(sorted));
+    if (!(range.length() > 1e-12 * std::max(std::fabs(range.low), std::fabs(range.high)))) {
+        return {{-infinity, infinity, fmt::format("{:.6g}", range.low)}};
+    }
+    const Ticks ticks = ticks_of(Axis{}, Scale(range, false), std::max(1, most - 2));
+    for (std::size_t i = 0; i + 1 < ticks.at.size(); ++i) {
+        bands.push_back({ticks.at[i], ticks.at[i + 1], fmt::format("{} to {}", ticks.text[i], ticks.text[i + 1])});
+    }
+    if (ticks.at.empty()) return {{-infinity, infinity, fmt::format("{:.4g} to {:.4g}", range.low, range.high)}};
+    const auto below = [&](double z) { return !sorted.empty() && sorted.front() < z; };
+    if (below(ticks.at.front())) {
+        bands.insert(bands.begin(), {-infinity, ticks.at.front(), "< " + ticks.text.front()});
+    }
+    if (sorted.back() >= ticks.at.back() || bands.empty()) {
+        bands.push_back({ticks.at.back(), infinity, "> " + ticks.text.back()});
+    }
+    return bands;
+}
+
+std::optional<std::size_t> band_of(const std::vector<ShadeBand>& bands, double z) {
+    if (std::isnan(z) || bands.empty()) return std::nullopt;
+    const auto next = std::upper_bound(bands.begin(), bands.end(), z,
+                                       [](double value, const ShadeBand& b) { return value < b.from; });
+    return next == bands.begin() ? 0 : static_cast<std::size_t>(next - bands.begin()) - 1;
+}
+
+std::vector<ShadeBand> paper_bands(const Shades& shades) {
+    constexpr std::size_t most_boxes = 3000;  // of a hundred bytes each in an SVG
+    std::vector<ShadeBand> bands;
+    for (const int most : {10, 7, 5, 3}) {
+        bands = bands_of(shades, most);
+        if (boxes_of(shades, bands).size() <= most_boxes) break;
+    }
+    return bands;
+}
+
+std::vector<double> edges_between(const std::vector<double>& values, bool logarithmic) {
+    const auto forth = [logarithmic](double v) { return logarithmic ? std::log(v) : v; };
+    const auto back = [logarithmic](double v) { return logarithmic ? std::exp(v) : v; };
+    const std::size_t n = values.size();
+    std::vector<double> edges(n + 1);
+    for (std::size_t i = 1; i < n; ++i) edges[i] = back((forth(values[i - 1]) + forth(values[i])) / 2);
+    if (n == 1) {
+        const double half = values[0] == 0 ? 0.5 : std::fabs(values[0]) / 4;
+        return {values[0] - half, values[0] + half};
+    }
+    edges[0] = back(1.5 * forth(values[0]) - 0.5 * forth(values[1]));
+    edges[n] = back(1.5 * forth(values[n - 1]) - 0.5 * forth(values[n - 2]));
+    return edges;
+}
+
+std::vector<ShadeBox> boxes_of(const Shades& shades, const std::vector<ShadeBand>& bands) {
+    std::vector<ShadeBox> boxes;
+    std::vector<std::size_t> below;  // those that end at this row, by their left ends
+    const std::size_t columns = shades.x.size();
+    for (std::size_t j = 0; j < shades.y.size(); ++j) {
+        std::vector<std::size_t> now;
+        std::size_t known = 0;
+        for (std::size_t i = 0; i < columns;) {
+            const auto band = band_of(bands, shades.at(i, j));
+            std::size_t end = i + 1;
+            while (end < columns && band_of(bands, shades.at(end, j)) == band) ++end;
+            if (band) {
+                while (known < below.size() && boxes[below[known]].left < i) ++known;
+                ShadeBox* under = known < below.size() ? &boxes[below[known]] : nullptr;
+                if (under != nullptr && under->left == i && under->right == end && under->band == *band) {
+                    under->top = j + 1;
+                    now.push_back(below[known]);
+                } else {
+                    now.push_back(boxes.size());
+                    boxes.push_back({*band, i, j, end, j + 1});
+                }
+            }
+            i = end;
+        }
+        below = std::move(now);
+    }
+    return boxes;
+}
+
+std::string shade_colour(std::size_t band, std::size_t count) {
+    // viridis of matplotlib (van der Walt and Smith, 2015), every ninth part, the bright end first: as ink on paper
+    constexpr std::array<std::string_view, 10> colours{"#FDE725", "#B4DE2C", "#6DCD59", "#35B779", "#1F9E89",
+                                                       "#26828E", "#31688E", "#3E4A89", "#482878", "#440154"};
+    const std::size_t place = count < 2 ? colours.size() / 2 : band * (colours.size() - 1) / (count - 1);
+    return std::string(colours[std::min(place, colours.size() - 1)]);
+}
+
+std::string_view shade_letter(const std::vector<ShadeBand>& bands, std::size_t band, bool ascii) {
+    constexpr std::string_view digits = "0123456789";
+    const bool are_digits = std::all_of(bands.begin(), bands.end(), [](const ShadeBand& b) {
+        return b.text.size() == 1 && b.text[0] >= '0' && b.text[0] <= '9';
+    });
+    if (are_digits) return digits.substr(static_cast<std::size_t>(bands[band].text[0] - '0'), 1);
+    if (bands.size() > static_cast<std::size_t>(most_text_bands)) return digits.substr(band % digits.size(), 1);
+    constexpr std::array<std::string_view, 5> shades{"·", "░", "▒", "▓", "█"};
+    constexpr std::array<std::string_view, 5> plain{".", ":", "+", "*", "#"};
+    const std::size_t place = bands.size() < 2 ? 2 : band * (shades.size() - 1) / (bands.size() - 1);
+    return ascii ? plain[place] : shades[place];
+}
+
+}  // namespace dinal::plots

@@ -1,0 +1,54 @@
+// Values over a grid, seen from above: areas of one shade each, and lines of equal value.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "plots/figure.hpp"
+
+namespace dinal::plots {
+
+struct Shades {
+    std::vector<double> x, y;  ///< where the values are, increasing
+    std::vector<double> z;     ///< of x[i] and y[j] at j * x.size() + i; nan where there is nothing
+    std::string label = {};
+    std::optional<Interval> limits = {};  ///< beyond them all values have the first and the last shade
+
+    [[nodiscard]] double at(std::size_t i, std::size_t j) const { return z[j * x.size() + i]; }
+};
+
+/// The values from <= z < to have one shade; the ends of the first and the last are open.
+struct ShadeBand {
+    double from, to;
+    std::string text;  ///< "3", "0.2 to 0.4"
+};
+
+/// A band for each value when these are a few whole numbers; else at most `most`, between round numbers. A few very
+/// large or very small values, as near a resonance, do not take the shades from all others.
+std::vector<ShadeBand> bands_of(const Shades& shades, int most);
+/// Those on paper, where they may be as many as one can tell apart and a file of decent size can hold.
+std::vector<ShadeBand> paper_bands(const Shades& shades);
+/// Which band has the value; none for nan.
+std::optional<std::size_t> band_of(const std::vector<ShadeBand>& bands, double z);
+
+/// Half way between the values, and as far beyond the first and the last.
+std::vector<double> edges_between(const std::vector<double>& values, bool logarithmic);
+
+/// Neighbours of one band as one rectangle, in places of the grid.
+struct ShadeBox {
+    std::size_t band;
+    std::size_t left, bottom, right, top;  // [left, right) x [bottom, top)
+};
+std::vector<ShadeBox> boxes_of(const Shades& shades, const std::vector<ShadeBand>& bands);
+
+/// The line along which z has this value, with nan between its pieces.
+Curve contour(const Shades& shades, double level);
+
+/// "#FDE725" to "#440154": from bright to dark, also for the colour-blind and in grey print.
+std::string shade_colour(std::size_t band, std::size_t count);
+/// A character for the band: its digit when all are digits, else a shade.
+std::string_view shade_letter(const std::vector<ShadeBand>& bands, std::size_t band, bool ascii);
+inline constexpr int most_text_bands = 5;
+
+}  // namespace dinal::plots

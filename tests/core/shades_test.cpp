@@ -1,0 +1,112 @@
+// Maps: which values have one shade, rectangles, and lines of equal value.
+#include "plots/shades.hpp"
+#include "support/catch.hpp"
+
+#include <cmath>
+
+using namespace dinal::plots;
+
+namespace {
+
+/// z = f(x, y) at n x n places of [-1, 1] x [-1, 1].
+template <class Function>
+Shades shades_over(int n, Function f) {
+    Shades shades;
+    for (int i = 0; i < n; ++i) {
+        shades.x.push_back(-1 + 2.0 * i / (n - 1));
+    }
+    shades.y = shades.x;
+    for (const double y : shades.y) {
+        for (const double x : shades.x) {
+            shades.z.push_back(f(x, y));
+        }
+    }
+    return shades;
+}
+
+}  // namespace
+
+TEST_CASE("a contour of a cone is a circle, closed and in one piece", "[shades]") {
+    const int n = 81;
+    const Curve circle = contour(shades_over(n, [](double x, double y) { return std::hypot(x, y); }), 0.7);
+    std::size_t gaps = 0;
+    for (std::size_t i = 0; i < circle.size(); ++i) {
+        const double x = circle.x.values[i], y = circle.y.values[i];
+        if (std::isnan(x)) {
+            ++gaps;
+            continue;
+        }
+        // The error of straight lines over a side of length h = 2/80: h^2/8 times the second derivative, at most 1/0.7.
+        CHECK(std::fabs(std::hypot(x, y) - 0.7) < std::pow(2.0 / 80, 2) / 8 / 0.7 * 1.1);
+    }
+    CHECK(gaps == 1);
+    CHECK(circle.size() > 200);
+    CHECK(circle.x.values[0] == circle.x.values[circle.size() - 2]);
+    CHECK(circle.y.values[0] == circle.y.values[circle.size() - 2]);
+}
+
+TEST_CASE("a contour ends at the edge of the grid and where a value is missing", "[shades]") {
+    const double nan = std::nan("");
+    const Curve line = contour(shades_over(5, [nan](double x, double y) { return y == 0 ? nan : x; }), 0.25);
+    std::size_t points = 0;
+    for (std::size_t i = 0; i < line.size(); ++i) {
+        if (!std::isnan(line.x.values[i])) {
+            CHECK(line.x.values[i] == 0.25);  // z is x itself, so straight lines are exact
+            CHECK(std::fabs(line.y.values[i]) >= 0.5);
+            ++points;
+        }
+    }
+    CHECK(points == 4);  // y = -1, -0.5 and 0.5, 1
+}
+
+TEST_CASE("a few whole numbers have a shade each, other values round bands", "[shades]") {
+    const Shades stops = shades_over(9, [](double x, double y) { return std::floor(2 * (x * x + y * y)); });
+    std::string all;
+    for (const ShadeBand& band : bands_of(stops, 5)) {
+        all += band.text + " ";
+    }
+    CHECK(all == "0 1 2 3 4 ");
+    const auto bands = bands_of(shades_over(41, [](double x, double) { return x; }), 5);
+    CHECK(bands.size() >= 3);
+    CHECK(bands.size() <= 6);
+    CHECK(bands[*band_of(bands, 0.6)].from <= 0.6);
+    CHECK(bands[*band_of(bands, 0.6)].to > 0.6);
+    CHECK(*band_of(bands, -1e9) == 0);
+    CHECK(*band_of(bands, INFINITY) == bands.size() - 1);
+    CHECK(!band_of(bands, std::nan("")));
+    CHECK(bands_of(shades_over(3, [](double, double) { return NAN; }), 5).empty());
+    CHECK(bands_of(shades_over(3, [](double, double) { return 0.3; }), 5).size() == 1);
+}
+
+TEST_CASE("a resonance does not take the shades from all the rest", "[shades]") {
+    const auto bands = bands_of(shades_over(101, [](double x, double) { return 1 / std::fabs(x + 1e-6); }), 8);
+    CHECK(bands.back().from < 20);  // the largest value is a million
+    CHECK(bands.size() >= 3);
+}
+
+TEST_CASE("rectangles cover each place of the grid once", "[shades]") {
+    const Shades shades =
+        shades_over(30, [](double x, double y) { return x * y > 0.9 ? std::nan("") : std::floor(4 * x * y); });
+    const auto bands = bands_of(shades, 10);
+    const auto boxes = boxes_of(shades, bands);
+    for (std::size_t j = 0; j < 30; ++j) {
+        for (std::size_t i = 0; i < 30; ++i) {
+            std::size_t hits = 0;
+            for (const ShadeBox& box : boxes) {
+                if (box.left <= i && i < box.right && box.bottom <= j && j < box.top) {
+                    ++hits;
+                    CHECK(box.band == band_of(bands, shades.at(i, j)));
+                }
+            }
+            CHECK(hits == (std::isnan(shades.at(i, j)) ? 0U : 1U));
+        }
+    }
+    CHECK(boxes.size() < 900 / 3);
+}
+
+TEST_CASE("edges lie half way between the values, on logarithmic axes by ratio", "[shades]") {
+    CHECK(edges_between({0, 1, 3}, false) == std::vector<double>{-0.5, 0.5, 2, 4});
+    const auto edges = edges_between({1, 100}, true);
+    CHECK(std::fabs(edges[1] - 10) < 1e-12);
+    CHECK(edges_between({4}, false) == std::vector<double>{3, 5});
+}

@@ -1,0 +1,160 @@
+-- Maps of columns and diagrams of bifurcation: what is drawn, and what is refused.
+package.path = arg[0]:match("^(.*)/") .. "/?.lua;" .. package.path
+local support = require "support"
+local test, equal, near, raises_here = support.test, support.equal, support.near, support.raises_here
+
+local map = sweep { x = vector.linspace(0, 1, 11), y = vector.linspace(0, 2, 9), run = function(p)
+    return { steps = math.floor(p.x + p.y), slope = p.x + p.y }
+end }
+
+test("a map shows digits where z has a few whole numbers", function()
+    local text = tostring(map:plot { z = "steps", show = false, width = 40, height = 12 })
+    assert(text:find("steps:   0   1   2   3", 1, true), text)
+    local lines = {}
+    for line in text:gmatch("[^\n]+") do lines[#lines + 1] = line end
+    assert(lines[2]:find("[│┤]2+3") or lines[2]:find("2+3"), lines[2])
+    assert(lines[#lines - 2]:find("0000"), lines[#lines - 2])
+end)
+
+test("a map shows shades of other values, in ASCII too", function()
+    local text = tostring(map:plot { z = "slope", show = false })
+    assert(text:find("█", 1, true) and text:find("·", 1, true) and text:find("slope:", 1, true), text)
+    local plain = tostring(map:plot { z = "slope", show = false, ascii = true })
+    assert(plain:find("###", 1, true) and not plain:find("[\128-\255]"), plain)
+end)
+
+test("contours lie over the shades and have names", function()
+    local text = tostring(map:plot { z = "slope", contours = { 1, 2 }, show = false })
+    assert(text:find("slope = 1", 1, true) and text:find("slope = 2", 1, true), text)
+    local dotted = 0
+    for _, code in utf8.codes(text) do
+        if code > 0x2800 and code <= 0x28FF then dotted = dotted + 1 end
+    end
+    assert(dotted > 20, text)
+end)
+
+test("a map goes into files with a legend, and an SVG of a fine one stays small", function()
+    local fine = sweep { x = vector.linspace(0.1, 2, 150), y = vector.linspace(0, 1, 120), run = function(p)
+        return { z = math.sin(9 * p.x) * math.cos(7 * p.y) }
+    end }
+    local file = os.tmpname() .. ".svg"
+    fine:plot { z = "z", contours = { 0 }, file = file }
+    local svg = support.read(file)
+    os.remove(file)
+    assert(#svg < 300000, #svg)
+    assert(svg:find("rgb%(253, 231,  ?37%)") or svg:lower():find("fde725"), "the bright end of the colours is there")
+    assert(svg:find("z = 0", 1, true))
+    local name = os.tmpname() .. ".gp"
+    fine:plot { z = "z", file = name }
+    assert(support.read(name):find("boxxyerror", 1, true))
+    os.remove(name)
+end)
+
+test("what is no grid is refused", function()
+    local d = data { x = { 1, 2, 2 }, y = { 1, 1, 1 }, z = { 1, 2, 3 } }
+    raises_here(function() d:plot { x = "x", y = "y", z = "z" } end, "two rows with x = 2, y = 1")
+    local v = vector.linspace(0, 1, 100)
+    raises_here(function() data { x = v, y = v, z = v }:plot { x = "x", y = "y", z = "z" } end, "x and y form no grid")
+    raises_here(function() map:plot { z = "steep" } end, "no column 'steep'")
+    raises_here(function() map:plot { z = "error" } end, "holds words")
+    raises_here(function() map:plot { zlim = { 0, 1 } } end, "zlim is for maps")
+    raises_here(function() map:plot { z = "steps", zlim = { 1, 0 } } end, "zlim must be two increasing numbers")
+    raises_here(function() map:plot { z = "steps", y = { "x", "y" } } end, "y must be one column")
+end)
+
+test("one row, one column and nothing finite can be drawn", function()
+    local function text(d) return tostring(d:plot { x = "x", y = "y", z = "z", show = false }) end
+    text(data { x = { 1, 2 }, y = { 1, 1 }, z = { 1, 2 } })
+    text(data { x = { 0 }, y = { 1 }, z = { 5 } })
+    text(data { x = { 1, 2 }, y = { 1, 2 }, z = { 0 / 0, 0 / 0 } })
+    text(data { x = { 1, 2 }, y = { 1, 2 }, z = { 1 / 0, -1 / 0 } })
+end)
+
+-- ---- bifurcation
+
+test("a linear oscillator settles to one point a period, of the size that theory says", function()
+    local zeta, f = 0.2, 1.3
+    local b = bifurcation { a = { 0.5, 1, 2 }, period = 1 / f, skip = 60, keep = 5, run = function(p)
+        return nondimensional { zeta = zeta }, excitation.harmonic { amplitude = p.a, frequency = f }
+    end }
+    equal(table.concat(b.names, " "), "a theta velocity error")
+    equal(#b, 15)
+    for i = 1, #b do equal(b.a[i], ({ 0.5, 1, 2 })[(i - 1) // 5 + 1]) end
+    -- M = a k sin(2 pi f t), with k = omega0^2 = (2 pi)^2 and I = 1: theta = a V sin(2 pi f t - lag), at whole periods.
+    local V = 1 / math.sqrt((1 - f * f) ^ 2 + (2 * zeta * f) ^ 2)
+    local lag = math.atan(2 * zeta * f, 1 - f * f)
+    local sys = nondimensional { zeta = zeta }
+    local scale = 1 / sys.k
+    for i = 1, #b do
+        -- What is left of the start: exp(-2 pi zeta 60/1.3) = 6e-26; the rest is the integrator's.
+        near(b.theta[i], -b.a[i] * scale * V * math.sin(lag), 1e-9)
+        near(b.velocity[i], b.a[i] * scale * V * 2 * math.pi * f * math.cos(lag), 1e-8)
+    end
+end)
+
+test("run may return more options for the run, its own period among them", function()
+    local b = bifurcation { f = { 1.2, 1.4 }, skip = 0, keep = 2, run = function(p)
+        return nondimensional {}, nil, { period = 0.25, theta0 = p.f }
+    end }
+    near(b.theta[1], 0, 1e-9) -- a quarter of a period of cos(2 pi t)
+    near(b.theta[2], -1.2, 1e-9)
+    near(b.theta[4], -1.4, 1e-9)
+end)
+
+test("its plot shows points", function()
+    local b = bifurcation { a = vector.linspace(1, 2, 30), period = 1, skip = 2, keep = 3, run = function(p)
+        return nondimensional { zeta = 0.1 }, excitation.harmonic { amplitude = p.a, frequency = 1.3 }
+    end }
+    local text = tostring(b:plot { show = false, ascii = true })
+    assert(text:find("theta", 1, true) and text:find("a", 1, true))
+    local file = os.tmpname() .. ".gp"
+    b:plot { file = file }
+    local commands = support.read(file)
+    os.remove(file)
+    assert(commands:find("with points", 1, true) and not commands:find("with lines lw", 1, true))
+end)
+
+test("a million points make a picture below 300 kB", function()
+    local n = 1000000
+    local x = vector.linspace(0, 1, n)
+    local file = os.tmpname() .. ".svg"
+    plot { { x, (x * 1e5):sin() * x, style = "points" }, file = file }
+    local size = #support.read(file)
+    os.remove(file)
+    assert(size < 300000, size)
+end)
+
+test("the same for any number of workers, and points that fail have a row", function()
+    local function run(workers)
+        return bifurcation { a = { 1, 2, 3, 4 }, period = 1, skip = 3, keep = 2, workers = workers, run = function(p)
+            if p.a == 2 then error("not this one", 0) end
+            if p.a == 3 then return nondimensional {}, "x" end
+            return nondimensional { friction_ratio = 0.1 }, excitation.harmonic { amplitude = p.a, frequency = 1.3 }
+        end }
+    end
+    local one, two = run(1), run(2)
+    equal(#one, 6)
+    equal(one.error[3], "not this one")
+    assert(one.error[4]:find("M must be a function, a number or an excitation", 1, true), one.error[4])
+    for i = 1, #one do
+        for _, name in ipairs { "a", "theta", "velocity" } do
+            local x, y = one[i][name], two[i][name]
+            assert(x == y or (x ~= x and y ~= y))
+        end
+    end
+end)
+
+test("what is wrong with a bifurcation is told", function()
+    local function run() return nondimensional {}, 1 end
+    raises_here(function() bifurcation { a = { 1 }, run = run } end, "bifurcation needs period")
+    raises_here(function() bifurcation { a = { 1 }, period = 0, run = run } end, "period = 0 must be positive")
+    raises_here(function() bifurcation { a = { 1 }, period = 1, keep = 0, run = run } end, "keep = 0 must be")
+    raises_here(function() bifurcation { period = 1, run = run } end, "bifurcation: there is no parameter")
+    raises_here(function() bifurcation { theta = { 1 }, period = 1, run = run } end, "is a column of the result")
+    raises_here(function() bifurcation { a = { 1 }, period = 1, run = function() return 1 end } end,
+        "run must return a system and its M, got 1")
+    raises_here(function() bifurcation { a = { 1 }, period = 1, run = function() return nondimensional {}, 1, 2 end } end,
+        "what run returns after M must be a table of options")
+end)
+
+support.finish()

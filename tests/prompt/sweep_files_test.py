@@ -1,0 +1,241 @@
+"""Sweeps in files: killed and gone on with, by several processes, under the real mpirun. Usage: sweep_files_test.py PROGRAM"""
+
+import os
+import pathlib
+import shutil
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+import unittest
+
+sys.dont_write_bytecode = True  # no folder __pycache__ in the source tree
+
+from session import PATIENCE
+
+PROGRAM = ""
+POINTS = 600  # in chunks of three
+SCRIPT = """
+local wait = {wait}
+local map = sweep{{ r = vector.linspace(0.1, 2, 30), g = vector.linspace(0, 1, 20), file = "map.csv", workers = {workers},
+    run = function(p)
+        local t = os.clock()
+        while os.clock() - t < wait do end
+        if p.r > 1.9 and p.g > 0.9 then error("far \\"away\\", at " .. p.r) end
+        return {{ y = math.sin(p.r)/(p.g + 0.1), chance = math.random(), infinite = p.g == 0 and 1/0 or nil }}
+    end }}
+local sum = 0
+for _, row in ipairs(map) do sum = sum + (row.error == "" and row.y + row.chance or 0) end
+print(#map, string.format("%.17g", sum))
+"""
+LAUNCHERS = ("DINAL_", "OMPI_", "PMI_", "SLURM_")
+
+
+class SweepFiles(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.home = pathlib.Path(folder.name)
+        self.parts = self.home / "map.csv.parts"
+        self.write(wait=0, workers=2)
+
+    def write(self, text=SCRIPT, **values):
+        (self.home / "map.lua").write_text(text.format(**values))
+
+    def command(self, **variables):
+        clean = {name: value for name, value in os.environ.items() if not name.startswith(LAUNCHERS)}
+        return {"cwd": self.home, "env": {**clean, **variables}, "text": True}
+
+    def start(self, **variables):
+        return self.started([PROGRAM, "map.lua"], **variables)
+
+    def started(self, command, **variables):
+        process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, **self.command(**variables))
+        self.addCleanup(process.communicate)
+        self.addCleanup(process.kill)
+        return process
+
+    def run_script(self, *launcher, **variables):
+        done = subprocess.run([*launcher, PROGRAM, "map.lua"], capture_output=True, timeout=PATIENCE,
+                              **self.command(**variables))
+        return done.returncode, done.stdout, done.stderr
+
+    def expected(self):
+        """What one process gives, in a folder of its own: the file and what is printed."""
+        with tempfile.TemporaryDirectory() as folder:
+            shutil.copy(self.home / "map.lua", folder)
+            out = subprocess.run([PROGRAM, "map.lua"], capture_output=True, check=True, timeout=PATIENCE,
+                                 **{**self.command(), "cwd": folder}).stdout
+            return (pathlib.Path(folder) / "map.csv").read_bytes(), out
+
+    def check_result(self, out):
+        file, printed = self.expected()
+        self.assertEqual(out, printed)
+        self.assertEqual((self.home / "map.csv").read_bytes(), file)
+        self.assertEqual(sorted(entry.name for entry in self.home.iterdir()), ["map.csv", "map.lua"])
+
+    def wait_for_parts(self, count):
+        until = time.monotonic() + PATIENCE
+        while time.monotonic() < until and (not self.parts.exists() or len(list(self.parts.glob("*.csv"))) < count):
+            time.sleep(0.005)
+        self.assertLess(time.monotonic(), until)
+
+    def test_the_result_is_a_file_and_the_same_call_reads_it(self):
+        code, out, err = self.run_script()
+        self.assertEqual((code, err), (0, ""))
+        self.check_result(out)
+        mark = (self.home / "map.csv").stat().st_mtime_ns
+        self.assertEqual(self.run_script(), (0, out, ""))
+        self.assertEqual((self.home / "map.csv").stat().st_mtime_ns, mark)
+
+    def test_what_was_killed_goes_on(self):
+        self.write(wait=0.003, workers=2)
+        asked = []
+        for count in (5, 20):
+            process = self.start()
+            self.wait_for_parts(count)
+            process.kill()
+            process.wait()
+            self.assertFalse((self.home / "map.csv").exists())
+            asked.append(len(list(self.parts.glob("*.csv"))))
+        self.assertGreaterEqual(asked[1], 20)
+        code, out, _ = self.run_script()
+        self.assertEqual(code, 0)
+        self.check_result(out)
+
+    def test_ctrl_c_keeps_every_point(self):
+        self.write(wait=0.01, workers=2)
+        process = self.start()
+        self.wait_for_parts(3)
+        process.send_signal(signal.SIGINT)
+        self.assertEqual(process.wait(PATIENCE), 130)
+        rows = sum(len(part.read_text().splitlines()) - 1 for part in self.parts.glob("*.csv"))
+        self.assertGreater(rows, 8)
+        code, out, _ = self.run_script()
+        self.assertEqual(code, 0)
+        self.check_result(out)
+
+    def test_another_sweep_is_refused(self):
+        self.write(wait=0.003, workers=2)
+        process = self.start()
+        self.wait_for_parts(2)
+        process.kill()
+        process.wait()
+        self.write(SCRIPT.replace("math.sin", "math.cos"), wait=0, workers=2)
+        code, _, err = self.run_script()
+        self.assertEqual(code, 1)
+        self.assertIn("map.lua:3: sweep: 'map.csv.parts' holds the chunks of another sweep", err)
+        shutil.rmtree(self.parts)
+        self.assertEqual(self.run_script()[0], 0)
+        self.write(SCRIPT.replace("0.1, 2, 30", "0.1, 3, 30"), wait=0, workers=2)
+        code, _, err = self.run_script()
+        self.assertEqual(code, 1)
+        self.assertIn("'map.csv' is there, and is not the result of this sweep; remove it, or give another file", err)
+
+    def test_lines_may_move_and_the_sweep_is_the_same(self):
+        code, out, _ = self.run_script()
+        self.assertEqual(code, 0)
+        self.write("-- a remark\n\n" + SCRIPT, wait=0, workers=1)
+        self.assertEqual(self.run_script()[:2], (0, out))
+
+    def test_what_fails_everywhere_leaves_nothing(self):
+        self.write(SCRIPT.replace("math.sin", "math.sine"), wait=0, workers=2)
+        code, _, err = self.run_script()
+        self.assertEqual(code, 1)
+        self.assertIn("all 600 points failed", err)
+        self.assertEqual([entry.name for entry in self.home.iterdir()], ["map.lua"])
+
+    def test_a_place_that_cannot_be_written_is_told_at_once(self):
+        self.write(SCRIPT.replace("map.csv", "nowhere/map.csv"), wait=1, workers=2)
+        code, _, err = self.run_script()
+        self.assertEqual(code, 1)
+        self.assertIn("sweep: can not make the folder 'nowhere/map.csv.parts'", err)
+        self.write(SCRIPT.replace("map.csv", "map.txt"), wait=1, workers=2)
+        self.assertIn("must end in .csv", self.run_script()[2])
+
+    @unittest.skipUnless(os.path.exists("/dev/full"), "there is no /dev/full")
+    def test_a_full_disk_keeps_what_is_done(self):
+        self.write(wait=0.003, workers=2)
+        self.parts.mkdir()
+        (self.parts / "000020.csv").symlink_to("/dev/full")
+        code, _, err = self.run_script()
+        self.assertEqual(code, 1)
+        self.assertIn("000020.csv", err)
+        (self.parts / "000020.csv").unlink()
+        code, out, _ = self.run_script()
+        self.assertEqual(code, 0)
+        self.check_result(out)
+
+    def test_processes_share_the_points_and_the_last_one_goes_on(self):
+        for variables in [lambda rank: {"DINAL_RANK": str(rank), "DINAL_SIZE": "3"},
+                          lambda rank: {"SLURM_PROCID": str(rank), "SLURM_NTASKS": "3"},
+                          lambda rank: {"SLURM_ARRAY_TASK_ID": str(10 + 5 * rank), "SLURM_ARRAY_TASK_COUNT": "3",
+                                        "SLURM_ARRAY_TASK_MIN": "10", "SLURM_ARRAY_TASK_MAX": "20"}]:
+            with self.subTest(variables(0)):
+                for rank in (2, 0):
+                    code, out, err = self.run_script(**variables(rank))
+                    self.assertEqual((code, out), (0, ""))
+                    self.assertIn(f"share {rank} of 3 is done", err)
+                code, out, err = self.run_script(**variables(1))
+                self.assertEqual((code, err), (0, ""))
+                self.check_result(out)
+                self.assertEqual(self.run_script(**variables(0)), (0, out, ""))
+                code, again, err = self.run_script(**variables(2))
+                self.assertEqual((code, again), (0, ""))
+                self.assertIn("process 0 of 3 goes on", err)
+                (self.home / "map.csv").unlink()
+
+    def test_processes_at_once_one_killed(self):
+        self.write(wait=0.003, workers=1)
+        processes = [self.start(DINAL_RANK=str(rank), DINAL_SIZE="4") for rank in range(4)]
+        self.wait_for_parts(8)
+        processes[2].kill()
+        outs = [process.communicate(timeout=PATIENCE)[0] for process in processes]
+        self.assertEqual(outs, [""] * 4)
+        code, out, _ = self.run_script(DINAL_RANK="2", DINAL_SIZE="4")
+        self.assertEqual(code, 0)
+        self.check_result(out)
+
+    def test_a_rank_without_a_size_is_one_sentence(self):
+        for name, size in [("DINAL_RANK", "DINAL_SIZE"), ("OMPI_COMM_WORLD_RANK", "OMPI_COMM_WORLD_SIZE"),
+                           ("SLURM_PROCID", "SLURM_STEP_NUM_TASKS")]:
+            code, _, err = self.run_script(**{name: "1"})
+            self.assertEqual(code, 1)
+            self.assertIn(f"{name} = 1 says that this is one of several processes, but {size} does not say", err)
+        code, _, err = self.run_script(DINAL_RANK="3", DINAL_SIZE="3")
+        self.assertEqual(code, 1)
+        self.assertIn("DINAL_RANK = 3 and DINAL_SIZE = 3 name no share", err)
+
+    def test_a_sweep_without_a_file_is_refused_under_a_launcher(self):
+        self.write(SCRIPT.replace('file = "map.csv", ', ""), wait=0, workers=1)
+        code, _, err = self.run_script(DINAL_RANK="1", DINAL_SIZE="3")
+        self.assertEqual(code, 1)
+        self.assertIn('process 1 of 3, which share their work in a file: give one, file = "map.csv"', err)
+
+    @unittest.skipUnless(shutil.which("mpirun"), "there is no mpirun: apt-get install openmpi-bin")
+    def test_under_mpirun(self):
+        self.write(wait=0.002, workers=1)
+        launcher = ["mpirun", "--allow-run-as-root", "--oversubscribe", "-n", "4"]
+        code, out, err = self.run_script(*launcher)
+        self.assertEqual(code, 0, err)
+        self.check_result(out)
+        self.assertEqual(self.run_script(*launcher)[:2], (0, out))
+
+    @unittest.skipUnless(shutil.which("mpirun"), "there is no mpirun: apt-get install openmpi-bin")
+    def test_under_mpirun_killed_in_the_middle(self):
+        self.write(wait=0.003, workers=1)
+        launcher = ["mpirun", "--allow-run-as-root", "--oversubscribe", "-n", "4"]
+        process = self.started([*launcher, PROGRAM, "map.lua"])
+        self.wait_for_parts(8)
+        process.terminate()
+        process.wait(PATIENCE)
+        self.assertFalse((self.home / "map.csv").exists())
+        code, out, _ = self.run_script(*launcher)
+        self.assertEqual(code, 0)
+        self.check_result(out)
+
+
+if __name__ == "__main__":
+    PROGRAM = os.path.abspath(sys.argv.pop(1))
+    unittest.main()
