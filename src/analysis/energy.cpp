@@ -36,17 +36,20 @@ public:
         belt_.add(work.belt);
         base_.add(work.base);
         acts_.add(work.acts);
+        impacts_.add(work.impacts);
     }
     [[nodiscard]] Work value() const {
-        return {input_.value(), viscous_.value(), dry_.value(), belt_.value(), base_.value(), acts_.value()};
+        return {input_.value(), viscous_.value(), dry_.value(),    belt_.value(),
+                base_.value(),  acts_.value(),    impacts_.value()};
     }
 
 private:
-    Sum input_, viscous_, dry_, belt_, base_, acts_;
+    Sum input_, viscous_, dry_, belt_, base_, acts_, impacts_;
 };
 
 Work operator-(const Work& a, const Work& b) {
-    return {a.input - b.input, a.viscous - b.viscous, a.dry - b.dry, a.belt - b.belt, a.base - b.base, a.acts - b.acts};
+    return {a.input - b.input, a.viscous - b.viscous, a.dry - b.dry,        a.belt - b.belt,
+            a.base - b.base,   a.acts - b.acts,       a.impacts - b.impacts};
 }
 
 Stored stored(const model::Lowered& system, const model::State& y) {
@@ -70,7 +73,7 @@ public:
     void add(const motion::Leg& leg) {
         Work done;
         // Without friction a turn may lie within the leg; else it is where one begins, to rounding.
-        while (stretch_ != last_ && leg.since_start(stretch_->to) < leg.length()) {
+        while (stretch_ != last_ && ends_within(leg)) {
             const Work here = leg.work(leg.since_start(stretch_->to));
             present_.add(here - done);
             done = here;
@@ -88,12 +91,19 @@ public:
     }
 
 private:
+    /// Not where another leg begins, to rounding: an impact lies between two, and belongs to the stretch that it ended.
+    [[nodiscard]] bool ends_within(const motion::Leg& leg) const {
+        const double rounding = 4 * std::numeric_limits<double>::epsilon() * std::fabs(stretch_->to);
+        return leg.since_start(stretch_->to) + rounding < leg.length();
+    }
     void close() {
         const Work work = present_.value();
         total_.add(work);
         present_ = {};
         if (!stretch_->stuck && stretch_->lasts() > 0) {
-            const model::State &begin = stretch_->begin, &end = stretch_->end;
+            // To the other side of an impact, whose loss is in the work.
+            const model::State &begin = stretch_->begin,
+                               &end = stretch_ != last_ ? (stretch_ + 1)->begin : stretch_->end;
             const Balance balance{work, change(system_, begin, end)};
             energy_.half_cycles.push_back({stretch_->from, stretch_->to, begin.theta, end.theta, balance});
             // On its way through theta = 0 the spring gives all that it has.
@@ -166,7 +176,7 @@ Eigen::MatrixXd energy_columns(const motion::Trajectory& trajectory) {
         const Stored s = stored(system, y);
         const Balance balance{sum.value(), change(system, trajectory.initial, y)};
         columns.row(row++) << balance.work.input, s.kinetic, s.spring, balance.work.viscous, balance.work.dry,
-            balance.error(), balance.work.belt, balance.work.base, balance.work.acts;
+            balance.error(), balance.work.belt, balance.work.base, balance.work.acts, balance.work.impacts;
     };
     WorkSum before;
     trajectory.course->legs([&](const motion::Leg& leg) {
@@ -200,6 +210,8 @@ std::string text(const Energy& energy) {
     text += stored_line("spring", change.spring, energy.start.spring, energy.finish.spring);
     text += fmt::format("  {:<8}{:>13.6g}   lost to viscous damping\n", "viscous", shown(work.viscous));
     text += fmt::format("  {:<8}{:>13.6g}   lost to dry friction\n", "dry", shown(work.dry));
+    if (work.impacts != 0)
+        text += fmt::format("  {:<8}{:>13.6g}   lost at the walls\n", "impacts", shown(work.impacts));
     text += fmt::format("  {:<8}{:>13.2g}   {:.1g} of {:.6g} that flowed in {} half cycle{}", "error",
                         energy.total.error(), energy.closure(), energy.flow, energy.half_cycles.size(),
                         energy.half_cycles.size() == 1 ? "" : "s");

@@ -2,7 +2,8 @@
 //
 //     input = change of kinetic + change of spring + viscous + dry
 //
-// A run on a moving surface, on a shaking support, or whose user acts at events has their work beside the input.
+// A run on a moving surface, on a shaking support, or whose user acts at events has their work beside the input; one
+// with walls what impacts took beside the two frictions.
 //
 // The work of M is the integral of M theta' dt, viscous friction takes that of C theta'^2 and dry friction Rd times the
 // way. All are integrated over the legs in which the motion was computed, by the integrator and so as exactly; the
@@ -27,10 +28,10 @@ using motion::Work;
 struct Balance {
     Work work;
     Stored change;
-    /// What does not add up: input - (kinetic + spring + viscous + dry).
+    /// What does not add up: input - (kinetic + spring + viscous + dry + impacts).
     [[nodiscard]] double error() const {
         const double given = work.belt + work.base + work.acts;
-        return work.input + given - work.viscous - work.dry - (change.kinetic + change.spring);
+        return work.input + given - work.viscous - work.dry - work.impacts - (change.kinetic + change.spring);
     }
 };
 
@@ -57,8 +58,8 @@ struct Energy {
 text::Expected<Energy> energy_of(const motion::Trajectory& trajectory);
 
 /// The same at the rows: work done since t_start and energy stored at each. Only after energy_of() has succeeded.
-enum class EnergyColumn : int { input, kinetic, spring, viscous, dry, error, belt, base, acts };
-inline constexpr int energy_column_count = 9;
+enum class EnergyColumn : int { input, kinetic, spring, viscous, dry, error, belt, base, acts, impacts };
+inline constexpr int energy_column_count = 10;
 Eigen::MatrixXd energy_columns(const motion::Trajectory& trajectory);
 
 /// The balance as a small table, for people.

@@ -28,11 +28,11 @@ bool acts_evenly(const model::Friction& law, const model::Lowered& system) {
            system.holding(Motion::forward) == system.holding(Motion::backward);
 }
 
-/// Sliding and holding torque are the same each way, and M does not depend on the motion: the map brings no two states
-/// farther apart.
-bool contracts(const model::Lowered& system, const model::Excitation& excitation) {
+/// Sliding and holding torque are the same each way, there are no walls, and M does not depend on the motion: the map
+/// brings no two states farther apart.
+bool contracts(const model::Lowered& system, bool walled, const model::Excitation& excitation) {
     using model::Motion;
-    return !system.has_remainder() && !excitation.has_feedback() &&
+    return !system.has_remainder() && !excitation.has_feedback() && !walled &&
            system.holding(Motion::forward) == system.braking(Motion::forward) &&
            system.holding(Motion::backward) == -system.braking(Motion::backward);
 }
@@ -46,6 +46,7 @@ public:
           map_(question.system, question.excitation, question.drive.start, question.drive.period, monitor),
           half_(question.system, question.excitation, question.drive.start, question.drive.period / 2, monitor) {
         symmetric_ = acts_evenly(question.system.friction(), system_) && question.system.spring().is_odd() &&
+                     (!question.system.walls() || question.system.walls()->alike()) &&
                      is_antisymmetric(question.excitation, question.drive);
     }
 
@@ -61,7 +62,7 @@ public:
             if (!search_once(start, symmetric_) && !search_once(start, false)) brute(start, 1);
             return answer_;
         }
-        if (contracts(system_, question_.excitation)) {
+        if (contracts(system_, question_.system.walls().has_value(), question_.excitation)) {
             if (search_once(start, symmetric_) || search_once(start, false)) return answer_;
             brute(start, 1);
             return answer_;
@@ -86,7 +87,7 @@ private:
     [[nodiscard]] double resonant_growth() const {
         const model::Oscillator& system = question_.system;
         if (system.damping() != 0 || !(system.stiffness() > 0)) return 0;
-        if (system_.has_remainder() || question_.excitation.has_feedback()) return 0;
+        if (system_.has_remainder() || system.walls() || question_.excitation.has_feedback()) return 0;
         const double ratio = question_.drive.period / system.natural_period(), n = std::round(ratio);
         if (n < 1 || std::fabs(ratio - n) > 1e-12 * n) return 0;
         const double fed = std::numbers::pi * std::abs(harmonic_of(question_.excitation, question_.drive, n));
@@ -167,7 +168,8 @@ private:
         answer_.differentiable = step.differentiable;
         const Eigen::Vector2cd values = Eigen::EigenSolver<Eigen::Matrix2d>(step.derivative, false).eigenvalues();
         answer_.multipliers = {values[0], values[1]};
-        const double slack = contracts(system_, question_.excitation) ? neutral_within : 1e-5;
+        const double slack =
+            contracts(system_, question_.system.walls().has_value(), question_.excitation) ? neutral_within : 1e-5;
         const double largest = std::max(std::abs(values[0]), std::abs(values[1]));
         answer_.stable = step.differentiable && largest <= 1 + slack;
         answer_.symmetric = symmetric_ && periods == 1 && is_symmetric(x, last.size);
@@ -177,7 +179,8 @@ private:
             answer_.stable = true;
             answer_.rest = rest_of(x[0]);
             answer_.unique = answer_.rest.first == answer_.rest.second;
-        } else if (contracts(system_, question_.excitation) && step.differentiable) {
+        } else if (contracts(system_, question_.system.walls().has_value(), question_.excitation) &&
+                   step.differentiable) {
             answer_.unique = std::min(std::abs(values[0] - 1.0), std::abs(values[1] - 1.0)) > neutral_within;
         } else {
             answer_.unique.reset();
@@ -193,6 +196,14 @@ private:
 
     /// Every place at which friction holds the mass through all of the period.
     [[nodiscard]] std::pair<double, double> rest_of(double here) const {
+        const auto [low, high] = free_rest_of(here);
+        const auto& walls = question_.system.walls();
+        // What pulls against a wall is held by it.
+        return walls ? std::pair(std::clamp(low, walls->lower, walls->upper),
+                                 std::clamp(high, walls->lower, walls->upper))
+                     : std::pair(low, high);
+    }
+    [[nodiscard]] std::pair<double, double> free_rest_of(double here) const {
         const double k = system_.stiffness();
         const bool own_spring = !question_.system.spring().none();
         if (question_.excitation.has_feedback() || (!(k > 0) && !own_spring)) return {here, here};

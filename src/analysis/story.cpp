@@ -106,6 +106,21 @@ void Story::tell_friction() {
         add(" and dry friction: Rd = {:.5g} brakes it, up to Re = {:.5g} holds it.", Rd(forward), Re(forward));
     }
     if (law.depends_on_speed()) say("That is near standstill: friction changes with the speed.");
+    tell_walls();
+}
+
+void Story::tell_walls() {
+    const auto& walls = system_.walls();
+    if (!walls) return;
+    const bool both = std::isfinite(walls->lower) && std::isfinite(walls->upper);
+    say("{} at theta = {}", both ? "There are walls" : "There is a wall",
+        both ? fmt::format("{:.5g} and {:.5g}", walls->lower, walls->upper)
+             : fmt::format("{:.5g}", std::isfinite(walls->lower) ? walls->lower : walls->upper));
+    if (walls->restitution == 0) {
+        add(", where the mass stays when it comes there.");
+    } else {
+        add("; an impact leaves {} of the velocity.", text::percent(walls->restitution));
+    }
 }
 
 void Story::tell_start() {
@@ -115,7 +130,9 @@ void Story::tell_start() {
     const bool known = run_.size() > 0 && run_.column(motion::Column::t)[0] == run_.t_start;
     const bool told = y.velocity == 0 && !system_.friction().none() && !own_rule_ && known && first.lasts() > 0;
     if (first.stuck) add(" and stuck there");
-    if (told) {
+    if (told && first.stuck && at_wall(y.theta)) {
+        add(" at the wall");
+    } else if (told) {
         const double torque = pull_at(y.theta, run_.column(motion::Column::M)[0]);
         add("{} because {}", first.stuck ? "" : " and moved off", reason(torque));
     }
@@ -150,6 +167,23 @@ void Story::tell_counts() {
         add("; it was stuck for {} of {} time units ({})", at(stuck_), at(all), text::percent(stuck_ / all));
     }
     add(".");
+    tell_impacts();
+}
+
+void Story::tell_impacts() {
+    std::size_t impacts = 0;
+    const model::Event *first = nullptr, *hardest = nullptr;
+    for (const model::Event& event : run_.events) {
+        if (event.kind != model::EventKind::impact) continue;
+        ++impacts;
+        if (first == nullptr) first = &event;
+        if (hardest == nullptr || std::fabs(event.velocity) > std::fabs(hardest->velocity)) hardest = &event;
+    }
+    if (impacts == 0) return;
+    say("It hit {} {}, first at t = {}",
+        std::isfinite(system_.walls()->lower) && std::isfinite(system_.walls()->upper) ? "the walls" : "the wall",
+        text::counted(impacts, "time"), at(first->t));
+    add(", hardest with velocity {:.5g} at t = {}.", hardest->velocity, at(hardest->t));
 }
 
 void Story::tell_turns() {
@@ -207,9 +241,13 @@ void Story::tell_stops() {
 
 void Story::tell_stop(const Stretch& stop) {
     const model::Event& begun = *stop.begun_by;
-    say("It stopped at t = {} at theta = {} because {}", at(begun.t), place(*(&stop - 1)), reason(pull(begun)));
+    if (at_wall(begun.theta)) {
+        say("It came to rest at the wall, theta = {:.5g}, at t = {}", begun.theta, at(begun.t));
+    } else {
+        say("It stopped at t = {} at theta = {} because {}", at(begun.t), place(*(&stop - 1)), reason(pull(begun)));
+    }
     if (stop.ended_by) {
-        add("; stuck for {:.5g}, until {}.", stop.lasts(), slip(*stop.ended_by, true));
+        add("; stuck for {:.5g}, until {}.", stop.lasts(), slip(*stop.ended_by, !at_wall(begun.theta)));
     } else if (constant_from_ <= run_.t_stop) {
         add(".");
         say("M is constant from {} on, so it rests there for good.",
@@ -223,6 +261,7 @@ void Story::tell_stop(const Stretch& stop) {
 
 /// Why it slipped and which way; after a sentence about |M - k theta| that is "that".
 std::string Story::slip(const model::Event& event, bool told) const {
+    if (at_wall(event.theta)) return slip_from_wall(event);
     const double torque = pull(event);
     std::string why = fmt::format("M jumped, {},", reason(torque));
     if (own_rule_) {
@@ -231,6 +270,13 @@ std::string Story::slip(const model::Event& event, bool told) const {
         why = fmt::format("{} grew past Re", told ? "that" : fmt::format("|{}|", pull_name()));
     }
     return fmt::format("{} and it slipped {}", why, torque < 0 ? "backward" : "forward");
+}
+
+std::string Story::slip_from_wall(const model::Event& event) const {
+    const char* way = event.theta == system_.walls()->upper ? "backward" : "forward";
+    if (system_.friction().none()) return fmt::format("{} pulled it off {}", pull_name(), way);
+    return fmt::format("{} pulled it off {} with more than Re = {:.5g}", pull_name(), way,
+                       system_.friction().holding(*way == 'b' ? model::Motion::backward : model::Motion::forward));
 }
 
 }  // namespace dinal::analysis

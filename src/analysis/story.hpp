@@ -56,6 +56,14 @@ private:
     [[nodiscard]] const char* pull_name() const {
         return system_.spring().none() ? "M - k theta" : system_.has_spring() ? "M - k theta - spring" : "M - spring";
     }
+    /// At a wall, which carries what pulls against it.
+    [[nodiscard]] bool at_wall(double theta) const {
+        const auto& walls = system_.walls();
+        return walls && (theta == walls->lower || theta == walls->upper);
+    }
+    void tell_walls();
+    void tell_impacts();
+    [[nodiscard]] std::string slip_from_wall(const model::Event& event) const;
     /// M never changes.
     [[nodiscard]] bool free() const { return constant_from_ <= run_.t_start; }
 

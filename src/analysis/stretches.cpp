@@ -9,12 +9,13 @@ std::vector<Stretch> stretches(const motion::Trajectory& trajectory) {
     list.reserve(trajectory.events.size() + 1);
     Stretch now{.from = trajectory.t_start, .begin = trajectory.initial, .stuck = trajectory.began_stuck};
     for (const model::Event& event : trajectory.events) {
-        if (event.kind > model::EventKind::rest) continue;
+        if (event.kind > model::EventKind::impact) continue;
         now.to = event.t;
         now.end = {event.theta, event.velocity};
         now.ended_by = event;
         list.push_back(now);
         now = {.from = event.t, .begin = now.end, .begun_by = event};
+        if (event.kind == model::EventKind::impact) now.begin.velocity *= -trajectory.restitution;
         now.stuck = event.kind == model::EventKind::stick || event.kind == model::EventKind::rest;
     }
     now.to = std::max(trajectory.t_stop, now.from);

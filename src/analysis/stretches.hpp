@@ -1,4 +1,5 @@
-// A run cut at its events: stretches of motion one way, half cycles, and stretches of standing still.
+// A run cut at its events: stretches of motion one way, half cycles, and stretches of standing still. Impacts turn the
+// mass round, too.
 #pragma once
 
 #include <optional>
@@ -10,7 +11,7 @@ namespace dinal::analysis {
 
 struct Stretch {
     double from = 0, to = 0;
-    model::State begin = {}, end = {};  ///< at an event the velocity is 0
+    model::State begin = {}, end = {};  ///< at an event the velocity is 0, but for an impact
     bool stuck = false;
     std::optional<model::Event> begun_by = {}, ended_by = {};  ///< none at the ends of the run
 

@@ -64,11 +64,12 @@ void set_balance(lua_State* L, const analysis::Balance& balance) {
     set_number(L, "belt", balance.work.belt);
     set_number(L, "base", balance.work.base);
     set_number(L, "acts", balance.work.acts);
+    set_number(L, "impacts", balance.work.impacts);
 }
 
 int total(lua_State* L) {
     const analysis::Energy& energy = energy_self(L, "energy.total")->energy;
-    lua_createtable(L, 0, 8);
+    lua_createtable(L, 0, 12);
     set_balance(L, energy.total);
     set_number(L, "flow", energy.flow);
     set_number(L, "closure", energy.closure());
@@ -92,7 +93,7 @@ int half_cycles(lua_State* L) {
     }
     lua_createtable(L, static_cast<int>(list.size()), 0);
     for (std::size_t i = 0; i < list.size(); ++i) {
-        lua_createtable(L, 0, 10);
+        lua_createtable(L, 0, 14);
         set_number(L, "t_start", list[i].t_start);
         set_number(L, "t_end", list[i].t_end);
         set_number(L, "theta_start", list[i].theta_start);
@@ -119,7 +120,8 @@ constexpr lua::Member energy_members[] = {
       "The balance of the whole run, torque times rad: input (work of M on the mass) = kinetic + spring (the changes "
       "of what is stored) + viscous + dry (what the two frictions took) + error (what does not add up); flow is what "
       "M, the spring and the moving mass gave in all half cycles together, and closure is |error|/flow. What a belt, a "
-      "base and the acts of events gave is belt, base and acts, beside the input.",
+      "base and the acts of events gave is belt, base and acts, beside the input; what impacts at walls took is impacts, "
+      "beside the frictions.",
       DINAL_ENERGY
       "print(string.format(\"%.6f %.6f\", energy.total.dry, energy.total.spring))  --> 0.499200 -0.499200\n"
       "print(energy.total.closure < 1e-12)  --> true"}},
@@ -150,7 +152,8 @@ constexpr lua::Member energy_members[] = {
      {"energy.kinetic -> vector", "The kinetic energy I velocity^2/2 at each row.",
       DINAL_ENERGY "print(energy.kinetic[1])  --> 0.0"}},
     {lua::a_field<column_field<analysis::EnergyColumn::spring>>,
-     {"energy.spring -> vector", "The energy k theta^2/2 of the spring at each row.",
+     {"energy.spring -> vector",
+      "The energy k theta^2/2 of the spring at each row, and what another spring besides k theta has stored.",
       DINAL_ENERGY "print(energy.spring[1])  --> 0.5"}},
     {lua::a_field<column_field<analysis::EnergyColumn::viscous>>,
      {"energy.viscous -> vector", "What viscous damping has taken since the start, at each row.",
@@ -171,6 +174,10 @@ constexpr lua::Member energy_members[] = {
     {lua::a_field<column_field<analysis::EnergyColumn::acts>>,
      {"energy.acts -> vector", "The energy that acts of events have brought since the start, at each row.",
       DINAL_ENERGY "print(energy.acts:max())  --> 0.0"}},
+    {lua::a_field<column_field<analysis::EnergyColumn::impacts>>,
+     {"energy.impacts -> vector", "What impacts at walls have taken since the start, at each row.",
+      "run = system{ I = 2, k = 0, walls = { upper = 1, restitution = 0.5 } }:simulate{ velocity0 = 2, t_end = 1, dt = 1 }\n"
+      "print(run:energy().impacts[2])  --> 3.0"}},
     {lua::a_metamethod<energy_text>("__tostring"),
      {"tostring(energy) -> string", "The balance of the whole run as a small table.",
       DINAL_ENERGY "print(tostring(energy):match(\"[^\\n]*\"))\n"

@@ -228,9 +228,9 @@ constexpr lua::Member run_members[] = {
       "What happened at velocity zero, in order of time: the columns t, kind, theta and M (run.events.theta is a "
       "vector), and by number { t, kind, theta, M }. kind is \"turn\" (goes on "
       "the other way), \"stick\" (stays), \"slip\" (breaks away) or \"rest\" (sticks to the end of the run); "
-      "\"switch\" is of a relay, and \"user\" of the option `events`: then there is a column name, too, and, where it "
-      "is not 0 at all of them, velocity. Nothing "
-      "is recorded at t_start. Empty in a run that was read from a file.",
+      "\"impact\" is at a wall, \"switch\" of a relay, and \"user\" of the option `events`: then there is a column name, "
+      "too, and, where it is not 0 at all of them, velocity, of an impact that with which the mass came. Nothing is "
+      "recorded at t_start but an impact. Empty in a run that was read from a file.",
       "run = nondimensional{}:simulate{ theta0 = 1, t_end = 1.2, dt = 0.1 }\n"
       "for _, e in ipairs(run.events) do print(e.kind, string.format(\"%.4f %.4f\", e.t, e.theta)) end\n"
       "--> turn\t0.5000 -1.0000\n"

@@ -42,6 +42,7 @@ int system(lua_State* L) {
     options.fill(parameters);
     parameters.friction = asked_law(L, options, {"Rd", "Re"});
     parameters.spring = asked_spring(L, options).value_or(model::Spring());
+    parameters.walls = asked_walls(L, options);
     return push_system(L, options, parameters);
 }
 
@@ -94,6 +95,24 @@ int friction_of(lua_State* L) {
 int spring_of(lua_State* L) {
     const model::Spring& spring = system_self(L, "sys.spring").spring();
     spring.none() ? lua_pushnil(L) : static_cast<void>(lua::push<model::Spring>(L, spring));
+    return 1;
+}
+
+/// nil where there are none.
+int walls_of(lua_State* L) {
+    const auto& walls = system_self(L, "sys.walls").walls();
+    if (!walls) {
+        lua_pushnil(L);
+        return 1;
+    }
+    lua_createtable(L, 0, 3);
+    if (std::isfinite(walls->lower)) {
+        lua::set_number(L, "lower", walls->lower);
+    }
+    if (std::isfinite(walls->upper)) {
+        lua::set_number(L, "upper", walls->upper);
+    }
+    lua::set_number(L, "restitution", walls->restitution);
     return 1;
 }
 
@@ -200,6 +219,9 @@ constexpr lua::Member system_members[] = {
     {lua::a_field<spring_of>,
      {"sys.spring -> spring or nil", "The spring besides k theta, where there is one.",
       "print(system{ I = 1, k = 4, spring = spring.polynomial{ [3] = 2 } }.spring:torque(3))  --> 54.0"}},
+    {lua::a_field<walls_of>,
+     {"sys.walls -> table or nil", "The end stops { lower, upper, restitution }, rad, where there are some.",
+      "print(system{ I = 1, k = 4, walls = { upper = 0.5, restitution = 0.7 } }.walls.upper)  --> 0.5"}},
     {lua::a_field<field_of_spring<&model::Oscillator::natural_frequency>>,
      {"sys.omega0 -> number", "The natural frequency sqrt(k/I) of k alone, rad per time unit; nil where k = 0.",
       "print(system{ I = 1, k = 4 }.omega0)  --> 2.0"}},

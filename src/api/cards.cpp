@@ -45,6 +45,9 @@ std::string system_card(lua_State* L, int index, const terminal::Display& screen
     if (!system.spring().none()) {
         text += "\n  spring     " + source::lua_text(L, system.spring());
     }
+    if (system.walls()) {
+        text += "\n  walls      " + system.walls()->lua_text();
+    }
     if (!system.has_spring()) {
         return text;
     }

@@ -36,6 +36,27 @@ std::optional<model::Friction> asked_law(lua_State* L, const lua::Options& optio
     return *law;
 }
 
+std::optional<model::Walls> asked_walls(lua_State* L, const lua::Options& options) {
+    options.push("walls");
+    if (lua_isnil(L, -1)) {
+        lua_pop(L, 1);
+        return std::nullopt;
+    }
+    if (lua_type(L, -1) != LUA_TTABLE) {
+        options.wrong("walls", options.row("walls").wanted);
+    }
+    lua_pushnil(L);
+    if (lua_next(L, -2) == 0) {
+        lua_pop(L, 1);
+        return std::nullopt;
+    }
+    lua_pop(L, 2);
+    const text::Call own{"walls", "walls = { lower = -0.8, upper = 0.8, restitution = 0.7 }", model::wall_options};
+    const auto walls = lua::read<model::Walls>(L, lua_gettop(L), own);
+    lua_pop(L, 1);
+    return walls;
+}
+
 /// A new Rd or Re makes another law one of Coulomb's again; Re goes with Rd where the two were one number.
 int system_with(lua_State* L) {
     const model::Oscillator& old = lua::self<model::Oscillator>(L, 1, with_call.example);
@@ -48,6 +69,9 @@ int system_with(lua_State* L) {
     parameters.damping = changes.damping.value_or(parameters.damping);
     if (const auto spring = asked_spring(L, options)) {
         parameters.spring = *spring;
+    }
+    if (options.has("walls")) {
+        parameters.walls = asked_walls(L, options);
     }
     const auto law = asked_law(L, options, {"Rd", "Re"});
     if (law) {

@@ -19,6 +19,9 @@ std::optional<model::Friction> asked_law(lua_State* L, const lua::Options& optio
 /// What the option `spring` says; none when it is absent.
 std::optional<model::Spring> asked_spring(lua_State* L, const lua::Options& options);
 
+/// What the option `walls` says; none when it is absent, or an empty table.
+std::optional<model::Walls> asked_walls(lua_State* L, const lua::Options& options);
+
 inline constexpr text::Option law_option[] = {
     {.name = "friction",
      .meaning = "another law of friction, for example friction.stribeck",
@@ -48,6 +51,10 @@ inline constexpr text::Option spring_change[] = {
      .meaning = "another spring besides k theta; spring.polynomial{} is none",
      .object = "spring",
      .wanted = "a function of theta, or a spring such as spring.polynomial{ [3] = 0.5 }"},
+    {.name = "walls",
+     .unit = "rad",
+     .meaning = "other end stops; {} is none",
+     .wanted = "a table such as { lower = -0.8, upper = 0.8, restitution = 0.7 }"},
 };
 inline constexpr auto change_options = text::joined(number_changes, law_option, spring_change);
 inline constexpr text::Call with_call{"sys:with", "sys:with{ Rd = 1 }", change_options};

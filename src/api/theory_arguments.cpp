@@ -23,6 +23,10 @@ const model::Oscillator* TheoryArguments::system() const {
         options_.fail({.sentence = "the closed forms are about a mass on a spring, and this system has k = 0",
                        .option = "system"});
     }
+    if (system->walls()) {
+        options_.fail(
+            {.sentence = "the closed forms know no walls, and this system has some; simulate it", .option = "system"});
+    }
     if (!system->spring().none()) {
         options_.fail({.sentence =
                            "the closed forms know the spring k theta only, and this system has another beside it; "

@@ -36,6 +36,10 @@ text::Expected<Oscillator> Oscillator::make(const OscillatorParameters& p) {
     o.friction_ = friction;
     if (auto wrong = p.spring.complaint()) return *wrong;
     o.spring_ = p.spring;
+    if (p.walls) {
+        if (auto wrong = p.walls->complaint()) return *wrong;
+    }
+    o.walls_ = p.walls;
     if (!o.has_spring()) {
         if (std::isfinite(o.damping() / o.inertia())) return o;
         return text::Error{
@@ -108,7 +112,8 @@ bool Oscillator::may_go_on() const {
 }
 
 OscillatorParameters Oscillator::parameters() const {
-    OscillatorParameters p{.inertia = inertia_, .stiffness = stiffness_, .damping = damping_, .spring = spring_};
+    OscillatorParameters p{
+        .inertia = inertia_, .stiffness = stiffness_, .damping = damping_, .spring = spring_, .walls = walls_};
     if (const auto* law = friction_.as<laws::Coulomb>()) {
         p.kinetic_friction = law->kinetic;
         p.breakaway = law->breakaway;

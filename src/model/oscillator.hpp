@@ -3,7 +3,8 @@
 //     I theta'' + C theta' + Rd sgn(theta') + k theta = M(t)    while moving, or at theta' = 0 when |M - k theta| > Re
 //     theta' = 0                                                while theta' = 0 and |M - k theta| <= Re
 //
-// A spring of its own (model/spring.hpp) pulls back besides k theta, wherever k theta stands.
+// A spring of its own (model/spring.hpp) pulls back besides k theta, wherever k theta stands; walls (model/walls.hpp)
+// throw the mass back.
 // theta in rad, time and torque in any consistent units. docs/theory.md has the derivations.
 #pragma once
 
@@ -14,6 +15,7 @@
 
 #include "model/friction.hpp"
 #include "model/spring.hpp"
+#include "model/walls.hpp"
 #include "text/expected.hpp"
 #include "text/option.hpp"
 
@@ -28,6 +30,7 @@ struct OscillatorParameters {
     std::optional<double> breakaway = {};   ///< Re, torque that sticking can hold; Rd when not given
     std::optional<Friction> friction = {};  ///< another law than Coulomb's with Rd and Re, which then say nothing
     Spring spring = {};                     ///< besides k theta
+    std::optional<Walls> walls = {};        ///< end stops
 };
 
 inline constexpr text::Option oscillator_options[] = {
@@ -50,6 +53,10 @@ inline constexpr text::Option oscillator_options[] = {
      .meaning = "a restoring torque besides k theta: a Lua function of theta, or spring.polynomial{ [3] = 0.5 }",
      .object = "spring",
      .wanted = "a function of theta, or a spring such as spring.polynomial{ [3] = 0.5 }"},
+    {.name = "walls",
+     .unit = "rad",
+     .meaning = "end stops: { lower, upper, restitution }, either wall or both; restitution 0 ... 1, 1 unless given",
+     .wanted = "a table such as { lower = -0.8, upper = 0.8, restitution = 0.7 }"},
 };
 
 /// Position and speed of the mass: rad, rad per time unit.
@@ -74,6 +81,8 @@ public:
     [[nodiscard]] const Friction& friction() const { return friction_; }
     /// The one besides k theta.
     [[nodiscard]] const Spring& spring() const { return spring_; }
+    /// The end stops, if it has some.
+    [[nodiscard]] const std::optional<Walls>& walls() const { return walls_; }
     /// What is derived from k alone holds: there is k, and no other spring.
     [[nodiscard]] bool has_linear_spring() const { return has_spring() && spring_.none(); }
     /// After a torque that was no number: whether what a user has written of the system may be asked again.
@@ -120,6 +129,7 @@ private:
     double damping_ = 0;
     Friction friction_;
     Spring spring_;
+    std::optional<Walls> walls_;
 };
 
 }  // namespace dinal::model

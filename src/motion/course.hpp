@@ -20,6 +20,7 @@ struct Work {
     double belt = 0;     ///< of the moving surface on the mass
     double base = 0;     ///< of the shaking support
     double acts = 0;     ///< of what a user did at his events
+    double impacts = 0;  ///< lost at walls
 };
 
 /// A stretch of smooth motion, integrated as exactly as it was computed. Times are counted from its beginning.

@@ -143,6 +143,9 @@ text::Expected<Trajectory> run_from(const Past& past, const model::Oscillator& s
             .sentence = fmt::format("t_end = {:.6g} must be after t_start = {:.6g}", window.end, window.start),
             .option = "t_end"};
     }
+    if (system.walls()) {
+        if (auto wrong = system.walls()->crossed_by(initial.theta)) return *wrong;
+    }
     auto grid = rows.within(window);
     if (!grid) return grid.error();
     if (auto wrong = too_many_rows(static_cast<double>(grid->count()), *grid, window, limits)) return *wrong;
@@ -160,7 +163,7 @@ text::Expected<Trajectory> run_from(const Past& past, const model::Oscillator& s
     Problem problem{system, excitation,  initial,
                     window, *grid,       monitor,
                     limits, past.motion, course_bytes - std::min(course_bytes, past.course_bytes)};
-    const bool more = extras.any() || model::has_memory(excitation);
+    const bool more = extras.any() || system.walls() || model::has_memory(excitation);
     if (more && !method.knows_more()) {
         return text::Error{.sentence = fmt::format("{} knows no states, events, belts, bases and controllers with a "
                                                    "memory: take integrator.spectral or rk4",
@@ -171,6 +174,7 @@ text::Expected<Trajectory> run_from(const Past& past, const model::Oscillator& s
     problem.carried = past.carried;
     Trajectory trajectory = more ? method.run_more(problem) : method.run(problem);
     trajectory.initial = initial;
+    if (system.walls()) trajectory.restitution = system.walls()->restitution;
     return trajectory;
 }
 

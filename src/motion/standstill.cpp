@@ -164,7 +164,7 @@ bool Standstill::never_left(const Moment& now) {
 }
 
 void Standstill::go_on() {
-    if (phase_ == Phase::leaving) phase_ = Phase::moving;
+    if (phase_ == Phase::leaving) phase_ = Phase::moving, wall_ = model::Motion::stuck;
     if (phase_ == Phase::held) phase_ = Phase::stuck;
 }
 

@@ -39,11 +39,13 @@ public:
     /// Which way the mass moves, or creeps; before it has moved at all without dry friction, `stuck`.
     [[nodiscard]] model::Motion motion() const { return motion_; }
     /// Without dry friction the mass swings through zero: its turns are told by turned(), and nothing is asked.
-    [[nodiscard]] bool passes() const { return !system_.dry(); }
-    /// Which way a mass at rest would go under M, or that it sticks. Of one that creeps: the way it is on, or the other
-    /// way when it comes to a stop.
+    [[nodiscard]] bool passes() const { return !system_.dry() && wall_ == model::Motion::stuck; }
+    /// Which way a mass at rest would go under M, or that it sticks. A wall holds whatever pulls against it. Of one
+    /// that creeps: the way it is on, or the other way when it comes to a stop.
     [[nodiscard]] model::Motion pulled(double M, double theta) const {
-        return phase_ == Phase::creeping ? pulled_on(M, theta) : model::motion_from_standstill(system_, M, theta);
+        if (phase_ == Phase::creeping) return pulled_on(M, theta);
+        const model::Motion way = model::motion_from_standstill(system_, M, theta);
+        return way == wall_ ? model::Motion::stuck : way;
     }
     /// What M - k theta must pass towards this side before something happens: the breakaway torque, or, of a mass that
     /// creeps, what it is under, but for rounding.
@@ -73,6 +75,16 @@ public:
     /// The velocity is down to what is rounding. Where more than the friction of sliding would hold a standing mass,
     /// and that alone balances M and the spring, the mass is on its way for ever, and creeps: else this is false.
     bool creep(const Moment& now);
+
+    /// The mass stands at a wall that is in the way of this motion, until it gets under way; `stuck`: at none.
+    void lean(model::Motion against) { wall_ = against; }
+    /// That wall.
+    [[nodiscard]] model::Motion leans() const { return wall_; }
+    /// A wall has thrown it back, so that standstills at once are no sign of chatter.
+    void thrown(model::Motion motion) {
+        motion_ = motion, phase_ = Phase::moving, wall_ = model::Motion::stuck;
+        at_once_in_a_row_ = 0;
+    }
 
     // What returns false has seen standstills without end.
 
@@ -132,6 +144,7 @@ private:
     std::vector<model::Event>* events_;
 
     model::Motion motion_;
+    model::Motion wall_ = model::Motion::stuck;
     Phase phase_ = Phase::moving;
     model::Motion came_ = model::Motion::stuck;  // which way it moved before it stuck,
     double M_stuck_ = 0;                         // and under which M

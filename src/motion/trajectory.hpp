@@ -72,6 +72,7 @@ struct Trajectory {
     model::State state_at_stop;
     model::Motion motion_at_stop = model::Motion::stuck;
     bool began_stuck = false;                          ///< until something moved it
+    double restitution = 1;                            ///< of the walls: what an impact left of the velocity
     bool computed = true;                              ///< false when it was read from a file
     std::vector<std::string> event_names = {};         ///< of the user's events, by Event::user
     std::shared_ptr<const Carried> carried = nullptr;  ///< of a run with more in it

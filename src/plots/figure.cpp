@@ -154,4 +154,14 @@ Box equal_box(View& view, Box most) {
     return {unit() * view.x.range().length(), unit() * view.y.range().length()};
 }
 
+std::vector<MarkKind> kinds_of(const std::vector<Mark>& marks) {
+    std::vector<MarkKind> kinds;
+    for (const Mark& mark : marks) {
+        if (std::find(kinds.begin(), kinds.end(), mark.kind) == kinds.end()) {
+            kinds.push_back(mark.kind);
+        }
+    }
+    return kinds;
+}
+
 }  // namespace dinal::plots

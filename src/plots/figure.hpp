@@ -73,7 +73,8 @@ struct Axis {
     bool logarithmic = false;
 };
 
-enum class MarkKind { start, end };
+enum class MarkKind { start, end, impact, switched };
+inline constexpr const char* mark_names[] = {"start", "end", "impact", "switch"};
 struct Mark {
     double x = 0;
     double y = 0;
@@ -81,6 +82,9 @@ struct Mark {
 };
 
 struct Shades;  // shades.hpp
+
+/// The kinds among the marks, each once.
+std::vector<MarkKind> kinds_of(const std::vector<Mark>& marks);
 
 struct Figure {
     std::string title = {};

@@ -111,10 +111,8 @@ private:
             line(fmt::format("set label {} at {} left textcolor rgb '{}'", single_quoted(entry.text),
                              at(entry.x + width + after_sample, entry.y), ink_colour));
             switch (entry.sample) {
-                case Sample::start:
-                case Sample::end:
-                    add_sample_point(entry,
-                                     mark_style(entry.sample == Sample::start ? MarkKind::start : MarkKind::end));
+                case Sample::mark:
+                    add_sample_point(entry, mark_style(static_cast<MarkKind>(entry.curve)));
                     break;
                 case Sample::dead_zone:
                     add_bar(at(entry.x, entry.y - bar / 2), at(entry.x + width, entry.y + bar / 2), dead_zone_colour);
@@ -246,8 +244,15 @@ private:
             const std::vector<std::string> more = curve_elements(panel_, i, kept_[i], data_);
             elements_.insert(elements_.end(), more.begin(), more.end());
         }
-        for (const Mark& mark : figure_.marks) {
-            elements_.push_back(data_.add({{mark.x}, {mark.y}}) + " with points " + mark_style(mark.kind));
+        for (const MarkKind kind : kinds_of(figure_.marks)) {
+            std::vector<double> x, y;
+            for (const Mark& mark : figure_.marks) {
+                if (mark.kind == kind) {
+                    x.push_back(mark.x);
+                    y.push_back(mark.y);
+                }
+            }
+            elements_.push_back(data_.add({x, y}) + " with points " + mark_style(kind));
         }
     }
 

@@ -61,9 +61,9 @@ std::vector<LegendEntry> legend_of(const Figure& figure) {
         entries.resize(most);
         entries.push_back({Sample::none, 0, rest});
     }
-    for (const Mark& mark : figure.marks) {
-        const bool start = mark.kind == MarkKind::start;
-        entries.push_back({start ? Sample::start : Sample::end, 0, start ? "start" : "end"});
+    for (const MarkKind kind : kinds_of(figure.marks)) {
+        const auto place = static_cast<std::size_t>(kind);
+        entries.push_back({Sample::mark, place, mark_names[place]});
     }
     if (figure.dead_zone) {
         entries.push_back({Sample::dead_zone, 0, "dead zone"});

@@ -15,7 +15,7 @@ inline constexpr double font_size = 8;             // points
 inline constexpr double em = font_size * 96 / 72;  // pixels of 1/96 inch, the unit of this file
 inline constexpr double pixels_per_cm = 96 / 2.54;
 
-enum class Sample { curve, shade, start, end, dead_zone, stuck, none };
+enum class Sample { curve, shade, mark, dead_zone, stuck, none };
 
 /// A line of the legend: a sample, and words to its right.
 struct LegendEntry {
@@ -25,7 +25,7 @@ struct LegendEntry {
     double x = 0, y = 0;  // of the left end of the sample, in the middle of the line
 };
 constexpr double sample_width(Sample sample) {
-    return (sample == Sample::none ? 0 : sample == Sample::start || sample == Sample::end ? 0.8 : 2.2) * em;
+    return (sample == Sample::none ? 0 : sample == Sample::mark ? 0.8 : 2.2) * em;
 }
 inline constexpr double after_sample = 0.4 * em;
 

@@ -56,7 +56,8 @@ std::string dot_style(const Figure& figure, std::size_t curve) {
 }
 
 std::string mark_style(MarkKind kind) {
-    return fmt::format("pt {} ps 0.7 lw 0.8 lc rgb '{}'", kind == MarkKind::start ? 6 : 7, ink_colour);
+    constexpr std::array<int, 4> shapes = {6, 7, 13, 12};  // circles, and diamonds for events
+    return fmt::format("pt {} ps 0.7 lw 0.8 lc rgb '{}'", shapes[static_cast<std::size_t>(kind)], ink_colour);
 }
 
 }  // namespace dinal::plots

@@ -88,7 +88,7 @@ std::vector<std::string> usual_columns(const RunData& run, std::string_view x) {
         return {other != names.end() ? *other : std::string(x)};
     }
     std::vector<std::string> names{"theta"};
-    if (run.system != nullptr && is_excited(run, "M")) {
+    if (run.system != nullptr && run.system->has_spring() && is_excited(run, "M")) {
         names.emplace_back("M/k");
     } else if (is_excited(run, "M_over_k")) {
         names.emplace_back("M_over_k");
@@ -109,6 +109,28 @@ std::vector<Interval> stuck_intervals(const motion::Trajectory& trajectory) {
     }
     return intervals;
 }
+
+namespace {
+
+/// Impacts and switches of relays on the curve of theta; of those that nobody could tell apart, one.
+std::vector<Mark> marks_of_events(const motion::Trajectory& trajectory) {
+    constexpr double apart = 1.0 / 200;  // of the run
+    std::vector<Mark> marks;
+    for (const auto& [event, kind] : {std::pair{model::EventKind::impact, MarkKind::impact},
+                                      std::pair{model::EventKind::switched, MarkKind::switched}}) {
+        double last = -model::never;
+        for (const model::Event& e : trajectory.events) {
+            if (e.kind != event || e.t - last < apart * (trajectory.t_stop - trajectory.t_start)) {
+                continue;
+            }
+            marks.push_back({e.t, e.theta, kind});
+            last = e.t;
+        }
+    }
+    return marks;
+}
+
+}  // namespace
 
 text::Expected<Figure> column_figure(const RunData& run, std::string_view x, const std::vector<std::string>& ys) {
     if (run.trajectory->names.empty()) {
@@ -138,6 +160,9 @@ text::Expected<Figure> column_figure(const RunData& run, std::string_view x, con
     }
     if (across == "t") {
         figure.stuck = stuck_intervals(*run.trajectory);
+        if (std::find(names.begin(), names.end(), "theta") != names.end()) {
+            figure.marks = marks_of_events(*run.trajectory);
+        }
     }
     return figure;
 }

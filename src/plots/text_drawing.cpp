@@ -183,7 +183,7 @@ void draw_shades(Canvas& canvas, const Shades& shades, const Projection& project
 }  // namespace
 
 Signs signs(Charset charset) {
-    return charset == Charset::braille ? Signs{"○", "●", "×", "━"} : Signs{"o", "@", "x", "="};
+    return charset == Charset::braille ? Signs{{"○", "●", "◆", "◇"}, "×", "━"} : Signs{{"o", "@", "#", "%"}, "x", "="};
 }
 
 char letter(std::size_t ink) {
@@ -232,7 +232,7 @@ void draw(Canvas& canvas, const Figure& figure, const Projection& projection, co
     for (const Mark& mark : figure.marks) {
         const Signs of = signs(charset);
         canvas.glyph(nearest_dot(projection.x(mark.x)), nearest_dot(projection.y(mark.y)),
-                     mark.kind == MarkKind::start ? of.start : of.end, 1);
+                     of.marks[static_cast<std::size_t>(mark.kind)], 1);
     }
 }
 

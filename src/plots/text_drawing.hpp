@@ -1,6 +1,7 @@
 // A figure's curves on a canvas of dots, without the frame around them.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <string_view>
 #include <vector>
@@ -23,7 +24,8 @@ struct Projection {
 };
 
 struct Signs {
-    std::string_view start, end, point, dead_zone;
+    std::array<std::string_view, 4> marks;  ///< by MarkKind
+    std::string_view point, dead_zone;
 };
 Signs signs(Charset charset);
 

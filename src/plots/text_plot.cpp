@@ -119,9 +119,9 @@ private:
             }
         }
         const Signs sign = signs(format_.charset);
-        for (const Mark& mark : figure_.marks) {
-            const bool start = mark.kind == MarkKind::start;
-            list.push_back({std::string(start ? sign.start : sign.end) + (start ? " start" : " end"), 0});
+        for (const MarkKind kind : kinds_of(figure_.marks)) {
+            const auto place = static_cast<std::size_t>(kind);
+            list.push_back({std::string(sign.marks[place]) + " " + mark_names[place], 0});
         }
         if (figure_.dead_zone) {
             list.push_back({std::string(sign.dead_zone) + " dead zone", 0});

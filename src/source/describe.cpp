@@ -36,6 +36,9 @@ std::string lua_text(lua_State* L, const model::Oscillator& system, ValueText* w
     if (!system.spring().none()) {
         text += ", spring = " + lua_text(L, system.spring(), whole);
     }
+    if (system.walls()) {
+        text += ", walls = " + system.walls()->lua_text();
+    }
     if (system.friction().none()) {
         return text + " }";
     }

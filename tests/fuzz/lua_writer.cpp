@@ -94,7 +94,7 @@ constexpr std::array<std::string_view, 8> integrators{"integrator.rk4{ h = 0.01 
                                                       "integrator.spectral{ tolerance = $n }",
                                                       "nil",
                                                       "$g"};
-constexpr std::array<std::string_view, 9> systems{
+constexpr std::array<std::string_view, 11> systems{
     "nondimensional{}",
     "nondimensional{ zeta = $n }",
     "nondimensional{ friction_ratio = $n }",
@@ -102,6 +102,8 @@ constexpr std::array<std::string_view, 9> systems{
     "system{ I = $n, k = $n }",
     "system{ I = 1, k = 4, C = $n, Rd = $n, Re = $n }",
     "system{ I = 1, k = 1, Rd = 0.1 }",
+    "system{ I = 1, k = $n, spring = spring.polynomial{ [3] = $n }, walls = { lower = -2, upper = 2, restitution = $n } }",
+    "system{ I = 1, k = 1, Rd = 0.1, spring = $f, walls = { upper = 1.5, restitution = 0.5 } }",
     "$r.system",
     "$g"};
 constexpr std::array<std::string_view, 12> runs{

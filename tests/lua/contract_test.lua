@@ -93,3 +93,14 @@ test("everything lives in the table dinal", function()
 end)
 
 support.finish()
+
+test("springs and end stops", function()
+    sys = system{ I = 1, k = 4, Rd = .1, spring = function(theta) return 0.5*theta^3 end }
+    local native = sys:with{ spring = spring.polynomial{ [3] = 0.5 } }
+    near(sys:simulate{ theta0 = 1, t_end = 3, dt = 1 }.theta[4], native:simulate{ theta0 = 1, t_end = 3, dt = 1 }.theta[4], 1e-12)
+    sys = system{ I = 1, k = 0, walls = { lower = -0.8, upper = 0.8, restitution = 0.7 } }
+    run = sys:simulate{ velocity0 = 1, t_end = 3, dt = 1 }
+    equal(run.events[1].kind, "impact")
+    near(run.events[1].t, 0.8, 1e-13)
+    near(run.velocity[2], -0.7, 1e-13)
+end)

@@ -92,6 +92,15 @@ void draw_friction(Lot& lot, StopsCase& c) {
     }
 }
 
+void draw_walls(Lot& lot, StopsCase& c) {
+    model::Walls walls{-lot.between(0.2, 1.1), lot.between(0.2, 1.1), lot.once_in(4) ? 0 : lot.between(0.2, 0.95)};
+    if (lot.once_in(4)) walls.lower = -model::never;
+    c.parameters.walls = walls;
+    c.truth.walls = TrueWalls{walls.lower, walls.upper, walls.restitution};
+    c.initial.theta = lot.between(std::max(walls.lower, -1.0), walls.upper);
+    c.story += " walls " + walls.lua_text();
+}
+
 StopsCase stops_case(Lots kind, std::uint64_t number) {
     Lot lot(number * 0x2545f4914f6cdd1dU + (kind == Lots::springs ? 7 : 11));
     StopsCase c;
@@ -112,6 +121,7 @@ StopsCase stops_case(Lots kind, std::uint64_t number) {
     c.story += fmt::format(" M {:.17g} sin({:.17g} t + {:.17g}) + {:.17g}", amplitude, omega, phase, level);
     c.truth.quickest = std::max(omega, 3.0);
     c.initial = {lot.between(-1, 1), lot.once_in(3) ? 0 : lot.between(-1.2, 1.2)};
+    if (kind == Lots::walls) draw_walls(lot, c);
     c.t_end = lot.between(6, 25);
     c.story += fmt::format(" from {:.17g} {:.17g} to {:.17g}", c.initial.theta, c.initial.velocity, c.t_end);
     constexpr int places = 12;
@@ -126,20 +136,17 @@ struct Told {
     EventKind kind;
     double t, theta, velocity;
 };
-std::vector<Told> events_of(const StopsTruth& truth) {
+/// Without slow impacts, and without the turns between them.
+template <class Events>
+std::vector<Told> events_of(const Events& events) {
     std::vector<Told> told;
-    for (const StopsEvent& e : truth.events()) {
-        if (e.kind == EventKind::impact && std::fabs(e.velocity) < slow_impact) continue;
-        told.push_back(
-            {e.kind, static_cast<double>(e.t), static_cast<double>(e.theta), static_cast<double>(e.velocity)});
-    }
-    return told;
-}
-std::vector<Told> events_of(const motion::Trajectory& run) {
-    std::vector<Told> told;
-    for (const Event& e : run.events) {
-        if (e.kind == EventKind::impact && std::fabs(e.velocity) < slow_impact) continue;
-        told.push_back({e.kind, e.t, e.theta, e.kind == EventKind::impact ? e.velocity : 0});
+    bool slow = false;
+    for (const auto& e : events) {
+        const bool impact = e.kind == EventKind::impact;
+        if (impact || e.kind != EventKind::turn) slow = impact && std::fabs(e.velocity) < slow_impact;
+        if (slow) continue;
+        told.push_back({e.kind, static_cast<double>(e.t), static_cast<double>(e.theta),
+                        impact ? static_cast<double>(e.velocity) : 0});
     }
     return told;
 }
@@ -160,7 +167,8 @@ StopsVerdict judge_stops(const StopsCase& c, const motion::Integrator& integrato
         why = run.error().sentence;
         return StopsVerdict::wrong;
     }
-    const auto expected = events_of(truth), shifted = events_of(beside), found = events_of(*run);
+    const auto expected = events_of(truth.events()), shifted = events_of(beside.events()),
+               found = events_of(run->events);
     if (kinds_of(expected) != kinds_of(shifted)) return StopsVerdict::ambiguous;
     if (kinds_of(expected) != kinds_of(found)) {
         why = "events " + kinds_of(found) + "but they are " + kinds_of(expected);
@@ -214,6 +222,7 @@ void check_random_stops(Lots kind, int cases) {
         // rk4: (w h)^4/120 of some ten radians at w = 4, and the cubics between its steps.
         for (const auto& [integrator, accuracy] : std::vector<std::pair<motion::Integrator, double>>{
                  {motion::Spectral{}, 1e-11}, {motion::Rk4{0.002}, 1e-8}}) {
+            if (accuracy > 1e-9 && number % 6 != 0) continue;  // its many steps take their time
             std::string why;
             const StopsVerdict verdict = judge_stops(c, integrator, accuracy, truth, beside, why);
             ambiguous += verdict == StopsVerdict::ambiguous ? 1 : 0;

@@ -118,6 +118,10 @@ std::optional<text::Error> Dinal1989::wrong_for(const model::Oscillator& system,
         return text::Error{.sentence = "integrator.dinal1989 divides by k: with k = 0 take integrator.spectral or rk4",
                            .option = "integrator"};
     }
+    if (system.walls()) {
+        return text::Error{.sentence = "integrator.dinal1989 knows no walls: take integrator.spectral or rk4",
+                           .option = "integrator"};
+    }
     if (!system.spring().none()) {
         return text::Error{
             .sentence = "integrator.dinal1989 knows the spring k theta only: take integrator.spectral or rk4",

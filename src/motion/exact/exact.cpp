@@ -9,6 +9,10 @@ namespace dinal::motion::exact {
 
 std::optional<text::Error> Exact::wrong_for(const model::Oscillator& system,
                                             const model::Excitation& excitation) const {
+    if (system.walls()) {
+        return text::Error{.sentence = "integrator.exact{} knows no walls: use integrator.spectral{} for these",
+                           .option = "integrator"};
+    }
     if (!system.spring().none()) {
         return text::Error{.sentence =
                                "integrator.exact{} knows no spring but k theta: use integrator.spectral{} for this "

@@ -7,8 +7,8 @@ namespace dinal::motion::exact {
 
 struct Exact {
     static const MethodText about;
-    /// It takes an M of native terms other than chirp and gaussian, the spring k, and dry friction that is constant
-    /// each way.
+    /// It takes an M of native terms other than chirp and gaussian, the spring k, no walls, and dry friction that is
+    /// constant each way.
     [[nodiscard]] std::optional<text::Error> wrong_for(const model::Oscillator& system,
                                                        const model::Excitation& excitation) const;
     [[nodiscard]] Resolution resolution(const model::Oscillator& system) const;
@@ -19,7 +19,7 @@ inline constexpr MethodText Exact::about{
     {"integrator.exact", "integrator.exact{}", {}},
     "The motion between events in closed form: free motion at any damping and the answer to each term of M, resonance "
     "included. Every event is proven to be the next. For an M of native terms (all but chirp and gaussian; gains, "
-    "delays, windows and sums of them), k > 0 and no spring besides, and dry friction that does not depend on speed; for all "
+    "delays, windows and sums of them), k > 0, no spring besides and no walls, and dry friction that does not depend on speed; for all "
     "else there is integrator.spectral{}. A run that names no integrator takes this one where it can.",
     "sys = nondimensional{ friction_ratio = 0.167 }\n"
     "run = sys:simulate{ velocity0 = 2*math.pi, t_end = 3, dt = 0.5, integrator = integrator.exact{} }\n"

@@ -67,6 +67,7 @@ bool Engine::begin() {
         field_.begin(here());
         echo(now_.hi, 1);
     }
+    touch_wall(problem_.before.has_value());
     return field_.arrive(here()) || fail(model::Outcome::excitation_not_finite);
 }
 
@@ -102,10 +103,14 @@ bool Engine::choose() {
     double h = std::min(
         {h_, field_.view(now_.hi, spectral::chebyshev::widest_gap) / 2, field_.shortest_delay() / 2 * (1 - 1e-12)});
     if (bad_time_ < model::never) h = std::min(h, now_.until(bad_time_) / 4);
+    // As long as it takes to a wall, or back to it, and a little more: a small bounce is to be seen.
+    if (problem_.system.walls() && !standstill_.stuck()) h = std::min(h, std::max(0.6 * until_wall(), 1e-9 * pace_));
     const double remaining = now_.until(limit);
     const bool to_limit = remaining <= 2 * h * (1 + 1e-9);
     piece_.start = now_;
     piece_.way = way();
+    piece_.leans = leans();
+    piece_.origin = origin_;
     piece_.h = to_limit ? remaining / 2 : remaining < 4 * h ? remaining / 4 : h;
     piece_.end = to_limit ? limit : now_.after(2 * piece_.h);
     piece_.from_break = after_break_;
@@ -137,14 +142,14 @@ bool Engine::advance() {
     if (standstill_.phase() == Standstill::Phase::stuck) {
         const double M = field_.load(here());
         if (!std::isfinite(M)) return fail(model::Outcome::excitation_not_finite);
-        const model::Motion towards = standstill_.pulled(pull(M), y_[0]);
+        const model::Motion towards = standstill_.pulled(pull(M), theta());
         if (towards != model::Motion::stuck && !release(towards)) return false;
     }
     if (!choose()) return false;
     const bool leaving = standstill_.phase() == Standstill::Phase::leaving && !standstill_.passes();
     model::State departing{y_[0], y_[1]};
     if (leaving) {
-        const double slip = standstill_.on_its_way({y_[0], y_[1] - belt()}).velocity;
+        const double slip = standstill_.on_its_way({theta(), y_[1] - belt()}).velocity;
         departing.velocity = belt() + slip;
     }
     const auto attempt = solver_.solve(piece_, y_, departing);
@@ -169,12 +174,13 @@ bool Engine::advance() {
     } else if (!standstill_.passes()) {
         const auto zero = first_standstill();
         if (leaving && zero && *zero <= -1) {
-            return standstill_.never_left({now_.hi, y_[0], pull(field_.load(here()))}) ||
+            return standstill_.never_left({now_.hi, theta(), pull(field_.load(here()))}) ||
                    fail(model::Outcome::chattering);
         }
         if (zero) ending = {*zero, By::surface};
     }
     if (ending.x > -1 && ending.x < 1 && piece_.time(ending.x) >= piece_.end) ending.x = 1;
+    if (problem_.system.walls()) leans() ? watch_belt_at_wall(ending) : watch_walls(ending);
     watch(ending);
     if (outcome_ != model::Outcome::reached_end) return false;
     if (standstill_.passes()) record_turns(ending.x);
@@ -195,7 +201,7 @@ bool Engine::end_piece(double x) {
     after_break_ = whole && piece_.to_break;
     if (bad_time_ <= now_.hi) bad_time_ = model::never;
     const double belt_here = whole ? piece_.belt[node_count - 1] : belt();
-    if (standstill_.stuck()) y_[1] = belt_here;
+    if (standstill_.stuck()) y_[1] = leans() ? 0 : belt_here;
     if (whole && length > 0) standstill_.go_on();
     int generation = 0;
     while (!echoes_.empty() && echoes_.front().first <= now_.hi) {
@@ -223,12 +229,14 @@ void Engine::keep(double length) {
                 .h = piece_.h,
                 .length = length,
                 .way = piece_.way,
+                .leans = piece_.leans,
                 .begin = y_,
                 .series = piece_.series,
                 .M = spectral::chebyshev::fit(piece_.M),
                 .push = spectral::chebyshev::fit(piece_.push),
                 .belt = spectral::chebyshev::fit(piece_.belt),
                 .belt_rate = spectral::chebyshev::fit(piece_.belt_rate)};
+    piece.begin[0] += piece_.origin;
     pieces_->add(std::move(piece));
     if (problem_.limits.dense) return;
     const auto delays = field_.delays();
@@ -255,11 +263,18 @@ bool Engine::put_row(double t, double x) {
     }
     const Side side = present || at == -1 ? (after_break_ ? Side::after : Side::at) : Side::at;
     const double belt = field_.belt(t, side);
-    const bool stands = standstill_.stuck();
-    if (stands) y[1] = belt;
+    const bool stands = standstill_.stuck(), leaning = leans();
+    y[0] += origin_;
+    if (const auto& walls = problem_.system.walls()) y[0] = std::clamp(y[0], walls->lower, walls->upper);
+    if (stands) y[1] = leaning ? 0 : belt;
     const double M = field_.load({t, side, {y[0], y[1]}, {y.data() + 2, y.size() - 2}});
     double friction = 0;
-    if (stands) {
+    if (leaning) {
+        // The wall carries what presses against it, friction what pulls away from it.
+        const double loads = std::fma(-system_.stiffness(), y[0], M - system_.spring(y[0])) + field_.push(t, side);
+        const bool presses = loads * model::sign_of(standstill_.leans()) >= 0;
+        friction = belt != 0 ? sliding_at_wall(belt) : presses || !system_.dry() ? 0 : -loads;
+    } else if (stands) {
         const double rate = !field_.has_belt() ? 0
                             : present          ? field_.belt_rate(t)
                                       : spectral::chebyshev::value(spectral::chebyshev::fit(piece_.belt_rate), at);
@@ -282,7 +297,7 @@ bool Engine::put_row(double t, double x) {
 void Engine::leave(Trajectory& trajectory) const {
     trajectory.t_start = problem_.window.start;
     trajectory.t_stop = now_.hi;
-    trajectory.state_at_stop = {y_[0], y_[1]};
+    trajectory.state_at_stop = {theta(), y_[1]};
     trajectory.motion_at_stop = standstill_.motion();
     trajectory.began_stuck = standstill_.began_stuck();
     if (next_row_ < problem_.rows.count()) trajectory.rows = Rows(trajectory.rows.table().first(next_row_));

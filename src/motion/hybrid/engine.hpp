@@ -1,5 +1,5 @@
 // A run with more in it: piece after piece, each up to the first event in it, whoever watches for that. What happens
-// where the mass stands on its surface is for the Standstill to say, as in every other integrator.
+// where the mass stands on its surface, or at a wall, is for the Standstill to say, as in every other integrator.
 #pragma once
 
 #include <memory>
@@ -33,12 +33,12 @@ public:
 
 private:
     /// Whose event ends a piece.
-    enum class By { nobody, surface, relay, user };
+    enum class By { nobody, surface, wall, relay, user };
     struct Ending {
         double x = 1;
         By by = By::nobody;
         std::size_t which = 0;
-        model::Motion towards = model::Motion::stuck;
+        model::Motion towards = model::Motion::stuck;  ///< of a release, or the way into a wall
     };
 
     bool begin();
@@ -49,6 +49,18 @@ private:
     [[nodiscard]] std::optional<double> first_standstill() const;
     [[nodiscard]] std::pair<double, model::Motion> first_release() const;
     void watch(Ending& ending);
+
+    // engine_walls.cpp
+    void touch_wall(bool goes_on);
+    void watch_walls(Ending& ending) const;
+    void watch_belt_at_wall(Ending& ending) const;
+    [[nodiscard]] double until_wall() const;
+    bool hit(model::Motion into);
+    void come_to_lean(model::Motion against);
+    void go_from_wall();
+    [[nodiscard]] double time_of_bounces(model::Motion into) const;
+    [[nodiscard]] double sliding_at_wall(double belt) const;
+    [[nodiscard]] double belt_at_wall(double belt) const;
     void record_turns(double until);
     bool end_piece(double x);
     bool rows_until(double end, bool to_the_end);
@@ -64,13 +76,20 @@ private:
 
     [[nodiscard]] double belt() const { return field_.belt(now_.hi, after_break_ ? Side::after : Side::at); }
     [[nodiscard]] MotionPoint here() const {
-        return {now_.hi, after_break_ ? Side::after : Side::at, {y_[0], y_[1]}, {y_.data() + 2, y_.size() - 2}};
+        return {now_.hi, after_break_ ? Side::after : Side::at, {theta(), y_[1]}, {y_.data() + 2, y_.size() - 2}};
     }
     [[nodiscard]] MotionPoint point(double x) const;
-    /// All that pulls at a mass which rests on its surface but for the spring.
+    [[nodiscard]] double theta() const { return origin_ + y_[0]; }
+    void set_theta(double theta) { origin_ = 0, y_[0] = theta; }
+    /// The mass stands at a wall.
+    [[nodiscard]] bool leans() const { return standstill_.stuck() && standstill_.leans() != model::Motion::stuck; }
+    /// The velocity of what a mass at rest stands on: the belt, or the wall.
+    [[nodiscard]] double carrier() const { return standstill_.leans() != model::Motion::stuck ? 0 : belt(); }
+    /// All that pulls at a mass which rests on its surface, or at a wall, but for the springs.
     [[nodiscard]] double pull(double M) const {
-        return M + field_.push(now_.hi, after_break_ ? Side::after : Side::at) -
-               system_.inertia() * field_.belt_rate(now_.hi) - system_.damping() * belt();
+        const double loads = M + field_.push(now_.hi, after_break_ ? Side::after : Side::at);
+        if (standstill_.leans() != model::Motion::stuck) return loads + belt_at_wall(belt());
+        return loads - system_.inertia() * field_.belt_rate(now_.hi) - system_.damping() * belt();
     }
     bool fail(model::Outcome outcome) {
         outcome_ = outcome;
@@ -93,6 +112,7 @@ private:
     Standstill standstill_;
 
     Clock now_;
+    double origin_ = 0;  // theta is this and y_[0]: the wall that was hit last
     Values y_;
     mutable Values point_states_;
     bool after_break_ = false;

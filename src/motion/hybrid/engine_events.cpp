@@ -20,7 +20,7 @@ MotionPoint Engine::point(double x) const {
     point_states_.resize(y_.size() - 2);
     for (std::size_t k = 2; k < y_.size(); ++k) point_states_[k - 2] = piece_.at(k, x);
     const Side side = x <= -1 ? piece_.side(0) : x >= 1 ? piece_.side(node_count - 1) : Side::at;
-    return {x >= 1 ? piece_.end : piece_.time(x), side, {piece_.at(0, x), piece_.at(1, x)}, point_states_};
+    return {x >= 1 ? piece_.end : piece_.time(x), side, {piece_.theta(x), piece_.at(1, x)}, point_states_};
 }
 
 /// Where the mass is as fast as its surface. At the end of the piece, zero within rounding is zero.
@@ -34,7 +34,8 @@ std::optional<double> Engine::first_standstill() const {
     }
     const double fastest = greatest(piece_.y[1]) + greatest(piece_.belt);
     const double torques = greatest(piece_.M) + greatest(piece_.push) + system_.greatest_holding() +
-                           system_.stiffness() * greatest(piece_.y[0]) + std::fabs(system_.spring(y_[0]));
+                           system_.stiffness() * (greatest(piece_.y[0]) + std::fabs(origin_)) +
+                           std::fabs(system_.spring(theta()));
     Bounded<points> curve(model::sign_of(standstill_.motion()), slip, derivative(slip));
     const bool leaving = standstill_.phase() == Standstill::Phase::leaving;
     if (field_.has_belt() && !leaving) curve.raise_floor(16 * rounding * fastest);
@@ -50,19 +51,22 @@ std::pair<double, model::Motion> Engine::first_release() const {
     using namespace spectral::chebyshev;
     std::pair<double, model::Motion> first{2, model::Motion::stuck};
     const auto pull_at = [&](double M, double push, double rate, double belt) {
+        if (piece_.leans) return M + push + belt_at_wall(belt);
         return M + push - system_.inertia() * rate - system_.damping() * belt;
     };
     Nodes pulls{};
     for (std::size_t j = 0; j < points; ++j) {
         pulls[j] = pull_at(piece_.M[j], piece_.push[j], piece_.belt_rate[j], piece_.belt[j]) -
-                   system_.pull_back(piece_.y[0][j]);
+                   system_.pull_back(piece_.origin + piece_.y[0][j]);
     }
     const Series pull = fit(pulls);
-    const double largest = greatest(piece_.M) + greatest(piece_.push) + system_.stiffness() * greatest(piece_.y[0]) +
-                           std::fabs(system_.spring(y_[0]));
+    const double largest = greatest(piece_.M) + greatest(piece_.push) +
+                           system_.stiffness() * (greatest(piece_.y[0]) + std::fabs(origin_)) +
+                           std::fabs(system_.spring(theta()));
     const bool held = standstill_.phase() == Standstill::Phase::held;
     const Series belt = fit(piece_.belt), rate = fit(piece_.belt_rate);
     for (const model::Motion side : {model::Motion::forward, model::Motion::backward}) {
+        if (side == standstill_.leans()) continue;
         const double sign = model::sign_of(side), Re = system_.holding(side);
         Series left{};
         for (std::size_t k = 0; k < points; ++k) left[k] = -sign * pull[k];
@@ -135,9 +139,12 @@ bool Engine::handle(const Ending& ending) {
             return true;
         case By::surface:
             if (ending.towards != model::Motion::stuck) return release(ending.towards);
+            standstill_.lean(model::Motion::stuck);
             y_[1] = belt();
             standstill_.arrive();
             return true;
+        case By::wall:
+            return hit(ending.towards);
         case By::relay:
             field_.toggle(ending.which);
             tell(model::EventKind::switched);
@@ -153,26 +160,34 @@ bool Engine::act(std::size_t which) {
     const model::WantedEvent& wanted = extras_.events[which];
     tell(model::EventKind::user, static_cast<int>(which));
     if (wanted.act != nullptr) {
-        model::State state{y_[0], y_[1]};
+        model::State state{theta(), y_[1]};
         if (!wanted.act->act(now_.hi, state, {y_.data() + 2, y_.size() - 2})) {
             return fail(model::Outcome::excitation_not_finite);
+        }
+        if (const auto& walls = problem_.system.walls()) {
+            state.theta = std::clamp(state.theta, walls->lower, walls->upper);
         }
         const auto energy = [&](double theta, double velocity) {
             return (system_.inertia() * velocity * velocity + system_.stiffness() * theta * theta) / 2 +
                    problem_.system.spring().energy(theta);
         };
         if (problem_.limits.dense) {
-            pieces_->add_act(now_.hi, energy(state.theta, state.velocity) - energy(y_[0], y_[1]));
+            pieces_->add_jump(now_.hi, {.acts = energy(state.theta, state.velocity) - energy(theta(), y_[1])});
         }
-        const bool moved = state.theta != y_[0] || state.velocity != y_[1];
-        y_[0] = state.theta, y_[1] = state.velocity;
+        const bool moved = state.theta != theta() || state.velocity != y_[1];
+        if (moved) {
+            set_theta(state.theta);
+            y_[1] = state.velocity;
+            standstill_.lean(model::Motion::stuck);
+        }
         const double slip = y_[1] - belt();
         if (moved && !standstill_.passes()) {
             standstill_.return_to({slip == 0 ? standstill_.motion() : model::motion_of(slip),
                                    slip == 0 ? Standstill::Phase::arrived : Standstill::Phase::moving});
         } else if (moved) {
-            standstill_.head(model::motion_of(slip));
+            standstill_.thrown(model::motion_of(slip));
         }
+        if (moved) touch_wall(false);
         // What the user did may have put other watched values on the other side, which is no passing.
         for (std::size_t i = 0; i < halves_.size(); ++i) {
             const MotionPoint at = here();
@@ -189,7 +204,7 @@ bool Engine::act(std::size_t which) {
 /// A surface that changes its velocity at once leaves the mass behind, or turns the sliding round.
 bool Engine::belt_jumps(double before) {
     const double slip = y_[1] - belt();
-    if (belt() == before || standstill_.passes()) return true;
+    if (belt() == before || standstill_.passes() || leans()) return true;
     if (slip == 0) {
         standstill_.arrive();
         return true;
@@ -206,7 +221,7 @@ bool Engine::belt_jumps(double before) {
 
 void Engine::tell(model::EventKind kind, int user) {
     const double M = field_.load(here());
-    events_.push_back({now_.hi, kind, y_[0], M, user, y_[1]});
+    events_.push_back({now_.hi, kind, theta(), M, user, y_[1]});
 }
 
 bool Engine::too_often() {
@@ -216,12 +231,13 @@ bool Engine::too_often() {
 }
 
 bool Engine::ask() {
-    y_[1] = belt();
+    y_[1] = carrier();
     const double M = field_.load(here());
     if (!std::isfinite(M)) return fail(model::Outcome::excitation_not_finite);
     const std::size_t told = events_.size();
-    const bool sane = standstill_.ask({now_.hi, y_[0], pull(M)});
+    const bool sane = standstill_.ask({now_.hi, theta(), pull(M)});
     if (events_.size() > told) events_.back().M = M, events_.back().velocity = y_[1];
+    go_from_wall();
     return sane || fail(model::Outcome::chattering);
 }
 
@@ -229,8 +245,9 @@ bool Engine::release(model::Motion towards) {
     const double M = field_.load(here());
     if (!std::isfinite(M)) return fail(model::Outcome::excitation_not_finite);
     const std::size_t told = events_.size();
-    const bool sane = standstill_.release({now_.hi, y_[0], pull(M)}, towards);
+    const bool sane = standstill_.release({now_.hi, theta(), pull(M)}, towards);
     if (events_.size() > told) events_.back().M = M, events_.back().velocity = y_[1];
+    go_from_wall();
     return sane || fail(model::Outcome::chattering);
 }
 
@@ -240,8 +257,9 @@ void Engine::record_turns(double until) {
     Series v = piece_.series[1];
     v[0] += y_[1];
     const double moving = greatest(piece_.y[1]);
-    const double torques = greatest(piece_.M) + greatest(piece_.push) + system_.stiffness() * greatest(piece_.y[0]) +
-                           std::fabs(system_.spring(y_[0]));
+    const double torques = greatest(piece_.M) + greatest(piece_.push) +
+                           system_.stiffness() * (greatest(piece_.y[0]) + std::fabs(origin_)) +
+                           std::fabs(system_.spring(theta()));
     if (moving <= 100 * rounding * piece_.h / system_.inertia() * torques) return;
     if (standstill_.motion() == model::Motion::stuck) {
         const std::span<const double> velocities = piece_.y[1];

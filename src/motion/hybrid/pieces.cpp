@@ -30,7 +30,7 @@ public:
         dry_ = cheb::integral(cheb::product(friction, against), 0);
         for (double& c : belt_) c *= piece.h;
         for (double& c : dry_) c *= piece.h;
-        if (piece.way == model::Motion::stuck) dry_ = {};
+        if (piece.way == model::Motion::stuck && !piece.leans) dry_ = {};
     }
     [[nodiscard]] double length() const override { return piece_.length; }
     [[nodiscard]] double since_start(double t) const override { return piece_.start.until(t); }
@@ -47,6 +47,7 @@ private:
     /// The torque of dry friction on the mass.
     [[nodiscard]] Series friction_on(const model::Lowered& system, const Series& theta, const Series& v) const {
         Series friction{};
+        if (piece_.leans) return friction_at_wall(system, theta);
         if (piece_.way == model::Motion::stuck) {
             Nodes own = cheb::at_nodes(theta);
             for (double& torque : own) torque = system.spring(torque);
@@ -66,22 +67,32 @@ private:
         return cheb::fit(values);
     }
 
+    /// At a wall the belt slides along the mass.
+    [[nodiscard]] Series friction_at_wall(const model::Lowered& system, const Series& theta) const {
+        const Nodes theta_at = cheb::at_nodes(theta), belt_at = cheb::at_nodes(piece_.belt);
+        Nodes values{};
+        for (std::size_t j = 0; j < node_count; ++j) {
+            const model::Motion slides = model::motion_of(-belt_at[j]);
+            values[j] = -system.braking(slides) - system.friction_remainder(slides, {theta_at[j], -belt_at[j]});
+        }
+        return cheb::fit(values);
+    }
+
     const Piece& piece_;
     Integral input_{}, viscous_{}, dry_{}, belt_{}, base_{};
 };
 
 /// No time, but energy.
-class ActLeg final : public Leg {
+class JumpLeg final : public Leg {
 public:
-    explicit ActLeg(const std::pair<double, double>& act) : act_(act) {}
+    JumpLeg(double t, const Work& done) : t_(t), work_(done) {}
     [[nodiscard]] double length() const override { return 0; }
-    [[nodiscard]] double since_start(double t) const override { return t - act_.first; }
-    [[nodiscard]] Work work(double since_start) const override {
-        return since_start < 0 ? Work{} : Work{.acts = act_.second};
-    }
+    [[nodiscard]] double since_start(double t) const override { return t - t_; }
+    [[nodiscard]] Work work(double since_start) const override { return since_start < 0 ? Work{} : work_; }
 
 private:
-    std::pair<double, double> act_;
+    double t_;
+    Work work_;
 };
 
 }  // namespace
@@ -147,12 +158,11 @@ std::vector<double> Pieces::states_at(double t) const {
 
 void Pieces::legs(const std::function<void(const Leg&)>& told) const {
     const model::Lowered lowered(system());
-    auto act = acts_.begin();
-    for (const Piece& piece : list_) {
-        for (; act != acts_.end() && piece.start.until(act->first) <= 0; ++act) told(ActLeg(*act));
-        told(PieceLeg(lowered, piece));
+    auto jump = jumps_.begin();
+    for (std::size_t i = 0; i <= list_.size(); ++i) {
+        for (; jump != jumps_.end() && jump->piece == i; ++jump) told(JumpLeg(jump->t, jump->work));
+        if (i < list_.size()) told(PieceLeg(lowered, list_[i]));
     }
-    for (; act != acts_.end(); ++act) told(ActLeg(*act));
 }
 
 }  // namespace dinal::motion::hybrid

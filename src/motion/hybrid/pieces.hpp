@@ -16,6 +16,7 @@ struct Piece {
     double h = 0;
     double length = 0;  ///< how much of it was used, at most 2 h
     model::Motion way = model::Motion::stuck;
+    bool leans = false;  ///< stuck at a wall
     Values begin{};
     std::vector<Series> series{};  ///< of each value less its first
     Series M{}, push{}, belt{}, belt_rate{};
@@ -33,8 +34,8 @@ public:
            std::shared_ptr<const Pieces> before, std::size_t most_bytes, bool whole);
 
     void add(Piece piece);
-    /// What a user did to the motion at one of his events, as an energy.
-    void add_act(double t, double energy) { acts_.emplace_back(t, energy); }
+    /// What took no time: what a user did to the motion at one of his events, an impact.
+    void add_jump(double t, const Work& work) { jumps_.push_back({list_.size(), t, work}); }
     /// Keeps only what is later than this time.
     void forget(double t);
 
@@ -54,7 +55,12 @@ private:
     std::size_t most_, bytes_ = 0;
     bool whole_, complete_ = true;
     std::vector<Piece> list_;
-    std::vector<std::pair<double, double>> acts_;  // times and energies
+    struct Jump {
+        std::size_t piece;  // the one that comes after it
+        double t;
+        Work work;
+    };
+    std::vector<Jump> jumps_;
 };
 
 }  // namespace dinal::motion::hybrid

@@ -47,16 +47,17 @@ void Solver::sample_surroundings(Solved& piece) const {
 
 bool Solver::rates_of(const Solved& piece, double t, Side side, const model::State& asked, const Values& y,
                       double belt_rate, double* out, double& M, double push, double belt) const {
-    const MotionPoint at{t, side, asked, {y.data() + 2, n_ - 2}};
+    const double theta = piece.origin + y[0];
+    const MotionPoint at{t, side, {piece.origin + asked.theta, asked.velocity}, {y.data() + 2, n_ - 2}};
     M = field_.load(at);
     field_.rates(at, out + 2);
     if (moves(piece)) {
-        const double friction = system_.braking(piece.way) + system_.remainder(piece.way, {y[0], y[1] - belt});
+        const double friction = system_.braking(piece.way) + system_.remainder(piece.way, {theta, y[1] - belt});
         out[0] = y[1];
-        out[1] = (((M - friction) + push) - system_.damping() * y[1] - system_.stiffness() * y[0]) / system_.inertia();
+        out[1] = (((M - friction) + push) - system_.damping() * y[1] - system_.stiffness() * theta) / system_.inertia();
     } else {
-        out[0] = belt;
-        out[1] = belt_rate;
+        out[0] = piece.leans ? 0 : belt;
+        out[1] = piece.leans ? 0 : belt_rate;
     }
     return std::isfinite(M) && std::all_of(out, out + n_, [](double x) { return std::isfinite(x); });
 }
@@ -146,7 +147,7 @@ void Solver::prepare(const Solved& piece) {
 Solver::Attempt Solver::collocate(Solved& piece, const model::State& departing) {
     Linear& linear = moves(piece) ? moving_ : standing_;
     unresolved_ = std::numeric_limits<double>::infinity();
-    const bool nothing_to_find = !moves(piece) && n_ == 2 && !field_.has_belt();
+    const bool nothing_to_find = !moves(piece) && n_ == 2 && (piece.leans || !field_.has_belt());
     const Integration& Q = integration();
     residual_.resize(static_cast<Eigen::Index>(inner * n_));
     for (const bool again : {false, true}) {
@@ -184,7 +185,8 @@ Solver::Attempt Solver::collocate(Solved& piece, const model::State& departing) 
                     most = std::max(most, std::fabs(d));
                 }
                 // A velocity matters by how far it carries the mass, and by how fast the mass goes anyway.
-                const double scale = greatest(piece.y[k]) + std::numeric_limits<double>::min() / rounding;
+                const double scale = greatest(piece.y[k]) + (k == 0 ? std::fabs(piece.origin) : 0) +
+                                     std::numeric_limits<double>::min() / rounding;
                 change = std::max(change, most / scale);
             }
             if (!std::isfinite(change)) break;
@@ -227,7 +229,7 @@ Solver::Attempt Solver::runge_kutta(Solved& piece, const model::State& departing
     along(h, c);
     if (!rates(1, z, d.data(), nullptr)) return Attempt::failed;
     for (std::size_t k = 0; k < n_; ++k) z[k] = y[k] + h / 6 * (a[k] + 2 * b[k] + 2 * c[k] + d[k]);
-    if (!moves(piece)) z[1] = piece.belt[node_count - 1];
+    if (!moves(piece)) z[1] = piece.carrier(node_count - 1);
     if (!rates(1, z, e.data(), nullptr)) return Attempt::failed;
     const StepInterpolant motion(h, {y[0], y[1]}, a[1], {z[0], z[1]}, e[1]);
     for (std::size_t j = 0; j < node_count; ++j) {
@@ -236,7 +238,7 @@ Solver::Attempt Solver::runge_kutta(Solved& piece, const model::State& departing
             const model::State state = motion(x);
             piece.y[0][j] = state.theta, piece.y[1][j] = state.velocity;
         } else {
-            piece.y[0][j] = motion(x).theta, piece.y[1][j] = piece.belt[j];
+            piece.y[0][j] = motion(x).theta, piece.y[1][j] = piece.carrier(j);
         }
         for (std::size_t k = 2; k < n_; ++k) {
             const double p = z[k] - y[k], v0 = h * a[k], v1 = h * e[k];
@@ -257,8 +259,9 @@ void Solver::judge(const Solved& piece) {
     unresolved_ = 0;
     const double h = piece.h, per_torque = h * (h / system_.inertia());
     const Series M = cheb::fit(piece.M);
-    const double torques = cheb::size(M) + system_.greatest_holding() + system_.stiffness() * greatest(piece.y[0]) +
-                           greatest(piece.push) + std::fabs(system_.spring(piece.y[0][0]));
+    const double torques = cheb::size(M) + system_.greatest_holding() +
+                           system_.stiffness() * (greatest(piece.y[0]) + std::fabs(piece.origin)) +
+                           greatest(piece.push) + std::fabs(system_.spring(piece.origin + piece.y[0][0]));
     const double smallest = std::numeric_limits<double>::min() / rounding;
     // Times far from t = 0 are rounded, and M with them.
     double slope = 0;

@@ -43,6 +43,8 @@ struct Solved {
     double h = 0;    ///< half its length
     double end = 0;  ///< exactly
     model::Motion way = model::Motion::stuck;
+    bool leans = false;  ///< stuck at a wall, whatever the belt does
+    double origin = 0;   ///< theta is this and y[0]: a wall that was hit, so that small bounces keep their digits
     bool from_break = false, to_break = false;
     Nodes times{};
     std::vector<Nodes> y{}, f{};  ///< of each value: at the nodes, and its rate
@@ -50,6 +52,9 @@ struct Solved {
     std::vector<Series> series{};  ///< of each value less its first
 
     [[nodiscard]] double time(double x) const { return start.after(h * (1 + x)); }
+    [[nodiscard]] double theta(double x) const { return origin + at(0, x); }
+    /// The velocity of what the mass stands on while it is stuck.
+    [[nodiscard]] double carrier(std::size_t node) const { return leans ? 0 : belt[node]; }
     [[nodiscard]] double at(std::size_t value, double x) const {
         return x >= 1 ? y[value][node_count - 1] : y[value][0] + spectral::chebyshev::value(series[value], x);
     }
@@ -63,8 +68,9 @@ public:
     enum class Attempt { resolved, shorten, failed };
     Solver(const Problem& problem, const Field& field, const Cut& cut);
 
-    /// The piece from `start` up to `end`, 2 h later, under friction of `way`; `stuck` rests on the belt. A feedback is
-    /// asked at `departing` at its beginning. failed: something is not finite at bad_time().
+    /// The piece from `start` up to `end`, 2 h later, under friction of `way`; `stuck` rests on the belt or at a wall.
+    /// A feedback is asked at `departing` at its beginning, theta without the origin. failed: something is not finite
+    /// at bad_time().
     Attempt solve(Solved& piece, const Values& begin, const model::State& departing);
     [[nodiscard]] double bad_time() const { return bad_time_; }
     /// Over 1: by how much the last piece was not resolved.

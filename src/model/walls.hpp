@@ -1,0 +1,39 @@
+// End stops: two walls, or one, between which the mass moves, and what an impact leaves of its velocity.
+#pragma once
+
+#include <limits>
+#include <optional>
+
+#include "text/option.hpp"
+
+namespace dinal::model {
+
+/// velocity+ = -restitution velocity-, against the ground.
+struct Walls {
+    double lower = -std::numeric_limits<double>::infinity();  ///< rad; -infinity is none
+    double upper = std::numeric_limits<double>::infinity();   ///< rad, above lower; infinity is none
+    double restitution = 1;                                   ///< 0 ... 1
+
+    /// The wall in the way of a motion towards positive angles, or of the other one.
+    [[nodiscard]] double at(int side) const { return side > 0 ? upper : lower; }
+    [[nodiscard]] bool alike() const { return lower == -upper; }
+
+    /// What is wrong with them, for the person who gave them.
+    [[nodiscard]] std::optional<text::Error> complaint() const;
+    /// What is wrong with a start there.
+    [[nodiscard]] std::optional<text::Error> crossed_by(double theta) const;
+    /// "{ lower = -0.8, upper = 0.8, restitution = 0.7 }"
+    [[nodiscard]] std::string lua_text() const;
+};
+
+inline constexpr text::Range from_0_to_1{"be from 0 to 1", [](double x) { return x >= 0 && x <= 1; }};
+inline constexpr text::Option wall_options[] = {
+    {"lower", "rad", text::its_own, text::any_finite, "the wall below; none when it is not given",
+     text::fills<&Walls::lower>},
+    {"upper", "rad", text::its_own, text::any_finite, "the wall above, greater than lower; none when it is not given",
+     text::fills<&Walls::upper>},
+    {"restitution", "", text::its_own, from_0_to_1,
+     "what an impact leaves of the velocity; 0: the mass stays at the wall", text::fills<&Walls::restitution>},
+};
+
+}  // namespace dinal::model

@@ -1,0 +1,120 @@
+// Runs of systems with walls that have more in them, and what begins at a wall.
+#include <cmath>
+
+#include "analysis/energy.hpp"
+#include "support/catch.hpp"
+#include "support/walled.hpp"
+#include "support/within.hpp"
+#include "support/written.hpp"
+
+using namespace dinal;
+using namespace dinal::model;
+using namespace dinal::motion;
+using namespace dinal::truth;
+
+TEST_CASE("a belt carries the mass against the wall and slides along it", "[walls][belt]") {
+    const double vb = 0.5, Rd = 0.3, Re = 0.4;
+    Extras extras;
+    extras.belt = constant(vb);
+    for (const double e : {0.0, 0.6}) {
+        for (const auto& [integrator, tolerance] : methods_at_walls) {
+            CAPTURE(e);
+            const auto result = simulate(walled({-none, 1, e}, 0, Rd, Re), ramp(-0.1, 20), {0, vb}, {0, 30},
+                                         Grid::every(0.5), integrator, {}, {}, extras);
+            REQUIRE(result);
+            const Trajectory& run = *result;
+            REQUIRE(run.events.size() > 2);
+            CHECK(run.events[0].kind == EventKind::impact);
+            CHECK(run.events[0].t == within(2, 10 * tolerance));
+            CHECK(run.events[0].velocity == within(vb, tolerance));
+            // Thrown back with e vb, friction of the belt brings it back in 2 e vb/Rd, and so on.
+            const double rest = 2 + 2 * e * vb / Rd / (1 - e);
+            const std::vector<Event> sticks = of_kind(run, EventKind::stick), slips = of_kind(run, EventKind::slip);
+            REQUIRE(sticks.size() >= 1);
+            CHECK(sticks[0].t == within(rest, 40 * tolerance));
+            // Friction slides: it presses with Rd, no more and no less.
+            REQUIRE(slips.size() == 1);
+            CHECK(slips[0].t == within(23, 1e-11));
+            for (Eigen::Index i = 0; i < run.size(); ++i) {
+                if (run.rows(i, 0) > rest && run.rows(i, 0) < 23) {
+                    CHECK(run.rows(i, 4) == Rd);
+                    CHECK(run.rows(i, 1) == 1);
+                    CHECK(run.rows(i, 2) == 0);
+                }
+            }
+            const auto energy = analysis::energy_of(run);
+            if (!energy) continue;
+            CHECK(energy->closure() < 1e-12);
+            CHECK(energy->total.work.impacts > 0);
+        }
+    }
+}
+
+TEST_CASE("a belt that turns round while the mass leans", "[walls][belt]") {
+    // Pressed with 0.1; the belt holds it with 0.3 on the way in, and takes it off on the way back.
+    Extras extras;
+    extras.belt = harmonic(0.5, 1);
+    const auto run = simulate(walled({-none, 0, 0}, 0, 0.3, 0.3), constant(0.1), {0, 0}, {0, 5}, Grid::none(),
+                              Spectral{}, {}, {}, extras);
+    REQUIRE(run);
+    REQUIRE_FALSE(run->events.empty());
+    CHECK(run->events[0].kind == EventKind::slip);
+    CHECK(run->events[0].t == within(pi, 1e-12));
+}
+
+TEST_CASE("a shaking base throws the mass from wall to wall as a load would", "[walls][base]") {
+    Extras extras;
+    extras.base = constant(2);
+    const auto shaken = simulate(walled({0, none, 0.7}), {}, {1, 0}, {0, 50}, Grid::none(), Spectral{}, {}, {}, extras);
+    REQUIRE(shaken);
+    CHECK(shaken->outcome == Outcome::at_rest);
+    CHECK(shaken->events.back().t == within(1.7 / 0.3, 1e-11));
+    const auto energy = analysis::energy_of(*shaken);
+    REQUIRE(energy);
+    CHECK(energy->closure() < 1e-12);
+    CHECK(energy->total.work.base == within(2, 1e-11));
+}
+
+TEST_CASE("states go on while the mass leans, and events of the user see impacts", "[walls][states]") {
+    Extras extras;
+    extras.states.push_back({"z", 0, written([](double, const State& y, std::span<const double>) { return y.theta; })});
+    extras.events.push_back(
+        {.name = "down", .when = written([](double, const State& y, std::span<const double>) { return y.velocity; })});
+    const Trajectory run = run_more(walled({-none, 0.5, 0}), {}, {0, 1}, 4, 0.5, Spectral{}, extras);
+    CHECK(run.rows(8, 6) == within(0.125 + 0.5 * 3.5, 1e-12));
+    // An M that is the state lets the mass go when it says so.
+    const Excitation M = feedback([](double, const State&, std::span<const double> z) { return 1 - z[0]; });
+    const Trajectory off = run_more(walled({-none, 0.5, 0}), M, {0.5, 0}, 5, 0.5, Spectral{}, extras);
+    REQUIRE(of_kind(off, EventKind::slip).size() == 1);
+    CHECK(of_kind(off, EventKind::slip)[0].t == within(2, 1e-12));
+}
+
+TEST_CASE("what begins at a wall stands there, or hits it at once", "[walls]") {
+    for (const auto& [integrator, tolerance] : methods_at_walls) {
+        const Trajectory pressed =
+            must_run(walled({-1, 1, 0.5}), constant(1), {1, 0}, {0, 5}, Grid::every(1), integrator);
+        CHECK(pressed.events.empty());
+        CHECK(pressed.began_stuck);
+        CHECK(pressed.outcome == Outcome::at_rest);
+        const Trajectory pulled =
+            must_run(walled({-1, 1, 0.5}), constant(-1), {1, 0}, {0, 1}, Grid::every(1), integrator);
+        CHECK(pulled.events.empty());
+        CHECK(pulled.state_at_stop.theta == within(0.5, 10 * tolerance));
+        const Trajectory thrown = must_run(walled({-1, 1, 0.5}), {}, {1, 1}, {0, 1}, Grid::every(1), integrator);
+        REQUIRE(thrown.events.size() == 1);
+        CHECK(thrown.events[0].kind == EventKind::impact);
+        CHECK(thrown.events[0].t == 0);
+        CHECK(thrown.state_at_stop.theta == within(0.5, 10 * tolerance));
+        CHECK(thrown.rows(0, 2) == -0.5);
+    }
+}
+
+TEST_CASE("a load that only touches the limit does not take the mass off the wall", "[walls]") {
+    // 1 + cos t comes down to 0 once in a turn, where it neither presses nor pulls.
+    const Excitation M = constant(1) + harmonic(1, 1, pi / 2);
+    for (const auto& [integrator, tolerance] : methods_at_walls) {
+        const Trajectory run = must_run(walled({-none, 0, 0.5}), M, {0, 0}, {0, 20}, Grid::none(), integrator);
+        CHECK(run.state_at_stop.theta == within(0, 1e-12));
+        CHECK(run.outcome == Outcome::at_rest);
+    }
+}

@@ -1,0 +1,99 @@
+package.path = "tests/lua/?.lua;" .. package.path
+local support = require "support"
+local test, near, equal, raises_here = support.test, support.near, support.equal, support.raises_here
+
+local walls = { lower = -0.8, upper = 0.8, restitution = 0.7 }
+
+test("walls are an option of a system, and the text of the system makes them again", function()
+    local sys = system { I = 1, k = 0, walls = walls }
+    equal(tostring(sys), "system{ I = 1, k = 0, walls = { lower = -0.8, upper = 0.8, restitution = 0.7 } }")
+    equal(tostring(load("return " .. tostring(sys))()), tostring(sys))
+    equal(sys.walls.lower, -0.8)
+    equal(system { I = 1, k = 1 }.walls, nil)
+    local one = system { I = 1, k = 1, Rd = 0.1, walls = { upper = 0.5 } }
+    equal(tostring(one), "system{ I = 1, k = 1, walls = { upper = 0.5, restitution = 1 }, Rd = 0.1, Re = 0.1 }")
+    equal(one.walls.lower, nil)
+    equal(sys:with { walls = {} }.walls, nil)
+    equal(sys:with { k = 2 }.walls.upper, 0.8)
+    equal(sys:with { walls = { lower = 0 } }.walls.restitution, 1.0)
+end)
+
+test("impacts are events: where, when, and with which velocity", function()
+    for _, method in ipairs { integrator.spectral {}, integrator.rk4 { h = 0.002 } } do
+        local run = system { I = 1, k = 0, walls = walls }:simulate { velocity0 = 2, t_end = 3.5, dt = 0.1, integrator = method }
+        equal(#run.events, 3)
+        for i, t in ipairs { 0.4, 0.4 + 1.6 / 1.4, 0.4 + 1.6 / 1.4 + 1.6 / 0.98 } do
+            equal(run.events[i].kind, "impact")
+            near(run.events[i].t, t, 1e-12)
+            equal(run.events[i].theta, i % 2 == 1 and 0.8 or -0.8)
+        end
+        near(run.events[2].velocity, -1.4, 1e-13)
+        near(run:at(0.4), 0.8, 1e-12)
+        assert(tostring(run):find("3 events (3 impacts)", 1, true), tostring(run))
+        assert(run.theta:max() <= 0.8)
+    end
+end)
+
+test("a ball comes to rest in finite time; its energy adds up; the file repeats it", function()
+    local ball = system { I = 1, k = 0, walls = { lower = 0, restitution = 0.7 } }
+    local run = ball:simulate { M = -2, theta0 = 1, t_end = 10, dt = 0.5 }
+    equal(run.outcome, "at rest")
+    near(run.events[#run.events].t, 1.7 / 0.3, 1e-11)
+    equal(run.events[#run.events].kind, "rest")
+    local energy = run:energy()
+    near(energy.total.impacts, 2, 1e-11)
+    near(energy.impacts[#run], 2, 1e-11)
+    assert(energy.total.closure < 1e-12)
+    assert(tostring(energy):find "lost at the walls")
+    assert(run:explain():gsub("%s+", " "):find("It came to rest at the wall, theta = 0", 1, true))
+    local name = support.temporary ".csv"
+    run:save(name)
+    local lines = {}
+    for line in io.lines(name) do lines[#lines + 1] = line:match "^# (.*)" end
+    local again = load(table.concat(lines, "\n") .. "\nreturn run")()
+    equal(#again.events, #run.events)
+    equal(again.theta[5], run.theta[5])
+    local on = ball:simulate { M = -2, theta0 = 1, t_end = 3, dt = 0.5 }:continue { t_end = 10 }
+    near(on.events[#on.events].t, 1.7 / 0.3, 1e-11)
+    local picture = run:plot { width = 60, height = 12, show = false }
+    assert(tostring(picture):find "impact", tostring(picture))
+end)
+
+test("walls with a spring, a belt, states and events of the user", function()
+    local sys = system { I = 1, k = 1, Rd = 0.1, Re = 0.2, spring = spring.polynomial { [3] = 0.5 }, walls = walls }
+    local run = sys:simulate {
+        M = function(t, theta, velocity, z) return math.sin(t) - 0.1 * z.e end, belt = 0.1,
+        states = { e = { rate = function(t, theta) return theta end } },
+        events = { { name = "fast", when = function(t, theta, velocity) return velocity - 0.3 end } },
+        velocity0 = 2, t_end = 20, dt = 0.1,
+    }
+    local kinds = {}
+    for _, e in ipairs(run.events) do kinds[e.kind] = (kinds[e.kind] or 0) + 1 end
+    assert(kinds.impact > 3 and kinds.user > 3)
+    assert(run:energy().total.closure < 1e-11)
+    assert(run.theta:max() <= 0.8 and run.theta:min() >= -0.8)
+end)
+
+test("a steady motion between walls, and a response", function()
+    local sys = system { I = 1, k = 1, C = 0.1, Rd = 0.05, walls = { lower = -0.5, upper = 0.5, restitution = 0.6 } }
+    local s = sys:steady { M = excitation.harmonic { amplitude = 0.6, omega = 1.2 } }
+    equal(s.status, "steady")
+    equal(s.amplitude, 0.5)
+    near(s.run.theta[#s.run], s.run.theta[1], 1e-7)
+    equal(#sys:response { frequency = { 0.15, 0.2 }, points = 2, amplitude = 0.6 }.amplitude, 2)
+end)
+
+test("what is wrong with walls is one sentence with the name of the option", function()
+    local function with_walls(w) return function() system { I = 1, k = 1, walls = w } end end
+    raises_here(with_walls(3), "system: walls must be a table such as { lower = -0.8", "got 3")
+    raises_here(with_walls { lower = 1, upper = 0 }, "walls: lower = 1 must be less than upper = 0")
+    raises_here(with_walls { restitution = 0.5 }, "walls needs lower, upper or both")
+    raises_here(with_walls { upper = 1, restitution = 1.5 }, "walls: restitution = 1.5 must be from 0 to 1")
+    raises_here(with_walls { upper = 1, restitution = -0.5 }, "walls: restitution = -0.5 must be from 0 to 1")
+    raises_here(with_walls { uper = 1 }, "walls has no option 'uper' among lower, upper and restitution; did you mean 'upper'?")
+    raises_here(with_walls { upper = "1" }, "walls: upper must be a finite number")
+    local sys = system { I = 1, k = 1, walls = walls }
+    raises_here(function() sys:simulate { theta0 = 1, t_end = 1, dt = 1 } end, "sys:simulate: theta0 = 1 is beyond the wall at upper = 0.8")
+    raises_here(function() sys:simulate { t_end = 1, dt = 1, integrator = integrator.dinal1989 { h = 0.1 } } end, "knows no walls")
+    raises_here(function() theory.time_to_rest { system = sys, theta0 = 1 } end, "the closed forms know no walls")
+end)
