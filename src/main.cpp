@@ -4,6 +4,7 @@
 
 #include "help/manual.hpp"
 #include "prompt/arguments.hpp"
+#include "prompt/kernel.hpp"
 #include "prompt/lab_solutions.hpp"
 #include "prompt/output.hpp"
 #include "prompt/script.hpp"
@@ -15,13 +16,12 @@ int print(const std::string& text) {
     return dinal::prompt::exit_code::ok;
 }
 
-int print_solutions(const std::string& student) {
-    const auto text = dinal::prompt::solutions_of(student);
+int print(const dinal::text::Expected<std::string>& text) {
     if (!text) {
-        dinal::prompt::complain(text.error().sentence);
+        dinal::prompt::complain(text.error().message());
         return dinal::prompt::exit_code::script_error;
     }
-    return print(*text);
+    return print(text.value());
 }
 
 int carry_out(const dinal::prompt::Arguments& arguments) {
@@ -33,7 +33,9 @@ int carry_out(const dinal::prompt::Arguments& arguments) {
         case dinal::prompt::Request::manual:
             return print(dinal::help::manual());
         case dinal::prompt::Request::lab_solutions:
-            return print_solutions(arguments.student);
+            return print(dinal::prompt::solutions_of(arguments.student));
+        case dinal::prompt::Request::jupyter_install:
+            return print(dinal::prompt::install_kernel());
         case dinal::prompt::Request::run:
             break;
     }

@@ -56,6 +56,24 @@ void refuse_empty(const lua::Options& options, const RunHandle& run) {
     }
 }
 
+int picture_text(lua_State* L) {
+    return lua::push_text(L, text_of_picture(lua::self<Picture>(L, 1, "tostring(picture)")));
+}
+
+constexpr lua::Member plot_module_members[] = {
+    {lua::a_function<plot_vectors>, plot_doc},
+};
+
+constexpr lua::Member picture_members[] = {
+    {lua::a_metamethod<picture_text>("__tostring"),
+     {"tostring(picture) -> string", "The picture as text, without colours; print(picture) shows it.",
+      "x = vector.linspace(-2, 2, 9)\n"
+      "p = plot{ { x, x^2 }, width = 40, height = 10, show = false }\n"
+      "print(select(2, tostring(p):gsub(\"\\n\", \"\")))  --> 9"}},
+};
+
+}  // namespace
+
 int plot_vectors(lua_State* L) {
     if (lua_gettop(L) != 1 || !lua_istable(L, 1)) {
         lua::raise(L, {.sentence = fmt::format("plot takes one table of curves and named options, for example {}",
@@ -97,24 +115,6 @@ int plot_vectors(lua_State* L) {
     }
     return deliver(L, options, std::move(items.panels));
 }
-
-int picture_text(lua_State* L) {
-    return lua::push_text(L, text_of_picture(lua::self<Picture>(L, 1, "tostring(picture)")));
-}
-
-constexpr lua::Member plot_module_members[] = {
-    {lua::a_function<plot_vectors>, plot_doc},
-};
-
-constexpr lua::Member picture_members[] = {
-    {lua::a_metamethod<picture_text>("__tostring"),
-     {"tostring(picture) -> string", "The picture as text, without colours; print(picture) shows it.",
-      "x = vector.linspace(-2, 2, 9)\n"
-      "p = plot{ { x, x^2 }, width = 40, height = 10, show = false }\n"
-      "print(select(2, tostring(p):gsub(\"\\n\", \"\")))  --> 9"}},
-};
-
-}  // namespace
 
 int plot_run(lua_State* L) {
     const RunHandle run = lua::self<RunHandle>(L, 1, "run:plot()");

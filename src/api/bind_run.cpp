@@ -21,6 +21,17 @@
 
 namespace dinal::api {
 
+std::string story_of_run(lua_State* L, const Run& run) {
+    lua::CallState call(L);  // a spring may be a user's function
+    std::string text = run.origin ? analysis::explain(run.trajectory, run.origin->system, run.origin->excitation,
+                                                      run.origin->integrator)
+                                  : analysis::explain_rows(run.trajectory);
+    if (call.failed()) {
+        call.raise_error();
+    }
+    return text;
+}
+
 namespace {
 
 const RunHandle& run_self(lua_State* L, const char* call) {
@@ -137,14 +148,7 @@ int run_length(lua_State* L) {
 
 int explain(lua_State* L) {
     const RunHandle run = run_self(L, "run:explain()");
-    lua::CallState call(L);  // a spring may be a user's function
-    const std::string text = run->origin ? analysis::explain(run->trajectory, run->origin->system,
-                                                             run->origin->excitation, run->origin->integrator)
-                                         : analysis::explain_rows(run->trajectory);
-    if (call.failed()) {
-        call.raise_error();
-    }
-    return lua::push_text(L, text);
+    return lua::push_text(L, story_of_run(L, *run));
 }
 
 int run_text(lua_State* L) {

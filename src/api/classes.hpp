@@ -19,6 +19,7 @@ void register_vector(lua_State* L);
 void register_data(lua_State* L);
 void register_steady(lua_State* L);
 void register_identify(lua_State* L);
+void register_report(lua_State* L);
 void register_sweep(lua_State* L);
 void register_progress(lua_State* L);
 void register_plot(lua_State* L);
@@ -44,6 +45,8 @@ extern const lua::Class vector_class;        // v
 extern const lua::Class steady_class;        // what sys:steady{ ... } returns
 extern const lua::Class identify_functions;  // identify
 extern const lua::Class fit_class;           // what it returns
+extern const lua::Class report_functions;    // report
+extern const lua::Class report_class;        // r
 extern const lua::Class data_module;         // data{ ... }, data.load
 extern const lua::Class data_class;          // d
 extern const lua::Class sweep_functions;     // sweep

@@ -8,6 +8,7 @@
 
 #include "lua/memory_limit.hpp"
 #include "text/characters.hpp"
+#include "text/html.hpp"
 #include "text/sentences.hpp"
 
 namespace dinal::api {
@@ -152,6 +153,19 @@ std::string text_of(const Data& data, std::size_t width) {
     }
     if (n > 0) text += TableText(data, std::min(n, most_rows)).lines(width);
     return n > most_rows ? text + fmt::format("\n  ... {}", text::counted(n - most_rows, "more row")) : text;
+}
+
+std::string html_of(const Data& data, std::size_t rows) {
+    std::string all = "<table>\n<tr>";
+    for (const DataColumn& column : data.columns) all += "<th>" + text::html(column.name) + "</th>";
+    all += "</tr>\n";
+    for (std::size_t row = 0; row < std::min(rows, data.size()); ++row) {
+        all += "<tr>";
+        for (const DataColumn& column : data.columns) all += "<td>" + text::html(column.text(row)) + "</td>";
+        all += "</tr>\n";
+    }
+    all += "</table>\n";
+    return data.size() <= rows ? all : all + fmt::format("<p>{} of {}</p>\n", rows, text::counted(data.size(), "row"));
 }
 
 }  // namespace dinal::api

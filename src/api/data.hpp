@@ -52,6 +52,12 @@ void push_events(lua_State* L, std::span<const model::Event> events, std::span<c
 /// Its first line, and a table of its first rows; a column that does not fit into the width is left out.
 std::string text_of(const Data& data, std::size_t width);
 
+/// A table in Markdown, without a line end behind it.
+std::string markdown_of(const Data& data);
+
+/// A table in HTML of its first rows, and how many there are if there are more.
+std::string html_of(const Data& data, std::size_t rows);
+
 /// Methods of the class in bind_data.cpp, which have files of their own.
 namespace data_functions {
 int plot(lua_State* L);

@@ -253,18 +253,26 @@ int load(lua_State* L) {
 }
 
 int markdown(lua_State* L) {
-    const Data& data = *self(L, "d:markdown()");
+    return lua::push_text(L, markdown_of(*self(L, "d:markdown()")));
+}
+
+}  // namespace dinal::api::data_functions
+
+namespace dinal::api {
+
+std::string markdown_of(const Data& data) {
     std::string text = "|", rule = "\n|";
     for (const DataColumn& column : data.columns) {
-        text += " " + in_markdown(column.name) + " |";
+        text += " " + data_functions::in_markdown(column.name) + " |";
         rule += column.numbers() != nullptr ? "---:|" : "---|";
     }
     text += rule;
     for (std::size_t row = 0; row < data.size(); ++row) {
         text += "\n|";
-        for (const DataColumn& column : data.columns) text += " " + in_markdown(column.text(row)) + " |";
+        for (const DataColumn& column : data.columns)
+            text += " " + data_functions::in_markdown(column.text(row)) + " |";
     }
-    return lua::push_text(L, text);
+    return text;
 }
 
-}  // namespace dinal::api::data_functions
+}  // namespace dinal::api

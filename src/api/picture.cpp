@@ -149,7 +149,17 @@ void check_ticks(const lua::Options& options, std::string_view name, const plots
     }
 }
 
+PictureViewer picture_viewer = nullptr;
+
 }  // namespace
+
+void show_pictures_by(PictureViewer viewer) {
+    picture_viewer = viewer;
+}
+
+text::Expected<std::string> svg_of(const Picture& picture) {
+    return content(picture.figures, FileKind::svg, {}, picture.format);
+}
 
 void apply_options(lua_State* L, const lua::Options& options, plots::Figure& figure) {
     FigureOptions asked;
@@ -201,6 +211,10 @@ int deliver(lua_State* L, const lua::Options& options, std::vector<plots::Figure
         lua::push(L, Picture{std::move(figures), format});
         lua::note_external_memory(L, bytes);
         return 1;
+    }
+    if (picture_viewer != nullptr) {
+        picture_viewer({std::move(figures), format});
+        return 0;
     }
     const std::string text = plots::text_plot(figures, format);
     lua_writestring(text.data(), text.size());  // as print() does

@@ -23,6 +23,16 @@ void apply_options(lua_State* L, const lua::Options& options, plots::Figure& fig
 /// stack; returns the number of values left.
 int deliver(lua_State* L, const lua::Options& options, std::vector<plots::Figure> figures);
 
+/// plot{ ... }
+int plot_vectors(lua_State* L);
+
+/// Where pictures go that are shown and in no file: else to standard output, as text.
+using PictureViewer = void (*)(const Picture& picture);
+void show_pictures_by(PictureViewer viewer);
+
+/// The picture as SVG, by gnuplot.
+text::Expected<std::string> svg_of(const Picture& picture);
+
 /// The text of the picture without the last line end.
 std::string text_of_picture(const Picture& picture);
 

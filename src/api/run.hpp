@@ -30,6 +30,9 @@ void push_run(lua_State* L, Run run);
 text::Expected<Eigen::Index> column_at(lua_State* L, int index, std::span<const std::string> names,
                                        std::string_view what);
 
+/// What run:explain() says; raises what a user's spring does.
+std::string story_of_run(lua_State* L, const Run& run);
+
 /// run:save(file [, { columns = { "t", "theta" } }]), in save_run.cpp.
 inline constexpr text::Option save_options[] = {
     {.name = "columns",

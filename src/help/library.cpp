@@ -15,11 +15,25 @@ namespace dinal::help {
 namespace {
 
 constexpr void (*register_functions[])(lua_State*) = {
-    api::register_system, api::register_friction, api::register_spring,     api::register_excitation,
-    api::register_run,    api::register_energy,   api::register_trajectory, api::register_theory,
-    api::register_vector, api::register_data,     api::register_progress,   api::register_plot,
-    api::register_steady, api::register_identify, api::register_sweep,      api::register_integrator,
-    api::register_lab,    register_help,
+    api::register_system,
+    api::register_friction,
+    api::register_spring,
+    api::register_excitation,
+    api::register_run,
+    api::register_energy,
+    api::register_trajectory,
+    api::register_theory,
+    api::register_vector,
+    api::register_data,
+    api::register_progress,
+    api::register_plot,
+    api::register_steady,
+    api::register_identify,
+    api::register_sweep,
+    api::register_integrator,
+    api::register_lab,
+    api::register_report,
+    register_help,
 };
 
 // Plain fields of the table: documented here, set by open_library() and sys:simulate.
@@ -67,6 +81,8 @@ const Section all_sections[] = {
     {"Identification", "", &api::identify_functions},
     {"A fit", "fit", &api::fit_class},
     {"Sweeps", "", &api::sweep_functions},
+    {"Reports", "", &api::report_functions},
+    {"A report", "r", &api::report_class},
     {"Progress", "", &api::progress_functions},
     {"Plots", "", &api::plot_functions},
     {"A picture", "picture", &api::picture_class},

@@ -12,11 +12,29 @@
 namespace dinal::prompt {
 namespace {
 
-constexpr std::array<std::string_view, 18> known_options = {
-    "-e",        "-l",     "-i",         "-v",           "-W",          "-E",
-    "-",         "--",     "-h",         "--help",       "--version",   "--manual",
-    "--no-init", "--safe", "--max-time", "--max-memory", "--lab-marks", "--lab-solutions"};
+constexpr std::array<std::string_view, 21> known_options = {"-e",
+                                                            "-l",
+                                                            "-i",
+                                                            "-v",
+                                                            "-W",
+                                                            "-E",
+                                                            "-",
+                                                            "--",
+                                                            "-h",
+                                                            "--help",
+                                                            "--version",
+                                                            "--manual",
+                                                            "--no-init",
+                                                            "--safe",
+                                                            "--max-time",
+                                                            "--max-memory",
+                                                            "--lab-marks",
+                                                            "--lab-solutions",
+                                                            "--report",
+                                                            "--kernel",
+                                                            "--jupyter-install"};
 
+constexpr std::string_view kernel_option = "--kernel";
 constexpr std::string_view time_option = "--max-time";
 constexpr std::string_view memory_option = "--max-memory";
 constexpr std::string_view marks_option = "--lab-marks";
@@ -82,6 +100,15 @@ text::Error no_value(char option) {
                           : "option -l needs the name of a module after it, for example -l lab"};
 }
 
+/// What stands behind --kernel: "=11". -1, which is none, for all else.
+int descriptor_of(std::string_view text) {
+    int number = -1;
+    if (text.starts_with('=')) {
+        std::from_chars(text.data() + 1, text.data() + text.size(), number);
+    }
+    return number;
+}
+
 /// --help and its like, which `lua` does not have. Request::run when it is none of them.
 Request request_of(std::string_view option) {
     if (option == "--help" || option == "-h") {
@@ -89,6 +116,9 @@ Request request_of(std::string_view option) {
     }
     if (option == "--version") {
         return Request::version;
+    }
+    if (option == "--jupyter-install") {
+        return Request::jupyter_install;
     }
     return option == "--manual" ? Request::manual : Request::run;
 }
@@ -177,8 +207,12 @@ text::Expected<Arguments> parse_arguments(int count, const char* const* words) {
             arguments.request = request;
             return arguments;
         }
-        if (word == "--safe") {
+        if (word == "--report") {
+            arguments.report = true;
+        } else if (word == "--safe") {
             arguments.safe = true;
+        } else if (word.starts_with(kernel_option)) {
+            arguments.kernel = descriptor_of(word.substr(kernel_option.size()));
         } else if (const std::string_view option = option_with_value(word); !option.empty()) {
             if (auto wrong = read_value(arguments, option, i)) {
                 return *wrong;
@@ -199,6 +233,9 @@ text::Expected<Arguments> parse_arguments(int count, const char* const* words) {
         }
     }
     arguments.script = i;
+    if (arguments.report && !arguments.has_script()) {
+        return text::Error{"--report needs a script after it: dinal --report lab.lua makes lab.html"};
+    }
     if (auto wrong = settle(arguments)) {
         return *wrong;
     }
@@ -227,6 +264,11 @@ without a script: a prompt on a terminal, else standard input is run as a script
   --max-time SECONDS end a script that runs longer; at the prompt, an input
   --lab-marks FILE   note at the end of FILE what became of each answer in the lab
   --lab-solutions NUMBER  the answers of a student number, for instructors
+  --report   run the script, and make a page to hand in of what it prints and
+             draws: lab.html of lab.lua, in the current folder
+  --jupyter-install  make dinal a kernel of Jupyter notebooks, for this user
+  --kernel=N         what such a kernel runs: requests on standard input, answers
+                     on the descriptor N, as lines of JSON
   --help     this text
   --version  version, licence and what is built in
   --manual   the whole manual, as Markdown

@@ -1,6 +1,7 @@
 // The command line: the options of `lua`, read as `lua` reads them, and those in words, such as --help and --safe.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -9,7 +10,7 @@
 
 namespace dinal::prompt {
 
-enum class Request { run, help, version, manual, lab_solutions };
+enum class Request { run, help, version, manual, lab_solutions, jupyter_install };
 
 /// -e, -l or -W: they are carried out in the order in which they stand.
 struct StartStep {
@@ -25,6 +26,8 @@ struct Arguments {
     bool ignore_environment = false;  ///< -E
     bool no_init = false;             ///< --no-init
     bool safe = false;                ///< --safe
+    bool report = false;              ///< --report
+    std::optional<int> kernel;        ///< --kernel: the descriptor for its answers
     lua::ScriptLimits limits;         ///< --max-memory, --max-time; in safe mode there are always some
     std::string lab_marks;            ///< --lab-marks: where answers in the lab are noted; empty: nowhere
     std::string student;              ///< --lab-solutions: whose

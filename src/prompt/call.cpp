@@ -184,12 +184,6 @@ int call(lua_State* L, int arguments, int results) {
     return status;
 }
 
-int call_with(lua_State* L, lua_CFunction function) {
-    lua_pushcfunction(L, function);
-    lua_insert(L, -2);
-    return call(L, 1, 0);
-}
-
 std::string told_error(lua_State* L, const char* file) {
     const lua::Remarks remarks = errors::remarks_on_syntax(L, -1, file);
     std::string text = take_text(L);

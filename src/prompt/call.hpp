@@ -11,9 +11,6 @@ namespace dinal::prompt {
 /// Lua function, a short trace of these, a line for each. interrupt_requested() tells whether Ctrl-C was pressed.
 int call(lua_State* L, int arguments, int results);
 
-/// Calls a function of ours with the value on the top of the stack, which it takes.
-int call_with(lua_State* L, lua_CFunction function);
-
 /// Takes the message from the top of the stack, about a chunk that could not be loaded from `file` (nullptr: it was in
 /// no file), or of a chunk that ran out of memory: the words for the user, with the line.
 std::string told_error(lua_State* L, const char* file);

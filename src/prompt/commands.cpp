@@ -132,7 +132,7 @@ constexpr std::array<Command, 9> commands = {{
 void help(Session& session, const std::string& argument) {
     const terminal::Display screen = terminal::display_of(STDOUT_FILENO);
     if (!argument.empty() && argument.front() != ':') {
-        answer_question(session.L, argument);
+        say(answer_to(session.L, argument));
         return;
     }
     std::string text;
@@ -187,7 +187,7 @@ bool is_command(std::string_view line) {
 
 void run_command(Session& session, const std::string& line) {
     if (is_question(line)) {
-        answer_question(session.L, line);
+        say(answer_to(session.L, line));
         return;
     }
     const std::string_view name = name_of(line);

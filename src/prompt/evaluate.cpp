@@ -39,17 +39,6 @@ int print_partial(lua_State* L) {
     return 0;
 }
 
-int print_values(lua_State* L) {
-    const int count = lua_gettop(L);
-    std::string text;
-    for (int i = 1; i <= count; ++i) {
-        text.append(i == 1 ? "" : "\t").append(show(L, i, terminal::display_of(STDOUT_FILENO)));
-    }
-    text += '\n';
-    say(text);
-    return 0;
-}
-
 /// Shows the values on top of `base` by one of the two functions above, which take them.
 void show_by(lua_State* L, lua_CFunction function, int base) {
     luaL_checkstack(L, LUA_MINSTACK, "too many values to show");
@@ -61,7 +50,7 @@ void show_by(lua_State* L, lua_CFunction function, int base) {
 }
 
 /// The values on top of `base` become ans (the first) and are shown.
-void show_values(lua_State* L, int base, const Chunk& chunk) {
+void take_values(lua_State* L, int base, const Chunk& chunk, lua_CFunction show_values) {
     if (lua_gettop(L) == base) {
         return;
     }
@@ -70,7 +59,7 @@ void show_values(lua_State* L, int base, const Chunk& chunk) {
         set_ans(L, base + 1);
     }
     if (!chunk.silent) {
-        show_by(L, print_values, base);
+        show_by(L, show_values, base);
     }
     if (single) {
         say_notice(name_notice(L, chunk));
@@ -87,7 +76,7 @@ void keep_partial_run(lua_State* L, int before) {
 }
 
 /// Runs the function on the top of the stack and shows its values; false, and the message on the stack, when it failed.
-bool run_and_show(lua_State* L, const Chunk& chunk, Evaluated& result) {
+bool run_and_show(lua_State* L, const Chunk& chunk, lua_CFunction show_values, Evaluated& result) {
     const lua::InterruptScope running(L);  // a Ctrl-C meant for the function may come when its values are being shown
     if (call(L, 0, LUA_MULTRET) != LUA_OK) {
         return false;
@@ -96,17 +85,31 @@ bool run_and_show(lua_State* L, const Chunk& chunk, Evaluated& result) {
     if (!result.fine) {
         say_error("interrupted");
     }
-    show_values(L, 1, chunk);
+    take_values(L, 1, chunk, show_values);
     return true;
 }
 
 }  // namespace
 
-Evaluated evaluate(lua_State* L, const Chunk& chunk) {
+std::string values_text(lua_State* L) {
+    const int count = lua_gettop(L);
+    std::string text;
+    for (int i = 1; i <= count; ++i) {
+        text.append(i == 1 ? "" : "\t").append(show(L, i, terminal::display_of(STDOUT_FILENO)));
+    }
+    return text;
+}
+
+int print_values(lua_State* L) {
+    say(values_text(L) + "\n");
+    return 0;
+}
+
+Evaluated evaluate(lua_State* L, const Chunk& chunk, lua_CFunction show_values) {
     Evaluated result;
     push_partial(L);
     lua_insert(L, 1);
-    if (!run_and_show(L, chunk, result)) {
+    if (!run_and_show(L, chunk, show_values, result)) {
         say_error(take_text(L));
         keep_partial_run(L, 1);
     }

@@ -9,6 +9,19 @@
 #include "text/characters.hpp"
 
 namespace dinal::prompt {
+namespace {
+
+std::string* collected_errors = nullptr;
+
+}  // namespace
+
+ErrorsInto::ErrorsInto(std::string& text) {
+    collected_errors = &text;
+}
+ErrorsInto::~ErrorsInto() {
+    collected_errors = nullptr;
+}
+
 void say(std::string_view text) {
     static_cast<void>(std::fwrite(text.data(), 1, text.size(), stdout));
 }
@@ -18,6 +31,10 @@ void flush_output() {
 }
 
 void say_error(std::string_view text) {
+    if (collected_errors != nullptr) {
+        collected_errors->append(text).append("\n");
+        return;
+    }
     flush_output();
     const terminal::Display screen = terminal::display_of(STDERR_FILENO);
     const std::string fitting = screen.terminal ? text::wrapped(text, screen.width - 1) : "";

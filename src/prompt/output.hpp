@@ -1,6 +1,7 @@
 // What the program itself says: values and greetings on standard output, errors on standard error.
 #pragma once
 
+#include <string>
 #include <string_view>
 
 namespace dinal::prompt {
@@ -11,5 +12,14 @@ void flush_output();
 
 /// A line on standard error, after all that was said before.
 void say_error(std::string_view text);
+
+/// While it lives, what say_error() says goes into this text, as lines.
+class ErrorsInto {
+public:
+    explicit ErrorsInto(std::string& text);
+    ~ErrorsInto();
+    ErrorsInto(const ErrorsInto&) = delete;
+    ErrorsInto& operator=(const ErrorsInto&) = delete;
+};
 
 }  // namespace dinal::prompt

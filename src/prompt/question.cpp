@@ -32,8 +32,7 @@ std::string entry(const Meaning& meaning, const terminal::Display& screen) {
 
 int show_value(lua_State* L) {
     const terminal::Display screen = terminal::display_of(STDOUT_FILENO);
-    say(fmt::format("{}, now {}\n", luaL_typename(L, 1), show(L, 1, screen)));
-    return 0;
+    return lua::push_text(L, fmt::format("{}, now {}\n", luaL_typename(L, 1), show(L, 1, screen)));
 }
 
 }  // namespace
@@ -43,27 +42,26 @@ bool is_question(std::string_view line) {
     return line.find('\n') == std::string_view::npos && !all.empty() && (all.front().is("?") || all.back().is("?"));
 }
 
-void answer_question(lua_State* L, std::string_view line) {
+std::string answer_to(lua_State* L, std::string_view line) {
     const terminal::Display screen = terminal::display_of(STDOUT_FILENO);
     const std::string_view words = text::trimmed(line, " ?\"'", " ?\"'(){}");
     if (words.empty()) {
-        say(help::tour_page(1));
-        return;
+        return help::tour_page(1);
     }
     const int top = lua_gettop(L);
     const std::vector<lua::Token> all = lua::tokens(words);
     const Meaning found = meaning(L, all);
-    if (const std::string text = entry(found, screen); !text.empty()) {
-        say(text);
-    } else if (const std::vector<std::string> names = help::help_names();
-               found.kind == Meaning::Kind::value && std::find(names.begin(), names.end(), words) == names.end()) {
-        if (call_with(L, show_value) != LUA_OK) {
-            say_error(take_text(L));
-        }
-    } else {
-        say(help::help_about(words, screen));
+    std::string answer = entry(found, screen);
+    if (const std::vector<std::string> names = help::help_names();
+        answer.empty() && found.kind == Meaning::Kind::value &&
+        std::find(names.begin(), names.end(), words) == names.end()) {
+        lua_pushcfunction(L, show_value);
+        lua_insert(L, -2);
+        const bool shown = call(L, 1, 1) == LUA_OK;
+        answer = take_text(L) + (shown ? "" : "\n");
     }
     lua_settop(L, top);
+    return answer.empty() ? help::help_about(words, screen) : answer;
 }
 
 }  // namespace dinal::prompt

@@ -76,7 +76,11 @@ Reading read_and_run(Session& session) {
         return input.reading;
     }
     session.editor.remember(input.text);
-    chunk.result == Compiled::ready ? run_chunk(session, chunk, input.text) : reject(session, input.text);
+    if (chunk.result == Compiled::ready) {
+        run_chunk(session, chunk, input.text);
+    } else {
+        reject(session, input.text);
+    }
     return Reading::line;
 }
 
@@ -95,12 +99,12 @@ void run_init_file(lua_State* L) {
 
 }  // namespace
 
-void run_chunk(Session& session, const Chunk& chunk, const std::string& text) {
+bool run_chunk(Session& session, const Chunk& chunk, const std::string& text) {
     source::keep_source(session.L, prompt_chunk,
                         text);  // errors and files of results may need the text of what is defined here
-    const Evaluated result = evaluate(session.L, chunk);
+    const Evaluated result = evaluate(session.L, chunk, session.show_values);
     if (!result.fine) {
-        return;
+        return false;
     }
     if (const std::string notice = session.local_noticed ? "" : local_notice(text); !notice.empty()) {
         say_notice(notice);
@@ -113,13 +117,19 @@ void run_chunk(Session& session, const Chunk& chunk, const std::string& text) {
     if (const std::string& problem = session.record.problem(); !problem.empty() && before.empty()) {
         say_error(":record: " + problem);
     }
+    return true;
 }
 
-void run_text(Session& session, const std::string& text) {
+bool run_text(Session& session, const std::string& text) {
     lua_settop(session.L, 0);
     const Chunk chunk = compile(session.L, text);
-    chunk.result == Compiled::ready ? run_chunk(session, chunk, text) : reject(session, text);
+    const bool ready = chunk.result == Compiled::ready;
+    if (!ready) {
+        reject(session, text);
+    }
+    const bool fine = ready && run_chunk(session, chunk, text);
     lua_settop(session.L, 0);
+    return fine;
 }
 
 std::string greeting() {

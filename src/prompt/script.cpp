@@ -14,6 +14,7 @@
 #include <string_view>
 
 #include "api/lab_course.hpp"
+#include "api/script_report.hpp"
 #include "files/confinement.hpp"
 #include "help/library.hpp"
 #include "lua/interrupt.hpp"
@@ -22,6 +23,7 @@
 #include "lua/safe_mode.hpp"
 #include "lua/time_limit.hpp"
 #include "prompt/call.hpp"
+#include "prompt/kernel.hpp"
 #include "prompt/line_editor.hpp"
 #include "prompt/output.hpp"
 #include "prompt/repl.hpp"
@@ -165,6 +167,27 @@ bool run_script(lua_State* L, const Arguments& arguments) {
                             : finished(L, status, standard_input ? nullptr : file);
 }
 
+/// The same, into a page. Its name is told, also when the script failed: what was done stands in it.
+bool run_reported_script(lua_State* L, const Arguments& arguments) {
+    std::string errors;
+    api::ScriptReport report;
+    bool fine = false;
+    {
+        const ErrorsInto collected(errors);
+        fine = run_script(L, arguments);
+    }
+    const auto saved = report.save(arguments.words[arguments.script], errors);
+    if (!errors.empty()) {
+        say_error(errors.substr(0, errors.size() - 1));
+    }
+    if (!saved) {
+        complain(saved.error().message());
+        return false;
+    }
+    say(saved.value() + "\n");
+    return fine;
+}
+
 void open(lua_State* L, const Arguments& arguments) {
     luaL_checkversion(L);
     if (arguments.ignore_environment) {
@@ -198,8 +221,12 @@ int run_all(lua_State* L, const Arguments& arguments) {
     if (!arguments.ignore_environment && !run_init(L)) {
         return failure();
     }
-    if (!run_steps(L, arguments) || (arguments.has_script() && !run_script(L, arguments))) {
+    if (!run_steps(L, arguments) ||
+        (arguments.has_script() && !(arguments.report ? run_reported_script : run_script)(L, arguments))) {
         return failure();
+    }
+    if (arguments.kernel) {
+        return run_kernel(L, *arguments.kernel) ? exit_code::ok : exit_code::usage;
     }
     if (arguments.interactive) {
         return prompt(L, arguments);

@@ -15,14 +15,15 @@ struct Session {
     lua_State* L;
     LineEditor editor;
     Record record;
+    lua_CFunction show_values = print_values;
     bool local_noticed = false;  ///< once is enough
     bool leaving = false;        ///< :quit
 };
 
-/// Compiles and runs a text that is all there is to come, as at the prompt.
-void run_text(Session& session, const std::string& text);
+/// Compiles and runs a text that is all there is to come, as at the prompt. False after an error, which was told.
+bool run_text(Session& session, const std::string& text);
 
-/// Runs the function on the top of the stack, which `chunk` describes.
-void run_chunk(Session& session, const Chunk& chunk, const std::string& text);
+/// Runs the function on the top of the stack, which `chunk` describes. False after an error, which was told.
+bool run_chunk(Session& session, const Chunk& chunk, const std::string& text);
 
 }  // namespace dinal::prompt

@@ -1,0 +1,267 @@
+// report{ ... }: what a student hands in, collected piece by piece and saved as one file.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "api/classes.hpp"
+#include "api/report.hpp"
+#include "api/run.hpp"
+#include "files/file.hpp"
+#include "lua/options.hpp"
+#include "lua/worker_state.hpp"
+#include "text/words.hpp"
+
+namespace dinal::api {
+namespace {
+
+const ReportHandle& report_self(lua_State* L, const char* call) {
+    return lua::self<ReportHandle>(L, 1, call);
+}
+
+struct ReportOptions {
+    std::string title, author;
+};
+constexpr text::Option report_options[] = {
+    {.name = "title",
+     .otherwise = text::needed,
+     .meaning = "what stands above",
+     .filled = text::fills<&ReportOptions::title>},
+    {.name = "author", .meaning = "who hands it in", .filled = text::fills<&ReportOptions::author>},
+};
+constexpr text::Call report_call{"report", "report{ title = \"Free decay\", author = \"A. Student\" }", report_options};
+
+int new_report(lua_State* L) {
+    auto asked = lua::read<ReportOptions>(L, 1, report_call);
+    lua::push<ReportHandle>(L, std::make_shared<Report>(Report{std::move(asked.title), std::move(asked.author)}));
+    return 1;
+}
+
+/// A string or a number; all else is an error of the call.
+std::string words_at(lua_State* L, int index, const char* call, const char* what) {
+    if (lua_type(L, index) != LUA_TSTRING && lua_type(L, index) != LUA_TNUMBER) {
+        lua::raise_got(L, index, call, fmt::format("{}: {} must be text", call, what));
+    }
+    std::size_t size = 0;
+    luaL_tolstring(L, index, &size);
+    std::string words(lua_tostring(L, -1), size);
+    lua_pop(L, 1);
+    return words;
+}
+
+int add_text(lua_State* L) {
+    report_self(L, "r:text")->items.emplace_back(ReportText{words_at(L, 2, "r:text", "what is added")});
+    return 0;
+}
+
+int add_heading(lua_State* L) {
+    report_self(L, "r:heading")->items.emplace_back(ReportHeading{words_at(L, 2, "r:heading", "the heading")});
+    return 0;
+}
+
+void add_lines(Report& report, const std::string& lines) {
+    auto* last = report.items.empty() ? nullptr : std::get_if<ReportLines>(&report.items.back());
+    if (last != nullptr && last->caption.empty()) {
+        last->text += "\n" + lines;
+    } else {
+        report.items.emplace_back(ReportLines{lines});
+    }
+}
+
+std::string text_at(lua_State* L, int index) {
+    std::size_t size = 0;
+    luaL_tolstring(L, index, &size);
+    std::string text(lua_tostring(L, -1), size);
+    lua_pop(L, 1);
+    return text;
+}
+
+std::string joined_lines(const std::vector<std::string>& lines) {
+    return fmt::format("{}", fmt::join(lines, "\n"));
+}
+
+int add_value(lua_State* L) {
+    const ReportHandle report = report_self(L, "r:add");
+    if (lua_gettop(L) == 3) {
+        const std::string name = words_at(L, 2, "r:add", "the name of the value");
+        add_lines(*report, name + " = " + text_at(L, 3));
+        return 0;
+    }
+    if (lua_gettop(L) != 2 || lua_isnil(L, 2)) {
+        lua::raise_got(L, 2, "r:add", "r:add takes a run, data, a picture or another value, or a name and a value");
+    }
+    if (const auto* picture = lua::test<Picture>(L, 2)) {
+        report->items.emplace_back(drawn(*picture));
+    } else if (const auto* data = lua::test<DataHandle>(L, 2)) {
+        report->items.emplace_back(*data);
+    } else if (const auto* run = lua::test<RunHandle>(L, 2)) {
+        const RunHandle kept = *run;
+        const std::string story = story_of_run(L, *kept);
+        add_lines(*report, text_at(L, 2));
+        report->items.emplace_back(ReportText{story});
+        if (kept->origin) {
+            report->items.emplace_back(
+                ReportLines{joined_lines(source::repeat_lines(*kept->origin)), "How to repeat this run"});
+        }
+    } else {
+        add_lines(*report, text_at(L, 2));
+    }
+    return 0;
+}
+
+int add_table(lua_State* L) {
+    const ReportHandle report = report_self(L, "r:table");
+    const auto* data = lua::test<DataHandle>(L, 2);
+    if (data == nullptr) {
+        lua::raise_got(L, 2, "r:table", "r:table takes data, such as data{ r = { 1, 2 }, A = { 3, 4 } }");
+    }
+    report->items.emplace_back(*data);
+    return 0;
+}
+
+/// r:plot{ ... } takes what plot takes, or a picture.
+int add_plot(lua_State* L) {
+    const ReportHandle report = report_self(L, "r:plot");
+    if (const auto* picture = lua::test<Picture>(L, 2)) {
+        report->items.emplace_back(drawn(*picture));
+        return 0;
+    }
+    if (!lua_istable(L, 2) || lua_gettop(L) != 2) {
+        lua::raise_got(L, 2, "r:plot",
+                       "r:plot takes what plot{ ... } takes, or a picture such as run:plot{ show = false }");
+    }
+    lua_newtable(L);
+    lua_pushnil(L);
+    while (lua_next(L, 2) != 0) {
+        lua_pushvalue(L, -2);
+        lua_insert(L, -2);
+        lua_settable(L, 3);
+    }
+    lua_pushboolean(L, 0);
+    lua_setfield(L, 3, "show");
+    lua_pushcfunction(L, lua::guarded<plot_vectors>);
+    lua_pushvalue(L, 3);
+    lua_call(L, 1, 1);
+    report->items.emplace_back(drawn(*lua::test<Picture>(L, -1)));
+    return 0;
+}
+
+/// The script that runs, as text; nothing at the prompt.
+std::string running_script(lua_State* L) {
+    lua_pushglobaltable(L);
+    lua_pushliteral(L, "arg");
+    lua_rawget(L, -2);
+    std::string name;
+    if (lua_istable(L, -1)) {
+        lua_rawgeti(L, -1, 0);
+        if (lua_type(L, -1) == LUA_TSTRING && text::ending_of(lua_tostring(L, -1)) == ".lua") {
+            name = lua_tostring(L, -1);
+        }
+        lua_pop(L, 1);
+    }
+    lua_pop(L, 2);
+    auto read = files::read_file(name);
+    return name.empty() || !read ? "" : std::move(read).value();
+}
+
+void write_whole(lua_State* L, const std::string& name, const std::string& content) {
+    auto file = lua::value_or_raise(L, "r:save", files::OutputFile::create(name));
+    file.write(content);
+    lua::value_or_raise(L, "r:save", file.commit());
+}
+
+int save_report(lua_State* L) {
+    lua::refuse_in_worker(L, "r:save");
+    Report report = *report_self(L, "r:save");
+    const std::string name = words_at(L, 2, "r:save", "the name of the file");
+    const std::string ending = text::ending_of(name);
+    if (ending != ".html" && ending != ".md") {
+        lua::raise(L,
+                   {.sentence = fmt::format("r:save: the name '{}' must end in .html (one page with its pictures) or "
+                                            ".md (Markdown, with pictures beside it)",
+                                            name),
+                    .call = "r:save",
+                    .culprit = name});
+    }
+    if (std::string script = running_script(L); !script.empty()) {
+        report.items.emplace_back(ReportLines{std::move(script), "The script"});
+    }
+    if (ending == ".html") {
+        write_whole(L, name, html_of(report));
+        return 0;
+    }
+    const MarkdownReport written = markdown_of(report, name.substr(0, name.size() - ending.size()));
+    for (const auto& [picture, svg] : written.pictures) write_whole(L, picture, svg);
+    write_whole(L, name, written.text);
+    return 0;
+}
+
+int report_text(lua_State* L) {
+    const Report& report = *report_self(L, "tostring(r)");
+    return lua::push_text(L, fmt::format("report \"{}\" with {} part{}", report.title, report.items.size(),
+                                         report.items.size() == 1 ? "" : "s"));
+}
+
+#define DINAL_REPORT "r = report{ title = \"Free decay\", author = \"A. Student\" }\n"
+
+constexpr lua::Member report_functions_members[] = {
+    {lua::a_function<new_report>,
+     {"report{ OPTIONS } -> r",
+      "A report to hand in: text, values, tables and pictures in the order in which they are added.",
+      DINAL_REPORT "print(r)  --> report \"Free decay\" with 0 parts",
+      {&report_call}}},
+};
+
+constexpr lua::Member report_members[] = {
+    {lua::a_method<add_heading>,
+     {"r:heading(text)", "Begins a section.",
+      DINAL_REPORT "r:heading(\"Results\")\nprint(r)  --> report \"Free decay\" with 1 part"}},
+    {lua::a_method<add_text>,
+     {"r:text(text)", "Adds text; empty lines separate paragraphs.",
+      DINAL_REPORT "r:text(\"The crests lie on a straight line.\")\nprint(r)  --> report \"Free decay\" with 1 part"}},
+    {lua::a_method<add_value>,
+     {"r:add(value), r:add(name, value)",
+      "Adds a value as it prints, under a name or alone. A run comes with its story and how to repeat it, data come as a "
+      "table, a picture as a picture.",
+      DINAL_REPORT "run = nondimensional{ friction_ratio = 0.1 }:simulate{ theta0 = 1, t_end = 3, dt = 0.01 }\n"
+                   "r:add(run)\nr:add(\"turns\", #run.events)\nprint(r)  --> report \"Free decay\" with 4 parts"}},
+    {lua::a_method<add_table>,
+     {"r:table(data)", "Adds data as a table, a thousand rows at most.",
+      DINAL_REPORT "r:table(data{ n = { 1, 2 }, A = { 0.9, 0.8 } })\nprint(r)  --> report \"Free decay\" with 1 part"}},
+    {lua::a_method<add_plot>,
+     {"r:plot{ ... }, r:plot(picture)",
+      "Adds a plot: what plot{ ... } takes, or a picture such as run:plot{ show = false }.",
+      DINAL_REPORT "x = vector.linspace(0, 6, 61)\nr:plot{ { x, x:sin() }, xlabel = \"x\" }\n"
+                   "print(r)  --> report \"Free decay\" with 1 part"}},
+    {lua::a_method<save_report>,
+     {"r:save(file)",
+      "Writes it: .html is one page that any browser shows and prints on A4, with the pictures in it; .md is Markdown, "
+      "with the pictures as files beside it. The script that makes the report stands at its end.",
+      DINAL_REPORT "name = os.tmpname() .. \".html\"\nr:save(name)\n"
+                   "print(io.open(name):read(\"l\"))  --> <!DOCTYPE html>"}},
+    {lua::a_metamethod<report_text>("__tostring"),
+     {"tostring(r) -> string", "Its title, and how many parts it has.",
+      DINAL_REPORT "print(tostring(r))  --> report \"Free decay\" with 0 parts"}},
+};
+
+#undef DINAL_REPORT
+
+}  // namespace
+
+const lua::Class report_functions = {
+    "report",
+    {"report{ ... } -> r", "Collects what is handed in.", "print(report ~= nil)  --> true"},
+    report_functions_members};
+
+const lua::Class report_class = {
+    "report",
+    {"report{ ... } -> r", "A report: text, values, tables, pictures and the script that made them, saved as one file.",
+     "r = report{ title = \"Free decay\" }\nprint(r)  --> report \"Free decay\" with 0 parts"},
+    report_members};
+
+void register_report(lua_State* L) {
+    lua::add_class<ReportHandle>(L, report_class);
+    lua::add_functions(L, report_functions);
+}
+
+}  // namespace dinal::api

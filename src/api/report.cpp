@@ -1,0 +1,151 @@
+#include "api/report.hpp"
+
+#include <fmt/format.h>
+
+#include <cstddef>
+#include <string_view>
+
+#include "text/html.hpp"
+
+namespace dinal::api {
+namespace {
+
+constexpr std::size_t most_table_rows = 1000;
+
+constexpr const char* page_head = R"(<!DOCTYPE html>
+<html lang="en">
+<head>
+<meta charset="utf-8">
+<meta name="viewport" content="width=device-width, initial-scale=1">
+<title>{0}</title>
+<style>
+body {{ font: 11pt/1.45 "DejaVu Sans", Verdana, sans-serif; max-width: 46em; margin: 2em auto; padding: 0 1em; color: #222; }}
+h1 {{ font-size: 1.6em; margin-bottom: 0; }} h2 {{ font-size: 1.2em; margin-top: 1.6em; }}
+.author {{ color: #555; margin-top: .2em; }}
+pre {{ background: #f4f4f4; padding: .6em .8em; overflow-x: auto; font: 9.5pt/1.35 "DejaVu Sans Mono", monospace; white-space: pre-wrap; }}
+table {{ border-collapse: collapse; font-size: .92em; margin: 1em 0; }}
+th, td {{ border-bottom: 1px solid #ccc; padding: .2em .8em; text-align: right; }} th {{ border-bottom: 2px solid #888; }}
+figure {{ margin: 1em 0; }} figure svg {{ max-width: 100%; height: auto; }}
+details {{ margin-top: 1em; }} summary {{ cursor: pointer; color: #555; }}
+@page {{ size: A4; margin: 2cm; }}
+@media print {{ body {{ margin: 0; max-width: none; font-size: 10pt; }} figure, table, pre {{ break-inside: avoid; }} h2 {{ break-after: avoid; }} }}
+</style>
+</head>
+<body>
+<h1>{0}</h1>
+)";
+
+/// Paragraphs of a text that empty lines separate.
+std::vector<std::string_view> paragraphs(std::string_view text) {
+    std::vector<std::string_view> all;
+    while (!text.empty()) {
+        const std::size_t end = text.find("\n\n");
+        const std::string_view one = text.substr(0, end);
+        if (one.find_first_not_of(" \n") != std::string_view::npos) all.push_back(one);
+        text.remove_prefix(end == std::string_view::npos ? text.size() : end + 2);
+    }
+    return all;
+}
+
+void replace_all(std::string& text, std::string_view what, std::string_view by) {
+    for (std::size_t at = text.find(what); at != std::string::npos; at = text.find(what, at + by.size())) {
+        text.replace(at, what.size(), by);
+    }
+}
+
+/// From <svg on, and with names of its own: on a page with several pictures they would else be mixed up.
+std::string svg_in_page(const std::string& svg, std::size_t number) {
+    const std::size_t begin = svg.find("<svg");
+    std::string own = begin == std::string::npos ? svg : svg.substr(begin);
+    for (const char* mark : {" id=\"", " id='", "href=\"#", "href='#", "url(#"}) {
+        replace_all(own, mark, fmt::format("{}p{}-", mark, number));
+    }
+    return own;
+}
+
+struct HtmlWriter {
+    std::string page;
+    std::size_t pictures = 0;
+
+    void operator()(const ReportHeading& item) { page += "<h2>" + text::html(item.text) + "</h2>\n"; }
+    void operator()(const ReportText& item) {
+        for (const std::string_view one : paragraphs(item.text)) page += "<p>" + text::html(one) + "</p>\n";
+    }
+    void operator()(const ReportLines& item) {
+        const std::string lines = "<pre>" + text::html(item.text) + "</pre>\n";
+        page += item.caption.empty()
+                    ? lines
+                    : "<details open><summary>" + text::html(item.caption) + "</summary>\n" + lines + "</details>\n";
+    }
+    void operator()(const ReportPicture& item) {
+        page += item.svg.empty() ? "<pre>" + text::html(item.text) + "</pre>\n"
+                                 : "<figure>\n" + svg_in_page(item.svg, ++pictures) + "</figure>\n";
+    }
+    void operator()(const DataHandle& item) { page += html_of(*item, most_table_rows); }
+};
+
+/// As many backquotes as no line of the text has.
+std::string fence(std::string_view text) {
+    std::string marks = "```";
+    while (text.find(marks) != std::string_view::npos) marks += '`';
+    return marks;
+}
+
+/// A line that Markdown would read as something else than text stays text.
+std::string plain_markdown(std::string_view text) {
+    std::string all;
+    for (const char c : text) {
+        if (std::string_view("\\`*_{}[]<>#|").find(c) != std::string_view::npos) all += '\\';
+        all += c;
+    }
+    return all;
+}
+
+struct MarkdownWriter {
+    MarkdownReport report;
+    const std::string& stem;
+
+    void operator()(const ReportHeading& item) { report.text += "## " + plain_markdown(item.text) + "\n\n"; }
+    void operator()(const ReportText& item) {
+        for (const std::string_view one : paragraphs(item.text)) report.text += plain_markdown(one) + "\n\n";
+    }
+    void operator()(const ReportLines& item) {
+        const std::string marks = fence(item.text);
+        report.text += (item.caption.empty() ? "" : plain_markdown(item.caption) + ":\n\n") + marks + "\n" + item.text +
+                       "\n" + marks + "\n\n";
+    }
+    void operator()(const ReportPicture& item) {
+        if (item.svg.empty()) {
+            (*this)(ReportLines{item.text});
+            return;
+        }
+        const std::string name = fmt::format("{}-{}.svg", stem, report.pictures.size() + 1);
+        report.pictures.emplace_back(name, item.svg);
+        report.text += fmt::format("![picture {}]({})\n\n", report.pictures.size(), name.substr(name.rfind('/') + 1));
+    }
+    void operator()(const DataHandle& item) { report.text += markdown_of(*item) + "\n\n"; }
+};
+
+}  // namespace
+
+ReportPicture drawn(const Picture& picture) {
+    auto svg = svg_of(picture);
+    return {svg ? std::move(svg).value() : "", text_of_picture(picture)};
+}
+
+std::string html_of(const Report& report) {
+    HtmlWriter writer{fmt::format(page_head, text::html(report.title))};
+    if (!report.author.empty()) writer.page += "<p class=\"author\">" + text::html(report.author) + "</p>\n";
+    for (const ReportItem& item : report.items) std::visit(writer, item);
+    return writer.page + "</body>\n</html>\n";
+}
+
+MarkdownReport markdown_of(const Report& report, const std::string& stem) {
+    MarkdownWriter writer{{}, stem};
+    writer.report.text = "# " + plain_markdown(report.title) + "\n\n";
+    if (!report.author.empty()) writer.report.text += plain_markdown(report.author) + "\n\n";
+    for (const ReportItem& item : report.items) std::visit(writer, item);
+    return std::move(writer.report);
+}
+
+}  // namespace dinal::api

@@ -1,0 +1,53 @@
+// A report: text, values, tables and pictures in their order, as one page of HTML or as Markdown.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "api/data.hpp"
+#include "api/picture.hpp"
+
+namespace dinal::api {
+
+struct ReportHeading {
+    std::string text;
+};
+/// Empty lines separate paragraphs.
+struct ReportText {
+    std::string text;
+};
+/// Lines that stay as they are: what was printed, a value, a script.
+struct ReportLines {
+    std::string text;
+    std::string caption = {};  ///< for what is long: it is folded under this
+};
+struct ReportPicture {
+    std::string svg;   ///< empty when gnuplot could not draw it
+    std::string text;  ///< the same for those who see no pictures
+};
+using ReportItem = std::variant<ReportHeading, ReportText, ReportLines, ReportPicture, DataHandle>;
+
+struct Report {
+    std::string title;
+    std::string author = {};
+    std::vector<ReportItem> items = {};
+};
+using ReportHandle = std::shared_ptr<Report>;
+
+/// The picture as a report keeps it.
+ReportPicture drawn(const Picture& picture);
+
+/// One page that needs nothing else: pictures are SVG in it, and it prints on A4.
+std::string html_of(const Report& report);
+
+/// The text, and the pictures as files beside it, with their names: `stem`-1.svg ...
+struct MarkdownReport {
+    std::string text;
+    std::vector<std::pair<std::string, std::string>> pictures;
+};
+MarkdownReport markdown_of(const Report& report, const std::string& stem);
+
+}  // namespace dinal::api

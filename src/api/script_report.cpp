@@ -1,0 +1,86 @@
+#include "api/script_report.hpp"
+
+#include <fcntl.h>
+#include <sys/mman.h>
+#include <unistd.h>
+
+#include <array>
+#include <cstddef>
+#include <cstdio>
+#include <string_view>
+
+#include "files/file.hpp"
+#include "text/words.hpp"
+
+namespace dinal::api {
+namespace {
+
+ScriptReport* picture_taker = nullptr;
+
+std::string stem_of(const std::string& script) {
+    const std::string name = script.substr(script.rfind('/') + 1);
+    const std::string ending = text::ending_of(name);
+    return ending == ".lua" ? name.substr(0, name.size() - ending.size()) : name;
+}
+
+}  // namespace
+
+ScriptReport::ScriptReport()
+    : output_(::fcntl(STDOUT_FILENO, F_DUPFD_CLOEXEC, STDERR_FILENO + 1)),
+      printed_(::memfd_create("report", MFD_CLOEXEC)) {
+    static_cast<void>(std::fflush(stdout));
+    ::dup2(printed_, STDOUT_FILENO);
+    picture_taker = this;
+    show_pictures_by([](const Picture& picture) {
+        picture_taker->take_printed();
+        picture_taker->report_.items.emplace_back(drawn(picture));
+    });
+}
+
+ScriptReport::~ScriptReport() {
+    give_back();
+    ::close(printed_);
+}
+
+void ScriptReport::give_back() {
+    if (output_ < 0) return;
+    static_cast<void>(std::fflush(stdout));
+    ::dup2(output_, STDOUT_FILENO);
+    ::close(output_);
+    output_ = -1;
+    picture_taker = nullptr;
+    show_pictures_by(nullptr);
+}
+
+void ScriptReport::take_printed() {
+    static_cast<void>(std::fflush(stdout));
+    std::string text;
+    std::array<char, 1U << 16U> piece{};
+    for (;;) {
+        const ssize_t count = ::pread(printed_, piece.data(), piece.size(), static_cast<off_t>(taken_));
+        if (count <= 0) break;
+        text.append(piece.data(), static_cast<std::size_t>(count));
+        taken_ += static_cast<std::size_t>(count);
+    }
+    if (text.ends_with('\n')) text.pop_back();
+    if (!text.empty()) report_.items.emplace_back(ReportLines{std::move(text)});
+}
+
+text::Expected<std::string> ScriptReport::save(const std::string& script, const std::string& errors) {
+    take_printed();
+    give_back();
+    const std::string stem = stem_of(script);
+    report_.title = stem;
+    if (!errors.empty()) report_.items.emplace_back(ReportLines{errors, "It ended with an error"});
+    if (auto source = files::read_file(script)) {
+        report_.items.emplace_back(ReportLines{std::move(source).value(), "The script"});
+    }
+    auto file = files::OutputFile::create(stem + ".html");
+    if (!file) return file.error();
+    auto opened = std::move(file).value();
+    opened.write(html_of(report_));
+    if (const auto written = opened.commit(); !written) return written.error();
+    return stem + ".html";
+}
+
+}  // namespace dinal::api

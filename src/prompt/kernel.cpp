@@ -1,0 +1,202 @@
+#include "prompt/kernel.hpp"
+
+#include <fcntl.h>
+#include <fmt/core.h>
+#include <sys/prctl.h>
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <csignal>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+
+#include "api/data.hpp"
+#include "api/picture.hpp"
+#include "lua/bind.hpp"
+#include "prompt/commands.hpp"
+#include "prompt/completion.hpp"
+#include "prompt/output.hpp"
+#include "prompt/question.hpp"
+#include "prompt/script.hpp"
+#include "prompt/session.hpp"
+#include "text/words.hpp"
+
+namespace dinal::prompt {
+namespace {
+
+using Json = nlohmann::json;
+
+int answers_descriptor = -1;
+
+/// A line of JSON, all of it; bytes that are no UTF-8 become U+FFFD.
+void answer(const Json& message) {
+    const std::string line = message.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
+    flush_output();
+    std::string_view rest = line;
+    while (!rest.empty()) {
+        const ssize_t written = ::write(answers_descriptor, rest.data(), rest.size());
+        if (written < 0 && errno != EINTR) {
+            return;  // nobody listens
+        }
+        rest.remove_prefix(written > 0 ? static_cast<std::size_t>(written) : 0);
+    }
+}
+
+/// The lines of standard input, which scripts do not get to see: what they read is empty.
+class Requests {
+public:
+    Requests() : input_(::fcntl(STDIN_FILENO, F_DUPFD_CLOEXEC, STDERR_FILENO + 1)) {
+        const int nothing = ::open("/dev/null", O_RDONLY | O_CLOEXEC);
+        ::dup2(nothing, STDIN_FILENO);
+        ::close(nothing);
+    }
+    ~Requests() { ::close(input_); }
+    Requests(const Requests&) = delete;
+    Requests& operator=(const Requests&) = delete;
+
+    std::optional<std::string> next() {
+        for (;;) {
+            if (const std::size_t end = read_.find('\n'); end != std::string::npos) {
+                std::string line = read_.substr(0, end);
+                read_.erase(0, end + 1);
+                return line;
+            }
+            std::array<char, 1U << 16U> piece{};
+            const ssize_t count = ::read(input_, piece.data(), piece.size());
+            if (count > 0) {
+                read_.append(piece.data(), static_cast<std::size_t>(count));
+            } else if (count == 0 || errno != EINTR) {
+                return std::nullopt;
+            }
+        }
+    }
+
+private:
+    int input_;
+    std::string read_;
+};
+
+/// A picture by gnuplot, or as text where it is not there.
+Json shown_picture(const api::Picture& picture) {
+    Json forms{{"text/plain", api::text_of_picture(picture)}};
+    if (auto svg = api::svg_of(picture)) {
+        forms["image/svg+xml"] = std::move(svg).value();
+    } else {
+        forms["text/plain"] = forms["text/plain"].get<std::string>() + "\n(" + svg.error().message() + ")";
+    }
+    return forms;
+}
+
+void show_picture(const api::Picture& picture) {
+    answer({{"show", shown_picture(picture)}});
+}
+
+int show_values_as_json(lua_State* L) {
+    constexpr std::size_t rows_shown = 50;
+    Json forms{{"text/plain", values_text(L)}};
+    if (lua_gettop(L) == 1) {
+        if (const auto* picture = lua::test<api::Picture>(L, 1)) {
+            forms = shown_picture(*picture);
+        } else if (const auto* data = lua::test<api::DataHandle>(L, 1)) {
+            forms["text/html"] = api::html_of(**data, rows_shown);
+        }
+    }
+    answer({{"value", forms}});
+    return 0;
+}
+
+Json execute(Session& session, const std::string& code) {
+    std::string errors;
+    bool fine = true;
+    {
+        const ErrorsInto collected(errors);
+        if (is_command(code)) {
+            run_command(session, code);
+        } else {
+            fine = run_text(session, code);
+        }
+    }
+    if (!errors.empty()) errors.pop_back();
+    return fine ? Json{{"ok", true}, {"notice", errors}} : Json{{"ok", false}, {"error", errors}};
+}
+
+/// Where the word before the cursor begins.
+std::size_t word_begin(std::string_view before) {
+    std::size_t begin = before.size();
+    while (begin > 0 && text::is_name_char(before[begin - 1])) --begin;
+    return begin;
+}
+
+Json completed(lua_State* L, const std::string& before) {
+    const bool command = is_command(before) && before.starts_with(':');
+    const Completion completion = command ? complete_command(L, before) : complete(L, before);
+    return {{"names", completion.names}, {"word", before.size() - word_begin(before)}};
+}
+
+/// What stands around the cursor, as far as a name goes: sys.omega0, run:at.
+std::string name_at(std::string_view before, std::string_view after) {
+    const auto belongs = [](char c) { return text::is_name_char(c) || c == '.' || c == ':'; };
+    std::size_t begin = before.size(), end = 0;
+    while (begin > 0 && belongs(before[begin - 1])) --begin;
+    while (end < after.size() && text::is_name_char(after[end])) ++end;
+    return std::string(before.substr(begin)) + std::string(after.substr(0, end));
+}
+
+Json explained(lua_State* L, const std::string& before, const std::string& after) {
+    const std::string name = name_at(before, after);
+    return {{"text", name.empty() ? signature_hint(L, before) : answer_to(L, name)}};
+}
+
+const char* completeness(lua_State* L, const std::string& code) {
+    const Compiled result = is_command(code) ? Compiled::ready : compile(L, code).result;
+    lua_settop(L, 0);
+    return result == Compiled::ready ? "complete" : result == Compiled::incomplete ? "incomplete" : "invalid";
+}
+
+std::string words_of(const Json& request, const char* name) {
+    const auto found = request.find(name);
+    return found != request.end() && found->is_string() ? found->get<std::string>() : "";
+}
+
+Json answer_to_request(Session& session, const Json& request) {
+    const std::string what = words_of(request, "do");
+    if (what == "execute") return execute(session, words_of(request, "code"));
+    if (what == "complete") return completed(session.L, words_of(request, "before"));
+    if (what == "inspect") return explained(session.L, words_of(request, "before"), words_of(request, "after"));
+    if (what == "check") return {{"state", completeness(session.L, words_of(request, "code"))}};
+    return {{"wrong", "a request does execute, complete, inspect or check, not '" + what + "'"}};
+}
+
+}  // namespace
+
+bool run_kernel(lua_State* L, int answers) {
+    if (answers <= STDERR_FILENO || ::fcntl(answers, F_SETFD, FD_CLOEXEC) < 0) {
+        complain(
+            fmt::format("--kernel={} is no open descriptor for its answers: it is for notebooks, and dinal "
+                        "--jupyter-install makes one (docs/notebook.md)",
+                        answers));
+        return false;
+    }
+    answers_descriptor = answers;
+    ::prctl(PR_SET_PDEATHSIG, SIGTERM);  // a loop without end must not outlive its notebook
+    Requests requests;
+    Session session(L);
+    session.show_values = lua::guarded<show_values_as_json>;
+    api::show_pictures_by(show_picture);
+    while (!session.leaving) {
+        const auto line = requests.next();
+        if (!line) break;
+        const Json request = Json::parse(*line, nullptr, false);
+        Json answered = request.is_object() ? answer_to_request(session, request)
+                                            : Json{{"wrong", "a request is an object of JSON in one line"}};
+        answered["done"] = request.is_object() ? request.value("id", Json()) : Json();
+        lua_settop(L, 0);
+        answer(answered);
+    }
+    api::show_pictures_by(nullptr);
+    return true;
+}
+
+}  // namespace dinal::prompt

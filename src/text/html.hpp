@@ -1,0 +1,12 @@
+// Text that a browser shows as it stands.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+namespace dinal::text {
+
+/// & < > " ' become entities; control characters but for tab and line end, which no page may have, become U+FFFD.
+std::string html(std::string_view text);
+
+}  // namespace dinal::text

@@ -1,0 +1,84 @@
+-- report{}: what goes in comes out in HTML and in Markdown, nothing in it is taken for markup, and what is wrong is told.
+package.path = "tests/lua/?.lua;" .. package.path
+local support = require "support"
+local test, equal, raises_here = support.test, support.equal, support.raises_here
+
+local function read(name)
+    local file <close> = assert(io.open(name))
+    return file:read "a"
+end
+
+local function saved(r, ending)
+    local name = os.tmpname()
+    os.remove(name)
+    name = name .. ending
+    r:save(name)
+    local text = read(name)
+    os.remove(name)
+    return text, name
+end
+
+local sys = system{ I = 1, k = 40, Rd = 1, Re = 1.5 }
+local run = sys:simulate{ theta0 = 1, t_end = 6, dt = 0.01 }
+local has_gnuplot = os.execute "command -v gnuplot >/dev/null"
+
+test("all kinds of things, in their order, on one page", function()
+    local r = report{ title = "Decay <1>", author = "A & B" }
+    r:heading "Results"
+    r:text "First & foremost.\n\nSecond paragraph."
+    r:add("omega0", sys.omega0)
+    r:add("T0", sys.T0)
+    r:add(run)
+    r:table(data{ n = { 1, 2 }, ["a|b"] = { 0.5, 0.25 } })
+    r:plot{ { run.t, run.theta, label = "theta" }, xlabel = "t" }
+    r:plot(run:plot{ show = false })
+    local page = saved(r, ".html")
+    local place = 1
+    for _, part in ipairs{ "<!DOCTYPE html>", "<title>Decay &lt;1&gt;</title>", "<h1>Decay &lt;1&gt;</h1>", "A &amp; B",
+        "<h2>Results</h2>", "<p>First &amp; foremost.</p>", "<p>Second paragraph.</p>", "omega0 = 6.32", "\nT0 = 0.99",
+        "601 rows", "It made", "How to repeat this run", "system{ I = 1.0, k = 40.0", "<th>a|b</th>", "<td>0.25</td>", "</html>" } do
+        local found = page:find(part, place, true)
+        assert(found, part .. " is not there, or not in its place")
+        place = found
+    end
+    if has_gnuplot then
+        equal(select(2, page:gsub("<svg", "")), 2)
+        for id in page:gmatch ' id="([^"]+)"' do
+            assert(id:match "^p[12]%-", id)  -- of one picture only
+        end
+        assert(not page:find "<%?xml")
+    end
+    assert(not page:find("<1>", 1, true))
+end)
+
+test("Markdown has its pictures beside it, and text stays text", function()
+    local r = report{ title = "A_b*c" }
+    r:text "see [x](y) and `z`"
+    r:add("fence", "```")
+    r:plot(run:plot{ show = false })
+    local text, name = saved(r, ".md")
+    assert(text:find("# A\\_b\\*c", 1, true), text)
+    assert(text:find("\\[x\\](y)", 1, true) and text:find("````\nfence = ```\n````", 1, true), text)
+    if has_gnuplot then
+        local picture = name:gsub("%.md$", "-1.svg")
+        assert(text:find("![picture 1](" .. picture:match "[^/]+$" .. ")", 1, true), text)
+        assert(read(picture):find("<svg", 1, true))
+        os.remove(picture)
+    end
+end)
+
+test("what cannot be reported is told in a sentence", function()
+    raises_here(function() report{} end, "report needs title")
+    raises_here(function() report{ title = 3 } end, "title must be")
+    local r = report{ title = "x" }
+    raises_here(function() r:text() end, "what is added must be text, got no value")
+    raises_here(function() r:table(3) end, "r:table takes data")
+    raises_here(function() r:plot(3) end, "r:plot takes what plot{ ... } takes")
+    raises_here(function() r:plot{ { run.t } } end, "plot")
+    raises_here(function() r:add(nil) end, "r:add takes")
+    raises_here(function() r:save "x.doc" end, "must end in .html")
+    raises_here(function() r:save "/nowhere/x.html" end, "/nowhere/x.html")
+    equal(tostring(r), 'report "x" with 0 parts')
+end)
+
+support.finish()
