@@ -11,7 +11,8 @@
 namespace dinal::source {
 namespace {
 
-const char kept_key = 0;  // registry key of the table of kept texts: name -> list of texts
+const char kept_key = 0;   // registry key of the table of kept texts: name -> list of texts
+const char known_key = 0;  // registry key of the table of what was found: function -> its text
 
 int append(lua_State*, const void* piece, std::size_t size, void* text) {
     static_cast<std::string*>(text)->append(static_cast<const char*>(piece), size);
@@ -149,8 +150,22 @@ std::optional<std::string> whole_chunk(std::string_view source) {
                                    : "load(" + text::quoted(source) + ")";
 }
 
+/// Pushes the table of texts by function, which keeps no function alive.
+void push_known(lua_State* L) {
+    if (lua_rawgetp(L, LUA_REGISTRYINDEX, &known_key) == LUA_TTABLE) return;
+    lua_pop(L, 1);
+    lua_newtable(L);
+    lua_createtable(L, 0, 1);
+    lua_pushstring(L, "k");
+    lua_setfield(L, -2, "__mode");
+    lua_setmetatable(L, -2);
+    lua_pushvalue(L, -1);
+    lua_rawsetp(L, LUA_REGISTRYINDEX, &known_key);
+}
+
 }  // namespace
 
+// What is found stays right: a function never changes, whatever becomes of its file.
 std::optional<std::string> function_source(lua_State* L, int index) {
     luaL_checkstack(L, LUA_MINSTACK, "for the text of a function");
     index = lua_absindex(L, index);
@@ -160,6 +175,14 @@ std::optional<std::string> function_source(lua_State* L, int index) {
     if (lua_iscfunction(L, index) != 0) {
         return library_name(L, index);
     }
+    push_known(L);
+    lua_pushvalue(L, index);
+    if (lua_rawget(L, -2) == LUA_TSTRING) {
+        std::string known(lua::text_at(L, -1));
+        lua_pop(L, 2);
+        return known;
+    }
+    lua_pop(L, 2);
     const Shape wanted(L, index);
     const std::string_view source = wanted.about.source;
     if (wanted.about.what == std::string_view("main")) {
@@ -175,7 +198,15 @@ std::optional<std::string> function_source(lua_State* L, int index) {
         find_in(L, *text, wanted, found);
     }
     lua_settop(L, top);
-    return found.only();
+    const auto only = found.only();
+    if (only) {
+        push_known(L);
+        lua_pushvalue(L, index);
+        lua_pushlstring(L, only->data(), only->size());
+        lua_rawset(L, -3);
+        lua_pop(L, 1);
+    }
+    return only;
 }
 
 void keep_source(lua_State* L, const char* chunk_name, std::string_view text) {
