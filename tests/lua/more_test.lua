@@ -172,4 +172,18 @@ test("a relay of a state switches where the state is", function()
     near(switches[1].t, 1.5, 1e-13)
 end)
 
+test("an error in the function of a belt or a base arrives unchanged, with the rows until then", function()
+    for _, what in ipairs { "belt", "base" } do
+        for _, method in ipairs { integrator.spectral {}, integrator.rk4 { h = 0.01 } } do
+            for _, late in ipairs { 0, 2 } do
+                local options = { theta0 = 1, t_end = 5, dt = 0.1, integrator = method }
+                options[what] = function(t) if t >= late then error("no " .. what) end return 0.1 end
+                local sys = nondimensional { zeta = 0.05, friction_ratio = 0.1 }
+                support.raises(function() sys:simulate(options) end, "no " .. what)
+                assert(#dinal.partial >= 8 * late and #dinal.partial <= 10 * late + 1, what .. " " .. #dinal.partial)
+            end
+        end
+    end
+end)
+
 support.finish()

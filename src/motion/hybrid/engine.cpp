@@ -141,7 +141,7 @@ bool Engine::advance() {
     if (standstill_.phase() == Standstill::Phase::arrived && !ask()) return false;
     if (standstill_.phase() == Standstill::Phase::stuck) {
         const double M = field_.load(here());
-        if (!std::isfinite(M)) return fail(model::Outcome::excitation_not_finite);
+        if (!std::isfinite(pull(M))) return fail(model::Outcome::excitation_not_finite);
         const model::Motion towards = standstill_.pulled(pull(M), theta());
         if (towards != model::Motion::stuck && !release(towards)) return false;
     }

@@ -204,6 +204,7 @@ bool Engine::act(std::size_t which) {
 /// A surface that changes its velocity at once leaves the mass behind, or turns the sliding round.
 bool Engine::belt_jumps(double before) {
     const double slip = y_[1] - belt();
+    if (!std::isfinite(slip)) return fail(model::Outcome::excitation_not_finite);
     if (belt() == before || standstill_.passes() || leans()) return true;
     if (slip == 0) {
         standstill_.arrive();
@@ -233,7 +234,7 @@ bool Engine::too_often() {
 bool Engine::ask() {
     y_[1] = carrier();
     const double M = field_.load(here());
-    if (!std::isfinite(M)) return fail(model::Outcome::excitation_not_finite);
+    if (!std::isfinite(M + y_[1] + pull(M))) return fail(model::Outcome::excitation_not_finite);
     const std::size_t told = events_.size();
     const bool sane = standstill_.ask({now_.hi, theta(), pull(M)});
     if (events_.size() > told) events_.back().M = M, events_.back().velocity = y_[1];

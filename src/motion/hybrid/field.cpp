@@ -177,6 +177,7 @@ bool Field::may_go_on() const {
         const auto* script = std::get_if<model::Scripted>(&c.term);
         if (script != nullptr && model::controller_of(c) == nullptr && !script->function->may_go_on()) return false;
     }
+    if (!extras_.belt.may_go_on() || !extras_.base.may_go_on()) return false;
     return std::all_of(extras_.states.begin(), extras_.states.end(),
                        [](const model::OwnState& state) { return state.rate->may_go_on(); });
 }

@@ -33,16 +33,22 @@ const Integration& integration() {
 Solver::Solver(const Problem& problem, const Field& field, const Cut& cut)
     : system_(problem.system), field_(field), cut_(cut), n_(2 + field.state_count()), point_(n_), rate_(n_) {}
 
-void Solver::sample_surroundings(Solved& piece) const {
+/// False when one of the user's functions has failed.
+bool Solver::sample_surroundings(Solved& piece) {
     const bool has_belt = field_.has_belt();
     for (std::size_t j = 0; j < node_count; ++j) {
         piece.push[j] = field_.push(piece.times[j], piece.side(j));
         piece.belt[j] = has_belt ? field_.belt(piece.times[j], piece.side(j)) : 0;
+        if (!std::isfinite(piece.push[j] + piece.belt[j])) {
+            bad_time_ = piece.times[j];
+            return false;
+        }
     }
     piece.belt_rate = {};
-    if (!has_belt) return;
+    if (!has_belt) return true;
     const auto slope = cheb::derivative(cheb::fit(piece.belt));
     for (std::size_t j = 0; j < node_count; ++j) piece.belt_rate[j] = cheb::value(slope, cheb::nodes[j]) / piece.h;
+    return true;
 }
 
 bool Solver::rates_of(const Solved& piece, double t, Side side, const model::State& asked, const Values& y,
@@ -76,7 +82,7 @@ Solver::Attempt Solver::solve(Solved& piece, const Values& begin, const model::S
     piece.times[node_count - 1] = piece.end;
     piece.y.resize(n_), piece.f.resize(n_), piece.series.resize(n_);
     for (std::size_t k = 0; k < n_; ++k) piece.y[k].fill(begin[k]);
-    sample_surroundings(piece);
+    if (!sample_surroundings(piece)) return Attempt::failed;
     const Attempt attempt = cut_.h > 0 ? runge_kutta(piece, departing) : collocate(piece, departing);
     if (attempt != Attempt::resolved) return attempt;
     for (std::size_t k = 0; k < n_; ++k) {

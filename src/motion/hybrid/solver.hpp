@@ -85,7 +85,7 @@ private:
                   double belt_rate, double* out, double& M, double push, double belt) const;
     Attempt collocate(Solved& piece, const model::State& departing);
     Attempt runge_kutta(Solved& piece, const model::State& departing);
-    void sample_surroundings(Solved& piece) const;
+    bool sample_surroundings(Solved& piece);
     bool estimate_jacobian(const Solved& piece);
     void prepare(const Solved& piece);
     void judge(const Solved& piece);
