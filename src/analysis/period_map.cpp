@@ -24,6 +24,7 @@ motion::Trajectory PeriodMap::run(const Place& from, double length, bool dense) 
     limits.dense = dense;
     auto result = motion::simulate(system_, excitation_, state(from), {start_, start_ + length}, motion::Grid::none(),
                                    motion::Integrator{}, monitor_, limits);
+    if (result && result->contradiction) contradiction_ = result->contradiction;
     if (result) return std::move(result).value();
     motion::Trajectory none;
     none.outcome = model::Outcome::state_not_finite;

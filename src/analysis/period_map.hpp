@@ -47,6 +47,8 @@ public:
     [[nodiscard]] const model::Oscillator& system() const { return system_; }
     [[nodiscard]] const model::Excitation& excitation() const { return excitation_; }
     [[nodiscard]] double start() const { return start_; }
+    /// What was found of a function that is none, in any of the runs so far.
+    [[nodiscard]] const std::optional<model::Contradiction>& contradiction() const { return contradiction_; }
 
 private:
     void differentiate(const motion::Trajectory& run, MapStep& step) const;
@@ -57,6 +59,7 @@ private:
     const model::Excitation& excitation_;
     double start_, length_, omega_;
     motion::Monitor monitor_;
+    mutable std::optional<model::Contradiction> contradiction_;
 };
 
 }  // namespace dinal::analysis

@@ -79,6 +79,17 @@ public:
         return found();
     }
 
+    /// Found or not: nothing is known of an M that is no function of its arguments.
+    SteadyMotion judged(SteadyMotion motion) const {
+        for (const auto* found : {&contradiction_, &map_.contradiction(), &half_.contradiction()}) {
+            if (!*found) continue;
+            motion.contradiction = *found;
+            motion.outcome = model::Outcome::not_a_function;
+            motion.status = SteadyStatus::none;
+        }
+        return motion;
+    }
+
 private:
     using Try = FixedPointSearch::Try;
 
@@ -126,8 +137,10 @@ private:
         const PeriodMap map(question_.system, question_.excitation, question_.drive.start,
                             periods * question_.drive.period, monitor_);
         const auto found = FixedPointSearch(map, 1, answer_.maps).search(start, 40);
-        if (!found || (!any && (found->x - start).norm() > 0.2 * found->size)) return false;
-        return settle(found->x, map, periods);
+        const bool good = found && (any || (found->x - start).norm() <= 0.2 * found->size);
+        const bool settled = good && settle(found->x, map, periods);
+        if (map.contradiction()) contradiction_ = map.contradiction();
+        return settled;
     }
 
     /// A motion that creeps up to the edge of where it can rest would take for ever: this is where it gets.
@@ -297,17 +310,20 @@ private:
     const motion::Monitor& monitor_;
     PeriodMap map_, half_;
     bool symmetric_ = false;
+    std::optional<model::Contradiction> contradiction_;
     SteadyMotion answer_;
 };
 
 }  // namespace
 
 SteadyMotion steady_motion(const SteadyQuestion& question, const motion::Monitor& monitor) {
-    return SteadySearch(question, monitor).found();
+    SteadySearch search(question, monitor);
+    return search.judged(search.found());
 }
 
 SteadyMotion steady_motion_near(const SteadyQuestion& question, const motion::Monitor& monitor) {
-    return SteadySearch(question, monitor).found_near();
+    SteadySearch search(question, monitor);
+    return search.judged(search.found_near());
 }
 
 std::optional<SteadyMotion> another_motion(const SteadyQuestion& question, const SteadyMotion& known,

@@ -38,12 +38,13 @@ struct SteadyMotion {
     std::array<std::complex<double>, 2> multipliers{};
     bool differentiable = false;  ///< else there are no multipliers
     bool stable = false, symmetric = false;
-    std::optional<bool> unique;                            ///< none: other starts must tell
-    std::pair<double, double> rest;                        ///< where it may stand, when it adheres
-    double growth = 0;                                     ///< of the amplitude, in a period of M
-    int maps = 0;                                          ///< periods that were run
-    double residual = 0;                                   ///< what is left of the fixed point, in amplitudes
-    model::Outcome outcome = model::Outcome::reached_end;  ///< of the last run
+    std::optional<bool> unique;                              ///< none: other starts must tell
+    std::pair<double, double> rest;                          ///< where it may stand, when it adheres
+    double growth = 0;                                       ///< of the amplitude, in a period of M
+    int maps = 0;                                            ///< periods that were run
+    double residual = 0;                                     ///< what is left of the fixed point, in amplitudes
+    model::Outcome outcome = model::Outcome::reached_end;    ///< of the last run
+    std::optional<model::Contradiction> contradiction = {};  ///< of Outcome::not_a_function
 };
 
 /// Where the motion from `initial` leads.

@@ -116,7 +116,7 @@ void Story::tell_outcome() {
     if (run_.outcome == model::Outcome::interrupted) {
         say("The run was interrupted at t = {}: this is the story up to there.", at(run_.t_stop));
     } else {
-        say("The run broke off at t = {}: {}.", at(run_.t_stop), model::sentence(run_.outcome));
+        say("The run broke off at t = {}: {}.", at(run_.t_stop), motion::outcome_text(run_));
     }
 }
 

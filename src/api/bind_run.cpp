@@ -125,7 +125,7 @@ int events(lua_State* L) {
 
 int outcome(lua_State* L) {
     const Run& run = *run_self(L, "run.outcome");
-    return lua::push_text(L, run.origin ? model::sentence(run.trajectory.outcome) : "read from a file");
+    return lua::push_text(L, run.origin ? motion::outcome_text(run.trajectory) : "read from a file");
 }
 
 template <double motion::Trajectory::*time>
@@ -245,7 +245,9 @@ constexpr lua::Member run_members[] = {
      {"run.t_end -> number", "The time at which the run ended: the t_end it was given, or earlier when it was stopped.",
       DINAL_RUN "print(run.t_end)  --> 2.0"}},
     {lua::a_field<outcome>,
-     {"run.outcome -> string", "How it ended: \"reached the end\", \"at rest\", \"interrupted\", or what went wrong.",
+     {"run.outcome -> string",
+      "How it ended: \"reached the end\", \"at rest\", \"interrupted\", or what went wrong. It speaks of what "
+      "was seen: a pulse of a function M that falls between two looks at it was not.",
       DINAL_RUN "print(run.outcome)  --> reached the end"}},
     {lua::a_field<names>,
      {"run.names -> table", "The names of the columns.",

@@ -84,10 +84,12 @@ inline constexpr text::Option continue_options[] = {
 };
 inline constexpr text::Call continue_call{"run:continue", "run:continue{ t_end = 40 }", continue_options, true};
 
-inline constexpr text::FixedText<384> simulate_summary{
+inline constexpr text::FixedText<600> simulate_summary{
     "Runs the system, by ", motion::default_integrator.c_str(),
     ", unless told otherwise. With states, M is called with (t, theta, velocity, z), and their columns are "
-    "run.states.NAME. When M fails or Ctrl-C is pressed, what was done so far is in dinal.partial."};
+    "run.states.NAME. M must depend on its arguments only, because it is asked out of order, ahead and again, else the run "
+    "ends and says so: a memory belongs into states or into excitation.sampled, relay or delayed, random numbers into a "
+    "table. When M fails or Ctrl-C is pressed, what was done so far is in dinal.partial."};
 inline constexpr lua::Doc simulate_doc = {
     "sys:simulate{ OPTIONS } -> run",
     simulate_summary.c_str(),

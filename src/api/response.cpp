@@ -104,6 +104,7 @@ int response_of_system(lua_State* L) {
                 warm ? analysis::steady_motion_near(question, monitor) : analysis::steady_motion(question, monitor);
             lag = analysis::shape_of(question, motion, monitor).lag;
         });
+        check_function(options, motion);
         warm = motion.status == analysis::SteadyStatus::steady;
         if (warm) start = motion.start;
         columns.add(frequency, motion, lag);

@@ -81,6 +81,9 @@ void asking(lua_State* L, Work work) {
 analysis::Drive drive_or_fail(lua_State* L, const lua::Options& options, const model::Oscillator& system,
                               const model::Excitation& excitation, const std::optional<double>& period);
 
+/// Raises when M was found to be no function of its arguments.
+void check_function(const lua::Options& options, const analysis::SteadyMotion& motion);
+
 /// sys:steady{ ... } and run:steady{ ... }
 int steady_of_system(lua_State* L);
 int steady_of_run(lua_State* L);

@@ -20,6 +20,7 @@ int push_steady(lua_State* L, const lua::Options& options, analysis::SteadyQuest
         outcome == model::Outcome::excitation_not_finite) {
         options.fail({fmt::format("the motion could not be followed: {}", model::sentence(outcome))});
     }
+    check_function(options, steady->motion);
     lua::push<SteadyHandle>(L, steady);
     return 1;
 }
@@ -35,6 +36,10 @@ model::State state_at_period(const motion::Trajectory& trajectory, const analysi
 }
 
 }  // namespace
+
+void check_function(const lua::Options& options, const analysis::SteadyMotion& motion) {
+    if (motion.contradiction) options.fail({model::sentence_with_cure(*motion.contradiction)});
+}
 
 /// One period, as a run of 400 rows from row to row; kept, so that s.run is the same run each time.
 int run_of_steady(lua_State* L) {

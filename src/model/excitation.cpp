@@ -197,6 +197,13 @@ Excitation Excitation::windowed(double from, double to) const {
     });
 }
 
+Excitation Excitation::with_functions(const FunctionChange& other) const {
+    if (!has_script()) return *this;
+    return changed([&other](Component& c) {
+        if (auto* script = std::get_if<Scripted>(&c.term)) script->function = other(script->function);
+    });
+}
+
 Excitation operator+(const Excitation& a, const Excitation& b) {
     return Excitation(Components::joined(a.components_, b.components_));
 }

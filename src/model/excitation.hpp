@@ -4,6 +4,8 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
+#include <memory>
 #include <span>
 #include <utility>
 
@@ -50,6 +52,9 @@ public:
     [[nodiscard]] Excitation delayed(double delay) const;
     /// 0 outside from <= t < to.
     [[nodiscard]] Excitation windowed(double from, double to) const;
+    /// The same with another in place of every user's function.
+    using FunctionChange = std::function<std::shared_ptr<UserFunction>(const std::shared_ptr<UserFunction>&)>;
+    [[nodiscard]] Excitation with_functions(const FunctionChange& other) const;
     friend Excitation operator+(const Excitation& a, const Excitation& b);
 
     [[nodiscard]] std::span<const Component> components() const { return components_.all(); }

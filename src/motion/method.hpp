@@ -43,6 +43,7 @@ struct OwnRule {
 /// what these forbid besides, and
 ///     OwnRule own_rule() const;
 ///     Trajectory run_more(const Problem& problem) const;   a problem with extras
+///     static constexpr bool asks_in_order = true;          M at ever later times only: it may remember something
 template <class T>
 concept Method = requires(const T& method, const model::Oscillator& system, const Problem& problem) {
     { T::about } -> std::convertible_to<const MethodText&>;
@@ -73,6 +74,8 @@ public:
     }
     [[nodiscard]] Trajectory run(const Problem& problem) const { return common_->run(method_, problem); }
     [[nodiscard]] std::optional<OwnRule> own_rule() const { return common_->own_rule(method_); }
+    /// It asks M in order of time, so nobody needs to know whether M remembers something.
+    [[nodiscard]] bool asks_in_order() const { return common_->asks_in_order; }
     /// It runs problems with states of their own, events of the user, belts, bases and controllers with a memory.
     [[nodiscard]] bool knows_more() const { return common_->run_more != nullptr; }
     [[nodiscard]] Trajectory run_more(const Problem& problem) const { return common_->run_more(method_, problem); }
@@ -87,7 +90,16 @@ private:
         Trajectory (*run)(const void* method, const Problem& problem);
         std::optional<OwnRule> (*own_rule)(const void* method);
         Trajectory (*run_more)(const void* method, const Problem& problem);
+        bool asks_in_order;
     };
+    template <class M>
+    static constexpr bool is_in_order() {
+        if constexpr (requires { M::asks_in_order; }) {
+            return M::asks_in_order;
+        } else {
+            return false;
+        }
+    }
     template <class M>
     static constexpr auto more_of() -> Trajectory (*)(const void*, const Problem&) {
         if constexpr (requires(const M& method, const Problem& problem) { method.run_more(problem); }) {
@@ -126,7 +138,8 @@ private:
                 return std::nullopt;
             }
         },
-        more_of<M>()};
+        more_of<M>(),
+        is_in_order<M>()};
 
     const void* method_;
     const Common* common_;

@@ -7,6 +7,8 @@
 #include <limits>
 #include <string>
 
+#include "motion/witness.hpp"
+
 namespace dinal::motion {
 
 namespace {
@@ -160,9 +162,17 @@ text::Expected<Trajectory> run_from(const Past& past, const model::Oscillator& s
     }
 
     const std::size_t course_bytes = limits.memory / share_of_course;
-    Problem problem{system, excitation,  initial,
-                    window, *grid,       monitor,
-                    limits, past.motion, course_bytes - std::min(course_bytes, past.course_bytes)};
+    std::optional<UnderOath> oath;
+    if (!method.asks_in_order() && has_functions(system, excitation, extras)) oath.emplace(system, excitation, extras);
+    Problem problem{oath ? oath->system() : system,
+                    oath ? oath->excitation() : excitation,
+                    initial,
+                    window,
+                    *grid,
+                    monitor,
+                    limits,
+                    past.motion,
+                    course_bytes - std::min(course_bytes, past.course_bytes)};
     const bool more = extras.any() || system.walls() || model::has_memory(excitation);
     if (more && !method.knows_more()) {
         return text::Error{.sentence = fmt::format("{} knows no states, events, belts, bases and controllers with a "
@@ -170,11 +180,18 @@ text::Expected<Trajectory> run_from(const Past& past, const model::Oscillator& s
                                                    method.about().call.name),
                            .option = "integrator"};
     }
-    problem.extras = &extras;
+    problem.extras = oath ? &oath->extras() : &extras;
     problem.carried = past.carried;
     Trajectory trajectory = more ? method.run_more(problem) : method.run(problem);
     trajectory.initial = initial;
     if (system.walls()) trajectory.restitution = system.walls()->restitution;
+    if (oath) {
+        const bool whole = trajectory.outcome == model::Outcome::reached_end ||
+                           trajectory.outcome == model::Outcome::at_rest ||
+                           trajectory.outcome == model::Outcome::stopped;
+        trajectory.contradiction = oath->verdict(whole);
+        if (trajectory.contradiction) trajectory.outcome = model::Outcome::not_a_function;
+    }
     return trajectory;
 }
 

@@ -84,6 +84,11 @@ text::Expected<model::State> Trajectory::at(double t) const {
     return course->at(t);
 }
 
+std::string outcome_text(const Trajectory& trajectory) {
+    if (trajectory.contradiction) return model::sentence_with_cure(*trajectory.contradiction);
+    return std::string(model::sentence(trajectory.outcome));
+}
+
 std::string summary(const Trajectory& trajectory) {
     const auto& rows = trajectory.rows;
     std::string text = text::counted(static_cast<std::size_t>(rows.rows()), "row");
@@ -102,7 +107,8 @@ std::string summary(const Trajectory& trajectory) {
             text += "at rest";
             break;
         default:
-            text += model::sentence(trajectory.outcome);
+            text += trajectory.contradiction ? model::sentence(*trajectory.contradiction)
+                                             : std::string(model::sentence(trajectory.outcome));
     }
     if (const auto theta = trajectory.find("theta"); theta && rows.rows() > 0) {
         text += fmt::format("; peak |theta| {:.3g}", rows.col(*theta).cwiseAbs().maxCoeff());

@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "model/contradiction.hpp"
 #include "model/event.hpp"
 #include "model/friction.hpp"
 #include "model/oscillator.hpp"
@@ -71,11 +72,12 @@ struct Trajectory {
     double t_stop = 0;  ///< how far it came: t_end unless the outcome says otherwise
     model::State state_at_stop;
     model::Motion motion_at_stop = model::Motion::stuck;
-    bool began_stuck = false;                          ///< until something moved it
-    double restitution = 1;                            ///< of the walls: what an impact left of the velocity
-    bool computed = true;                              ///< false when it was read from a file
-    std::vector<std::string> event_names = {};         ///< of the user's events, by Event::user
-    std::shared_ptr<const Carried> carried = nullptr;  ///< of a run with more in it
+    bool began_stuck = false;                                ///< until something moved it
+    double restitution = 1;                                  ///< of the walls: what an impact left of the velocity
+    bool computed = true;                                    ///< false when it was read from a file
+    std::vector<std::string> event_names = {};               ///< of the user's events, by Event::user
+    std::shared_ptr<const Carried> carried = nullptr;        ///< of a run with more in it
+    std::optional<model::Contradiction> contradiction = {};  ///< of Outcome::not_a_function
     std::shared_ptr<const Course> course;  ///< none when it was declined, or the trajectory read from a file
 
     [[nodiscard]] Eigen::Index size() const { return rows.rows(); }
@@ -91,6 +93,9 @@ struct Trajectory {
 
 /// theta and velocity at t by cubic interpolation of the rows, for want of anything better.
 text::Expected<model::State> between_rows(const Trajectory& trajectory, double t);
+
+/// How it ended, and what to do about that.
+std::string outcome_text(const Trajectory& trajectory);
 
 /// The one-line summary: "2001 rows, t 0 … 20; 41 events (39 turns, 1 stick, 1 slip); moving at the end; peak
 /// |theta| 1.96".

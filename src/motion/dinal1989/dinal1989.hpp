@@ -14,6 +14,7 @@ struct Dinal1989 {
     Stop stop = Stop::listing;
     bool slip = false;  ///< the wrong index in stage 3 with which chapter 6 of the report was computed
 
+    static constexpr bool asks_in_order = true;
     static const MethodText about;
     [[nodiscard]] std::optional<text::Error> wrong_for(const model::Oscillator& system,
                                                        const model::Excitation& excitation) const;
@@ -38,7 +39,9 @@ inline constexpr MethodText Dinal1989::about{
     {"integrator.dinal1989", "integrator.dinal1989{ h = 0.01 }", dinal1989_options},
     "The program DINAL as it was printed in 1989, with step h (time units) and its own rule for stops; a museum piece "
     "for comparison. stop = \"text\" takes the rule that the report's text states instead; slip = true repeats the "
-    "wrong index with which the report's chapter 6 was computed.",
+    "wrong index with which the report's chapter 6 was computed. As in 1989, M is asked in order of time and, where rows "
+    "fall on steps, once a time if it is a function of t: it is the one method that does not find out an M that keeps a "
+    "memory.",
     "sys = nondimensional{}\n"
     "run = sys:simulate{ theta0 = 1, t_end = 0.5, dt = 0.5, integrator = integrator.dinal1989{ h = 0.1 } }\n"
     "print(string.format(\"%.6f\", run.theta[2]))  --> -0.997964"};

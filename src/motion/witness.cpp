@@ -1,0 +1,211 @@
+#include "motion/witness.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <limits>
+
+#include "model/controller.hpp"
+#include "model/laws/user_law.hpp"
+#include "model/springs/user_spring.hpp"
+
+namespace dinal::motion {
+
+namespace {
+
+constexpr double no_number = std::numeric_limits<double>::quiet_NaN();
+
+// Of a hundred questions at most three are put again: one of 64 in turn, and one of 128 because of a jump.
+constexpr std::uint64_t first_again = 12;  ///< the first question after which one is put again
+constexpr std::uint64_t questions_between = 64;
+constexpr std::uint64_t questions_a_jump = 128;
+/// A jump is a change this many times as great as changes mostly are.
+constexpr double jump_factor = 8;
+
+}  // namespace
+
+Witness::Witness(std::shared_ptr<model::UserFunction> function, std::shared_ptr<Testimony> testimony, std::string who,
+                 const char* argument, std::size_t states)
+    : function_(std::move(function)),
+      testimony_(std::move(testimony)),
+      who_(std::move(who)),
+      argument_(argument),
+      next_(first_again),
+      states_(places * states) {}
+
+void Witness::keep(std::size_t place, const Answer& answer, std::span<const double> states) {
+    answers_[place] = answer;
+    known_ |= std::uint64_t{1} << place;
+    if (states_.empty()) return;
+    const std::size_t count = states_.size() / places;
+    for (std::size_t i = 0; i < count; ++i) states_[place * count + i] = i < states.size() ? states[i] : 0;
+}
+
+/// Every fourth answer, the older the fewer.
+void Witness::keep_for_later(const Answer& answer, std::span<const double> states) {
+    if (asked_ == 1) keep(first_place, answer, states);
+    if (asked_ % 4 != 0) return;
+    const std::uint64_t n = asked_ / 4;
+    const auto age = std::min(static_cast<std::size_t>(std::countr_zero(n)), ages - 1);
+    keep(2 * age + static_cast<std::size_t>(n >> (age + 1) & 1U), answer, states);
+}
+
+/// Asks for an answer again. One that fails now fails as it would have failed anywhere else: that is another story.
+bool Witness::stands_by(std::size_t place) {
+    const Answer& answer = answers_[place];
+    const std::size_t count = states_.size() / places;
+    const std::span<const double> states{states_.data() + place * count, count};
+    const double again = function_->value_with(answer.t, answer.state, states);
+    // The same bits, but for the sign of zero, which moves nothing.
+    if (again == answer.value) return true;
+    if (std::isfinite(again)) {
+        testimony_->found = model::Contradiction{who_, argument_, answer.t, answer.value, again};
+    }
+    return false;
+}
+
+/// The answers take turns, old and new ones.
+bool Witness::ask_again() {
+    next_ = asked_ + questions_between;
+    for (std::size_t i = 0; i <= 2 * ages; ++i) {
+        constexpr std::size_t stride = 7;  // has no factor in common with their number, 37
+        turn_ = (turn_ + stride) % (2 * ages + 1);
+        if ((known_ >> turn_ & 1U) != 0) return stands_by(turn_);
+    }
+    return true;
+}
+
+double Witness::value_with(double t, const model::State& state, std::span<const double> states) {
+    if (testimony_->over) return function_->value_with(t, state, states);
+    if (testimony_->found) return no_number;
+    const double value = function_->value_with(t, state, states);
+    if (!std::isfinite(value)) return value;
+    ++asked_;
+    const Answer& last = answers_[last_];
+    if (asked_ >= first_again && t >= last.t) {
+        const double change = std::fabs(value - last.value);
+        if (change > jump_factor * usual_) {
+            // What a relay in a closure said before it switched, it does not say again.
+            std::swap(last_, before_jump_);
+            if (jumps_asked_ * questions_a_jump <= asked_) {
+                ++jumps_asked_;
+                if (!stands_by(before_jump_)) return no_number;
+            }
+        }
+        usual_ += (change - usual_) / 16;
+    }
+    keep(last_, {t, state, value}, states);
+    if (asked_ >= next_ && !ask_again()) return no_number;
+    keep_for_later({t, state, value}, states);
+    return value;
+}
+
+std::size_t Witness::fill(std::span<const double> times, std::span<double> out) {
+    if (testimony_->over) return function_->fill(times, out);
+    if (testimony_->found) {
+        out[0] = no_number;
+        return 0;
+    }
+    const std::size_t good = function_->fill(times, out);
+    if (good == 0) return good;
+    const std::uint64_t before = asked_;
+    if (before == 0) keep(first_place, {times[0], {}, out[0]}, {});
+    for (std::uint64_t n = before / 4 * 4 + 4; n <= before + good; n += 4) {
+        const std::size_t i = n - before - 1;
+        asked_ = n;
+        keep_for_later({times[i], {}, out[i]}, {});
+    }
+    asked_ = before + good;
+    if (good < times.size() || asked_ < next_ || ask_again()) return good;
+    out[0] = no_number;
+    return 0;
+}
+
+void Witness::conclude() {
+    if (asked_ > 1 && !testimony_->found) stands_by(first_place);
+}
+
+namespace {
+
+bool has_functions(const model::Oscillator& system) {
+    return system.friction().as<model::laws::UserLaw>() != nullptr ||
+           system.spring().as<model::springs::UserSpring>() != nullptr;
+}
+
+std::shared_ptr<model::UserFunction> with_witness_inside(const model::Controller& controller, auto&& heard) {
+    if (const auto* delayed = dynamic_cast<const model::DelayedController*>(&controller)) {
+        auto own = std::make_shared<model::DelayedController>();
+        own->function = heard(delayed->function);
+        own->by = delayed->by;
+        return own;
+    }
+    const auto* relay = dynamic_cast<const model::RelayController*>(&controller);
+    if (relay == nullptr || relay->function == nullptr) return nullptr;
+    auto own = std::make_shared<model::RelayController>();
+    own->on = relay->on, own->off = relay->off;
+    own->levels = relay->levels;
+    own->of = relay->of;
+    own->state = relay->state;
+    own->function = heard(relay->function);
+    own->starts_on = relay->starts_on;
+    return own;
+}
+
+}  // namespace
+
+std::shared_ptr<model::UserFunction> UnderOath::heard(const std::shared_ptr<model::UserFunction>& function,
+                                                      std::string who, const char* argument) {
+    witnesses_.push_back(std::make_shared<Witness>(function, testimony_, std::move(who), argument, states_));
+    return witnesses_.back();
+}
+
+model::Excitation UnderOath::heard(const model::Excitation& excitation, const char* who) {
+    return excitation.with_functions([&](const std::shared_ptr<model::UserFunction>& function) {
+        if (const auto* controller = dynamic_cast<const model::Controller*>(function.get())) {
+            // One that samples is asked in order, and may remember what it likes.
+            const auto inside = with_witness_inside(*controller, [&](const auto& inner) { return heard(inner, who); });
+            return inside == nullptr ? function : inside;
+        }
+        return heard(function, who);
+    });
+}
+
+UnderOath::UnderOath(const model::Oscillator& system, const model::Excitation& excitation, const model::Extras& extras)
+    : states_(extras.states.size()),
+      system_(system),
+      excitation_(heard(excitation, "M")),
+      extras_{.states = extras.states,
+              .events = extras.events,
+              .belt = heard(extras.belt, "belt"),
+              .base = heard(extras.base, "base")} {
+    for (model::OwnState& state : extras_.states) state.rate = heard(state.rate, "states." + state.name + ".rate");
+    for (model::WantedEvent& event : extras_.events) {
+        event.when = heard(event.when, event.name.empty() ? "an event" : "the event " + event.name);
+    }
+    model::OscillatorParameters parameters = system.parameters();
+    if (const auto* law = system.friction().as<model::laws::UserLaw>()) {
+        model::laws::UserLaw own = *law;
+        own.function = heard(law->function, "friction", "speed");
+        parameters.friction = own;
+    }
+    if (const auto* spring = system.spring().as<model::springs::UserSpring>()) {
+        parameters.spring = model::springs::UserSpring{heard(spring->function, "spring", "theta")};
+    }
+    if (!has_functions(system)) return;
+    if (auto made = model::Oscillator::make(parameters)) system_ = *made;
+}
+
+std::optional<model::Contradiction> UnderOath::verdict(bool whole) {
+    if (whole) {
+        for (const auto& witness : witnesses_) witness->conclude();
+    }
+    testimony_->over = true;
+    return testimony_->found;
+}
+
+bool has_functions(const model::Oscillator& system, const model::Excitation& excitation, const model::Extras& extras) {
+    return has_functions(system) || excitation.has_script() || !extras.states.empty() || !extras.events.empty() ||
+           extras.belt.has_script() || extras.base.has_script();
+}
+
+}  // namespace dinal::motion

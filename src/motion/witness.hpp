@@ -1,0 +1,105 @@
+// Users' functions under oath: each is asked again, now and then, what it has been asked before.
+//
+// An integrator asks M out of order, again and ahead of time, and takes for granted that M depends on its arguments
+// only. One with a memory, or with random numbers, would make a motion that nobody asked for, without a word. So what
+// a run asks goes through a Witness, which remembers some of the answers, of all ages, asks for them again after
+// others, and compares. No integrator knows of it: a function that is found out gives no number any more, which ends
+// the run.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "model/contradiction.hpp"
+#include "model/extras.hpp"
+#include "model/oscillator.hpp"
+
+namespace dinal::motion {
+
+/// What the witnesses of a run have in common.
+struct Testimony {
+    std::optional<model::Contradiction> found = {};
+    bool over = false;  ///< the run is: nothing is remembered or asked again
+};
+
+class Witness final : public model::UserFunction {
+public:
+    /// `states` is how many the function is given, `argument` what users call its first argument.
+    Witness(std::shared_ptr<model::UserFunction> function, std::shared_ptr<Testimony> testimony, std::string who,
+            const char* argument, std::size_t states);
+
+    double value(double t, const model::State& state) override { return value_with(t, state, {}); }
+    double value_with(double t, const model::State& state, std::span<const double> states) override;
+    std::size_t fill(std::span<const double> times, std::span<double> out) override;
+    bool may_go_on() override { return !testimony_->found && function_->may_go_on(); }
+
+    /// Once more at the end of a run, after all the others.
+    void conclude();
+
+private:
+    /// What it was asked, and said.
+    struct Answer {
+        double t = 0;
+        model::State state;
+        double value = 0;
+    };
+    static constexpr std::size_t ages = 18;  ///< answers are kept from 4, 8, 16 ... questions ago
+    // The places of answers: two of each age; the very first one; the last one, and the one before a jump, which take
+    // turns.
+    static constexpr std::size_t first_place = 2 * ages, places = first_place + 3;
+
+    void keep(std::size_t place, const Answer& answer, std::span<const double> states);
+    void keep_for_later(const Answer& answer, std::span<const double> states);
+    bool stands_by(std::size_t place);
+    bool ask_again();
+
+    std::shared_ptr<model::UserFunction> function_;
+    std::shared_ptr<Testimony> testimony_;
+    std::string who_;
+    const char* argument_;
+
+    std::uint64_t asked_ = 0, next_ = 0;  ///< questions, and when one of them comes again
+    std::uint64_t jumps_asked_ = 0;       ///< of those, because of a jump
+    std::size_t turn_ = 0, last_ = first_place + 1, before_jump_ = first_place + 2;
+    double usual_ = 0;         ///< change from one question to the next
+    std::uint64_t known_ = 0;  ///< a bit for each place
+    std::array<Answer, places> answers_;
+    std::vector<double> states_;  ///< of each place
+};
+
+/// What a run asks, with a witness beside every function of the user.
+class UnderOath {
+public:
+    UnderOath(const model::Oscillator& system, const model::Excitation& excitation, const model::Extras& extras);
+
+    [[nodiscard]] const model::Oscillator& system() const { return system_; }
+    [[nodiscard]] const model::Excitation& excitation() const { return excitation_; }
+    [[nodiscard]] const model::Extras& extras() const { return extras_; }
+
+    /// The run is over; `whole`: nothing had failed in it. What was found.
+    [[nodiscard]] std::optional<model::Contradiction> verdict(bool whole);
+
+private:
+    std::shared_ptr<model::UserFunction> heard(const std::shared_ptr<model::UserFunction>& function, std::string who,
+                                               const char* argument = "t");
+    model::Excitation heard(const model::Excitation& excitation, const char* who);
+
+    std::shared_ptr<Testimony> testimony_ = std::make_shared<Testimony>();
+    std::vector<std::shared_ptr<Witness>> witnesses_ = {};
+    std::size_t states_;
+    model::Oscillator system_;
+    model::Excitation excitation_;
+    model::Extras extras_;
+};
+
+/// Something in the run is a function that a user has written.
+[[nodiscard]] bool has_functions(const model::Oscillator& system, const model::Excitation& excitation,
+                                 const model::Extras& extras);
+
+}  // namespace dinal::motion

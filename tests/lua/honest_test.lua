@@ -1,0 +1,268 @@
+-- M must depend on its arguments only: what breaks this is found out.
+package.path = "tests/lua/?.lua;" .. package.path
+local support = require "support"
+local test, near, equal, raises = support.test, support.near, support.equal, support.raises
+
+local sys = nondimensional { zeta = 0.05, friction_ratio = 0.1 }
+local methods = { integrator.spectral {}, integrator.rk4 { h = 0.002 } }
+
+--- Simulates with what `make` makes, by each integrator, and as a run with a state.
+local function runs(make, more)
+    local list = {}
+    for _, method in ipairs(methods) do
+        for _, states in ipairs { false, { way = { rate = function(_, _, velocity) return math.abs(velocity) end } } } do
+            local options = { M = make(), theta0 = 1, t_end = 10, dt = 0.1, integrator = method, states = states or nil }
+            for name, value in pairs(more or {}) do options[name] = value end
+            list[#list + 1] = sys:simulate(options)
+        end
+    end
+    return ipairs(list)
+end
+
+local function found_out(make, more)
+    for i, run in runs(make, more) do
+        assert(run.outcome:find("M is no function of its arguments: at t = ", 1, true), i .. ": " .. run.outcome)
+        assert(run.outcome:find("and, asked again, ", 1, true), run.outcome)
+        assert(run.outcome:find("states, excitation.sampled, excitation.relay or excitation.delayed", 1, true), run.outcome)
+        for _, theta in ipairs(run.theta) do assert(theta == theta) end
+    end
+end
+
+-- ---- what is found out
+
+test("an integral in an upvalue is found out", function()
+    found_out(function()
+        local last, sum = 0, 0
+        return function(t, theta)
+            sum = sum + (0.2 - theta) * (t - last)
+            last = t
+            return 3 * (0.2 - theta) + 5 * sum
+        end
+    end)
+end)
+
+test("a slow integral is found out", function()
+    found_out(function()
+        local last, sum = 0, 0
+        return function(t, theta)
+            sum = sum + 1e-6 * (0.2 - theta) * (t - last)
+            last = t
+            return math.sin(t) + sum
+        end
+    end)
+end)
+
+test("the time of the last call is found out", function()
+    found_out(function()
+        local last, before = 0, 1
+        return function(t, theta)
+            local rate = t > last and (theta - before) / (t - last) or 0
+            last, before = t, theta
+            return -0.1 * rate
+        end
+    end)
+end)
+
+test("a relay with hysteresis in a closure is found out", function()
+    found_out(function()
+        local on = true
+        return function(_, theta)
+            if theta > 0.05 then on = false elseif theta < -0.05 then on = true end
+            return on and 10 or -10
+        end
+    end)
+end)
+
+test("a zero-order hold within M is found out", function()
+    found_out(function()
+        local next_time, held = 0, 0
+        return function(t, theta, velocity)
+            if t >= next_time then
+                held = -2 * theta - velocity
+                next_time = next_time + 0.15
+            end
+            return held
+        end
+    end)
+    found_out(function()  -- of a function of time
+        local next_time, held = 0, 0
+        return function(t)
+            if t >= next_time then
+                held = 5 * math.sin(4 * t)
+                next_time = next_time + 0.15
+            end
+            return held
+        end
+    end)
+end)
+
+test("a filter is found out", function()
+    found_out(function()
+        local y = 0
+        return function(t)
+            y = y + 0.1 * (math.sin(5 * t) - y)
+            return y
+        end
+    end)
+end)
+
+test("a trip that stays tripped is found out", function()
+    found_out(function()
+        local tripped = false
+        return function(_, theta)
+            tripped = tripped or theta > 2
+            return tripped and 1 or 5 - theta
+        end
+    end)
+end)
+
+test("random numbers are found out, also rare ones and coins", function()
+    math.randomseed(42)
+    found_out(function() return function() return math.random() end end)
+    found_out(function() return function(t) return math.sin(t) + 1e-12 * math.random() end end)
+    found_out(function() return function() return math.random(2) - 1.5 end end)
+end)
+
+test("a counter that changes the value is found out", function()
+    found_out(function()
+        local calls = 0
+        return function(t)
+            calls = calls + 1
+            return math.sin(t) + 1e-13 * calls
+        end
+    end)
+end)
+
+test("the time of day is found out", function()
+    found_out(function() return function(t) return math.sin(t) + 1e-3 * os.clock() end end)
+end)
+
+test("a table that something else changes is found out", function()
+    found_out(function()
+        gain = { value = 1 }
+        return function(t)
+            return gain.value * math.sin(t)
+        end
+    end, { events = { { when = function(t) return t - 5 end, act = function() gain.value = 2 end } } })
+    gain = nil
+end)
+
+test("a generator is found out", function()
+    found_out(function()
+        return coroutine.wrap(function()
+            local n = 0
+            while true do
+                n = n + 0.001
+                coroutine.yield(n)
+            end
+        end)
+    end)
+end)
+
+test("one of several terms is found out, also a delayed and a windowed one", function()
+    local function counted()
+        local calls = 0
+        return excitation.scripted(function() calls = calls + 1 return 1e-9 * calls end)
+    end
+    found_out(function() return excitation.harmonic { frequency = 0.8 } + 0.5 * counted() end)
+    found_out(function() return excitation.harmonic { frequency = 0.8 } + counted():delay(0.3) end)
+    found_out(function() return excitation.harmonic { frequency = 0.8 } + counted():window(1, 6) end)
+    found_out(function() return excitation.scripted(math.sin) + counted() end)
+end)
+
+test("what acts with a delay must be a function, too", function()
+    local calls = 0
+    local M = excitation.delayed(function(t, theta) calls = calls + 1 return -theta + 1e-9 * calls end, { by = 0.1 })
+    for _, method in ipairs(methods) do
+        local run = sys:simulate { M = M, theta0 = 1, t_end = 5, dt = 0.1, integrator = method }
+        assert(run.outcome:find("M is no function of its arguments", 1, true), run.outcome)
+    end
+end)
+
+test("rates of states, laws of friction, springs, belts, supports and events of a user must be functions, too", function()
+    local function drifting()
+        local calls = 0
+        return function() calls = calls + 1 return 0.3 + 1e-9 * calls end
+    end
+    local function told(options, system, who)
+        for _, method in ipairs(methods) do
+            options.theta0, options.t_end, options.dt, options.integrator = 1, 5, 0.1, method
+            local run = system:simulate(options)
+            assert(run.outcome:find(who .. " is no function of its arguments: at ", 1, true), run.outcome)
+        end
+    end
+    told({ states = { e = { rate = drifting() } } }, sys, "states.e.rate")
+    told({ belt = drifting() }, sys, "belt")
+    told({ base = drifting() }, sys, "base")
+    told({ events = { { when = drifting(), name = "limit" } } }, sys, "the event limit")
+    told({}, system { I = 1, k = 1, friction = friction.law(drifting(), { Re = 0.4 }) }, "friction")
+    told({}, system { I = 1, k = 1, spring = drifting() }, "spring")
+end)
+
+test("a run that goes on is under oath again", function()
+    local late = false
+    local M = function(t) return math.sin(t) + (late and 1e-6 * os.clock() or 0) end
+    for _, method in ipairs(methods) do
+        late = false
+        local run = sys:simulate { M = M, theta0 = 1, t_end = 5, dt = 0.1, integrator = method }
+        assert(not run.outcome:find("no function", 1, true) and #run == 51, run.outcome)
+        late = true
+        run = run:continue { t_end = 15 }
+        assert(run.outcome:find("M is no function", 1, true), run.outcome)
+        near(run.t_start, 0, 0)
+        assert(run.t_end >= 5 and #run >= 50)
+    end
+end)
+
+test("the rows until then are kept, and the story tells it", function()
+    local switched = false
+    local run = sys:simulate { theta0 = 1, t_end = 40, dt = 0.1, M = function(t)
+        if t > 20 then switched = true end
+        return switched and t <= 20 and 3 or math.sin(t)
+    end }
+    assert(run.outcome:find("M is no function", 1, true), run.outcome)
+    assert(#run > 100 and run.t_end > 15, run.t_end)
+    assert(run:explain():gsub("%s+", " "):find("The run broke off at t = [%d.]+.*: M is no function of its arguments"), run:explain())
+    assert(tostring(run):find("asked again", 1, true), tostring(run))
+end)
+
+test("both values are told, to the last digit where that is what differs", function()
+    local calls = 0
+    local run = sys:simulate { t_end = 5, dt = 1, M = function() calls = calls + 1 return calls > 10 and 0.25 or 0.75 end }
+    assert(run.outcome:find("it gave 0.75 and, asked again, 0.25;", 1, true), run.outcome)
+    calls = 0
+    run = sys:simulate { t_end = 5, dt = 1, M = function() calls = calls + 1 return calls > 10 and 0.3 or 0.1 + 0.2 end }
+    assert(run.outcome:find("it gave 0.30000000000000004 and, asked again, 0.3;", 1, true), run.outcome)
+end)
+
+test("steady states and responses say so, too", function()
+    local function drifting()
+        local calls = 0
+        return function(t) calls = calls + 1 return math.sin(2 * math.pi * t) + 1e-13 * calls end
+    end
+    raises(function() sys:steady { M = drifting(), period = 1 } end, "M is no function of its arguments: at t = ")
+    raises(function() sys:response { M = function() return drifting() end, frequency = { 1, 2 }, points = 3 } end, "M is no function of its arguments: at t = ")
+    local on = true
+    raises(function()
+        sys:steady { period = 1, theta0 = 1, M = function(t, theta)
+            if theta > 0.05 then on = false elseif theta < -0.05 then on = true end
+            return (on and 2 or -2) + 3 * math.sin(2 * math.pi * t)
+        end }
+    end, "M is no function of its arguments: at t = ")
+end)
+
+test("the listing of 1989 asks in order, and takes what it gets", function()
+    local last, sum = 0, 0
+    local backwards = 0
+    local run = nondimensional { zeta = 0.05 }:simulate { theta0 = 1, t_end = 5, dt = 0.1, integrator = integrator.dinal1989 { h = 0.01 },
+        M = function(t)
+            if t <= last then backwards = backwards + 1 end
+            sum = sum + (t - last)
+            last = t
+            return sum
+        end }
+    equal(run.outcome, "reached the end")
+    equal(backwards, 1)  -- the first, at t = 0
+end)
+
+support.finish()
