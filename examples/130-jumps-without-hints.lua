@@ -44,6 +44,6 @@ print(string.format("rk4, h = 0.001  with hints: %11.1f thousand calls, largest 
           spectral, without hints:    4.1 thousand calls, largest difference below 1e-12: true
 rk4, h = 0.01   without hints:        2.2 thousand calls, largest difference 3e-02
 rk4, h = 0.001  without hints:       20.2 thousand calls, largest difference 2e-03
-rk4, h = 0.0001 without hints:      200.2 thousand calls, largest difference 3e-04
+rk4, h = 0.0001 without hints:      201.7 thousand calls, largest difference 3e-04
 rk4, h = 0.001  with hints:        20.2 thousand calls, largest difference 2e-10
 ]]

@@ -12,6 +12,8 @@
 namespace dinal::analysis {
 namespace {
 
+using model::Motion;
+
 constexpr double neutral_within = 1e-6;  // by how much a multiplier of 1 may miss it
 
 Eigen::Vector2d place_of(const model::State& state, double omega) {
@@ -20,7 +22,6 @@ Eigen::Vector2d place_of(const model::State& state, double omega) {
 
 /// Friction is the same both ways.
 bool acts_evenly(const model::Friction& law, const model::Lowered& system) {
-    using model::Motion;
     for (const double speed : {1e-3, 0.1, 1.0, 10.0}) {
         if (law.sliding(Motion::forward, speed) != law.sliding(Motion::backward, speed)) return false;
     }
@@ -31,7 +32,6 @@ bool acts_evenly(const model::Friction& law, const model::Lowered& system) {
 /// Sliding and holding torque are the same each way, there are no walls, and M does not depend on the motion: the map
 /// brings no two states farther apart.
 bool contracts(const model::Lowered& system, bool walled, const model::Excitation& excitation) {
-    using model::Motion;
     return !system.has_remainder() && !excitation.has_feedback() && !walled &&
            system.holding(Motion::forward) == system.braking(Motion::forward) &&
            system.holding(Motion::backward) == -system.braking(Motion::backward);
@@ -339,12 +339,10 @@ std::optional<SteadyMotion> another_motion(const SteadyQuestion& question, const
         other.initial = {size * radius * std::cos(angle), size * radius * std::sin(angle) * omega};
         const SteadyMotion found = steady_motion(other, monitor);
         if (found.status == SteadyStatus::none || found.outcome == model::Outcome::interrupted) continue;
-        const bool alike = found.status == known.status &&
-                           std::fabs(found.amplitude - known.amplitude) <= 1e-6 * size &&
-                           std::fabs(std::fabs(found.high) - std::fabs(known.high)) +
-                                   std::fabs(std::fabs(found.low) - std::fabs(known.low)) <=
-                               2e-6 * size;
-        if (!alike) return found;
+        const double apart = std::fabs(std::fabs(found.high) - std::fabs(known.high)) +
+                             std::fabs(std::fabs(found.low) - std::fabs(known.low));
+        const bool alike = std::fabs(found.amplitude - known.amplitude) <= 1e-6 * size && apart <= 2e-6 * size;
+        if (found.status != known.status || !alike) return found;
     }
     return {};
 }

@@ -36,7 +36,7 @@ test("all kinds of things, in their order, on one page", function()
     local place = 1
     for _, part in ipairs{ "<!DOCTYPE html>", "<title>Decay &lt;1&gt;</title>", "<h1>Decay &lt;1&gt;</h1>", "A &amp; B",
         "<h2>Results</h2>", "<p>First &amp; foremost.</p>", "<p>Second paragraph.</p>", "omega0 = 6.32", "\nT0 = 0.99",
-        "601 rows", "It made", "How to repeat this run", "system{ I = 1.0, k = 40.0", "<th>a|b</th>", "<td>0.25</td>", "</html>" } do
+        "601 rows", "It made", "How to repeat this run", "simulate", "<th>a|b</th>", "<td>0.25</td>", "</html>" } do
         local found = page:find(part, place, true)
         assert(found, part .. " is not there, or not in its place")
         place = found
@@ -71,7 +71,7 @@ test("what cannot be reported is told in a sentence", function()
     raises_here(function() report{} end, "report needs title")
     raises_here(function() report{ title = 3 } end, "title must be")
     local r = report{ title = "x" }
-    raises_here(function() r:text() end, "what is added must be text, got no value")
+    raises_here(function() r:text() end, "what is added must be text, got nil")
     raises_here(function() r:table(3) end, "r:table takes data")
     raises_here(function() r:plot(3) end, "r:plot takes what plot{ ... } takes")
     raises_here(function() r:plot{ { run.t } } end, "plot")
