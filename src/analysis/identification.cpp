@@ -114,10 +114,12 @@ void Identification::try_from(const Parameters& start) {
 std::vector<std::size_t> Identification::stages(double period) const {
     std::vector<std::size_t> rows;
     const double first = question_.t.front();
-    for (double length = 2.2 * period; first + length < question_.t.back(); length *= 2) {
+    double length = 2.2 * period;
+    while (first + length < question_.t.back()) {
         const auto until = std::upper_bound(question_.t.begin(), question_.t.end(), first + length);
         rows.push_back(static_cast<std::size_t>(until - question_.t.begin()));
         if (!question_.M) break;
+        length *= 2;
     }
     if (!question_.M && turns_.size() > left_out_) rows.push_back(turns_[turns_.size() - 1 - left_out_] + 1);
     return rows;

@@ -44,7 +44,7 @@ std::optional<Eigen::MatrixXd> derivative(const Prediction& model, const Eigen::
 }
 
 std::optional<LeastSquares> least_squares(const Prediction& model, const Eigen::VectorXd& measured,
-                                          Eigen::VectorXd start, const FitScale& scale, int most_steps) {
+                                          const Eigen::VectorXd& start, const FitScale& scale, int most_steps) {
     LeastSquares now{start.cwiseMax(scale.least), {}, 0};
     const auto first = model(now.parameters);
     if (!first) return {};
@@ -71,7 +71,9 @@ std::optional<LeastSquares> least_squares(const Prediction& model, const Eigen::
         const double before = now.sum;
         double moved = 0;
         bool better = false;
-        for (int tries = 0; tries < 12 && !better; ++tries, damping *= better ? 1 : 4) {
+        damping /= 4;
+        for (int tries = 0; tries < 12 && !better; ++tries) {
+            damping *= 4;
             Eigen::MatrixXd damped = normal;
             damped.diagonal() *= 1 + damping;
             const Eigen::VectorXd way = damped.ldlt().solve(gradient).cwiseProduct(size);

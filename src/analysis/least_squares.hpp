@@ -23,7 +23,7 @@ struct FitScale {
 
 /// From a start to the nearest least sum of squares; none when the model says nothing there.
 std::optional<LeastSquares> least_squares(const Prediction& model, const Eigen::VectorXd& measured,
-                                          Eigen::VectorXd start, const FitScale& scale, int most_steps);
+                                          const Eigen::VectorXd& start, const FitScale& scale, int most_steps);
 
 /// The derivatives of the first rows of the prediction, a column a parameter: central differences, one-sided at a
 /// bound.

@@ -237,10 +237,10 @@ private:
             return torque >= least && torque <= most;
         };
         double inside = 0, outside = 1e-9 * std::max(std::fabs(here), 1e-9);
-        for (int i = 0; holds(outside); ++i, outside *= 2) {
+        for (int i = 0; holds(outside); ++i) {
             constexpr int farthest = 200;
             if (i == farthest) return here;  // nothing pulls it back
-            inside = outside;
+            inside = outside, outside *= 2;
         }
         while (outside - inside > 1e-15 * (std::fabs(here) + outside)) {
             const double middle = inside + (outside - inside) / 2;

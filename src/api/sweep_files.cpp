@@ -72,7 +72,7 @@ std::optional<text::Error> SweepFiles::open() {
     }
     std::error_code error;
     if (fs::exists(file_, error)) {
-        const auto wrong = take(file_, true);
+        auto wrong = take(file_, true);
         finished_ = !wrong;
         return wrong;
     }

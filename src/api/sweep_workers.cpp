@@ -127,7 +127,7 @@ struct PointLoop {
             lua_pop(L, 1);
             lua_pushvalue(L, -1);
             if (lua_rawget(L, columns) == LUA_TNIL) {
-                if (const std::string trouble = new_column(lua::text_at(L, -2)); !trouble.empty()) return trouble;
+                if (std::string trouble = new_column(lua::text_at(L, -2)); !trouble.empty()) return trouble;
             }
             lua_pop(L, 1);
         }

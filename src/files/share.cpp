@@ -70,7 +70,7 @@ text::Expected<std::optional<Share>> share_of(const Launcher& launcher) {
 text::Expected<std::optional<Share>> share_of_launcher() {
     for (const Launcher& launcher : launchers) {
         if (setting(launcher.rank).empty()) continue;
-        const auto share = share_of(launcher);
+        auto share = share_of(launcher);
         // A step of one task in a job array: the array counts.
         if (share && (*share)->size == 1 && &launcher != &launchers.back()) continue;
         return share;

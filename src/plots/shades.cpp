@@ -45,7 +45,7 @@ Interval range_of_shades(const std::vector<double>& sorted) {
 }  // namespace
 
 std::vector<ShadeBand> bands_of(const Shades& shades, int most) {
-    constexpr double infinity = std::numeric_limits<double>::infinity();
+    constexpr double endless = std::numeric_limits<double>::infinity();
     const std::vector<double> sorted = finite_values(shades);
     if (sorted.empty()) return {};
     std::vector<ShadeBand> bands;
@@ -55,19 +55,19 @@ std::vector<ShadeBand> bands_of(const Shades& shades, int most) {
     }
     const Interval range = shades.limits.value_or(range_of_shades(sorted));
     if (!(range.length() > 1e-12 * std::max(std::fabs(range.low), std::fabs(range.high)))) {
-        return {{-infinity, infinity, fmt::format("{:.6g}", range.low)}};
+        return {{-endless, endless, fmt::format("{:.6g}", range.low)}};
     }
     const Ticks ticks = ticks_of(Axis{}, Scale(range, false), std::max(1, most - 2));
     for (std::size_t i = 0; i + 1 < ticks.at.size(); ++i) {
         bands.push_back({ticks.at[i], ticks.at[i + 1], fmt::format("{} to {}", ticks.text[i], ticks.text[i + 1])});
     }
-    if (ticks.at.empty()) return {{-infinity, infinity, fmt::format("{:.4g} to {:.4g}", range.low, range.high)}};
+    if (ticks.at.empty()) return {{-endless, endless, fmt::format("{:.4g} to {:.4g}", range.low, range.high)}};
     const auto below = [&](double z) { return !sorted.empty() && sorted.front() < z; };
     if (below(ticks.at.front())) {
-        bands.insert(bands.begin(), {-infinity, ticks.at.front(), "< " + ticks.text.front()});
+        bands.insert(bands.begin(), {-endless, ticks.at.front(), "< " + ticks.text.front()});
     }
     if (sorted.back() >= ticks.at.back() || bands.empty()) {
-        bands.push_back({ticks.at.back(), infinity, "> " + ticks.text.back()});
+        bands.push_back({ticks.at.back(), endless, "> " + ticks.text.back()});
     }
     return bands;
 }

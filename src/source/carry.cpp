@@ -56,28 +56,25 @@ Carrier::Carrier(lua_State* from, lua_State* to, CarryObject other_objects)
 void Carrier::note_standard(const std::string& library, const std::string& name) {
     const int type = lua_type(from_, -1);
     const bool same_type = type == lua_type(to_, -1);
-    if (type == LUA_TTABLE && same_type) {
+    const bool same_function = type == LUA_TFUNCTION && same_type && lua_tocfunction(from_, -1) != nullptr &&
+                               lua_tocfunction(from_, -1) == lua_tocfunction(to_, -1);
+    if (same_function || (same_type && (type == LUA_TTABLE || type == LUA_TUSERDATA))) {  // a userdata: io.stdout
         const bool is_new = standard_.try_emplace(lua_topointer(from_, -1), Place{library, name}).second;
-        if (is_new && library.empty()) note_library(name);
-    } else if (type == LUA_TUSERDATA && same_type) {
-        standard_.try_emplace(lua_topointer(from_, -1), Place{library, name});  // io.stdout
-    } else if (type == LUA_TFUNCTION && same_type && lua_tocfunction(from_, -1) != nullptr &&
-               lua_tocfunction(from_, -1) == lua_tocfunction(to_, -1)) {
-        standard_.try_emplace(lua_topointer(from_, -1), Place{library, name});
+        if (is_new && type == LUA_TTABLE && library.empty()) note_library(name);
     } else if (!library.empty() && library != LUA_LOADLIBNAME && type == LUA_TFUNCTION) {
         additions_.push_back({library, name});
     }
 }
 
 /// The tables of a library stand on the tops of both states.
-void Carrier::note_library(const std::string& name) {
+void Carrier::note_library(const std::string& library) {
     lua_pushnil(from_);
     while (lua_next(from_, -2) != 0) {
         if (lua_type(from_, -2) == LUA_TSTRING) {
             const std::string member = lua_tostring(from_, -2);
             lua_pushlstring(to_, member.data(), member.size());
             lua_rawget(to_, -2);
-            note_standard(name, member);
+            note_standard(library, member);
             lua_pop(to_, 1);
         }
         lua_pop(from_, 1);

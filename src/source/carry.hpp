@@ -43,7 +43,7 @@ private:
     };
 
     void note_standard(const std::string& library, const std::string& name);
-    void note_library(const std::string& name);
+    void note_library(const std::string& library);
     void push_place(const Place& place);
     void carry_additions();
 

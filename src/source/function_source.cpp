@@ -198,7 +198,7 @@ std::optional<std::string> function_source(lua_State* L, int index) {
         find_in(L, *text, wanted, found);
     }
     lua_settop(L, top);
-    const auto only = found.only();
+    auto only = found.only();
     if (only) {
         push_known(L);
         lua_pushvalue(L, index);

@@ -13,8 +13,9 @@ namespace {
 
 double power(double x, int n) {
     double result = 1;
-    for (; n > 0; n /= 2, x *= x) {
+    for (; n > 0; n /= 2) {
         if (n % 2 == 1) result *= x;
+        x *= x;
     }
     return result;
 }

@@ -106,7 +106,8 @@ bool Arc::begin_closed(const model::ClosedForm& M, const Start& start, double le
 void Arc::begin_series(const model::ClosedForm& M, const Start& start, double length, double rate) {
     const double I = system_.inertia(), C = system_.damping(), k = system_.stiffness(), x = rate * length;
     std::size_t order = 2;
-    for (double left = x * x / 2; left > 1e-18 && order < 40; left *= x / static_cast<double>(order)) ++order;
+    double left = x * x / 2;
+    while (left > 1e-18 && order < 40) left *= x / static_cast<double>(++order);
     order = std::max(order, M.powers().size() + 2);
 
     load_.assign(order, 0.0);

@@ -38,9 +38,10 @@ public:
         constexpr double most = 1e6;
         stretch_ = kept.length / std::clamp(count, 1.0, most);
         done_.push_back({});
-        for (double from = 0; from < kept.length * (1 - 1e-9);
-             from = stretch_ * static_cast<double>(done_.size() - 1)) {
+        double from = 0;
+        while (from < kept.length * (1 - 1e-9)) {
             done_.push_back(more(done_.back(), from, from + stretch_));
+            from = stretch_ * static_cast<double>(done_.size() - 1);
         }
     }
     [[nodiscard]] double length() const override { return kept_.length; }

@@ -29,7 +29,7 @@ Complex Resonance::difference(double tau, Complex root_turned) const {
     if (size < 0.05) {
         // (exp(z) - 1)/z: the term left out is z^3/24, or z^9/10!.
         Complex series = 1;
-        for (double n = size < 1e-6 ? 3 : 9; n >= 2; n -= 1) series = 1.0 + times(series, z) / n;
+        for (int n = size < 1e-6 ? 3 : 9; n >= 2; --n) series = 1.0 + times(series, z) / static_cast<double>(n);
         return tau * times(series, root_turned);
     }
     // exp(x + i y) - 1 without a difference of nearly equal numbers.
@@ -67,9 +67,10 @@ void WalkedCurve::begin() {
         cosine_.resize(levels * n), sine_.resize(levels * n), growth_.resize(levels * m);
         resonance_turn_.resize(levels * r), resonance_difference_.resize(levels * r);
         double length = longest_look * 2 * std::numbers::pi / free_.w0();
-        for (int level = 0; level < levels; ++level, length /= 2) {
+        for (int level = 0; level < levels; ++level) {
             lengths_[static_cast<std::size_t>(level)] = length;
             turns_[static_cast<std::size_t>(level)].ready = false;
+            length /= 2;
         }
         for (State& state : states_) {
             state.re.resize(n), state.im.resize(n), state.amount.resize(m);

@@ -160,9 +160,11 @@ bool FirstExit::leave(double first, double second, double third, double until) {
     // f(s)/s >= first + second s/2 + third s^2/6 - bound s^3/24 on (0, s]: a cubic, by its Bernstein coefficients.
     const double fourth = curve_.fourth_bound(until);
     constexpr int most = 200;
-    double h = curve_.length(usual_level) * 2;
-    int level = usual_level - 1;
-    for (int i = 0; i < most; ++i, ++level, h /= 2) {
+    double h = curve_.length(usual_level) * 4;
+    int level = usual_level - 2;
+    for (int i = 0; i < most; ++i) {
+        ++level;
+        h /= 2;
         const double s = std::min(h, until);
         const double c1 = second / 2 * s, c2 = third / 6 * s * s, c3 = -fourth / 24 * s * s * s;
         const double b1 = first + c1 / 3, b2 = first + (2 * c1 + c2) / 3, b3 = first + c1 + c2 + c3;
