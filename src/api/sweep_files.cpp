@@ -74,6 +74,7 @@ std::optional<text::Error> SweepFiles::open() {
     if (fs::exists(file_, error)) {
         auto wrong = take(file_, true);
         finished_ = !wrong;
+        if (finished_) remove_folder(folder_ + ".merging");  // somebody was killed before the last of his work
         return wrong;
     }
     // Somebody was killed between taking the folder and writing the file.
@@ -229,9 +230,12 @@ void SweepFiles::discard() {
     remove_folder(folder_ + ".merging");
 }
 
-/// With what we have written into it, and nothing else.
+/// With what we have written into it, and nothing else; what a killed process was writing is ours, too.
 void SweepFiles::remove_folder(const std::string& folder) {
     std::error_code error;
+    for (const fs::directory_entry& entry : fs::directory_iterator(folder, error)) {
+        if (entry.path().filename().string().starts_with(".dinal-")) fs::remove(entry.path(), error);
+    }
     for (std::size_t chunk = 0; chunk < results_.chunks(); ++chunk) {
         fs::remove(fmt::format("{}/{:06}.csv", folder, chunk), error);
     }
