@@ -3,8 +3,8 @@
 #include <cstdio>
 
 #include "help/manual.hpp"
+#include "notebook/kernel.hpp"
 #include "prompt/arguments.hpp"
-#include "prompt/kernel.hpp"
 #include "prompt/lab_solutions.hpp"
 #include "prompt/output.hpp"
 #include "prompt/script.hpp"
@@ -35,11 +35,11 @@ int carry_out(const dinal::prompt::Arguments& arguments) {
         case dinal::prompt::Request::lab_solutions:
             return print(dinal::prompt::solutions_of(arguments.student));
         case dinal::prompt::Request::jupyter_install:
-            return print(dinal::prompt::install_kernel());
+            return print(dinal::notebook::install_kernel());
         case dinal::prompt::Request::run:
             break;
     }
-    return dinal::prompt::run(arguments);
+    return dinal::prompt::run(arguments, dinal::notebook::run_kernel);
 }
 
 }  // namespace

@@ -23,7 +23,6 @@
 #include "lua/safe_mode.hpp"
 #include "lua/time_limit.hpp"
 #include "prompt/call.hpp"
-#include "prompt/kernel.hpp"
 #include "prompt/line_editor.hpp"
 #include "prompt/output.hpp"
 #include "prompt/repl.hpp"
@@ -213,7 +212,7 @@ int prompt(lua_State* L, const Arguments& arguments) {
                                                                                    : exit_code::interrupted;
 }
 
-int run_all(lua_State* L, const Arguments& arguments) {
+int run_all(lua_State* L, const Arguments& arguments, Kernel kernel) {
     if (arguments.show_version) {
         say((arguments.interactive ? greeting() : version_line()) + "\n");
     }
@@ -226,7 +225,7 @@ int run_all(lua_State* L, const Arguments& arguments) {
         return failure();
     }
     if (arguments.kernel) {
-        return run_kernel(L, *arguments.kernel) ? exit_code::ok : exit_code::usage;
+        return kernel(L, *arguments.kernel) ? exit_code::ok : exit_code::usage;
     }
     if (arguments.interactive) {
         return prompt(L, arguments);
@@ -242,13 +241,14 @@ int run_all(lua_State* L, const Arguments& arguments) {
 
 struct Program {
     const Arguments* arguments;
+    Kernel kernel;
     int code = exit_code::script_error;
 };
 
 int protected_run(lua_State* L) {
     auto* program = static_cast<Program*>(lua_touserdata(L, 1));
     lua_settop(L, 0);
-    program->code = run_all(L, *program->arguments);
+    program->code = run_all(L, *program->arguments, program->kernel);
     return 0;
 }
 
@@ -261,7 +261,7 @@ void close_state(lua_State* L) {
 
 }  // namespace
 
-int run(const Arguments& arguments) {
+int run(const Arguments& arguments, Kernel kernel) {
     if (!arguments.lab_marks.empty()) {
         const char* script = arguments.has_script() ? arguments.words[arguments.script] : "-";
         if (const auto wrong = api::note_lab_answers(arguments.lab_marks, script)) {
@@ -276,7 +276,7 @@ int run(const Arguments& arguments) {
         return exit_code::script_error;
     }
     lua::install_interrupt_handler();
-    Program program{&arguments};
+    Program program{&arguments, kernel};
     lua_pushcfunction(L, protected_run);
     lua_pushlightuserdata(L, &program);
     if (lua_pcall(L, 1, 0, 0) != LUA_OK) {

@@ -1,6 +1,7 @@
 // Running what the command line asks for, in lua's order: LUA_INIT, -e -l -W, the script, the prompt.
 #pragma once
 
+#include "lua/lua_headers.hpp"
 #include "prompt/arguments.hpp"
 
 namespace dinal::prompt {
@@ -12,8 +13,11 @@ constexpr int usage = 2;
 constexpr int interrupted = 130;
 }  // namespace exit_code
 
+/// What --kernel runs in place of the prompt: it answers on the descriptor. False when it cannot.
+using Kernel = bool (*)(lua_State* L, int answers);
+
 /// Returns the exit code; what went wrong has been told on standard error.
-int run(const Arguments& arguments);
+int run(const Arguments& arguments, Kernel kernel);
 
 /// "dinal: text" on standard error.
 void complain(const std::string& text);

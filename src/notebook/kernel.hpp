@@ -7,7 +7,7 @@
 #include "lua/lua_headers.hpp"
 #include "text/expected.hpp"
 
-namespace dinal::prompt {
+namespace dinal::notebook {
 
 /// Serves the requests on standard input to their end and answers on the descriptor. What scripts print goes to
 /// standard output and standard error as ever, and is there before the answer. False when that descriptor is not open.
@@ -20,4 +20,4 @@ text::Expected<std::string> install_kernel();
 /// dinal_kernel.py, which CMake puts into the program.
 extern const char* const kernel_script;
 
-}  // namespace dinal::prompt
+}  // namespace dinal::notebook

@@ -1,4 +1,4 @@
-#include "prompt/kernel.hpp"
+#include "notebook/kernel.hpp"
 
 #include <fcntl.h>
 #include <fmt/core.h>
@@ -26,9 +26,10 @@
 #include "prompt/session.hpp"
 #include "text/words.hpp"
 
-namespace dinal::prompt {
+namespace dinal::notebook {
 namespace {
 
+namespace fs = std::filesystem;
 using Json = nlohmann::json;
 
 int answers_descriptor = -1;
@@ -36,7 +37,7 @@ int answers_descriptor = -1;
 /// A line of JSON, all of it; bytes that are no UTF-8 become U+FFFD.
 void answer(const Json& message) {
     const std::string line = message.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
-    flush_output();
+    prompt::flush_output();
     std::string_view rest = line;
     while (!rest.empty()) {
         const ssize_t written = ::write(answers_descriptor, rest.data(), rest.size());
@@ -98,7 +99,7 @@ void show_picture(const api::Picture& picture) {
 
 int show_values_as_json(lua_State* L) {
     constexpr std::size_t rows_shown = 50;
-    Json forms{{"text/plain", values_text(L)}};
+    Json forms{{"text/plain", prompt::values_text(L)}};
     if (lua_gettop(L) == 1) {
         if (const auto* picture = lua::test<api::Picture>(L, 1)) {
             forms = shown_picture(*picture);
@@ -110,15 +111,15 @@ int show_values_as_json(lua_State* L) {
     return 0;
 }
 
-Json execute(Session& session, const std::string& code) {
+Json execute(prompt::Session& session, const std::string& code) {
     std::string errors;
     bool fine = true;
     {
-        const ErrorsInto collected(errors);
-        if (is_command(code)) {
-            run_command(session, code);
+        const prompt::ErrorsInto collected(errors);
+        if (prompt::is_command(code)) {
+            prompt::run_command(session, code);
         } else {
-            fine = run_text(session, code);
+            fine = prompt::run_text(session, code);
         }
     }
     if (!errors.empty()) errors.pop_back();
@@ -133,8 +134,8 @@ std::size_t word_begin(std::string_view before) {
 }
 
 Json completed(lua_State* L, const std::string& before) {
-    const bool command = is_command(before) && before.starts_with(':');
-    const Completion completion = command ? complete_command(L, before) : complete(L, before);
+    const bool command = prompt::is_command(before) && before.starts_with(':');
+    const prompt::Completion completion = command ? prompt::complete_command(L, before) : prompt::complete(L, before);
     return {{"names", completion.names}, {"word", before.size() - word_begin(before)}};
 }
 
@@ -149,13 +150,16 @@ std::string name_at(std::string_view before, std::string_view after) {
 
 Json explained(lua_State* L, const std::string& before, const std::string& after) {
     const std::string name = name_at(before, after);
-    return {{"text", name.empty() ? signature_hint(L, before) : answer_to(L, name)}};
+    return {{"text", name.empty() ? prompt::signature_hint(L, before) : prompt::answer_to(L, name)}};
 }
 
 const char* completeness(lua_State* L, const std::string& code) {
-    const Compiled result = is_command(code) ? Compiled::ready : compile(L, code).result;
+    const prompt::Compiled result =
+        prompt::is_command(code) ? prompt::Compiled::ready : prompt::compile(L, code).result;
     lua_settop(L, 0);
-    return result == Compiled::ready ? "complete" : result == Compiled::incomplete ? "incomplete" : "invalid";
+    return result == prompt::Compiled::ready        ? "complete"
+           : result == prompt::Compiled::incomplete ? "incomplete"
+                                                    : "invalid";
 }
 
 std::string words_of(const Json& request, const char* name) {
@@ -163,7 +167,7 @@ std::string words_of(const Json& request, const char* name) {
     return found != request.end() && found->is_string() ? found->get<std::string>() : "";
 }
 
-Json answer_to_request(Session& session, const Json& request) {
+Json answer_to_request(prompt::Session& session, const Json& request) {
     const std::string what = words_of(request, "do");
     if (what == "execute") return execute(session, words_of(request, "code"));
     if (what == "complete") return completed(session.L, words_of(request, "before"));
@@ -173,8 +177,6 @@ Json answer_to_request(Session& session, const Json& request) {
 }
 
 // ---- where Jupyter looks for it
-
-namespace fs = std::filesystem;
 
 std::string variable(const char* name) {
     const char* value = std::getenv(name);  // NOLINT(concurrency-mt-unsafe): one thread
@@ -189,20 +191,11 @@ fs::path jupyter_folder() {
     return home.empty() ? fs::path() : fs::path(home) / ".local" / "share" / "jupyter";
 }
 
-std::optional<text::Error> write(const fs::path& path, const std::string& content) {
-    auto file = files::OutputFile::create(path.string());
-    if (!file) return file.error();
-    auto opened = std::move(file).value();
-    opened.write(content);
-    const auto written = opened.commit();
-    return written ? std::nullopt : std::optional(written.error());
-}
-
 }  // namespace
 
 bool run_kernel(lua_State* L, int answers) {
     if (answers <= STDERR_FILENO || ::fcntl(answers, F_SETFD, FD_CLOEXEC) < 0) {
-        complain(
+        prompt::complain(
             fmt::format("--kernel={} is no open descriptor for its answers: it is for notebooks, and dinal "
                         "--jupyter-install makes one (docs/notebook.md)",
                         answers));
@@ -211,7 +204,7 @@ bool run_kernel(lua_State* L, int answers) {
     answers_descriptor = answers;
     ::prctl(PR_SET_PDEATHSIG, SIGTERM);  // a loop without end must not outlive its notebook
     Requests requests;
-    Session session(L);
+    prompt::Session session(L);
     session.show_values = lua::guarded<show_values_as_json>;
     api::show_pictures_by(show_picture);
     while (!session.leaving) {
@@ -243,7 +236,7 @@ text::Expected<std::string> install_kernel() {
                                 {"env", {{"DINAL", failed ? "dinal" : program.string()}}}};
     for (const auto& [path, content] :
          {std::pair{script, std::string(kernel_script)}, std::pair{folder / "kernel.json", kernel.dump(1) + "\n"}}) {
-        if (auto wrong = write(path, content)) return *wrong;
+        if (const auto written = files::write_file(path.string(), content); !written) return written.error();
     }
     return fmt::format(
         "the kernel 'dinal' for notebooks is in {}\n"
@@ -251,4 +244,4 @@ text::Expected<std::string> install_kernel() {
         folder.string());
 }
 
-}  // namespace dinal::prompt
+}  // namespace dinal::notebook
