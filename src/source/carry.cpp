@@ -84,7 +84,7 @@ void Carrier::note_library(const std::string& library) {
 /// Pushes, in `to`, what stands there.
 void Carrier::push_place(const Place& place) {
     lua_pushglobaltable(to_);
-    for (const std::string& name : {place.library, place.name}) {
+    for (const std::string& name : {place.module, place.name}) {
         if (name.empty() || name == "_G") continue;
         lua_pushlstring(to_, name.data(), name.size());
         lua_rawget(to_, -2);
@@ -97,11 +97,11 @@ void Carrier::push_place(const Place& place) {
 void Carrier::carry_additions() {
     for (const Place& place : std::exchange(additions_, {})) {
         lua::push_standard_globals(from_);
-        lua_getfield(from_, -1, place.library.c_str());
+        lua_getfield(from_, -1, place.module.c_str());
         lua_getfield(from_, -1, place.name.c_str());
         way_ = {place.name};
         if (value(-1)) {
-            push_place({place.library, ""});
+            push_place({place.module, ""});
             lua_insert(to_, -2);
             lua_setfield(to_, -2, place.name.c_str());
             lua_pop(to_, 1);

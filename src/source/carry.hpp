@@ -34,8 +34,8 @@ public:
 
 private:
     struct Place {
-        std::string library;  ///< "string"; empty for a global
-        std::string name;     ///< "format"; empty for the library itself
+        std::string module;  ///< "string"; empty for a global
+        std::string name;    ///< "format"; empty for the module itself
     };
     struct Variable {
         const void* function;  // of `from`
