@@ -271,6 +271,7 @@ void Engine::record_turns(double until) {
     double from = -1;
     LeftEnd start = y_[1] == 0 ? LeftEnd::leaving : LeftEnd::anywhere;
     const auto no = [](double) { return false; };
+    bool headed_back = false;
     while (standstill_.motion() != model::Motion::stuck) {
         const model::Motion motion = standstill_.motion();
         const Bounded<points> curve(model::sign_of(motion), v, derivative(v));
@@ -278,7 +279,8 @@ void Engine::record_turns(double until) {
         if (!x || *x > until) break;
         if (start == LeftEnd::leaving && *x <= from && (from > -1 || standstill_.last_told() == now_.hi)) {
             standstill_.head(motion == model::Motion::forward ? model::Motion::backward : model::Motion::forward);
-            if (from > -1) break;
+            if (from > -1 || headed_back) break;  // it gets under way neither way: all of it is rounding
+            headed_back = true;
         } else {
             const MotionPoint at = point(*x);
             standstill_.turned({at.t, at.y.theta, field_.load(at)});

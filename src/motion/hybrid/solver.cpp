@@ -96,6 +96,12 @@ Solver::Attempt Solver::solve(Solved& piece, const Values& begin, const model::S
     return unresolved_ <= 1 ? Attempt::resolved : Attempt::shorten;
 }
 
+/// The size of what acts on the mass, M among it, which may balance.
+double Solver::torques_of(const Solved& piece, double M) const {
+    return M + system_.greatest_holding() + system_.stiffness() * (greatest(piece.y[0]) + std::fabs(piece.origin)) +
+           greatest(piece.push) + std::fabs(system_.spring(piece.origin + piece.y[0][0]));
+}
+
 /// How the rates depend on the values, by differences at the beginning: as wide as the motion is.
 bool Solver::estimate_jacobian(const Solved& piece) {
     Linear& linear = moves(piece) ? moving_ : standing_;
@@ -183,6 +189,7 @@ Solver::Attempt Solver::collocate(Solved& piece, const model::State& departing) 
             }
             const Eigen::VectorXd step = linear.factors.solve(residual_);
             double change = 0;
+            const double gained = piece.h / system_.inertia() * torques_of(piece, greatest(piece.M));
             for (std::size_t k = 0; k < n_; ++k) {
                 double most = 0;
                 for (std::size_t j = 1; j < node_count; ++j) {
@@ -190,8 +197,11 @@ Solver::Attempt Solver::collocate(Solved& piece, const model::State& departing) 
                     piece.y[k][j] += d;
                     most = std::max(most, std::fabs(d));
                 }
-                // A velocity matters by how far it carries the mass, and by how fast the mass goes anyway.
-                const double scale = greatest(piece.y[k]) + (k == 0 ? std::fabs(piece.origin) : 0) +
+                // Torques that balance leave a velocity that is the rounding of each of them, however small it is.
+                const double scale = greatest(piece.y[k]) +
+                                     (k == 0   ? std::fabs(piece.origin)
+                                      : k == 1 ? gained
+                                               : 0) +
                                      std::numeric_limits<double>::min() / rounding;
                 change = std::max(change, most / scale);
             }
@@ -265,9 +275,7 @@ void Solver::judge(const Solved& piece) {
     unresolved_ = 0;
     const double h = piece.h, per_torque = h * (h / system_.inertia());
     const Series M = cheb::fit(piece.M);
-    const double torques = cheb::size(M) + system_.greatest_holding() +
-                           system_.stiffness() * (greatest(piece.y[0]) + std::fabs(piece.origin)) +
-                           greatest(piece.push) + std::fabs(system_.spring(piece.origin + piece.y[0][0]));
+    const double torques = torques_of(piece, cheb::size(M));
     const double smallest = std::numeric_limits<double>::min() / rounding;
     // Times far from t = 0 are rounded, and M with them.
     double slope = 0;

@@ -88,6 +88,7 @@ private:
     bool sample_surroundings(Solved& piece);
     bool estimate_jacobian(const Solved& piece);
     void prepare(const Solved& piece);
+    [[nodiscard]] double torques_of(const Solved& piece, double M) const;
     void judge(const Solved& piece);
     [[nodiscard]] bool moves(const Solved& piece) const { return piece.way != model::Motion::stuck; }
 
