@@ -37,16 +37,21 @@ int new_report(lua_State* L) {
     return 1;
 }
 
+/// As print shows it.
+std::string printed(lua_State* L, int index) {
+    std::size_t size = 0;
+    luaL_tolstring(L, index, &size);
+    std::string text(lua_tostring(L, -1), size);
+    lua_pop(L, 1);
+    return text;
+}
+
 /// A string or a number; all else is an error of the call.
 std::string words_at(lua_State* L, int index, const char* call, const char* what) {
     if (lua_type(L, index) != LUA_TSTRING && lua_type(L, index) != LUA_TNUMBER) {
         lua::raise_got(L, index, call, fmt::format("{}: {} must be text", call, what));
     }
-    std::size_t size = 0;
-    luaL_tolstring(L, index, &size);
-    std::string words(lua_tostring(L, -1), size);
-    lua_pop(L, 1);
-    return words;
+    return printed(L, index);
 }
 
 int add_text(lua_State* L) {
@@ -68,23 +73,11 @@ void add_lines(Report& report, const std::string& lines) {
     }
 }
 
-std::string text_at(lua_State* L, int index) {
-    std::size_t size = 0;
-    luaL_tolstring(L, index, &size);
-    std::string text(lua_tostring(L, -1), size);
-    lua_pop(L, 1);
-    return text;
-}
-
-std::string joined_lines(const std::vector<std::string>& lines) {
-    return fmt::format("{}", fmt::join(lines, "\n"));
-}
-
 int add_value(lua_State* L) {
     const ReportHandle report = report_self(L, "r:add");
     if (lua_gettop(L) == 3) {
         const std::string name = words_at(L, 2, "r:add", "the name of the value");
-        add_lines(*report, name + " = " + text_at(L, 3));
+        add_lines(*report, name + " = " + printed(L, 3));
         return 0;
     }
     if (lua_gettop(L) != 2 || lua_isnil(L, 2)) {
@@ -97,14 +90,14 @@ int add_value(lua_State* L) {
     } else if (const auto* run = lua::test<RunHandle>(L, 2)) {
         const RunHandle kept = *run;
         const std::string story = story_of_run(L, *kept);
-        add_lines(*report, text_at(L, 2));
+        add_lines(*report, printed(L, 2));
         report->items.emplace_back(ReportText{story});
         if (kept->origin) {
-            report->items.emplace_back(
-                ReportLines{joined_lines(source::repeat_lines(*kept->origin)), "How to repeat this run"});
+            report->items.emplace_back(ReportLines{
+                fmt::format("{}", fmt::join(source::repeat_lines(*kept->origin), "\n")), "How to repeat this run"});
         }
     } else {
-        add_lines(*report, text_at(L, 2));
+        add_lines(*report, printed(L, 2));
     }
     return 0;
 }
@@ -164,12 +157,6 @@ std::string running_script(lua_State* L) {
     return name.empty() || !read ? "" : std::move(read).value();
 }
 
-void write_whole(lua_State* L, const std::string& name, const std::string& content) {
-    auto file = lua::value_or_raise(L, "r:save", files::OutputFile::create(name));
-    file.write(content);
-    lua::value_or_raise(L, "r:save", file.commit());
-}
-
 int save_report(lua_State* L) {
     lua::refuse_in_worker(L, "r:save");
     Report report = *report_self(L, "r:save");
@@ -187,12 +174,14 @@ int save_report(lua_State* L) {
         report.items.emplace_back(ReportLines{std::move(script), "The script"});
     }
     if (ending == ".html") {
-        write_whole(L, name, html_of(report));
+        lua::value_or_raise(L, "r:save", files::write_file(name, html_of(report)));
         return 0;
     }
     const MarkdownReport written = markdown_of(report, name.substr(0, name.size() - ending.size()));
-    for (const auto& [picture, svg] : written.pictures) write_whole(L, picture, svg);
-    write_whole(L, name, written.text);
+    for (const auto& [picture, svg] : written.pictures) {
+        lua::value_or_raise(L, "r:save", files::write_file(picture, svg));
+    }
+    lua::value_or_raise(L, "r:save", files::write_file(name, written.text));
     return 0;
 }
 

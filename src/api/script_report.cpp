@@ -75,12 +75,9 @@ text::Expected<std::string> ScriptReport::save(const std::string& script, const 
     if (auto source = files::read_file(script)) {
         report_.items.emplace_back(ReportLines{std::move(source).value(), "The script"});
     }
-    auto file = files::OutputFile::create(stem + ".html");
-    if (!file) return file.error();
-    auto opened = std::move(file).value();
-    opened.write(html_of(report_));
-    if (const auto written = opened.commit(); !written) return written.error();
-    return stem + ".html";
+    std::string name = stem + ".html";
+    if (const auto written = files::write_file(name, html_of(report_)); !written) return written.error();
+    return name;
 }
 
 }  // namespace dinal::api

@@ -4,6 +4,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <memory>
+#include <utility>
+#include <vector>
 
 #include "motion/simulate.hpp"
 
@@ -76,5 +79,17 @@ private:
     std::size_t next_ = 0;
     double next_time_ = model::never;
 };
+
+/// Runs an engine to its end, and puts together what is left behind.
+template <class Engine>
+void run_whole(Engine& engine, const Problem& problem, RowWriter& rows, std::vector<model::Event>& events,
+               std::shared_ptr<const Course> course, Trajectory& trajectory) {
+    trajectory.outcome = engine.run();
+    rows.finish();
+    trajectory.t_start = problem.window.start;
+    engine.leave(trajectory);
+    trajectory.events = Growing<model::Event>(std::move(events));
+    trajectory.course = std::move(course);
+}
 
 }  // namespace dinal::motion

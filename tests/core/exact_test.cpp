@@ -31,15 +31,6 @@ constexpr long usual_cases = 200;
 constexpr long usual_cases = 1500;
 #endif
 
-long cases() {
-    const char* text = std::getenv("DINAL_ORACLE_CASES");
-    return text == nullptr ? usual_cases : std::strtol(text, nullptr, 10);
-}
-long first_case() {
-    const char* text = std::getenv("DINAL_ORACLE_FIRST");
-    return text == nullptr ? 0 : std::strtol(text, nullptr, 10);
-}
-
 /// The events but for what rounding decides: short sticks, as when a load draws the mass on just as it comes down to
 /// zero (a velocity of 1e-12 of the greatest lasts 1e-6 T0, and longer where the load fades); and swings without
 /// friction of 1e-12 of the greatest angle.
@@ -171,7 +162,7 @@ Comparison compare(const RandomCase& c) {
 }  // namespace
 
 TEST_CASE("exact and spectral tell the same motion and the same events, whatever the lot brings", "[exact][spectral]") {
-    const long first = first_case(), count = cases();
+    const long first = number_from("DINAL_ORACLE_FIRST", 0), count = number_from("DINAL_ORACLE_CASES", usual_cases);
     long ambiguous = 0;
     double worst = 0;
     for (long i = first; i < first + count; ++i) {

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 
 #include "support/catch.hpp"
 #include "support/measure.hpp"
@@ -31,11 +30,6 @@ constexpr long usual_cases = 60;
 #else
 constexpr long usual_cases = 400;
 #endif
-
-long number_from(const char* variable, long otherwise) {
-    const char* text = std::getenv(variable);
-    return text == nullptr ? otherwise : std::strtol(text, nullptr, 10);
-}
 
 template <class Events>
 std::string told(const Events& events) {

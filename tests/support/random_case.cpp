@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <limits>
 #include <numbers>
 
@@ -184,6 +185,11 @@ RandomCase random_case_of_bumps(std::uint64_t number) {
     std::sort(c.load.breaks.begin(), c.load.breaks.end());
     choose_times(lot, c);
     return c;
+}
+
+long number_from(const char* variable, long otherwise) {
+    const char* text = std::getenv(variable);
+    return text == nullptr ? otherwise : std::strtol(text, nullptr, 10);
 }
 
 }  // namespace dinal::truth

@@ -69,4 +69,8 @@ Ingredient random_bump(Lot& lot, const Units& units, double width);
 Ingredient random_function_of_time(Lot& lot, const Units& units);
 Ingredient random_feedback(Lot& lot, const Units& units);
 
+/// The whole number that the environment has under this name: DINAL_ORACLE_CASES asks for more systems by lot than are
+/// usual, or for fewer; DINAL_ORACLE_FIRST begins with another one.
+long number_from(const char* variable, long otherwise);
+
 }  // namespace dinal::truth

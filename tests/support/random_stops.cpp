@@ -1,7 +1,6 @@
 #include "support/random_stops.hpp"
 
 #include <fmt/format.h>
-#include <cstdlib>
 
 #include <algorithm>
 #include <cmath>
@@ -208,7 +207,7 @@ StopsVerdict judge_stops(const StopsCase& c, const motion::Integrator& integrato
 
 void check_random_stops(Lots kind, int cases) {
     // As for the oracle: more when somebody has the time, fewer where a sanitizer makes them slow.
-    if (const char* asked = std::getenv("DINAL_ORACLE_CASES")) cases = std::atoi(asked);
+    cases = static_cast<int>(number_from("DINAL_ORACLE_CASES", cases));
     int ambiguous = 0, told_of = 0;
     for (int number = 0; number < cases; ++number) {
         const StopsCase c = stops_case(kind, static_cast<std::uint64_t>(number));

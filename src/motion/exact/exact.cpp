@@ -54,12 +54,7 @@ Trajectory Exact::run(const Problem& problem) const {
     }
     std::vector<model::Event> events;
     ExactEngine engine(problem, rows, events, arcs.get());
-    trajectory.outcome = engine.run();
-    rows.finish();
-    trajectory.t_start = problem.window.start;
-    engine.leave(trajectory);
-    trajectory.events = Growing<model::Event>(std::move(events));
-    trajectory.course = std::move(arcs);
+    run_whole(engine, problem, rows, events, std::move(arcs), trajectory);
     return trajectory;
 }
 

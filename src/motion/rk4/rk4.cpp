@@ -75,12 +75,7 @@ Trajectory Rk4::run(const Problem& problem) const {
     Rk4Engine engine(problem, *this, rows, &events, replay ? &replay->checkpoints : nullptr);
     if (replay) replay->checkpoints = Checkpoints<Rk4Checkpoint>(engine.steps());
 
-    trajectory.outcome = engine.run();
-    rows.finish();
-    trajectory.t_start = problem.window.start;
-    engine.leave(trajectory);
-    trajectory.events = Growing<model::Event>(std::move(events));
-    trajectory.course = std::move(replay);
+    run_whole(engine, problem, rows, events, std::move(replay), trajectory);
     return trajectory;
 }
 

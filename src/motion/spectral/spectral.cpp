@@ -27,12 +27,7 @@ Trajectory Spectral::run(const Problem& problem) const {
     if (problem.limits.dense) panels = std::make_shared<Panels>(problem.system, problem.course_bytes);
     std::vector<model::Event> events;
     SpectralEngine engine(problem, *this, rows, events, panels.get());
-    trajectory.outcome = engine.run();
-    rows.finish();
-    trajectory.t_start = problem.window.start;
-    engine.leave(trajectory);
-    trajectory.events = Growing<model::Event>(std::move(events));
-    trajectory.course = std::move(panels);
+    run_whole(engine, problem, rows, events, std::move(panels), trajectory);
     return trajectory;
 }
 
