@@ -9,6 +9,7 @@
 #include "lua/terminal_output.hpp"
 #include "lua/worker_state.hpp"
 #include "source/value_text.hpp"
+#include "text/version.hpp"
 
 namespace dinal::help {
 

@@ -6,6 +6,7 @@
 
 #include "help/help_text.hpp"
 #include "help/signature.hpp"
+#include "text/version.hpp"
 #include "text/words.hpp"
 
 namespace dinal::help {

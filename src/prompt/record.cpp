@@ -7,6 +7,7 @@
 
 #include "files/file.hpp"
 #include "lua/tokens.hpp"
+#include "text/version.hpp"
 #include "text/words.hpp"
 
 namespace dinal::prompt {

@@ -27,6 +27,7 @@
 #include "prompt/output.hpp"
 #include "prompt/repl.hpp"
 #include "source/function_source.hpp"
+#include "text/version.hpp"
 
 namespace dinal::prompt {
 namespace {

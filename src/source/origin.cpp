@@ -6,6 +6,7 @@
 #include "source/describe.hpp"
 #include "source/value_text.hpp"
 #include "text/characters.hpp"
+#include "text/version.hpp"
 
 namespace dinal::source {
 

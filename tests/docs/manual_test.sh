@@ -6,6 +6,9 @@ program=$1 source=$2
     { echo "docs/manual.md is stale: write it again with: scripts/dinal --manual > docs/manual.md"; exit 1; }
 complaints=$(groff -man -ww -Tutf8 "$source/docs/dinal.1" 2>&1 >/dev/null)
 [ -z "$complaints" ] || { echo "$complaints"; exit 1; }
+version=$("$program" -e 'print(dinal.version)')
+grep -q "^\.TH DINAL 1 [0-9-]* \"dinal $version\"" "$source/docs/dinal.1" || { echo "the man page is not that of $version"; exit 1; }
+grep -q "^## $version " "$source/CHANGELOG.md" || { echo "CHANGELOG.md has no heading for $version"; exit 1; }
 # Each option that the program lists has its place in the man page.
 "$program" --help | grep -oE '(^|[ ,])--?[A-Za-z][a-z-]*' | tr -d ' ,' | sort -u >options.$$
 for option in $(cat options.$$); do

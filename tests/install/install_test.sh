@@ -1,8 +1,9 @@
 #!/bin/sh
-# The installed program needs nothing of the source tree: it runs elsewhere, with the source folder hidden.
-#   install_test.sh CMAKE BUILD SOURCE
+# The installed program needs nothing of the source tree: it runs elsewhere, with the source folder hidden. So do the
+# archive and the Debian package, and a program in C++ is built by what is installed.
+#   install_test.sh CMAKE BUILD SOURCE COMPILER
 set -e
-cmake=$1 build=$2 source=$3
+cmake=$1 build=$2 source=$3 compiler=$4
 prefix=$(mktemp -d)
 trap 'rm -rf "$prefix"' EXIT
 DESTDIR='' "$cmake" --install "$build" --prefix "$prefix/usr" >"$prefix/log"
@@ -14,6 +15,37 @@ done
 (cd "$source" && find examples -type f) | while read -r file; do
     [ -s "$prefix/usr/share/dinal/$file" ] || { echo "$file was not installed"; exit 1; }
 done
+
+# find_package(dinal), with one source that uses headers of several rooms.
+(cd "$prefix" && "$cmake" -S usr/share/dinal/examples/cpp -B cpp -DCMAKE_CXX_COMPILER="$compiler" -DCMAKE_BUILD_TYPE=None \
+    -DCMAKE_PREFIX_PATH="$prefix/usr" && "$cmake" --build cpp) >"$prefix/log" 2>&1 || { cat "$prefix/log"; exit 1; }
+"$prefix/cpp/sticking" >"$prefix/out"
+# The same run in Lua tells the same.
+"$prefix/usr/bin/dinal" -e '
+    run = system{ I = 1, k = 4, Rd = .3, Re = .5 }:simulate{ M = excitation.harmonic{ amplitude = .6, omega = .5 }, theta0 = 1, t_end = 20, dt = .01 }
+    for _, e in ipairs(run.events) do print(string.format("%s at t = %.6g, theta = %.6g", e.kind, e.t, e.theta)) end
+    print(string.format("theta(1.2345) = %.6g\n\n%s", run:at(1.2345), run:explain()))' | diff - "$prefix/out"
+
+# What is handed to others. Quickly, not small.
+if command -v dpkg-shlibdeps >/dev/null; then
+    PACKAGE_LEVEL=1 "$source/scripts/package" "$build" "$prefix/made" >"$prefix/log"
+    version=$("$prefix/usr/bin/dinal" -e 'print(dinal.version)')
+    mkdir "$prefix/anywhere" && tar -C "$prefix/anywhere" -xzf "$prefix/made/dinal-$version-linux-$(uname -m).tar.gz"
+    dpkg-deb -x "$prefix"/made/dinal_"$version"_*.deb "$prefix/package"
+    for tree in "$prefix"/anywhere/dinal-"$version"-* "$prefix/package/usr"; do
+        [ "$("$tree/bin/dinal" -e 'print(6 * 7)')" = 42 ]
+        [ "$(ldd "$tree/bin/dinal" | grep -c "=> $(readlink -f "$tree")/")" -ge 3 ] ||
+            { echo "$tree/bin/dinal does not take the libraries beside it:"; ldd "$tree/bin/dinal"; exit 1; }
+    done
+    dpkg-deb -f "$prefix"/made/dinal_"$version"_*.deb Depends >"$prefix/out"
+    grep -q 'libc6 (>= ' "$prefix/out" && ! grep -qE 'lua|fmt|utf8proc' "$prefix/out" || { cat "$prefix/out"; exit 1; }
+    # Nothing of this machine is left in what was made for all users.
+    grep -q '"DINAL": "/usr/bin/dinal"' "$prefix/package/usr/share/jupyter/kernels/dinal/kernel.json"
+    ! grep -rlF "$prefix" "$prefix/package" "$prefix/anywhere" || exit 1
+    gzip -dc "$prefix/package/usr/share/man/man1/dinal.1.gz" | cmp - "$source/docs/dinal.1"
+else
+    echo "dpkg-dev is not installed, so no packages were made"
+fi
 
 cat >"$prefix/run" <<'END'
 #!/bin/sh
