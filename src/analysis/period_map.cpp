@@ -49,9 +49,13 @@ MapStep PeriodMap::operator()(const Place& from) const {
     step.moved = !(run.began_stuck && run.events.empty());
     step.low = std::min(from[0], step.to[0]);
     step.high = std::max(from[0], step.to[0]);
+    step.t_low = from[0] <= step.to[0] ? start_ : start_ + length_;
     step.t_high = from[0] >= step.to[0] ? start_ : start_ + length_;
     for (const model::Event& event : run.events) {
-        step.low = std::min(step.low, event.theta);
+        if (event.theta < step.low) {
+            step.low = event.theta;
+            step.t_low = event.t;
+        }
         if (event.theta > step.high) {
             step.high = event.theta;
             step.t_high = event.t;

@@ -20,11 +20,11 @@ using Place = Eigen::Vector2d;
 struct MapStep {
     Place to;
     Eigen::Matrix2d derivative = Eigen::Matrix2d::Identity();
-    bool differentiable = true;  ///< else `derivative` says nothing, and differences must
-    bool finished = true;        ///< the run reached its end, with finite numbers
-    bool moved = true;           ///< at some time
-    double low = 0, high = 0;    ///< the extremes of theta
-    double t_high = 0;           ///< of the highest one
+    bool differentiable = true;    ///< else `derivative` says nothing, and differences must
+    bool finished = true;          ///< the run reached its end, with finite numbers
+    bool moved = true;             ///< at some time
+    double low = 0, high = 0;      ///< the extremes of theta
+    double t_low = 0, t_high = 0;  ///< of the lowest and the highest one
     std::size_t stops = 0;
     double stuck = 0;  ///< time
     model::Outcome outcome = model::Outcome::reached_end;

@@ -1,41 +1,16 @@
 #include "analysis/steady.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <vector>
 
 #include "analysis/fixed_point.hpp"
+#include "analysis/steady_facts.hpp"
 #include "model/lowered.hpp"
 
 namespace dinal::analysis {
 namespace {
-
-using model::Motion;
-
-constexpr double neutral_within = 1e-6;  // by how much a multiplier of 1 may miss it
-
-Eigen::Vector2d place_of(const model::State& state, double omega) {
-    return {state.theta, state.velocity / omega};
-}
-
-/// Friction is the same both ways.
-bool acts_evenly(const model::Friction& law, const model::Lowered& system) {
-    for (const double speed : {1e-3, 0.1, 1.0, 10.0}) {
-        if (law.sliding(Motion::forward, speed) != law.sliding(Motion::backward, speed)) return false;
-    }
-    return system.braking(Motion::forward) == -system.braking(Motion::backward) &&
-           system.holding(Motion::forward) == system.holding(Motion::backward);
-}
-
-/// Sliding and holding torque are the same each way, there are no walls, and M does not depend on the motion: the map
-/// brings no two states farther apart.
-bool contracts(const model::Lowered& system, bool walled, const model::Excitation& excitation) {
-    return !system.has_remainder() && !excitation.has_feedback() && !walled &&
-           system.holding(Motion::forward) == system.braking(Motion::forward) &&
-           system.holding(Motion::backward) == -system.braking(Motion::backward);
-}
 
 class SteadySearch {
 public:
@@ -45,9 +20,8 @@ public:
           monitor_(monitor),
           map_(question.system, question.excitation, question.drive.start, question.drive.period, monitor),
           half_(question.system, question.excitation, question.drive.start, question.drive.period / 2, monitor) {
-        symmetric_ = acts_evenly(question.system.friction(), system_) && question.system.spring().is_odd() &&
-                     (!question.system.walls() || question.system.walls()->alike()) &&
-                     is_antisymmetric(question.excitation, question.drive);
+        symmetric_ = is_alike_both_ways(question);
+        contracts_ = contracts(question);
     }
 
     SteadyMotion found() {
@@ -62,7 +36,7 @@ public:
             if (!search_once(start, symmetric_) && !search_once(start, false)) brute(start, 1);
             return answer_;
         }
-        if (contracts(system_, question_.system.walls().has_value(), question_.excitation)) {
+        if (contracts_) {
             if (search_once(start, symmetric_) || search_once(start, false)) return answer_;
             brute(start, 1);
             return answer_;
@@ -136,7 +110,7 @@ private:
     bool search_multiple(const Place& start, int periods, bool any) {
         const PeriodMap map(question_.system, question_.excitation, question_.drive.start,
                             periods * question_.drive.period, monitor_);
-        const auto found = FixedPointSearch(map, 1, answer_.maps).search(start, 40);
+        const auto found = FixedPointSearch(map, 1, answer_.maps).search(start, any ? 40 : 12);
         const bool good = found && (any || (found->x - start).norm() <= 0.2 * found->size);
         const bool settled = good && settle(found->x, map, periods);
         if (map.contradiction()) contradiction_ = map.contradiction();
@@ -165,38 +139,15 @@ private:
                 last = still;
             }
         }
-        const MapStep& step = last.step;
-        answer_.outcome = step.outcome;
-        if (!step.finished || !last.at(1e-6)) return false;
-        answer_.periods = periods;
-        answer_.period = map.length();
-        answer_.start = map.state(x);
-        answer_.low = step.low;
-        answer_.high = step.high;
-        answer_.t_high = step.t_high;
-        answer_.amplitude = (step.high - step.low) / 2;
-        answer_.stops = step.stops;
-        answer_.stuck = std::min(1.0, step.stuck / map.length());
-        answer_.residual = last.residual() / last.size;
-        answer_.differentiable = step.differentiable;
-        const Eigen::Vector2cd values = Eigen::EigenSolver<Eigen::Matrix2d>(step.derivative, false).eigenvalues();
-        answer_.multipliers = {values[0], values[1]};
-        const double slack =
-            contracts(system_, question_.system.walls().has_value(), question_.excitation) ? neutral_within : 1e-5;
-        const double largest = std::max(std::abs(values[0]), std::abs(values[1]));
-        answer_.stable = step.differentiable && largest <= 1 + slack;
+        answer_.outcome = last.step.outcome;
+        if (!last.step.finished || !last.at(1e-6)) return false;
+        const int maps = answer_.maps;
+        answer_ = facts_of(question_, map, last, periods, false);
+        answer_.maps = maps;
         answer_.symmetric = symmetric_ && periods == 1 && is_symmetric(x, last.size);
-        answer_.status = step.moved ? SteadyStatus::steady : SteadyStatus::adheres;
-        if (!step.moved) {
-            answer_.stuck = 1;
-            answer_.stable = true;
+        if (!last.step.moved) {
             answer_.rest = rest_of(x[0]);
             answer_.unique = answer_.rest.first == answer_.rest.second;
-        } else if (contracts(system_, question_.system.walls().has_value(), question_.excitation) &&
-                   step.differentiable) {
-            answer_.unique = std::min(std::abs(values[0] - 1.0), std::abs(values[1] - 1.0)) > neutral_within;
-        } else {
-            answer_.unique.reset();
         }
         return true;
     }
@@ -278,8 +229,10 @@ private:
 
     bool recurs(const std::vector<Place>& places, double size, int longest, double near) {
         const Place& last = places.back();
-        for (int m = 1; m <= longest && static_cast<std::size_t>(m) < places.size(); ++m) {
+        int tries = 0;  // chaos comes near to itself again and again
+        for (int m = 1; tries < 5 && m <= longest && static_cast<std::size_t>(m) < places.size(); ++m) {
             if ((last - places[places.size() - 1 - static_cast<std::size_t>(m)]).norm() > near * size) continue;
+            ++tries;
             if (m == 1 && symmetric_ && search_once(last, true) && answer_.stable && is_near(last, size)) return true;
             if (search_multiple(last, m, false) && answer_.stable) return true;
         }
@@ -309,7 +262,7 @@ private:
     model::Lowered system_;
     const motion::Monitor& monitor_;
     PeriodMap map_, half_;
-    bool symmetric_ = false;
+    bool symmetric_ = false, contracts_ = false;
     std::optional<model::Contradiction> contradiction_;
     SteadyMotion answer_;
 };

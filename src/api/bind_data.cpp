@@ -70,6 +70,10 @@ int push_column(lua_State* L, const DataColumn& column) {
 int data_other_key(lua_State* L) {
     const DataHandle& data = data_functions::self(L, "d.r");
     if (lua_type(L, 2) == LUA_TSTRING) {
+        if (const DataCompanion* companion = data->companion(lua_tostring(L, 2))) {
+            push_data(L, companion->made());
+            return 1;
+        }
         return push_column(L, data_functions::column_or_fail(L, *data, "", lua_tostring(L, 2)));
     }
     int is_integer = 0;

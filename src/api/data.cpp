@@ -105,6 +105,12 @@ const DataColumn* Data::find(std::string_view name) const {
     return found != columns.end() ? &*found : nullptr;
 }
 
+const DataCompanion* Data::companion(std::string_view name) const {
+    const auto found =
+        std::find_if(companions.begin(), companions.end(), [name](const auto& c) { return c.name == name; });
+    return found != companions.end() ? &*found : nullptr;
+}
+
 DataColumn column_of(std::string name, std::vector<double> numbers) {
     return {std::move(name), lua::Vector(std::move(numbers))};
 }

@@ -1,6 +1,7 @@
 // Named columns of one length, of numbers or of words, as Lua sees them: data{ ... }, data.load(file), run.events.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -26,13 +27,26 @@ struct DataColumn {
     [[nodiscard]] std::string text(std::size_t row) const;
 };
 
+struct Data;
+
+/// What data bring along besides their columns, made when it is asked for: d.jumps, d:plot{ overlay = "linearised" }.
+struct DataCompanion {
+    std::string name;
+    std::function<Data()> made;
+    std::function<Data()> drawn = {};  ///< what an overlay draws, where that is something else
+};
+
 struct Data {
     std::vector<DataColumn> columns;
     std::string heading = {};    ///< what the first line of its text says, else how many rows of which columns
     std::string points_of = {};  ///< d:plot() draws this column as points, unless it is told otherwise
+    std::string pieces_of = {};  ///< a line of d:plot() breaks where this column changes
+    std::string dotted_of = {};  ///< and is dotted where this one is 0
+    std::vector<DataCompanion> companions = {};
 
     [[nodiscard]] std::size_t size() const { return columns.empty() ? 0 : columns.front().size(); }
     [[nodiscard]] const DataColumn* find(std::string_view name) const;
+    [[nodiscard]] const DataCompanion* companion(std::string_view name) const;
 };
 // Shared, so that a picture or an iteration keeps what it shows.
 using DataHandle = std::shared_ptr<const Data>;

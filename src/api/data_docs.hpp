@@ -11,6 +11,10 @@ inline constexpr text::Option data_plot_options[] = {
     {.name = "x", .otherwise = "the first column", .meaning = "name of a column"},
     {.name = "y", .otherwise = "the second column", .meaning = "name of a column, or a list of them"},
     {.name = "z", .meaning = "name of a column that is drawn as a map over x and y, which form a grid"},
+    {.name = "overlay",
+     .meaning =
+         "name of what is drawn besides, or a list: the data of a response bring \"jumps\" along and, where there "
+         "is such a curve, \"linearised\" and \"den_hartog\""},
     {.name = "zlim", .meaning = "{ from, to }: values beyond have the first and the last shade of the map"},
     {.name = "contours", .meaning = "a list of values of z whose lines are drawn on the map"},
     {.name = "style",

@@ -7,8 +7,6 @@
 
 #include "api/data.hpp"
 #include "api/data_docs.hpp"
-#include "api/map_figure.hpp"
-#include "api/picture.hpp"
 #include "files/csv_columns.hpp"
 #include "lua/interrupt.hpp"
 #include "lua/options.hpp"
@@ -20,7 +18,7 @@ namespace {
 
 /// The same columns with these rows only.
 Data with_rows(const Data& data, const std::vector<std::size_t>& rows) {
-    Data picked;
+    Data picked{.columns = {}, .pieces_of = data.pieces_of, .dotted_of = data.dotted_of};
     for (const DataColumn& column : data.columns) {
         if (const lua::Vector* numbers = column.numbers()) {
             std::vector<double> values(rows.size());
@@ -58,40 +56,6 @@ std::string in_markdown(std::string text) {
     return text;
 }
 
-/// The names that stand under `option`: one or a list of them.
-std::vector<std::string> asked_names(lua_State* L, const lua::Options& options, const char* option) {
-    std::vector<std::string> names;
-    options.push(option);
-    const int place = lua_gettop(L);
-    if (lua_type(L, place) == LUA_TSTRING) {
-        names.emplace_back(lua_tostring(L, place));
-    } else if (lua_istable(L, place) && lua_rawlen(L, place) > 0) {
-        for (lua_Integer i = 1; i <= static_cast<lua_Integer>(lua_rawlen(L, place)); ++i) {
-            if (lua_rawgeti(L, place, i) != LUA_TSTRING) {
-                options.fail(option, fmt::format("{}[{}] must be the name of a column, got {}", option, i,
-                                                 lua::describe(L, -1)));
-            }
-            names.emplace_back(lua_tostring(L, -1));
-            lua_pop(L, 1);
-        }
-    } else if (!lua_isnil(L, place)) {
-        options.wrong(option, "the name of a column or a list of them");
-    }
-    lua_pop(L, 1);
-    return names;
-}
-
-plots::Numbers drawn(lua_State* L, const Data& data, const std::string& name) {
-    const DataColumn& column = column_or_fail(L, data, "d:plot", name);
-    if (column.numbers() == nullptr) {
-        lua::raise(L, {.sentence = fmt::format("d:plot: the column '{}' holds words, not numbers", name),
-                       .call = "d:plot",
-                       .culprit = name});
-    }
-    const auto kept = std::make_shared<const lua::Vector>(*column.numbers());
-    return {kept, kept->values()};
-}
-
 }  // namespace
 
 const DataHandle& self(lua_State* L, const char* call) {
@@ -106,50 +70,6 @@ const DataColumn& column_or_fail(lua_State* L, const Data& data, std::string_vie
                       .culprit = std::string(name),
                       .cure = text::did_you_mean(name, names)};
     lua::raise(L, call.empty() ? error : text::in_call(call, error));
-}
-
-int plot(lua_State* L) {
-    const DataHandle data = self(L, "d:plot{ x = \"r\", y = \"A\" }");
-    const lua::Options options(L, 2, plot_data_call);
-    std::vector<std::string> x = asked_names(L, options, "x"), y = asked_names(L, options, "y");
-    if (x.size() > 1) options.fail("x", "x must be one column");
-    if (x.empty()) x.push_back(data->columns.front().name);
-    for (std::size_t i = 0; i < data->columns.size() && y.empty(); ++i) {
-        const DataColumn& column = data->columns[i];
-        if (column.name != x.front() && column.numbers() != nullptr) y.push_back(column.name);
-    }
-    if (y.empty()) options.fail({"there is no other column of numbers to draw"});
-    if (data->size() == 0) options.fail({"there are no rows to draw"});
-    if (const std::vector<std::string> z = asked_names(L, options, "z"); !z.empty()) {
-        if (z.size() > 1) options.fail("z", "z must be one column");
-        if (options.has("y") && y.size() > 1) options.fail("y", "y must be one column where z is drawn over x and y");
-        std::vector<plots::Figure> map{
-            figure_of_map(options, {x.front(), y.front(), z.front()},
-                          {drawn(L, *data, x.front()), drawn(L, *data, y.front()), drawn(L, *data, z.front())})};
-        apply_options(L, options, map.front());
-        return deliver(L, options, std::move(map));
-    }
-    for (const char* option : {"zlim", "contours"}) {
-        if (!options.numbers(option).empty()) {
-            options.fail(option, fmt::format("{} is for maps: name a column z, too", option));
-        }
-    }
-    plots::Figure figure;
-    figure.x.label = x.front();
-    plots::Curve curve;
-    if (!data->points_of.empty() && !options.has("y")) y = {data->points_of};
-    if (!data->points_of.empty()) curve.style = plots::Style::points;
-    figure.y.label = y.size() == 1 ? y.front() : "";
-    options.fill(curve);
-    for (const std::string& name : y) {
-        curve.x = drawn(L, *data, x.front());
-        curve.y = drawn(L, *data, name);
-        curve.label = y.size() == 1 ? "" : name;
-        figure.curves.push_back(curve);
-    }
-    apply_options(L, options, figure);
-    std::vector<plots::Figure> figures{std::move(figure)};
-    return deliver(L, options, std::move(figures));
 }
 
 int filter(lua_State* L) {
@@ -199,7 +119,10 @@ int sort(lua_State* L) {
         if (std::isnan(a) || std::isnan(b)) return !std::isnan(a);
         return down ? b < a : a < b;
     });
-    push_data(L, with_rows(*data, rows));
+    Data sorted = with_rows(*data, rows);
+    sorted.pieces_of.clear();
+    sorted.dotted_of.clear();
+    push_data(L, std::move(sorted));
     return 1;
 }
 

@@ -2,71 +2,195 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
 
+#include "analysis/response_curve.hpp"
 #include "api/bind_excitation.hpp"
 #include "api/data.hpp"
+#include "api/response_companions.hpp"
 #include "api/steady_answer.hpp"
+#include "text/sentences.hpp"
 
 namespace dinal::api {
 namespace {
 
 constexpr double nan_number = std::numeric_limits<double>::quiet_NaN();
 
-std::vector<double> asked_frequencies(const lua::Options& options, const ResponseOptions& asked) {
-    const std::vector<double>& given = asked.frequency;
-    if (given.size() < 2) options.fail({"frequency must be { from, to }, or a list of frequencies"});
-    for (const double f : given) {
-        if (!(f > 0))
-            options.fail({.sentence = fmt::format("frequency = {} must be positive", f), .option = "frequency"});
+/// What a call of sys:response asks: one of the three is varied.
+class ResponseCall {
+public:
+    ResponseCall(lua_State* L, const model::Oscillator& system, const lua::Options& options)
+        : L_(L), system_(system), options_(options) {
+        options.fill(asked_);
+        function_ = options.has("M");
+        choose();
+        options.push("M");
+        place_ = lua_gettop(L);
+        if (function_ && !lua::is_callable(L, place_)) {
+            options.wrong("M", fmt::format("a function of the {} that returns an excitation", varied_));
+        }
+        if (!function_ && varied_ == "over") options.fail("over", "over needs M, a function of what it varies");
     }
-    if (given.size() > 2) return given;
-    if (given[0] == given[1]) {
-        options.fail({.sentence = fmt::format("frequency goes from {} to {}, which is no range", given[0], given[1]),
-                      .option = "frequency"});
-    }
-    const auto n = static_cast<std::size_t>(asked.points);
-    std::vector<double> list(n);
-    for (std::size_t i = 0; i < n; ++i) {
-        list[i] = given[0] + (given[1] - given[0]) * (static_cast<double>(i) / static_cast<double>(n - 1));
-    }
-    return list;
-}
 
-/// M at this frequency: of the user's function on the top of the stack, which stays; else a harmonic.
-model::Excitation excitation_at(lua_State* L, const ResponseOptions& asked, bool harmonic, double frequency) {
-    if (harmonic) {
-        return model::Excitation::make(
-                   model::Harmonic{.amplitude = asked.amplitude, .omega = 2 * std::numbers::pi * frequency})
-            .value();
+    [[nodiscard]] const std::vector<double>& values() const { return values_; }
+    /// A list has rows for its values only.
+    [[nodiscard]] bool is_list() const { return list_; }
+    [[nodiscard]] model::State start() const { return {asked_.theta0, asked_.velocity0}; }
+    [[nodiscard]] bool harmonic() const { return !function_; }
+    [[nodiscard]] bool over_frequency() const { return varied_ == "frequency"; }
+    [[nodiscard]] double frequency_at(double x) const { return over_frequency() ? x : frequency_.value_or(0); }
+    [[nodiscard]] double amplitude_at(double x) const { return varied_ == "amplitude" ? x : amplitude_; }
+    [[nodiscard]] std::string column() const {
+        return asked_.name.value_or(over_frequency() ? "frequency" : varied_ == "amplitude" ? "M0" : "parameter");
     }
-    lua_pushvalue(L, -1);
-    lua_pushnumber(L, frequency);
-    lua_call(L, 1, 1);
-    model::Excitation made = to_excitation(L, -1, fmt::format("sys:response: M({:.6g})", frequency), "M");
-    lua_pop(L, 1);
-    return made;
-}
+
+    [[nodiscard]] analysis::SteadyQuestion question(double x) const {
+        analysis::SteadyQuestion question{.system = system_, .excitation = {}, .drive = {}, .initial = start()};
+        const std::optional<double> period = over_frequency() ? std::optional(1 / x)
+                                             : frequency_     ? std::optional(1 / *frequency_)
+                                                              : std::nullopt;
+        if (!function_) {
+            question.excitation = options_.value_or_fail(model::Excitation::make(
+                model::Harmonic{.amplitude = amplitude_at(x), .omega = 2 * std::numbers::pi * frequency_at(x)}));
+            question.drive = {0, *period};
+            return question;
+        }
+        lua_pushvalue(L_, place_);
+        lua_pushnumber(L_, x);
+        lua_call(L_, 1, 2);
+        question.excitation = to_excitation(L_, -2, fmt::format("sys:response: M({:.6g})", x), "M");
+        if (const auto* own = lua::test<model::Oscillator>(L_, -1)) {
+            question.system = *own;
+        } else if (!lua_isnil(L_, -1)) {
+            options_.fail("M", fmt::format("M({:.6g}) returned {} after the excitation, where a system may stand", x,
+                                           lua::describe(L_, -1)));
+        }
+        lua_pop(L_, 2);
+        const auto known = analysis::drive_of(question.excitation, period.value_or(1));
+        const bool asked = std::find(values_.begin(), values_.end(), x) != values_.end();
+        // Between the values asked for M is taken for what it is at them.
+        if (asked || !known) {
+            question.drive = drive_or_fail(L_, options_, question.system, question.excitation,
+                                           known && !question.excitation.has_script() ? std::nullopt : period);
+        } else {
+            question.drive = {known->start, question.excitation.has_script() && period ? *period : known->period};
+        }
+        return question;
+    }
+
+private:
+    /// The numbers under an option; none when it is no list.
+    [[nodiscard]] std::vector<double> list_of(const char* option) const {
+        options_.push(option);
+        const bool single = lua_type(L_, -1) == LUA_TNUMBER || lua_isnil(L_, -1);
+        lua_pop(L_, 1);
+        return single ? std::vector<double>() : options_.numbers(option);
+    }
+
+    void choose() {
+        for (const char* option : {"over", "frequency", "amplitude"}) {
+            const std::vector<double> given = list_of(option);
+            if (given.empty()) continue;
+            if (!values_.empty()) {
+                options_.fail(option, fmt::format("{} and {} are both lists; one of them is varied", varied_, option));
+            }
+            varied_ = option;
+            spread(given);
+        }
+        if (options_.has("over") && varied_ != "over") {
+            options_.wrong("over", "{ from, to } or a list of numbers");
+        }
+        if (options_.has("frequency") && !over_frequency()) {
+            frequency_ = options_.number("frequency");
+            check_frequency(*frequency_);
+        }
+        if (options_.has("amplitude") && varied_ != "amplitude") amplitude_ = options_.number("amplitude");
+        if (values_.empty()) {
+            if (options_.has("frequency")) {
+                options_.fail(
+                    {"frequency must be { from, to }, or a list of frequencies, unless amplitude or over is"});
+            }
+            options_.missing("frequency");
+        }
+        if (function_ && options_.has("amplitude")) {
+            options_.fail("amplitude", "amplitude is that of the harmonic M: with a function M use over");
+        }
+        if (!function_ && varied_ == "amplitude" && !frequency_) {
+            options_.fail("frequency", "frequency must be given where the amplitude is varied");
+        }
+    }
+
+    void check_frequency(double f) const {
+        if (f > 0) return;
+        options_.fail({.sentence = fmt::format("frequency = {} must be positive", f), .option = "frequency"});
+    }
+
+    void spread(const std::vector<double>& given) {
+        if (given.size() < 2) {
+            options_.fail({.sentence = fmt::format("{} must be {{ from, to }}, or a list", varied_),
+                           .option = std::string(varied_)});
+        }
+        if (over_frequency()) std::for_each(given.begin(), given.end(), [this](double f) { check_frequency(f); });
+        list_ = given.size() > 2;
+        if (!list_ && given[0] == given[1]) {
+            options_.fail(
+                {.sentence = fmt::format("{} goes from {} to {}, which is no range", varied_, given[0], given[1]),
+                 .option = std::string(varied_)});
+        }
+        values_ = given;
+        if (list_) return;
+        const auto n = static_cast<std::size_t>(asked_.points);
+        values_.resize(n);
+        for (std::size_t i = 0; i < n; ++i) {
+            values_[i] = given[0] + (given[1] - given[0]) * (static_cast<double>(i) / static_cast<double>(n - 1));
+        }
+        values_.back() = given[1];
+    }
+
+    lua_State* L_;
+    const model::Oscillator& system_;
+    const lua::Options& options_;
+    ResponseOptions asked_;
+    std::string_view varied_ = "frequency";
+    std::vector<double> values_;
+    std::optional<double> frequency_;
+    double amplitude_ = 1;
+    bool list_ = false, function_ = false;
+    int place_ = 0;
+};
 
 struct ResponseColumns {
-    std::vector<double> frequency, amplitude, lag, peak, stops, stuck, stable;
+    std::vector<double> varied, amplitude, lag, peak, stops, stuck, stable, branch;
     std::vector<std::string> status;
 
-    void add(double f, const analysis::SteadyMotion& motion, const std::optional<double>& angle) {
+    void add(double x, std::size_t piece, const analysis::SteadyMotion& motion, const std::optional<double>& angle) {
         const bool found =
             motion.status == analysis::SteadyStatus::steady || motion.status == analysis::SteadyStatus::adheres;
         const bool grows = motion.status == analysis::SteadyStatus::grows;
         const double otherwise = grows ? std::numeric_limits<double>::infinity() : nan_number;
-        frequency.push_back(f);
+        varied.push_back(x);
         amplitude.push_back(found ? motion.amplitude : otherwise);
         lag.push_back(angle.value_or(nan_number));
         peak.push_back(found ? std::max(std::fabs(motion.low), std::fabs(motion.high)) : otherwise);
         stops.push_back(found ? static_cast<double>(motion.stops) : nan_number);
         stuck.push_back(found ? motion.stuck : nan_number);
         stable.push_back(found && motion.stable ? 1 : 0);
+        branch.push_back(static_cast<double>(piece));
         status.emplace_back(analysis::name(motion.status));
+    }
+    Data data(const std::string& name) && {
+        Data data;
+        data.columns = {column_of(name, std::move(varied)),     column_of("amplitude", std::move(amplitude)),
+                        column_of("lag", std::move(lag)),       column_of("peak", std::move(peak)),
+                        column_of("stops", std::move(stops)),   column_of("stuck", std::move(stuck)),
+                        column_of("stable", std::move(stable)), column_of("branch", std::move(branch)),
+                        column_of("status", std::move(status))};
+        data.pieces_of = "branch";
+        data.dotted_of = "stable";
+        return data;
     }
 };
 
@@ -75,49 +199,43 @@ struct ResponseColumns {
 int response_of_system(lua_State* L) {
     const model::Oscillator system = lua::self<model::Oscillator>(L, 1, response_call.example);
     const lua::Options options(L, 2, response_call);
-    ResponseOptions asked;
-    options.fill(asked);
-    const bool harmonic = !options.has("M");
-    const std::vector<double> frequencies = asked_frequencies(options, asked);
-    options.push("M");
-    if (!harmonic && !lua::is_callable(L, -1)) {
-        options.wrong("M", "a function of the frequency that returns an excitation");
-    }
+    const ResponseCall call(L, system, options);
+    const analysis::CurveQuestion question{
+        .family = [&call](double x) { return call.question(x); }, .values = call.values(), .start = call.start()};
+    analysis::ResponseCurve curve;
     ResponseColumns columns;
-    model::State start{asked.theta0, asked.velocity0};
-    bool warm = false;
-    for (const double frequency : frequencies) {
-        analysis::SteadyQuestion question{.system = system,
-                                          .excitation = excitation_at(L, asked, harmonic, frequency),
-                                          .drive = {0, 1 / frequency},
-                                          .initial = start};
-        if (!harmonic) {
-            const bool known = analysis::drive_of(question.excitation, 1 / frequency).has_value();
-            question.drive =
-                drive_or_fail(L, options, system, question.excitation,
-                              known && !question.excitation.has_script() ? std::nullopt : std::optional(1 / frequency));
+    asking(L, [&](const motion::Monitor& monitor) {
+        curve = analysis::response_curve(question, monitor);
+        std::size_t piece = 0;
+        for (const auto& branch : curve.branches) {
+            ++piece;
+            for (const analysis::BranchPoint& point : branch) {
+                if (call.is_list() && !point.asked) continue;
+                const auto shape = analysis::shape_of(call.question(point.parameter), point.motion, monitor);
+                columns.add(point.parameter, piece, point.motion, shape.lag);
+            }
         }
-        analysis::SteadyMotion motion;
-        std::optional<double> lag;
-        asking(L, [&](const motion::Monitor& monitor) {
-            motion =
-                warm ? analysis::steady_motion_near(question, monitor) : analysis::steady_motion(question, monitor);
-            lag = analysis::shape_of(question, motion, monitor).lag;
-        });
-        check_function(options, motion);
-        warm = motion.status == analysis::SteadyStatus::steady;
-        if (warm) start = motion.start;
-        columns.add(frequency, motion, lag);
+    });
+    if (curve.contradiction) options.fail({model::sentence_with_cure(*curve.contradiction)});
+    Data data = std::move(columns).data(call.column());
+    data.companions.push_back(jumps_of(curve, call.column()));
+    if (call.harmonic()) {
+        const auto [low, high] = std::minmax_element(call.values().begin(), call.values().end());
+        const HarmonicSweep sweep{
+            .system = system,
+            .column = call.column(),
+            .low = *low,
+            .high = *high,
+            .frequency = call.over_frequency() ? std::nullopt : std::optional(call.frequency_at(0)),
+            .amplitude = call.amplitude_at(1)};
+        for (DataCompanion& companion : closed_curves(sweep)) data.companions.push_back(std::move(companion));
     }
-    Data data;
-    data.columns = {column_of("frequency", std::move(columns.frequency)),
-                    column_of("amplitude", std::move(columns.amplitude)),
-                    column_of("lag", std::move(columns.lag)),
-                    column_of("peak", std::move(columns.peak)),
-                    column_of("stops", std::move(columns.stops)),
-                    column_of("stuck", std::move(columns.stuck)),
-                    column_of("stable", std::move(columns.stable)),
-                    column_of("status", std::move(columns.status))};
+    if (!curve.jumps.empty()) {
+        data.heading =
+            fmt::format("response: {} on {}, {} (c.jumps)", text::counted(data.size(), "row"),
+                        curve.branches.size() == 1 ? "1 branch" : fmt::format("{} branches", curve.branches.size()),
+                        text::counted(curve.jumps.size(), "jump"));
+    }
     push_data(L, std::move(data));
     return 1;
 }

@@ -39,10 +39,63 @@ test("M may be a function of the frequency, and the amplitude another one", func
     end
     raises_here(function() sys:response{ frequency = { 1, 1 } } end, "no range")
     raises_here(function() sys:response{ frequency = { 1 } } end, "{ from, to }")
+    raises_here(function() sys:response{} end, "needs frequency")
+    raises_here(function() sys:response{ frequency = 1 } end, "unless amplitude or over is")
+    raises_here(function() sys:response{ amplitude = { 1, 2 } } end, "frequency must be given")
+    raises_here(function() sys:response{ amplitude = { 1, 2 }, frequency = { 1, 2 } } end, "both lists")
+    raises_here(function() sys:response{ amplitude = { 1, 2 }, frequency = -1 } end, "frequency = -1 must be positive")
+    raises_here(function() sys:response{ over = { 1, 2 }, frequency = 1 } end, "over needs M")
+    raises_here(function() sys:response{ over = 3, frequency = 1 } end, "over must be { from, to }")
+    raises_here(function() sys:response{ M = function() return 1, 2 end, frequency = { 1, 2 } } end, "returned 2 after the excitation")
     raises_here(function() sys:response{ frequency = { 1, -1 } } end, "must be positive")
     raises_here(function() sys:response{ frequency = { 1, 2 }, points = 1 } end, "points = 1 must be a whole number")
     raises_here(function() sys:response{ M = 3, frequency = { 1, 2 } } end, "a function of the frequency")
     raises_here(function() sys:response{ M = function() return "x" end, frequency = { 1, 2 } } end, "M(1)")
+end)
+
+test("folds, jumps and unstable sides are rows, and a picture of pieces", function()
+    local sys = system{ I = 1, k = 1, C = 0.05, Rd = 0.02, spring = spring.polynomial{ [3] = 0.5 } }
+    local c = sys:response{ amplitude = 0.5, frequency = { 0.2, 0.3, 0.42 } }
+    equal(#c, 5)   -- 0.3 lies between the jumps: three motions
+    local at = c:filter(function(row) return row.frequency == 0.3 end)
+    equal(#at, 3)
+    equal(at.stable:sum(), 2.0)
+    equal(#c.jumps, 2)
+    equal(table.concat(c.jumps.sweep, " "), "down up")
+    assert(c.jumps.frequency[1] < 0.3 and c.jumps.frequency[2] > 0.3)
+    local picture = tostring(c:plot{ overlay = "jumps", show = false })
+    assert(picture:find("unstable") and picture:find("jumps"), picture)
+    raises_here(function() c:plot{ overlay = "jump" } end, "did you mean 'jumps'?")
+    raises_here(function() c:plot{ overlay = "linearised" } end, "no overlay 'linearised' among jumps")
+    raises_here(function() data{ r = { 1 }, A = { 2 } }:plot{ overlay = "x" } end, "nor any other")
+end)
+
+test("the response over the amplitude, and over any parameter, which may make the system", function()
+    local sys = system{ I = 1, k = 4, C = 0.3 }
+    local c = sys:response{ frequency = 0.2, amplitude = { 1, 2, 3 } }
+    local w = 2*math.pi*0.2
+    for i = 1, 3 do near(c.amplitude[i], i / math.sqrt((4 - w^2)^2 + (0.3*w)^2), 1e-12) end
+    equal(c.names[1], "M0")
+    local M = excitation.harmonic{ frequency = 0.2 }
+    local d = sys:response{ over = { 0.1, 0.5, 0.9 }, name = "C", M = function(C) return M, sys:with{ C = C } end }
+    for i, C in ipairs{ 0.1, 0.5, 0.9 } do near(d.amplitude[i], 1 / math.sqrt((4 - w^2)^2 + (C*w)^2), 1e-12) end
+    equal(d.C[2], 0.5)
+end)
+
+test("the curves of theory beside a response are Den Hartog's and that of equivalent damping", function()
+    local sys = system{ I = 1, k = 4, C = 0.1, Rd = 0.3 }
+    local c = sys:response{ amplitude = 2, frequency = { 0.2, 0.5 }, points = 20 }
+    local exact, about = c.den_hartog, c.linearised
+    equal(#exact, 400)
+    local r = exact.frequency[200] * sys.T0
+    near(exact.amplitude[200], 2/4 * theory.den_hartog{ r = r, zeta = sys.zeta, friction_ratio = 0.15 }, 1e-12)
+    -- The work of M, pi M0 X sin(lag), is what both frictions take from a sine of this amplitude.
+    for i = 1, 400, 57 do
+        local X, w = about.amplitude[i], 2*math.pi*about.frequency[i]
+        near(math.pi*2*X*math.sin(math.rad(about.lag[i])), math.pi*0.1*w*X^2 + 4*0.3*X, 1e-12)
+    end
+    local picture = tostring(c:plot{ overlay = { "linearised", "den_hartog" }, show = false })
+    assert(picture:find("linearised") and picture:find("den_hartog"), picture)
 end)
 
 test("a spectrum shows each sine with its amplitude, whatever the window", function()

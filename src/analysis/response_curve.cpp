@@ -1,0 +1,207 @@
+#include "analysis/response_curve.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace dinal::analysis {
+namespace {
+
+class CurveSearch {
+public:
+    CurveSearch(const CurveQuestion& question, const motion::Monitor& monitor)
+        : question_(question),
+          monitor_(monitor),
+          sorted_(question.values),
+          way_(question.values.back() > question.values.front() ? 1 : -1) {
+        std::sort(sorted_.begin(), sorted_.end());
+        range_ = sorted_.back() - sorted_.front();
+        const auto& v = question.values;
+        for (std::size_t i = 1; i < v.size(); ++i) walkable_ = walkable_ && (v[i] - v[i - 1]) * way_ > 0;
+        if (walkable_) walk_.emplace(question_.family, sorted_, monitor_);
+    }
+
+    ResponseCurve found() {
+        sweep();
+        for (std::size_t i = 0; i < curve_.jumps.size() && i < most_jumps && !stopped(); ++i) go_on_from(i);
+        if (walked_ && !stopped()) look_from_far_end();
+        if (walk_ && walk_->contradiction()) curve_.contradiction = walk_->contradiction();
+        std::stable_sort(curve_.jumps.begin(), curve_.jumps.end(),
+                         [](const MotionJump& a, const MotionJump& b) { return a.parameter < b.parameter; });
+        return std::move(curve_);
+    }
+
+private:
+    static constexpr std::size_t most_jumps = 12;
+
+    [[nodiscard]] bool stopped() const { return stopped_ || (walk_ && walk_->stopped()); }
+
+    SteadyMotion motion_at(double p, const model::State& start, bool near) {
+        SteadyQuestion question = question_.family(p);
+        question.initial = start;
+        SteadyMotion motion = near ? steady_motion_near(question, monitor_) : steady_motion(question, monitor_);
+        if (motion.contradiction) curve_.contradiction = motion.contradiction;
+        stopped_ = stopped_ || motion.contradiction || motion.outcome == model::Outcome::interrupted ||
+                   motion.outcome == model::Outcome::excitation_not_finite;
+        return motion;
+    }
+
+    void sweep() {
+        const std::vector<double>& values = question_.values;
+        model::State start = question_.start;
+        std::vector<BranchPoint> row;
+        bool near = false;
+        for (std::size_t i = 0; i < values.size() && !stopped();) {
+            const SteadyMotion motion = motion_at(values[i], start, near);
+            const bool moves = motion.status == SteadyStatus::steady;
+            const bool branches = walkable_ && moves && !contracts(question_.family(values[i]));
+            if (!branches) {
+                near = moves;
+                if (moves) start = motion.start;
+                row.push_back({values[i], motion, true});
+                ++i;
+                continue;
+            }
+            std::vector<BranchPoint>& added = add_branch(values[i], motion, i > 0);
+            if (!row.empty()) {
+                if (joins(row.back(), added.front(), motion.amplitude)) {
+                    added.insert(added.begin(), row.begin(), row.end() - 1);
+                } else {
+                    if (added.front().motion.amplitude > 1e-3 * motion.amplitude)
+                        note_leap(row.back(), {values[i], motion});
+                    curve_.branches.insert(curve_.branches.end() - 1, std::move(row));
+                }
+                row.clear();
+            }
+            const std::vector<BranchPoint>& branch = curve_.branches.back();
+            double farthest = values[i];
+            for (const BranchPoint& point : branch) {
+                if ((point.parameter - farthest) * way_ > 0) farthest = point.parameter;
+            }
+            start = branch.back().motion.start;
+            near = true;
+            while (i < values.size() && (values[i] - farthest) * way_ <= 0) ++i;
+        }
+        if (!row.empty()) curve_.branches.push_back(std::move(row));
+    }
+
+    [[nodiscard]] static bool joins(const BranchPoint& a, const BranchPoint& b, double size) {
+        return a.parameter == b.parameter && std::fabs(a.motion.amplitude - b.motion.amplitude) <= 1e-6 * size;
+    }
+
+    /// The branch through this motion, both ways unless it begins here.
+    std::vector<BranchPoint>& add_branch(double p, const SteadyMotion& motion, bool both) {
+        walked_ = true;
+        std::vector<BranchPoint> branch;
+        WalkEnd back_end = WalkEnd::range;
+        if (both) {
+            BranchPath back = walk_->walk(p, motion, -way_);
+            back_end = back.end;
+            branch.assign(back.points.rbegin(), back.points.rend());
+        }
+        branch.push_back({p, motion, true});
+        if (back_end != WalkEnd::closed && !stopped()) {
+            BranchPath on = walk_->walk(p, motion, way_);
+            branch.insert(branch.end(), on.points.begin(), on.points.end());
+            if (on.end == WalkEnd::lost) note_end(branch, branch.size() - 1, -1);
+        }
+        if (back_end == WalkEnd::lost) note_end(branch, 0, 1);
+        for (std::size_t i = 1; i + 1 < branch.size() && !stopped(); ++i) {
+            if (!branch[i].fold) continue;
+            if (branch[i - 1].motion.stable == branch[i + 1].motion.stable) continue;
+            const BranchPoint& before = branch[branch[i - 1].motion.stable ? i - 1 : i + 1];
+            add_jump(branch[i], branch[i].parameter > before.parameter);
+        }
+        curve_.branches.push_back(std::move(branch));
+        return curve_.branches.back();
+    }
+
+    /// The branch has an end, as where a motion begins to stick and Re is greater than Rd.
+    void note_end(const std::vector<BranchPoint>& branch, std::size_t i, int inwards) {
+        if (stopped() || branch.size() < 2) return;
+        const BranchPoint& end = branch[i];
+        const BranchPoint& inside = branch[static_cast<std::size_t>(static_cast<std::ptrdiff_t>(i) + inwards)];
+        if (inside.motion.stable) add_jump(end, end.parameter > inside.parameter);
+    }
+
+    /// What becomes of the motion at this point when the parameter goes on.
+    void add_jump(const BranchPoint& end, bool rising) {
+        const double beyond =
+            std::clamp(end.parameter + (rising ? 1e-3 : -1e-3) * range_, sorted_.front(), sorted_.back());
+        if (beyond == end.parameter) return;
+        MotionJump jump{.parameter = end.parameter, .rising = rising, .from = end.motion.amplitude};
+        jump.landed = motion_at(beyond, end.motion.start, false);
+        if (jump.landed.status == SteadyStatus::steady && !stopped()) {
+            const SteadyMotion here = motion_at(end.parameter, jump.landed.start, true);
+            const bool same = std::fabs(here.amplitude - jump.landed.amplitude) < 0.2 * jump.landed.amplitude;
+            if (here.status == SteadyStatus::steady && same) jump.landed = here;
+        }
+        jump.to = jump.landed.status == SteadyStatus::none ? std::nan("") : jump.landed.amplitude;
+        const double least = 1e-3 * std::max(jump.from, std::isnan(jump.to) ? 0 : jump.to);
+        if (!stopped() && !(std::fabs(jump.from - jump.to) <= least)) curve_.jumps.push_back(jump);
+    }
+
+    /// From one value to the next a mass at rest has broken away.
+    void note_leap(BranchPoint before, BranchPoint after) {
+        if (before.motion.status != SteadyStatus::adheres) return;
+        const bool rising = after.parameter > before.parameter;
+        const double least = 0.05 * after.motion.amplitude;  // else it begins to move little by little
+        while (std::fabs(after.parameter - before.parameter) > 1e-10 * range_ && !stopped()) {
+            const double middle = before.parameter + (after.parameter - before.parameter) / 2;
+            BranchPoint point{middle, motion_at(middle, before.motion.start, true)};
+            (point.motion.status == SteadyStatus::adheres ? before : after) = point;
+        }
+        if (after.motion.status != SteadyStatus::steady || after.motion.amplitude < least || stopped()) return;
+        curve_.jumps.push_back({.parameter = after.parameter,
+                                .rising = rising,
+                                .from = before.motion.amplitude,
+                                .to = after.motion.amplitude,
+                                .landed = after.motion});
+    }
+
+    [[nodiscard]] bool is_known(double p, const SteadyMotion& motion) const {
+        for (const auto& branch : curve_.branches) {
+            for (const BranchPoint& point : branch) {
+                if (!point.asked || std::fabs(point.parameter - p) > 1e-9 * range_) continue;
+                const double size = std::max(std::fabs(motion.low), std::fabs(motion.high));
+                const double apart =
+                    std::max(std::fabs(point.motion.low - motion.low), std::fabs(point.motion.high - motion.high));
+                if (apart <= 1e-5 * size) return true;
+            }
+        }
+        return false;
+    }
+
+    /// A jump that lands on a branch not yet seen leads to it.
+    void go_on_from(std::size_t i) {
+        const MotionJump jump = curve_.jumps[i];
+        if (jump.landed.status != SteadyStatus::steady) return;
+        const auto next = std::lower_bound(sorted_.begin(), sorted_.end(), jump.parameter);
+        if (jump.rising ? next == sorted_.end() : next == sorted_.begin()) return;
+        const double p = jump.rising ? *next : *(next - 1);
+        const SteadyMotion motion = motion_at(p, jump.landed.start, true);
+        if (motion.status == SteadyStatus::steady && !stopped() && !is_known(p, motion)) add_branch(p, motion, true);
+    }
+
+    void look_from_far_end() {
+        const double p = question_.values.back();
+        const SteadyMotion motion = motion_at(p, question_.start, false);
+        if (motion.status == SteadyStatus::steady && !stopped() && !is_known(p, motion)) add_branch(p, motion, true);
+        for (std::size_t i = 0; i < curve_.jumps.size() && i < most_jumps && !stopped(); ++i) go_on_from(i);
+    }
+
+    const CurveQuestion& question_;
+    const motion::Monitor& monitor_;
+    std::vector<double> sorted_;
+    double way_, range_ = 0;
+    bool walkable_ = true, walked_ = false, stopped_ = false;
+    std::optional<BranchWalk> walk_;
+    ResponseCurve curve_;
+};
+
+}  // namespace
+
+ResponseCurve response_curve(const CurveQuestion& question, const motion::Monitor& monitor) {
+    return CurveSearch(question, monitor).found();
+}
+
+}  // namespace dinal::analysis

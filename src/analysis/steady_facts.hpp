@@ -1,0 +1,28 @@
+// What is known of a steady motion before it is looked for, and what one look at a period of it tells.
+#pragma once
+
+#include "analysis/fixed_point.hpp"
+#include "analysis/steady.hpp"
+
+namespace dinal::analysis {
+
+/// Sliding and holding torque are the same each way, there are no walls, and M does not depend on the motion: the map
+/// brings no two states farther apart, so there is one motion, or a family of them.
+bool contracts(const SteadyQuestion& question);
+
+/// Half a period later everything is the same the other way round: friction, springs, walls and M.
+bool is_alike_both_ways(const SteadyQuestion& question);
+
+/// Of a multiplier, by how much it may miss 1.
+inline constexpr double neutral_within = 1e-6;
+
+inline Place place_of(const model::State& state, double omega) {
+    return {state.theta, state.velocity / omega};
+}
+
+/// The facts about the motion through a fixed point of the map over `periods` of M, or of its half (periods = 1), whose
+/// opposite it repeats. Where the mass may rest, and whether another motion is there, are not among them.
+SteadyMotion facts_of(const SteadyQuestion& question, const PeriodMap& map, const FixedPointSearch::Try& found,
+                      int periods, bool half);
+
+}  // namespace dinal::analysis

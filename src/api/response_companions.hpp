@@ -1,0 +1,27 @@
+// What a response brings along: its jumps, and the curves of theory that can be drawn over it.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "analysis/response_curve.hpp"
+#include "api/data.hpp"
+
+namespace dinal::api {
+
+/// c.jumps, in the column of what is varied.
+DataCompanion jumps_of(const analysis::ResponseCurve& curve, const std::string& column);
+
+/// A sweep of the frequency of a harmonic M, or at one frequency of its amplitude.
+struct HarmonicSweep {
+    model::Oscillator system;
+    std::string column;
+    double low = 0, high = 0;
+    std::optional<double> frequency = {};  ///< none: that is what is varied
+    double amplitude = 1;                  ///< torque, where the frequency is varied
+};
+/// c.linearised and c.den_hartog, for a linear spring and the friction of Coulomb; else none.
+std::vector<DataCompanion> closed_curves(const HarmonicSweep& sweep);
+
+}  // namespace dinal::api
