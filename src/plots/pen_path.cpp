@@ -85,6 +85,7 @@ void Ink::line(Line line) {
     const auto& [from, to] = line;
     const double length = std::max(std::fabs(to.x - from.x), std::fabs(to.y - from.y));
     const int steps = static_cast<int>(std::ceil(length / cell_));
+    walked_ += steps;
     for (int i = 0; i < steps; ++i) {
         const double part = static_cast<double>(i) / steps;
         dot({from.x + part * (to.x - from.x), from.y + part * (to.y - from.y)});

@@ -45,6 +45,8 @@ public:
     Ink(Box pixels, double cell);
 
     void line(Line line);  ///< what is outside of the sheet is left out
+    /// Through how many cells lines have gone, the same one as often as a line went there.
+    [[nodiscard]] double walked() const { return walked_; }
     /// Tells whether its cell was blank before.
     bool dot(Point point);
 
@@ -64,6 +66,7 @@ private:
     double cell_;
     int columns_, rows_;
     std::vector<bool> inked_;
+    double walked_ = 0;
 };
 
 }  // namespace dinal::plots

@@ -142,6 +142,8 @@ std::vector<std::size_t> thinned(const Curve& curve, const Paper& paper) {
 Strokes inked(const Curve& curve, const Paper& paper, double pen, std::size_t most) {
     constexpr double finest = 0.25;     // pixels: no printer shows that they are steps
     constexpr double most_cells = 2e7;  // of a large sheet
+    // A million lines across the sheet leave it black in the coarsest cells, too, and sooner.
+    constexpr double most_walked = 2e7;
     const double area = paper.pixels.width * paper.pixels.height;
     const Projected project(curve, paper);
     Ink ink(paper.pixels, std::max(finest, std::sqrt(area / most_cells)));
@@ -152,6 +154,7 @@ Strokes inked(const Curve& curve, const Paper& paper, double pen, std::size_t mo
             const Point point = project(i);
             if (down && curve.style != Style::points) {
                 ink.line({last, point});
+                if (ink.walked() > most_walked) ink = ink.coarser();
             } else {
                 ink.dot(point);
             }
