@@ -1,6 +1,7 @@
 -- 060: stick-slip. A block on a table, pulled through a spring at constant speed: it waits, jumps, waits again.
--- Breakaway Re is larger than kinetic friction Rd; without that difference it would creep along evenly. The numbers are
--- those of a case from the field that general simulators get wrong; each has a closed form.
+-- Breakaway Re is larger than kinetic friction Rd; without that difference it would still jump once, and then swing about
+-- the speed of the pull without ever stopping again. The numbers are those of a case from the field that general
+-- simulators get wrong; each has a closed form.
 
 local m, k, speed = 10, 4000, 0.01               -- kg, N/m, m/s
 local weight = m * 9.81                          -- N

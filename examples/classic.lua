@@ -2,7 +2,7 @@
 -- six columns on "unit 13" (for013.dat in the current folder), computed by the integrator of 1989.
 --
 -- One thing is better: M*(t) is typed here, as a Lua expression, where the Fortran had to be edited and compiled
--- again. As in the listing t is the time in the units of T0 = 2 pi sqrt(I/k), and M(t) = Mc M*(t).
+-- again. As in the listing t is the time in the units of I and k, not in T0, and M(t) = Mc M*(t).
 --
 --     dinal classic.lua                  asks, and asks again when something is wrong
 --     dinal classic.lua < answers.txt    reads the answers; something wrong ends it with exit code 1
@@ -109,7 +109,7 @@ local window = ask("Entrar tmax,deltat", numbers(2), function(n)
   if not (deltat > 0 and deltat <= tmax) then
     return nil, ("deltat = %g: it must be positive and at most tmax = %g"):format(deltat, tmax)
   end
-  local npunt = math.floor(tmax / deltat + 2 + 0.5)
+  local npunt = math.floor(tmax / deltat * (1 + 2^-24) + 2) -- JINT cuts off; 0.3/0.1 was 3 in single precision
   if npunt > 1e8 then return nil, ("tmax/deltat asks for %.3g rows: enter a larger deltat"):format(npunt) end
   return { npunt = npunt, deltat = deltat }
 end)
@@ -128,7 +128,7 @@ local function compile(text)
   return load("return function(t) return " .. expression .. "\n end", "=M*(t)", "t", names)()
 end
 
-local run = ask("Entrar M*(t): expresion de Lua, t en la unidad de T0, M = Mc M*; p.ej. sin(6.28*t); libre: 0",
+local run = ask("Entrar M*(t): expresion de Lua, t en la unidad de tmax, M = Mc M*; p.ej. sin(6.28*t); libre: 0",
   function() return next_line("M*(t)") end,
   function(text)
     local m, sentence = compile(text)

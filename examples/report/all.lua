@@ -1,5 +1,6 @@
 -- All figures of the report, in its order: each by its own script, into the folder named after this one. Without a name
--- that is docs/report of the project, or the current folder where the examples are installed.
+-- that is docs/report of the project, whose pictures are written over, or the current folder where the examples are
+-- installed.
 local here = debug.getinfo(1, "S").source:match("^@(.*/)") or ""
 
 local function default_folder()

@@ -22,8 +22,20 @@ local fine = case.run{ gamma = 0.836, r = 1, theta0 = 1, t_end = 30, h = 0.001 }
 fig:line("highest, lowest, h = 0.01", last:max(), last:min())
 fig:line("amplitude, h = 0.001", case.row_amplitude(fine, 1000))
 
-fig:quote{ 0.836, 0.14, stick, slip, 100 * stuck, case.amplitude(run), 0.14, 0.01, last:max(), last:min(), 0.14,
-  0.001, case.row_amplitude(fine, 1000) }
+-- The listing has SIN(6.28*T): at this step the amplitude is another one in each period.
+local listed = sys:simulate{ M = excitation.harmonic{ amplitude = sys.k, omega = 6.28 }, theta0 = 1, t_end = 30, dt = 0.01,
+  integrator = integrator.dinal1989{ h = 0.01 } }
+local least, most = math.huge, 0
+for period = 10, 29 do
+  local theta = listed.theta:slice(100 * period + 1, 100 * period + 101)
+  local amplitude = (theta:max() - theta:min()) / 2
+  least, most = math.min(least, amplitude), math.max(most, amplitude)
+end
+fig:line("sin(6.28 t), h = 0.01, least", least)
+fig:line("sin(6.28 t), h = 0.01, most", most)
+
+fig:quote{ 0.836, 0.14, stick, slip, 100 * stuck, case.amplitude(run), 0.14, 0.01, last:max(), last:min(),
+  6.28, least, most, 0.14, 0.001, case.row_amplitude(fine, 1000) }
 local function steady(of) -- the last period
   return of.theta:slice(#of - 100, #of), of.velocity:slice(#of - 100, #of) / sys.omega0
 end
@@ -46,5 +58,7 @@ slips at t/T0 = n/2 +                            0.124937635      0.12493764
 part of the time stuck                           0.349516424
 highest, lowest, h = 0.01        0.158242517    -0.146906724
 amplitude, h = 0.001             0.133535467
+sin(6.28 t), h = 0.01, least     0.130102103
+sin(6.28 t), h = 0.01, most      0.165784434
 fig24.svg
 ]]
