@@ -85,6 +85,13 @@ void Story::tell_setting() {
     } else if (constant_from_ < run_.t_stop) {
         say("M changes until t = {}, then it is constant.", at(constant_from_));
     }
+    if (run_.gap > 0) {
+        say("Of M only values are known, at times at most {} apart: a shorter pulse would not have been seen.",
+            text::number_text(run_.gap, T0_));
+    }
+    if (run_.noise > 0) {
+        say("M is rough on every scale, by {:.2g}: the motion is as exact as that allows.", run_.noise);
+    }
     if (own_rule_) say("{}", own_rule_->setting);
     end_paragraph();
 }
@@ -142,7 +149,8 @@ void Story::tell_start() {
         add(".");
     }
     if (first.stuck && !first.ended_by) {
-        say("Nothing moved it until the end of the run, t = {}.", at(run_.t_stop));
+        say("Nothing {}moved it until the end of the run, t = {}.", run_.gap > 0 ? "that was seen " : "",
+            at(run_.t_stop));
         tell_stillness();
     }
     end_paragraph();

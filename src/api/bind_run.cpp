@@ -128,6 +128,12 @@ int outcome(lua_State* L) {
     return lua::push_text(L, run.origin ? motion::outcome_text(run.trajectory) : "read from a file");
 }
 
+int gap_of_run(lua_State* L) {
+    const double gap = run_self(L, "run.gap")->trajectory.gap;
+    gap > 0 ? lua_pushnumber(L, gap) : lua_pushnil(L);
+    return 1;
+}
+
 template <double motion::Trajectory::*time>
 int time_field(lua_State* L) {
     lua_pushnumber(L, run_self(L, "run.t_end")->trajectory.*time);
@@ -247,8 +253,15 @@ constexpr lua::Member run_members[] = {
     {lua::a_field<outcome>,
      {"run.outcome -> string",
       "How it ended: \"reached the end\", \"at rest\", \"interrupted\", or what went wrong. It speaks of what "
-      "was seen: a pulse of a function M that falls between two looks at it was not.",
+      "was seen: a pulse of a function M that is shorter than run.gap may have been missed.",
       DINAL_RUN "print(run.outcome)  --> reached the end"}},
+    {lua::a_field<gap_of_run>,
+     {"run.gap -> number or nil",
+      "The longest time between two looks at M where that is a Lua function, of which only values are known: a pulse of "
+      "this length or more has been seen, a shorter one perhaps not (see breaks of excitation.scripted and narrowest of "
+      "integrator.spectral). nil where M tells when it changes.",
+      "run = nondimensional{}:simulate{ M = math.sin, t_end = 2, dt = 1, integrator = integrator.rk4{ h = 0.01 } }\n"
+      "print(run.gap)  --> 0.005"}},
     {lua::a_field<names>,
      {"run.names -> table", "The names of the columns.",
       DINAL_RUN "print(table.concat(run.names, \" \"))  --> t theta velocity M friction damping"}},

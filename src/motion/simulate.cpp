@@ -232,6 +232,8 @@ Trajectory joined(const Trajectory& first, std::size_t kept, Trajectory second, 
     second.initial = first.initial;
     second.began_stuck = first.began_stuck;
     second.t_start = first.t_start;
+    second.gap = std::max(first.gap, second.gap);
+    second.noise = std::max(first.noise, second.noise);
     return second;
 }
 

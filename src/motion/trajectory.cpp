@@ -86,7 +86,9 @@ text::Expected<model::State> Trajectory::at(double t) const {
 
 std::string outcome_text(const Trajectory& trajectory) {
     if (trajectory.contradiction) return model::sentence_with_cure(*trajectory.contradiction);
-    return std::string(model::sentence(trajectory.outcome));
+    std::string text(model::sentence(trajectory.outcome));
+    if (trajectory.noise > 0) text += fmt::format(", within the noise of M, {:.2g}", trajectory.noise);
+    return text;
 }
 
 std::string summary(const Trajectory& trajectory) {
@@ -111,6 +113,7 @@ std::string summary(const Trajectory& trajectory) {
                                              : std::string(model::sentence(trajectory.outcome));
     }
     if (const auto theta = trajectory.find("theta"); theta && rows.rows() > 0) {
+        if (trajectory.noise > 0) text += fmt::format("; M is rough by {:.2g}", trajectory.noise);
         text += fmt::format("; peak |theta| {:.3g}", rows.col(*theta).cwiseAbs().maxCoeff());
     }
     return text;

@@ -72,9 +72,11 @@ struct Trajectory {
     double t_stop = 0;  ///< how far it came: t_end unless the outcome says otherwise
     model::State state_at_stop;
     model::Motion motion_at_stop = model::Motion::stuck;
-    bool began_stuck = false;                                ///< until something moved it
-    double restitution = 1;                                  ///< of the walls: what an impact left of the velocity
-    bool computed = true;                                    ///< false when it was read from a file
+    bool began_stuck = false;  ///< until something moved it
+    double restitution = 1;    ///< of the walls: what an impact left of the velocity
+    bool computed = true;      ///< false when it was read from a file
+    double gap = 0;    ///< the longest between two looks at a function M, time units; 0 where M tells when it changes
+    double noise = 0;  ///< what keeps a function M from being smooth on any scale, torque
     std::vector<std::string> event_names = {};               ///< of the user's events, by Event::user
     std::shared_ptr<const Carried> carried = nullptr;        ///< of a run with more in it
     std::optional<model::Contradiction> contradiction = {};  ///< of Outcome::not_a_function

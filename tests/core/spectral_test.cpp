@@ -277,36 +277,6 @@ TEST_CASE("where the spring is next to nothing, stops and turns follow the load,
     check_order(run.events);
 }
 
-// ---- what never becomes smooth
-
-TEST_CASE("a function that is rough at every scale ends with its own outcome, soon", "[spectral]") {
-    const auto noise = [](double t) {
-        const double x = std::sin(t * 12345.678) * 43758.5;
-        return x - std::floor(x);
-    };
-    const auto staircase = [](double t) {  // Cantor's: flat almost everywhere, and never smooth
-        double x = t / 20, sum = 0, weight = 0.5;
-        for (int i = 0; i < 40; ++i) {
-            x *= 3;
-            const int digit = static_cast<int>(x);
-            x -= digit;
-            if (digit > 0) sum += weight;
-            if (digit == 1) break;
-            weight /= 2;
-        }
-        return sum;
-    };
-    const auto single = [](double t) { return static_cast<double>(std::sin(static_cast<float>(t))); };
-    for (const std::function<double(double)>& f : {std::function<double(double)>(noise), {staircase}, {single}}) {
-        for (const double Rd : {0.0, 0.3}) {
-            const auto M = script(f);
-            const Trajectory run = by_spectral(nondimensional(0.05, Rd), M.M, {0.3, 0}, {0, 20});
-            CHECK(run.outcome == Outcome::unresolved);
-            CHECK(M.probe->calls < 20000000);
-        }
-    }
-}
-
 TEST_CASE("a square wave that a function hides costs a hundred calls an edge, from the first one at t_start on",
           "[spectral]") {
     const auto M = script([](double t) { return std::sin(6.9 * t) > 0 ? 1.0 : -1.0; });

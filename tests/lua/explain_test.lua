@@ -65,4 +65,27 @@ test("explain is a method", function()
     raises_here(function() free.explain() end, "use a colon: run:explain()")
 end)
 
+test("the story of a function says how closely it was looked at, and never that nothing moved the mass", function()
+    local sys = nondimensional { friction_ratio = 0.3 }
+    local unseen = sys:simulate { M = function(t) return t > 3.001 and t < 3.002 and 500 or 0 end, t_end = 10, dt = 1 }
+    local story = unseen:explain():gsub("%s+", " ")
+    assert(story:find("Nothing that was seen moved it until the end of the run", 1, true), story)
+    assert(story:find("at times at most 0.056", 1, true) and story:find("a shorter pulse would not have been seen", 1, true), story)
+    assert(unseen.gap > 0.05 and unseen.gap < 0.0585, unseen.gap)
+    local told = sys:simulate { M = function(t) return t > 3.001 and t < 3.002 and 500 or 0 end, t_end = 10, dt = 1,
+        integrator = integrator.spectral { narrowest = 0.001 } }
+    assert(#told.events > 0 and told.gap <= 0.001, told.gap)
+    local native = sys:simulate { M = excitation.pulse { at = 3, width = 0.001, amplitude = 0.1 }, t_end = 10, dt = 1 }
+    story = native:explain():gsub("%s+", " ")
+    assert(native.gap == nil and story:find("Nothing moved it", 1, true) and not story:find "seen", story)
+end)
+
+test("an M that is rough on every scale is told once, in the outcome, the summary and the story", function()
+    local function single(x) return (string.unpack("f", string.pack("f", x))) end
+    local run = nondimensional { zeta = 0.1 }:simulate { M = function(t) return single(math.sin(5 * t)) end, t_end = 10, dt = 1 }
+    assert(run.outcome:find("^reached the end, within the noise of M, %d"), run.outcome)
+    assert(tostring(run):find("M is rough by", 1, true), tostring(run))
+    assert(run:explain():gsub("%s+", " "):find("M is rough on every scale, by", 1, true), run:explain())
+end)
+
 support.finish()

@@ -94,7 +94,7 @@ test("the integrator objects show themselves and can not be changed", function()
     equal(integrator.rk4 { h = 0.5 }.tolerance, nil)
     raises_here(function() integrator.spectral { tolerance = 1 } end, "tolerance = 1 must lie between 0 and 1")
     raises_here(function() integrator.spectral { max_panel = 0 } end, "max_panel = 0 must be positive")
-    raises_here(function() integrator.spectral { h = 0.1 } end, "no option 'h' among tolerance and max_panel")
+    raises_here(function() integrator.spectral { h = 0.1 } end, "no option 'h' among tolerance, max_panel and narrowest")
     raises_here(function() return integrator.rk5 end, "did you mean 'rk4'?")
 end)
 

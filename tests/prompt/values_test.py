@@ -58,7 +58,7 @@ class Values(PromptTest):
         self.assertRegex(terminal.enter("run.events"), r"^\d+ events: .*1 rest.*\n +i +t +kind +theta +M\n +1 ")
         self.assertRegex(terminal.enter("run.events[1]"), r'^\{ t = 0\.\d+, kind = "turn", theta = -?0\.\d+, M = 0 \}$')
         self.assertEqual(terminal.enter("run.integrator"), "integrator.exact{}")
-        self.assertRegex(terminal.enter("integrator.spectral{}"), r"^integrator\.spectral\{ tolerance = 1e-12, .* \}$")
+        self.assertRegex(terminal.enter("integrator.spectral{}"), r"(?s)^integrator\.spectral\{ tolerance = 1e-12, .* \}$")
 
     def test_functions_show_their_text_or_how_they_are_called(self):
         terminal = self.start()

@@ -188,6 +188,7 @@ Trajectory Dinal1989::run(const Problem& problem) const {
         }
     }
     rows.finish();
+    if (problem.excitation.has_script()) trajectory.gap = h / 2;
     trajectory.state_at_stop = dinal.state(now);
     trajectory.motion_at_stop = now.frozen ? model::Motion::stuck : model::motion_of(trajectory.state_at_stop.velocity);
     trajectory.events = Growing<model::Event>(std::move(events));

@@ -195,6 +195,7 @@ bool Engine::end_piece(double x) {
         return fail(model::Outcome::excitation_not_finite);
     }
     keep(length);
+    gap_ = std::max(gap_, std::min(length, cut_.h > 0 ? piece_.h : 2 * cheb::widest_gap * piece_.h));
     for (std::size_t k = 0; k < y_.size(); ++k) y_[k] = piece_.at(k, x);
     now_ = whole && (piece_.to_break || piece_.end == problem_.window.end) ? Clock{piece_.end, 0}
                                                                            : piece_.start.later(length);
@@ -300,6 +301,7 @@ void Engine::leave(Trajectory& trajectory) const {
     trajectory.state_at_stop = {theta(), y_[1]};
     trajectory.motion_at_stop = standstill_.motion();
     trajectory.began_stuck = standstill_.began_stuck();
+    if (problem_.excitation.has_script()) trajectory.gap = gap_;
     if (next_row_ < problem_.rows.count()) trajectory.rows = Rows(trajectory.rows.table().first(next_row_));
     auto left = std::make_shared<Left>();
     left->states.assign(y_.begin() + 2, y_.end());

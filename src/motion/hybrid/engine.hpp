@@ -120,6 +120,7 @@ private:
     std::vector<Half> halves_;                    // of the events of the user
     std::vector<std::pair<double, int>> echoes_;  // breaks that delays bring back, and how often they did, in order
     double h_, pace_;
+    double gap_ = 0;  // the longest between two looks at M
     double bad_time_ = model::never;
     int attempts_ = 0, too_short_ = 0, often_ = 0;
     double attempts_since_ = 0, last_event_ = -model::never;

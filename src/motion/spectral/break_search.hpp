@@ -12,6 +12,8 @@ namespace dinal::motion::spectral {
 
 namespace detail {
 
+constexpr double few_roundings = 64 * std::numeric_limits<double>::epsilon();
+
 /// Three values, evenly spaced, and how far the middle one is from the straight line.
 struct Triple {
     double a, fa, middle, fm, b, fb;
@@ -47,6 +49,28 @@ double jump_between(double a, double fa, double b, double fb, const F& f) {
     }
 }
 
+/// The jump between a and b, if halving shows that it is one: the values at both ends of a jump stay apart, whatever
+/// else f does there comes together. One value for each halving.
+template <class F>
+std::optional<double> find_jump(double a, double fa, double b, double fb, const F& f) {
+    constexpr int judged_at = 7, judged_again_at = 21;  // halvings after which
+    const double at_first = std::fabs(fb - fa);
+    for (int i = 1; i <= judged_again_at; ++i) {
+        const double middle = a + (b - a) / 2;
+        if (!(middle > a && middle < b)) return b;
+        const double fm = f(middle);
+        if (std::fabs(fm - fa) > std::fabs(fb - fm)) {
+            b = middle, fb = fm;
+        } else {
+            a = middle, fa = fm;
+        }
+        // Of a smooth f half of the difference is left each time, of a kink, too.
+        const bool judged = i == judged_at || i == judged_again_at;
+        if (judged && !(std::fabs(fb - fa) > at_first / 8)) return {};
+    }
+    return jump_between(a, fa, b, fb, f);
+}
+
 }  // namespace detail
 
 /// The jump or kink of f that shows most in its values at increasing times, if halving the interval around it shows
@@ -61,6 +85,14 @@ std::optional<double> find_break(std::span<const double> times, std::span<const 
         if (bend > most) worst = i, most = bend;
     }
     if (worst == 0) return {};
+    // A jump, or one of both edges of something narrow: between the two values that differ most.
+    const bool left = std::fabs(values[worst] - values[worst - 1]) >= std::fabs(values[worst + 1] - values[worst]);
+    const std::size_t before = left ? worst - 1 : worst;
+    if (std::fabs(values[before + 1] - values[before]) >
+        detail::few_roundings * (std::fabs(values[before + 1]) + std::fabs(values[before]))) {
+        const auto jump = detail::find_jump(times[before], values[before], times[before + 1], values[before + 1], f);
+        if (jump) return jump;
+    }
     const double a = times[worst - 1], b = times[worst + 1], middle = a + (b - a) / 2;
     detail::Triple t{a, values[worst - 1], middle, f(middle), b, values[worst + 1]};
 

@@ -44,7 +44,7 @@ double PanelSolver::lost_in_time() const {
 /// The last coefficients of M over what the tolerance allows, in units of the torques that are at play.
 double PanelSolver::unresolved_load() const {
     const Series& M = panel_.M;
-    double allowed = (tolerance_ + 4 * epsilon) * torques() + underflow;
+    double allowed = (tolerance_ + 4 * epsilon) * torques() + underflow + noise_;
     const double last = chebyshev::tail(M);
     if (last <= allowed) return last / allowed;
     allowed += lost_in_time();
@@ -58,7 +58,7 @@ double PanelSolver::unresolved_motion() const {
     const double v = chebyshev::size(panel_.v), acceleration = chebyshev::size(w);
     double allowed = tolerance_ * std::max(v, acceleration) + underflow;
     if (last <= allowed) return last / allowed;
-    allowed += rounding_of_motion(lost_in_time() + underflow);
+    allowed += rounding_of_motion(lost_in_time() + underflow + noise_);
     return last / allowed;
 }
 
@@ -82,8 +82,11 @@ bool PanelSolver::found_break() {
     const bool searched = searched_.from == panel_.start.hi && panel_.h > 0.1 * searched_.h;
     if (searched || found_breaks_.size() >= most_found_breaks || !(unresolved_load() > gross)) return false;
     searched_.from = panel_.start.hi, searched_.h = panel_.h;
-    const auto found =
-        find_break(panel_.times, panel_.samples, [&](double t) { return excitation_.value(t, panel_.begin); });
+    return find_break_among(panel_.times, panel_.samples);
+}
+
+bool PanelSolver::find_break_among(std::span<const double> times, std::span<const double> values) {
+    const auto found = find_break(times, values, [&](double t) { return excitation_.value(t, panel_.begin); });
     // One at the very beginning is not a break but a singular point, which ever shorter panels leave behind.
     if (!found || !(*found < panel_.end)) return false;
     if (panel_.start.until(*found) < 1e-6 * panel_.h) {
@@ -105,6 +108,8 @@ PanelSolver::Attempt PanelSolver::pass_over() {
 
 PanelSolver::Attempt PanelSolver::judge(double unresolved) {
     if (unresolved <= 1) {
+        const Look look = script_ ? look_between() : Look::agrees;
+        if (look != Look::agrees) return looked(look);
         patience_.unresolved = 0;
         const bool needless = feedback_ || panel_.ends == SolvedPanel::End::inside;
         patience_.too_short = needless && 2 * panel_.h < too_short * pace_ ? patience_.too_short + 1 : 0;
@@ -123,6 +128,7 @@ PanelSolver::Attempt PanelSolver::judge(double unresolved) {
     if (crawls()) return end_with(never_ending());
     // While the mass is stuck its state is known, and a feedback is a function of time, too.
     const bool of_time = !feedback_ || (panel_.motion == model::Motion::stuck);
+    if (script_ && of_time && found_noise()) return Attempt::shorten;
     if (script_ && of_time && unresolved > gross && found_break()) return Attempt::shorten;
     // The last coefficients fall with h^16.
     h_ = panel_.h * std::clamp(0.9 * std::pow(unresolved, -1.0 / chebyshev::degree), 0.5, 0.9);
@@ -146,6 +152,7 @@ void PanelSolver::lengthen(double unresolved) {
 
 void PanelSolver::passed() {
     std::erase_if(found_breaks_, [&](double b) { return b <= panel_.end; });
+    if (seen_ <= panel_.end) seen_ = model::never;
 }
 
 }  // namespace dinal::motion::spectral

@@ -5,6 +5,7 @@
 // the window, or where M or the motion could not be resolved any longer.
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "model/lowered.hpp"
@@ -66,12 +67,16 @@ public:
     /// What h^2 theta'' is off by at least, as a difference of torques that may balance each other.
     [[nodiscard]] double least_rounding() const {
         return panel_.h * (panel_.h / system_.inertia()) *
-               (64 * std::numeric_limits<double>::epsilon() * torques() + lost_in_time());
+               (64 * std::numeric_limits<double>::epsilon() * torques() + lost_in_time() + noise_);
     }
     /// What h^2 theta'' may differ by because its torques are rounded, and the times at which M was asked.
-    [[nodiscard]] double rounding() const { return rounding_of_motion(lost_in_time()); }
+    [[nodiscard]] double rounding() const { return rounding_of_motion(lost_in_time() + noise_); }
     /// The torques depend on the motion, which was found by iteration.
     [[nodiscard]] bool iterates() const { return feedback_; }
+    /// The longest time on the panel between two looks at a function of the user, of those between the nodes, too.
+    [[nodiscard]] double gap() const;
+    /// What keeps M from being smooth on any scale, torque; 0 when nothing was seen.
+    [[nodiscard]] double noise() const { return noise_; }
 
 private:
     static constexpr std::size_t points = chebyshev::points;
@@ -106,10 +111,17 @@ private:
     [[nodiscard]] double unresolved_motion() const;
     [[nodiscard]] double rounding_of_motion(double uncertain) const;
     bool found_break();
+    bool find_break_among(std::span<const double> times, std::span<const double> values);
     Attempt pass_over();
     Attempt judge(double unresolved);
     bool crawls();
     void lengthen(double unresolved);
+
+    // panel_look.cpp: M where no node is, and on every scale.
+    enum class Look { agrees, differs, failed };
+    Look look_between();
+    Attempt looked(Look look);
+    bool found_noise();
     /// Of a run that gets nowhere: whose fault it is.
     [[nodiscard]] model::Outcome never_ending() const {
         return feedback_ ? model::Outcome::chattering : model::Outcome::unresolved;
@@ -130,6 +142,11 @@ private:
         double from = model::never, h = 0;
     } searched_;                      // where one was looked for last
     double bad_time_ = model::never;  // M is known to fail here
+    double seen_ = model::never;      // here it was seen to do what its series does not
+    double noise_ = 0;
+    struct {
+        double from = model::never, h = 0, tail = 0;
+    } stalled_;  // of the last panel that was too long for its M
     struct {
         double theta = 0, velocity = 0;
     } falls_;  // -dM/dtheta and -dM/dvelocity of a feedback: solved for, not iterated

@@ -10,14 +10,19 @@ namespace dinal::motion::spectral {
 Resolution Spectral::resolution(const model::Oscillator& system) const {
     constexpr double parts = chebyshev::degree;
     const double own = longest_panel * system.natural_period();
+    const double asked = narrowest / chebyshev::widest_gap;
+    if (asked < std::min(max_panel, own)) return {"narrowest", asked / parts, false};
     return max_panel < own ? Resolution{"max_panel/16", max_panel / parts, false}
                            : Resolution{"T0/27", own / parts, false};
 }
 
 double Spectral::longest(const Problem& problem) const {
     const model::Oscillator& system = problem.system;
-    return std::min(max_panel, system.has_spring() ? longest_panel * system.natural_period()
-                                                   : part_of_run * (problem.window.end - problem.window.start));
+    // The looks at both ends of the widest gap must not straddle a pulse.
+    constexpr double within = chebyshev::widest_gap * (1 + 1e-9);
+    const double most = std::min(max_panel, problem.excitation.has_script() ? narrowest / within : model::never);
+    return std::min(most, system.has_spring() ? longest_panel * system.natural_period()
+                                              : part_of_run * (problem.window.end - problem.window.start));
 }
 
 Trajectory Spectral::run(const Problem& problem) const {

@@ -15,6 +15,7 @@ inline constexpr double part_of_run = 1.0 / 16;
 struct Spectral {
     double tolerance = 1e-12;                                    ///< of the motion, relative, on each panel
     double max_panel = std::numeric_limits<double>::infinity();  ///< longest panel, time units
+    double narrowest = std::numeric_limits<double>::infinity();  ///< no pulse of this width is missed, time units
 
     static const MethodText about;
     /// The longest panel of a run, time units.
@@ -29,14 +30,16 @@ inline constexpr text::Option spectral_options[] = {
      text::fills<&Spectral::tolerance>},
     {"max_panel", "time units", "0.6 T0", text::positive_or_infinite, "the longest panel",
      text::fills<&Spectral::max_panel>},
+    {"narrowest", "time units", "0.0585 T0", text::positive_or_infinite,
+     "a pulse of a function M that lasts this long is never missed", text::fills<&Spectral::narrowest>},
 };
 
 inline constexpr MethodText Spectral::about{
     {"integrator.spectral", "integrator.spectral{ tolerance = 1e-12 }", spectral_options},
     "The motion as polynomials on panels between events and breaks of M, right to rounding for any M, with every event "
     "in its place. tolerance is relative, for each panel. A pulse of a scripted M that falls between the 17 samples of "
-    "a panel is not seen: announce it by excitation.scripted(f, { breaks = {...} }), or take max_panel (time units) a "
-    "few times as long as the shortest pulse.",
+    "a panel is not seen: run.gap is the longest time between them. Announce it by "
+    "excitation.scripted(f, { breaks = {...} }), or say by narrowest (time units) how short the shortest pulse is.",
     "sys = nondimensional{ friction_ratio = 0.167 }\n"
     "run = sys:simulate{ velocity0 = 2*math.pi, t_end = 3, dt = 0.5, integrator = integrator.spectral{} }\n"
     "print(string.format(\"%.9f\", (run:at(3))))  --> 0.155151392"};

@@ -210,6 +210,7 @@ void SpectralEngine::end_piece(double x, model::State state, double M) {
     const double length = whole ? 2 * panel.h : panel.h * (1 + x);
     const bool told = rows_until(length);
     if (panels_ != nullptr) keep(length);
+    gap_ = std::max(gap_, std::min(length, solver_.gap()));
     now_.clock = whole && panel.ends != SolvedPanel::End::inside ? Clock{panel.end, 0} : panel.start.later(length);
     now_.y = state;
     now_.M_sampled = whole;

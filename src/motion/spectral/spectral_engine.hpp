@@ -25,6 +25,9 @@ public:
         trajectory.state_at_stop = now_.y;
         trajectory.motion_at_stop = standstill_.motion();
         trajectory.began_stuck = standstill_.began_stuck();
+        trajectory.gap = gap_;
+        const bool lost = outcome_ == model::Outcome::unresolved || outcome_ == model::Outcome::chattering;
+        trajectory.noise = lost ? 0 : solver_.noise();
     }
 
 private:
@@ -87,6 +90,7 @@ private:
     PanelSolver solver_;
     double standing_from_ = nowhere;  // from here on the panel's M serves a mass that came to a stop in it
     unsigned pieces_ = 0;
+    double gap_ = 0;  // the longest between two looks at a function of the user
     model::Outcome outcome_ = model::Outcome::reached_end;
 };
 

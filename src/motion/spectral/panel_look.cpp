@@ -1,0 +1,134 @@
+// What M does between the nodes of a panel, and whether it is rough on every scale.
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "motion/spectral/panel_solver.hpp"
+
+namespace dinal::motion::spectral {
+
+namespace {
+
+/// The widest gaps between nodes, by the node before: in the middle of these M is asked once more.
+constexpr std::array<std::size_t, 3> looked_into{7, 8, 9};
+/// The widest gap that is left, as a part of the panel.
+constexpr double widest_left = (chebyshev::nodes[7] - chebyshev::nodes[6]) / 2;
+static_assert(widest_left < chebyshev::widest_gap);
+/// On panels shorter than this, in units of pace_, nothing hides.
+constexpr double too_short_to_look = 1e-6;
+/// By so much more than its error M must miss its series.
+constexpr double clearly = 64;
+
+/// Noise is at most this part of the torques; what is rougher is made of steps that can be found.
+constexpr double most_noise = 1e-5;
+/// How long the stretches are on which M is looked at for noise, as a part of the panel.
+constexpr double short_stretch = 1e-3;
+
+}  // namespace
+
+double PanelSolver::gap() const {
+    if (!script_) return 0;
+    const bool looks = 2 * panel_.h > too_short_to_look * pace_;
+    return 2 * panel_.h * (looks ? widest_left : chebyshev::widest_gap);
+}
+
+/// Asks M between the nodes of a panel that seems to be resolved. A pulse may be there that no node has met.
+PanelSolver::Look PanelSolver::look_between() {
+    if (2 * panel_.h <= too_short_to_look * pace_) return Look::agrees;
+    constexpr std::size_t most_looks = looked_into.size() + 1;
+    std::array<double, points + most_looks> times{}, values{};
+    std::copy(panel_.times.begin(), panel_.times.end(), times.begin());
+    std::copy(panel_.samples.begin(), panel_.samples.end(), values.begin());
+    std::size_t count = points;
+    const bool moves = panel_.motion != model::Motion::stuck;
+    const auto misses = [&](double x) {
+        const double t = panel_.time(x);
+        model::State state = panel_.begin;
+        if (feedback_ && moves) {
+            state = {panel_.begin.theta + chebyshev::value(panel_.p, x), chebyshev::value(panel_.v, x) / panel_.h};
+        }
+        const double M = excitation_.value(t, state);
+        const auto place = std::upper_bound(times.begin(), times.begin() + static_cast<std::ptrdiff_t>(count), t);
+        const auto i = static_cast<std::size_t>(place - times.begin());
+        std::copy_backward(times.begin() + static_cast<std::ptrdiff_t>(i),
+                           times.begin() + static_cast<std::ptrdiff_t>(count),
+                           times.begin() + static_cast<std::ptrdiff_t>(count) + 1);
+        std::copy_backward(values.begin() + static_cast<std::ptrdiff_t>(i),
+                           values.begin() + static_cast<std::ptrdiff_t>(count),
+                           values.begin() + static_cast<std::ptrdiff_t>(count) + 1);
+        times[i] = t, values[i] = M;
+        ++count;
+        return std::fabs(M - chebyshev::value(panel_.M, x));
+    };
+    double most = 0, where = 0;
+    const auto look = [&](double x) {
+        const double off = misses(x);
+        if (!(off <= most)) most = off, where = panel_.time(x);
+        return std::isfinite(off);
+    };
+    bool finite = true;
+    if (panel_.start.until(seen_) > 0 && seen_ < panel_.end) finite = look(panel_.x(seen_));
+    for (const std::size_t j : looked_into) {
+        finite = finite && look((chebyshev::nodes[j] + chebyshev::nodes[j + 1]) / 2);
+    }
+    if (!finite) {
+        bad_time_ = where;
+        return Look::failed;
+    }
+    double allowed = (tolerance_ + 4 * epsilon) * torques() + noise_;
+    if (most <= clearly * allowed) return Look::agrees;
+    allowed += lost_in_time();
+    if (feedback_ && moves) {
+        const double per_torque = panel_.h * (panel_.h / system_.inertia());
+        const double motion = std::max(chebyshev::size(panel_.v), chebyshev::size(panel_.w));
+        allowed += (tolerance_ * motion + rounding_of_motion(lost_in_time())) / per_torque;
+    }
+    if (most <= clearly * allowed) return Look::agrees;
+    seen_ = where;
+    const bool of_time = !feedback_ || !moves;
+    h_ = panel_.h / 2;
+    if (of_time && found_breaks_.empty())
+        find_break_among(std::span(times).first(count), std::span(values).first(count));
+    return Look::differs;
+}
+
+/// The panel is tried again, shorter.
+PanelSolver::Attempt PanelSolver::looked(Look look) {
+    if (look == Look::failed) return before_failure();
+    return crawls() ? end_with(never_ending()) : Attempt::shorten;
+}
+
+/// A panel that was made shorter, and M is no smoother on it: noise, if M is as rough on stretches far shorter still,
+/// at one place as at another. (A jump is only at one.) From then on M need not be smoother than that.
+bool PanelSolver::found_noise() {
+    if (!(unresolved_load() > 1)) return false;  // the motion is what is too quick for the panel
+    const double tail = chebyshev::tail(panel_.M);
+    const auto before = stalled_;
+    stalled_ = {panel_.start.hi, panel_.h, tail};
+    if (!(tail <= most_noise * torques())) return false;
+    constexpr double varies = 8;
+    if (noise_ > 0 && tail <= varies * noise_) {
+        noise_ = 2 * tail;
+        return true;
+    }
+    const bool stalled = before.from == panel_.start.hi && panel_.h < 0.95 * before.h && tail > 0.3 * before.tail;
+    if (!stalled) return false;
+    int rough = 0;
+    double most = tail;
+    for (const double x : {-0.9, 0.1, 0.8}) {
+        chebyshev::Samples values{};
+        for (std::size_t j = 0; j < points; ++j) {
+            values[j] = excitation_.value(panel_.time(x + short_stretch * chebyshev::nodes[j]), panel_.begin);
+            if (!std::isfinite(values[j])) return false;
+        }
+        const double here = chebyshev::tail(chebyshev::fit(values));
+        rough += here > tail / 10 ? 1 : 0;
+        most = std::max(most, here);
+    }
+    if (rough < 2) return false;
+    constexpr double above = 3;  // of two coefficients, what others may be
+    noise_ = above * most;
+    return true;
+}
+
+}  // namespace dinal::motion::spectral

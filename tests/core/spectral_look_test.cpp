@@ -1,0 +1,214 @@
+// What spectral sees of a function between its nodes, and what it makes of one that is rough on every scale.
+#include <bit>
+#include <cmath>
+#include <cstdint>
+
+#include "motion/integrators.hpp"
+#include "motion/simulate.hpp"
+#include "support/catch.hpp"
+#include "support/excitations.hpp"
+#include "support/random_case.hpp"
+
+using namespace dinal;
+using namespace dinal::model;
+using namespace dinal::motion;
+using namespace dinal::excitations;
+
+namespace {
+
+constexpr double length = 10;  // of runs, natural periods
+
+Oscillator nondimensional(double zeta, double friction_ratio) {
+    const double k = 4 * pi * pi;
+    return Oscillator::make(
+               {.inertia = 1, .stiffness = k, .damping = 4 * pi * zeta, .kinetic_friction = friction_ratio * k})
+        .value();
+}
+
+struct Seen {
+    Trajectory run;
+    int calls;
+};
+
+Seen look(const Oscillator& system, std::function<double(double)> f, const State& initial,
+          const Spectral& method = {}) {
+    const auto function = probe(std::move(f));
+    auto run = simulate(system, made(Scripted{.function = function}), initial, {0, length}, Grid::none(), method);
+    if (!run) FAIL(run.error().sentence);
+    return {std::move(run).value(), function->calls};
+}
+
+/// A pulse that moves the mass by much more than any error.
+auto pulse(double at, double width) {
+    return [=](double t) { return t >= at && t < at + width ? 50.0 : 0.0; };
+}
+
+bool differs(const Trajectory& a, const Trajectory& b) {
+    return a.events.size() != b.events.size() || std::fabs(a.state_at_stop.theta - b.state_at_stop.theta) > 1e-9 ||
+           std::fabs(a.state_at_stop.velocity - b.state_at_stop.velocity) > 1e-9;
+}
+
+/// Deterministic bits of a time between -1/2 and 1/2: noise that is a function.
+double noise(double t) {
+    auto x = std::bit_cast<std::uint64_t>(t) * 0x9E3779B97F4A7C15U;
+    x ^= x >> 29U;
+    x *= 0xBF58476D1CE4E5B9U;
+    x ^= x >> 32U;
+    return static_cast<double>(x >> 11U) * 0x1p-53 - 0.5;
+}
+
+double smooth(double t) {
+    return 20 * std::sin(5 * t);
+}
+
+}  // namespace
+
+TEST_CASE("few single pulses between the nodes are missed, moving or at rest", "[spectral][look]") {
+    truth::Lot lot(11);
+    for (const bool resting : {false, true}) {
+        const Oscillator system = nondimensional(0.05, resting ? 0.3 : 0);
+        const State initial{resting ? 0.0 : 1.0, 0};
+        const Seen nothing = look(
+            system, [](double) { return 0.0; }, initial);
+        // 17 panels of 16 new nodes each, and a fifth of that more.
+        CHECK(nothing.calls <= 1.2 * 17 * 16 + 10);
+        constexpr int pulses = 600;
+        for (const auto& [width, most] : {std::pair{0.07, 0.0}, {0.05, 0.02}, {0.03, 0.2}, {0.01, 0.75}}) {
+            int missed = 0;
+            for (int i = 0; i < pulses; ++i) {
+                const Seen one = look(system, pulse(lot.between(0, length - width), width), initial);
+                if (!differs(one.run, nothing.run)) ++missed;
+            }
+            CAPTURE(resting, width, missed);
+            // Three deviations of the lot's own on top.
+            const double n = pulses;
+            CHECK(missed <= most * n + 3 * std::sqrt(most * (1 - most) * n));
+        }
+    }
+}
+
+TEST_CASE("no pulse of the width that a user names is missed", "[spectral][look]") {
+    truth::Lot lot(12);
+    for (int i = 0; i < 1000; ++i) {
+        const bool resting = i % 2 == 0;
+        const Oscillator system = nondimensional(0.05, resting ? 0.3 : 0.02);
+        const State initial{resting ? 0.0 : 1.0, 0};
+        const double width = 0.002 * std::pow(30, lot.between(0, 1));
+        const Spectral method{.narrowest = width};
+        const double at = lot.between(0, length - width);
+        CAPTURE(i, width, at);
+        const Seen nothing = look(
+            system, [](double) { return 0.0; }, initial, method);
+        const Seen one = look(system, pulse(at, width), initial, method);
+        REQUIRE(differs(one.run, nothing.run));
+        REQUIRE(one.run.gap <= width);
+        // And where it is: a native pulse says so itself.
+        auto native = simulate(system, made(Pulse{50, at, width}), initial, {0, length}, Grid::none(), method);
+        REQUIRE(native);
+        REQUIRE(!differs(one.run, *native));
+    }
+}
+
+TEST_CASE("a run knows the longest time between two looks at a function, and only of that", "[spectral][rk4][look]") {
+    const Oscillator system = nondimensional(0.05, 0.02);
+    const Excitation opaque = made(Scripted{.function = probe(smooth)});
+    const auto gap = [&](const Excitation& M, const Integrator& integrator) {
+        return simulate(system, M, {1, 0}, {0, length}, Grid::none(), integrator)->gap;
+    };
+    CHECK(gap(opaque, Rk4{0.01}) == 0.005);
+    CHECK(gap(opaque, Dinal1989{0.01}) == 0.005);
+    const double spectral = gap(opaque, Spectral{});
+    CHECK(spectral > 0.01);
+    CHECK(spectral < 0.0585);
+    for (const Integrator& integrator : std::vector<Integrator>{Spectral{}, Rk4{0.01}, Dinal1989{0.01}}) {
+        CHECK(gap(made(Harmonic{1, 3, 0}), integrator) == 0);
+        CHECK(gap(made(Harmonic{1, 3, 0}) + opaque, integrator) > 0);
+    }
+}
+
+TEST_CASE("a jump that is not announced costs at most 70 values of M more than one that is", "[spectral][look]") {
+    truth::Lot lot(13);
+    const Oscillator system = nondimensional(0.05, 0.05);
+    const auto calls = [&](double at, const std::vector<double>& breaks) {
+        const auto function = probe([at](double t) { return smooth(t) + (t >= at ? 10.0 : 0.0); });
+        REQUIRE(simulate(system, made(Scripted{.function = function, .breaks = breaks}), {1, 0}, {0, length},
+                         Grid::none(), Spectral{}));
+        return function->calls;
+    };
+    int more = 0;
+    constexpr int jumps = 200;
+    for (int i = 0; i < jumps; ++i) {
+        const double at = lot.between(1, 9);
+        more += calls(at, {}) - calls(at, {at});
+    }
+    CHECK(more <= 70 * jumps);
+}
+
+TEST_CASE("an M that is rough on every scale is followed as exactly as it can be, and the run says so",
+          "[spectral][look]") {
+    const Oscillator system = nondimensional(0.05, 0.05);
+    const Seen clean = look(system, smooth, {1, 0});
+    REQUIRE(clean.run.noise == 0);
+    struct Case {
+        const char* name;
+        double size;
+        std::function<double(double)> M;
+    };
+    const auto rounded = [](double step) { return [step](double t) { return std::round(smooth(t) / step) * step; }; };
+    const std::vector<Case> cases = {
+        {"single precision", 20 * 0x1p-24, [](double t) { return static_cast<double>(static_cast<float>(smooth(t))); }},
+        {"noise of 1e-10", 20e-10, [](double t) { return smooth(t) * (1 + 1e-10 * noise(t)); }},
+        {"noise of 1e-7", 1e-7, [](double t) { return smooth(t) + 1e-7 * noise(t); }},
+        {"16 bit", 20 * 0x1p-15, rounded(20 * 0x1p-15)},
+        {"24 bit", 20 * 0x1p-23, rounded(20 * 0x1p-23)},
+        {"only late", 20 * 0x1p-24,
+         [](double t) { return t < 5 ? smooth(t) : static_cast<double>(static_cast<float>(smooth(t))); }},
+    };
+    for (const Case& c : cases) {
+        CAPTURE(c.name);
+        const Seen one = look(system, c.M, {1, 0});
+        CHECK(one.run.outcome == Outcome::reached_end);
+        CHECK(one.run.events.size() == clean.run.events.size());
+        // Within a few panels, and then no slower than a smooth one.
+        CHECK(one.calls <= 2.5 * clean.calls);
+        // The size of the noise, as a few coefficients tell it.
+        CHECK(one.run.noise >= c.size / 30);
+        CHECK(one.run.noise <= 10 * c.size);
+        // A constant error of that size would move the mass by its own size over k, and it is not constant.
+        CHECK(std::fabs(one.run.state_at_stop.theta - clean.run.state_at_stop.theta) <= c.size);
+        CHECK(outcome_text(one.run).find("within the noise of M") != std::string::npos);
+    }
+    // Below the tolerance nothing is noise, and few steps are jumps, each in its place.
+    CHECK(look(system, [](double t) { return smooth(t) + 1e-12 * noise(t); }, {1, 0}).run.noise == 0);
+    CHECK(look(system, rounded(20 * 0x1p-4), {1, 0}).run.noise == 0);
+}
+
+TEST_CASE("a function that is rough at every scale ends with its own outcome, soon, unless that is as small as noise",
+          "[spectral][look]") {
+    const double k = 4 * pi * pi;
+    const Seen lost = look(nondimensional(0.05, 0.3), [&](double t) { return k * (noise(t) + 0.5); }, {0.3, 0});
+    CHECK(lost.run.outcome == Outcome::unresolved);
+    CHECK(lost.run.noise == 0);
+    CHECK(lost.calls < 20000000);
+    const auto staircase = [&](double t) {  // Cantor's: flat almost everywhere, and never smooth
+        double x = t / (2 * length), sum = 0, weight = 0.5;
+        for (int i = 0; i < 40; ++i) {
+            x *= 3;
+            const int digit = static_cast<int>(x);
+            x -= digit;
+            if (digit > 0) sum += weight;
+            if (digit == 1) break;
+            weight /= 2;
+        }
+        return k * sum;
+    };
+    // What is left of it on short panels may be small enough to be taken for noise. Either end is honest.
+    for (const double friction_ratio : {0.0, 0.3}) {
+        const Seen climb = look(nondimensional(0.05, friction_ratio), staircase, {0.3, 0});
+        const bool followed = climb.run.outcome == Outcome::reached_end;
+        CHECK((followed || climb.run.outcome == Outcome::unresolved));
+        CHECK((climb.run.noise > 0) == followed);
+        CHECK(climb.run.noise < 1e-4 * k);
+        CHECK(climb.calls < 20000000);
+    }
+}

@@ -1,0 +1,126 @@
+-- What is a function of its arguments is never accused of a memory, whatever else it does; and what that costs.
+package.path = "tests/lua/?.lua;" .. package.path
+local support = require "support"
+local test, near, equal, raises = support.test, support.near, support.equal, support.raises
+
+local sys = nondimensional { zeta = 0.05, friction_ratio = 0.1 }
+local methods = { integrator.spectral {}, integrator.rk4 { h = 0.002 } }
+
+--- Simulates with what `make` makes, by each integrator, and as a run with a state.
+local function runs(make, more)
+    local list = {}
+    for _, method in ipairs(methods) do
+        for _, states in ipairs { false, { way = { rate = function(_, _, velocity) return math.abs(velocity) end } } } do
+            local options = { M = make(), theta0 = 1, t_end = 10, dt = 0.1, integrator = method, states = states or nil }
+            for name, value in pairs(more or {}) do options[name] = value end
+            list[#list + 1] = sys:simulate(options)
+        end
+    end
+    return ipairs(list)
+end
+
+local function believed(make, more)
+    for i, run in runs(make, more) do
+        assert(not run.outcome:find("no function", 1, true) and #run > 10, i .. ": " .. run.outcome)
+    end
+end
+
+test("a counter, a log and a cache do not change a value", function()
+    local calls, log, cache = 0, {}, {}
+    believed(function()
+        return function(t, theta)
+            calls = calls + 1
+            log[#log % 100 + 1] = t
+            local key = math.floor(t * 10)
+            cache[key] = cache[key] or math.sin(key)
+            return cache[key] - 0.1 * theta
+        end
+    end)
+    assert(calls > 1000)
+end)
+
+test("coroutines within M, metatables, string arithmetic, integers and C functions are believed", function()
+    believed(function()
+        return function(t)
+            local inner = coroutine.wrap(function(x) coroutine.yield(math.sin(x)) end)
+            return inner(t)
+        end
+    end)
+    believed(function() return setmetatable({}, { __call = function(_, t, theta) return math.cos(t) - theta end }) end)
+    believed(function() return setmetatable({ 3 }, { __call = function(self, t) return self[1] * math.cos(t) end }) end)
+    believed(function() return function(t) return tonumber(("%.17g"):format(t)) % 1 end end)
+    believed(function() return function(t) return math.floor(t) end end)
+    believed(function() return math.sin end)
+    believed(function() return math.sqrt end)
+end)
+
+test("zeros of both signs, denormals, jumps and noise that is a function are believed", function()
+    local flip = 0
+    believed(function()  -- -0 and 0 are one number
+        return function()
+            flip = 1 - flip
+            return flip == 1 and 0.0 or -0.0
+        end
+    end)
+    believed(function() return function(t) return 5e-324 * math.floor(4 * t) end end)
+    believed(function() return function(t) return 1e-310 * math.sin(t) end end)
+    believed(function() return function(t) return t % 1 < 0.5 and 1 or -1 end end)
+    believed(function() return function(t, theta) return theta > 0 and -1 or 1 end end)
+    believed(function() return excitation.scripted(function(t) return t % 1 < 0.5 and 1 or -1 end, { breaks = { 0, 0.5 }, period = 1 }) end)
+end)
+
+test("a thousand functions of their arguments are believed", function()
+    math.randomseed(7)
+    local function number() return 4 * math.random() - 2 end
+    local shapes = {
+        function() local a, w, p = number(), 10 * math.random(), number() return function(t) return a * math.sin(w * t + p) end end,
+        function() local a, b, c = number(), number(), number() return function(t) return a + t * (b + t * c / 10) / 10 end end,
+        function() local a, w = number(), 1 + math.random() return function(t) return t % w < w / 2 and a or -a end end,
+        function() local a, at = number(), 3 * math.random() return function(t) return t > at and a or 0 end end,
+        function() local a, w = number(), math.random() return function(t) return a * math.exp(-w * (t - 1) ^ 2) end end,
+        function() local a, b = number(), math.random() return function(t, theta, velocity) return a * math.cos(t) - b * velocity end end,
+        function() local a, b = math.random(), math.random() return function(_, theta) return -a * theta ^ 3 + b end end,
+        function() local a, b = number(), math.random() return function(t, theta) return (theta > b and -1 or 1) * math.abs(a) * math.cos(t) end end,
+        function() local a = number() return function(t) local z = 0 for k = 1, 5 do z = z + math.sin(k * t) / k end return a * z end end,
+        function() local a = 1 + number() ^ 2 return function(t) return math.abs(math.sin(a * t)) end end,
+    }
+    for i = 1, 1000 do
+        local M = shapes[i % #shapes + 1]()
+        local s = nondimensional { zeta = 0.2 * math.random(), friction_ratio = 0.2 * (i % 3) * math.random() }
+        local run = s:simulate { M = M, theta0 = number(), velocity0 = number(), t_end = 3, dt = 1, integrator = i % 4 == 0 and integrator.rk4 { h = 0.01 } or nil }
+        assert(not run.outcome:find "function", run.outcome)
+    end
+end)
+
+test("a controller that samples may keep a memory", function()
+    for _, method in ipairs(methods) do
+        local sum = 0
+        local run = sys:simulate { theta0 = 1, t_end = 10, dt = 0.1, integrator = method,
+            M = excitation.sampled(function(_, theta) sum = sum + 0.1 * (0.2 - theta) return sum end, { every = 0.1 }) }
+        assert(run.outcome == "at rest" or run.outcome == "reached the end", run.outcome)
+    end
+end)
+
+test("the oath costs at most three calls of a hundred", function()
+    for _, method in ipairs { integrator.spectral {}, integrator.rk4 { h = 0.005 } } do
+        for _, feedback in ipairs { false, true } do
+            local asked, again, seen = 0, 0, {}
+            local M = feedback and function(t, theta, velocity)
+                asked = asked + 1
+                local key = ("%a %a %a"):format(t, theta, velocity)
+                again, seen[key] = again + (seen[key] and 1 or 0), true
+                return math.sin(5 * t) - 0.01 * velocity
+            end or function(t)
+                asked = asked + 1
+                again, seen[t] = again + (seen[t] and 1 or 0), true
+                return math.sin(5 * t)
+            end
+            nondimensional { zeta = 0.1 }:simulate { M = M, theta0 = 1, t_end = 60, times = {}, integrator = method }
+            assert(asked > 1000 and again >= asked // 200, asked .. " " .. again)
+            -- spectral itself begins a panel where the last one ended
+            assert(again <= 0.03 * asked + (feedback and method.name == "spectral" and asked or 0), method.name .. " " .. asked .. " " .. again)
+        end
+    end
+end)
+
+support.finish()
