@@ -132,8 +132,8 @@ private:
         jump.landed = motion_at(beyond, end.motion.start, false);
         if (jump.landed.status == SteadyStatus::steady && !stopped()) {
             const SteadyMotion here = motion_at(end.parameter, jump.landed.start, true);
-            const bool same = std::fabs(here.amplitude - jump.landed.amplitude) < 0.2 * jump.landed.amplitude;
-            if (here.status == SteadyStatus::steady && same) jump.landed = here;
+            const bool alike = std::fabs(here.amplitude - jump.landed.amplitude) < 0.2 * jump.landed.amplitude;
+            if (here.status == SteadyStatus::steady && alike) jump.landed = here;
         }
         jump.to = jump.landed.status == SteadyStatus::none ? std::nan("") : jump.landed.amplitude;
         const double least = 1e-3 * std::max(jump.from, std::isnan(jump.to) ? 0 : jump.to);
