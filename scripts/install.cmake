@@ -40,5 +40,5 @@ install(CODE "
 install(TARGETS dinal_core EXPORT dinal)
 install(EXPORT dinal NAMESPACE dinal:: FILE dinal-targets.cmake DESTINATION ${package})
 write_basic_package_version_file(${CMAKE_BINARY_DIR}/dinal-config-version.cmake COMPATIBILITY SameMinorVersion)
-install(FILES cmake/dinal-config.cmake ${CMAKE_BINARY_DIR}/dinal-config-version.cmake DESTINATION ${package})
+install(FILES scripts/dinal-config.cmake ${CMAKE_BINARY_DIR}/dinal-config-version.cmake DESTINATION ${package})
 unset(CMAKE_INSTALL_DEFAULT_COMPONENT_NAME)
