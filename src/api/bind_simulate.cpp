@@ -49,14 +49,20 @@ void check_relays(const lua::Options& options, const source::Task& task) {
     }
 }
 
+/// The bytes of the machine, asked once: the answer takes as long as a tenth of a short run.
+std::optional<std::size_t> memory_of_machine() {
+    static const std::optional<std::size_t> bytes = []() -> std::optional<std::size_t> {
+        const long pages = sysconf(_SC_PHYS_PAGES), page_size = sysconf(_SC_PAGESIZE);
+        if (!(pages > 0 && page_size > 0)) return std::nullopt;
+        return static_cast<std::size_t>(pages) * static_cast<std::size_t>(page_size);
+    }();
+    return bytes;
+}
+
 /// A run may take half of the memory of the machine, and most of what the script may still have.
 motion::Limits limits_of(bool dense) {
     motion::Limits limits{.dense = dense};
-    const long pages = sysconf(_SC_PHYS_PAGES);
-    const long page_size = sysconf(_SC_PAGESIZE);
-    if (pages > 0 && page_size > 0) {
-        limits.memory = static_cast<std::size_t>(pages) * static_cast<std::size_t>(page_size) / 2;
-    }
+    if (const auto machine = memory_of_machine()) limits.memory = *machine / 2;
     limits.memory = std::min(limits.memory, lua::memory_left() / 4 * 3);
     return limits;
 }

@@ -7,13 +7,14 @@
 namespace dinal::text {
 namespace {
 
-std::optional<std::string> complaint(const Range& range, double x, const std::string& name) {
+bool fits(const Range& range, double x) {
+    return !std::isnan(x) && (range.unlimited || !std::isinf(x)) && range.holds(x);
+}
+
+std::string complaint(const Range& range, double x, const std::string& name) {
     if (std::isnan(x) || (!range.unlimited && std::isinf(x))) {
         return fmt::format("{} = {} must be {}", name, std::isnan(x) ? "nan" : fmt::format("{}", x),
                            range.unlimited ? "a number" : "finite");
-    }
-    if (range.holds(x)) {
-        return std::nullopt;
     }
     return fmt::format("{} = {:.6g} must {}", name, x, range.must);
 }
@@ -43,12 +44,13 @@ std::string literal(const Option& option, const OptionValue& value) {
 
 std::optional<Error> complaint(const Option& option, const OptionValue& value) {
     std::optional<std::string> wrong;
-    if (const double* number = std::get_if<double>(&value)) {
+    if (const double* number = std::get_if<double>(&value); number != nullptr && !fits(option.range, *number)) {
         wrong = complaint(option.range, *number, option.name);
     }
     if (const auto* numbers = std::get_if<std::vector<double>>(&value)) {
         for (std::size_t i = 0; i < numbers->size() && !wrong; ++i) {  // counted from 1, as the user does
-            wrong = complaint(option.range, (*numbers)[i], fmt::format("{}[{}]", option.name, i + 1));
+            const double x = (*numbers)[i];
+            if (!fits(option.range, x)) wrong = complaint(option.range, x, fmt::format("{}[{}]", option.name, i + 1));
         }
     }
     return wrong ? std::optional(Error{.sentence = *wrong, .option = option.name}) : std::nullopt;
