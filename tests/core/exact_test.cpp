@@ -233,3 +233,69 @@ TEST_CASE("at resonance and next to it the motion grows as it must, without a di
         CHECK(worst <= 1e-13 * largest);
     }
 }
+
+TEST_CASE("where a motion leaves its habit, the first zero is found all the same", "[exact]") {
+    // Half swings of nearly the same length, and then, as the second sine comes into another phase, one that is cut in
+    // two, or longer: the end of the one before is tried first, and must not be taken for the first zero.
+    for (const double second : {1.31, 2.9, 3.07, 5.03}) {
+        for (const double friction : {0.0, 0.05, 0.3}) {
+            for (const double zeta : {0.0, 0.02, 0.4}) {
+                const double w0 = 2 * std::numbers::pi;
+                const Excitation M = Excitation::make(Harmonic{.amplitude = 1, .omega = 0.41 * w0}).value() +
+                                     Excitation::make(Harmonic{.amplitude = 0.6, .omega = 0.41 * second * w0}).value();
+                std::vector<double> times(300);
+                for (std::size_t i = 0; i < times.size(); ++i) times[i] = 0.2 * static_cast<double>(i);
+                const RandomCase c{.story = fmt::format("second {} friction {} zeta {}", second, friction, zeta),
+                                   .system = nondimensional(zeta, friction),
+                                   .excitation = M,
+                                   .load = {},
+                                   .initial = {0.3, 0},
+                                   .window = {0, 60},
+                                   .size = 1,
+                                   .times = std::move(times)};
+                const Comparison found = compare(c);
+                CAPTURE(c.story);
+                CHECK(found.wrong == "");
+                CHECK_FALSE(found.ambiguous);
+            }
+        }
+    }
+}
+
+TEST_CASE("along a record of samples exact goes from line to line, whatever rows are asked for", "[exact][rows]") {
+    for (const double uneven : {0.0, 0.3}) {
+        Samples record;
+        for (int i = 0; i <= 1500; ++i) {
+            const double t = (i + uneven * std::sin(1.7 * i)) / 50;
+            record.t.push_back(t);
+            record.M.push_back(std::sin(5.1 * t) + 0.4 * std::sin(7.7 * t + 1));
+        }
+        const std::vector<double> asked(record.t.begin(), record.t.begin() + 1400);
+        const Excitation M = Excitation::make(Polyline(std::make_shared<const Samples>(record))).value();
+        for (const double friction : {0.0, 0.2, 0.9}) {
+            CAPTURE(uneven, friction);
+            const Oscillator system = nondimensional(0.02, friction);
+            const auto run = [&](const Grid& rows, MethodView method) {
+                return must_run(system, M, {0.4, 0.1}, {0, 29}, rows, method);
+            };
+            const Trajectory rows = run(Grid::every(0.0037), Exact{}), other = run(Grid::every(0.0037), Spectral{});
+            CHECK(rows.events.size() > 10);
+            CHECK((rows.rows.matrix() - other.rows.matrix()).cwiseAbs().maxCoeff() <= 1e-11);
+            // A row is written beside the motion, which does not see it.
+            const Trajectory without = run(Grid::none(), Exact{}), at_samples = run(Grid::at(asked), Exact{});
+            for (const Trajectory* same : {&without, &at_samples}) {
+                REQUIRE(same->events.size() == rows.events.size());
+                for (std::size_t i = 0; i < rows.events.size(); ++i) {
+                    CHECK(same->events[i].t == rows.events[i].t);
+                    CHECK(same->events[i].theta == rows.events[i].theta);
+                }
+                CHECK(same->state_at_stop.theta == rows.state_at_stop.theta);
+            }
+            for (Eigen::Index i = 0; i < rows.size(); i += 7) {
+                const State there = rows.course->at(rows.rows(i, 0)).value();
+                CHECK(std::fabs(there.theta - rows.rows(i, 1)) <= 1e-14);
+                CHECK(std::fabs(there.velocity - rows.rows(i, 2)) <= 1e-13);
+            }
+        }
+    }
+}

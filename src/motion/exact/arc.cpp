@@ -41,29 +41,16 @@ bool Arc::begin_closed(const model::ClosedForm& M, const Start& start, double le
     velocity_.clear();
     double theta = 0, velocity = start.velocity;  // of the free motion
 
-    // Powers: from the highest down, k b_n = c_n - C (n + 1) b_(n+1) - I (n + 2) (n + 1) b_(n+2).
-    way_.assign(M.powers().begin(), M.powers().end());
-    way_[0] = start.pull;
-    for (const double q : M.quadrature()) way_[0] -= q;
-    for (const double a : M.amount()) way_[0] -= a;
-    const double span = std::min(length, 2 * std::numbers::pi / free_.w0());
-    double load = 0;
-    for (std::size_t i = way_.size(); i-- > 0;) load = load * span + std::fabs(way_[i]);
-    for (std::size_t i = way_.size(); i-- > 0;) {
-        const auto n = static_cast<double>(i);
-        if (i + 1 < way_.size()) way_[i] -= C * (n + 1) * way_[i + 1];
-        if (i + 2 < way_.size()) way_[i] -= I * (n + 2) * (n + 1) * way_[i + 2];
-        way_[i] /= k;
-    }
-    if (way_.size() > 1 && k * (std::fabs(way_[0]) + std::fabs(way_[1]) / free_.w0()) > most_cancelled * load) {
+    double still = start.pull;
+    for (const double q : M.quadrature()) still -= q;
+    for (const double a : M.amount()) still -= a;
+    if (M.powers().size() == 1) {
+        still /= k;
+        velocity_.add_way_power(still);
+        theta -= still;
+    } else if (!begin_powers(M, still, length, theta, velocity)) {
         return false;
     }
-    for (std::size_t i = 0; i < way_.size(); ++i) {
-        velocity_.add_way_power(way_[i]);
-        if (i > 0) velocity_.add_power(static_cast<double>(i) * way_[i]);
-    }
-    theta -= way_[0];
-    if (way_.size() > 1) velocity -= way_[1];
 
     for (std::size_t j = 0; j < M.rate().size(); ++j) {
         const double r = M.rate()[j], held = I * r * r + C * r + k;
@@ -74,32 +61,87 @@ bool Arc::begin_closed(const model::ClosedForm& M, const Start& start, double le
         velocity -= r * way;
     }
 
-    const double w1 = free_.root().imag();
-    for (std::size_t j = 0; j < M.omega().size(); ++j) {
-        const double omega = M.omega()[j];
-        const Complex F{M.in_phase()[j], M.quadrature()[j]}, i(0, 1);
-        const Complex held{std::fma(-I * omega, omega, k), C * omega};
-        if (free_.swings() && std::abs(held) < near_resonance * k) {
-            // (g(mu, lambda) - g(mu, conj lambda)) / (2 i w1 I), of which only the first is near resonance.
-            const Complex mu(0, omega), other = std::conj(free_.root());
-            const Complex growing = F / (2.0 * i * w1 * I), turning = -growing / (mu - other);
-            velocity_.add_resonance({.mu = mu,
-                                     .from_root = free_.from_root(omega),
-                                     .growing = growing * free_.root(),
-                                     .turning = growing + turning * mu,
-                                     .way_growing = growing,
-                                     .way_turning = turning});
+    const std::span<const double> frequencies = M.omega(), in_phase = M.in_phase(), quadrature = M.quadrature();
+    for (std::size_t j = 0; j < frequencies.size(); ++j) {
+        const double omega = frequencies[j];
+        if (j >= answers_.size() || answers_[j].omega != omega) answer(j, omega);
+        const Answer& to = answers_[j];
+        const Complex F{in_phase[j], quadrature[j]};
+        if (to.resonant) {
+            // F (g(mu, lambda) - g(mu, conj lambda)) / (2 i w1 I), of which only the first is near resonance.
+            const Complex root = free_.root(), growing = times(F, to.gain), turning = times(growing, to.other_gain);
+            const Complex up = times(growing, root);
+            const Complex held{growing.real() - omega * turning.imag(), growing.imag() + omega * turning.real()};
+            const double size = length_of(up), square = omega * omega;
+            velocity_.add_resonance(
+                {.mu = {0, omega},
+                 .from_root = to.from_root,
+                 .growing = up,
+                 .turning = held,
+                 .way_growing = growing,
+                 .way_turning = turning,
+                 .slope_growing = times(up, root),
+                 .slope_turning = {up.real() - omega * held.imag(), up.imag() + omega * held.real()},
+                 .fourth_growing = size * to.fourth_growing,
+                 .fourth_turning = size * to.fourth_turning + length_of(held) * (square * square)});
             theta -= turning.imag();
-            velocity -= (turning * other).imag();
+            velocity -= turning.imag() * root.real() - turning.real() * root.imag();  // of turning times conj lambda
             continue;
         }
-        const Complex way = F / held;
-        velocity_.add_sine(omega, i * omega * way);
+        const Complex way = times(F, to.gain);
+        velocity_.add_sine(omega, {-omega * way.imag(), omega * way.real()});
         theta -= way.imag();
         velocity -= omega * way.real();
     }
     velocity_.add_free(theta, velocity);
     return true;
+}
+
+/// The answer to powers, of which the constant one is `still`.
+bool Arc::begin_powers(const model::ClosedForm& M, double still, double length, double& theta, double& velocity) {
+    const double I = system_.inertia(), C = system_.damping(), k = system_.stiffness();
+    // Powers: from the highest down, k b_n = c_n - C (n + 1) b_(n+1) - I (n + 2) (n + 1) b_(n+2).
+    way_.assign(M.powers().begin(), M.powers().end());
+    way_[0] = still;
+    const double span = std::min(length, 2 * std::numbers::pi / free_.w0());
+    double load = 0;
+    for (std::size_t i = way_.size(); i-- > 0;) load = load * span + std::fabs(way_[i]);
+    for (std::size_t i = way_.size(); i-- > 0;) {
+        const auto n = static_cast<double>(i);
+        if (i + 1 < way_.size()) way_[i] -= C * (n + 1) * way_[i + 1];
+        if (i + 2 < way_.size()) way_[i] -= I * (n + 2) * (n + 1) * way_[i + 2];
+        way_[i] /= k;
+    }
+    if (k * (std::fabs(way_[0]) + std::fabs(way_[1]) / free_.w0()) > most_cancelled * load) {
+        return false;
+    }
+    for (std::size_t i = 0; i < way_.size(); ++i) {
+        velocity_.add_way_power(way_[i]);
+        if (i > 0) velocity_.add_power(static_cast<double>(i) * way_[i]);
+    }
+    theta -= way_[0];
+    velocity -= way_[1];
+    return true;
+}
+
+/// What the system makes of the j-th sine, of this frequency: as a rule that of the arc before.
+void Arc::answer(std::size_t j, double omega) {
+    const double I = system_.inertia(), C = system_.damping(), k = system_.stiffness(), w1 = free_.root().imag();
+    const Complex root = free_.root(), i(0, 1), held{std::fma(-I * omega, omega, k), C * omega}, mu(0, omega);
+    if (answers_.size() <= j) answers_.resize(j + 1);
+    Answer& to = answers_[j];
+    to = {.omega = omega};
+    to.resonant = free_.swings() && std::abs(held) < near_resonance * k;
+    if (!to.resonant) {
+        to.gain = 1.0 / held;
+        return;
+    }
+    to.gain = 1.0 / (2.0 * i * w1 * I);
+    to.other_gain = -1.0 / (mu - std::conj(root));
+    to.from_root = free_.from_root(omega);
+    // (g exp)' = root g + exp, so that f'''' has root^4 of g, and the rest of exp(mu tau).
+    to.fourth_growing = std::norm(root * root);
+    to.fourth_turning = std::abs((root + mu) * (root * root + mu * mu));
 }
 
 /// The Taylor series of the motion: what is short, or what would cancel, is told by it.

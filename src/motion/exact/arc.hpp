@@ -34,6 +34,15 @@ public:
     [[nodiscard]] const LinearMotion& free() const { return free_; }
 
 private:
+    /// What the system makes of exp(i omega tau).
+    struct Answer {
+        double omega = 0;
+        bool resonant = false;
+        Complex gain = 0, other_gain = 0, from_root = 0;
+        double fourth_growing = 0, fourth_turning = 0;
+    };
+    void answer(std::size_t j, double omega);
+    bool begin_powers(const model::ClosedForm& M, double still, double length, double& theta, double& velocity);
     bool begin_closed(const model::ClosedForm& M, const Start& start, double length);
     void begin_series(const model::ClosedForm& M, const Start& start, double length, double rate);
     [[nodiscard]] double fastest_rate(const model::ClosedForm& M) const;
@@ -41,6 +50,7 @@ private:
     model::Lowered system_;
     LinearMotion free_;
     WalkedCurve velocity_;
+    std::vector<Answer> answers_;     // to each sine of M
     std::vector<double> way_, load_;  // coefficients at work
 };
 

@@ -26,7 +26,10 @@ class Arcs final : public Course {
 public:
     /// `most_bytes` is what they may take; what comes later is not kept.
     Arcs(const model::Oscillator& system, const model::Excitation& excitation, std::size_t most_bytes)
-        : Course(system), excitation_(excitation), most_(most_bytes / sizeof(KeptArc)) {}
+        : Course(system), excitation_(excitation), most_(most_bytes / sizeof(KeptArc)) {
+        constexpr std::size_t few = 8;
+        arcs_.reserve(few);
+    }
 
     void add(const KeptArc& arc) {
         if (arcs_.size() >= most_) complete_ = false;

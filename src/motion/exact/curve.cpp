@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numbers>
 
 namespace dinal::motion::exact {
@@ -12,218 +11,250 @@ namespace {
 /// The longest look, in natural periods; each level halves it.
 constexpr double longest_look = 8;
 
-/// A product of numbers that are numbers.
-Complex times(Complex a, Complex b) {
-    return {a.real() * b.real() - a.imag() * b.imag(), a.real() * b.imag() + a.imag() * b.real()};
-}
-/// The imaginary part of a g + b u.
-double imaginary(Complex a, Complex g, Complex b, Complex u) {
-    return (a.real() * g.imag() + a.imag() * g.real()) + (b.real() * u.imag() + b.imag() * u.real());
-}
+/// 1/n and 1/n!
+constexpr std::array<double, 8> over{0, 1, 1.0 / 2, 1.0 / 3, 1.0 / 4, 1.0 / 5, 1.0 / 6, 1.0 / 7};
+constexpr std::array<double, 7> over_factorial{1, 1, 1.0 / 2, 1.0 / 6, 1.0 / 24, 1.0 / 120, 1.0 / 720};
+static_assert(over.size() == WalkedCurve::jet_order + 2 && over_factorial.size() == WalkedCurve::jet_order + 1);
 
 }  // namespace
 
-Complex Resonance::difference(double tau, Complex root_turned) const {
-    const Complex z = from_root * tau;
-    const double size = std::fabs(z.real()) + std::fabs(z.imag());
-    if (size < 0.05) {
-        // (exp(z) - 1)/z: the term left out is z^3/24, or z^9/10!.
-        Complex series = 1;
-        for (int n = size < 1e-6 ? 3 : 9; n >= 2; --n) series = 1.0 + times(series, z) / static_cast<double>(n);
-        return tau * times(series, root_turned);
+WalkedCurve::WalkedCurve(const LinearMotion& free)
+    : free_(free),
+      longest_(longest_look * 2 * std::numbers::pi / free.w0()),
+      longest_hides_((longest_ * longest_) * (longest_ * longest_) / 384),
+      fastest_(free.fastest()) {
+    slots_.fill(none);
+    kept_.fill(none);
+}
+
+bool WalkedCurve::same_resonances() const {
+    return std::equal(resonances_.begin(), resonances_.end(), table_mu_.begin(), table_mu_.end(),
+                      [](const Resonance& a, Complex mu) { return a.mu == mu; });
+}
+
+/// Nothing is known of these frequencies and rates.
+void WalkedCurve::make_table() {
+    changed_ = false;
+    omega_.resize(sines_), rate_.resize(rates_);
+    table_mu_.clear();
+    for (const Resonance& resonance : resonances_) table_mu_.push_back(resonance.mu);
+    slots_.fill(none);
+    kept_.fill(none);
+    turns_.clear(), sine_rows_.clear(), growth_rows_.clear(), resonance_rows_.clear();
+    for (Moment* moment : {&start_, &first_, &second_, &other_}) {
+        moment->sines.resize(sines_);
+        moment->amounts.resize(rates_);
+        moment->resonances.resize(resonances_.size());
     }
-    // exp(x + i y) - 1 without a difference of nearly equal numbers.
-    const double half = std::sin(z.imag() / 2), grown = std::expm1(z.real());
-    const Complex less_one{grown * std::cos(z.imag()) - 2 * half * half, (grown + 1) * std::sin(z.imag())};
-    return times(root_turned, less_one) / from_root;
-}
-
-void Resonance::prepare(Complex root) {
-    // (g exp)' = root g + exp, so that f'''' has growing root^4 of g, and the rest of exp(mu tau).
-    const Complex a = root * root, b = mu * mu;
-    slope_growing = growing * root;
-    slope_turning = growing + turning * mu;
-    fourth_growing = std::abs(growing * a * a);
-    fourth_turning = std::abs(growing * (a * root + a * mu + root * b + b * mu) + turning * b * b);
-}
-
-void WalkedCurve::clear() {
-    powers_.clear(), way_powers_.clear();
-    omega_.clear(), re_.clear(), im_.clear();
-    rate_.clear(), amount_.clear();
-    resonances_.clear();
-    free_part_ = false;
+    std::fill(start_.resonances.begin(), start_.resonances.end(), std::array<Complex, 2>{0, 1});
+    fastest_ = free_.fastest();
+    for (const double omega : omega_) fastest_ = std::max(fastest_, std::fabs(omega));
+    for (const double rate : rate_) fastest_ = std::max(fastest_, std::fabs(rate));
+    for (const Complex mu : table_mu_) fastest_ = std::max(fastest_, std::fabs(mu.imag()));
 }
 
 void WalkedCurve::begin() {
-    const std::size_t n = omega_.size(), m = rate_.size(), r = resonances_.size();
-    const bool same = table_omega_ == omega_ && table_rate_ == rate_ && resonance_mu_.size() == r &&
-                      std::equal(resonances_.begin(), resonances_.end(), resonance_mu_.begin(),
-                                 [](const Resonance& a, Complex mu) { return a.mu == mu; });
-    if (!same || lengths_[0] == 0) {
-        table_omega_ = omega_, table_rate_ = rate_;
-        resonance_mu_.resize(r);
-        for (std::size_t j = 0; j < r; ++j) resonance_mu_[j] = resonances_[j].mu;
-        cosine_.resize(levels * n), sine_.resize(levels * n), growth_.resize(levels * m);
-        resonance_turn_.resize(levels * r), resonance_difference_.resize(levels * r);
-        double length = longest_look * 2 * std::numbers::pi / free_.w0();
-        for (int level = 0; level < levels; ++level) {
-            lengths_[static_cast<std::size_t>(level)] = length;
-            turns_[static_cast<std::size_t>(level)].ready = false;
-            length /= 2;
-        }
-        for (State& state : states_) {
-            state.re.resize(n), state.im.resize(n), state.amount.resize(m);
-            state.difference.resize(r), state.turned.resize(r);
-        }
-    }
-    now_ = 0;
-    State& start = now();
-    std::copy(re_.begin(), re_.end(), start.re.begin());
-    std::copy(im_.begin(), im_.end(), start.im.begin());
-    std::copy(amount_.begin(), amount_.end(), start.amount.begin());
-    std::fill(start.difference.begin(), start.difference.end(), Complex(0));
-    std::fill(start.turned.begin(), start.turned.end(), Complex(1));
-    start.theta = theta_, start.velocity = velocity_;
-    for (Resonance& resonance : resonances_) resonance.prepare(free_.root());
-    sines_fourth_ = sines_size_ = 0;
-    for (std::size_t j = 0; j < n; ++j) {
-        const double size = std::fabs(re_[j]) + std::fabs(im_[j]), square = omega_[j] * omega_[j];
-        sines_size_ += size;
-        sines_fourth_ += size * square * square;
-    }
+    if (changed_ || sines_ != omega_.size() || rates_ != rate_.size() || !same_resonances()) make_table();
+    only_swings_ = powers_.empty() && rates_ == 0 && resonances_.empty();
+    now_ = &start_, next_ = &first_;
     place_ = 0;
-    here_ = sum(start, 0);
+    Value y{};
+    double size = 0, fourth = 0;
+    for (std::size_t j = 0; j < sines_; ++j) {
+        const Complex z = start_.sines[j];
+        const double omega = omega_[j], square = omega * omega, length = length_of(z);
+        size += length;
+        fourth += length * (square * square);
+        y.f += z.imag(), y.slope += omega * z.real();
+    }
+    sines_size_ = size, sines_fourth_ = fourth;
+    if (free_part_) {
+        y.f += start_.velocity;
+        y.slope -= free_.w0_squared() * start_.theta + free_.twice_delta() * start_.velocity;
+    }
+    if (!only_swings_) {
+        const Value more = powers(0);
+        y.f += more.f, y.slope += more.slope;
+        for (std::size_t j = 0; j < rates_; ++j) {
+            y.f += start_.amounts[j], y.slope += rate_[j] * start_.amounts[j];
+        }
+        for (const Resonance& r : resonances_) y.f += r.turning.imag(), y.slope += r.slope_turning.imag();
+    }
+    here_ = y;
 }
 
-WalkedCurve::Value WalkedCurve::sum(const State& state, double tau) const {
+WalkedCurve::Value WalkedCurve::powers(double tau) const {
     Value y;
     for (std::size_t n = powers_.size(); n-- > 0;) {
         y.slope = y.slope * tau + y.f;
         y.f = y.f * tau + powers_[n];
     }
-    for (std::size_t j = 0; j < omega_.size(); ++j) {
-        y.f += state.im[j];
-        y.slope += omega_[j] * state.re[j];
-    }
-    for (std::size_t j = 0; j < rate_.size(); ++j) {
-        y.f += state.amount[j];
-        y.slope += rate_[j] * state.amount[j];
-    }
-    for (std::size_t j = 0; j < resonances_.size(); ++j) {
-        const Resonance& r = resonances_[j];
-        const Complex g = state.difference[j], u = state.turned[j];
-        y.f += imaginary(r.growing, g, r.turning, u);
-        y.slope += imaginary(r.slope_growing, g, r.slope_turning, u);
-    }
-    if (free_part_) {
-        y.f += state.velocity;
-        y.slope -= free_.w0_squared() * state.theta + 2 * free_.delta() * state.velocity;
-    }
     return y;
 }
 
-/// The state at tau, from the beginning of the curve.
-void WalkedCurve::turn_to(double tau, State& to) const {
-    for (std::size_t j = 0; j < omega_.size(); ++j) {
-        const double x = omega_[j] * tau, small = std::fma(omega_[j], tau, -x);
-        const double s0 = std::sin(x), c0 = std::cos(x), s = s0 + small * c0, c = c0 - small * s0;
-        to.re[j] = re_[j] * c - im_[j] * s;
-        to.im[j] = re_[j] * s + im_[j] * c;
+std::uint8_t WalkedCurve::new_turn(double tau) {
+    constexpr std::size_t few = 8;
+    if (turns_.empty()) turns_.reserve(few);
+    const std::size_t row = turns_.size();
+    turns_.emplace_back().row = row;
+    sine_rows_.resize((row + 1) * sines_);
+    growth_rows_.resize((row + 1) * rates_);
+    resonance_rows_.resize((row + 1) * resonances_.size());
+    make_turn(tau, turns_.back());
+    return static_cast<std::uint8_t>(row);
+}
+
+void WalkedCurve::make_turn(double tau, Turn& to) {
+    to.tau = tau;
+    Complex* factor = sine_rows_.data() + to.row * sines_;
+    for (std::size_t j = 0; j < sines_; ++j) {
+        const double x = omega_[j] * tau, small = std::fma(omega_[j], tau, -x), s = std::sin(x), c = std::cos(x);
+        factor[j] = {c - small * s, s + small * c};
     }
-    for (std::size_t j = 0; j < rate_.size(); ++j) to.amount[j] = amount_[j] * std::exp(rate_[j] * tau);
+    double* growth = growth_rows_.data() + to.row * rates_;
+    for (std::size_t j = 0; j < rates_; ++j) growth[j] = std::exp(rate_[j] * tau);
+    FreeStep step{};
     if (!resonances_.empty()) {
-        const Complex root_turned = free_.turned(tau);
+        to.root = free_.turned(tau);
+        std::array<Complex, 2>* turned = resonance_rows_.data() + to.row * resonances_.size();
         for (std::size_t j = 0; j < resonances_.size(); ++j) {
-            const double omega = resonances_[j].mu.imag(), x = omega * tau, small = std::fma(omega, tau, -x);
-            const double s = std::sin(x), c = std::cos(x);
-            to.turned[j] = {c - small * s, s + small * c};
-            to.difference[j] = resonances_[j].difference(tau, root_turned);
+            const Complex difference = resonances_[j].difference(tau, to.root);
+            turned[j] = {difference, to.root + times(resonances_[j].from_root, difference)};
         }
-        turn_free(free_.step(root_turned), to);
+        step = free_.step(to.root);
     } else if (free_part_) {
-        turn_free(free_.after(tau), to);
+        step = free_.after(tau);
+    }
+    to.along = step.along, to.moved = step.moved, to.kept = step.kept;
+    to.bent = free_.w0_squared() * step.moved;
+}
+
+/// The parts that most curves do not have.
+void WalkedCurve::turn_others(const Moment& from, const Turn& by, Moment& to, double place, Value& y) const {
+    const Value sum = powers(place);
+    y.f += sum.f, y.slope += sum.slope;
+    const double* growth = growth_rows_.data() + by.row * rates_;
+    const std::array<Complex, 2>* resonance = resonance_rows_.data() + by.row * resonances_.size();
+    for (std::size_t j = 0; j < rates_; ++j) {
+        const double amount = from.amounts[j] * growth[j];
+        to.amounts[j] = amount;
+        y.f += amount;
+        y.slope += rate_[j] * amount;
+    }
+    for (std::size_t j = 0; j < resonances_.size(); ++j) {
+        const auto& [g, u] = from.resonances[j];
+        const auto& [difference, turned] = resonance[j];
+        const Complex to_g = times(by.root, g) + times(u, difference), to_u = times(u, turned);
+        to.resonances[j] = {to_g, to_u};
+        const Resonance& part = resonances_[j];
+        y.f += imaginary(part.growing, to_g, part.turning, to_u);
+        y.slope += imaginary(part.slope_growing, to_g, part.slope_turning, to_u);
     }
 }
 
-void WalkedCurve::turn_free(const FreeStep& step, State& to) const {
-    to.theta = step.along * theta_ + step.moved * velocity_;
-    to.velocity = step.kept * velocity_ - free_.w0_squared() * step.moved * theta_;
+const WalkedCurve::Jet& WalkedCurve::jet(double tau) {
+    const Value y = at(tau);
+    double second = 0, third = 0;
+    for (std::size_t j = 0; j < sines_; ++j) {
+        const Complex z = other_.sines[j];
+        const double omega = omega_[j], square = omega * omega;
+        second -= square * z.imag();
+        third -= square * (omega * z.real());
+    }
+    if (free_part_) {
+        const double square = free_.w0_squared(), twice = free_.twice_delta();
+        const double first = -(square * other_.theta + twice * other_.velocity);
+        const double bend = -(square * other_.velocity + twice * first);
+        second += bend;
+        third -= square * first + twice * bend;
+    }
+    jet_[0] = y.f, jet_[1] = y.slope, jet_[2] = second / 2, jet_[3] = third * over_factorial[3];
+    jet_size_ = 4;
+    if (!only_swings_) derive_others(2, 3);
+    return jet_;
+}
+
+const WalkedCurve::Jet& WalkedCurve::further_jet() {
+    constexpr std::size_t first = 4;
+    for (std::size_t i = first; i <= jet_order; ++i) jet_[i] = 0;
+    for (std::size_t j = 0; j < sines_; ++j) {
+        const Complex z = other_.sines[j];
+        const double square = omega_[j] * omega_[j], fourth = square * square;
+        jet_[4] += fourth * z.imag();
+        jet_[5] += fourth * (omega_[j] * z.real());
+        jet_[6] -= fourth * (square * z.imag());
+    }
+    if (free_part_) {
+        const double square = -free_.w0_squared(), twice = -free_.twice_delta();
+        double before = other_.velocity, f = square * other_.theta + twice * before;
+        for (std::size_t i = 2; i <= jet_order; ++i) {
+            const double next = square * before + twice * f;
+            before = f;
+            f = next;
+            if (i >= first) jet_[i] += f;
+        }
+    }
+    for (std::size_t i = first; i <= jet_order; ++i) jet_[i] *= over_factorial[i];
+    jet_size_ = jet_order + 1;
+    if (!only_swings_) derive_others(first, jet_order);
+    return jet_;
+}
+
+/// The derivatives from one order to another of the parts that most curves do not have.
+void WalkedCurve::derive_others(std::size_t from, std::size_t to) {
+    Jet more{};
+    for (std::size_t j = 0; j < rates_; ++j) {
+        double f = rate_[j] * other_.amounts[j];
+        for (std::size_t i = 2; i <= to; ++i) more[i] += f *= rate_[j];
+    }
+    for (std::size_t j = 0; j < resonances_.size(); ++j) {
+        const Resonance& r = resonances_[j];
+        const auto& [g, u] = other_.resonances[j];
+        const Complex root = free_.root();
+        const double omega = r.mu.imag();
+        Complex growing = times(r.slope_growing, g), turned = times(r.slope_growing, u);
+        Complex turning = times(r.slope_turning, u);
+        for (std::size_t i = 2; i <= to; ++i) {
+            // g' = root g + exp(mu tau)
+            growing = times(growing, root);
+            turning = {turned.real() - omega * turning.imag(), turned.imag() + omega * turning.real()};
+            turned = times(turned, root);
+            more[i] += growing.imag() + turning.imag();
+        }
+    }
+    for (std::size_t i = from; i <= to; ++i) jet_[i] += more[i] * over_factorial[i];
+    if (powers_.size() <= from) return;
+    Jet about{};
+    for (std::size_t n = powers_.size(); n-- > 0;) {
+        for (std::size_t i = to; i > 0; --i) about[i] = about[i] * other_place_ + about[i - 1];
+        about[0] = about[0] * other_place_ + powers_[n];
+    }
+    for (std::size_t i = from; i <= to; ++i) jet_[i] += about[i];
 }
 
 double WalkedCurve::way() const {
-    const State& state = other();
     double sum = 0;
-    for (std::size_t n = way_powers_.size(); n-- > 0;) sum = sum * other_place_ + way_powers_[n];
-    for (std::size_t j = 0; j < omega_.size(); ++j) sum -= state.re[j] / omega_[j];
-    for (std::size_t j = 0; j < rate_.size(); ++j) sum += state.amount[j] / rate_[j];
+    for (std::size_t i = way_powers_.size(); i-- > 0;) sum = sum * other_place_ + way_powers_[i];
+    for (std::size_t j = 0; j < sines_; ++j) sum -= other_.sines[j].real() / omega_[j];
+    for (std::size_t j = 0; j < rates_; ++j) sum += other_.amounts[j] / rate_[j];
     for (std::size_t j = 0; j < resonances_.size(); ++j) {
         const Resonance& r = resonances_[j];
-        sum += imaginary(r.way_growing, state.difference[j], r.way_turning, state.turned[j]);
+        sum += imaginary(r.way_growing, other_.resonances[j][0], r.way_turning, other_.resonances[j][1]);
     }
-    return free_part_ ? sum + state.theta : sum;
+    if (free_part_) sum += other_.theta;
+    if (aside_ == 0) return sum;
+    double further = 0;
+    for (std::size_t i = jet_size_; i-- > 4;) further = (further + jet_[i] * over[i + 1]) * aside_;
+    for (std::size_t i = 4; i-- > 0;) further = (further + jet_[i] * over[i + 1]) * aside_;
+    return sum + further;
 }
 
-const WalkedCurve::Value& WalkedCurve::look_at(double tau) {
-    turn_to(tau, next());
-    next_place_ = tau;
-    return there_ = sum(next(), tau);
-}
-
-void WalkedCurve::prepare(int level) {
-    const auto i = static_cast<std::size_t>(level);
-    const double h = lengths_[i];
-    const std::size_t n = omega_.size(), m = rate_.size(), r = resonances_.size();
-    for (std::size_t j = 0; j < n; ++j) {
-        cosine_[i * n + j] = std::cos(omega_[j] * h);
-        sine_[i * n + j] = std::sin(omega_[j] * h);
-    }
-    for (std::size_t j = 0; j < m; ++j) growth_[i * m + j] = std::exp(rate_[j] * h);
-    for (std::size_t j = 0; j < r; ++j) {
-        const double x = resonances_[j].mu.imag() * h;
-        resonance_turn_[i * r + j] = {std::cos(x), std::sin(x)};
-        resonance_difference_[i * r + j] = resonances_[j].difference(h, free_.turned(h));
-    }
-    turns_[i] = {true, free_.after(h)};
-}
-
-const WalkedCurve::Value& WalkedCurve::look(int level) {
-    const auto i = static_cast<std::size_t>(level);
-    if (!turns_[i].ready) prepare(level);
-    const std::size_t n = omega_.size(), m = rate_.size(), r = resonances_.size();
-    const double *cosine = cosine_.data() + i * n, *sine = sine_.data() + i * n;
-    const State& from = now();
-    State& to = next();
-    for (std::size_t j = 0; j < n; ++j) {
-        const double x = from.re[j], y = from.im[j];
-        to.re[j] = x * cosine[j] - y * sine[j];
-        to.im[j] = x * sine[j] + y * cosine[j];
-    }
-    for (std::size_t j = 0; j < m; ++j) to.amount[j] = from.amount[j] * growth_[i * m + j];
-    const FreeStep& step = turns_[i].step;
-    if (r > 0) {
-        // exp(lambda h), from the free motion.
-        const Complex root_turned{step.kept + free_.delta() * step.moved, free_.root().imag() * step.moved};
-        for (std::size_t j = 0; j < r; ++j) {
-            to.difference[j] =
-                times(root_turned, from.difference[j]) + times(from.turned[j], resonance_difference_[i * r + j]);
-            to.turned[j] = times(from.turned[j], resonance_turn_[i * r + j]);
-        }
-    }
-    if (free_part_) {
-        to.theta = step.along * from.theta + step.moved * from.velocity;
-        to.velocity = step.kept * from.velocity - free_.w0_squared() * step.moved * from.theta;
-    }
-    next_place_ = place_ + lengths_[i];
-    return there_ = sum(to, next_place_);
-}
-
-double WalkedCurve::fourth_bound(double until) const {
-    double bound = sines_fourth_;
-    if (free_part_) bound += free_.fourth_bound(now().theta, now().velocity);
-    for (std::size_t j = 0; j < rate_.size(); ++j) {
+/// Of the parts that most curves do not have.
+double WalkedCurve::growing_bound(double until) const {
+    double bound = 0;
+    for (std::size_t j = 0; j < rates_; ++j) {
         const double square = rate_[j] * rate_[j];
-        bound += std::fabs(now().amount[j]) * square * square * std::exp(std::max(0.0, rate_[j] * (until - place_)));
+        bound += std::fabs(now_->amounts[j]) * square * square * std::exp(std::max(0.0, rate_[j] * (until - place_)));
     }
     if (powers_.size() > 4) {
         double sum = 0;
@@ -235,22 +266,24 @@ double WalkedCurve::fourth_bound(double until) const {
     }
     for (std::size_t j = 0; j < resonances_.size(); ++j) {
         const Resonance& r = resonances_[j];
-        const double g = std::abs(now().difference[j]) + (until - place_);  // |g'| <= 1 less a decay
+        const double g = length_of(now_->resonances[j][0]) + (until - place_);  // |g'| <= 1 less a decay
         bound += r.fourth_growing * g + r.fourth_turning;
     }
     return bound;
 }
 
 double WalkedCurve::size(double until) const {
-    double sum = 0;
-    for (std::size_t n = powers_.size(); n-- > 0;) sum = sum * until + std::fabs(powers_[n]);
-    sum += sines_size_;
-    for (const double a : now().amount) sum += std::fabs(a);
+    double sum = sines_size_;
+    if (free_part_) sum += std::fabs(now_->velocity) + free_.w0() * std::fabs(now_->theta);
+    if (only_swings_) return sum;
+    double of_powers = 0;
+    for (std::size_t n = powers_.size(); n-- > 0;) of_powers = of_powers * until + std::fabs(powers_[n]);
+    for (std::size_t j = 0; j < rates_; ++j) sum += std::fabs(now_->amounts[j]);
     for (std::size_t j = 0; j < resonances_.size(); ++j) {
-        sum += std::abs(resonances_[j].growing) * std::abs(now().difference[j]) + std::abs(resonances_[j].turning);
+        const Complex& g = now_->resonances[j][0];
+        sum += length_of(resonances_[j].growing) * length_of(g) + length_of(resonances_[j].turning);
     }
-    if (free_part_) sum += std::fabs(now().velocity) + free_.w0() * std::fabs(now().theta);
-    return sum;
+    return sum + of_powers;
 }
 
 }  // namespace dinal::motion::exact

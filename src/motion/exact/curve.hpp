@@ -5,66 +5,73 @@
 #pragma once
 
 #include <array>
-#include <complex>
 #include <cstddef>
+#include <cstdint>
+#include <limits>
 #include <vector>
 
 #include "motion/exact/free_motion.hpp"
+#include "motion/exact/resonance.hpp"
 
 namespace dinal::motion::exact {
 
-using Complex = std::complex<double>;
-
-/// Near resonance the answer to exp(mu tau) is told by the divided difference (exp(mu tau) - exp(lambda tau)) /
-/// (mu - lambda), which is tau exp(lambda tau) at resonance, instead of by two large numbers that nearly cancel.
-struct Resonance {
-    Complex mu, from_root;                     ///< mu - lambda
-    Complex growing, turning;                  ///< the curve has Im(growing g(tau) + turning exp(mu tau))
-    Complex way_growing = 0, way_turning = 0;  ///< and so has the way, of a velocity
-
-    Complex slope_growing = 0, slope_turning = 0;   ///< and so has its slope
-    double fourth_growing = 0, fourth_turning = 0;  ///< the sizes of what its fourth derivative has
-    void prepare(Complex root);
-
-    /// g(tau), from exp(lambda tau).
-    [[nodiscard]] Complex difference(double tau, Complex root_turned) const;
-};
-
 class WalkedCurve {
 public:
-    explicit WalkedCurve(const LinearMotion& free) : free_(free) {}
+    explicit WalkedCurve(const LinearMotion& free);
+    WalkedCurve(const WalkedCurve&) = delete;
+    WalkedCurve& operator=(const WalkedCurve&) = delete;
 
     struct Value {
         double f = 0, slope = 0;
     };
+    /// At the end of a stretch.
+    struct End {
+        double f = 0, slope = 0, bend = 0;
+    };
+    /// A value and its derivatives, each over the factorial of its order.
+    static constexpr std::size_t jet_order = 6;
+    using Jet = std::array<double, jet_order + 1>;
 
-    // What it is made of. Harmonics first, in the order of `omega`: Im((re + i im) exp(i omega tau)).
-    void clear();
+    // What it is made of, told anew for each arc. As a rule these are the frequencies and rates of the arc before.
+    void clear() {
+        powers_.clear(), way_powers_.clear(), resonances_.clear();
+        sines_ = rates_ = 0;
+        free_part_ = false;
+    }
     void add_power(double c) { powers_.push_back(c); }
     /// Of a velocity: the powers of the way, which are integrals of its own but for the constant one.
     void add_way_power(double c) { way_powers_.push_back(c); }
+    /// Im(turning exp(i omega tau))
     void add_sine(double omega, Complex turning) {
-        omega_.push_back(omega);
-        re_.push_back(turning.real());
-        im_.push_back(turning.imag());
+        place_for(omega, sines_, omega_);
+        if (start_.sines.size() < sines_) start_.sines.resize(sines_);
+        start_.sines[sines_ - 1] = turning;
     }
     void add_exponential(double rate, double amount) {
-        rate_.push_back(rate);
-        amount_.push_back(amount);
+        place_for(rate, rates_, rate_);
+        if (start_.amounts.size() < rates_) start_.amounts.resize(rates_);
+        start_.amounts[rates_ - 1] = amount;
     }
     void add_resonance(const Resonance& resonance) { resonances_.push_back(resonance); }
     /// The velocity of a free motion from this state.
-    void add_free(double theta, double velocity) { theta_ = theta, velocity_ = velocity, free_part_ = true; }
+    void add_free(double theta, double velocity) {
+        start_.theta = theta, start_.velocity = velocity, free_part_ = true;
+    }
     /// All is there: the walk begins at 0.
     void begin();
 
     /// Anywhere, to rounding; the walk stays where it is.
     Value at(double tau) {
-        turn_to(tau, other());
+        aside_ = 0;
         other_place_ = tau;
-        return sum(other(), tau);
+        return turn(start_, turn_by(tau), other_, tau);
     }
-    /// Of a velocity: the way since the beginning, where at() was asked last.
+    /// The same with three derivatives, and then with the others.
+    const Jet& jet(double tau);
+    const Jet& further_jet();
+    /// Where jet() was asked last, and this little further on: there way() is told.
+    void step_aside(double further) { aside_ = further; }
+    /// Of a velocity: the way since the beginning, where at() or jet() was asked last.
     [[nodiscard]] double way() const;
 
     // The walk.
@@ -72,59 +79,157 @@ public:
     [[nodiscard]] const Value& here() const { return here_; }
     /// Looks ahead by a length of the table, or any length; and goes there.
     static constexpr int levels = 40;
-    [[nodiscard]] double length(int level) const { return lengths_[static_cast<std::size_t>(level)]; }
-    const Value& look(int level);
-    const Value& look_at(double tau);
+    [[nodiscard]] double length(int level) const { return longest_ * halved[static_cast<std::size_t>(level)]; }
+    const Value& look(int level) {
+        std::uint8_t& slot = slots_[static_cast<std::size_t>(level)];
+        if (slot == none) slot = new_turn(length(level));
+        next_place_ = place_ + length(level);
+        return there_ = turn(*now_, turns_[slot], *next_, next_place_);
+    }
+    const Value& look_at(double tau) {
+        next_place_ = tau;
+        return there_ = turn(start_, turn_by(tau), *next_, tau);
+    }
     void go() {
-        now_ = 1 - now_;
+        now_ = next_;
+        next_ = next_ == &first_ ? &second_ : &first_;
         place_ = next_place_;
         here_ = there_;
     }
+    /// h^4/384 for the length of a level: the cubic through both ends of a look is no farther off, times max|f''''|.
+    [[nodiscard]] double hides(int level) const {
+        const double part = halved[static_cast<std::size_t>(level)], square = part * part;
+        return longest_hides_ * (square * square);
+    }
     /// What |f''''| does not exceed from here to there.
-    [[nodiscard]] double fourth_bound(double until) const;
+    [[nodiscard]] double fourth_bound(double until) const {
+        const double bound =
+            free_part_ ? sines_fourth_ + free_.fourth_bound(now_->theta, now_->velocity) : sines_fourth_;
+        return may_grow() ? bound + growing_bound(until) : bound;
+    }
+    /// Whether that grows with `until`.
+    [[nodiscard]] bool may_grow() const { return !only_swings_; }
+    /// How much faster than that its next derivatives grow, about.
+    [[nodiscard]] double fastest() const { return powers_.size() > jet_order + 1 ? too_fast : fastest_; }
+    /// What the sixth derivative does not exceed, where the fourth does not exceed `fourth_bound`. Near resonance it
+    /// has the sum of six products of five factors each where the fourth has four of three.
+    [[nodiscard]] double sixth_bound(double fourth_bound) const {
+        if (powers_.size() > 6) return too_fast;
+        return fourth_bound * fastest_ * fastest_ * (resonances_.empty() ? 1 : 2);
+    }
     /// The size of the numbers that it is the sum of, from here to there.
     [[nodiscard]] double size(double until) const;
 
 private:
-    struct State {
-        std::vector<double> re, im, amount;
-        std::vector<Complex> difference, turned;  // of each resonance
+    static constexpr double too_fast = std::numeric_limits<double>::infinity();
+    static constexpr std::array<double, levels> halved = [] {
+        std::array<double, levels> parts{};
+        double part = 1;
+        for (double& each : parts) each = part, part /= 2;
+        return parts;
+    }();
+
+    /// What each part has become by some time.
+    struct Moment {
+        std::vector<Complex> sines;
+        std::vector<double> amounts;
+        std::vector<std::array<Complex, 2>> resonances;  // the divided difference, and exp(mu tau)
         double theta = 0, velocity = 0;
     };
-    struct Turns {
-        bool ready = false;
-        FreeStep step{};
+    /// What a time does to each part; to sines, exponentials and resonances in a row of each.
+    struct Turn {
+        double tau;
+        std::size_t row;
+        Complex root;
+        double along, moved, kept, bent;  // of the free motion
     };
+    static constexpr std::uint8_t none = 255;
+    static constexpr std::size_t habits = 4;
 
-    void prepare(int level);
-    void turn_to(double tau, State& to) const;
-    void turn_free(const FreeStep& step, State& to) const;
-    [[nodiscard]] Value sum(const State& state, double tau) const;
+    /// The next of these frequencies or rates is `rate`.
+    void place_for(double rate, std::size_t& count, std::vector<double>& rates) {
+        if (count == rates.size()) {
+            rates.push_back(rate);
+            changed_ = true;
+        } else if (rates[count] != rate) {
+            rates[count] = rate;
+            changed_ = true;
+        }
+        ++count;
+    }
+    [[nodiscard]] bool same_resonances() const;
+    void make_table();
+    std::uint8_t new_turn(double tau);
+    void make_turn(double tau, Turn& to);
+    /// A turn from the beginning; the last few are kept, as motions have habits.
+    const Turn& turn_by(double tau) {
+        for (const std::uint8_t slot : kept_) {
+            if (slot != none && turns_[slot].tau == tau) return turns_[slot];
+        }
+        oldest_ = (oldest_ + 1) % habits;
+        std::uint8_t& slot = kept_[oldest_];
+        if (slot == none) {
+            slot = new_turn(tau);
+        } else {
+            make_turn(tau, turns_[slot]);
+        }
+        return turns_[slot];
+    }
+    /// Turns every part, and sums up at the new place.
+    Value turn(const Moment& from, const Turn& by, Moment& to, double place) const {
+        Value y;
+        const Complex *factor = sine_rows_.data() + by.row * sines_, *part = from.sines.data();
+        const double* omega = omega_.data();
+        Complex* turned = to.sines.data();
+        for (std::size_t j = 0; j < sines_; ++j) {
+            const Complex z = times(part[j], factor[j]);
+            turned[j] = z;
+            y.f += z.imag();
+            y.slope += omega[j] * z.real();
+        }
+        if (free_part_) {
+            const double theta = by.along * from.theta + by.moved * from.velocity;
+            const double velocity = by.kept * from.velocity - by.bent * from.theta;
+            to.theta = theta, to.velocity = velocity;
+            y.f += velocity;
+            y.slope -= free_.w0_squared() * theta + free_.twice_delta() * velocity;
+        }
+        if (!only_swings_) turn_others(from, by, to, place, y);
+        return y;
+    }
+    void turn_others(const Moment& from, const Turn& by, Moment& to, double place, Value& y) const;
+    [[nodiscard]] Value powers(double tau) const;
+    [[nodiscard]] double growing_bound(double until) const;
+    void derive_others(std::size_t from, std::size_t to);
 
     const LinearMotion& free_;
-    std::vector<double> powers_, way_powers_, omega_, re_, im_, rate_, amount_;
+    std::vector<double> powers_, way_powers_, omega_, rate_;
     std::vector<Resonance> resonances_;
     bool free_part_ = false;
-    double theta_ = 0, velocity_ = 0;
+    bool only_swings_ = true;  // it has no powers, exponentials and resonances
+    bool changed_ = true;      // since the turns were made
+    std::size_t sines_ = 0, rates_ = 0;
     double sines_fourth_ = 0, sines_size_ = 0;
 
-    // A turn by the length of each level, made when it is wanted first, for the frequencies and rates that it was made
-    // for.
-    std::array<double, levels> lengths_{};
-    std::array<Turns, levels> turns_{};
-    std::vector<double> table_omega_, table_rate_;
-    std::vector<double> cosine_, sine_, growth_;
-    std::vector<Complex> resonance_mu_, resonance_turn_, resonance_difference_;
+    double longest_, longest_hides_;
+    double fastest_;
+    std::vector<Complex> table_mu_;
+    // By the length of each level, made when it is wanted first, and the last others.
+    std::array<std::uint8_t, levels> slots_;
+    std::array<std::uint8_t, habits> kept_;
+    std::vector<Turn> turns_;
+    std::vector<Complex> sine_rows_;
+    std::vector<double> growth_rows_;
+    std::vector<std::array<Complex, 2>> resonance_rows_;
+    std::size_t oldest_ = 0;
 
-    // Two for the walk, which take turns, and one for at().
-    std::array<State, 3> states_;
-    std::size_t now_ = 0;
-    [[nodiscard]] State& now() { return states_[now_]; }
-    [[nodiscard]] const State& now() const { return states_[now_]; }
-    [[nodiscard]] State& next() { return states_[1 - now_]; }
-    [[nodiscard]] State& other() { return states_[2]; }
-    [[nodiscard]] const State& other() const { return states_[2]; }
+    Moment start_, first_, second_, other_;  // two for the walk, which take turns, and one for at()
+    const Moment* now_ = &start_;
+    Moment* next_ = &first_;
     double place_ = 0, next_place_ = 0, other_place_ = 0;
+    Jet jet_{};  // of other_, as far as it was asked for
+    std::size_t jet_size_ = 0;
+    double aside_ = 0;
     Value here_, there_;
 };
 

@@ -53,6 +53,8 @@ Trajectory Exact::run(const Problem& problem) const {
         arcs = std::make_shared<Arcs>(problem.system, problem.excitation, problem.course_bytes);
     }
     std::vector<model::Event> events;
+    constexpr std::size_t few = 8;
+    events.reserve(few);
     ExactEngine engine(problem, rows, events, arcs.get());
     run_whole(engine, problem, rows, events, std::move(arcs), trajectory);
     return trajectory;

@@ -12,11 +12,10 @@ namespace {
 constexpr double longest_arc = 16;
 /// A creep is looked for over so many natural periods.
 constexpr double creeps_over = 0.5 * (1 - 1e-9);
-/// An arc costs so many radians of its parts at most, which is a fraction of a second; and between two questions to the
-/// monitor there are so many, or so many arcs, or rows.
+/// An arc costs so many radians of its parts at most, which is a fraction of a second. Between two questions to the
+/// monitor there are so many arcs, or rows.
 constexpr double greatest_cost = 1e8;
-constexpr double cost_between_questions = 1e7;
-constexpr double cost_of_an_arc = cost_between_questions / 16;
+constexpr double arcs_between_questions = 16;
 constexpr std::size_t rows_between_questions = 1U << 16U;
 
 Band inside(model::Motion motion) {
@@ -37,7 +36,16 @@ ExactEngine::ExactEngine(const Problem& problem, RowWriter& rows, std::vector<mo
       piece_end_(problem.window.start),
       standstill_(problem, &events, -model::never),
       arc_(system_),
-      load_(arc_.free()) {}
+      line_(system_, arc_.free()),
+      load_(arc_.free()) {
+    find_record();
+    const double T0 = 2 * std::numbers::pi / arc_.free().w0();
+    longest_arc_ = longest_arc * T0;
+    const double half = arc_.free().swings() ? std::numbers::pi / arc_.free().root().imag() : 0;
+    moves_ = {Habit(half), Habit(half)}, swings_ = Habit(half);
+    creep_ = {.damping = system_.damping(), .inertia = system_.inertia(), .shortest = creeps_over * T0};
+    creep_hold_ = creep_.damping + creep_.inertia / creep_.shortest;
+}
 
 model::Outcome ExactEngine::run() {
     ask_M();
@@ -69,6 +77,7 @@ void ExactEngine::ask_M() {
 
 bool ExactEngine::advance() {
     if (standstill_.phase() == Standstill::Phase::arrived && !go_on(standstill_.ask(moment()))) return false;
+    if (along_lines()) return outcome_ == model::Outcome::reached_end;
     if (!standstill_.stuck()) return move();
     return standstill_.for_good(moment()) ? rest_until_end() : stay();
 }
@@ -113,11 +122,12 @@ bool ExactEngine::move() {
     const double start_pull = pull_at_release_.value_or(pull());
     pull_at_release_.reset();
     const double cost = arc_.cost(formula_);
-    asked_ = std::min(
-        {clock_.until(piece_end_), longest_arc * 2 * std::numbers::pi / arc_.free().w0(), greatest_cost / cost});
+    asked_ = std::min(clock_.until(piece_end_), longest_arc_);
+    if (cost * asked_ > greatest_cost) asked_ = greatest_cost / cost;
     const double length = arc_.begin(formula_, {y_.velocity, start_pull}, asked_);
-    cost_ += cost * length + cost_of_an_arc;
-    if (!within_range(arc_.velocity().fourth_bound(length))) {
+    cost_ += cost * length + cost_between_questions / arcs_between_questions;
+    bound_ = arc_.velocity().fourth_bound(length);
+    if (!within_range(bound_)) {
         return fail(std::isfinite(formula_.value(length)) ? model::Outcome::state_not_finite
                                                           : model::Outcome::excitation_not_finite);
     }
@@ -148,9 +158,15 @@ bool ExactEngine::move() {
     return std::isfinite(M_) || fail(model::Outcome::excitation_not_finite);
 }
 
+/// How the velocity begins from a standstill.
+WalkedCurve::End ExactEngine::start_from_rest(double start_pull) const {
+    const double first = start_pull / system_.inertia();
+    return {0, first, (formula_.slope() - system_.damping() * first) / system_.inertia()};
+}
+
 bool ExactEngine::get_under_way(FirstExit& exit, double sign, double start_pull, double length) {
     const double I = system_.inertia(), C = system_.damping(), k = system_.stiffness();
-    const double first = start_pull / I, second = (formula_.slope() - C * first) / I;
+    const auto [f, first, second] = start_from_rest(start_pull);
     const double third = (formula_.bend() - C * second - k * first) / I;
     return exit.leave(sign * first, sign * second, sign * third, length);
 }
@@ -159,12 +175,23 @@ std::optional<double> ExactEngine::stop(double start_pull, double length, bool& 
     const model::Motion motion = standstill_.motion();
     WalkedCurve& velocity = arc_.velocity();
     FirstExit exit(velocity, inside(motion), 0);
-    const double torques =
-        std::max({std::fabs(M_), system_.stiffness() * std::fabs(y_.theta), system_.greatest_holding()});
-    exit.watch({system_.damping(), system_.inertia(), creeps_over * 2 * std::numbers::pi / arc_.free().w0(),
-                4 * epsilon * torques});
+    exit.bounded(bound_);
+    const double held = system_.stiffness() * std::fabs(y_.theta);
+    creep_.least = 4 * epsilon * std::max(std::max(std::fabs(M_), held), system_.greatest_holding());
+    creep_.fastest = creep_.least / creep_hold_;
+    exit.watch(creep_);
     double under_way = 0;
-    if (standstill_.phase() == Standstill::Phase::leaving) {
+    const bool leaving = standstill_.phase() == Standstill::Phase::leaving;
+    Habit& usual = moves_[motion == model::Motion::forward ? 1 : 0];
+    rest_ = &rests_[motion == model::Motion::forward ? 1 : 0];
+    if (const double guess = leaving ? usual.length() : 0; guess > 0) {
+        if (const auto found = exit.at_once(0, start_from_rest(start_pull), guess, length)) {
+            usual.kept(found->tau);
+            return found->tau;
+        }
+        usual.missed();
+    }
+    if (leaving) {
         left = get_under_way(exit, model::sign_of(motion), start_pull, length);
         if (!left) return {};
         under_way = velocity.place();
@@ -178,6 +205,7 @@ std::optional<double> ExactEngine::stop(double start_pull, double length, bool& 
     if (!found) return {};
     if (!found->crosses) velocity.at(found->tau);
     if (under_way > 0 && found->tau <= under_way) left = false;
+    if (leaving) usual.walked(found->tau);
     return found->tau;
 }
 
@@ -199,6 +227,7 @@ void ExactEngine::record_turns(double start_pull, double length) {
     constexpr double nothing = 1e-290;
     if (velocity.size(length) <= std::max(floor, nothing)) return;
     FirstExit exit(velocity, {}, 0);
+    exit.bounded(bound_);
     if (y_.velocity == 0) {
         const double I = system_.inertia(), first = start_pull / I;
         const double second = (formula_.slope() - system_.damping() * first) / I;
@@ -211,15 +240,32 @@ void ExactEngine::record_turns(double start_pull, double length) {
     } else if (standstill_.motion() == model::Motion::stuck) {
         standstill_.head(model::motion_of(y_.velocity));
     }
+    // From turn to turn at once where they keep their habit, else by walking.
+    bool behind = false;  // the walk is not where the motion is
+    double turn = 0;
     while (velocity.place() < length) {
         exit.set_band(inside(standstill_.motion()));
-        const auto found = exit.search(length);
-        if (!found) return;
-        if (!found->crosses) continue;
-        velocity.go();
+        std::optional<Exit> found;
+        if (exit.end().slope != 0) {
+            const WalkedCurve::End start = exit.end();
+            const double guess = swings_.length();
+            if (guess > 0 && turn + guess < length) {
+                found = exit.at_once(turn, start, guess, length);
+                found ? swings_.walked(found->tau - turn) : swings_.missed();
+            }
+            if (!found && behind) exit.depart(turn, start, length);
+            behind = found.has_value();
+        }
+        if (!found) {
+            found = exit.search(length);
+            if (!found) return;
+            if (!found->crosses) continue;
+            velocity.go();
+        }
+        turn = found->tau;
         // At a zero of the velocity the way is what it is next to it.
         const double theta = Clock{y_.theta, theta_rest_}.later(velocity.way()).hi;
-        standstill_.turned({clock_.after(found->tau), theta, formula_.value(found->tau)});
+        standstill_.turned({clock_.after(turn), theta, formula_.value(turn)});
     }
 }
 

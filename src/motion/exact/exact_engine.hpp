@@ -10,6 +10,7 @@
 #include "motion/exact/arc.hpp"
 #include "motion/exact/arcs.hpp"
 #include "motion/exact/first_exit.hpp"
+#include "motion/exact/lines.hpp"
 #include "motion/rows.hpp"
 #include "motion/standstill.hpp"
 
@@ -44,6 +45,7 @@ private:
         return false;
     }
     [[nodiscard]] double pull() const;
+    [[nodiscard]] WalkedCurve::End start_from_rest(double start_pull) const;
     /// From a standstill, under way: false when it does not get there.
     bool get_under_way(FirstExit& exit, double sign, double start_pull, double length);
     /// The first zero of the velocity, or where it has crept to.
@@ -64,6 +66,17 @@ private:
     void make_load();
     bool release_at(double tau, model::Motion towards, bool crosses);
 
+    // exact_lines.cpp: along a record of samples.
+    void find_record();
+    bool along_lines();
+    bool rest_on_line();
+    bool move_on_line();
+    bool end_line(double h, double M, model::State state, bool standing, double start_pull = 0);
+
+    /// Between two questions to the monitor the arcs cost so much, in radians of their parts; a line is cheap.
+    static constexpr double cost_between_questions = 1e7;
+    static constexpr double cost_of_a_line = cost_between_questions / 65536;
+
     model::Lowered system_;
     const model::Excitation& excitation_;
     const Monitor& monitor_;
@@ -77,10 +90,26 @@ private:
     double M_ = 0;           // from the right
     double piece_end_;       // the next break of M, or the end of the run
     double asked_ = 0;       // for how long the present arc was wanted
+    double longest_arc_;
+    std::array<Habit, 2> moves_{}, rests_{};  // backward and forward: from one standstill to the next
+    Habit swings_;
+    Habit* rest_ = rests_.data();
+    Creep creep_;
+    double creep_hold_;
+    double bound_ = 0;  // of the fourth derivative of its velocity
     std::optional<double> pull_at_release_ = {};
     Standstill standstill_;
     model::ClosedForm formula_;
+    struct Record {
+        const model::Samples* samples = nullptr;  // of what M is, when it is nothing else
+        double gain = 0, from = 0, to = 0;
+        std::size_t place = 0;  // of the sample where the motion is
+        [[nodiscard]] double time(std::size_t ahead) const { return samples->t[place + ahead]; }
+        [[nodiscard]] double torque(std::size_t ahead) const { return gain * samples->M[place + ahead]; }
+    };
+    Record record_;
     Arc arc_;
+    LineStep line_;
     WalkedCurve load_;
     double cost_ = std::numeric_limits<double>::infinity();  // since the monitor was asked last
     model::Outcome outcome_ = model::Outcome::reached_end;

@@ -37,16 +37,27 @@ bool ExactEngine::stay() {
         if (towards != model::Motion::stuck) return go_on(standstill_.release(moment(), towards));
     }
     make_load();
-    if (!within_range(load_.fourth_bound(length))) return fail(model::Outcome::excitation_not_finite);
+    const double bound = load_.fourth_bound(length);
+    if (!within_range(bound)) return fail(model::Outcome::excitation_not_finite);
     if (held) return stay_held(length);
     const double k_theta = system_.stiffness() * y_.theta;
     const Band band{k_theta - standstill_.limit(model::Motion::backward),
                     k_theta + standstill_.limit(model::Motion::forward)};
     FirstExit exit(load_, band, 8 * epsilon * (system_.greatest_holding() + std::fabs(k_theta)));
-    while (const auto found = exit.search(length)) {
+    exit.bounded(bound);
+    std::optional<Exit> found;
+    if (const double guess = rest_->length(); guess > 0) {
+        found = exit.at_once(0, {M_, formula_.slope(), formula_.bend()}, guess, length);
+        if (!found) rest_->missed();
+    }
+    if (!found) found = exit.search(length);
+    for (; found; found = exit.search(length)) {
         const model::Motion side = found->side > 0 ? model::Motion::forward : model::Motion::backward;
         if (clock_.after(found->tau) >= piece_end_) break;  // the next piece's business
-        if (found->crosses) return release_at(found->tau, side, true);
+        if (found->crosses) {
+            rest_->kept(found->tau);
+            return release_at(found->tau, side, true);
+        }
         // It only meets the limit: M itself is asked, to the letter.
         if (standstill_.pulled(excitation_.value(clock_.after(found->tau)), y_.theta) == side) {
             return release_at(found->tau, side, false);

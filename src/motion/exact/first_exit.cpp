@@ -10,16 +10,19 @@ namespace {
 /// A motion that decays has smaller bounds later on.
 constexpr unsigned looks_between_bounds = 8;
 constexpr double hermite = 1.0 / 384;  // of max|f''''| h^4
-constexpr double of_slope = 0.0081;    // sqrt(3)/216, of max|f''''| h^3: what the slope of the cubic may be off by
+/// A zero of the cubic to this part of a look: Newton's method squares it once more, and the curve lies elsewhere
+/// anyway.
+constexpr double near_enough = 0.01;
+/// What is said to move at once is so many times faster than what creeps.
+constexpr double slowest_apart = 16;
+constexpr double of_slope = 0.0081;  // sqrt(3)/216, of max|f''''| h^3: what the slope of the cubic may be off by
 
 }  // namespace
 
-FirstExit::Hull FirstExit::hull(const WalkedCurve::Value& a, const WalkedCurve::Value& b, double h) {
+inline FirstExit::Hull FirstExit::hull(const WalkedCurve::Value& a, const WalkedCurve::Value& b, double h) {
     const double third = h * (1.0 / 3), b0 = a.f, b1 = a.f + third * a.slope, b2 = b.f - third * b.slope, b3 = b.f;
-    const double d0 = b1 - b0, d1 = b2 - b1, d2 = b3 - b2;
-    return {std::min(std::min(b0, b1), std::min(b2, b3)), std::max(std::max(b0, b1), std::max(b2, b3)),
-            std::max(std::fabs(d1 - d0), std::fabs(d2 - d1)), 3 * std::max(std::max(d0, d1), d2),
-            3 * std::min(std::min(d0, d1), d2)};
+    return {std::min(std::min(b0, b1), std::min(b2, b3)), std::max(std::max(b0, b1), std::max(b2, b3)), b1 - b0,
+            b2 - b1, b3 - b2};
 }
 
 /// A crossing that needs no search.
@@ -31,20 +34,17 @@ Exit FirstExit::crossing(double tau, int side) {
 /// A look as long as the bound lets it be, seen from where the curve is and where it heads.
 void FirstExit::choose_level(double bound) {
     const double away = std::fabs(margin(curve_.here().f)) / 4, heads = std::fabs(curve_.here().slope) / 12;
-    const auto fits = [&](int level) {
-        const double h = curve_.length(level), square = h * h;
-        return bound * (square * square) * hermite <= away + heads * h;
-    };
+    const auto fits = [&](int level) { return bound * curve_.hides(level) <= away + heads * curve_.length(level); };
     while (level_ > 0 && fits(level_ - 1)) --level_;
     while (level_ + 1 < WalkedCurve::levels && !fits(level_)) ++level_;
 }
 
-/// Whether it is slower than rounding already, also where the looks are shorter than a creep.
+/// Whether it stays slower than rounding, also where the looks are shorter than a creep.
 bool FirstExit::creeps_from_here(double until) {
-    const double h = creep_->shortest, from = curve_.place();
-    const auto slow = [&](double speed) { return speed * (creep_->damping + creep_->inertia / h) <= creep_->least; };
+    const double h = creep_.shortest, from = curve_.place();
+    const auto slow = [this](double speed) { return speed <= creep_.fastest; };
     const WalkedCurve::Value here = curve_.here();
-    if (!slow(std::fabs(here.f)) || from + h > until) return false;
+    if (from + h > until) return false;
     const double hidden = curve_.fourth_bound(until) * (h * h) * (h * h) * hermite;
     const Hull cubic = hull(here, curve_.look_at(from + h), h);
     if (!slow(std::max(std::fabs(cubic.low), std::fabs(cubic.high)) + hidden)) return false;
@@ -52,31 +52,41 @@ bool FirstExit::creeps_from_here(double until) {
     return crept_ = true;
 }
 
+/// Of a look without a table.
+double FirstExit::odd_length(double bound, int level, double left, int finer) const {
+    if (bound == 0) return std::ldexp(left, -finer);  // a polynomial hides nothing
+    constexpr int last = WalkedCurve::levels - 1;
+    return std::ldexp(curve_.length(last), last - level);
+}
+
 std::optional<Exit> FirstExit::search(double until) {
+    end_ = {};
     int finer = 0;  // halvings of the present look
-    double rounding = 0, bound = 0;
+    double rounding = 0, bound = bound_;
     for (unsigned looks = 0; curve_.place() < until; ++looks) {
         if (looks % looks_between_bounds == 0) {
-            bound = curve_.fourth_bound(until);
+            if (looks > 0 || !(bound >= 0)) bound = curve_.fourth_bound(until);
             rounding = std::max(floor_, 8 * epsilon * curve_.size(until));
         }
-        if (creep_ && creeps_from_here(until)) return {};
+        const WalkedCurve::Value here = curve_.here();
+        if (std::fabs(here.f) <= creep_.fastest && creeps_from_here(until)) return {};
         if (finer == 0 && bound != 0) choose_level(bound);
         const int level = level_ + finer;
         const double from = curve_.place(), left = until - from;
-        double h = bound == 0 ? std::ldexp(left, -finer)  // a polynomial hides nothing
-                   : level < WalkedCurve::levels
-                       ? curve_.length(level)
-                       : std::ldexp(curve_.length(WalkedCurve::levels - 1), WalkedCurve::levels - 1 - level);
-        const bool tabled = bound != 0 && level < WalkedCurve::levels && h < left;
-        h = std::min(h, left);
-        const WalkedCurve::Value here = curve_.here();
-        const WalkedCurve::Value there = tabled ? curve_.look(level) : curve_.look_at(h == left ? until : from + h);
+        const bool tabled = bound != 0 && level < WalkedCurve::levels;
+        double h = tabled ? curve_.length(level) : odd_length(bound, level, left, finer);
+        WalkedCurve::Value there;
+        if (tabled && h < left) {
+            there = curve_.look(level);
+        } else {
+            h = std::min(h, left);
+            there = curve_.look_at(h == left ? until : from + h);
+        }
         const double square = h * h, fourth = bound * (square * square), hidden = fourth * hermite;
         const Hull cubic = hull(here, there, h);
-        if (creep_ && h >= creep_->shortest) {
+        if (h >= creep_.shortest) {
             const double speed = std::max(std::fabs(cubic.low), std::fabs(cubic.high)) + hidden;
-            if (speed * (creep_->damping + creep_->inertia / h) <= creep_->least) {
+            if (speed * (creep_.damping + creep_.inertia / h) <= creep_.least) {
                 curve_.go();
                 crept_ = true;
                 return {};
@@ -89,13 +99,14 @@ std::optional<Exit> FirstExit::search(double until) {
         }
         const int side = there.f < band_.low - rounding ? -1 : there.f > band_.high + rounding ? 1 : 0;
         const double doubt = fourth * of_slope;
-        const bool one_way = side < 0 ? cubic.falls + doubt < 0 : cubic.rises - doubt > 0;
+        const bool one_way = side < 0 ? cubic.rise() + doubt < 0 : cubic.fall() - doubt > 0;
         if (side != 0 && one_way) {
             const double edge = side < 0 ? band_.low : band_.high;
             if (side < 0 ? here.f <= edge : here.f >= edge) return crossing(from, side);
-            return Exit{polish(from, from + h, from + cubic_crossing(here, there, h, edge), edge, side), side, true};
+            return Exit{polish(from, from + h, from + cubic_crossing(here, there, h, edge), edge, side, bound), side,
+                        true};
         }
-        if (hidden + cubic.bend <= rounding || h <= 4 * epsilon * (from + h) || finer > 100) {
+        if (hidden + cubic.bend() <= rounding || h <= 4 * epsilon * (from + h) || finer > 100) {
             // All of the look is a straight line within rounding.
             if (side != 0) {
                 const double edge = side < 0 ? band_.low : band_.high, off = here.f - edge;
@@ -131,13 +142,111 @@ double FirstExit::cubic_crossing(const WalkedCurve::Value& a, const WalkedCurve:
         if (!(next > low && next < high)) next = (low + high) / 2;
         const double moved = std::fabs(next - x);
         x = next;
-        if (moved < 1e-4) break;
+        if (moved < near_enough) break;
     }
     return x * h;
 }
 
-/// Newton's method on the curve itself, kept between where it is inside and where it is outside.
-double FirstExit::polish(double from, double to, double guess, double edge, int side) {
+/// The zero of the Taylor polynomial about a guess.
+FirstExit::Zero FirstExit::near(double guess, const WalkedCurve::Jet& y, double edge, double bound) {
+    // As powers of x in units of the slope: x = a + q2 x^2 + q3 x^3 + ...
+    const double per = -1 / y[1], a = (y[0] - edge) * per, q2 = y[2] * per, q3 = y[3] * per;
+    const double bent = std::fabs(q2 * a) + a * a * std::fabs(q3), first = a * a * (q2 + a * (q3 + 2 * q2 * q2));
+    constexpr double much = 0.1;
+    if (!(bent < much)) return {guess + a + first, false};
+    const double rounding = epsilon / 4 * std::fabs(y[1]) * guess;
+    const auto said = [&](double x) {
+        curve_.step_aside(x);
+        end_ = {edge, y[1] + x * (2 * y[2] + x * (3 * y[3])), 2 * y[2] + x * (6 * y[3])};
+        return Zero{guess + x, true};
+    };
+    // What three derivatives leave out, and the series.
+    double x = a + first, square = a * a;
+    if (bound * (square * square) * (1.0 / 24) <= rounding && bent * bent * bent * std::fabs(a * y[1]) <= rounding) {
+        return said(x);
+    }
+    curve_.further_jet();
+    for (int i = 0; i < 4; ++i) {
+        const double high = y[4] + x * (y[5] + x * y[6]), low = y[2] + x * (y[3] + x * high);
+        const double off = (x * x) * low * per + (a - x);
+        const double step = off / (1 - x * (2 * q2 + 3 * x * q3));
+        x += step;
+        if (std::fabs(step) <= epsilon / 4 * guess) break;
+    }
+    const double grown = std::fabs(x) * curve_.fastest();
+    square = x * x;
+    const double left_out = bound * (square * square) * (grown * grown * grown) * (1.0 / 5040);
+    if (!(left_out <= rounding)) return {guess + x, false};
+    return said(x);
+}
+
+/// From a guess: by the Taylor polynomial about it, where that is the curve to rounding, else step by step.
+double FirstExit::polish(double from, double to, double guess, double edge, int side, double bound) {
+    const Zero zero = near(guess, curve_.jet(guess), edge, bound);
+    if (zero.exact && zero.tau >= from && zero.tau <= to) return zero.tau;
+    end_ = {};
+    return step_by_step(from, to, guess, edge, side);
+}
+
+/// Whether the curve is on one side of an edge all over a stretch but for its ends, where it is not on the other side.
+/// From the polynomial of the fifth degree through values, slopes and bends at both ends it is not farther than
+/// max|f^(6)| s^3 (h - s)^3/720, which is nothing at the ends: so the Bernstein coefficients of the sixth degree tell,
+/// of which the doubt is in the middle one.
+bool FirstExit::apart(const WalkedCurve::End& a, const WalkedCurve::End& b, double h, double edge, double side,
+                      const Doubt& doubt) {
+    const double fifth = side * h * (1.0 / 5), square = side * (h * h) * (1.0 / 20), cube = h * h * h;
+    const double b0 = side * (a.f - edge), b1 = b0 + fifth * a.slope, b2 = b0 + 2 * fifth * a.slope + square * a.bend;
+    const double b5 = side * (b.f - edge), b4 = b5 - fifth * b.slope, b3 = b5 - 2 * fifth * b.slope + square * b.bend;
+    const double hidden = doubt.sixth * (cube * cube) * (1.0 / 14400);
+    return b0 + 5 * b1 >= 0 && b1 + 2 * b2 >= 0 && (b2 + b3) / 2 - hidden > doubt.least &&
+           2 * b3 + b4 > 3 * doubt.least && 5 * b4 + b5 > 6 * doubt.least;
+}
+
+std::optional<Exit> FirstExit::at_once(double from, const WalkedCurve::End& start, double guess, double until) {
+    const double rounding = std::max(floor_, 8 * epsilon * curve_.size(until));
+    const bool one_sided = std::isinf(band_.low) || std::isinf(band_.high);
+    constexpr double off_by_half = 1.5;
+    until = std::min(until, from + off_by_half * guess);
+    const double bound = curve_.may_grow() ? curve_.fourth_bound(until) : bound_;
+    double tau = from + guess;
+    bool high = std::isinf(band_.low);
+    constexpr int tries = 3;
+    for (int i = 0; i < tries; ++i) {
+        if (!(tau > from && tau < until)) return {};
+        const WalkedCurve::Jet& y = curve_.jet(tau);
+        if (!one_sided && i == 0) high = band_.high - y[0] < y[0] - band_.low;
+        const double edge = high ? band_.high : band_.low;
+        const int side = high ? 1 : -1;
+        const Zero zero = near(tau, y, edge, bound);
+        tau = zero.tau;
+        if (!zero.exact) continue;
+        const double h = tau - from;
+        if (!(h > 0 && tau < until) || side * end_.slope <= 0) return {};
+        const Doubt doubt{curve_.sixth_bound(bound), std::max(rounding, slowest_apart * creep_.fastest)};
+        if (!apart(start, end_, h, edge, -side, doubt)) return {};
+        if (!one_sided) {
+            const double far = high ? band_.low : band_.high;
+            if (!(side * (start.f - far) > rounding && apart(start, end_, h, far, side, doubt))) return {};
+        }
+        return Exit{tau, side, true};
+    }
+    return {};
+}
+
+void FirstExit::depart(double from, const WalkedCurve::End& start, double until) {
+    for (int level = usual_level - 2; level < WalkedCurve::levels; ++level) {
+        const double h = std::min(curve_.length(level), until - from);
+        const WalkedCurve::Value there = curve_.look_at(from + h);
+        const double third = h * (1.0 / 3), b1 = third * start.slope, b2 = there.f - third * there.slope;
+        const double middle = std::isinf(band_.high) ? b1 + b2 : -(b1 + b2);
+        // The cubic's Bernstein coefficients, raised to the fourth degree: what is hidden is nothing at both ends.
+        const double last = std::isinf(band_.high) ? 3 * b2 + there.f : -(3 * b2 + there.f);
+        if (middle > bound_ * (h * h) * (h * h) * (1.0 / 72) && last > 0 && margin(there.f) > 0) break;
+    }
+    curve_.go();
+}
+
+double FirstExit::step_by_step(double from, double to, double guess, double edge, int side) {
     double inside = from, outside = to, tau = guess;
     for (int i = 0; i < 60; ++i) {
         const WalkedCurve::Value y = curve_.at(tau);
@@ -158,7 +267,7 @@ double FirstExit::polish(double from, double to, double guess, double edge, int 
 
 bool FirstExit::leave(double first, double second, double third, double until) {
     // f(s)/s >= first + second s/2 + third s^2/6 - bound s^3/24 on (0, s]: a cubic, by its Bernstein coefficients.
-    const double fourth = curve_.fourth_bound(until);
+    const double fourth = bound_ >= 0 ? bound_ : curve_.fourth_bound(until);
     constexpr int most = 200;
     double h = curve_.length(usual_level) * 4;
     int level = usual_level - 2;

@@ -22,6 +22,7 @@ public:
     [[nodiscard]] double w0() const { return w0_; }
     [[nodiscard]] double w0_squared() const { return w0_squared_; }
     [[nodiscard]] double delta() const { return delta_; }
+    [[nodiscard]] double twice_delta() const { return 2 * delta_; }
     /// Of the faster of its two parts, per time unit: no derivative grows faster.
     [[nodiscard]] double fastest() const { return fastest_; }
     [[nodiscard]] FreeStep after(double tau) const;

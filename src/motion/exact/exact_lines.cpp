@@ -1,0 +1,121 @@
+// The exact engine along a record of samples: line after line, as long as nothing can happen on them.
+#include <algorithm>
+#include <cmath>
+
+#include "motion/exact/exact_engine.hpp"
+
+namespace dinal::motion::exact {
+
+namespace {
+
+/// The record that M is, when it is nothing else.
+const model::Component* record_of(const model::Excitation& excitation) {
+    const model::Component* record = nullptr;
+    for (const model::Component& component : excitation.components()) {
+        if (component.gain == 0) continue;
+        if (record != nullptr || !std::holds_alternative<model::Polyline>(component.term)) return nullptr;
+        record = &component;
+    }
+    return record;
+}
+
+}  // namespace
+
+LineStep::End LineStep::over_another(double length, const Start& start) {
+    // The Taylor series of the motion, whose coefficients follow from the equation one by one.
+    constexpr std::size_t order = 16;
+    length_ = length;
+    for (std::size_t unit = 0; unit < way_.size(); ++unit) {
+        std::array<double, order + 1> c{};
+        if (unit == 0) c[1] = 1;
+        for (std::size_t i = 0; i + 2 <= order; ++i) {
+            const auto n = static_cast<double>(i);
+            const double load = unit == i + 1 ? 1 : 0;
+            c[i + 2] = (load - damping_ * (n + 1) * c[i + 1] - stiffness_ * c[i]) / (inertia_ * (n + 1) * (n + 2));
+        }
+        double way = 0, velocity = 0;
+        for (std::size_t i = order + 1; i-- > 0;) {
+            velocity = velocity * length + way;
+            way = way * length + c[i];
+        }
+        way_[unit] = way, velocity_[unit] = velocity;
+    }
+    return over(length, start);
+}
+
+void ExactEngine::find_record() {
+    const model::Component* component = record_of(excitation_);
+    if (component == nullptr) return;
+    const model::Samples& samples = *std::get<model::Polyline>(component->term).samples;
+    record_ = {&samples, component->gain, component->from, component->to};
+}
+
+/// Goes on from sample to sample, as far as it can. False when it did not get anywhere.
+bool ExactEngine::along_lines() {
+    using Phase = Standstill::Phase;
+    if (record_.samples == nullptr || clock_.lo != 0) return false;
+    const bool standing = standstill_.phase() == Phase::stuck;
+    if (!standing && standstill_.phase() != Phase::moving) return false;
+    const std::vector<double>& times = record_.samples->t;
+    std::size_t& i = record_.place;
+    if (i >= times.size() || times[i] != clock_.hi) {
+        i = static_cast<std::size_t>(std::lower_bound(times.begin(), times.end(), clock_.hi) - times.begin());
+        if (i == times.size() || times[i] != clock_.hi) return false;
+    }
+    if (clock_.hi < record_.from) return false;
+    const double began = clock_.hi, until = std::min(window_.end, record_.to);
+    while (i + 1 < times.size() && times[i + 1] <= until && cost_ < cost_between_questions) {
+        if (!(standing ? rest_on_line() : move_on_line())) break;
+        cost_ += cost_of_a_line;
+        ++i;
+    }
+    if (clock_.hi == began) return false;
+    if (standing && arcs_ != nullptr) arcs_->add({.start = {began, 0}, .length = clock_.hi - began, .begin = y_});
+    ask_M();
+    return true;
+}
+
+/// A line does not pass a limit that it does not pass at its ends.
+bool ExactEngine::rest_on_line() {
+    const double k_theta = system_.stiffness() * y_.theta, M = record_.torque(1);
+    const double rounding = 64 * epsilon * (system_.greatest_holding() + std::fabs(k_theta));
+    const double low = k_theta - system_.holding(model::Motion::backward) + rounding;
+    const double high = k_theta + system_.holding(model::Motion::forward) - rounding;
+    if (!(std::min(M_, M) > low && std::max(M_, M) < high)) return false;
+    return end_line(record_.time(1) - record_.time(0), M, y_, true);
+}
+
+/// The velocity on a line is not farther from its chord than h^2/8 of its second derivative.
+bool ExactEngine::move_on_line() {
+    const double sign = model::sign_of(standstill_.motion()), start_pull = pull();
+    const double h = record_.time(1) - record_.time(0), M = record_.torque(1);
+    if (!line_.takes(h)) return false;
+    const auto y = line_.over(h, {y_.velocity, start_pull, (M - M_) / h});
+    const double least = std::min(sign * y_.velocity, sign * y.velocity);
+    if (!(least > h * h / 4 * y.bend && std::isfinite(y.velocity) && std::isfinite(M))) return false;
+    const Clock theta = Clock{y_.theta, theta_rest_}.later(y.way);
+    asked_ = h;
+    if (rows_.next_time() < record_.time(1)) {
+        model::closed_form(excitation_, clock_.hi, 0, formula_);
+        arc_.begin(formula_, {y_.velocity, start_pull}, h);
+    }
+    const double theta_rest = theta.lo;
+    const bool whole = end_line(h, M, {theta.hi, y.velocity}, false, start_pull);
+    if (whole) theta_rest_ = theta_rest;
+    return whole;
+}
+
+/// The rows on it, and what is kept of it. False when the run ends here.
+bool ExactEngine::end_line(double h, double M, model::State state, bool standing, double start_pull) {
+    double tau = h;
+    if (rows_.next_time() < record_.time(1) && !rows_until(tau, state, standing)) {
+        return fail(model::Outcome::excitation_not_finite);
+    }
+    if (arcs_ != nullptr && !standing) keep(tau, start_pull, false);
+    y_ = state;
+    M_ = M;
+    clock_ = tau < h ? clock_.later(tau) : Clock{record_.time(1), 0};
+    return outcome_ != model::Outcome::interrupted;
+}
+
+}  // namespace dinal::motion::exact
