@@ -19,10 +19,7 @@ static_assert(over.size() == WalkedCurve::jet_order + 2 && over_factorial.size()
 }  // namespace
 
 WalkedCurve::WalkedCurve(const LinearMotion& free)
-    : free_(free),
-      longest_(longest_look * 2 * std::numbers::pi / free.w0()),
-      longest_hides_((longest_ * longest_) * (longest_ * longest_) / 384),
-      fastest_(free.fastest()) {
+    : free_(free), longest_(longest_look * 2 * std::numbers::pi / free.w0()), fastest_(free.fastest()) {
     slots_.fill(none);
     kept_.fill(none);
 }
@@ -152,19 +149,19 @@ void WalkedCurve::turn_others(const Moment& from, const Turn& by, Moment& to, do
     }
 }
 
-const WalkedCurve::Jet& WalkedCurve::jet(double tau) {
-    const Value y = at(tau);
+const WalkedCurve::Jet& WalkedCurve::derive(const Value& y) {
+    const Moment& asked = *asked_;
     double second = 0, third = 0;
     for (std::size_t j = 0; j < sines_; ++j) {
-        const Complex z = other_.sines[j];
+        const Complex z = asked.sines[j];
         const double omega = omega_[j], square = omega * omega;
         second -= square * z.imag();
         third -= square * (omega * z.real());
     }
     if (free_part_) {
         const double square = free_.w0_squared(), twice = free_.twice_delta();
-        const double first = -(square * other_.theta + twice * other_.velocity);
-        const double bend = -(square * other_.velocity + twice * first);
+        const double first = -(square * asked.theta + twice * asked.velocity);
+        const double bend = -(square * asked.velocity + twice * first);
         second += bend;
         third -= square * first + twice * bend;
     }
@@ -175,10 +172,11 @@ const WalkedCurve::Jet& WalkedCurve::jet(double tau) {
 }
 
 const WalkedCurve::Jet& WalkedCurve::further_jet() {
+    const Moment& asked = *asked_;
     constexpr std::size_t first = 4;
     for (std::size_t i = first; i <= jet_order; ++i) jet_[i] = 0;
     for (std::size_t j = 0; j < sines_; ++j) {
-        const Complex z = other_.sines[j];
+        const Complex z = asked.sines[j];
         const double square = omega_[j] * omega_[j], fourth = square * square;
         jet_[4] += fourth * z.imag();
         jet_[5] += fourth * (omega_[j] * z.real());
@@ -186,7 +184,7 @@ const WalkedCurve::Jet& WalkedCurve::further_jet() {
     }
     if (free_part_) {
         const double square = -free_.w0_squared(), twice = -free_.twice_delta();
-        double before = other_.velocity, f = square * other_.theta + twice * before;
+        double before = asked.velocity, f = square * asked.theta + twice * before;
         for (std::size_t i = 2; i <= jet_order; ++i) {
             const double next = square * before + twice * f;
             before = f;
@@ -202,14 +200,15 @@ const WalkedCurve::Jet& WalkedCurve::further_jet() {
 
 /// The derivatives from one order to another of the parts that most curves do not have.
 void WalkedCurve::derive_others(std::size_t from, std::size_t to) {
+    const Moment& asked = *asked_;
     Jet more{};
     for (std::size_t j = 0; j < rates_; ++j) {
-        double f = rate_[j] * other_.amounts[j];
+        double f = rate_[j] * asked.amounts[j];
         for (std::size_t i = 2; i <= to; ++i) more[i] += f *= rate_[j];
     }
     for (std::size_t j = 0; j < resonances_.size(); ++j) {
         const Resonance& r = resonances_[j];
-        const auto& [g, u] = other_.resonances[j];
+        const auto& [g, u] = asked.resonances[j];
         const Complex root = free_.root();
         const double omega = r.mu.imag();
         Complex growing = times(r.slope_growing, g), turned = times(r.slope_growing, u);
@@ -226,22 +225,23 @@ void WalkedCurve::derive_others(std::size_t from, std::size_t to) {
     if (powers_.size() <= from) return;
     Jet about{};
     for (std::size_t n = powers_.size(); n-- > 0;) {
-        for (std::size_t i = to; i > 0; --i) about[i] = about[i] * other_place_ + about[i - 1];
-        about[0] = about[0] * other_place_ + powers_[n];
+        for (std::size_t i = to; i > 0; --i) about[i] = about[i] * asked_place_ + about[i - 1];
+        about[0] = about[0] * asked_place_ + powers_[n];
     }
     for (std::size_t i = from; i <= to; ++i) jet_[i] += about[i];
 }
 
 double WalkedCurve::way() const {
+    const Moment& asked = *asked_;
     double sum = 0;
-    for (std::size_t i = way_powers_.size(); i-- > 0;) sum = sum * other_place_ + way_powers_[i];
-    for (std::size_t j = 0; j < sines_; ++j) sum -= other_.sines[j].real() / omega_[j];
-    for (std::size_t j = 0; j < rates_; ++j) sum += other_.amounts[j] / rate_[j];
+    for (std::size_t i = way_powers_.size(); i-- > 0;) sum = sum * asked_place_ + way_powers_[i];
+    for (std::size_t j = 0; j < sines_; ++j) sum -= asked.sines[j].real() / omega_[j];
+    for (std::size_t j = 0; j < rates_; ++j) sum += asked.amounts[j] / rate_[j];
     for (std::size_t j = 0; j < resonances_.size(); ++j) {
         const Resonance& r = resonances_[j];
-        sum += imaginary(r.way_growing, other_.resonances[j][0], r.way_turning, other_.resonances[j][1]);
+        sum += imaginary(r.way_growing, asked.resonances[j][0], r.way_turning, asked.resonances[j][1]);
     }
-    if (free_part_) sum += other_.theta;
+    if (free_part_) sum += asked.theta;
     if (aside_ == 0) return sum;
     double further = 0;
     for (std::size_t i = jet_size_; i-- > 4;) further = (further + jet_[i] * over[i + 1]) * aside_;

@@ -63,12 +63,21 @@ public:
     /// Anywhere, to rounding; the walk stays where it is.
     Value at(double tau) {
         aside_ = 0;
-        other_place_ = tau;
+        asked_ = &other_, asked_place_ = tau;
         return turn(start_, turn_by(tau), other_, tau);
     }
     /// The same with three derivatives, and then with the others.
-    const Jet& jet(double tau);
+    const Jet& jet(double tau) { return derive(at(tau)); }
     const Jet& further_jet();
+    /// The same by a look ahead of this length: what looks round is in it.
+    const Jet& jet_ahead(double length) {
+        next_place_ = place_ + length;
+        there_ = turn(*now_, turn_by(length), *next_, next_place_);
+        aside_ = 0;
+        asked_ = next_, asked_place_ = next_place_;
+        return derive(there_);
+    }
+    [[nodiscard]] bool asked_ahead() const { return asked_ != &other_; }
     /// Where jet() was asked last, and this little further on: there way() is told.
     void step_aside(double further) { aside_ = further; }
     /// Of a velocity: the way since the beginning, where at() or jet() was asked last.
@@ -98,8 +107,8 @@ public:
     }
     /// h^4/384 for the length of a level: the cubic through both ends of a look is no farther off, times max|f''''|.
     [[nodiscard]] double hides(int level) const {
-        const double part = halved[static_cast<std::size_t>(level)], square = part * part;
-        return longest_hides_ * (square * square);
+        const double square = length(level) * length(level);
+        return square * square * (1.0 / 384);
     }
     /// What |f''''| does not exceed from here to there.
     [[nodiscard]] double fourth_bound(double until) const {
@@ -200,6 +209,7 @@ private:
     void turn_others(const Moment& from, const Turn& by, Moment& to, double place, Value& y) const;
     [[nodiscard]] Value powers(double tau) const;
     [[nodiscard]] double growing_bound(double until) const;
+    const Jet& derive(const Value& y);
     void derive_others(std::size_t from, std::size_t to);
 
     const LinearMotion& free_;
@@ -211,7 +221,7 @@ private:
     std::size_t sines_ = 0, rates_ = 0;
     double sines_fourth_ = 0, sines_size_ = 0;
 
-    double longest_, longest_hides_;
+    double longest_;
     double fastest_;
     std::vector<Complex> table_mu_;
     // By the length of each level, made when it is wanted first, and the last others.
@@ -226,8 +236,9 @@ private:
     Moment start_, first_, second_, other_;  // two for the walk, which take turns, and one for at()
     const Moment* now_ = &start_;
     Moment* next_ = &first_;
-    double place_ = 0, next_place_ = 0, other_place_ = 0;
-    Jet jet_{};  // of other_, as far as it was asked for
+    const Moment* asked_ = &other_;  // of which jet() and way() tell
+    double place_ = 0, next_place_ = 0, asked_place_ = 0;
+    Jet jet_{};  // of asked_, as far as it was asked for
     std::size_t jet_size_ = 0;
     double aside_ = 0;
     Value here_, there_;

@@ -119,7 +119,7 @@ double ExactEngine::pull() const {
 
 bool ExactEngine::move() {
     const bool leaving = standstill_.phase() == Standstill::Phase::leaving;
-    const double start_pull = pull_at_release_.value_or(pull());
+    const double start_pull = pull_at_release_ ? *pull_at_release_ : pull();
     pull_at_release_.reset();
     const double cost = arc_.cost(formula_);
     asked_ = std::min(clock_.until(piece_end_), longest_arc_);
@@ -241,17 +241,20 @@ void ExactEngine::record_turns(double start_pull, double length) {
         standstill_.head(model::motion_of(y_.velocity));
     }
     // From turn to turn at once where they keep their habit, else by walking.
-    bool behind = false;  // the walk is not where the motion is
+    bool behind = false;  // the walk is where the last turn was, or before it
     double turn = 0;
     while (velocity.place() < length) {
         exit.set_band(inside(standstill_.motion()));
         std::optional<Exit> found;
         if (exit.end().slope != 0) {
             const WalkedCurve::End start = exit.end();
-            const double guess = swings_.length();
-            if (guess > 0 && turn + guess < length) {
-                found = exit.at_once(turn, start, guess, length);
-                found ? swings_.walked(found->tau - turn) : swings_.missed();
+            const double swing = swings_.length();
+            constexpr double near_by = 1e-4;
+            if (swing > 0 && turn + swing < length) {
+                const bool there = behind && std::fabs(turn - velocity.place()) <= near_by * swing;
+                found = exit.at_once(turn, start, swing, length,
+                                     there ? FirstExit::By::a_look : FirstExit::By::the_beginning);
+                found ? swings_.kept(found->tau - turn) : swings_.missed();
             }
             if (!found && behind) exit.depart(turn, start, length);
             behind = found.has_value();
@@ -260,12 +263,13 @@ void ExactEngine::record_turns(double start_pull, double length) {
             found = exit.search(length);
             if (!found) return;
             if (!found->crosses) continue;
-            velocity.go();
         }
         turn = found->tau;
         // At a zero of the velocity the way is what it is next to it.
         const double theta = Clock{y_.theta, theta_rest_}.later(velocity.way()).hi;
         standstill_.turned({clock_.after(turn), theta, formula_.value(turn)});
+        if (behind && !velocity.asked_ahead()) velocity.look_at(turn);
+        velocity.go();
     }
 }
 

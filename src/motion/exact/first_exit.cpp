@@ -202,18 +202,22 @@ bool FirstExit::apart(const WalkedCurve::End& a, const WalkedCurve::End& b, doub
            2 * b3 + b4 > 3 * doubt.least && 5 * b4 + b5 > 6 * doubt.least;
 }
 
-std::optional<Exit> FirstExit::at_once(double from, const WalkedCurve::End& start, double guess, double until) {
+std::optional<Exit> FirstExit::at_once(double from, const WalkedCurve::End& start, double guess, double until, By by) {
     const double rounding = std::max(floor_, 8 * epsilon * curve_.size(until));
     const bool one_sided = std::isinf(band_.low) || std::isinf(band_.high);
     constexpr double off_by_half = 1.5;
     until = std::min(until, from + off_by_half * guess);
-    const double bound = curve_.may_grow() ? curve_.fourth_bound(until) : bound_;
+    double bound = curve_.may_grow() ? curve_.fourth_bound(until) : bound_;
+    // The walk is near `from`: what decays has not grown there by more than a hair.
+    if (by == By::a_look) bound = std::min(bound, 1.01 * curve_.fourth_bound(until));
     double tau = from + guess;
     bool high = std::isinf(band_.low);
     constexpr int tries = 3;
     for (int i = 0; i < tries; ++i) {
         if (!(tau > from && tau < until)) return {};
-        const WalkedCurve::Jet& y = curve_.jet(tau);
+        const bool ahead = i == 0 && by == By::a_look;
+        if (ahead) tau = curve_.place() + guess;
+        const WalkedCurve::Jet& y = ahead ? curve_.jet_ahead(guess) : curve_.jet(tau);
         if (!one_sided && i == 0) high = band_.high - y[0] < y[0] - band_.low;
         const double edge = high ? band_.high : band_.low;
         const int side = high ? 1 : -1;

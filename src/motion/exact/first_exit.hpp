@@ -54,8 +54,7 @@ public:
         constexpr unsigned most = 16;
         waits_ = missed_ = std::min(2 * missed_ + 1, most);
     }
-    /// Where the next one begins elsewhere, so that its turn is another anyway.
-    void walked(double length) { length_ = length, missed_ = 0; }
+    void walked(double length) { length_ = length; }
 
 private:
     double length_ = 0;
@@ -81,8 +80,11 @@ public:
     /// once: after one, the next search goes on behind it.
     std::optional<Exit> search(double until);
     /// Whether the first exit from `from` on, where the curve is `start`, is one near `guess` later: proven from both
-    /// ends. The walk stays where it is. Only for a curve of a known bound.
-    std::optional<Exit> at_once(double from, const WalkedCurve::End& start, double guess, double until);
+    /// ends. The walk stays where it is: near `from`, when the curve is asked
+    /// by a look from there. Only for a curve of a known bound.
+    enum class By { the_beginning, a_look };
+    std::optional<Exit> at_once(double from, const WalkedCurve::End& start, double guess, double until,
+                                By by = By::the_beginning);
     /// How the curve was where it was found to cross; a slope of 0: nobody asked.
     [[nodiscard]] const WalkedCurve::End& end() const { return end_; }
     /// From a crossing, where the walk is not yet: goes to where the curve is certain to be within.
