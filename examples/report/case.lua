@@ -183,20 +183,25 @@ function case.ratios()
   return vector(r)
 end
 
--- The r for which the formula has nan, and case.steady there: tables of r, amplitude and lag in degrees, with gaps
--- between the pieces.
+-- The r for which the formula has nan, and case.steady there: tables of r, amplitude, lag in degrees and stops in each half
+-- cycle, with gaps between the pieces.
 function case.where_it_stops(r, formula, gamma)
-  local x, amplitude, lag = {}, {}, {}
+  local x, amplitude, lag, stops = {}, {}, {}, {}
   for i = 1, #r do
     local n = #x + 1
     if formula[i] ~= formula[i] then
-      x[n], amplitude[n], lag[n] = r[i], case.steady(r[i], gamma)
+      x[n], amplitude[n], lag[n], stops[n] = r[i], case.steady(r[i], gamma)
       lag[n] = math.deg(lag[n])
     elseif n > 1 and amplitude[n - 1] == amplitude[n - 1] then
-      x[n], amplitude[n], lag[n] = r[i], 0 / 0, 0 / 0
+      x[n], amplitude[n], lag[n], stops[n] = r[i], 0 / 0, 0 / 0, 0
     end
   end
-  return x, amplitude, lag
+  return x, amplitude, lag, stops
+end
+
+-- For the legend: what the dotted lines are, in all colours.
+function case.dotted(label)
+  return { { 0 / 0 }, { 0 / 0 }, label = label, dashes = "dotted", colour = 5 }
 end
 
 -- A figure: its numbers on the screen, and its picture in a file. The name is "05a"; the rest are the arguments of the
@@ -266,7 +271,9 @@ function case.response(curves)
 end
 function case.columns(run, names, options)
   options = options or {}
-  options.y, options.xlabel, options.ylabel, options.show = names, "t*", "θ*", false
+  options.y, options.xlabel, options.show = names, "t*", false
+  options.ylabel = #names > 1 and "θ*, M*" or "θ*"
+  options.labels = #names > 1 and { "θ*", "M*" } or nil
   return run:plot(options)
 end
 function case.plane(run, size)

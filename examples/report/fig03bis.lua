@@ -8,8 +8,9 @@ local picture = {
   size = { 8.5, 7 },
 }
 for _, zeta in ipairs{ 0, 0.1, 0.2, 0.3, 0.5, 1 } do
-  local lag = theory.phase_lag{ r = r, zeta = zeta }
-  picture[#picture + 1] = { r, lag * (180 / math.pi), label = string.format("ζ = %g", zeta) }
+  local lag = (theory.phase_lag{ r = r, zeta = zeta } * (180 / math.pi)):table()
+  if zeta == 0 then lag[201] = 0 / 0 end -- it jumps at r = 1
+  picture[#picture + 1] = { r, lag, label = string.format("ζ = %g", zeta) }
 end
 
 local zeta, x = 0.242, 1.35 -- of figure 25

@@ -51,6 +51,7 @@ picture[#picture + 1] = { r, theory.den_hartog{ r = r, friction_ratio = boundary
 local stopping = case.steady(1, 0.836)
 local moving = theory.den_hartog{ r = 1.35, friction_ratio = 0.5 }
 picture[#picture + 1] = { { 1, 1.35 }, { stopping, moving }, style = "points", colour = 5, label = "figures 24, 25" }
+picture[#picture + 1] = case.dotted "with stops"
 
 local linear = theory.linearised{ r = 1.35, friction_ratio = 0.5 }
 fig:head("exact", "as viscous")

@@ -1,5 +1,6 @@
--- Figure 5b: the lag of the peak with dry friction, exact where the mass never stops, simulated where it does; and what
--- becomes of it when friction is taken for viscous.
+-- Figure 5b: the lag of the peak with dry friction, exact where the mass never stops, simulated where it stops once in
+-- each half cycle; and what becomes of it when friction is taken for viscous. Where it stops several times the peak jumps
+-- from one stop to another, so there is no curve.
 local case = dofile((debug.getinfo(1, "S").source:match("^@(.*/)") or "") .. "case.lua")
 
 local fig = case.figure("05b", "phase lag under sin(omega t) with dry friction", ...)
@@ -22,11 +23,15 @@ end
 local colours = { [0] = 1, [0.2] = 2, [0.4] = 3, [0.6] = 4, [0.7] = 7, [0.8] = 6 }
 for _, gamma in ipairs{ 0, 0.2, 0.4, 0.6, 0.7, 0.8 } do
   local amplitude, exact = theory.den_hartog{ r = r, friction_ratio = gamma }
-  local x, _, simulated = case.where_it_stops(r, amplitude, gamma)
+  local x, _, simulated, stops = case.where_it_stops(r, amplitude, gamma)
+  for i = 1, #x do
+    if stops[i] > 1 then simulated[i] = 0 / 0 end
+  end
   picture[#picture + 1] = { r, with_jump(exact), label = "γ = " .. gamma, dashes = "solid",
     colour = colours[gamma] }
   if #x > 0 then picture[#picture + 1] = { x, simulated, dashes = "dotted", colour = colours[gamma] } end
 end
+picture[#picture + 1] = case.dotted "with a stop"
 local _, linear = theory.linearised{ r = r, friction_ratio = 0.6 }
 picture[#picture + 1] = { r, with_jump(linear), label = "0.6 as viscous", dashes = "dashed", colour = 5 }
 

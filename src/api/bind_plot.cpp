@@ -15,8 +15,8 @@
 namespace dinal::api {
 namespace {
 
-plots::RunData data_of(const RunHandle& run) {
-    return {run, &run->trajectory, run->origin ? &run->origin->system : nullptr};
+plots::RunData data_of(lua_State* L, const lua::Options& options, const RunHandle& run) {
+    return {run, &run->trajectory, run->origin ? &run->origin->system : nullptr, asked_units(L, options)};
 }
 
 /// The name or number of a column on the top of the stack, as a name. "M/k" is left to those who know it.
@@ -48,6 +48,24 @@ std::vector<std::string> asked_columns(lua_State* L, const lua::Options& options
     }
     lua_pop(L, 1);
     return names;
+}
+
+/// What the option `labels` calls the curves, in the order of their columns.
+std::vector<std::string> asked_labels(lua_State* L, const lua::Options& options) {
+    std::vector<std::string> labels;
+    options.push("labels");
+    if (!lua_isnil(L, -1) && !lua_istable(L, -1)) {
+        options.wrong("labels", options.row("labels").wanted);
+    }
+    for (lua_Integer i = 1; lua_istable(L, -1) && i <= static_cast<lua_Integer>(lua_rawlen(L, -1)); ++i) {
+        if (lua_rawgeti(L, -1, i) != LUA_TSTRING) {
+            options.wrong("labels", options.row("labels").wanted);
+        }
+        labels.emplace_back(lua_tostring(L, -1));
+        lua_pop(L, 1);
+    }
+    lua_pop(L, 1);
+    return labels;
 }
 
 void refuse_empty(const lua::Options& options, const RunHandle& run) {
@@ -124,10 +142,14 @@ int plot_run(lua_State* L) {
     if (x.size() > 1) {
         options.fail("x", "x must be one column");
     }
-    plots::Figure figure = options.value_or_fail(
-        plots::column_figure(data_of(run), x.empty() ? "" : x.front(), asked_columns(L, options, "y", run)));
-    apply_options(L, options, figure);
-    std::vector<plots::Figure> figures{std::move(figure)};
+    // Who names the axis has decided that there is one.
+    const plots::Axes axes = options.has("ylabel") ? plots::Axes::one : plots::Axes::one_a_unit;
+    std::vector<plots::Figure> figures = options.value_or_fail(
+        plots::column_figures(data_of(L, options, run), {.x = x.empty() ? "" : x.front(),
+                                                         .ys = asked_columns(L, options, "y", run),
+                                                         .labels = asked_labels(L, options),
+                                                         .axes = axes}));
+    apply_options(L, options, figures);
     return deliver(L, options, std::move(figures));
 }
 
@@ -135,7 +157,7 @@ int phase_plot_run(lua_State* L) {
     const RunHandle run = lua::self<RunHandle>(L, 1, "run:phase_plot()");
     const lua::Options options(L, 2, phase_plot_call);
     refuse_empty(options, run);
-    plots::Figure figure = options.value_or_fail(plots::phase_figure(data_of(run)));
+    plots::Figure figure = options.value_or_fail(plots::phase_figure(data_of(L, options, run)));
     apply_options(L, options, figure);
     std::vector<plots::Figure> figures{std::move(figure)};
     return deliver(L, options, std::move(figures));

@@ -12,6 +12,7 @@
 #include "lua/memory_limit.hpp"
 #include "lua/worker_state.hpp"
 #include "plots/gnuplot.hpp"
+#include "plots/svg_words.hpp"
 #include "terminal/display.hpp"
 #include "text/words.hpp"
 
@@ -106,9 +107,8 @@ text::Expected<std::string> content(const std::vector<plots::Figure>& figures, F
     const plots::Terminal terminal = kind == FileKind::svg   ? plots::Terminal::svg
                                      : kind == FileKind::png ? plots::Terminal::png
                                                              : plots::Terminal::pdf;
-    return plots::run_gnuplot(plots::gnuplot_input(figures, terminal, size),
-                              {.go_on = [] { return !lua::interrupt_requested(); },
-                               .memory = lua::memory_limit() == 0 ? 0 : std::max<std::size_t>(lua::memory_left(), 1)});
+    auto picture = drawn_by_gnuplot(plots::gnuplot_input(figures, terminal, size));
+    return picture && kind == FileKind::svg ? plots::with_words(std::move(picture).value(), figures) : picture;
 }
 
 void write_picture(lua_State* L, const lua::Options& options, const TargetOptions& asked,
@@ -157,6 +157,12 @@ void show_pictures_by(PictureViewer viewer) {
     picture_viewer = viewer;
 }
 
+text::Expected<std::string> drawn_by_gnuplot(const std::string& commands) {
+    return plots::run_gnuplot(commands,
+                              {.go_on = [] { return !lua::interrupt_requested(); },
+                               .memory = lua::memory_limit() == 0 ? 0 : std::max<std::size_t>(lua::memory_left(), 1)});
+}
+
 text::Expected<std::string> svg_of(const Picture& picture) {
     return content(picture.figures, FileKind::svg, {}, picture.format);
 }
@@ -186,6 +192,23 @@ void apply_options(lua_State* L, const lua::Options& options, plots::Figure& fig
     }
     if (figure.equal && (figure.x.logarithmic || figure.y.logarithmic)) {
         options.fail("equal", "equal = true needs linear axes: leave out xlog and ylog");
+    }
+}
+
+void apply_options(lua_State* L, const lua::Options& options, std::vector<plots::Figure>& figures) {
+    for (plots::Figure& figure : figures) {
+        apply_options(L, options, figure);
+        if (&figure != &figures.front()) figure.title.clear();
+        if (&figure != &figures.back()) figure.x.label.clear();
+    }
+    if (figures.size() > 1) {
+        for (const char* of_one : {"ylim", "yticks", "ylog", "equal"}) {
+            if (options.has(of_one)) {
+                options.fail(of_one, fmt::format("{} is for one unit, and these columns have {}: give ylabel, too, to "
+                                                 "have them on one axis, or draw them one by one",
+                                                 of_one, figures.size()));
+            }
+        }
     }
 }
 

@@ -18,6 +18,8 @@ struct Picture {
 
 /// Changes the figure as its options say (plot_options.hpp).
 void apply_options(lua_State* L, const lua::Options& options, plots::Figure& figure);
+/// The same for figures one below the other, which share x.
+void apply_options(lua_State* L, const lua::Options& options, std::vector<plots::Figure>& figures);
 
 /// As its options say (plot_options.hpp), prints, writes the file, or with show = false leaves the picture on the
 /// stack; returns the number of values left.
@@ -29,6 +31,9 @@ int plot_vectors(lua_State* L);
 /// Where pictures go that are shown and in no file: else to standard output, as text.
 using PictureViewer = void (*)(const Picture& picture);
 void show_pictures_by(PictureViewer viewer);
+
+/// What gnuplot makes of these commands, within the limits of the script.
+text::Expected<std::string> drawn_by_gnuplot(const std::string& commands);
 
 /// The picture as SVG, by gnuplot.
 text::Expected<std::string> svg_of(const Picture& picture);

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "api/units_option.hpp"
 #include "plots/figure.hpp"
 #include "text/option.hpp"
 
@@ -72,8 +73,13 @@ inline constexpr text::Option target_options[] = {
 inline constexpr text::Option column_options[] = {
     {.name = "x", .otherwise = "\"t\"", .meaning = "name or number of a column"},
     {.name = "y",
-     .meaning = "name or number of a column, or a list of them, else theta, and M/k when there is an excitation; M/k, "
-                "friction/k, damping/k and velocity/omega0 are names, too"},
+     .meaning =
+         "name or number of a column, or a list of them, else theta, and M/k when there is an excitation; M/k, "
+         "friction/k, damping/k and velocity/omega0 are names, too; what has other units gets an axis of its own, "
+         "below"},
+    {.name = "labels",
+     .meaning = "what these are called in the picture",
+     .wanted = "a list of words such as { \"angle\", \"torque\" }"},
 };
 
 inline constexpr auto plot_options = text::joined(figure_options, target_options);
@@ -81,10 +87,11 @@ inline constexpr text::Call plot_call{"plot", "plot{ { t, theta, label = \"theta
 inline constexpr text::Call pictures_call{"plot", "plot{ picture, picture, file = \"both.svg\" }", target_options};
 inline constexpr text::Call curve_call{"plot: curve", "{ x, y, label = \"theta\", style = \"points\" }",
                                        plots::curve_options};
-inline constexpr auto plot_run_options = text::joined(column_options, figure_options, target_options);
+inline constexpr auto plot_run_options = text::joined(column_options, units_option, figure_options, target_options);
+inline constexpr auto phase_plot_options = text::joined(units_option, figure_options, target_options);
 inline constexpr text::Call plot_run_call{"run:plot", "run:plot{ y = { \"theta\", \"friction\" }, file = \"run.svg\" }",
                                           plot_run_options, true};
-inline constexpr text::Call phase_plot_call{"run:phase_plot", "run:phase_plot{ file = \"phase.svg\" }", plot_options,
-                                            true};
+inline constexpr text::Call phase_plot_call{"run:phase_plot", "run:phase_plot{ file = \"phase.svg\" }",
+                                            phase_plot_options, true};
 
 }  // namespace dinal::api

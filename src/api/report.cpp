@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <string_view>
 
+#include "plots/svg_words.hpp"
 #include "text/html.hpp"
 
 namespace dinal::api {
@@ -121,7 +122,7 @@ struct MarkdownWriter {
         }
         const std::string name = fmt::format("{}-{}.svg", stem, report.pictures.size() + 1);
         report.pictures.emplace_back(name, item.svg);
-        report.text += fmt::format("![picture {}]({})\n\n", report.pictures.size(), name.substr(name.rfind('/') + 1));
+        report.text += fmt::format("![{}]({})\n\n", plain_markdown(item.title), name.substr(name.rfind('/') + 1));
     }
     void operator()(const DataHandle& item) { report.text += markdown_of(*item) + "\n\n"; }
 };
@@ -130,7 +131,7 @@ struct MarkdownWriter {
 
 ReportPicture drawn(const Picture& picture) {
     auto svg = svg_of(picture);
-    return {svg ? std::move(svg).value() : "", text_of_picture(picture)};
+    return {svg ? std::move(svg).value() : "", text_of_picture(picture), plots::title_of(picture.figures)};
 }
 
 std::string html_of(const Report& report) {

@@ -27,6 +27,7 @@ struct ReportLines {
 struct ReportPicture {
     std::string svg;   ///< empty when gnuplot could not draw it
     std::string text;  ///< the same for those who see no pictures
+    std::string title = {};
 };
 using ReportItem = std::variant<ReportHeading, ReportText, ReportLines, ReportPicture, DataHandle>;
 

@@ -43,6 +43,7 @@ struct Curve {
     Dashes dashes = Dashes::by_place;
     int colour = 0;                    ///< 1, 2, ... of the palette; 0: by place
     std::optional<Numbers> base = {};  ///< a fill reaches from y to this, to zero without it
+    bool behind = false;               ///< drawn before the others; where it is dense, as the band it fills
     [[nodiscard]] std::size_t size() const { return std::min(x.values.size(), y.values.size()); }
 };
 
@@ -88,6 +89,7 @@ std::vector<MarkKind> kinds_of(const std::vector<Mark>& marks);
 
 struct Figure {
     std::string title = {};
+    bool below = false;  ///< stands under the figure before it, with the same x
     Axis x, y;
     bool equal = false;    ///< one unit is as long on both axes
     bool axes = true;      ///< frame, ticks, labels and grid

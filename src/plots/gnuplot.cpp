@@ -99,12 +99,15 @@ std::optional<std::string> read_all(int descriptor, const std::function<bool()>&
     }
 }
 
-/// Ours, but in the C locale: a picture must not depend on who draws it.
+/// Ours, but in the C locale and without what sets gnuplot up (GNUTERM, GNUPLOT_LIB, GDFONTPATH, FIT_LOG ...): a
+/// picture must not depend on who draws it.
 std::vector<char*> environment() {
     static char locale[] = "LC_ALL=C.UTF-8";
     std::vector<char*> all;
     for (char** entry = environ; *entry != nullptr; ++entry) {
-        if (std::string_view(*entry).substr(0, 7) != "LC_ALL=") {
+        const std::string_view variable = *entry;
+        constexpr std::array<std::string_view, 5> theirs{"LC_ALL=", "GNUTERM", "GNUPLOT_", "GDFONTPATH", "FIT_"};
+        if (std::none_of(theirs.begin(), theirs.end(), [=](auto start) { return variable.starts_with(start); })) {
             all.push_back(*entry);
         }
     }

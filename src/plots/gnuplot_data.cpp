@@ -43,20 +43,12 @@ std::string GnuplotData::take_binary() {
     return std::exchange(binary_, {});
 }
 
-std::string single_quoted(std::string_view text) {
-    const std::string shown = text::displayable(text);
-    std::string_view rest = shown;
+std::string quoted_words(std::string_view text) {
     std::string result = "'";
-    if (rest.starts_with('\'')) {
-        // NOTE: gnuplot 5.4 takes the first two of three quotes for an empty string; only further on two make one.
-        result += "’";
-        rest.remove_prefix(1);
-    }
-    for (const char c : rest) {
-        result += c;
-        if (c == '\'') {
-            result += c;
-        }
+    for (const char c : text::displayable(text)) {
+        // NOTE: gnuplot 5.4 loses count of apostrophes that follow each other, also of doubled ones. Between double
+        // quotes nothing but an apostrophe is ever put, for in them a backquote starts a shell.
+        result += c == '\'' ? std::string("'.\"'\".'") : std::string{c};
     }
     return result + "'";
 }

@@ -30,8 +30,8 @@ private:
     std::string binary_;
 };
 
-/// 'text' as gnuplot reads it back: quotes doubled, and control characters made blanks, for a line end would end the
-/// command.
-std::string single_quoted(std::string_view text);
+/// 'text' as gnuplot reads it back: an expression with each apostrophe between double quotes, and control characters
+/// made blanks, for a line end would end the command.
+std::string quoted_words(std::string_view text);
 
 }  // namespace dinal::plots

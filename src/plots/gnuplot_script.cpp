@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "plots/bands.hpp"
 #include "plots/gnuplot_data.hpp"
 #include "plots/panel_script.hpp"
 #include "plots/paper_layout.hpp"
@@ -132,15 +133,24 @@ std::string commands(const Sheet& sheet, GnuplotData& data) {
     return text + (several ? "unset multiplot\n" : "");
 }
 
+/// The figures as they are drawn on a sheet of that size.
+std::vector<Figure> on_paper(std::span<const Figure> figures, PaperSize size) {
+    constexpr double usual = 8.5;  // cm
+    constexpr double box = 0.85;   // of the width, to the curves
+    return with_bands(figures, box * pixels_per_cm * (size.width > 0 ? size.width : usual));
+}
+
 }  // namespace
 
-std::string gnuplot_input(std::span<const Figure> figures, Terminal terminal, PaperSize size) {
+std::string gnuplot_input(std::span<const Figure> given, Terminal terminal, PaperSize size) {
+    const std::vector<Figure> figures = on_paper(given, size);
     const Sheet sheet = lay_out(figures, size);
     GnuplotData data(DataForm::binary);
     return "set encoding utf8\n" + terminal_line(terminal, sheet) + commands(sheet, data);
 }
 
-std::string gnuplot_file(std::span<const Figure> figures, PaperSize size) {
+std::string gnuplot_file(std::span<const Figure> given, PaperSize size) {
+    const std::vector<Figure> figures = on_paper(given, size);
     const Sheet sheet = lay_out(figures, size);
     GnuplotData data(DataForm::text);
     const std::string text = commands(sheet, data);

@@ -6,13 +6,15 @@
 #include <cmath>
 #include <numbers>
 
+#include "plots/bands.hpp"
 #include "plots/paper_style.hpp"
 #include "plots/shades.hpp"
 
 namespace dinal::plots {
 namespace {
 
-constexpr double bar = 0.3 * em;  // how high the bars are for the dead zone and for what is stuck
+constexpr double bar = 0.3 * em;           // how high the bars are for the dead zone and for what is stuck
+constexpr double below_ticks = 0.45 * em;  // how far those for what is stuck are from the axis
 
 class PanelScript {
 public:
@@ -76,7 +78,7 @@ private:
     // NOTE: not by `set xlabel`, which stands elsewhere on each kind of sheet.
     void add_words(const Words& words, std::string_view how) {
         if (!words.text.empty()) {
-            line(fmt::format("set label {} at {} center{} textcolor rgb '{}'", single_quoted(words.text),
+            line(fmt::format("set label {} at {} center{} textcolor rgb '{}'", quoted_words(words.text),
                              at(words.x, words.y), how, ink_colour));
         }
     }
@@ -101,14 +103,14 @@ private:
         line(fmt::format("set {}tics nomirror out scale 0.5 offset {} textcolor rgb '{}' ({})", name,
                          name == 'y'             ? "0.5,0"
                          : figure_.stuck.empty() ? "0,0.3"
-                                                 : "0,0.1",
+                                                 : "0,-0.2",
                          ink_colour, fmt::join(list, ", ")));
     }
 
     void add_legend() {
         for (const LegendEntry& entry : panel_.legend) {
             const double width = sample_width(entry.sample);
-            line(fmt::format("set label {} at {} left textcolor rgb '{}'", single_quoted(entry.text),
+            line(fmt::format("set label {} at {} left textcolor rgb '{}'", quoted_words(entry.text),
                              at(entry.x + width + after_sample, entry.y), ink_colour));
             switch (entry.sample) {
                 case Sample::mark:
@@ -156,14 +158,14 @@ private:
         line(fmt::format("set object rectangle from {} to {} fc rgb '{}' fs solid noborder", from, to, colour));
     }
 
-    /// Bars below the time axis; thousands of stops that no eye parts become one.
+    /// Bars below the ticks of the time axis; thousands of stops that no eye parts become one.
     void add_stuck() {
         const Interval seen = panel_.view.x.range();
         const double finest = seen.length() / (2 * (panel_.right - panel_.left));
         Interval all{seen.high, seen.high};
         const auto draw = [&] {
             if (all.high > all.low) {
-                const double top = panel_.bottom - 1;
+                const double top = panel_.bottom - below_ticks;
                 add_bar(fmt::format("first {}, screen {:.5f}", all.low, (top - bar) / sheet_.height),
                         fmt::format("first {}, screen {:.5f}", all.high, top / sheet_.height), ink_colour);
             }
@@ -240,7 +242,7 @@ private:
     }
 
     void add_curves() {
-        for (std::size_t i = 0; i < figure_.curves.size(); ++i) {
+        for (const std::size_t i : drawing_order(figure_)) {
             const std::vector<std::string> more = curve_elements(panel_, i, kept_[i], data_);
             elements_.insert(elements_.end(), more.begin(), more.end());
         }

@@ -129,8 +129,8 @@ void set_x_ticks(PaperPanel& panel, double limit) {
     }
 }
 
-/// The margins of a panel, the ticks that fit between them, and the box.
-void place(PaperPanel& panel, double left, double width, double height) {
+/// The margins of a panel, the ticks that fit between them, and the box, which begins `inset` from the left or later.
+void place(PaperPanel& panel, double left, double width, double height, double inset) {
     const Figure& figure = *panel.figure;
     const auto y_ticks = [&](double high) {
         return ticks_of(figure.y, panel.view.y, std::clamp(static_cast<int>(high / (2.6 * em)), 2, most_ticks));
@@ -139,8 +139,9 @@ void place(PaperPanel& panel, double left, double width, double height) {
     panel.y_label.text = with_offset(figure.y.label, panel.y_ticks);
     const double label_room = panel.y_label.text.empty() ? 0 : 1.6 * em;
     panel.left = left + 0.4 * em + (figure.axes ? label_room + widest(panel.y_ticks.text) + 0.9 * em : 0);
+    panel.left = std::max(panel.left, left + inset);
     panel.right = left + width - (figure.axes ? 1.0 : 0.4) * em;
-    const double bars = figure.stuck.empty() ? 0 : 0.2 * em;
+    const double bars = figure.stuck.empty() ? 0 : 0.6 * em;
     panel.bottom = figure.axes ? 2.1 * em + bars + (figure.x.label.empty() ? 0 : 1.5 * em) : 0.4 * em;
     panel.right = std::max(panel.right, panel.left + 2 * em);
     panel.legend = legend_of(figure);
@@ -183,40 +184,90 @@ double share_of(const Figure& figure) {
     return figure.equal ? 1 : 1.4;
 }
 
-PaperSize complete(PaperSize size, std::span<const Figure> figures) {
-    const bool single = figures.size() == 1;
+/// Figures side by side, each with those below it.
+using Pile = std::vector<const Figure*>;
+std::vector<Pile> piles_of(std::span<const Figure> figures) {
+    std::vector<Pile> piles;
+    for (const Figure& figure : figures) {
+        if (!figure.below || piles.empty()) {
+            piles.emplace_back();
+        }
+        piles.back().push_back(&figure);
+    }
+    return piles;
+}
+
+PaperSize complete(PaperSize size, const std::vector<Pile>& piles) {
+    const bool single = piles.size() == 1;
     if (size.width <= 0) {
         size.width = single ? 8.5 : 17;
     }
     if (size.height <= 0) {
         double most = 0;
-        for (const Figure& figure : figures) {
-            // A long legend must not eat the picture: it gets room of its own.
-            std::vector<LegendEntry> entries = legend_of(figure);
-            const double width = size.width * pixels_per_cm / static_cast<double>(figures.size()) - 6 * em;
-            const double legend = flow(entries, width) * line_height / pixels_per_cm;
-            most = std::max(most, (single && figure.equal ? 7.6 : 5.6) + legend);
+        for (const Pile& pile : piles) {
+            double all = 0;
+            for (const Figure* figure : pile) {
+                // A long legend must not eat the picture: it gets room of its own.
+                std::vector<LegendEntry> entries = legend_of(*figure);
+                const double width = size.width * pixels_per_cm / static_cast<double>(piles.size()) - 6 * em;
+                const double legend = flow(entries, width) * line_height / pixels_per_cm;
+                all += (pile.size() > 1 ? 4.4 : single && figure->equal ? 7.6 : 5.6) + legend;
+            }
+            most = std::max(most, all);
         }
         size.height = single ? most : most + 0.5;
     }
     return size;
 }
 
+void raise_panel(PaperPanel& panel, double by) {
+    panel.bottom += by;
+    panel.top += by;
+    for (Words* words : {&panel.title, &panel.x_label, &panel.y_label}) {
+        words->y += by;
+    }
+    for (LegendEntry& entry : panel.legend) {
+        entry.y += by;
+    }
+}
+
+/// One below the other, with their axes below each other, too.
+void place_pile(std::vector<PaperPanel>& panels, const Pile& pile, double left, double width, double whole) {
+    const double height = whole / static_cast<double>(pile.size());
+    double inset = 0;
+    std::vector<PaperPanel> placed;
+    for (int attempt = 0; attempt < 2; ++attempt) {
+        placed.clear();
+        for (std::size_t i = 0; i < pile.size(); ++i) {
+            placed.push_back({.figure = pile[i], .view = view_of(*pile[i])});
+            place(placed.back(), left, width, height, inset);
+            raise_panel(placed.back(), whole - static_cast<double>(i + 1) * height);
+        }
+        if (pile.size() == 1) {
+            break;
+        }
+        for (const PaperPanel& panel : placed) {
+            inset = std::max(inset, panel.left - left);
+        }
+    }
+    panels.insert(panels.end(), placed.begin(), placed.end());
+}
+
 }  // namespace
 
 Sheet lay_out(std::span<const Figure> figures, PaperSize size) {
     const bool any_height = size.height <= 0;
-    size = complete(size, figures);
+    const std::vector<Pile> piles = piles_of(figures);
+    size = complete(size, piles);
     Sheet sheet{size.width * pixels_per_cm, size.height * pixels_per_cm, {}};
     double shares = 0;
-    for (const Figure& figure : figures) {
-        shares += share_of(figure);
+    for (const Pile& pile : piles) {
+        shares += share_of(*pile.front());
     }
     double left = 0;
-    for (const Figure& figure : figures) {
-        const double width = sheet.width * share_of(figure) / shares;
-        sheet.panels.push_back({.figure = &figure, .view = view_of(figure)});
-        place(sheet.panels.back(), left, width, sheet.height);
+    for (const Pile& pile : piles) {
+        const double width = sheet.width * share_of(*pile.front()) / shares;
+        place_pile(sheet.panels, pile, left, width, sheet.height);
         left += width;
     }
     if (any_height && figures.size() == 1 && sheet.panels.front().unused > 1) {

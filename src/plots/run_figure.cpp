@@ -11,28 +11,53 @@
 namespace dinal::plots {
 namespace {
 
+/// What a column measures: curves of one kind stand on one axis.
+enum class Measure { time, angle, speed, torque, unknown };
+
 struct Symbol {
-    std::string_view name, symbol, unit;
+    std::string_view name, symbol;
+    Measure measure;
 };
 
-constexpr std::array<Symbol, 8> symbols{{{"theta", "θ", "rad"},
-                                         {"velocity", "θ'", "rad/time"},
-                                         {"velocity/omega0", "θ'/ω₀", "rad"},
-                                         {"velocity_over_omega0", "θ'/ω₀", "rad"},
-                                         {"M/k", "M/k", "rad"},
-                                         {"M_over_k", "M/k", "rad"},
-                                         {"friction_over_k", "friction/k", "rad"},
-                                         {"damping_over_k", "damping/k", "rad"}}};
+constexpr std::array<Symbol, 12> symbols{{{"t", "t", Measure::time},
+                                          {"theta", "θ", Measure::angle},
+                                          {"velocity", "θ'", Measure::speed},
+                                          {"velocity/omega0", "θ'/ω₀", Measure::angle},
+                                          {"velocity_over_omega0", "θ'/ω₀", Measure::angle},
+                                          {"M/k", "M/k", Measure::angle},
+                                          {"M_over_k", "M/k", Measure::angle},
+                                          {"friction_over_k", "friction/k", Measure::angle},
+                                          {"damping_over_k", "damping/k", Measure::angle},
+                                          {"M", "M", Measure::torque},
+                                          {"friction", "friction", Measure::torque},
+                                          {"damping", "damping", Measure::torque}}};
 
 Symbol symbol_of(std::string_view name) {
     const auto* found =
         std::find_if(symbols.begin(), symbols.end(), [name](const Symbol& symbol) { return symbol.name == name; });
-    return found != symbols.end() ? *found : Symbol{name, name, name.ends_with("/k") ? "rad" : ""};
+    return found != symbols.end() ? *found
+                                  : Symbol{name, name, name.ends_with("/k") ? Measure::angle : Measure::unknown};
 }
 
-std::string axis_label(std::string_view name) {
+std::string unit_of(const RunData& run, Measure measure) {
+    switch (measure) {
+        case Measure::time:
+            return run.units.t;
+        case Measure::angle:
+            return run.units.theta;
+        case Measure::speed:
+            return run.units.speed();
+        case Measure::torque:
+        case Measure::unknown:
+            break;
+    }
+    return "";
+}
+
+std::string axis_label(const RunData& run, std::string_view name) {
     const Symbol symbol = symbol_of(name);
-    return std::string(symbol.symbol) + (symbol.unit.empty() ? "" : ", " + std::string(symbol.unit));
+    const std::string unit = unit_of(run, symbol.measure);
+    return std::string(symbol.symbol) + (unit.empty() ? "" : ", " + unit);
 }
 
 text::Expected<Numbers> plain_column(const RunData& run, std::string_view name) {
@@ -132,39 +157,85 @@ std::vector<Mark> marks_of_events(const motion::Trajectory& trajectory) {
 
 }  // namespace
 
-text::Expected<Figure> column_figure(const RunData& run, std::string_view x, const std::vector<std::string>& ys) {
-    if (run.trajectory->names.empty()) {
-        return text::Error{"the run has no columns to draw"};
+namespace {
+
+/// The names in groups that measure the same, in the order of their first members.
+std::vector<std::vector<std::string>> by_measure(const std::vector<std::string>& names) {
+    std::vector<std::vector<std::string>> groups;
+    for (const std::string& name : names) {
+        const Measure measure = symbol_of(name).measure;
+        const auto same = std::find_if(groups.begin(), groups.end(), [measure](const std::vector<std::string>& group) {
+            return symbol_of(group.front()).measure == measure;
+        });
+        same != groups.end() ? same->push_back(name) : groups.push_back({name});
     }
-    const std::string across = !x.empty() ? std::string(x) : has(run, "t") ? "t" : run.trajectory->names.front();
-    const std::vector<std::string> names = ys.empty() ? usual_columns(run, across) : ys;
-    const auto x_values = column(run, across);
-    if (!x_values) {
-        return x_values.error();
-    }
+    return groups;
+}
+
+text::Expected<Figure> figure_of_columns(const RunData& run, const std::string& across, const Numbers& x,
+                                         const std::vector<std::string>& names) {
     Figure figure;
-    figure.x.label = axis_label(across);
+    figure.x.label = axis_label(run, across);
+    const bool with_theta = std::find(names.begin(), names.end(), "theta") != names.end();
     for (const std::string& name : names) {
         const auto values = column(run, name);
         if (!values) {
             return values.error();
         }
-        figure.curves.push_back({*x_values, *values, names.size() > 1 ? std::string(symbol_of(name).symbol) : ""});
+        const bool is_load = name == "M/k" || name == "M_over_k";
+        figure.curves.push_back({.x = x,
+                                 .y = *values,
+                                 .label = names.size() > 1 ? std::string(symbol_of(name).symbol) : "",
+                                 .behind = is_load && with_theta});
     }
-    const std::string_view unit = symbol_of(names.front()).unit;
     if (names.size() == 1) {
-        figure.y.label = axis_label(names.front());
-    } else if (std::all_of(names.begin(), names.end(),
-                           [unit](const std::string& name) { return symbol_of(name).unit == unit; })) {
-        figure.y.label = unit;
+        figure.y.label = axis_label(run, names.front());
+    } else {
+        const Measure measure = symbol_of(names.front()).measure;
+        figure.y.label = measure == Measure::torque ? "torque" : unit_of(run, measure);
     }
     if (across == "t") {
         figure.stuck = stuck_intervals(*run.trajectory);
-        if (std::find(names.begin(), names.end(), "theta") != names.end()) {
+        if (with_theta) {
             figure.marks = marks_of_events(*run.trajectory);
         }
     }
     return figure;
+}
+
+}  // namespace
+
+text::Expected<std::vector<Figure>> column_figures(const RunData& run, const ColumnsToDraw& asked) {
+    if (run.trajectory->names.empty()) {
+        return text::Error{"the run has no columns to draw"};
+    }
+    const std::string across = !asked.x.empty() ? asked.x : has(run, "t") ? "t" : run.trajectory->names.front();
+    const std::vector<std::string> names = asked.ys.empty() ? usual_columns(run, across) : asked.ys;
+    const auto x_values = column(run, across);
+    if (!x_values) {
+        return x_values.error();
+    }
+    std::vector<Figure> figures;
+    const std::vector<std::vector<std::string>> all{names};
+    for (const std::vector<std::string>& group : asked.axes == Axes::one ? all : by_measure(names)) {
+        auto figure = figure_of_columns(run, across, *x_values, group);
+        if (!figure) {
+            return figure.error();
+        }
+        figures.push_back(std::move(figure).value());
+        figures.back().below = figures.size() > 1;
+        for (std::size_t i = 0; i < group.size(); ++i) {
+            const auto place = std::find(names.begin(), names.end(), group[i]) - names.begin();
+            if (place < static_cast<std::ptrdiff_t>(asked.labels.size())) {
+                figures.back().curves[i].label = asked.labels[static_cast<std::size_t>(place)];
+            }
+        }
+    }
+    for (std::size_t i = 0; i + 1 < figures.size(); ++i) {  // what all share stands once, at the lowest
+        figures[i].x.label.clear();
+        figures[i].stuck.clear();
+    }
+    return figures;
 }
 
 text::Expected<Figure> phase_figure(const RunData& run) {
@@ -174,11 +245,11 @@ text::Expected<Figure> phase_figure(const RunData& run) {
             "the phase plane needs omega0, which a run that was read from a .csv file no longer has; use run:plot{ x = "
             "\"theta\", y = \"velocity\" }"};
     }
-    auto figure = column_figure(run, "theta", {record ? "velocity_over_omega0" : "velocity/omega0"});
-    if (!figure) {
-        return figure;
+    auto figures = column_figures(run, {.x = "theta", .ys = {record ? "velocity_over_omega0" : "velocity/omega0"}});
+    if (!figures) {
+        return figures.error();
     }
-    Figure plane = std::move(figure).value();
+    Figure plane = std::move(figures).value().front();
     plane.equal = true;
     plane.circles = true;
     const Curve& motion = plane.curves.front();

@@ -12,15 +12,33 @@
 
 namespace dinal::plots {
 
+/// What a user measures the angle and the time in: words, on which no number depends.
+struct Units {
+    std::string theta = "rad";
+    std::string t = {};  ///< none: time units
+
+    [[nodiscard]] std::string speed() const { return theta + "/" + (t.empty() ? "time" : t); }
+};
+
 struct RunData {
     std::shared_ptr<const void> owner;  ///< keeps the trajectory alive
     const motion::Trajectory* trajectory;
     const model::Oscillator* system;  ///< null in a run that was read from a file
+    Units units = {};
 };
 
-/// Columns over a column: names of the run's columns, or "M/k", "friction/k", "damping/k" and "velocity/omega0", which
-/// the record of 1989 has. No names: theta, and M/k when there is an excitation, over t.
-text::Expected<Figure> column_figure(const RunData& run, std::string_view x, const std::vector<std::string>& ys);
+enum class Axes { one_a_unit, one };
+
+/// Names of the run's columns, or "M/k", "friction/k", "damping/k" and "velocity/omega0", which the record of 1989 has.
+struct ColumnsToDraw {
+    std::string x = {};                    ///< t without it
+    std::vector<std::string> ys = {};      ///< none: theta, and M/k when there is an excitation
+    std::vector<std::string> labels = {};  ///< for the first of these, in place of their names
+    Axes axes = Axes::one_a_unit;
+};
+
+/// Columns over a column. What is measured in different units stands in figures one below the other.
+text::Expected<std::vector<Figure>> column_figures(const RunData& run, const ColumnsToDraw& asked = {});
 
 /// theta'/omega0 over theta, 1:1: circles about the origin are lines of equal energy.
 text::Expected<Figure> phase_figure(const RunData& run);

@@ -4,6 +4,7 @@
 #include <array>
 #include <numbers>
 
+#include "plots/bands.hpp"
 #include "plots/shades.hpp"
 
 namespace dinal::plots {
@@ -207,7 +208,12 @@ void draw(Canvas& canvas, const Figure& figure, const Projection& projection, co
     if (figure.axes) {
         draw_background(canvas, figure, projection, circles);
     }
-    for (std::size_t i = 0; i < figure.curves.size(); ++i) {
+    // Who comes first to a cell has it: what is behind comes last.
+    std::vector<std::size_t> order = drawing_order(figure);
+    const auto front =
+        std::find_if(order.begin(), order.end(), [&](std::size_t i) { return !figure.curves[i].behind; });
+    std::rotate(order.begin(), front, order.end());
+    for (const std::size_t i : order) {
         const Curve& curve = figure.curves[i];
         const std::uint8_t ink = ink_of(i);
         if (curve.style == Style::points || curve.size() == 1) {

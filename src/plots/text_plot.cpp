@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <limits>
 
+#include "plots/bands.hpp"
 #include "plots/shades.hpp"
 #include "plots/text_block.hpp"
 #include "plots/text_drawing.hpp"
+#include "plots/text_legend.hpp"
 #include "plots/ticks.hpp"
 #include "text/characters.hpp"
 
@@ -27,8 +29,20 @@ Frame frame_of(Charset charset) {
 
 class TextPlot {
 public:
-    TextPlot(const Figure& figure, const TextFormat& format)
-        : figure_(figure), format_(format), seen_(view_of(figure)), view_(seen_), frame_(frame_of(format.charset)) {}
+    /// With at least `label_room` columns for the numbers of the vertical axis.
+    TextPlot(const Figure& figure, const TextFormat& format, std::size_t label_room = 0)
+        : figure_(figure),
+          format_(format),
+          seen_(view_of(figure)),
+          view_(seen_),
+          frame_(frame_of(format.charset)),
+          label_room_(label_room) {}
+
+    /// How many columns those need.
+    [[nodiscard]] std::size_t label_width() {
+        lay_out();
+        return label_width_;
+    }
 
     TextBlock block() {
         lay_out();
@@ -49,10 +63,7 @@ public:
 
 private:
     [[nodiscard]] TextLine empty_line() const { return TextLine(format_.colours); }
-    [[nodiscard]] std::string shown(std::string_view text) const {
-        const std::string clean = text::displayable(text);
-        return format_.charset == Charset::braille ? clean : text::in_ascii(clean);
-    }
+    [[nodiscard]] std::string shown(std::string_view text) const { return shown_in(format_.charset, text); }
 
     /// The room depends on the tick labels, and how many ticks there are on the room: again until both agree.
     void lay_out() {
@@ -63,7 +74,7 @@ private:
             set_canvas();
             y_ticks_ = ticks_of(figure_.y, view_.y, std::max(2, rows_ / 3));
             x_ticks_ = ticks_of(figure_.x, view_.x, std::max(2, columns_ / (figure_.equal ? 7 : 11)));
-            label_width_ = figure_.axes && !figure_.stuck.empty() ? 5 : 0;
+            label_width_ = std::max<std::size_t>(label_room_, figure_.axes && !figure_.stuck.empty() ? 5 : 0);
             for (const std::string& text : figure_.axes ? y_ticks_.text : std::vector<std::string>{}) {
                 label_width_ = std::max(label_width_, text.size());
             }
@@ -97,38 +108,6 @@ private:
         return shown(figure_.y.label + (y_ticks_.offset.empty() ? "" : " (" + y_ticks_.offset + ")"));
     }
 
-    struct Entry {
-        std::string text;
-        std::uint8_t ink;
-    };
-
-    [[nodiscard]] std::vector<Entry> entries() const {
-        std::vector<Entry> list;
-        if (figure_.shades != nullptr) {
-            if (!figure_.shades->label.empty()) list.push_back({shown(figure_.shades->label + ":"), 0});
-            const std::vector<ShadeBand> bands = bands_of(*figure_.shades, most_text_bands);
-            for (std::size_t i = 0; i < bands.size(); ++i) {
-                const std::string_view sign = shade_letter(bands, i, format_.charset == Charset::ascii);
-                list.push_back({sign == bands[i].text ? bands[i].text : std::string(sign) + " " + bands[i].text, 0});
-            }
-        }
-        for (std::size_t i = 0; i < figure_.curves.size(); ++i) {
-            if (!figure_.curves[i].label.empty()) {
-                const std::string mark = uses_letters(figure_) ? std::string{letter(ink_of(i)), ' '} : "";
-                list.push_back({mark + shown(figure_.curves[i].label), ink_of(i)});
-            }
-        }
-        const Signs sign = signs(format_.charset);
-        for (const MarkKind kind : kinds_of(figure_.marks)) {
-            const auto place = static_cast<std::size_t>(kind);
-            list.push_back({std::string(sign.marks[place]) + " " + mark_names[place], 0});
-        }
-        if (figure_.dead_zone) {
-            list.push_back({std::string(sign.dead_zone) + " dead zone", 0});
-        }
-        return list;
-    }
-
     /// The label of the vertical axis and the legend, on as few lines as they need, but not on many.
     [[nodiscard]] TextBlock head_lines() const {
         TextBlock lines;
@@ -138,7 +117,7 @@ private:
         const auto width = static_cast<std::size_t>(format_.columns);
         line.pad(!name.empty() && text::columns(name) < start ? start - 1 - text::columns(name) : 0);
         line.add(text::cut_to_columns(name, width));
-        const std::vector<Entry> list = entries();
+        const std::vector<TextEntry> list = text_legend(figure_, format_.charset);
         for (std::size_t i = 0; i < list.size(); ++i) {
             constexpr std::size_t gap = 3;
             if (line.width() > 0 && line.width() + gap + text::columns(list[i].text) > width) {
@@ -295,6 +274,7 @@ private:
     Frame frame_;
     Ticks x_ticks_, y_ticks_;
     TextBlock head_;
+    std::size_t label_room_;
     std::size_t label_width_ = 0;
     int columns_ = 0, rows_ = 0;  // of the canvas
     Box box_{1, 1};               // of the canvas in dots
@@ -302,18 +282,47 @@ private:
 
 }  // namespace
 
-std::string text_plot(std::span<const Figure> figures, const TextFormat& format) {
+namespace {
+
+/// Figures one below the other, their axes, too.
+TextBlock pile_of(std::span<const Figure> figures, TextFormat format) {
+    constexpr int least_rows = 8;
+    const int count = static_cast<int>(figures.size());
+    std::size_t labels = 0;
+    if (count > 1) {
+        format.rows = std::max(least_rows, format.rows / count + 1);
+        for (const Figure& figure : figures) {
+            labels = std::max(labels, TextPlot(figure, format).label_width());
+        }
+    }
+    TextBlock lines;
+    for (const Figure& figure : figures) {
+        const TextBlock own = TextPlot(figure, format, labels).block();
+        lines.insert(lines.end(), own.begin(), own.end());
+    }
+    return lines;
+}
+
+}  // namespace
+
+std::string text_plot(std::span<const Figure> given, const TextFormat& format) {
+    constexpr double dots = 2;  // of a column, in braille
+    const std::vector<Figure> figures = with_bands(given, dots * format.columns);
     TextFormat each = format;
-    const int count = std::max(1, static_cast<int>(figures.size()));
+    const auto piles =
+        std::count_if(figures.begin(), figures.end(), [](const Figure& figure) { return !figure.below; });
+    const int count = std::max(1, static_cast<int>(piles));
     const bool together = (format.columns - 2 * (count - 1)) / count >= narrowest_panel;
     if (together) {
         each.columns = (format.columns - 2 * (count - 1)) / count;
     }
     std::vector<TextBlock> blocks;
     std::string text;
-    for (const Figure& figure : figures) {
-        blocks.push_back(TextPlot(figure, each).block());
+    for (auto from = figures.begin(); from != figures.end();) {
+        const auto to = std::find_if(from + 1, figures.end(), [](const Figure& figure) { return !figure.below; });
+        blocks.push_back(pile_of({from, to}, each));
         text += together ? "" : text_of(blocks.back());
+        from = to;
     }
     return together ? text_of(beside(blocks, format.colours)) : text;
 }

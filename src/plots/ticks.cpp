@@ -139,12 +139,13 @@ void label_linear(Ticks& ticks, Interval range) {
     }
 }
 
-std::vector<std::string> each_by_itself(const std::vector<double>& at) {
+/// Plainly where all are of a size for that, else all but 1 in powers of ten.
+std::vector<std::string> logarithmic(const std::vector<double>& at) {
+    const bool plain = std::all_of(at.begin(), at.end(), [](double value) { return value >= 1e-3 && value < 1e5; });
     std::vector<std::string> text;
     text.reserve(at.size());
     for (const double value : at) {
-        const bool plain = value >= 1e-3 && value < 1e5;
-        text.push_back(plain ? fmt::format("{:.6g}", value) : scientific(value, 5));
+        text.push_back(plain || value == 1 ? fmt::format("{:.6g}", value) : scientific(value, 5));
     }
     return text;
 }
@@ -171,7 +172,7 @@ Ticks ticks_of(const Axis& axis, const Scale& scale, int most) {
         } while (ticks.at.size() < 2);
     }
     if (scale.logarithmic()) {
-        ticks.text = each_by_itself(ticks.at);
+        ticks.text = logarithmic(ticks.at);
     } else {
         label_linear(ticks, range);
     }

@@ -23,7 +23,7 @@ struct Pictures {
     dinal::motion::Trajectory run =
         trajectory(driven_motion, dinal::motion::Spectral{}, dinal::motion::Grid::every(0.001));
     dinal::plots::RunData data{nullptr, &run, &system};
-    dinal::plots::Figure response = *dinal::plots::column_figure(data, "", {});
+    dinal::plots::Figure response = dinal::plots::column_figures(data)->front();
     dinal::plots::Figure phase = *dinal::plots::phase_figure(data);
 };
 

@@ -2,11 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <filesystem>
 
 #include "plots/gnuplot_data.hpp"
 #include "plots/gnuplot_script.hpp"
 #include "plots/paper_layout.hpp"
+#include "plots/svg_words.hpp"
 #include "support/catch.hpp"
 #include "support/temporary_folder.hpp"
 
@@ -53,13 +55,13 @@ std::string svg(const Figure& figure) {
 
 }  // namespace
 
-TEST_CASE("a user's words stand in single quotes with quotes doubled, on one line", "[gnuplot]") {
-    CHECK(single_quoted("plain θ") == "'plain θ'");
-    CHECK(single_quoted("it's") == "'it''s'");
-    CHECK(single_quoted("'it'") == "'’it'''");
-    CHECK(single_quoted("a'\nsystem 'date'\n'") == "'a'' system ''date'' '''");
-    CHECK(single_quoted("`date` \"$(date)\" \\") == "'`date` \"$(date)\" \\'");
-    CHECK(single_quoted("\xff") == "'\xEF\xBF\xBD'");
+TEST_CASE("a user's words stand in single quotes, apostrophes between double ones, on one line", "[gnuplot]") {
+    CHECK(quoted_words("plain θ") == "'plain θ'");
+    CHECK(quoted_words("it's") == R"('it'."'".'s')");
+    CHECK(quoted_words("''") == R"(''."'".''."'".'')");
+    CHECK(quoted_words("a'\nsystem 'x'") == R"('a'."'".' system '."'".'x'."'".'')");
+    CHECK(quoted_words("`date` \"$(date)\" \\") == "'`date` \"$(date)\" \\'");
+    CHECK(quoted_words("\xff") == "'\xEF\xBF\xBD'");
 }
 
 TEST_CASE("no word of a user becomes a command of gnuplot or of a shell", "[gnuplot]") {
@@ -82,11 +84,33 @@ TEST_CASE("no word of a user becomes a command of gnuplot or of a shell", "[gnup
     }
 }
 
-TEST_CASE("a label may begin with a quote", "[gnuplot]") {
+TEST_CASE("any words stand in a picture as they were written", "[gnuplot]") {
+    for (const char* words : {"I θ'' + C θ'", "''", "'''a", "a\\'", "'quoted'", "x\\n", "100 %s", "@a_b^{c} ~"}) {
+        Figure figure = wave();
+        figure.title = figure.x.label = figure.curves[0].label = words;
+        CAPTURE(words);
+        CHECK(svg(figure).find(std::string("<text>") + words + "</text>") != std::string::npos);
+        CHECK(static_cast<bool>(run_gnuplot(gnuplot_file({&figure, 1}, {}))));
+    }
+}
+
+TEST_CASE("what a user has told gnuplot by the environment changes no picture", "[gnuplot]") {
+    const std::string before = svg(wave());
+    for (const char* name : {"GNUTERM", "GNUPLOT_LIB", "GNUPLOT_DRIVER_DIR"}) ::setenv(name, "nonsense", 1);
+    CHECK(svg(wave()) == before);
+    for (const char* name : {"GNUTERM", "GNUPLOT_LIB", "GNUPLOT_DRIVER_DIR"}) ::unsetenv(name);
+}
+
+TEST_CASE("a picture says what it shows to those who do not see it", "[gnuplot]") {
     Figure figure = wave();
-    figure.title = "'quoted'";
-    figure.x.label = "''";
-    CHECK(svg(figure).find("’quoted'") != std::string::npos);
+    figure.stuck = {{10, 20}};
+    const std::string picture = with_words(svg(figure), {&figure, 1});
+    CHECK(picture.find("<title>θ over t</title>") != std::string::npos);
+    CHECK(picture.find(" role=\"img\" aria-label=\"θ over t\"") != std::string::npos);
+    CHECK(picture.find("θ: a line through 200 points. The mass was stuck 1 time.</desc>") != std::string::npos);
+    CHECK(picture.find("Gnuplot") == std::string::npos);
+    figure.title = "a < b & 'c'";
+    CHECK(with_words(svg(figure), {&figure, 1}).find("<title>a &lt; b &amp; ") != std::string::npos);
 }
 
 TEST_CASE("the same figure gives the same bytes", "[gnuplot]") {

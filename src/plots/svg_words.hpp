@@ -1,0 +1,17 @@
+// What a picture says to those who do not see it: its title and a description, in words and within its SVG.
+#pragma once
+
+#include <span>
+#include <string>
+
+#include "plots/figure.hpp"
+
+namespace dinal::plots {
+
+/// The titles of the figures, or what is drawn over what: "θ, M/k over t".
+std::string title_of(std::span<const Figure> figures);
+
+/// The SVG of these figures that gnuplot wrote, with title, description and label for screen readers.
+std::string with_words(std::string svg, std::span<const Figure> figures);
+
+}  // namespace dinal::plots

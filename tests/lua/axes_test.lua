@@ -1,0 +1,45 @@
+-- The axes of pictures of a run: one for each unit, with the unit that the user says.
+package.path = "tests/lua/?.lua;" .. package.path
+local support = require "support"
+local test, raises_here = support.test, support.raises_here
+
+local metres = { theta = "m", t = "s" }
+local sys = system{ I = 1, k = 4, Rd = 0.1 }
+local run = sys:simulate{ M = excitation.harmonic{ amplitude = 2, omega = 1 }, theta0 = 1, t_end = 5, dt = 0.1 }
+
+local function picture(method, options)
+    options = options or {}
+    options.show, options.width, options.ascii = false, 60, true
+    return tostring(run[method](run, options))
+end
+local function has(text, ...)
+    for _, piece in ipairs{ ... } do assert(text:find(piece, 1, true), piece .. " is not in\n" .. text) end
+end
+
+test("axes have the units that are asked for", function()
+    has(picture("plot", { y = "theta", units = metres }), "theta, m", "t, s")
+    has(picture("plot", { y = "velocity", units = metres }), "theta', m/s")
+    has(picture("plot", { y = "velocity", units = { theta = "mm" } }), "theta', mm/time")
+    has(picture("phase_plot", { units = metres }), "theta'/omega0, m", "theta, m")
+    has(picture("plot", { y = "velocity" }), "theta', rad/time")
+end)
+
+test("what measures something else has an axis of its own, one below the other", function()
+    local text = picture("plot", { y = { "theta", "velocity", "M", "friction" }, units = metres })
+    has(text, "theta, m", "theta', m/s", "torque", "a M", "b friction")
+    local first, second, third = text:find("theta, m", 1, true), text:find("theta', m/s", 1, true), text:find("torque", 1, true)
+    assert(first < second and second < third)
+    has(picture("plot", { y = { "theta", "velocity" }, ylabel = "both" }), "both", "a theta", "b theta'")
+    has(picture("plot", { y = { "theta", "M/k" }, labels = { "angle", "load" } }), "a angle", "b load")
+    raises_here(function() run:plot{ y = { "theta", "velocity" }, ylim = { 0, 1 }, show = false } end, "ylim is for one unit",
+        "give ylabel")
+    raises_here(function() run:plot{ labels = 3, show = false } end, "labels must be a list of words")
+end)
+
+test("wrong units are said", function()
+    raises_here(function() run:plot{ units = "m", show = false } end, "units must be a table such as")
+    raises_here(function() run:plot{ units = { theta = 1 }, show = false } end, "theta")
+    raises_here(function() run:plot{ units = { time = "s" }, show = false } end, "'time'")
+end)
+
+support.finish()
