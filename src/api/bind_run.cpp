@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "analysis/explain.hpp"
+#include "api/animate.hpp"
 #include "api/bind_simulate.hpp"
 #include "api/cards.hpp"
 #include "api/classes.hpp"
@@ -210,6 +211,7 @@ constexpr lua::Member run_members[] = {
     {lua::a_method<steady_of_run>, steady_run_doc},
     {lua::a_method<plot_run>, plot_run_doc},
     {lua::a_method<phase_plot_run>, phase_plot_run_doc},
+    {lua::a_method<animate_run>, animate_doc},
     {lua::a_field<column_field<motion::Column::t>>,
      {"run.t -> vector", "The times of the rows, time units.", DINAL_RUN "print(run.t[2])  --> 0.5"}},
     {lua::a_field<column_field<motion::Column::theta>>,

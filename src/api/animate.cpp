@@ -1,0 +1,152 @@
+#include "api/animate.hpp"
+
+#include <fmt/format.h>
+#include <poll.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <cmath>
+
+#include "api/picture.hpp"
+#include "api/run.hpp"
+#include "files/file.hpp"
+#include "lua/interrupt.hpp"
+#include "lua/options.hpp"
+#include "lua/user_function.hpp"
+#include "lua/worker_state.hpp"
+#include "plots/animation/animated_svg.hpp"
+#include "plots/animation/gif_script.hpp"
+#include "plots/animation/text_frame.hpp"
+#include "terminal/display.hpp"
+#include "text/words.hpp"
+
+namespace dinal::api {
+namespace {
+
+namespace animation = plots::animation;
+
+constexpr double usual_seconds = 10;
+constexpr double screen_rate = 25, gif_rate = 12.5;  // frames a second
+constexpr double most_frames_in_file = 3000, most_frames = 100'000;
+
+/// Which part, how fast, within what a file or a memory should hold.
+animation::Take asked_take(const lua::Options& options, const AnimateOptions& asked, const motion::Trajectory& run,
+                           double rate, double most) {
+    animation::Take take{.from = asked.from.value_or(run.t_start), .to = asked.to.value_or(run.t_stop)};
+    if (!(take.from < take.to) || take.from < run.t_start || take.to > run.t_stop) {
+        options.fail(asked.from ? "from" : "to",
+                     fmt::format("from = {:.6g} and to = {:.6g} must be times of the run, which goes "
+                                 "from {:.6g} to {:.6g}, one after the other",
+                                 take.from, take.to, run.t_start, run.t_stop));
+    }
+    take.seconds = asked.speed ? (take.to - take.from) / *asked.speed : usual_seconds;
+    take.frames_per_second = rate;
+    if (take.count() > most) {
+        options.fail("speed",
+                     fmt::format("speed = {:.6g} makes an animation of {:.4g} s, {:.0f} s are the most: give a greater "
+                                 "speed, or a part of the run by from and to",
+                                 *asked.speed, take.seconds, most / rate));
+    }
+    return take;
+}
+
+animation::Scene asked_scene(lua_State* L, const lua::Options& options, const RunHandle& run,
+                             const animation::Take& take, const plots::Units& units) {
+    const model::Excitation* belt =
+        run->origin && !run->origin->extras.belt.components().empty() ? &run->origin->extras.belt : nullptr;
+    const plots::RunData data{run, &run->trajectory, run->origin ? &run->origin->system : nullptr, units};
+    lua::CallState call(L);  // between rows the integrator asks the excitation again
+    auto scene = animation::scene_of(data, belt, take, [] { return !lua::interrupt_requested(); });
+    if (call.failed()) {
+        call.raise_error();
+    }
+    if (lua::interrupt_requested()) {
+        lua::raise_interrupted(L);
+    }
+    return options.value_or_fail(std::move(scene));
+}
+
+/// Writes all of it; false when nobody reads any more.
+bool show(std::string_view text) {
+    while (!text.empty()) {
+        const ssize_t count = ::write(STDOUT_FILENO, text.data(), text.size());
+        if (count < 0 && errno != EINTR) return false;
+        text.remove_prefix(count > 0 ? static_cast<std::size_t>(count) : 0);
+        if (lua::interrupt_requested()) return false;
+    }
+    return true;
+}
+
+/// In place, by the clock: a frame that comes too late is left out.
+void play(const animation::Scene& scene, const AnimateOptions& asked) {
+    using Clock = std::chrono::steady_clock;
+    std::fflush(stdout);
+    const auto began = Clock::now();
+    const double count = static_cast<double>(scene.frames.size() - 1);
+    int above = 0;  // lines of the frame before
+    bool goes_on = show("\x1b[?25l");
+    for (bool last = false; goes_on && !last;) {
+        const double passed = std::chrono::duration<double>(Clock::now() - began).count();
+        const double place = std::min(count, std::floor(passed / scene.seconds * count));
+        last = place == count;
+        const terminal::Display seen = terminal::display_of(STDOUT_FILENO);
+        const animation::FrameFormat format{
+            .columns = std::min(seen.columns - 1, 100),
+            .charset = asked.ascii.value_or(!seen.draws) ? plots::Charset::ascii : plots::Charset::braille,
+            .colours = seen.colour};
+        std::string text = above > 0 ? fmt::format("\x1b[{}A", above) : "";
+        const std::vector<std::string> lines =
+            animation::text_frame(scene, scene.frames[static_cast<std::size_t>(place)], format);
+        for (const std::string& line : lines) text += "\r" + line + "\x1b[K\n";
+        above = static_cast<int>(lines.size());
+        goes_on = show(text) && !lua::interrupt_requested();
+        const double next =
+            (place + 1) / count * scene.seconds - std::chrono::duration<double>(Clock::now() - began).count();
+        if (goes_on && !last) ::poll(nullptr, 0, std::clamp(static_cast<int>(1000 * next), 1, 1000));
+    }
+    constexpr std::string_view cursor = "\x1b[?25h";
+    [[maybe_unused]] const ssize_t written = ::write(STDOUT_FILENO, cursor.data(), cursor.size());
+}
+
+}  // namespace
+
+int animate_run(lua_State* L) {
+    lua::refuse_in_worker(L, "run:animate");
+    const RunHandle run = lua::self<RunHandle>(L, 1, "run:animate()");
+    const lua::Options options(L, 2, animate_call);
+    AnimateOptions asked;
+    options.fill(asked);
+    const plots::Units units = asked_units(L, options);
+    if (!asked.file) {
+        if (!terminal::display_of(STDOUT_FILENO).terminal || !terminal::obeys_escapes()) {
+            options.fail(
+                {"an animation is shown in a terminal, and this output is none; give file = \"run.svg\" or \"run.gif\""});
+        }
+        const auto take = asked_take(options, asked, run->trajectory, screen_rate, most_frames);
+        play(asked_scene(L, options, run, take, units), asked);
+        if (lua::interrupt_requested()) {
+            lua::raise_interrupted(L);
+        }
+        return 0;
+    }
+    const std::string ending = text::ending_of(*asked.file);
+    if (ending != ".svg" && ending != ".gif") {
+        options.fail({.sentence = fmt::format("the name '{}' must end in .svg or .gif", *asked.file),
+                      .option = "file",
+                      .culprit = *asked.file});
+    }
+    const bool gif = ending == ".gif";
+    const auto take = asked_take(options, asked, run->trajectory, gif ? gif_rate : screen_rate, most_frames_in_file);
+    const animation::Scene scene = asked_scene(L, options, run, take, units);
+    files::OutputFile file = options.value_or_fail(files::OutputFile::create(*asked.file));
+    const auto bytes =
+        gif ? drawn_by_gnuplot(animation::gif_input(scene)) : text::Expected(animation::animated_svg(scene));
+    if (lua::interrupt_requested()) {
+        lua::raise_interrupted(L);
+    }
+    file.write(options.value_or_fail(bytes));
+    options.value_or_fail(file.commit());
+    return 0;
+}
+
+}  // namespace dinal::api

@@ -1,0 +1,13 @@
+// An animation as SVG that a browser plays by itself: SMIL, no script.
+#pragma once
+
+#include <string>
+
+#include "plots/animation/scene.hpp"
+
+namespace dinal::plots::animation {
+
+/// The mass, its spring, walls and surface, and below them theta over t with a dot that goes along. Repeats for ever.
+std::string animated_svg(const Scene& scene);
+
+}  // namespace dinal::plots::animation

@@ -1,0 +1,80 @@
+#include "plots/animation/scene.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace dinal::plots::animation {
+namespace {
+
+/// How far the surface moves from one time to another: Simpson's rule.
+double way_of(const model::Excitation& belt, double from, double to) {
+    return (to - from) / 6 * (belt.value(from) + 4 * belt.value((from + to) / 2) + belt.value(to));
+}
+
+bool is_stuck(const std::vector<Interval>& stuck, double t) {
+    const auto next = std::upper_bound(stuck.begin(), stuck.end(), t,
+                                       [](double time, const Interval& interval) { return time < interval.low; });
+    return next != stuck.begin() && t <= std::prev(next)->high;
+}
+
+Interval reach_of(const std::vector<Frame>& frames, const std::optional<model::Walls>& walls) {
+    const auto [low, high] = std::minmax_element(frames.begin(), frames.end(),
+                                                 [](const Frame& a, const Frame& b) { return a.theta < b.theta; });
+    Interval reach{low->theta, high->theta};
+    if (walls) {
+        reach.low = std::isfinite(walls->lower) ? std::min(reach.low, walls->lower) : reach.low;
+        reach.high = std::isfinite(walls->upper) ? std::max(reach.high, walls->upper) : reach.high;
+    }
+    const double size = std::max(std::fabs(reach.low), std::fabs(reach.high));
+    if (reach.length() <= 1e-9 * size || reach.length() < shortest_axis) {  // it never moved
+        const double half = size > 10 * shortest_axis ? size / 2 : 1;
+        return {reach.low - half, reach.high + half};
+    }
+    return reach;
+}
+
+}  // namespace
+
+text::Expected<Scene> scene_of(const RunData& run, const model::Excitation* belt, const Take& take,
+                               const std::function<bool()>& go_on) {
+    Scene scene;
+    scene.seconds = take.seconds;
+    const auto count = static_cast<std::size_t>(std::max(1.0, std::round(take.count())));
+    const std::vector<Interval> stuck = stuck_intervals(*run.trajectory);
+    Frame frame;
+    for (std::size_t i = 0; i <= count; ++i) {
+        if (!go_on()) return text::Error{"the animation was interrupted"};
+        const double t = i == count
+                             ? take.to
+                             : take.from + (take.to - take.from) * static_cast<double>(i) / static_cast<double>(count);
+        const auto state = run.trajectory->at(t);
+        if (!state) return state.error();
+        if (belt != nullptr && i > 0) frame.surface += way_of(*belt, frame.t, t);
+        frame.t = t;
+        frame.theta = state->theta;
+        frame.stuck = is_stuck(stuck, t);
+        scene.frames.push_back(frame);
+    }
+    scene.belt = belt != nullptr;
+    scene.theta_unit = run.units.theta;
+    scene.t_unit = run.units.t;
+    if (run.system != nullptr) {
+        scene.walls = run.system->walls();
+        scene.spring = run.system->has_spring() || !run.system->spring().none();
+    }
+    scene.reach = reach_of(scene.frames, scene.walls);
+    return scene;
+}
+
+std::vector<Point> spring_corners(int windings) {
+    constexpr double straight = 0.06;  // of the length, at each end
+    std::vector<Point> corners{{0, 0}, {straight, 0}};
+    for (int i = 0; i < 2 * windings; ++i) {
+        corners.push_back({straight + (1 - 2 * straight) * (i + 0.5) / (2 * windings), i % 2 == 0 ? 1.0 : -1.0});
+    }
+    corners.push_back({1 - straight, 0});
+    corners.push_back({1, 0});
+    return corners;
+}
+
+}  // namespace dinal::plots::animation

@@ -1,0 +1,54 @@
+// A run seen in motion, before anybody decides how to show it: where the mass is at equal steps of time, and around it
+// a surface, a spring and walls.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "model/extras.hpp"
+#include "plots/figure.hpp"
+#include "plots/line.hpp"
+#include "plots/run_figure.hpp"
+
+namespace dinal::plots::animation {
+
+struct Frame {
+    double t = 0;
+    double theta = 0;
+    bool stuck = false;
+    double surface = 0;  ///< how far the belt has come, in the unit of theta
+};
+
+struct Scene {
+    std::vector<Frame> frames;  ///< equal steps of time; the last one is the end
+    double seconds = 10;        ///< from the first to the last
+    Interval reach;             ///< of theta, walls included
+    std::optional<model::Walls> walls = {};
+    bool spring = true;
+    bool belt = false;
+    std::string theta_unit = "rad", t_unit = {};
+
+    [[nodiscard]] double at(double theta) const { return (theta - reach.low) / reach.length(); }
+    /// Of a pattern that lies still: a part of the reach.
+    [[nodiscard]] double shift(const Frame& frame) const { return frame.surface / reach.length(); }
+};
+
+/// What part of the run is shown, and how fast.
+struct Take {
+    double from = 0, to = 1;
+    double seconds = 10;
+    double frames_per_second = 25;
+    [[nodiscard]] double count() const { return seconds * frames_per_second; }
+};
+
+/// The motion of the run between its rows, too. `belt` is the velocity of the surface, if it has one. Fails when the
+/// run does not tell where it was, or go_on() says no.
+text::Expected<Scene> scene_of(const RunData& run, const model::Excitation* belt, const Take& take,
+                               const std::function<bool()>& go_on);
+
+/// Where a spring of that many windings has its corners: fractions of its length, and of its width from -1 to 1.
+std::vector<Point> spring_corners(int windings);
+
+}  // namespace dinal::plots::animation

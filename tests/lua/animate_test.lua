@@ -1,0 +1,97 @@
+-- run:animate into files, and what it says where there is nothing to show it on; tests/prompt/animate_test.py has a terminal.
+package.path = "tests/lua/?.lua;" .. package.path
+local support = require "support"
+local test, equal, raises_here = support.test, support.equal, support.raises_here
+
+local sys = system{ I = 1, k = 4, Rd = 0.3, Re = 0.5 }
+local run = sys:simulate{ theta0 = 1, t_end = 10, times = {} }
+
+--- The values of the animations of that kind in the SVG, as lists of words.
+local function values(svg, kind)
+    local lists = {}
+    for list in svg:gmatch(kind .. '"[^>]- values="([^"]*)"') do
+        local words = {}
+        for word in list:gmatch "[^;]+" do words[#words + 1] = word end
+        lists[#lists + 1] = words
+    end
+    return lists
+end
+local function animated(of, options)
+    options.file = support.temporary ".svg"
+    of:animate(options)
+    return support.read(options.file)
+end
+
+test("the mass of an SVG is where run:at says, at equal steps of time", function()
+    local svg = animated(run, { speed = 2 })  -- 5 s, 125 steps
+    local mass = values(svg, 'type="translate')[1]
+    equal(#mass, 126)
+    local low, high = math.huge, -math.huge
+    for i = 0, 125 do
+        local theta = run:at(i * 10 / 125)
+        low, high = math.min(low, theta), math.max(high, theta)
+    end
+    local left, right = tonumber(mass[1]), math.huge
+    for i = 1, 126 do right = math.min(right, tonumber(mass[i])) end
+    for i = 1, 126 do
+        local part = (run:at((i - 1) * 10 / 125) - low) / (high - low)
+        support.near(tonumber(mass[i]), right + part * (left - right), 0.11)  -- a digit behind the point
+    end
+    assert(svg:find('dur="5.000s"', 1, true) and svg:find('role="img"', 1, true))
+end)
+
+test("it is another colour while it sticks, from when to when the events say", function()
+    local svg = animated(run, {})
+    local times = svg:match('keyTimes="([^"]*)"')
+    local stick = run.events[#run.events].t  -- it comes to rest
+    support.near(tonumber(times:match "[^;]+$"), stick / 10, 1 / 250)
+    equal(select(2, times:gsub(";", "")) + 1, #values(svg, 'attributeName="fill')[1])
+end)
+
+test("a belt moves, walls and springs are there if the system has them", function()
+    local block = system{ I = 1, k = 0, Rd = 0.3, walls = { upper = 1 } }
+    local slides = block:simulate{ velocity0 = 1, belt = 0.5, t_end = 4, dt = 0.1 }
+    local svg = animated(slides, { speed = 4 })
+    local belt = values(svg, 'attributeName="patternTransform" type="translate')[1]
+    local first, last = tonumber(belt[1]), tonumber(belt[#belt])
+    equal(first, 0)
+    assert(last > 0)
+    support.near(tonumber(belt[6]), last * 5 / (#belt - 1), 0.11)  -- evenly
+    equal(#values(svg, 'type="scale'), 0)
+    equal(#values(animated(run, {}), 'type="scale'), 1)
+    assert(svg:find("between walls", 1, true) and not animated(run, {}):find("patternTransform", 1, true))
+end)
+
+test("a part of a run, a run from a file, units", function()
+    local part = animated(run, { from = 2, to = 4, speed = 1 })
+    assert(part:find("t = 2 to 4", 1, true))
+    equal(#values(part, 'type="translate')[1], 51)
+    local file = support.temporary ".csv"
+    sys:simulate{ theta0 = 1, t_end = 10, dt = 0.01 }:save(file)
+    assert(animated(trajectory.load(file), {}):find "</svg>")
+    assert(animated(run, { units = { theta = "<m>", t = "s" } }):find("θ, &lt;m&gt;", 1, true))
+end)
+
+test("a GIF has a picture for each step", function()
+    if not os.execute "gnuplot --version >/dev/null 2>&1" then return end
+    local file = support.temporary ".gif"
+    run:animate{ file = file, speed = 10 }  -- 1 s
+    local gif = support.read(file)
+    equal(gif:sub(1, 6), "GIF89a")
+    assert(gif:find("NETSCAPE2.0", 1, true))  -- it repeats
+    local pictures = select(2, gif:gsub("\33\249\4", ""))
+    assert(math.abs(pictures - 13) <= 1, pictures)
+end)
+
+test("what cannot be shown is said", function()
+    raises_here(function() run:animate() end, "shown in a terminal", 'give file = "run.svg"')
+    raises_here(function() run:animate{ file = "run.mp4" } end, "'run.mp4' must end in .svg or .gif")
+    raises_here(function() run:animate{ file = "x.svg", speed = 0 } end, "speed", "positive")
+    raises_here(function() run:animate{ file = "x.svg", speed = 1e-6 } end, "give a greater speed")
+    raises_here(function() run:animate{ file = "x.svg", from = 3, to = 2 } end, "from = 3 and to = 2")
+    raises_here(function() run:animate{ file = "x.svg", to = 11 } end, "goes from 0 to 10")
+    raises_here(function() run:animate{ sped = 1 } end, "did you mean 'speed'?")
+    raises_here(function() run:animate{ file = "/nowhere/x.svg" } end, "/nowhere/x.svg")
+end)
+
+support.finish()
