@@ -108,15 +108,6 @@ void ExactEngine::finish() {
 
 // ---- moving
 
-/// M - k theta less the braking of friction, rounded once: near the limit of sticking it is a small difference.
-double ExactEngine::pull() const {
-    const double braking = system_.braking(standstill_.motion());
-    const double sum = M_ - braking;
-    const double part = sum - M_;
-    const double rest = (M_ - (sum - part)) - (braking + part);
-    return std::fma(-system_.stiffness(), y_.theta, sum) + rest;
-}
-
 bool ExactEngine::move() {
     const bool leaving = standstill_.phase() == Standstill::Phase::leaving;
     const double start_pull = pull_at_release_ ? *pull_at_release_ : pull();

@@ -2,6 +2,7 @@
 // proven to be the first (first_exit.hpp) and where the friction law is asked (standstill.hpp).
 #pragma once
 
+#include <cmath>
 #include <limits>
 #include <optional>
 #include <vector>
@@ -44,7 +45,16 @@ private:
         outcome_ = outcome;
         return false;
     }
-    [[nodiscard]] double pull() const;
+    [[nodiscard]] double pull() const {
+        return pull_of(system_.stiffness(), y_.theta, M_, system_.braking(standstill_.motion()));
+    }
+    /// M - k theta less the braking of friction, rounded once: near the limit of sticking it is a small difference.
+    [[nodiscard]] static double pull_of(double k, double theta, double M, double braking) {
+        const double sum = M - braking;
+        const double part = sum - M;
+        const double rest = (M - (sum - part)) - (braking + part);
+        return std::fma(-k, theta, sum) + rest;
+    }
     [[nodiscard]] WalkedCurve::End start_from_rest(double start_pull) const;
     /// From a standstill, under way: false when it does not get there.
     bool get_under_way(FirstExit& exit, double sign, double start_pull, double length);
@@ -69,8 +79,9 @@ private:
     // exact_lines.cpp: along a record of samples.
     void find_record();
     bool along_lines();
-    bool rest_on_line();
-    bool move_on_line();
+    void rest_along(double until);
+    void move_along(double until);
+    bool tell_line(double h, double M, model::State end, double start_pull);
     bool end_line(double h, double M, model::State state, bool standing, double start_pull = 0);
 
     /// Between two questions to the monitor the arcs cost so much, in radians of their parts; a line is cheap.
@@ -106,6 +117,8 @@ private:
         std::size_t place = 0;  // of the sample where the motion is
         [[nodiscard]] double time(std::size_t ahead) const { return samples->t[place + ahead]; }
         [[nodiscard]] double torque(std::size_t ahead) const { return gain * samples->M[place + ahead]; }
+        [[nodiscard]] double length() const { return time(1) - time(0); }
+        [[nodiscard]] bool goes_on(double until) const { return place + 1 < samples->t.size() && time(1) <= until; }
     };
     Record record_;
     Arc arc_;

@@ -64,11 +64,7 @@ bool ExactEngine::along_lines() {
     }
     if (clock_.hi < record_.from) return false;
     const double began = clock_.hi, until = std::min(window_.end, record_.to);
-    while (i + 1 < times.size() && times[i + 1] <= until && cost_ < cost_between_questions) {
-        if (!(standing ? rest_on_line() : move_on_line())) break;
-        cost_ += cost_of_a_line;
-        ++i;
-    }
+    standing ? rest_along(until) : move_along(until);
     if (clock_.hi == began) return false;
     if (standing && arcs_ != nullptr) arcs_->add({.start = {began, 0}, .length = clock_.hi - began, .begin = y_});
     ask_M();
@@ -76,33 +72,62 @@ bool ExactEngine::along_lines() {
 }
 
 /// A line does not pass a limit that it does not pass at its ends.
-bool ExactEngine::rest_on_line() {
-    const double k_theta = system_.stiffness() * y_.theta, M = record_.torque(1);
+void ExactEngine::rest_along(double until) {
+    const double k_theta = system_.stiffness() * y_.theta;
     const double rounding = 64 * epsilon * (system_.greatest_holding() + std::fabs(k_theta));
     const double low = k_theta - system_.holding(model::Motion::backward) + rounding;
     const double high = k_theta + system_.holding(model::Motion::forward) - rounding;
-    if (!(std::min(M_, M) > low && std::max(M_, M) < high)) return false;
-    return end_line(record_.time(1) - record_.time(0), M, y_, true);
+    if (!(M_ > low && M_ < high)) return;
+    for (; record_.goes_on(until) && cost_ < cost_between_questions; ++record_.place) {
+        const double M = record_.torque(1);
+        if (!(M > low && M < high) || !end_line(record_.length(), M, y_, true)) return;
+        cost_ += cost_of_a_line;
+    }
 }
 
 /// The velocity on a line is not farther from its chord than h^2/8 of its second derivative.
-bool ExactEngine::move_on_line() {
-    const double sign = model::sign_of(standstill_.motion()), start_pull = pull();
-    const double h = record_.time(1) - record_.time(0), M = record_.torque(1);
-    if (!line_.takes(h)) return false;
-    const auto y = line_.over(h, {y_.velocity, start_pull, (M - M_) / h});
-    const double least = std::min(sign * y_.velocity, sign * y.velocity);
-    if (!(least > h * h / 4 * y.bend && std::isfinite(y.velocity) && std::isfinite(M))) return false;
-    const Clock theta = Clock{y_.theta, theta_rest_}.later(y.way);
+void ExactEngine::move_along(double until) {
+    const model::Motion motion = standstill_.motion();
+    const double sign = model::sign_of(motion), braking = system_.braking(motion), k = system_.stiffness();
+    const bool kept = arcs_ != nullptr;
+    Clock theta{y_.theta, theta_rest_};
+    double velocity = y_.velocity, M = M_, next_row = rows_.next_time();
+    bool whole = true;
+    for (; whole && record_.goes_on(until) && cost_ < cost_between_questions; ++record_.place) {
+        const double h = record_.length(), next_M = record_.torque(1), start_pull = pull_of(k, theta.hi, M, braking);
+        if (!line_.takes(h)) break;
+        const auto y = line_.over(h, {velocity, start_pull, (next_M - M) / h});
+        const double least = std::min(sign * velocity, sign * y.velocity);
+        if (!(least > h * h / 4 * y.bend && std::isfinite(y.velocity))) break;
+        const Clock moved = theta.later(y.way);
+        if (kept || next_row < record_.time(1)) {
+            y_ = {theta.hi, velocity};
+            theta_rest_ = theta.lo;
+            M_ = M;
+            clock_ = {record_.time(0), 0};
+            whole = tell_line(h, next_M, {moved.hi, y.velocity}, start_pull);
+            if (!whole) return;
+            next_row = rows_.next_time();
+        }
+        theta = moved;
+        velocity = y.velocity;
+        M = next_M;
+        cost_ += cost_of_a_line;
+    }
+    y_ = {theta.hi, velocity};
+    theta_rest_ = theta.lo;
+    M_ = M;
+    clock_ = {record_.time(0), 0};
+}
+
+/// The rows on a line in motion, and what is kept of it.
+bool ExactEngine::tell_line(double h, double M, model::State end, double start_pull) {
     asked_ = h;
     if (rows_.next_time() < record_.time(1)) {
         model::closed_form(excitation_, clock_.hi, 0, formula_);
         arc_.begin(formula_, {y_.velocity, start_pull}, h);
     }
-    const double theta_rest = theta.lo;
-    const bool whole = end_line(h, M, {theta.hi, y.velocity}, false, start_pull);
-    if (whole) theta_rest_ = theta_rest;
-    return whole;
+    return end_line(h, M, end, false, start_pull);
 }
 
 /// The rows on it, and what is kept of it. False when the run ends here.
