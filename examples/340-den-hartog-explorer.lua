@@ -27,16 +27,37 @@ for _, row in ipairs(map) do
 end
 print(string.format("%d points agree with the boundary, %d are too near to it to say", agree, beside))
 
--- Pictures: the plane with lines of equal amplitude, and response curves.
+-- Pictures: the plane with lines of equal amplitude, and the curves of the report's figures 5a and 5b: dotted where the
+-- mass stops, with the boundary, and what becomes of one of them when friction is taken for viscous.
 map:plot{ x = "r", y = "g", z = "A", contours = { 0.5, 1, 2 }, zlim = { 0, 3 }, xlabel = "r", ylabel = "Rd/(k a)",
           title = "amplitude", file = "figamplitude.svg" }
-local curves = { xlabel = "r", ylabel = "amplitude", ylim = { 0, 4 }, file = "figresponse.svg" }
-for _, g in ipairs{ 0.2, 0.4, 0.6 } do
-    local c = nondimensional{ friction_ratio = g }:response{ frequency = { 0.1, 2 }, points = 150 }
-    table.insert(curves, { c.frequency, c.amplitude, label = "Rd/(k a) = " .. g })
+local none = 0/0
+local amplitudes = { xlabel = "r", ylabel = "amplitude", ylim = { 0, 3 }, file = "fig5a.svg" }
+local lags = { xlabel = "r", ylabel = "lag, degrees", ylim = { 0, 180 }, yticks = 45, file = "fig5b.svg" }
+for i, g in ipairs{ 0, 0.2, 0.4, 0.6, 0.7, 0.8 } do
+    local c = nondimensional{ friction_ratio = g }:response{ frequency = { 0.05, 2 }, points = 118 }
+    for _, figure in ipairs{ { amplitudes, c.amplitude }, { lags, c.lag:abs() } } do
+        local moving, stopping = {}, {}
+        for j = 1, #c do
+            -- A line across the jump of the lag at resonance would be no motion.
+            local y = (figure[1] == lags and g == 0 and math.abs(c.frequency[j] - 1) < 0.01) and none or figure[2][j]
+            moving[j] = c.stops[j] == 0 and y or none
+            stopping[j] = c.stops[j] ~= 0 and y or none
+        end
+        table.insert(figure[1], { c.frequency, moving, label = "Rd/(k a) = " .. g, colour = i, dashes = "solid" })
+        if g > 0 then table.insert(figure[1], { c.frequency, stopping, colour = i, dashes = "dotted" }) end
+    end
+    if g == 0.6 then
+        table.insert(amplitudes, { c.linearised.frequency, c.linearised.amplitude, label = "0.6 as viscous", colour = 7, dashes = "dashed" })
+        table.insert(lags, { c.linearised.frequency, c.linearised.lag, label = "0.6 as viscous", colour = 7, dashes = "dashed" })
+    end
 end
-plot(curves)
-print("figamplitude.svg and figresponse.svg show them")
+local r = vector.linspace(0.05, 2, 300)
+table.insert(amplitudes, { r, theory.den_hartog{ r = r, friction_ratio = theory.stop_boundary{ r = r } * (1 - 1e-9) },
+                           label = "stop boundary", colour = 7, dashes = "solid" })
+plot(amplitudes)
+plot(lags)
+print("figamplitude.svg, fig5a.svg and fig5b.svg show them")
 
 --[[ prints
 4896 points
@@ -55,5 +76,5 @@ print("figamplitude.svg and figresponse.svg show them")
     +-----------+------------+------------+-------------+
                0.5          1.0          1.5           2.0 r
 3487 points agree with the boundary, 149 are too near to it to say
-figamplitude.svg and figresponse.svg show them
+figamplitude.svg, fig5a.svg and fig5b.svg show them
 ]]
