@@ -1,9 +1,38 @@
 // run:at(t), and the columns of a run's own states.
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <string>
+#include <string_view>
+#include <vector>
+
 #include "api/run.hpp"
+#include "lua/lua_text.hpp"
 #include "lua/user_function.hpp"
 #include "lua/vector.hpp"
+#include "text/suggest.hpp"
 
 namespace dinal::api {
+
+namespace {
+
+/// The answer to a name that is no state of the run: the metamethod __index of run.states.
+int no_such_state(lua_State* L) {
+    const std::string wanted(lua_type(L, 2) == LUA_TSTRING ? lua::text_at(L, 2) : luaL_typename(L, 2));
+    std::vector<std::string> names;
+    for (lua_pushnil(L); lua_next(L, 1) != 0; lua_pop(L, 1)) {
+        if (lua_type(L, -2) == LUA_TSTRING) names.emplace_back(lua::text_at(L, -2));
+    }
+    if (names.empty()) {
+        lua::raise(L, fmt::format("run.states has no '{}': the run was given no states", wanted));
+    }
+    std::sort(names.begin(), names.end());
+    const std::vector<std::string_view> known(names.begin(), names.end());
+    lua::raise(L, fmt::format("run.states has no '{}', only {}{}", wanted, fmt::join(names, ", "),
+                              text::did_you_mean(wanted, known)));
+}
+
+}  // namespace
 
 int run_at(lua_State* L) {
     const RunHandle run =
@@ -41,6 +70,10 @@ int run_states(lua_State* L) {
         lua::push(L, lua::Vector(run, values.data(), static_cast<std::size_t>(values.size())));
         lua_setfield(L, -2, run->trajectory.names[motion::column_count + i].c_str());
     }
+    lua_createtable(L, 0, 1);
+    lua_pushcfunction(L, lua::guarded<no_such_state>);
+    lua_setfield(L, -2, "__index");
+    lua_setmetatable(L, -2);
     return 1;
 }
 

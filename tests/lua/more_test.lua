@@ -20,6 +20,7 @@ test("states are columns: of the run, of its file, of run:at, and of plots", fun
     equal(#run.states.e, #run)
     equal(run.states.e[1], 0.0)
     equal(run.e, run.states.e)
+    raises_here(function() return run.states.E end, "run.states has no 'E', only e; did you mean 'e'?")
     equal(table.concat(run.names, " "), "t theta velocity M friction damping e")
     local theta, velocity, z = run:at(run.t[7])
     near(z.e, run.e[7], 1e-13)
