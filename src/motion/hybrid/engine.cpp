@@ -15,15 +15,21 @@ constexpr int most_short = 2000, most_attempts = 20000;
 /// How often a delay brings back a kink before it is too smooth to be seen.
 constexpr int most_echoes = 8;
 
-double pace_of(const Problem& problem) {
-    return std::min(problem.system.natural_period(), problem.window.end - problem.window.start);
-}
-
 /// As the Standstill sees the problem: velocities against the belt.
 Problem on_belt(const Problem& problem, double belt) {
     return {problem.system, problem.excitation, {problem.initial.theta, problem.initial.velocity - belt},
             problem.window, problem.rows,       problem.monitor,
             problem.limits, problem.before,     problem.course_bytes};
+}
+
+bool breaks_at(const Field& field, double t) {
+    return field.next_break(std::nextafter(t, -model::never)) == t;
+}
+
+/// Where nothing breaks the belt is asked at the start itself: a hair later it may be off by less than any rounding,
+/// and the mass would slide on a belt that has its velocity.
+double belt_at_start(const Field& field, double t) {
+    return field.belt(t, breaks_at(field, t) ? Side::after : Side::at);
 }
 
 }  // namespace
@@ -38,7 +44,7 @@ Engine::Engine(const Problem& problem, const Cut& cut, Trajectory& trajectory, s
       field_(problem, *pieces),
       cut_(cut),
       solver_(problem, field_, cut),
-      standstill_(on_belt(problem, field_.belt(problem.window.start, Side::after)), &events, 1e-6 * pace_of(problem)),
+      standstill_(on_belt(problem, belt_at_start(field_, problem.window.start)), &events, 1e-6 * pace_of(problem)),
       now_{problem.window.start, 0},
       h_(cut.longest / 2),
       pace_(pace_of(problem)),
@@ -56,8 +62,7 @@ bool Engine::begin() {
     for (std::size_t i = 0; i < extras_.states.size(); ++i) {
         y_.push_back(left != nullptr ? left->states[i] : extras_.states[i].start);
     }
-    const double just_before = std::nextafter(now_.hi, -model::never);
-    after_break_ = field_.next_break(just_before) == now_.hi;
+    after_break_ = breaks_at(field_, now_.hi);
     halves_.assign(extras_.events.size(), 0);
     if (left != nullptr) {
         field_.remember(left->controllers);

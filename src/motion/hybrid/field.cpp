@@ -33,6 +33,7 @@ Field::Field(const Problem& problem, const Past& past)
       extras_(*problem.extras),
       past_(past),
       inertia_(problem.system.inertia()),
+      short_stretch_(0.05 * pace_of(problem)),
       initial_(problem.initial),
       memory_(problem.excitation.components().size()) {
     for (const model::Component& c : excitation_.components()) {
@@ -96,7 +97,7 @@ double Field::belt_rate(double t) const {
     using namespace spectral::chebyshev;
     if (!has_belt() || extras_.belt.constant_from() <= t) return 0;
     const double next = extras_.belt.next_break(t);
-    const double h = std::min(0.05, (next - t) / 2);
+    const double h = std::min(short_stretch_, (next - t) / 2);
     Samples values{};
     for (std::size_t j = 0; j < points; ++j) {
         const double at = t + h * (1 + nodes[j]);

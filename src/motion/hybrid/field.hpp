@@ -1,6 +1,7 @@
 // What acts on the mass of a run with more in it: M with its controllers, the base, the belt, and the rates of states.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <deque>
 #include <memory>
@@ -44,6 +45,11 @@ struct MotionPoint {
     model::State y;
     std::span<const double> states;
 };
+
+/// What short times are measured in: T0, or all of a run that is shorter.
+inline double pace_of(const Problem& problem) {
+    return std::min(problem.system.natural_period(), problem.window.end - problem.window.start);
+}
 
 class Field {
 public:
@@ -96,6 +102,7 @@ private:
     const model::Extras& extras_;
     const Past& past_;
     double inertia_;
+    double short_stretch_;  // in which a belt may be differentiated, time units
     model::State initial_;
     std::vector<ControllerMemory> memory_;  // for each component
     std::vector<double> delays_;

@@ -31,7 +31,13 @@ const Integration& integration() {
 }  // namespace
 
 Solver::Solver(const Problem& problem, const Field& field, const Cut& cut)
-    : system_(problem.system), field_(field), cut_(cut), n_(2 + field.state_count()), point_(n_), rate_(n_) {}
+    : system_(problem.system),
+      field_(field),
+      cut_(cut),
+      n_(2 + field.state_count()),
+      fastest_(n_ - 2),
+      point_(n_),
+      rate_(n_) {}
 
 /// False when one of the user's functions has failed.
 bool Solver::sample_surroundings(Solved& piece) {
@@ -277,11 +283,14 @@ void Solver::judge(const Solved& piece) {
     const Series M = cheb::fit(piece.M);
     const double torques = torques_of(piece, cheb::size(M));
     const double smallest = std::numeric_limits<double>::min() / rounding;
-    // Times far from t = 0 are rounded, and M with them.
-    double slope = 0;
-    for (std::size_t k = 1; k < node_count; ++k) slope += static_cast<double>(k * k) * std::fabs(M[k]);
+    // Times far from t = 0 are rounded, and with them what is asked at them. A jump is no slope.
     const double late = std::max(std::fabs(piece.start.hi), std::fabs(piece.end));
-    const double lost = std::min(4 * rounding * late / h * slope, 1e-6 * torques);
+    const auto lost_in_time = [&](const Series& series, double most) {
+        double slope = 0;
+        for (std::size_t k = 1; k < node_count; ++k) slope += static_cast<double>(k * k) * std::fabs(series[k]);
+        return std::min(4 * rounding * late / h * slope, 1e-6 * most);
+    };
+    const double lost = lost_in_time(M, torques);
     if (moves(piece)) {
         Nodes w{};
         for (std::size_t j = 0; j < node_count; ++j) w[j] = h * h * piece.f[1][j];
@@ -293,15 +302,21 @@ void Solver::judge(const Solved& piece) {
     } else {
         unresolved_ = cheb::tail(M) / ((cut_.tolerance + 16 * rounding) * torques + lost + smallest);
     }
+    // Near a zero of a belt or of a rate its rounding is that of what it was before.
     if (field_.has_belt()) {
-        unresolved_ = std::max(unresolved_, cheb::tail(cheb::fit(piece.belt)) /
-                                                ((cut_.tolerance + 16 * rounding) * greatest(piece.belt) + smallest));
+        const Series belt = cheb::fit(piece.belt);
+        fastest_belt_ = std::max(fastest_belt_, greatest(piece.belt));
+        const double allowed = (cut_.tolerance + 16 * rounding) * greatest(piece.belt) + 16 * rounding * fastest_belt_ +
+                               lost_in_time(belt, fastest_belt_) + smallest;
+        unresolved_ = std::max(unresolved_, cheb::tail(belt) / allowed);
     }
     for (std::size_t k = 2; k < n_; ++k) {
         Nodes rate{};
         for (std::size_t j = 0; j < node_count; ++j) rate[j] = h * piece.f[k][j];
         const Series series = cheb::fit(rate);
-        const double allowed = (cut_.tolerance + 64 * rounding) * std::max(greatest(piece.y[k]), cheb::size(series));
+        fastest_[k - 2] = std::max(fastest_[k - 2], greatest(piece.f[k]));
+        const double allowed = (cut_.tolerance + 64 * rounding) * std::max(greatest(piece.y[k]), cheb::size(series)) +
+                               64 * rounding * h * fastest_[k - 2] + lost_in_time(series, h * fastest_[k - 2]);
         unresolved_ = std::max(unresolved_, cheb::tail(series) / (allowed + smallest));
     }
 }

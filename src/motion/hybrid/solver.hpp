@@ -97,6 +97,8 @@ private:
     Cut cut_;
     std::size_t n_;  // values
     double bad_time_ = 0, unresolved_ = 0;
+    double fastest_belt_ = 0;  // so far
+    Values fastest_;           // rates of the states, so far
 
     struct Linear {
         Eigen::MatrixXd jacobian;
