@@ -217,7 +217,7 @@ bool Engine::end_piece(double x) {
     if (generation > 0) echo(now_.hi, generation + 1);
     if (!whole || (after_break_ && generation == 0)) echo(now_.hi, 1);
     if (!field_.arrive(here())) return fail(model::Outcome::excitation_not_finite);
-    return !after_break_ || !field_.has_belt() || belt_jumps(belt_here);
+    return !after_break_ || !field_.belt_breaks(now_.hi) || belt_jumps(belt_here);
 }
 
 /// Jumps and kinks come back when what acts with a delay sees them, each time smoother.

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <deque>
 #include <memory>
@@ -61,6 +62,9 @@ public:
     [[nodiscard]] double load(const MotionPoint& at) const;
     /// -I a(t) of the base.
     [[nodiscard]] double push(double t, Side side) const;
+    [[nodiscard]] bool belt_breaks(double t) const {
+        return extras_.belt.next_break(std::nextafter(t, -model::never)) == t;
+    }
     /// The velocity of the belt.
     [[nodiscard]] double belt(double t, Side side) const;
     /// How fast that changes, from the right.
