@@ -11,6 +11,7 @@ namespace dinal::motion::hybrid {
 namespace {
 
 constexpr int most_iterations = 40;
+constexpr double most_left_over = 1e-6;  // of the equation; a stiff rate multiplies the rounding of its steps
 
 /// Row i: the integral from -1 to node i of the polynomial through values at the nodes.
 using Integration = std::array<Nodes, node_count>;
@@ -108,21 +109,20 @@ double Solver::torques_of(const Solved& piece, double M) const {
            greatest(piece.push) + std::fabs(system_.spring(piece.origin + piece.y[0][0]));
 }
 
-/// How the rates depend on the values, by differences at the beginning: as wide as the motion is.
-bool Solver::estimate_jacobian(const Solved& piece) {
+/// How the rates depend on the values, by differences at a node, narrow against the motion there.
+bool Solver::estimate_jacobian(const Solved& piece, std::size_t node) {
     Linear& linear = moves(piece) ? moving_ : standing_;
     linear.jacobian = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(n_), static_cast<Eigen::Index>(n_));
-    const std::size_t middle = node_count / 2;
     Values y(n_), above(n_), below(n_);
-    for (std::size_t k = 0; k < n_; ++k) y[k] = piece.y[k][middle];
+    for (std::size_t k = 0; k < n_; ++k) y[k] = piece.y[k][node];
     const auto rates = [&](const Values& values, double* out) {
         double M = 0;
-        return rates_of(piece, piece.times[middle], Side::at, {values[0], values[1]}, values, piece.belt_rate[middle],
-                        out, M, piece.push[middle], piece.belt[middle]);
+        return rates_of(piece, piece.times[node], piece.side(node), {values[0], values[1]}, values,
+                        piece.belt_rate[node], out, M, piece.push[node], piece.belt[node]);
     };
     for (std::size_t l = moves(piece) ? 0 : 2; l < n_; ++l) {
-        const double spread = greatest(piece.y[l]) + piece.h * greatest(piece.f[l]);
-        const double d = std::max(1e-4 * spread, 1e-9);
+        const double spread = std::fabs(piece.y[l][node]) + piece.h * std::fabs(piece.f[l][node]);
+        const double d = spread > 0 ? 1e-4 * spread : 1e-9;
         Values shifted = y;
         shifted[l] = y[l] + d;
         if (!rates(shifted, above.data())) return false;
@@ -183,7 +183,7 @@ Solver::Attempt Solver::collocate(Solved& piece, const model::State& departing) 
                 if (!evaluate(piece, j, {piece.y[0][j], piece.y[1][j]})) return Attempt::failed;
             }
             if (nothing_to_find) return Attempt::resolved;
-            if (!linear.known && !estimate_jacobian(piece)) return Attempt::failed;
+            if (!linear.known && !estimate_jacobian(piece, node_count / 2)) return Attempt::failed;
             prepare(piece);
             for (std::size_t k = 0; k < n_; ++k) {
                 for (std::size_t j = 1; j < node_count; ++j) {
@@ -194,14 +194,15 @@ Solver::Attempt Solver::collocate(Solved& piece, const model::State& departing) 
                 }
             }
             const Eigen::VectorXd step = linear.factors.solve(residual_);
-            double change = 0;
+            double change = 0, left = 0;
             const double gained = piece.h / system_.inertia() * torques_of(piece, greatest(piece.M));
             for (std::size_t k = 0; k < n_; ++k) {
-                double most = 0;
+                double most = 0, most_left = 0;
                 for (std::size_t j = 1; j < node_count; ++j) {
-                    const double d = step[static_cast<Eigen::Index>(k * inner + j - 1)];
-                    piece.y[k][j] += d;
-                    most = std::max(most, std::fabs(d));
+                    const auto row = static_cast<Eigen::Index>(k * inner + j - 1);
+                    piece.y[k][j] += step[row];
+                    most = std::max(most, std::fabs(step[row]));
+                    most_left = std::max(most_left, std::fabs(residual_[row]));
                 }
                 // Torques that balance leave a velocity that is the rounding of each of them, however small it is.
                 const double scale = greatest(piece.y[k]) +
@@ -210,16 +211,18 @@ Solver::Attempt Solver::collocate(Solved& piece, const model::State& departing) 
                                                : 0) +
                                      std::numeric_limits<double>::min() / rounding;
                 change = std::max(change, most / scale);
+                left = std::max(left, most_left / scale);
             }
-            if (!std::isfinite(change)) break;
+            if (!std::isfinite(change + left)) break;
             const double rate = before < std::numeric_limits<double>::infinity() ? change / before : 1;
             const bool converged = change <= 16 * rounding || (i >= 1 && change * rate <= 4 * rounding) ||
                                    (i >= 2 && change <= 1e-12 && rate > 0.3);
-            if (converged) return Attempt::resolved;
+            // With slopes that are far off no step goes anywhere, and the equation does not hold.
+            if (converged && left <= most_left_over) return Attempt::resolved;
             if (i >= 3 && rate > 0.7) break;
             before = change;
         }
-        if (again || !estimate_jacobian(piece)) break;
+        if (again || !estimate_jacobian(piece, 0)) break;  // the others may be anywhere by now
     }
     linear.known = false;
     return Attempt::shorten;

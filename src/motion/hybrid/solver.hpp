@@ -86,7 +86,7 @@ private:
     Attempt collocate(Solved& piece, const model::State& departing);
     Attempt runge_kutta(Solved& piece, const model::State& departing);
     bool sample_surroundings(Solved& piece);
-    bool estimate_jacobian(const Solved& piece);
+    bool estimate_jacobian(const Solved& piece, std::size_t node);
     void prepare(const Solved& piece);
     [[nodiscard]] double torques_of(const Solved& piece, double M) const;
     void judge(const Solved& piece);
