@@ -26,12 +26,6 @@ bool breaks_at(const Field& field, double t) {
     return field.next_break(std::nextafter(t, -model::never)) == t;
 }
 
-/// Where nothing breaks the belt is asked at the start itself: a hair later it may be off by less than any rounding,
-/// and the mass would slide on a belt that has its velocity.
-double belt_at_start(const Field& field, double t) {
-    return field.belt(t, breaks_at(field, t) ? Side::after : Side::at);
-}
-
 }  // namespace
 
 Engine::Engine(const Problem& problem, const Cut& cut, Trajectory& trajectory, std::vector<model::Event>& events,
@@ -44,7 +38,7 @@ Engine::Engine(const Problem& problem, const Cut& cut, Trajectory& trajectory, s
       field_(problem, *pieces),
       cut_(cut),
       solver_(problem, field_, cut),
-      standstill_(on_belt(problem, belt_at_start(field_, problem.window.start)), &events, 1e-6 * pace_of(problem)),
+      standstill_(on_belt(problem, field_.belt(problem.window.start, Side::after)), &events, 1e-6 * pace_of(problem)),
       now_{problem.window.start, 0},
       h_(cut.longest / 2),
       pace_(pace_of(problem)),

@@ -38,7 +38,7 @@ std::optional<double> Engine::first_standstill() const {
                            std::fabs(system_.spring(theta()));
     Bounded<points> curve(model::sign_of(standstill_.motion()), slip, derivative(slip));
     const bool leaving = standstill_.phase() == Standstill::Phase::leaving;
-    if (field_.has_belt() && !leaving) curve.raise_floor(16 * rounding * fastest);
+    if (field_.has_belt()) curve.raise_floor(16 * rounding * fastest);
     curve.raise_slope_floor(piece_.h / system_.inertia() * 64 * rounding * torques);
     const auto always = [](double) { return true; };
     const auto zero = first_below(curve, -1, leaving ? LeftEnd::leaving : LeftEnd::anywhere, always);

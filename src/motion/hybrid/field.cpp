@@ -88,8 +88,11 @@ double Field::push(double t, Side side) const {
     return extras_.base.components().empty() ? 0 : -inertia_ * value_on(extras_.base, t, side);
 }
 
+/// Where it does not break it is asked at t itself: a hair beside that it may be off by less than any rounding, and the
+/// mass would slide on a belt that has its velocity.
 double Field::belt(double t, Side side) const {
-    return has_belt() ? value_on(extras_.belt, t, side) : 0;
+    if (!has_belt()) return 0;
+    return value_on(extras_.belt, t, side == Side::at || belt_breaks(t) ? side : Side::at);
 }
 
 /// By the derivative of a polynomial through a short stretch ahead, which is right to some twelve digits.
