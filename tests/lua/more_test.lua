@@ -204,4 +204,71 @@ test("a loop that settles far from zero, without friction, is run to its end", f
     end
 end)
 
+-- What hybrid makes of belts and heavy damping, by two integrators that share no step. rk4 at T0/1500 is off by 1e-10.
+local function two_ways(sys, options)
+    options.integrator = integrator.spectral {}
+    local a = sys:simulate(options)
+    options.integrator = integrator.rk4 { h = sys.T0 / 1500 }
+    local b = sys:simulate(options)
+    equal(a.outcome, b.outcome)
+    equal(#a, #b)
+    assert((a.theta - b.theta):abs():max() < 1e-8, (a.theta - b.theta):abs():max())
+    equal(#a.events, #b.events)
+    for i = 1, #a.events do
+        equal(a.events[i].kind, b.events[i].kind)
+        near(a.events[i].t, b.events[i].t, 1e-6)
+    end
+    return a
+end
+local grinding = { I = 1, k = 6.7, C = 14.9, friction = friction.stribeck { Rd = 0.6, Re = 1.43, speed = 0.79, shape = 1 } }
+local function pushed(t, theta) return 6 * math.sin(4 * t) - 2 * theta^3 end
+
+test("slopes that are far off do not pass for a solution", function()
+    local run = two_ways(system(grinding), { M = pushed, theta0 = 0.1, velocity0 = -1.7, t_end = 8, dt = 0.1,
+        states = { e = { start = 0, rate = function(_, theta) return 0.1 - theta end } } })
+    assert(run.theta:abs():max() < 0.3 and #run.events > 15)
+end)
+
+test("a mass leaves its belt in the small steps of rk4 as in the long ones of spectral", function()
+    local function belt(t) return 0.5 * math.sin(1.5 * t) end
+    two_ways(system(grinding), { M = pushed, theta0 = 0.1, t_end = 8, dt = 0.1, belt = belt })
+    -- M of a square breaks at the start, the belt does not: that is no slip
+    local run = two_ways(system { I = 1, k = 16, C = 0.4, Rd = 0.9, Re = 1.6 },
+        { M = excitation.square { amplitude = 3.4, period = 1.7 }, t_end = 6, dt = 0.1, belt = belt })
+    assert(run.events[1].t > 1e-3)
+end)
+
+test("a mass that rides on a belt is not shaken off where a delay brings something back", function()
+    local run = two_ways(system { I = 1, k = 34, Rd = 1.08, Re = 1.1 }, { t_end = 8, dt = 0.1,
+        belt = excitation.harmonic { amplitude = 0.11, omega = 1.8 },
+        M = excitation.square { amplitude = 1, period = 2.3 } + excitation.delayed(function(_, theta) return -2 * theta end, { by = 0.12 }) })
+    for i = 2, #run.events do assert(run.events[i].t > run.events[i - 1].t, i) end
+    assert(#run.events > 4)
+end)
+
+test("belts and states run far from t = 0, and in any unit of time, as they do near it", function()
+    local sys = nondimensional { zeta = 0.05, friction_ratio = 0.1 }
+    local function of(t0, options)
+        options.t_start, options.t_end, options.dt, options.theta0 = t0, t0 + 10, 0.5, 0.5
+        return sys:simulate(options)
+    end
+    for _, options in ipairs {
+        { belt = excitation.harmonic { amplitude = 0.4, frequency = 0.25 } },
+        { belt = function(t) return 0.4 * math.sin(math.pi * t / 2) end },
+        { M = excitation.harmonic { frequency = 0.75 },
+            states = { z = { start = 0, rate = function(t) return math.cos(math.pi * t) end } } },
+    } do
+        local here, there = of(0, options), of(1e6, options)
+        equal(#here.events, #there.events)
+        assert((here.theta - there.theta):abs():max() < 1e-7) -- 1e6 has 1e-10 to the next number
+        if options.states then assert((here.states.z - there.states.z):abs():max() < 1e-7) end
+    end
+    for _, T in ipairs { 1e-9, 1, 1e12 } do
+        local slow = system { I = T * T / 39, k = 1, C = 0.016 * T, Rd = 0.2, Re = 0.4 }
+        local run = slow:simulate { belt = function(t) return 0.3 / T * math.sin(1.9 * t / T) end, t_end = 8 * T, dt = 0.5 * T }
+        equal(#run.events, 0) -- it rides
+        near(run.theta[17], 0.3 / 1.9 * (1 - math.cos(1.9 * 8)), 1e-9)
+    end
+end)
+
 support.finish()
