@@ -90,7 +90,10 @@ std::string title_of(std::span<const Figure> figures) {
 std::string with_words(std::string svg, std::span<const Figure> figures) {
     const std::string title = title_of(figures);
     std::string description;
-    for (const Figure& figure : figures) description += (description.empty() ? "" : " ") + description_of(figure);
+    for (const Figure& figure : figures) {
+        if (!description.empty()) description += ' ';
+        description += description_of(figure);
+    }
     replace_between(svg, "<title>", "</title>", title);
     replace_between(svg, "<desc>", "</desc>", description);
     if (const std::size_t root = svg.find("<svg"); root != std::string::npos) {

@@ -56,7 +56,10 @@ private:
     template <class Value>
     [[nodiscard]] std::string values(const Value& value) const {
         std::string list;
-        for (const Frame& frame : scene_.frames) list += (list.empty() ? "" : ";") + value(frame);
+        for (const Frame& frame : scene_.frames) {
+            if (!list.empty()) list += ';';
+            list += value(frame);
+        }
         return list;
     }
 
@@ -156,8 +159,8 @@ private:
         words(graph_left, sheet_height - 6, "middle", fmt::format("{:.6g}", scene_.frames.front().t));
         words(graph_right, sheet_height - 6, "end", fmt::format("{:.6g}", scene_.frames.back().t));
         words((graph_left + graph_right) / 2, sheet_height - 6, "middle",
-              "t" + (scene_.t_unit.empty() ? "" : ", " + scene_.t_unit));
-        words(graph_left + 4, graph_top - 8, "start", "θ, " + scene_.theta_unit);
+              scene_.t_unit.empty() ? "t" : fmt::format("t, {}", scene_.t_unit));
+        words(graph_left + 4, graph_top - 8, "start", fmt::format("θ, {}", scene_.theta_unit));
         add("<circle r=\"3.5\" fill=\"{}\">", stuck_colour);
         add_motion("transform", "translate", [&](const Frame& f) {
             const auto place = static_cast<std::size_t>(&f - scene_.frames.data());
