@@ -57,8 +57,8 @@ test("a belt moves, walls and springs are there if the system has them", functio
     equal(first, 0)
     assert(last > 0)
     support.near(tonumber(belt[6]), last * 5 / (#belt - 1), 0.11)  -- evenly
-    equal(#values(svg, 'type="scale'), 0)
-    equal(#values(animated(run, {}), 'type="scale'), 1)
+    equal(#values(svg, 'attributeName="points'), 0)
+    equal(#values(animated(run, {}), 'attributeName="points')[1], 251)
     assert(svg:find("between walls", 1, true) and not animated(run, {}):find("patternTransform", 1, true))
 end)
 

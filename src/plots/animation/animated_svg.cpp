@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <utility>
 
 #include "text/characters.hpp"
@@ -99,19 +100,25 @@ private:
         }
     }
 
-    /// Drawn one pixel long and stretched from its anchor to the mass.
+    /// Drawn anew for each frame: a stretched one would have stretched strokes.
     void add_spring() {
         constexpr double anchor = 8, middle = (mass_top + svg_floor) / 2 - 4, half = 9;
-        std::string path;
-        for (const Point& corner : spring_corners(9)) {
-            path += fmt::format("{}{:.4f},{:.1f}", path.empty() ? "M" : " L", corner.x, half * corner.y);
-        }
-        add("<path d=\"M{0},{1} V{2}\" stroke=\"{3}\" stroke-width=\"3\"/>\n<g transform=\"translate({0},{4})\"><path d=\"{5}\" "
-            "fill=\"none\" stroke=\"{3}\" stroke-width=\"1.3\" vector-effect=\"non-scaling-stroke\">",
-            anchor, mass_top - 4, svg_floor, grey_ink, middle, path);
-        add_motion("transform", "scale",
-                   [&](const Frame& f) { return fmt::format("{:.1f},1", x(f.theta) - mass_width / 2 - anchor); });
-        all_ += "</path></g>\n";
+        const std::vector<Point> corners = spring_corners(9);
+        const auto points = [&](const Frame& frame) {
+            const double length = x(frame.theta) - mass_width / 2 - anchor;
+            std::string list;
+            for (const Point& corner : corners) {
+                fmt::format_to(std::back_inserter(list), "{:.1f},{:.0f} ", anchor + length * corner.x,
+                               middle + half * corner.y);
+            }
+            list.pop_back();
+            return list;
+        };
+        add("<path d=\"M{},{} V{}\" stroke=\"{}\" stroke-width=\"3\"/>\n", anchor, mass_top - 4, svg_floor, grey_ink);
+        add("<polyline fill=\"none\" stroke=\"{}\" stroke-width=\"1.3\" points=\"{}\">", grey_ink,
+            points(scene_.frames.front()));
+        add("<animate attributeName=\"points\" dur=\"{:.3f}s\" repeatCount=\"indefinite\" values=\"{}\"/></polyline>\n",
+            scene_.seconds, values(points));
     }
 
     void add_mass() {
