@@ -31,12 +31,12 @@ Parameters Identification::common_start(double omega0, double zeta, double dry, 
     at(p, Unknown::Re) = given(Unknown::Re, at(p, Unknown::Rd));
     at(p, Unknown::offset) = given(Unknown::offset, zero);
     const double a_while = 0.15 / omega0;  // so long it is about straight
-    const auto straight = std::upper_bound(question_.t.begin(), question_.t.end(), question_.t.front() + a_while);
+    const auto bent = std::upper_bound(question_.t.begin(), question_.t.end(), question_.t.front() + a_while);
     const Tangent tangent =
-        first_tangent(question_.t, question_.theta, static_cast<std::size_t>(straight - question_.t.begin()) + 2);
+        first_tangent(question_.t, question_.theta, static_cast<std::size_t>(bent - question_.t.begin()) + 2);
     at(p, Unknown::theta0) = given(Unknown::theta0, tangent.value - at(p, Unknown::offset));
     // A slope that noise could have made is none: a mass that stands is mostly one that was let go.
-    const double samples = static_cast<double>(straight - question_.t.begin()) + 2;
+    const double samples = static_cast<double>(bent - question_.t.begin()) + 2;
     const double unsure = 3 * noise_ * std::sqrt(12 / samples) / a_while;
     at(p, Unknown::velocity0) = given(Unknown::velocity0, std::fabs(tangent.slope) < unsure ? 0 : tangent.slope);
     return p;
