@@ -28,6 +28,32 @@ double refined(const model::Excitation& excitation, double sign, double a, doubl
     return sign * excitation.value((a + b) / 2);
 }
 
+/// The number of the harmonic of the period that a component is, where it is one sine for all times.
+std::optional<double> harmonic_number(const model::Component& component, const Drive& drive) {
+    const auto* sine = std::get_if<model::Harmonic>(&component.term);
+    if (sine == nullptr || std::isfinite(component.from) || std::isfinite(component.to)) return {};
+    const double number = sine->omega * drive.period / (2 * std::numbers::pi), whole = std::round(number);
+    if (std::fabs(number - whole) > 1e-12 * std::max(1.0, whole)) return {};
+    return whole;
+}
+
+bool is_odd(double whole) {
+    return std::fmod(whole, 2) != 0;
+}
+
+/// Of one sine and nothing else.
+std::optional<DriveRange> extremes_of_sine(const model::Excitation& excitation, const Drive& drive) {
+    double swing = 0;
+    int sines = 0;
+    for (const model::Component& c : excitation.components()) {
+        const auto number = harmonic_number(c, drive);
+        if (!number || *number == 0) return {};
+        swing = std::fabs(c.gain * std::get<model::Harmonic>(c.term).amplitude);
+        ++sines;
+    }
+    return sines == 1 ? std::optional(DriveRange{-swing, swing}) : std::nullopt;
+}
+
 }  // namespace
 
 std::optional<Drive> drive_of(const model::Excitation& excitation, double otherwise) {
@@ -69,6 +95,13 @@ std::optional<text::Error> not_periodic(const model::Excitation& excitation, con
 }
 
 bool is_antisymmetric(const model::Excitation& excitation, const Drive& drive) {
+    const auto components = excitation.components();
+    if (std::all_of(components.begin(), components.end(), [&](const model::Component& c) {
+            const auto number = harmonic_number(c, drive);
+            return number && is_odd(*number);
+        })) {
+        return true;
+    }
     constexpr int probes = 24;
     constexpr double allowed = 1e-12;
     for (int i = 0; i < probes; ++i) {
@@ -85,6 +118,19 @@ bool is_antisymmetric(const model::Excitation& excitation, const Drive& drive) {
 
 std::complex<double> harmonic_of(const model::Excitation& excitation, const Drive& drive, double n) {
     const double omega = 2 * std::numbers::pi * n / drive.period;
+    const auto components = excitation.components();
+    // a sin(w t + p) = a cos(w t + p - pi/2): the sum of those of this number.
+    std::complex<double> known;
+    const bool sines = std::all_of(components.begin(), components.end(), [&](const model::Component& c) {
+        const auto number = harmonic_number(c, drive);
+        if (number == n && n > 0) {
+            const auto& sine = std::get<model::Harmonic>(c.term);
+            known += std::polar(1.0, sine.omega * drive.start + sine.phase - std::numbers::pi / 2) *
+                     (c.gain * sine.amplitude);
+        }
+        return number.has_value() && n > 0;
+    });
+    if (sines) return known;
     const auto sum = integral(excitation, drive.start, drive.start + drive.period, drive.period / 64, [&](double t) {
         return excitation.value(t) * std::polar(1.0, -omega * (t - drive.start));
     });
@@ -92,6 +138,7 @@ std::complex<double> harmonic_of(const model::Excitation& excitation, const Driv
 }
 
 DriveRange extremes(const model::Excitation& excitation, const Drive& drive) {
+    if (const auto sine = extremes_of_sine(excitation, drive)) return *sine;
     constexpr int pieces = 512;
     const double end = drive.start + drive.period, h = drive.period / pieces;
     DriveRange range{excitation.value(drive.start), excitation.value(drive.start)};

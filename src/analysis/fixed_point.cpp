@@ -2,11 +2,13 @@
 
 #include <Eigen/SVD>
 #include <algorithm>
+#include <cmath>
 
 namespace dinal::analysis {
 namespace {
 
-constexpr double closed = 1e-12;        // of the size of the motion: what a fixed point may miss
+constexpr double closed = 1e-12;  // of the size of the motion: what a fixed point may miss
+constexpr double as_closed_as_can_be = 2e-15;
 constexpr double nearly_closed = 1e-9;  // where rounding lets no more be had
 
 }  // namespace
@@ -21,6 +23,13 @@ FixedPointSearch::Try FixedPointSearch::at(const Place& x, double size) const {
     return result;
 }
 
+std::optional<FixedPointSearch::Try> FixedPointSearch::confirmed(const Place& from) const {
+    const Try now = at(from, 0);
+    if (!now.at(1e-6)) return {};
+    const Try found = polished(now);
+    return found.at(closed) ? std::optional(found) : std::nullopt;
+}
+
 std::optional<FixedPointSearch::Try> FixedPointSearch::search(const Place& from, int most) const {
     Try now = at(from, 0);
     for (int i = 0; i < most && now.step.finished; ++i) {
@@ -33,6 +42,12 @@ std::optional<FixedPointSearch::Try> FixedPointSearch::search(const Place& from,
 
 Place FixedPointSearch::step(const Try& now) const {
     const Eigen::Matrix2d matrix = Eigen::Matrix2d::Identity() - sign_ * now.step.derivative;
+    const double determinant = matrix(0, 0) * matrix(1, 1) - matrix(0, 1) * matrix(1, 0);
+    if (std::fabs(determinant) > 1e-6 * matrix.squaredNorm()) {
+        return Place(matrix(1, 1) * now.off[0] - matrix(0, 1) * now.off[1],
+                     matrix(0, 0) * now.off[1] - matrix(1, 0) * now.off[0]) /
+               determinant;
+    }
     Eigen::JacobiSVD<Eigen::Matrix2d> parts(matrix, Eigen::ComputeFullU | Eigen::ComputeFullV);
     parts.setThreshold(1e-9);
     return parts.solve(now.off);
@@ -49,7 +64,7 @@ std::optional<FixedPointSearch::Try> FixedPointSearch::newton(const Try& now) co
 }
 
 FixedPointSearch::Try FixedPointSearch::polished(Try now) const {
-    for (int i = 0; i < 2 && now.step.differentiable && now.residual() > 0; ++i) {
+    for (int i = 0; i < 2 && now.step.differentiable && !now.at(as_closed_as_can_be); ++i) {
         Try next = at(now.x + step(now), now.size);
         if (!next.step.finished || !(next.residual() < now.residual() / 2)) break;
         now = next;

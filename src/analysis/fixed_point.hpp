@@ -25,6 +25,9 @@ public:
     /// Newton's method with damped steps, and one period of waiting where none of them leads on.
     [[nodiscard]] std::optional<Try> search(const Place& from, int most) const;
 
+    /// From a place that should be the fixed point but for rounding; none when it is not.
+    [[nodiscard]] std::optional<Try> confirmed(const Place& from) const;
+
 private:
     /// The shortest step to where the linearised map stands still: where I - D has a null space, none is made in it.
     [[nodiscard]] Place step(const Try& now) const;

@@ -14,6 +14,7 @@ PeriodMap::PeriodMap(const model::Oscillator& system, const model::Excitation& e
                      const motion::Monitor& monitor)
     : system_(system),
       excitation_(excitation),
+      integrator_(motion::integrator_for(system, excitation)),
       start_(start),
       length_(length),
       omega_(system.stiffness() > 0 ? system.natural_frequency() : 2 * std::numbers::pi / length),
@@ -21,9 +22,9 @@ PeriodMap::PeriodMap(const model::Oscillator& system, const model::Excitation& e
 
 motion::Trajectory PeriodMap::run(const Place& from, double length, bool dense) const {
     motion::Limits limits;
-    limits.dense = dense;
+    limits.dense = dense;  // a series is read between its nodes more quickly than a closed form
     auto result = motion::simulate(system_, excitation_, state(from), {start_, start_ + length}, motion::Grid::none(),
-                                   motion::Integrator{}, monitor_, limits);
+                                   dense ? motion::Integrator(motion::Spectral{}) : integrator_, monitor_, limits);
     if (result && result->contradiction) contradiction_ = result->contradiction;
     if (result) return std::move(result).value();
     motion::Trajectory none;

@@ -57,6 +57,7 @@ private:
 
     const model::Oscillator& system_;
     const model::Excitation& excitation_;
+    motion::Integrator integrator_;  // the usual one
     double start_, length_, omega_;
     motion::Monitor monitor_;
     mutable std::optional<model::Contradiction> contradiction_;

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "analysis/fixed_point.hpp"
+#include "analysis/sliding_start.hpp"
 #include "analysis/steady_facts.hpp"
 #include "model/lowered.hpp"
 
@@ -37,6 +38,7 @@ public:
             return answer_;
         }
         if (contracts_) {
+            if (symmetric_ && slides_through()) return answer_;
             if (search_once(start, symmetric_) || search_once(start, false)) return answer_;
             brute(start, 1);
             return answer_;
@@ -49,6 +51,7 @@ public:
         const Place start = place_of(question_.initial, map_.omega());
         answer_.period = question_.drive.period;
         if (resonant_growth() > 0) return found();
+        if (contracts_ && symmetric_ && slides_through()) return answer_;
         if (search_once(start, symmetric_) && answer_.stable) return answer_;
         return found();
     }
@@ -78,7 +81,9 @@ private:
         const double fed = std::numbers::pi * std::abs(harmonic_of(question_.excitation, question_.drive, n));
         const double taken = 2 * (system_.braking(model::Motion::forward) - system_.braking(model::Motion::backward));
         const double growth = n * (fed - taken) / system.stiffness();
-        return growth > 1e-9 * n * fed / system.stiffness() ? growth : 0;
+        const double most = question_.excitation.most();
+        const double rounding = 1e-9 * n * (std::isfinite(most) ? most : fed) / system.stiffness();
+        return growth > rounding ? growth : 0;
     }
 
     SteadyMotion growing(const Place& start, double growth) {
@@ -90,7 +95,7 @@ private:
             ++answer_.maps;
         }
         if (step.finished && !step.moved) {
-            settle(x, map_, 1);
+            settle(FixedPointSearch(map_, 1, answer_.maps).at(x, 0), map_, 1, false);
             return answer_;
         }
         answer_.status = SteadyStatus::grows;
@@ -100,11 +105,19 @@ private:
         return answer_;
     }
 
+    /// Where it does not stop the closed form is the answer, and one look confirms it.
+    bool slides_through() {
+        const auto start = sliding_start(question_);
+        if (!start) return false;
+        const auto found = FixedPointSearch(half_, -1, answer_.maps).confirmed(place_of(*start, half_.omega()));
+        return found && found->step.moved && found->step.stops == 0 && settle(*found, half_, 1, true);
+    }
+
     /// One period of M, or its half when M and friction are the same the other way round.
     bool search_once(const Place& start, bool half) {
         const PeriodMap& map = half ? half_ : map_;
         const auto found = FixedPointSearch(map, half ? -1 : 1, answer_.maps).search(start, 60);
-        return found && settle(found->x, map_, 1);
+        return found && settle(*found, map, 1, half);
     }
 
     bool search_multiple(const Place& start, int periods, bool any) {
@@ -112,7 +125,7 @@ private:
                             periods * question_.drive.period, monitor_);
         const auto found = FixedPointSearch(map, 1, answer_.maps).search(start, any ? 40 : 12);
         const bool good = found && (any || (found->x - start).norm() <= 0.2 * found->size);
-        const bool settled = good && settle(found->x, map, periods);
+        const bool settled = good && settle(*found, map, periods, false);
         if (map.contradiction()) contradiction_ = map.contradiction();
         return settled;
     }
@@ -129,24 +142,20 @@ private:
         return Place(std::clamp(x[0], std::min(low + inside, high), std::max(high - inside, low)), 0);
     }
 
-    /// The facts about the motion through x, which is periodic.
-    bool settle(Place x, const PeriodMap& map, int periods) {
-        FixedPointSearch::Try last = FixedPointSearch(map, 1, answer_.maps).at(x, 0);
-        if (const auto rest = last.step.moved ? rest_beside(x, last.step) : std::nullopt) {
-            const FixedPointSearch::Try still = FixedPointSearch(map, 1, answer_.maps).at(*rest, 0);
-            if (!still.step.moved) {
-                x = *rest;
-                last = still;
-            }
+    /// The facts about the motion through a fixed point of a map.
+    bool settle(FixedPointSearch::Try last, const PeriodMap& map, int periods, bool half) {
+        if (const auto rest = last.step.moved ? rest_beside(last.x, last.step) : std::nullopt) {
+            const FixedPointSearch::Try still = FixedPointSearch(map_, 1, answer_.maps).at(*rest, 0);
+            if (!still.step.moved) return settle(still, map_, 1, false);
         }
         answer_.outcome = last.step.outcome;
         if (!last.step.finished || !last.at(1e-6)) return false;
         const int maps = answer_.maps;
-        answer_ = facts_of(question_, map, last, periods, false);
+        answer_ = facts_of(question_, map, last, periods, half);
         answer_.maps = maps;
-        answer_.symmetric = symmetric_ && periods == 1 && is_symmetric(x, last.size);
+        answer_.symmetric = half || (symmetric_ && periods == 1 && is_symmetric(last.x, last.size));
         if (!last.step.moved) {
-            answer_.rest = rest_of(x[0]);
+            answer_.rest = rest_of(last.x[0]);
             answer_.unique = answer_.rest.first == answer_.rest.second;
         }
         return true;

@@ -1,6 +1,5 @@
 #include "analysis/steady_facts.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 
@@ -18,6 +17,19 @@ bool acts_evenly(const model::Friction& law, const model::Lowered& system) {
     }
     return system.braking(Motion::forward) == -system.braking(Motion::backward) &&
            system.holding(Motion::forward) == system.holding(Motion::backward);
+}
+
+std::array<std::complex<double>, 2> eigenvalues(const Eigen::Matrix2d& D) {
+    const double mean = (D(0, 0) + D(1, 1)) / 2, half = (D(0, 0) - D(1, 1)) / 2;
+    const double square = half * half + D(0, 1) * D(1, 0);
+    if (square < 0) {
+        const double turn = std::sqrt(-square);
+        return {std::complex(mean, turn), std::complex(mean, -turn)};
+    }
+    // The greater one first: the other is a quotient, and no difference.
+    const double first = mean + std::copysign(std::sqrt(square), mean);
+    const double determinant = D(0, 0) * D(1, 1) - D(0, 1) * D(1, 0);
+    return {std::complex(first), std::complex(first == 0 ? 0 : determinant / first)};
 }
 
 }  // namespace
@@ -57,9 +69,10 @@ SteadyMotion facts_of(const SteadyQuestion& question, const PeriodMap& map, cons
     motion.stuck = step.moved ? std::min(1.0, step.stuck / map.length()) : 1;
     motion.residual = found.residual() / found.size;
     motion.differentiable = step.differentiable;
-    const Eigen::Vector2cd values = Eigen::EigenSolver<Eigen::Matrix2d>(step.derivative, false).eigenvalues();
-    motion.multipliers = {values[0], values[1]};
-    if (half) motion.multipliers = {values[0] * values[0], values[1] * values[1]};
+    motion.multipliers = eigenvalues(step.derivative);
+    if (half) {
+        for (std::complex<double>& value : motion.multipliers) value *= value;
+    }
     const bool contracting = contracts(question);
     const double slack = contracting ? neutral_within : 1e-5;
     const auto& m = motion.multipliers;

@@ -15,6 +15,24 @@ namespace {
 
 constexpr double least_harmonic = 1e-9;  // of a harmonic in the whole, below which its phase is rounding
 
+/// What is summed over the time: theta, and theta e^(-i omega t).
+struct Moments {
+    double theta = 0;
+    std::complex<double> wave = {};
+
+    friend Moments operator+(const Moments& a, const Moments& b) { return {a.theta + b.theta, a.wave + b.wave}; }
+    friend Moments operator*(double factor, const Moments& a) { return {factor * a.theta, factor * a.wave}; }
+    Moments& operator+=(const Moments& other) { return *this = *this + other; }
+};
+
+/// The fundamental of M, beside all of M.
+bool is_more_than_rounding(const SteadyQuestion& question, const std::complex<double>& wave) {
+    const double most = question.excitation.most();
+    if (std::isfinite(most)) return std::abs(wave) > least_harmonic * 2 * most;
+    const DriveRange M = extremes(question.excitation, question.drive);
+    return std::abs(wave) > least_harmonic * (M.high - M.low);
+}
+
 /// An angle in degrees, in (-180, 180].
 double in_one_turn(double degrees) {
     const double turn = degrees - 360 * std::ceil((degrees - 180) / 360);
@@ -28,32 +46,34 @@ SteadyShape shape_of(const SteadyQuestion& question, const SteadyMotion& motion,
     shape.mean = motion.start.theta;
     if (motion.status != SteadyStatus::steady) return shape;
     const Drive& drive = question.drive;
-    const PeriodMap map(question.system, question.excitation, drive.start, motion.period, monitor);
-    const motion::Trajectory run =
-        map.run({motion.start.theta, motion.start.velocity / map.omega()}, motion.period, true);
+    // Half a period of a symmetric motion tells all of it.
+    const double length = motion.symmetric ? motion.period / 2 : motion.period;
+    const PeriodMap map(question.system, question.excitation, drive.start, length, monitor);
+    const motion::Trajectory run = map.run({motion.start.theta, motion.start.velocity / map.omega()}, length, true);
     if (run.outcome != model::Outcome::reached_end && run.outcome != model::Outcome::at_rest) return shape;
-    const double omega = 2 * std::numbers::pi / drive.period, middle = (motion.low + motion.high) / 2;
+    const double omega = 2 * std::numbers::pi / drive.period;
+    const double middle = motion.symmetric ? 0 : (motion.low + motion.high) / 2;
     const double own = question.system.stiffness() > 0 ? question.system.natural_period() : drive.period;
-    double theta_sum = 0;
-    std::complex<double> theta_wave, M_wave;
-    const auto wave = [&](double t) { return std::polar(1.0, -omega * (t - drive.start)); };
+    Moments sum;
     for (const Stretch& s : stretches(run)) {
         if (!(s.lasts() > 0)) continue;
-        const auto off = [&](double t) -> double {
-            if (s.stuck) return s.begin.theta - middle;
-            const auto state = run.at(std::clamp(t, s.from, s.to));
-            return state ? state->theta - middle : 0;
+        const auto moments_at = [&](double t) {
+            double off = s.begin.theta - middle;
+            if (!s.stuck) {
+                const auto state = run.at(std::clamp(t, s.from, s.to));
+                off = state ? state->theta - middle : 0;
+            }
+            return Moments{off, off * std::polar(1.0, -omega * (t - drive.start))};
         };
-        const double longest = std::min({own, drive.period, s.lasts()}) / 12;
-        theta_sum += integral(question.excitation, s.from, s.to, longest, off);
-        theta_wave += integral(question.excitation, s.from, s.to, longest, [&](double t) { return off(t) * wave(t); });
+        sum = sum +
+              integral(question.excitation, s.from, s.to, std::min({own, drive.period, s.lasts()}) / 12, moments_at);
     }
-    shape.mean = middle + theta_sum / motion.period;
-    shape.fundamental = std::abs(theta_wave) * 2 / motion.period;
+    shape.mean = motion.symmetric ? 0 : middle + sum.theta / length;
+    const std::complex<double> theta_wave = sum.wave;
+    shape.fundamental = std::abs(theta_wave) * 2 / length;
     if (question.excitation.has_feedback()) return shape;
-    M_wave = harmonic_of(question.excitation, drive, 1);
-    const DriveRange M = extremes(question.excitation, drive);
-    if (!(std::abs(M_wave) > least_harmonic * (M.high - M.low))) return shape;
+    const std::complex<double> M_wave = harmonic_of(question.excitation, drive, 1);
+    if (!is_more_than_rounding(question, M_wave)) return shape;
     if (shape.fundamental > least_harmonic * motion.amplitude) {
         shape.lag = in_one_turn((std::arg(M_wave) - std::arg(theta_wave)) * 180 / std::numbers::pi);
     }

@@ -175,6 +175,15 @@ std::optional<SlidingMotion> DenHartog::motion(double friction_ratio, double bre
     return sliding(friction_ratio, swing);
 }
 
+std::optional<SlidingMotion> DenHartog::without_stops(double friction_ratio) const {
+    const double phi = magnification(r_, modes_.zeta());
+    const double lost = friction_ratio * std::fabs(velocity_) / r_;
+    if (r_ == 0 || grows() || !(lost < phi)) return {};
+    const double swing = std::sqrt(phi - lost) * std::sqrt(phi + lost);
+    if (!(swing > excess_at_turn(friction_ratio, friction_ratio))) return {};
+    return sliding(friction_ratio, swing);
+}
+
 double DenHartog::stop_boundary(double breakaway_factor) const {
     if (r_ == 0) return 0;
     if (grows()) return pi / 4;

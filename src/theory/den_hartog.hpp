@@ -33,6 +33,9 @@ public:
     // NOTE: at r = 1/2, 1/4, ... with zeta = 0 it is one of a family of steady motions, the symmetric one.
     [[nodiscard]] std::optional<SlidingMotion> motion(double friction_ratio, double breakaway_ratio) const;
 
+    /// What the motion would be if it had no stops, which is not asked; none where no such motion could be.
+    [[nodiscard]] std::optional<SlidingMotion> without_stops(double friction_ratio) const;
+
     /// The gamma from which on the motion has stops, for Re = `breakaway_factor` Rd.
     [[nodiscard]] double stop_boundary(double breakaway_factor) const;
 

@@ -177,6 +177,15 @@ TEST_CASE("at resonance below gamma = pi/4 it grows by pi - 4 gamma a period, an
     CHECK(steady_motion(driven(1, 0.5, 1e-3)).status == SteadyStatus::steady);
 }
 
+TEST_CASE("without any damping a load at a part of the natural frequency moves it as linear theory says", "[steady]") {
+    for (const double n : {2.0, 3.0, 4.0, 7.0, 10.0}) {
+        const SteadyMotion found = steady_motion(driven(1 / n, 0));
+        INFO("r = 1/" << n);
+        REQUIRE(found.status == SteadyStatus::steady);
+        CHECK(found.amplitude == within(1 / (1 - 1 / (n * n)), 1e-10));
+    }
+}
+
 TEST_CASE("at r = 1/2 without viscous damping the motion is one of a family, and that is said", "[steady]") {
     const SteadyQuestion question = driven(0.5, 0.1);
     const SteadyMotion found = steady_motion(question);
