@@ -135,6 +135,30 @@ Data looks_as_rows(const SweepGrid& grid, const SweepResults& results, std::size
     return data;
 }
 
+/// The same out of the columns of a file.
+bool take_looks(const SweepGrid& grid, const std::vector<files::ReadColumn>& columns, SweepResults& results,
+                std::size_t keep) {
+    const std::size_t first = grid.parameters().size();
+    if (columns.size() != first + 3 || columns.back().name != "error" || columns[first].of_words) return false;
+    const std::vector<double>&theta = columns[first].numbers, &velocity = columns[first + 1].numbers;
+    const files::ReadColumn& errors = columns.back();
+    std::size_t row = 0;
+    for (std::size_t point = 0; point < results.size(); ++point) {
+        if (row >= theta.size()) return false;
+        if (errors.of_words && !errors.words[row].empty()) {
+            results.fail(point, errors.words[row++]);
+            continue;
+        }
+        if (theta.size() - row < keep || columns[first + 1].of_words) return false;
+        for (std::size_t look = 0; look < keep; ++look, ++row) {
+            results.column(look_name("theta", look))[point] = theta[row];
+            results.column(look_name("velocity", look))[point] = velocity[row];
+        }
+        results.finish(point);
+    }
+    return row == theta.size();
+}
+
 }  // namespace
 
 int bifurcation(lua_State* L) {
@@ -153,6 +177,7 @@ int bifurcation(lua_State* L) {
                           .option = parameter.name});
         }
     }
+    check_file_of_sweep(options, of_workers);
     const SweepGrid grid(std::move(parameters));
     const double period = asked.period.value_or(0);
     const auto adapt = [&](lua_State* worker) {
@@ -168,9 +193,13 @@ int bifurcation(lua_State* L) {
                                    .grid = grid,
                                    .function = function,
                                    .workers = of_workers.workers,
+                                   .file = of_workers.file,
                                    .settings = {period, asked.skip, asked.keep},
                                    .adapt = adapt,
-                                   .told = told});
+                                   .told = told,
+                                   .taken = [&](const std::vector<files::ReadColumn>& columns, SweepResults& into) {
+                                       return take_looks(grid, columns, into, static_cast<std::size_t>(asked.keep));
+                                   }});
     push_data(L, told(grid, *results));
     return 1;
 }

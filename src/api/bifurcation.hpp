@@ -34,8 +34,8 @@ inline constexpr text::Option bifurcation_only_options[] = {
      .meaning = "periods after that, each of which gives a row",
      .filled = text::fills<&BifurcationOptions::keep>},
 };
-inline constexpr text::Option option_of_workers[] = {sweep_options[1]};
-inline constexpr auto bifurcation_options = text::joined(bifurcation_only_options, option_of_workers);
+inline constexpr text::Option options_of_workers[] = {sweep_options[1], sweep_options[3]};
+inline constexpr auto bifurcation_options = text::joined(bifurcation_only_options, options_of_workers);
 inline constexpr text::Call bifurcation_call{
     "bifurcation",
     "bifurcation{ a = vector.linspace(0.2, 1.2, 400), period = 1.25, run = function(p) return sys, M end }",
@@ -47,7 +47,7 @@ inline constexpr lua::Doc bifurcation_doc{
     "bifurcation{ NAME = values, ..., OPTIONS } -> data",
     "Runs a system for each value of a parameter, on all cores at once, and notes theta and velocity once a period: a "
     "motion of one period is a point, one of two periods two points, chaos many. The result has the columns of the "
-    "parameters, theta, velocity and error; its plot shows points. As to what the function may use, see sweep.",
+    "parameters, theta, velocity and error; its plot shows points. As to what the function may use, and a file, see sweep.",
     "b = bifurcation{ a = { 0.5, 1 }, period = 1, skip = 50, keep = 2, run = function(p)\n"
     "    return nondimensional{ zeta = 0.1 }, excitation.harmonic{ amplitude = p.a, frequency = 1 }\n"
     "end }\n"

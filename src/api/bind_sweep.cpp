@@ -1,14 +1,9 @@
 // sweep{ ... }: a function of a point asked at all points of a grid, by several threads.
-#include <fmt/format.h>
-
 #include "api/bifurcation.hpp"
 #include "api/classes.hpp"
 #include "api/sweep_options.hpp"
 #include "api/sweep_parameters.hpp"
 #include "api/sweep_run.hpp"
-#include "files/share.hpp"
-#include "lua/interrupt.hpp"
-#include "text/words.hpp"
 
 namespace dinal::api {
 namespace {
@@ -19,17 +14,6 @@ Data map_of(const SweepGrid& grid, const SweepResults& results) {
     return map;
 }
 
-/// Several processes would all do all of it.
-void refuse_launcher(const lua::Options& options) {
-    const auto share = options.value_or_fail(files::share_of_launcher());
-    if (!share || share->size == 1) return;
-    options.fail(
-        {.sentence = fmt::format("this is process {} of {}, which share their work in a file: give one, file = "
-                                 "\"map.csv\"",
-                                 share->rank, share->size),
-         .option = "file"});
-}
-
 int sweep(lua_State* L) {
     std::vector<DataColumn> parameters = take_parameters(L, sweep_call);
     const lua::Options options(L, 1, sweep_call);
@@ -37,10 +21,7 @@ int sweep(lua_State* L) {
     options.fill(asked);
     const int function = push_run_function(L, options);
     check_parameters(L, sweep_call, parameters);
-    if (options.has("file") && text::ending_of(asked.file) != ".csv") {
-        options.fail("file", fmt::format("the name '{}' must end in .csv", asked.file));
-    }
-    if (!options.has("file") && !lua::in_worker()) refuse_launcher(options);
+    check_file_of_sweep(options, asked);
     const SweepGrid grid(std::move(parameters));
     const auto results = swept(L, {.call = sweep_call.name,
                                    .grid = grid,

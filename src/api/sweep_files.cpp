@@ -8,7 +8,6 @@
 #include <system_error>
 
 #include "files/confinement.hpp"
-#include "files/csv_columns.hpp"
 #include "files/file.hpp"
 
 namespace dinal::api {
@@ -31,12 +30,14 @@ std::size_t chunk_size_for(std::size_t points) {
     return std::clamp<std::size_t>((points + chunks - 1) / chunks, 1, most);
 }
 
-SweepFiles::SweepFiles(std::string file, const std::string& mark, const SweepGrid& grid, SweepResults& results)
+SweepFiles::SweepFiles(std::string file, const std::string& mark, const SweepGrid& grid, SweepResults& results,
+                       TakeColumns taken)
     : file_(std::move(file)),
       folder_(file_ + ".parts"),
       mark_("sweep " + mark),
       grid_(grid),
       results_(results),
+      taken_(std::move(taken)),
       written_(results.chunks()) {}
 
 std::string SweepFiles::chunk_file(std::size_t chunk) const {
@@ -114,6 +115,9 @@ std::optional<text::Error> SweepFiles::take(const std::string& file, bool is_res
     if (!read && !fs::exists(folder_, error)) return std::nullopt;  // another process has found all, and took it away
     if (!read) return read.error();
     const std::vector<files::ReadColumn>& columns = read->columns;
+    if (is_result && taken_) {
+        return taken_(columns, results_) ? std::nullopt : std::optional(another("is no longer as it was written"));
+    }
     const std::size_t first = is_result ? grid_.parameters().size() : 1;
     const std::size_t rows = columns.empty() ? 0 : std::max(columns[0].numbers.size(), columns[0].words.size());
     const bool broken = columns.size() <= first || columns.back().name != "error" ||
@@ -202,12 +206,9 @@ text::Expected<bool> SweepFiles::take_all() {
     return !error;
 }
 
-std::optional<text::Error> SweepFiles::finish() {
-    std::vector<std::size_t> points(results_.size());
-    for (std::size_t point = 0; point < points.size(); ++point) points[point] = point;
-    const Data data = results_.data(grid_, points);
+std::optional<text::Error> SweepFiles::finish(const Data& result) {
     std::vector<files::WordsOrNumbers> columns;
-    for (const DataColumn& column : data.columns) {
+    for (const DataColumn& column : result.columns) {
         files::WordsOrNumbers& written = columns.emplace_back(files::WordsOrNumbers{.name = column.name});
         if (const lua::Vector* numbers = column.numbers()) {
             written.numbers = numbers->values();

@@ -6,11 +6,13 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "api/sweep_results.hpp"
+#include "files/csv_columns.hpp"
 #include "files/share.hpp"
 #include "text/expected.hpp"
 
@@ -19,10 +21,14 @@ namespace dinal::api {
 /// How many points a chunk has: what is lost at most when the process is killed, and a file each.
 std::size_t chunk_size_for(std::size_t points);
 
+/// Takes the results out of the columns of a file; false when they are none of this sweep.
+using TakeColumns = std::function<bool(const std::vector<files::ReadColumn>& columns, SweepResults& results)>;
+
 class SweepFiles {
 public:
-    /// `mark` is that of what is asked.
-    SweepFiles(std::string file, const std::string& mark, const SweepGrid& grid, SweepResults& results);
+    /// `mark` is that of what is asked. The file has a row for each point, unless `taken` reads another form.
+    SweepFiles(std::string file, const std::string& mark, const SweepGrid& grid, SweepResults& results,
+               TakeColumns taken = {});
 
     /// Makes the folder, and takes what is done; so does the file itself when it is the result. Fails when something of
     /// another sweep is there, or nothing can be written.
@@ -40,7 +46,7 @@ public:
     /// Takes what others have done meanwhile; all is done. Of several that ask at once only one is told so.
     text::Expected<bool> take_all();
     /// The file of the result; the chunks go.
-    std::optional<text::Error> finish();
+    std::optional<text::Error> finish(const Data& result);
 
     /// Nothing of it is worth keeping.
     void discard();
@@ -59,6 +65,7 @@ private:
     std::string file_, folder_, mark_;
     const SweepGrid& grid_;
     SweepResults& results_;
+    TakeColumns taken_;
     std::vector<bool> written_;  // chunks
     bool finished_ = false;
 };

@@ -8,7 +8,6 @@
 #include <thread>
 
 #include "api/classes.hpp"
-#include "api/sweep_files.hpp"
 #include "api/sweep_workers.hpp"
 #include "files/file.hpp"
 #include "lua/interrupt.hpp"
@@ -16,6 +15,7 @@
 #include "lua/worker_state.hpp"
 #include "source/fingerprint.hpp"
 #include "text/characters.hpp"
+#include "text/words.hpp"
 
 namespace dinal::api {
 namespace {
@@ -131,7 +131,7 @@ private:
         share_ = share.value_or(files::Share{});
         launched_ = share.has_value();
         results_ = std::make_shared<SweepResults>(task_.grid.size(), chunk_size_for(task_.grid.size()));
-        files_.emplace(task_.file, fmt::format("{:016x}", print_), task_.grid, *results_);
+        files_.emplace(task_.file, fmt::format("{:016x}", print_), task_.grid, *results_, task_.taken);
         if (const auto wrong = files_->open()) lua::raise(L_, text::in_call(task_.call, *wrong));
         if (!files_->is_finished()) points_ = files_->points(share_);
     }
@@ -186,7 +186,7 @@ private:
             files_->discard();
             raise_if_all_failed(L_, task_, *results_);
         }
-        if (const auto wrong = last ? files_->finish() : std::nullopt) {
+        if (const auto wrong = last ? files_->finish(task_.told(task_.grid, *results_)) : std::nullopt) {
             lua::raise(L_, text::in_call(task_.call, *wrong));
         }
         return results_;
@@ -225,6 +225,21 @@ std::string heading_of_map(const SweepGrid& grid, const SweepResults& results) {
     const auto& [point, message] = *results.failures().begin();
     return text::wrapped(fmt::format("data: {} points, {} of them failed; the first one, {}: {}", grid.size(),
                                      results.failures().size(), grid.text(point), message));
+}
+
+void check_file_of_sweep(const lua::Options& options, const SweepOptions& asked) {
+    if (options.has("file")) {
+        if (text::ending_of(asked.file) == ".csv") return;
+        options.fail("file", fmt::format("the name '{}' must end in .csv", asked.file));
+    }
+    if (lua::in_worker()) return;
+    const auto share = options.value_or_fail(files::share_of_launcher());
+    if (!share || share->size == 1) return;
+    options.fail(
+        {.sentence = fmt::format("this is process {} of {}, which share their work in a file: give one, file = "
+                                 "\"map.csv\"",
+                                 share->rank, share->size),
+         .option = "file"});
 }
 
 std::shared_ptr<SweepResults> swept(lua_State* L, const SweepTask& task) {

@@ -7,7 +7,10 @@
 #include <string>
 #include <vector>
 
+#include "api/sweep_files.hpp"
+#include "api/sweep_options.hpp"
 #include "api/sweep_results.hpp"
+#include "lua/options.hpp"
 
 namespace dinal::api {
 
@@ -23,7 +26,12 @@ struct SweepTask {
     std::function<void(lua_State* worker)> adapt = {};
     /// The results so far as data.
     std::function<Data(const SweepGrid& grid, const SweepResults& results)> told;
+    /// Where the file has other rows than points: takes the results from its columns; false when they are none.
+    TakeColumns taken = {};
 };
+
+/// An error of the call when the name of the file is none, or several processes would all do all of it.
+void check_file_of_sweep(const lua::Options& options, const SweepOptions& asked);
 
 /// All points. Raises when all of them fail; after Ctrl-C, when what is done is in dinal.partial, and the same task
 /// goes on from there. With a file, and as one of several processes of a launcher, it does its share, and ends the

@@ -144,6 +144,28 @@ test("the same for any number of workers, and points that fail have a row", func
     end
 end)
 
+test("a bifurcation in a file is the same rows, and the same call reads them", function()
+    local file = os.tmpname()
+    os.remove(file)
+    file = file .. ".csv"
+    local function diagram(keep)
+        return bifurcation { a = { 1, 2, 3 }, period = 1, skip = 3, keep = keep, file = file, workers = 1, run = function(p)
+            if p.a == 2 then error("no two") end
+            return nondimensional { zeta = 0.2 }, excitation.harmonic { amplitude = p.a, frequency = 1 }
+        end }
+    end
+    local b = diagram(2)
+    local kept = data.load(file)
+    equal(#b, 5)
+    assert(kept.theta[1] == b.theta[1] and kept.velocity[5] == b.velocity[5])
+    assert(kept.error[3]:find("no two"))
+    local again = diagram(2)
+    equal(tostring(again), tostring(b))
+    support.raises(function() diagram(3) end, "is not the result of this sweep")
+    os.remove(file)
+    raises_here(function() bifurcation { a = { 1 }, period = 1, file = "b.txt", run = print } end, "must end in .csv")
+end)
+
 test("what is wrong with a bifurcation is told", function()
     local function run() return nondimensional {}, 1 end
     raises_here(function() bifurcation { a = { 1 }, run = run } end, "bifurcation needs period")
