@@ -5,6 +5,7 @@
 #include <string_view>
 #include <vector>
 
+#include "errors/bare_value.hpp"
 #include "errors/excerpt.hpp"
 #include "errors/habits.hpp"
 #include "errors/misspelling.hpp"
@@ -81,8 +82,9 @@ lua::Remarks remarks_on_syntax(lua_State* L, int index, const char* file) {
     }
     const auto source = file != nullptr ? source_of_file(file) : source_kept(L, message->chunk);
     const lua::SyntaxMessage syntax = lua::syntax_message(message->words).value_or(lua::SyntaxMessage{message->words});
-    return {syntax_habit(L, syntax, statement_of(source, message->line)),
-            source ? syntax_excerpt(L, *source, message->line, syntax) : "", ""};
+    std::string habit = syntax_habit(L, syntax, statement_of(source, message->line));
+    if (habit.empty() && source) habit = bare_value(L, *source, message->line, syntax);
+    return {habit, source ? syntax_excerpt(L, *source, message->line, syntax) : "", ""};
 }
 
 }  // namespace dinal::errors

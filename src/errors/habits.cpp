@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "lua/safe_mode.hpp"
 #include "lua/tokens.hpp"
 
 namespace dinal::errors {
@@ -74,6 +75,31 @@ std::string called_value(const lua::LuaMessage& message) {
     return simple ? "; it is a value and no function: leave out the parentheses" : "";
 }
 
+/// What Lua has and safe mode has not.
+std::string left_out_in_safe_mode(const lua::LuaMessage& message, std::string_view statement) {
+    if (!lua::safe_mode() || message.type != "nil") {
+        return "";
+    }
+    if (message.kind == "global" && (message.name == "dofile" || message.name == "loadfile")) {
+        return "; safe mode has no " + std::string(message.name) + ": a script is one file";
+    }
+    const std::vector<lua::Token> all = lua::tokens(statement);
+    for (std::size_t i = 2; i < all.size(); ++i) {
+        if (!all[i].is(message.name) || !all[i - 1].is(".")) {
+            continue;
+        }
+        const std::string_view library = all[i - 2].text;
+        if (library == "io") {
+            return "; safe mode has no io." + std::string(message.name) +
+                   ": data.load and trajectory.load read files, and save methods write them";
+        }
+        if (library == "os" || library == "debug" || library == "string" || library == "package") {
+            return "; safe mode leaves it out: see docs/safe-mode.md";
+        }
+    }
+    return "";
+}
+
 bool is_number(std::string_view text) {
     return !text.empty() && text.find_first_not_of("0123456789.") == std::string_view::npos;
 }
@@ -88,6 +114,9 @@ std::string running_habit(const text::Error& error, std::string_view statement) 
 }
 
 std::string running_habit(const lua::LuaMessage& message, std::string_view statement) {
+    if (const std::string reason = left_out_in_safe_mode(message, statement); !reason.empty()) {
+        return reason;
+    }
     if (message.adds_texts) {
         return "; texts are joined with ..";
     }

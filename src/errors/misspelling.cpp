@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "errors/habits.hpp"
+#include "errors/meant_method.hpp"
 #include "lua/bind.hpp"
 #include "lua/tokens.hpp"
 #include "text/suggest.hpp"
@@ -69,26 +70,6 @@ std::vector<std::string> variables(lua_State* L, lua_Debug* frame) {
         }
     });
     return names;
-}
-
-/// Pushes what the variable holds there: a local one (the innermost of that name), an outer one, a global one.
-void push_variable(lua_State* L, lua_Debug* frame, std::string_view wanted) {
-    lua_pushnil(L);
-    const int result = lua_gettop(L);
-    bool found = false;
-    each_variable(L, frame, [&](std::string_view name) {
-        if (name == wanted) {
-            lua_copy(L, -1, result);
-            found = true;
-        }
-    });
-    if (!found) {
-        lua_pushglobaltable(L);
-        lua_pushlstring(L, wanted.data(), wanted.size());
-        lua_rawget(L, -2);
-        lua_replace(L, result);
-        lua_pop(L, 1);
-    }
 }
 
 /// For "x.y.name" or "x.y:name" in the statement: the names that x.y has.
@@ -188,6 +169,25 @@ std::string meant_by(lua_State* L, std::string_view name, const std::vector<std:
 
 }  // namespace
 
+void push_variable(lua_State* L, lua_Debug* frame, std::string_view wanted) {
+    lua_pushnil(L);
+    const int result = lua_gettop(L);
+    bool found = false;
+    each_variable(L, frame, [&](std::string_view name) {
+        if (name == wanted) {
+            lua_copy(L, -1, result);
+            found = true;
+        }
+    });
+    if (!found) {
+        lua_pushglobaltable(L);
+        lua_pushlstring(L, wanted.data(), wanted.size());
+        lua_rawget(L, -2);
+        lua_replace(L, result);
+        lua_pop(L, 1);
+    }
+}
+
 std::vector<std::string> member_names(lua_State* L) {
     std::vector<std::string> names;
     luaL_checkstack(L, LUA_MINSTACK, "for the names of members");
@@ -236,8 +236,11 @@ Advice help_with(lua_State* L, lua_Debug* frame, const text::Error& error, std::
 
 Advice help_with(lua_State* L, lua_Debug* frame, const lua::LuaMessage& message, std::string_view statement) {
     luaL_checkstack(L, LUA_MINSTACK, "for the help with an error");
-    if (std::string habit = running_habit(message, statement); !habit.empty()) {
-        return {habit};
+    for (std::string habit : {running_habit(message, statement), meant_method(L, message, statement),
+                              length_of_list(L, frame, message, statement)}) {
+        if (!habit.empty()) {
+            return {habit};
+        }
     }
     if (message.type == "nil" && message.kind == "global") {
         std::vector<std::string> names = variables(L, frame);

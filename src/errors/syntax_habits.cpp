@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "errors/habits.hpp"
+#include "lua/bind.hpp"
 #include "lua/tokens.hpp"
 #include "text/suggest.hpp"
 
@@ -22,7 +23,7 @@ struct Symptom {
     std::string_view cure;
 };
 
-constexpr std::array<Symptom, 20> symptoms = {{
+constexpr std::array<Symptom, 19> symptoms = {{
     {"", "!", "; in Lua 'not equal' is ~= and 'not' is a word"},
     {"", "+", "; in Lua that is x = x + 1"},
     {"syntax error", "-", "; in Lua that is x = x - 1"},
@@ -34,7 +35,6 @@ constexpr std::array<Symptom, 20> symptoms = {{
     {"", "#", "; a remark begins with --"},
     {"unexpected symbol", "/", "; a remark begins with --"},
     {"unexpected symbol", "//", "; a remark begins with --"},
-    {"unexpected symbol", "*", "; a power is x^2"},
     {"unexpected symbol", ">", "; in Lua 'not equal' is ~="},
     {"unexpected symbol", "[", "; a list is { 1, 2, 3 }"},
     {"'then' expected", "=", "; comparing is =="},
@@ -131,13 +131,37 @@ std::string printed_sign(const lua::SyntaxMessage& message, std::string_view sta
     return "; names and signs of Lua are in plain letters: theta, pi, omega";
 }
 
-bool is_function_of(lua_State* L, std::string_view name) {
+/// "x**2", and a prompt that was copied along with what stands behind it.
+std::string doubled_sign(const Stumble& stumble) {
+    const auto& all = stumble.all;
+    for (std::size_t i = 1; i < all.size(); ++i) {
+        if (all[i].is("*") && all[i - 1].is("*") && all[i].at == all[i - 1].end()) {
+            return "; a power is x^2";
+        }
+    }
+    const bool prompt = !all.empty() && (all.front().is(">") || all.front().is(">>"));
+    return prompt ? "; leave out the prompt " + std::string(all.front().text) + " that stands in front" : "";
+}
+
+/// How the function on the top of the stack is called: with its options in braces, or in parentheses.
+std::string called_as(lua_State* L, std::string_view name) {
+    const lua::Documented found = lua::documented(L, -1);
+    const lua::Doc* doc = found.member != nullptr ? &found.member->doc : nullptr;
+    const std::string_view signature = doc != nullptr ? std::string_view(doc->signature) : std::string_view();
+    const std::size_t bracket = signature.find_first_of("({");
+    const bool braces = bracket != std::string_view::npos && signature[bracket] == '{';
+    return braces ? "; its options stand in braces: " + std::string(name) + "{ ... }"
+                  : "; a call needs parentheses: " + std::string(name) + "(...)";
+}
+
+/// The same for a global function; "" when there is none of that name.
+std::string call_of_global(lua_State* L, std::string_view name) {
     lua_pushglobaltable(L);
     lua_pushlstring(L, name.data(), name.size());
     lua_rawget(L, -2);
-    const bool is = lua_isfunction(L, -1);
+    std::string call = lua_isfunction(L, -1) ? called_as(L, name) : "";
     lua_pop(L, 2);
-    return is;
+    return call;
 }
 
 /// "print x", "run:save name", "retrun x", "def f", "2 x": two words where there should be one.
@@ -153,8 +177,8 @@ std::string two_words(lua_State* L, const Stumble& stumble) {
     if (stumble.message.complaint == "function arguments expected") {
         return "; a method is called with parentheses: " + std::string(first) + "(...)";
     }
-    if (is_function_of(L, first)) {
-        return "; a call needs parentheses: " + std::string(first) + "(...)";
+    if (const std::string call = call_of_global(L, first); !call.empty()) {
+        return call;
     }
     const bool long_enough = first.size() > 2;
     return long_enough && stumble.message.complaint == "syntax error" ? text::did_you_mean(first, lua::keywords()) : "";
@@ -239,8 +263,8 @@ std::string other_grammar(const Stumble& stumble) {
 std::string syntax_habit(lua_State* L, const lua::SyntaxMessage& message, std::string_view statement) {
     luaL_checkstack(L, LUA_MINSTACK, "for the habits of others");
     const Stumble stumble = stumble_in(message, statement);
-    for (std::string advice : {printed_sign(message, statement), two_words(L, stumble), misspelt_keyword(stumble),
-                               missing_star(stumble), other_grammar(stumble)}) {
+    for (std::string advice : {printed_sign(message, statement), doubled_sign(stumble), two_words(L, stumble),
+                               misspelt_keyword(stumble), missing_star(stumble), other_grammar(stumble)}) {
         if (!advice.empty()) {
             return advice;
         }

@@ -13,6 +13,7 @@
 #include <utility>
 
 #include "files/confinement.hpp"
+#include "files/temporaries.hpp"
 
 namespace dinal::files {
 namespace {
@@ -80,8 +81,15 @@ int create_temporary(const std::string& folder, std::string& name) {
     static std::atomic<unsigned> serial{0};
     for (int attempt = 0; attempt < 100; ++attempt) {
         name = folder + ".dinal-" + std::to_string(::getpid()) + "-" + std::to_string(++serial) + ".tmp";
+        note_temporary(name);  // before it is there: the signal may come at once
         const int descriptor = ::open(name.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-        if (descriptor >= 0 || errno != EEXIST) {
+        if (descriptor >= 0) {
+            return descriptor;
+        }
+        const int error = errno;
+        forget_temporary(name);
+        errno = error;
+        if (error != EEXIST) {
             return descriptor;
         }
     }
@@ -187,6 +195,7 @@ void OutputFile::abandon() {
     }
     if (!temporary_.empty()) {
         ::unlink(temporary_.c_str());
+        forget_temporary(temporary_);
         temporary_.clear();
     }
 }
@@ -237,6 +246,7 @@ text::Expected<Written> OutputFile::commit() {
     }
     if (failure_ == 0 && !temporary_.empty()) {
         if (::rename(temporary_.c_str(), target_.c_str()) == 0) {
+            forget_temporary(temporary_);
             temporary_.clear();
         } else {
             failure_ = errno;

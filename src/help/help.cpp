@@ -8,6 +8,7 @@
 #include "help/tour.hpp"
 #include "lua/bind.hpp"
 #include "lua/standard_globals.hpp"
+#include "terminal/pager.hpp"
 
 namespace dinal::help {
 
@@ -60,7 +61,7 @@ std::string text_about_value(lua_State* L, const terminal::Display& screen) {
 
 int help(lua_State* L) {
     const std::string text = text_about_value(L, terminal::display_of(STDOUT_FILENO));
-    lua_writestring(text.data(), text.size());  // as print() does
+    terminal::show_in_pages(text);
     return 0;
 }
 

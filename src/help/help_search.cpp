@@ -2,10 +2,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 
 #include "help/help_text.hpp"
 #include "help/signature.hpp"
+#include "help/topics.hpp"
 #include "lua/tokens.hpp"
 #include "text/characters.hpp"
 #include "text/suggest.hpp"
@@ -215,13 +217,11 @@ std::vector<std::string> help_option_names() {
     return names;
 }
 
-std::string help_about(std::string_view words, const terminal::Display& screen) {
+namespace {
+
+/// Entries, options and mentions; empty when there are none.
+std::string found_about(std::string_view words, const terminal::Display& screen) {
     constexpr std::size_t most = 10;
-    while (!words.empty() && words.back() == ' ') words.remove_suffix(1);
-    while (!words.empty() && words.front() == ' ') words.remove_prefix(1);
-    if (words == "contents") {
-        return contents(screen);
-    }
     std::string text;
     for (const Hit& hit : named(words)) {
         text += (text.empty() ? "" : "\n") + hit_text(hit, screen);
@@ -239,9 +239,6 @@ std::string help_about(std::string_view words, const terminal::Display& screen) 
         return text;
     }
     const std::vector<Hit> hits = mentioning(words);
-    if (hits.empty()) {
-        return no_help(words);
-    }
     for (std::size_t i = 0; i < std::min(most, hits.size()); ++i) {
         text += hit_line(hits[i], screen);
     }
@@ -249,6 +246,62 @@ std::string help_about(std::string_view words, const terminal::Display& screen) 
         text += fmt::format("  ... and {} more: use more of the word\n", hits.size() - most);
     }
     return text;
+}
+
+/// "how do I fit a record" without the words that every question has.
+std::string without_small_words(std::string_view question) {
+    constexpr std::array<std::string_view, 22> small = {"how", "do",   "i",   "a",  "an",   "the", "to",   "can",
+                                                        "is",  "are",  "of",  "my", "for",  "in",  "what", "which",
+                                                        "why", "does", "you", "it", "make", "get"};
+    std::string rest;
+    for (std::size_t begin = 0; begin < question.size();) {
+        const std::size_t end = std::min(question.find(' ', begin), question.size());
+        const std::string word = text::lower(question.substr(begin, end - begin));
+        if (!word.empty() && std::find(small.begin(), small.end(), word) == small.end()) {
+            rest.append(rest.empty() ? "" : " ").append(question.substr(begin, end - begin));
+        }
+        begin = end + 1;
+    }
+    return rest;
+}
+
+bool is_question(std::string_view words) {
+    constexpr std::array<std::string_view, 6> heads = {"how ", "what ", "which ", "why ", "where ", "can "};
+    return std::any_of(heads.begin(), heads.end(),
+                       [&](std::string_view head) { return text::lower(words).starts_with(head); });
+}
+
+/// The words of a question: what there is about the first of them that we know something of, and what mentions all.
+std::string about_words(const std::string& words, const terminal::Display& screen) {
+    std::string text;
+    for (std::size_t begin = 0; begin < words.size() && text.empty();) {
+        const std::size_t end = std::min(words.find(' ', begin), words.size());
+        text = topic(std::string_view(words).substr(begin, end - begin));
+        begin = end + 1;
+    }
+    const std::string found = found_about(words, screen);
+    text.append(text.empty() || found.empty() ? "" : "\n").append(found);
+    return text.empty() ? no_help(words) : text;
+}
+
+}  // namespace
+
+std::string help_about(std::string_view words, const terminal::Display& screen) {
+    words = text::trimmed(words, " ");
+    if (words == "contents") {
+        return contents(screen);
+    }
+    if (is_question(words)) {
+        const std::string rest = without_small_words(words);
+        return rest.empty() ? no_help(words) : about_words(rest, screen);
+    }
+    const std::string_view about = topic(words);
+    const std::string found = found_about(words, screen);
+    if (!about.empty() || !found.empty()) {
+        return std::string(about).append(about.empty() || found.empty() ? "" : "\n").append(found);
+    }
+    const std::string rest = without_small_words(words);
+    return rest.empty() || rest == words ? no_help(words) : about_words(rest, screen);
 }
 
 }  // namespace dinal::help

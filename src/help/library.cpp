@@ -48,6 +48,12 @@ constexpr lua::Member library_members[] = {
       "end)\n"
       "print(#dinal.partial)  --> 5"}},
     {{nullptr, lua::Kind::field},
+     {"dinal.on_interrupt",
+      "A function that you give: when Ctrl-C ends a script it is called with dinal.partial, to save or to print it; nil "
+      "when nothing was under way. A pcall cannot do that, because no pcall survives Ctrl-C. At the prompt and in "
+      "notebooks it is not called.",
+      "dinal.on_interrupt = function(partial) if partial then partial:save(\"partial.csv\") end end"}},
+    {{nullptr, lua::Kind::field},
      {"dinal.version -> string", "The version of the program.",
       "print(dinal.version == \"" DINAL_VERSION "\")  --> true"}},
 };

@@ -17,7 +17,8 @@ torque while it slides, Re what sticking can hold.
     > sys
 
 The names on the left are fields: sys.T0 is the natural period. Tab
-completes names, and lists the options inside { }. The last value is in ans.
+completes names, and lists the options inside { }. The last value that was
+computed is in ans; a name alone only shows what it holds.
 
 help(sys) says more about it, help "dead zone" searches, ? is short for help,
 and help "contents" lists all there is.

@@ -8,6 +8,7 @@ namespace {
 
 const char dinal_key = 0;     // in the registry, which a user's `dinal = nil` does not touch
 const char standard_key = 0;  // registry key of a copy of _G as it was at the start
+const char fields_key = 0;    // of a table: a library -> a copy of its fields at the start
 
 /// Copies all fields of one table to another.
 void copy_fields(lua_State* L, int from, int to) {
@@ -17,6 +18,35 @@ void copy_fields(lua_State* L, int from, int to) {
         lua_insert(L, -2);
         lua_rawset(L, to);
     }
+}
+
+/// Of the libraries in the table on the top, which is a copy of _G.
+void note_fields(lua_State* L) {
+    const int globals = lua_gettop(L);
+    lua_newtable(L);
+    lua_pushnil(L);
+    while (lua_next(L, globals) != 0) {
+        if (lua_istable(L, -1)) {
+            lua_newtable(L);
+            copy_fields(L, lua_gettop(L) - 1, lua_gettop(L));
+            lua_rawset(L, globals + 1);  // library -> copy; lua_next goes on from its name
+            continue;
+        }
+        lua_pop(L, 1);
+    }
+    lua_rawsetp(L, LUA_REGISTRYINDEX, &fields_key);
+}
+
+/// Gives the libraries back what they had at the start.
+void reset_fields(lua_State* L) {
+    const int top = lua_gettop(L);
+    lua_rawgetp(L, LUA_REGISTRYINDEX, &fields_key);
+    lua_pushnil(L);
+    while (lua_next(L, top + 1) != 0) {
+        copy_fields(L, lua_gettop(L), lua_gettop(L) - 1);
+        lua_pop(L, 1);
+    }
+    lua_settop(L, top);
 }
 
 }  // namespace
@@ -45,7 +75,48 @@ void note_standard_globals(lua_State* L) {
     lua_pushglobaltable(L);
     copy_fields(L, lua_gettop(L), lua_gettop(L) - 1);
     lua_pop(L, 1);
+    note_fields(L);
     lua_rawsetp(L, LUA_REGISTRYINDEX, &standard_key);
+}
+
+bool is_overwritten(lua_State* L, std::string_view name, std::string_view field) {
+    const int top = lua_gettop(L);
+    const auto get = [L](std::string_view key) {
+        lua_pushlstring(L, key.data(), key.size());
+        lua_rawget(L, -2);
+    };
+    push_standard_globals(L);
+    get(name);
+    if (!field.empty()) {  // the library as it was: its table, and the copy of its fields
+        lua_rawgetp(L, LUA_REGISTRYINDEX, &fields_key);
+        lua_pushvalue(L, -2);
+        lua_rawget(L, -2);
+        if (lua_istable(L, -1)) {
+            get(field);
+            lua_pushvalue(L, top + 2);
+            get(field);
+        } else {
+            lua_settop(L, top);
+            return false;
+        }
+    } else {
+        lua_pushglobaltable(L);
+        get(name);
+        lua_remove(L, -2);
+    }
+    const int before = field.empty() ? top + 2 : lua_gettop(L) - 2;
+    const bool was = !lua_isnil(L, before);
+    const bool overwritten = was && lua_rawequal(L, before, -1) == 0;
+    lua_settop(L, top);
+    return overwritten;
+}
+
+bool is_of_dinal(lua_State* L, std::string_view name) {
+    push_dinal_table(L);
+    lua_pushlstring(L, name.data(), name.size());
+    const bool has = lua_rawget(L, -2) != LUA_TNIL;
+    lua_pop(L, 2);
+    return has;
 }
 
 void push_standard_globals(lua_State* L) {
@@ -84,6 +155,7 @@ void reset_globals(lua_State* L) {
     }
     push_standard_globals(L);
     copy_fields(L, top + 2, top + 1);
+    reset_fields(L);
     lua_pushliteral(L, "dinal");
     push_dinal_table(L);
     lua_rawset(L, top + 1);

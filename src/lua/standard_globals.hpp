@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "lua/lua_headers.hpp"
@@ -22,6 +23,13 @@ void note_standard_globals(lua_State* L);
 
 /// Pushes a table of them: name -> value.
 void push_standard_globals(lua_State* L);
+
+/// Whether a global of that name was there at the start, and is something else now; the same of a field in a library
+/// that was there at the start: math.pi.
+bool is_overwritten(lua_State* L, std::string_view name, std::string_view field = {});
+
+/// The table `dinal` has it, too.
+bool is_of_dinal(lua_State* L, std::string_view name);
 
 /// The names of all globals that are not among them, or hold something else now; sorted.
 std::vector<std::string> users_globals(lua_State* L);

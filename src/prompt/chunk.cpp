@@ -1,7 +1,10 @@
 #include "prompt/chunk.hpp"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <cctype>
+#include <optional>
 #include <string_view>
 #include <vector>
 
@@ -98,6 +101,40 @@ bool load_with_last_value(lua_State* L, Chunk& chunk, const std::string& text, b
     return false;
 }
 
+/// The innermost bracket that is not closed.
+std::optional<lua::Token> open_bracket(std::string_view text) {
+    std::vector<lua::Token> open;
+    for (const lua::Token& token : lua::tokens(text)) {
+        if (token.is("(") || token.is("{") || token.is("[")) {
+            open.push_back(token);
+        } else if ((token.is(")") || token.is("}") || token.is("]")) && !open.empty()) {
+            open.pop_back();
+        }
+    }
+    return open.empty() ? std::nullopt : std::optional(open.back());
+}
+
+char partner_of(char bracket) {
+    return bracket == '(' ? ')' : bracket == '[' ? ']' : '}';
+}
+
+/// What the message on the top of the stack, of a chunk that ended too early, says is missing.
+std::string what_is_missing(lua_State* L, std::string_view text) {
+    const std::string message(lua::text_at(L, -1));
+    const std::size_t line = message.find(':') + 1, words = message.find(": ") + 2;  // stdin:1: ...
+    const std::string number = message.substr(line, words - 2 - line);
+    const auto parsed = lua::syntax_message(std::string_view(message).substr(words));
+    if (!parsed || parsed->expected.empty() || parsed->expected.front() == '<') {
+        const auto open = open_bracket(text);
+        return open ? fmt::format("{} of line {} waits for {}", open->text, open->line, partner_of(open->text.front()))
+                    : fmt::format("line {} goes on", number);
+    }
+    if (parsed->opened.empty()) {  // on that line
+        return fmt::format("line {} waits for {}", number, parsed->expected);
+    }
+    return fmt::format("{} of line {} waits for {}", parsed->opened, parsed->opened_line, parsed->expected);
+}
+
 /// The words after `return`, when that is the first word.
 std::string_view without_return(std::string_view text) {
     const std::vector<lua::Token> all = lua::tokens(text);
@@ -118,9 +155,12 @@ Chunk compile(lua_State* L, const std::string& text) {
         return chunk;
     }
     bool early = ended_early(L, text);
+    chunk.waits = early ? what_is_missing(L, text) : "";
     lua_pop(L, 1);
     const bool statements = load(L, text);
-    early = !statements && (ended_early(L, text) || early);
+    const bool statements_early = !statements && ended_early(L, text);
+    chunk.waits = statements_early ? what_is_missing(L, text) : chunk.waits;
+    early = !statements && (statements_early || early);
     if (quiet.find_first_of("\n;") != std::string::npos) {
         const int top = lua_gettop(L);
         // NOTE: a block may end in a name, after which Lua expects more.
@@ -133,6 +173,13 @@ Chunk compile(lua_State* L, const std::string& text) {
     chunk.silent = false;
     chunk.result = statements ? Compiled::ready : early ? Compiled::incomplete : Compiled::wrong;
     return chunk;
+}
+
+bool only_looks(const Chunk& chunk) {
+    const std::vector<lua::Token> all = lua::tokens(chunk.expression);
+    const auto code = std::count_if(all.begin(), all.end(),
+                                    [](const lua::Token& token) { return token.kind != lua::TokenKind::comment; });
+    return chunk.statements.empty() && code == 1 && all.front().kind == lua::TokenKind::name;
 }
 
 }  // namespace dinal::prompt

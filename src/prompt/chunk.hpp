@@ -18,11 +18,15 @@ struct Chunk {
     std::string statements;  ///< what is run first
     std::string expression;  ///< whose values the function returns; empty when there is none
     bool silent = false;     ///< a `;` stands behind the expression: its values are not to be shown
+    std::string waits = {};  ///< of an incomplete one: "'for' of line 1 waits for 'end'"
 };
 
 /// The name of every such chunk, in messages "stdin", as in lua.
 inline constexpr const char* prompt_chunk = "=stdin";
 
 Chunk compile(lua_State* L, const std::string& text);
+
+/// It only names a variable, to look at it: ans stays what it was.
+bool only_looks(const Chunk& chunk);
 
 }  // namespace dinal::prompt

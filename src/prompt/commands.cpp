@@ -17,6 +17,7 @@
 #include "prompt/question.hpp"
 #include "prompt/session.hpp"
 #include "terminal/display.hpp"
+#include "terminal/pager.hpp"
 #include "text/characters.hpp"
 #include "text/suggest.hpp"
 #include "text/words.hpp"
@@ -82,7 +83,8 @@ int print_globals(lua_State* L) {
         lua_pushstring(L, name.c_str());
         lua_rawget(L, -2);
         const std::string head = fmt::format("  {:<9} ", name);
-        say(head + show_line(L, -1, screen, screen.width - std::min(text::columns(head), screen.width / 2) - 1) + "\n");
+        say_value(head + show_line(L, -1, screen, screen.width - std::min(text::columns(head), screen.width / 2) - 1) +
+                  "\n");
         lua_pop(L, 2);
     }
     if (names.empty()) {
@@ -132,7 +134,7 @@ constexpr std::array<Command, 9> commands = {{
 void help(Session& session, const std::string& argument) {
     const terminal::Display screen = terminal::display_of(STDOUT_FILENO);
     if (!argument.empty() && argument.front() != ':') {
-        say(answer_to(session.L, argument));
+        terminal::show_in_pages(answer_to(session.L, argument));
         return;
     }
     std::string text;
@@ -187,7 +189,7 @@ bool is_command(std::string_view line) {
 
 void run_command(Session& session, const std::string& line) {
     if (is_question(line)) {
-        say(answer_to(session.L, line));
+        terminal::show_in_pages(answer_to(session.L, line));
         return;
     }
     const std::string_view name = name_of(line);

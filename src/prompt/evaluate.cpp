@@ -4,6 +4,7 @@
 
 #include <string>
 
+#include "lua/bind.hpp"
 #include "lua/interrupt.hpp"
 #include "lua/standard_globals.hpp"
 #include "prompt/call.hpp"
@@ -33,8 +34,12 @@ void push_partial(lua_State* L) {
     lua_remove(L, -2);
 }
 
+/// What is done of a run goes on by itself; what is done of a sweep when it is called again.
 int print_partial(lua_State* L) {
-    say_error("the part of the run that was done is in ans (ans:continue() goes on):\n" +
+    const lua::Documented kept = lua::documented(L, 1);
+    const bool run = kept.owner != nullptr && kept.owner->name == std::string_view("run");
+    say_error((run ? "the part of the run that was done is in dinal.partial, and in ans (ans:continue() goes on):\n"
+                   : "what was done is in dinal.partial, and in ans; the same call again goes on from there:\n") +
               show(L, 1, terminal::display_of(STDERR_FILENO)));
     return 0;
 }
@@ -55,14 +60,16 @@ void take_values(lua_State* L, int base, const Chunk& chunk, lua_CFunction show_
         return;
     }
     const bool single = lua_gettop(L) == base + 1;
-    if (!lua_isnil(L, base + 1)) {
+    if (!lua_isnil(L, base + 1) && !only_looks(chunk)) {
         set_ans(L, base + 1);
     }
+    const std::string greatest = single ? greatest_notice(L, base + 1, chunk) : "";
     if (!chunk.silent) {
         show_by(L, show_values, base);
     }
     if (single) {
         say_notice(name_notice(L, chunk));
+        say_notice(greatest);
     }
 }
 
@@ -101,7 +108,7 @@ std::string values_text(lua_State* L) {
 }
 
 int print_values(lua_State* L) {
-    say(values_text(L) + "\n");
+    say_value(values_text(L) + "\n");
     return 0;
 }
 

@@ -1,4 +1,4 @@
-// The only file that knows readline, and the only one that differs when it is not built in.
+// What knows readline, with history.cpp beside it, and what differs when that is not built in.
 #include "prompt/line_editor.hpp"
 
 #ifdef DINAL_READLINE
@@ -18,6 +18,7 @@
 
 #include "lua/safe_mode.hpp"
 #include "prompt/completion.hpp"
+#include "prompt/history.hpp"
 #include "prompt/output.hpp"
 #include "prompt/typing.hpp"
 #include "prompt/user_files.hpp"
@@ -30,7 +31,6 @@ namespace dinal::prompt {
 
 namespace {
 
-constexpr int longest_history = 5000;  // entries
 constexpr const char* erase_to_end = "\x1b[K";
 
 // What readline's callbacks need to know: there is one editor, and they get no argument.
@@ -42,6 +42,8 @@ struct Editing {
     TypedLine line;
     std::string prompt;
     std::string pending;  // earlier lines of the chunk, each with its newline
+    std::string cue;      // what it waits for
+    std::string rest;     // what history adds to the line, in grey
     std::vector<std::string> names;
 };
 Editing editing;
@@ -65,6 +67,31 @@ int finish_line(int count, int key) {
     return rl_newline(count, key);
 }
 
+/// The right arrow and its like, at the end of the line: what history suggests there is taken.
+bool take_rest() {
+    if (rl_point != rl_end || editing.rest.empty() || !editing.hinting) {
+        return false;
+    }
+    rl_insert_text(editing.rest.c_str());
+    return true;
+}
+int go_right(int count, int key) {
+    return take_rest() ? 0 : rl_forward_char(count, key);
+}
+int go_to_end(int count, int key) {
+    return take_rest() ? 0 : rl_end_of_line(count, key);
+}
+
+/// Where the user has not bound them to something else.
+void bind_to_suggestions() {
+    for (const char* keys : {"\x1b[C", "\x1bOC", "\x06"}) {
+        if (rl_function_of_keyseq(keys, nullptr, nullptr) == rl_forward_char) rl_bind_keyseq(keys, go_right);
+    }
+    for (const char* keys : {"\x1b[F", "\x1bOF", "\x05"}) {
+        if (rl_function_of_keyseq(keys, nullptr, nullptr) == rl_end_of_line) rl_bind_keyseq(keys, go_to_end);
+    }
+}
+
 /// readline draws the line; then it is drawn over in colours, with the hint behind it, where it is one simple row.
 void redisplay() {
     if (InterruptNote::interrupted()) {
@@ -78,8 +105,13 @@ void redisplay() {
         return;
     }
     const std::string_view line(rl_line_buffer, static_cast<std::size_t>(rl_end));
-    const auto cursor = static_cast<std::size_t>(rl_point);
-    const Painted painted = paint(editing.L, editing.prompt, editing.pending, line, cursor);
+    editing.rest = rl_point == rl_end && editing.pending.empty() ? suggested(line) : "";
+    const Painted painted = paint(editing.L, {.prompt = editing.prompt,
+                                              .pending = editing.pending,
+                                              .line = line,
+                                              .cursor = static_cast<std::size_t>(rl_point),
+                                              .cue = editing.cue,
+                                              .rest = editing.rest});
     editing.hinting = painted.hint;
     if (!painted.text.empty()) {
         static_cast<void>(std::fputs(painted.text.c_str(), rl_outstream));
@@ -119,6 +151,11 @@ char** complete_word(const char* word, int, int end) {
 }
 
 volatile std::sig_atomic_t resized = 0;
+volatile std::sig_atomic_t continued = 0;
+
+extern "C" void on_continue(int) {
+    continued = 1;
+}
 
 extern "C" void on_resize(int) {
     resized = 1;
@@ -135,13 +172,18 @@ void fit_to_window() {
     }
 }
 
-void notice_resizing() {
-    rl_catch_sigwinch = 0;
+/// After Ctrl-Z and fg the shell has written below the line.
+void draw_again() {
+    rl_on_new_line();
+    rl_forced_update_display();
+}
+
+void notice(int signal, void (*handler)(int)) {
     struct sigaction action {};
-    action.sa_handler = on_resize;
+    action.sa_handler = handler;
     sigemptyset(&action.sa_mask);
     action.sa_flags = SA_RESTART;  // it is no matter of the script
-    sigaction(SIGWINCH, &action, nullptr);
+    sigaction(signal, &action, nullptr);
 }
 
 /// Waits for a key or a signal, and lets readline see the signal. True when there is a key to read.
@@ -161,6 +203,10 @@ bool key_arrived() {
     if (resized != 0) {
         resized = 0;
         fit_to_window();
+    }
+    if (continued != 0) {
+        continued = 0;
+        draw_again();
     }
     return arrived && !InterruptNote::interrupted();
 }
@@ -193,24 +239,20 @@ void start_readline(const std::string& history) {
     rl_attempted_completion_function = complete_word;
     rl_completer_word_break_characters = const_cast<char*>(" \t\n\"\\'`@$><=;|&{}()[]:.,+-*/%^~#!?");  // only read
     rl_completer_quote_characters = "\"'";
-    notice_resizing();
+    rl_catch_sigwinch = 0;
+    notice(SIGWINCH, on_resize);
+    notice(SIGCONT, on_continue);
     rl_initialize();
     // After the user's inputrc. A blinking parenthesis would swallow a Ctrl-C that is typed within its half second.
     rl_variable_bind("blink-matching-paren", "off");
     rl_variable_bind("enable-bracketed-paste", terminal::obeys_escapes() ? "on" : "off");
-    // With time stamps an entry of several lines is read back as one.
-    history_comment_char = '#';
-    history_write_timestamps = 1;
-    stifle_history(longest_history);
-    if (!history.empty()) {
-        history_truncate_file(history.c_str(), longest_history);
-        read_history(history.c_str());
-    }
+    open_history(history);
     editing.paints = terminal::display_of(STDOUT_FILENO).colour;
     if (editing.paints) {
         rl_redisplay_function = redisplay;
         rl_bind_key('\r', finish_line);
         rl_bind_key('\n', finish_line);
+        bind_to_suggestions();
     }
 }
 
@@ -224,14 +266,15 @@ void give_up() {
     say("\n");  // rl_outstream is standard output
 }
 
-TypedLine read_edited(const std::string& prompt, const std::string& pending) {
+TypedLine read_edited(const std::string& prompt, const std::string& pending, const std::string& cue) {
     const InterruptNote note;
+    const LinesAbove above(pending);
     editing.accepted = false;
     editing.hinting = false;
     editing.prompt = prompt;
     editing.pending = pending.empty() ? "" : pending + "\n";
+    editing.cue = cue;
     rl_eof_found = 0;  // of an earlier line: readline would end every further one with a blank one
-    using_history();
     rl_callback_handler_install(prompt.c_str(), accept);
     while (!editing.accepted) {
         if (key_arrived()) {
@@ -256,21 +299,13 @@ LineEditor::LineEditor(lua_State* L) : edits_(isatty(STDIN_FILENO) != 0 && isatt
     }
 }
 
-TypedLine LineEditor::read(const std::string& prompt, const std::string& pending) const {
-    return edits_ ? read_edited(prompt, pending) : read_plain(prompt);
+TypedLine LineEditor::read(const std::string& prompt, const std::string& pending, const std::string& cue) const {
+    return edits_ ? read_edited(prompt, pending, cue) : read_plain(prompt);
 }
 
 void LineEditor::remember(const std::string& entry) {
-    if (!edits_ || entry.find_first_not_of(" \t\n") == std::string::npos) {
-        return;
-    }
-    const HIST_ENTRY* last = history_length > 0 ? history_get(history_base + history_length - 1) : nullptr;
-    if (last != nullptr && entry == last->line) {
-        return;
-    }
-    add_history(entry.c_str());
-    if (!history_file_.empty()) {
-        append_history(1, history_file_.c_str());  // at once: the session may end by a signal or os.exit
+    if (const std::string problem = edits_ ? add_to_history(entry, history_file_) : ""; !problem.empty()) {
+        say_error("(" + problem + ")");
     }
 }
 
@@ -283,7 +318,7 @@ const char* LineEditor::about() {
 LineEditor::LineEditor(lua_State*) : edits_(false) {}
 
 // NOLINTNEXTLINE(readability-convert-member-functions-to-static): with readline it is none
-TypedLine LineEditor::read(const std::string& prompt, const std::string&) const {
+TypedLine LineEditor::read(const std::string& prompt, const std::string&, const std::string&) const {
     return read_plain(prompt);
 }
 

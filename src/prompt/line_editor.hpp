@@ -14,8 +14,9 @@ public:
     /// The state is asked for names at Tab and for signatures.
     explicit LineEditor(lua_State* L);
 
-    /// `pending` are the lines before it of a chunk that goes on.
-    [[nodiscard]] TypedLine read(const std::string& prompt, const std::string& pending = "") const;
+    /// `pending` are the lines before it of a chunk that goes on, `cue` says in grey what it waits for.
+    [[nodiscard]] TypedLine read(const std::string& prompt, const std::string& pending = "",
+                                 const std::string& cue = "") const;
 
     /// Adds an entry, which may have several lines, to the history of this and of later sessions.
     void remember(const std::string& entry);

@@ -1,6 +1,8 @@
 #include "prompt/meaning.hpp"
 
 #include <algorithm>
+#include <cstdlib>
+#include <string>
 
 #include "help/signature.hpp"
 
@@ -23,7 +25,11 @@ const lua::Member* member_of(const lua::Class& description, std::string_view nam
 /// Walks along the expression. What is known so far is `result`; its value is on the top of the stack.
 class Walk {
 public:
-    explicit Walk(lua_State* L) : L_(L) { lua_pushnil(L_); }
+    explicit Walk(lua_State* L) : L_(L) {
+        lua_pushnil(L_);
+        owner_ = lua_gettop(L_);
+        lua_pushnil(L_);
+    }
 
     Meaning result;
 
@@ -39,7 +45,13 @@ public:
         if (result.kind == Meaning::Kind::value) {
             const lua::Documented found = lua::documented(L_, -1);
             if (lua_isuserdata(L_, -1) != 0) {
-                found.owner != nullptr ? go_to_member(*found.owner, name) : forget();
+                if (found.owner == nullptr) {
+                    forget();
+                    return;
+                }
+                lua_copy(L_, -1, owner_);
+                go_to_member(*found.owner, name);
+                field_ = name;
             } else {
                 raw_field(name);
             }
@@ -49,6 +61,24 @@ public:
             const help::Section* held =
                 result.member->kind == lua::Kind::field ? help::result_class(result.member->doc.signature) : nullptr;
             held != nullptr ? go_to_member(*held->description, name) : forget();
+        }
+    }
+
+    /// list[1], of tables as they are, and of data in an object: run.events[1].
+    void index(lua_Integer number) {
+        if (result.kind == Meaning::Kind::value && lua_istable(L_, -1)) {
+            lua_rawgeti(L_, -1, number);
+            lua_remove(L_, -2);
+            return;
+        }
+        const bool data =
+            result.kind == Meaning::Kind::member && result.member->kind == lua::Kind::field && !field_.empty() &&
+            help::result_class(result.member->doc.signature) != nullptr &&
+            help::result_class(result.member->doc.signature)->description->name == std::string_view("data");
+        const std::string field(field_);
+        forget();
+        if (data) {
+            row_of(field, number);
         }
     }
 
@@ -70,11 +100,32 @@ public:
 
     void forget() {
         result = {};
+        field_ = {};
         lua_pop(L_, 1);
         lua_pushnil(L_);
     }
 
 private:
+    /// Replaces the nil on the top by a row of the data in a field of the owner: what is asked is ours, and no code of
+    /// the user.
+    void row_of(const std::string& field, lua_Integer number) {
+        const auto get = [](lua_State* L) {
+            lua_getfield(L, 1, lua_tostring(L, 2));
+            lua_geti(L, -1, lua_tointeger(L, 3));
+            return 1;
+        };
+        lua_pushcfunction(L_, get);
+        lua_pushvalue(L_, owner_);
+        lua_pushstring(L_, field.c_str());
+        lua_pushinteger(L_, number);
+        if (lua_pcall(L_, 3, 1, 0) != LUA_OK || !lua_istable(L_, -1)) {
+            lua_pop(L_, 1);
+            return;
+        }
+        lua_replace(L_, -2);
+        result = {Meaning::Kind::value, nullptr, nullptr};
+    }
+
     /// Replaces the table on the top by its field, looked up in the tables of __index, too.
     void raw_field(std::string_view name) {
         for (int i = 0; i < most_metatables; ++i) {
@@ -107,6 +158,8 @@ private:
     }
 
     lua_State* L_;
+    int owner_ = 0;           // the object whose field was gone to last
+    std::string_view field_;  // the name of that, empty when something else came after it
 };
 
 }  // namespace
@@ -130,7 +183,15 @@ Meaning meaning(lua_State* L, std::span<const lua::Token> expression) {
         if (token.kind == lua::TokenKind::name) {
             walk.go_to_field(token.text);
         } else if (token.kind == lua::TokenKind::string || token.is("(") || token.is("{") || token.is("[")) {
-            token.is("[") ? walk.forget() : walk.call();
+            const bool number = i + 2 < expression.size() && expression[i + 1].kind == lua::TokenKind::number &&
+                                expression[i + 2].is("]");
+            if (!token.is("[")) {
+                walk.call();
+            } else if (number) {
+                walk.index(std::atoll(std::string(expression[i + 1].text).c_str()));
+            } else {
+                walk.forget();
+            }
             int depth = token.kind == lua::TokenKind::string ? 0 : 1;
             while (depth > 0 && i + 1 < expression.size()) {
                 ++i;

@@ -3,11 +3,15 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <array>
+#include <utility>
 #include <vector>
 
 #include "errors/misspelling.hpp"
 #include "help/help_text.hpp"
 #include "help/signature.hpp"
+#include "lua/bind.hpp"
+#include "lua/standard_globals.hpp"
 #include "lua/tokens.hpp"
 #include "prompt/meaning.hpp"
 #include "prompt/output.hpp"
@@ -42,6 +46,17 @@ std::ptrdiff_t uses(const std::vector<lua::Token>& all, std::string_view name) {
                          [name](const lua::Token& t) { return t.kind == lua::TokenKind::name && t.text == name; });
 }
 
+/// What is typed to a shell, or to another program of this kind.
+constexpr std::array<std::pair<std::string_view, std::string_view>, 6> shell_words = {{
+    {"exit quit q bye logout", ":quit or Ctrl-D leaves"},
+    {"clear cls clc", "Ctrl-L clears the screen, :reset forgets your variables"},
+    {"who whos", ":who lists your variables"},
+    {"ls dir pwd cd cat less vi vim nano emacs man mkdir rm cp mv sh bash",
+     "the shell is behind Ctrl-Z, and fg comes back from there"},
+    {"history", "the up arrow brings earlier lines back, Ctrl-R searches them, and :save writes them into a script"},
+    {"reset", ":reset forgets your variables"},
+}};
+
 /// Raw: to ask must not run the code of a strict _G.
 bool is_global(lua_State* L, std::string_view name) {
     lua_pushglobaltable(L);
@@ -65,11 +80,11 @@ std::string name_notice(lua_State* L, const Chunk& chunk) {
     if (is_global(L, name)) {
         return "";
     }
-    if (name == "exit" || name == "quit" || name == "q" || name == "bye") {
-        return "there is no such variable; :quit or Ctrl-D leaves";
-    }
-    if (name == "clear" || name == "cls") {
-        return "there is no such variable; Ctrl-L clears the screen, :reset forgets your variables";
+    for (const auto& [names, advice] : shell_words) {
+        const std::vector<lua::Token> words = lua::tokens(names);
+        if (std::any_of(words.begin(), words.end(), [name](const lua::Token& word) { return word.is(name); })) {
+            return fmt::format("there is no such variable; {}", advice);
+        }
     }
     const std::string hint = errors::similar_global(L, name);
     return hint.empty() ? "" : fmt::format("there is no variable '{}'{}", name, hint);
@@ -77,6 +92,10 @@ std::string name_notice(lua_State* L, const Chunk& chunk) {
 
 std::string colon_notice(lua_State* L, const std::string& text) {
     const TypedText typed(text);
+    if (!typed.tokens_before().empty() && typed.tokens_before().back().is(":") && typed.word().empty() &&
+        text.find('\n') == std::string::npos) {
+        return "a colon waits for the name of a method; a loop is: for i = 1, 10 do ... end";
+    }
     if (typed.cursor() != Cursor::member || typed.separator() != ':' || typed.word().empty()) {
         return "";
     }
@@ -146,6 +165,70 @@ std::string comma_notice(const std::string& text) {
     }
     return fmt::format("{},{} are two numbers, and {} is the first; a decimal point is a point: {}.{}", all[2].text,
                        all[4].text, all[0].text, all[2].text, all[4].text);
+}
+
+std::string overwritten_notice(lua_State* L, const std::string& text) {
+    const std::vector<lua::Token> all = lua::tokens(text);
+    int depth = 0;
+    for (std::size_t i = 0; i < all.size(); ++i) {
+        depth += all[i].is("{") || all[i].is("(") ? 1 : all[i].is("}") || all[i].is(")") ? -1 : 0;
+        if (depth > 0 || all[i].kind != lua::TokenKind::name) {
+            continue;
+        }
+        const bool defined = i > 0 && all[i - 1].is("function");
+        const bool field = i + 2 < all.size() && all[i + 1].is(".") && all[i + 2].kind == lua::TokenKind::name;
+        const std::size_t last = field ? i + 2 : i;
+        const bool part = i > 0 && (all[i - 1].is(".") || all[i - 1].is(":") || all[i - 1].is("local"));
+        const bool assigned = last + 1 < all.size() && (all[last + 1].is("=") || all[last + 1].is(","));
+        const std::string_view key = field ? all[i + 2].text : std::string_view();
+        if (part || !(assigned || defined) || !lua::is_overwritten(L, all[i].text, key)) {
+            continue;
+        }
+        const std::string whole = field ? fmt::format("{}.{}", all[i].text, key) : std::string(all[i].text);
+        if (!field && lua::is_of_dinal(L, all[i].text)) {
+            return fmt::format("{0} was a name of dinal, and is yours now; {0} = dinal.{0} gives it back", whole);
+        }
+        return fmt::format("{} was there before, and is yours now; :reset gives it back, and forgets your variables",
+                           whole);
+    }
+    return "";
+}
+
+std::string degrees_notice(const std::string& text) {
+    constexpr std::array<std::string_view, 12> angles = {"5",  "10", "15",  "20",  "30",  "45",
+                                                         "60", "90", "120", "135", "180", "360"};
+    const std::vector<lua::Token> all = lua::tokens(text);
+    for (std::size_t i = 0; i + 2 < all.size(); ++i) {
+        if (!all[i].is("theta0") || !all[i + 1].is("=")) {
+            continue;
+        }
+        const std::size_t at = i + 2 + (all[i + 2].is("-") && i + 3 < all.size() ? 1 : 0);
+        const bool alone = at + 1 == all.size() || all[at + 1].is(",") || all[at + 1].is("}") || all[at + 1].is(";");
+        if (alone && std::find(angles.begin(), angles.end(), all[at].text) != angles.end()) {
+            return fmt::format("theta0 is in radians; {} degrees are math.rad({})", all[at].text, all[at].text);
+        }
+    }
+    return "";
+}
+
+std::string greatest_notice(lua_State* L, int index, const Chunk& chunk) {
+    const lua::Documented found = lua::documented(L, index);
+    if (found.owner == nullptr || found.owner->name != std::string_view("vector")) {
+        return "";
+    }
+    const std::string_view text = chunk.expression;
+    const std::vector<lua::Token> all = lua::tokens(text);
+    const bool called = all.size() > 5 && all[0].is("math") && all[1].is(".") &&
+                        (all[2].is("max") || all[2].is("min")) && all[3].is("(") && all.back().is(")");
+    if (!called) {
+        return "";
+    }
+    const bool path = std::all_of(all.begin() + 4, all.end() - 1, [](const lua::Token& token) {
+        return token.kind == lua::TokenKind::name || token.is(".");
+    });
+    const std::string_view argument = text.substr(all[4].at, all.back().at - all[4].at);
+    return fmt::format("math.{} of one vector is that vector; its {} element is {}:{}()", all[2].text,
+                       all[2].is("max") ? "greatest" : "least", path ? argument : "v", all[2].text);
 }
 
 void say_notice(const std::string& notice) {

@@ -23,6 +23,15 @@ std::string nil_notice(lua_State* L, const std::string& text);
 /// "x = 1,5"
 std::string comma_notice(const std::string& text);
 
+/// A name that Lua or dinal brings, and that the text has given another value: system = 3, math.pi = 3.
+std::string overwritten_notice(lua_State* L, const std::string& text);
+
+/// theta0 = 90 is hardly meant in radians.
+std::string degrees_notice(const std::string& text);
+
+/// math.max of one vector, which is that vector; the value is at `index`.
+std::string greatest_notice(lua_State* L, int index, const Chunk& chunk);
+
 /// On standard error, unless it is empty.
 void say_notice(const std::string& notice);
 

@@ -5,8 +5,11 @@
 #include <cstdio>
 #include <string>
 
+#include "lua/last_words.hpp"
+#include "lua/limits.hpp"
 #include "terminal/display.hpp"
 #include "text/characters.hpp"
+#include "text/harmless.hpp"
 
 namespace dinal::prompt {
 namespace {
@@ -26,6 +29,10 @@ void say(std::string_view text) {
     static_cast<void>(std::fwrite(text.data(), 1, text.size(), stdout));
 }
 
+void say_value(std::string_view text) {
+    say(terminal::display_of(STDOUT_FILENO).terminal ? text::harmless(text) : std::string(text));
+}
+
 void flush_output() {
     static_cast<void>(std::fflush(stdout));
 }
@@ -37,8 +44,12 @@ void say_error(std::string_view text) {
     }
     flush_output();
     const terminal::Display screen = terminal::display_of(STDERR_FILENO);
-    const std::string fitting = screen.terminal ? text::wrapped(text, screen.width - 1) : "";
+    const std::string fitting = screen.terminal ? text::wrapped(text::harmless(text), screen.width - 1) : "";
     text = screen.terminal ? fitting : text;
+    if (!lua::reached_limit().empty()) {
+        lua::write_error_in_time(std::string(text) + "\n");
+        return;
+    }
     static_cast<void>(std::fwrite(text.data(), 1, text.size(), stderr));
     static_cast<void>(std::fputc('\n', stderr));
 }

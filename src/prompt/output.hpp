@@ -8,6 +8,8 @@ namespace dinal::prompt {
 
 /// Whether it arrives is asked once, at the end of the program (main.cpp).
 void say(std::string_view text);
+/// The same for what others have written, such as names in a file: on a terminal nothing in it steers that.
+void say_value(std::string_view text);
 void flush_output();
 
 /// A line on standard error, after all that was said before.

@@ -1,5 +1,8 @@
 #include "prompt/plain_lines.hpp"
 
+#include <algorithm>
+#include <array>
+#include <cctype>
 #include <cstdio>
 #include <cstdlib>
 
@@ -14,7 +17,35 @@ extern "C" void note_interrupt(int) {
     interrupt_seen = 1;
 }
 
+/// "In [12]: ", how long it is; 0 when the line does not begin so.
+std::size_t numbered_prompt(std::string_view line) {
+    constexpr std::string_view head = "In [", tail = "]: ";
+    if (!line.starts_with(head)) {
+        return 0;
+    }
+    std::size_t end = head.size();
+    while (end < line.size() && std::isdigit(static_cast<unsigned char>(line[end])) != 0) {
+        ++end;
+    }
+    return end > head.size() && line.substr(end).starts_with(tail) ? end + tail.size() : 0;
+}
+
 }  // namespace
+
+std::optional<std::string_view> behind_prompt(std::string_view line) {
+    constexpr std::array<std::string_view, 5> prompts = {"> ", ">> ", ">>> ", "dinal> ", "...: "};
+    const std::string_view text = line.substr(std::min(line.find_first_not_of(" \t"), line.size()));
+    for (const std::string_view prompt : prompts) {
+        if (text.starts_with(prompt)) {
+            return text.substr(prompt.size());
+        }
+        if (text == prompt.substr(0, prompt.size() - 1) && prompt.front() == '>') {
+            return std::string_view();
+        }
+    }
+    const std::size_t numbered = numbered_prompt(text);
+    return numbered > 0 ? std::optional(text.substr(numbered)) : std::nullopt;
+}
 
 InterruptNote::InterruptNote() {
     interrupt_seen = 0;

@@ -2,7 +2,10 @@
 #pragma once
 
 #include <csignal>
+
+#include <optional>
 #include <string>
+#include <string_view>
 
 namespace dinal::prompt {
 
@@ -16,6 +19,10 @@ struct TypedLine {
     Reading reading = Reading::end;
     std::string text;  ///< without its newline; a pasted block has newlines inside
 };
+
+/// What stands behind a prompt that was copied along with it, of this program or of others: "> x", ">> x", "dinal> x",
+/// "In [1]: x". None when there is no prompt in front.
+std::optional<std::string_view> behind_prompt(std::string_view line);
 
 TypedLine read_plain(const std::string& prompt);
 

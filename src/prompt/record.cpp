@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "files/file.hpp"
+#include "lua/safe_mode.hpp"
 #include "lua/tokens.hpp"
 #include "text/version.hpp"
 #include "text/words.hpp"
@@ -67,6 +68,9 @@ bool Record::writes(const std::string& file) const {
 }
 
 text::Expected<bool> Record::may_write(const std::string& file) const {
+    if (lua::safe_mode() && !file.ends_with(".lua")) {
+        return text::Error{fmt::format("{} does not end in .lua, and safe mode writes no other scripts", file)};
+    }
     if (!writes(file) && access(file.c_str(), F_OK) == 0) {
         return text::Error{fmt::format("{} is there already, and not of this session; choose another name", file)};
     }
@@ -108,13 +112,17 @@ void Record::update() {
     problem_ = written ? "" : written.error().sentence;
 }
 
+bool Record::sets_ans(const Entry& entry) {
+    return entry.result.values > 0 && !entry.result.first_nil && !only_looks(entry.chunk);
+}
+
 /// Before another input sets it.
 bool Record::ans_is_used_after(std::size_t entry) const {
     for (std::size_t i = entry + 1; i < entries_.size(); ++i) {
         if (has(entries_[i].chunk.statements, "ans") || has(entries_[i].chunk.expression, "ans")) {
             return true;
         }
-        if (entries_[i].result.values > 0 && !entries_[i].result.first_nil) {
+        if (sets_ans(entries_[i])) {
             return false;
         }
     }
@@ -129,9 +137,11 @@ std::string Record::script(std::size_t first) const {
         const std::string expression(text::trimmed(chunk.expression));
         if (!expression.empty()) {
             lines += lines.empty() ? "" : "\n";
-            const bool becomes_ans = result.values > 0 && !result.first_nil;
+            const bool becomes_ans = sets_ans(entries_[i]);
             if (becomes_ans && (ans_is_used_after(i) || (chunk.silent && !is_call(expression)))) {
                 lines += "ans = " + expression + (chunk.silent ? "" : "\nprint(ans)");
+            } else if (chunk.silent && only_looks(chunk)) {
+                continue;  // it did nothing
             } else if (is_call(expression) && (chunk.silent || result.values == 0)) {
                 lines += expression;
             } else {

@@ -33,6 +33,7 @@ private:
         Chunk chunk;
         Evaluated result;
     };
+    [[nodiscard]] static bool sets_ans(const Entry& entry);
     [[nodiscard]] std::string script(std::size_t first) const;
     [[nodiscard]] bool ans_is_used_after(std::size_t entry) const;
     [[nodiscard]] text::Expected<bool> may_write(const std::string& file) const;

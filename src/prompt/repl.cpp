@@ -1,8 +1,15 @@
 #include "prompt/repl.hpp"
 
+#include <fmt/core.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <array>
+#include <csignal>
+
+#include "lua/interrupt.hpp"
 #include "lua/safe_mode.hpp"
+#include "lua/tokens.hpp"
 #include "prompt/call.hpp"
 #include "prompt/chunk.hpp"
 #include "prompt/commands.hpp"
@@ -12,6 +19,7 @@
 #include "prompt/session.hpp"
 #include "prompt/user_files.hpp"
 #include "source/function_source.hpp"
+#include "text/words.hpp"
 
 namespace dinal::prompt {
 namespace {
@@ -32,33 +40,66 @@ void reject(Session& session, const std::string& text) {
     say_error(told_error(session.L, nullptr));
 }
 
-/// Reads the lines that are missing of a chunk, and compiles it: its function is then on the stack.
-TypedLine read_rest(Session& session, Chunk& chunk, TypedLine input) {
+/// What the lines that are typed into a chunk mean besides Lua.
+enum class Aside { none, blank, leaving, other };
+
+Aside aside(std::string_view line) {
+    const std::string_view word = text::trimmed(line);
+    if (word.empty()) {
+        return Aside::blank;
+    }
+    const auto is = [word](std::string_view one) { return word == one; };
+    constexpr std::array<std::string_view, 6> leaving = {"quit", "exit", "bye", "quit()", "exit()", ":q"};
+    if (std::any_of(leaving.begin(), leaving.end(), is) || word == ":quit") {
+        return Aside::leaving;
+    }
+    const bool asks = word == "help" || word == "help()" || word == ":help" || word.front() == '?';
+    return asks ? Aside::other : Aside::none;
+}
+
+/// Ctrl-C is the way out of a chunk, and whoever is lost in one tries other words.
+void tell_way_out(const Chunk& chunk, Aside found) {
+    say_notice(fmt::format("{}; Ctrl-C gives it up{}", chunk.waits,
+                           found == Aside::leaving ? ", and :quit then leaves dinal" : ""));
+}
+
+/// Reads the lines that are missing of a chunk, and compiles it: its function is then on the stack. When the first
+/// line was copied together with its prompt, so are these.
+TypedLine read_rest(Session& session, Chunk& chunk, TypedLine input, bool copied) {
     lua_State* L = session.L;
     while (chunk.result == Compiled::incomplete) {
-        TypedLine more = session.editor.read(prompt_text(L, "_PROMPT2", ">> "), input.text);
+        const std::string cue = chunk.waits + "; Ctrl-C gives it up";
+        TypedLine more = session.editor.read(prompt_text(L, "_PROMPT2", ">> "), input.text, cue);
         if (more.reading == Reading::end) {
             say("\n");
             chunk.result = Compiled::wrong;
             return input;
         }
-        lua_settop(L, 0);
         if (more.reading == Reading::interrupted) {
+            lua_settop(L, 0);
             return more;
         }
+        if (copied) {
+            more.text = behind_prompt(more.text).value_or(more.text);
+        }
+        const bool in_text = !lua::tokens(input.text).empty() && lua::tokens(input.text).back().open;
+        const Aside found = in_text ? Aside::none : aside(more.text);
+        if (found != Aside::none) {
+            tell_way_out(chunk, found);
+            if (found != Aside::blank) {
+                continue;
+            }
+        }
+        lua_settop(L, 0);
         input.text.append("\n").append(more.text);
         chunk = compile(L, input.text);
     }
     return input;
 }
 
-/// Reads one input and does what it says.
-Reading read_and_run(Session& session) {
+/// Does what an input says that is read, up to lines of a chunk that are still to come.
+Reading take(Session& session, TypedLine input, bool copied) {
     lua_State* L = session.L;
-    TypedLine input = session.editor.read(prompt_text(L, "_PROMPT", "> "));
-    if (input.reading != Reading::line) {
-        return input.reading;
-    }
     if (is_command(input.text)) {
         session.editor.remember(input.text);
         run_command(session, input.text);
@@ -71,7 +112,7 @@ Reading read_and_run(Session& session) {
         say_notice(notice);
         return Reading::line;
     }
-    input = read_rest(session, chunk, input);
+    input = read_rest(session, chunk, input, copied);
     if (input.reading == Reading::interrupted) {
         return input.reading;
     }
@@ -82,6 +123,44 @@ Reading read_and_run(Session& session) {
         reject(session, input.text);
     }
     return Reading::line;
+}
+
+/// Inputs that were copied together with their prompts, one after the other. What stands between them without a prompt
+/// was printed by the first session, unless a chunk is open.
+Reading take_copied(Session& session, std::string_view text) {
+    std::string open;
+    bool is_open = false;
+    for (std::size_t begin = 0; begin <= text.size();) {
+        const std::size_t end = std::min(text.find('\n', begin), text.size());
+        const std::string_view line = text.substr(begin, end - begin);
+        begin = end + 1;
+        const auto code = behind_prompt(line);
+        if (!code && !is_open) {
+            continue;
+        }
+        open.append(is_open ? "\n" : "").append(code.value_or(line));
+        is_open = !is_command(open) && compile(session.L, open).result == Compiled::incomplete;
+        lua_settop(session.L, 0);
+        if (is_open || text::trimmed(open).empty()) {
+            continue;
+        }
+        take(session, {Reading::line, open}, true);
+        lua_settop(session.L, 0);
+        open.clear();
+        if (session.leaving || lua::interrupt_requested()) {
+            return Reading::line;
+        }
+    }
+    return is_open ? take(session, {Reading::line, open}, true) : Reading::line;
+}
+
+/// Reads one input and does what it says.
+Reading read_and_run(Session& session) {
+    TypedLine input = session.editor.read(prompt_text(session.L, "_PROMPT", "> "));
+    if (input.reading != Reading::line) {
+        return input.reading;
+    }
+    return behind_prompt(input.text) ? take_copied(session, input.text) : take(session, std::move(input), false);
 }
 
 void run_init_file(lua_State* L) {
@@ -112,6 +191,11 @@ bool run_chunk(Session& session, const Chunk& chunk, const std::string& text) {
     }
     say_notice(nil_notice(session.L, text));
     say_notice(comma_notice(text));
+    say_notice(overwritten_notice(session.L, text));
+    if (const std::string notice = session.degrees_noticed ? "" : degrees_notice(text); !notice.empty()) {
+        say_notice(notice);
+        session.degrees_noticed = true;
+    }
     const std::string before = session.record.problem();
     session.record.add(chunk, result);
     if (const std::string& problem = session.record.problem(); !problem.empty() && before.empty()) {
@@ -138,6 +222,11 @@ std::string greeting() {
 
 bool run_prompt(lua_State* L, Start start) {
     lua_settop(L, 0);
+    if (isatty(STDIN_FILENO) != 0 && isatty(STDOUT_FILENO) != 0) {
+        // Who reads from a pipe of the session may go: that is an error there, and no end of it. A handler, because
+        // what is ignored would stay so in the programs that are started.
+        lua::set_handler(SIGPIPE, [](int) {});
+    }
     if (start == Start::with_init_file) {
         run_init_file(L);
     }

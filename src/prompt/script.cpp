@@ -16,11 +16,14 @@
 #include "api/lab_course.hpp"
 #include "api/script_report.hpp"
 #include "files/confinement.hpp"
+#include "files/temporaries.hpp"
 #include "help/library.hpp"
 #include "lua/interrupt.hpp"
+#include "lua/last_words.hpp"
 #include "lua/limits.hpp"
 #include "lua/lua_headers.hpp"
 #include "lua/safe_mode.hpp"
+#include "lua/standard_globals.hpp"
 #include "lua/time_limit.hpp"
 #include "prompt/call.hpp"
 #include "prompt/line_editor.hpp"
@@ -32,19 +35,42 @@
 namespace dinal::prompt {
 namespace {
 
+bool was_interrupted = false;
+
+/// After Ctrl-C: the function in dinal.on_interrupt gets what was done of a run or a sweep, or nil. Another Ctrl-C
+/// stops it, too.
+void hand_over_partial(lua_State* L) {
+    was_interrupted = true;
+    lua::push_dinal_table(L);
+    lua_pushliteral(L, "on_interrupt");
+    if (lua_rawget(L, -2) == LUA_TFUNCTION) {
+        lua_pushliteral(L, "partial");
+        lua_rawget(L, -3);
+        if (call(L, 1, 0) != LUA_OK) {
+            complain(take_text(L));
+        }
+    } else {
+        lua_pop(L, 1);
+    }
+    lua_pop(L, 1);
+}
+
 /// Ends a piece of work whose error, if any, is the text on the top of the stack. `file` is that of the chunk, if it
 /// did not even compile.
 bool finished(lua_State* L, int status, const char* file = nullptr) {
+    const bool interrupted = lua::stop_requested() == lua::Stop::interrupted;
     if (status != LUA_OK) {
         const std::string text = status == LUA_ERRSYNTAX || status == LUA_ERRMEM ? told_error(L, file) : take_text(L);
         // What an error of a chunk that ran left there tells of the interruption itself, and where.
-        const bool untold = lua::stop_requested() == lua::Stop::interrupted && status != LUA_ERRRUN;
+        const bool untold = interrupted && status != LUA_ERRRUN;
         complain(untold ? "interrupted" : text);
-    } else if (lua::stop_requested() == lua::Stop::interrupted) {
+    } else if (interrupted) {
         complain("interrupted");
-        return false;
     }
-    return status == LUA_OK;
+    if (interrupted) {
+        hand_over_partial(L);
+    }
+    return status == LUA_OK && !interrupted;
 }
 
 bool run_loaded(lua_State* L, int status, int arguments = 0) {
@@ -202,7 +228,8 @@ void open(lua_State* L, const Arguments& arguments) {
 }
 
 int failure() {
-    return lua::stop_requested() == lua::Stop::interrupted ? exit_code::interrupted : exit_code::script_error;
+    return was_interrupted || lua::stop_requested() == lua::Stop::interrupted ? exit_code::interrupted
+                                                                              : exit_code::script_error;
 }
 
 int prompt(lua_State* L, const Arguments& arguments) {
@@ -277,6 +304,7 @@ int run(const Arguments& arguments, Kernel kernel) {
         return exit_code::script_error;
     }
     lua::install_interrupt_handler();
+    files::clean_up_on_signals();
     Program program{&arguments, kernel};
     lua_pushcfunction(L, protected_run);
     lua_pushlightuserdata(L, &program);
@@ -285,7 +313,7 @@ int run(const Arguments& arguments, Kernel kernel) {
         return failure();
     }
     if (!lua::reached_limit().empty()) {
-        std::exit(program.code);  // what the script has left open is not closed: that may take for ever, too
+        lua::exit_in_time(program.code);  // what the script has left open is not closed: that may take for ever, too
     }
     return program.code;
 }

@@ -15,10 +15,16 @@ struct Painted {
     bool hint = false;  ///< something stands behind the line now
 };
 
-/// The line stands behind the prompt on the row of the cursor; `pending` are the lines before it, `cursor` a place in
-/// it.
-Painted paint(lua_State* L, std::string_view prompt, const std::string& pending, std::string_view line,
-              std::size_t cursor);
+/// The line stands behind the prompt on the row of the cursor.
+struct LineOnScreen {
+    std::string_view prompt;
+    const std::string& pending;  ///< the lines before it of a chunk that goes on
+    std::string_view line;
+    std::size_t cursor = 0;  ///< a place in the line
+    std::string_view cue;    ///< what the chunk waits for, where nothing is typed yet
+    std::string_view rest;   ///< what history adds to the line
+};
+Painted paint(lua_State* L, const LineOnScreen& shown);
 
 /// complete(), with an empty answer where memory runs out.
 Completion complete_safely(lua_State* L, const std::string& before);

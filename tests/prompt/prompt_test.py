@@ -213,7 +213,7 @@ class Interrupts(PromptTest):
                   "excitation.scripted(function(t) if t > 9 then busy() end return 0 end)"]:
             shown = self.interrupted(session, f"return nd:simulate{{ M = {M}, t_end = 1e6, dt = 1 }}")
             self.assertIn("interrupted at stdin:1", shown)
-            self.assertIn("the part of the run that was done is in ans (ans:continue() goes on):\n", shown)
+            self.assertIn("the part of the run that was done is in dinal.partial, and in ans\n(ans:continue() goes on):\n", shown)
             self.assertEqual(session.enter("#ans > 0 and #ans < 1000001 and #ans.theta == #ans"), "true")
 
     def test_a_run_that_is_stopped_within_M_is_marked_interrupted(self):
@@ -254,7 +254,7 @@ class Interrupts(PromptTest):
         session.enter("M = function(t) if t > 2 then error('broken') end return 0 end")
         shown = session.enter("nondimensional{}:simulate{ M = M, t_end = 10, dt = 0.1 }")
         self.assertIn("stdin:1: broken", shown)
-        self.assertIn("is in ans", shown)
+        self.assertIn("is in dinal.partial, and in ans", shown)
         self.assertEqual(session.enter("ans.t[#ans] > 1.5"), "true")
         self.assertNotIn("ans", session.enter("error('another')"))  # the old run is not announced again
 

@@ -56,12 +56,17 @@ class Terminal:
     def type(self, keys):
         self.child.send(keys)
 
+    def at_prompt(self, prompt):
+        """In the last line, where that of a chunk that goes on says in grey what it waits for."""
+        last = self.lines()[-1]
+        return last == prompt or (prompt == ">>" and last.startswith(">> ") and "; Ctrl-C" in last)
+
     def enter(self, line, prompt=">"):
         """Types a line; the lines that it prints, up to the next prompt."""
         self.screen.reset()
         self.screen.cursor_position()
         self.child.send(line + ENTER)
-        self.wait(lambda: self.lines()[1:] and self.lines()[-1] == prompt)
+        self.wait(lambda: self.lines()[1:] and self.at_prompt(prompt))
         return "\n".join(self.lines()[:-1]).partition("\n")[2]
 
     def row(self):

@@ -24,7 +24,7 @@ AT_ONCE = 0.5
 def environment(home, **more):
     """The least that a session needs, so that nobody's own settings reach a test."""
     return {"HOME": str(home), "PATH": os.environ["PATH"], "TERM": "xterm", "LC_ALL": "C.UTF-8",
-            "INPUTRC": "/dev/null", **more}
+            "INPUTRC": "/dev/null", "PAGER": "cat", **more}
 
 
 def processor_time(pid):

@@ -1,0 +1,69 @@
+#include "help/topics.hpp"
+
+#include <algorithm>
+#include <array>
+#include <string>
+#include <vector>
+
+#include "lua/tokens.hpp"
+#include "text/words.hpp"
+
+namespace dinal::help {
+namespace {
+
+struct Topic {
+    std::string_view words;  // in lower case
+    std::string_view text;
+};
+
+// No line is longer than 77 columns. A test looks for every name that stands here.
+constexpr std::array<Topic, 9> topics = {{
+    {"degrees degree deg radians radian angle angles",
+     "Angles are in radians: theta, theta0, velocity per time unit. math.rad(90)\n"
+     "makes radians of 90 degrees, math.deg(x) degrees of radians, and of a whole\n"
+     "column 180/math.pi*run.theta. Only s.lag and s.peak_lag of a steady motion\n"
+     "are in degrees.\n"},
+    {"tutorial tour start lesson course",
+     "help() is a tour of two minutes. docs/tutorial.md takes half an hour, the\n"
+     "sheets in docs/lab are a course of six afternoons, and the programs in\n"
+     "examples show one idea each.\n"},
+    {"dinal1989 fortran 1989 report",
+     "dinal is named after DINAL, the Fortran program of a report of 1989 about a\n"
+     "governor with friction. integrator.dinal1989 is its listing, step by step;\n"
+     "run:save \"name.dat\" writes its record; docs/report.md reads the report again.\n"},
+    {"readdin",
+     "READDIN picked two columns out of the record of DINAL, in 1989, for the\n"
+     "plotter. run:columns does that; trajectory.load reads such a record.\n"},
+    {"draar",
+     "DRAAR drew the two columns that READDIN had picked, in 1989, on a plotter.\n"
+     "run:plot and plot do that.\n"},
+    {"governor flyball sleeve hunting",
+     "A governor is an oscillator with friction inside a loop: docs/governor.md and\n"
+     "examples/270-governor.lua, or sheet 6 of the course in docs/lab. The rotor is\n"
+     "one of the states of a run: help(sys.simulate) has the option states.\n"},
+    {"noise noisy random",
+     "vector.normal and vector.random make numbers with a seed, which a record can\n"
+     "be blurred with; identify finds a system in spite of it, and fit.noise is how\n"
+     "much there was. A noisy M is a table: excitation.samples.\n"},
+    {"fit fitting regression estimate calibrate",
+     "identify finds the system that made a record, with the errors of what it\n"
+     "finds: identify{ data = trajectory.load \"decay.csv\" }.\n"},
+    {"shell ls pwd terminal",
+     "No shell is in here: Ctrl-Z goes back to yours, and fg comes back. Files are\n"
+     "read by data.load, trajectory.load and excitation.samples.\n"},
+}};
+
+}  // namespace
+
+std::string_view topic(std::string_view word) {
+    const std::string wanted = text::lower(word);
+    for (const Topic& one : topics) {
+        const std::vector<lua::Token> words = lua::tokens(one.words);
+        if (std::any_of(words.begin(), words.end(), [&](const lua::Token& w) { return w.text == wanted; })) {
+            return one.text;
+        }
+    }
+    return {};
+}
+
+}  // namespace dinal::help

@@ -1,0 +1,11 @@
+// Words that are no names of dinal, and that somebody asks help about all the same.
+#pragma once
+
+#include <string_view>
+
+namespace dinal::help {
+
+/// A few lines about the word, whose case does not matter; empty when there are none.
+std::string_view topic(std::string_view word);
+
+}  // namespace dinal::help

@@ -1,0 +1,108 @@
+#include "terminal/pager.hpp"
+
+#include <fmt/format.h>
+#include <poll.h>
+#include <termios.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <cstdlib>
+#include <string>
+#include <vector>
+
+#include "terminal/display.hpp"
+#include "text/characters.hpp"
+
+namespace dinal::terminal {
+
+namespace {
+
+void write_out(std::string_view text) {
+    static_cast<void>(std::fwrite(text.data(), 1, text.size(), stdout));
+}
+
+/// Keys one by one, without an echo, as long as it lives; Ctrl-C is a key, too.
+class Keys {
+public:
+    Keys() : good_(::tcgetattr(STDIN_FILENO, &before_) == 0) {
+        termios now = before_;
+        now.c_lflag &= ~static_cast<tcflag_t>(ICANON | ECHO | ISIG);
+        now.c_cc[VMIN] = 1;
+        now.c_cc[VTIME] = 0;
+        good_ = good_ && ::tcsetattr(STDIN_FILENO, TCSADRAIN, &now) == 0;
+    }
+    ~Keys() {
+        if (good_) ::tcsetattr(STDIN_FILENO, TCSADRAIN, &before_);
+    }
+    Keys(const Keys&) = delete;
+    Keys& operator=(const Keys&) = delete;
+
+    /// '\0' when there is none any more, or a signal came.
+    [[nodiscard]] char read() const {
+        char key = '\0';
+        return good_ && ::read(STDIN_FILENO, &key, 1) == 1 ? key : '\0';
+    }
+
+private:
+    termios before_{};
+    bool good_;
+};
+
+bool keys_wait() {
+    pollfd keys{STDIN_FILENO, POLLIN, 0};
+    return ::poll(&keys, 1, 0) > 0;
+}
+
+bool has_pages(const Display& screen) {
+    const char* pager = std::getenv("PAGER");  // NOLINT(concurrency-mt-unsafe): nobody sets variables
+    const bool wanted = pager == nullptr || (*pager != '\0' && std::string_view(pager) != "cat");
+    // What is typed already is meant for the prompt.
+    return wanted && screen.terminal && obeys_escapes() && ::isatty(STDIN_FILENO) != 0 && !keys_wait();
+}
+
+/// The rows of the screen, each a part of the text with its end of line.
+std::vector<std::string_view> rows_of(std::string_view text, std::size_t width) {
+    std::vector<std::string_view> rows;
+    while (!text.empty()) {
+        const std::size_t end = std::min(text.find('\n'), text.size() - 1) + 1;
+        const std::string_view fits = text::cut_to_columns(text.substr(0, end), width);
+        const std::size_t size = fits.size() + 1 >= end || fits.empty() ? end : fits.size();
+        rows.push_back(text.substr(0, size));
+        text.remove_prefix(size);
+    }
+    return rows;
+}
+
+/// How many rows are wanted now; none to end.
+std::size_t asked_rows(std::size_t shown, std::size_t all, std::size_t page) {
+    const std::string line = fmt::format("-- {} of {} lines: Space goes on, q ends --", shown, all);
+    write_out(fmt::format("\x1b[7m{}\x1b[0m", line));
+    static_cast<void>(std::fflush(stdout));
+    const char key = Keys().read();
+    write_out("\r\x1b[K");
+    if (key == '\r' || key == '\n' || key == 'j') return 1;
+    return key == ' ' || key == 'f' ? page : 0;
+}
+
+}  // namespace
+
+void show_in_pages(std::string_view text) {
+    static_cast<void>(std::fflush(stdout));
+    const Display screen = display_of(STDOUT_FILENO);
+    constexpr int least_rows = 5;
+    if (screen.rows < least_rows || !has_pages(screen)) {
+        write_out(text);
+        return;
+    }
+    const std::vector<std::string_view> rows = rows_of(text, screen.width);
+    const auto page = static_cast<std::size_t>(screen.rows) - 1;
+    std::size_t shown = 0;
+    for (std::size_t wanted = rows.size() <= page ? rows.size() : page; wanted > 0;) {
+        for (; wanted > 0 && shown < rows.size(); --wanted, ++shown) write_out(rows[shown]);
+        wanted = shown < rows.size() ? asked_rows(shown, rows.size(), page - 1) : 0;
+    }
+    static_cast<void>(std::fflush(stdout));
+}
+
+}  // namespace dinal::terminal

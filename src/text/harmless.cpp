@@ -1,0 +1,68 @@
+#include "text/harmless.hpp"
+
+#include <algorithm>
+#include <array>
+
+#include "text/characters.hpp"
+
+namespace dinal::text {
+
+namespace {
+
+/// How long a sequence is that sets a colour, bold or underlined letters, or all back; 0 when none begins the text.
+std::size_t colour_at(std::string_view text) {
+    if (!text.starts_with("\x1b[")) {
+        return 0;
+    }
+    const std::size_t end = text.find_first_not_of("0123456789;", 2);
+    if (end == std::string_view::npos || text[end] != 'm') {
+        return 0;
+    }
+    constexpr std::array<std::string_view, 5> styles = {"", "0", "1", "4", "7"};  // and no blinking, no hiding
+    for (std::string_view numbers = text.substr(2, end - 2);;) {
+        const std::size_t size = std::min(numbers.find(';'), numbers.size());
+        const std::string_view one = numbers.substr(0, size);
+        const bool colour = one.size() == 2 && (one.front() == '3' || one.front() == '9');
+        if (!colour && std::find(styles.begin(), styles.end(), one) == styles.end()) {
+            return 0;
+        }
+        if (size == numbers.size()) {
+            return end + 1;
+        }
+        numbers.remove_prefix(size + 1);
+    }
+}
+
+/// The bytes of the first character, or one that is no UTF-8.
+std::size_t first_bytes(std::string_view text) {
+    const auto lead = static_cast<unsigned char>(text.front());
+    const std::size_t bytes = lead < 0xC0 ? 1 : lead < 0xE0 ? 2 : lead < 0xF0 ? 3 : 4;
+    const auto goes_on = [](char c) { return (static_cast<unsigned char>(c) & 0xC0U) == 0x80U; };
+    std::size_t found = 1;
+    while (found < std::min(bytes, text.size()) && goes_on(text[found])) {
+        ++found;
+    }
+    return found;
+}
+
+}  // namespace
+
+std::string harmless(std::string_view text) {
+    std::string result;
+    while (!text.empty()) {
+        std::size_t bytes = colour_at(text);
+        if (bytes == 0 && (text.front() == '\n' || text.front() == '\t')) {
+            bytes = 1;
+        }
+        if (bytes > 0) {
+            result += text.substr(0, bytes);
+        } else {
+            bytes = first_bytes(text);
+            result += displayable(text.substr(0, bytes));
+        }
+        text.remove_prefix(bytes);
+    }
+    return result;
+}
+
+}  // namespace dinal::text

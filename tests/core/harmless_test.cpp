@@ -1,0 +1,28 @@
+// What a stranger has written cannot steer the terminal that shows it.
+#include <catch2/catch.hpp>
+
+#include "text/harmless.hpp"
+
+using dinal::text::harmless;
+
+TEST_CASE("lines, tabs, letters and colours pass", "[text]") {
+    for (const char* text : {"a\nb\tc\n", "θ ≤ 1", "\x1b[31m^^^\x1b[0m", "\x1b[1;4m(\x1b[m", "\x1b[90mgrey"}) {
+        CHECK(harmless(text) == text);
+    }
+}
+
+TEST_CASE("what moves the cursor, names the window, hides or blinks does not", "[text]") {
+    CHECK(harmless("\x1b]0;title\x07") == "?]0;title?");
+    CHECK(harmless("\x1b[2J\x1b[H") == "?[2J?[H");
+    CHECK(harmless("\x1b[8mhidden") == "?[8mhidden");
+    CHECK(harmless("\x1b[5m\x1b[1;8m") == "?[5m?[1;8m");
+    CHECK(harmless("over\rwritten\b") == "over written?");
+    CHECK(harmless("\xC2\x9B"
+                   "2J") == "?2J");
+    CHECK(harmless("\x9B"
+                   "2J") ==
+          "\xEF\xBF\xBD"
+          "2J");
+    CHECK(harmless("\x1b[38;5;1m") == "?[38;5;1m");
+    CHECK(harmless("\x1b[31") == "?[31");
+}

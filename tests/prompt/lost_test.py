@@ -1,0 +1,185 @@
+"""Somebody who is lost at the prompt: pasted lines, other languages, blocks that go on. Usage: lost_test.py PROGRAM"""
+
+import os
+import pathlib
+import sys
+import tempfile
+import unittest
+
+sys.dont_write_bytecode = True  # no folder __pycache__ in the source tree
+
+from session import CONTINUATION, CTRL_C, Session
+from screen import Terminal
+
+PROGRAM = ""
+RUN = "run = nondimensional{ zeta = 0.1 }:simulate{ theta0 = 1, t_end = 1.2, dt = 0.1 }"
+RIGHT, PASTE, PASTED = "\x1b[C", "\x1b[200~", "\x1b[201~"
+
+
+class Lost(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.home = pathlib.Path(folder.name)
+
+    def session(self, *arguments, **variables):
+        session = Session(PROGRAM, self.home, arguments, **variables)
+        self.addCleanup(session.child.close, True)
+        return session
+
+    def terminal(self, **options):
+        terminal = Terminal(PROGRAM, self.home, **options)
+        self.addCleanup(terminal.child.close, True)
+        return terminal
+
+
+class Pasted(Lost):
+    def test_a_prompt_in_front_is_no_part_of_the_line(self):
+        session = self.session()
+        for line in ("> 6 * 7", ">> 6 * 7", "dinal> 6 * 7", "In [12]: 6 * 7", "  > 6 * 7"):
+            self.assertEqual(session.enter(line), "42", line)
+        self.assertEqual(session.enter("> ?tutorial").split()[0], "help()")
+        session.enter("> for i = 1, 2 do", CONTINUATION)
+        session.enter(">   print(i)", CONTINUATION)
+        self.assertEqual(session.enter("> end"), "1\n2")
+
+    def test_a_dialogue_is_typed_again_and_what_it_printed_is_left_out(self):
+        session = self.session()
+        session.press(PASTE + "> a = 6\n> a * 7\n42\n> for i = 1, 2 do\n>> print(i) end\n1\n2\n> a" + PASTED + "\r")
+        shown = session.until_prompt()
+        self.assertTrue(shown.rstrip().endswith("42\n1\n2\n6"), shown)
+
+    def test_a_comparison_in_a_chunk_that_was_typed_stays_one(self):
+        session = self.session()
+        session.enter("x = (2", CONTINUATION)
+        session.enter("> 1)", None)
+        self.assertEqual(session.enter("x"), "true")
+
+
+class Blocks(Lost):
+    def test_a_block_says_what_it_waits_for_and_how_to_leave_it(self):
+        terminal = self.terminal()
+        terminal.type("for i = 1, 2 do\r")
+        terminal.wait(lambda: terminal.row() == ">> line 1 waits for end; Ctrl-C gives it up")
+        terminal.type("f{ i,\r")
+        terminal.wait(lambda: terminal.row() == ">> { of line 2 waits for }; Ctrl-C gives it up")
+        terminal.type("i")
+        terminal.wait(lambda: terminal.row() == ">> i")
+
+    def test_an_empty_line_and_words_for_leaving_are_answered(self):
+        session = self.session()
+        session.enter("for i = 1, 2 do", CONTINUATION)
+        self.assertIn("(line 1 waits for end; Ctrl-C gives it up)", session.enter("", CONTINUATION))
+        self.assertIn("(for of line 1 waits for end; Ctrl-C gives it up, and :quit then leaves dinal)",
+                      session.enter("quit", CONTINUATION))
+        self.assertEqual(session.enter("print(i) end"), "1\n2")
+
+    def test_the_arrow_up_brings_the_lines_of_the_block_back(self):
+        session = self.session()
+        session.enter("1 + 1")
+        session.enter("for i = 1, 2 do", CONTINUATION)
+        session.enter("print(10*i)", CONTINUATION)
+        session.press("\x1b[A\r")
+        session.until_prompt(CONTINUATION)
+        self.assertEqual(session.enter("end"), "10\n10\n20\n20")
+        session.press("\x1b[A\r")  # the whole block, and no line of it alone
+        self.assertTrue(session.until_prompt().rstrip().endswith("10\n10\n20\n20"))
+
+    def test_a_colon_at_the_end_of_a_line_opens_no_block(self):
+        self.assertIn("a colon waits for the name of a method; a loop is: for i = 1, 10 do ... end",
+                      self.session().enter("range(10):"))
+
+
+class Words(Lost):
+    def test_hints_teach_what_works(self):
+        session = self.session()
+        session.enter(RUN)
+        for line, method in (("max(run.theta)", "run.theta:max()"), ("sin(run.t)", "run.t:sin()"),
+                             ("math.sin(2*run.t)", "(2*run.t):sin()"), ("explain(run)", "run:explain()")):
+            shown = session.enter(line).replace("\n", " ")
+            self.assertIn(f"did you mean '{method}'?", shown)
+            self.assertNotIn("attempt", session.enter(method))
+        self.assertIn("greatest element is\nrun.theta:max())", session.enter("math.max(run.theta)"))
+        for line, hint in (("2**3", "a power is x^2"), ("system I = 1", "its options stand in braces: system{ ... }"),
+                           ("run.events[10].t", "'run.events' has 2 elements"), ("who", ":who lists your variables"),
+                           ("ls", "the shell is behind Ctrl-Z"), ("quit", ":quit or Ctrl-D leaves")):
+            self.assertIn(hint, session.enter(line).replace("\n", " "), line)
+
+    def test_names_that_are_overwritten_are_noticed_and_come_back(self):
+        session = self.session()
+        self.assertIn("(system was a name of dinal", session.enter("system = 3"))
+        session.enter("system = dinal.system")
+        self.assertEqual(session.enter("system{ I = 1, k = 1 }.omega0"), "1.0")
+        self.assertIn("(math.pi was there before", session.enter("math.pi = 3"))
+        session.enter(":reset")
+        self.assertEqual(session.enter("math.pi > 3"), "true")
+        self.assertEqual(session.enter("x = { system = 3 }"), "")
+        self.assertEqual(session.enter("local system = 3 print(system)"), "3")
+
+    def test_degrees_are_noticed_once(self):
+        session = self.session()
+        simulate = "r = nondimensional{}:simulate{ theta0 = 90, t_end = 1, dt = 0.5 }"
+        self.assertEqual(session.enter(simulate), "(theta0 is in radians; 90 degrees are math.rad(90))")
+        self.assertEqual(session.enter(simulate), "")
+
+    def test_ans_survives_a_look(self):
+        session = self.session()
+        session.enter("x = 1")
+        session.enter("6 * 7")
+        session.enter("x")
+        self.assertEqual(session.enter("ans"), "42")
+
+    def test_help_answers_words_that_are_no_names(self):
+        session = self.session()
+        for word in ("degrees", "tutorial", "DRAAR", "READDIN", "DINAL", "governor", "noise", "fit", "dt",
+                     "how do I fit a record"):
+            self.assertNotIn("nothing about", session.enter("?" + word), word)
+
+
+class Typing(Lost):
+    def test_history_suggests_the_end_of_a_line_and_the_arrow_takes_it(self):
+        terminal = self.terminal()
+        terminal.enter("answer = 6*7")
+        terminal.type("ans")
+        terminal.wait(lambda: terminal.row() == "> answer = 6*7")
+        self.assertEqual(terminal.colour("wer"), "black")  # bright, as pyte calls it
+        terminal.type("x")
+        terminal.wait(lambda: terminal.row() == "> ansx")
+        terminal.type("\x7f")
+        terminal.wait(lambda: terminal.row() == "> answer = 6*7")
+        terminal.type(RIGHT + "+1\r")
+        terminal.enter("")
+        self.assertEqual(terminal.enter("answer"), "43")
+
+    def test_a_bracket_shows_its_partner(self):
+        terminal = self.terminal()
+        terminal.type("f(g[1], ')')")
+        terminal.wait(lambda: terminal.row() == "> f(g[1], ')')")
+        y = terminal.screen.cursor.y
+        bold = [x for x in range(20) if terminal.screen.buffer[y][x].bold]
+        self.assertEqual(bold, [3, 13])
+        terminal.type(CTRL_C)
+
+    def test_tab_after_an_event_and_after_integrator(self):
+        session = self.session()
+        session.enter(RUN)
+        session.press("run.events[1].th\t\r")
+        self.assertIn("-0.7292", session.until_prompt())
+        session.press("s = nondimensional{}:simulate{ theta0 = 1, t_end = 1, dt = 0.5, integrator = integrator.sp\t} }\r")
+        session.until_prompt()
+        self.assertIn("by\nspectral", session.enter("s"))
+
+    def test_a_long_text_stops_at_the_end_of_the_page(self):
+        session = self.session(PAGER="less")
+        session.press("?simulate\r")
+        session.child.expect_exact("Space goes on, q ends --")
+        session.press(" ")
+        session.child.expect_exact("lines: Space goes on, q ends --")
+        session.press("q")
+        session.until_prompt()
+        self.assertEqual(session.enter("6 * 7"), "42")
+
+
+if __name__ == "__main__":
+    PROGRAM = os.path.abspath(sys.argv.pop(1))
+    unittest.main()
