@@ -34,7 +34,7 @@ local known = speed + math.sqrt(speed^2 + (omega0 * excess)^2)
 print(string.format("peak speed    %.11f m/s, closed form  %.11f m/s", peak, known))
 
 --[[ prints
-401 rows, t 0 … 4; 10 events (4 sticks, 5 slips, 1 rest); at rest; peak |theta| 0.0334
+401 rows, t 0 … 4; 10 events (5 sticks, 5 slips); stuck at the end; peak |theta| 0.0334
 event       t, s        x, mm   spring force, N
 slip    0.735750     0.000000     29.4300
 stick   0.912941     6.676914      9.8100

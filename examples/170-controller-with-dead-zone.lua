@@ -16,11 +16,11 @@ local function proportional(zone)
   end
 end
 
-print "zone, degrees   turns   rests from, s   off by   at most   (degrees)"
+print "zone, degrees   turns   stuck from, s   off by   at most   (degrees)"
 for _, zone in ipairs{ 0, 1, 2, 5 } do
   local run = flap:simulate{ M = proportional(zone * degree), t_end = 20, times = {} }
   local rest = run.events[#run.events]
-  assert(rest.kind == "rest")
+  assert(rest.kind == "stick")
   -- it stays where k e + gain (e - zone) is within Re
   local bound = (flap.Re + gain * zone * degree) / (gain + flap.k) / degree
   print(string.format("%13d %7d %15.6f %+8.3f %9.3f", zone, #run.events - 1, rest.t,
@@ -44,7 +44,7 @@ for _, case in ipairs{ { 0, 0 }, { 0.05, 0 }, { 0.05, 1 } } do
   local turns, rest = 0
   for _, event in ipairs(run.events) do
     if event.kind == "turn" then turns = turns + 1 end
-    if event.kind == "rest" then rest = event end
+    if event.kind == "stick" then rest = event end
   end
   print(string.format("%7.2f %16.1f %7d %12.3f %+7.3f   %s", lead, slope, turns, rest and rest.t or run.t[#run],
     (target - run.theta[#run]) / degree, run.outcome))
@@ -53,14 +53,14 @@ end
 -- on and off without end in no time: the run says so and ends there. One degree from off to on cures it.
 
 --[[ prints
-zone, degrees   turns   rests from, s   off by   at most   (degrees)
+zone, degrees   turns   stuck from, s   off by   at most   (degrees)
             0       4        1.114208   +0.080     0.838
             1       3        0.980298   -0.195     1.814
             2       2        0.808696   -2.739     2.790
             5       2        0.860228   +4.826     5.717
 
 lead, s   slope, degrees   turns   ends at, s  off by   outcome
-   0.00              0.0      12        3.336  -1.171   at rest
+   0.00              0.0      12        3.336  -1.171   stuck at the end
    0.05              0.0       1        0.460  -0.568   switched without end in no time: the feedback chatters
-   0.05              1.0       1        0.616  +2.046   at rest
+   0.05              1.0       1        0.616  +2.046   stuck at the end
 ]]

@@ -35,5 +35,5 @@ print(string.format("without the integral: %s at %.4f", run.outcome, (run:at(200
  0.4               0.0070                    63.31
  0.5               0.0154                    32.12
  0.6               0.0258                    22.37
-without the integral: at rest at 0.9708
+without the integral: stuck at the end at 0.9708
 ]]

@@ -7,14 +7,14 @@ for _, late in ipairs{ 0.01, 0.1, 0.2, 0.25, 0.3 } do
   local M = excitation.delayed(function(t, theta, velocity) return -0.03*velocity end, { by = late })
   local run = sys:simulate{ M = M, theta0 = 1, t_end = 20, dt = 0.01 }
   local last = run.theta[run.t:find(function(t) return t > 19 end)]
-  print(string.format("%11.2f   %s", late, run.outcome == "at rest" and "at rest" or string.format("amplitude %.3f", last:abs():max())))
+  print(string.format("%11.2f   %s", late, run.outcome == "stuck at the end" and "stuck" or string.format("amplitude %.3f", last:abs():max())))
 end
 
 --[[ prints
 late by, T0   after 20 T0
-       0.01   at rest
-       0.10   at rest
-       0.20   at rest
-       0.25   at rest
+       0.01   stuck
+       0.10   stuck
+       0.20   stuck
+       0.25   stuck
        0.30   amplitude 28.201
 ]]

@@ -37,7 +37,7 @@ MapStep PeriodMap::operator()(const Place& from) const {
     const bool finite = from.allFinite() && from.norm() < 1e100;
     const motion::Trajectory run = finite ? this->run(from, length_, false) : motion::Trajectory{};
     step.outcome = finite ? run.outcome : model::Outcome::state_not_finite;
-    step.finished = step.outcome == model::Outcome::reached_end || step.outcome == model::Outcome::at_rest;
+    step.finished = model::is_whole(step.outcome);
     if (!step.finished) {
         step.to = from;
         step.differentiable = false;

@@ -50,7 +50,7 @@ SteadyShape shape_of(const SteadyQuestion& question, const SteadyMotion& motion,
     const double length = motion.symmetric ? motion.period / 2 : motion.period;
     const PeriodMap map(question.system, question.excitation, drive.start, length, monitor);
     const motion::Trajectory run = map.run({motion.start.theta, motion.start.velocity / map.omega()}, length, true);
-    if (run.outcome != model::Outcome::reached_end && run.outcome != model::Outcome::at_rest) return shape;
+    if (!model::is_whole(run.outcome)) return shape;
     const double omega = 2 * std::numbers::pi / drive.period;
     const double middle = motion.symmetric ? 0 : (motion.low + motion.high) / 2;
     const double own = question.system.stiffness() > 0 ? question.system.natural_period() : drive.period;

@@ -80,6 +80,7 @@ private:
     // What became of it, in story_end.cpp.
     void tell_end();
     void tell_stillness();
+    [[nodiscard]] bool held_at_most() const;
     void tell_recurrence(const Recurrence& motion);
     void tell_period(const Recurrence& motion);
     void tell_trend();

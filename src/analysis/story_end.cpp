@@ -2,12 +2,13 @@
 #include "analysis/phase_lag.hpp"
 #include "analysis/story.hpp"
 #include "model/forcing.hpp"
+#include "model/sticking.hpp"
 
 namespace dinal::analysis {
 
 void Story::tell_end() {
     const bool over = still_ || (stretches_.back().stuck && constant_from_ <= run_.t_stop);
-    const bool failed = run_.outcome != model::Outcome::reached_end && run_.outcome != model::Outcome::at_rest;
+    const bool failed = !model::is_whole(run_.outcome);
     if (half_cycles_ > 0 && !over) {
         if (const auto motion = recurrence(run_.events)) {
             tell_recurrence(*motion);
@@ -23,12 +24,23 @@ void Story::tell_end() {
     end_paragraph();
 }
 
-/// Stuck at the end under a periodic M: if that did not move it in a whole period, it never will.
+/// Stuck at the end: why it stays, if that is known.
 void Story::tell_stillness() {
-    const Stretch& last = stretches_.back();
-    const double period = excitation_.has_feedback() ? 0 : model::period_from(excitation_, last.from);
-    still_ = period > 0 && last.lasts() > period;
-    if (still_) say("M went through a whole period and did not move it, so it never will.");
+    still_ = run_.outcome == model::Outcome::at_rest;
+    if (!still_) return;
+    if (constant_from_ <= run_.t_stop) {
+        say("M is constant{}, so it rests there for good.",
+            free() ? "" : fmt::format(" from t = {} on", at(constant_from_)));
+    } else if (std::isfinite(excitation_.most()) && held_at_most()) {
+        say("|M| is never more than {:.5g}, which cannot move it from there: it rests there for good.",
+            excitation_.most());
+    } else {
+        say("M went through a whole period and did not move it, so it never will.");
+    }
+}
+
+bool Story::held_at_most() const {
+    return model::held_against(model::Lowered(system_), excitation_.most(), run_.state_at_stop.theta);
 }
 
 void Story::tell_recurrence(const Recurrence& motion) {

@@ -16,7 +16,7 @@ std::vector<Stretch> stretches(const motion::Trajectory& trajectory) {
         list.push_back(now);
         now = {.from = event.t, .begin = now.end, .begun_by = event};
         if (event.kind == model::EventKind::impact) now.begin.velocity *= -trajectory.restitution;
-        now.stuck = event.kind == model::EventKind::stick || event.kind == model::EventKind::rest;
+        now.stuck = model::is_stop(event.kind);
     }
     now.to = std::max(trajectory.t_stop, now.from);
     now.end = now.stuck && trajectory.carried == nullptr ? now.begin : trajectory.state_at_stop;

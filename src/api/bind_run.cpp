@@ -239,7 +239,7 @@ constexpr lua::Member run_members[] = {
      {"run.events -> data",
       "What happened at velocity zero, in order of time: the columns t, kind, theta and M (run.events.theta is a "
       "vector), and by number { t, kind, theta, M }. kind is \"turn\" (goes on "
-      "the other way), \"stick\" (stays), \"slip\" (breaks away) or \"rest\" (sticks to the end of the run); "
+      "the other way), \"stick\" (stays), \"slip\" (breaks away) or \"rest\" (stays, and nothing can move it any more); "
       "\"impact\" is at a wall, \"switch\" of a relay, and \"user\" of the option `events`: then there is a column name, "
       "too, and, where it is not 0 at all of them, velocity, of an impact that with which the mass came. Nothing is "
       "recorded at t_start but an impact. Empty in a run that was read from a file.",
@@ -254,7 +254,9 @@ constexpr lua::Member run_members[] = {
       DINAL_RUN "print(run.t_end)  --> 2.0"}},
     {lua::a_field<outcome>,
      {"run.outcome -> string",
-      "How it ended: \"reached the end\", \"at rest\", \"interrupted\", or what went wrong. It speaks of what "
+      "How it ended: \"reached the end\" in motion; \"at rest\" when nothing can move it any more, because M is constant "
+      "from then on, never great enough, or went through a whole period; \"stuck at the end\" when M may still move it, "
+      "as a function may at any time; \"interrupted\"; or what went wrong. It speaks of what "
       "was seen: a pulse of a function M that is shorter than run.gap may have been missed.",
       DINAL_RUN "print(run.outcome)  --> reached the end"}},
     {lua::a_field<gap_of_run>,

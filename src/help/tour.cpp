@@ -51,7 +51,7 @@ Mind the colon. A wrong name is answered by the right one; try it:
     > run:explain()
 
 turn: it goes on the other way; stick: it stays; slip: it breaks away;
-rest: it stays for good.
+rest: it stays, and nothing can move it any more.
 )",
     R"(Change one number and look again. A ; at the end keeps a value quiet.
 

@@ -9,7 +9,7 @@ enum class EventKind {
     turn,      ///< the velocity passes zero and the motion goes on the other way
     stick,     ///< the velocity reaches zero and stays there
     slip,      ///< breakaway: |M - k theta| has passed Re
-    rest,      ///< a stick that nothing ended within the window
+    rest,      ///< a stick that nothing can end any more
     impact,    ///< a wall turned it back
     switched,  ///< a relay took its other level
     user,      ///< what a user asked for, by its name
@@ -34,6 +34,11 @@ constexpr std::string_view name(EventKind kind) {
             return "user";
     }
     return "";
+}
+
+/// From here on the mass stands.
+constexpr bool is_stop(EventKind kind) {
+    return kind == EventKind::stick || kind == EventKind::rest;
 }
 
 /// The velocity is exactly 0 at a turn, stick, slip or rest: that against what it slides on.

@@ -8,6 +8,7 @@ namespace dinal::model {
 #define DINAL_OUTCOMES(X)                                                                      \
     X(reached_end, "reached the end")                                                          \
     X(at_rest, "at rest")                                                                      \
+    X(stuck_at_end, "stuck at the end")                                                        \
     X(stopped, "stopped at an event")                                                          \
     X(interrupted, "interrupted")                                                              \
     X(state_not_finite, "the state stopped being finite: unstable system, feedback or step")   \
@@ -21,6 +22,11 @@ enum class Outcome {
     DINAL_OUTCOMES(DINAL_OUTCOME)
 #undef DINAL_OUTCOME
 };
+
+/// It came to the end of its window.
+constexpr bool is_whole(Outcome outcome) {
+    return outcome == Outcome::reached_end || outcome == Outcome::at_rest || outcome == Outcome::stuck_at_end;
+}
 
 constexpr std::string_view sentence(Outcome outcome) {
     switch (outcome) {

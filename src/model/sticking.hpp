@@ -23,6 +23,12 @@ inline double breakaway_excess(const Lowered& system, double M, double theta) {
     return std::fma(-k, side * theta, sum) + rest;
 }
 
+/// However M changes while |M| is at most this, it cannot move a mass that is stuck there.
+inline bool held_against(const Lowered& system, double most_M, double theta) {
+    const double k_theta = system.pull_back(theta);
+    return most_M - k_theta <= system.holding(Motion::forward) && most_M + k_theta <= system.holding(Motion::backward);
+}
+
 /// What a mass at velocity zero does under the torque M: stay (|M - k theta| <= Re), or move off towards M - k theta.
 // NOTE: a stored theta stands for all angles within half a unit of its last place. So k theta is known to within
 // 2^-53 |k theta| only, and an excess below that is no breakaway; otherwise theta0 = Re/k would stick or not

@@ -7,6 +7,7 @@
 #include <limits>
 #include <string>
 
+#include "motion/stillness.hpp"
 #include "motion/witness.hpp"
 
 namespace dinal::motion {
@@ -184,15 +185,19 @@ text::Expected<Trajectory> run_from(const Past& past, const model::Oscillator& s
     problem.carried = past.carried;
     Trajectory trajectory = more ? method.run_more(problem) : method.run(problem);
     trajectory.initial = initial;
+    trajectory.on_belt = !extras.belt.components().empty();
     if (system.walls()) trajectory.restitution = system.walls()->restitution;
     if (oath) {
-        const bool whole = trajectory.outcome == model::Outcome::reached_end ||
-                           trajectory.outcome == model::Outcome::at_rest ||
-                           trajectory.outcome == model::Outcome::stopped;
+        const bool whole = model::is_whole(trajectory.outcome) || trajectory.outcome == model::Outcome::stopped;
         trajectory.contradiction = oath->verdict(whole);
         if (trajectory.contradiction) trajectory.outcome = model::Outcome::not_a_function;
     }
     return trajectory;
+}
+
+/// It stood when it came to its end, whether or not for ever.
+bool stands(model::Outcome outcome) {
+    return outcome == model::Outcome::at_rest || outcome == model::Outcome::stuck_at_end;
 }
 
 /// The events of the second part after those of the first, whose rest is none any more.
@@ -200,26 +205,22 @@ Growing<model::Event> joined(const Trajectory& so_far, const Trajectory& second)
     const Growing<model::Event>& first = so_far.events;
     std::vector<model::Event> later;
     std::size_t kept = first.size();
-    std::size_t rest = kept;  // what a user asked for may have come after it
-    while (rest > 0 && first[rest - 1].kind > model::EventKind::rest) --rest;
-    if (rest > 0 && first[rest - 1].kind == model::EventKind::rest) {
-        later.assign(first.begin() + static_cast<std::ptrdiff_t>(rest) - 1, first.end());
-        kept = rest - 1;
+    std::size_t stop = kept;  // what a user asked for may have come after it
+    while (stop > 0 && first[stop - 1].kind > model::EventKind::rest) --stop;
+    const bool stopped = stop > 0 && model::is_stop(first[stop - 1].kind);
+    const bool crept = stands(so_far.outcome) && so_far.motion_at_stop != model::Motion::stuck;
+    if (stopped && (crept || first[stop - 1].kind == model::EventKind::rest)) {
+        later.assign(first.begin() + static_cast<std::ptrdiff_t>(stop) - 1, first.end());
+        kept = stop - 1;
         later.front().kind = model::EventKind::stick;
-        if (so_far.motion_at_stop != model::Motion::stuck) {  // it only crept, and may still do so
-            const bool still = second.outcome == model::Outcome::at_rest && second.events.size() == 1 &&
-                               second.events.front().t == so_far.t_stop;
-            if (still) return first;
+        if (crept) {  // it may still do so
+            const bool still =
+                stands(second.outcome) && second.events.size() == 1 && second.events.front().t == so_far.t_stop;
+            if (still) return first.followed_by(kept, Growing<model::Event>(std::move(later)), all_memory);
             later.erase(later.begin());
         }
     }
     later.insert(later.end(), second.events.begin(), second.events.end());
-    if (second.outcome == model::Outcome::at_rest && kept + later.size() > 0) {
-        if (later.empty()) later.push_back(first[--kept]);
-        const auto own = [](const model::Event& event) { return event.kind <= model::EventKind::rest; };
-        const auto last = std::find_if(later.rbegin(), later.rend(), own);
-        if (last != later.rend()) last->kind = model::EventKind::rest;
-    }
     return first.followed_by(kept, Growing<model::Event>(std::move(later)), all_memory);
 }
 
@@ -243,7 +244,11 @@ text::Expected<Trajectory> simulate(const model::Oscillator& system, const model
                                     const model::State& initial, const Window& window, const Grid& rows,
                                     MethodView method, const Monitor& monitor, const Limits& limits,
                                     const model::Extras& extras) {
-    return run_from({}, system, excitation, initial, window, rows, method, monitor, limits, extras);
+    auto result = run_from({}, system, excitation, initial, window, rows, method, monitor, limits, extras);
+    if (!result) return result;
+    Trajectory trajectory = std::move(result).value();
+    settle(trajectory, system, excitation, extras);
+    return trajectory;
 }
 
 text::Expected<Trajectory> resume(const model::Oscillator& system, const model::Excitation& excitation,
@@ -272,7 +277,9 @@ text::Expected<Trajectory> resume(const model::Oscillator& system, const model::
     auto second = run_from(past, system, excitation, so_far.state_at_stop, window, Grid::at(std::move(times)), method,
                            monitor, limits, extras);
     if (!second) return second.error();
-    return joined(so_far, kept, std::move(second).value(), limits);
+    Trajectory whole = joined(so_far, kept, std::move(second).value(), limits);
+    settle(whole, system, excitation, extras);
+    return whole;
 }
 
 }  // namespace dinal::motion

@@ -72,11 +72,7 @@ bool Standstill::creep(const Moment& now) {
 
 bool Standstill::for_good(const Moment& now) const {
     if (!stuck()) return false;
-    const double k_theta = system_.pull_back(now.theta);
-    if (phase_ != Phase::creeping && most_M_ - k_theta <= system_.holding(model::Motion::forward) &&
-        most_M_ + k_theta <= system_.holding(model::Motion::backward)) {
-        return true;
-    }
+    if (phase_ != Phase::creeping && model::held_against(system_, most_M_, now.theta)) return true;
     return constant_from_ <= now.t && pulled(now.M, now.theta) == model::Motion::stuck;
 }
 
@@ -175,14 +171,7 @@ void Standstill::turned(const Moment& now) {
 
 bool Standstill::finish() {
     if (!stuck()) return false;
-    if (phase_ == Phase::creeping) {
-        tell(model::EventKind::rest, crept_);  // nothing came that would have moved it since
-        return true;
-    }
-    if (events_ == nullptr) return true;
-    const auto own = [](const model::Event& event) { return event.kind <= model::EventKind::rest; };
-    const auto last = std::find_if(events_->rbegin(), events_->rend(), own);
-    if (last != events_->rend()) last->kind = model::EventKind::rest;
+    if (phase_ == Phase::creeping) tell(model::EventKind::stick, crept_);  // nothing came that would have moved it
     return true;
 }
 

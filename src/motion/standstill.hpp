@@ -101,7 +101,7 @@ public:
     void head(model::Motion motion) { motion_ = motion; }
     /// Without dry friction: it has turned.
     void turned(const Moment& now);
-    /// At the end of the run. Whether it is at rest.
+    /// At the end of the run. Whether it stands.
     bool finish();
     /// At the end of a run that got nowhere for standstills without end: the events of these, each at once after the
     /// one before, are none, but for the first.

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <span>
 
+#include "motion/stillness.hpp"
 #include "text/sentences.hpp"
 
 namespace dinal::motion {
@@ -105,18 +106,12 @@ std::string summary(const Trajectory& trajectory) {
         case model::Outcome::reached_end:
             text += "moving at the end";
             break;
-        case model::Outcome::at_rest:
-            text += "at rest";
-            break;
         default:
             text += trajectory.contradiction ? model::sentence(*trajectory.contradiction)
                                              : std::string(model::sentence(trajectory.outcome));
     }
-    if (const auto theta = trajectory.find("theta"); theta && rows.rows() > 0) {
-        if (trajectory.noise > 0) text += fmt::format("; M is rough by {:.2g}", trajectory.noise);
-        text += fmt::format("; peak |theta| {:.3g}", rows.col(*theta).cwiseAbs().maxCoeff());
-    }
-    return text;
+    if (trajectory.noise > 0) text += fmt::format("; M is rough by {:.2g}", trajectory.noise);
+    return text + fmt::format("; peak |theta| {:.3g}", peak(trajectory));
 }
 
 }  // namespace dinal::motion

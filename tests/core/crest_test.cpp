@@ -47,7 +47,7 @@ Trajectory run_over(const Crest& crest, const Excitation& M, const Integrator& m
 /// Slip and stick in turn, as many slips as crests at most for each period that the load is beyond the limit, and the
 /// mass is no farther than M - Re can have drawn it.
 void check_pairs(const Trajectory& run, const Crest& crest) {
-    CHECK((run.outcome == Outcome::reached_end || run.outcome == Outcome::at_rest));
+    CHECK(model::is_whole(run.outcome));
     bool moving = false;
     for (const Event& event : run.events) {
         CHECK((event.kind == EventKind::slip) == !moving);

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "support/catch.hpp"
+#include "support/kinds.hpp"
 #include "support/measure.hpp"
 #include "support/oracle.hpp"
 #include "support/random_case.hpp"
@@ -74,7 +75,7 @@ Finding compare(const RandomCase& c, MethodView method) {
     const auto& events = oracle.events();
     if (oracle.narrowest() < too_close || told(events) != told(second.events())) return {Verdict::ambiguous};
 
-    if (run->outcome != Outcome::reached_end && run->outcome != Outcome::at_rest) {
+    if (!model::is_whole(run->outcome)) {
         return {Verdict::wrong, fmt::format("{} at t = {:.17g}", sentence(run->outcome), run->t_stop)};
     }
     const double asked = (c.excitation.has_feedback() ? accuracy_with_feedback : accuracy) + c.lost_in_time;
@@ -85,7 +86,7 @@ Finding compare(const RandomCase& c, MethodView method) {
         const double late = std::fabs(static_cast<double>(event.t - events[i].t));
         const double allowed = asked * (moved + largest / c.size / (w0 * static_cast<double>(events[i].sharpness))) +
                                1e-15 * std::fabs(event.t) + c.late / w0;
-        if (event.kind != events[i].kind || late > allowed) {
+        if (as_stop(event.kind) != events[i].kind || late > allowed) {
             return {
                 Verdict::wrong,
                 fmt::format("event {}: {} at {:.17g}, but it is a {} at {:.17g}, {:.2e} radians off, allowed {:.2e}", i,

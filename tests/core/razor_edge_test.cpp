@@ -288,7 +288,7 @@ TEST_CASE("a near-tangent pair of velocity zeros is resolved, not skipped", "[ra
         const Trajectory run = must_run(s, Grid::none(), integrator);
         CAPTURE(phase, shortest);
         REQUIRE(run.events.size() == exact.events().size());
-        for (std::size_t i = 0; i < run.events.size(); ++i) CHECK(run.events[i].kind == exact.events()[i].kind);
+        for (auto i = run.events.size(); i-- > 0;) CHECK(as_stop(run.events[i].kind) == exact.events()[i].kind);
     }
     CHECK(pairs > 5);
 }
@@ -346,5 +346,5 @@ TEST_CASE("linear feedback is the damping that it imitates", "[razor]") {
     const double allowed = tolerance_of(integrator, 4 * 25 * std::pow(2 * pi * 0.002, 4) / 120);
     CHECK(error_of(run, s.exact(), s.oscillator) <= 5 * allowed);
     REQUIRE(run.events.size() == s.exact().events().size());
-    CHECK(run.events.back().kind == EventKind::rest);
+    CHECK(run.events.back().kind == EventKind::stick);
 }

@@ -115,13 +115,13 @@ TEST_CASE("a run goes on from wherever it was stopped, also from the very moment
     }
 }
 
-TEST_CASE("a mass at rest that goes on into a load slips, and its rest becomes a stick", "[resume]") {
+TEST_CASE("a mass that is stuck and goes on into a load slips as if there had been no break", "[resume]") {
     const Oscillator system = nondimensional(0, 0.2, 0.3);
     const Excitation late = Excitation::make(Step{.level = 0.9, .at = 5}).value();
     for (const double split : {4.0, 5.0}) {  // the second at the very time of the jump
         auto first = simulate(system, late, {1, 0}, {0, split}, Grid::every(0.5), Spectral{});
         REQUIRE(first);
-        CHECK(first->events.back().kind == EventKind::rest);
+        CHECK(first->events.back().kind == EventKind::stick);
         auto both = resume(system, late, *first, 6, Grid::every(0.5), Spectral{});
         REQUIRE(both);
         const Trajectory whole = must_run(system, late, {1, 0}, {0, 6}, Grid::every(0.5), Spectral{});

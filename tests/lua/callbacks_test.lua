@@ -94,7 +94,7 @@ test("M may call simulate itself, and fail there", function()
     near(run.M[1], 2, 1e-9)
     raises(function() simulate(function(t) return simulate(function() error "deep inside" end) end) end, "deep inside")
     local caught = simulate(function() pcall(simulate, function() error "x" end) return 1 end)
-    equal(caught.outcome, "at rest")
+    equal(caught.outcome, "stuck at the end")
     works_still()
 end)
 

@@ -147,9 +147,6 @@ ExactMotion::ExactMotion(const model::Oscillator& system, std::vector<Piece> dri
         advance(now, drives_[i].drive, until);
     }
     ends_stuck_ = now.sign == 0;
-    if (ends_stuck_ && !events_.empty() && events_.back().kind == model::EventKind::stick) {
-        events_.back().kind = model::EventKind::rest;
-    }
 }
 
 void ExactMotion::advance(Cursor& now, const Drive& drive, real until) {

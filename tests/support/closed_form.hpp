@@ -8,6 +8,7 @@
 
 #include "model/event.hpp"
 #include "model/oscillator.hpp"
+#include "support/kinds.hpp"
 
 namespace dinal::truth {
 

@@ -35,10 +35,7 @@ public:
         }
         if (standstill_) ask_the_law();
         rows_before(model::never, t_);
-        if (motion_ == model::Motion::stuck) {
-            run_.outcome = model::Outcome::at_rest;
-            if (!events_.empty()) events_.back().kind = model::EventKind::rest;
-        }
+        if (motion_ == model::Motion::stuck) run_.outcome = model::Outcome::stuck_at_end;
         rows_.finish();
         run_.events = motion::Growing<model::Event>(std::move(events_));
         run_.t_start = problem_.window.start;

@@ -50,7 +50,6 @@ Oracle::Oracle(const model::Oscillator& system, Load load, const model::State& i
         if (!gave_up_) pass({t_, to, t_ + (to - t_) / 2});
     }
     while (motions_.size() < times_.size()) motions_.push_back({y_[0] * size_, y_[1] * size_ * w0_});
-    if (dry() && sign_ == 0 && !events_.empty()) events_.back().kind = model::EventKind::rest;
 }
 
 /// From one break of M to the next.

@@ -9,6 +9,7 @@
 #include "model/laws/stribeck.hpp"
 #include "model/springs/polynomial_spring.hpp"
 #include "model/springs/user_spring.hpp"
+#include "support/kinds.hpp"
 #include "support/measure.hpp"
 #include "support/random_case.hpp"
 #include "support/stops_truth.hpp"
@@ -145,7 +146,7 @@ std::vector<Told> events_of(const Events& events) {
         const bool impact = e.kind == EventKind::impact;
         if (impact || e.kind != EventKind::turn) slow = impact && std::fabs(e.velocity) < slow_impact;
         if (slow) continue;
-        told.push_back({e.kind, static_cast<double>(e.t), static_cast<double>(e.theta),
+        told.push_back({as_stop(e.kind), static_cast<double>(e.t), static_cast<double>(e.theta),
                         impact ? static_cast<double>(e.velocity) : 0});
     }
     return told;

@@ -36,11 +36,6 @@ StopsTruth::StopsTruth(StopsSystem system, const Motion& initial, real t_start, 
         gave_up_ = gave_up_ || steps_ > most_steps;
     }
     while (motions_.size() < times_.size()) motions_.push_back({y_[0] + origin_, y_[1]});
-    if (mode_ != Mode::moving) {
-        const auto last = std::find_if(events_.rbegin(), events_.rend(),
-                                       [](const StopsEvent& event) { return event.kind <= EventKind::rest; });
-        if (last != events_.rend()) last->kind = EventKind::rest;
-    }
 }
 
 void StopsTruth::begin() {

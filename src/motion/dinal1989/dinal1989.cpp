@@ -182,10 +182,7 @@ Trajectory Dinal1989::run(const Problem& problem) const {
     if (trajectory.outcome == model::Outcome::reached_end) {
         while (rows.next_time() < model::never) rows.put(dinal.state(now), dinal.M(now), dinal.friction(now));
         trajectory.t_stop = problem.window.end;
-        if (now.frozen) {
-            trajectory.outcome = model::Outcome::at_rest;
-            if (!events.empty()) events.back().kind = model::EventKind::rest;
-        }
+        if (now.frozen) trajectory.outcome = model::Outcome::stuck_at_end;
     }
     rows.finish();
     if (problem.excitation.has_script()) trajectory.gap = h / 2;

@@ -103,7 +103,7 @@ bool ExactEngine::rest_until_end() {
 void ExactEngine::finish() {
     while (rows_.next_time() < model::never) put_row();
     if (standstill_.phase() == Standstill::Phase::arrived) standstill_.ask(moment());
-    if (standstill_.finish()) outcome_ = model::Outcome::at_rest;
+    if (standstill_.finish()) outcome_ = model::Outcome::stuck_at_end;
 }
 
 // ---- moving

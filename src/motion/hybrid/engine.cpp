@@ -87,7 +87,7 @@ model::Outcome Engine::run() {
         while (next_row_ < rows.count() && rows.time(next_row_) <= now_.hi && put_row(now_.hi, -2)) {
         }
     }
-    if (outcome_ == model::Outcome::reached_end && standstill_.finish()) outcome_ = model::Outcome::at_rest;
+    if (outcome_ == model::Outcome::reached_end && standstill_.finish()) outcome_ = model::Outcome::stuck_at_end;
     return outcome_;
 }
 

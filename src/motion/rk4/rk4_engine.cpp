@@ -77,7 +77,7 @@ model::Outcome Rk4Engine::run(const Rk4Checkpoint& from, std::size_t last_step) 
     if (outcome_ == model::Outcome::chattering) standstill_.forget_chatter();
     if (outcome_ == model::Outcome::reached_end && last_step == steps_) {
         rows_standing_until(model::never);
-        if (standstill_.finish()) outcome_ = model::Outcome::at_rest;
+        if (standstill_.finish()) outcome_ = model::Outcome::stuck_at_end;
     }
     return outcome_;
 }

@@ -93,7 +93,7 @@ bool SpectralEngine::rest_until_end() {
 void SpectralEngine::finish() {
     while (rows_.next_time() < model::never) put_row(now_.M);
     if (standstill_.phase() == Standstill::Phase::arrived) standstill_.ask(moment());
-    if (standstill_.finish()) outcome_ = model::Outcome::at_rest;
+    if (standstill_.finish()) outcome_ = model::Outcome::stuck_at_end;
 }
 
 // ---- moving

@@ -1,0 +1,130 @@
+#include "motion/stillness.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "model/forcing.hpp"
+#include "model/sticking.hpp"
+
+namespace dinal::motion {
+
+namespace {
+
+constexpr std::size_t no_stop = static_cast<std::size_t>(-1);
+
+/// Where the last stop is told; what a user asked for, a relay or a wall may come after it.
+std::size_t last_stop(const Growing<model::Event>& events) {
+    for (std::size_t i = events.size(); i > 0; --i) {
+        const model::EventKind kind = events[i - 1].kind;
+        if (kind <= model::EventKind::rest) return model::is_stop(kind) ? i - 1 : no_stop;
+    }
+    return no_stop;
+}
+
+/// Something besides M may move the mass.
+bool moved_by_others(const model::Extras& extras) {
+    const auto acts = [](const model::WantedEvent& event) { return event.act != nullptr; };
+    return !extras.belt.components().empty() || std::any_of(extras.events.begin(), extras.events.end(), acts);
+}
+
+/// M may have jumped at the very end, where no integrator has asked the law any more.
+bool stays(const Trajectory& run, const model::Oscillator& system, double M) {
+    const double theta = run.state_at_stop.theta;
+    const model::Motion way = model::motion_from_standstill(model::Lowered(system), M, theta);
+    const auto& walls = system.walls();
+    const bool leans = walls && ((way == model::Motion::backward && theta <= walls->lower) ||
+                                 (way == model::Motion::forward && theta >= walls->upper));
+    return way == model::Motion::stuck || leans;
+}
+
+bool for_good(const Trajectory& run, const model::Oscillator& oscillator, const model::Excitation& excitation,
+              const model::Excitation& base, double since) {
+    const model::Lowered system(oscillator);
+    const bool creeps = run.motion_at_stop != model::Motion::stuck;
+    if (const double constant = std::max(excitation.constant_from(), base.constant_from()); constant <= run.t_stop) {
+        const double t = run.t_stop, M = excitation.value(t) - oscillator.inertia() * base.value(t);
+        return creeps ? constant < t : stays(run, oscillator, M);
+    }
+    if (!base.components().empty()) return false;
+    if (creeps) return false;  // it creeps, and yields to every change of M
+    if (model::held_against(system, excitation.most(), run.state_at_stop.theta)) return true;
+    const double period = excitation.has_feedback() ? 0 : model::period_from(excitation, since);
+    return period > 0 && run.t_stop - since >= period;
+}
+
+/// Where the velocity passes zero between two times, by halving; the course tells it.
+double extreme(const Trajectory& run, double from, double to, bool rising) {
+    constexpr int halvings = 50;
+    double theta = 0;
+    for (int i = 0; i < halvings; ++i) {
+        const double middle = from + (to - from) / 2;
+        const auto y = run.at(middle);
+        if (!y) break;
+        theta = std::fabs(y->theta);
+        ((y->velocity > 0) == rising ? from : to) = middle;
+    }
+    return theta;
+}
+
+/// On a belt no event says where the mass turns against the ground: it is looked for between events and rows.
+double peak_on_belt(const Trajectory& run) {
+    constexpr std::size_t most_looks = 100'000;
+    std::vector<double> times = {run.t_start, run.t_stop};
+    for (const model::Event& event : run.events) times.push_back(event.t);
+    const std::size_t stride = static_cast<std::size_t>(run.size()) / most_looks + 1;
+    for (std::size_t i = 0; i < static_cast<std::size_t>(run.size()); i += stride) {
+        times.push_back(run.rows(static_cast<Eigen::Index>(i), 0));
+    }
+    std::sort(times.begin(), times.end());
+    constexpr int parts = 8;
+    double greatest = 0;
+    for (std::size_t i = 0; i + 1 < times.size(); ++i) {
+        const double width = (times[i + 1] - times[i]) / parts;
+        auto before = run.at(times[i]);
+        for (int k = 1; k <= parts && width > 0; ++k) {
+            const double from = times[i] + (k - 1) * width, to = k == parts ? times[i + 1] : times[i] + k * width;
+            auto now = run.at(to);
+            if (!before || !now) break;
+            greatest = std::max({greatest, std::fabs(before->theta), std::fabs(now->theta)});
+            if (before->velocity * now->velocity < 0) {
+                greatest = std::max(greatest, extreme(run, from, to, before->velocity > 0));
+            }
+            before = std::move(now);
+        }
+    }
+    return greatest;
+}
+
+}  // namespace
+
+void settle(Trajectory& trajectory, const model::Oscillator& system, const model::Excitation& excitation,
+            const model::Extras& extras) {
+    if (trajectory.outcome != model::Outcome::stuck_at_end || moved_by_others(extras)) return;
+    const std::size_t stop = last_stop(trajectory.events);
+    const double since = stop == no_stop ? trajectory.t_start : trajectory.events[stop].t;
+    if (!for_good(trajectory, system, excitation, extras.base, since)) return;
+    trajectory.outcome = model::Outcome::at_rest;
+    if (stop == no_stop) return;
+    std::vector<model::Event> last(trajectory.events.begin() + static_cast<std::ptrdiff_t>(stop),
+                                   trajectory.events.end());
+    last.front().kind = model::EventKind::rest;
+    trajectory.events = trajectory.events.followed_by(stop, Growing<model::Event>(std::move(last)),
+                                                      std::numeric_limits<std::size_t>::max());
+}
+
+double peak(const Trajectory& trajectory) {
+    double greatest = std::max(std::fabs(trajectory.initial.theta), std::fabs(trajectory.state_at_stop.theta));
+    if (const auto theta = trajectory.find("theta"); theta && trajectory.size() > 0) {
+        greatest = std::max(greatest, trajectory.rows.col(*theta).cwiseAbs().maxCoeff());
+    }
+    for (const model::Event& event : trajectory.events) {
+        greatest = std::max(greatest, std::fabs(event.theta));
+        if (event.kind != model::EventKind::user || !trajectory.course) continue;
+        if (const auto y = trajectory.at(event.t)) greatest = std::max(greatest, std::fabs(y->theta));  // he moved it
+    }
+    return trajectory.on_belt && trajectory.course ? std::max(greatest, peak_on_belt(trajectory)) : greatest;
+}
+
+}  // namespace dinal::motion

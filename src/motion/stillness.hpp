@@ -1,0 +1,18 @@
+// What a run that ended stuck may still become: whether anything can move its mass again, and how far it ever went.
+#pragma once
+
+#include "model/extras.hpp"
+#include "motion/trajectory.hpp"
+
+namespace dinal::motion {
+
+/// A mass that is stuck at the end is at rest when M, as far as it is known, can never move it again: M is constant
+/// from then on, or nowhere great enough, or has gone through a whole period and did not move it. The outcome says so
+/// then, and its last stop is a rest. What no integrator can know, none of them tells.
+void settle(Trajectory& trajectory, const model::Oscillator& system, const model::Excitation& excitation,
+            const model::Extras& extras);
+
+/// The greatest |theta| of the motion, not only of the rows; rad.
+double peak(const Trajectory& trajectory);
+
+}  // namespace dinal::motion
