@@ -174,7 +174,7 @@ int subtract(lua_State* L) {
 /// The excitation at `index`, scaled by the number at `number_index` (or its inverse).
 int push_scaled(lua_State* L, int index, double gain) {
     if (!std::isfinite(gain)) {
-        lua::raise(L, fmt::format("an excitation can not be scaled by {}", gain));
+        lua::raise(L, fmt::format("an excitation cannot be scaled by {}", gain));
     }
     lua::push(L, lua::test<model::Excitation>(L, index)->scaled(gain));
     return 1;
@@ -197,7 +197,7 @@ int divide(lua_State* L) {
     }
     const double divisor = lua_tonumber(L, 2);
     if (divisor == 0) {
-        lua::raise(L, "an excitation can not be divided by zero");
+        lua::raise(L, "an excitation cannot be divided by zero");
     }
     return push_scaled(L, 1, 1 / divisor);
 }
@@ -255,7 +255,7 @@ constexpr lua::Member excitation_members[] = {
 const lua::Class excitation_class{
     "excitation",
     {"e = excitation.NAME{ ... }",
-     "A torque M(t), or M(t, theta, velocity) with feedback. It can not be changed; arithmetic makes new ones.",
+     "A torque M(t), or M(t, theta, velocity) with feedback. It cannot be changed; arithmetic makes new ones.",
      "e = 2 * excitation.step{ at = 1 }\nprint(e(0), e(1))  --> 0.0\t2.0"},
     excitation_members,
     nullptr,

@@ -178,7 +178,7 @@ const lua::Class friction_module = {
     friction_module_members};
 
 const lua::Class friction_class = {"friction",
-                                   {"friction.NAME{ ... } -> law", "A law of friction. It can not be changed.",
+                                   {"friction.NAME{ ... } -> law", "A law of friction. It cannot be changed.",
                                     "print(friction.coulomb{ Rd = 0.3 }.Re)  --> 0.3"},
                                    friction_members};
 

@@ -197,7 +197,7 @@ const lua::Class integrator_module = {
 const lua::Class integrator_class = {
     "integrator",
     {"integrator.rk4{ h = 0.001 } -> integrator",
-     "A method with its options, for `integrator =` in sys:simulate{...}. It can not be changed.",
+     "A method with its options, for `integrator =` in sys:simulate{...}. It cannot be changed.",
      "print(integrator.rk4{ h = 0.001 }.h)  --> 0.001"},
     integrator_members,
     nullptr,

@@ -292,7 +292,7 @@ const lua::Class run_class = {
     "run",
     {"sys:simulate{ ... } or trajectory.load(file) -> run",
      "What a simulation leaves behind: columns that are vectors, events, the outcome, and the motion between the rows. "
-     "It can not be changed. A trajectory that was read from a file has the columns of its file as fields.",
+     "It cannot be changed. A trajectory that was read from a file has the columns of its file as fields.",
      DINAL_RUN "print(run.theta:max() < 5.001)  --> true"},
     run_members,
     other_column,

@@ -143,7 +143,7 @@ const lua::Class spring_module = {
 
 const lua::Class spring_class = {
     "spring",
-    {"spring.NAME{ ... } -> spring", "A spring. It can not be changed.",
+    {"spring.NAME{ ... } -> spring", "A spring. It cannot be changed.",
      "print(system{ I = 1, k = 1, spring = function(theta) return theta^3 end }.spring:torque(2))  --> 8.0"},
     spring_members};
 

@@ -262,7 +262,7 @@ const lua::Class system_functions = {
 const lua::Class system_class = {
     "system",
     {"system{ I, k, ... } -> system",
-     "A valid oscillator. It can not be changed; its parameters and what follows from them are fields.",
+     "A valid oscillator. It cannot be changed; its parameters and what follows from them are fields.",
      "sys = system{ I = 1, k = 4, C = 1 }\nprint(sys.omega0, sys.zeta)  --> 2.0\t0.25"},
     system_members,
     nullptr,

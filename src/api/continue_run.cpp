@@ -54,7 +54,7 @@ int continue_run(lua_State* L) {
     const motion::Trajectory& so_far = run->trajectory;
     if (!run->origin) {
         options.fail(
-            {"a run that was read from a file can not go on; start one there with sys:simulate{ theta0, "
+            {"a run that was read from a file cannot go on; start one there with sys:simulate{ theta0, "
              "velocity0, t_start, ... }"});
     }
     source::Origin origin = *run->origin;

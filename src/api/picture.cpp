@@ -31,7 +31,7 @@ plots::Interval asked_range(const lua::Options& options, std::string_view name, 
     // So far apart, or so close together, that fractions of the axis could not be told.
     if (!(ends[1] - ends[0] <= 1e300) || ends[1] - ends[0] < plots::shortest_axis ||
         ends[1] - ends[0] < 1e-13 * std::max(std::fabs(ends[0]), std::fabs(ends[1]))) {
-        options.fail(name, fmt::format("{} = {{ {}, {} }} can not be drawn: its ends must differ by more than 1e-13 of "
+        options.fail(name, fmt::format("{} = {{ {}, {} }} cannot be drawn: its ends must differ by more than 1e-13 of "
                                        "their size, by more than 1e-305 and by less than 1e300",
                                        name, ends[0], ends[1]));
     }

@@ -69,7 +69,7 @@ std::optional<text::Error> SweepFiles::check_mark() {
 
 std::optional<text::Error> SweepFiles::open() {
     if (const auto why = files::outside(file_, files::Access::write)) {
-        return text::Error{.sentence = fmt::format("can not write '{}': {}", file_, *why), .option = "file"};
+        return text::Error{.sentence = fmt::format("cannot write '{}': {}", file_, *why), .option = "file"};
     }
     std::error_code error;
     if (fs::exists(file_, error)) {
@@ -84,7 +84,7 @@ std::optional<text::Error> SweepFiles::open() {
     }
     fs::create_directory(folder_, error);
     if (error) {
-        return text::Error{.sentence = fmt::format("can not make the folder '{}': {}", folder_, error.message()),
+        return text::Error{.sentence = fmt::format("cannot make the folder '{}': {}", folder_, error.message()),
                            .option = "file",
                            .culprit = file_};
     }

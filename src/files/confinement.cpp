@@ -10,9 +10,9 @@ namespace {
 namespace fs = std::filesystem;
 
 fs::path root;    // empty: files are not confined
-fs::path script;  // empty: there is none, or it can not be found
+fs::path script;  // empty: there is none, or it cannot be found
 
-/// Where the path leads, all links followed; its last name need not exist. Empty when that can not be said.
+/// Where the path leads, all links followed; its last name need not exist. Empty when that cannot be said.
 fs::path real_path(const fs::path& path) {
     std::error_code error;
     const fs::file_status own = fs::symlink_status(path, error);

@@ -15,7 +15,7 @@ void allow_reading(const std::string& path);
 
 enum class Access { read, write };
 
-/// Why this path can not be used, or nothing: files are not confined, or it is within.
+/// Why this path cannot be used, or nothing: files are not confined, or it is within.
 std::optional<std::string> outside(const std::string& path, Access access);
 
 }  // namespace dinal::files

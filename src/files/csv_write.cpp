@@ -43,7 +43,7 @@ std::optional<text::Error> unwritable_name(std::span<const NamedColumn> columns)
     using namespace std::string_view_literals;
     for (const NamedColumn& column : columns) {
         if (column.name.find_first_of("\r\n\0"sv) != std::string_view::npos) {
-            return text::Error{"the name of a column can not hold a line end or a NUL byte"};
+            return text::Error{"the name of a column cannot hold a line end or a NUL byte"};
         }
     }
     return std::nullopt;

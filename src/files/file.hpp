@@ -37,11 +37,11 @@ struct Written {
 
 /// A file being written. Until commit() the text goes to a temporary file in the same folder, which commit() renames;
 /// without a successful commit() the temporary is removed and an old file stays as it was. Symbolic links are followed.
-/// What exists and is no regular file (/dev/stdout, a pipe, a device) can not be renamed to and is written directly.
+/// What exists and is no regular file (/dev/stdout, a pipe, a device) cannot be renamed to and is written directly.
 // NOTE: there is no fsync: it would cost more than all the rest, and only a power cut could tell the difference.
 class OutputFile {
 public:
-    /// Fails when the place can not be written: better said before a long computation than after it.
+    /// Fails when the place cannot be written: better said before a long computation than after it.
     static text::Expected<OutputFile> create(const std::string& path);
 
     OutputFile(OutputFile&& other) noexcept;

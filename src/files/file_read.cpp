@@ -17,7 +17,7 @@ namespace {
 constexpr std::size_t largest_file = std::size_t{4} << 30;  // /dev/zero never ends
 
 text::Error can_not_read(const std::string& path, const std::string& why) {
-    return {.sentence = "can not read '" + path + "': " + why, .culprit = path};
+    return {.sentence = "cannot read '" + path + "': " + why, .culprit = path};
 }
 
 bool (*stop_question)() noexcept = nullptr;

@@ -26,7 +26,7 @@ std::string reason(int error) {
 }
 
 text::Error can_not_write(const std::string& path, const std::string& why) {
-    return {.sentence = "can not write '" + path + "': " + why, .culprit = path};
+    return {.sentence = "cannot write '" + path + "': " + why, .culprit = path};
 }
 
 /// The system would silently take the part before the NUL for the whole name.

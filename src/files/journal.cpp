@@ -12,7 +12,7 @@ text::Expected<Journal> Journal::open(const std::string& path) {
     constexpr mode_t readable = 0644;
     const int descriptor = ::open(path.c_str(), O_WRONLY | O_APPEND | O_CREAT | O_CLOEXEC, readable);
     if (descriptor < 0) {
-        return text::Error{.sentence = "can not write '" + path + "': " + std::generic_category().message(errno),
+        return text::Error{.sentence = "cannot write '" + path + "': " + std::generic_category().message(errno),
                            .culprit = path};
     }
     return Journal(descriptor);

@@ -14,7 +14,7 @@ public:
     /// Makes the file when it is not there. To be opened before files are confined: it may be anywhere.
     static text::Expected<Journal> open(const std::string& path);
 
-    /// One write, so that lines of two programs do not mix. What can not be written is lost: a script must not fail for
+    /// One write, so that lines of two programs do not mix. What cannot be written is lost: a script must not fail for
     /// the sake of it.
     void add(std::string_view line) const;
 

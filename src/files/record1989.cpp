@@ -150,7 +150,7 @@ const std::vector<std::string>& record1989_names() {
 text::Expected<Written> write_record1989(const std::string& path, const motion::Trajectory& trajectory,
                                          const model::Oscillator& system) {
     if (!system.has_spring()) {
-        return text::Error{"can not write '" + path +
+        return text::Error{"cannot write '" + path +
                            "': the record of 1989 divides by k and omega0, and this system has k = 0; save it as .csv"};
     }
     const double w0 = system.natural_frequency();
@@ -162,7 +162,7 @@ text::Expected<Written> write_record1989(const std::string& path, const motion::
         const auto& [name, unit] = sources[i];
         const text::Expected<Eigen::Index> column = find_column(trajectory.names, name);
         if (!column) {
-            return text::Error{"can not write '" + path + "': the record of 1989 needs six columns and " +
+            return text::Error{"cannot write '" + path + "': the record of 1989 needs six columns and " +
                                column.error().message()};
         }
         values.col(static_cast<Eigen::Index>(i)) = trajectory.rows.col(*column) / unit;
@@ -173,7 +173,7 @@ text::Expected<Written> write_record1989(const std::string& path, const motion::
 text::Expected<Written> write_record1989(const std::string& path,
                                          const Eigen::Ref<const Eigen::MatrixXd>& six_columns) {
     if (six_columns.cols() != static_cast<Eigen::Index>(width)) {
-        return text::Error{"can not write '" + path + "': the record of 1989 has six columns, here are " +
+        return text::Error{"cannot write '" + path + "': the record of 1989 has six columns, here are " +
                            std::to_string(six_columns.cols())};
     }
     return write_columns(path, named_columns(record1989_names(), six_columns));

@@ -30,7 +30,7 @@ private:
 /// The error at a place of a file: "run.csv:7: ...".
 text::Error error_at(const std::string& file, std::size_t line, const std::string& what);
 
-/// Why this can not be a text file: the line of its first NUL byte (UTF-16 is full of them).
+/// Why this cannot be a text file: the line of its first NUL byte (UTF-16 is full of them).
 std::optional<text::Error> binary_fault(std::string_view text, const std::string& file);
 
 /// A finite number that is all of the field, without blanks around; a leading + is allowed, nan and inf are not.

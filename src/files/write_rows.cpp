@@ -92,7 +92,7 @@ text::Expected<Written> write_rows(const std::string& path, std::span<const Name
     OutputFile file = std::move(opened).value();
     head(file);
     if (std::optional<text::Error> fault = write_lines(file, columns, separator)) {
-        return text::Error{.sentence = "can not write '" + path + "': " + fault->sentence, .culprit = path};
+        return text::Error{.sentence = "cannot write '" + path + "': " + fault->sentence, .culprit = path};
     }
     return file.commit();
 }

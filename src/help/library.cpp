@@ -99,7 +99,7 @@ const Section all_sections[] = {
     {"The table dinal", "dinal", &library_class},
 };
 
-// dinal.partial is nil until a run fails, so a name that is not there can not simply be an error.
+// dinal.partial is nil until a run fails, so a name that is not there cannot simply be an error.
 int unknown_name(lua_State* L) {
     if (lua_type(L, 2) != LUA_TSTRING || std::string_view(lua_tostring(L, 2)) == "partial") {
         return 0;

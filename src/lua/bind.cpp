@@ -92,8 +92,8 @@ int index_object(lua_State* L) {
 
 int refuse_assignment(lua_State* L) {
     const Class& description = class_of_closure(L, 1);
-    raise(L, {.sentence = with_article(description.name) + " can not be changed, so " + key_text(L, 2) +
-                          " can not be set; make a new one",
+    raise(L, {.sentence = with_article(description.name) + " cannot be changed, so " + key_text(L, 2) +
+                          " cannot be set; make a new one",
               .culprit = written(L, 2)});
 }
 

@@ -103,7 +103,7 @@ void collect_when_tight(lua_State* L) {
     if (!limited()) {
         return;
     }
-    thread_local Bytes after_last = 0;  // what is taken by what is in use can not be collected again and again
+    thread_local Bytes after_last = 0;  // what is taken by what is in use cannot be collected again and again
     const Bytes all = limit.load(std::memory_order_relaxed);
     after_last = std::min(after_last, now_taken());
     if (now_taken() > all / 2 && now_taken() - after_last > all / 8) {

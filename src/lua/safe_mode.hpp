@@ -1,4 +1,4 @@
-// Safe mode: what scripts of strangers see of Lua, and what they can not reach. docs/safe-mode.md says what it
+// Safe mode: what scripts of strangers see of Lua, and what they cannot reach. docs/safe-mode.md says what it
 // promises.
 //
 // It is a list of what is there, not of what is taken away: a new function of Lua is not there until it is listed. The

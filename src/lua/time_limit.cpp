@@ -88,7 +88,7 @@ void set_time_limit(double seconds) {
     event.sigev_notify = SIGEV_THREAD;
     event.sigev_notify_function = on_expiry;
     if (timer_create(CLOCK_MONOTONIC, &event, &timer) != 0) {
-        throw std::system_error(errno, std::generic_category(), "the time of scripts can not be limited");
+        throw std::system_error(errno, std::generic_category(), "the time of scripts cannot be limited");
     }
     lua_thread = pthread_self();
     allowed_time = seconds;

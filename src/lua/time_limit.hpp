@@ -1,6 +1,6 @@
 // How long a chunk may run, by the clock on the wall.
 //
-// A timer watches the clock. When the time is over it stops what runs, as Ctrl-C would. What can not be
+// A timer watches the clock. When the time is over it stops what runs, as Ctrl-C would. What cannot be
 // stopped so (a search for a pattern that never ends, a finalizer) is ended with the whole program a second later.
 #pragma once
 

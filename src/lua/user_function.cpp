@@ -322,7 +322,7 @@ double LuaFunction::fail(CallState& call, int status, double t) const {
         error.culprit = written(L, -1);
     } else if (lua_type(L, -1) == LUA_TSTRING && is_about_yield(lua_tostring(L, -1))) {
         error.sentence =
-            fmt::format("{} can not yield, as it did at {} = {:.14g} (attempt to yield across a C-call boundary)",
+            fmt::format("{} cannot yield, as it did at {} = {:.14g} (attempt to yield across a C-call boundary)",
                         role_.name, role_.argument, t);
         error.culprit = "yield";
     }

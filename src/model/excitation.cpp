@@ -12,7 +12,7 @@ namespace {
 enum class Side { before, at, after };
 
 /// A step to the side that is small against every number the function may have computed with, but that rounding in
-/// its own arithmetic (t - delay, t % period) can not swallow.
+/// its own arithmetic (t - delay, t % period) cannot swallow.
 double hair(double t, double delay) {
     constexpr double few_ulps = 4 * std::numeric_limits<double>::epsilon();
     constexpr double smallest = 1e-300;  // at t = 0: still a normal number, so that sin(w t) / t is exact there

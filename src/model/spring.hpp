@@ -17,7 +17,7 @@ namespace dinal::model {
 template <class Law>
 concept SpringLaw = requires(const Law& law, double theta) {
     { law.torque(theta) } -> std::same_as<double>;
-    /// The integral of the torque from 0 to theta; NaN where it can not be had.
+    /// The integral of the torque from 0 to theta; NaN where it cannot be had.
     { law.energy(theta) } -> std::same_as<double>;
     /// What is wrong with its numbers, for the person who gave them.
     { law.complaint() } -> std::same_as<std::optional<text::Error>>;

@@ -55,7 +55,7 @@ public:
     }
     /// How far M is past the limit; positive exactly when the law lets go.
     [[nodiscard]] double excess(double M, double theta) const;
-    /// M can not move it any more, whatever comes: it is constant, or nowhere great enough.
+    /// M cannot move it any more, whatever comes: it is constant, or nowhere great enough.
     [[nodiscard]] bool for_good(const Moment& now) const;
     /// The state at which a feedback that jumps at velocity zero is asked for this motion: not beyond zero, and at zero
     /// a hair of velocity on its way.

@@ -35,7 +35,7 @@ enum class Style { line, points, fill };
 /// How a line is broken; `by_place` is another one for each curve, so that a grey print still tells them apart.
 enum class Dashes { by_place, solid, dashed, dotted };
 
-/// The shorter of x and y counts. What is not finite, or can not stand on a logarithmic axis, is a gap.
+/// The shorter of x and y counts. What is not finite, or cannot stand on a logarithmic axis, is a gap.
 struct Curve {
     Numbers x, y;
     std::string label = {};  ///< none: not in the legend

@@ -24,7 +24,7 @@ namespace dinal::plots {
 namespace {
 
 text::Error failure(const std::string& what) {
-    return {"can not run gnuplot: " + what};
+    return {"cannot run gnuplot: " + what};
 }
 text::Error failure(int error) {
     return failure(std::generic_category().message(error));

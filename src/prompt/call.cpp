@@ -103,7 +103,7 @@ int to_text(lua_State* L) {
     return 1;
 }
 
-/// What the error object says; when it can not, its type must do, as in lua.
+/// What the error object says; when it cannot, its type must do, as in lua.
 std::string message_of(lua_State* L) {
     const std::string type = luaL_typename(L, 1);
     if (lua_isstring(L, 1) == 0 && luaL_getmetafield(L, 1, "__tostring") == LUA_TNIL) {
@@ -195,7 +195,7 @@ std::string told_error(lua_State* L, const char* file) {
         return "the script is Lua bytecode, which safe mode does not take: run its source instead";
     }
     if (lua::is_about_foreign_bytecode(text)) {
-        text += "; it is Lua bytecode that this Lua (" LUA_RELEASE ") can not run: run its source instead";
+        text += "; it is Lua bytecode that this Lua (" LUA_RELEASE ") cannot run: run its source instead";
     }
     return text + remarks.suggestion + remarks.excerpt;
 }

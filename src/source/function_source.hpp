@@ -10,7 +10,7 @@
 namespace dinal::source {
 
 /// The function at `index` as a Lua expression: "function(t) return 1 end", "math.sin", "load(...)"; none when its text
-/// is not at hand or it can not be told from others on its lines. Values of upvalues are not in the text.
+/// is not at hand or it cannot be told from others on its lines. Values of upvalues are not in the text.
 std::optional<std::string> function_source(lua_State* L, int index);
 
 /// Remembers the text of a chunk that is in no file (-e, stdin, an input at the prompt), by the name it was loaded

@@ -47,7 +47,7 @@ double runge_kutta_tolerance(const ReferenceSystem& s, double h, int order) {
     return s.size * (2 * truncation + rounding);
 }
 
-/// One for each method: with which options it is measured, what its error may be, and what it can not follow.
+/// One for each method: with which options it is measured, what its error may be, and what it cannot follow.
 template <class M>
 struct Row;
 

@@ -287,7 +287,7 @@ TEST_CASE("a missing file and a folder are refused by name", "[csv]") {
     CHECK_THAT(read_csv(folder.path()).error().sentence, Contains("folder"));
 }
 
-TEST_CASE("a table that can not be written leaves the old file", "[csv]") {
+TEST_CASE("a table that cannot be written leaves the old file", "[csv]") {
     const TemporaryFolder folder;
     const std::string path = folder.file("x.csv");
     put_text(path, "old");
@@ -296,7 +296,7 @@ TEST_CASE("a table that can not be written leaves the old file", "[csv]") {
     const std::vector<double> bad = {1, std::nan("")};
     const std::vector<double> infinite = {-HUGE_VAL, 0};
     CHECK(write_csv(path, std::vector<NamedColumn>{{"a", two}, {"b", bad}}).error().sentence ==
-          "can not write '" + path + "': row 2 of column 'b' is nan; only finite numbers can be saved");
+          "cannot write '" + path + "': row 2 of column 'b' is nan; only finite numbers can be saved");
     CHECK_THAT(write_csv(path, std::vector<NamedColumn>{{"a", infinite}}).error().sentence,
                Contains("row 1 of column 'a' is infinite"));
     CHECK_THAT(write_csv(path, std::vector<NamedColumn>{{"a", two}, {"b", three}}).error().sentence,
@@ -306,7 +306,7 @@ TEST_CASE("a table that can not be written leaves the old file", "[csv]") {
     CHECK(folder.count() == 1);
     if (std::filesystem::exists("/dev/full")) {
         CHECK_THAT(write_csv("/dev/full", std::vector<NamedColumn>{{"a", two}}).error().sentence,
-                   Equals("can not write '/dev/full': No space left on device"));
+                   Equals("cannot write '/dev/full': No space left on device"));
     }
 }
 

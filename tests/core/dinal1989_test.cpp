@@ -227,7 +227,7 @@ TEST_CASE("a mass that starts at rest stays by the rule of the listing, which kn
         const Trajectory run = must_run(system, {}, {0.1, 0}, {0, 1}, Grid::every(0.01), Dinal1989{0.01, stop, false});
         return run.rows(run.size() - 1, 1);
     };
-    // |V| <= |V1 - V| holds with V1 = 0; |V| < |V1 - V|/2 can not.
+    // |V| <= |V1 - V| holds with V1 = 0; |V| < |V1 - V|/2 cannot.
     CHECK(at_end(Stop::listing) == 0.1);
     CHECK(at_end(Stop::text) != 0.1);
 }

@@ -158,7 +158,7 @@ TEST_CASE("a slip at a jump of M is told as one", "[explain]") {
     CHECK_THAT(text, Contains("rests there for good"));
 }
 
-TEST_CASE("a mass that never moves, and one that M can not move any more", "[explain]") {
+TEST_CASE("a mass that never moves, and one that M cannot move any more", "[explain]") {
     const std::string unmoved = story(nondimensional(0, 0.5), harmonic(0.1, 12), {0.1, 0}, {0, 50});
     CHECK_THAT(unmoved, Contains("Nothing moved it until the end of the run, t = 50."));
     CHECK_THAT(unmoved,

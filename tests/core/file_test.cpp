@@ -80,13 +80,13 @@ TEST_CASE("a fifo is read and written through", "[file]") {
     CHECK(fs::is_fifo(fifo));
 }
 
-TEST_CASE("what can not be read is told with its name and the reason", "[file]") {
+TEST_CASE("what cannot be read is told with its name and the reason", "[file]") {
     const TemporaryFolder folder;
     CHECK(read_file(folder.file("none")).error().sentence ==
-          "can not read '" + folder.file("none") + "': No such file or directory");
+          "cannot read '" + folder.file("none") + "': No such file or directory");
     CHECK(read_file(folder.path()).error().sentence ==
-          "can not read '" + folder.path().string() + "': it is a folder, not a file");
-    CHECK_THAT(read_file("").error().sentence, Equals("can not read '': No such file or directory"));
+          "cannot read '" + folder.path().string() + "': it is a folder, not a file");
+    CHECK_THAT(read_file("").error().sentence, Equals("cannot read '': No such file or directory"));
     CHECK_THAT(read_file("/proc/self/mem").error().sentence, Contains("Input/output error"));
     CHECK_THAT(read_file(std::string("a\0b", 3)).error().sentence, Contains("'a'") && Contains("NUL"));
     if (::geteuid() != 0) {  // root may read anything
@@ -155,7 +155,7 @@ TEST_CASE("a disk that fills up leaves the old file and no rest", "[file]") {
             const auto written = write_file(path, large);
             sentence = written ? "no failure" : written.error().sentence;
         }
-        CHECK(sentence == "can not write '" + path + "': File too large (the old file is kept)");
+        CHECK(sentence == "cannot write '" + path + "': File too large (the old file is kept)");
         CHECK(text_of(path) == "old");
         CHECK(folder.count() == 1);
     }
@@ -171,7 +171,7 @@ TEST_CASE("a device without room is an error, even for a few bytes", "[file]") {
         WARN("no /dev/full here");
         return;
     }
-    CHECK(write_file("/dev/full", "x").error().sentence == "can not write '/dev/full': No space left on device");
+    CHECK(write_file("/dev/full", "x").error().sentence == "cannot write '/dev/full': No space left on device");
     CHECK_FALSE(write_file("/dev/full", std::string(1000000, 'x')));
     CHECK(fs::is_character_file("/dev/full"));
 }
@@ -194,19 +194,19 @@ TEST_CASE("an open descriptor is written where it stands", "[file]") {
     CHECK_THAT(write_file("/dev/fd/987", "x").error().sentence, Contains("Bad file descriptor"));
 }
 
-TEST_CASE("what can not be written is told at once with its name and the reason", "[file]") {
+TEST_CASE("what cannot be written is told at once with its name and the reason", "[file]") {
     const TemporaryFolder folder;
     CHECK(OutputFile::create(folder.path()).error().sentence ==
-          "can not write '" + folder.path().string() + "': it is a folder, not a file");
+          "cannot write '" + folder.path().string() + "': it is a folder, not a file");
     CHECK(OutputFile::create(folder.file("no/such/file")).error().sentence ==
-          "can not write '" + folder.file("no/such/file") + "': there is no folder '" + folder.file("no/such") + "'");
+          "cannot write '" + folder.file("no/such/file") + "': there is no folder '" + folder.file("no/such") + "'");
     CHECK_THAT(OutputFile::create("").error().sentence, Contains("there is no file name"));
     CHECK_THAT(OutputFile::create(folder.file("new/")).error().sentence, Contains("there is no file name"));
     CHECK_THAT(OutputFile::create(std::string("a\0b", 3)).error().sentence, Contains("NUL"));
     put_text(folder.file("file"), "");
     CHECK_THAT(OutputFile::create(folder.file("file/below")).error().sentence, Contains("Not a directory"));
     CHECK_THAT(OutputFile::create(folder.file(std::string(300, 'n'))).error().sentence, Contains("name too long"));
-    CHECK_THAT(OutputFile::create("/proc/none").error().sentence, Contains("can not write '/proc/none'"));
+    CHECK_THAT(OutputFile::create("/proc/none").error().sentence, Contains("cannot write '/proc/none'"));
     CHECK(folder.count() == 1);
 }
 

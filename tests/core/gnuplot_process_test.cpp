@@ -60,10 +60,10 @@ TEST_CASE("a gnuplot that ends without a word is told, too", "[gnuplot]") {
         REQUIRE(!picture);
         return picture.error().sentence;
     };
-    CHECK(sentence_of("kill -9 $$") == "can not run gnuplot: it was stopped by signal 9");
-    CHECK(sentence_of("exit 3") == "can not run gnuplot: it ended with exit code 3 and drew nothing");
-    CHECK(sentence_of("echo '<svg'; exit 3") == "can not run gnuplot: it ended with exit code 3 and drew nothing");
-    CHECK(sentence_of("echo boom >&2") == "can not run gnuplot: it says: boom");
+    CHECK(sentence_of("kill -9 $$") == "cannot run gnuplot: it was stopped by signal 9");
+    CHECK(sentence_of("exit 3") == "cannot run gnuplot: it ended with exit code 3 and drew nothing");
+    CHECK(sentence_of("echo '<svg'; exit 3") == "cannot run gnuplot: it ended with exit code 3 and drew nothing");
+    CHECK(sentence_of("echo boom >&2") == "cannot run gnuplot: it says: boom");
 }
 
 TEST_CASE("gnuplot is killed as soon as it shall not go on", "[gnuplot]") {
@@ -73,7 +73,7 @@ TEST_CASE("gnuplot is killed as soon as it shall not go on", "[gnuplot]") {
     const auto picture =
         run_gnuplot("plot sin(x)", {.go_on = [&] { return !std::filesystem::exists(folder.file("id")); }});
     REQUIRE(!picture);
-    CHECK(picture.error().sentence == "can not run gnuplot: it was interrupted");
+    CHECK(picture.error().sentence == "cannot run gnuplot: it was interrupted");
     CHECK(std::chrono::steady_clock::now() - begin < std::chrono::seconds(30));  // of 60, on a busy machine
     const std::string id = testing::text_of(folder.file("id"));
     if (!id.empty()) {

@@ -157,7 +157,7 @@ TEST_CASE("a file that is no record is refused by name", "[record1989]") {
     CHECK_THAT(read_record1989(folder.path()).error().sentence, Contains("folder"));
 }
 
-TEST_CASE("a record that can not be written leaves the old file", "[record1989]") {
+TEST_CASE("a record that cannot be written leaves the old file", "[record1989]") {
     const TemporaryFolder folder;
     const std::string path = folder.file("x.dat");
     put_text(path, "old");

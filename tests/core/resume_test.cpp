@@ -133,7 +133,7 @@ TEST_CASE("a mass that is stuck and goes on into a load slips as if there had be
     }
 }
 
-TEST_CASE("a run can not go on to a time before its end", "[resume]") {
+TEST_CASE("a run cannot go on to a time before its end", "[resume]") {
     const Oscillator system = nondimensional(0, 0.2);
     auto first = simulate(system, {}, {1, 0}, {0, 3}, Grid::every(0.5), Spectral{});
     REQUIRE(first);
@@ -160,7 +160,7 @@ TEST_CASE("a run that goes on from the very time of a turn has that turn once", 
 
 TEST_CASE("a run with very many rows at rest stops when it is told to, and goes on", "[resume]") {
     const Oscillator system = nondimensional(0, 0.5);
-    const Excitation load = harmonic(0.3, 1);  // can not move it
+    const Excitation load = harmonic(0.3, 1);  // cannot move it
     const auto part =
         simulate(system, load, {0.1, 0}, {0, 1e4}, Grid::every(0.01), Spectral{}, [](double t) { return t < 1000; });
     REQUIRE(part);

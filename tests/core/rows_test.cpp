@@ -170,7 +170,7 @@ TEST_CASE("more rows than memory allows are refused with their size and the way 
     CHECK(refusal({0, 1}, Grid::none(), {.memory = 0}).empty());
 }
 
-TEST_CASE("a spacing that the times themselves can not show is refused", "[rows]") {
+TEST_CASE("a spacing that the times themselves cannot show is refused", "[rows]") {
     CHECK_THAT(refusal({1e9, 1e9 + 1e-3}, Grid::every(1e-8)), Contains("dt = 1e-08") && Contains("rounding"));
 }
 

@@ -37,7 +37,7 @@ TEST_CASE("a record with impossible points is refused and says which", "[excitat
     CHECK(complaint(table({0, 1}, {0, never})) == "excitation.samples: M[2] = inf must be finite");
 }
 
-TEST_CASE("hints that can not be true of a script are refused", "[excitation]") {
+TEST_CASE("hints that cannot be true of a script are refused", "[excitation]") {
     const auto f = probe([](double) { return 1.0; });
     CHECK(complaint(Scripted{.function = f, .breaks = {2, 1}}) ==
           "excitation.scripted: breaks[2] = 1 is not after breaks[1] = 2; times must increase");

@@ -153,7 +153,7 @@ TEST_CASE("no line is wider than asked, and there are no more lines", "[textplot
     }
 }
 
-TEST_CASE("a user's words can not reach the terminal as commands", "[textplot]") {
+TEST_CASE("a user's words cannot reach the terminal as commands", "[textplot]") {
     Figure hostile = figure(curve({0, 1}, {0, 1}, "\x1b]0;title\x07\n\x7f\xc2\23331m\xff"));
     hostile.title = hostile.x.label = hostile.y.label = hostile.curves[0].label;
     hostile.curves.push_back(hostile.curves[0]);
@@ -198,7 +198,7 @@ TEST_CASE("stuck intervals are a bar below the time axis, the shortest too", "[t
     CHECK(marks <= 22);
 }
 
-TEST_CASE("letters tell curves apart where colours can not", "[textplot]") {
+TEST_CASE("letters tell curves apart where colours cannot", "[textplot]") {
     Figure two = figure(curve(even(0, 1, 9), even(0, 1, 9), "up"));
     two.curves.push_back(curve(even(0, 1, 9), even(1, 0, 9), "down"));
     const std::string text = drawn(two, 40, 10);

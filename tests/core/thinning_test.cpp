@@ -187,7 +187,7 @@ TEST_CASE("points are no line: a cloud keeps one of each pixel, in whatever orde
     CHECK(thinned(cloud, paper_for(cloud, {600, 400})).size() == 100);
 }
 
-TEST_CASE("points that can not be seen are left out, and so is what has no place", "[thinning]") {
+TEST_CASE("points that cannot be seen are left out, and so is what has no place", "[thinning]") {
     Curve cloud{Numbers::own({0, 5, std::nan(""), 1, 0}), Numbers::own({0, 5, 0, 1, std::nan("")})};
     cloud.style = Style::points;
     const Paper paper{{Scale({0, 1}, false), Scale({0, 1}, false)}, {600, 400}};

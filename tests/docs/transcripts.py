@@ -10,7 +10,7 @@ In README.md, docs/*.md, docs/lab/*.md and examples/README.md a block fenced as 
                 so goes on with the session of the block before;
   other lines   are the output (both channels); a line "..." stands for any lines, and numbers of more than nine digits
                 are compared in nine: the rest depends on how a compiler orders sums. The version of Lua is not compared.
-A block fenced as ```sh is not run: it is for what can not be run here (git clone, apt); the scripts that it names must be
+A block fenced as ```sh is not run: it is for what cannot be run here (git clone, apt); the scripts that it names must be
 there. --update writes the present output into the documents (then read it!).
 """
 

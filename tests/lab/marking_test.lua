@@ -116,7 +116,7 @@ end)
 
 test("--lab-marks needs a file that can be written", function()
   assert(shell("dinal --lab-marks"):find("needs the name of a file after it, for example --lab-marks marks.csv", 1, true))
-  assert(shell("dinal --lab-marks=nowhere/x.csv -e ''; echo $?"):find("can not write 'nowhere/x.csv': No such file or directory\n1\n", 1, true))
+  assert(shell("dinal --lab-marks=nowhere/x.csv -e ''; echo $?"):find("cannot write 'nowhere/x.csv': No such file or directory\n1\n", 1, true))
 end)
 
 support.finish()

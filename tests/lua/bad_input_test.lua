@@ -3,7 +3,7 @@ package.path = "tests/lua/?.lua;" .. package.path
 local support = require "support"
 local test, equal, raises_here = support.test, support.equal, support.raises_here
 
-test("a system that can not exist is refused with the parameter and its value", function()
+test("a system that cannot exist is refused with the parameter and its value", function()
     raises_here(function() system { I = 0, k = 1 } end, "system: I = 0 must be positive")
     raises_here(function() system { I = -1, k = 1 } end, "I = -1 must be positive")
     equal(system { I = 1, k = 0 }.T0, nil)

@@ -65,7 +65,7 @@ test("M may return integers and huge finite numbers", function()
     assert(run.outcome:find "finite" or run.outcome == "reached the end", run.outcome)
 end)
 
-test("M can not yield, and is told so", function()
+test("M cannot yield, and is told so", function()
     local function M(t) if t > 0.2 then coroutine.yield(t) end return 0 end
     raises(function() simulate(M) end, "yield")
     local ok, message = coroutine.resume(coroutine.create(function() simulate(M) end))

@@ -121,7 +121,7 @@ end)
 test("misspelt names are errors with a suggestion", function()
     raises_here(function() return energy.imput end, "did you mean 'input'?")
     raises_here(function() return energy.halfcycles end, "did you mean 'half_cycles'?")
-    raises_here(function() energy.input = 1 end, "can not be changed")
+    raises_here(function() energy.input = 1 end, "cannot be changed")
 end)
 
 test("what was done of a broken run has its energy", function()

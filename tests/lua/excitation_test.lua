@@ -88,7 +88,7 @@ fails(function() return e.samples{ t = {}, M = {} } end, "there are no points")
 fails(function() return e.samples(3) end, "the name of a file or a table of points, got 3")
 fails(function() return e.puls end, "there is no excitation.puls", "did you mean 'pulse'?")
 fails(function() return step.valeu end, "an excitation has no field 'valeu'", "'value'")
-fails(function() step.at = 3 end, "can not be changed")
+fails(function() step.at = 3 end, "cannot be changed")
 fails(function() return step("1") end, 'e:value(t): t must be a finite number, got the string "1"')
 
 -- A function is called as its parameter list says.
@@ -153,10 +153,10 @@ assert(both(1) == 2, "and the next call starts afresh")
 
 -- Yielding is not possible, in a coroutine or out of it.
 local yielding = step + function(t) coroutine.yield(t) return 1 end
-fails(function() return yielding(1) end, ":" .. line() - 1 .. ": M can not yield, as it did at t = 1")
+fails(function() return yielding(1) end, ":" .. line() - 1 .. ": M cannot yield, as it did at t = 1")
 local inside = coroutine.create(function() return yielding:values{ 1, 2 } end)
 local alive, message = coroutine.resume(inside)
-assert(not alive and message:find("M can not yield", 1, true))
+assert(not alive and message:find("M cannot yield", 1, true))
 
 -- A function runs on the coroutine that asks, which goes on afterwards.
 local asking = coroutine.wrap(function()

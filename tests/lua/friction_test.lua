@@ -58,7 +58,7 @@ test("what is wrong with a law is one sentence with the name of the option", fun
     raises_here(function() system { I = 1, k = 1, friction = stribeck, Rd = 1 } end, "friction and Rd exclude each other")
     raises_here(function() nondimensional { friction = stribeck, friction_ratio = 1 } end, "friction and friction_ratio exclude each other")
     raises_here(function() system { I = 1, k = 1, friction = 0.3 } end, "friction must be a law such as")
-    raises_here(function() stribeck.Re = 2 end, "a friction can not be changed")
+    raises_here(function() stribeck.Re = 2 end, "a friction cannot be changed")
 end)
 
 test("the museum piece and the closed forms know Coulomb's friction only", function()

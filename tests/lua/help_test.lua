@@ -1,4 +1,4 @@
--- The documentation can not lie: it is complete, its examples run and print what they say, docs/manual.md is up to date.
+-- The documentation cannot lie: it is complete, its examples run and print what they say, docs/manual.md is up to date.
 package.path = "tests/lua/?.lua;" .. package.path
 local support = require "support"
 local test, equal = support.test, support.equal

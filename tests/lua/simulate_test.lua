@@ -133,7 +133,7 @@ test("values of a wrong kind are errors that name the option and the value", fun
     raises_here(function() nd:simulate { t_end = 1, dt = 0.1, integrator = nd } end, "got a system")
 end)
 
-test("windows and grids that can not be are errors with their values", function()
+test("windows and grids that cannot be are errors with their values", function()
     raises_here(function() nd:simulate { t_end = 1, dt = 0 } end, "dt = 0 must be positive")
     raises_here(function() nd:simulate { t_end = 1, dt = -0.5 } end, "dt = -0.5 must be positive")
     raises_here(function() nd:simulate { t_end = 0, dt = 0.1 } end, "t_end = 0 must be after t_start = 0")

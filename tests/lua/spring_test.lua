@@ -101,7 +101,7 @@ test("what is wrong with a spring is one sentence with the name of the option", 
     raises_here(function() spring.polynomial { cubic = 1 } end, "the power the string \"cubic\" must be")
     raises_here(function() spring.polynomial { [3] = "a" } end, "[3] must be a finite number, got the string")
     raises_here(function() spring.polynomial { [3] = 1 / 0 } end, "[3] must be a finite number, got inf")
-    raises_here(function() duffing.c = 2 end, "a spring can not be changed")
+    raises_here(function() duffing.c = 2 end, "a spring cannot be changed")
 end)
 
 test("the museum piece and the closed forms know k theta only", function()

@@ -66,10 +66,10 @@ test("the text of a system makes the same system again", function()
     end
 end)
 
-test("a system can not be changed", function()
+test("a system cannot be changed", function()
     local sys = system { I = 1, k = 4 }
-    raises_here(function() sys.I = 2 end, "a system can not be changed, so 'I' can not be set; make a new one")
-    raises_here(function() sys.new = 2 end, "can not be changed")
+    raises_here(function() sys.I = 2 end, "a system cannot be changed, so 'I' cannot be set; make a new one")
+    raises_here(function() sys.new = 2 end, "cannot be changed")
     equal(sys.I, 1.0)
 end)
 
@@ -80,13 +80,13 @@ test("a misspelt field is an error with a suggestion", function()
     raises_here(function() return sys.xyzzy end, "a system has no field 'xyzzy'")
 end)
 
-test("the integrator objects show themselves and can not be changed", function()
+test("the integrator objects show themselves and cannot be changed", function()
     equal(tostring(integrator.rk4 { h = 0.001 }), "integrator.rk4{ h = 0.001 }")
     equal(tostring(integrator.dinal1989 { h = 0.01, stop = "text", slip = true }),
         'integrator.dinal1989{ h = 0.01, stop = "text", slip = true }')
     equal(integrator.rk4 { h = 0.5 }.name, "rk4")
     equal(integrator.dinal1989 { h = 0.5 }.name, "dinal1989")
-    raises_here(function() integrator.rk4 { h = 1 }.h = 2 end, "an integrator can not be changed")
+    raises_here(function() integrator.rk4 { h = 1 }.h = 2 end, "an integrator cannot be changed")
     equal(tostring(integrator.spectral {}), "integrator.spectral{}")
     equal(tostring(integrator.spectral { tolerance = 1e-9, max_panel = 0.25 }), "integrator.spectral{ tolerance = 1e-09, max_panel = 0.25 }")
     equal(integrator.spectral { max_panel = 0.25 }.max_panel, 0.25)

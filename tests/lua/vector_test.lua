@@ -14,7 +14,7 @@ assert(v[0] == nil and v[4] == nil and v[1.5] == nil)
 assert(math.type(v[1]) == "float")
 fails(function() return v[-1] end, "vector_test.lua:" .. line() .. ": ", "v[-1]", "v[#v]")
 fails(function() return v.maxx end, "a vector has no field 'maxx'", "did you mean 'max'?")
-fails(function() v[1] = 3 end, "can not be changed")
+fails(function() v[1] = 3 end, "cannot be changed")
 local seen = {}
 for i, x in ipairs(v) do seen[i] = x end
 assert(#seen == 3 and seen[2] == 2)

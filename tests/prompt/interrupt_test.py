@@ -128,7 +128,7 @@ class Interrupts(unittest.TestCase):
     def test_an_endless_finalizer_at_the_end_stops(self):
         loop = "setmetatable({}, { __gc = function() print('running') io.stdout:flush() while true do end end })"
         code, _ = self.interrupt(self.start("-e", loop))
-        self.assertEqual(code, -signal.SIGINT)  # Lua can not be stopped there, so the signal ends the process
+        self.assertEqual(code, -signal.SIGINT)  # Lua cannot be stopped there, so the signal ends the process
 
 
 if __name__ == "__main__":

@@ -150,7 +150,7 @@ class SweepFiles(unittest.TestCase):
         self.write(SCRIPT.replace("map.csv", "nowhere/map.csv"), wait=1, workers=2)
         code, _, err = self.run_script()
         self.assertEqual(code, 1)
-        self.assertIn("sweep: can not make the folder 'nowhere/map.csv.parts'", err)
+        self.assertIn("sweep: cannot make the folder 'nowhere/map.csv.parts'", err)
         self.write(SCRIPT.replace("map.csv", "map.txt"), wait=1, workers=2)
         self.assertIn("must end in .csv", self.run_script()[2])
 

@@ -184,7 +184,7 @@ void ExactMotion::wait(Cursor& now, const Drive& drive, real until) {
         return first_descent([&](real t) { return Re - s * (value(drive, t) - torque); },
                              [&](real t) { return -s * derivative(drive, t); }, now.t, until, scan_);
     };
-    // A load that does not change can not release what it holds; the limit itself may be met within rounding.
+    // A load that does not change cannot release what it holds; the limit itself may be met within rounding.
     const bool constant = drive.slope == 0 && (drive.amplitude == 0 || drive.omega == 0);
     const auto up = constant ? std::nullopt : release(1);
     const auto down = constant ? std::nullopt : release(-1);

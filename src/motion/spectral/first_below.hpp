@@ -119,7 +119,7 @@ enum class LeftEnd {
 
 /// The first x in [from, 1] at which f falls below zero. Where it comes to zero within rounding and does not clearly
 /// cross it, confirm(x) decides whether that counts. Between two values of f, a bound of f'' proves that there is no
-/// zero; where it can not, the interval is halved until it can, so pairs of zeros close together are not passed over.
+/// zero; where it cannot, the interval is halved until it can, so pairs of zeros close together are not passed over.
 template <class F, class Confirm>
 std::optional<double> first_below(const F& f, double from, LeftEnd start, const Confirm& confirm) {
     const Samples at_node = f.at_nodes();

@@ -14,7 +14,7 @@ namespace {
 /// at rest begins with these.
 constexpr double underflow = std::numeric_limits<double>::min() / epsilon;
 // Lengths of time are in units of pace_.
-/// A panel so short that what it does not resolve can not be seen in the motion.
+/// A panel so short that what it does not resolve cannot be seen in the motion.
 constexpr double shortest = 1e-13;
 /// So many of those one after the other, and there is nothing smooth about M.
 constexpr int most_unresolved = 100;

@@ -46,7 +46,7 @@ public:
     enum class Attempt {
         resolved,
         shorten,  ///< the next one will be shorter
-        ended,    ///< the run can not go on: outcome() says why
+        ended,    ///< the run cannot go on: outcome() says why
     };
     PanelSolver(const Problem& problem, const Spectral& options);
 
