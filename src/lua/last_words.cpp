@@ -10,9 +10,9 @@ namespace dinal::lua {
 
 namespace {
 
-bool takes_more(int descriptor, int patience_ms) {
+bool takes_more(int descriptor, int wait_ms) {
     pollfd output{descriptor, POLLOUT, 0};
-    return poll(&output, 1, patience_ms) == 1 && (output.revents & POLLOUT) != 0;
+    return poll(&output, 1, wait_ms) == 1 && (output.revents & POLLOUT) != 0;
 }
 
 }  // namespace

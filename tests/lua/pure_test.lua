@@ -97,7 +97,7 @@ test("a controller that samples may keep a memory", function()
         local sum = 0
         local run = sys:simulate { theta0 = 1, t_end = 10, dt = 0.1, integrator = method,
             M = excitation.sampled(function(_, theta) sum = sum + 0.1 * (0.2 - theta) return sum end, { every = 0.1 }) }
-        assert(run.outcome == "at rest" or run.outcome == "reached the end", run.outcome)
+        assert(run.outcome == "stuck at the end" or run.outcome == "reached the end", run.outcome)
     end
 end)
 

@@ -134,7 +134,7 @@ class Strangers(HardUse):
 
 
 class Interrupted(HardUse):
-    RUN = ("nondimensional{ zeta = 0.01 }:simulate{ M = function(t) if t > 5 and not told then told = true print('running') "
+    RUN = ("nondimensional{ zeta = 0.01 }:simulate{ M = function(t) if t > 500 and not told then told = true print('running') "
            "io.stdout:flush() end return math.sin(t) end, t_end = 1e7, dt = 1 }")
 
     def interrupted(self, code):
