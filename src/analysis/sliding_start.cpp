@@ -11,7 +11,7 @@
 namespace dinal::analysis {
 
 std::optional<model::State> sliding_start(const SteadyQuestion& question) {
-    constexpr double pi = std::numbers::pi;
+    constexpr double half_turn = std::numbers::pi;
     const auto components = question.excitation.components();
     if (components.size() != 1 || !question.system.has_linear_spring()) return {};
     const model::Component& only = components.front();
@@ -30,10 +30,10 @@ std::optional<model::State> sliding_start(const SteadyQuestion& question) {
     const auto motion = theory::DenHartog(r, zeta).without_stops(Rd / M0);
     if (!motion || !(motion->amplitude > 0)) return {};
     // The load is greatest at a phase of pi/2, theta by its lag later; half a period after that all is the opposite.
-    const double crest = pi / 2 + motion->lag, half = pi / sine->omega;
-    const double phase = sine->omega * question.drive.start + sine->phase + (load < 0 ? pi : 0) - crest;
-    const double halves = std::floor(phase / pi);
-    const double since = (phase / pi - halves) * half;  // the last turn
+    const double crest = half_turn / 2 + motion->lag, half = half_turn / sine->omega;
+    const double phase = sine->omega * question.drive.start + sine->phase + (load < 0 ? half_turn : 0) - crest;
+    const double halves = std::floor(phase / half_turn);
+    const double since = (phase / half_turn - halves) * half;  // the last turn
     const double sign = std::fmod(halves, 2) == 0 ? 1 : -1;
     const double phi = unit * theory::magnification(r, zeta), lag = theory::phase_lag(r, zeta),
                  shift = Rd / system.stiffness();
