@@ -174,10 +174,12 @@ void BranchWalk::add(const Spot& spot, bool fold) {
 
 bool BranchWalk::add_way(const Spot& a, const Spot& b, bool fold) {
     const double way = b.p - a.p;
-    for (double p = next_value(a.p, way); (b.p - p) * way > slack_ * std::fabs(way); p = next_value(p, way)) {
+    double p = next_value(a.p, way);
+    while ((b.p - p) * way > slack_ * std::fabs(way)) {
         if (std::fabs(p - a.p) <= slack_) break;  // the end of the range
         if (const auto between = at_value(a, b, p)) add(*between, false);
         if (p == values_.front() || p == values_.back()) break;
+        p = next_value(p, way);
     }
     add(b, fold);
     return (way > 0 ? values_.back() - b.p : b.p - values_.front()) > slack_;

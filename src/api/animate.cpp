@@ -80,7 +80,7 @@ bool show(std::string_view text) {
 /// In place, by the clock: a frame that comes too late is left out.
 void play(const animation::Scene& scene, const AnimateOptions& asked) {
     using Clock = std::chrono::steady_clock;
-    std::fflush(stdout);
+    static_cast<void>(std::fflush(stdout));
     const auto began = Clock::now();
     const double count = static_cast<double>(scene.frames.size() - 1);
     int above = 0;  // lines of the frame before

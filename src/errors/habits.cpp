@@ -114,7 +114,7 @@ std::string running_habit(const text::Error& error, std::string_view statement) 
 }
 
 std::string running_habit(const lua::LuaMessage& message, std::string_view statement) {
-    if (const std::string reason = left_out_in_safe_mode(message, statement); !reason.empty()) {
+    if (std::string reason = left_out_in_safe_mode(message, statement); !reason.empty()) {
         return reason;
     }
     if (message.adds_texts) {

@@ -236,8 +236,8 @@ Advice help_with(lua_State* L, lua_Debug* frame, const text::Error& error, std::
 
 Advice help_with(lua_State* L, lua_Debug* frame, const lua::LuaMessage& message, std::string_view statement) {
     luaL_checkstack(L, LUA_MINSTACK, "for the help with an error");
-    for (std::string habit : {running_habit(message, statement), meant_method(L, message, statement),
-                              length_of_list(L, frame, message, statement)}) {
+    for (const std::string& habit : {running_habit(message, statement), meant_method(L, message, statement),
+                                     length_of_list(L, frame, message, statement)}) {
         if (!habit.empty()) {
             return {habit};
         }

@@ -22,7 +22,7 @@ Advice help_with(lua_State* L, lua_Debug* frame, const text::Error& error, std::
 Advice help_with(lua_State* L, lua_Debug* frame, const lua::LuaMessage& message, std::string_view statement);
 
 /// Pushes what the variable holds there: a local one (the innermost of that name), an outer one, a global one.
-void push_variable(lua_State* L, lua_Debug* frame, std::string_view name);
+void push_variable(lua_State* L, lua_Debug* frame, std::string_view wanted);
 
 /// The global names that a misspelt one may stand for, as the end of a sentence.
 std::string similar_global(lua_State* L, std::string_view name);

@@ -177,7 +177,7 @@ std::string two_words(lua_State* L, const Stumble& stumble) {
     if (stumble.message.complaint == "function arguments expected") {
         return "; a method is called with parentheses: " + std::string(first) + "(...)";
     }
-    if (const std::string call = call_of_global(L, first); !call.empty()) {
+    if (std::string call = call_of_global(L, first); !call.empty()) {
         return call;
     }
     const bool long_enough = first.size() > 2;

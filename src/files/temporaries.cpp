@@ -31,7 +31,7 @@ extern "C" void end_by_signal(int signal) {
     action.sa_handler = SIG_DFL;
     sigemptyset(&action.sa_mask);
     ::sigaction(signal, &action, nullptr);
-    ::raise(signal);  // when the handler has returned
+    static_cast<void>(::raise(signal));  // when the handler has returned
 }
 
 extern "C" void do_nothing(int) {}

@@ -18,9 +18,9 @@ struct PaperSize {
 
 /// What gnuplot must get on its standard input to write the picture to its standard output. Data are binary. A user's
 /// words are in single quotes, where gnuplot knows neither commands nor escapes, their apostrophes in double ones.
-std::string gnuplot_input(std::span<const Figure> figures, Terminal terminal, PaperSize size);
+std::string gnuplot_input(std::span<const Figure> given, Terminal terminal, PaperSize size);
 
 /// The same as a file for people: data in readable blocks, and a head that says how to draw it.
-std::string gnuplot_file(std::span<const Figure> figures, PaperSize size);
+std::string gnuplot_file(std::span<const Figure> given, PaperSize size);
 
 }  // namespace dinal::plots

@@ -17,6 +17,6 @@ struct TextFormat {
 };
 
 /// The lines of the picture. Several figures stand side by side where the columns suffice, else one under the other.
-std::string text_plot(std::span<const Figure> figures, const TextFormat& format);
+std::string text_plot(std::span<const Figure> given, const TextFormat& format);
 
 }  // namespace dinal::plots

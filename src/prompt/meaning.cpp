@@ -188,7 +188,7 @@ Meaning meaning(lua_State* L, std::span<const lua::Token> expression) {
             if (!token.is("[")) {
                 walk.call();
             } else if (number) {
-                walk.index(std::atoll(std::string(expression[i + 1].text).c_str()));
+                walk.index(std::strtoll(std::string(expression[i + 1].text).c_str(), nullptr, 10));
             } else {
                 walk.forget();
             }

@@ -119,7 +119,10 @@ public:
     /// Whether that grows with `until`.
     [[nodiscard]] bool may_grow() const { return !only_swings_; }
     /// How much faster than that its next derivatives grow, about.
-    [[nodiscard]] double fastest() const { return powers_.size() > jet_order + 1 ? too_fast : fastest_; }
+    [[nodiscard]] double fastest() const {
+        if (powers_.size() > jet_order + 1) return too_fast;
+        return fastest_;
+    }
     /// What the sixth derivative does not exceed, where the fourth does not exceed `fourth_bound`. Near resonance it
     /// has the sum of six products of five factors each where the fourth has four of three.
     [[nodiscard]] double sixth_bound(double fourth_bound) const {

@@ -48,7 +48,8 @@ PanelSolver::Look PanelSolver::look_between() {
             state = {panel_.begin.theta + chebyshev::value(panel_.p, x), chebyshev::value(panel_.v, x) / panel_.h};
         }
         const double M = excitation_.value(t, state);
-        const auto place = std::upper_bound(times.begin(), times.begin() + static_cast<std::ptrdiff_t>(count), t);
+        const auto* const place =
+            std::upper_bound(times.begin(), times.begin() + static_cast<std::ptrdiff_t>(count), t);
         const auto i = static_cast<std::size_t>(place - times.begin());
         std::copy_backward(times.begin() + static_cast<std::ptrdiff_t>(i),
                            times.begin() + static_cast<std::ptrdiff_t>(count),

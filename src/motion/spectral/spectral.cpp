@@ -20,7 +20,7 @@ double Spectral::longest(const Problem& problem) const {
     const model::Oscillator& system = problem.system;
     // The looks at both ends of the widest gap must not straddle a pulse.
     constexpr double within = chebyshev::widest_gap * (1 + 1e-9);
-    const double most = std::min(max_panel, problem.excitation.has_script() ? narrowest / within : model::never);
+    const double most = problem.excitation.has_script() ? std::min(max_panel, narrowest / within) : max_panel;
     return std::min(most, system.has_spring() ? longest_panel * system.natural_period()
                                               : part_of_run * (problem.window.end - problem.window.start));
 }

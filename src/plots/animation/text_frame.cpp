@@ -64,7 +64,7 @@ std::string status(const Scene& scene, const Frame& frame, const FrameFormat& fo
     const std::string line = fmt::format("t = {:.{}f}{}  θ = {:+.3g} {}  {}", frame.t, digits, t_unit, frame.theta,
                                          scene.theta_unit, frame.stuck ? "stuck" : "");
     const std::string clean = text::displayable(line);
-    const std::string shown = format.charset == Charset::braille ? clean : text::in_ascii(clean);
+    std::string shown = format.charset == Charset::braille ? clean : text::in_ascii(clean);
     if (text::columns(shown) <= static_cast<std::size_t>(format.columns)) return shown;
     const std::string brief =
         fmt::format("{:.{}f} {:+.2g} {}", frame.t, digits, frame.theta, frame.stuck ? "stuck" : "");
