@@ -189,7 +189,7 @@ Eigen::MatrixXd energy_columns(const motion::Trajectory& trajectory) {
     return columns;
 }
 
-std::string text(const Energy& energy) {
+std::string text(const Energy& energy, const model::Units& units) {
     const auto& [work, change] = energy.total;
     // What is smaller than the rounding of the whole is no number.
     const auto shown = [&](double x) { return std::fabs(x) <= 1e-15 * energy.flow ? 0.0 : x; };
@@ -197,8 +197,9 @@ std::string text(const Energy& energy) {
         return fmt::format("  {:<8}{:>13.6g}   from {:.6g} to {:.6g}\n", name, shown(difference), shown(start),
                            shown(finish));
     };
-    std::string text = fmt::format("energy, t {:.9g} … {:.9g}: input = kinetic + spring + viscous + dry\n",
-                                   energy.t_start, energy.t_end);
+    std::string text = fmt::format("energy{}, t {:.9g} … {}: input = kinetic + spring + viscous + dry\n",
+                                   units.M.empty() ? "" : " in " + units.energy(), energy.t_start,
+                                   model::with_unit(fmt::format("{:.9g}", energy.t_end), units.t));
     text += fmt::format("  {:<8}{:>13.6g}   work of M on the mass\n", "input", shown(work.input));
     const auto given_line = [&](const char* name, double given, const char* meaning) {
         return given == 0 ? "" : fmt::format("  {:<8}{:>13.6g}   {}\n", name, shown(given), meaning);

@@ -12,6 +12,7 @@
 
 #include <vector>
 
+#include "model/units.hpp"
 #include "motion/trajectory.hpp"
 #include "text/expected.hpp"
 
@@ -63,6 +64,6 @@ inline constexpr int energy_column_count = 10;
 Eigen::MatrixXd energy_columns(const motion::Trajectory& trajectory);
 
 /// The balance as a small table, for people.
-std::string text(const Energy& energy);
+std::string text(const Energy& energy, const model::Units& units = {});
 
 }  // namespace dinal::analysis

@@ -10,9 +10,10 @@ std::string explain(const motion::Trajectory& trajectory, const model::Oscillato
     return Story(trajectory, system, excitation, method).told();
 }
 
-std::string explain_rows(const motion::Trajectory& trajectory) {
+std::string explain_rows(const motion::Trajectory& trajectory, const model::Units& units) {
     const auto t = trajectory.find("t"), theta = trajectory.find("theta"), velocity = trajectory.find("velocity");
     std::string text = fmt::format("This run was read from a file: {}", motion::summary(trajectory)) + ".";
+    if (!units.usual()) text += fmt::format(" It has {}.", units.in_words());
     if (theta && trajectory.size() > 0) {
         Eigen::Index low = 0, high = 0;
         const auto column = trajectory.rows.col(*theta);

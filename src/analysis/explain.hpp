@@ -16,6 +16,6 @@ std::string explain(const motion::Trajectory& trajectory, const model::Oscillato
                     const model::Excitation& excitation, motion::MethodView method);
 
 /// What rows alone tell, of a trajectory that was read from a file.
-std::string explain_rows(const motion::Trajectory& trajectory);
+std::string explain_rows(const motion::Trajectory& trajectory, const model::Units& units = {});
 
 }  // namespace dinal::analysis

@@ -71,6 +71,7 @@ void Story::tell_setting() {
         if (system_.damping() > 0) add(", with viscous damping C = {:.5g}", system_.damping());
     }
     tell_friction();
+    if (!system_.units().usual()) say("Units: {}.", system_.units().in_words());
     const double period = model::period_from(excitation_, run_.t_start);
     if (excitation_.components().empty()) {
         say("There is no M: the motion is free.");
@@ -172,7 +173,8 @@ void Story::tell_counts() {
         text::counted(stops_.size(), "stop"));
     if (stuck_ > 0) {
         const double all = run_.t_stop - run_.t_start;
-        add("; it was stuck for {} of {} time units ({})", at(stuck_), at(all), text::percent(stuck_ / all));
+        add("; it was stuck for {} of {} {} ({})", at(stuck_), at(all), system_.units().times(),
+            text::percent(stuck_ / all));
     }
     add(".");
     tell_impacts();

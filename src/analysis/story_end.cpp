@@ -74,7 +74,8 @@ void Story::tell_recurrence(const Recurrence& motion) {
 void Story::tell_period(const Recurrence& motion) {
     const double period = model::period_from(excitation_, motion.since);
     const double ratio = period > 0 ? motion.period / period : 0, whole = std::round(ratio);
-    std::string of = fmt::format("{:.5g} {}", motion.period / T0_, system_.has_spring() ? "T0" : "time units");
+    std::string of =
+        fmt::format("{:.5g} {}", motion.period / T0_, system_.has_spring() ? "T0" : system_.units().times());
     if (whole >= 1 && std::fabs(ratio - whole) <= 1e-3 * ratio) {
         of = whole == 1 ? "the period of M" : fmt::format("{} periods of M", whole);
     }

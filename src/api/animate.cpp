@@ -51,7 +51,7 @@ animation::Take asked_take(const lua::Options& options, const AnimateOptions& as
 }
 
 animation::Scene asked_scene(lua_State* L, const lua::Options& options, const RunHandle& run,
-                             const animation::Take& take, const plots::Units& units) {
+                             const animation::Take& take, const model::Units& units) {
     const model::Excitation* belt =
         run->origin && !run->origin->extras.belt.components().empty() ? &run->origin->extras.belt : nullptr;
     const plots::RunData data{run, &run->trajectory, run->origin ? &run->origin->system : nullptr, units};
@@ -116,7 +116,7 @@ int animate_run(lua_State* L) {
     const lua::Options options(L, 2, animate_call);
     AnimateOptions asked;
     options.fill(asked);
-    const plots::Units units = asked_units(L, options);
+    const model::Units units = asked_units(L, options).value_or(units_of(*run));
     if (!asked.file) {
         if (!terminal::display_of(STDOUT_FILENO).terminal || !terminal::obeys_escapes()) {
             options.fail(

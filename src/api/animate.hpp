@@ -27,7 +27,7 @@ inline constexpr text::Option animate_options[] = {
      text::fills<&AnimateOptions::to>},
     {.name = "ascii", .meaning = "plain characters", .filled = text::fills<&AnimateOptions::ascii>},
 };
-inline constexpr auto all_animate_options = text::joined(animate_options, units_option);
+inline constexpr auto all_animate_options = text::joined(animate_options, model::units_option);
 inline constexpr text::Call animate_call{"run:animate", "run:animate{ speed = 2 }", all_animate_options, true};
 
 int animate_run(lua_State* L);

@@ -5,6 +5,7 @@
 #include "api/cards.hpp"
 #include "api/classes.hpp"
 #include "api/run.hpp"
+#include "api/units_option.hpp"
 #include "lua/memory_limit.hpp"
 #include "lua/user_function.hpp"
 #include "lua/vector.hpp"
@@ -106,8 +107,12 @@ int half_cycles(lua_State* L) {
     return 1;
 }
 
+std::string text_of_energy(const RunEnergy& energy) {
+    return analysis::text(energy.energy, units_of(*energy.run));
+}
+
 int energy_text(lua_State* L) {
-    return lua::push_text(L, analysis::text(energy_self(L, "tostring(energy)")->energy));
+    return lua::push_text(L, text_of_energy(*energy_self(L, "tostring(energy)")));
 }
 
 #define DINAL_ENERGY                                                             \
@@ -200,7 +205,7 @@ const lua::Class energy_class = {
 std::string energy_card(lua_State* L, int index, const terminal::Display& screen) {
     constexpr std::size_t name_and_number = 23;
     std::string card;
-    const std::string whole = terminal::spelled(analysis::text((*lua::test<EnergyHandle>(L, index))->energy), screen);
+    const std::string whole = terminal::spelled(text_of_energy(**lua::test<EnergyHandle>(L, index)), screen);
     for (std::string_view rest = whole; !rest.empty();) {
         const std::string_view line = rest.substr(0, rest.find('\n'));
         const bool fits = text::columns(line) < screen.width || !line.starts_with(' ');

@@ -9,6 +9,7 @@
 #include "api/plot_items.hpp"
 #include "api/plot_options.hpp"
 #include "api/run.hpp"
+#include "api/units_option.hpp"
 #include "files/table.hpp"
 #include "plots/run_figure.hpp"
 
@@ -16,7 +17,8 @@ namespace dinal::api {
 namespace {
 
 plots::RunData data_of(lua_State* L, const lua::Options& options, const RunHandle& run) {
-    return {run, &run->trajectory, run->origin ? &run->origin->system : nullptr, asked_units(L, options)};
+    return {run, &run->trajectory, run->origin ? &run->origin->system : nullptr,
+            asked_units(L, options).value_or(units_of(*run))};
 }
 
 /// The name or number of a column on the top of the stack, as a name. "M/k" is left to those who know it.

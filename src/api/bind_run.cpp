@@ -14,6 +14,7 @@
 #include "api/run.hpp"
 #include "api/run_questions.hpp"
 #include "api/steady_answer.hpp"
+#include "api/units_option.hpp"
 #include "files/table.hpp"
 #include "lua/memory_limit.hpp"
 #include "lua/user_function.hpp"
@@ -26,7 +27,7 @@ std::string story_of_run(lua_State* L, const Run& run) {
     lua::CallState call(L);  // a spring may be a user's function
     std::string text = run.origin ? analysis::explain(run.trajectory, run.origin->system, run.origin->excitation,
                                                       run.origin->integrator)
-                                  : analysis::explain_rows(run.trajectory);
+                                  : analysis::explain_rows(run.trajectory, run.units);
     if (call.failed()) {
         call.raise_error();
     }
@@ -114,11 +115,12 @@ int names(lua_State* L) {
 
 // Made when first asked for and then kept as the user value of the run, so that a loop over run.events[i] is no trap.
 int events(lua_State* L) {
-    const auto& events = run_self(L, "run.events")->trajectory.events;
+    run_self(L, "run.events");
     if (lua_getiuservalue(L, 1, 1) == LUA_TUSERDATA) {
         return 1;
     }
-    push_events(L, events, run_self(L, "run.events")->trajectory.event_names);
+    const Run& run = *run_self(L, "run.events");
+    push_events(L, run.trajectory.events, run.trajectory.event_names, units_of(run));
     lua_pushvalue(L, -1);
     lua_setiuservalue(L, 1, 1);
     return 1;
@@ -139,6 +141,10 @@ template <double motion::Trajectory::*time>
 int time_field(lua_State* L) {
     lua_pushnumber(L, run_self(L, "run.t_end")->trajectory.*time);
     return 1;
+}
+
+int units_of_this(lua_State* L) {
+    return push_units(L, units_of(*run_self(L, "run.units")));
 }
 
 template <auto member>
@@ -272,6 +278,11 @@ constexpr lua::Member run_members[] = {
     {lua::a_field<origin_field<&source::Origin::system>>,
      {"run.system -> system or nil", "The system that was simulated; nil in a run that was read from a file.",
       DINAL_RUN "print(run.system.T0)  --> 1.0"}},
+    {lua::a_field<units_of_this>,
+     {"run.units -> table",
+      "What theta, t and M are measured in, as its system, the run or the file it was read from says; what has no unit "
+      "is nil.",
+      DINAL_RUN "print(run.units.theta, run.units.t)  --> rad\tnil"}},
     {lua::a_field<origin_field<&source::Origin::excitation>>,
      {"run.excitation -> excitation or nil", "The excitation M of the run; nil in a run that was read from a file.",
       DINAL_RUN "print(run.excitation)  --> excitation.constant{ level = 3 }"}},

@@ -7,6 +7,7 @@
 
 #include "api/bind_excitation.hpp"
 #include "api/run.hpp"
+#include "api/units_option.hpp"
 #include "lua/interrupt.hpp"
 #include "lua/standard_globals.hpp"
 #include "lua/user_function.hpp"
@@ -132,7 +133,12 @@ int simulate_system(lua_State* L) {
     const lua::Options options(L, 2, simulate_call);
     RunOptions asked;
     options.fill(asked);
-    const source::Task task = asked_task(L, options, asked, system);
+    source::Task task = asked_task(L, options, asked, system);
+    if (const auto units = asked_units(L, options)) {
+        model::OscillatorParameters parameters = system.parameters();
+        parameters.units = *units;
+        task.system = options.value_or_fail(model::Oscillator::make(parameters));
+    }
     const auto compute = [](const source::Task& given, const motion::Monitor& monitor, const motion::Limits& limits) {
         return motion::simulate(given.system, given.excitation, given.initial, given.window, given.rows,
                                 given.integrator, monitor, limits, given.extras);

@@ -66,7 +66,7 @@ inline constexpr text::Option plain_simulate_options[] = {
      .meaning = "false keeps nothing between the rows, which saves memory in very long runs and costs run:at(t)",
      .filled = text::fills<&RunOptions::dense>},
 };
-inline constexpr auto simulate_options = text::joined(plain_simulate_options, extras_options);
+inline constexpr auto simulate_options = text::joined(plain_simulate_options, extras_options, model::units_option);
 inline constexpr text::Call simulate_call{"sys:simulate", "sys:simulate{ M = M, theta0 = 1, t_end = 20, dt = 0.01 }",
                                           simulate_options};
 

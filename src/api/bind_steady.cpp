@@ -8,6 +8,7 @@
 
 #include "api/cards.hpp"
 #include "api/classes.hpp"
+#include "api/data.hpp"
 #include "text/characters.hpp"
 #include "text/sentences.hpp"
 
@@ -168,14 +169,20 @@ int steady_explain(lua_State* L) {
 
 std::string steady_summary(const Steady& s) {
     const analysis::SteadyMotion& m = s.motion;
+    const ColumnUnits in(s.question.system.units());
+    const auto number = [](double x, const std::string& unit) {
+        return model::with_unit(fmt::format("{:.6g}", x), unit);
+    };
     switch (m.status) {
         case SteadyStatus::steady:
-            return fmt::format("steady: period {:.6g}, amplitude {:.6g}, {} a period{}", m.period, m.amplitude,
-                               text::counted(m.stops, "stop"), m.stable || !m.differentiable ? "" : ", unstable");
+            return fmt::format("steady: period {}, amplitude {}, {} a period{}", number(m.period, in.t),
+                               number(m.amplitude, in.theta), text::counted(m.stops, "stop"),
+                               m.stable || !m.differentiable ? "" : ", unstable");
         case SteadyStatus::adheres:
-            return fmt::format("adheres: rests anywhere from theta = {:.6g} to {:.6g}", m.rest.first, m.rest.second);
+            return fmt::format("adheres: rests anywhere from theta = {:.6g} to {}", m.rest.first,
+                               number(m.rest.second, in.theta));
         case SteadyStatus::grows:
-            return fmt::format("grows: by {:.6g} in each period of M", m.growth);
+            return fmt::format("grows: by {} in each period of M", number(m.growth, in.theta));
         case SteadyStatus::none:
             break;
     }

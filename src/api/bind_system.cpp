@@ -10,6 +10,7 @@
 #include "api/response.hpp"
 #include "api/steady_answer.hpp"
 #include "api/system_options.hpp"
+#include "api/units_option.hpp"
 #include "lua/options.hpp"
 #include "source/describe.hpp"
 
@@ -32,7 +33,7 @@ constexpr text::Option ratio_options[] = {
     {"breakaway_ratio", "", "friction_ratio", text::any_finite, "Re/Mc, at least friction_ratio",
      text::fills<&Ratios::breakaway>},
 };
-constexpr auto nondimensional_options = text::joined(ratio_options, law_option);
+constexpr auto nondimensional_options = text::joined(ratio_options, law_option, model::units_option);
 constexpr text::Call nondimensional_call{"nondimensional", "nondimensional{ zeta = 0.1, friction_ratio = 0.2 }",
                                          nondimensional_options, true};
 
@@ -43,6 +44,7 @@ int system(lua_State* L) {
     parameters.friction = asked_law(L, options, {"Rd", "Re"});
     parameters.spring = asked_spring(L, options).value_or(model::Spring());
     parameters.walls = asked_walls(L, options);
+    parameters.units = asked_units(L, options).value_or(model::Units());
     return push_system(L, options, parameters);
 }
 
@@ -65,6 +67,7 @@ int nondimensional(lua_State* L) {
     parameters.kinetic_friction = ratios.friction;
     parameters.breakaway = breakaway_ratio;
     parameters.friction = asked_law(L, options, {"friction_ratio", "breakaway_ratio"});
+    parameters.units = asked_units(L, options).value_or(model::Units());
     return push_system(L, options, parameters);
 }
 
@@ -114,6 +117,10 @@ int walls_of(lua_State* L) {
     }
     lua::set_number(L, "restitution", walls->restitution);
     return 1;
+}
+
+int units_of_system(lua_State* L) {
+    return push_units(L, system_self(L, "sys.units").units());
 }
 
 int dead_zone(lua_State* L) {
@@ -222,6 +229,11 @@ constexpr lua::Member system_members[] = {
     {lua::a_field<walls_of>,
      {"sys.walls -> table or nil", "The end stops { lower, upper, restitution }, rad, where there are some.",
       "print(system{ I = 1, k = 4, walls = { upper = 0.5, restitution = 0.7 } }.walls.upper)  --> 0.5"}},
+    {lua::a_field<units_of_system>,
+     {"sys.units -> table",
+      "What theta, t and M are measured in; what has no unit is nil. Words for cards, columns and axes, on which no "
+      "number depends.",
+      "print(system{ I = 1, k = 4, units = { theta = \"m\", t = \"s\" } }.units.theta)  --> m"}},
     {lua::a_field<field_of_spring<&model::Oscillator::natural_frequency>>,
      {"sys.omega0 -> number", "The natural frequency sqrt(k/I) of k alone, rad per time unit; nil where k = 0.",
       "print(system{ I = 1, k = 4 }.omega0)  --> 2.0"}},

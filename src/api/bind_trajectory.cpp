@@ -36,6 +36,7 @@ int load(lua_State* L) {
     files::Table content = lua::value_or_raise(L, "trajectory.load", std::move(table));
     Run run;
     run.comments = std::move(content.comments);
+    run.units = model::Units::from_file(run.comments);
     motion::Trajectory& trajectory = run.trajectory;
     trajectory.computed = false;
     trajectory.names = std::move(content.names);

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "api/run.hpp"
+#include "api/units_option.hpp"
 #include "lua/bind.hpp"
 #include "lua/vector.hpp"
 #include "model/laws/coulomb.hpp"
@@ -14,6 +14,8 @@
 
 namespace dinal::api {
 namespace {
+
+using model::of_unit;
 
 /// Name, value and remark in columns; a remark that does not fit is left out.
 std::string row(std::string_view name, double value, std::string_view remark, const terminal::Display& screen) {
@@ -34,11 +36,13 @@ std::string system_card(lua_State* L, int index, const terminal::Display& screen
     const model::Oscillator& system = *lua::test<model::Oscillator>(L, index);
     std::string text = terminal::spelled("system  I θ'' + C θ' + Rd sgn θ' + k θ = M(t)", screen);
     text = text::columns(text) < screen.width ? text : "system";
-    text += row("I", system.inertia(), "moment of inertia", screen);
-    text += row("k", system.stiffness(), "stiffness", screen);
-    text += row("C", system.damping(), "viscous damping", screen);
-    text += row("Rd", system.kinetic_friction(), "dry friction while it moves", screen);
-    text += row("Re", system.breakaway(), "the most that sticking can hold", screen);
+    const model::Units& units = system.units();
+    text += row("I", system.inertia(), of_unit(units.theta == "rad" ? "moment of inertia" : "inertia", units.inertia()),
+                screen);
+    text += row("k", system.stiffness(), of_unit("stiffness", units.stiffness()), screen);
+    text += row("C", system.damping(), of_unit("viscous damping", units.damping()), screen);
+    text += row("Rd", system.kinetic_friction(), of_unit("dry friction while it moves", units.M), screen);
+    text += row("Re", system.breakaway(), of_unit("the most that sticking can hold", units.M), screen);
     if (!system.friction().none() && system.friction().as<model::laws::Coulomb>() == nullptr) {
         text += "\n  friction   " + source::lua_text(L, system.friction());
     }
@@ -48,16 +52,21 @@ std::string system_card(lua_State* L, int index, const terminal::Display& screen
     if (system.walls()) {
         text += "\n  walls      " + system.walls()->lua_text();
     }
+    if (!units.usual()) {
+        text += "\n  units      " + units.in_words();
+    }
     if (!system.has_spring()) {
         return text;
     }
-    text += row("omega0", system.natural_frequency(), "natural frequency, rad per time unit", screen);
-    text += row("T0", system.natural_period(), "natural period", screen);
+    text += row("omega0", system.natural_frequency(),
+                "natural frequency, rad per " + (units.t.empty() ? "time unit" : units.t), screen);
+    text += row("T0", system.natural_period(), of_unit("natural period", units.t), screen);
     text += row("zeta", system.damping_ratio(), "damping ratio: " + std::string(model::name(system.regime())), screen);
     if (!system.spring().none()) {
         return text;
     }
-    text += row("dead_zone", system.dead_zone(), terminal::spelled("it can rest wherever |θ| <= this", screen), screen);
+    const std::string place = terminal::spelled("it can rest wherever |θ| <= this", screen);
+    text += row("dead_zone", system.dead_zone(), units.usual() ? place : of_unit(place, units.theta), screen);
     return text;
 }
 
@@ -96,6 +105,9 @@ std::string run_card(lua_State* L, int index, const terminal::Display& screen) {
     if (run.origin) {
         const std::string_view name = motion::MethodView(run.origin->integrator).about().call.name;
         text.append("; by ").append(name.substr(name.find('.') + 1));
+    }
+    if (const model::Units& units = units_of(run); !units.usual()) {
+        text.append("; ").append(units.in_words());
     }
     return text::wrapped(terminal::spelled(text, screen), screen.width - 1);
 }

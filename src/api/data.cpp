@@ -111,12 +111,29 @@ const DataCompanion* Data::companion(std::string_view name) const {
     return found != companions.end() ? &*found : nullptr;
 }
 
-DataColumn column_of(std::string name, std::vector<double> numbers) {
-    return {std::move(name), lua::Vector(std::move(numbers))};
+DataColumn column_of(std::string name, std::vector<double> numbers, std::string unit) {
+    return {std::move(name), lua::Vector(std::move(numbers)), std::move(unit)};
 }
 
 DataColumn column_of(std::string name, std::vector<std::string> words) {
     return {std::move(name), std::make_shared<const std::vector<std::string>>(std::move(words))};
+}
+
+ColumnUnits::ColumnUnits(const model::Units& units) {
+    if (units.usual()) return;
+    t = units.t;
+    theta = units.theta;
+    M = units.M;
+    speed = units.speed();
+    frequency = units.frequency();
+}
+
+std::string ColumnUnits::of(std::string_view column) const {
+    return column == "t"                                                  ? t
+           : column == "theta"                                            ? theta
+           : column == "velocity"                                         ? speed
+           : column == "M" || column == "friction" || column == "damping" ? M
+                                                                          : "";
 }
 
 void push_data(lua_State* L, Data data) {
@@ -125,7 +142,8 @@ void push_data(lua_State* L, Data data) {
     lua::note_external_memory(L, bytes);
 }
 
-void push_events(lua_State* L, std::span<const model::Event> events, std::span<const std::string> user_names) {
+void push_events(lua_State* L, std::span<const model::Event> events, std::span<const std::string> user_names,
+                 const model::Units& units) {
     std::vector<double> t(events.size()), theta(events.size()), M(events.size()), velocity(events.size());
     std::vector<std::string> kind(events.size()), name(events.size());
     bool moves = false;
@@ -139,9 +157,10 @@ void push_events(lua_State* L, std::span<const model::Event> events, std::span<c
         if (events[i].user >= 0) name[i] = user_names[static_cast<std::size_t>(events[i].user)];
     }
     Data data;
-    data.columns = {column_of("t", std::move(t)), column_of("kind", std::move(kind)),
-                    column_of("theta", std::move(theta)), column_of("M", std::move(M))};
-    if (moves) data.columns.push_back(column_of("velocity", std::move(velocity)));
+    const ColumnUnits in(units);
+    data.columns = {column_of("t", std::move(t), in.t), column_of("kind", std::move(kind)),
+                    column_of("theta", std::move(theta), in.theta), column_of("M", std::move(M), in.M)};
+    if (moves) data.columns.push_back(column_of("velocity", std::move(velocity), in.speed));
     if (!user_names.empty()) data.columns.push_back(column_of("name", std::move(name)));
     data.heading = heading_of(events);
     push_data(L, std::move(data));
@@ -163,7 +182,7 @@ std::string text_of(const Data& data, std::size_t width) {
 
 std::string html_of(const Data& data, std::size_t rows) {
     std::string all = "<table>\n<tr>";
-    for (const DataColumn& column : data.columns) all += "<th>" + text::html(column.name) + "</th>";
+    for (const DataColumn& column : data.columns) all += "<th>" + text::html(column.label()) + "</th>";
     all += "</tr>\n";
     for (std::size_t row = 0; row < std::min(rows, data.size()); ++row) {
         all += "<tr>";

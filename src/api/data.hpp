@@ -12,6 +12,7 @@
 #include "lua/bind.hpp"
 #include "lua/vector.hpp"
 #include "model/event.hpp"
+#include "model/units.hpp"
 
 namespace dinal::api {
 
@@ -20,11 +21,14 @@ using Words = std::shared_ptr<const std::vector<std::string>>;
 struct DataColumn {
     std::string name;
     std::variant<lua::Vector, Words> values;
+    std::string unit = {};  ///< a word that stands beside the name, in tables and at axes
 
     [[nodiscard]] std::size_t size() const;
     [[nodiscard]] const lua::Vector* numbers() const { return std::get_if<lua::Vector>(&values); }
     /// As text for people: six digits, a word as it is.
     [[nodiscard]] std::string text(std::size_t row) const;
+    /// "t, s"
+    [[nodiscard]] std::string label() const { return model::of_unit(name, unit); }
 };
 
 struct Data;
@@ -51,8 +55,16 @@ struct Data {
 // Shared, so that a picture or an iteration keeps what it shows.
 using DataHandle = std::shared_ptr<const Data>;
 
-DataColumn column_of(std::string name, std::vector<double> numbers);
+DataColumn column_of(std::string name, std::vector<double> numbers, std::string unit = {});
 DataColumn column_of(std::string name, std::vector<std::string> words);
+/// What stands beside the names of columns: nothing where nobody has said in what they are measured.
+struct ColumnUnits {
+    explicit ColumnUnits(const model::Units& units);
+    std::string t, theta, M, speed, frequency;
+
+    /// That of a column of a run; none of a state.
+    [[nodiscard]] std::string of(std::string_view column) const;
+};
 
 /// The data as a Lua object on the top of the stack.
 void push_data(lua_State* L, Data data);
@@ -61,7 +73,8 @@ void push_data(lua_State* L, Data data);
 void push_row(lua_State* L, int index, const Data& data, std::size_t row);
 
 /// What happened: t, kind, theta, M; where there is any, velocity and the names that a user gave.
-void push_events(lua_State* L, std::span<const model::Event> events, std::span<const std::string> user_names);
+void push_events(lua_State* L, std::span<const model::Event> events, std::span<const std::string> user_names,
+                 const model::Units& units);
 
 /// Its first line, and a table of its first rows; a column that does not fit into the width is left out.
 std::string text_of(const Data& data, std::size_t width);

@@ -24,7 +24,7 @@ Data with_rows(const Data& data, const std::vector<std::size_t>& rows) {
             std::vector<double> values(rows.size());
             std::transform(rows.begin(), rows.end(), values.begin(),
                            [numbers](std::size_t row) { return numbers->begin()[row]; });
-            picked.columns.push_back(column_of(column.name, std::move(values)));
+            picked.columns.push_back(column_of(column.name, std::move(values), column.unit));
         } else {
             const std::vector<std::string>& words = *std::get<Words>(column.values);
             std::vector<std::string> values(rows.size());
@@ -186,7 +186,7 @@ namespace dinal::api {
 std::string markdown_of(const Data& data) {
     std::string text = "|", rule = "\n|";
     for (const DataColumn& column : data.columns) {
-        text += " " + data_functions::in_markdown(column.name) + " |";
+        text += " " + data_functions::in_markdown(column.label()) + " |";
         rule += column.numbers() != nullptr ? "---:|" : "---|";
     }
     text += rule;

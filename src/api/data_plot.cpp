@@ -48,6 +48,11 @@ plots::Numbers drawn(lua_State* L, const Data& data, const std::string& name) {
     return {kept, kept->values()};
 }
 
+std::string label_of(const Data& data, const std::string& name) {
+    const DataColumn* column = data.find(name);
+    return column != nullptr ? column->label() : name;
+}
+
 /// The line broken where its data are, and a dotted one of what is unstable.
 std::vector<plots::Curve> curve_in_pieces(const Data& data, const plots::Curve& whole) {
     constexpr double gap = std::numeric_limits<double>::quiet_NaN();
@@ -149,11 +154,11 @@ int plot(lua_State* L) {
         }
     }
     plots::Figure figure;
-    figure.x.label = x.front();
+    figure.x.label = label_of(*data, x.front());
     plots::Curve curve;
     if (!data->points_of.empty() && !options.has("y")) y = {data->points_of};
     if (!data->points_of.empty()) curve.style = plots::Style::points;
-    figure.y.label = y.size() == 1 ? y.front() : "";
+    figure.y.label = y.size() == 1 ? label_of(*data, y.front()) : "";
     options.fill(curve);
     for (const std::string& name : y) {
         curve.x = drawn(L, *data, x.front());

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "api/units_option.hpp"
+#include "model/units.hpp"
 #include "plots/figure.hpp"
 #include "text/option.hpp"
 
@@ -87,8 +87,9 @@ inline constexpr text::Call plot_call{"plot", "plot{ { t, theta, label = \"theta
 inline constexpr text::Call pictures_call{"plot", "plot{ picture, picture, file = \"both.svg\" }", target_options};
 inline constexpr text::Call curve_call{"plot: curve", "{ x, y, label = \"theta\", style = \"points\" }",
                                        plots::curve_options};
-inline constexpr auto plot_run_options = text::joined(column_options, units_option, figure_options, target_options);
-inline constexpr auto phase_plot_options = text::joined(units_option, figure_options, target_options);
+inline constexpr auto plot_run_options =
+    text::joined(column_options, model::units_option, figure_options, target_options);
+inline constexpr auto phase_plot_options = text::joined(model::units_option, figure_options, target_options);
 inline constexpr text::Call plot_run_call{"run:plot", "run:plot{ y = { \"theta\", \"friction\" }, file = \"run.svg\" }",
                                           plot_run_options, true};
 inline constexpr text::Call phase_plot_call{"run:phase_plot", "run:phase_plot{ file = \"phase.svg\" }",

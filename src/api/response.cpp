@@ -43,8 +43,15 @@ public:
     [[nodiscard]] bool over_frequency() const { return varied_ == "frequency"; }
     [[nodiscard]] double frequency_at(double x) const { return over_frequency() ? x : frequency_.value_or(0); }
     [[nodiscard]] double amplitude_at(double x) const { return varied_ == "amplitude" ? x : amplitude_; }
-    [[nodiscard]] std::string column() const {
-        return asked_.name.value_or(over_frequency() ? "frequency" : varied_ == "amplitude" ? "M0" : "parameter");
+    [[nodiscard]] VariedColumn column() const {
+        const ColumnUnits in(system_.units());
+        return {.name = asked_.name.value_or(over_frequency()         ? "frequency"
+                                             : varied_ == "amplitude" ? "M0"
+                                                                      : "parameter"),
+                .unit = over_frequency()         ? in.frequency
+                        : varied_ == "amplitude" ? in.M
+                                                 : "",
+                .theta = in.theta};
     }
 
     [[nodiscard]] analysis::SteadyQuestion question(double x) const {
@@ -181,12 +188,16 @@ struct ResponseColumns {
         branch.push_back(static_cast<double>(piece));
         status.emplace_back(analysis::name(motion.status));
     }
-    Data data(const std::string& name) && {
+    Data data(const VariedColumn& of) && {
         Data data;
-        data.columns = {column_of(name, std::move(varied)),     column_of("amplitude", std::move(amplitude)),
-                        column_of("lag", std::move(lag)),       column_of("peak", std::move(peak)),
-                        column_of("stops", std::move(stops)),   column_of("stuck", std::move(stuck)),
-                        column_of("stable", std::move(stable)), column_of("branch", std::move(branch)),
+        data.columns = {column_of(of.name, std::move(varied), of.unit),
+                        column_of("amplitude", std::move(amplitude), of.theta),
+                        column_of("lag", std::move(lag)),
+                        column_of("peak", std::move(peak), of.theta),
+                        column_of("stops", std::move(stops)),
+                        column_of("stuck", std::move(stuck)),
+                        column_of("stable", std::move(stable)),
+                        column_of("branch", std::move(branch)),
                         column_of("status", std::move(status))};
         data.pieces_of = "branch";
         data.dotted_of = "stable";

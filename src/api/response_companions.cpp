@@ -42,7 +42,8 @@ Data closed_curve(const HarmonicSweep& sweep, ClosedCurve curve) {
         amplitude.push_back(motion ? motion->amplitude * M0 / system.stiffness() : no_number);
         lag.push_back(motion ? motion->lag * 180 / std::numbers::pi : no_number);
     }
-    return {.columns = {column_of(sweep.column, std::move(varied)), column_of("amplitude", std::move(amplitude)),
+    return {.columns = {column_of(sweep.column.name, std::move(varied), sweep.column.unit),
+                        column_of("amplitude", std::move(amplitude), sweep.column.theta),
                         column_of("lag", std::move(lag))}};
 }
 
@@ -58,7 +59,7 @@ std::vector<DataCompanion> closed_curves(const HarmonicSweep& sweep) {
             {"den_hartog", [sweep] { return closed_curve(sweep, den_hartog_at); }}};
 }
 
-DataCompanion jumps_of(const analysis::ResponseCurve& curve, const std::string& column) {
+DataCompanion jumps_of(const analysis::ResponseCurve& curve, const VariedColumn& column) {
     const auto made = [jumps = curve.jumps, column] {
         std::vector<double> varied, from, to;
         std::vector<std::string> sweep, status;
@@ -69,9 +70,9 @@ DataCompanion jumps_of(const analysis::ResponseCurve& curve, const std::string& 
             to.push_back(jump.to);
             status.emplace_back(analysis::name(jump.landed.status));
         }
-        return Data{.columns = {column_of(column, std::move(varied)), column_of("sweep", std::move(sweep)),
-                                column_of("from", std::move(from)), column_of("to", std::move(to)),
-                                column_of("status", std::move(status))}};
+        return Data{.columns = {column_of(column.name, std::move(varied), column.unit),
+                                column_of("sweep", std::move(sweep)), column_of("from", std::move(from), column.theta),
+                                column_of("to", std::move(to), column.theta), column_of("status", std::move(status))}};
     };
     const auto drawn = [jumps = curve.jumps, column] {
         std::vector<double> varied, amplitude;
@@ -79,7 +80,8 @@ DataCompanion jumps_of(const analysis::ResponseCurve& curve, const std::string& 
             varied.insert(varied.end(), {jump.parameter, jump.parameter, no_number});
             amplitude.insert(amplitude.end(), {jump.from, jump.to, no_number});
         }
-        return Data{.columns = {column_of(column, std::move(varied)), column_of("amplitude", std::move(amplitude))}};
+        return Data{.columns = {column_of(column.name, std::move(varied), column.unit),
+                                column_of("amplitude", std::move(amplitude), column.theta)}};
     };
     return {"jumps", made, drawn};
 }

@@ -10,13 +10,18 @@
 
 namespace dinal::api {
 
-/// c.jumps, in the column of what is varied.
-DataCompanion jumps_of(const analysis::ResponseCurve& curve, const std::string& column);
+/// The column of what is varied; its unit, and that of theta.
+struct VariedColumn {
+    std::string name, unit = {}, theta = {};
+};
+
+/// c.jumps, over what is varied.
+DataCompanion jumps_of(const analysis::ResponseCurve& curve, const VariedColumn& column);
 
 /// A sweep of the frequency of a harmonic M, or at one frequency of its amplitude.
 struct HarmonicSweep {
     model::Oscillator system;
-    std::string column;
+    VariedColumn column;
     double low = 0, high = 0;
     std::optional<double> frequency = {};  ///< none: that is what is varied
     double amplitude = 1;                  ///< torque, where the frequency is varied

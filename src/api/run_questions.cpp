@@ -7,6 +7,7 @@
 
 #include "api/data.hpp"
 #include "api/run.hpp"
+#include "api/units_option.hpp"
 #include "files/table.hpp"
 #include "lua/options.hpp"
 #include "lua/user_function.hpp"
@@ -57,8 +58,9 @@ int spectrum_of_run(lua_State* L) {
     analysis::Spectrum found =
         analysis::spectrum_of(values.first(even), (t[even - 1] - t[0]) / static_cast<double>(even - 1), asked.window);
     Data data;
-    data.columns = {column_of("frequency", std::move(found.frequency)),
-                    column_of("amplitude", std::move(found.amplitude))};
+    const ColumnUnits in(units_of(*run));
+    data.columns = {column_of("frequency", std::move(found.frequency), in.frequency),
+                    column_of("amplitude", std::move(found.amplitude), in.of(name))};
     push_data(L, std::move(data));
     return 1;
 }
@@ -90,8 +92,9 @@ int poincare_of_run(lua_State* L) {
         velocity.push_back(state->velocity);
     }
     Data data;
-    data.columns = {column_of("t", std::move(t)), column_of("theta", std::move(theta)),
-                    column_of("velocity", std::move(velocity))};
+    const ColumnUnits in(units_of(*run));
+    data.columns = {column_of("t", std::move(t), in.t), column_of("theta", std::move(theta), in.theta),
+                    column_of("velocity", std::move(velocity), in.speed)};
     push_data(L, std::move(data));
     return 1;
 }

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "api/units_option.hpp"
 #include "source/describe.hpp"
 
 namespace dinal::api {
@@ -72,6 +73,9 @@ int system_with(lua_State* L) {
     }
     if (options.has("walls")) {
         parameters.walls = asked_walls(L, options);
+    }
+    if (const auto units = asked_units(L, options)) {
+        parameters.units = *units;
     }
     const auto law = asked_law(L, options, {"Rd", "Re"});
     if (law) {

@@ -56,7 +56,7 @@ inline constexpr text::Option spring_change[] = {
      .meaning = "other end stops; {} is none",
      .wanted = "a table such as { lower = -0.8, upper = 0.8, restitution = 0.7 }"},
 };
-inline constexpr auto change_options = text::joined(number_changes, law_option, spring_change);
+inline constexpr auto change_options = text::joined(number_changes, law_option, spring_change, model::units_option);
 inline constexpr text::Call with_call{"sys:with", "sys:with{ Rd = 1 }", change_options};
 
 /// sys:with{ OPTIONS }.

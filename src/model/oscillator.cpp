@@ -40,6 +40,8 @@ text::Expected<Oscillator> Oscillator::make(const OscillatorParameters& p) {
         if (auto wrong = p.walls->complaint()) return *wrong;
     }
     o.walls_ = p.walls;
+    if (auto wrong = p.units.complaint()) return *wrong;
+    if (!p.units.usual()) o.units_ = std::make_shared<const Units>(p.units);
     if (!o.has_spring()) {
         if (std::isfinite(o.damping() / o.inertia())) return o;
         return text::Error{
@@ -57,6 +59,11 @@ text::Expected<Oscillator> Oscillator::make(const OscillatorParameters& p) {
                            .option = "I"};
     }
     return o;
+}
+
+const Units& Oscillator::units() const {
+    static const Units usual;
+    return units_ ? *units_ : usual;
 }
 
 double Oscillator::natural_frequency() const {
@@ -112,8 +119,12 @@ bool Oscillator::may_go_on() const {
 }
 
 OscillatorParameters Oscillator::parameters() const {
-    OscillatorParameters p{
-        .inertia = inertia_, .stiffness = stiffness_, .damping = damping_, .spring = spring_, .walls = walls_};
+    OscillatorParameters p{.inertia = inertia_,
+                           .stiffness = stiffness_,
+                           .damping = damping_,
+                           .spring = spring_,
+                           .walls = walls_,
+                           .units = units()};
     if (const auto* law = friction_.as<laws::Coulomb>()) {
         p.kinetic_friction = law->kinetic;
         p.breakaway = law->breakaway;

@@ -9,12 +9,14 @@
 #pragma once
 
 #include <limits>
+#include <memory>
 #include <optional>
 #include <string_view>
 #include <utility>
 
 #include "model/friction.hpp"
 #include "model/spring.hpp"
+#include "model/units.hpp"
 #include "model/walls.hpp"
 #include "text/expected.hpp"
 #include "text/option.hpp"
@@ -31,9 +33,10 @@ struct OscillatorParameters {
     std::optional<Friction> friction = {};  ///< another law than Coulomb's with Rd and Re, which then say nothing
     Spring spring = {};                     ///< besides k theta
     std::optional<Walls> walls = {};        ///< end stops
+    Units units = {};                       ///< words, on which nothing depends
 };
 
-inline constexpr text::Option oscillator_options[] = {
+inline constexpr text::Option mechanical_options[] = {
     {"I", "torque time^2 per rad", text::needed, text::positive, "moment of inertia",
      text::fills<&OscillatorParameters::inertia>},
     {"k", "torque per rad", text::needed, text::not_negative, "stiffness of the spring; 0 is a block that slides",
@@ -58,6 +61,7 @@ inline constexpr text::Option oscillator_options[] = {
      .meaning = "end stops: { lower, upper, restitution }, either wall or both; restitution 0 ... 1, 1 unless given",
      .wanted = "a table such as { lower = -0.8, upper = 0.8, restitution = 0.7 }"},
 };
+inline constexpr auto oscillator_options = text::joined(mechanical_options, units_option);
 
 /// Position and speed of the mass: rad, rad per time unit.
 struct State {
@@ -83,6 +87,8 @@ public:
     [[nodiscard]] const Spring& spring() const { return spring_; }
     /// The end stops, if it has some.
     [[nodiscard]] const std::optional<Walls>& walls() const { return walls_; }
+    /// For people only.
+    [[nodiscard]] const Units& units() const;
     /// What is derived from k alone holds: there is k, and no other spring.
     [[nodiscard]] bool has_linear_spring() const { return has_spring() && spring_.none(); }
     /// After a torque that was no number: whether what a user has written of the system may be asked again.
@@ -130,6 +136,7 @@ private:
     Friction friction_;
     Spring spring_;
     std::optional<Walls> walls_;
+    std::shared_ptr<const Units> units_;  // none: the usual ones
 };
 
 }  // namespace dinal::model

@@ -48,6 +48,7 @@ std::string unit_of(const RunData& run, Measure measure) {
         case Measure::speed:
             return run.units.speed();
         case Measure::torque:
+            return run.units.M;
         case Measure::unknown:
             break;
     }
@@ -56,8 +57,7 @@ std::string unit_of(const RunData& run, Measure measure) {
 
 std::string axis_label(const RunData& run, std::string_view name) {
     const Symbol symbol = symbol_of(name);
-    const std::string unit = unit_of(run, symbol.measure);
-    return std::string(symbol.symbol) + (unit.empty() ? "" : ", " + unit);
+    return model::of_unit(std::string(symbol.symbol), unit_of(run, symbol.measure));
 }
 
 text::Expected<Numbers> plain_column(const RunData& run, std::string_view name) {
@@ -192,7 +192,7 @@ text::Expected<Figure> figure_of_columns(const RunData& run, const std::string& 
         figure.y.label = axis_label(run, names.front());
     } else {
         const Measure measure = symbol_of(names.front()).measure;
-        figure.y.label = measure == Measure::torque ? "torque" : unit_of(run, measure);
+        figure.y.label = measure == Measure::torque ? model::of_unit("torque", run.units.M) : unit_of(run, measure);
     }
     if (across == "t") {
         figure.stuck = stuck_intervals(*run.trajectory);

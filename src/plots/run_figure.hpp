@@ -12,19 +12,11 @@
 
 namespace dinal::plots {
 
-/// What a user measures the angle and the time in: words, on which no number depends.
-struct Units {
-    std::string theta = "rad";
-    std::string t = {};  ///< none: time units
-
-    [[nodiscard]] std::string speed() const { return theta + "/" + (t.empty() ? "time" : t); }
-};
-
 struct RunData {
     std::shared_ptr<const void> owner;  ///< keeps the trajectory alive
     const motion::Trajectory* trajectory;
     const model::Oscillator* system;  ///< null in a run that was read from a file
-    Units units = {};
+    model::Units units = {};
 };
 
 enum class Axes { one_a_unit, one };

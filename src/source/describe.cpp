@@ -39,13 +39,14 @@ std::string lua_text(lua_State* L, const model::Oscillator& system, ValueText* w
     if (system.walls()) {
         text += ", walls = " + system.walls()->lua_text();
     }
-    if (system.friction().none()) {
-        return text + " }";
+    const model::Friction& law = system.friction();
+    if (!law.none()) {
+        text += law.as<model::laws::Coulomb>() != nullptr
+                    ? fmt::format(", Rd = {}, Re = {}", system.kinetic_friction(), system.breakaway())
+                    : ", friction = " + lua_text(L, law, whole);
     }
-    if (system.friction().as<model::laws::Coulomb>() != nullptr) {
-        text += fmt::format(", Rd = {}, Re = {}", system.kinetic_friction(), system.breakaway());
-    } else {
-        text += ", friction = " + lua_text(L, system.friction(), whole);
+    if (!system.units().usual()) {
+        text += ", units = " + system.units().lua_text();
     }
     return text + " }";
 }

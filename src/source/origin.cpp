@@ -106,6 +106,9 @@ Origin origin_of(lua_State* L, const Task& task) {
     Origin origin{task, {}};
     auto& lines = origin.set_up;
     lines.emplace_back("-- dinal " DINAL_VERSION ": without the \"# \" before them, these lines repeat the run");
+    if (!task.system.units().usual()) {
+        lines.push_back(task.system.units().in_file());
+    }
     ValueText writer(L);
     const bool driven = !task.excitation.components().empty();
     const std::string M = driven ? excitation_text(L, task.excitation, writer) : "";

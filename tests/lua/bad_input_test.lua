@@ -33,7 +33,7 @@ test("a missing parameter is named, with an example", function()
 end)
 
 test("a misspelt parameter gets a suggestion and the list", function()
-    raises_here(function() system { i = 1, k = 1 } end, "system has no option 'i' among I, k, C, Rd, Re, friction, spring and walls; did you mean 'I'?")
+    raises_here(function() system { i = 1, k = 1 } end, "system has no option 'i' among I, k, C, Rd, Re, friction, spring, walls and units; did you mean 'I'?")
     raises_here(function() system { I = 1, k = 1, xyzzy = 1 } end, "no option 'xyzzy' among I, k, C")
     raises_here(function() nondimensional { zetta = 1 } end, "did you mean 'zeta'?")
     raises_here(function() nondimensional { friction = 1 } end, "did you mean 'friction_ratio'?")

@@ -41,6 +41,19 @@ class Values(PromptTest):
                       "zeta       0          damping ratio: undamped", "dead_zone  0.05       it can rest"]:
             self.assertIn(piece, card)
 
+    def test_a_card_says_the_units_and_what_follows_from_them(self):
+        terminal = self.start(width=100)
+        terminal.enter('block = system{ I = 2, k = 800, C = 3, Rd = 3, units = { theta = "m", t = "s", M = "N" } }')
+        card = terminal.enter("block")
+        for piece in ["I          2          inertia, N s^2/m", "stiffness, N/m", "viscous damping, N s/m", "while it moves, N",
+                      "sticking can hold, N", "units      theta in m, t in s, M in N", "natural frequency, rad per s",
+                      "natural period, s", "|θ| <= this, m"]:
+            self.assertIn(piece, card)
+        terminal.enter("run = block:simulate{ theta0 = 1, t_end = 1, dt = 0.1 }")
+        self.assertIn("theta in m, t in s, M in N", terminal.enter("run").replace("\n", " "))
+        self.assertIn("  i      t, s  kind   theta, m  M, N\n  1   0.15719  turn", terminal.enter("run.events"))
+        self.assertIn("steady: period 1 s", terminal.enter("block:steady{ M = excitation.harmonic{ amplitude = 9, frequency = 1 } }"))
+
     def test_an_excitation_is_a_formula_and_its_breaks(self):
         terminal = self.start()
         shown = terminal.enter("3*excitation.pulse{ at = 1.5, width = 0.2 } - excitation.harmonic{ omega = 2 }")

@@ -1,0 +1,65 @@
+// What a user measures the angle, the time and the torque in: words for cards, columns and axes. No number depends on
+// them.
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "text/option.hpp"
+
+namespace dinal::model {
+
+struct Units {
+    std::string theta = "rad";
+    std::string t = {};  ///< none: time units
+    std::string M = {};  ///< none: a torque without a unit
+
+    /// Nothing but the angle has a unit, and that is rad.
+    [[nodiscard]] bool usual() const { return theta == "rad" && t.empty() && M.empty(); }
+    /// Why one of them cannot stand in a line of text.
+    [[nodiscard]] std::optional<text::Error> complaint() const;
+
+    // What follows from them; what needs an M that has none is empty.
+    [[nodiscard]] std::string speed() const;
+    [[nodiscard]] std::string frequency() const;
+    [[nodiscard]] std::string inertia() const;
+    [[nodiscard]] std::string damping() const;
+    [[nodiscard]] std::string stiffness() const;
+    [[nodiscard]] std::string energy() const;
+    /// "s", or "time units"
+    [[nodiscard]] std::string times() const { return t.empty() ? "time units" : t; }
+
+    /// "theta in m, t in s, M in N"; empty for the usual ones.
+    [[nodiscard]] std::string in_words() const;
+    /// "{ theta = \"m\", t = \"s\" }"
+    [[nodiscard]] std::string lua_text() const;
+    /// The line of a file in which they stand.
+    [[nodiscard]] std::string in_file() const;
+    /// What such a line among these says; the usual ones without it.
+    static Units from_file(std::span<const std::string> lines);
+};
+
+/// "1.5 s", or "1.5"
+std::string with_unit(std::string number, std::string_view unit);
+/// "period, s", or "period"
+std::string of_unit(std::string name, std::string_view unit);
+
+inline constexpr text::Option unit_options[] = {
+    {.name = "theta",
+     .otherwise = "\"rad\"",
+     .meaning = "of the angle, or of the way",
+     .filled = text::fills<&Units::theta>},
+    {.name = "t", .meaning = "of the time, else it has none", .filled = text::fills<&Units::t>},
+    {.name = "M", .meaning = "of the torque, or of the force, else it has none", .filled = text::fills<&Units::M>},
+};
+inline constexpr text::Option units_option[] = {
+    {.name = "units",
+     .meaning =
+         "what theta, t and M are measured in, words for cards, columns and axes: { theta = \"m\", t = \"s\", M = "
+         "\"N\" }",
+     .wanted = "a table such as { theta = \"m\", t = \"s\", M = \"N\" }"},
+};
+
+}  // namespace dinal::model

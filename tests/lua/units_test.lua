@@ -1,0 +1,151 @@
+-- The units of a system or a run: words in cards, columns and axes, on which no number depends.
+package.path = "tests/lua/?.lua;" .. package.path
+local support = require "support"
+local test, equal, raises_here = support.test, support.equal, support.raises_here
+
+local metres = { theta = "m", t = "s", M = "N" }
+local plain = system{ I = 1, k = 4, C = 0.2, Rd = 0.1 }
+local block = plain:with{ units = metres }
+local function asked(more)
+    local all = { M = excitation.harmonic{ amplitude = 2, omega = 1 }, theta0 = 1, t_end = 5, dt = 0.1 }
+    for name, value in pairs(more or {}) do all[name] = value end
+    return all
+end
+local run = block:simulate(asked())
+
+local function picture(of, method, options)
+    options = options or {}
+    options.show, options.width, options.ascii = false, 60, true
+    return tostring(of[method](of, options))
+end
+local function has(text, ...)
+    for _, piece in ipairs{ ... } do assert(text:find(piece, 1, true), piece .. " is not in\n" .. text) end
+end
+local function has_not(text, piece) assert(not text:find(piece, 1, true), piece .. " is in\n" .. text) end
+
+test("axes have the units of the system, and what the call says goes before", function()
+    has(picture(run, "plot", { y = "theta" }), "theta, m", "t, s")
+    has(picture(run, "plot", { y = "velocity" }), "theta', m/s")
+    has(picture(run, "plot", { y = "M" }), "M, N")
+    has(picture(run, "plot", { y = { "M", "friction" } }), "torque, N")
+    has(picture(run, "phase_plot"), "theta'/omega0, m", "theta, m")
+    has(picture(run, "plot", { y = "theta", units = { theta = "mm" } }), "theta, mm")
+    has(picture(plain:simulate(asked()), "plot", { y = "velocity" }), "theta', rad/time")
+end)
+
+test("a run may have its own, in place of those of the system", function()
+    local own = block:simulate(asked{ units = { theta = "mm" } })
+    has(picture(own, "plot", { y = "velocity" }), "theta', mm/time")
+    equal(own.units.theta, "mm")
+    equal(own.units.t, nil)
+    equal(own.system.units.theta, "mm")
+    equal(block.units.theta, "m")
+    equal(own:continue{ t_end = 6 }.units.theta, "mm")
+end)
+
+test("no number depends on them", function()
+    local other = plain:simulate(asked())
+    equal((run.theta - other.theta):abs():max(), 0)
+    equal(#run.events, #other.events)
+    equal(block.T0, plain.T0)
+end)
+
+test("sys:with keeps them, changes them and takes them away", function()
+    equal(block:with{ Rd = 0.2 }.units.M, "N")
+    equal(block:with{ units = { theta = "cm" } }.units.M, nil)
+    equal(tostring(block:with{ units = {} }), tostring(plain))
+    equal(nondimensional{ units = { t = "T0" } }.units.t, "T0")
+    equal(plain.units.theta, "rad")
+    equal(plain.units.t, nil)
+end)
+
+test("a system is written down with them, whatever else it has", function()
+    has_not(tostring(plain), "units")
+    has(tostring(block), 'units = { theta = "m", t = "s", M = "N" } }')
+    local systems = { block, system{ I = 1, k = 4, units = { t = "s" } },
+        system{ I = 1, k = 4, friction = friction.stribeck{ Rd = .3, Re = .6, speed = .1 }, units = metres },
+        system{ I = 1, k = 0, walls = { upper = 1 }, units = { theta = "°", t = "h" } } }
+    for _, sys in ipairs(systems) do
+        local again = load("return " .. tostring(sys))()
+        equal(tostring(again), tostring(sys))
+        equal(again.units.t, sys.units.t)
+    end
+end)
+
+test("energies and steady motions have those that follow from them", function()
+    has(tostring(run:energy()), "energy in N m, t 0 … 5 s:")
+    has(tostring(plain:with{ units = { M = "N m" } }:simulate(asked()):energy()), "energy in N m, t 0 … 5:")
+    has_not(tostring(plain:simulate(asked()):energy()), "energy in")
+    has(tostring(block:steady{ M = excitation.harmonic{ amplitude = 2, omega = 1 } }), "period 6.28319 s, amplitude", " m, ")
+end)
+
+test("the story says them once, and the time in them", function()
+    has(run:explain(), "Units: theta in m, t in s, M in N.")
+    has(block:simulate{ theta0 = 0.04, t_end = 4, dt = 1 }:explain(), "Units:")
+    local stops = block:with{ Re = 1.5, Rd = 1 }:simulate(asked{ theta0 = 0 })
+    has(stops:explain(), " of 5 s")
+    has_not(plain:simulate(asked()):explain(), "Units:")
+end)
+
+test("columns of tables have them, and keep them when rows are picked; their names stay", function()
+    local events = run.events
+    has(tostring(events), "t, s", "theta, m", "M, N")
+    has(events:markdown(), "| t, s | kind | theta, m | M, N |")
+    has(tostring(events:filter(function(row) return row.t > 1 end)), "theta, m")
+    has(tostring(events:select("theta")), "theta, m")
+    equal(events.names[1], "t")
+    equal(#events.theta, #events)
+    has_not(tostring(plain:simulate(asked()).events), ", rad")
+    has(tostring(run:spectrum "velocity"), "frequency, 1/s", "amplitude, m/s")
+    has(tostring(run:poincare{ period = 1 }), "velocity, m/s")
+    local file = support.temporary ".csv"
+    events:save(file)
+    equal(data.load(file).names[3], "theta")
+end)
+
+test("a response has them at its axes and in its jumps", function()
+    local curve = block:response{ amplitude = 2, frequency = { 0.2, 0.5 }, points = 5 }
+    has(tostring(curve), "frequency, 1/s", "amplitude, m")
+    has(tostring(curve:plot{ y = "amplitude", width = 60, ascii = true, show = false }), "frequency, 1/s", "amplitude, m")
+    has(tostring(curve.linearised), "amplitude, m")
+    has(tostring(block:response{ frequency = 0.3, amplitude = { 1, 2 }, points = 3 }), "M0, N")
+end)
+
+test("a file keeps them, for who reads it and for the run that is read from it", function()
+    local file = support.temporary ".csv"
+    run:save(file)
+    has(support.read(file), "# -- units: theta in m, t in s, M in N\n", 'units = { theta = "m", t = "s", M = "N" }',
+        "\nt,theta,velocity,M,")
+    local old = trajectory.load(file)
+    equal(old.units.M, "N")
+    has(picture(old, "plot", { y = "velocity" }), "theta', m/s")
+    has(old:explain(), "It has theta in m, t in s, M in N.")
+    local copy = support.temporary ".csv"
+    old:save(copy)
+    equal(trajectory.load(copy).units.theta, "m")
+end)
+
+test("what a stranger's file says of units is taken when it is a word", function()
+    local file = support.temporary ".csv"
+    for said, theta in pairs{ ["theta in m\27[31m"] = "rad", ["theta in in"] = "in", ["theta in " .. ("m"):rep(99)] = "rad",
+        ["nonsense"] = "", ["t in s"] = "" } do
+        support.write(file, "# -- units: " .. said .. "\nt,theta\n0,1\n1,2\n")
+        equal(trajectory.load(file).units.theta or "", theta)
+    end
+end)
+
+test("wrong units are said", function()
+    raises_here(function() system{ I = 1, k = 4, units = "m" } end, 'units must be a table such as { theta = "m"')
+    raises_here(function() system{ I = 1, k = 4, units = { theta = 1 } } end, "theta must be a string")
+    raises_here(function() system{ I = 1, k = 4, units = { time = "s" } } end, "'time'")
+    raises_here(function() system{ I = 1, k = 4, units = { velocity = "m/s" } } end, "'velocity'")
+    raises_here(function() system{ I = 1, k = 4, units = { "m", "s" } } end, "units")
+    raises_here(function() plain:with{ units = { t = "s\27[2J" } } end, "the unit of t must be a short word")
+    raises_here(function() plain:with{ units = { t = "a, b" } } end, "without quotes and commas")
+    raises_here(function() plain:simulate(asked{ units = { M = ("N"):rep(25) } }) end, "the unit of M must be a short word")
+    raises_here(function() plain:simulate(asked{ units = 3 }) end, "units must be a table")
+    raises_here(function() run:plot{ units = { theta = 'm"' }, show = false } end, "the unit of theta must be a short word")
+    raises_here(function() plain:with{ unit = metres } end, "did you mean 'units'?")
+end)
+
+support.finish()
