@@ -20,7 +20,7 @@ int data_row_text(lua_State* L) {
     std::string text = "{";
     for (lua_Integer i = 1; i <= static_cast<lua_Integer>(lua_rawlen(L, 3)); ++i) {
         lua_rawgeti(L, 3, i);
-        const std::string name = lua_tostring(L, -1);
+        const std::string name = text::displayable(lua_tostring(L, -1));
         lua_rawget(L, 1);
         text += (i == 1 ? " " : ", ") + name + " = ";
         text += lua_type(L, -1) == LUA_TSTRING   ? text::quoted(lua_tostring(L, -1))

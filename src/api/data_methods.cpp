@@ -11,6 +11,7 @@
 #include "lua/interrupt.hpp"
 #include "lua/options.hpp"
 #include "lua/worker_state.hpp"
+#include "text/characters.hpp"
 #include "text/words.hpp"
 
 namespace dinal::api::data_functions {
@@ -49,7 +50,8 @@ std::string file_argument(lua_State* L, int index, const char* call) {
     return file;
 }
 
-std::string in_markdown(std::string text) {
+std::string in_markdown(const std::string& words) {
+    std::string text = text::displayable(words);
     for (std::size_t bar = text.find('|'); bar != std::string::npos; bar = text.find('|', bar + 2)) {
         text.insert(bar, "\\");
     }

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "lua/error_memory.hpp"
+#include "text/harmless.hpp"
 
 namespace dinal::lua {
 
@@ -155,7 +156,8 @@ std::string where(lua_State* L) {
 
 void raise(lua_State* L, const text::Error& error) {
     {
-        const std::string message = where(L) + error.message();
+        // Names of columns and files are in it, and a script may print what it has caught.
+        const std::string message = text::harmless(where(L) + error.message());
         remember_facts(L, error);
         lua_settop(L, 0);  // arguments are of no more use, and make room
         lua_pushlstring(L, message.data(), message.size());

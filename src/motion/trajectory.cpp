@@ -8,6 +8,7 @@
 #include <span>
 
 #include "motion/stillness.hpp"
+#include "text/characters.hpp"
 #include "text/sentences.hpp"
 
 namespace dinal::motion {
@@ -97,7 +98,7 @@ std::string summary(const Trajectory& trajectory) {
     std::string text = text::counted(static_cast<std::size_t>(rows.rows()), "row");
     if (!trajectory.computed) {
         for (std::size_t i = 0; i < trajectory.names.size(); ++i)
-            text += (i == 0 ? " of " : ", ") + trajectory.names[i];
+            text += (i == 0 ? " of " : ", ") + text::displayable(trajectory.names[i]);
         return text;
     }
     text +=
