@@ -102,8 +102,9 @@ int plot_vectors(lua_State* L) {
     }
     PlotItems items = plot_items(L, 1);
     if (items.curves.empty() && items.panels.empty()) {
-        lua::raise(L,
-                   {.sentence = fmt::format("plot needs a curve, for example {}", plot_call.example), .call = "plot"});
+        lua::raise(L, {.sentence = fmt::format("plot needs a curve, for example {}", plot_call.example),
+                       .call = "plot",
+                       .culprit = "nil"});  // what has no value in a table is not there
     }
     constexpr std::size_t most_curves = 1000;
     if (items.curves.size() > most_curves) {

@@ -17,6 +17,11 @@ namespace {
 constexpr std::size_t most_rows = 15;
 constexpr std::size_t widest_word = 24;
 
+std::string short_word(std::string word) {
+    if (text::columns(word) <= widest_word) return word;
+    return std::string(text::cut_to_columns(word, widest_word - 3)) + "...";
+}
+
 /// The lines of a table with the columns that fit; the first column is the number of the row.
 class TableText {
 public:
@@ -25,9 +30,9 @@ public:
         for (std::size_t row = 0; row < rows; ++row) cells_.front().push_back(std::to_string(row + 1));
         right_.push_back(true);
         for (const DataColumn& column : data.columns) {
-            std::vector<std::string>& cells = cells_.emplace_back(1, text::displayable(column.name));
+            std::vector<std::string>& cells = cells_.emplace_back(1, text::displayable(column.label()));
             for (std::size_t row = 0; row < rows; ++row) {
-                cells.emplace_back(text::cut_to_columns(text::displayable(column.text(row)), widest_word));
+                cells.push_back(short_word(text::displayable(column.text(row))));
             }
             right_.push_back(column.numbers() != nullptr);
         }
@@ -177,7 +182,10 @@ std::string text_of(const Data& data, std::size_t width) {
         text = text::wrapped(text, width);
     }
     if (n > 0) text += TableText(data, std::min(n, most_rows)).lines(width);
-    return n > most_rows ? text + fmt::format("\n  ... {}", text::counted(n - most_rows, "more row")) : text;
+    if (n <= most_rows) return text;
+    const std::string more = "  ... " + text::counted(n - most_rows, "more row"), cure = ":markdown() shows all";
+    const bool fits = text::columns(more) + text::columns(cure) + 2 < width;
+    return text + "\n" + more + (fits ? "; " : "\n  ") + cure;
 }
 
 std::string html_of(const Data& data, std::size_t rows) {

@@ -6,6 +6,7 @@
 
 #include "api/picture.hpp"
 #include "api/plot_options.hpp"
+#include "api/run.hpp"
 #include "lua/options.hpp"
 #include "lua/vector.hpp"
 
@@ -114,8 +115,10 @@ PlotItems plot_items(lua_State* L, int table) {
         } else if (is_table_of_items(L)) {
             items.curves.push_back(curve_on_top(L, fmt::format("plot: curve {}", i)));
         } else {
+            const bool run = lua::test<RunHandle>(L, -1) != nullptr;
             lua::raise_got(L, -1, "plot", fmt::format("plot: item {} must be a curve {{ x, y }} or a picture", i),
-                           fmt::format("; for example {}", plot_call.example));
+                           run ? "; its curve is { run.t, run.theta }, its picture run:plot{ show = false }"
+                               : fmt::format("; for example {}", plot_call.example));
         }
         lua_pop(L, 1);
     }

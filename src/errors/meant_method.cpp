@@ -10,6 +10,7 @@
 #include "errors/misspelling.hpp"
 #include "lua/bind.hpp"
 #include "lua/tokens.hpp"
+#include "text/sentences.hpp"
 #include "text/words.hpp"
 
 namespace dinal::errors {
@@ -123,6 +124,19 @@ std::optional<lua_Integer> taken_length(lua_State* L) {
     return count;
 }
 
+/// The whole number that a token is, or that the variable of this name holds.
+std::optional<lua_Integer> number_of(lua_State* L, lua_Debug* frame, const lua::Token& token) {
+    if (token.kind == lua::TokenKind::name) {
+        push_variable(L, frame, token.text);
+    } else if (lua_stringtonumber(L, std::string(token.text).c_str()) == 0) {
+        return std::nullopt;
+    }
+    int is_whole = 0;
+    const lua_Integer number = lua_type(L, -1) == LUA_TNUMBER ? lua_tointegerx(L, -1, &is_whole) : 0;
+    lua_pop(L, 1);
+    return is_whole != 0 ? std::optional(number) : std::nullopt;
+}
+
 }  // namespace
 
 std::string meant_method(lua_State* L, const lua::LuaMessage& message, std::string_view statement) {
@@ -143,25 +157,38 @@ std::string meant_method(lua_State* L, const lua::LuaMessage& message, std::stri
     return fmt::format("; did you mean '{}'?", meant);
 }
 
-std::string length_of_list(lua_State* L, lua_Debug* frame, const lua::LuaMessage& message, std::string_view statement) {
+MissingElement missing_element(lua_State* L, lua_Debug* frame, const lua::LuaMessage& message,
+                               std::string_view statement) {
     // Lua 5.4.4 says 'integer index', later ones '?'.
     if (message.type != "nil" || message.kind != "field" || (message.name != "integer index" && message.name != "?")) {
-        return "";
+        return {};
     }
+    MissingElement possible;
     const Tokens all = lua::tokens(statement);
-    for (std::size_t i = 1; i < all.size(); ++i) {
+    for (std::size_t i = 1; i + 1 < all.size(); ++i) {
         if (!all[i].is("[") || all[i - 1].kind != lua::TokenKind::name) continue;
         std::size_t first = i - 1;
         while (first >= 2 && all[first - 1].is(".") && all[first - 2].kind == lua::TokenKind::name) first -= 2;
         push_variable(L, frame, all[first].text);
         for (std::size_t k = first + 2; k < i; k += 2) go_to_field(L, all[k].text);
-        if (const auto count = taken_length(L)) {
-            const std::size_t begin = all[first].at;
-            return fmt::format("; '{}' has {} element{}", statement.substr(begin, all[i].at - begin), *count,
-                               *count == 1 ? "" : "s");
+        const auto count = taken_length(L);
+        if (!count) continue;
+        const lua::Token& index = all[i + 1];
+        const bool alone = i + 2 < all.size() && all[i + 2].is("]");
+        const auto number = alone ? number_of(L, frame, index) : std::nullopt;
+        if (number && *number >= 1 && *number <= *count) continue;  // it is there
+        const std::size_t begin = all[first].at;
+        MissingElement found{fmt::format("; '{}' has {}", statement.substr(begin, all[i].at - begin),
+                                         text::counted(static_cast<std::size_t>(*count), "element")),
+                             std::string(number ? index.text : all[i - 1].text)};
+        if (number) {
+            if (index.kind == lua::TokenKind::name)
+                found.end_of_sentence += fmt::format(", and {} is {}", index.text, *number);
+            return found;
         }
+        if (possible.culprit.empty()) possible = found;
     }
-    return "";
+    return possible;
 }
 
 }  // namespace dinal::errors

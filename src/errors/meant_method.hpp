@@ -13,7 +13,11 @@ namespace dinal::errors {
 /// be asked while the call still stands on the stack.
 std::string meant_method(lua_State* L, const lua::LuaMessage& message, std::string_view statement);
 
-/// Of an index behind which there is nil: "; 'run.events' has 6 elements", or "".
-std::string length_of_list(lua_State* L, lua_Debug* frame, const lua::LuaMessage& message, std::string_view statement);
+/// Of an index behind which there is nothing: "; 'run.events' has 6 elements, and n is 7", and the word to be marked.
+struct MissingElement {
+    std::string end_of_sentence, culprit;
+};
+MissingElement missing_element(lua_State* L, lua_Debug* frame, const lua::LuaMessage& message,
+                               std::string_view statement);
 
 }  // namespace dinal::errors

@@ -160,10 +160,41 @@ std::string qualified(lua_State* L, std::string_view name) {
     return count == 1 || count == 2 ? found + "?" : "";
 }
 
+/// Whether the value on the top is one of our objects with a field of that name, which a system has and a run.
+bool has_field(lua_State* L, std::string_view name) {
+    if (lua_isuserdata(L, -1) == 0) return false;
+    const lua::Documented found = lua::documented(L, -1);
+    return found.owner != nullptr && found.member == nullptr &&
+           std::any_of(found.owner->members.begin(), found.owner->members.end(), [name](const lua::Member& member) {
+               return member.kind == lua::Kind::field && member.name == name;
+           });
+}
+
+/// Fields of that spelling of what the user's variables hold: Rd is dry.Rd. Two at most.
+std::string field_of_variable(lua_State* L, std::string_view name) {
+    std::vector<std::string> owners;
+    lua_pushglobaltable(L);
+    lua_pushnil(L);
+    while (lua_next(L, -2) != 0) {
+        const bool named = lua_type(L, -2) == LUA_TSTRING;
+        if (named && has_field(L, name) && std::string_view(lua_tostring(L, -2)) != "ans") {
+            owners.emplace_back(lua_tostring(L, -2));
+        }
+        lua_pop(L, 1);
+    }
+    lua_pop(L, 1);
+    if (owners.empty() || owners.size() > 2) return "";
+    std::sort(owners.begin(), owners.end());
+    std::string found = "; did you mean '" + owners.front() + "." + std::string(name) + "'";
+    if (owners.size() == 2) found += " or '" + owners.back() + "." + std::string(name) + "'";
+    return found + "?";
+}
+
 /// What a global name that is nil may have meant.
 std::string meant_by(lua_State* L, std::string_view name, const std::vector<std::string>& names) {
     std::string hint = foreign_name(name);
     hint = hint.empty() ? qualified(L, name) : hint;
+    hint = hint.empty() ? field_of_variable(L, name) : hint;
     return hint.empty() ? likely(name, names, text::Likeness::of_letters) : hint;
 }
 
@@ -236,11 +267,13 @@ Advice help_with(lua_State* L, lua_Debug* frame, const text::Error& error, std::
 
 Advice help_with(lua_State* L, lua_Debug* frame, const lua::LuaMessage& message, std::string_view statement) {
     luaL_checkstack(L, LUA_MINSTACK, "for the help with an error");
-    for (const std::string& habit : {running_habit(message, statement), meant_method(L, message, statement),
-                                     length_of_list(L, frame, message, statement)}) {
+    for (const std::string& habit : {running_habit(message, statement), meant_method(L, message, statement)}) {
         if (!habit.empty()) {
             return {habit};
         }
+    }
+    if (MissingElement missing = missing_element(L, frame, message, statement); !missing.culprit.empty()) {
+        return {std::move(missing.end_of_sentence), std::move(missing.culprit)};
     }
     if (message.type == "nil" && message.kind == "global") {
         std::vector<std::string> names = variables(L, frame);
