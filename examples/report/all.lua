@@ -12,7 +12,7 @@ end
 
 local folder = ... or default_folder()
 local figures, undrawn = {}, 0
-for name in ([[03 03bis 04 05a 05b 06 07 08 09 10 11 12 13 14 15 16 17 18 19 20 21 22 23 24 25 26 27]]):gmatch "%S+" do
+for name in ([[03 03bis 04 05a 05b 06 07 08 09 10 11 12 13 14 15 16 17 18 19 20 21 22 23 24 24bis 25 26 27]]):gmatch "%S+" do
   local figure = assert(loadfile(here .. "fig" .. name .. ".lua"))(folder, true) -- true: no numbers
   print(string.format("%-14s %s", figure.file:match "[^/]*$", figure.title))
   if figure.undrawn then undrawn = undrawn + 1 end

@@ -36,18 +36,7 @@ fig:line("sin(6.28 t), h = 0.01, most", most)
 
 fig:quote{ 0.836, 0.14, stick, slip, 100 * stuck, case.amplitude(run), 0.14, 0.01, last:max(), last:min(),
   6.28, least, most, 0.14, 0.001, case.row_amplitude(fine, 1000) }
-local function steady(of) -- the last period
-  return of.theta:slice(#of - 100, #of), of.velocity:slice(#of - 100, #of) / sys.omega0
-end
-local x, y = steady(run)
-local x_old, y_old = steady(old)
-return fig:draw{
-  case.columns(run, { "theta", "M/k" }, { xlim = { 0, 10 } }),
-  case.plane(run),
-  plot{ { x, y, label = "true" }, { x_old, y_old, label = "1989" }, equal = true, xlim = { -0.27, 0.27 },
-    ylim = { -0.27, 0.27 }, xticks = 0.2, yticks = 0.1, xlabel = "θ*", ylabel = "θ*'/2π", show = false },
-  size = { 17, 6 },
-}
+return fig:draw{ case.columns(run, { "theta", "M/k" }, { xlim = { 0, 10 } }), case.plane(run), size = case.page }
 
 --[[ prints
 Figure 24: resonance, gamma = 0.836, h = 0.01
