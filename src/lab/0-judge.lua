@@ -5,7 +5,8 @@ course = { sheets = {} }
 
 --- A sheet: title, given(pick), secret(given, pick), experiment(given, secret, x) and questions(given, secret), a list of
 --- { name, asks, answer =, unit =, tolerance = (relative) | within = (absolute) | whole = true, task =, how =,
----   mistakes = { { wrong value or function(value), what is said }, ... } }.
+---   mistakes = { { wrong value or function(value), what is said }, ... } }; and, for the instructor alone,
+--- discussion(given, secret): what a good page says to each of the questions at the end of the handout.
 function course.sheet(number, sheet)
   sheet.number = number
   course.sheets[number] = sheet
@@ -168,6 +169,20 @@ local function tolerance_text(question)
   return question.within and string.format("+- %.2g", question.within) or string.format("+- %.2g %%", 100*question.tolerance)
 end
 
+--- The words in lines of at most 100 characters, the first of which begins with `head`.
+local function wrapped(head, words)
+  local lines, line = {}, head
+  for word in words:gmatch("%S+") do
+    if #line + #word >= 100 then
+      lines[#lines + 1] = line
+      line = (" "):rep(#head - 1)
+    end
+    line = line .. " " .. word
+  end
+  lines[#lines + 1] = line
+  return table.concat(lines, "\n")
+end
+
 --- All answers of a number, as text.
 function course.solutions(number)
   local lines = { string.format("The lab of number %d", number) }
@@ -179,6 +194,10 @@ function course.solutions(number)
       lines[#lines + 1] = string.format("  %d%s  %-52s %12s %-12s %s", n, question.name, question.asks, answer,
         question.unit or "", tolerance_text(question))
       lines[#lines + 1] = "      " .. question.how
+    end
+    lines[#lines + 1] = "  The questions at the end:"
+    for i, words in ipairs(world.sheet.discussion(world.given, world.secret)) do
+      lines[#lines + 1] = wrapped(string.format("  %d.", i), words)
     end
   end
   return table.concat(lines, "\n") .. "\n"

@@ -29,6 +29,24 @@ sheet(1, {
     return data{ { "t", turns.t }, { "theta", turns.theta } }
   end,
 
+  discussion = function(given)
+    local viscous, dry = system(given.viscous), system(given.dry)
+    local x_f, slower = dry.Rd/dry.k, 100*(1/math.sqrt(1 - viscous.zeta^2) - 1)
+    return {
+      "By its extremes. Viscous: they lie on a curve that flattens, each a fixed part of the one before, and the motion never quite ends. Dry: " ..
+        "they lie on a straight line, and the motion ends at once, as a rule not in the middle.",
+      "The dry one rests first: it goes on losing as much in each half cycle, while the viscous one loses less and less. In the model the viscous " ..
+        "one is never at rest.",
+      string.format("It can stop only where its velocity is 0, at an extreme, and these are theta0 less multiples of 2 x_f. The first of them within " ..
+        "the dead zone is the last. It stops in the middle when theta0 is a multiple of 2 x_f = %.4g, for example theta0 = %.4g.", 2*x_f,
+        2*x_f*math.floor(given.theta0/(2*x_f))),
+      string.format("It does: T1 = T0/sqrt(1 - zeta^2), here %.2g %% longer. Dry friction only shifts the middle of each half swing; between two turns " ..
+        "it is a constant torque, and the period does not know of it.", slower),
+      "The amount that is lost stays the same while the amplitude falls, so the ratio X0/X1 = X0/(X0 - 2 x_f) grows from swing to swing. A decrement " ..
+        "that grows towards the end is how one sees dry friction in a record.",
+    }
+  end,
+
   questions = function(given, secret)
     local viscous, dry, mixed = system(given.viscous), system(given.dry), secret.mixed
     local decrement = theory.logarithmic_decrement{ zeta = viscous.zeta }

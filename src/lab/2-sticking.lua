@@ -32,6 +32,24 @@ sheet(2, {
     return data{ { "t", run.t }, { "M", torque }, { "theta", vector(angle) } }
   end,
 
+  discussion = function(given, secret)
+    local difference = secret.Re - given.Rd
+    return {
+      string.format("The error of Re itself stays, but Re - Rd is smaller than Re: 1 %% of %.4g is %.2g %% of %.4g. So is the error of 2 (Re - Rd)/k, the jump.",
+        secret.Re, secret.Re/difference, difference),
+      "Between breaking loose and being seen to move some time passes (the angle must grow to what the sensor sees), and the torque goes on rising " ..
+        "meanwhile: slope times that time is the error. The true Re of this bench is the same; with real materials it may depend on the pull and on how " ..
+        "long they have rested, which is another story.",
+      string.format("Within |theta| <= Re/k = %.3g rad of its true value nothing moves it. Tapping is a torque that comes and goes: whenever it helps the " ..
+        "spring, the pointer slips a little towards the true value; against the spring it must do more, so it goes the other way less often.", secret.Re/given.k),
+      string.format("It is 0 in the limit: the block does not wait any more. At the speed v of the drive it starts from rest and moves with v (1 - cos omega0 t): up to 2 v, " ..
+        "and once in each T0 = %.3g its velocity touches 0 without a stop. Any damping makes that an even slide.",
+        2*math.pi*math.sqrt(given.I/given.k)),
+      "There is none any more. At velocity 0 such a friction is 0, so nothing holds the mass: under any load it creeps, where it should rest, with the " ..
+        "velocity at which tanh makes up for the load. And breakaway, Re > Rd, cannot be said with it at all.",
+    }
+  end,
+
   questions = function(given, secret)
     local Re, Rd, k, v = secret.Re, given.Rd, given.k, given.speed
     local full = system{ I = given.I, k = k, Rd = Rd, Re = Re }

@@ -7,6 +7,25 @@ sheet(3, {
              low_r = pick(0.14, 0.4, 0.02), zeta = pick(0.1, 0.2, 0.01) }
   end,
 
+  discussion = function(given)
+    local g = given.small_ratio
+    local damped = theory.den_hartog{ r = 1, friction_ratio = g, zeta = given.zeta }
+    local linear = theory.linearised{ r = 1, friction_ratio = g, zeta = given.zeta }
+    local s = nondimensional{ friction_ratio = given.friction_ratio }:steady{ M = excitation.harmonic{ frequency = given.r } }
+    return {
+      string.format("Linearisation keeps the energy of a sine. With a damper at resonance the motion is nearly one, and large beside Rd/k: there it is off by %.2g %%. " ..
+        "Away from resonance the square wave of friction is no small part of the torque, and the motion is no sine.", 100*(linear/damped - 1)),
+      string.format("It limits the motion only if Rd >= pi/4 = 0.785 of the load's amplitude M0. Below that each period adds pi - 4 gamma (in M0/k), for ever, " ..
+        "here %.3g. Friction in joints is small and not to be relied upon; a damper takes more the faster it goes.", math.pi - 4*g),
+      string.format("At the turns. Between them friction is a constant and drops out of the difference of two motions, which then swings freely. At a turn it jumps: the " ..
+        "torque behind it is less than the one before it, and the difference of the two velocities shrinks by the ratio of these torques. Here %.2g of a disturbance is left after a " ..
+        "period. Without friction nothing jumps, and nothing fades.", s.multipliers and s.multipliers[1].abs or 0),
+      "Into the swing: M0 does pi M0 A of work in a period, friction takes 4 Rd A, and what is left is added to k A^2/2. Were it a machine, it would go on until " ..
+        "something breaks, or something else than friction limits it.",
+      "By the flat parts of theta: where it sticks the angle is constant, and it leaves them with a kink in the velocity.",
+    }
+  end,
+
   questions = function(given)
     local r, g = given.r, given.friction_ratio
     local V = 1/math.abs(1 - r^2)

@@ -47,6 +47,20 @@ sheet(4, {
              friction_ratio = pick(0.13, 0.19, 0.002), periods = pick(40, 90, 1) }
   end,
 
+  discussion = function()
+    return {
+      "A true observation of the program that was run, not of the scheme: with either slip a step multiplies by more than 1 when there is no damping. The scheme as it is printed " ..
+        "multiplies by about 1 - (2 pi h)^6/144, less than 1 up to h = 0.45 T0. What was concluded about the method was true of a misprint in the program.",
+      "Without damping both slips give the same angles (only the velocities differ, by a factor), and all numbers that the report gives to many digits are without damping; its damped figures are pictures. The source of " ..
+        "that day, or one damped number to five digits (0.98720 or 0.98769 for zeta = 0.02387, h = 0.1), would decide it.",
+      "He knows that the smooth part of the error is small, if the step is small enough for the order to show at all. He does not know the error of the stops: it goes with h itself, may jump " ..
+        "when a stop comes one step earlier, and may be small by chance for both steps. Nor does he know that the program does what he means: a wrong program converges, too.",
+      "For example: a free motion without damping keeps its amplitude (a factor of 1 but for h^6). Half a period from theta0 ends at -theta0. Half the step makes the error 16 times " ..
+        "smaller, with a load that depends on the time. The energy balance closes. The motion run backwards comes home.",
+      "There is no right answer, but an honest one names the check that was not made.",
+    }
+  end,
+
   questions = function(given)
     local h, zeta, n = given.h, given.zeta, given.periods
     local free = nondimensional{}

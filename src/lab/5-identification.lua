@@ -38,6 +38,19 @@ sheet(5, {
     return which == 2 and pull_of(given, secret) or decay_of(given, secret)
   end,
 
+  discussion = function(given, secret)
+    return {
+      string.format("Dry friction holds the mass anywhere within Re/k of the zero: up to %.2g rad here, much more than the error of the fit. Where in it depends on the start.",
+        secret.system.dead_zone),
+      "A larger start: viscous damping takes a part and rules the large swings, dry friction takes an amount and rules the last ones, so the more amplitudes the record has, the less can one " ..
+        "stand for the other. It must go on until the rest; what comes behind that tells of the offset and the noise only.",
+      "How much the noise moves the result of that fit, if its model were true. It does not say how far off the model is: that shows in the residual, which has a swing in it.",
+      "Re acts only where the mass is at rest, and in a decay it comes there once. That it stays says Re >= k |theta - offset|, no more.",
+      "Neighbouring samples then have errors in common, and the fit takes them for independent: the error bars come out too small. The extremes are cut, so the amplitudes, and with them the " ..
+        "dampings, are off by something that no error bar shows. Least squares does the smoothing itself, by the model.",
+    }
+  end,
+
   questions = function(given, secret)
     local true_system = secret.system
     local decay = decay_of(given, secret)

@@ -40,6 +40,24 @@ sheet(6, {
     return given
   end,
 
+  discussion = function(given)
+    local hunting = turbine(given, { Rd = given.Rd, Re = given.Re })
+    local stops = hunting.events:filter(function(e) return e.kind == "stick" and e.t > 200 end)
+    local off = #stops > 0 and math.abs(stops.M[#stops] - stops.theta[#stops]) or 0
+    local half = swing(turbine(given, { Rd = given.Rd, Re = (given.Rd + given.Re)/2 }))
+    return {
+      "An integral goes on until the error is 0: at rest no other speed is possible. For the same reason there is no rest with a sleeve that sticks: as long as the speed is off by anything, " ..
+        "the integral grows until it breaks the sleeve loose, and that goes too far again.",
+      string.format("It slides until the pull has fallen below Rd, so it stops well inside of its dead zone: %.2g from the middle, where %.2g would be an edge. The speed needs to drift from " ..
+        "there to the other edge only, not from edge to edge, which is 6c.", off, given.Re),
+      "With a shaking that is fast beside the motion the sleeve never rests; friction then acts a little longer against the mean motion than with it, in proportion to its velocity. On the " ..
+        "average it is a damper, and nothing is left to break loose.",
+      "For example: a valve positioner whose stem sticks, the drive of a telescope, the slide of a machine tool, a ship on its autopilot. Those hunt whose controller has an integral, or whose " ..
+        "load does one, as the rotor here.",
+      string.format("The swing of 6d becomes %.3g instead of %.3g: less, but it hunts still. A little dither does more, and costs less.", half, swing(hunting)),
+    }
+  end,
+
   questions = function(given)
     local hunting = turbine(given, { Rd = given.Rd, Re = given.Re })
     local amount, period = swing(hunting), (hunting_period(hunting))

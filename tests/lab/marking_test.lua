@@ -57,6 +57,17 @@ test("the instructor's file is made as the handbook says, and all that --lab-sol
     assert(#lab.marks() > 10)
   end
   assert(sheets >= 4, sheets)
+  local said = shell "dinal --lab-solutions 4711"
+  local sheet = 0
+  for talk in (said .. "\n\n"):gmatch "\n  The questions at the end:\n(.-)\n\n" do
+    sheet = sheet + 1
+    local handout = support.read(output(("ls docs/lab/%d-*.md"):format(sheet)):match "[^\n]*")
+    local asked = handout:match "\n## Questions\n(.-)\n## "
+    local _, questions = asked:gsub("\n%d%. ", "")
+    local _, answers = ("\n" .. talk):gsub("\n  %d%. ", "")
+    equal(answers, questions, "answers to the open questions of sheet " .. sheet)
+  end
+  equal(sheet, 6)
   for _, wrong in ipairs { "", "x", "0", "-1", "1.5", "1000000000" } do
     local refused = shell(("dinal --lab-solutions '%s'; echo $?"):format(wrong))
     assert(refused:find("needs a student number after it", 1, true), refused)
