@@ -55,7 +55,7 @@ Rd     jumps down at      from    to   | jumps up at        from    to
 swept up: from 3.324 to 0.115 between f = 0.355 and 0.360
 swept down: from 0.777 to 1.665 between f = 0.215 and 0.210
                                 Rd = 0.1
-amplitude   b unstable   c jumps
+amplitude   a stable   b unstable   c jumps
   |                                                     aaa
   |                                               aaaaaaa c
 3 +                                        aaaaaaabb      c

@@ -90,6 +90,8 @@ std::vector<plots::Curve> curve_in_pieces(const Data& data, const plots::Curve& 
         if (line == 0) {
             curve.dashes = plots::Dashes::dotted;
             curve.label = "unstable";
+        } else if (any[0] && curve.label.empty()) {
+            curve.label = "stable";
         }
         curves.push_back(std::move(curve));
     }
