@@ -7,6 +7,7 @@
 #include "analysis/identification.hpp"
 #include "api/bind_excitation.hpp"
 #include "api/classes.hpp"
+#include "api/data.hpp"
 #include "api/identify_options.hpp"
 #include "api/picture.hpp"
 #include "api/plot_options.hpp"
@@ -25,6 +26,7 @@ struct FitAnswer {
     std::vector<std::pair<std::string, double>> values, errors;
     std::vector<std::string> silent;
     std::optional<model::Oscillator> system;
+    model::Units units;  ///< of the record; without one for M where only ratios to I are found
 };
 using FitHandle = std::shared_ptr<const FitAnswer>;
 
@@ -42,6 +44,7 @@ void name_values(FitAnswer& fit) {
         return fit.question.given[static_cast<std::size_t>(which)].has_value();
     };
     const bool absolute = fit.question.M || given(Unknown::I) || given(Unknown::k);
+    if (!absolute) fit.units.M.clear();
     add("omega0", found.omega0, found.omega0_error);
     add("zeta", found.zeta, found.zeta_error);
     add("Rd_over_k", found.Rd_over_k, found.Rd_over_k_error);
@@ -62,7 +65,8 @@ void name_values(FitAnswer& fit) {
                                            .stiffness = value(Unknown::k),
                                            .damping = value(Unknown::C),
                                            .kinetic_friction = value(Unknown::Rd),
-                                           .breakaway = std::max(value(Unknown::Re), value(Unknown::Rd))});
+                                           .breakaway = std::max(value(Unknown::Re), value(Unknown::Rd)),
+                                           .units = fit.units});
     if (system) fit.system = std::move(system).value();
 }
 
@@ -72,6 +76,7 @@ int identify_record(lua_State* L) {
     options.fill(asked);
     auto fit = std::make_shared<FitAnswer>();
     take_record(L, options, asked, fit->question);
+    fit->units = units_of_record(L, options);
     if (options.has("M")) {
         options.push("M");
         fit->question.M = to_excitation(L, -1, "identify: M", "M");
@@ -174,8 +179,25 @@ int fit_plot(lua_State* L) {
                          curve(fit->found.predicted, "fit", plots::Style::line)};
     figures[1].curves = {curve(residual_of(*fit), "", plots::Style::points)};
     figures[1].title = "record - fit";
-    for (plots::Figure& figure : figures) figure.x.label = "t";
+    const ColumnUnits in(fit->units);
+    for (plots::Figure& figure : figures) {
+        figure.x.label = model::of_unit("t", in.t);
+        if (!in.theta.empty()) figure.y.label = model::of_unit("θ", in.theta);
+    }
     return deliver(L, options, std::move(figures));
+}
+
+/// What a value of this name is measured in; nothing where nobody has said it.
+std::string unit_of_value(const model::Units& units, std::string_view name) {
+    if (units.usual()) return "";
+    if (name == "omega0") return units.t.empty() ? "" : "rad/" + units.t;
+    if (name == "velocity0") return units.speed();
+    if (name == "Rd_over_k" || name == "theta0" || name == "offset") return units.theta;
+    return name == "I"                    ? units.inertia()
+           : name == "k"                  ? units.stiffness()
+           : name == "C"                  ? units.damping()
+           : name == "Rd" || name == "Re" ? units.M
+                                          : "";
 }
 
 std::string fit_summary(const FitAnswer& fit) {
@@ -186,6 +208,7 @@ std::string fit_summary(const FitAnswer& fit) {
         text += fmt::format("\n  {:<10} {:<12.6g}", name, value);
         text += error > 0 ? fmt::format(" +- {:.2g}", error) : "";
         text.erase(text.find_last_not_of(' ') + 1);
+        text = model::with_unit(std::move(text), unit_of_value(fit.units, name));
     }
     return fit.silent.empty() ? text
                               : text + fmt::format("\n  the record says nothing about {}", fmt::join(fit.silent, ", "));

@@ -58,6 +58,8 @@ inline constexpr text::Call identify_call{"identify", "identify{ data = run }", 
 /// Fills times and angles of the question, without gaps. Raises when there is no such record.
 void take_record(lua_State* L, const lua::Options& options, const IdentifyOptions& asked,
                  analysis::IdentifyQuestion& question);
+/// What the record is measured in, where its run or its columns say it.
+model::Units units_of_record(lua_State* L, const lua::Options& options);
 /// Fills what is given, by value or by not being free. The M of the question must be there already.
 void take_given(lua_State* L, const lua::Options& options, const IdentifyOptions& asked,
                 analysis::IdentifyQuestion& question);

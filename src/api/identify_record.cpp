@@ -6,7 +6,7 @@
 
 #include "api/data.hpp"
 #include "api/identify_options.hpp"
-#include "api/run.hpp"
+#include "api/units_option.hpp"
 
 namespace dinal::api {
 namespace {
@@ -89,6 +89,21 @@ const std::vector<double>& record_column(const lua::Options& options, const Reco
 }
 
 }  // namespace
+
+model::Units units_of_record(lua_State* L, const lua::Options& options) {
+    model::Units units;
+    options.push("data");
+    if (const auto* run = lua::test<RunHandle>(L, -1)) {
+        units = units_of(**run);
+    } else if (const auto* data = lua::test<DataHandle>(L, -1)) {
+        for (const auto& [name, unit] : {std::pair{"theta", &units.theta}, {"t", &units.t}, {"M", &units.M}}) {
+            const DataColumn* column = (*data)->find(name);
+            if (column != nullptr && !column->unit.empty()) *unit = column->unit;
+        }
+    }
+    lua_pop(L, 1);
+    return units;
+}
 
 void take_record(lua_State* L, const lua::Options& options, const IdentifyOptions& asked,
                  analysis::IdentifyQuestion& question) {

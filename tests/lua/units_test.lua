@@ -111,6 +111,26 @@ test("a response has them at its axes and in its jumps", function()
     has(tostring(block:response{ frequency = 0.3, amplitude = { 1, 2 }, points = 3 }), "M0, N")
 end)
 
+test("a fit has those of its record, and none of a torque that the record does not tell", function()
+    local function decay(sys) return sys:simulate{ theta0 = 1, t_end = 8, dt = 0.05 } end
+    local fit, known = identify{ data = decay(block) }, identify{ data = decay(block), I = 1 }
+    assert(tostring(fit):find "omega0 +2 .* rad/s\n" and tostring(fit):find "theta0 +1 .* m\n", tostring(fit))
+    equal(fit.system.units.t, "s")
+    equal(fit.system.units.M, nil)
+    equal(known.system.units.M, "N")
+    assert(tostring(known):find "k +4 .* N/m\n", tostring(known))
+    has(tostring(fit:plot{ show = false, width = 60, ascii = true }), "theta, m", "t, s")
+    has_not(tostring(identify{ data = decay(plain) }), "rad")
+end)
+
+test("a report has them in its tables", function()
+    local file = support.temporary ".html"
+    local page = report{ title = "units" }
+    page:table(run.events)
+    page:save(file)
+    has(support.read(file), "<th>t, s</th>", "<th>theta, m</th>", "<th>kind</th>")
+end)
+
 test("a file keeps them, for who reads it and for the run that is read from it", function()
     local file = support.temporary ".csv"
     run:save(file)
