@@ -36,6 +36,7 @@ std::vector<std::string> names_of(const model::Extras& extras) {
 
 /// A relay may look at a state of the run, which must be there.
 void check_relays(const lua::Options& options, const source::Task& task) {
+    if (!task.excitation.has_script()) return;
     const std::vector<std::string> names = names_of(task.extras);
     for (const model::Component& c : task.excitation.components()) {
         const auto* relay = model::controller_of<model::RelayController>(c);
@@ -72,15 +73,15 @@ source::Task asked_task(lua_State* L, const lua::Options& options, const RunOpti
                         const model::Oscillator& system) {
     const auto* integrator = options.object<motion::Integrator>("integrator");
     options.push("M");
-    const model::Excitation excitation = to_excitation(L, -1, "sys:simulate: M", "M");
     source::Task task{.system = system,
-                      .excitation = excitation,
+                      .excitation = to_excitation(L, -1, "sys:simulate: M", "M"),
                       .initial = {.theta = asked.theta0, .velocity = asked.velocity0},
                       .window = {.start = asked.t_start},
                       .rows = asked.dt ? motion::Grid::every(*asked.dt) : motion::Grid::at(asked.times),
                       .integrator = {},
                       .extras = read_extras(L, options)};
-    task.integrator = integrator != nullptr ? *integrator : motion::integrator_for(system, excitation, task.extras);
+    task.integrator =
+        integrator != nullptr ? *integrator : motion::integrator_for(system, task.excitation, task.extras);
     lua_pop(L, 1);
     check_relays(options, task);
     if (!asked.t_end && asked.times.empty()) {
@@ -109,7 +110,7 @@ int run_task(lua_State* L, const lua::Options& options, source::Origin origin, d
     const motion::Limits limits = limits_of(dense);
 
     lua::CallState call(L);
-    call.name_states(names_of(run.origin->extras));
+    if (!run.origin->extras.states.empty()) call.name_states(names_of(run.origin->extras));
     terminal::Progress progress = terminal::Progress::of_time(from, to);
     const auto monitor = [&progress](double t) {
         progress.advance(t);
@@ -139,12 +140,13 @@ int simulate_system(lua_State* L) {
         parameters.units = *units;
         task.system = options.value_or_fail(model::Oscillator::make(parameters));
     }
+    const double from = task.window.start;
     const auto compute = [](const source::Task& given, const motion::Monitor& monitor, const motion::Limits& limits) {
         return motion::simulate(given.system, given.excitation, given.initial, given.window, given.rows,
                                 given.integrator, monitor, limits, given.extras);
     };
     // What M refers to is written down before M runs, because it may change that.
-    return run_task(L, options, source::origin_of(L, task), task.window.start, asked.dense, compute);
+    return run_task(L, options, source::origin_of(L, std::move(task)), from, asked.dense, compute);
 }
 
 }  // namespace dinal::api

@@ -66,13 +66,10 @@ void check_state_name(const lua::Options& options, const std::string& name) {
 
 std::vector<model::OwnState> read_states(lua_State* L, const lua::Options& options) {
     std::vector<model::OwnState> states;
+    if (!options.has("states")) return states;
     options.push("states");
-    if (!lua_isnil(L, -1) && lua_type(L, -1) != LUA_TTABLE) {
+    if (lua_type(L, -1) != LUA_TTABLE) {
         options.wrong("states", options.row("states").wanted);
-    }
-    if (lua_isnil(L, -1)) {
-        lua_pop(L, 1);
-        return states;
     }
     std::vector<std::string> names;
     lua_pushnil(L);
@@ -166,31 +163,31 @@ model::WantedEvent read_event(lua_State* L, const lua::Options& options, const s
 
 std::vector<model::WantedEvent> read_events(lua_State* L, const lua::Options& options) {
     std::vector<model::WantedEvent> events;
+    if (!options.has("events")) return events;
     options.push("events");
-    if (!lua_isnil(L, -1)) {
-        if (lua_type(L, -1) != LUA_TTABLE) {
-            options.wrong("events", options.row("events").wanted);
-        }
-        const auto count = static_cast<lua_Integer>(lua_rawlen(L, -1));
-        for (lua_Integer i = 1; i <= count; ++i) {
-            if (lua_rawgeti(L, -1, i) != LUA_TTABLE) {
-                options.wrong("events", options.row("events").wanted);
-            }
-            events.push_back(read_event(L, options, fmt::format("events[{}]", i)));
-            lua_pop(L, 1);
-        }
-        lua_pushnil(L);
-        if (count == 0 && lua_next(L, -2) != 0) {
-            options.wrong("events", options.row("events").wanted);
-        }
-        lua_settop(L, lua_gettop(L) - (count == 0 ? 0 : 1));
+    if (lua_type(L, -1) != LUA_TTABLE) {
+        options.wrong("events", options.row("events").wanted);
     }
+    const auto count = static_cast<lua_Integer>(lua_rawlen(L, -1));
+    for (lua_Integer i = 1; i <= count; ++i) {
+        if (lua_rawgeti(L, -1, i) != LUA_TTABLE) {
+            options.wrong("events", options.row("events").wanted);
+        }
+        events.push_back(read_event(L, options, fmt::format("events[{}]", i)));
+        lua_pop(L, 1);
+    }
+    lua_pushnil(L);
+    if (count == 0 && lua_next(L, -2) != 0) {
+        options.wrong("events", options.row("events").wanted);
+    }
+    lua_settop(L, lua_gettop(L) - (count == 0 ? 0 : 1));
     lua_pop(L, 1);
     return events;
 }
 
 /// A function of time alone.
 model::Excitation read_motion(lua_State* L, const lua::Options& options, const char* name) {
+    if (!options.has(name)) return {};
     options.push(name);
     model::Excitation motion = to_excitation(L, -1, fmt::format("sys:simulate: {}", name), name);
     if (motion.has_feedback() || model::has_memory(motion)) {

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 
 #include "lua/lua_text.hpp"
@@ -30,7 +31,15 @@ Options::Options(lua_State* L, int index, const text::Call& call) : L_(L), index
     check_table();
 }
 
-void Options::check_table() const {
+std::size_t Options::place(std::string_view name) const {
+    for (std::size_t i = 0; i < call_.options.size(); ++i) {
+        if (name == call_.options[i].name) return i;
+    }
+    return most_options;
+}
+
+void Options::check_table() {
+    assert(call_.options.size() <= most_options);
     if (call_.may_be_bare && lua_isnoneornil(L_, index_)) {
         lua_settop(L_, index_ - 1);
         lua_newtable(L_);
@@ -40,8 +49,6 @@ void Options::check_table() const {
                        fmt::format("{} takes one table of named options, for example {}", call_.name, call_.example),
                    .call = call_.name});
     }
-    Names known;
-    for (const text::Option& option : call_.options) known.emplace_back(option.name);
     lua_pushnil(L_);
     while (lua_next(L_, index_) != 0) {
         if (lua_type(L_, -2) != LUA_TSTRING) {
@@ -50,8 +57,11 @@ void Options::check_table() const {
                    .call = call_.name,
                    .culprit = written(L_, -1)});
         }
-        const std::string_view name = lua_tostring(L_, -2);
-        if (std::find(known.begin(), known.end(), name) == known.end()) {
+        const std::string_view name = text_at(L_, -2);
+        const std::size_t row = place(name);
+        if (row == most_options) {
+            Names known;
+            for (const text::Option& option : call_.options) known.emplace_back(option.name);
             raise(L_, {.sentence = known.empty() ? fmt::format("{} has no options, so no '{}' either", call_.name, name)
                                                  : fmt::format("{} has no option '{}' among {}", call_.name, name,
                                                                joined(known, " and ")),
@@ -59,6 +69,7 @@ void Options::check_table() const {
                        .culprit = std::string(name),
                        .cure = text::did_you_mean(name, known)});
         }
+        given_.set(row);
         lua_pop(L_, 1);
     }
 }
@@ -68,16 +79,8 @@ void Options::push(std::string_view name) const {
     lua_rawget(L_, index_);  // raw: a metatable must not hide from the check of names
 }
 
-bool Options::has(std::string_view name) const {
-    push(name);
-    const bool there = !lua_isnil(L_, -1);
-    lua_pop(L_, 1);
-    return there;
-}
-
 const text::Option& Options::row(std::string_view name) const {
-    return *std::find_if(call_.options.begin(), call_.options.end(),
-                         [name](const text::Option& option) { return option.name == name; });
+    return call_.options[place(name)];
 }
 
 void Options::fill(const void* owner, void* object) const {
@@ -88,9 +91,9 @@ void Options::fill(const void* owner, void* object) const {
         }
         const bool first_of_pair = i + 1 < call_.options.size() && call_.options[i + 1].instead_of_previous;
         if (first_of_pair) {
-            check_pair(option, call_.options[i + 1]);
+            check_pair(i);
         }
-        if (has(option.name)) {
+        if (given_[i]) {
             option.filled.set(object, value(option));
         } else if (option.otherwise == text::needed && !first_of_pair && !option.instead_of_previous) {
             missing(option.name);
@@ -98,11 +101,13 @@ void Options::fill(const void* owner, void* object) const {
     }
 }
 
-void Options::check_pair(const text::Option& first, const text::Option& second) const {
-    if (has(first.name) && has(second.name)) {
+void Options::check_pair(std::size_t row) const {
+    const text::Option &first = call_.options[row], &second = call_.options[row + 1];
+    const bool has_first = given_[row], has_second = given_[row + 1];
+    if (has_first && has_second) {
         fail(second.name, fmt::format("{} and {} exclude each other; give one of them", first.name, second.name));
     }
-    if (first.otherwise == text::needed && !has(first.name) && !has(second.name)) {
+    if (first.otherwise == text::needed && !has_first && !has_second) {
         fail(first.name, fmt::format("{} or {} is needed, for example {}", first.name, second.name, call_.example));
     }
 }

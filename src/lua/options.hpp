@@ -1,6 +1,7 @@
 // The one table of named options that a constructor or a method takes, checked strictly and once against its rows.
 #pragma once
 
+#include <bitset>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -24,7 +25,8 @@ public:
         fill(&text::detail::owner_tag<T>, &object);
     }
 
-    [[nodiscard]] bool has(std::string_view name) const;
+    /// The option was given when the call began.
+    [[nodiscard]] bool has(std::string_view name) const { return given_[place(name)]; }
     /// Pushes the option as it stands, nil when absent.
     void push(std::string_view name) const;
     /// The option as its row wants it, which must not be of the kind `other`.
@@ -67,15 +69,21 @@ public:
     [[noreturn]] void missing(std::string_view name) const;
 
 private:
-    void check_table() const;
+    static constexpr std::size_t most_options = 64;
+
+    void check_table();
+    /// Of a row; `most_options` when there is none.
+    [[nodiscard]] std::size_t place(std::string_view name) const;
     void fill(const void* owner, void* object) const;
-    void check_pair(const text::Option& first, const text::Option& second) const;
+    /// Of that row and the one after it.
+    void check_pair(std::size_t row) const;
     [[nodiscard]] double number_on_top(const text::Option& option) const;
     [[nodiscard]] std::size_t choice_on_top(const text::Option& option) const;
 
     lua_State* L_;
     int index_;
     text::Call call_;
+    std::bitset<most_options + 1> given_;  ///< by row
 };
 
 /// The table of a call whose options all fill one struct.

@@ -107,8 +107,12 @@ void settle(Trajectory& trajectory, const model::Oscillator& system, const model
     if (!for_good(trajectory, system, excitation, extras.base, since)) return;
     trajectory.outcome = model::Outcome::at_rest;
     if (stop == no_stop) return;
-    std::vector<model::Event> last(trajectory.events.begin() + static_cast<std::ptrdiff_t>(stop),
-                                   trajectory.events.end());
+    const auto events = trajectory.events.column(0);
+    if (trajectory.events.own_bytes() > 0) {  // nobody else has seen them
+        trajectory.events.writable()[stop].kind = model::EventKind::rest;
+        return;
+    }
+    std::vector<model::Event> last(events.begin() + static_cast<std::ptrdiff_t>(stop), events.end());
     last.front().kind = model::EventKind::rest;
     trajectory.events = trajectory.events.followed_by(stop, Growing<model::Event>(std::move(last)),
                                                       std::numeric_limits<std::size_t>::max());

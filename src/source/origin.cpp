@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "lua/user_function.hpp"
+#include "motion/witness.hpp"
 #include "source/describe.hpp"
 #include "source/value_text.hpp"
 #include "text/characters.hpp"
@@ -100,11 +101,9 @@ std::string extras_text(const model::Extras& extras) {
     return text;
 }
 
-}  // namespace
-
-Origin origin_of(lua_State* L, const Task& task) {
-    Origin origin{task, {}};
-    auto& lines = origin.set_up;
+/// Without functions of a user Lua is not asked, and may be null.
+std::vector<std::string> set_up_lines(lua_State* L, const Task& task) {
+    std::vector<std::string> lines;
     lines.emplace_back("-- dinal " DINAL_VERSION ": without the \"# \" before them, these lines repeat the run");
     if (!task.system.units().usual()) {
         lines.push_back(task.system.units().in_file());
@@ -127,11 +126,19 @@ Origin origin_of(lua_State* L, const Task& task) {
         append_lines(lines, line);
     }
     append_lines(lines, "local sys = " + system);
-    return origin;
+    return lines;
+}
+
+}  // namespace
+
+Origin origin_of(lua_State* L, Task task) {
+    std::vector<std::string> set_up;
+    if (motion::has_functions(task.system, task.excitation, task.extras)) set_up = set_up_lines(L, task);
+    return {std::move(task), std::move(set_up)};
 }
 
 std::vector<std::string> repeat_lines(const Origin& origin) {
-    std::vector<std::string> lines = origin.set_up;
+    std::vector<std::string> lines = origin.set_up.empty() ? set_up_lines(nullptr, origin) : origin.set_up;
     append_lines(lines,
                  fmt::format("run = sys:simulate{{ {}{}theta0 = {}, velocity0 = {}, t_start = {}, t_end = {}, {}, "
                              "integrator = {} }}",

@@ -23,11 +23,12 @@ struct Task {
 
 /// What was simulated. A trajectory that was read from a file has none.
 struct Origin : Task {
-    /// Lua text that makes M and the system again, with the values that their variables had when the run was started.
+    /// Lua text that makes M and the system again, with the values that the variables of their functions had when the
+    /// run was started; empty where there are no functions, and the text can be had at any time.
     std::vector<std::string> set_up;
 };
 
-Origin origin_of(lua_State* L, const Task& task);
+Origin origin_of(lua_State* L, Task task);
 
 /// Lua text that makes the same run again, as lines.
 std::vector<std::string> repeat_lines(const Origin& origin);

@@ -19,7 +19,7 @@ std::optional<text::Error> Exact::wrong_for(const model::Oscillator& system,
                                "one",
                            .option = "integrator"};
     }
-    if (model::Lowered(system).has_remainder()) {
+    if (system.friction().depends_on_speed()) {
         return text::Error{.sentence =
                                "integrator.exact{} takes dry friction that does not depend on speed: use "
                                "integrator.spectral{} for this law",
