@@ -36,21 +36,27 @@ Field::Field(const Problem& problem, const Past& past)
       short_stretch_(0.05 * pace_of(problem)),
       initial_(problem.initial),
       memory_(problem.excitation.components().size()) {
+    kinds_.reserve(memory_.size());
     for (const model::Component& c : excitation_.components()) {
-        if (const auto* delayed = model::controller_of<model::DelayedController>(c)) delays_.push_back(delayed->by);
+        Kind kind{.sampled = model::controller_of<model::SampledController>(c),
+                  .relay = model::controller_of<model::RelayController>(c),
+                  .delayed = model::controller_of<model::DelayedController>(c)};
+        if (kind.is_native()) kind.function = std::get_if<model::Scripted>(&c.term);
+        if (kind.delayed != nullptr) delays_.push_back(kind.delayed->by);
+        kinds_.push_back(kind);
     }
 }
 
-double Field::output(std::size_t component, const model::Controller& controller, const MotionPoint& at) const {
-    const ControllerMemory& memory = memory_[component];
-    if (const auto* relay = dynamic_cast<const model::RelayController*>(&controller)) {
-        return relay->levels[memory.on ? 0 : 1];
+/// Of a component that is not native.
+double Field::asked(std::size_t component, const MotionPoint& at) const {
+    const Kind& kind = kinds_[component];
+    if (kind.function != nullptr) {
+        return kind.function->function->value_with(towards(at.t - kind.function->delay, at.side), at.y, at.states);
     }
-    if (const auto* delayed = dynamic_cast<const model::DelayedController*>(&controller)) {
-        const model::State then = past_.at(at.t - delayed->by, at.side);
-        return delayed->function->value_with(towards(at.t, at.side), then, at.states);
-    }
-    return memory.output;
+    if (kind.relay != nullptr) return kind.relay->levels[memory_[component].on ? 0 : 1];
+    if (kind.sampled != nullptr) return memory_[component].output;
+    const model::State then = past_.at(at.t - kind.delayed->by, at.side);
+    return kind.delayed->function->value_with(towards(at.t, at.side), then, at.states);
 }
 
 double Field::load(const MotionPoint& at) const {
@@ -61,12 +67,8 @@ double Field::load(const MotionPoint& at) const {
         const model::Component& c = components[i];
         if (c.gain == 0 || native_t < c.from || native_t >= c.to) continue;
         double value = 0;
-        if (const auto* script = std::get_if<model::Scripted>(&c.term)) {
-            if (const auto* controller = dynamic_cast<const model::Controller*>(script->function.get())) {
-                value = output(i, *controller, at);
-            } else {
-                value = script->function->value_with(towards(at.t - script->delay, at.side), at.y, at.states);
-            }
+        if (!kinds_[i].is_native()) {
+            value = asked(i, at);
             if (std::isnan(value)) return value;
         } else {
             value = std::visit(
@@ -119,9 +121,8 @@ void Field::rates(const MotionPoint& at, double* out) const {
 
 double Field::next_break(double t) const {
     double first = std::min({excitation_.next_break(t), extras_.belt.next_break(t), extras_.base.next_break(t)});
-    const auto components = excitation_.components();
-    for (std::size_t i = 0; i < components.size(); ++i) {
-        const auto* sampled = model::controller_of<model::SampledController>(components[i]);
+    for (std::size_t i = 0; i < kinds_.size(); ++i) {
+        const auto* sampled = kinds_[i].sampled;
         if (sampled == nullptr) continue;
         first = std::min(first, instant(*sampled, memory_[i].instant));
         if (!memory_[i].pending.empty()) first = std::min(first, memory_[i].pending.front().first);
@@ -141,12 +142,11 @@ double Field::view(double t, double spacing) const {
 
 void Field::begin(const MotionPoint& at) {
     for (std::size_t i = 0; i < memory_.size(); ++i) {
-        const model::Component& c = excitation_.components()[i];
-        if (const auto* sampled = model::controller_of<model::SampledController>(c)) {
+        if (const auto* sampled = kinds_[i].sampled) {
             const double n = std::ceil((at.t - sampled->at) / sampled->every - 1e-9);
             memory_[i].instant = static_cast<std::int64_t>(std::max(n, 0.0));
             if (instant(*sampled, memory_[i].instant) < at.t) ++memory_[i].instant;
-        } else if (const auto* relay = model::controller_of<model::RelayController>(c)) {
+        } else if (const auto* relay = kinds_[i].relay) {
             memory_[i].on = relay->starts_on;
             if (until_switch(i, at) < 0) memory_[i].on = !memory_[i].on;
         }
@@ -155,7 +155,7 @@ void Field::begin(const MotionPoint& at) {
 
 bool Field::arrive(const MotionPoint& at) {
     for (std::size_t i = 0; i < memory_.size(); ++i) {
-        const auto* sampled = model::controller_of<model::SampledController>(excitation_.components()[i]);
+        const auto* sampled = kinds_[i].sampled;
         if (sampled == nullptr) continue;
         ControllerMemory& memory = memory_[i];
         const auto take = [&] {
@@ -177,17 +177,12 @@ bool Field::arrive(const MotionPoint& at) {
 }
 
 bool Field::may_go_on() const {
-    for (const model::Component& c : excitation_.components()) {
-        const auto* script = std::get_if<model::Scripted>(&c.term);
-        if (script != nullptr && model::controller_of(c) == nullptr && !script->function->may_go_on()) return false;
+    for (const Kind& kind : kinds_) {
+        if (kind.function != nullptr && !kind.function->function->may_go_on()) return false;
     }
     if (!extras_.belt.may_go_on() || !extras_.base.may_go_on()) return false;
     return std::all_of(extras_.states.begin(), extras_.states.end(),
                        [](const model::OwnState& state) { return state.rate->may_go_on(); });
-}
-
-const model::RelayController* Field::relay(std::size_t component) const {
-    return model::controller_of<model::RelayController>(excitation_.components()[component]);
 }
 
 double Field::until_switch(std::size_t component, const MotionPoint& at) const {

@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "model/controller.hpp"
 #include "model/extras.hpp"
 #include "model/lowered.hpp"
 #include "motion/simulate.hpp"
@@ -86,8 +87,8 @@ public:
     [[nodiscard]] bool may_go_on() const;
 
     // Relays, by their place among the components.
-    [[nodiscard]] const model::RelayController* relay(std::size_t component) const;
-    [[nodiscard]] std::size_t component_count() const { return excitation_.components().size(); }
+    [[nodiscard]] const model::RelayController* relay(std::size_t component) const { return kinds_[component].relay; }
+    [[nodiscard]] std::size_t component_count() const { return kinds_.size(); }
     /// Positive until it is to switch.
     [[nodiscard]] double until_switch(std::size_t component, const MotionPoint& at) const;
     void toggle(std::size_t component) { memory_[component].on = !memory_[component].on; }
@@ -96,8 +97,17 @@ public:
     void remember(const std::vector<ControllerMemory>& memory) { memory_ = memory; }
 
 private:
-    [[nodiscard]] double output(std::size_t component, const model::Controller& controller,
-                                const MotionPoint& at) const;
+    /// What a component is, looked up once: at most one of these.
+    struct Kind {
+        const model::Scripted* function = nullptr;
+        const model::SampledController* sampled = nullptr;
+        const model::RelayController* relay = nullptr;
+        const model::DelayedController* delayed = nullptr;
+        [[nodiscard]] bool is_native() const {
+            return function == nullptr && sampled == nullptr && relay == nullptr && delayed == nullptr;
+        }
+    };
+    [[nodiscard]] double asked(std::size_t component, const MotionPoint& at) const;
     [[nodiscard]] double instant(const model::SampledController& sampled, std::int64_t n) const {
         return sampled.at + static_cast<double>(n) * sampled.every;
     }
@@ -108,6 +118,7 @@ private:
     double inertia_;
     double short_stretch_;  // in which a belt may be differentiated, time units
     model::State initial_;
+    std::vector<Kind> kinds_;               // of each component
     std::vector<ControllerMemory> memory_;  // for each component
     std::vector<double> delays_;
 };
