@@ -57,30 +57,53 @@ Samples at_nodes(const Series<n>& c) {
     return at_nodes(folded);
 }
 
-/// Clenshaw's sum.
+/// Clenshaw's sum, of the even and of the odd terms by themselves: T(2k) = Tk(y) and T(2k+1) = x Pk(y) with y = 2 x^2 -
+/// 1, P0 = 1, P1 = 2 y - 1 and the recurrence of Tk. Two chains of half the length, neither of which waits for the
+/// other.
 template <std::size_t n>
 double value(const Series<n>& c, double x) {
-    double b1 = 0, b2 = 0;
-    for (std::size_t k = n - 1; k > 0; --k) {
-        const double b0 = c[k] + (2 * x * b1 - b2);
-        b2 = b1;
-        b1 = b0;
+    const double y = 2 * x * x - 1, twice = 2 * y;
+    double even = 0, even_before = 0, odd = 0, odd_before = 0;
+    constexpr std::size_t pairs = n / 2;
+    if constexpr (n % 2 != 0) even = c[n - 1];
+    for (std::size_t k = pairs; k > 0; --k) {
+        const double next_odd = (c[2 * k - 1] - odd_before) + twice * odd;
+        odd_before = odd, odd = next_odd;
+        if (k == 1) break;
+        const double next_even = (c[2 * k - 2] - even_before) + twice * even;
+        even_before = even, even = next_even;
     }
-    return c[0] + (x * b1 - b2);
+    return ((c[0] - even_before) + y * even) + x * (odd - odd_before);
 }
+
+/// f(0) + f(1) + ... + f(n - 1), in four sums side by side: one addition does not wait for the last one.
+template <std::size_t n, class F>
+double sum_of(F f) {
+    std::array<double, 4> sums{};
+    std::size_t k = 0;
+    for (; k + 4 <= n; k += 4) {
+        for (std::size_t i = 0; i < 4; ++i) sums[i] += f(k + i);
+    }
+    for (; k < n; ++k) sums[k % 4] += f(k);
+    return (sums[0] + sums[2]) + (sums[1] + sums[3]);
+}
+
+/// 1/(2 k).
+template <std::size_t n>
+inline constexpr Series<n> half_inverses = [] {
+    Series<n> all{};
+    for (std::size_t k = 1; k < n; ++k) all[k] = 0.5 / static_cast<double>(k);
+    return all;
+}();
 
 /// The antiderivative that has the value `at_left` at x = -1.
 template <std::size_t n>
 Series<n + 1> integral(const Series<n>& f, double at_left) {
     Series<n + 1> F{};
     F[1] = f[0] - f[2] / 2;
-    double alternating = -F[1];
-    for (std::size_t k = 2; k <= n; ++k) {
-        const double next = k + 1 < n ? f[k + 1] : 0;
-        F[k] = (f[k - 1] - next) * (0.5 / static_cast<double>(k));
-        alternating += k % 2 == 0 ? F[k] : -F[k];
-    }
-    F[0] = at_left - alternating;
+    for (std::size_t k = 2; k + 1 < n; ++k) F[k] = (f[k - 1] - f[k + 1]) * half_inverses<n + 1>[k];
+    for (std::size_t k = n - 1; k <= n; ++k) F[k] = f[k - 1] * half_inverses<n + 1>[k];
+    F[0] = at_left - sum_of<n>([&](std::size_t k) { return k % 2 == 0 ? -F[k + 1] : F[k + 1]; });
     return F;
 }
 
@@ -111,9 +134,7 @@ Series<n + m - 1> product(const Series<n>& f, const Series<m>& g) {
 /// sum |c[k]|, which is at least max |f|.
 template <std::size_t n>
 double size(const Series<n>& c) {
-    double sum = 0;
-    for (const double x : c) sum += std::fabs(x);
-    return sum;
+    return sum_of<n>([&](std::size_t k) { return std::fabs(c[k]); });
 }
 
 /// The last two coefficients: about what a series that has decayed is off by.
@@ -121,25 +142,24 @@ inline double tail(const Series<points>& c) {
     return std::max(std::fabs(c[degree - 1]), std::fabs(c[degree]));
 }
 
-/// A bound of |f''|: |Tk''| <= k^2 (k^2 - 1)/3.
+/// Bounds of |Tk'|, k^2, of |Tk''|, k^2 (k^2 - 1)/3, and of |Tk'''|, k^2 (k^2 - 1)(k^2 - 4)/15.
 template <std::size_t n>
-double second_derivative_bound(const Series<n>& c) {
-    double sum = 0;
-    for (std::size_t k = 2; k < n; ++k) {
+inline constexpr std::array<Series<n>, 3> derivative_bounds = [] {
+    std::array<Series<n>, 3> all{};
+    for (std::size_t k = 0; k < n; ++k) {
         const auto k2 = static_cast<double>(k * k);
-        sum += std::fabs(c[k]) * (k2 * (k2 - 1) / 3);
+        all[0][k] = k2;
+        all[1][k] = k2 * (k2 - 1) / 3;
+        all[2][k] = k < 3 ? 0 : k2 * (k2 - 1) * (k2 - 4) / 15;
     }
-    return sum;
-}
-/// A bound of |f'''|: |Tk'''| <= k^2 (k^2 - 1)(k^2 - 4)/15.
-template <std::size_t n>
-double third_derivative_bound(const Series<n>& c) {
-    double sum = 0;
-    for (std::size_t k = 3; k < n; ++k) {
-        const auto k2 = static_cast<double>(k * k);
-        sum += std::fabs(c[k]) * (k2 * (k2 - 1) * (k2 - 4) / 15);
-    }
-    return sum;
+    return all;
+}();
+
+/// A bound of |f'|, |f''| or |f'''|.
+template <std::size_t order, std::size_t n>
+double derivative_bound(const Series<n>& c) {
+    static_assert(order >= 1 && order <= 3);
+    return sum_of<n>([&](std::size_t k) { return std::fabs(c[k]) * derivative_bounds<n>[order - 1][k]; });
 }
 
 }  // namespace dinal::motion::spectral::chebyshev

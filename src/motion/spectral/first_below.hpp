@@ -18,7 +18,8 @@ public:
     Bounded(double sign, const Series<n>& f, const Series<n - 1>& slope) : f_(f), slope_(slope) {
         for (double& c : f_) c *= sign;
         for (double& c : slope_) c *= sign;
-        second_ = second_derivative_bound(f_);
+        second_ = derivative_bound<2>(f_);
+        at_nodes_ = chebyshev::at_nodes(f_);
         floor_ = rounding * size(f_);
         slope_floor_ = rounding * size(slope_);
     }
@@ -42,7 +43,13 @@ public:
         }
         return b;
     }
-    [[nodiscard]] Samples at_nodes() const { return chebyshev::at_nodes(f_); }
+    [[nodiscard]] const Samples& at_nodes() const { return at_nodes_; }
+    /// From now on the curve of the other sign.
+    void turn_over() {
+        for (double& c : f_) c = -c;
+        for (double& c : slope_) c = -c;
+        for (double& value : at_nodes_) value = -value;
+    }
 
     /// Whether a curve that leaves zero at -1 is certainly positive up to -1 + d: by its slope there, or, where that
     /// is zero too, by its curvature.
@@ -55,7 +62,7 @@ public:
             const auto k2 = static_cast<double>(k * k);
             bend += (k % 2 == 0 ? f_[k] : -f_[k]) * (k2 * (k2 - 1) / 3);
         }
-        return bend > third_derivative_bound(f_) * d / 3;
+        return bend > derivative_bound<3>(f_) * d / 3;
     }
 
 private:
@@ -63,6 +70,7 @@ private:
 
     Series<n> f_;
     Series<n - 1> slope_;
+    Samples at_nodes_{};
     double second_ = 0;
     double floor_ = 0, slope_floor_ = 0;
 };
@@ -122,7 +130,7 @@ enum class LeftEnd {
 /// zero; where it cannot, the interval is halved until it can, so pairs of zeros close together are not passed over.
 template <class F, class Confirm>
 std::optional<double> first_below(const F& f, double from, LeftEnd start, const Confirm& confirm) {
-    const Samples at_node = f.at_nodes();
+    const Samples& at_node = f.at_nodes();
     std::size_t j = 1;
     while (j < degree && nodes[j] <= from) ++j;
     double left = from;

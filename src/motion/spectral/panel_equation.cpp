@@ -36,9 +36,7 @@ constexpr EndWeights end_weights = [] {
 }();
 
 double dot(const Series<n>& x, const Series<n>& y) {
-    double sum = 0;
-    for (std::size_t k = 0; k < n; ++k) sum += x[k] * y[k];
-    return sum;
+    return chebyshev::sum_of<n>([&](std::size_t k) { return x[k] * y[k]; });
 }
 
 }  // namespace
@@ -60,7 +58,7 @@ void PanelEquation::prepare(double a, double b) {
         const double F = -B + E * beta2;
         const double inverse = 1 / (D + E * gamma2 + F * beta1);
         inverse_[k] = inverse;
-        upper1_[k] = F, upper2_[k] = E;
+        upper1_[k] = F * inverse, upper2_[k] = E * inverse;
         beta_[k] = -(B + F * gamma1) * inverse;
         gamma_[k] = -A * inverse;
         beta2 = beta1, gamma2 = gamma1, beta1 = beta_[k], gamma1 = gamma_[k];
@@ -86,7 +84,7 @@ Series<n> PanelEquation::solve(const Series<n>& r, double v0) const {
     Series<n> w{};
     double alpha1 = 0, alpha2 = 0;
     for (std::size_t k = degree; k >= 2; --k) {
-        w[k] = inverse_[k] * (r[k] - upper2_[k] * alpha2 - upper1_[k] * alpha1);
+        w[k] = (inverse_[k] * r[k] - upper2_[k] * alpha2) - upper1_[k] * alpha1;
         alpha2 = alpha1, alpha1 = w[k];
     }
     for (std::size_t k = 3; k < n; ++k) w[k] += beta_[k] * w[k - 1] + gamma_[k] * (k == 3 ? 0 : w[k - 2]);

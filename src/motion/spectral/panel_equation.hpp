@@ -25,7 +25,7 @@ private:
     double a_ = 0, b_ = 0;
     bool ready_ = false;
     // Row k, once the higher coefficients are eliminated: w[k] = alpha[k] + beta[k] w[k-1] + gamma[k] w[k-2], and
-    // alpha[k] = inverse[k] (r[k] - upper1[k] alpha[k+1] - upper2[k] alpha[k+2]).
+    // alpha[k] = inverse[k] r[k] - upper1[k] alpha[k+1] - upper2[k] alpha[k+2].
     Series<n> inverse_{}, upper1_{}, upper2_{}, beta_{}, gamma_{};
     Series<n> from_w0_{}, from_w1_{};               // the solutions of w[0] = 1 and of w[1] = 1 without load
     Series<n> row0_{}, row1_{};                     // the first two rows, with the values at x = -1 put in

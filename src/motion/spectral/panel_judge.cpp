@@ -33,8 +33,7 @@ constexpr std::size_t most_found_breaks = 50;
 }  // namespace
 
 double PanelSolver::lost_in_time() const {
-    double slope = 0;
-    for (std::size_t k = 1; k < points; ++k) slope += static_cast<double>(k * k) * std::fabs(panel_.M[k]);
+    const double slope = chebyshev::derivative_bound<1>(panel_.M);
     const double late = std::max(std::fabs(panel_.start.hi), std::fabs(panel_.end));
     // A jump has a slope, too, on a panel short enough; it must not pass for this.
     constexpr double most = 1e-6;

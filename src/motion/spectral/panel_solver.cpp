@@ -139,7 +139,7 @@ PanelSolver::Attempt PanelSolver::move(const Present& now, model::Motion way, co
 
 /// Whether the motion on the panel, its torques, and the bounds that prove its events are numbers.
 bool PanelSolver::within_range() const {
-    constexpr double largest = std::numeric_limits<double>::max() / 1e7;  // chebyshev::third_derivative_bound takes 2e6
+    constexpr double largest = std::numeric_limits<double>::max() / 1e7;  // chebyshev::derivative_bound takes 2e6
     const double farthest = std::fabs(panel_.begin.theta) + chebyshev::size(panel_.p),
                  fastest = chebyshev::size(panel_.v) / panel_.h;
     const auto fits = [](double x) { return x < largest; };

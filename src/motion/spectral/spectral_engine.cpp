@@ -183,9 +183,10 @@ void SpectralEngine::record_turns() {
     double from = -1;
     LeftEnd start = now_.y.velocity == 0 ? LeftEnd::leaving : LeftEnd::anywhere;
     const auto no = [](double) { return false; };
-    while (standstill_.motion() != model::Motion::stuck) {
+    if (standstill_.motion() == model::Motion::stuck) return;
+    Bounded<points + 1> velocity(model::sign_of(standstill_.motion()), panel.v, panel.w);
+    for (;;) {
         const model::Motion motion = standstill_.motion();
-        const Bounded<points + 1> velocity(model::sign_of(motion), panel.v, panel.w);
         const auto x = first_below(velocity, from, start, no);
         if (!x) break;
         // A curve that leaves zero the other way was turned already, when that is told.
@@ -197,6 +198,7 @@ void SpectralEngine::record_turns() {
             standstill_.turned({panel.time(*x), now_.y.theta + value(panel.p, *x), value(panel.M, *x)});
         }
         if (told && from > -1) break;
+        velocity.turn_over();
         from = *x;
         start = LeftEnd::leaving;
     }

@@ -44,8 +44,7 @@ double SpectralEngine::release_towards(model::Motion side, double from) const {
     const SolvedPanel& panel = solver_.panel();
     const double sign = model::sign_of(side), k_theta = system_.pull_back(now_.y.theta), Re = standstill_.limit(side);
     const double doubt = 8 * (epsilon * (Re + std::fabs(k_theta)) + chebyshev::tail(panel.M));
-    double varying = 0;
-    for (std::size_t k = 1; k < points; ++k) varying += std::fabs(panel.M[k]);
+    const double varying = chebyshev::sum_of<points>([&](std::size_t k) { return k == 0 ? 0 : std::fabs(panel.M[k]); });
     const double mean = sign * (panel.M[0] - k_theta);
     if (mean + varying < Re - doubt) return nowhere;
 
