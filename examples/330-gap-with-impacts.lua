@@ -31,9 +31,9 @@ e = 0.5: rest at t = 1.354570923, by the formula 1.354570923
 e = 0.8: rest at t = 4.063712769, by the formula 4.063712769
 e = 0.0: rest at t = 0.451523641, by the formula 0.451523641
 a gap of 0.2 that shakes: frequency, impacts a period, hardest, how the work of the support is spent
-f = 0.5: 3.10 impacts, hardest 0.843; base 11.338 = impacts 10.375 + friction 0.962 + what moves
+f = 0.5: 3.10 impacts, hardest 0.843; base 11.362 = impacts 10.391 + friction 0.967 + what moves
 f = 1.0: 2.00 impacts, hardest 0.692; base 10.618 = impacts 9.783 + friction 0.798 + what moves
-f = 2.0: 0.50 impacts, hardest 0.419; base 0.688 = impacts 0.477 + friction 0.211 + what moves
+f = 2.0: 0.50 impacts, hardest 0.419; base 0.690 = impacts 0.478 + friction 0.212 + what moves
 restitution 0: the mass stays at the wall until it is pulled off by more than Re
 impact  t = 1.0557  theta = 1.0  M = 0.00
 stick   t = 1.0557  theta = 1.0  M = 0.00

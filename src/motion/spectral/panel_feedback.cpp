@@ -20,16 +20,22 @@ PanelSolver::Iteration PanelSolver::iterate(const model::State& departing) {
     for (const bool again : {false, true}) {
         if (!well_conditioned()) break;
         chebyshev::Samples p{}, v{};
-        for (std::size_t j = 0; j < points; ++j) {
-            v[j] = panel_.h * panel_.begin.velocity;
-            p[j] = (1 + chebyshev::nodes[j]) * v[j];
+        const bool predicted = steps_.predicted && !again, sampled_already = steps_.sampled && !again;
+        if (predicted) {
+            p = chebyshev::at_nodes(panel_.p), v = chebyshev::at_nodes(panel_.v);
+        } else {
+            for (std::size_t j = 0; j < points; ++j) {
+                v[j] = panel_.h * panel_.begin.velocity;
+                p[j] = (1 + chebyshev::nodes[j]) * v[j];
+            }
         }
         double change = model::never;
         for (int i = 0; i < most_iterations; ++i) {
             chebyshev::Samples rest{};
             for (std::size_t j = 0; j < points; ++j) {
                 const model::State state{panel_.begin.theta + p[j], v[j] / panel_.h};
-                panel_.samples[j] = sampled(j, j == 0 ? departing : state);
+                const bool asked = i == 0 && (sampled_already || (predicted && j == 0));
+                if (!asked) panel_.samples[j] = sampled(j, j == 0 ? departing : state);
                 if (!std::isfinite(panel_.samples[j])) return Iteration::failed;
                 rest[j] = panel_.samples[j] - remainder(state) + falls_.theta * p[j] + falls_.velocity * state.velocity;
                 if (!std::isfinite(rest[j])) return Iteration::failed;  // a law of friction that a user wrote

@@ -105,18 +105,24 @@ PanelSolver::Attempt PanelSolver::pass_over() {
     return Attempt::resolved;
 }
 
+/// Resolved; but so many short panels in a row lead nowhere.
+PanelSolver::Attempt PanelSolver::accept() {
+    patience_.unresolved = 0;
+    const bool needless = feedback_ || panel_.ends == SolvedPanel::End::inside;
+    patience_.too_short = needless && 2 * panel_.h < too_short * pace_ ? patience_.too_short + 1 : 0;
+    const int most = feedback_ ? most_short_with_feedback : most_attempts;
+    return patience_.too_short > most ? end_with(never_ending()) : Attempt::resolved;
+}
+
 PanelSolver::Attempt PanelSolver::judge(double unresolved) {
     if (unresolved <= 1) {
         const Look look = script_ ? look_between() : Look::agrees;
         if (look != Look::agrees) return looked(look);
-        patience_.unresolved = 0;
-        const bool needless = feedback_ || panel_.ends == SolvedPanel::End::inside;
-        patience_.too_short = needless && 2 * panel_.h < too_short * pace_ ? patience_.too_short + 1 : 0;
-        if (patience_.too_short > (feedback_ ? most_short_with_feedback : most_attempts))
-            return end_with(never_ending());
+        if (accept() == Attempt::ended) return Attempt::ended;
         lengthen(unresolved);
         return Attempt::resolved;
     }
+    if (unresolved > gross) missed_step();
     const double late = std::max(std::fabs(panel_.start.hi), std::fabs(panel_.end));
     if (2 * panel_.h <= std::max(shortest * pace_, 16 * epsilon * late)) {
         // Whatever goes on here is over before it can move the mass. A feedback that switches may do so again at once.

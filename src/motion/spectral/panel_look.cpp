@@ -36,60 +36,53 @@ double PanelSolver::gap() const {
 PanelSolver::Look PanelSolver::look_between() {
     if (2 * panel_.h <= too_short_to_look * pace_) return Look::agrees;
     constexpr std::size_t most_looks = looked_into.size() + 1;
-    std::array<double, points + most_looks> times{}, values{};
-    std::copy(panel_.times.begin(), panel_.times.end(), times.begin());
-    std::copy(panel_.samples.begin(), panel_.samples.end(), values.begin());
-    std::size_t count = points;
-    const bool moves = panel_.motion != model::Motion::stuck;
-    const auto misses = [&](double x) {
-        const double t = panel_.time(x);
-        model::State state = panel_.begin;
-        if (feedback_ && moves) {
-            state = {panel_.begin.theta + chebyshev::value(panel_.p, x), chebyshev::value(panel_.v, x) / panel_.h};
+    const bool moves = panel_.motion != model::Motion::stuck, of_time = !feedback_ || !moves;
+    std::array<double, most_looks> places{}, looks{}, found{};
+    std::size_t wanted = 0;
+    if (panel_.start.until(seen_) > 0 && seen_ < panel_.end) places[wanted++] = panel_.x(seen_);
+    for (const std::size_t j : looked_into) places[wanted++] = (chebyshev::nodes[j] + chebyshev::nodes[j + 1]) / 2;
+    for (std::size_t i = 0; i < wanted; ++i) looks[i] = panel_.time(places[i]);
+    if (!feedback_) {  // the way into the user's language is paid once for all
+        const std::size_t good = excitation_.fill({looks.data(), wanted}, {found.data(), wanted});
+        if (good < wanted) {
+            bad_time_ = looks[good];
+            return Look::failed;
         }
-        const double M = excitation_.value(t, state);
-        const auto* const place =
-            std::upper_bound(times.begin(), times.begin() + static_cast<std::ptrdiff_t>(count), t);
-        const auto i = static_cast<std::size_t>(place - times.begin());
-        std::copy_backward(times.begin() + static_cast<std::ptrdiff_t>(i),
-                           times.begin() + static_cast<std::ptrdiff_t>(count),
-                           times.begin() + static_cast<std::ptrdiff_t>(count) + 1);
-        std::copy_backward(values.begin() + static_cast<std::ptrdiff_t>(i),
-                           values.begin() + static_cast<std::ptrdiff_t>(count),
-                           values.begin() + static_cast<std::ptrdiff_t>(count) + 1);
-        times[i] = t, values[i] = M;
-        ++count;
-        return std::fabs(M - chebyshev::value(panel_.M, x));
-    };
-    double most = 0, where = 0;
-    const auto look = [&](double x) {
-        const double off = misses(x);
-        if (!(off <= most)) most = off, where = panel_.time(x);
-        return std::isfinite(off);
-    };
-    bool finite = true;
-    if (panel_.start.until(seen_) > 0 && seen_ < panel_.end) finite = look(panel_.x(seen_));
-    for (const std::size_t j : looked_into) {
-        finite = finite && look((chebyshev::nodes[j] + chebyshev::nodes[j + 1]) / 2);
     }
-    if (!finite) {
+    double most = 0, where = 0;
+    for (std::size_t i = 0; i < wanted; ++i) {
+        if (feedback_) found[i] = excitation_.value(looks[i], moves ? state_at(places[i]) : panel_.begin);
+        const double off = std::fabs(found[i] - chebyshev::value(panel_.M, places[i]));
+        if (!(off <= most)) most = off, where = looks[i];
+        if (std::isfinite(off)) continue;
         bad_time_ = where;
         return Look::failed;
     }
     double allowed = (tolerance_ + 4 * epsilon) * torques() + noise_;
     if (most <= clearly * allowed) return Look::agrees;
     allowed += lost_in_time();
-    if (feedback_ && moves) {
+    if (!of_time) {
         const double per_torque = panel_.h * (panel_.h / system_.inertia());
         const double motion = std::max(chebyshev::size(panel_.v), chebyshev::size(panel_.w));
         allowed += (tolerance_ * motion + rounding_of_motion(lost_in_time())) / per_torque;
     }
     if (most <= clearly * allowed) return Look::agrees;
     seen_ = where;
-    const bool of_time = !feedback_ || !moves;
     h_ = panel_.h / 2;
-    if (of_time && found_breaks_.empty())
-        find_break_among(std::span(times).first(count), std::span(values).first(count));
+    if (!of_time || !found_breaks_.empty()) return Look::differs;
+    // All that is known of M, in order of time.
+    std::array<double, points + most_looks> times{}, values{};
+    std::copy(panel_.times.begin(), panel_.times.end(), times.begin());
+    std::copy(panel_.samples.begin(), panel_.samples.end(), values.begin());
+    std::size_t count = points;
+    for (std::size_t i = 0; i < wanted; ++i, ++count) {
+        std::size_t place = count;
+        for (; place > 0 && times[place - 1] > looks[i]; --place) {
+            times[place] = times[place - 1], values[place] = values[place - 1];
+        }
+        times[place] = looks[i], values[place] = found[i];
+    }
+    find_break_among(std::span(times).first(count), std::span(values).first(count));
     return Look::differs;
 }
 

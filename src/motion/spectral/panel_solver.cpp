@@ -26,24 +26,34 @@ PanelSolver::PanelSolver(const Problem& problem, const Spectral& options)
       h_(h_max_),
       patience_{.since = problem.window.start} {}
 
+double PanelSolver::break_after(double t) const {
+    const double announced = excitation_.next_break(t);
+    return found_breaks_.empty() ? announced : std::min(announced, found_breaks_.front());
+}
+
 void PanelSolver::choose(const Present& now, model::Motion way) {
-    const double announced = excitation_.next_break(now.clock.hi);
-    const double breaks = found_breaks_.empty() ? announced : std::min(announced, found_breaks_.front());
-    const double limit = std::min(end_of_run_, breaks);
+    const double breaks = break_after(now.clock.hi), limit = std::min({end_of_run_, breaks, steps_.stop});
     const double remaining = now.clock.until(limit);
     h_ = std::min(h_, excitation_.view(now.clock.hi, chebyshev::widest_gap) / 2);
     if (bad_time_ < model::never) h_ = std::min(h_, now.clock.until(bad_time_) / 4);
     const bool to_limit = remaining <= 2 * h_ * (1 + 1e-9);
-    panel_.ends = !to_limit         ? SolvedPanel::End::inside
-                  : limit == breaks ? SolvedPanel::End::at_break
-                                    : SolvedPanel::End::window;
+    // Two panels of equal length rather than a long and a very short one.
+    const double h = to_limit ? remaining / 2 : remaining < 4 * h_ ? remaining / 4 : h_;
+    lay(now, way, h, to_limit ? limit : now.clock.after(2 * h));
+    if (!to_limit) return;
+    if (limit == end_of_run_) panel_.ends = SolvedPanel::End::window;
+    if (limit == breaks) panel_.ends = SolvedPanel::End::at_break;
+}
+
+/// The place of the panel in time.
+void PanelSolver::lay(const Present& now, model::Motion way, double h, double end) {
+    panel_.ends = SolvedPanel::End::inside;
     panel_.start = now.clock;
     panel_.begin = now.y;
     panel_.motion = way;
-    // Two panels of equal length rather than a long and a very short one.
-    panel_.h = to_limit ? remaining / 2 : remaining < 4 * h_ ? remaining / 4 : h_;
-    panel_.length = 2 * panel_.h;
-    panel_.end = to_limit ? limit : now.clock.after(2 * panel_.h);
+    panel_.h = h;
+    panel_.length = 2 * h;
+    panel_.end = end;
     if (system_.has_remainder()) own_spring_ = std::fabs(system_.spring(now.y.theta));
     for (std::size_t j = 0; j + 1 < points; ++j) panel_.times[j] = panel_.time(chebyshev::nodes[j]);
     panel_.times[points - 1] = panel_.end;
@@ -93,6 +103,7 @@ PanelSolver::Attempt PanelSolver::before_failure() {
 }
 
 PanelSolver::Attempt PanelSolver::stand(const Present& now) {
+    steps_.stop = model::never;
     choose(now, model::Motion::stuck);
     if (!sample_all(now)) return before_failure();
     return judge(unresolved_load());
@@ -115,9 +126,21 @@ void PanelSolver::solve_for(const Series& torque) {
 }
 
 PanelSolver::Attempt PanelSolver::move(const Present& now, model::Motion way, const model::State& departing) {
-    choose(now, way);
     theta_rest_ = now.theta_rest;
     if (feedback_) {
+        go_on_from(now, way);
+        const auto is_here = [&] {
+            return std::fabs(now.clock.until(steps_.stop)) <= 8 * epsilon * std::fabs(now.clock.hi);
+        };
+        const bool arrived = is_here(), near = steps_.part == 1;
+        if (arrived) steps_.part = 1;
+        if (arrived && near && cross_step(now, way, departing)) return accept();
+        if (arrived && !near) h_ = std::min(h_, 2 * steps_.left);
+        if (!foresee(now, way, departing)) return judge(std::numeric_limits<double>::infinity());
+        if (is_here()) {
+            if (cross_step(now, way, departing)) return accept();
+            choose(now, way);
+        }
         switch (iterate(departing)) {
             case Iteration::failed:
                 // Perhaps for a state that only the iteration has been in: a shorter panel will tell.
@@ -130,6 +153,7 @@ PanelSolver::Attempt PanelSolver::move(const Present& now, model::Motion way, co
                 break;
         }
     } else {
+        choose(now, way);
         if (!sample_all(now)) return before_failure();
         solve_for(panel_.M);
     }

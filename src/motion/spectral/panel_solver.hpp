@@ -84,6 +84,9 @@ private:
 
     // panel_solver.cpp
     void choose(const Present& now, model::Motion way);
+    void lay(const Present& now, model::Motion way, double h, double end);
+    /// The next break of M that is known.
+    [[nodiscard]] double break_after(double t) const;
     [[nodiscard]] double sampled(std::size_t node, const model::State& state) const;
     bool sample_all(const Present& now);
     bool bad_at(std::size_t node);
@@ -104,6 +107,19 @@ private:
     void take_M(const Series& iterated);
     void estimate_slopes();
 
+    // panel_steps.cpp: a feedback that jumps along the motion.
+    void missed_step();
+    void go_on_from(const Present& now, model::Motion way);
+    [[nodiscard]] double line(double since) const;
+    bool predict(const model::State& departing);
+    [[nodiscard]] double direction() const;
+    [[nodiscard]] model::State state_at(double x) const;
+    [[nodiscard]] double guessed_step() const;
+    double sought_step();
+    bool foresee(const Present& now, model::Motion way, const model::State& departing);
+    bool cross_step(const Present& now, model::Motion way, const model::State& departing);
+    void remember_step(double jump);
+
     // panel_judge.cpp: resolved?
     /// What M may differ by because times far from t = 0 are rounded.
     [[nodiscard]] double lost_in_time() const;
@@ -114,6 +130,7 @@ private:
     bool find_break_among(std::span<const double> times, std::span<const double> values);
     Attempt pass_over();
     Attempt judge(double unresolved);
+    Attempt accept();
     bool crawls();
     void lengthen(double unresolved);
 
@@ -150,6 +167,18 @@ private:
     struct {
         double theta = 0, velocity = 0;
     } falls_;  // -dM/dtheta and -dM/dvelocity of a feedback: solved for, not iterated
+    struct {
+        bool expected = false;                    // M has jumped, or seems to have
+        int quiet = 0;                            // panels since then
+        double stop = model::never, left = 0;     // where the panel ends before the next one, and how long before
+        double slope = 0, bend = 0;               // of M at the beginning of the panel: its derivatives by time
+        bool predicted = false, sampled = false;  // the panel has a motion already, and M on it
+        bool guessed = false;                     // the next one is where it is if they are evenly spaced
+        int trust = 0;                            // in guesses; none below 0
+        double part = 1;                          // of the way, by how much more than usual is left for the crossing
+        double theta = 0, direction = 0, last = -model::never;  // where the last one was, which way, and when
+        double apart = 0, spacing = 0, jump = 0;  // from one to the next: rad, time units; and how high, torque
+    } steps_;
     SolvedPanel panel_;
     double theta_rest_ = 0;  // of its beginning
     double own_spring_ = 0;  // the torque there of a spring besides k theta, without sign

@@ -1,0 +1,92 @@
+// A feedback that jumps along the motion: spectral against arcs put together by hand between its jumps.
+#include <cmath>
+#include <numbers>
+
+#include "motion/integrators.hpp"
+#include "motion/simulate.hpp"
+#include "support/catch.hpp"
+#include "support/excitations.hpp"
+
+using namespace dinal;
+using namespace dinal::model;
+using namespace dinal::motion;
+using namespace dinal::excitations;
+
+namespace {
+
+constexpr double inertia = 1, stiffness = 4 * pi * pi, start = 1.003;
+
+struct Encoder {
+    double steps;  ///< to a radian
+    double gain;   ///< of the feedback, torque per rad
+    double friction;
+};
+
+struct Truth {
+    long double theta, velocity;
+    int crossings;
+};
+
+/// M = -gain floor(steps theta)/steps is constant from edge to edge, where the motion is a harmonic about where it
+/// would come to rest: each arc ends at an edge, or where it turns. In long double, from a start at rest.
+Truth by_hand(const Encoder& encoder, double length) {
+    const long double k = stiffness, w = std::sqrt(k / inertia), R = encoder.friction;
+    const long double half_turn = std::numbers::pi_v<long double>;
+    long double t = 0, theta = start, velocity = 0, way = 0;
+    auto cell = static_cast<int>(std::floor(start * encoder.steps));
+    for (int crossings = 0;;) {
+        const long double M = -static_cast<long double>(encoder.gain) * cell / encoder.steps;
+        if (velocity == 0) {
+            const long double pull = M - k * theta;
+            if (std::fabs(pull) <= R) return {theta, 0, crossings};
+            way = pull > 0 ? 1 : -1;
+        }
+        const long double middle = (M - way * R) / k, amplitude = std::hypot(theta - middle, velocity / w);
+        const long double phase = std::atan2(-velocity / w, theta - middle), turn = way > 0 ? 0 : half_turn;
+        const long double edge = (way > 0 ? cell + 1 : cell) / static_cast<long double>(encoder.steps);
+        const long double part = (edge - middle) / amplitude;
+        long double next = turn;
+        if (std::fabs(part) < 1 && -way * std::acos(part) > phase) next = -way * std::acos(part);
+        const bool crosses = next != turn, ends = (next - phase) / w >= length - t;
+        if (ends) next = phase + w * (length - t);
+        const long double place = middle + amplitude * std::cos(next), speed = -amplitude * w * std::sin(next);
+        if (ends) return {place, speed, crossings};
+        t += (next - phase) / w;
+        theta = crosses ? edge : place;
+        velocity = crosses ? speed : 0;
+        if (crosses) cell += way > 0 ? 1 : -1, ++crossings;
+    }
+}
+
+struct Run {
+    Trajectory trajectory;
+    int calls;
+};
+
+Run run(const std::function<double(double, const State&)>& feedback, double friction, double length) {
+    const auto system = Oscillator::make({.inertia = inertia, .stiffness = stiffness, .kinetic_friction = friction});
+    const auto function = std::make_shared<Probe>(feedback);
+    auto result = simulate(system.value(), made(Scripted{.function = function, .feedback = true}), {start, 0},
+                           {0, length}, Grid::none(), Spectral{});
+    if (!result) FAIL(result.error().sentence);
+    return {std::move(result).value(), function->calls};
+}
+
+}  // namespace
+
+TEST_CASE("spectral passes each step of an encoder in a feedback where it is, in some forty calls", "[spectral]") {
+    for (const Encoder& encoder : {Encoder{16, 5, 0}, Encoder{256, 5, 0}, Encoder{64, 20, 0.4}, Encoder{64, 5, 0.4}}) {
+        CAPTURE(encoder.steps, encoder.gain, encoder.friction);
+        constexpr double length = 3;
+        const Truth truth = by_hand(encoder, length);
+        REQUIRE(truth.crossings > 100);
+        const auto [trajectory, calls] = run(
+            [&](double, const State& y) { return -encoder.gain * std::floor(y.theta * encoder.steps) / encoder.steps; },
+            encoder.friction, length);
+        CHECK(trajectory.outcome == Outcome::reached_end);
+        // Some thousand crossings, each to a few roundings of theta and t.
+        CHECK(std::fabs(trajectory.state_at_stop.theta - static_cast<double>(truth.theta)) < 1e-12);
+        CHECK(std::fabs(trajectory.state_at_stop.velocity - static_cast<double>(truth.velocity)) < 1e-11);
+        CHECK(calls < 70 * truth.crossings + 2000);  // these until it knows that M jumps
+    }
+}
