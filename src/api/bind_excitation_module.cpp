@@ -32,10 +32,11 @@ namespace {
 
 // ---- excitation.samples("record.csv", { time = "t", value = "M" })
 
-constexpr text::Option columns_of_file[] = {
+constexpr text::Option column_names[] = {
     {.name = "time", .meaning = "the column of times, by its name or number"},
     {.name = "value", .meaning = "the column of torques, likewise"},
 };
+constexpr auto columns_of_file = text::joined(column_names, model::terms::between_options);
 constexpr text::Call file_call{
     "excitation.samples", "excitation.samples(\"record.csv\", { time = \"t\", value = \"M\" })", columns_of_file, true};
 
@@ -97,11 +98,15 @@ int samples_from_file(lua_State* L) {
     // The columns by name, so that the text still means the same when the file gets another one; numbers where it has
     // no names are found by these names, too.
     const auto name = [&](Eigen::Index column) { return text::quoted(table.names[static_cast<std::size_t>(column)]); };
-    return push_term(
-        L, std::make_shared<const model::Samples>(model::Samples{
-               .t = numbers(time),
-               .M = numbers(value),
-               .origin = fmt::format("{}, {{ time = {}, value = {} }}", text::quoted(file), name(time), name(value))}));
+    model::Samples points;
+    options.fill(points);
+    points.t = numbers(time);
+    points.M = numbers(value);
+    const bool cubic = points.interpolation == model::Interpolation::cubic;
+    points.origin = fmt::format("{}, {{ time = {}, value = {}{}{} }}", text::quoted(file), name(time), name(value),
+                                cubic ? ", interpolation = \"cubic\"" : "",
+                                points.period ? ", period = " + text::number_literal(*points.period) : std::string());
+    return push_term(L, std::make_shared<const model::Samples>(std::move(points)));
 }
 
 int samples(lua_State* L) {

@@ -28,6 +28,7 @@ using terms::Exponential;
 using terms::Gaussian;
 using terms::HalfSine;
 using terms::Harmonic;
+using terms::Interpolation;
 using terms::Polyline;
 using terms::Polynomial;
 using terms::Pulse;

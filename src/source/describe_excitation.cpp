@@ -33,10 +33,14 @@ std::string text_of(const Context& context, const model::Polyline& line) {
     if (!s.origin.empty()) {
         return fmt::format("excitation.samples({}){}", s.origin, delay_text(s.delay));
     }
+    std::string between = s.interpolation == model::Interpolation::cubic ? ", interpolation = \"cubic\"" : "";
+    if (s.period) between += ", period = " + text::number_literal(*s.period);
     if (s.t.size() <= most_written_out) {
-        return fmt::format("excitation.samples{{ t = {}, M = {} }}", text::list_literal(s.t), text::list_literal(s.M));
+        return fmt::format("excitation.samples{{ t = {}, M = {}{} }}", text::list_literal(s.t), text::list_literal(s.M),
+                           between);
     }
-    return fmt::format("excitation.samples{{ --[[ {} points, t {} ... {} ]] }}", s.t.size(), s.t.front(), s.t.back());
+    return fmt::format("excitation.samples{{ --[[ {} points, t {} ... {} ]]{} }}", s.t.size(), s.t.front(), s.t.back(),
+                       between.empty() ? "" : " " + between.substr(2));
 }
 
 /// A controller with a memory.

@@ -81,6 +81,23 @@ fails(function() return e.square{ frequency = 0 } end, "frequency = 0 must be po
 fails(function() return e.square{ period = 1, duty = 2 } end, "duty = 2 must lie between 0 and 1")
 fails(function() return e.exponential{ tau = 0 } end, "tau = 0 must not be zero")
 fails(function() return e.polynomial{} end, "needs coefficients")
+do
+    local t, M = { 0, 1, 2, 3 }, { 0, 1, 0, -1 }
+    local s = e.samples{ t = t, M = M, interpolation = "cubic", period = 4 }
+    assert(s(0.5) == 0.6875 and s(4.5) == 0.6875 and s(-3.5) == 0.6875 and s:next_break(3.5) == 4)
+    assert(s:delay(1)(1.5) == 0.6875)
+    assert(tostring(s) == 'excitation.samples{ t = { 0, 1, 2, 3 }, M = { 0, 1, 0, -1 }, interpolation = "cubic", period = 4 }', tostring(s))
+    assert(e.samples{ t = t, M = M, period = 4 }(3.5) == -0.5)
+    assert(e.samples{ t = { 0, 1, 2, 3, 4 }, M = { 0, 1, 0, -1, 0 }, interpolation = "cubic", period = 4 }(0.5) == 0.6875)
+    -- A sweep carries it; a run writes it into its file, and the period is known to sys:steady.
+    local map = sweep{ x = { 0.5, 4.5 }, run = function(p) return { y = s(p.x) } end }
+    assert(map.y[1] == 0.6875 and map.y[2] == 0.6875)
+    local sys = nondimensional{ zeta = 0.1 }
+    assert(sys:steady{ M = s }.period == 4 and tostring(sys:simulate{ M = s, t_end = 3, dt = 1 }.integrator):find("exact"))
+    fails(function() return e.samples{ t = t, M = M, interpolation = "quintic" } end, "interpolation")
+    fails(function() return e.samples{ t = t, M = M, period = 2 } end, "period = 2 is shorter than the points")
+    fails(function() return e.samples{ t = t, M = M, period = 3 } end, "M = 0 at t = 0, but -1 one period later")
+end
 fails(function() return e.samples{ t = { 0, 0.4, 0.3 }, M = { 0, 0, 0 } } end,
       "samples: t[3] = 0.3 is not after t[2] = 0.4; times must increase")
 fails(function() return e.samples{ t = { 0, 1 }, M = { 0 } } end, "t has 2 values and M has 1")
@@ -280,6 +297,13 @@ local function write(text)
 end
 write("# a record\nmoment,M,t,other\n0,1,0,9\n1,3,2,8\n2,5,3,7\n")
 assert(e.samples(path)(1) == 2, "columns t and M are found by name")
+assert(math.abs(e.samples(path, { interpolation = "cubic" })(1) - 5/3) < 1e-14, "three points are a parabola")
+assert(tostring(e.samples(path, { interpolation = "cubic", period = 100 })) ==
+       ('excitation.samples("%s", { time = "t", value = "M", interpolation = "cubic", period = 100 })'):format(path))
+do
+    local again = e.samples(path, { interpolation = "cubic", period = 100 })
+    assert(again(3) == 5 and again(103) == 5 and rebuilt(again)(101) == again(101))
+end
 assert(e.samples(path, { value = "other" })(1) == 8.5)
 assert(e.samples(path, { time = "moment" })(0.5) == 2)
 assert(e.samples(path, { time = 1, value = 4 })(0.5) == 8.5)

@@ -136,4 +136,18 @@ test("what cannot be a record is told in a sentence", function()
     raises_here(function() return identify{ data = decay }.zetaa end, "has no field")
 end)
 
+test("a sampled M drawn as a spline does not bias what straight lines do", function()
+    local sys = system{ I = 0.02, k = 4, C = 0.02, Rd = 0.05, Re = 0.05 }
+    local true_M = excitation.harmonic{ amplitude = 1, frequency = 3 } + excitation.harmonic{ amplitude = 0.6, frequency = 4.1 }
+    local t = vector.linspace(0, 5, 101)      -- 20 samples a second
+    local run = sys:simulate{ M = true_M, t_end = 5, dt = 0.02 }
+    local off = {}
+    for _, way in ipairs{ "linear", "cubic" } do
+        local M = excitation.samples{ t = t, M = true_M:values(t), interpolation = way }
+        local fit = identify{ data = run, M = M, theta0 = 0, velocity0 = 0, offset = 0 }
+        off[way] = math.abs(fit.k/4 - 1)
+    end
+    assert(off.cubic < 2e-3 and off.linear > 5*off.cubic, off.linear .. " " .. off.cubic)
+end)
+
 support.finish()

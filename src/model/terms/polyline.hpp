@@ -1,7 +1,9 @@
-// excitation.samples: straight lines between points.
+// excitation.samples: straight lines or a cubic spline between points, once or again and again.
 #pragma once
 
+#include <array>
 #include <memory>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -9,28 +11,49 @@
 
 namespace dinal::model::terms {
 
+enum class Interpolation { linear, cubic };
+inline constexpr const char* interpolation_names[] = {"linear", "cubic"};
+
 /// Times strictly increasing, at least one point.
 struct Samples {
     std::vector<double> t, M;
-    std::string origin = {};  ///< where they were read, in the words of whoever read them; not used by the core
-    double delay = 0;         ///< by how much `t` is later than there
+    Interpolation interpolation = Interpolation::linear;
+    std::optional<double> period = {};  ///< after which the points come again
+    std::string origin = {};          ///< where they were read, in the words of whoever read them; not used by the core
+    double delay = 0;                 ///< by how much `t` is later than there
+    std::vector<double> slopes = {};  ///< of a cubic spline at the points; made from the others
 };
-inline constexpr text::Option samples_options[] = {
+inline constexpr text::Option between_options[] = {
+    {.name = "interpolation",
+     .meaning =
+         "what lies between the points: straight lines, or a cubic spline (not-a-knot, or periodic), whose first "
+         "two derivatives go on at the points",
+     .filled = text::fills<&Samples::interpolation>,
+     .choices = interpolation_names},
+    {.name = "period",
+     .unit = "time units",
+     .range = text::positive,
+     .meaning = "after which the points come again, for all times; a last point one period after the first repeats it",
+     .filled = text::fills<&Samples::period>},
+};
+inline constexpr text::Option points_options[] = {
     {"t", "time units", text::needed, text::any_finite, "times, which increase", text::fills<&Samples::t>},
     {"M", "torque", text::needed, text::any_finite, "the torque at these times", text::fills<&Samples::M>},
 };
+inline constexpr auto samples_options = text::joined(points_options, between_options);
 
-/// Straight lines between the samples; the first and last value hold outside.
+/// A line through the samples; the first and last value hold outside, unless they come again.
 // Behind a shared pointer to const, so that copies of an excitation are cheap and safe.
 struct Polyline {
     static const TermText about;
 
     std::shared_ptr<const Samples> samples;
 
-    Polyline(std::shared_ptr<const Samples> points) : samples(std::move(points)) {}
+    Polyline(std::shared_ptr<const Samples> points) : samples(prepared(std::move(points))) {}
 
     [[nodiscard]] double value(double t) const {
         const Samples& s = *samples;
+        if (s.period) return on_piece(piece(t), t);
         if (!(t >= s.t.front())) {
             return s.M.front();
         }
@@ -38,48 +61,69 @@ struct Polyline {
             return s.M.back();
         }
         const std::size_t i = segment(t);
+        if (!s.slopes.empty()) return on_piece(piece_of(i), t);
         return s.M[i] + (s.M[i + 1] - s.M[i]) * ((t - s.t[i]) / (s.t[i + 1] - s.t[i]));
     }
     [[nodiscard]] double next_break(double t) const {
         const std::vector<double>& times = samples->t;
-        if (times.size() == 1 || t >= times.back()) return never;
+        if (times.size() == 1) return never;
+        if (samples->period) return later(t, piece(t).to);
+        if (t >= times.back()) return never;
         return t < times.front() ? times.front() : times[segment(t) + 1];
     }
-    [[nodiscard]] double constant_from() const { return samples->t.size() == 1 ? -never : samples->t.back(); }
-    [[nodiscard]] double most() const {
-        double peak = 0;
-        for (const double M : samples->M) peak = std::max(peak, std::fabs(M));
-        return peak;
+    [[nodiscard]] double constant_from() const {
+        if (samples->t.size() == 1) return -never;
+        return samples->period ? never : samples->t.back();
     }
-    [[nodiscard]] double repeats_after() const { return 0; }
+    /// A spline lies within the hull of its control points.
+    [[nodiscard]] double most() const;
+    [[nodiscard]] double repeats_after() const { return samples->t.size() == 1 ? 0 : samples->period.value_or(0); }
     [[nodiscard]] Detail detail() const { return no_detail; }
     template <class Sum>
     void closed_form(double inside, Sum& sum) const {
         const Samples& s = *samples;
-        if (!(inside >= s.t.front()) || inside >= s.t.back()) {
+        if (!s.period && (!(inside >= s.t.front()) || inside >= s.t.back())) {
             sum.add_constant(value(inside));
             return;
         }
-        const std::size_t i = segment(inside);
-        sum.add_line(s.t[i], s.M[i], (s.M[i + 1] - s.M[i]) / (s.t[i + 1] - s.t[i]));
-    }
-    void delay_by(double d) {
-        Samples moved = *samples;
-        for (double& t : moved.t) {
-            t += d;
+        const Piece now = s.period ? piece(inside) : piece_of(segment(inside));
+        if (s.slopes.empty()) {
+            sum.add_line(now.from, s.M[now.first], (s.M[now.second] - s.M[now.first]) / (now.to - now.from));
+        } else {
+            sum.add_powers(now.from, powers(now));
         }
-        moved.delay += d;
-        samples = std::make_shared<const Samples>(std::move(moved));
     }
+    void delay_by(double d);
     [[nodiscard]] std::optional<text::Error> complaint() const;
-    [[nodiscard]] std::string formula(double gain) const {
-        const Samples& s = *samples;
-        return (gain == 1 ? "" : factor(gain) + "* ") + "straight lines through " + std::to_string(s.t.size()) +
-               " points, t " + number(s.t.front()) + " ... " + number(s.t.back()) +
-               (s.origin.empty() ? "" : ", of " + s.origin.substr(0, s.origin.find(", {")));
-    }
+    [[nodiscard]] std::string formula(double gain) const;
 
 private:
+    /// From one point to the next one.
+    struct Piece {
+        double from, to;
+        std::size_t first, second;
+    };
+    [[nodiscard]] Piece piece_of(std::size_t i) const { return {samples->t[i], samples->t[i + 1], i, i + 1}; }
+    /// Of points that come again: the piece that `at` lies in. Its ends are the doubles that are breaks.
+    [[nodiscard]] Piece piece(double at) const;
+    /// The coefficients of the powers of the time since a piece began.
+    [[nodiscard]] std::array<double, 4> powers(const Piece& now) const {
+        const Samples& s = *samples;
+        const double h = now.to - now.from, rise = (s.M[now.second] - s.M[now.first]) / h;
+        const double a = s.slopes[now.first], b = s.slopes[now.second];
+        return {s.M[now.first], a, (3 * rise - 2 * a - b) / h, (a + b - 2 * rise) / (h * h)};
+    }
+    [[nodiscard]] double on_piece(const Piece& now, double t) const {
+        const Samples& s = *samples;
+        if (now.first == now.second) return s.M.front();
+        const double d = t - now.from;
+        if (s.slopes.empty()) return s.M[now.first] + (s.M[now.second] - s.M[now.first]) * (d / (now.to - now.from));
+        const std::array<double, 4> c = powers(now);
+        return c[0] + d * (c[1] + d * (c[2] + d * c[3]));
+    }
+    /// With the slopes of a spline, and without a last point that is the first one again.
+    static std::shared_ptr<const Samples> prepared(std::shared_ptr<const Samples> points);
+
     /// The index i with t[i] <= at < t[i + 1], for times inside the table. Records are mostly sampled evenly, so the
     /// guess is mostly right.
     [[nodiscard]] std::size_t segment(double at) const {
@@ -96,9 +140,12 @@ private:
 
 inline constexpr TermText Polyline::about{
     {"excitation.samples", "excitation.samples{ t = { 0, 1, 2 }, M = { 0, 3, 0 } }", samples_options},
-    "Straight lines between points, from two columns of a CSV file or from two tables (or vectors). Outside, the first "
-    "and the last value hold. time and value name the columns or number them; without them they are the columns t (or "
-    "time) and M, else the first and the second.",
-    "M = excitation.samples{ t = { 0, 1, 3 }, M = { 0, 2, 0 } }\nprint(M(0.5), M(2), M(9))  --> 1.0\t1.0\t0.0"};
+    "Straight lines or a cubic spline between points, from two columns of a CSV file or from two tables (or vectors). "
+    "Outside, the first and the last value hold, unless a period is given. time and value name the columns or number "
+    "them; without them they are the columns t (or time) and M, else the first and the second. Each point is a break: a "
+    "line has another slope there, a spline only another third derivative (and where it begins and ends a slope).",
+    "M = excitation.samples{ t = { 0, 1, 3 }, M = { 0, 2, 0 } }\nprint(M(0.5), M(2), M(9))  --> 1.0\t1.0\t0.0\n"
+    "M = excitation.samples{ t = { 0, 1, 2, 3 }, M = { 0, 1, 0, -1 }, interpolation = \"cubic\", period = 4 }\n"
+    "print(M(0.5), M(4.5))  --> 0.6875\t0.6875"};
 
 }  // namespace dinal::model::terms

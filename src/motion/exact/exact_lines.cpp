@@ -47,6 +47,7 @@ void ExactEngine::find_record() {
     const model::Component* component = record_of(excitation_);
     if (component == nullptr) return;
     const model::Samples& samples = *std::get<model::Polyline>(component->term).samples;
+    if (samples.interpolation != model::Interpolation::linear) return;
     record_ = {&samples, component->gain, component->from, component->to};
 }
 

@@ -1,0 +1,201 @@
+// excitation.samples with a cubic spline: against the polynomials and the derivatives that define it, the dense system
+// of all that is asked of its pieces, a sine, and motions under it by two integrators.
+#include "model/terms/spline.hpp"
+
+#include <Eigen/LU>
+#include <array>
+#include <cmath>
+#include <numbers>
+
+#include "model/closed_form.hpp"
+#include "model/excitation.hpp"
+#include "support/catch.hpp"
+#include "support/measure.hpp"
+#include "support/within.hpp"
+
+using namespace dinal;
+using namespace dinal::model;
+
+namespace {
+
+constexpr double pi = std::numbers::pi;
+
+Samples cubic(std::vector<double> t, std::vector<double> M, std::optional<double> period = {}) {
+    return {.t = std::move(t), .M = std::move(M), .interpolation = Interpolation::cubic, .period = period};
+}
+Polyline through(Samples samples) {
+    return std::make_shared<const Samples>(std::move(samples));
+}
+/// The closed form on the stretch about t, as (value, slope, bend) at t.
+std::array<double, 3> form_at(const Excitation& M, double inside, double t) {
+    ClosedForm sum;
+    closed_form(M, inside, 0, sum);
+    std::array<double, 4> c{};
+    std::copy(sum.powers().begin(), sum.powers().end(), c.begin());
+    const double d = t - inside;
+    return {c[0] + d * (c[1] + d * (c[2] + d * c[3])), c[1] + d * (2 * c[2] + 3 * d * c[3]), 2 * c[2] + 6 * d * c[3]};
+}
+
+/// The derivatives 0 to 2 (and 3) of the powers of h that are in a cubic, at h.
+Eigen::RowVector4d powers_of(double h, int derivative) {
+    switch (derivative) {
+        case 0:
+            return {1, h, h * h, h * h * h};
+        case 1:
+            return {0, 1, 2 * h, 3 * h * h};
+        case 2:
+            return {0, 0, 2, 6 * h};
+        default:
+            return {0, 0, 0, 6};
+    }
+}
+/// The coefficients of all pieces from one dense system: values at both ends of each, slopes and bends that go on at
+/// the points between, and at the ends the third derivative that goes on (not a knot) or all that comes again.
+Eigen::VectorXd dense_spline(const std::vector<double>& t, const std::vector<double>& M, bool periodic) {
+    const auto pieces = static_cast<Eigen::Index>(t.size()) - 1;
+    Eigen::MatrixXd A = Eigen::MatrixXd::Zero(4 * pieces, 4 * pieces);
+    Eigen::VectorXd b = Eigen::VectorXd::Zero(4 * pieces);
+    Eigen::Index row = 0;
+    const auto length = [&](Eigen::Index i) {
+        return t[static_cast<std::size_t>(i) + 1] - t[static_cast<std::size_t>(i)];
+    };
+    const auto goes_on = [&](Eigen::Index from, Eigen::Index to, int derivative) {
+        A.block<1, 4>(row, 4 * from) += powers_of(length(from), derivative);
+        A.block<1, 4>(row++, 4 * to) -= powers_of(0, derivative);
+    };
+    for (Eigen::Index i = 0; i < pieces; ++i) {
+        A.block<1, 4>(row, 4 * i) = powers_of(0, 0);
+        b[row++] = M[static_cast<std::size_t>(i)];
+        A.block<1, 4>(row, 4 * i) = powers_of(length(i), 0);
+        b[row++] = M[static_cast<std::size_t>(i) + 1];
+    }
+    for (Eigen::Index i = 0; i + 1 < pieces; ++i) {
+        goes_on(i, i + 1, 1);
+        goes_on(i, i + 1, 2);
+    }
+    if (periodic) {
+        goes_on(pieces - 1, 0, 1);
+        goes_on(pieces - 1, 0, 2);
+    } else {
+        goes_on(0, 1, 3);
+        goes_on(pieces - 2, pieces - 1, 3);
+    }
+    return A.fullPivLu().solve(b);
+}
+
+}  // namespace
+
+TEST_CASE("a spline is the solution of all that is asked of its pieces at once, not a knot and periodic", "[spline]") {
+    std::vector<double> t{0.2, 0.5, 0.55, 1.3, 1.4, 2.1, 2.2, 3}, M{1, -0.5, 0.2, 2, 1.5, -3, -2.5, 1};
+    for (const std::size_t points : {t.size(), std::size_t{5}, std::size_t{4}}) {
+        t.erase(t.begin() + static_cast<std::ptrdiff_t>(points), t.end());
+        M.resize(points);
+        for (const bool periodic : {false, true}) {
+            M.back() = periodic ? M.front() : M.back();
+            const auto period = periodic ? std::optional(t.back() - t.front()) : std::nullopt;
+            const Polyline line = through(cubic(t, M, period));
+            const Eigen::VectorXd truth = dense_spline(t, M, periodic);
+            for (std::size_t i = 0; i + 1 < points; ++i) {
+                const Eigen::Vector4d piece = truth.segment<4>(4 * static_cast<Eigen::Index>(i));
+                for (const double part : {0.0, 0.2, 0.5, 0.9}) {
+                    const double h = part * (t[i + 1] - t[i]);
+                    // The dense system's own rounding, from a condition of some 1e4.
+                    CHECK(line.value(t[i] + h) == within(powers_of(h, 0).dot(piece), 1e-11));
+                }
+            }
+        }
+    }
+}
+
+TEST_CASE("a spline through points of a cubic is that cubic, wherever the points are", "[spline]") {
+    const auto f = [](double t) { return 2 - t + 0.5 * t * t - 0.25 * t * t * t; };
+    std::vector<double> t{-1, -0.4, 0.1, 0.35, 1.7, 2, 3.5}, M;
+    for (const double x : t) M.push_back(f(x));
+    const Polyline line = through(cubic(t, M));
+    for (int i = 0; i <= 90; ++i) {
+        const double x = -1 + 0.05 * i;
+        CHECK(line.value(x) == within(f(x), 1e-13));
+        CHECK(std::fabs(line.value(x)) <= line.most());
+    }
+    CHECK(line.value(-5) == M.front());
+    CHECK(line.value(9) == M.back());
+    // Three points are a parabola, two a straight line, one a constant.
+    CHECK(through(cubic({0, 1, 3}, {0, 1, 9})).value(2) == within(4, 1e-14));
+    CHECK(through(cubic({0, 2}, {1, 5})).value(0.5) == 2);
+    CHECK(through(cubic({4}, {7})).value(-3) == 7);
+}
+
+TEST_CASE("at the points of a spline value, slope and bend go on, round the end of a period, too", "[spline]") {
+    const std::vector<double> t{0, 0.3, 0.5, 1.1, 1.2}, M{0, 2, -1, 0.5, 3};
+    for (const bool periodic : {false, true}) {
+        const auto made = Excitation::make(through(cubic(t, M, periodic ? std::optional(1.5) : std::nullopt)));
+        REQUIRE(made);
+        const std::vector<double> knots =
+            periodic ? std::vector<double>{1.5, 1.8, 2, 2.6, 2.7, 3} : std::vector<double>{0.3, 0.5, 1.1};
+        for (const double knot : knots) {
+            CHECK(made->next_break(knot - 0.05) == within(knot, 1e-15));
+            const auto left = form_at(*made, knot - 0.05, knot), right = form_at(*made, knot + 0.05, knot);
+            for (std::size_t i = 0; i < 3; ++i) CHECK(left[i] == within(right[i], 1e-11 * (1 + std::fabs(right[i]))));
+        }
+        if (periodic) {
+            for (int i = 0; i < 30; ++i) CHECK(made->value(0.05 * i) == within(made->value(0.05 * i - 7.5), 1e-12));
+            CHECK(made->value(1.5 * 4000) == within(M[0], 1e-9));
+        }
+    }
+}
+
+TEST_CASE("a sine through 16 points a period is one to the fourth power of their distance", "[spline]") {
+    const auto worst_of = [](int n, Interpolation way) {
+        Samples s{.t = {}, .M = {}, .interpolation = way, .period = 1};
+        for (int i = 0; i <= n; ++i) {
+            s.t.push_back(static_cast<double>(i) / n);
+            s.M.push_back(std::sin(2 * pi * i / n));
+        }
+        const Polyline line = through(std::move(s));
+        CHECK(line.samples->t.size() == static_cast<std::size_t>(n));  // the last one is the first again
+        double worst = 0;
+        for (int i = 0; i < 500; ++i)
+            worst = std::max(worst, std::fabs(line.value(i / 500.0) - std::sin(2 * pi * i / 500.0)));
+        return worst;
+    };
+    // h^4/384 max|f''''| for a cubic spline, h^2/8 max|f''| for straight lines.
+    CHECK(worst_of(16, Interpolation::cubic) < 1.05 * std::pow(2 * pi / 16, 4) / 384);
+    CHECK(worst_of(16, Interpolation::linear) > 100 * worst_of(16, Interpolation::cubic));
+    CHECK(worst_of(16, Interpolation::cubic) / worst_of(32, Interpolation::cubic) == within(16, 1));
+}
+
+TEST_CASE("two integrators agree on a motion under a spline, and its steady motion is that of the sine", "[spline]") {
+    const Oscillator system = truth::nondimensional(0.05, 0.3, 0.35);
+    Samples s{.t = {}, .M = {}, .interpolation = Interpolation::cubic, .period = 1.6};
+    for (int i = 0; i < 64; ++i) {
+        s.t.push_back(0.025 * i);
+        s.M.push_back(std::sin(2 * pi * i / 64.0));
+    }
+    const auto M = Excitation::make(through(std::move(s)));
+    REQUIRE(M);
+    const motion::Window window{0, 12};
+    const auto rows = motion::Grid::every(0.5);
+    const auto a = truth::must_run(system, *M, {1, 0}, window, rows, motion::Exact{});
+    const auto b = truth::must_run(system, *M, {1, 0}, window, rows, motion::Spectral{});
+    const auto c = truth::must_run(system, truth::harmonic(1, 2 * pi / 1.6), {1, 0}, window, rows, motion::Exact{});
+    REQUIRE(a.events.size() == b.events.size());
+    for (const auto column : {motion::Column::theta, motion::Column::velocity}) {
+        const auto first = a.column(column), second = b.column(column), sine = c.column(column);
+        for (Eigen::Index i = 0; i < a.size(); ++i) {
+            CHECK(first[i] == within(second[i], 1e-10));
+            CHECK(first[i] == within(sine[i], 1e-4));
+        }
+    }
+}
+
+TEST_CASE("points that cannot be a period are refused", "[spline]") {
+    const auto complaint = [](const Samples& s) {
+        const auto made = Excitation::make(through(s));
+        return made ? std::string() : made.error().sentence;
+    };
+    CHECK(complaint(cubic({0, 1, 2}, {0, 1, 0.5}, 2)).find("M = 0 at t = 0, but 0.5 one period later") !=
+          std::string::npos);
+    CHECK(complaint(cubic({0, 1, 2}, {0, 1, 0}, 1.5)).find("period = 1.5 is shorter") != std::string::npos);
+    CHECK(complaint(cubic({0, 1, 1}, {0, 1, 0}, 1.5)).find("times must increase") != std::string::npos);
+    CHECK(complaint(cubic({0, 1, 2}, {0, 1, 0}, 2)).empty());
+}
