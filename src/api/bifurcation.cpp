@@ -194,6 +194,7 @@ int bifurcation(lua_State* L) {
                                    .function = function,
                                    .workers = of_workers.workers,
                                    .file = of_workers.file,
+                                   .max_time = of_workers.max_time.value_or(0),
                                    .settings = {period, asked.skip, asked.keep},
                                    .adapt = adapt,
                                    .told = told,

@@ -34,7 +34,7 @@ inline constexpr text::Option bifurcation_only_options[] = {
      .meaning = "periods after that, each of which gives a row",
      .filled = text::fills<&BifurcationOptions::keep>},
 };
-inline constexpr text::Option options_of_workers[] = {sweep_options[1], sweep_options[3]};
+inline constexpr text::Option options_of_workers[] = {sweep_options[1], sweep_options[3], sweep_options[4]};
 inline constexpr auto bifurcation_options = text::joined(bifurcation_only_options, options_of_workers);
 inline constexpr text::Call bifurcation_call{
     "bifurcation",

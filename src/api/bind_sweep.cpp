@@ -29,6 +29,7 @@ int sweep(lua_State* L) {
                                    .workers = asked.workers,
                                    .seed = asked.seed,
                                    .file = asked.file,
+                                   .max_time = asked.max_time.value_or(0),
                                    .told = map_of});
     push_data(L, map_of(grid, *results));
     return 1;

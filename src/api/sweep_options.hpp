@@ -13,6 +13,7 @@ struct SweepOptions {
     std::optional<double> workers = {};
     double seed = 0;
     std::string file = {};
+    std::optional<double> max_time = {};
 };
 inline constexpr text::Range workers_range{"be a whole number from 1 to 1000",
                                            [](double x) { return text::is_whole(x, 1, 1000); }};
@@ -37,6 +38,11 @@ inline constexpr text::Option sweep_options[] = {
          "a .csv file for the result; what is done meanwhile is kept in files beside it, so that the same call goes "
          "on after whatever has ended the program, and several processes share the points (docs/many-machines.md)",
      .filled = text::fills<&SweepOptions::file>},
+    {.name = "max_time",
+     .unit = "s",
+     .range = text::positive,
+     .meaning = "how long a point may take; a longer one is given up with a message, and the others go on",
+     .filled = text::fills<&SweepOptions::max_time>},
 };
 inline constexpr text::Call sweep_call{
     "sweep", "sweep{ r = vector.linspace(0.1, 2, 20), run = function(p) return { A = p.r^2 } end }", sweep_options};

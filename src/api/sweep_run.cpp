@@ -142,6 +142,7 @@ private:
                        .points = std::move(points_),
                        .seed = static_cast<long long>(task_.seed),
                        .call = task_.call,
+                       .max_time = task_.max_time,
                        .adapt = task_.adapt};
         if (files_) {
             work.look = [this] {

@@ -21,6 +21,7 @@ struct SweepTask {
     std::optional<double> workers = {};
     double seed = 0;
     std::string file = {};              ///< none: it is not kept, and not shared with other processes
+    double max_time = 0;                ///< seconds of a point; 0: any
     std::vector<double> settings = {};  ///< what else decides about the results
     /// In the state of a worker: replaces the carried function on the top by the one that is asked.
     std::function<void(lua_State* worker)> adapt = {};

@@ -4,10 +4,10 @@
 
 #include <algorithm>
 #include <chrono>
+#include <limits>
 #include <memory>
 #include <system_error>
 
-#include "lua/interrupt.hpp"
 #include "lua/lua_text.hpp"
 #include "lua/standard_globals.hpp"
 #include "source/carry.hpp"
@@ -15,6 +15,11 @@
 
 namespace dinal::api {
 namespace {
+
+double now_in_seconds() {
+    using std::chrono::duration;
+    return duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
 
 struct Carrying {
     lua_State* from;
@@ -57,6 +62,7 @@ struct PointLoop {
 
     lua_State* L;
     SweepWork& work;
+    lua::WorkerWatch& watch;
 
     void run() {
         std::size_t first = 0, last = 0;
@@ -89,7 +95,12 @@ struct PointLoop {
         lua_pushvalue(L, function);
         lua_createtable(L, 0, static_cast<int>(work.grid.parameters().size()));
         work.grid.set_fields(L, number);
+        if (work.max_time > 0) {
+            watch.since = now_in_seconds();
+            ++watch.task;
+        }
         const int status = lua_pcall(L, 1, 1, handler);
+        if (work.max_time > 0 && is_given_up(number)) return true;
         if (status != LUA_OK && lua::interrupt_requested()) return false;
         const std::string trouble = status != LUA_OK ? std::string(lua::text_at(L, -1)) : complaint();
         if (!trouble.empty()) {
@@ -105,6 +116,17 @@ struct PointLoop {
             lua_pop(L, 2);
         }
         work.results.finish(number);
+        return true;
+    }
+
+    /// Ends the task; whether it was given up, which is then its result.
+    [[nodiscard]] bool is_given_up(std::size_t number) const {
+        const bool late = watch.has_given_up();
+        ++watch.task;
+        watch.since = std::numeric_limits<double>::infinity();
+        if (!late || lua::interrupt_requested()) return false;
+        lua_sethook(L, nullptr, 0, 0);
+        work.results.fail(number, fmt::format("it ran longer than the {:g} s that max_time allows", work.max_time));
         return true;
     }
 
@@ -150,9 +172,10 @@ struct PointLoop {
     }
 };
 
-/// Called with the function and the SweepWork.
+/// Called with the function, the SweepWork and the WorkerWatch.
 int work_on_points(lua_State* L) {
     auto& work = *static_cast<SweepWork*>(lua_touserdata(L, 2));
+    auto& watch = *static_cast<lua::WorkerWatch*>(lua_touserdata(L, 3));
     lua_settop(L, 1);
     lua_pushcfunction(L, lua::guarded<error_as_text>);
     lua_insert(L, 1);
@@ -162,7 +185,7 @@ int work_on_points(lua_State* L) {
     lua_insert(L, 3);
     lua_settop(L, 3);
     lua_newtable(L);
-    PointLoop{L, work}.run();
+    PointLoop{L, work, watch}.run();
     return 0;
 }
 
@@ -181,14 +204,15 @@ SweepWorkers::SweepWorkers(lua_State* L, int index, SweepWork& work) : work_(wor
     }
 }
 
-void SweepWorkers::run_one(lua_State* worker) {
+void SweepWorkers::run_one(lua_State* worker, lua::WorkerWatch& watch) {
     std::string trouble;
     {
-        const lua::WorkerScope scope(worker);
+        const lua::WorkerScope scope(worker, &watch);
         lua_pushcfunction(worker, lua::guarded<work_on_points>);
         lua_insert(worker, -2);
         lua_pushlightuserdata(worker, &work_);
-        if (lua_pcall(worker, 2, 0, 0) != LUA_OK && !lua::interrupt_requested()) {
+        lua_pushlightuserdata(worker, &watch);
+        if (lua_pcall(worker, 3, 0, 0) != LUA_OK && !lua::interrupt_requested()) {
             trouble = lua_isstring(worker, -1) != 0 ? lua::text_at(worker, -1) : "a worker has failed";
         }
     }
@@ -206,13 +230,27 @@ void SweepWorkers::start(std::vector<std::thread>& threads) {
             const std::lock_guard lock(ending_);
             ++running_;
         }
+        lua::WorkerWatch& own = watches_.emplace_back();
+        own.since = std::numeric_limits<double>::infinity();
+        own.outer = lua::watch_here();
         try {
-            threads.emplace_back([this, worker = state.get()] { run_one(worker); });
+            threads.emplace_back([this, worker = state.get(), &own] { run_one(worker, own); });
         } catch (const std::system_error&) {
             const std::lock_guard lock(ending_);
             --running_;
             return;
         }
+    }
+}
+
+void SweepWorkers::watch(std::vector<std::thread>& threads) {
+    const double now = now_in_seconds();
+    for (std::size_t i = 0; i < threads.size(); ++i) {
+        lua::WorkerWatch& own = watches_[i];
+        const std::uint64_t task = own.task;
+        if (now - own.since <= work_.max_time) continue;
+        own.given_up = task;  // no other one, should it have ended meanwhile
+        lua::nudge(threads[i].native_handle());
     }
 }
 
@@ -228,6 +266,7 @@ void SweepWorkers::run(lua_State* L) {
     while (!ended_.wait_for(lock, look_again, [this] { return running_ == 0; })) {
         progress.advance(static_cast<double>(work_.finished.load(std::memory_order_relaxed)));
         if (work_.look && !work_.ends && !work_.look()) work_.ends = true;
+        if (work_.max_time > 0) watch(threads);
         if (lua::interrupt_requested()) {
             for (std::thread& thread : threads) lua::nudge(thread.native_handle());
         }

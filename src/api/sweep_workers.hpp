@@ -3,6 +3,7 @@
 
 #include <atomic>
 #include <condition_variable>
+#include <deque>
 #include <functional>
 #include <mutex>
 #include <optional>
@@ -11,6 +12,7 @@
 #include <vector>
 
 #include "api/sweep_results.hpp"
+#include "lua/interrupt.hpp"
 #include "lua/worker_state.hpp"
 
 namespace dinal::api {
@@ -22,6 +24,7 @@ struct SweepWork {
     std::vector<std::size_t> points;  ///< to be done
     long long seed = 0;               ///< of math.random, with the number of the point
     const char* call = "sweep";       ///< heads sentences
+    double max_time = 0;              ///< seconds of a point; 0: any
     /// In the state of a worker: replaces the carried function on the top by the one that is asked.
     const std::function<void(lua_State* worker)>& adapt;
     /// Asked 50 times a second on the thread that waits, and at the end: false ends it all.
@@ -42,10 +45,13 @@ public:
 
 private:
     void start(std::vector<std::thread>& threads);
-    void run_one(lua_State* worker);
+    void run_one(lua_State* worker, lua::WorkerWatch& watch);
+    /// Gives up what has taken too long.
+    void watch(std::vector<std::thread>& threads);
 
     SweepWork& work_;
     std::vector<lua::OwnedState> states_;
+    std::deque<lua::WorkerWatch> watches_;  // of the threads
     std::mutex ending_;
     std::condition_variable ended_;
     std::size_t running_ = 0;

@@ -24,6 +24,7 @@ std::atomic<Stop> requested = Stop::none;
 std::atomic<bool> armed = false;
 std::atomic<lua_State*> running = nullptr;                          // on the thread of the program
 thread_local std::atomic<lua_State*>* running_in_worker = nullptr;  // on the thread of a WorkerScope
+thread_local const WorkerWatch* watch_of_worker = nullptr;          // likewise
 std::atomic<long> first_signal_ms = 0;                              // 0: none in this chunk
 std::array<char, LUA_IDSIZE + 20> stopping_place{};
 
@@ -55,7 +56,7 @@ void note_first_place(lua_State* L) {
 }
 
 void interrupt_hook(lua_State* L, lua_Debug*) {
-    if (requested != Stop::none && armed) {
+    if (interrupt_requested() && armed) {
         raise_interrupted(L);
     }
     lua_sethook(L, nullptr, 0, 0);  // left over from a chunk that has ended
@@ -112,7 +113,11 @@ Stop stop_requested() noexcept {
 }
 
 bool interrupt_requested() noexcept {
-    return stop_requested() != Stop::none;
+    return stop_requested() != Stop::none || (watch_of_worker != nullptr && watch_of_worker->must_stop());
+}
+
+const WorkerWatch* watch_here() noexcept {
+    return watch_of_worker;
 }
 
 bool chunk_runs() noexcept {
@@ -172,12 +177,15 @@ InterruptScope::~InterruptScope() {
     }
 }
 
-WorkerScope::WorkerScope(lua_State* L) : running_(L), outer_(running_in_worker) {
+WorkerScope::WorkerScope(lua_State* L, const WorkerWatch* watch)
+    : running_(L), outer_(running_in_worker), outer_watch_(watch_of_worker) {
     running_in_worker = &running_;
+    watch_of_worker = watch;
     terminal::show_no_progress_here();
 }
 
 WorkerScope::~WorkerScope() {
+    watch_of_worker = outer_watch_;
     running_in_worker = outer_;
 }
 

@@ -9,6 +9,7 @@
 #include <csignal>
 
 #include <atomic>
+#include <cstdint>
 #include <string>
 
 #include "lua/lua_headers.hpp"
@@ -27,7 +28,7 @@ void set_handler(int signal, void (*handler)(int));
 
 /// Why what runs shall stop, since the last InterruptScope began. A stepping loop asks this now and then.
 [[nodiscard]] Stop stop_requested() noexcept;
-/// It shall, whatever the reason.
+/// It shall, whatever the reason; also when this is a worker that is given up.
 [[nodiscard]] bool interrupt_requested() noexcept;
 
 /// Stops what runs, unless it is being stopped already. To be called on the thread of Lua, also in a signal handler.
@@ -61,11 +62,23 @@ private:
     TimeAllowance time_;
 };
 
+/// What a worker is at, for a thread that gives it up when it takes too long: that task only, whatever comes next.
+struct WorkerWatch {
+    std::atomic<std::uint64_t> task = 0, given_up = 0;  ///< their numbers, from 1
+    std::atomic<double> since = 0;       ///< the beginning of the task, in seconds of the watcher's clock
+    const WorkerWatch* outer = nullptr;  ///< of a worker that waits for this one
+
+    [[nodiscard]] bool has_given_up() const noexcept { return given_up != 0 && given_up == task; }
+    [[nodiscard]] bool must_stop() const noexcept { return has_given_up() || (outer != nullptr && outer->must_stop()); }
+};
+/// Of this thread; nullptr when nobody watches it.
+[[nodiscard]] const WorkerWatch* watch_here() noexcept;
+
 /// A thread besides the program's own, which runs Lua in a state of its own: while it lives, a stop that is requested
 /// here, or nudged, reaches what runs on `L`, and no progress is shown. The InterruptScope is that of the program.
 class WorkerScope {
 public:
-    explicit WorkerScope(lua_State* L);
+    explicit WorkerScope(lua_State* L, const WorkerWatch* watch = nullptr);
     ~WorkerScope();
     WorkerScope(const WorkerScope&) = delete;
     WorkerScope& operator=(const WorkerScope&) = delete;
@@ -73,6 +86,7 @@ public:
 private:
     std::atomic<lua_State*> running_;
     std::atomic<lua_State*>* outer_;
+    const WorkerWatch* outer_watch_;
 };
 /// This thread is one.
 [[nodiscard]] bool in_worker() noexcept;

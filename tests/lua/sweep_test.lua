@@ -289,4 +289,18 @@ test("what is wrong with the call is told at the user's line", function()
     raises_here(function() sweep(3) end, "sweep takes one table")
 end)
 
+test("a point that takes longer than max_time is given up, in Lua or in a run, and the others go on", function()
+    local d = sweep { x = { 1, 2, 3, 4 }, workers = 2, max_time = 0.15, run = function(p)
+        if p.x == 2 then while true do pcall(function() while true do end end) end end
+        if p.x == 3 then nondimensional {}:simulate { M = function(t) return math.sin(t) end, t_end = 1e9, times = {} } end
+        return { y = p.x }
+    end }
+    equal(d.y[1] + d.y[4], 5.0)
+    for i = 2, 3 do
+        equal(d.error[i], "it ran longer than the 0.15 s that max_time allows")
+        assert(d.y[i] ~= d.y[i])
+    end
+    raises_here(function() sweep { x = { 1 }, max_time = 0, run = print } end, "max_time = 0 must be positive")
+end)
+
 support.finish()
