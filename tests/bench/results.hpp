@@ -62,6 +62,12 @@ void print_bars(const Results& results);
 // Names that the table's bars refer to.
 inline constexpr std::string_view closed_forms_group = "closed forms", samples_item = "exact, 1e6 samples, 1e4 T0",
                                   harmonics_item = "exact, harmonics of amplitude 1/i^2: ";
+inline constexpr std::string_view analysis_group = "questions", steady_native = "steady, 200 x 200 points, native",
+                                  sweep_one_worker = "steady, 200 x 200 points, sweep in Lua",
+                                  sweep_two_workers = "the same, two workers",
+                                  sweep_of_nothing = "a sweep of one point with nothing to do",
+                                  response_300 = "response, 300 points",
+                                  identify_1000 = "identify, free decay, 1000 samples";
 inline constexpr std::string_view rows_group = "rows", files_group = "files", lua_group = "Lua", plots_group = "plots",
                                   start_group = "start";
 inline constexpr std::string_view csv_in_memory = "CSV, 1e6 rows of W4, file in memory",

@@ -115,10 +115,33 @@ static void print_spectral_bars(const Results& results) {
            [&] { return results.lua_calls.spectral_on_w3 / 1000; });
 }
 
+static void print_question_bars(const Results& results) {
+    struct Bar {
+        std::string_view item, what;
+        double most;
+        std::string_view unit;
+        double factor;
+    };
+    for (const Bar& b : {Bar{steady_native, "steady motion, native: a point", 5, "us", 1e6 / 40000},
+                         {sweep_one_worker, "steady motion, sweep in Lua: a point", 25, "us", 1e6 / 40000},
+                         {sweep_of_nothing, "a sweep: setting it up", 5, "ms", 1e3},
+                         {response_300, "response, 300 points", 5, "ms", 1e3},
+                         {identify_1000, "identify, free decay of 1000 samples", 10, "ms", 1e3}}) {
+        bar_of(results, {{analysis_group, b.item}}, b.what, b.most, b.unit,
+               [&] { return median(results, analysis_group, b.item) * b.factor; });
+    }
+    bar_of(results, {{analysis_group, sweep_one_worker}, {analysis_group, sweep_two_workers}},
+           "sweep: time with two workers against one", 1 / 1.8, "x", [&] {
+               return median(results, analysis_group, sweep_two_workers) /
+                      median(results, analysis_group, sweep_one_worker);
+           });
+}
+
 void print_bars(const Results& results) {
     fmt::print("\n{:<66}{:>8} {:<3}{:>8}\n", "bar", "measured", "", "at most");
     print_arcs_bars(results);
     print_spectral_bars(results);
+    print_question_bars(results);
     for (const Peer* peer : {&dinal_rk4, &dinal_1989}) {
         bar_of(results, {{"W1", peer->name}, {"W1", baseline}},
                fmt::format("{}: W1, time against the hand-inlined RK4", peer->name), 0.2, "x",
