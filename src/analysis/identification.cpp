@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 
 #include <Eigen/Eigenvalues>
+#include <iterator>
 
+#include "analysis/free_decay.hpp"
 #include "analysis/identification_search.hpp"
 
 namespace dinal::analysis {
@@ -12,7 +14,7 @@ text::Expected<Identified> Identification::identified() {
     const std::vector<Parameters> starts = question_.M ? forced_starts() : free_starts();
     for (left_out_ = 0; left_out_ < (question_.M ? 1U : 3U); ++left_out_) {
         for (const Parameters& start : starts) {
-            if (stopped_ || (best_ && good_enough())) break;
+            if (stopped_ || (best_ && (is_settled() || agreed_ > 1))) break;
             try_from(start);
         }
     }
@@ -21,14 +23,16 @@ text::Expected<Identified> Identification::identified() {
     return result();
 }
 
+bool is_sought(const IdentifyQuestion& question, Unknown which) {
+    const auto is_given = [&](Unknown one) { return question.given[static_cast<std::size_t>(one)].has_value(); };
+    if (is_given(which)) return false;
+    if (question.M) return true;
+    return which != Unknown::Re && (which != Unknown::I || is_given(Unknown::k));
+}
+
 void Identification::choose_unknowns() {
-    for (int i = 0; i < unknown_count; ++i) {
-        const auto which = static_cast<Unknown>(i);
-        bool free = !is_given(which);
-        if (!question_.M && which == Unknown::Re) free = false;
-        if (!question_.M && which == Unknown::I) free = free && is_given(Unknown::k);
-        if (free) unknowns_.push_back(which);
-    }
+    std::copy_if(all_unknowns.begin(), all_unknowns.end(), std::back_inserter(unknowns_),
+                 [this](Unknown which) { return is_sought(question_, which); });
 }
 
 std::optional<Eigen::VectorXd> Identification::predicted(const Parameters& p, std::size_t rows) {
@@ -45,12 +49,20 @@ std::optional<Eigen::VectorXd> Identification::predicted(const Parameters& p, st
     }
     const auto system = model::Oscillator::make(parts);
     if (!system) return {};
+    const model::State initial{at(p, Unknown::theta0), at(p, Unknown::velocity0)};
+    if (!question_.M) {
+        stopped_ = stopped_ || (monitor_ && !monitor_(question_.t.front()));
+        if (stopped_) return {};
+        Eigen::VectorXd decay = free_decay(*system, initial, std::span(question_.t).first(rows));
+        decay.array() += at(p, Unknown::offset);
+        return decay.allFinite() ? std::optional(std::move(decay)) : std::nullopt;
+    }
     const std::vector<double> times(question_.t.begin(), question_.t.begin() + static_cast<std::ptrdiff_t>(rows));
     motion::Limits limits;
     limits.dense = false;
-    const auto run = motion::simulate(
-        *system, question_.M.value_or(model::Excitation()), {at(p, Unknown::theta0), at(p, Unknown::velocity0)},
-        {times.front(), times.back()}, motion::Grid::at(times), motion::Integrator{}, monitor_, limits);
+    const auto run =
+        motion::simulate(*system, *question_.M, initial, {times.front(), times.back()}, motion::Grid::at(times),
+                         motion::integrator_for(*system, *question_.M), monitor_, limits);
     if (!run || static_cast<std::size_t>(run->size()) != rows) {
         stopped_ = stopped_ || (run && (run->outcome == model::Outcome::interrupted ||
                                         run->outcome == model::Outcome::excitation_not_finite));
@@ -106,8 +118,14 @@ void Identification::try_from(const Parameters& start) {
         if (some) p = some->parameters;
         done = rows + 1;
     }
-    keep_if_better(fit(p, question_.t.size(), scale, 40), scale);
-    if (some && !question_.M && best_ && !explains_rest(*some)) look_beside(*some, scale);
+    const std::optional<LeastSquares> all = fit(p, question_.t.size(), scale, 40);
+    if (all && best_ && std::fabs(all->sum - best_->sum) <= same_fit * best_->sum) ++agreed_;
+    keep_if_better(all, scale);
+    if (!some || question_.M || !best_) return;
+    explained_ = explains_rest(*some);
+    if (explained_) return;
+    look_beside(*some, scale);
+    explained_ = explains_rest(*some);
 }
 
 /// A swing cannot be taken for the next one where what came before is known already.
@@ -127,6 +145,7 @@ std::vector<std::size_t> Identification::stages(double period) const {
 
 void Identification::keep_if_better(const std::optional<LeastSquares>& all, const FitScale& scale) {
     if (!all || (best_ && !(all->sum < best_->sum))) return;
+    if (best_ && all->sum < (1 - same_fit) * best_->sum) agreed_ = 0;
     best_ = all;
     best_base_ = base_;
     best_scale_ = scale;
@@ -139,8 +158,15 @@ std::optional<LeastSquares> Identification::fit(const Eigen::VectorXd& p, std::s
     return least_squares(model, measured_.head(static_cast<Eigen::Index>(rows)), p, scale, steps);
 }
 
+/// The last samples differ by no more than noise makes them.
+bool Identification::ends_at_rest() const {
+    const Eigen::Index n = measured_.size();
+    const auto tail = measured_.tail(std::min(n, std::max<Eigen::Index>(8, n / 30)));
+    return tail.maxCoeff() - tail.minCoeff() <= 8 * noise_ + 1e-6 * range_;
+}
+
 void Identification::try_breakaway() {
-    if (good_enough() || is_given(Unknown::Re)) return;
+    if (is_settled() || explained_ || is_given(Unknown::Re) || !ends_at_rest()) return;
     std::vector<double> amplitudes;
     const double zero = at(filled_best(), Unknown::offset);
     for (const std::size_t i : turns_) amplitudes.push_back(std::fabs(question_.theta[i] - zero));
@@ -236,8 +262,8 @@ void Identification::ratios(const Eigen::MatrixXd& covariance, Identified& found
 
 text::Expected<Identified> identify(const IdentifyQuestion& question, const motion::Monitor& monitor) {
     const std::size_t n = question.t.size();
-    std::size_t unknowns = 0;
-    for (const auto& given : question.given) unknowns += given ? 0U : 1U;
+    const auto unknowns = static_cast<std::size_t>(std::count_if(
+        all_unknowns.begin(), all_unknowns.end(), [&](Unknown which) { return is_sought(question, which); }));
     const std::size_t least = std::max<std::size_t>(8, unknowns + 1);
     if (n < least || question.theta.size() != n) {
         return text::Error{

@@ -22,6 +22,16 @@ inline double at(const Parameters& p, Unknown which) {
     return p[static_cast<std::size_t>(which)];
 }
 
+inline constexpr std::array<Unknown, unknown_count> all_unknowns{
+    Unknown::I, Unknown::k, Unknown::C, Unknown::Rd, Unknown::Re, Unknown::theta0, Unknown::velocity0, Unknown::offset};
+
+/// It is not given, and the record may tell it: in a free decay I sets the unit of torque, and Re shows nowhere but
+/// where the mass rests.
+bool is_sought(const IdentifyQuestion& question, Unknown which);
+
+/// By so much of the sum of squares two fits may differ that are one.
+inline constexpr double same_fit = 1e-6;
+
 class Identification {
 public:
     Identification(const IdentifyQuestion& question, const motion::Monitor& monitor)
@@ -45,7 +55,6 @@ private:
         return question_.given[static_cast<std::size_t>(which)].value_or(otherwise);
     }
 
-    /// In a free decay I sets the unit of torque, and Re shows nowhere but where the mass rests.
     void choose_unknowns();
 
     [[nodiscard]] Parameters filled(const Eigen::VectorXd& p) const {
@@ -72,6 +81,13 @@ private:
         return std::sqrt(best_->sum / static_cast<double>(std::max<Eigen::Index>(1, measured_.size() - count())));
     }
     [[nodiscard]] bool good_enough() const { return deviation() <= std::max(1.06 * noise_, 1e-9 * range_); }
+    /// Good enough for a record of this length, from which the noise is known to a few parts of its root; so much is
+    /// granted where the fit of the moving part alone says no more than that of all.
+    [[nodiscard]] bool is_settled() const {
+        constexpr double deviations = 6;
+        const double unsure = deviations / std::sqrt(static_cast<double>(measured_.size()));
+        return good_enough() || (explained_ && deviation() <= (1 + std::min(unsure, 0.3)) * noise_);
+    }
     [[nodiscard]] Eigen::Index count() const { return static_cast<Eigen::Index>(unknowns_.size()); }
 
     // ---- where to start, in identification_starts.cpp
@@ -85,6 +101,7 @@ private:
 
     /// Where the mass rests beyond what Rd can hold, Re is greater: it rests at one of the last turns.
     void try_breakaway();
+    [[nodiscard]] bool ends_at_rest() const;
     [[nodiscard]] Parameters filled_best() {
         base_ = best_base_;
         return filled(best_->parameters);
@@ -107,6 +124,8 @@ private:
     FitScale best_scale_;
     std::size_t left_out_ = 0;  // of the last turns of a free decay: noise, or the motion's end, may have made them
     int runs_ = 0;
+    int agreed_ = 0;  // other fits that came to the best one: what is given may leave nothing nearer to the record
+    bool explained_ = false;  // the best fit is as near to the moving part, and to the rest, as any can be
     bool stopped_ = false;
 };
 
