@@ -9,7 +9,8 @@ namespace {
 
 constexpr double closed = 1e-12;  // of the size of the motion: what a fixed point may miss
 constexpr double as_closed_as_can_be = 2e-15;
-constexpr double nearly_closed = 1e-9;  // where rounding lets no more be had
+constexpr double as_near_as_need_be = 1e-14;  // of the size: a step that is not worth a period
+constexpr double nearly_closed = 1e-9;        // where rounding lets no more be had
 
 }  // namespace
 
@@ -65,7 +66,9 @@ std::optional<FixedPointSearch::Try> FixedPointSearch::newton(const Try& now) co
 
 FixedPointSearch::Try FixedPointSearch::polished(Try now) const {
     for (int i = 0; i < 2 && now.step.differentiable && !now.at(as_closed_as_can_be); ++i) {
-        Try next = at(now.x + step(now), now.size);
+        const Place whole = step(now);
+        if (whole.norm() <= as_near_as_need_be * now.size) break;
+        Try next = at(now.x + whole, now.size);
         if (!next.step.finished || !(next.residual() < now.residual() / 2)) break;
         now = next;
     }

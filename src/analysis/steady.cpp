@@ -6,7 +6,8 @@
 #include <vector>
 
 #include "analysis/fixed_point.hpp"
-#include "analysis/sliding_start.hpp"
+#include "analysis/sine/sliding_start.hpp"
+#include "analysis/sine/stopping_start.hpp"
 #include "analysis/steady_facts.hpp"
 #include "model/lowered.hpp"
 
@@ -38,7 +39,7 @@ public:
             return answer_;
         }
         if (contracts_) {
-            if (symmetric_ && slides_through()) return answer_;
+            if (symmetric_ && follows_sine()) return answer_;
             if (search_once(start, symmetric_) || search_once(start, false)) return answer_;
             brute(start, 1);
             return answer_;
@@ -51,7 +52,7 @@ public:
         const Place start = place_of(question_.initial, map_.omega());
         answer_.period = question_.drive.period;
         if (resonant_growth() > 0) return found();
-        if (contracts_ && symmetric_ && slides_through()) return answer_;
+        if (contracts_ && symmetric_ && follows_sine()) return answer_;
         if (search_once(start, symmetric_) && answer_.stable) return answer_;
         return found();
     }
@@ -105,12 +106,15 @@ private:
         return answer_;
     }
 
-    /// Where it does not stop the closed form is the answer, and one look confirms it.
-    bool slides_through() {
-        const auto start = sliding_start(question_);
+    /// Under one sine closed forms from event to event give the answer, and one look confirms it.
+    bool follows_sine() {
+        const auto own = sine::single_sine(question_);
+        if (!own) return false;
+        auto start = sine::sliding_start(*own);
+        if (!start) start = sine::stopping_start(*own);
         if (!start) return false;
         const auto found = FixedPointSearch(half_, -1, answer_.maps).confirmed(place_of(*start, half_.omega()));
-        return found && found->step.moved && found->step.stops == 0 && settle(*found, half_, 1, true);
+        return found && found->step.moved && settle(*found, half_, 1, true);
     }
 
     /// One period of M, or its half when M and friction are the same the other way round.

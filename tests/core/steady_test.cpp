@@ -7,6 +7,7 @@
 #include <random>
 #include <vector>
 
+#include "analysis/sine/stopping_start.hpp"
 #include "support/catch.hpp"
 #include "support/measure.hpp"
 #include "support/within.hpp"
@@ -101,6 +102,37 @@ TEST_CASE("the steady motion is the one that a long run comes to", "[steady]") {
         // rk4 with this step is right to 1e-9; what is left of the transient is less.
         CHECK(found.amplitude == within(waited_for(question, 60), 1e-8));
     }
+}
+
+TEST_CASE("the closed form from stop to stop is where the motion is, at any beginning of the period", "[steady]") {
+    std::mt19937_64 random(7);
+    std::uniform_real_distribution<double> unit(0, 1);
+    int found = 0;
+    for (int i = 0; i < 200; ++i) {
+        const double r = 0.05 * std::pow(60, unit(random)), gamma = 0.99 * unit(random);
+        const double zeta = i % 3 == 0 ? 0 : 0.5 * unit(random);
+        SteadyQuestion question = driven(r, gamma, zeta);
+        const double shift = 2 * pi * unit(random);
+        question.excitation = truth::harmonic(i % 2 == 0 ? 0.7 : -0.7, 2 * pi * r, shift);
+        question.system = truth::nondimensional(zeta, 0.7 * gamma, 0.7 * gamma);
+        const auto own = sine::single_sine(question);
+        REQUIRE(own);
+        const auto start = sine::stopping_start(*own);
+        if (!start) continue;
+        INFO("r = " << r << ", gamma = " << gamma << ", zeta = " << zeta);
+        // Another integrator comes back to it after a period.
+        const auto run = truth::must_run(question.system, question.excitation, *start, {0, 1 / r}, motion::Grid::none(),
+                                         motion::Spectral{});
+        const double size = std::max(std::fabs(start->theta), std::fabs(start->velocity) / (2 * pi));
+        CHECK(run.state_at_stop.theta == within(start->theta, 1e-10 * std::max(size, 0.01)));
+        CHECK(run.state_at_stop.velocity == within(start->velocity, 1e-9 * std::max(size, 0.01)));
+        // One look is enough for the search, and sometimes one more against rounding.
+        const SteadyMotion motion = steady_motion(question);
+        CHECK(motion.maps <= 3);
+        CHECK(motion.stops > 0);
+        ++found;
+    }
+    CHECK(found > 80);
 }
 
 TEST_CASE("without dry friction the multipliers and the lag are those of linear theory", "[steady]") {

@@ -1,0 +1,27 @@
+// A linear spring and even friction of Coulomb under one sine, which has closed forms from event to event: what two
+// starts for the search of a steady motion are made of.
+//
+// Everything is in units of its own: y = theta k/M0, x = w0 t, so that y'' + 2 zeta y' + y = sin p - friction, and the
+// phase p of the load goes on by r for each x.
+#pragma once
+
+#include <optional>
+
+#include "analysis/steady.hpp"
+#include "theory/theory_modes.hpp"
+
+namespace dinal::analysis::sine {
+
+struct SingleSine {
+    double r = 0, zeta = 0;
+    double sliding = 0, holding = 0;  ///< Rd/M0 and Re/M0
+    double phase = 0;                 ///< of the load when the drive starts
+    double unit = 1, omega0 = 1;      ///< M0/k and w0
+
+    [[nodiscard]] model::State state(const theory::Motion2& y) const { return {unit * y.y, unit * omega0 * y.dy}; }
+};
+
+/// None where the system or M is another one, or r is beyond what closed forms take.
+std::optional<SingleSine> single_sine(const SteadyQuestion& question);
+
+}  // namespace dinal::analysis::sine
