@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "analysis/friction_wave.hpp"
 #include "analysis/steady.hpp"
 #include "analysis/stretches.hpp"
 #include "model/lowered.hpp"
@@ -41,16 +42,14 @@ double in_one_turn(double degrees) {
 
 }  // namespace
 
-SteadyShape shape_of(const SteadyQuestion& question, const SteadyMotion& motion, const motion::Monitor& monitor) {
-    SteadyShape shape;
-    shape.mean = motion.start.theta;
-    if (motion.status != SteadyStatus::steady) return shape;
+namespace {
+
+/// The mean and the fundamental from the motion itself.
+std::optional<Fundamental> by_motion(const SteadyQuestion& question, const SteadyMotion& motion, const PeriodMap& map,
+                                     double length) {
     const Drive& drive = question.drive;
-    // Half a period of a symmetric motion tells all of it.
-    const double length = motion.symmetric ? motion.period / 2 : motion.period;
-    const PeriodMap map(question.system, question.excitation, drive.start, length, monitor);
     const motion::Trajectory run = map.run({motion.start.theta, motion.start.velocity / map.omega()}, length, true);
-    if (!model::is_whole(run.outcome)) return shape;
+    if (!model::is_whole(run.outcome)) return {};
     const double omega = 2 * std::numbers::pi / drive.period;
     const double middle = motion.symmetric ? 0 : (motion.low + motion.high) / 2;
     const double own = question.system.stiffness() > 0 ? question.system.natural_period() : drive.period;
@@ -68,16 +67,39 @@ SteadyShape shape_of(const SteadyQuestion& question, const SteadyMotion& motion,
         sum = sum +
               integral(question.excitation, s.from, s.to, std::min({own, drive.period, s.lasts()}) / 12, moments_at);
     }
-    shape.mean = motion.symmetric ? 0 : middle + sum.theta / length;
-    const std::complex<double> theta_wave = sum.wave;
-    shape.fundamental = std::abs(theta_wave) * 2 / length;
-    if (question.excitation.has_feedback()) return shape;
-    const std::complex<double> M_wave = harmonic_of(question.excitation, drive, 1);
-    if (!is_more_than_rounding(question, M_wave)) return shape;
+    return Fundamental{motion.symmetric ? 0 : middle + sum.theta / length, sum.wave * (2 / length)};
+}
+
+}  // namespace
+
+SteadyShape shape_of(const SteadyQuestion& question, const SteadyMotion& motion, const motion::Monitor& monitor) {
+    SteadyShape shape;
+    shape.mean = motion.start.theta;
+    if (motion.status != SteadyStatus::steady) return shape;
+    const Drive& drive = question.drive;
+    // Half a period of a symmetric motion tells all of it.
+    const double length = motion.symmetric ? motion.period / 2 : motion.period;
+    const PeriodMap map(question.system, question.excitation, drive.start, length, monitor);
+    const bool feedback = question.excitation.has_feedback();
+    const std::complex<double> M_wave = feedback ? 0 : harmonic_of(question.excitation, drive, 1);
+    const bool drives = !feedback && is_more_than_rounding(question, M_wave);
+    std::optional<Fundamental> found;
+    if (drives && is_linear_but_for_friction(question)) {
+        const motion::Trajectory run =
+            map.run({motion.start.theta, motion.start.velocity / map.omega()}, length, false);
+        if (!model::is_whole(run.outcome)) return shape;
+        found = by_friction(question, motion, run, M_wave);
+    }
+    if (!found) found = by_motion(question, motion, map, length);
+    if (!found) return shape;
+    shape.mean = found->mean;
+    shape.fundamental = std::abs(found->wave);
+    if (!drives) return shape;
     if (shape.fundamental > least_harmonic * motion.amplitude) {
-        shape.lag = in_one_turn((std::arg(M_wave) - std::arg(theta_wave)) * 180 / std::numbers::pi);
+        shape.lag = in_one_turn((std::arg(M_wave) - std::arg(found->wave)) * 180 / std::numbers::pi);
     }
     // The fundamental |M| cos(omega t + arg) is greatest when omega t = -arg.
+    const double omega = 2 * std::numbers::pi / drive.period;
     shape.peak_lag = in_one_turn((omega * (motion.t_high - drive.start) + std::arg(M_wave)) * 180 / std::numbers::pi);
     return shape;
 }
@@ -142,7 +164,7 @@ private:
         if (!motion_.differentiable) return;
         const double largest = std::max(std::abs(motion_.multipliers[0]), std::abs(motion_.multipliers[1]));
         if (!motion_.stable) {
-            say("It is unstable: a disturbance grows {:.4g} times in a period, so that no run stays with it.", largest);
+            say("It is unstable: a disturbance grows {:.6g} times in a period, so that no run stays with it.", largest);
         } else if (largest > 1 - 1e-6) {
             say("It is stable, but a disturbance does not die.");
         } else if (largest < 1e-12) {

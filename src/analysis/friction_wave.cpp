@@ -1,0 +1,60 @@
+#include "analysis/friction_wave.hpp"
+
+#include <cmath>
+#include <numbers>
+
+#include "analysis/stretches.hpp"
+#include "model/lowered.hpp"
+
+namespace dinal::analysis {
+
+bool is_linear_but_for_friction(const SteadyQuestion& question) {
+    const model::Lowered system(question.system);
+    return question.system.has_linear_spring() && system.stiffness() > 0 && !system.has_remainder() &&
+           !question.system.walls() && !question.excitation.has_feedback();
+}
+
+std::optional<Fundamental> by_friction(const SteadyQuestion& question, const SteadyMotion& motion,
+                                       const motion::Trajectory& run, std::complex<double> M_wave) {
+    const model::Lowered system(question.system);
+    const Drive& drive = question.drive;
+    const double omega = 2 * std::numbers::pi / drive.period, length = run.t_stop - run.t_start;
+    const auto wave = [&](double t) { return std::polar(1.0, -omega * (t - drive.start)); };
+    double sum = 0;
+    std::complex<double> sum_wave;
+    for (const Stretch& s : stretches(run)) {
+        if (!(s.lasts() > 0)) continue;
+        const std::complex<double> between =
+            (wave(s.to) - wave(s.from)) * std::complex<double>(0, 1 / omega);  // of e^(-i omega t)
+        if (s.stuck) {
+            const double held = -system.stiffness() * s.begin.theta;
+            const double piece = std::min(drive.period / 64, s.lasts() / 12);
+            sum += held * s.lasts();
+            sum_wave += held * between;
+            sum += integral(question.excitation, s.from, s.to, piece,
+                            [&](double t) { return question.excitation.value(t); });
+            sum_wave += integral(question.excitation, s.from, s.to, piece,
+                                 [&](double t) { return question.excitation.value(t) * wave(t); });
+        } else {
+            const double braking =
+                system.braking(s.end.theta > s.begin.theta ? model::Motion::forward : model::Motion::backward);
+            sum += braking * s.lasts();
+            sum_wave += braking * between;
+        }
+    }
+    const std::complex<double> left = M_wave - sum_wave * (2 / length);
+    constexpr double least_left = 0.02;  // of M, where a part in 1e14 of that is still one in 1e12 of theta
+    if (!(std::abs(left) > least_left * std::abs(M_wave))) return {};
+    Fundamental found;
+    found.wave =
+        left / std::complex<double>(system.stiffness() - system.inertia() * omega * omega, system.damping() * omega);
+    if (!motion.symmetric) {
+        const double mean_M = integral(question.excitation, run.t_start, run.t_stop, drive.period / 64,
+                                       [&](double t) { return question.excitation.value(t); }) /
+                              length;
+        found.mean = (mean_M - sum / length) / system.stiffness();
+    }
+    return found;
+}
+
+}  // namespace dinal::analysis
