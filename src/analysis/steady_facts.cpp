@@ -64,7 +64,7 @@ SteadyMotion facts_of(const SteadyQuestion& question, const PeriodMap& map, cons
         motion.high = -motion.low;
         if (-step.low > step.high) motion.t_high = step.t_low + map.length();
     }
-    motion.amplitude = (motion.high - motion.low) / 2;
+    motion.amplitude = (motion.high - motion.low) / 2 + 0.0;  // no -0 of a mass that stands at -0
     motion.stops = half ? 2 * step.stops : step.stops;
     motion.stuck = step.moved ? std::min(1.0, step.stuck / map.length()) : 1;
     motion.residual = found.residual() / found.size;

@@ -68,6 +68,9 @@ public:
         lua_pushvalue(L_, place_);
         lua_pushnumber(L_, x);
         lua_call(L_, 1, 2);
+        if (lua_isnil(L_, -2)) {
+            options_.fail("M", fmt::format("M({:.6g}) returned nil; it must return an excitation", x));
+        }
         question.excitation = to_excitation(L_, -2, fmt::format("sys:response: M({:.6g})", x), "M");
         if (const auto* own = lua::test<model::Oscillator>(L_, -1)) {
             question.system = *own;
