@@ -73,8 +73,8 @@ private:
 
 }  // namespace
 
-Eigen::VectorXd free_decay(const model::Oscillator& system, const model::State& initial,
-                           std::span<const double> times) {
+Eigen::VectorXd free_decay(const model::Oscillator& system, const model::State& initial, std::span<const double> times,
+                           std::optional<double> rests_at) {
     Eigen::VectorXd theta(static_cast<Eigen::Index>(times.size()));
     const theory::FreeMotion motion(system, initial);
     const double zeta = system.damping_ratio();
@@ -89,7 +89,7 @@ Eigen::VectorXd free_decay(const model::Oscillator& system, const model::State& 
     DecayRows rows(system, times, theta);
     const theory::Extreme first = motion.extreme(0);
     if (initial.velocity != 0) rows.swing(initial.velocity > 0 ? -shift : shift, 0, initial, first.t);
-    const double until_rest = motion.extremes() - 1;
+    const double until_rest = rests_at.value_or(motion.extremes() - 1);
     const double half = std::numbers::pi / (theory::Modes(zeta).rate() * system.natural_frequency());
     while (!rows.done()) {
         const double n = std::max(0.0, std::floor((rows.next_time() - first.t) / half));
@@ -99,8 +99,9 @@ Eigen::VectorXd free_decay(const model::Oscillator& system, const model::State& 
         }
         const theory::Extreme last = motion.extreme(n);
         const double end = first.t + (n + 1) * half;
+        const bool from_below = (first.theta < 0) != (std::fmod(n, 2) != 0);
         // A row that rounding puts before its swing belongs to it all the same.
-        rows.swing(last.theta < 0 ? -shift : shift, last.t, {last.theta, 0},
+        rows.swing(from_below ? -shift : shift, last.t, {last.theta, 0},
                    std::max(end, std::nextafter(rows.next_time(), 1e300)));
     }
     return theta;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
 #include <span>
 
 #include "model/oscillator.hpp"
@@ -10,6 +11,8 @@
 namespace dinal::analysis {
 
 /// theta at each of these increasing times, from `initial` at the first one. A linear spring and friction of Coulomb.
-Eigen::VectorXd free_decay(const model::Oscillator& system, const model::State& initial, std::span<const double> times);
+/// With `rests_at` the mass rests at that one of its extremes (0: the first) whatever friction can hold; underdamped.
+Eigen::VectorXd free_decay(const model::Oscillator& system, const model::State& initial, std::span<const double> times,
+                           std::optional<double> rests_at = {});
 
 }  // namespace dinal::analysis

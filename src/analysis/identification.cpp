@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Eigenvalues>
 #include <iterator>
 
 #include "analysis/free_decay.hpp"
@@ -19,7 +18,7 @@ text::Expected<Identified> Identification::identified() {
         }
     }
     if (!best_) return text::Error{"no motion of such a system comes near this record"};
-    if (!question_.M && !stopped_) try_breakaway();
+    if (!question_.M && !stopped_) try_rests();
     return result();
 }
 
@@ -53,7 +52,7 @@ std::optional<Eigen::VectorXd> Identification::predicted(const Parameters& p, st
     if (!question_.M) {
         stopped_ = stopped_ || (monitor_ && !monitor_(question_.t.front()));
         if (stopped_) return {};
-        Eigen::VectorXd decay = free_decay(*system, initial, std::span(question_.t).first(rows));
+        Eigen::VectorXd decay = free_decay(*system, initial, std::span(question_.t).first(rows), rests_at_);
         decay.array() += at(p, Unknown::offset);
         return decay.allFinite() ? std::optional(std::move(decay)) : std::nullopt;
     }
@@ -121,11 +120,7 @@ void Identification::try_from(const Parameters& start) {
     const std::optional<LeastSquares> all = fit(p, question_.t.size(), scale, 40);
     if (all && best_ && std::fabs(all->sum - best_->sum) <= same_fit * best_->sum) ++agreed_;
     keep_if_better(all, scale);
-    if (!some || question_.M || !best_) return;
-    explained_ = explains_rest(*some);
-    if (explained_) return;
-    look_beside(*some, scale);
-    explained_ = explains_rest(*some);
+    if (some && (!moving_ || (all && best_ && all->sum <= best_->sum))) moving_ = some->parameters;
 }
 
 /// A swing cannot be taken for the next one where what came before is known already.
@@ -165,54 +160,6 @@ bool Identification::ends_at_rest() const {
     return tail.maxCoeff() - tail.minCoeff() <= 8 * noise_ + 1e-6 * range_;
 }
 
-void Identification::try_breakaway() {
-    if (is_settled() || explained_ || is_given(Unknown::Re) || !ends_at_rest()) return;
-    std::vector<double> amplitudes;
-    const double zero = at(filled_best(), Unknown::offset);
-    for (const std::size_t i : turns_) amplitudes.push_back(std::fabs(question_.theta[i] - zero));
-    amplitudes.push_back(std::fabs(question_.theta.back() - zero));
-    std::sort(amplitudes.begin(), amplitudes.end());
-    const Parameters start = filled_best();
-    for (std::size_t i = 0; i + 1 < std::min<std::size_t>(amplitudes.size(), 4) && !stopped_; ++i) {
-        breakaway_ = (amplitudes[i] + amplitudes[i + 1]) / 2;
-        try_from(start);
-    }
-    breakaway_ = best_breakaway_;
-}
-
-/// No fit can be nearer to the moving part than the one of that part alone, nor to the rest than by a shift.
-bool Identification::explains_rest(const LeastSquares& moving) const {
-    const Eigen::Index n = moving.residual.size(), rest = measured_.size() - n;
-    const double shift = best_->residual.tail(rest).sum();
-    const double lost = best_->residual.head(n).squaredNorm() - moving.sum + shift * shift / static_cast<double>(rest);
-    return lost < 1.5 * moving.sum / static_cast<double>(n - count());
-}
-
-/// Whether a last small swing comes about, and to which side, turns the slope with which the place of rest goes with
-/// the parameters: each case is a valley of its own, and the many samples at rest make its walls steep. So the fit is
-/// begun again around what the moving part of the record tells, along the ways that it tells least.
-void Identification::look_beside(const LeastSquares& moving, const FitScale& scale) {
-    const auto model = [&](const Eigen::VectorXd& q) {
-        return predicted(filled(q), static_cast<std::size_t>(moving.residual.size()));
-    };
-    auto J = derivative(model, moving.parameters, scale, moving.residual.size());
-    if (!J) return;
-    Eigen::VectorXd size(count());
-    for (Eigen::Index i = 0; i < count(); ++i) {
-        size[i] = std::max(std::fabs(moving.parameters[i]), scale.typical[i]);
-        J->col(i) *= size[i];
-    }
-    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> ways(J->transpose() * *J);
-    const double noise = std::sqrt(moving.sum / static_cast<double>(J->rows() - J->cols()));
-    for (Eigen::Index way = 0; way < std::min<Eigen::Index>(2, count()); ++way) {
-        const double length = noise / std::sqrt(std::max(ways.eigenvalues()[way], 1e-300));
-        const Eigen::VectorXd step = std::min(length, 0.3) * ways.eigenvectors().col(way).cwiseProduct(size);
-        for (const double deviations : {0.8, -0.8, 2.0, -2.0}) {
-            keep_if_better(fit(moving.parameters + deviations * step, question_.t.size(), scale, 15), scale);
-        }
-    }
-}
-
 Identified Identification::result() {
     Identified found;
     breakaway_ = best_breakaway_;
@@ -231,11 +178,15 @@ Identified Identification::result() {
         const auto which = static_cast<std::size_t>(unknowns_[static_cast<std::size_t>(i)]);
         found.fitted[which] = true;
         found.silent[which] = covariance.silent[static_cast<std::size_t>(i)];
-        found.error[which] = found.noise * std::sqrt(covariance.matrix(i, i));
         for (Eigen::Index j = 0; j < count(); ++j) {
             full(static_cast<Eigen::Index>(which), static_cast<Eigen::Index>(unknowns_[static_cast<std::size_t>(j)])) =
                 covariance.matrix(i, j);
         }
+    }
+    add_other_rests(full);
+    for (const Unknown which : unknowns_) {
+        const auto i = static_cast<Eigen::Index>(which);
+        found.error[static_cast<std::size_t>(which)] = found.noise * std::sqrt(full(i, i));
     }
     ratios(full, found);
     const Eigen::VectorXd predicted_all = measured_ - best_->residual;

@@ -69,8 +69,6 @@ private:
 
     /// First the beginning of the record, so that no swing is taken for the next one, then all of it.
     void try_from(const Parameters& start);
-    void look_beside(const LeastSquares& moving, const FitScale& scale);
-    [[nodiscard]] bool explains_rest(const LeastSquares& moving) const;
     void keep_if_better(const std::optional<LeastSquares>& all, const FitScale& scale);
     /// How many samples are fitted one after another; the last of a free decay end at its last turn, for behind it the
     /// motion may end.
@@ -80,14 +78,8 @@ private:
     [[nodiscard]] double deviation() const {
         return std::sqrt(best_->sum / static_cast<double>(std::max<Eigen::Index>(1, measured_.size() - count())));
     }
-    [[nodiscard]] bool good_enough() const { return deviation() <= std::max(1.06 * noise_, 1e-9 * range_); }
-    /// Good enough for a record of this length, from which the noise is known to a few parts of its root; so much is
-    /// granted where the fit of the moving part alone says no more than that of all.
-    [[nodiscard]] bool is_settled() const {
-        constexpr double deviations = 6;
-        const double unsure = deviations / std::sqrt(static_cast<double>(measured_.size()));
-        return good_enough() || (explained_ && deviation() <= (1 + std::min(unsure, 0.3)) * noise_);
-    }
+    /// As good as the noise, which is known to a few parts of its root from a record of this length.
+    [[nodiscard]] bool is_settled() const { return deviation() <= std::max(1.06 * noise_, 1e-9 * range_); }
     [[nodiscard]] Eigen::Index count() const { return static_cast<Eigen::Index>(unknowns_.size()); }
 
     // ---- where to start, in identification_starts.cpp
@@ -99,9 +91,14 @@ private:
     [[nodiscard]] Parameters weak_form() const;
     void add_window(std::size_t first, std::size_t last, double sign, std::vector<std::array<double, 6>>& rows) const;
 
-    /// Where the mass rests beyond what Rd can hold, Re is greater: it rests at one of the last turns.
-    void try_breakaway();
+    // ---- at which turn a free decay comes to rest, in identification_rest.cpp
+
     [[nodiscard]] bool ends_at_rest() const;
+    void try_rests();
+    double try_rest_at(double turn);
+    [[nodiscard]] std::optional<double> holding(const Parameters& p, double turn) const;
+    /// What is not sure because the record leaves open at which turn the mass came to rest, in units of noise squared.
+    void add_other_rests(Eigen::MatrixXd& covariance) const;
     [[nodiscard]] Parameters filled_best() {
         base_ = best_base_;
         return filled(best_->parameters);
@@ -120,12 +117,14 @@ private:
     std::vector<Unknown> unknowns_;
     Parameters base_{}, best_base_{};
     double breakaway_ = 0, best_breakaway_ = 0;  // Re/k of a free decay; 0: Rd/k
+    std::optional<double> rests_at_ = {};        // the turn at which a free decay is made to rest
+    std::vector<LeastSquares> rests_ = {};       // the best fit of each such turn
     std::optional<LeastSquares> best_;
+    std::optional<Eigen::VectorXd> moving_;  // what the moving part of a free decay says by itself
     FitScale best_scale_;
     std::size_t left_out_ = 0;  // of the last turns of a free decay: noise, or the motion's end, may have made them
     int runs_ = 0;
     int agreed_ = 0;  // other fits that came to the best one: what is given may leave nothing nearer to the record
-    bool explained_ = false;  // the best fit is as near to the moving part, and to the rest, as any can be
     bool stopped_ = false;
 };
 

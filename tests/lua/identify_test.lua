@@ -47,14 +47,14 @@ test("the errors are true: 95 % intervals hold the truth in 90 to 98 % of 200 re
     assert(ratio <= 1.3, ratio)
 end)
 
-test("decays of all kinds, with 0.1 to 3 % of noise, from seconds to hours", function()
+test("decays of all kinds, with 0.1 to 3 % of noise, from seconds to hours, held by Re = Rd or by more", function()
     math.randomseed(7)
     local judged, part, ratio = judge()
-    for seed = 1, 25 do
+    for seed = 1, 200 do
         local I, k = 10^(4 * math.random() - 2), 10^(4 * math.random() - 2)
         local viscous = math.random() < 0.3 and 0 or 0.15 * math.random()^2
         local dry = math.random() < 0.3 and 0 or 0.1 * math.random()^2
-        local s = system{ I = I, k = k, C = 2 * viscous * (I * k)^0.5, Rd = k * dry }
+        local s = system{ I = I, k = k, C = 2 * viscous * (I * k)^0.5, Rd = k * dry, Re = k * dry * (1 + 0.3 * (seed % 2)) }
         local t_end, std = (2 + 18 * math.random()) * s.T0, 0.001 * 30^math.random()
         local run = s:simulate{ theta0 = 1, velocity0 = s.omega0 * (2 * math.random() - 1), t_end = t_end,
             dt = t_end / math.random(100, 600) }
@@ -63,7 +63,7 @@ test("decays of all kinds, with 0.1 to 3 % of noise, from seconds to hours", fun
         part, ratio = judged(fit, { omega0 = s.omega0, zeta = s.zeta, Rd_over_k = dry, offset = 0.3, theta0 = 1,
             velocity0 = run.velocity[1] })
     end
-    assert(part >= 0.90 and ratio <= 1.3, part)
+    assert(part >= 0.90 and part <= 0.98 and ratio <= 1.3, part)
 end)
 
 test("driven records tell eight unknowns, from no guess", function()
