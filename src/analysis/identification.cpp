@@ -35,6 +35,13 @@ void Identification::choose_unknowns() {
 }
 
 std::optional<Eigen::VectorXd> Identification::predicted(const Parameters& p, std::size_t rows) {
+    auto theta = moved(p, rows);
+    if (theta && cut_.at_low > 0) *theta = theta->cwiseMax(cut_.low);
+    if (theta && cut_.at_high > 0) *theta = theta->cwiseMin(cut_.high);
+    return theta;
+}
+
+std::optional<Eigen::VectorXd> Identification::moved(const Parameters& p, std::size_t rows) {
     ++runs_;
     model::OscillatorParameters parts;
     parts.inertia = at(p, Unknown::I);
@@ -192,6 +199,8 @@ Identified Identification::result() {
     const Eigen::VectorXd predicted_all = measured_ - best_->residual;
     found.predicted.assign(predicted_all.begin(), predicted_all.end());
     found.runs = runs_;
+    found.cut_low = cut_.at_low;
+    found.cut_high = cut_.at_high;
     return found;
 }
 

@@ -34,9 +34,10 @@ struct Identified {
     std::array<bool, unknown_count> fitted{}, silent{};  ///< silent: the record says nothing about it
     // Ratios, which a free decay tells.
     double omega0 = 0, zeta = 0, Rd_over_k = 0, omega0_error = 0, zeta_error = 0, Rd_over_k_error = 0;
-    std::vector<double> predicted;  ///< at the times of the record
-    double noise = 0;               ///< standard deviation of what is left
-    int runs = 0;                   ///< motions that were compared with the record
+    std::vector<double> predicted;          ///< at the times of the record
+    double noise = 0;                       ///< standard deviation of what is left
+    std::size_t cut_low = 0, cut_high = 0;  ///< samples at the least and the greatest value, where those cut it off
+    int runs = 0;                           ///< motions that were compared with the record
 };
 
 /// Fails when the record cannot be one: too short, constant, times that do not increase.

@@ -40,6 +40,7 @@ public:
         const auto [low, high] = std::minmax_element(question.theta.begin(), question.theta.end());
         range_ = *high - *low;
         span_ = question.t.back() - question.t.front();
+        if (!question.M) cut_ = cut_off(question.theta);
         noise_ = noise_of(question.theta);
         turns_ = turning_points(question.theta, std::clamp(6 * noise_, 0.04 * range_, 0.4 * range_));
         choose_unknowns();
@@ -63,7 +64,9 @@ private:
         return all;
     }
 
+    /// What the instrument shows of the motion with these parameters.
     [[nodiscard]] std::optional<Eigen::VectorXd> predicted(const Parameters& p, std::size_t rows);
+    [[nodiscard]] std::optional<Eigen::VectorXd> moved(const Parameters& p, std::size_t rows);
 
     [[nodiscard]] FitScale scale_of(const Parameters& start) const;
 
@@ -112,6 +115,7 @@ private:
     const IdentifyQuestion& question_;
     const motion::Monitor& monitor_;
     Eigen::VectorXd measured_;
+    CutOff cut_;
     double range_ = 0, span_ = 0, noise_ = 0;
     std::vector<std::size_t> turns_;
     std::vector<Unknown> unknowns_;

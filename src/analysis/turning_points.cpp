@@ -17,6 +17,27 @@ double noise_of(std::span<const double> theta) {
     return *middle / (0.6745 * std::sqrt(70.0));  // the median of |x|; 1 + 16 + 36 + 16 + 1 squares
 }
 
+namespace {
+
+std::size_t standing_at(std::span<const double> theta, double limit) {
+    constexpr std::size_t least = 4;
+    std::size_t all = 0;
+    for (std::size_t i = 0; i < theta.size();) {
+        std::size_t end = i;
+        while (end < theta.size() && theta[end] == limit) ++end;
+        if (end - i >= least && end < theta.size()) all += end - i;
+        i = std::max(end, i + 1);
+    }
+    return all;
+}
+
+}  // namespace
+
+CutOff cut_off(std::span<const double> theta) {
+    const auto [low, high] = std::minmax_element(theta.begin(), theta.end());
+    return {*low, *high, standing_at(theta, *low), standing_at(theta, *high)};
+}
+
 std::vector<std::size_t> turning_points(std::span<const double> theta, double least) {
     std::vector<std::size_t> points;
     std::size_t high = 0, low = 0;

@@ -210,8 +210,13 @@ std::string fit_summary(const FitAnswer& fit) {
         text.erase(text.find_last_not_of(' ') + 1);
         text = model::with_unit(std::move(text), unit_of_value(fit.units, name));
     }
-    return fit.silent.empty() ? text
-                              : text + fmt::format("\n  the record says nothing about {}", fmt::join(fit.silent, ", "));
+    if (!fit.silent.empty()) text += fmt::format("\n  the record says nothing about {}", fmt::join(fit.silent, ", "));
+    if (const std::size_t cut = fit.found.cut_low + fit.found.cut_high; cut > 0) {
+        text += fmt::format(
+            "\n  {} samples stand at the ends of the record, as if it were cut off there; they tell no more than that",
+            cut);
+    }
+    return text;
 }
 
 int fit_text(lua_State* L) {

@@ -95,6 +95,21 @@ test("a phone camera: 30 samples a second, 2 % of noise, an unknown zero", funct
     equal(fit.velocity0, 0.0)
 end)
 
+test("a record that is cut off is fitted as one, and said to be", function()
+    local run = system{ I = 1, k = 30, C = 0.1, Rd = 1.2 }:simulate{ theta0 = 1, t_end = 6, dt = 1/30 }
+    local seen = noisy(run, 5, 0.01):map(function(x) return math.max(-0.4, math.min(0.4, x)) end)
+    local fit = identify{ data = { t = run.t, theta = seen } }
+    for name, truth in pairs{ omega0 = 30^0.5, zeta = 0.1 / 2 / 30^0.5, Rd_over_k = 0.04, theta0 = 1 } do
+        near(fit[name], truth, 4 * fit.error[name])
+    end
+    assert(fit.noise < 0.011)
+    local stand = seen:find(function(x) return math.abs(x) == 0.4 end)
+    local said = tonumber(tostring(fit):match "(%d+) samples stand at the ends of the record, as if it were cut off there")
+    assert(said > 20 and said <= #stand, said)  -- two or three by chance are none
+    assert(not tostring(identify{ data = { t = run.t, theta = noisy(run, 5, 0.01) } }):find "cut off")
+    assert(not tostring(identify{ data = run }):find "cut off", "where it rests is no end of the scale")
+end)
+
 test("with I or k given a free decay tells the torques, too", function()
     local fit = identify{ data = decay, I = 1 }
     near(fit.k, 40, 1e-6)
