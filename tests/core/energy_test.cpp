@@ -185,7 +185,7 @@ TEST_CASE("a thousand periods with two thousand stops add up as one does", "[ene
     check_books(energy);
 }
 
-TEST_CASE("a hundred thousand half cycles leave no more rounding in the sum than one", "[energy]") {
+TEST_CASE("a hundred thousand half cycles leave no more rounding in the sum than one", "[long][energy]") {
     // The parts of a panel add up to 1e-15 of what flows in it, by chance in either direction; sums that rounded at
     // each half cycle are off by 2e-13 here.
     const Energy energy = energy_of_run(nondimensional(0.119, 0.418), harmonic(1, 2 * pi), {1, 0}, {0, 5e4});

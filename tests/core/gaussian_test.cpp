@@ -88,7 +88,7 @@ TEST_CASE("the swing after a bump is that of the closed form, whatever the width
     }
 }
 
-TEST_CASE("a load that grows out of nothing moves a mass at rest from nothing on", "[gaussian][spectral]") {
+TEST_CASE("a load that grows out of nothing moves a mass at rest from nothing on", "[long][gaussian][spectral]") {
     // From 1e-308 down numbers lose their digits, and no M is smooth there.
     for (const double width : {0.01, 0.06}) {
         const auto bump = probe([width](double t) { return std::exp(-0.5 * std::pow((t - 4.45) / width, 2)); });

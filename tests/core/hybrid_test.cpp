@@ -79,7 +79,7 @@ const Integrated methods[] = {{"spectral", Spectral{}, 1e-11}, {"rk4", Rk4{0.002
 
 }  // namespace
 
-TEST_CASE("a PID controller with its integral as a state hunts as matrix exponentials say", "[hybrid]") {
+TEST_CASE("a PID controller with its integral as a state hunts as matrix exponentials say", "[long][hybrid]") {
     const Oscillator block =
         Oscillator::make({.inertia = 1, .stiffness = 0, .kinetic_friction = 0.3, .breakaway = 0.5}).value();
     const Excitation M = feedback([](double, const State& y, std::span<const double> z) {
@@ -145,7 +145,7 @@ TEST_CASE("a stiff state, the lag of an actuator, costs no accuracy", "[hybrid]"
     }
 }
 
-TEST_CASE("a mass on a belt sticks to it and is torn off as matrix exponentials say", "[hybrid]") {
+TEST_CASE("a mass on a belt sticks to it and is torn off as matrix exponentials say", "[long][hybrid]") {
     const Oscillator system =
         Oscillator::make({.inertia = 1, .stiffness = 4, .damping = 0.1, .kinetic_friction = 0.3, .breakaway = 0.6})
             .value();

@@ -94,7 +94,7 @@ TEST_CASE("a run that is stopped among many rows between two events goes on as i
     CHECK(both->events.size() == whole.events.size());
 }
 
-TEST_CASE("a run goes on from wherever it was stopped, also from the very moment of a slip", "[resume]") {
+TEST_CASE("a run goes on from wherever it was stopped, also from the very moment of a slip", "[long][resume]") {
     const Oscillator system = nondimensional(0.01, 0.3);
     const Excitation M = Excitation::make(Harmonic{.amplitude = 1, .omega = 1}).value();
     const Trajectory whole = must_run(system, M, {0, 0}, {0, 400}, Grid::every(1), Spectral{});

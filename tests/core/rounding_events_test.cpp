@@ -16,7 +16,7 @@ using namespace dinal::truth;
 }  // namespace
 
 TEST_CASE("#5 - a block drawn with Re = Rd comes down to velocity zero once a period, and never stops",
-          "[exact][spectral][rounding]") {
+          "[long][exact][spectral][rounding]") {
     // theta' = V (1 - cos w0 t) after the slip: it only touches zero, so one event is true.
     for (const double k : {4000.0, 1.0, 37.5, 1e-3}) {
         for (const double Re : {32.7, 0.3, 19.62, 1e-6}) {

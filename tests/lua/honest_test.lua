@@ -3,21 +3,8 @@ package.path = "tests/lua/?.lua;" .. package.path
 local support = require "support"
 local test, near, equal, raises = support.test, support.near, support.equal, support.raises
 
-local sys = nondimensional { zeta = 0.05, friction_ratio = 0.1 }
-local methods = { integrator.spectral {}, integrator.rk4 { h = 0.002 } }
-
---- Simulates with what `make` makes, by each integrator, and as a run with a state.
-local function runs(make, more)
-    local list = {}
-    for _, method in ipairs(methods) do
-        for _, states in ipairs { false, { way = { rate = function(_, _, velocity) return math.abs(velocity) end } } } do
-            local options = { M = make(), theta0 = 1, t_end = 10, dt = 0.1, integrator = method, states = states or nil }
-            for name, value in pairs(more or {}) do options[name] = value end
-            list[#list + 1] = sys:simulate(options)
-        end
-    end
-    return ipairs(list)
-end
+local asked = require "asked"
+local sys, methods, runs = asked.sys, asked.methods, asked.runs
 
 local function found_out(make, more)
     for i, run in runs(make, more) do
