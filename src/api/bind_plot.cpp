@@ -120,6 +120,10 @@ int plot_vectors(lua_State* L) {
         const lua::Options options(L, 1, plot_call);
         plots::Figure figure;
         figure.curves = std::move(items.curves);
+        if (items.of_runs) {
+            figure.x.label = "t";
+            figure.y.label = "theta, rad";
+        }
         apply_options(L, options, figure);
         std::vector<plots::Figure> figures{std::move(figure)};
         return deliver(L, options, std::move(figures));

@@ -12,7 +12,8 @@ int phase_plot_run(lua_State* L);
 
 inline constexpr lua::Doc plot_doc{
     "plot{ { x, y, OPTIONS }, ..., OPTIONS }",
-    "Draws curves, each a table with two vectors (or tables) of numbers; what is not finite is a gap. The picture is "
+    "Draws curves, each a table with two vectors (or tables) of numbers; what is not finite is a gap. A run is a curve, "
+    "too, its theta over t: plot{ run, { other, label = \"more friction\" } }. The picture is "
     "printed, or goes where file or show say; plot{ p, q } draws pictures that were returned side by side.",
     "x = vector.linspace(-2, 2, 9)\n"
     "p = plot{ { x, x^2, style = \"points\" }, width = 40, height = 10, ascii = true, show = false }\n"

@@ -32,8 +32,25 @@ plots::Numbers numbers_on_top(lua_State* L, std::string_view what) {
     return plots::Numbers::own(std::move(values));
 }
 
-plots::Curve curve_with_options(lua_State* L, int item, const std::string& call) {
-    push_named(L, item, 2);
+plots::Numbers numbers_of_run(lua_State* L, const RunHandle& run, const char* name, const std::string& call) {
+    if (run->trajectory.size() == 0) {
+        lua::raise(L, {.sentence = call + ": the run has no rows to draw; simulate it with dt = ... or times = { ... }",
+                       .call = call});
+    }
+    const auto column = run->trajectory.find(name);
+    if (!column) {
+        lua::raise(L,
+                   {.sentence = fmt::format("{}: the run has no column '{}'; its columns are vectors, and a curve is "
+                                            "{{ run.{}, run.{} }}",
+                                            call, name, run->trajectory.names.front(), run->trajectory.names.back()),
+                    .call = call});
+    }
+    const auto values = run->trajectory.rows.col(*column);
+    return {run, {values.data(), static_cast<std::size_t>(values.size())}};
+}
+
+plots::Curve curve_with_options(lua_State* L, int item, lua_Integer listed, const std::string& call) {
+    push_named(L, item, listed);
     const text::Call named{call.c_str(), curve_call.example, curve_call.options};  // which of the curves it is
     const lua::Options options(L, lua_gettop(L), named);
     plots::Curve curve;
@@ -47,10 +64,30 @@ plots::Curve curve_with_options(lua_State* L, int item, const std::string& call)
     return curve;
 }
 
+/// The run that stands first in the table on the top of the stack, or is itself there; none when there is none.
+RunHandle run_on_top(lua_State* L) {
+    if (const auto* run = lua::test<RunHandle>(L, -1)) return *run;
+    if (!lua_istable(L, -1)) return nullptr;
+    lua_rawgeti(L, -1, 1);
+    const auto* run = lua::test<RunHandle>(L, -1);
+    RunHandle found = run ? *run : nullptr;
+    lua_pop(L, 1);
+    return found;
+}
+
+/// theta over t of a run, which may have options beside it in a table.
+plots::Curve curve_of_run(lua_State* L, const RunHandle& run, const std::string& call) {
+    plots::Curve curve;
+    if (lua_istable(L, -1)) curve = curve_with_options(L, lua_gettop(L), 1, call);
+    curve.x = numbers_of_run(L, run, "t", call);
+    curve.y = numbers_of_run(L, run, "theta", call);
+    return curve;
+}
+
 /// The curve that the table on the top of the stack describes; the table stays.
 plots::Curve curve_on_top(lua_State* L, const std::string& call) {
     const int item = lua_gettop(L);
-    plots::Curve curve = curve_with_options(L, item, call);
+    plots::Curve curve = curve_with_options(L, item, 2, call);
     const auto vector = [L, item, &call](lua_Integer place, std::string_view name) {
         lua_rawgeti(L, item, place);
         plots::Numbers numbers = numbers_on_top(L, fmt::format("{}: {}", call, name));
@@ -106,19 +143,21 @@ void push_named(lua_State* L, int from, lua_Integer listed) {
 }
 
 PlotItems plot_items(lua_State* L, int table) {
-    PlotItems items;
+    PlotItems items{.of_runs = true};
     const auto count = static_cast<lua_Integer>(lua_rawlen(L, table));
     for (lua_Integer i = 1; i <= count; ++i) {
         lua_rawgeti(L, table, i);
         if (const auto* picture = lua::test<Picture>(L, -1)) {
             items.panels.insert(items.panels.end(), picture->figures.begin(), picture->figures.end());
+        } else if (const RunHandle run = run_on_top(L)) {
+            items.curves.push_back(curve_of_run(L, run, fmt::format("plot: curve {}", i)));
         } else if (is_table_of_items(L)) {
+            items.of_runs = false;
             items.curves.push_back(curve_on_top(L, fmt::format("plot: curve {}", i)));
         } else {
-            const bool run = lua::test<RunHandle>(L, -1) != nullptr;
-            lua::raise_got(L, -1, "plot", fmt::format("plot: item {} must be a curve {{ x, y }} or a picture", i),
-                           run ? "; its curve is { run.t, run.theta }, its picture run:plot{ show = false }"
-                               : fmt::format("; for example {}", plot_call.example));
+            lua::raise_got(L, -1, "plot",
+                           fmt::format("plot: item {} must be a curve {{ x, y }}, a run or a picture", i),
+                           fmt::format("; for example {}", plot_call.example));
         }
         lua_pop(L, 1);
     }

@@ -1,4 +1,4 @@
-// The list part of plot{ ... }: curves made of vectors, or pictures to set side by side.
+// The list part of plot{ ... }: curves made of vectors, runs, or pictures to set side by side.
 #pragma once
 
 #include <vector>
@@ -9,11 +9,12 @@
 namespace dinal::api {
 
 struct PlotItems {
-    std::vector<plots::Curve> curves;
-    std::vector<plots::Figure> panels;  ///< of pictures
+    std::vector<plots::Curve> curves = {};
+    std::vector<plots::Figure> panels = {};  ///< of pictures
+    bool of_runs = false;                    ///< each of the curves is theta over t of a run
 };
 
-/// Raises when something in the list of the table at `table` is neither.
+/// Raises when something in the list of the table at `table` is none of these.
 PlotItems plot_items(lua_State* L, int table);
 
 /// Copies the table at `from` without its first `listed` places to a new table on the top, where Options can check it.

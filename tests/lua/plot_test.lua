@@ -77,6 +77,17 @@ test("a run from a file is drawn, too", function()
     has(text(trajectory.load(other), "plot"), "acceleration", "time")
 end)
 
+test("a run is a curve among curves: its theta over t", function()
+    local other = nd:simulate { theta0 = 0.5, t_end = 4, dt = 0.05 }
+    has(vectors { run, { other, label = "half" }, title = "two" }, "two", "theta, rad", "half")
+    equal(vectors { run, ylabel = "angle" }, vectors { { run.t, run.theta }, xlabel = "t", ylabel = "angle" })
+    raises_here(function() plot { { run, lable = "x" } } end, "plot: curve 1 has no option 'lable'", "label")
+    raises_here(function() plot { nd:simulate { theta0 = 1, t_end = 1, times = {} } } end, "plot: curve 1: the run has no rows to draw")
+    local file = support.temporary ".csv"
+    support.write(file, "time,acceleration\n0,1\n1,2.5\n")
+    raises_here(function() plot { trajectory.load(file) } end, "the run has no column 't'", "{ run.time, run.acceleration }")
+end)
+
 test("a run without rows says what to do", function()
     local none = nd:simulate { theta0 = 1, t_end = 1, times = {} }
     raises_here(function() none:plot() end, "run:plot: the run has no rows to draw", "dt")
