@@ -76,7 +76,7 @@ int lab_number(lua_State* L) {
             lua::raise_got(
                 L, 1, "lab.number",
                 fmt::format("lab.number: a student number is a whole number from 1 to {}", greatest_student_number),
-                lua_type(L, 1) == LUA_TSTRING ? "; write it without quotes" : "");
+                lua_isnumber(L, 1) != 0 && lua_type(L, 1) == LUA_TSTRING ? "; write it without quotes" : "");
         }
         desk.number = number;
     }
@@ -134,9 +134,8 @@ std::string question_at_1(lua_State* L, LabDesk& desk) {
 
 double value_at_2(lua_State* L) {
     if (lua_type(L, 2) != LUA_TNUMBER) {
-        lua::raise_got(
-            L, 2, "check", "check: the answer is a number",
-            lua_type(L, 2) == LUA_TSTRING ? "; write it without quotes" : "; for example check(\"1a\", 3.2)");
+        lua::raise_got(L, 2, "check", "check: the answer is a number",
+                       lua_isnumber(L, 2) != 0 ? "; write it without quotes" : "; for example check(\"1a\", 3.2)");
     }
     return lua::finite_argument(L, 2, "check: the answer");
 }

@@ -24,7 +24,7 @@ int no_such_state(lua_State* L) {
         if (lua_type(L, -2) == LUA_TSTRING) names.emplace_back(lua::text_at(L, -2));
     }
     if (names.empty()) {
-        lua::raise(L, fmt::format("run.states has no '{}': the run was given no states", wanted));
+        lua::raise(L, fmt::format("run.states has no '{}': the run has no states", wanted));
     }
     std::sort(names.begin(), names.end());
     const std::vector<std::string_view> known(names.begin(), names.end());
@@ -63,12 +63,16 @@ int run_at(lua_State* L) {
 
 int run_states(lua_State* L) {
     const RunHandle& run = lua::self<RunHandle>(L, 1, "run.states");
-    const std::size_t count = run->trajectory.state_count();
+    // In a file, too, what stands after the columns that every run has are states.
+    const std::vector<std::string>& names = run->trajectory.names;
+    const std::vector<std::string>& always = motion::column_names();
+    const bool has_all = names.size() >= always.size() && std::equal(always.begin(), always.end(), names.begin());
+    const std::size_t count = has_all ? names.size() - always.size() : 0;
     lua_createtable(L, 0, static_cast<int>(count));
     for (std::size_t i = 0; i < count; ++i) {
         const auto values = run->trajectory.rows.col(static_cast<Eigen::Index>(motion::column_count + i));
         lua::push(L, lua::Vector(run, values.data(), static_cast<std::size_t>(values.size())));
-        lua_setfield(L, -2, run->trajectory.names[motion::column_count + i].c_str());
+        lua_setfield(L, -2, names[motion::column_count + i].c_str());
     }
     lua_createtable(L, 0, 1);
     lua_pushcfunction(L, lua::guarded<no_such_state>);

@@ -56,6 +56,7 @@ test("an unknown question, sheet or value is refused in a sentence", function()
   support.raises_here(function() check(1, 3) end, "the name of a question, got 1; for example check(\"1a\", 3.2)")
   support.raises_here(function() check("1a") end, "check: the answer is a number, got nil; for example")
   support.raises_here(function() check("1a", "3.2") end, 'got the string "3.2"; write it without quotes')
+  support.raises_here(function() check("1a", "three") end, 'got the string "three"; for example check("1a", 3.2)')
   support.raises_here(function() check("1a", {}) end, "check: the answer is a number, got a table")
   for _, wrong in ipairs { 0/0, math.huge } do
     support.raises_here(function() check("1a", wrong) end, "check: the answer must be a finite number")

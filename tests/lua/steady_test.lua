@@ -39,6 +39,7 @@ test("where there is no motion, or too much of it, the answer says so", function
     assert(s:explain():find("amplitude%s+grows by 1.1416"), s:explain())
     s = sliding:steady{ M = 0.4 * harmonic(0.3) }
     equal(s.status, "adheres")
+    equal(tostring(s.amplitude), "0.0")
     equal(s.amplitude, 0.0)
     near(s.rest[1], -0.1, 1e-12)
     near(s.rest.upper, 0.1, 1e-12)
