@@ -120,9 +120,10 @@ int plot_vectors(lua_State* L) {
         const lua::Options options(L, 1, plot_call);
         plots::Figure figure;
         figure.curves = std::move(items.curves);
-        if (items.of_runs) {
-            figure.x.label = "t";
-            figure.y.label = "theta, rad";
+        if (items.run) {
+            const model::Units& units = units_of(*items.run);
+            figure.x.label = model::of_unit("t", units.t);
+            figure.y.label = model::of_unit("theta", units.theta);
         }
         apply_options(L, options, figure);
         std::vector<plots::Figure> figures{std::move(figure)};

@@ -6,7 +6,6 @@
 
 #include "api/picture.hpp"
 #include "api/plot_options.hpp"
-#include "api/run.hpp"
 #include "lua/options.hpp"
 #include "lua/vector.hpp"
 
@@ -143,7 +142,8 @@ void push_named(lua_State* L, int from, lua_Integer listed) {
 }
 
 PlotItems plot_items(lua_State* L, int table) {
-    PlotItems items{.of_runs = true};
+    PlotItems items;
+    bool of_runs = true;
     const auto count = static_cast<lua_Integer>(lua_rawlen(L, table));
     for (lua_Integer i = 1; i <= count; ++i) {
         lua_rawgeti(L, table, i);
@@ -151,8 +151,9 @@ PlotItems plot_items(lua_State* L, int table) {
             items.panels.insert(items.panels.end(), picture->figures.begin(), picture->figures.end());
         } else if (const RunHandle run = run_on_top(L)) {
             items.curves.push_back(curve_of_run(L, run, fmt::format("plot: curve {}", i)));
+            if (!items.run) items.run = run;
         } else if (is_table_of_items(L)) {
-            items.of_runs = false;
+            of_runs = false;
             items.curves.push_back(curve_on_top(L, fmt::format("plot: curve {}", i)));
         } else {
             lua::raise_got(L, -1, "plot",
@@ -161,6 +162,7 @@ PlotItems plot_items(lua_State* L, int table) {
         }
         lua_pop(L, 1);
     }
+    if (!of_runs) items.run = nullptr;
     return items;
 }
 

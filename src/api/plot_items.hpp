@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "api/run.hpp"
 #include "lua/lua_headers.hpp"
 #include "plots/figure.hpp"
 
@@ -11,7 +12,7 @@ namespace dinal::api {
 struct PlotItems {
     std::vector<plots::Curve> curves = {};
     std::vector<plots::Figure> panels = {};  ///< of pictures
-    bool of_runs = false;                    ///< each of the curves is theta over t of a run
+    RunHandle run = {};                      ///< the first one, when each of the curves is theta over t of a run
 };
 
 /// Raises when something in the list of the table at `table` is none of these.
