@@ -17,7 +17,7 @@ constexpr double most_left_over = 0.25;
 /// At least this much, in units of pace_.
 constexpr double least_left = 1e-11;
 /// A jump is found to this, in units of pace_.
-constexpr double finest = 1e-15;
+constexpr double located_to = 1e-15;
 /// Off the straight line by this part of the jump is behind it.
 constexpr double behind = 0.125;
 /// After so many panels without a jump none is expected any more.
@@ -152,7 +152,7 @@ double PanelSolver::sought_step() {
     }
     if (count > most_in_a_panel) return 0;
     double low = since(first), high = since(first + 1), value_low = M[first], value_high = M[first + 1];
-    while (high - low > left_over / 4 * high && high - low > finest * pace_) {
+    while (high - low > left_over / 4 * high && high - low > located_to * pace_) {
         const double middle_time = low + (high - low) / 2;
         const double value = excitation_.value(panel_.start.after(middle_time), state_at(middle_time / panel_.h - 1));
         const bool before = std::fabs(value - M[first] - slope * (middle_time - since(first))) <= behind * most;
@@ -209,7 +209,7 @@ bool PanelSolver::cross_step(const Present& now, model::Motion way, const model:
         if (far) value = found;
         return far;
     };
-    const double fine = std::max(finest * pace_, 4 * epsilon * std::fabs(t));
+    const double fine = std::max(located_to * pace_, 4 * epsilon * std::fabs(t));
     double low = 0, high = most;
     if (steps_.guessed) {
         const double guess = guessed_step();
