@@ -86,12 +86,13 @@ void Identification::try_rests() {
     constexpr int most_tries = 25;
     try_rest_at(middle);
     for (const double way : {1.0, -1.0}) {
-        int beyond = 0, tries = 0;
-        for (double turn = middle + way; turn >= 0 && tries < most_tries && !stopped_; turn += way) {
+        int beyond = 0;
+        for (int tries = 1; tries <= most_tries && !stopped_; ++tries) {
+            const double turn = middle + way * tries;
+            if (turn < 0) break;
             const double sum = try_rest_at(turn);
             beyond = sum > best_->sum + open * deviation() * deviation() ? beyond + 1 : 0;
             if (beyond > 1 && (way > 0 || turn < seen)) break;
-            ++tries;
         }
     }
 }

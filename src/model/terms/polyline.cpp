@@ -104,8 +104,8 @@ std::optional<text::Error> Polyline::complaint() const {
         return text::Error{fmt::format("t has {} values and M has {}; they must be equally long", samples->t.size(),
                                        samples->M.size())};
     }
-    if (const auto wrong = text::complaint(samples_options, *samples)) return wrong;
-    if (const auto wrong = not_increasing("t", samples->t)) return wrong;
+    if (auto wrong = text::complaint(samples_options, *samples)) return wrong;
+    if (auto wrong = not_increasing("t", samples->t)) return wrong;
     const Samples& s = *samples;
     if (!s.period) return std::nullopt;
     if (closes_period(s)) {

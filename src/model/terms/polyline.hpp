@@ -73,7 +73,8 @@ struct Polyline {
     }
     [[nodiscard]] double constant_from() const {
         if (samples->t.size() == 1) return -never;
-        return samples->period ? never : samples->t.back();
+        if (samples->period) return never;
+        return samples->t.back();
     }
     /// A spline lies within the hull of its control points.
     [[nodiscard]] double most() const;

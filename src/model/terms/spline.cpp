@@ -72,14 +72,14 @@ std::vector<double> periodic_spline_slopes(std::span<const double> t, std::span<
     }
     // The corners of the matrix are a correction of rank one (Sherman and Morrison).
     const double corner = -here[0], ratio = below[0] / corner;
-    std::vector<double> other(n, 0.0), diagonal = here;
-    other[0] = corner, other[n - 1] = above[n - 1];
+    std::vector<double> border(n, 0.0), diagonal = here;
+    border[0] = corner, border[n - 1] = above[n - 1];
     diagonal[0] -= corner;
     diagonal[n - 1] -= above[n - 1] * ratio;
     solve_tridiagonal(below, diagonal, above, right);
-    solve_tridiagonal(below, diagonal, above, other);
-    const double part = (right[0] + ratio * right[n - 1]) / (1 + other[0] + ratio * other[n - 1]);
-    for (std::size_t i = 0; i < n; ++i) right[i] -= part * other[i];
+    solve_tridiagonal(below, diagonal, above, border);
+    const double part = (right[0] + ratio * right[n - 1]) / (1 + border[0] + ratio * border[n - 1]);
+    for (std::size_t i = 0; i < n; ++i) right[i] -= part * border[i];
     return right;
 }
 
