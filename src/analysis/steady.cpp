@@ -121,7 +121,16 @@ private:
     bool search_once(const Place& start, bool half) {
         const PeriodMap& map = half ? half_ : map_;
         const auto found = FixedPointSearch(map, half ? -1 : 1, answer_.maps).search(start, 60);
-        return found && settle(*found, map, 1, half);
+        return found && (!half || repeats(*found)) && settle(*found, map, 1, half);
+    }
+
+    /// What a function gives was looked at here and there only: a whole period shows whether both halves are alike.
+    bool repeats(const FixedPointSearch::Try& found) {
+        if (std::isfinite(question_.excitation.most())) return true;
+        const MapStep whole = map_(found.x);
+        ++answer_.maps;
+        const double alike = 1e-9 * found.size;
+        return whole.finished && (whole.to - found.x).norm() <= alike && std::fabs(whole.high + whole.low) <= alike;
     }
 
     bool search_multiple(const Place& start, int periods, bool any) {
@@ -232,7 +241,9 @@ private:
             }
             if (recurs(places, sizes.back(), longest, 1e-5) || recurs(places, sizes.back(), longest, 3e-2)) return;
         }
-        if (grows(sizes, false)) return;
+        // Near resonance a beat may be as slow as the growth of a motion that has no bound.
+        if (is_bounded() && symmetric_ && follows_sine() && answer_.stable) return;
+        if (!is_bounded() && grows(sizes, false)) return;
         // Nothing that this motion approaches; a motion that others leave is better than none.
         const int maps = answer_.maps;
         if (search_once(places.back(), symmetric_) || search_once(places.back(), false)) return;
@@ -253,6 +264,12 @@ private:
     }
     [[nodiscard]] bool is_near(const Place& place, double size) const {
         return (place_of(answer_.start, map_.omega()) - place).norm() <= 0.2 * size;
+    }
+
+    /// A linear spring off resonance, and friction, which only takes.
+    [[nodiscard]] bool is_bounded() const {
+        return !system_.has_remainder() && !question_.system.walls() && !question_.excitation.has_feedback() &&
+               question_.system.stiffness() > 0 && question_.system.damping() >= 0;
     }
 
     bool grows(const std::vector<double>& sizes, bool overflow) {

@@ -22,6 +22,8 @@ struct Moments {
     std::complex<double> wave = {};
 
     friend Moments operator+(const Moments& a, const Moments& b) { return {a.theta + b.theta, a.wave + b.wave}; }
+    friend Moments operator-(const Moments& a, const Moments& b) { return {a.theta - b.theta, a.wave - b.wave}; }
+    friend double size_of(const Moments& moments) { return std::max(std::fabs(moments.theta), std::abs(moments.wave)); }
     friend Moments operator*(double factor, const Moments& a) { return {factor * a.theta, factor * a.wave}; }
     Moments& operator+=(const Moments& other) { return *this = *this + other; }
 };

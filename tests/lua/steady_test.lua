@@ -63,6 +63,46 @@ test("a Lua function needs a period, which must be true; native sums know theirs
     raises(function() sliding:steady{ M = function() return 0/0 end, period = 1 } end, "nan")
 end)
 
+test("the halves of a function's period are alike only when they are", function()
+    local light = nondimensional{ zeta = 0.1 } -- without friction: closed forms
+    local function lifted(t) return math.sin(0.8 * math.pi * t) + 0.5 end
+    local s = light:steady{ M = lifted, period = 2.5 }
+    near(s.mean, 0.5, 1e-12) -- of the load
+    near(s.amplitude, 1 / math.sqrt((1 - 0.16) ^ 2 + 0.08 ^ 2), 1e-12)
+    near(s.lag, math.deg(math.atan(0.08, 1 - 0.16)), 1e-10)
+    assert(not s.symmetric)
+    -- Narrower than what is looked at before the search: 200 for 1/500 of the period.
+    local pulse = light:steady{ M = function(t) return t % 2.5 < 0.005 and 200 or 0 end, period = 2.5 }
+    near(pulse.mean, 0.4, 1e-9) -- its area by the period
+    -- A jump that nobody declared: the same as the native pulse, whose edges are known.
+    local plain = light:steady{ M = function(t) return t % 2.5 < 0.5 and 2 or 0 end, period = 2.5 }
+    local native = light:steady{ M = excitation.square{ period = 2.5, amplitude = 1, duty = 0.2 } + 1 }
+    near(plain.mean, 0.4, 1e-10)
+    near(plain.lag, native.lag, 1e-8)
+    -- With friction: where a long run gets to.
+    local braked = nondimensional{ zeta = 0.1, friction_ratio = 0.3 }
+    local function M(t) return math.sin(0.8 * math.pi * t) + 0.3 * math.sin(1.6 * math.pi * t) end
+    local uneven = braked:steady{ M = M, period = 2.5 }
+    local late = braked:simulate{ M = M, t_end = 502.5, dt = 2.5 / 2048 }.theta
+    local last = late:slice(#late - 2048, #late)
+    near(uneven.amplitude, (last:max() - last:min()) / 2, 1e-5) -- rows miss the peaks by (pi/2048)^2 / 2
+    assert(not uneven.symmetric)
+    assert(light:steady{ M = function(t) return math.sin(0.8 * math.pi * t) end, period = 2.5 }.symmetric)
+end)
+
+test("beside resonance a slow beat is no growth, whatever holds the mass that never stops", function()
+    local load = harmonic(1.0003)
+    local truth = theory.den_hartog{ r = 1.0003, friction_ratio = 0.5 }
+    local s = system{ I = 1 / (4 * math.pi ^ 2), k = 1, Rd = 0.5, Re = 0.6 }:steady{ M = load }
+    equal(s.status, "steady")
+    near(s.amplitude, truth, 1e-9 * truth)
+    local damped = system{ I = 1 / (4 * math.pi ^ 2), k = 1, C = 8e-5 / math.pi, Rd = 0.05, Re = 0.062 }
+    local lightly = theory.den_hartog{ r = 1.000095, friction_ratio = 0.05, zeta = 8e-5 }
+    near(damped:steady{ M = harmonic(1.000095) }.amplitude, lightly, 1e-9 * lightly)
+    local far = system{ I = 1 / (4 * math.pi ^ 2), k = 1, Rd = 0.5, Re = 0.6 }:steady{ M = harmonic(1.003) }
+    assert(not far:explain():find("grows"), far:explain())
+end)
+
 test("a load that begins late is taken when it is periodic", function()
     local M = harmonic(0.4) + excitation.step{ level = 0.3, at = 5.2 }
     local s = sliding:steady{ M = M }
