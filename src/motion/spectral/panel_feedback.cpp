@@ -54,7 +54,7 @@ PanelSolver::Iteration PanelSolver::iterate(const model::State& departing) {
             if (!(change < model::never)) break;
             // What is left shrinks by change/before once more with the solution just made.
             const double rate = before < model::never ? change / before : 1;
-            const double rounding = std::max(16 * epsilon * scale, rounding_of_motion(0));
+            const double rounding = std::max(16 * epsilon * scale, rounding_of_motion(noise_));
             bool converged = change <= rounding || change * rate <= 0.01 * tolerance_ * scale;
             if (!converged && i >= 2 && change > 0.5 * before) {
                 if (change > rounding_left * rounding) break;

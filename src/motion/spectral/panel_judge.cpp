@@ -131,9 +131,9 @@ PanelSolver::Attempt PanelSolver::judge(double unresolved) {
         return end_with(never_ending());
     }
     if (crawls()) return end_with(never_ending());
+    if (script_ && found_noise()) return Attempt::shorten;
     // While the mass is stuck its state is known, and a feedback is a function of time, too.
     const bool of_time = !feedback_ || (panel_.motion == model::Motion::stuck);
-    if (script_ && of_time && found_noise()) return Attempt::shorten;
     if (script_ && of_time && unresolved > gross && found_break()) return Attempt::shorten;
     // The last coefficients fall with h^16.
     h_ = panel_.h * std::clamp(0.9 * std::pow(unresolved, -1.0 / chebyshev::degree), 0.5, 0.9);

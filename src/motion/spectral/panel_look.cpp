@@ -21,6 +21,8 @@ constexpr double clearly = 64;
 
 /// Noise is at most this part of the torques; what is rougher is made of steps that can be found.
 constexpr double most_noise = 1e-5;
+/// Of M, where it depends on the motion: steps that are greater than those of single precision are located.
+constexpr double most_noise_of_motion = 1.2e-7;
 /// How long the stretches are on which M is looked at for noise, as a part of the panel.
 constexpr double short_stretch = 1e-3;
 
@@ -99,7 +101,9 @@ bool PanelSolver::found_noise() {
     const double tail = chebyshev::tail(panel_.M);
     const auto before = stalled_;
     stalled_ = {panel_.start.hi, panel_.h, tail};
-    if (!(tail <= most_noise * torques())) return false;
+    const bool of_motion = feedback_ && panel_.motion != model::Motion::stuck;
+    const double most_tail = of_motion ? most_noise_of_motion * chebyshev::size(panel_.M) : most_noise * torques();
+    if (!(tail <= most_tail)) return false;
     constexpr double varies = 8;
     if (noise_ > 0 && tail <= varies * noise_) {
         noise_ = 2 * tail;
@@ -112,7 +116,8 @@ bool PanelSolver::found_noise() {
     for (const double x : {-0.9, 0.1, 0.8}) {
         chebyshev::Samples values{};
         for (std::size_t j = 0; j < points; ++j) {
-            values[j] = excitation_.value(panel_.time(x + short_stretch * chebyshev::nodes[j]), panel_.begin);
+            const double here = x + short_stretch * chebyshev::nodes[j];
+            values[j] = excitation_.value(panel_.time(here), of_motion ? state_at(here) : panel_.begin);
             if (!std::isfinite(values[j])) return false;
         }
         const double here = chebyshev::tail(chebyshev::fit(values));
