@@ -53,6 +53,7 @@ MapStep PeriodMap::operator()(const Place& from) const {
     step.t_low = from[0] <= step.to[0] ? start_ : start_ + length_;
     step.t_high = from[0] >= step.to[0] ? start_ : start_ + length_;
     for (const model::Event& event : run.events) {
+        if (event.kind == model::EventKind::slip) continue;  // it stood there before
         if (event.theta < step.low) {
             step.low = event.theta;
             step.t_low = event.t;
@@ -60,6 +61,15 @@ MapStep PeriodMap::operator()(const Place& from) const {
         if (event.theta > step.high) {
             step.high = event.theta;
             step.t_high = event.t;
+        }
+    }
+    // What stands when the period begins came to stand before it did, as it does at the end.
+    const bool stands_on = run.began_stuck && run.motion_at_stop == model::Motion::stuck && !run.events.empty();
+    if (stands_on) {
+        const double since = run.events.back().t;
+        for (double* t : {&step.t_low, &step.t_high}) {
+            if (*t == start_) *t = since - length_;
+            if (*t == start_ + length_) *t = since;
         }
     }
     differentiate(run, step);
@@ -108,8 +118,12 @@ void PeriodMap::differentiate(const motion::Trajectory& run, MapStep& step) cons
         const double pull = std::fma(-system.stiffness(), event.theta, event.M);
         switch (event.kind) {
             case model::EventKind::stick:
-            case model::EventKind::rest:
+            case model::EventKind::rest: {
+                const double held = system.holding(pull > 0 ? model::Motion::forward : model::Motion::backward);
+                constexpr double within = 1e-9;
+                step.on_edge = step.on_edge || held - std::fabs(pull) <= within * (held + std::fabs(event.M));
                 break;
+            }
             case model::EventKind::turn: {
                 if (!system.dry()) break;
                 const model::Motion way =

@@ -23,6 +23,7 @@ struct MapStep {
     bool differentiable = true;    ///< else `derivative` says nothing, and differences must
     bool finished = true;          ///< the run reached its end, with finite numbers
     bool moved = true;             ///< at some time
+    bool on_edge = false;          ///< it stands where friction can just hold it: the derivative is that of one side
     double low = 0, high = 0;      ///< the extremes of theta
     double t_low = 0, t_high = 0;  ///< of the lowest and the highest one
     std::size_t stops = 0;

@@ -281,7 +281,9 @@ private:
             return overflow;
         }
         const double last = sizes[n - 1] - sizes[n - 1 - span], before = sizes[n - 1 - span] - sizes[n - 1 - 2 * span];
-        if (!overflow && !(before > 0 && last >= 0.9 * before && last > 1e-3 * sizes[n - 1])) return false;
+        // More than a motion that wanders between bounds: what grows evenly from nothing has grown to twice its half.
+        const bool keeps_growing = before > 0 && last >= 0.9 * before && last > 1e-3 * sizes[n - 1];
+        if (!overflow && !(keeps_growing && sizes[n - 1] >= 1.3 * sizes[n / 2])) return false;
         answer_.status = SteadyStatus::grows;
         answer_.growth = last / static_cast<double>(span);
         return true;
@@ -307,6 +309,18 @@ SteadyMotion steady_motion(const SteadyQuestion& question, const motion::Monitor
 SteadyMotion steady_motion_near(const SteadyQuestion& question, const motion::Monitor& monitor) {
     SteadySearch search(question, monitor);
     return search.judged(search.found_near());
+}
+
+bool goes_on(const SteadyQuestion& question, const SteadyMotion& motion, const motion::Monitor& monitor) {
+    if (motion.status != SteadyStatus::steady && motion.status != SteadyStatus::adheres) return false;
+    constexpr double periods = 4;
+    const PeriodMap map(question.system, question.excitation, question.drive.start, periods * motion.period, monitor);
+    const Place start = place_of(motion.start, map.omega());
+    const MapStep step = map(start);
+    const double size = std::max({std::fabs(motion.low), std::fabs(motion.high), start.norm()});
+    constexpr double same = 1e-8;
+    return step.finished && (step.to - start).norm() <= same * size &&
+           std::fabs(step.high - motion.high) + std::fabs(step.low - motion.low) <= same * size;
 }
 
 std::optional<SteadyMotion> another_motion(const SteadyQuestion& question, const SteadyMotion& known,

@@ -53,6 +53,10 @@ SteadyMotion steady_motion(const SteadyQuestion& question, const motion::Monitor
 /// The same from a place near the answer, as when a parameter has changed a little.
 SteadyMotion steady_motion_near(const SteadyQuestion& question, const motion::Monitor& monitor = {});
 
+/// Whether the motion goes on so in one run of some periods: what terms with a memory hold at the end of a period is
+/// no part of theta and velocity, with which the search begins each period.
+bool goes_on(const SteadyQuestion& question, const SteadyMotion& motion, const motion::Monitor& monitor = {});
+
 /// A motion from another start that is not this one; none was seen from `other_starts` of them.
 inline constexpr int other_starts = 8;
 std::optional<SteadyMotion> another_motion(const SteadyQuestion& question, const SteadyMotion& known,

@@ -77,7 +77,7 @@ SteadyMotion facts_of(const SteadyQuestion& question, const PeriodMap& map, cons
     const double slack = contracting ? neutral_within : 1e-5;
     const auto& m = motion.multipliers;
     motion.stable = !step.moved || (step.differentiable && std::max(std::abs(m[0]), std::abs(m[1])) <= 1 + slack);
-    if (contracting && step.moved && step.differentiable) {
+    if (contracting && step.moved && step.differentiable && !step.on_edge) {
         motion.unique = std::min(std::abs(m[0] - 1.0), std::abs(m[1] - 1.0)) > neutral_within;
     }
     motion.symmetric = half;

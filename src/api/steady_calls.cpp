@@ -6,6 +6,7 @@
 #include "api/bind_excitation.hpp"
 #include "api/run.hpp"
 #include "api/steady_answer.hpp"
+#include "model/controller.hpp"
 
 namespace dinal::api {
 namespace {
@@ -21,6 +22,18 @@ int push_steady(lua_State* L, const lua::Options& options, analysis::SteadyQuest
         options.fail({fmt::format("the motion could not be followed: {}", model::sentence(outcome))});
     }
     check_function(options, steady->motion);
+    if (model::has_memory(steady->question.excitation)) {
+        bool same = false;
+        asking(L, [&](const motion::Monitor& monitor) {
+            same = analysis::goes_on(steady->question, steady->motion, monitor);
+        });
+        if (!same) {
+            options.fail(
+                {"what the sampled, relay or delayed terms of M remember goes on from one period into the "
+                 "next, and a steady motion is sought by theta and velocity alone; choose an every that "
+                 "divides the period, or run some periods and see run:poincare"});
+        }
+    }
     lua::push<SteadyHandle>(L, steady);
     return 1;
 }
@@ -108,6 +121,11 @@ int steady_of_run(lua_State* L) {
     options.fill(asked);
     if (!run->origin) options.fail({"a run that was read from a file does not know its system and its M"});
     const source::Task& task = *run->origin;
+    if (task.extras.any()) {
+        options.fail(
+            {"the steady motion of a system under M alone is found, and this run has states, events, a belt or "
+             "a base besides; run some more periods and see run:poincare"});
+    }
     analysis::SteadyQuestion question{
         .system = task.system, .excitation = task.excitation, .drive = {}, .periods = asked.periods.value_or(0)};
     question.drive = drive_or_fail(L, options, task.system, task.excitation, asked.period);

@@ -148,3 +148,48 @@ test("Ctrl-C and limits reach the search: a function that never ends is stopped 
 end)
 
 support.finish()
+
+test("what M remembers from one period to the next is no part of what steady seeks", function()
+    local light = system{ I = 1, k = 1, C = 0.3 }
+    local function late(by) return harmonic(1.2 / (2 * math.pi)) + excitation.delayed(function(t, theta) return -0.2 * theta end, { by = by }) end
+    for _, by in ipairs{ 0.02, 3 } do
+        raises(function() light:steady{ M = late(by), period = 2 * math.pi / 1.2 } end, "goes on from one period into the next")
+    end
+    local M = excitation.sampled(function(t) return math.sin(math.pi * t) end, { every = 0.3 })
+    local dry = nondimensional{ friction_ratio = 0.3, zeta = 0.05 }
+    raises(function() dry:steady{ M = M, period = 2 } end, "choose an every that divides the period")
+    local run = dry:simulate{ M = M, t_end = 306, dt = 0.01 }
+    local last = run.theta:slice(30001, #run)
+    near(dry:steady{ M = M, period = 6 }.amplitude, (last:max() - last:min()) / 2, 1e-4) -- rows of 0.01 miss the peaks
+    -- A run with more in it than a system and its M.
+    local more = dry:simulate{ M = harmonic(0.4), belt = 0.3, t_end = 30, dt = 1 }
+    raises(function() more:steady() end, "this run has states, events, a belt or a base besides")
+end)
+
+test("the peak of a motion that stands at its top is where it came to stand, wherever the period begins", function()
+    for phase = 0, 6, 0.5 do
+        local s = nondimensional{ friction_ratio = 0.4, zeta = 0.1 }:steady{ M = excitation.harmonic{ frequency = 0.4, phase = phase } }
+        local stick
+        for _, event in ipairs(s.run.events) do
+            if event.kind == "stick" and event.theta > 0 then stick = event end
+        end
+        local lag = math.deg(0.8 * math.pi * stick.t + phase - math.pi / 2)
+        near((s.peak_lag - lag + 180) % 360, 180, 1e-8)
+    end
+end)
+
+test("a motion between bounds does not grow, and one of a family is not called the only one", function()
+    local wells = system{ I = 1, k = 0, C = 0.25, spring = spring.polynomial{ [1] = -1, [3] = 1 } }
+    local s = wells:steady{ M = excitation.harmonic{ amplitude = 0.34, omega = 1 }, theta0 = 1 }
+    assert(s.status ~= "grows", s.status)
+    local sys = system{ I = 1 / (4 * math.pi ^ 2), k = 1, Rd = 0.5854, Re = 0.5854 }
+    local M = excitation.square{ period = 1 / 0.1334, duty = 0.333 }
+    local at = {} -- two starts that end apart
+    for i, theta0 in ipairs{ -1.2, 0.9 } do
+        local run = sys:simulate{ M = M, theta0 = theta0, t_end = 40 / 0.1334, dt = 1 / 0.1334 }
+        near(run.theta[#run], run.theta[#run - 1], 1e-12)
+        at[i] = run.theta[#run]
+    end
+    assert(math.abs(at[1] - at[2]) > 0.1)
+    assert(sys:steady{ M = M }.unique ~= true)
+end)
