@@ -8,6 +8,7 @@
 #include "lua/error_memory.hpp"
 #include "lua/interrupt.hpp"
 #include "lua/lua_message.hpp"
+#include "lua/state_table.hpp"
 
 namespace dinal::lua {
 
@@ -90,11 +91,7 @@ CallState::~CallState() {
 
 void CallState::name_states(std::vector<std::string> names) {
     names_ = std::move(names);
-    lua_createtable(L_, 0, static_cast<int>(names_.size()));
-    for (const std::string& name : names_) {
-        lua_pushnumber(L_, 0);
-        lua_setfield(L_, -2, name.c_str());
-    }
+    push_state_table(L_, names_);
     lua_rawsetp(L_, LUA_REGISTRYINDEX, &names_);
 }
 

@@ -15,7 +15,7 @@ namespace dinal::model {
     X(excitation_not_finite, "M failed or stopped being finite")                               \
     X(not_a_function, "M is no function of its arguments: asked again, it gave another value") \
     X(unresolved, "M never becomes smooth: try a larger tolerance, or rk4")                    \
-    X(chattering, "switched without end in no time: the feedback chatters")
+    X(chattering, "switched without end in no time: a jump of M or friction chatters; a steep line would not")
 
 enum class Outcome {
 #define DINAL_OUTCOME(id, sentence) id,

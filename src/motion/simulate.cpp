@@ -7,6 +7,7 @@
 #include <limits>
 #include <string>
 
+#include "model/controller.hpp"
 #include "motion/stillness.hpp"
 #include "motion/witness.hpp"
 
@@ -90,6 +91,21 @@ std::optional<text::Error> stepped_over(const char* name, double step, const mod
         name, step, from, to, name, 0.999 * apart)};
 }
 
+/// A term of M that comes again, or acts later, after less than times can tell apart.
+std::optional<text::Error> lost_term(const model::Excitation& excitation, const Window& window) {
+    for (const model::Component& c : excitation.components()) {
+        if (std::holds_alternative<model::Harmonic>(c.term)) continue;  // which has no breaks
+        const auto* sampled = model::controller_of<model::SampledController>(c);
+        const auto* delayed = model::controller_of<model::DelayedController>(c);
+        const double period = std::visit([](const auto& term) { return term.repeats_after(); }, c.term);
+        const char* name = sampled != nullptr ? "every" : delayed != nullptr ? "by" : "period";
+        const double spacing = sampled != nullptr ? sampled->every : delayed != nullptr ? delayed->by : period;
+        if (!(spacing > 0)) continue;
+        if (auto lost = lost_in_time(name, spacing, window)) return lost;
+    }
+    return {};
+}
+
 }  // namespace
 
 text::Expected<Grid> Grid::within(const Window& window) const {
@@ -154,6 +170,9 @@ text::Expected<Trajectory> run_from(const Past& past, const model::Oscillator& s
     if (auto wrong = too_many_rows(static_cast<double>(grid->count()), *grid, window, limits)) return *wrong;
     if (grid->dt() > 0) {
         if (auto lost = lost_in_time("dt", grid->dt(), window)) return *lost;
+    }
+    for (const model::Excitation* terms : {&excitation, &extras.belt, &extras.base}) {
+        if (auto lost = lost_term(*terms, window)) return *lost;
     }
     if (auto wrong = method.wrong(system, excitation)) return *wrong;
     const auto [name, distance, is_step] = method.resolution(system);

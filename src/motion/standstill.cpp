@@ -98,8 +98,9 @@ bool Standstill::ask(const Moment& now) {
         began_stuck_ = stuck();
     } else if (stuck()) {
         tell(model::EventKind::stick, now);
-    } else if (motion_ != before) {
-        tell(model::EventKind::turn, now);  // the same direction again: it only touched zero, which is no event
+    } else if (motion_ != before && before != model::Motion::stuck) {
+        // The same direction again: it only touched zero, which is no event; nor is it one where it was put there.
+        tell(model::EventKind::turn, now);
     }
     return goes_on_after(now.t);
 }

@@ -96,8 +96,11 @@ bool Engine::choose() {
     const double breaks = std::min(field_.next_break(now_.hi), echoes_.empty() ? model::never : echoes_.front().first);
     double limit = std::min(problem_.window.end, breaks);
     if (cut_.h > 0) {
-        const double steps = std::floor((now_.hi - problem_.window.start) / cut_.h + 1e-9) + 1;
-        limit = std::min(limit, problem_.window.start + steps * cut_.h);
+        // A break that rounding puts beside a step's end is that end.
+        const double beside = std::max(1e-9 * cut_.h, 4 * rounding * std::fabs(now_.hi));
+        const double steps = std::floor((now_.hi - problem_.window.start + beside) / cut_.h) + 1;
+        const double step_end = problem_.window.start + steps * cut_.h;
+        if (step_end < limit - beside) limit = step_end;
     }
     double h = std::min(
         {h_, field_.view(now_.hi, spectral::chebyshev::widest_gap) / 2, field_.shortest_delay() / 2 * (1 - 1e-12)});

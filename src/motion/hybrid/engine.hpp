@@ -37,8 +37,23 @@ private:
     struct Ending {
         double x = 1;
         By by = By::nobody;
-        std::size_t which = 0;
+        std::size_t which = 0;                         ///< of the relays
         model::Motion towards = model::Motion::stuck;  ///< of a release, or the way into a wall
+        std::vector<std::size_t> users = {};           ///< events of the user at this instant, in the order written
+    };
+    /// What follows each other within a time, so often that it goes on for ever.
+    struct Storm {
+        double last = -model::never;
+        int count = 0;
+        bool after(double t, double within) {
+            constexpr int most = 200;
+            count = t - last <= within ? count + 1 : 0;
+            last = t;
+            return count > most;
+        }
+    };
+    struct Bounces {
+        double once = 0, all = 0;
     };
 
     bool begin();
@@ -58,7 +73,7 @@ private:
     bool hit(model::Motion into);
     void come_to_lean(model::Motion against);
     void go_from_wall();
-    [[nodiscard]] double time_of_bounces(model::Motion into) const;
+    [[nodiscard]] Bounces bounces(model::Motion into) const;
     [[nodiscard]] double sliding_at_wall(double belt) const;
     [[nodiscard]] double belt_at_wall(double belt) const;
     void record_turns(double until);
@@ -70,6 +85,8 @@ private:
     bool ask();
     bool release(model::Motion towards);
     bool act(std::size_t which);
+    void stand_where_put(const std::vector<double>& before);
+    [[nodiscard]] std::vector<double> watched_values(double x) const;
     void tell(model::EventKind kind, int user = -1);
     bool too_often();
     void echo(double t, int generation);
@@ -89,7 +106,7 @@ private:
     [[nodiscard]] double pull(double M) const {
         const double loads = M + field_.push(now_.hi, after_break_ ? Side::after : Side::at);
         if (standstill_.leans() != model::Motion::stuck) return loads + belt_at_wall(belt());
-        return loads - system_.inertia() * field_.belt_rate(now_.hi) - system_.damping() * belt();
+        return loads - system_.inertia() * field_.sure_belt_rate(now_.hi) - system_.damping() * belt();
     }
     bool fail(model::Outcome outcome) {
         outcome_ = outcome;
@@ -122,8 +139,9 @@ private:
     double h_, pace_;
     double gap_ = 0;  // the longest between two looks at M
     double bad_time_ = model::never;
-    int attempts_ = 0, too_short_ = 0, often_ = 0;
-    double attempts_since_ = 0, last_event_ = -model::never;
+    int attempts_ = 0, too_short_ = 0;
+    double attempts_since_ = 0;
+    Storm storm_, impacts_;
     std::size_t next_row_ = 0;
     double* column_ = nullptr;
     model::Outcome outcome_ = model::Outcome::reached_end;

@@ -12,7 +12,11 @@ namespace {
 
 /// Events that follow each other within this time, in units of the pace, so often, go on for ever.
 constexpr double at_once = 1e-9;
-constexpr int most_at_once = 200;
+constexpr std::size_t most_passages = 200;
+/// Passages of user events that are so near to each other on a piece, of which the half is 1, are one instant.
+constexpr double one_instant = 64 * rounding;
+/// A value that is this part of what it was on the piece stands at zero.
+constexpr double at_zero = 1e-12;
 
 }  // namespace
 
@@ -64,6 +68,7 @@ std::pair<double, model::Motion> Engine::first_release() const {
                            system_.stiffness() * (greatest(piece_.y[0]) + std::fabs(origin_)) +
                            std::fabs(system_.spring(theta()));
     const bool held = standstill_.phase() == Standstill::Phase::held;
+    const double rounded_rate = 256 * rounding * greatest(piece_.belt) / piece_.h;
     const Series belt = fit(piece_.belt), rate = fit(piece_.belt_rate);
     for (const model::Motion side : {model::Motion::forward, model::Motion::backward}) {
         if (side == standstill_.leans()) continue;
@@ -72,12 +77,13 @@ std::pair<double, model::Motion> Engine::first_release() const {
         for (std::size_t k = 0; k < points; ++k) left[k] = -sign * pull[k];
         left[0] += Re;
         Bounded<points> curve(1, left, derivative(left));
-        curve.raise_floor(8 * (rounding * (Re + largest) + tail(pull)));
+        curve.raise_floor(8 * (rounding * (Re + largest) + tail(pull)) + system_.inertia() * rounded_rate);
         const auto lets_go = [&](double x) {
             const MotionPoint at = point(x);
             const double M = field_.load(at);
-            return standstill_.pulled(pull_at(M, field_.push(at.t, at.side), value(rate, x), value(belt, x)),
-                                      at.y.theta) == side;
+            const double whole = value(rate, x),
+                         sure = std::copysign(std::max(0.0, std::fabs(whole) - rounded_rate), whole);
+            return standstill_.pulled(pull_at(M, field_.push(at.t, at.side), sure, value(belt, x)), at.y.theta) == side;
         };
         const auto touches = [&](double x) { return !held && (lets_go(x) || lets_go(curve.lowest_near(x))); };
         const auto x = first_below(curve, -1, LeftEnd::anywhere, touches);
@@ -97,7 +103,7 @@ void Engine::watch(Ending& ending) {
         const auto x = values[0] < 0 ? std::optional(-1.0) : Watched(values, exact).leaves(half, -1);
         if (x && *x < ending.x) ending = {*x, By::relay, i};
     }
-    std::vector<std::pair<std::size_t, double>> unwanted;  // passages, which change the half without an event
+    std::vector<std::pair<std::size_t, double>> wanted_ones, unwanted;  // passages; the others only change the half
     for (std::size_t i = 0; i < extras_.events.size(); ++i) {
         const model::WantedEvent& wanted = extras_.events[i];
         const auto exact = [&](double x) {
@@ -117,16 +123,24 @@ void Engine::watch(Ending& ending) {
         while (const auto x = watched.leaves(half, from)) {
             if (!(*x < ending.x)) break;
             if (wanted.direction == model::Crossing::both || (half < 0) == (wanted.direction == model::Crossing::up)) {
-                ending = {*x, By::user, i};
+                wanted_ones.emplace_back(i, *x);
                 break;
             }
-            if (unwanted.size() > most_at_once) break;
+            if (unwanted.size() > most_passages) break;
             if (halves_[i] == 0) halves_[i] = half;
             unwanted.emplace_back(i, *x);
             half = -half;
             from = *x;
         }
         if (halves_[i] == 0) halves_[i] = half;
+    }
+    if (!wanted_ones.empty()) {
+        double first = 1;
+        for (const auto& [event, x] : wanted_ones) first = std::min(first, x);
+        ending = {first, By::user};
+        for (const auto& [event, x] : wanted_ones) {
+            if (x <= first + one_instant) ending.users.push_back(event);
+        }
     }
     for (const auto& [event, x] : unwanted) {
         if (x <= ending.x) halves_[event] = -halves_[event];
@@ -150,8 +164,9 @@ bool Engine::handle(const Ending& ending) {
             tell(model::EventKind::switched);
             return !too_often() || fail(model::Outcome::chattering);
         case By::user:
-            halves_[ending.which] = -halves_[ending.which];
-            return act(ending.which);
+            for (const std::size_t which : ending.users) halves_[which] = -halves_[which];
+            return std::all_of(ending.users.begin(), ending.users.end(),
+                               [this](std::size_t which) { return act(which); });
     }
     return true;
 }
@@ -160,6 +175,7 @@ bool Engine::act(std::size_t which) {
     const model::WantedEvent& wanted = extras_.events[which];
     tell(model::EventKind::user, static_cast<int>(which));
     if (wanted.act != nullptr) {
+        const std::vector<double> before = watched_values(2);
         model::State state{theta(), y_[1]};
         if (!wanted.act->act(now_.hi, state, {y_.data() + 2, y_.size() - 2})) {
             return fail(model::Outcome::excitation_not_finite);
@@ -182,23 +198,37 @@ bool Engine::act(std::size_t which) {
         }
         const double slip = y_[1] - belt();
         if (moved && !standstill_.passes()) {
-            standstill_.return_to({slip == 0 ? standstill_.motion() : model::motion_of(slip),
+            standstill_.return_to({slip == 0 ? model::Motion::stuck : model::motion_of(slip),
                                    slip == 0 ? Standstill::Phase::arrived : Standstill::Phase::moving});
         } else if (moved) {
             standstill_.thrown(model::motion_of(slip));
         }
         if (moved) touch_wall(false);
-        // What the user did may have put other watched values on the other side, which is no passing.
-        for (std::size_t i = 0; i < halves_.size(); ++i) {
-            const MotionPoint at = here();
-            const double value = extras_.events[i].when->value_with(at.t, at.y, at.states);
-            if (i != which || std::fabs(value) > 1e-12) halves_[i] = value > 0 ? 1 : value < 0 ? -1 : 0;
-            if (i == which && moved && std::fabs(value) <= 1e-12) halves_[i] = 0;
-        }
+        stand_where_put(before);
         echo(now_.hi, 1);
     }
     if (wanted.stop) return fail(model::Outcome::stopped);
     return !too_often() || fail(model::Outcome::chattering);
+}
+
+/// What all events of the user watch, at x of the piece; beyond it, now.
+std::vector<double> Engine::watched_values(double x) const {
+    const MotionPoint at = x > 1 ? here() : point(x);
+    std::vector<double> values;
+    values.reserve(extras_.events.size());
+    for (const model::WantedEvent& event : extras_.events)
+        values.push_back(event.when->value_with(at.t, at.y, at.states));
+    return values;
+}
+
+/// What the user did may have put watched values on the other side of zero, which is no passing.
+void Engine::stand_where_put(const std::vector<double>& before) {
+    const std::vector<double> now = watched_values(2), begin = watched_values(-1), end = watched_values(1);
+    for (std::size_t i = 0; i < halves_.size(); ++i) {
+        if (now[i] == before[i]) continue;
+        const double size = std::max({std::fabs(begin[i]), std::fabs(end[i]), std::fabs(now[i])});
+        halves_[i] = std::fabs(now[i]) <= at_zero * size ? 0 : now[i] > 0 ? 1 : -1;
+    }
 }
 
 /// A surface that changes its velocity at once leaves the mass behind, or turns the sliding round.
@@ -229,9 +259,7 @@ void Engine::tell(model::EventKind kind, int user) {
 }
 
 bool Engine::too_often() {
-    often_ = now_.hi - last_event_ <= at_once * pace_ ? often_ + 1 : 0;
-    last_event_ = now_.hi;
-    return often_ > most_at_once;
+    return storm_.after(now_.hi, at_once * pace_);
 }
 
 bool Engine::ask() {

@@ -109,8 +109,8 @@ void Engine::watch_belt_at_wall(Ending& ending) const {
     if (x && *x > -1 && *x < ending.x) ending = {*x, By::nobody};
 }
 
-/// How long the bounces go on that begin now; `never` when they do not end.
-double Engine::time_of_bounces(model::Motion into) const {
+/// How long the bounce lasts that begins now, and how long all of them go on; `never` when they do not end.
+Engine::Bounces Engine::bounces(model::Motion into) const {
     const double s = model::sign_of(into), M = field_.load(here()), speed = std::fabs(y_[1]);
     const double loads = M + field_.push(now_.hi, here().side) - system_.pull_back(theta());
     // Friction acts against the sliding: out and back again, or, on a belt that goes along, the same way all the time.
@@ -119,12 +119,11 @@ double Engine::time_of_bounces(model::Motion into) const {
         return s * (loads + (b == 0 ? -system_.braking(moves) : sliding_at_wall(b))) / system_.inertia();
     };
     const double out = back_in(opposite(into)), back = back_in(into);
-    if (!(out > 0)) return model::never;
-    if (!(back > 0)) return speed / out;  // friction holds it at the top of the bounce
+    if (!(out > 0)) return {model::never, model::never};
+    if (!(back > 0)) return {speed / out, speed / out};  // friction holds it at the top of the bounce
     const double slower = std::sqrt(back / out), once = speed * (1 / out + slower / back);
-    if (once <= shortest_bounce * pace_) return once;
     const double kept = problem_.system.walls()->restitution * slower;
-    return kept < 1 ? once / (1 - kept) : model::never;
+    return {once, kept < 1 ? once / (1 - kept) : model::never};
 }
 
 /// The mass has come to a wall, or did not get away from it.
@@ -143,9 +142,12 @@ bool Engine::hit(model::Motion into) {
     tell(model::EventKind::impact);
     y_[1] = -walls.restitution * y_[1];
     double after = y_[1] * side * -1;
-    const double rest = after > 0 ? time_of_bounces(into) : 0;
+    const auto [once, all] = after > 0 ? bounces(into) : Bounces{};
     const double soon = std::min(field_.next_break(now_.hi), problem_.window.end);
-    const bool over = rest <= last_bounces * pace_;
+    const bool over = all <= last_bounces * pace_ || once <= shortest_bounce * pace_;
+    const double rest = all < model::never ? all : once;
+    // To and fro between walls that are too near to each other.
+    if (impacts_.after(now_.hi, shortest_bounce * pace_)) return fail(model::Outcome::chattering);
     if (over) after = 0;
     const double lost = system_.inertia() / 2 * (before - after) * (before + after);
     if (problem_.limits.dense) pieces_->add_jump(now_.hi, {.impacts = lost});

@@ -99,8 +99,18 @@ double Field::belt(double t, Side side) const {
 
 /// By the derivative of a polynomial through a short stretch ahead, which is right to some twelve digits.
 double Field::belt_rate(double t) const {
+    return belt_slope(t).first;
+}
+
+double Field::sure_belt_rate(double t) const {
+    const auto [rate, rounded] = belt_slope(t);
+    return std::copysign(std::max(0.0, std::fabs(rate) - rounded), rate);
+}
+
+/// The belt's acceleration, and how much of it may be rounding.
+std::pair<double, double> Field::belt_slope(double t) const {
     using namespace spectral::chebyshev;
-    if (!has_belt() || extras_.belt.constant_from() <= t) return 0;
+    if (!has_belt() || extras_.belt.constant_from() <= t) return {0, 0};
     const double next = extras_.belt.next_break(t);
     const double h = std::min(short_stretch_, (next - t) / 2);
     Samples values{};
@@ -108,7 +118,8 @@ double Field::belt_rate(double t) const {
         const double at = t + h * (1 + nodes[j]);
         values[j] = belt(at, j == 0 ? Side::after : at >= next ? Side::before : Side::at);
     }
-    return value(derivative(fit(values)), -1) / h;
+    constexpr double roundings = 256;  // in a slope at the end of a polynomial of this degree
+    return {value(derivative(fit(values)), -1) / h, roundings * rounding * greatest(values) / h};
 }
 
 void Field::rates(const MotionPoint& at, double* out) const {

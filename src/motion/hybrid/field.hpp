@@ -70,6 +70,8 @@ public:
     [[nodiscard]] double belt(double t, Side side) const;
     /// How fast that changes, from the right.
     [[nodiscard]] double belt_rate(double t) const;
+    /// The same, nearer to zero by what rounding may have made of it.
+    [[nodiscard]] double sure_belt_rate(double t) const;
     void rates(const MotionPoint& at, double* out) const;
     /// The first time after t at which anything is known to jump.
     [[nodiscard]] double next_break(double t) const;
@@ -97,6 +99,7 @@ public:
     void remember(const std::vector<ControllerMemory>& memory) { memory_ = memory; }
 
 private:
+    [[nodiscard]] std::pair<double, double> belt_slope(double t) const;
     /// What a component is, looked up once: at most one of these.
     struct Kind {
         const model::Scripted* function = nullptr;

@@ -257,18 +257,18 @@ Solver::Attempt Solver::runge_kutta(Solved& piece, const model::State& departing
     if (!moves(piece)) z[1] = piece.carrier(node_count - 1);
     if (!rates(1, z, e.data(), nullptr)) return Attempt::failed;
     const StepInterpolant motion(h, {y[0], y[1]}, a[1], {z[0], z[1]}, e[1]);
+    // In a small part of a step the places differ by rounding, of which no velocity can be made.
+    const bool small = h < 1e-3 * cut_.h;
     for (std::size_t j = 0; j < node_count; ++j) {
         const double x = piece.h * (1 + cheb::nodes[j]), s = x / h;
-        if (moves(piece)) {
-            const model::State state = motion(x);
-            piece.y[0][j] = state.theta, piece.y[1][j] = state.velocity;
-        } else {
-            piece.y[0][j] = motion(x).theta, piece.y[1][j] = piece.carrier(j);
-        }
-        for (std::size_t k = 2; k < n_; ++k) {
+        const auto cubic = [&](std::size_t k) {
             const double p = z[k] - y[k], v0 = h * a[k], v1 = h * e[k];
-            piece.y[k][j] = y[k] + s * (v0 + s * ((3 * p - 2 * v0 - v1) + s * (v0 + v1 - 2 * p)));
-        }
+            return y[k] + s * (v0 + s * ((3 * p - 2 * v0 - v1) + s * (v0 + v1 - 2 * p)));
+        };
+        const model::State state = small ? model::State{cubic(0), cubic(1)} : motion(x);
+        piece.y[0][j] = state.theta;
+        piece.y[1][j] = moves(piece) ? state.velocity : piece.carrier(j);
+        for (std::size_t k = 2; k < n_; ++k) piece.y[k][j] = cubic(k);
     }
     for (std::size_t k = 0; k < n_; ++k) piece.y[k][node_count - 1] = z[k];
     for (std::size_t j = 0; j < node_count; ++j) {

@@ -1,0 +1,115 @@
+-- Edges of runs with more in them: what happens at one instant, just at a limit, or closer together than can be told.
+package.path = "tests/lua/?.lua;" .. package.path
+local support = require "support"
+local test, near, equal, raises = support.test, support.near, support.equal, support.raises
+
+local both_engines = { integrator.spectral {}, integrator.rk4 { h = 1e-3 } }
+local dry = system { I = 1, k = 40, C = 0.4, Rd = 0.3, Re = 0.45 }
+
+test("events at one instant are told in the order written, and each does what it does", function()
+    for _, engine in ipairs(both_engines) do
+        local run = dry:simulate {
+            theta0 = 1, t_end = 0.3, dt = 0.3, integrator = engine, events = {
+                { name = "log", when = function(t) return t - 0.25 end, act = function() end },
+                { name = "double", when = function(t) return 3 * (t - 0.25) end, act = function(t, theta, v) return theta, 2 * v end },
+                { name = "more", when = function(t) return 7 * (t - 0.25) end, act = function(t, theta, v) return theta, v + 1 end },
+            },
+        }
+        equal(#run.events, 3)
+        for i, name in ipairs { "log", "double", "more" } do
+            equal(run.events[i].name, name)
+            near(run.events[i].t, 0.25, 1e-12)
+        end
+        near(run.events[3].velocity, 2 * run.events[1].velocity, 1e-9)
+        local places = dry:simulate {
+            theta0 = 1, t_end = 0.3, dt = 0.3, integrator = engine, events = {
+                { name = "a", when = function(t, theta) return theta - 0.5 end, act = function() end },
+                { name = "b", when = function(t, theta) return 3 * (theta - 0.5) end, stop = true },
+            },
+        }
+        equal(places.outcome, "stopped at an event")
+        equal(places.events[1].name .. places.events[2].name, "ab")
+    end
+end)
+
+test("where an act leaves the mass at rest, what follows is no turn of its own", function()
+    local run = dry:simulate {
+        theta0 = 1, t_end = 0.2, dt = 0.2,
+        events = { { when = function(t) return t - 0.05 end, act = function() return -0.5, 0 end } },
+    }
+    equal(#run.events, 1)
+    assert(run.velocity[#run] > 0)
+end)
+
+test("rk4 takes an instant that rounding puts beside its step for the end of the step", function()
+    local M = excitation.sampled(function(t, theta, v) return -8 * theta - 2 * v + 3 end, { every = 0.05, delay = 0.05 })
+    local task = { M = M, theta0 = 0.5, t_end = 3, dt = 3 }
+    local right = dry:simulate(task) -- arcs between the instants, right to rounding
+    for _, h in ipairs { 1e-3, 2e-4 } do
+        task.integrator = integrator.rk4 { h = h }
+        local steps = dry:simulate(task)
+        equal(#steps.events, #right.events)
+        for i = 1, #right.events do
+            equal(steps.events[i].kind, right.events[i].kind)
+            near(steps.events[i].t, right.events[i].t, 20 * h ^ 2) -- a step's cubic, where M jumps within it
+        end
+        near(steps.theta[2], right.theta[2], h ^ 2)
+    end
+end)
+
+test("bounces that die out slowly end when they end", function()
+    for _, e in ipairs { 0.5, 0.9, 0.99, 0.999 } do
+        local run = system { I = 1, k = 0, walls = { lower = 0, restitution = e } }:simulate { M = -1, theta0 = 1, t_end = 1e4, dt = 1e4 }
+        equal(run.outcome, "at rest")
+        local t = math.sqrt(2) * (1 + 2 * e / (1 - e)) -- a geometric series
+        near(run.events[#run.events].t, t, 1e-12 * t / (1 - e)) -- each bounce is rounded
+    end
+    local caught = system { I = 1, k = 0, walls = { lower = 0, upper = 1e-15, restitution = 1 } }:simulate { velocity0 = 1, t_end = 1, dt = 1 }
+    assert(caught.outcome:find("without end in no time", 1, true), caught.outcome)
+end)
+
+test("a belt that asks for just what sticking holds takes the mass along", function()
+    for _, belt in ipairs { excitation.ramp { slope = 0.5 }, function(t) return 0.5 * t end } do
+        for _, engine in ipairs(both_engines) do
+            local run = system { I = 1, k = 0, Rd = 0.3, Re = 0.5 }:simulate { belt = belt, t_end = 3, dt = 3, integrator = engine }
+            near(run.theta[2], 2.25, 1e-12)
+            equal(#run.events, 0)
+        end
+    end
+    local lost = system { I = 1, k = 0, Rd = 0.3, Re = 0.499999 }:simulate { belt = excitation.ramp { slope = 0.5 }, t_end = 3, dt = 3 }
+    near(lost.theta[2], 0.3 * 4.5, 1e-12) -- it slides from the start
+end)
+
+test("what comes again after less than times can tell apart is refused", function()
+    local function refused(task, option)
+        task.t_end, task.dt = 1, 1
+        local ok, problem = pcall(dry.simulate, dry, task)
+        assert(not ok and tostring(problem):find(option .. " = 1e%-300 is lost in the rounding of times near 1: use at least"), problem)
+    end
+    local function one() return 1 end
+    refused({ M = excitation.sampled(one, { every = 1e-300 }) }, "every")
+    refused({ M = excitation.delayed(function(t, theta) return theta end, { by = 1e-300 }) }, "by")
+    refused({ M = excitation.square { period = 1e-300 } }, "period")
+    refused({ belt = excitation.square { period = 1e-300 } }, "period")
+end)
+
+test("a state that does not exist is neither read nor written", function()
+    local function states() return { n = { rate = function() return 0 end } } end
+    raises(function() dry:simulate { M = function(t, theta, v, z) return z.m end, states = states(), t_end = 1, dt = 1 } end, "there is no state 'm'; there is n")
+    raises(function()
+        dry:simulate { theta0 = 1, states = states(), t_end = 1, dt = 1, events = { { when = function(t) return t - 0.5 end, act = function(t, theta, v, z) z.nn = 1 end } } }
+    end, "there is no state 'nn'; there is n; did you mean 'n'?")
+end)
+
+test("a feedback in single precision is noise, not a stair of ten million steps", function()
+    local calls = 0
+    local function M(t, theta)
+        calls = calls + 1
+        return (string.unpack("f", string.pack("f", math.sin(3 * t) - 0.5 * theta)))
+    end
+    local run = dry:simulate { M = M, theta0 = 1, t_end = 1, dt = 1 }
+    assert(run.outcome:find("within the noise of M", 1, true), run.outcome)
+    assert(calls < 2000, calls)
+    local smooth = dry:simulate { M = function(t, theta) return math.sin(3 * t) - 0.5 * theta end, theta0 = 1, t_end = 1, dt = 1 }
+    near(run.theta[2], smooth.theta[2], 6e-8 / 40 * 2) -- the rounding of M over k, and its resonance
+end)
