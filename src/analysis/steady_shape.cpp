@@ -120,8 +120,8 @@ public:
                 tell_stability();
                 break;
             case SteadyStatus::adheres:
-                say("The mass adheres: M never exceeds what friction can hold, so it stays where it is, anywhere from "
-                    "theta = {} to {}.",
+                say("The mass adheres: over a period M never exceeds what friction can hold, so it stays where it stands, "
+                    "anywhere from theta = {} to {}.",
                     number(motion_.rest.first), number(motion_.rest.second));
                 break;
             case SteadyStatus::grows:

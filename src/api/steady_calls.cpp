@@ -87,7 +87,12 @@ analysis::Drive drive_or_fail(lua_State* L, const lua::Options& options, const m
     const double own = system.stiffness() > 0 ? system.natural_period() : 1;
     auto drive = analysis::drive_of(excitation, period.value_or(own));
     if (!drive && !period) {
-        options.fail({.sentence = "the period of M is not known; give it with period = ...", .option = "period"});
+        options.fail(
+            {.sentence = excitation.has_script()
+                             ? "the period of M is not known; give it with period = ..."
+                             : "the terms of M have no period in common, so there is no periodic motion; run it "
+                               "and see run:spectrum",
+             .option = "period"});
     }
     if (period) drive = analysis::Drive{drive ? drive->start : 0, *period};
     if (period || excitation.has_script()) {

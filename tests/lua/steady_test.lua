@@ -53,7 +53,7 @@ test("a Lua function needs a period, which must be true; native sums know theirs
     near(sliding:steady{ M = f, period = 1 / 1.35 }.amplitude, 0.860792180, 1e-9)
     near(sliding:steady{ M = harmonic(0.5) + 0.3*harmonic(0.75) }.period, 4, 1e-9)
     raises_here(function() sliding:steady{ M = f } end, "the period of M is not known")
-    raises_here(function() sliding:steady{ M = harmonic(1) + harmonic(2^0.5) } end, "the period of M is not known")
+    raises_here(function() sliding:steady{ M = harmonic(1) + harmonic(2^0.5) } end, "the terms of M have no period in common")
     raises_here(function() sliding:steady{ M = f, period = 0.7 } end, "M does not repeat itself after period = 0.7")
     raises_here(function() sliding:steady{ M = harmonic(1), period = 0.7 } end, "M does not repeat itself")
     raises_here(function() sliding:steady{ M = f, period = 0 } end, "period = 0 must be positive")
