@@ -113,3 +113,15 @@ test("a feedback in single precision is noise, not a stair of ten million steps"
     local smooth = dry:simulate { M = function(t, theta) return math.sin(3 * t) - 0.5 * theta end, theta0 = 1, t_end = 1, dt = 1 }
     near(run.theta[2], smooth.theta[2], 6e-8 / 40 * 2) -- the rounding of M over k, and its resonance
 end)
+
+test("what follows lines and powers of t late is left to spectral, which says the same as exact", function()
+    local late = nondimensional { zeta = 250, friction_ratio = 0.01 }
+    for _, M in ipairs { excitation.polynomial { coefficients = { 0, 0.1, -0.01 } }, excitation.triangle { frequency = 0.3 } } do
+        local task = { M = M, theta0 = 1, t_end = 5, dt = 5 }
+        local run = late:simulate(task)
+        equal(tostring(run.integrator), "integrator.spectral{}")
+        task.integrator = integrator.exact {}
+        near(run.theta[2], late:simulate(task).theta[2], 1e-11)
+    end
+    equal(tostring(late:simulate { M = excitation.harmonic { frequency = 1 }, t_end = 1, dt = 1 }.integrator), "integrator.exact{}")
+end)

@@ -1,11 +1,30 @@
 #include "motion/exact/exact.hpp"
 
+#include <algorithm>
 #include <memory>
+#include <type_traits>
+#include <variant>
 
 #include "model/closed_form.hpp"
 #include "motion/exact/exact_engine.hpp"
 
 namespace dinal::motion::exact {
+
+bool Exact::goes_slowly(const model::Oscillator& system, const model::Excitation& excitation) {
+    constexpr double most_damped = 200;
+    if (!(system.damping_ratio() > most_damped)) return false;
+    const auto& components = excitation.components();
+    return std::any_of(components.begin(), components.end(), [](const model::Component& c) {
+        return std::visit(
+            [](const auto& term) {
+                using Term = std::decay_t<decltype(term)>;
+                return std::is_same_v<Term, model::Polyline> || std::is_same_v<Term, model::Polynomial> ||
+                       std::is_same_v<Term, model::Ramp> || std::is_same_v<Term, model::Sawtooth> ||
+                       std::is_same_v<Term, model::Triangle>;
+            },
+            c.term);
+    });
+}
 
 std::optional<text::Error> Exact::wrong_for(const model::Oscillator& system,
                                             const model::Excitation& excitation) const {
