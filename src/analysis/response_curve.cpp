@@ -136,6 +136,9 @@ private:
             if (here.status == SteadyStatus::steady && alike) jump.landed = here;
         }
         jump.to = jump.landed.status == SteadyStatus::none ? std::nan("") : jump.landed.amplitude;
+        // A branch that ends in the sky has come to resonance, where no motion is.
+        constexpr double sky = 1e6;
+        if (jump.landed.status == SteadyStatus::steady && jump.from > sky * jump.to) return;
         const double least = 1e-3 * std::max(jump.from, std::isnan(jump.to) ? 0 : jump.to);
         if (!stopped() && !(std::fabs(jump.from - jump.to) <= least)) curve_.jumps.push_back(jump);
     }

@@ -131,4 +131,9 @@ test("a motion looked at once a period", function()
     raises_here(function() run:poincare{ period = 1e-9 } end, "looks are more than")
 end)
 
+test("a branch that ends at resonance jumps nowhere", function()
+    local c = system{ I = 1 / (4 * math.pi ^ 2), k = 1, Rd = 0.4, Re = 0.6 }:response{ frequency = { 0.05, 3 }, points = 100 }
+    for i = 1, #c.jumps do assert(c.jumps.from[i] < 1e6, c.jumps) end
+end)
+
 support.finish()
