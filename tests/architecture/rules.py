@@ -148,6 +148,15 @@ def files_are_short():
             complain(path, count, f"{count} lines are more than {LONGEST_FILE}: split it")
 
 
+def lua_tests_can_fail():
+    """What stands behind the finish of a test file fails without a word to anybody."""
+    for path in files((".lua",)):
+        if re.search(r"tests/lua/\w+_test\.lua$", path) and any(re.match(r"test\(", line) for _, line in lines(path)):
+            said = [line for _, line in lines(path) if line.strip()]
+            if "finish()" not in said[-1]:
+                complain(path, len(lines(path)), "a file of tests ends with support.finish()")
+
+
 def names_are_unique():
     seen = {}
     for path in files(SOURCES):
@@ -200,7 +209,7 @@ def anchors(goal):
 
 
 for rule in (includes_point_down, rooms_are_namespaces, rooms_are_small, types_have_names_of_their_own,
-             forbidden_things_are_absent, headers_say_what_they_hold, files_are_short, names_are_unique,
+             forbidden_things_are_absent, headers_say_what_they_hold, files_are_short, lua_tests_can_fail, names_are_unique,
              nothing_is_left_for_later, links_lead_somewhere, documents_name_what_is_there):
     rule()
 if not any(True for _ in files((".hpp",))):

@@ -92,7 +92,6 @@ test("everything lives in the table dinal", function()
     equal(#run, 3)
 end)
 
-support.finish()
 
 test("springs and end stops", function()
     sys = system{ I = 1, k = 4, Rd = .1, spring = function(theta) return 0.5*theta^3 end }
@@ -104,3 +103,5 @@ test("springs and end stops", function()
     near(run.events[1].t, 0.8, 1e-13)
     near(run.velocity[2], -0.7, 1e-13)
 end)
+
+support.finish()

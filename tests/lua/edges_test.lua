@@ -125,3 +125,5 @@ test("what follows lines and powers of t late is left to spectral, which says th
     end
     equal(tostring(late:simulate { M = excitation.harmonic { frequency = 1 }, t_end = 1, dt = 1 }.integrator), "integrator.exact{}")
 end)
+
+support.finish()

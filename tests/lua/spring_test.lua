@@ -109,3 +109,5 @@ test("the museum piece and the closed forms know k theta only", function()
     raises_here(function() sys:simulate { t_end = 1, dt = 1, integrator = integrator.dinal1989 { h = 0.1 } } end, "knows the spring k theta only")
     raises_here(function() theory.time_to_rest { system = sys, theta0 = 1 } end, "the closed forms know the spring k theta only")
 end)
+
+support.finish()

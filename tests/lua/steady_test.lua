@@ -147,7 +147,6 @@ test("Ctrl-C and limits reach the search: a function that never ends is stopped 
     end, "enough")
 end)
 
-support.finish()
 
 test("what M remembers from one period to the next is no part of what steady seeks", function()
     local light = system{ I = 1, k = 1, C = 0.3 }
@@ -193,3 +192,5 @@ test("a motion between bounds does not grow, and one of a family is not called t
     assert(math.abs(at[1] - at[2]) > 0.1)
     assert(sys:steady{ M = M }.unique ~= true)
 end)
+
+support.finish()

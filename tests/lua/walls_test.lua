@@ -80,7 +80,8 @@ test("a steady motion between walls, and a response", function()
     equal(s.status, "steady")
     equal(s.amplitude, 0.5)
     near(s.run.theta[#s.run], s.run.theta[1], 1e-7)
-    equal(#sys:response { frequency = { 0.15, 0.2 }, points = 2, amplitude = 0.6 }.amplitude, 2)
+    local c = sys:response { frequency = { 0.15, 0.2 }, points = 2, amplitude = 0.6 } -- more rows where branches turn back
+    assert(#c >= 2 and c.frequency:min() == 0.15 and c.frequency:max() == 0.2, c)
 end)
 
 test("what is wrong with walls is one sentence with the name of the option", function()
@@ -97,3 +98,5 @@ test("what is wrong with walls is one sentence with the name of the option", fun
     raises_here(function() sys:simulate { t_end = 1, dt = 1, integrator = integrator.dinal1989 { h = 0.1 } } end, "knows no walls")
     raises_here(function() theory.time_to_rest { system = sys, theta0 = 1 } end, "the closed forms know no walls")
 end)
+
+support.finish()
