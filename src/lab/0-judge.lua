@@ -35,15 +35,17 @@ local function sheet_of(n)
   return sheet
 end
 
+--- What the draws of `pick` make of the sheet: what is given, and what is not shown.
+function course.world(sheet, pick)
+  local given = sheet.given(pick)
+  return { sheet = sheet, given = given, secret = sheet.secret and sheet.secret(given, pick) or {} }
+end
+
 local known = {} -- "4711/1" -> what belongs to that number and sheet
 
 local function world_of(number, n)
   local key = number .. "/" .. n
-  if not known[key] then
-    local sheet, pick = sheet_of(n), picker(number, n)
-    local given = sheet.given(pick)
-    known[key] = { sheet = sheet, given = given, secret = sheet.secret and sheet.secret(given, pick) or {} }
-  end
+  known[key] = known[key] or course.world(sheet_of(n), picker(number, n))
   return known[key]
 end
 
@@ -78,7 +80,7 @@ local usual = {
   { math.rad, "that is in radians; degrees are asked for", only = "degrees" },
   { function(x) return x/(2*math.pi) end, "there is a 2 pi missing in it: cycles per time unit where rad per time unit are meant?" },
   { function(x) return 2*math.pi*x end, "there is a 2 pi too much in it: rad per time unit where cycles per time unit are meant?" },
-  { function(x) return 1/x end, "that is its reciprocal: a period for a frequency, or the other way round?" },
+  { function(x) return 1/x end, "that is its reciprocal: a frequency, where a time is asked for?", only = "time units" },
   { function(x) return x/100 end, "that is a hundred times too small: a fraction where percent are asked for?", only = "percent" },
   { function(x) return 100*x end, "that is a hundred times too much: percent where the plain number is asked for?", never = "percent" },
   { function(x) return 1000*x end, "that is a thousand times too much: a prefix of the unit?" },
@@ -91,12 +93,28 @@ local function whole_hint(question, value)
   return nil
 end
 
-local function hint_for(question, value)
+--- What is said about the known mistakes that make this value of the answer, the likeliest first: what two of them may
+--- have made is told of both.
+local function known_mistakes(question, value)
+  local made = {}
   for _, mistake in ipairs(question.mistakes or {}) do
-    local wrong = mistake[1]
-    local hit = type(wrong) == "function" and wrong(value) or type(wrong) == "number" and near(value, wrong, question)
-    if hit then return mistake[2] end
+    local wrong, said = mistake[1], mistake[2]
+    if type(wrong) == "number" and near(value, wrong, question) and not made[said] then
+      made[said] = math.abs(value - wrong)
+      made[#made + 1] = said
+    end
   end
+  table.sort(made, function(a, b) return made[a] < made[b] end)
+  if #made > 0 then return table.concat(made, ". Or: ") end
+  for _, mistake in ipairs(question.mistakes or {}) do
+    if type(mistake[1]) == "function" and mistake[1](value) then return mistake[2] end
+  end
+  return nil
+end
+
+local function hint_for(question, value)
+  local mistakes = known_mistakes(question, value)
+  if mistakes then return mistakes end
   if question.whole then
     local said = whole_hint(question, value)
     if said then return said end
@@ -148,18 +166,21 @@ end
 --- Only its name, as it is kept: raises when there is none.
 function course.name(number, name) return (select(2, question_of(number, name))) end
 
---- Whether the value is right, and what is said about it. The answer is never in it.
+--- Whether the value is right, and what is said about it.
+function course.verdict(question, value)
+  if near(value, question.answer, question) then
+    return true, "right" .. (question.praise and "; " .. question.praise or "")
+  end
+  local task = question.task and string.format(", and no mistake that is known here; look at task %s again", question.task)
+  return false, hint_for(question, value) or "not right" .. (task or "")
+end
+
+--- The same of the question of that name of a student. The answer is never in it.
 function course.judge(number, name, value)
   local question
   question, name = question_of(number, name)
-  if near(value, question.answer, question) then
-    return true, string.format("%s: right%s", name, question.praise and "; " .. question.praise or "")
-  end
-  local hint = hint_for(question, value)
-  if not hint then
-    hint = "not right" .. (question.task and string.format(", and no mistake that is known here; look at task %s again", question.task) or "")
-  end
-  return false, string.format("%s: %s", name, hint)
+  local right, said = course.verdict(question, value)
+  return right, string.format("%s: %s", name, said)
 end
 
 -- ---- for the instructor

@@ -1,4 +1,13 @@
 -- Sheet 2: sticking, dead zone, breakaway.
+
+--- The block that is drawn by its spring: how long it slips, how far it jumps, from slip to slip.
+local function stick_slip(given, Re)
+  local a, v, omega0 = (Re - given.Rd)/given.k, given.speed, math.sqrt(given.k/given.I)
+  local lasts = 2*(math.pi - math.atan(omega0*a/v))/omega0
+  local jump = 2*a + v*lasts
+  return { lasts = lasts, jump = jump, period = jump/v }
+end
+
 sheet(2, {
   title = "sticking, dead zone, breakaway",
 
@@ -12,7 +21,10 @@ sheet(2, {
     local ratio = pick(1.45, 1.6, 0.05)
     local x_f, a = given.Rd/given.k, (ratio - 1)*given.Rd/given.k
     given.theta0 = rounded((2*pick(3, 5, 1) + pick(1.1, 1.25, 0.05))*x_f, 4)
-    given.speed = rounded(math.sqrt(given.k/given.I)*a*pick(0.5, 0.7, 0.05), 3)
+    -- A period of nearly 1 would be as right upside down.
+    repeat
+      given.speed = rounded(math.sqrt(given.k/given.I)*a*pick(0.5, 0.7, 0.05), 3)
+    until math.abs(stick_slip(given, given.Rd*ratio).period - 1) > 0.1
     return { Re = rounded(given.Rd*ratio, 6), seed = math.floor(pick(1, 1e6, 1)) }
   end,
 
@@ -56,8 +68,8 @@ sheet(2, {
     local simple = system{ I = given.I, k = k, Rd = Rd }
     local rest = theory.rest_position{ system = full, theta0 = given.theta0 }
     local a = (Re - Rd)/k
-    local lasts = 2*(math.pi - math.atan(full.omega0*a/v))/full.omega0
-    local jump = 2*a + v*lasts
+    local drawn = stick_slip(given, Re)
+    local lasts, jump = drawn.lasts, drawn.jump
     return {
       { name = "a", asks = "Re of the bench", unit = "torque", answer = Re, tolerance = 0.02, task = "2.2",
         how = "M where theta first moves, pulled slowly; the mean of several pulls",
@@ -99,7 +111,7 @@ sheet(2, {
           { a, "that is (Re - Rd)/k; it swings as far beyond the middle again, and the drive goes on" },
           { Re/k, "that is where the spring was when it slipped" },
         } },
-      { name = "f", asks = "from slip to slip", unit = "time units", answer = jump/v, tolerance = 0.08, task = "2.5",
+      { name = "f", asks = "from slip to slip", unit = "time units", answer = drawn.period, tolerance = 0.08, task = "2.5",
         how = "jump/v: in the mean it keeps up with the drive",
         mistakes = {
           { lasts, "that is how long it slips; the time that it sticks belongs to it, too" },

@@ -17,7 +17,9 @@ sheet(5, {
   title = "what made this record",
 
   given = function(pick)
-    return { I = pick(0.5, 2, 0.1), noise = 0.01 }
+    local I
+    repeat I = pick(0.5, 2, 0.1) until I ~= 1 -- else k/I would be k
+    return { I = I, noise = 0.01 }
   end,
 
   secret = function(given, pick)

@@ -28,15 +28,15 @@ end
 sheet(6, {
   title = "the governor: friction in a loop, hunting",
 
-  -- Where a sleeve happens to stop almost where the load wants it, the drift to the next slip takes too long to be seen:
-  -- such numbers are drawn again.
+  -- Where a sleeve happens to stop almost where the load wants it, the drift to the next slip takes too long to be seen,
+  -- or with Re = Rd nothing moves any more: such numbers are drawn again.
   given = function(pick)
     local given
     repeat
       given = { J = pick(4, 6, 0.2), C = pick(1.1, 1.4, 0.05), gain = pick(1.6, 2.2, 0.1), load = pick(0.08, 0.14, 0.01),
                 Rd = 0.02, Re = pick(0.045, 0.07, 0.005) }
       local _, slips = hunting_period(turbine(given, given))
-    until slips >= 6
+    until slips >= 6 and swing(turbine(given, { Rd = given.Rd })) > 1e-4
     return given
   end,
 
