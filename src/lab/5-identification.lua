@@ -1,8 +1,12 @@
 -- Sheet 5: what made this record: identification with error bars.
 
+local function decay_without_noise(system)
+  return system:simulate{ theta0 = 1, t_end = 12*system.T0, dt = system.T0/25 }
+end
+
 --- The two records: a decay with noise and an unknown zero; stick-slip under a pull that grows evenly.
 local function decay_of(given, secret)
-  local run = secret.system:simulate{ theta0 = secret.theta0, t_end = 12*secret.system.T0, dt = secret.system.T0/25 }
+  local run = decay_without_noise(secret.system)
   local noise = vector.normal{ n = #run, seed = secret.seed, std = given.noise }
   return data{ { "t", run.t }, { "theta", run.theta + noise + secret.offset } }
 end
@@ -23,13 +27,20 @@ sheet(5, {
   end,
 
   secret = function(given, pick)
-    local k, zeta, x_f = pick(20, 60, 1), pick(0.012, 0.03, 0.001), pick(0.01, 0.018, 0.001)
-    local ratio = pick(1.3, 1.6, 0.05)
-    local system = system{ I = given.I, k = k, C = 2*zeta*math.sqrt(given.I*k), Rd = x_f*k, Re = ratio*x_f*k }
+    -- Drawn again when the record ends before it is at rest, or it rests so near the middle that that is no mistake.
+    local k, x_f, ratio, oscillator, rest
+    repeat
+      k = pick(20, 60, 1)
+      local zeta = pick(0.012, 0.03, 0.001)
+      x_f, ratio = pick(0.01, 0.018, 0.001), pick(1.3, 1.6, 0.05)
+      oscillator = system{ I = given.I, k = k, C = 2*zeta*math.sqrt(given.I*k), Rd = x_f*k, Re = ratio*x_f*k }
+      local run = decay_without_noise(oscillator)
+      rest = run.theta[#run]
+    until run.outcome == "at rest" and math.abs(rest) > 0.006
     local a = (ratio - 1)*x_f
-    given.slope = rounded(k*a*system.omega0*0.4, 3)
-    given.pull_time = rounded(6*system.Re/given.slope, 3)
-    return { system = system, theta0 = 1, offset = pick(0.1, 0.4, 0.05)*(pick(0, 1, 1) == 0 and 1 or -1),
+    given.slope = rounded(k*a*oscillator.omega0*0.4, 3)
+    given.pull_time = rounded(6*oscillator.Re/given.slope, 3)
+    return { system = oscillator, rest = rest, offset = pick(0.1, 0.4, 0.05)*(pick(0, 1, 1) == 0 and 1 or -1),
              seed = math.floor(pick(1, 1e6, 1)) }
   end,
 
@@ -83,7 +94,8 @@ sheet(5, {
       { name = "d", asks = "zero of the sensor", unit = "rad", answer = secret.offset, within = bars "offset", task = "5.2", how = "fit.offset",
         mistakes = {
           { -secret.offset, "the size is right: the offset is what the record shows where the spring is relaxed" },
-          { function(x) return math.abs(x - secret.offset) < 1.3*true_system.dead_zone end,
+          { secret.offset + secret.rest, "that is where it came to rest: with dry friction that is not the middle" },
+          { function(x) return math.abs(x - secret.offset) < true_system.dead_zone + 3*given.noise end,
             "that is where it came to rest: with dry friction that is not the middle" },
         } },
       { name = "e", asks = "k, from I", unit = "torque per rad", answer = true_system.k, tolerance = 0.01, task = "5.4", how = "I omega0^2, or identify with I",
