@@ -164,6 +164,12 @@ std::string judged(lua_State* L, LabDesk& desk, const std::string& question, dou
 
 int check_answer(lua_State* L) {
     LabDesk& desk = desk_with_number(L, "check");
+    if (lua_gettop(L) > 2) {
+        lua::raise(L, {.sentence = fmt::format("check: a question and one value, please; behind the value stands {}",
+                                               lua::written(L, 3)),
+                       .call = "check",
+                       .culprit = lua::written(L, 3)});
+    }
     lua_settop(L, 2);
     const std::string question = question_at_1(L, desk);
     const std::string said = judged(L, desk, question, value_at_2(L)) + "\n";

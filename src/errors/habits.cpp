@@ -5,13 +5,15 @@
 #include <utility>
 #include <vector>
 
+#include "errors/shell_words.hpp"
 #include "lua/safe_mode.hpp"
+#include "lua/standard_globals.hpp"
 #include "lua/tokens.hpp"
 
 namespace dinal::errors {
 namespace {
 
-constexpr std::array<std::pair<std::string_view, std::string_view>, 20> foreign_names = {{
+constexpr std::array<std::pair<std::string_view, std::string_view>, 23> foreign_names = {{
     {"echo", "; did you mean 'print'?"},
     {"disp", "; did you mean 'print'?"},
     {"puts", "; did you mean 'print'?"},
@@ -28,7 +30,10 @@ constexpr std::array<std::pair<std::string_view, std::string_view>, 20> foreign_
     {"int", "; did you mean 'math.floor'?"},
     {"float", "; did you mean 'tonumber'?"},
     {"ln", "; did you mean 'math.log'?"},
-    {"log10", "; did you mean 'math.log'?"},
+    {"log10", "; did you mean 'math.log(x, 10)'?"},
+    {"log2", "; did you mean 'math.log(x, 2)'?"},
+    {"printf", "; a format is filled by string.format: print(string.format(\"%.3f\", x))"},
+    {"sprintf", "; did you mean 'string.format'?"},
     {"exit", "; os.exit() ends a script, :quit or Ctrl-D a session"},
     {"quit", "; os.exit() ends a script, :quit or Ctrl-D a session"},
     {"bye", "; os.exit() ends a script, :quit or Ctrl-D a session"},
@@ -36,12 +41,13 @@ constexpr std::array<std::pair<std::string_view, std::string_view>, 20> foreign_
 
 constexpr std::array<std::string_view, 8> file_endings = {"csv", "dat", "txt", "svg", "png", "pdf", "gp", "lua"};
 
-/// "k = 0,5" in braces is two entries of a table.
+/// "k = 0,5" in braces is two entries of a table, f(1,43) two arguments.
 std::string decimal_comma(std::string_view statement) {
     const std::vector<lua::Token> all = lua::tokens(statement);
     for (std::size_t i = 3; i < all.size(); ++i) {
+        const bool close = all[i - 2].end() + 1 == all[i].at;
         if (all[i].kind == lua::TokenKind::number && all[i - 1].is(",") && all[i - 2].kind == lua::TokenKind::number &&
-            all[i - 3].is("=")) {
+            (all[i - 3].is("=") || (close && (all[i - 3].is(",") || all[i - 3].is("("))))) {
             return "; a decimal point is a point: " + std::string(all[i - 2].text) + "." + std::string(all[i].text);
         }
     }
@@ -63,7 +69,12 @@ std::string file_without_quotes(std::string_view name, std::string_view statemen
 }
 
 /// A number, a string, a list that is called.
-std::string called_value(const lua::LuaMessage& message) {
+std::string called_value(lua_State* L, const lua::LuaMessage& message) {
+    if (message.kind == "global" && lua::is_overwritten(L, message.name) && lua::is_of_dinal(L, message.name)) {
+        const std::string name(message.name);
+        return "; " + name + " was a name of dinal, and has got another value: " + name + " = dinal." + name +
+               " gives it back";
+    }
     if (message.kind == "for iterator") {
         return message.type == "number" ? "; counting is: for i = 1, 10 do"
                                         : "; going through a list is: for i, x in ipairs(list) do";
@@ -113,14 +124,33 @@ std::string running_habit(const text::Error& error, std::string_view statement) 
     return file_without_quotes(error.culprit, statement);
 }
 
-std::string running_habit(const lua::LuaMessage& message, std::string_view statement) {
+std::string running_habit(lua_State* L, const lua::LuaMessage& message, std::string_view statement) {
     if (std::string reason = left_out_in_safe_mode(message, statement); !reason.empty()) {
         return reason;
     }
     if (message.adds_texts) {
         return "; texts are joined with ..";
     }
-    return message.calls ? called_value(message) : file_without_quotes(message.name, statement);
+    if (message.calls) {
+        return called_value(L, message);
+    }
+    if (message.type == "nil" && message.kind == "global") {
+        if (std::string cure = instead_of_shell_line(L, statement); !cure.empty()) {
+            return "; " + cure;
+        }
+        if (is_word_for_degrees(message.name)) {
+            return degrees_of("30");
+        }
+    }
+    return file_without_quotes(message.name, statement);
+}
+
+bool is_word_for_degrees(std::string_view name) {
+    return name == "deg" || name == "degree" || name == "degrees";
+}
+
+std::string degrees_of(std::string_view number) {
+    return "; degrees become radians by math.rad(" + std::string(number) + ")";
 }
 
 std::string foreign_name(std::string_view name) {

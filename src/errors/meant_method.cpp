@@ -182,6 +182,7 @@ MissingElement missing_element(lua_State* L, lua_Debug* frame, const lua::LuaMes
                                          text::counted(static_cast<std::size_t>(*count), "element")),
                              std::string(number ? index.text : all[i - 1].text)};
         if (number) {
+            if (*number < 1) found.end_of_sentence += ", which are counted from 1";
             if (index.kind == lua::TokenKind::name)
                 found.end_of_sentence += fmt::format(", and {} is {}", index.text, *number);
             return found;

@@ -267,7 +267,7 @@ Advice help_with(lua_State* L, lua_Debug* frame, const text::Error& error, std::
 
 Advice help_with(lua_State* L, lua_Debug* frame, const lua::LuaMessage& message, std::string_view statement) {
     luaL_checkstack(L, LUA_MINSTACK, "for the help with an error");
-    for (const std::string& habit : {running_habit(message, statement), meant_method(L, message, statement)}) {
+    for (const std::string& habit : {running_habit(L, message, statement), meant_method(L, message, statement)}) {
         if (!habit.empty()) {
             return {habit};
         }

@@ -7,9 +7,11 @@
 #include <vector>
 
 #include "errors/habits.hpp"
+#include "errors/shell_words.hpp"
 #include "lua/bind.hpp"
 #include "lua/tokens.hpp"
 #include "text/suggest.hpp"
+#include "text/words.hpp"
 
 namespace dinal::errors {
 namespace {
@@ -206,6 +208,38 @@ std::string misspelt_keyword(const Stumble& stumble) {
     return "";
 }
 
+/// "30 deg", "30deg", "90°"
+std::string degrees(const Stumble& stumble, std::string_view statement) {
+    for (const lua::Token& token : stumble.all) {
+        if (token.kind != lua::TokenKind::number) {
+            continue;
+        }
+        const std::size_t digits = std::min(token.text.find_first_not_of("0123456789."), token.text.size());
+        const std::string_view number = token.text.substr(0, digits);
+        const std::string_view behind = text::trimmed(statement.substr(token.at + digits));
+        const std::string_view word = behind.substr(0, behind.find_first_not_of("degrs"));
+        if (is_word_for_degrees(word) || behind.starts_with("°")) {
+            return degrees_of(number);
+        }
+    }
+    return "";
+}
+
+/// check(1a, 3): functions that are called with a name that looks like a number.
+std::string name_without_quotes(const Stumble& stumble) {
+    constexpr std::array<Cure, 1> called = {{{"check", "; the name of a question stands in quotes: check(\""}}};
+    for (std::size_t i = 1; i < stumble.all.size(); ++i) {
+        const lua::Token& token = stumble.all[i];
+        const lua::Token& function = stumble.all[i - (i > 1 && stumble.all[i - 1].is("(") ? 2 : 1)];
+        const std::string_view known = cure(called, function.text);
+        if (!known.empty() && token.kind == lua::TokenKind::number && !token.text.empty() &&
+            std::isalpha(static_cast<unsigned char>(token.text.back())) != 0) {
+            return std::string(known) + std::string(token.text) + "\", 3.2)";
+        }
+    }
+    return "";
+}
+
 /// "3t", "2pi"
 std::string missing_star(const Stumble& stumble) {
     if (stumble.message.complaint != "malformed number") {
@@ -263,8 +297,12 @@ std::string other_grammar(const Stumble& stumble) {
 std::string syntax_habit(lua_State* L, const lua::SyntaxMessage& message, std::string_view statement) {
     luaL_checkstack(L, LUA_MINSTACK, "for the habits of others");
     const Stumble stumble = stumble_in(message, statement);
-    for (std::string advice : {printed_sign(message, statement), doubled_sign(stumble), two_words(L, stumble),
-                               misspelt_keyword(stumble), missing_star(stumble), other_grammar(stumble)}) {
+    if (const std::string shell = instead_of_shell_line(L, statement); !shell.empty()) {
+        return "; " + shell;
+    }
+    for (std::string advice : {degrees(stumble, statement), printed_sign(message, statement), doubled_sign(stumble),
+                               name_without_quotes(stumble), two_words(L, stumble), misspelt_keyword(stumble),
+                               missing_star(stumble), other_grammar(stumble)}) {
         if (!advice.empty()) {
             return advice;
         }

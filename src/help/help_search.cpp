@@ -287,7 +287,7 @@ std::string about_words(const std::string& words, const terminal::Display& scree
 }  // namespace
 
 std::string help_about(std::string_view words, const terminal::Display& screen) {
-    words = text::trimmed(words, " ");
+    words = in_english(text::trimmed(words, " "));
     if (words == "contents") {
         return contents(screen);
     }

@@ -3,9 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <string>
-#include <vector>
+#include <utility>
 
-#include "lua/tokens.hpp"
 #include "text/words.hpp"
 
 namespace dinal::help {
@@ -17,7 +16,7 @@ struct Topic {
 };
 
 // No line is longer than 77 columns. A test looks for every name that stands here.
-constexpr std::array<Topic, 9> topics = {{
+constexpr std::array<Topic, 12> topics = {{
     {"degrees degree deg radians radian angle angles",
      "Angles are in radians: theta, theta0, velocity per time unit. math.rad(90)\n"
      "makes radians of 90 degrees, math.deg(x) degrees of radians, and of a whole\n"
@@ -48,18 +47,56 @@ constexpr std::array<Topic, 9> topics = {{
     {"fit fitting regression estimate calibrate",
      "identify finds the system that made a record, with the errors of what it\n"
      "finds: identify{ data = trajectory.load \"decay.csv\" }.\n"},
+    {"matlab octave python numpy scipy simulink modelica",
+     "docs/guide.md has a table for those who come from MATLAB or SciPy: indices\n"
+     "begin at 1, options stand in braces, a power is x^2, and a vector v has its\n"
+     "functions behind a colon: v:max(). Python reads what run:save \"run.csv\"\n"
+     "writes.\n"},
+    {"kernel jupyter notebook ipython",
+     "dinal --jupyter-install, typed to a shell, makes a kernel for Jupyter:\n"
+     "docs/notebook.md.\n"},
+    {"safe sandbox limit limits",
+     "dinal --safe runs the script of a stranger: it sees one folder, and --max-time\n"
+     "and --max-memory limit what it takes: docs/safe-mode.md.\n"},
     {"shell ls pwd terminal",
      "No shell is in here: Ctrl-Z goes back to yours, and fg comes back. Files are\n"
      "read by data.load, trajectory.load and excitation.samples.\n"},
 }};
 
+/// Words of other languages, and ours for the same.
+constexpr std::array<std::pair<std::string_view, std::string_view>, 8> foreign = {{
+    {"reibung rozamiento friccion fricción frottement attrito", "friction"},
+    {"feder muelle resorte ressort molla", "spring"},
+    {"daempfung dämpfung amortiguamiento amortissement smorzamento", "damping"},
+    {"schwinger oscilador oscillateur oscillatore sistema système", "system"},
+    {"erregung anregung excitacion excitación eccitazione", "excitation"},
+    {"resonanz resonancia résonance risonanza", "resonance"},
+    {"energie energía energia énergie", "energy"},
+    {"hilfe ayuda aide aiuto", "help"},
+}};
+
+bool has_word(std::string_view words, std::string_view wanted) {
+    for (std::size_t begin = 0; begin < words.size();) {  // not tokens: a letter of these may be none of Lua
+        const std::size_t end = std::min(words.find(' ', begin), words.size());
+        if (words.substr(begin, end - begin) == wanted) return true;
+        begin = end + 1;
+    }
+    return false;
+}
+
 }  // namespace
+
+std::string_view in_english(std::string_view word) {
+    const std::string wanted = text::lower(word);
+    const auto* const found =
+        std::find_if(foreign.begin(), foreign.end(), [&](const auto& row) { return has_word(row.first, wanted); });
+    return found == foreign.end() ? word : found->second;
+}
 
 std::string_view topic(std::string_view word) {
     const std::string wanted = text::lower(word);
     for (const Topic& one : topics) {
-        const std::vector<lua::Token> words = lua::tokens(one.words);
-        if (std::any_of(words.begin(), words.end(), [&](const lua::Token& w) { return w.text == wanted; })) {
+        if (has_word(one.words, wanted)) {
             return one.text;
         }
     }

@@ -8,4 +8,7 @@ namespace dinal::help {
 /// A few lines about the word, whose case does not matter; empty when there are none.
 std::string_view topic(std::string_view word);
 
+/// Our word for one of another language, friction for Reibung; else the word itself.
+std::string_view in_english(std::string_view word);
+
 }  // namespace dinal::help

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "lua/error_memory.hpp"
+#include "lua/standard_globals.hpp"
 #include "text/harmless.hpp"
 
 namespace dinal::lua {
@@ -102,6 +103,13 @@ int index_module(lua_State* L) {
     const Class& module = class_of_closure(L, 1);
     const std::string name = module.name;
     const std::string likely = suggestion_for_key(L, 2, module);
+    if (lua_type(L, 2) == LUA_TSTRING && is_of_dinal(L, lua_tostring(L, 2))) {
+        const std::string alone = lua_tostring(L, 2);
+        raise(L, {.sentence = "there is no " + name + "." + alone,
+                  .call = name,
+                  .culprit = alone,
+                  .cure = "; " + alone + " stands by itself, without " + name + " and the point"});
+    }
     raise(L,
           {.sentence = "there is no " + name + (lua_type(L, 2) == LUA_TSTRING ? "." + written(L, 2) : key_text(L, 2)),
            .call = name,

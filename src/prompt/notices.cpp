@@ -4,10 +4,12 @@
 
 #include <algorithm>
 #include <array>
-#include <utility>
+#include <span>
 #include <vector>
 
+#include "errors/meant_method.hpp"
 #include "errors/misspelling.hpp"
+#include "errors/shell_words.hpp"
 #include "help/help_text.hpp"
 #include "help/signature.hpp"
 #include "lua/bind.hpp"
@@ -16,6 +18,7 @@
 #include "prompt/meaning.hpp"
 #include "prompt/output.hpp"
 #include "prompt/typed_text.hpp"
+#include "text/suggest.hpp"
 
 namespace dinal::prompt {
 namespace {
@@ -46,17 +49,6 @@ std::ptrdiff_t uses(const std::vector<lua::Token>& all, std::string_view name) {
                          [name](const lua::Token& t) { return t.kind == lua::TokenKind::name && t.text == name; });
 }
 
-/// What is typed to a shell, or to another program of this kind.
-constexpr std::array<std::pair<std::string_view, std::string_view>, 6> shell_words = {{
-    {"exit quit q bye logout", ":quit or Ctrl-D leaves"},
-    {"clear cls clc", "Ctrl-L clears the screen, :reset forgets your variables"},
-    {"who whos", ":who lists your variables"},
-    {"ls dir pwd cd cat less vi vim nano emacs man mkdir rm cp mv sh bash",
-     "the shell is behind Ctrl-Z, and fg comes back from there"},
-    {"history", "the up arrow brings earlier lines back, Ctrl-R searches them, and :save writes them into a script"},
-    {"reset", ":reset forgets your variables"},
-}};
-
 /// Raw: to ask must not run the code of a strict _G.
 bool is_global(lua_State* L, std::string_view name) {
     lua_pushglobaltable(L);
@@ -73,6 +65,9 @@ std::string name_notice(lua_State* L, const Chunk& chunk) {
     if (all.size() == 1 && all.front().is("help")) {
         return "help() starts a tour; ?name explains a name";
     }
+    if (all.size() == 2 && all.back().kind == lua::TokenKind::comment) {  // dinal --report lab.lua
+        return errors::instead_of_shell_line(L, chunk.expression);
+    }
     if (all.size() != 1 || all.front().kind != lua::TokenKind::name || all.front().is("ans")) {
         return "";
     }
@@ -80,15 +75,33 @@ std::string name_notice(lua_State* L, const Chunk& chunk) {
     if (is_global(L, name)) {
         return "";
     }
-    for (const auto& [names, advice] : shell_words) {
-        const std::vector<lua::Token> words = lua::tokens(names);
-        if (std::any_of(words.begin(), words.end(), [name](const lua::Token& word) { return word.is(name); })) {
-            return fmt::format("there is no such variable; {}", advice);
-        }
+    if (const std::string_view advice = errors::instead_of_word(name); !advice.empty()) {
+        return fmt::format("there is no such variable; {}", advice);
     }
     const std::string hint = errors::similar_global(L, name);
     return hint.empty() ? "" : fmt::format("there is no variable '{}'{}", name, hint);
 }
+
+std::string element_notice(lua_State* L, const Chunk& chunk) {
+    const std::vector<lua::Token> all = lua::tokens(chunk.expression);
+    if (all.size() < 3) return "";
+    if (all.back().is("]")) {
+        const lua::LuaMessage nothing{.words = {}, .type = "nil", .kind = "field", .name = "?"};
+        const std::string told = errors::missing_element(L, nullptr, nothing, chunk.expression).end_of_sentence;
+        return told.empty() ? "" : told.substr(2);
+    }
+    if (all.back().kind != lua::TokenKind::name || !all[all.size() - 2].is(".")) return "";
+    const int top = lua_gettop(L);
+    const Meaning owner = meaning(L, std::span(all).first(all.size() - 2));
+    const std::vector<std::string> names =
+        owner.kind == Meaning::Kind::value && lua_istable(L, -1) ? errors::member_names(L) : std::vector<std::string>();
+    lua_settop(L, top);
+    const std::vector<std::string_view> views(names.begin(), names.end());
+    const std::string hint = text::did_you_mean(all.back().text, views);
+    return hint.empty() ? "" : fmt::format("there is no '{}' in it{}", all.back().text, hint);
+}
+
+namespace {
 
 std::string colon_notice(lua_State* L, const std::string& text) {
     const TypedText typed(text);
@@ -113,6 +126,19 @@ std::string colon_notice(lua_State* L, const std::string& text) {
                              help::written_name(*found.section, *found.member))
                : fmt::format("{} is a method, which is called: {}", found.member->name,
                              help::signature(found.member->doc));
+}
+
+}  // namespace
+
+std::string unfinished_notice(lua_State* L, const std::string& text) {
+    if (std::string notice = colon_notice(L, text); !notice.empty()) return notice;
+    if (text.find('\n') != std::string::npos) return "";
+    if (std::string notice = errors::instead_of_shell_line(L, text); !notice.empty()) return notice;
+    const std::vector<lua::Token> all = lua::tokens(text);
+    const bool percent = all.size() > 1 && all.back().is("%") && all[all.size() - 2].kind == lua::TokenKind::number &&
+                         all[all.size() - 2].end() == all.back().at;
+    return percent ? fmt::format("% is the remainder of a division; {0} percent are {0}/100", all[all.size() - 2].text)
+                   : "";
 }
 
 std::string local_notice(const std::string& text) {

@@ -11,8 +11,12 @@ namespace dinal::prompt {
 /// The expression is the name of a global that does not exist, or the word help.
 std::string name_notice(lua_State* L, const Chunk& chunk);
 
-/// "run:events" waits for arguments that a field never gets and a method may have been expected to do without.
-std::string colon_notice(lua_State* L, const std::string& text);
+/// The expression, which is nil, is an element or a field that is not there: run.theta[0], run.events[1].theat.
+std::string element_notice(lua_State* L, const Chunk& chunk);
+
+/// A line that Lua takes for the beginning of a longer one, and hardly is: "run:events" waits for arguments that a
+/// field never gets and a method may have been expected to do without; "cd .."; "5%".
+std::string unfinished_notice(lua_State* L, const std::string& text);
 
 /// A local variable at the top level that nothing after it uses: it is lost.
 std::string local_notice(const std::string& text);

@@ -106,7 +106,7 @@ Reading take(Session& session, TypedLine input, bool copied) {
         return Reading::line;
     }
     Chunk chunk = compile(L, input.text);
-    if (const std::string notice = chunk.result == Compiled::incomplete ? colon_notice(L, input.text) : "";
+    if (const std::string notice = chunk.result == Compiled::incomplete ? unfinished_notice(L, input.text) : "";
         !notice.empty()) {
         session.editor.remember(input.text);
         say_notice(notice);
