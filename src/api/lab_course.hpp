@@ -39,8 +39,11 @@ std::string lab_course_text();
 text::Expected<std::string> lab_solutions(std::string_view number);
 
 /// From now on each answer that is judged is noted at the end of that file, for this script; the first line says that
-/// it has begun.
+/// it has begun. Says why that cannot be done, if so.
 std::optional<text::Error> note_lab_answers(const std::string& file, const std::string& script);
+
+/// Why an answer could not be noted; nothing when all are.
+std::optional<text::Error> lost_lab_mark();
 
 /// A line of that file: what became of a question. Nothing without note_lab_answers.
 struct LabMark {

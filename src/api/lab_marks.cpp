@@ -13,6 +13,7 @@ struct LabJournal {
 };
 
 std::optional<LabJournal> journal;  // set once, before any script runs
+std::optional<text::Error> lost;    // the first line that could not be written
 
 /// A field of CSV: in quotes, with quotes doubled and no end of line, whatever somebody has called his file.
 std::string quoted_field(std::string_view text) {
@@ -32,13 +33,19 @@ std::optional<text::Error> note_lab_answers(const std::string& file, const std::
     }
     journal = LabJournal{std::move(opened).value(), script};
     note_lab_mark({.verdict = "begun"});
-    return std::nullopt;
+    return lost;
+}
+
+std::optional<text::Error> lost_lab_mark() {
+    return lost;
 }
 
 void note_lab_mark(const LabMark& mark) {
     if (journal) {
-        journal->file.add(fmt::format("{},{},{},{},{},{}", quoted_field(journal->script), mark.number, mark.question,
-                                      mark.verdict, mark.tries, mark.value));
+        const auto wrong =
+            journal->file.add(fmt::format("{},{},{},{},{},{}", quoted_field(journal->script), mark.number,
+                                          mark.question, mark.verdict, mark.tries, mark.value));
+        if (!lost) lost = wrong;  // the script is not to blame, and goes on
     }
 }
 

@@ -2,8 +2,10 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 
 #include "files/file.hpp"
 
@@ -14,14 +16,15 @@ public:
     /// Makes the file when it is not there. To be opened before files are confined: it may be anywhere.
     static text::Expected<Journal> open(const std::string& path);
 
-    /// One write, so that lines of two programs do not mix. What cannot be written is lost: a script must not fail for
-    /// the sake of it.
-    void add(std::string_view line) const;
+    /// One write, so that lines of two programs do not mix. Says why it cannot be written, if so.
+    [[nodiscard]] std::optional<text::Error> add(std::string_view line) const;
 
 private:
-    explicit Journal(int descriptor) : file_(std::make_shared<Descriptor>(descriptor)) {}
+    Journal(int descriptor, std::string path)
+        : file_(std::make_shared<Descriptor>(descriptor)), path_(std::move(path)) {}
 
     std::shared_ptr<Descriptor> file_;  // shared by copies
+    std::string path_;
 };
 
 }  // namespace dinal::files

@@ -312,6 +312,10 @@ int run(const Arguments& arguments, Kernel kernel) {
         complain(take_text(L));
         return failure();
     }
+    if (const auto lost = api::lost_lab_mark()) {
+        complain(lost->sentence);
+        program.code = exit_code::script_error;
+    }
     if (!lua::reached_limit().empty()) {
         lua::exit_in_time(program.code);  // what the script has left open is not closed: that may take for ever, too
     }

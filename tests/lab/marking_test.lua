@@ -98,6 +98,7 @@ test("thirty hand-ins are marked at once, and none touches the others", function
     for i = 1, 100 do dinal.check("1a", i) end
   ]])
   hand_in("loop", "lab.number(3001) check('1c', 3) while true do end")
+  hand_in("flood", "while true do print(('x'):rep(1e5)) end")
   hand_in("wrong", "lab.number(3002)\ncheck('1a', 3")
   hand_in("twin", "lab.number(1001)\ncheck('1a', 1)")
   local loop = block "--lab-marks"
@@ -117,6 +118,8 @@ test("thirty hand-ins are marked at once, and none touches the others", function
   assert(rows.twin:find "has the number of s01.lua", rows.twin)
   assert(said:find("loop ended with an error", 1, true) and said:find("wrong ended with an error", 1, true), said)
   assert(not said:find("s01 ended", 1, true), said)
+  assert(said:find("flood ended with an error", 1, true), said)
+  assert(#support.read(home .. "/desks/flood/output.txt") < 30e6)
   equal(support.read(home .. "/desks/s01/s01.lua"), support.read(home .. "/hand-ins/s01.lua"))
   assert(support.read(home .. "/desks/s01/output.txt"):find("1a: right", 1, true))
 
@@ -128,6 +131,7 @@ end)
 test("--lab-marks needs a file that can be written", function()
   assert(shell("dinal --lab-marks"):find("needs the name of a file after it, for example --lab-marks marks.csv", 1, true))
   assert(shell("dinal --lab-marks=nowhere/x.csv -e ''; echo $?"):find("cannot write 'nowhere/x.csv': No such file or directory\n1\n", 1, true))
+  assert(shell("dinal --lab-marks=/dev/full -e ''; echo $?"):find("cannot write '/dev/full': No space left on device\n1\n", 1, true))
 end)
 
 support.finish()
