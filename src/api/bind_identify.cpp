@@ -129,6 +129,16 @@ int fit_error(lua_State* L) {
     return 1;
 }
 
+int fit_names(lua_State* L) {
+    const FitHandle& fit = fit_self(L, "fit.names");
+    lua_createtable(L, static_cast<int>(fit->values.size()), 0);
+    for (std::size_t i = 0; i < fit->values.size(); ++i) {
+        lua_pushstring(L, fit->values[i].first.c_str());
+        lua_rawseti(L, -2, static_cast<lua_Integer>(i) + 1);
+    }
+    return 1;
+}
+
 int fit_silent(lua_State* L) {
     const FitHandle& fit = fit_self(L, "fit.silent");
     lua_createtable(L, static_cast<int>(fit->silent.size()), 0);
@@ -232,6 +242,9 @@ int fit_text(lua_State* L) {
     "fit = identify{ data = { t = run.t, theta = run.theta + noise }, velocity0 = 0 }\n"
 
 constexpr lua::Member fit_members[] = {
+    {lua::a_field<fit_names>,
+     {"fit.names -> table", "The names of the values that it has.",
+      DINAL_FIT "print(fit.names[1], fit[fit.names[1]] == fit.omega0)  --> omega0\ttrue"}},
     {lua::a_field<fit_error>,
      {"fit.error -> table",
       "The standard errors, under the names of the values: the truth lies within two of them in 19 of 20 records. What "

@@ -119,7 +119,7 @@ const Section* result_class(std::string_view signature) {
     const std::string_view result = signature.substr(arrow + 3);
     const std::string_view name = result.substr(0, result.find_first_of(" ,"));
     for (const Section& section : sections()) {
-        if (name == section.description->name && is_class_of_objects(section)) {
+        if ((name == section.description->name || name == section.prefix) && is_class_of_objects(section)) {
             return &section;
         }
     }

@@ -63,6 +63,41 @@ void add_fields(lua_State* L, char separator, bool calls, std::vector<std::strin
     }
 }
 
+/// As a function that Lua can call: what is in a field of an object of ours.
+int field_of_object(lua_State* L) {
+    lua_gettable(L, 1);
+    return 1;
+}
+
+/// Replaces the object of ours on the top by what is in its field; nil when that fails.
+void go_to_field(lua_State* L, std::string_view name) {
+    lua_pushcfunction(L, field_of_object);
+    lua_insert(L, -2);
+    lua_pushlstring(L, name.data(), name.size());
+    if (lua_pcall(L, 2, 1, 0) != LUA_OK) {
+        lua_pop(L, 1);
+        lua_pushnil(L);
+    }
+}
+
+/// What else the object on the top has, besides the members of its class: the columns of data, the values of a fit.
+void add_own_names(lua_State* L, std::vector<std::string>& names) {
+    const lua::Class* description = lua_isuserdata(L, -1) != 0 ? lua::documented(L, -1).owner : nullptr;
+    if (description == nullptr || description->other_keys == nullptr) {
+        return;
+    }
+    const int object = lua_gettop(L);
+    lua_pushvalue(L, object);
+    go_to_field(L, "names");
+    for (lua_Integer i = 1; lua_istable(L, -1) && lua_rawgeti(L, -1, i) == LUA_TSTRING; ++i) {
+        if (const std::string name = lua_tostring(L, -1); lua::is_name(name)) {
+            names.push_back(name);
+        }
+        lua_pop(L, 1);
+    }
+    lua_settop(L, object);
+}
+
 std::vector<std::string> members(lua_State* L, const TypedText& typed, bool calls) {
     std::vector<std::string> names;
     const int top = lua_gettop(L);
@@ -71,10 +106,24 @@ std::vector<std::string> members(lua_State* L, const TypedText& typed, bool call
     if (owner.kind == Meaning::Kind::member && owner.member->kind == lua::Kind::field) {
         held = help::result_class(owner.member->doc.signature);
     }
+    constexpr std::size_t field_of_variable = 3;
+    if (owner.kind == Meaning::Kind::member && owner.member->kind == lua::Kind::field &&
+        typed.owner().size() == field_of_variable && lua_isuserdata(L, -2) != 0) {
+        lua_pop(L, 1);  // fit.error: the object is below
+        go_to_field(L, owner.member->name);
+    }
     if (held != nullptr) {
         add_members(*held->description, typed.separator(), calls, names);
+        if (typed.separator() == '.') {
+            add_own_names(L, names);
+        }
+    } else if (owner.kind == Meaning::Kind::member && lua_istable(L, -1)) {
+        add_fields(L, typed.separator(), calls, names);
     } else if (owner.kind == Meaning::Kind::value) {
         add_fields(L, typed.separator(), calls, names);
+    }
+    if (typed.owner().size() == 1 && typed.owner().front().is("dinal") && typed.separator() == '.') {
+        names.insert(names.end(), {"on_interrupt", "partial"});  // nil most of the time
     }
     lua_settop(L, top);
     return names;
@@ -139,6 +188,17 @@ std::vector<std::string> option_values(lua_State* L, const OpenCall& call, std::
     return values;
 }
 
+/// Whether a text that is typed there may be the name of a file: of our functions only those take one that say so.
+bool takes_file(lua_State* L, const OpenCall& call) {
+    const lua::Doc* doc = called_doc(L, call);
+    if (doc == nullptr) {
+        return true;
+    }
+    return call.option.empty() && !call.options
+               ? std::string_view(doc->signature).find("file") != std::string_view::npos
+               : call.option == "file";
+}
+
 /// Globals, keywords, and the names that the chunk itself uses.
 std::vector<std::string> plain_names(lua_State* L, const TypedText& typed, bool calls) {
     std::vector<std::string> names;
@@ -201,7 +261,7 @@ Completion complete(lua_State* L, std::string_view before) {
             if (typed.call() && !help) {
                 completion.names = option_values(L, *typed.call(), "");
             }
-            completion.files = !help && completion.names.empty();
+            completion.files = !help && completion.names.empty() && (!typed.call() || takes_file(L, *typed.call()));
             completion.names = help ? help::help_names() : completion.names;
             break;
         case Cursor::member:

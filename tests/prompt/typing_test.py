@@ -64,6 +64,25 @@ class Completion(Typing):
                              ("excitation.step{}:win", "excitation.step{}:window("), ("('x'):low", "('x'):low")]:
             self.completes(terminal, typed, whole)
 
+    def test_columns_values_of_a_fit_and_their_errors(self):
+        terminal = self.start(TERM="dumb")
+        terminal.enter("d = data{ radius = { 1 }, ['no name'] = { 2 } }")
+        terminal.enter("run = system{ I = 1, k = 40, Rd = 0.8 }:simulate{ theta0 = 1, t_end = 8, dt = 0.02 }")
+        terminal.enter("fit = identify{ data = run, velocity0 = 0 }")
+        for typed, whole in [("d.rad", "d.radius"), ("fit.om", "fit.omega0"), ("fit.error.Rd", "fit.error.Rd_over_k"),
+                             ("run.events.ki", "run.events.kind"), ("dinal.part", "dinal.partial")]:
+            self.completes(terminal, typed, whole)
+
+    def test_laws_are_offered_for_friction_and_no_files_where_a_text_is_no_file(self):
+        (self.home / "record.csv").write_text("")
+        terminal = self.start(TERM="dumb")
+        self.completes(terminal, "system{ friction = ", "system{ friction = friction.")
+        terminal.type('check("re' + TAB + "x")
+        terminal.wait(lambda: 'check("rex' in terminal.text())
+        terminal.type(CTRL_C)
+        terminal.wait(lambda: terminal.row() == ">")
+        self.completes(terminal, 'plot{ file = "re', 'plot{ file = "record.csv"')
+
     def test_options_inside_the_braces_of_a_known_call_without_those_that_are_there(self):
         terminal = self.start(TERM="dumb")
         terminal.enter(SYSTEM)
