@@ -118,9 +118,12 @@ int animate_run(lua_State* L) {
     options.fill(asked);
     const model::Units units = asked_units(L, options).value_or(units_of(*run));
     if (!asked.file) {
-        if (!terminal::display_of(STDOUT_FILENO).terminal || !terminal::obeys_escapes()) {
+        const bool shown = terminal::display_of(STDOUT_FILENO).terminal;
+        if (!shown || !terminal::obeys_escapes()) {
             options.fail(
-                {"an animation is shown in a terminal, and this output is none; give file = \"run.svg\" or \"run.gif\""});
+                {fmt::format("an animation is shown in a terminal, and this {}; give file = \"run.svg\" or "
+                             "\"run.gif\"",
+                             shown ? "one cannot do it, as TERM says" : "output is none")});
         }
         const auto take = asked_take(options, asked, run->trajectory, screen_rate, most_frames);
         play(asked_scene(L, options, run, take, units), asked);

@@ -10,6 +10,7 @@
 #include "files/file.hpp"
 #include "lua/options.hpp"
 #include "lua/worker_state.hpp"
+#include "source/value_text.hpp"
 #include "text/words.hpp"
 
 namespace dinal::api {
@@ -33,12 +34,27 @@ constexpr text::Call report_call{"report", "report{ title = \"Free decay\", auth
 
 int new_report(lua_State* L) {
     auto asked = lua::read<ReportOptions>(L, 1, report_call);
+    if (text::trimmed(asked.title).empty()) {
+        lua::raise(
+            L, {.sentence = "report: its title is empty: say what it is about", .call = "report", .option = "title"});
+    }
     lua::push<ReportHandle>(L, std::make_shared<Report>(Report{std::move(asked.title), std::move(asked.author)}));
     return 1;
 }
 
-/// As print shows it.
+/// As print shows it; a table of the user's with what is in it.
 std::string printed(lua_State* L, int index) {
+    const bool says_itself = luaL_getmetafield(L, index, "__tostring") != LUA_TNIL;
+    lua_pop(L, says_itself ? 1 : 0);
+    if (lua_istable(L, index) && !says_itself) {
+        source::ValueText writer(L);
+        std::string text = writer.expression(index);
+        if (!writer.remarks().empty()) {
+            lua::raise(L, {.sentence = "r:add: not all that is in this table can be shown: add its parts one by one",
+                           .call = "r:add"});
+        }
+        return text;
+    }
     std::size_t size = 0;
     luaL_tolstring(L, index, &size);
     std::string text(lua_tostring(L, -1), size);
@@ -210,8 +226,8 @@ constexpr lua::Member report_members[] = {
       DINAL_REPORT "r:text(\"The crests lie on a straight line.\")\nprint(r)  --> report \"Free decay\" with 1 part"}},
     {lua::a_method<add_value>,
      {"r:add(value), r:add(name, value)",
-      "Adds a value as it prints, under a name or alone. A run comes with its story and how to repeat it, data come as a "
-      "table, a picture as a picture.",
+      "Adds a value as it prints, under a name or alone, a table with what is in it. A run comes with its story and how "
+      "to repeat it, data come as a table, a picture as a picture.",
       DINAL_REPORT "run = nondimensional{ friction_ratio = 0.1 }:simulate{ theta0 = 1, t_end = 3, dt = 0.01 }\n"
                    "r:add(run)\nr:add(\"turns\", #run.events)\nprint(r)  --> report \"Free decay\" with 4 parts"}},
     {lua::a_method<add_table>,

@@ -52,8 +52,9 @@ std::string file_argument(lua_State* L, int index, const char* call) {
 
 std::string in_markdown(const std::string& words) {
     std::string text = text::displayable(words);
-    for (std::size_t bar = text.find('|'); bar != std::string::npos; bar = text.find('|', bar + 2)) {
-        text.insert(bar, "\\");
+    constexpr std::string_view marks = "|\\<`[";  // what ends a cell, or makes something else than text of it
+    for (std::size_t at = text.find_first_of(marks); at != std::string::npos; at = text.find_first_of(marks, at + 2)) {
+        text.insert(at, "\\");
     }
     return text;
 }

@@ -164,7 +164,9 @@ text::Expected<std::string> drawn_by_gnuplot(const std::string& commands) {
 }
 
 text::Expected<std::string> svg_of(const Picture& picture) {
-    return content(picture.figures, FileKind::svg, {}, picture.format);
+    auto svg = content(picture.figures, FileKind::svg, {}, picture.format);
+    if (!svg) return svg;
+    return plots::element_of(std::move(svg).value());
 }
 
 void apply_options(lua_State* L, const lua::Options& options, plots::Figure& figure) {
@@ -224,6 +226,7 @@ int deliver(lua_State* L, const lua::Options& options, std::vector<plots::Figure
             options.fail("show", "file and show = false exclude each other");
         }
         write_picture(L, options, asked, figures, format);
+        if (picture_viewer != nullptr) picture_viewer({std::move(figures), format}, Shown::in_file);
         return 0;
     }
     if (asked.size) {
@@ -236,7 +239,7 @@ int deliver(lua_State* L, const lua::Options& options, std::vector<plots::Figure
         return 1;
     }
     if (picture_viewer != nullptr) {
-        picture_viewer({std::move(figures), format});
+        picture_viewer({std::move(figures), format}, Shown::here);
         return 0;
     }
     const std::string text = plots::text_plot(figures, format);

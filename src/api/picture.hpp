@@ -28,14 +28,16 @@ int deliver(lua_State* L, const lua::Options& options, std::vector<plots::Figure
 /// plot{ ... }
 int plot_vectors(lua_State* L);
 
-/// Where pictures go that are shown and in no file: else to standard output, as text.
-using PictureViewer = void (*)(const Picture& picture);
+/// Where pictures go that are shown: else to standard output, as text. Those that were written into a file are shown to
+/// it, too, when they are.
+enum class Shown { here, in_file };
+using PictureViewer = void (*)(const Picture& picture, Shown where);
 void show_pictures_by(PictureViewer viewer);
 
 /// What gnuplot makes of these commands, within the limits of the script.
 text::Expected<std::string> drawn_by_gnuplot(const std::string& commands);
 
-/// The picture as SVG, by gnuplot.
+/// The picture as an element <svg> for a page or a notebook, by gnuplot.
 text::Expected<std::string> svg_of(const Picture& picture);
 
 /// The text of the picture without the last line end.

@@ -56,8 +56,7 @@ void replace_all(std::string& text, std::string_view what, std::string_view by) 
 
 /// From <svg on, and with names of its own: on a page with several pictures they would else be mixed up.
 std::string svg_in_page(const std::string& svg, std::size_t number) {
-    const std::size_t begin = svg.find("<svg");
-    std::string own = begin == std::string::npos ? svg : svg.substr(begin);
+    std::string own = svg;
     for (const char* mark : {" id=\"", " id='", "href=\"#", "href='#", "url(#"}) {
         replace_all(own, mark, fmt::format("{}p{}-", mark, number));
     }

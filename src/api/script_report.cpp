@@ -7,9 +7,12 @@
 #include <array>
 #include <cstddef>
 #include <cstdio>
+#include <cstdlib>
 #include <string_view>
+#include <utility>
 
 #include "files/file.hpp"
+#include "lua/interrupt.hpp"
 #include "text/words.hpp"
 
 namespace dinal::api {
@@ -17,21 +20,34 @@ namespace {
 
 ScriptReport* picture_taker = nullptr;
 
+/// While it lives, files are read and written to their end although the script was stopped.
+class InSpiteOfStop {
+public:
+    InSpiteOfStop() { files::set_stop_question(nullptr); }
+    ~InSpiteOfStop() { files::set_stop_question(lua::interrupt_requested); }
+    InSpiteOfStop(const InSpiteOfStop&) = delete;
+    InSpiteOfStop& operator=(const InSpiteOfStop&) = delete;
+};
+
 std::string stem_of(const std::string& script) {
     const std::string name = script.substr(script.rfind('/') + 1);
+    if (name == "-") return "stdin";
     const std::string ending = text::ending_of(name);
     return ending == ".lua" ? name.substr(0, name.size() - ending.size()) : name;
 }
 
 }  // namespace
 
-ScriptReport::ScriptReport()
-    : output_(::fcntl(STDOUT_FILENO, F_DUPFD_CLOEXEC, STDERR_FILENO + 1)),
+ScriptReport::ScriptReport(std::string script, const std::string& errors)
+    : script_(std::move(script)),
+      errors_(errors),
+      output_(::fcntl(STDOUT_FILENO, F_DUPFD_CLOEXEC, STDERR_FILENO + 1)),
       printed_(::memfd_create("report", MFD_CLOEXEC)) {
     static_cast<void>(std::fflush(stdout));
     ::dup2(printed_, STDOUT_FILENO);
     picture_taker = this;
-    show_pictures_by([](const Picture& picture) {
+    std::atexit(save_at_exit);
+    show_pictures_by([](const Picture& picture, Shown /*where*/) {
         picture_taker->take_printed();
         picture_taker->report_.items.emplace_back(drawn(picture));
     });
@@ -66,13 +82,23 @@ void ScriptReport::take_printed() {
     if (!text.empty()) report_.items.emplace_back(ReportLines{std::move(text)});
 }
 
-text::Expected<std::string> ScriptReport::save(const std::string& script, const std::string& errors) {
+void ScriptReport::save_at_exit() {
+    if (picture_taker == nullptr) return;
+    ScriptReport& report = *picture_taker;
+    const auto saved = report.save();
+    static_cast<void>(std::fputs(report.errors_.c_str(), stderr));
+    static_cast<void>(saved ? std::fprintf(stdout, "%s\n", saved.value().c_str())
+                            : std::fprintf(stderr, "dinal: %s\n", saved.error().message().c_str()));
+}
+
+text::Expected<std::string> ScriptReport::save() {
+    const InSpiteOfStop going_on;
     take_printed();
     give_back();
-    const std::string stem = stem_of(script);
+    const std::string stem = stem_of(script_);
     report_.title = stem;
-    if (!errors.empty()) report_.items.emplace_back(ReportLines{errors, "It ended with an error"});
-    if (auto source = files::read_file(script)) {
+    if (!errors_.empty()) report_.items.emplace_back(ReportLines{errors_, "It ended with an error"});
+    if (auto source = files::read_file(script_)) {
         report_.items.emplace_back(ReportLines{std::move(source).value(), "The script"});
     }
     std::string name = stem + ".html";

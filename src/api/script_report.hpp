@@ -11,20 +11,25 @@ namespace dinal::api {
 /// While it lives, what is printed on standard output and the pictures that are shown go into a report, in their order.
 class ScriptReport {
 public:
-    ScriptReport();
+    /// The script, and what it says on standard error, which is collected elsewhere meanwhile. A script that leaves by
+    /// os.exit gets its page, too.
+    ScriptReport(std::string script, const std::string& errors);
     ~ScriptReport();
     ScriptReport(const ScriptReport&) = delete;
     ScriptReport& operator=(const ScriptReport&) = delete;
 
     /// Writes it into the current folder: lab.html for ../lab.lua, with the script and what went wrong, if anything, at
     /// its end. Returns the name. Standard output is what it was from then on.
-    text::Expected<std::string> save(const std::string& script, const std::string& errors);
+    text::Expected<std::string> save();
 
 private:
+    static void save_at_exit();
     void take_printed();
     void give_back();
 
     Report report_;
+    std::string script_;
+    const std::string& errors_;
     int output_;   // the standard output of before
     int printed_;  // a file without a name
     std::size_t taken_ = 0;

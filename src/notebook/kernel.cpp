@@ -93,7 +93,8 @@ Json shown_picture(const api::Picture& picture) {
     return forms;
 }
 
-void show_picture(const api::Picture& picture) {
+void show_picture(const api::Picture& picture, api::Shown where) {
+    if (where == api::Shown::in_file) return;
     answer({{"show", shown_picture(picture)}});
 }
 

@@ -76,6 +76,16 @@ void replace_between(std::string& svg, std::string_view from, std::string_view t
 
 }  // namespace
 
+std::string element_of(std::string svg) {
+    svg.erase(0, std::min(svg.find("<svg"), svg.size()));
+    constexpr std::string_view from = "<title>gnuplot_plot_", to = "</title>";
+    for (std::size_t at = svg.find(from); at != std::string::npos; at = svg.find(from, at)) {
+        const std::size_t end = svg.find(to, at);
+        svg.erase(at, end == std::string::npos ? end : end + to.size() - at);
+    }
+    return svg;
+}
+
 std::string title_of(std::span<const Figure> figures) {
     std::string title;
     for (const Figure& figure : figures) {

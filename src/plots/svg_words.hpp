@@ -14,4 +14,8 @@ std::string title_of(std::span<const Figure> figures);
 /// The SVG of these figures that gnuplot wrote, with title, description and label for screen readers.
 std::string with_words(std::string svg, std::span<const Figure> figures);
 
+/// The element <svg> for a page, out of such a file: without its head, and without the titles of gnuplot's curves,
+/// which a browser would show under the mouse and read aloud.
+std::string element_of(std::string svg);
+
 }  // namespace dinal::plots

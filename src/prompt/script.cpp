@@ -50,6 +50,10 @@ void hand_over_partial(lua_State* L) {
             complain(take_text(L));
         }
     } else {
+        if (!lua_isnil(L, -1)) {
+            complain(
+                fmt::format("dinal.on_interrupt is no function but a {}, so it is not called", luaL_typename(L, -1)));
+        }
         lua_pop(L, 1);
     }
     lua_pop(L, 1);
@@ -195,14 +199,18 @@ bool run_script(lua_State* L, const Arguments& arguments) {
 
 /// The same, into a page. Its name is told, also when the script failed: what was done stands in it.
 bool run_reported_script(lua_State* L, const Arguments& arguments) {
+    const char* script = arguments.words[arguments.script];
+    if (std::string_view(script) != "-" && access(script, R_OK) != 0) {
+        return run_script(L, arguments);  // there is nothing to report
+    }
     std::string errors;
-    api::ScriptReport report;
+    api::ScriptReport report(script, errors);
     bool fine = false;
     {
         const ErrorsInto collected(errors);
         fine = run_script(L, arguments);
     }
-    const auto saved = report.save(arguments.words[arguments.script], errors);
+    const auto saved = report.save();
     if (!errors.empty()) {
         say_error(errors.substr(0, errors.size() - 1));
     }

@@ -1,11 +1,35 @@
 #include "text/html.hpp"
 
+#include <utf8proc.h>
+
+#include <algorithm>
+
 namespace dinal::text {
+namespace {
+
+constexpr std::string_view unknown = "\xEF\xBF\xBD";  // U+FFFD
+
+/// How many bytes the letter has that begins the text; 0 when it is no UTF-8.
+std::size_t letter_at(std::string_view text) {
+    utf8proc_int32_t code = 0;
+    const auto* const bytes = reinterpret_cast<const utf8proc_uint8_t*>(text.data());  // NOLINT: all may be seen so
+    return static_cast<std::size_t>(
+        std::max<utf8proc_ssize_t>(utf8proc_iterate(bytes, static_cast<utf8proc_ssize_t>(text.size()), &code), 0));
+}
+
+}  // namespace
 
 std::string html(std::string_view text) {
     std::string result;
     result.reserve(text.size());
-    for (const char c : text) {
+    for (std::size_t at = 0; at < text.size(); ++at) {
+        const char c = text[at];
+        if (static_cast<unsigned char>(c) >= 0x80) {
+            const std::size_t bytes = letter_at(text.substr(at));
+            result += bytes > 0 ? text.substr(at, bytes) : unknown;
+            at += std::max<std::size_t>(bytes, 1) - 1;
+            continue;
+        }
         switch (c) {
             case '&':
                 result += "&amp;";
@@ -24,7 +48,7 @@ std::string html(std::string_view text) {
                 break;
             default:
                 if (static_cast<unsigned char>(c) < 0x20 && c != '\t' && c != '\n') {
-                    result += "\xEF\xBF\xBD";
+                    result += unknown;
                 } else {
                     result += c;
                 }

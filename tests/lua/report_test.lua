@@ -67,9 +67,23 @@ test("Markdown has its pictures beside it, and text stays text", function()
     end
 end)
 
+test("names of columns are no markup, bytes that are no letters no letters, and a table is shown with what is in it", function()
+    local r = report{ title = "x" }
+    r:table(data{ { "<b>a</b>", { 1 } }, { "`c` [d](e)", { 2 } } })
+    r:text "\xff and \xc3\xa4"
+    r:add{ 1, "two", { three = 3 } }
+    r:add("list", { 1, 2 })
+    local markdown, page = saved(r, ".md"), saved(r, ".html")
+    assert(markdown:find("| \\<b>a\\</b> | \\`c\\` \\[d](e) |", 1, true), markdown)
+    assert(not page:find "<b>" and utf8.len(page) and page:find("\u{FFFD} and \u{E4}", 1, true), page)
+    assert(markdown:find('{ 1, "two", { three = 3 } }\nlist = { 1, 2 }', 1, true), markdown)
+    raises_here(function() r:add{ io.stdout } end, "r:add: not all that is in this table can be shown")
+end)
+
 test("what cannot be reported is told in a sentence", function()
     raises_here(function() report{} end, "report needs title")
     raises_here(function() report{ title = 3 } end, "title must be")
+    raises_here(function() report{ title = " " } end, "report: its title is empty")
     local r = report{ title = "x" }
     raises_here(function() r:text() end, "what is added must be text, got nil")
     raises_here(function() r:table(3) end, "r:table takes data")
