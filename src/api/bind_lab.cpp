@@ -67,8 +67,19 @@ int ask_course(lua_State* L, LabDesk& desk, const char* call, const char* functi
     return *results;
 }
 
+/// Who types a decimal comma gives one argument too many, and would not see that it is not looked at.
+void refuse_more(lua_State* L, const char* call, const char* wanted, int most) {
+    if (lua_gettop(L) > most) {
+        lua::raise(L, {.sentence = fmt::format("{}: {}, please; behind that stands {}", call, wanted,
+                                               lua::written(L, most + 1)),
+                       .call = call,
+                       .culprit = lua::written(L, most + 1)});
+    }
+}
+
 int lab_number(lua_State* L) {
     LabDesk& desk = desk_of(L);
+    refuse_more(L, "lab.number", "one number", 1);
     if (lua_gettop(L) > 0) {
         int is_whole = 0;
         const lua_Integer number = lua_tointegerx(L, 1, &is_whole);
@@ -106,6 +117,7 @@ int lab_given(lua_State* L) {
 }
 
 int lab_experiment(lua_State* L) {
+    refuse_more(L, "lab.experiment", "a sheet and one number", 2);
     if (!lua_isnoneornil(L, 2)) {
         static_cast<void>(lua::finite_argument(L, 2, "lab.experiment(2, x): x"));
     }
@@ -164,12 +176,7 @@ std::string judged(lua_State* L, LabDesk& desk, const std::string& question, dou
 
 int check_answer(lua_State* L) {
     LabDesk& desk = desk_with_number(L, "check");
-    if (lua_gettop(L) > 2) {
-        lua::raise(L, {.sentence = fmt::format("check: a question and one value, please; behind the value stands {}",
-                                               lua::written(L, 3)),
-                       .call = "check",
-                       .culprit = lua::written(L, 3)});
-    }
+    refuse_more(L, "check", "a question and one value", 2);
     lua_settop(L, 2);
     const std::string question = question_at_1(L, desk);
     const std::string said = judged(L, desk, question, value_at_2(L)) + "\n";

@@ -12,8 +12,8 @@ struct LabJournal {
     std::string script;
 };
 
-std::optional<LabJournal> journal;  // set once, before any script runs
-std::optional<text::Error> lost;    // the first line that could not be written
+std::optional<LabJournal> journal;     // set once, before any script runs
+std::optional<text::Error> lost_mark;  // the first line that could not be written
 
 /// A field of CSV: in quotes, with quotes doubled and no end of line, whatever somebody has called his file.
 std::string quoted_field(std::string_view text) {
@@ -33,11 +33,11 @@ std::optional<text::Error> note_lab_answers(const std::string& file, const std::
     }
     journal = LabJournal{std::move(opened).value(), script};
     note_lab_mark({.verdict = "begun"});
-    return lost;
+    return lost_mark;
 }
 
 std::optional<text::Error> lost_lab_mark() {
-    return lost;
+    return lost_mark;
 }
 
 void note_lab_mark(const LabMark& mark) {
@@ -45,7 +45,7 @@ void note_lab_mark(const LabMark& mark) {
         const auto wrong =
             journal->file.add(fmt::format("{},{},{},{},{},{}", quoted_field(journal->script), mark.number,
                                           mark.question, mark.verdict, mark.tries, mark.value));
-        if (!lost) lost = wrong;  // the script is not to blame, and goes on
+        if (!lost_mark) lost_mark = wrong;  // the script is not to blame, and goes on
     }
 }
 

@@ -135,8 +135,8 @@ std::string running_habit(lua_State* L, const lua::LuaMessage& message, std::str
         return called_value(L, message);
     }
     if (message.type == "nil" && message.kind == "global") {
-        if (std::string cure = instead_of_shell_line(L, statement); !cure.empty()) {
-            return "; " + cure;
+        if (std::string shell = instead_of_shell_line(L, statement); !shell.empty()) {
+            return "; " + shell;
         }
         if (is_word_for_degrees(message.name)) {
             return degrees_of("30");

@@ -14,7 +14,8 @@ namespace {
 
 using Row = std::pair<std::string_view, std::string_view>;
 
-constexpr std::string_view behind = "no shell is in here; in a terminal Ctrl-Z leads to it, and fg comes back";
+constexpr std::string_view shell_is_elsewhere =
+    "no shell is in here; in a terminal Ctrl-Z leads to it, and fg comes back";
 
 constexpr std::array<Row, 9> words_and_cures = {{
     {"exit quit q bye logout ende beenden salir quitter esci", ":quit or Ctrl-D leaves"},
@@ -22,7 +23,7 @@ constexpr std::array<Row, 9> words_and_cures = {{
     {"who whos", ":who lists your variables"},
     {"ls dir pwd cd cat less head tail grep vi vim nano emacs mkdir rm cp mv chmod sh bash sudo ssh git make python "
      "python3 gnuplot",
-     behind},
+     shell_is_elsewhere},
     {"man", "help \"name\" explains a name"},
     {"history", "the up arrow brings earlier lines back, Ctrl-R searches them, and :save writes them into a script"},
     {"save", ":save writes what was typed into a script, run:save(\"run.csv\") a run into a file"},
@@ -79,7 +80,8 @@ std::string_view instead_of_word(std::string_view word) {
 std::string instead_of_shell_line(lua_State* L, std::string_view line) {
     line = text::trimmed(line.substr(0, line.find('\n')));
     if (line.starts_with("$ ")) line = text::trimmed(line.substr(2));  // copied along with its prompt
-    if (line.starts_with('!') || line.starts_with("./") || line.starts_with("../")) return std::string(behind);
+    if (line.starts_with('!') || line.starts_with("./") || line.starts_with("../"))
+        return std::string(shell_is_elsewhere);
     if (line.starts_with('%')) return "lines with % are for IPython, and nothing of that is needed here";
     const std::vector<lua::Token> all = lua::tokens(line);
     if (all.empty() || all.front().kind != lua::TokenKind::name || !is_argument(line.substr(all.front().end()))) {

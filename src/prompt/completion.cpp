@@ -63,41 +63,6 @@ void add_fields(lua_State* L, char separator, bool calls, std::vector<std::strin
     }
 }
 
-/// As a function that Lua can call: what is in a field of an object of ours.
-int field_of_object(lua_State* L) {
-    lua_gettable(L, 1);
-    return 1;
-}
-
-/// Replaces the object of ours on the top by what is in its field; nil when that fails.
-void go_to_field(lua_State* L, std::string_view name) {
-    lua_pushcfunction(L, field_of_object);
-    lua_insert(L, -2);
-    lua_pushlstring(L, name.data(), name.size());
-    if (lua_pcall(L, 2, 1, 0) != LUA_OK) {
-        lua_pop(L, 1);
-        lua_pushnil(L);
-    }
-}
-
-/// What else the object on the top has, besides the members of its class: the columns of data, the values of a fit.
-void add_own_names(lua_State* L, std::vector<std::string>& names) {
-    const lua::Class* description = lua_isuserdata(L, -1) != 0 ? lua::documented(L, -1).owner : nullptr;
-    if (description == nullptr || description->other_keys == nullptr) {
-        return;
-    }
-    const int object = lua_gettop(L);
-    lua_pushvalue(L, object);
-    go_to_field(L, "names");
-    for (lua_Integer i = 1; lua_istable(L, -1) && lua_rawgeti(L, -1, i) == LUA_TSTRING; ++i) {
-        if (const std::string name = lua_tostring(L, -1); lua::is_name(name)) {
-            names.push_back(name);
-        }
-        lua_pop(L, 1);
-    }
-    lua_settop(L, object);
-}
-
 std::vector<std::string> members(lua_State* L, const TypedText& typed, bool calls) {
     std::vector<std::string> names;
     const int top = lua_gettop(L);
@@ -260,6 +225,10 @@ Completion complete(lua_State* L, std::string_view before) {
         case Cursor::string:
             if (typed.call() && !help) {
                 completion.names = option_values(L, *typed.call(), "");
+                if (const std::string_view option = typed.call()->option; option == "x" || option == "y") {
+                    completion.names = columns_of_owner(L, typed.call()->function);
+                    for (std::string& name : completion.names) name += '"';
+                }
             }
             completion.files = !help && completion.names.empty() && (!typed.call() || takes_file(L, *typed.call()));
             completion.names = help ? help::help_names() : completion.names;

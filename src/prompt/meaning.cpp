@@ -5,6 +5,8 @@
 #include <string>
 
 #include "help/signature.hpp"
+#include "lua/bind.hpp"
+#include "lua/lua_text.hpp"
 
 namespace dinal::prompt {
 namespace {
@@ -209,6 +211,65 @@ Meaning meaning(lua_State* L, std::span<const lua::Token> expression) {
         }
     }
     return result;
+}
+
+namespace {
+
+/// As a function that Lua can call: what is in a field of an object of ours.
+int field_of_object(lua_State* L) {
+    lua_gettable(L, 1);
+    return 1;
+}
+
+}  // namespace
+
+void go_to_field(lua_State* L, std::string_view name) {
+    lua_pushcfunction(L, field_of_object);
+    lua_insert(L, -2);
+    lua_pushlstring(L, name.data(), name.size());
+    if (lua_pcall(L, 2, 1, 0) != LUA_OK) {
+        lua_pop(L, 1);
+        lua_pushnil(L);
+    }
+}
+
+void add_own_names(lua_State* L, std::vector<std::string>& names) {
+    const lua::Class* description = lua_isuserdata(L, -1) != 0 ? lua::documented(L, -1).owner : nullptr;
+    if (description == nullptr || description->other_keys == nullptr) {
+        return;
+    }
+    const int object = lua_gettop(L);
+    lua_pushvalue(L, object);
+    go_to_field(L, "names");
+    for (lua_Integer i = 1; lua_istable(L, -1) && lua_rawgeti(L, -1, i) == LUA_TSTRING; ++i) {
+        if (const std::string name = lua_tostring(L, -1); lua::is_name(name)) {
+            names.push_back(name);
+        }
+        lua_pop(L, 1);
+    }
+    lua_settop(L, object);
+}
+
+std::vector<std::string> columns_of_owner(lua_State* L, std::span<const lua::Token> function) {
+    std::vector<std::string> names;
+    const std::size_t size = function.size();
+    if (size < 3 || !function[size - 2].is(":")) {
+        return names;
+    }
+    const int top = lua_gettop(L);
+    const Meaning owner = meaning(L, function.first(size - 2));
+    add_own_names(L, names);
+    for (const lua::Member& member : owner.kind == Meaning::Kind::object && owner.section != nullptr && names.empty()
+                                         ? owner.section->description->members
+                                         : std::span<const lua::Member>()) {
+        const help::Section* held = help::result_class(member.doc.signature);
+        if (member.kind == lua::Kind::field && held != nullptr &&
+            held->description->name == std::string_view("vector")) {
+            names.emplace_back(member.name);
+        }
+    }
+    lua_settop(L, top);
+    return names;
 }
 
 }  // namespace dinal::prompt

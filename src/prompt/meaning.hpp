@@ -2,6 +2,9 @@
 #pragma once
 
 #include <span>
+#include <string>
+#include <string_view>
+#include <vector>
 
 #include "help/library.hpp"
 #include "lua/lua_headers.hpp"
@@ -26,5 +29,15 @@ Meaning meaning(lua_State* L, std::span<const lua::Token> expression);
 
 /// The section that describes a class, nullptr when none does.
 const help::Section* section_of(const lua::Class* description);
+
+/// Replaces the object of ours on the top by what is in its field; nil when that fails. No code of the user runs.
+void go_to_field(lua_State* L, std::string_view name);
+
+/// Adds the names that the object on the top has besides the members of its class: the columns of data, the values of a
+/// fit.
+void add_own_names(lua_State* L, std::vector<std::string>& names);
+
+/// The columns of the object whose method is called, run:plot: of a run its vectors, of data what it has.
+std::vector<std::string> columns_of_owner(lua_State* L, std::span<const lua::Token> function);
 
 }  // namespace dinal::prompt

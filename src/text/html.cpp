@@ -7,7 +7,7 @@
 namespace dinal::text {
 namespace {
 
-constexpr std::string_view unknown = "\xEF\xBF\xBD";  // U+FFFD
+constexpr std::string_view no_letter = "\xEF\xBF\xBD";  // U+FFFD
 
 /// How many bytes the letter has that begins the text; 0 when it is no UTF-8.
 std::size_t letter_at(std::string_view text) {
@@ -26,7 +26,7 @@ std::string html(std::string_view text) {
         const char c = text[at];
         if (static_cast<unsigned char>(c) >= 0x80) {
             const std::size_t bytes = letter_at(text.substr(at));
-            result += bytes > 0 ? text.substr(at, bytes) : unknown;
+            result += bytes > 0 ? text.substr(at, bytes) : no_letter;
             at += std::max<std::size_t>(bytes, 1) - 1;
             continue;
         }
@@ -48,7 +48,7 @@ std::string html(std::string_view text) {
                 break;
             default:
                 if (static_cast<unsigned char>(c) < 0x20 && c != '\t' && c != '\n') {
-                    result += unknown;
+                    result += no_letter;
                 } else {
                     result += c;
                 }

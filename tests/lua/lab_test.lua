@@ -61,8 +61,8 @@ test("an unknown question, sheet or value is refused in a sentence", function()
   for _, wrong in ipairs { 0/0, math.huge } do
     support.raises_here(function() check("1a", wrong) end, "check: the answer must be a finite number")
   end
-  support.raises_here(function() check("1a", 1,43) end, "check: a question and one value, please; behind the value stands 43")
-  support.raises_here(function() check("1a", 3, "s") end, "behind the value stands")
+  support.raises_here(function() check("1a", 1,43) end, "check: a question and one value, please; behind that stands 43")
+  support.raises_here(function() check("1a", 3, "s") end, "behind that stands")
   support.raises_here(function() lab.given(17) end, "lab.given: there are sheets 1 to ")
   support.raises_here(function() lab.given("1") end, "lab.given: the first argument is the number of a sheet, got the string")
   support.raises_here(function() lab.given() end, "got nil; for example lab.given(1)")

@@ -70,7 +70,8 @@ class Completion(Typing):
         terminal.enter("run = system{ I = 1, k = 40, Rd = 0.8 }:simulate{ theta0 = 1, t_end = 8, dt = 0.02 }")
         terminal.enter("fit = identify{ data = run, velocity0 = 0 }")
         for typed, whole in [("d.rad", "d.radius"), ("fit.om", "fit.omega0"), ("fit.error.Rd", "fit.error.Rd_over_k"),
-                             ("run.events.ki", "run.events.kind"), ("dinal.part", "dinal.partial")]:
+                             ("run.events.ki", "run.events.kind"), ("dinal.part", "dinal.partial"),
+                             ('run:plot{ y = "vel', 'run:plot{ y = "velocity"'), ('d:plot{ x = "ra', 'd:plot{ x = "radius"')]:
             self.completes(terminal, typed, whole)
 
     def test_laws_are_offered_for_friction_and_no_files_where_a_text_is_no_file(self):
