@@ -135,8 +135,11 @@ Advice nil_global(lua_State* L, lua_Debug* frame, std::string_view statement, st
     return {};
 }
 
+/// How a name stands in what went wrong: 2*rad needs a number there, and math.rad alone is none.
+enum class Use { any, as_number };
+
 /// Names of that spelling in the libraries: sin is math.sin, rk4 is integrator.rk4. Two at most.
-std::string qualified(lua_State* L, std::string_view name) {
+std::string qualified(lua_State* L, std::string_view name, Use use) {
     constexpr std::array<std::string_view, 9> modules = {"excitation", "integrator", "theory", "trajectory", "vector",
                                                          "math",       "string",     "table",  "os"};
     std::string found;
@@ -151,7 +154,7 @@ std::string qualified(lua_State* L, std::string_view name) {
                     .append(module)
                     .append(".")
                     .append(name)
-                    .append("'");
+                    .append(use == Use::as_number && lua_isfunction(L, -1) ? "(...)'" : "'");
                 ++count;
             }
         }
@@ -191,9 +194,9 @@ std::string field_of_variable(lua_State* L, std::string_view name) {
 }
 
 /// What a global name that is nil may have meant.
-std::string meant_by(lua_State* L, std::string_view name, const std::vector<std::string>& names) {
+std::string meant_by(lua_State* L, std::string_view name, const std::vector<std::string>& names, Use use = Use::any) {
     std::string hint = foreign_name(name);
-    hint = hint.empty() ? qualified(L, name) : hint;
+    hint = hint.empty() ? qualified(L, name, use) : hint;
     hint = hint.empty() ? field_of_variable(L, name) : hint;
     return hint.empty() ? likely(name, names, text::Likeness::of_letters) : hint;
 }
@@ -280,7 +283,7 @@ Advice help_with(lua_State* L, lua_Debug* frame, const lua::LuaMessage& message,
         lua_pushglobaltable(L);
         add_keys(L, names);
         lua_pop(L, 1);
-        return {meant_by(L, message.name, names)};
+        return {meant_by(L, message.name, names, message.calculates ? Use::as_number : Use::any)};
     }
     if (message.type == "nil" && (message.kind == "field" || message.kind == "method")) {
         return {likely(message.name, siblings(L, frame, message.name, statement), text::Likeness::of_meaning)};

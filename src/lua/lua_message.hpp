@@ -17,6 +17,7 @@ struct LuaMessage {
     std::string_view name = {};                 ///< and its name: "sytem"
     std::vector<std::string_view> quoted = {};  ///< all that stands in quotes
     bool calls = false;                         ///< "attempt to call"
+    bool calculates = false;                    ///< "attempt to perform arithmetic on"
     bool adds_texts = false;                    ///< "attempt to add a 'string' with a 'string'"
     bool misses_a_value = false;                ///< some nil that has no name here: "(number expected, got nil)"
 };
