@@ -7,6 +7,7 @@
 #include "api/data.hpp"
 #include "api/identify_options.hpp"
 #include "api/units_option.hpp"
+#include "lua/gaps.hpp"
 
 namespace dinal::api {
 namespace {
@@ -42,7 +43,7 @@ RecordColumns record_columns(lua_State* L, const lua::Options& options) {
         while (lua_next(L, place) != 0) {
             if (lua_type(L, -2) == LUA_TSTRING) {
                 const std::string name = lua_tostring(L, -2);
-                add_column(record, name, lua::numbers_at(L, -1, "identify", "data." + name));
+                add_column(record, name, lua::numbers_with_gaps_at(L, -1, "identify", "data." + name));
             }
             lua_pop(L, 1);
         }

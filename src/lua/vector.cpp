@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "lua/gaps.hpp"
+
 namespace dinal::lua {
 
 std::vector<double> new_numbers(lua_State* L, std::size_t n) {
@@ -44,9 +46,9 @@ std::vector<double> numbers_of_table(lua_State* L, int index, std::string_view c
     return numbers;
 }
 
-}  // namespace
-
-std::vector<double> numbers_at(lua_State* L, int index, std::string_view call, std::string_view option) {
+template <class Allowed>
+std::vector<double> numbers_that_are(lua_State* L, int index, std::string_view call, std::string_view option,
+                                     Allowed allowed) {
     index = lua_absindex(L, index);
     std::vector<double> numbers;
     if (const auto* vector = test<Vector>(L, index)) {
@@ -58,11 +60,21 @@ std::vector<double> numbers_at(lua_State* L, int index, std::string_view call, s
         refuse(L, index, call, option,
                fmt::format(" must be a table of numbers or a vector, got {}", describe(L, index)));
     }
-    const auto bad = std::find_if(numbers.begin(), numbers.end(), [](double x) { return !std::isfinite(x); });
+    const auto bad = std::find_if_not(numbers.begin(), numbers.end(), allowed);
     if (bad != numbers.end()) {
         refuse(L, index, call, option, fmt::format("[{}] = {} must be finite", bad - numbers.begin() + 1, *bad));
     }
     return numbers;
+}
+
+}  // namespace
+
+std::vector<double> numbers_at(lua_State* L, int index, std::string_view call, std::string_view option) {
+    return numbers_that_are(L, index, call, option, [](double x) { return std::isfinite(x); });
+}
+
+std::vector<double> numbers_with_gaps_at(lua_State* L, int index, std::string_view call, std::string_view option) {
+    return numbers_that_are(L, index, call, option, [](double x) { return !std::isinf(x); });
 }
 
 }  // namespace dinal::lua

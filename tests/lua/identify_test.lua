@@ -165,4 +165,17 @@ test("a sampled M drawn as a spline does not bias what straight lines do", funct
     assert(off.cubic < 2e-3 and off.linear > 5*off.cubic, off.linear .. " " .. off.cubic)
 end)
 
+test("rows with a gap are left out of a plain table, too", function()
+    local x = noisy(decay, 3, 0.01):table()
+    local t, kept = {}, {}
+    for i = 1, #x do
+        if i % 50 == 20 then x[i] = 0/0 else t[#t + 1], kept[#kept + 1] = decay.t[i], x[i] end
+    end
+    local whole = identify{ data = { t = t, theta = kept } }
+    equal(identify{ data = { t = decay.t, theta = x } }.zeta, whole.zeta)
+    equal(identify{ data = data{ t = decay.t, theta = x } }.zeta, whole.zeta)
+    x[7] = math.huge
+    raises_here(function() identify{ data = { t = decay.t, theta = x } } end, "data.theta[7] = inf must be finite")
+end)
+
 support.finish()
