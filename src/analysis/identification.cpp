@@ -19,6 +19,9 @@ text::Expected<Identified> Identification::identified() {
     }
     if (!best_) return text::Error{"no motion of such a system comes near this record"};
     if (!question_.M && !stopped_) try_rests();
+    if (seeks_Re_) try_breakaways();
+    if (seeks_Re_ && !stopped_) try_none(Unknown::Re, 0.1);
+    if (question_.M && is_sought(question_, Unknown::velocity0) && !stopped_) try_none(Unknown::velocity0, 1e-4);
     return result();
 }
 
@@ -32,6 +35,7 @@ bool is_sought(const IdentifyQuestion& question, Unknown which) {
 void Identification::choose_unknowns() {
     std::copy_if(all_unknowns.begin(), all_unknowns.end(), std::back_inserter(unknowns_),
                  [this](Unknown which) { return is_sought(question_, which); });
+    seeks_Re_ = is_sought(question_, Unknown::Re);
 }
 
 std::optional<Eigen::VectorXd> Identification::predicted(const Parameters& p, std::size_t rows) {
@@ -41,8 +45,7 @@ std::optional<Eigen::VectorXd> Identification::predicted(const Parameters& p, st
     return theta;
 }
 
-std::optional<Eigen::VectorXd> Identification::moved(const Parameters& p, std::size_t rows) {
-    ++runs_;
+std::optional<model::Oscillator> Identification::system_of(const Parameters& p) const {
     model::OscillatorParameters parts;
     parts.inertia = at(p, Unknown::I);
     parts.stiffness = at(p, Unknown::k);
@@ -54,12 +57,21 @@ std::optional<Eigen::VectorXd> Identification::moved(const Parameters& p, std::s
         parts.breakaway = std::max(Re, parts.kinetic_friction);
     }
     const auto system = model::Oscillator::make(parts);
+    return system ? std::optional(*system) : std::nullopt;
+}
+
+std::optional<Eigen::VectorXd> Identification::moved(const Parameters& p, std::size_t rows) {
+    ++runs_;
+    const auto system = system_of(p);
     if (!system) return {};
     const model::State initial{at(p, Unknown::theta0), at(p, Unknown::velocity0)};
     if (!question_.M) {
         stopped_ = stopped_ || (monitor_ && !monitor_(question_.t.front()));
         if (stopped_) return {};
-        Eigen::VectorXd decay = free_decay(*system, initial, std::span(question_.t).first(rows), rests_at_);
+        std::optional<double> rests_at = rests_at_;
+        if (rests_at) *rests_at -= turns_before(p);
+        if (rests_at && *rests_at < 0) return {};
+        Eigen::VectorXd decay = free_decay(*system, initial, std::span(question_.t).first(rows), rests_at);
         decay.array() += at(p, Unknown::offset);
         return decay.allFinite() ? std::optional(std::move(decay)) : std::nullopt;
     }
@@ -78,31 +90,41 @@ std::optional<Eigen::VectorXd> Identification::moved(const Parameters& p, std::s
 }
 
 FitScale Identification::scale_of(const Parameters& start) const {
-    FitScale scale{Eigen::VectorXd(count()), Eigen::VectorXd::Constant(count(), -1e300)};
+    FitScale scale{Eigen::VectorXd(count()), Eigen::VectorXd::Constant(count(), -1e300), Eigen::VectorXd(count()),
+                   Eigen::VectorXd::Zero(count())};
     const double k = at(start, Unknown::k), omega = std::sqrt(k / at(start, Unknown::I));
+    constexpr double loosely = 3;
     for (Eigen::Index i = 0; i < count(); ++i) {
-        switch (unknowns_[static_cast<std::size_t>(i)]) {
+        const Unknown which = unknowns_[static_cast<std::size_t>(i)];
+        switch (which) {
             case Unknown::I:
                 scale.typical[i] = scale.least[i] = 1e-6 * at(start, Unknown::I);
+                scale.whole[i] = at(start, which);
                 break;
             case Unknown::k:
                 scale.typical[i] = scale.least[i] = 1e-6 * k;
+                scale.whole[i] = k;
                 break;
             case Unknown::C:
                 scale.typical[i] = 0.01 * k / omega;
                 scale.least[i] = 0;
+                scale.whole[i] = std::max(2 * k / omega, at(start, which));  // critical
                 break;
             case Unknown::Rd:
             case Unknown::Re:
                 scale.typical[i] = 0.01 * k * range_;
                 scale.least[i] = 0;
+                scale.whole[i] = question_.M ? std::max(k * range_, at(start, which)) : k * range_;
                 break;
             case Unknown::theta0:
             case Unknown::offset:
                 scale.typical[i] = 0.1 * range_;
+                scale.hold[i] = noise_ / (loosely * range_);
+                scale.whole[i] = range_;
                 break;
             case Unknown::velocity0:
                 scale.typical[i] = 0.1 * range_ * omega;
+                scale.whole[i] = std::max(range_ * omega, std::fabs(at(start, which)));
                 break;
         }
     }
@@ -111,8 +133,7 @@ FitScale Identification::scale_of(const Parameters& start) const {
 
 void Identification::try_from(const Parameters& start) {
     base_ = start;
-    Eigen::VectorXd p(count());
-    for (std::size_t i = 0; i < unknowns_.size(); ++i) p[static_cast<Eigen::Index>(i)] = at(start, unknowns_[i]);
+    Eigen::VectorXd p = fitted_of(start);
     const double period = 2 * std::numbers::pi * std::sqrt(at(start, Unknown::I) / at(start, Unknown::k));
     const FitScale scale = scale_of(start);
     const std::size_t least = unknowns_.size() + 4;
@@ -150,6 +171,7 @@ void Identification::keep_if_better(const std::optional<LeastSquares>& all, cons
     if (best_ && all->sum < (1 - same_fit) * best_->sum) agreed_ = 0;
     best_ = all;
     best_base_ = base_;
+    best_rest_.reset();
     best_scale_ = scale;
     best_breakaway_ = breakaway_;
 }
@@ -169,16 +191,13 @@ bool Identification::ends_at_rest() const {
 
 Identified Identification::result() {
     Identified found;
+    const Covariance covariance = weigh_rests();
     breakaway_ = best_breakaway_;
     found.value = filled_best();
     if (!question_.M && !is_given(Unknown::Re)) {
         at(found.value, Unknown::Re) = std::max(at(found.value, Unknown::Rd), breakaway_ * at(found.value, Unknown::k));
         found.silent[static_cast<std::size_t>(Unknown::Re)] = true;
     }
-    const auto J = derivative([this](const Eigen::VectorXd& q) { return predicted(filled(q), question_.t.size()); },
-                              best_->parameters, best_scale_, measured_.size());
-    const Covariance covariance =
-        covariance_of(best_->parameters, J.value_or(Eigen::MatrixXd::Zero(measured_.size(), count())), best_scale_);
     found.noise = deviation();
     Eigen::MatrixXd full = Eigen::MatrixXd::Zero(unknown_count, unknown_count);
     for (Eigen::Index i = 0; i < count(); ++i) {
@@ -190,10 +209,16 @@ Identified Identification::result() {
                 covariance.matrix(i, j);
         }
     }
-    add_other_rests(full);
+    if (seeks_Re_) {  // Rd and what Re exceeds it by
+        constexpr auto Rd = static_cast<Eigen::Index>(Unknown::Rd), Re = static_cast<Eigen::Index>(Unknown::Re);
+        full.row(Re) += full.row(Rd);
+        full.col(Re) += full.col(Rd);
+    }
     for (const Unknown which : unknowns_) {
-        const auto i = static_cast<Eigen::Index>(which);
-        found.error[static_cast<std::size_t>(which)] = found.noise * std::sqrt(full(i, i));
+        const auto i = static_cast<std::size_t>(which);
+        const auto place = static_cast<Eigen::Index>(which);
+        full(place, place) = std::max(full(place, place), least_errors_[i] * least_errors_[i]);
+        found.error[i] = found.silent[i] ? 0 : found.noise * std::sqrt(full(place, place));
     }
     ratios(full, found);
     const Eigen::VectorXd predicted_all = measured_ - best_->residual;
@@ -204,20 +229,21 @@ Identified Identification::result() {
     return found;
 }
 
-void Identification::ratios(const Eigen::MatrixXd& covariance, Identified& found) {
+void Identification::ratios(const Eigen::MatrixXd& covariance, Identified& found) const {
     const double I = at(found.value, Unknown::I), k = at(found.value, Unknown::k);
     const double C = at(found.value, Unknown::C), Rd = at(found.value, Unknown::Rd);
     found.omega0 = std::sqrt(k / I);
     found.zeta = C / (2 * std::sqrt(I * k));
     found.Rd_over_k = Rd / k;
-    const auto error = [&](double by_I, double by_k, double by_C, double by_Rd) {
+    const auto error = [&](Unknown told, double by_I, double by_k, double by_C, double by_Rd) {
+        if (!question_.M && found.silent[static_cast<std::size_t>(told)]) return 0.0;
         Eigen::VectorXd by = Eigen::VectorXd::Zero(unknown_count);
         by.head(4) << by_I, by_k, by_C, by_Rd;
         return found.noise * std::sqrt(std::max(0.0, by.dot(covariance * by)));
     };
-    found.omega0_error = error(-found.omega0 / (2 * I), found.omega0 / (2 * k), 0, 0);
-    found.zeta_error = error(-found.zeta / (2 * I), -found.zeta / (2 * k), 1 / (2 * std::sqrt(I * k)), 0);
-    found.Rd_over_k_error = error(0, -Rd / (k * k), 0, 1 / k);
+    found.omega0_error = error(Unknown::k, -found.omega0 / (2 * I), found.omega0 / (2 * k), 0, 0);
+    found.zeta_error = error(Unknown::C, -found.zeta / (2 * I), -found.zeta / (2 * k), 1 / (2 * std::sqrt(I * k)), 0);
+    found.Rd_over_k_error = error(Unknown::Rd, 0, -Rd / (k * k), 0, 1 / k);
 }
 
 text::Expected<Identified> identify(const IdentifyQuestion& question, const motion::Monitor& monitor) {

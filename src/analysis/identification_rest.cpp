@@ -1,9 +1,15 @@
-// At which turn a free decay comes to rest.
+// Where the mass stands: at which turn a free decay comes to rest, and what a driven motion says about Re.
 //
 // Whether one more swing comes about depends on the parameters, and each number of swings is a valley of its own, whose
 // walls the many samples at rest make steep. When the number is prescribed the place of rest is a smooth function of
 // the parameters: so each number near the best one is fitted by itself, and counts when some Re >= Rd lets the mass
-// move at the turn before and holds it at this one.
+// move at the turn before and holds it at this one. What the sum of squares says for a way to come to rest is not all:
+// one that is possible in a tiny part of the space of parameters only was a tiny part as likely before, so each counts
+// by exp(-sum / 2 noise^2) times the volume that its errors leave open.
+//
+// Re of a driven motion counts only where the mass stands, so the sum of squares has steps: at some Re a stop comes
+// about, lasts over a whole swing of M, or is no more. No slope leads over a step. So the whole range of Re is looked
+// at, and fits go on from wherever that is best.
 #include <optional>
 
 #include "analysis/identification_search.hpp"
@@ -39,30 +45,38 @@ std::optional<Decay> decay_of(const Parameters& p) {
 
 }  // namespace
 
-/// Fits with the mass at rest at this turn, or moving on where it is infinite. Where no friction could do that, the fit
-/// goes on from there without that.
-double Identification::try_rest_at(double turn) {
+/// Fits with the mass at rest at this turn, or moving on where it is infinite; also from the best fit when it goes on.
+/// Where no friction could do that, the fit goes on from there without that.
+double Identification::try_rest_at(double turn, bool goes_on) {
     rests_at_ = turn;
     auto found = fit(moving_.value_or(best_->parameters), question_.t.size(), best_scale_, 30);
+    if (goes_on) {
+        const auto other = fit(best_->parameters, question_.t.size(), best_scale_, 30);
+        if (other && (!found || other->sum < found->sum)) found = other;
+    }
     rests_at_.reset();
     if (!found) return std::numeric_limits<double>::infinity();
     const double sum = found->sum;
     const std::optional<double> breakaway = holding(filled(found->parameters), turn);
     breakaway_ = breakaway.value_or(0);
     if (!breakaway) found = fit(found->parameters, question_.t.size(), best_scale_, 15);
-    keep_if_better(found, best_scale_);
+    if (!found) return std::numeric_limits<double>::infinity();
+    const Rest rest{*found, breakaway_, breakaway ? std::optional(turn) : std::nullopt, {}};
+    if (found->sum < best_->sum || is_same(*found, *best_)) {
+        keep_if_better(found, best_scale_);
+        best_rest_ = rest.turn;
+    }
     breakaway_ = best_breakaway_;
-    const auto is_it = [&](const LeastSquares& rest) {
-        return std::fabs(rest.sum - found->sum) <= same_fit * rest.sum;
-    };
-    if (found && std::none_of(rests_.begin(), rests_.end(), is_it)) rests_.push_back(*found);
+    const auto is_it = [&](const Rest& other) { return is_same(other.fit, *found); };
+    if (std::none_of(rests_.begin(), rests_.end(), is_it)) rests_.push_back(rest);
     return breakaway ? sum : std::numeric_limits<double>::infinity();
 }
 
 /// The Re/k that lets a free decay rest at this turn and not before; 0 when Rd does, none when nothing can.
 std::optional<double> Identification::holding(const Parameters& p, double turn) const {
     const auto decay = std::isfinite(turn) ? decay_of(p) : std::nullopt;
-    if (!decay) return {};
+    turn -= turns_before(p);
+    if (!decay || turn < 0) return {};
     const double here = std::fabs(decay->size_at(turn)), least = std::max(decay->shift, here);
     const double most = turn > 0 ? decay->size_at(turn - 1) : 3 * least;
     if (!(least < most)) return {};
@@ -73,18 +87,30 @@ std::optional<double> Identification::holding(const Parameters& p, double turn) 
     return here <= decay->shift ? 0 : (least + most) / 2;
 }
 
+/// Where the start is near a turn, that one has number 0, whether it is still to come or has just been: so no number
+/// changes where the velocity of a mass that was let go is found to be a little more or a little less than none.
+double Identification::turns_before(const Parameters& p) const {
+    return starts_at_turn_ && at(p, Unknown::theta0) * at(p, Unknown::velocity0) < 0 ? 1 : 0;
+}
+
+void Identification::number_turns(const Parameters& p) {
+    const double swift = at(p, Unknown::velocity0) * std::sqrt(at(p, Unknown::I) / at(p, Unknown::k));
+    starts_at_turn_ = std::fabs(swift) < std::fabs(at(p, Unknown::theta0));
+}
+
 void Identification::try_rests() {
     if (!ends_at_rest()) return;
+    number_turns(filled_best());
     try_rest_at(std::numeric_limits<double>::infinity());
     const auto decay = decay_of(filled_best());
     if (!decay) return;
     // The last turn that stands out of the noise is the first where it may rest.
     const double seen = std::max(0.0, static_cast<double>(turns_.size()) - 2);
-    const double middle = std::isfinite(decay->extremes) ? decay->extremes - 1 : seen;
+    const double middle = std::isfinite(decay->extremes) ? decay->extremes - 1 + turns_before(filled_best()) : seen;
     // As far to both sides as the record leaves it open, and some turns more.
     constexpr double open = 12;
     constexpr int most_tries = 25;
-    try_rest_at(middle);
+    try_rest_at(middle, true);
     for (const double way : {1.0, -1.0}) {
         int beyond = 0;
         for (int tries = 1; tries <= most_tries && !stopped_; ++tries) {
@@ -97,22 +123,130 @@ void Identification::try_rests() {
     }
 }
 
-void Identification::add_other_rests(Eigen::MatrixXd& covariance) const {
-    const double variance = deviation() * deviation();
-    if (!(variance > 0)) return;
-    const auto odds_of = [&](const LeastSquares& rest) { return std::exp((best_->sum - rest.sum) / (2 * variance)); };
-    double all = 1;  // the best one
-    for (const LeastSquares& rest : rests_) all += rest.sum > best_->sum ? odds_of(rest) : 0;
-    for (const LeastSquares& rest : rests_) {
-        const Eigen::VectorXd apart = rest.parameters - best_->parameters;
-        for (Eigen::Index i = 0; i < count(); ++i) {
-            for (Eigen::Index j = 0; j < count(); ++j) {
-                covariance(static_cast<Eigen::Index>(unknowns_[static_cast<std::size_t>(i)]),
-                           static_cast<Eigen::Index>(unknowns_[static_cast<std::size_t>(j)])) +=
-                    odds_of(rest) / all * apart[i] * apart[j] / variance;
-            }
-        }
+// ---- how likely each of them is
+
+/// The turn at which these parameters come to rest, or behind which nothing of the motion can be seen.
+std::optional<double> Identification::resting_turn(const Parameters& p, double noise) const {
+    const auto system = question_.M ? std::nullopt : system_of(p);
+    if (!system || !theory::Modes(system->damping_ratio()).swings()) return {};
+    const theory::FreeMotion motion(*system, {at(p, Unknown::theta0), at(p, Unknown::velocity0)});
+    constexpr double unseen = 0.01;
+    const double shift = system->kinetic_friction() / system->stiffness();
+    const double last = theory::HalfCycles(system->damping_ratio(), shift)
+                            .until_within(std::max(shift, unseen * noise), motion.extreme(0).theta);
+    return std::min(motion.extremes() - 1, last) + turns_before(p);
+}
+
+/// Where a small change would add or take away a swing slopes by differences say nothing: the turn of rest is kept.
+Covariance Identification::covariance_at(const Rest& rest, double noise) {
+    breakaway_ = rest.breakaway;
+    const Parameters p = filled(rest.fit.parameters);
+    rests_at_ = rest.turn ? rest.turn : resting_turn(p, noise);
+    const FitScale scale = scale_of(p);
+    const auto J = derivative([this](const Eigen::VectorXd& q) { return predicted(filled(q), question_.t.size()); },
+                              rest.fit.parameters, scale, measured_.size());
+    rests_at_.reset();
+    return covariance_of(J.value_or(Eigen::MatrixXd::Zero(measured_.size(), count())), scale.whole, noise);
+}
+
+Covariance Identification::weigh_rests() {
+    base_ = best_base_;
+    const double noise = deviation(), least = best_->sum;
+    Rest best{*best_, best_breakaway_, best_rest_, {}};
+    best.covariance = covariance_at(best, noise);
+    if (rests_.empty() || !(noise > 0)) return best.covariance;
+    constexpr double unlikely = 40;
+    std::vector<Rest> ways{best};
+    for (Rest& rest : rests_) {
+        if (rest.fit.sum > least + unlikely * noise * noise || is_same(rest.fit, *best_)) continue;
+        rest.covariance = covariance_at(rest, noise);
+        ways.push_back(rest);
     }
+    const auto evidence = [&](const Rest& rest) {
+        return (least - rest.fit.sum) / (2 * noise * noise) + rest.covariance.log_volume;
+    };
+    for (const Rest& rest : ways) best = evidence(rest) > evidence(best) ? rest : best;
+    best_ = best.fit;
+    best_breakaway_ = best.breakaway;
+    Covariance all{Eigen::MatrixXd::Zero(count(), count()), best.covariance.silent, 0};
+    double odds = 0;
+    for (const Rest& rest : ways) {
+        const double share = std::exp(evidence(rest) - evidence(best));
+        const Eigen::VectorXd apart = (rest.fit.parameters - best.fit.parameters) / noise;
+        all.matrix += share * (rest.covariance.matrix + apart * apart.transpose());
+        odds += share;
+    }
+    all.matrix /= odds;
+    return all;
+}
+
+// ---- Re of a driven motion
+
+void Identification::try_breakaways() {
+    constexpr int rounds = 3;
+    for (int round = 0; round < rounds && !stopped_; ++round) {
+        if (!try_other_breakaways()) break;
+    }
+}
+
+/// Looks at Re from Rd to four times that, or to what holds the mass anywhere in the record, and goes on from the two
+/// best. True when one of them is better.
+bool Identification::try_other_breakaways() {
+    const Parameters best = filled_best();
+    const double before = best_->sum, Rd = at(best, Unknown::Rd);
+    const double whole = std::max(4 * Rd, 0.5 * at(best, Unknown::k) * range_);
+    std::vector<std::pair<double, double>> sums;
+    constexpr int looks = 24;
+    for (int i = 0; i <= looks && !stopped_; ++i) {
+        Parameters p = best;
+        const double part = static_cast<double>(i) / looks;
+        at(p, Unknown::Re) = Rd + whole * part * part;
+        const auto theta = predicted(p, question_.t.size());
+        if (theta) sums.emplace_back((measured_ - *theta).squaredNorm(), at(p, Unknown::Re));
+    }
+    std::sort(sums.begin(), sums.end());
+    constexpr std::size_t tries = 2;
+    for (std::size_t i = 0; i < std::min(tries, sums.size()) && !stopped_; ++i) {
+        Parameters p = best;
+        at(p, Unknown::Re) = sums[i].second;
+        base_ = p;
+        const FitScale scale = scale_of(p);
+        keep_if_better(fit(fitted_of(p), question_.t.size(), scale, 30), scale);
+    }
+    return best_->sum < (1 - same_fit) * before;
+}
+
+/// A motion that never stands says nothing about Re but that a greater one would have held it, and one that stands at
+/// first nothing about its velocity. Where nothing depends on what Re exceeds Rd by, or on the velocity, about 0, and 0
+/// is as good as the noise can tell, no stop that another value makes is believed, nor what it does to other
+/// parameters.
+void Identification::try_none(Unknown which, double little) {
+    const LeastSquares best = *best_;
+    base_ = best_base_;
+    const Eigen::Index place = place_of(which);
+    FitScale scale = best_scale_;
+    constexpr double firmly = 1e8;
+    scale.hold[place] = firmly / scale.typical[place];
+    Eigen::VectorXd start = best.parameters;
+    start[place] = 0;
+    const auto without = fit(start, question_.t.size(), scale, 40);
+    if (!without) return;
+    const double variance = deviation() * deviation(), rise = without->sum - best.sum;
+    // A stop that has just begun to matter does so by the square of the parameter: the slope at the fit promises more
+    // than the sum of squares keeps.
+    constexpr double doubtful = 16, telling = 4;  // four and two standard errors
+    if (rise > 0 && rise < doubtful * variance) {
+        least_errors_[static_cast<std::size_t>(which)] = std::fabs(best.parameters[place]) / std::sqrt(rise);
+    }
+    if (rise > telling * variance) return;
+    constexpr double same = 1e-8;
+    Eigen::VectorXd more = without->parameters;
+    more[place] = little * scale.typical[place];
+    const auto theta = predicted(filled(more), question_.t.size());
+    const bool is_flat = theta && (measured_ - *theta - without->residual).cwiseAbs().maxCoeff() <= same * range_;
+    if (rise > 0 && !is_flat) return;
+    best_ = without;
+    best_->parameters[place] = 0;  // from which it was held but for roundings
 }
 
 }  // namespace dinal::analysis

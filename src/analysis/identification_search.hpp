@@ -31,6 +31,17 @@ bool is_sought(const IdentifyQuestion& question, Unknown which);
 
 /// By so much of the sum of squares two fits may differ that are one.
 inline constexpr double same_fit = 1e-6;
+inline bool is_same(const LeastSquares& a, const LeastSquares& b) {
+    return std::fabs(a.sum - b.sum) <= same_fit * a.sum;
+}
+
+/// A fit of a free decay that rests at a turn; without one, where its own friction stops it.
+struct Rest {
+    LeastSquares fit;
+    double breakaway = 0;  // Re/k; 0: Rd/k
+    std::optional<double> turn = {};
+    Covariance covariance = {};
+};
 
 class Identification {
 public:
@@ -61,13 +72,25 @@ private:
     [[nodiscard]] Parameters filled(const Eigen::VectorXd& p) const {
         Parameters all = base_;
         for (std::size_t i = 0; i < unknowns_.size(); ++i) at(all, unknowns_[i]) = p[static_cast<Eigen::Index>(i)];
+        if (seeks_Re_) at(all, Unknown::Re) += at(all, Unknown::Rd);
         return all;
+    }
+    /// What is fitted of these parameters. Of Re that is what it exceeds Rd by: below Rd nothing would depend on it.
+    [[nodiscard]] Eigen::VectorXd fitted_of(const Parameters& all) const {
+        Eigen::VectorXd p(count());
+        for (std::size_t i = 0; i < unknowns_.size(); ++i) p[static_cast<Eigen::Index>(i)] = at(all, unknowns_[i]);
+        if (seeks_Re_) p[place_of(Unknown::Re)] = std::max(0.0, at(all, Unknown::Re) - at(all, Unknown::Rd));
+        return p;
+    }
+    [[nodiscard]] Eigen::Index place_of(Unknown which) const {
+        return std::find(unknowns_.begin(), unknowns_.end(), which) - unknowns_.begin();
     }
 
     /// What the instrument shows of the motion with these parameters.
     [[nodiscard]] std::optional<Eigen::VectorXd> predicted(const Parameters& p, std::size_t rows);
     [[nodiscard]] std::optional<Eigen::VectorXd> moved(const Parameters& p, std::size_t rows);
 
+    [[nodiscard]] std::optional<model::Oscillator> system_of(const Parameters& p) const;
     [[nodiscard]] FitScale scale_of(const Parameters& start) const;
 
     /// First the beginning of the record, so that no swing is taken for the next one, then all of it.
@@ -98,19 +121,31 @@ private:
 
     [[nodiscard]] bool ends_at_rest() const;
     void try_rests();
-    double try_rest_at(double turn);
+    void number_turns(const Parameters& p);
+    [[nodiscard]] double turns_before(const Parameters& p) const;
+    double try_rest_at(double turn, bool goes_on = false);
     [[nodiscard]] std::optional<double> holding(const Parameters& p, double turn) const;
-    /// What is not sure because the record leaves open at which turn the mass came to rest, in units of noise squared.
-    void add_other_rests(Eigen::MatrixXd& covariance) const;
     [[nodiscard]] Parameters filled_best() {
         base_ = best_base_;
         return filled(best_->parameters);
     }
 
-    [[nodiscard]] Identified result();
+    // ---- what the record of a driven motion says about Re, there, too
 
+    void try_breakaways();
+    [[nodiscard]] bool try_other_breakaways();
+    void try_none(Unknown which, double little);
+
+    // ---- how sure it is
+
+    [[nodiscard]] std::optional<double> resting_turn(const Parameters& p, double noise) const;
+    [[nodiscard]] Covariance covariance_at(const Rest& rest, double noise);
+    /// Takes the likeliest of the ways in which the record may have come to rest; in units of noise squared, with what
+    /// is not sure because the others are possible, too.
+    [[nodiscard]] Covariance weigh_rests();
+    [[nodiscard]] Identified result();
     /// omega0, zeta and Rd/k, with the errors that their parts have together.
-    static void ratios(const Eigen::MatrixXd& covariance, Identified& found);
+    void ratios(const Eigen::MatrixXd& covariance, Identified& found) const;
 
     const IdentifyQuestion& question_;
     const motion::Monitor& monitor_;
@@ -119,10 +154,14 @@ private:
     double range_ = 0, span_ = 0, noise_ = 0;
     std::vector<std::size_t> turns_;
     std::vector<Unknown> unknowns_;
+    bool seeks_Re_ = false;
+    Parameters least_errors_{};  // for noise of 1
     Parameters base_{}, best_base_{};
     double breakaway_ = 0, best_breakaway_ = 0;  // Re/k of a free decay; 0: Rd/k
     std::optional<double> rests_at_ = {};        // the turn at which a free decay is made to rest
-    std::vector<LeastSquares> rests_ = {};       // the best fit of each such turn
+    bool starts_at_turn_ = false;                // how turns are numbered
+    std::vector<Rest> rests_ = {};               // the best fit of each such turn
+    std::optional<double> best_rest_ = {};
     std::optional<LeastSquares> best_;
     std::optional<Eigen::VectorXd> moving_;  // what the moving part of a free decay says by itself
     FitScale best_scale_;

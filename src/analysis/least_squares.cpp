@@ -50,6 +50,9 @@ std::optional<LeastSquares> least_squares(const Prediction& model, const Eigen::
     if (!first) return {};
     now.residual = measured - *first;
     now.sum = now.residual.squaredNorm();
+    if (start.size() == 0) return now;
+    const Eigen::VectorXd& hold = scale.hold;
+    const auto held = [&](const Eigen::VectorXd& p) { return (p - start).cwiseProduct(hold).squaredNorm(); };
     double damping = 1e-3;
     for (int step = 0; step < most_steps; ++step) {
         auto J = slopes(model, now.parameters, scale, measured - now.residual);
@@ -59,6 +62,8 @@ std::optional<LeastSquares> least_squares(const Prediction& model, const Eigen::
         Eigen::MatrixXd normal = J->transpose() * *J;
         Eigen::VectorXd gradient = J->transpose() * now.residual;
         const double most = normal.diagonal().maxCoeff();
+        normal.diagonal() += size.cwiseProduct(hold).cwiseAbs2();
+        gradient -= (now.parameters - start).cwiseProduct(hold.cwiseAbs2()).cwiseProduct(size);
         for (Eigen::Index i = 0; i < size.size(); ++i) {
             // A parameter at its bound that wants beyond it stays there, and one that nothing depends on where it is.
             const bool at_bound = now.parameters[i] <= scale.least[i] && gradient[i] < 0;
@@ -82,7 +87,7 @@ std::optional<LeastSquares> least_squares(const Prediction& model, const Eigen::
             const auto predicted = model(next);
             if (!predicted) continue;
             const Eigen::VectorXd residual = measured - *predicted;
-            if (!(residual.squaredNorm() < now.sum)) continue;
+            if (!(residual.squaredNorm() + held(next) < now.sum + held(now.parameters))) continue;
             better = true;
             for (Eigen::Index i = 0; i < next.size(); ++i) {
                 moved = std::max(moved, std::fabs(next[i] - now.parameters[i]) / size_of(next, scale, i));
@@ -97,24 +102,24 @@ std::optional<LeastSquares> least_squares(const Prediction& model, const Eigen::
     return now;
 }
 
-Covariance covariance_of(const Eigen::VectorXd& p, Eigen::MatrixXd J, const FitScale& scale) {
-    const Eigen::Index n = p.size();
+Covariance covariance_of(Eigen::MatrixXd J, const Eigen::VectorXd& whole, double noise) {
+    const Eigen::Index rows = J.rows(), n = J.cols();
     Covariance result{Eigen::MatrixXd::Zero(n, n), std::vector<bool>(static_cast<std::size_t>(n), false)};
-    // Columns in units of the parameters' own sizes; pivoting takes those first that say most besides the others.
-    for (Eigen::Index i = 0; i < n; ++i) J.col(i) *= size_of(p, scale, i);
-    Eigen::ColPivHouseholderQR<Eigen::MatrixXd> parts(J);
-    parts.setThreshold(1e-7);
-    const Eigen::Index rank = parts.rank();
-    const auto order = parts.colsPermutation().indices();
-    const Eigen::MatrixXd R = parts.matrixR().topLeftCorner(rank, rank);
-    const Eigen::MatrixXd inverse = R.triangularView<Eigen::Upper>().solve(Eigen::MatrixXd::Identity(rank, rank));
-    const Eigen::MatrixXd known = inverse * inverse.transpose();
+    if (n == 0) return result;
+    // Below 1e-8 of the greatest a slope by differences is rounding.
+    constexpr double widest = 10, rounding = 1e-8;
+    J *= whole.asDiagonal();
+    const double known = std::max(noise / widest, rounding * std::max(J.colwise().norm().maxCoeff(), 1e-300));
+    J.conservativeResize(rows + n, n);
+    J.bottomRows(n) = Eigen::MatrixXd::Identity(n, n) * known;
+    const Eigen::MatrixXd R = Eigen::HouseholderQR<Eigen::MatrixXd>(J).matrixQR().topRows(n);
+    const Eigen::MatrixXd inverse = R.triangularView<Eigen::Upper>().solve(Eigen::MatrixXd::Identity(n, n));
+    result.matrix = inverse * inverse.transpose();
     for (Eigen::Index i = 0; i < n; ++i) {
-        if (i >= rank) result.silent[static_cast<std::size_t>(order[i])] = true;
-        for (Eigen::Index j = 0; j < rank && i < rank; ++j) {
-            result.matrix(order[i], order[j]) = known(i, j) * size_of(p, scale, order[i]) * size_of(p, scale, order[j]);
-        }
+        result.silent[static_cast<std::size_t>(i)] = known * std::sqrt(result.matrix(i, i)) > 1 / widest;
+        result.log_volume -= std::log(std::fabs(R(i, i)));
     }
+    result.matrix = whole.asDiagonal() * result.matrix * whole.asDiagonal();
     return result;
 }
 

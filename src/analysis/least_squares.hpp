@@ -19,6 +19,8 @@ struct LeastSquares {
 struct FitScale {
     Eigen::VectorXd typical;  ///< of each parameter, where it is 0
     Eigen::VectorXd least;    ///< of each parameter
+    Eigen::VectorXd whole;    ///< an error so great says nothing about the parameter
+    Eigen::VectorXd hold;     ///< adds |hold (p - start)|^2 to the sum, so that what nothing depends on stays
 };
 
 /// From a start to the nearest least sum of squares; none when the model says nothing there.
@@ -30,11 +32,14 @@ std::optional<LeastSquares> least_squares(const Prediction& model, const Eigen::
 std::optional<Eigen::MatrixXd> derivative(const Prediction& model, const Eigen::VectorXd& p, const FitScale& scale,
                                           Eigen::Index rows);
 
-/// Variances of the parameters for noise of variance 1, and those that say nothing (their variance is 0).
+/// Variances of the parameters for noise of variance 1, and those that the record says nothing about.
 struct Covariance {
     Eigen::MatrixXd matrix;
     std::vector<bool> silent;
+    double log_volume = 0;  ///< ln of the root of the determinant, in units of what says nothing
 };
-Covariance covariance_of(const Eigen::VectorXd& p, Eigen::MatrixXd J, const FitScale& scale);
+/// Before the record nothing is known to better than ten times what says nothing, which bounds the errors along a
+/// valley that is flat; all parameters that such a valley runs through are silent, not one of them.
+Covariance covariance_of(Eigen::MatrixXd J, const Eigen::VectorXd& whole, double noise);
 
 }  // namespace dinal::analysis

@@ -251,7 +251,10 @@ constexpr lua::Member fit_members[] = {
       "was given has 0.",
       DINAL_FIT "print(math.abs(fit.omega0 - sys.omega0) < 3 * fit.error.omega0)  --> true"}},
     {lua::a_field<fit_silent>,
-     {"fit.silent -> table", "The names of what the record does not tell; a free decay never slips, so Re is one.",
+     {"fit.silent -> table",
+      "The names of what the record does not tell: Re of a free decay, which never slips, or of a motion that never "
+      "stands; Rd_over_k, theta0 and offset of a decay in one direction, which tells only their sums. Their values are "
+      "among those that are possible.",
       DINAL_FIT "print(table.concat(fit.silent, \" \"))  --> Re"}},
     {lua::a_field<fit_system>,
      {"fit.system -> system", "The system that was found; after a free decay without I and k that of I = 1.",

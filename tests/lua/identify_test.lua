@@ -165,6 +165,93 @@ test("a sampled M drawn as a spline does not bias what straight lines do", funct
     assert(off.cubic < 2e-3 and off.linear > 5*off.cubic, off.linear .. " " .. off.cubic)
 end)
 
+-- Decays of one or two swings: omega0 2 pi, noise of 1 to 2 %, 30 or 60 samples a second.
+local short_decays = {
+    { "rests at the second turn, held by Re", { I = 1, k = 40, C = 1, Rd = 5, Re = 9 }, dt = 1/60, std = 0.005 },
+    { "the same with more noise", { I = 1, k = 40, C = 1, Rd = 5, Re = 9 }, dt = 1/30, std = 0.02 },
+    { "rests at the second turn", { I = 1, k = 40, C = 0.3, Rd = 9 }, dt = 1/30, std = 0.01 },
+    { "rests at the first turn", { I = 1, k = 40, C = 0.3, Rd = 15 }, dt = 1/30, std = 0.01, silent = "Rd_over_k Re theta0 offset" },
+    { "held at the first turn by Re", { I = 1, k = 40, C = 2, Rd = 8, Re = 20 }, dt = 1/60, std = 0.005, silent = "Rd_over_k Re theta0 offset" },
+    { "creeps", { I = 1, k = 40, C = 20, Rd = 2 }, dt = 1/30, std = 0.01, silent = "Rd_over_k Re theta0 offset" },
+}
+
+test("a decay of one or two swings: the errors are those of the flat valley, and what it leaves open is named", function()
+    local judged, part, ratio = judge()
+    for _, short in ipairs(short_decays) do
+        local s = system(short[2])
+        local run = s:simulate{ theta0 = 1, t_end = 4, dt = short.dt }
+        for seed = 1, 12 do
+            local fit = identify{ data = { t = run.t, theta = noisy(run, seed, short.std) + 0.1 } }
+            if short.silent then equal(table.concat(fit.silent, " "), short.silent, short[1]) end
+            part, ratio = judged(fit, { omega0 = s.omega0, zeta = s.zeta, Rd_over_k = s.Rd / s.k, offset = 0.1, theta0 = 1,
+                velocity0 = 0 })
+            for name, far in pairs{ Rd_over_k = 1, offset = 1, theta0 = 2 } do
+                assert(math.abs(fit[name]) < 2 * far, short[1] .. ": " .. name)  -- also what is silent has a sane value
+            end
+        end
+    end
+    assert(part >= 0.90 and part <= 0.99 and ratio <= 1.3, part .. " " .. ratio)
+end)
+
+local swings = excitation.harmonic{ amplitude = 0.3, frequency = 0.5 } + excitation.harmonic{ amplitude = 0.2, frequency = 1.3 }
+
+test("a driven record without a stop says nothing about Re, and bends nothing to make one", function()
+    local s = system{ I = 0.02, k = 0.8, C = 0.01, Rd = 0.05, Re = 0.08 }
+    local run = s:simulate{ M = swings, theta0 = 0.2, velocity0 = -0.5, t_end = 10, dt = 0.02 }
+    for _, event in ipairs(run.events) do assert(event.kind ~= "stick") end
+    for seed = 1, 5 do
+        local fit = identify{ data = { t = run.t, theta = noisy(run, seed, 0.01) + 0.1 }, M = swings, I = 0.02, k = 0.8, C = 0.01,
+            Rd = 0.05, offset = 0.1, free = { "Re" } }
+        equal(table.concat(fit.silent), "Re")
+        equal(fit.Re, 0.05)
+        near(fit.theta0, 0.2, 4 * fit.error.theta0)
+        near(fit.velocity0, -0.5, 4 * fit.error.velocity0)
+    end
+end)
+
+test("where it stands the whole range of Re is looked at: no slope leads from Rd to it", function()
+    local M = 0.4 * swings
+    local s = system{ I = 0.02, k = 0.8, C = 0.01, Rd = 0.05, Re = 0.08 }
+    local run = s:simulate{ M = M, theta0 = 0.2, velocity0 = -0.5, t_end = 10, dt = 0.02 }
+    local judged, part, ratio = judge()
+    for seed = 1, 6 do
+        local fit = identify{ data = { t = run.t, theta = noisy(run, seed, 0.003) + 0.1 }, M = M }
+        equal(#fit.silent, 0)
+        assert(fit.noise < 0.003 * (1 + 3 / (2 * #run)^0.5), fit.noise)
+        part, ratio = judged(fit, { I = s.I, k = s.k, C = s.C, Rd = s.Rd, Re = s.Re, offset = 0.1, theta0 = 0.2, velocity0 = -0.5 })
+    end
+    -- Two tones, 30 samples a second, from a standstill, which says nothing about the velocity there.
+    local two = excitation.harmonic{ amplitude = 0.25, frequency = 0.3 } + excitation.harmonic{ amplitude = 0.12, frequency = 0.71 }
+    s = system{ I = 0.02, k = 0.8, C = 0.01, Rd = 0.1, Re = 0.15 }
+    run = s:simulate{ M = two, theta0 = 0.05, t_end = 20, dt = 1/30 }
+    for seed = 1, 3 do
+        local fit = identify{ data = { t = run.t, theta = noisy(run, seed, 0.006) + 0.1 }, M = two }
+        equal(table.concat(fit.silent), "velocity0")
+        equal(fit.velocity0, 0.0)
+        assert(fit.noise < 0.006 * (1 + 3 / (2 * #run)^0.5), fit.noise)
+        part, ratio = judged(fit, { I = s.I, k = s.k, C = s.C, Rd = s.Rd, Re = s.Re, offset = 0.1, theta0 = 0.05 })
+    end
+    assert(part >= 0.85 and ratio <= 1.4, part .. " " .. ratio)  -- 69 numbers that hang together by records
+end)
+
+test("with everything given nothing is fitted: what is left is told", function()
+    local known = { I = 1, k = 40, C = 0.3, Rd = 0.8, theta0 = 1, velocity0 = 0, offset = 0.1 }
+    local noise = vector.normal{ n = #decay, seed = 2, std = 0.01 }
+    known.data = { t = decay.t, theta = decay.theta + noise + 0.1 }
+    near((identify(known).residual - noise):abs():max(), 0, 1e-13)
+    known.Re = 0.8
+    local fit = identify(known)
+    near((fit.residual - noise):abs():max(), 0, 1e-13)
+    near(fit.noise, (noise:dot(noise) / #noise)^0.5, 1e-12)
+    equal(fit.error.zeta, 0.0)
+    local M = excitation.harmonic{ amplitude = 1, omega = 3 }
+    local run = sys:simulate{ M = M, t_end = 5, dt = 0.05 }
+    known.M, known.theta0, known.offset, known.data = M, 0, 0, run
+    near(identify(known).noise, 0, 1e-12)
+    known.M = 0
+    assert(identify(known).noise > 0.01)
+end)
+
 test("rows with a gap are left out of a plain table, too", function()
     local x = noisy(decay, 3, 0.01):table()
     local t, kept = {}, {}
