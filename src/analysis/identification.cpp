@@ -221,12 +221,29 @@ Identified Identification::result() {
         found.error[i] = found.silent[i] ? 0 : found.noise * std::sqrt(full(place, place));
     }
     ratios(full, found);
+    judge(found);
     const Eigen::VectorXd predicted_all = measured_ - best_->residual;
     found.predicted.assign(predicted_all.begin(), predicted_all.end());
     found.runs = runs_;
     found.cut_low = cut_.at_low;
     found.cut_high = cut_.at_high;
     return found;
+}
+
+/// Whether the fit explains the record. A search among noise finds a motion, too: it takes some ten squares of it.
+void Identification::judge(Identified& found) const {
+    const double all = (measured_.array() - measured_.mean()).square().sum(), left = best_->sum;
+    constexpr double by_search = 2, some = 2;
+    const double by_chance = by_search * std::log(static_cast<double>(measured_.size())) + some;
+    found.is_noise = all - left < by_chance * found.noise * found.noise;
+    double step = range_;  // of an instrument that shows steps; without them next to none
+    for (Eigen::Index i = 1; i < measured_.size(); ++i) {
+        const double apart = std::fabs(measured_[i] - measured_[i - 1]);
+        if (apart > 0) step = std::min(step, apart);
+    }
+    found.scatter = std::max(noise_, step);
+    constexpr double much = 5, part = 0.1;
+    found.is_unexplained = found.noise > much * found.scatter && left > part * all;
 }
 
 void Identification::ratios(const Eigen::MatrixXd& covariance, Identified& found) const {

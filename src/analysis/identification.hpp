@@ -37,6 +37,9 @@ struct Identified {
     std::vector<double> predicted;          ///< at the times of the record
     double noise = 0;                       ///< standard deviation of what is left
     std::size_t cut_low = 0, cut_high = 0;  ///< samples at the least and the greatest value, where those cut it off
+    double scatter = 0;                     ///< what neighbouring samples differ by that a smooth motion would not
+    bool is_noise = false;                  ///< it explains no more of the record than it would of noise
+    bool is_unexplained = false;            ///< it leaves much of the record, and what it leaves is not noise
     int runs = 0;                           ///< motions that were compared with the record
 };
 

@@ -144,6 +144,7 @@ private:
     /// is not sure because the others are possible, too.
     [[nodiscard]] Covariance weigh_rests();
     [[nodiscard]] Identified result();
+    void judge(Identified& found) const;
     /// omega0, zeta and Rd/k, with the errors that their parts have together.
     void ratios(const Eigen::MatrixXd& covariance, Identified& found) const;
 

@@ -221,6 +221,14 @@ std::string fit_summary(const FitAnswer& fit) {
         text = model::with_unit(std::move(text), unit_of_value(fit.units, name));
     }
     if (!fit.silent.empty()) text += fmt::format("\n  the record says nothing about {}", fmt::join(fit.silent, ", "));
+    if (fit.found.is_noise) {
+        text += "\n  it explains no more of the record than it would of noise alone, so there may be no motion in it";
+    } else if (fit.found.is_unexplained) {
+        text += fmt::format(
+            "\n  neighbouring samples scatter by {:.3g} only: what is left is no noise, so another system made this "
+            "record, or what is given is wrong",
+            fit.found.scatter);
+    }
     if (const std::size_t cut = fit.found.cut_low + fit.found.cut_high; cut > 0) {
         text += fmt::format(
             "\n  {} samples stand at the ends of the record, as if it were cut off there; they tell no more than that",
@@ -271,7 +279,8 @@ constexpr lua::Member fit_members[] = {
       DINAL_FIT "print(#tostring(fit:plot{ show = false }) > 500)  --> true",
       {&fit_plot_call}}},
     {lua::a_metamethod<fit_text>("__tostring"),
-     {"tostring(fit) -> string", "All values with their standard errors.",
+     {"tostring(fit) -> string",
+      "All values with their standard errors, and a sentence where the fit does not explain the record.",
       DINAL_FIT "print(tostring(fit):match(\"^[^,]*\"))  --> fit of 401 samples"}},
 };
 

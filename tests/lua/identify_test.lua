@@ -265,4 +265,30 @@ test("rows with a gap are left out of a plain table, too", function()
     raises_here(function() identify{ data = { t = decay.t, theta = x } } end, "data.theta[7] = inf must be finite")
 end)
 
+test("a record that the fit does not explain is told, and an honest one never", function()
+    local t = vector.linspace(0, 8, 241)
+    local function says(theta, given)
+        local question = given or {}
+        question.data = { t = t, theta = theta }
+        local text = tostring(identify(question))
+        return text:find("no more of the record than it would of noise", 1, true) and "noise"
+            or text:find("what is left is no noise", 1, true) and "unexplained" or "explained"
+    end
+    for _, rest in ipairs{ 0, 1 } do  -- noise about zero, and a mass that never left
+        local alone = 0
+        for seed = 1, 10 do
+            if says(rest + vector.normal{ n = 241, seed = seed, std = 0.03 }) == "noise" then alone = alone + 1 end
+        end
+        assert(alone >= 7, alone)  -- in one of twenty noise looks like a motion
+    end
+    equal(says((0.2 * t):exp() * (6 * t):sin()), "unexplained")
+    local honest = sys:simulate{ theta0 = 1, t_end = 8, dt = 1/30 }
+    equal(says(honest.theta, { I = 1, k = 80 }), "unexplained")
+    for seed = 1, 10 do
+        equal(says(honest.theta + vector.normal{ n = 241, seed = seed, std = 0.03 * seed }), "explained")
+    end
+    equal(says(honest.theta:map(function(x) return math.floor(x / 0.3 + 0.5) * 0.3 end)), "explained")  -- coarse steps
+    equal(says(honest.theta), "explained")
+end)
+
 support.finish()
