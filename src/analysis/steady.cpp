@@ -318,9 +318,9 @@ bool goes_on(const SteadyQuestion& question, const SteadyMotion& motion, const m
     const Place start = place_of(motion.start, map.omega());
     const MapStep step = map(start);
     const double size = std::max({std::fabs(motion.low), std::fabs(motion.high), start.norm()});
-    constexpr double same = 1e-8;
-    return step.finished && (step.to - start).norm() <= same * size &&
-           std::fabs(step.high - motion.high) + std::fabs(step.low - motion.low) <= same * size;
+    constexpr double alike = 1e-8;
+    return step.finished && (step.to - start).norm() <= alike * size &&
+           std::fabs(step.high - motion.high) + std::fabs(step.low - motion.low) <= alike * size;
 }
 
 std::optional<SteadyMotion> another_motion(const SteadyQuestion& question, const SteadyMotion& known,

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "motion/hybrid/solver.hpp"
 #include "motion/spectral/chebyshev.hpp"
 
 namespace dinal::motion::hybrid {
