@@ -157,6 +157,14 @@ def lua_tests_can_fail():
                 complain(path, len(lines(path)), "a file of tests ends with support.finish()")
 
 
+def catch_is_included_once():
+    """Debian 12 and 13 have two versions of it."""
+    for path in files(SOURCES):
+        for number, line in lines(path):
+            if "#include <catch2/" in line and not path.startswith("tests/support/catch"):
+                complain(path, number, 'include "support/catch.hpp"')
+
+
 def names_are_unique():
     seen = {}
     for path in files(SOURCES):
@@ -209,8 +217,8 @@ def anchors(goal):
 
 
 for rule in (includes_point_down, rooms_are_namespaces, rooms_are_small, types_have_names_of_their_own,
-             forbidden_things_are_absent, headers_say_what_they_hold, files_are_short, lua_tests_can_fail, names_are_unique,
-             nothing_is_left_for_later, links_lead_somewhere, documents_name_what_is_there):
+             forbidden_things_are_absent, headers_say_what_they_hold, files_are_short, lua_tests_can_fail,
+             catch_is_included_once, names_are_unique, nothing_is_left_for_later, links_lead_somewhere, documents_name_what_is_there):
     rule()
 if not any(True for _ in files((".hpp",))):
     complaints.append("no headers found: is the folder right?")

@@ -1,7 +1,7 @@
 // What a stranger has written cannot steer the terminal that shows it.
-#include <catch2/catch.hpp>
-
 #include "text/harmless.hpp"
+
+#include "support/catch.hpp"
 
 using dinal::text::harmless;
 

@@ -1,7 +1,8 @@
 #include "text/option.hpp"
 
-#include <catch2/catch.hpp>
 #include <limits>
+
+#include "support/catch.hpp"
 
 namespace {
 

@@ -1,7 +1,6 @@
 // Short words for tests of excitations.
 #pragma once
 
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <functional>
 #include <memory>
@@ -10,6 +9,7 @@
 #include <vector>
 
 #include "model/excitation.hpp"
+#include "support/catch.hpp"
 
 namespace dinal::excitations {
 

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <numbers>
 #include <utility>
@@ -10,6 +9,7 @@
 
 #include "motion/integrators.hpp"
 #include "motion/simulate.hpp"
+#include "support/catch.hpp"
 #include "support/reference_systems.hpp"
 
 namespace dinal::truth {

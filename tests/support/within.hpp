@@ -1,7 +1,7 @@
 // A number to within a margin. Catch's Approx(x).margin(m) would forgive 1.2e-5 of x as well, whatever m is.
 #pragma once
 
-#include <catch2/catch.hpp>
+#include "support/catch.hpp"
 
 namespace dinal {
 
