@@ -194,7 +194,7 @@ bool key_arrived() {
     sigfillset(&all);
     // All are blocked from the last look until ppoll sleeps, so that none is overlooked.
     sigprocmask(SIG_BLOCK, &all, &before);
-    if (rl_pending_signal() == 0 && !InterruptNote::interrupted()) {
+    if (rl_pending_signal() == 0 && !InterruptNote::interrupted() && resized == 0 && continued == 0) {
         pollfd input{fileno(rl_instream), POLLIN, 0};
         arrived = ppoll(&input, 1, nullptr, &before) > 0;
     }
