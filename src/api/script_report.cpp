@@ -46,7 +46,7 @@ ScriptReport::ScriptReport(std::string script, const std::string& errors)
     static_cast<void>(std::fflush(stdout));
     ::dup2(printed_, STDOUT_FILENO);
     picture_taker = this;
-    std::atexit(save_at_exit);
+    static_cast<void>(std::atexit(save_at_exit));  // or a script that calls os.exit has no page
     show_pictures_by([](const Picture& picture, Shown /*where*/) {
         picture_taker->take_printed();
         picture_taker->report_.items.emplace_back(drawn(picture));

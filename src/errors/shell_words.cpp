@@ -91,7 +91,7 @@ std::string instead_of_shell_line(lua_State* L, std::string_view line) {
     const std::string_view argument = first_word(text::trimmed(line.substr(all.front().end())));
     const bool runs = std::find(runs_script.begin(), runs_script.end(), command) != runs_script.end();
     const bool from_shell = command == "dinal";
-    const std::string leaving = from_shell ? "that is a command of the shell, and Ctrl-D leads there" : "";
+    std::string leaving = from_shell ? "that is a command of the shell, and Ctrl-D leads there" : "";
     if (runs && argument.ends_with(".lua") && !lua::safe_mode()) {
         return leaving + (from_shell ? "; here: " : "a script is run by ") + "dofile(\"" + std::string(argument) +
                "\")";

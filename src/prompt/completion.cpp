@@ -82,9 +82,7 @@ std::vector<std::string> members(lua_State* L, const TypedText& typed, bool call
         if (typed.separator() == '.') {
             add_own_names(L, names);
         }
-    } else if (owner.kind == Meaning::Kind::member && lua_istable(L, -1)) {
-        add_fields(L, typed.separator(), calls, names);
-    } else if (owner.kind == Meaning::Kind::value) {
+    } else if (owner.kind == Meaning::Kind::value || (owner.kind == Meaning::Kind::member && lua_istable(L, -1))) {
         add_fields(L, typed.separator(), calls, names);
     }
     if (typed.owner().size() == 1 && typed.owner().front().is("dinal") && typed.separator() == '.') {
