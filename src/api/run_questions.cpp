@@ -20,6 +20,19 @@ std::span<const double> column_values(const motion::Trajectory& trajectory, Eige
     return {values.data(), static_cast<std::size_t>(values.size())};
 }
 
+/// The last of these rows is the first one again: the motion between them is periodic.
+bool closes(const motion::Trajectory& trajectory, std::size_t first, std::size_t last) {
+    constexpr double same = 1e-9;  // of what the column goes through
+    for (const std::string_view name : {"theta", "velocity"}) {
+        const auto column = trajectory.find(name);
+        if (!column) return false;
+        const std::span<const double> values = column_values(trajectory, *column).subspan(first, last - first + 1);
+        const auto [low, high] = std::minmax_element(values.begin(), values.end());
+        if (!(std::fabs(values.front() - values.back()) <= same * (*high - *low))) return false;
+    }
+    return true;
+}
+
 }  // namespace
 
 int spectrum_of_run(lua_State* L) {
@@ -55,8 +68,11 @@ int spectrum_of_run(lua_State* L) {
                           : fmt::format("rows must be evenly spaced, but row {} is not; simulate with dt = ...",
                                         first + even + 1)});
     }
-    analysis::Spectrum found =
-        analysis::spectrum_of(values.first(even), (t[even - 1] - t[0]) / static_cast<double>(even - 1), asked.window);
+    // Whole periods from a row to a row have one row more than a transform takes.
+    const bool twice =
+        asked.window == analysis::SpectrumWindow::rectangle && closes(trajectory, first, first + even - 1);
+    analysis::Spectrum found = analysis::spectrum_of(
+        values.first(twice ? even - 1 : even), (t[even - 1] - t[0]) / static_cast<double>(even - 1), asked.window);
     Data data;
     const ColumnUnits in(units_of(*run));
     data.columns = {column_of("frequency", std::move(found.frequency), in.frequency),

@@ -54,11 +54,12 @@ int poincare_of_run(lua_State* L);
 inline constexpr lua::Doc spectrum_doc{
     "run:spectrum(column = \"theta\", { OPTIONS }) -> data",
     "The one-sided amplitude spectrum of a column: frequency (cycles per time unit) and amplitude (of a sine, in the unit "
-    "of the column), from rows with one dt; a shorter last row is left out. The mean stands at frequency 0.",
+    "of the column), from rows with one dt; a shorter last row is left out, and so is one "
+    "in which a rectangle's whole periods begin again. The mean stands at frequency 0.",
     "run = nondimensional{}:simulate{ theta0 = 1, t_end = 16, dt = 0.125 }\n"
     "s = run:spectrum(\"theta\", { window = \"rectangle\" })\n"
     "i = s.amplitude:argmax()\n"
-    "print(string.format(\"%.2f %.2f\", s.frequency[i], s.amplitude[i]))  --> 0.99 0.98",
+    "print(string.format(\"%.2f %.2f\", s.frequency[i], s.amplitude[i]))  --> 1.00 1.00",
     {&spectrum_call}};
 inline constexpr lua::Doc poincare_doc{
     "run:poincare{ OPTIONS } -> data",

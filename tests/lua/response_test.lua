@@ -111,6 +111,11 @@ test("a spectrum shows each sine with its amplitude, whatever the window", funct
         near(s.amplitude[1], 3, 1e-9)
         near(s.amplitude[100], 0, 1e-9)
     end
+    -- From t = 8 to 24 it closes on itself, and has one row more than periods take.
+    local whole = run:spectrum("M", { window = "rectangle", from = 8 })
+    equal(#whole, 513)
+    near(whole.amplitude[17], 4, 1e-9)
+    near(whole.amplitude[18], 0, 1e-9)
     equal(#run:spectrum(), #run:spectrum("theta"))
     raises_here(function() run:spectrum("tetha") end, "did you mean 'theta'?")
     raises_here(function() run:spectrum(3) end, "must be a string")
