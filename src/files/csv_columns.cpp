@@ -42,7 +42,7 @@ public:
     ColumnReader(std::string_view text, const std::string& file) : lines_(text), file_(file) {}
 
     text::Expected<ReadColumns> read() {
-        collect_rows();
+        if (auto fault = collect_rows()) return *fault;
         if (rows_.empty()) {
             return text::Error{file_ + ": the file is empty, it has neither names nor numbers"};
         }
@@ -68,16 +68,21 @@ private:
     };
 
     /// All lines that are neither blank nor a comment.
-    void collect_rows() {
+    std::optional<text::Error> collect_rows() {
         while (lines_.next()) {
             const std::string_view line = text::trimmed(lines_.text());
             if (line.starts_with('#')) {
                 const std::string_view comment = line.substr(1);
                 result_.comments.emplace_back(comment.starts_with(' ') ? comment.substr(1) : comment);
             } else if (!line.empty()) {
+                if (is_left_open(line)) {
+                    return error_at(file_, lines_.number(),
+                                    "a double quote is opened and not closed: a name or a word must end in its line");
+                }
                 rows_.push_back({lines_.text(), lines_.number()});
             }
         }
+        return std::nullopt;
     }
 
     [[nodiscard]] bool decimal_comma() const { return separator_ == Separator::semicolon; }

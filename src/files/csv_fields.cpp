@@ -1,5 +1,7 @@
 #include "files/csv_fields.hpp"
 
+#include <algorithm>
+
 #include "text/words.hpp"
 
 namespace dinal::files {
@@ -54,6 +56,13 @@ void split(std::string_view line, Separator separator, std::vector<std::string_v
             line = text::trimmed(line);  // any number of them is one
         }
     }
+}
+
+bool is_left_open(std::string_view line) {
+    const std::size_t last = line.rfind('"');
+    if (last == std::string_view::npos || std::count(line.begin(), line.end(), '"') % 2 == 0) return false;
+    constexpr std::string_view before_fields = ",; \t";
+    return last == 0 || before_fields.find(line[last - 1]) != std::string_view::npos;
 }
 
 std::string name_in(std::string_view field, std::size_t number) {

@@ -17,6 +17,9 @@ std::optional<Separator> separator_in(std::string_view line);
 /// The fields of a line, without the blanks around them; quotes stay.
 void split(std::string_view line, Separator separator, std::vector<std::string_view>& fields);
 
+/// Whether a field of the line begins with a quote that the line does not close. (One within a word is an inch.)
+bool is_left_open(std::string_view line);
+
 /// The word in a field: without its quotes, doubled quotes inside made single. The number of the field when it is
 /// empty.
 std::string name_in(std::string_view field, std::size_t number);
