@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "api/data.hpp"
@@ -23,14 +24,14 @@ std::span<const double> column_values(const motion::Trajectory& trajectory, Eige
 /// The last of these rows is the first one again: the motion between them is periodic.
 bool closes(const motion::Trajectory& trajectory, std::size_t first, std::size_t last) {
     constexpr double same = 1e-9;  // of what the column goes through
-    for (const std::string_view name : {"theta", "velocity"}) {
+    constexpr std::array state{"theta", "velocity"};
+    return std::all_of(state.begin(), state.end(), [&](const char* name) {
         const auto column = trajectory.find(name);
         if (!column) return false;
         const std::span<const double> values = column_values(trajectory, *column).subspan(first, last - first + 1);
         const auto [low, high] = std::minmax_element(values.begin(), values.end());
-        if (!(std::fabs(values.front() - values.back()) <= same * (*high - *low))) return false;
-    }
-    return true;
+        return std::fabs(values.front() - values.back()) <= same * (*high - *low);
+    });
 }
 
 }  // namespace
