@@ -150,7 +150,7 @@ private:
             question_.excitation.has_feedback()) {
             return {};
         }
-        const auto [low, high] = rest_of(x[0]);
+        const auto [low, high] = rest_of(question_, x[0]);
         const double inside = 1e-15 * std::max(std::fabs(low), std::fabs(high));
         return Place(std::clamp(x[0], std::min(low + inside, high), std::max(high - inside, low)), 0);
     }
@@ -168,7 +168,7 @@ private:
         answer_.maps = maps;
         answer_.symmetric = half || (symmetric_ && periods == 1 && is_symmetric(last.x, last.size));
         if (!last.step.moved) {
-            answer_.rest = rest_of(last.x[0]);
+            answer_.rest = rest_of(question_, last.x[0]);
             answer_.unique = answer_.rest.first == answer_.rest.second;
         }
         return true;
@@ -178,49 +178,6 @@ private:
         const MapStep step = half_(x);
         ++answer_.maps;
         return step.finished && (step.to + x).norm() <= 1e-8 * size;
-    }
-
-    /// Every place at which friction holds the mass through all of the period.
-    [[nodiscard]] std::pair<double, double> rest_of(double here) const {
-        const auto [low, high] = free_rest_of(here);
-        const auto& walls = question_.system.walls();
-        // What pulls against a wall is held by it.
-        return walls ? std::pair(std::clamp(low, walls->lower, walls->upper),
-                                 std::clamp(high, walls->lower, walls->upper))
-                     : std::pair(low, high);
-    }
-    [[nodiscard]] std::pair<double, double> free_rest_of(double here) const {
-        const double k = system_.stiffness();
-        const bool own_spring = !question_.system.spring().none();
-        if (question_.excitation.has_feedback() || (!(k > 0) && !own_spring)) return {here, here};
-        const DriveRange M = extremes(question_.excitation, question_.drive);
-        if (own_spring) return {edge_of_rest(here, -1, M), edge_of_rest(here, 1, M)};
-        const double low = (M.high - system_.holding(model::Motion::forward)) / k;
-        const double high = (M.low + system_.holding(model::Motion::backward)) / k;
-        return low <= high ? std::pair(low, high) : std::pair(here, here);
-    }
-
-    /// How far from here, this way, the springs pull back with no more than friction can hold through all of the
-    /// period.
-    [[nodiscard]] double edge_of_rest(double here, double way, const DriveRange& M) const {
-        const double least = M.high - system_.holding(model::Motion::forward),
-                     most = M.low + system_.holding(model::Motion::backward);
-        const auto holds = [&](double d) {
-            const double torque = system_.pull_back(here + way * d);
-            return torque >= least && torque <= most;
-        };
-        double inside = 0, outside = 1e-9 * std::max(std::fabs(here), 1e-9);
-        for (int i = 0; holds(outside); ++i) {
-            constexpr int farthest = 200;
-            if (i == farthest) return here;  // nothing pulls it back
-            inside = outside, outside *= 2;
-        }
-        while (outside - inside > 1e-15 * (std::fabs(here) + outside)) {
-            const double middle = inside + (outside - inside) / 2;
-            if (!(middle > inside && middle < outside)) break;
-            (holds(middle) ? inside : outside) = middle;
-        }
-        return here + way * inside;
     }
 
     /// Runs the motion itself, and sees whether it comes back after some periods, or grows.
@@ -258,9 +215,30 @@ private:
             if ((last - places[places.size() - 1 - static_cast<std::size_t>(m)]).norm() > near * size) continue;
             ++tries;
             if (m == 1 && symmetric_ && search_once(last, true) && answer_.stable && is_near(last, size)) return true;
-            if (search_multiple(last, m, false) && answer_.stable) return true;
+            if (!search_multiple(last, m, false) || !answer_.stable) continue;
+            reduce(m);
+            return true;
         }
         return false;
+    }
+    /// What comes back after m periods may have come back before: the answer is that of the fewest.
+    void reduce(int m) {
+        const SteadyMotion whole = answer_;
+        const Place x = place_of(whole.start, map_.omega());
+        const double size = std::max({std::fabs(whole.low), std::fabs(whole.high), x.norm()});
+        for (int n = 1; n <= m / 2; ++n) {
+            if (m % n != 0) continue;
+            const PeriodMap map(question_.system, question_.excitation, question_.drive.start,
+                                n * question_.drive.period, monitor_);
+            const MapStep step = map(x);
+            ++answer_.maps;
+            if (!step.finished || (step.to - x).norm() > 1e-6 * size) continue;
+            const bool found = n > 1
+                                   ? search_multiple(x, n, false)
+                                   : (symmetric_ && search_once(x, true) && is_near(x, size)) || search_once(x, false);
+            if (found && is_near(x, size)) return;
+            answer_ = whole;
+        }
     }
     [[nodiscard]] bool is_near(const Place& place, double size) const {
         return (place_of(answer_.start, map_.omega()) - place).norm() <= 0.2 * size;

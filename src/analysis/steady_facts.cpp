@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "analysis/drive.hpp"
 #include "model/lowered.hpp"
 
 namespace dinal::analysis {
@@ -30,6 +31,39 @@ std::array<std::complex<double>, 2> eigenvalues(const Eigen::Matrix2d& D) {
     const double first = mean + std::copysign(std::sqrt(square), mean);
     const double determinant = D(0, 0) * D(1, 1) - D(0, 1) * D(1, 0);
     return {std::complex(first), std::complex(first == 0 ? 0 : determinant / first)};
+}
+
+/// How far from here, this way, the springs pull back with no more than friction can hold through all of the period.
+double edge_of_rest(const model::Lowered& system, double here, double way, const DriveRange& M) {
+    const double least = M.high - system.holding(Motion::forward), most = M.low + system.holding(Motion::backward);
+    const auto holds = [&](double d) {
+        const double torque = system.pull_back(here + way * d);
+        return torque >= least && torque <= most;
+    };
+    double inside = 0, outside = 1e-9 * std::max(std::fabs(here), 1e-9);
+    for (int i = 0; holds(outside); ++i) {
+        constexpr int farthest = 200;
+        if (i == farthest) return here;  // nothing pulls it back
+        inside = outside, outside *= 2;
+    }
+    while (outside - inside > 1e-15 * (std::fabs(here) + outside)) {
+        const double middle = inside + (outside - inside) / 2;
+        if (!(middle > inside && middle < outside)) break;
+        (holds(middle) ? inside : outside) = middle;
+    }
+    return here + way * inside;
+}
+
+std::pair<double, double> rest_without_walls(const SteadyQuestion& question, double here) {
+    const model::Lowered system(question.system);
+    const double k = system.stiffness();
+    const bool own_spring = !question.system.spring().none();
+    if (question.excitation.has_feedback() || (!(k > 0) && !own_spring)) return {here, here};
+    const DriveRange M = extremes(question.excitation, question.drive);
+    if (own_spring) return {edge_of_rest(system, here, -1, M), edge_of_rest(system, here, 1, M)};
+    const double low = (M.high - system.holding(Motion::forward)) / k;
+    const double high = (M.low + system.holding(Motion::backward)) / k;
+    return low <= high ? std::pair(low, high) : std::pair(here, here);
 }
 
 }  // namespace
@@ -82,6 +116,14 @@ SteadyMotion facts_of(const SteadyQuestion& question, const PeriodMap& map, cons
     }
     motion.symmetric = half;
     return motion;
+}
+
+std::pair<double, double> rest_of(const SteadyQuestion& question, double here) {
+    const auto [low, high] = rest_without_walls(question, here);
+    const auto& walls = question.system.walls();
+    if (!walls) return {low, high};
+    // What pulls against a wall is held by it.
+    return {std::clamp(low, walls->lower, walls->upper), std::clamp(high, walls->lower, walls->upper)};
 }
 
 }  // namespace dinal::analysis

@@ -1,6 +1,8 @@
 // What is known of a steady motion before it is looked for, and what one look at a period of it tells.
 #pragma once
 
+#include <utility>
+
 #include "analysis/fixed_point.hpp"
 #include "analysis/steady.hpp"
 
@@ -19,6 +21,9 @@ inline constexpr double neutral_within = 1e-6;
 inline Place place_of(const model::State& state, double omega) {
     return {state.theta, state.velocity / omega};
 }
+
+/// From where to where friction holds the mass through all of the period, about the place where it was found at rest.
+std::pair<double, double> rest_of(const SteadyQuestion& question, double here);
 
 /// The facts about the motion through a fixed point of the map over `periods` of M, or of its half (periods = 1), whose
 /// opposite it repeats. Where the mass may rest, and whether another motion is there, are not among them.

@@ -119,14 +119,25 @@ test("feedback: a motor as a dashpot gives what the dashpot gives", function()
     equal(fed.lag, nil)
 end)
 
-test("a subharmonic motion is found, and periods asks for it", function()
-    -- A swing that is pushed at every third of its turns: 3 periods of M are one of its own.
+test("a subharmonic motion is found with the fewest periods after which it comes back", function()
+    -- A stiff swing far below and above its resonance: each start has its motion, and each its own number of periods.
     local sys = system{ I = 1, k = 4*math.pi^2, C = 0.05, Rd = 0.02, Re = 0.02 }
-    local s = sys:steady{ M = function(t, theta) return 30*math.sin(6*math.pi*t) - 400*theta^3 end, period = 1/3, theta0 = 0.6 }
-    assert(s.status == "steady" and s.periods >= 1, tostring(s))
-    local again = sys:steady{ M = function(t, theta) return 30*math.sin(6*math.pi*t) - 400*theta^3 end, period = 1/3,
-        periods = s.periods, theta0 = s.run.theta[1], velocity0 = s.run.velocity[1] }
-    near(again.amplitude, s.amplitude, 1e-8)
+    local M = function(t, theta) return 30*math.sin(6*math.pi*t) - 400*theta^3 end
+    for _, case in ipairs{ { 0.2, 1 }, { 1, 1 }, { -0.3, 2 } } do
+        local s = sys:steady{ M = M, period = 1/3, theta0 = case[1] }
+        equal(s.status, "steady")
+        equal(s.periods, case[2])
+        near(s.period, case[2]/3, 1e-14)
+        -- The run itself comes back then, and no earlier: by rk4, an engine of its own (1e-6: its error at this h).
+        local run = sys:simulate{ M = M, theta0 = s.run.theta[1], velocity0 = s.run.velocity[1], t_end = s.period,
+            dt = 1/3, integrator = integrator.rk4{ h = 1e-4 } }
+        for i = 2, #run do
+            local comes_back = math.abs(run.theta[i] - run.theta[1]) < 1e-6
+            equal(comes_back, i == #run)
+        end
+        near(sys:steady{ M = M, period = 1/3, periods = s.periods, theta0 = s.run.theta[1],
+            velocity0 = s.run.velocity[1] }.amplitude, s.amplitude, 1e-8)
+    end
 end)
 
 test("run:steady goes on from where the run has got to", function()
