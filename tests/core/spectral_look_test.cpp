@@ -63,7 +63,7 @@ double smooth(double t) {
 
 }  // namespace
 
-TEST_CASE("few single pulses between the nodes are missed, moving or at rest", "[spectral][look]") {
+TEST_CASE("few single pulses between the nodes are missed, moving or at rest", "[spectral][look][long]") {
     truth::Lot lot(11);
     for (const bool resting : {false, true}) {
         const Oscillator system = nondimensional(0.05, resting ? 0.3 : 0);
@@ -87,7 +87,7 @@ TEST_CASE("few single pulses between the nodes are missed, moving or at rest", "
     }
 }
 
-TEST_CASE("no pulse of the width that a user names is missed", "[spectral][look]") {
+TEST_CASE("no pulse of the width that a user names is missed", "[spectral][look][long]") {
     truth::Lot lot(12);
     for (int i = 0; i < 1000; ++i) {
         const bool resting = i % 2 == 0;
@@ -184,7 +184,7 @@ TEST_CASE("an M that is rough on every scale is followed as exactly as it can be
 }
 
 TEST_CASE("a function that is rough at every scale ends with its own outcome, soon, unless that is as small as noise",
-          "[spectral][look]") {
+          "[spectral][look][long]") {
     const double k = 4 * pi * pi;
     const Seen lost = look(nondimensional(0.05, 0.3), [&](double t) { return k * (noise(t) + 0.5); }, {0.3, 0});
     CHECK(lost.run.outcome == Outcome::unresolved);
