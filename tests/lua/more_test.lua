@@ -273,4 +273,26 @@ test("belts and states run far from t = 0, and in any unit of time, as they do n
     end
 end)
 
+test("an integral that stands still while the output is at its limit goes on when it leaves it", function()
+    -- The output leaves its limit 2 where 8 - 8t^2 - 2t = 2, at 0.75, and is linear until after 0.9: a power series.
+    local function output(_, theta, velocity, z) return 8*(1 - theta) - velocity + 3*z.e end
+    local calls = 0
+    local run = system{ I = 1, k = 0 }:simulate{ t_end = 0.9, dt = 0.9,
+        M = function(...) calls = calls + 1 return math.max(-2, math.min(2, output(...))) end,
+        states = { e = { start = 0, rate = function(t, theta, velocity, z)
+            return math.abs(output(t, theta, velocity, z)) > 2 and 0 or 1 - theta
+        end } } }
+    equal(run.outcome, "reached the end")
+    local theta, velocity, e, sums = 0.5625, 1.5, 0, { 0.5625, 1.5, 0 }
+    for n = 1, 30 do
+        local one = n == 1 and 1 or 0
+        theta, velocity, e = 0.15*velocity/n, 0.15*(8*(one - theta) - velocity + 3*e)/n, 0.15*(one - theta)/n
+        sums = { sums[1] + theta, sums[2] + velocity, sums[3] + e }
+    end
+    near(run.theta[2], sums[1], 1e-13) -- rounding, and the place of the jump to 1e-13 of the run
+    near(run.velocity[2], sums[2], 1e-12)
+    near(run.states.e[2], sums[3], 1e-13)
+    assert(calls < 20000, calls) -- the jump is closed in on; differences across it took a million
+end)
+
 support.finish()

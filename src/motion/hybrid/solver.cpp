@@ -168,7 +168,9 @@ Solver::Attempt Solver::collocate(Solved& piece, const model::State& departing) 
     const bool nothing_to_find = !moves(piece) && n_ == 2 && (piece.leans || !field_.has_belt());
     const Integration& Q = integration();
     residual_.resize(static_cast<Eigen::Index>(inner * n_));
-    for (const bool again : {false, true}) {
+    // Beside a jump of a rate differences tell a slope that is none; where a piece is short it does without any.
+    enum class Slopes { known, here, none };
+    for (const Slopes slopes : {Slopes::known, Slopes::here, Slopes::none}) {
         if (!evaluate(piece, 0, departing)) return Attempt::failed;
         if (!nothing_to_find) {
             for (std::size_t k = 0; k < n_; ++k) {
@@ -183,8 +185,10 @@ Solver::Attempt Solver::collocate(Solved& piece, const model::State& departing) 
                 if (!evaluate(piece, j, {piece.y[0][j], piece.y[1][j]})) return Attempt::failed;
             }
             if (nothing_to_find) return Attempt::resolved;
-            if (!linear.known && !estimate_jacobian(piece, node_count / 2)) return Attempt::failed;
-            prepare(piece);
+            if (slopes != Slopes::none) {
+                if (!linear.known && !estimate_jacobian(piece, node_count / 2)) return Attempt::failed;
+                prepare(piece);
+            }
             for (std::size_t k = 0; k < n_; ++k) {
                 for (std::size_t j = 1; j < node_count; ++j) {
                     double sum = 0;
@@ -193,7 +197,7 @@ Solver::Attempt Solver::collocate(Solved& piece, const model::State& departing) 
                         (piece.y[k][0] - piece.y[k][j]) + piece.h * sum;
                 }
             }
-            const Eigen::VectorXd step = linear.factors.solve(residual_);
+            const Eigen::VectorXd step = slopes == Slopes::none ? residual_ : linear.factors.solve(residual_);
             double change = 0, left = 0;
             const double gained = piece.h / system_.inertia() * torques_of(piece, greatest(piece.M));
             for (std::size_t k = 0; k < n_; ++k) {
@@ -222,7 +226,7 @@ Solver::Attempt Solver::collocate(Solved& piece, const model::State& departing) 
             if (i >= 3 && rate > 0.7) break;
             before = change;
         }
-        if (again || !estimate_jacobian(piece, 0)) break;  // the others may be anywhere by now
+        if (slopes == Slopes::known && !estimate_jacobian(piece, 0)) break;  // the others may be anywhere by now
     }
     linear.known = false;
     return Attempt::shorten;
