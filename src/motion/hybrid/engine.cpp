@@ -22,6 +22,13 @@ Problem on_belt(const Problem& problem, double belt) {
             problem.limits, problem.before,     problem.course_bytes};
 }
 
+/// Pieces have one of a few lengths, for which the solver keeps what it has prepared: this half length or a little
+/// less.
+double rung(double h, double longest) {
+    constexpr double rungs = 4;  // to a factor of two
+    return h >= longest ? longest : longest * std::exp2(std::floor(rungs * std::log2(h / longest)) / rungs);
+}
+
 bool breaks_at(const Field& field, double t) {
     return field.next_break(std::nextafter(t, -model::never)) == t;
 }
@@ -102,8 +109,8 @@ bool Engine::choose() {
         const double step_end = problem_.window.start + steps * cut_.h;
         if (step_end < limit - beside) limit = step_end;
     }
-    double h = std::min(
-        {h_, field_.view(now_.hi, spectral::chebyshev::widest_gap) / 2, field_.shortest_delay() / 2 * (1 - 1e-12)});
+    double h = std::min({rung(h_, cut_.longest / 2), field_.view(now_.hi, spectral::chebyshev::widest_gap) / 2,
+                         field_.shortest_delay() / 2 * (1 - 1e-12)});
     if (bad_time_ < model::never) h = std::min(h, now_.until(bad_time_) / 4);
     // As long as it takes to a wall, or back to it, and a little more: a small bounce is to be seen.
     if (problem_.system.walls() && !standstill_.stuck()) h = std::min(h, std::max(0.6 * until_wall(), 1e-9 * pace_));
@@ -235,10 +242,11 @@ void Engine::keep(double length) {
                 .leans = piece_.leans,
                 .begin = y_,
                 .series = piece_.series,
-                .M = spectral::chebyshev::fit(piece_.M),
-                .push = spectral::chebyshev::fit(piece_.push),
-                .belt = spectral::chebyshev::fit(piece_.belt),
-                .belt_rate = spectral::chebyshev::fit(piece_.belt_rate)};
+                .M = cheb::fit(piece_.M)};
+    if (field_.has_surroundings()) {
+        piece.around = std::make_shared<const Piece::Surroundings>(
+            Piece::Surroundings{cheb::fit(piece_.push), cheb::fit(piece_.belt), cheb::fit(piece_.belt_rate)});
+    }
     piece.begin[0] += piece_.origin;
     pieces_->add(std::move(piece));
     if (problem_.limits.dense) return;

@@ -96,6 +96,7 @@ private:
         return {now_.hi, after_break_ ? Side::after : Side::at, {theta(), y_[1]}, {y_.data() + 2, y_.size() - 2}};
     }
     [[nodiscard]] MotionPoint point(double x) const;
+    [[nodiscard]] MotionPoint point_at(std::size_t node) const;
     [[nodiscard]] double theta() const { return origin_ + y_[0]; }
     void set_theta(double theta) { origin_ = 0, y_[0] = theta; }
     /// The mass stands at a wall.

@@ -27,6 +27,12 @@ MotionPoint Engine::point(double x) const {
     return {x >= 1 ? piece_.end : piece_.time(x), side, {piece_.theta(x), piece_.at(1, x)}, point_states_};
 }
 
+MotionPoint Engine::point_at(std::size_t node) const {
+    point_states_.resize(y_.size() - 2);
+    for (std::size_t k = 2; k < y_.size(); ++k) point_states_[k - 2] = piece_.y[k][node];
+    return {piece_.times[node], piece_.side(node), {piece_.theta_at(node), piece_.y[1][node]}, point_states_};
+}
+
 /// Where the mass is as fast as its surface. At the end of the piece, zero within rounding is zero.
 std::optional<double> Engine::first_standstill() const {
     using namespace spectral::chebyshev;
@@ -98,7 +104,7 @@ void Engine::watch(Ending& ending) {
     for (std::size_t i = 0; i < field_.component_count(); ++i) {
         if (field_.relay(i) == nullptr) continue;
         const auto exact = [&](double x) { return field_.until_switch(i, point(x)); };
-        for (std::size_t j = 0; j < node_count; ++j) values[j] = exact(cheb::nodes[j]);
+        for (std::size_t j = 0; j < node_count; ++j) values[j] = field_.until_switch(i, point_at(j));
         Half half = 1;
         const auto x = values[0] < 0 ? std::optional(-1.0) : Watched(values, exact).leaves(half, -1);
         if (x && *x < ending.x) ending = {*x, By::relay, i};
@@ -106,12 +112,10 @@ void Engine::watch(Ending& ending) {
     std::vector<std::pair<std::size_t, double>> wanted_ones, unwanted;  // passages; the others only change the half
     for (std::size_t i = 0; i < extras_.events.size(); ++i) {
         const model::WantedEvent& wanted = extras_.events[i];
-        const auto exact = [&](double x) {
-            const MotionPoint at = point(x);
-            return wanted.when->value_with(at.t, at.y, at.states);
-        };
+        const auto at = [&](const MotionPoint& p) { return wanted.when->value_with(p.t, p.y, p.states); };
+        const auto exact = [&](double x) { return at(point(x)); };
         for (std::size_t j = 0; j < node_count; ++j) {
-            values[j] = exact(cheb::nodes[j]);
+            values[j] = at(point_at(j));
             if (!std::isfinite(values[j])) {
                 fail(model::Outcome::excitation_not_finite);
                 return;

@@ -60,6 +60,11 @@ double Field::asked(std::size_t component, const MotionPoint& at) const {
     return kind.delayed->function->value_with(towards(at.t, at.side), then, at.states);
 }
 
+bool Field::asks_the_motion() const {
+    return std::any_of(kinds_.begin(), kinds_.end(),
+                       [](const Kind& kind) { return kind.function != nullptr && kind.function->feedback; });
+}
+
 double Field::load(const MotionPoint& at) const {
     const double native_t = at.side == Side::before ? std::nextafter(at.t, -model::never) : at.t;
     double sum = 0;

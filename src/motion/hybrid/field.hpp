@@ -58,7 +58,10 @@ public:
     Field(const Problem& problem, const Past& past);
 
     [[nodiscard]] std::size_t state_count() const { return extras_.states.size(); }
+    [[nodiscard]] bool has_surroundings() const { return has_belt() || !extras_.base.components().empty(); }
     [[nodiscard]] bool has_belt() const { return !extras_.belt.components().empty(); }
+    /// Whether a function wants to know theta or velocity of the moment itself.
+    [[nodiscard]] bool asks_the_motion() const;
     /// M of the user.
     [[nodiscard]] double load(const MotionPoint& at) const;
     /// -I a(t) of the base.

@@ -11,7 +11,7 @@ namespace {
 /// Integrals of products of series are exact.
 class PieceLeg final : public Leg {
 public:
-    PieceLeg(const model::Lowered& system, const Piece& piece) : piece_(piece) {
+    PieceLeg(const model::Lowered& system, const Piece& piece) : piece_(piece), around_(piece.surroundings()) {
         Series theta = piece.series[0], v = piece.series[1];
         theta[0] += piece.begin[0], v[0] += piece.begin[1];
         const auto work = [&](const Series& torque) {
@@ -19,14 +19,14 @@ public:
             for (double& c : sum) c *= piece.h;
             return sum;
         };
-        input_ = work(piece.M), base_ = work(piece.push);
+        input_ = work(piece.M), base_ = work(around_.push);
         Series damping = v;
         for (double& c : damping) c *= system.damping();
         viscous_ = work(damping);
         const Series friction = friction_on(system, theta, v);
-        belt_ = cheb::integral(cheb::product(friction, piece.belt), 0);
+        belt_ = cheb::integral(cheb::product(friction, around_.belt), 0);
         Series against = v;
-        for (std::size_t k = 0; k < against.size(); ++k) against[k] = piece.belt[k] - v[k];
+        for (std::size_t k = 0; k < against.size(); ++k) against[k] = around_.belt[k] - v[k];
         dry_ = cheb::integral(cheb::product(friction, against), 0);
         for (double& c : belt_) c *= piece.h;
         for (double& c : dry_) c *= piece.h;
@@ -53,12 +53,12 @@ private:
             for (double& torque : own) torque = system.spring(torque);
             const Series spring = cheb::fit(own);
             for (std::size_t k = 0; k < friction.size(); ++k) {
-                friction[k] = system.inertia() * piece_.belt_rate[k] + system.damping() * v[k] +
-                              (system.stiffness() * theta[k] + spring[k]) - piece_.push[k] - piece_.M[k];
+                friction[k] = system.inertia() * around_.belt_rate[k] + system.damping() * v[k] +
+                              (system.stiffness() * theta[k] + spring[k]) - around_.push[k] - piece_.M[k];
             }
             return friction;
         }
-        const Nodes theta_at = cheb::at_nodes(theta), v_at = cheb::at_nodes(v), belt_at = cheb::at_nodes(piece_.belt);
+        const Nodes theta_at = cheb::at_nodes(theta), v_at = cheb::at_nodes(v), belt_at = cheb::at_nodes(around_.belt);
         Nodes values{};
         for (std::size_t j = 0; j < node_count; ++j) {
             values[j] = -system.braking(piece_.way) -
@@ -69,7 +69,7 @@ private:
 
     /// At a wall the belt slides along the mass.
     [[nodiscard]] Series friction_at_wall(const model::Lowered& system, const Series& theta) const {
-        const Nodes theta_at = cheb::at_nodes(theta), belt_at = cheb::at_nodes(piece_.belt);
+        const Nodes theta_at = cheb::at_nodes(theta), belt_at = cheb::at_nodes(around_.belt);
         Nodes values{};
         for (std::size_t j = 0; j < node_count; ++j) {
             const model::Motion slides = model::motion_of(-belt_at[j]);
@@ -79,6 +79,7 @@ private:
     }
 
     const Piece& piece_;
+    const Piece::Surroundings& around_;
     Integral input_{}, viscous_{}, dry_{}, belt_{}, base_{};
 };
 

@@ -19,8 +19,16 @@ struct Piece {
     bool leans = false;  ///< stuck at a wall
     Values begin{};
     std::vector<Series> series{};  ///< of each value less its first
-    Series M{}, push{}, belt{}, belt_rate{};
+    Series M{};
+    struct Surroundings {
+        Series push{}, belt{}, belt_rate{};
+    };
+    std::shared_ptr<const Surroundings> around = {};  ///< null without a belt and a base, as most are
 
+    [[nodiscard]] const Surroundings& surroundings() const {
+        static constexpr Surroundings still{};
+        return around != nullptr ? *around : still;
+    }
     [[nodiscard]] double value(std::size_t k, double x) const {
         return x <= -1 ? begin[k] : begin[k] + spectral::chebyshev::value(series[k], std::min(x, 1.0));
     }

@@ -4,6 +4,7 @@
 
 #include <Eigen/Dense>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -52,6 +53,7 @@ struct Solved {
     std::vector<Series> series{};  ///< of each value less its first
 
     [[nodiscard]] double time(double x) const { return start.after(h * (1 + x)); }
+    [[nodiscard]] double theta_at(std::size_t node) const { return origin + y[0][node]; }
     [[nodiscard]] double theta(double x) const { return origin + at(0, x); }
     /// The velocity of what the mass stands on while it is stuck.
     [[nodiscard]] double carrier(std::size_t node) const { return leans ? 0 : belt[node]; }
@@ -87,7 +89,12 @@ private:
     Attempt runge_kutta(Solved& piece, const model::State& departing);
     bool sample_surroundings(Solved& piece);
     bool estimate_jacobian(const Solved& piece, std::size_t node);
-    void prepare(const Solved& piece);
+    [[nodiscard]] const Eigen::MatrixXd& newton(const Solved& piece);
+    void place(Solved& piece) const;
+    [[nodiscard]] bool solves_at_once(const Solved& piece) const;
+    [[nodiscard]] double accelerated(double torque, double theta, double velocity) const;
+    /// Theta is the integral of the velocity, and that of a mass at rest is its surface's.
+    [[nodiscard]] std::size_t first_unknown(const Solved& piece) const { return moves(piece) ? 1 : 2; }
     [[nodiscard]] double torques_of(const Solved& piece, double M) const;
     void judge(const Solved& piece);
     [[nodiscard]] bool moves(const Solved& piece) const { return piece.way != model::Motion::stuck; }
@@ -96,18 +103,24 @@ private:
     const Field& field_;
     Cut cut_;
     std::size_t n_;  // values
+    bool linear_;    // without a remainder, states and functions of the motion
     double bad_time_ = 0, unresolved_ = 0;
     double fastest_belt_ = 0;  // so far
     Values fastest_;           // rates of the states, so far
 
+    /// Newton's matrix for the lengths of some pieces that were: most pieces of a run have one of a few lengths.
     struct Linear {
+        struct Inverse {
+            double h = 0;
+            Eigen::MatrixXd matrix{};
+        };
         Eigen::MatrixXd jacobian;
-        Eigen::PartialPivLU<Eigen::MatrixXd> factors;
-        double h = 0;
-        bool known = false, ready = false;
+        std::array<Inverse, 8> of_lengths{};
+        std::size_t next = 0;  // to be replaced
+        bool known = false;
     };
     Linear moving_, standing_;
-    Eigen::VectorXd residual_;
+    Eigen::VectorXd residual_, step_;
     mutable Values point_;
     mutable Values rate_;
 };
