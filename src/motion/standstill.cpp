@@ -70,6 +70,13 @@ bool Standstill::creep(const Moment& now) {
     return true;
 }
 
+double Standstill::clearly_beyond(const Moment& now) const {
+    constexpr double crest = 1e-6;
+    const double over = std::max(excess(now.M, now.theta), 0.0), all = torques(now);
+    constexpr double rounding = 64 * std::numeric_limits<double>::epsilon();
+    return over > crest * all ? 0 : 2 * over + rounding * all;
+}
+
 bool Standstill::for_good(const Moment& now) const {
     if (!stuck()) return false;
     if (phase_ != Phase::creeping && model::held_against(system_, most_M_, now.theta)) return true;

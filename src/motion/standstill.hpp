@@ -55,6 +55,10 @@ public:
     }
     /// How far M is past the limit; positive exactly when the law lets go.
     [[nodiscard]] double excess(double M, double theta) const;
+    /// How far M must pass the limit before a mass is let go that did not get under way here: twice as far as it is
+    /// now, so that a crest which only comes out of the rounding is tried some fifty times at most. A feedback that is
+    /// clearly beyond the limit at rest, and holds in motion, is none.
+    [[nodiscard]] double clearly_beyond(const Moment& now) const;
     /// M cannot move it any more, whatever comes: it is constant, or nowhere great enough.
     [[nodiscard]] bool for_good(const Moment& now) const;
     /// The state at which a feedback that jumps at velocity zero is asked for this motion: not beyond zero, and at zero

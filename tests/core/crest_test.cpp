@@ -4,6 +4,7 @@
 
 #include "support/catch.hpp"
 #include "support/measure.hpp"
+#include "support/written.hpp"
 
 namespace {
 
@@ -36,10 +37,11 @@ struct Crest {
 };
 
 /// The run, unless the monitor was asked so often that it leads nowhere.
-Trajectory run_over(const Crest& crest, const Excitation& M, const Integrator& method) {
+Trajectory run_over(const Crest& crest, const Excitation& M, const Integrator& method, const Extras& extras = {}) {
     long asked = 0;
-    auto run = simulate(crest.system(), M, {}, {0, crest.end()}, Grid::none(), method,
-                        [&asked](double) { return ++asked < 20000; });
+    auto run = simulate(
+        crest.system(), M, {}, {0, crest.end()}, Grid::none(), method, [&asked](double) { return ++asked < 20000; }, {},
+        extras);
     REQUIRE(run);
     return std::move(run).value();
 }
@@ -78,6 +80,11 @@ TEST_CASE(
                         CAPTURE(method.index());
                         check_pairs(run_over(crest, native, method), crest);
                     }
+                    // With an event of a user, which never comes: another way through the house.
+                    Extras watched;
+                    watched.events.push_back(
+                        {.name = "never", .when = written([](double t, const State&, auto) { return t + 1; })});
+                    check_pairs(run_over(crest, native, Spectral{}, watched), crest);
                     for (const Integrator& method : std::vector<Integrator>{Spectral{}, Spectral{.tolerance = 1e-9}}) {
                         const auto sine = std::make_shared<Sine>(crest.amplitude(), omega);
                         CAPTURE(method.index());

@@ -15,6 +15,23 @@ namespace dinal::motion::hybrid {
 /// Which side of zero a watched value was on: 1 above, -1 below, 0 not known, because it stood at zero.
 using Half = int;
 
+/// Where between -1 and x a condition that holds at x begins to hold, if it holds from there on: by halving.
+template <class Condition>
+double first_true(const Condition& holds, double x) {
+    constexpr double finest = 1e-15;
+    double before = x, from = x;
+    for (double step = 1e-9; before == from; step *= 2) {
+        if (from <= -1) return -1;
+        before = std::max(-1.0, from - step);
+        if (holds(before)) from = before;
+    }
+    while (from - before > finest) {
+        const double middle = before + (from - before) / 2;
+        (holds(middle) ? from : before) = middle;
+    }
+    return from;
+}
+
 /// A watched value on a piece: at its nodes, and anywhere.
 template <class F>
 class Watched {

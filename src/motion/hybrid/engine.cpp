@@ -148,7 +148,7 @@ void Engine::again(Solver::Attempt attempt) {
 
 bool Engine::advance() {
     if (standstill_.phase() == Standstill::Phase::arrived && !ask()) return false;
-    if (standstill_.phase() == Standstill::Phase::stuck) {
+    if (standstill_.stuck() && standstill_.phase() != Standstill::Phase::held) {
         const double M = field_.load(here());
         if (!std::isfinite(pull(M))) return fail(model::Outcome::excitation_not_finite);
         const model::Motion towards = standstill_.pulled(pull(M), theta());
@@ -181,9 +181,10 @@ bool Engine::advance() {
         const auto [x, towards] = first_release();
         if (x < 1) ending = {x, By::surface, 0, towards};
     } else if (!standstill_.passes()) {
-        const auto zero = first_standstill();
+        const bool crept = creeps();
+        const auto zero = crept ? std::optional(leaving ? -1.0 : 1.0) : first_standstill();
         if (leaving && zero && *zero <= -1) {
-            return standstill_.never_left({now_.hi, theta(), pull(field_.load(here()))}) ||
+            return creep() || standstill_.never_left({now_.hi, theta(), pull(field_.load(here()))}) ||
                    fail(model::Outcome::chattering);
         }
         if (zero) ending = {*zero, By::surface};

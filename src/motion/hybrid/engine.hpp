@@ -62,6 +62,8 @@ private:
     bool handle(const Ending& ending);
     void again(Solver::Attempt attempt);
     [[nodiscard]] std::optional<double> first_standstill() const;
+    [[nodiscard]] bool creeps() const;
+    bool creep();
     [[nodiscard]] std::pair<double, model::Motion> first_release() const;
     void watch(Ending& ending);
 

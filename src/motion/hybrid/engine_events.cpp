@@ -56,6 +56,15 @@ std::optional<double> Engine::first_standstill() const {
     return zero;
 }
 
+/// Whether all that goes on in the piece is slower than the rounding of its torques could make it.
+bool Engine::creeps() const {
+    if (field_.has_belt() || leans()) return false;
+    const double torques = greatest(piece_.M) + greatest(piece_.push) + system_.greatest_holding() +
+                           system_.stiffness() * (greatest(piece_.y[0]) + std::fabs(origin_));
+    const double hold = system_.damping() + system_.inertia() / (2 * piece_.h);
+    return greatest(piece_.y[1]) * hold <= 4 * rounding * torques;
+}
+
 /// Where the pull passes the limit of sticking, and which way; 2 when nowhere.
 std::pair<double, model::Motion> Engine::first_release() const {
     using namespace spectral::chebyshev;
@@ -74,16 +83,21 @@ std::pair<double, model::Motion> Engine::first_release() const {
                            system_.stiffness() * (greatest(piece_.y[0]) + std::fabs(origin_)) +
                            std::fabs(system_.spring(theta()));
     const bool held = standstill_.phase() == Standstill::Phase::held;
+    const double at_first = pull_at(piece_.M[0], piece_.push[0], piece_.belt_rate[0], piece_.belt[0]);
+    const double clearly_beyond = held ? standstill_.clearly_beyond({now_.hi, theta(), at_first}) : 0;
     const double rounded_rate = 256 * rounding * greatest(piece_.belt) / piece_.h;
     const Series belt = fit(piece_.belt), rate = fit(piece_.belt_rate);
     for (const model::Motion side : {model::Motion::forward, model::Motion::backward}) {
         if (side == standstill_.leans()) continue;
-        const double sign = model::sign_of(side), Re = system_.holding(side);
+        const double sign = model::sign_of(side), limit = standstill_.limit(side);
         Series left{};
         for (std::size_t k = 0; k < points; ++k) left[k] = -sign * pull[k];
-        left[0] += Re;
+        left[0] += limit;
+        if (held) left[0] += clearly_beyond;
         Bounded<points> curve(1, left, derivative(left));
-        curve.raise_floor(8 * (rounding * (Re + largest) + tail(pull)) + system_.inertia() * rounded_rate);
+        const double doubt =
+            8 * (rounding * (std::fabs(limit) + largest) + tail(pull)) + system_.inertia() * rounded_rate;
+        curve.raise_floor(doubt);
         const auto lets_go = [&](double x) {
             const MotionPoint at = point(x);
             const double M = field_.load(at);
@@ -91,8 +105,17 @@ std::pair<double, model::Motion> Engine::first_release() const {
                          sure = std::copysign(std::max(0.0, std::fabs(whole) - rounded_rate), whole);
             return standstill_.pulled(pull_at(M, field_.push(at.t, at.side), sure, value(belt, x)), at.y.theta) == side;
         };
-        const auto touches = [&](double x) { return !held && (lets_go(x) || lets_go(curve.lowest_near(x))); };
-        const auto x = first_below(curve, -1, LeftEnd::anywhere, touches);
+        std::optional<double> touch;
+        const auto touches = [&](double x) {
+            if (held) return false;
+            for (const double place : {x, curve.lowest_near(x)}) {
+                if (!touch && lets_go(place)) touch = place;
+            }
+            return touch.has_value();
+        };
+        auto x = first_below(curve, -1, LeftEnd::anywhere, touches);
+        // Where the two meet so gently that rounding hides it the pull itself says when.
+        if (x && touch) x = first_true(lets_go, *touch);
         if (x && *x < first.first && piece_.time(*x) < piece_.end) first = {*x, side};
     }
     return first;
@@ -159,7 +182,7 @@ bool Engine::handle(const Ending& ending) {
             if (ending.towards != model::Motion::stuck) return release(ending.towards);
             standstill_.lean(model::Motion::stuck);
             y_[1] = belt();
-            standstill_.arrive();
+            if (!creep()) standstill_.arrive();
             return true;
         case By::wall:
             return hit(ending.towards);
@@ -173,6 +196,10 @@ bool Engine::handle(const Ending& ending) {
                                [this](std::size_t which) { return act(which); });
     }
     return true;
+}
+
+bool Engine::creep() {
+    return !field_.has_belt() && standstill_.creep({now_.hi, theta(), pull(field_.load(here()))});
 }
 
 bool Engine::act(std::size_t which) {
