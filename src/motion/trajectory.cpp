@@ -86,8 +86,25 @@ text::Expected<model::State> Trajectory::at(double t) const {
     return course->at(t);
 }
 
+namespace {
+
+/// Where it switched without end, and what would not.
+std::string chatter_text(const Trajectory& run) {
+    if (run.course && run.course->system().friction().depends_on_speed() && !run.on_belt) {
+        return fmt::format(
+            "switched without end in no time: it chatters at speed {:.6g}, where the law of friction (or M) jumps or is "
+            "too steep; a line over some small range of speeds would not",
+            std::fabs(run.state_at_stop.velocity));
+    }
+    return "switched without end in no time: a jump of M or friction chatters; a steep line or tanh would not, nor "
+           "excitation.sampled or excitation.relay";
+}
+
+}  // namespace
+
 std::string outcome_text(const Trajectory& trajectory) {
     if (trajectory.contradiction) return model::sentence_with_cure(*trajectory.contradiction);
+    if (trajectory.outcome == model::Outcome::chattering) return chatter_text(trajectory);
     std::string text(model::sentence(trajectory.outcome));
     if (trajectory.noise > 0) text += fmt::format(", within the noise of M, {:.2g}", trajectory.noise);
     return text;
@@ -106,6 +123,9 @@ std::string summary(const Trajectory& trajectory) {
     switch (trajectory.outcome) {
         case model::Outcome::reached_end:
             text += "moving at the end";
+            break;
+        case model::Outcome::chattering:
+            text += chatter_text(trajectory);
             break;
         default:
             text += trajectory.contradiction ? model::sentence(*trajectory.contradiction)

@@ -100,4 +100,23 @@ test("k = 0 is a block: nothing that needs a period has a value", function()
     raises_here(function() system { I = 1, k = -1 } end, "k = -1 must not be negative")
 end)
 
+test("a law that jumps up, or begins infinitely steep, is told with its speed and a cure that works", function()
+    local function block(law) return system { I = 1, k = 0, friction = law } end
+    local jump = friction.law(function(v) return v < 0.5 and 0.3 or 0.6 end)
+    local run = block(jump):simulate { M = 0.45, t_end = 5, dt = 1 }
+    assert(run.outcome:find("it chatters at speed 0.5, where the law of friction", 1, true), run.outcome)
+    assert(tostring(run):find("at speed 0.5", 1, true) and run:explain():find("at speed 0.5", 1, true))
+    -- The cure: the mass comes to 0.5 at t = 0.5/0.15 and stays there, within the width of the line.
+    local line = friction.table { speed = { 0, 0.5, 0.50001 }, torque = { 0.3, 0.3, 0.6 } }
+    run = block(line):simulate { M = 0.45, t_end = 5, dt = 1 }
+    near(run.velocity[#run], 0.5, 1e-5)
+    near(run.theta[#run], 0.5*(0.5/0.15)/2 + 0.5*(5 - 0.5/0.15), 2e-5)
+    run = block(friction.law(math.sqrt, { Re = 0 })):simulate { velocity0 = 1, t_end = 5, dt = 1 }
+    near(run.theta[#run], 2/3, 1e-9)  -- velocity (1 - t/2)^2, whatever it says about the end
+    -- A controller that slides along its switching line.
+    run = system { I = 1, k = 0 }:simulate { theta0 = 1, t_end = 5, dt = 1,
+        M = function(t, theta, velocity) return theta + 0.2*velocity > 0 and -5 or 5 end }
+    assert(run.outcome:find("tanh would not, nor excitation.sampled or excitation.relay", 1, true), run.outcome)
+end)
+
 support.finish()
