@@ -1,5 +1,7 @@
 #include "lua/safe_mode.hpp"
 
+#include <unistd.h>
+
 #include <array>
 #include <cstdio>
 #include <cstring>
@@ -11,6 +13,7 @@
 #include "lua/interrupt.hpp"
 #include "lua/standard_globals.hpp"
 #include "terminal/progress.hpp"
+#include "text/harmless.hpp"
 
 namespace dinal::lua {
 namespace {
@@ -49,6 +52,7 @@ bool is_safe = false;
 lua_CFunction original_load = nullptr;
 lua_CFunction original_setmetatable = nullptr;
 lua_CFunction original_xpcall = nullptr;
+lua_CFunction original_warn = nullptr;
 
 // ---- what is not quite what it is in Lua
 
@@ -123,6 +127,39 @@ int require(lua_State* L) {
     return 1;
 }
 
+/// To a terminal without what would steer it, a title or a cleared screen; to a file or a pipe as it is.
+void put(std::FILE* stream, std::string_view text) {
+    const std::string shown = ::isatty(::fileno(stream)) == 1 ? text::harmless(text) : "";
+    if (!shown.empty()) text = shown;
+    static_cast<void>(std::fwrite(text.data(), 1, text.size(), stream));
+}
+
+int print_safely(lua_State* L) {
+    const int count = lua_gettop(L);
+    for (int i = 1; i <= count; ++i) {
+        std::size_t length = 0;
+        const char* text = luaL_tolstring(L, i, &length);
+        if (i > 1) put(stdout, "\t");
+        put(stdout, {text, length});
+        lua_pop(L, 1);
+    }
+    put(stdout, "\n");
+    static_cast<void>(std::fflush(stdout));
+    return 0;
+}
+
+/// Lua writes it to standard error.
+int warn_safely(lua_State* L) {
+    for (int i = 1; ::isatty(STDERR_FILENO) == 1 && i <= lua_gettop(L); ++i) {
+        std::size_t length = 0;
+        const char* text = luaL_checklstring(L, i, &length);
+        const std::string shown = text::harmless({text, length});
+        lua_pushlstring(L, shown.data(), shown.size());
+        lua_replace(L, i);
+    }
+    return original_warn(L);
+}
+
 // ---- io: standard output, error and input, and no files
 //
 // NOTE: Lua's own handles are not given away: with seek, a script could write over what others have written to a file
@@ -135,7 +172,7 @@ int write_from(lua_State* L, int first) {
     for (int i = first; i <= lua_gettop(L); ++i) {
         std::size_t length = 0;
         const char* text = luaL_checklstring(L, i, &length);
-        static_cast<void>(std::fwrite(text, 1, length, stream));
+        put(stream, {text, length});
     }
     return 0;
 }
@@ -252,6 +289,8 @@ void open_safe_libraries(lua_State* L) {
     original_load = replace(L, "load", load);
     original_setmetatable = replace(L, "setmetatable", guarded<set_metatable>);
     original_xpcall = replace(L, "xpcall", xpcall_safely);
+    original_warn = replace(L, "warn", guarded<warn_safely>);
+    replace(L, "print", guarded<print_safely>);
     replace(L, "collectgarbage", guarded<collect_garbage>);
     lua_getfield(L, LUA_REGISTRYINDEX, LUA_LOADED_TABLE);
     lua_pushcclosure(L, guarded<require>, 1);

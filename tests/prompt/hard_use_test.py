@@ -132,6 +132,20 @@ class Strangers(HardUse):
             for sequence in ("\x1b]", "\x07", "\x1b[2J", "\x1b[8m", "\x9b"):
                 self.assertNotIn(sequence, shown, line)
 
+    def test_what_a_safe_script_prints_does_not_steer_the_terminal(self):
+        session = self.session("--safe")
+        escaped = self.EVIL.encode("unicode_escape").decode()
+        for line in (f"print('{escaped}')", f"io.write('{escaped}')", f"io.stdout:write('{escaped}')",
+                     f"io.stderr:write('{escaped}')", f"warn('@on') warn('{escaped}')", "io.write('\27') io.write(']0;owned\7')",
+                     f"print(setmetatable({{}}, {{ __tostring = function() return '{escaped}' end }}))"):
+            shown = self.raw(session, line)
+            for sequence in ("\x1b]", "\x07", "\x1b[2J", "\x1b[8m", "\x9b"):
+                self.assertNotIn(sequence, shown, line)
+            self.assertIn("owned", shown, line)
+        self.assertIn("\x1b[31mred\x1b[0m\tnil", self.raw(session, "print('\\27[31mred\\27[0m', nil)"))
+        piped = subprocess.run([PROGRAM, "--safe", "-e", "print('\\27[2J', 1)"], capture_output=True, check=True)
+        self.assertEqual(piped.stdout, b"\x1b[2J\t1\n")
+
 
 class Interrupted(HardUse):
     RUN = ("nondimensional{ zeta = 0.01 }:simulate{ M = function(t) if t > 500 and not told then told = true print('running') "
