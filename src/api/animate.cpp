@@ -50,6 +50,8 @@ animation::Take asked_take(const lua::Options& options, const AnimateOptions& as
     return take;
 }
 
+AnimationViewer animation_viewer = nullptr;
+
 animation::Scene asked_scene(lua_State* L, const lua::Options& options, const RunHandle& run,
                              const animation::Take& take, const model::Units& units) {
     const model::Excitation* belt =
@@ -108,7 +110,26 @@ void play(const animation::Scene& scene, const AnimateOptions& asked) {
     [[maybe_unused]] const ssize_t written = ::write(STDOUT_FILENO, cursor.data(), cursor.size());
 }
 
+/// As SVG, at the rate of a screen.
+Animation animation_of(lua_State* L, const lua::Options& options, const AnimateOptions& asked, const RunHandle& run) {
+    const auto take = asked_take(options, asked, run->trajectory, screen_rate, most_frames_in_file);
+    const animation::Scene scene = asked_scene(L, options, run, take, asked_units(L, options).value_or(units_of(*run)));
+    return {animation::animated_svg(scene), animation::title_of(scene)};
+}
+
 }  // namespace
+
+void show_animations_by(AnimationViewer viewer) {
+    animation_viewer = viewer;
+}
+
+Animation animation_at(lua_State* L, int index) {
+    const RunHandle run = lua::self<RunHandle>(L, index, report_animate_call.name);
+    const lua::Options options(L, index + 1, report_animate_call);
+    AnimateOptions asked;
+    options.fill(asked);
+    return animation_of(L, options, asked, run);
+}
 
 int animate_run(lua_State* L) {
     lua::refuse_in_worker(L, "run:animate");
@@ -117,6 +138,10 @@ int animate_run(lua_State* L) {
     AnimateOptions asked;
     options.fill(asked);
     const model::Units units = asked_units(L, options).value_or(units_of(*run));
+    if (!asked.file && animation_viewer != nullptr) {
+        animation_viewer(animation_of(L, options, asked, run), Shown::here);
+        return 0;
+    }
     if (!asked.file) {
         const bool shown = terminal::display_of(STDOUT_FILENO).terminal;
         if (!shown || !terminal::obeys_escapes()) {
@@ -149,6 +174,7 @@ int animate_run(lua_State* L) {
     }
     file.write(options.value_or_fail(bytes));
     options.value_or_fail(file.commit());
+    if (animation_viewer != nullptr) animation_viewer(animation_of(L, options, asked, run), Shown::in_file);
     return 0;
 }
 

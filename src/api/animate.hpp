@@ -4,6 +4,7 @@
 #include <optional>
 #include <string>
 
+#include "api/picture.hpp"
 #include "api/units_option.hpp"
 #include "lua/bind.hpp"
 #include "text/option.hpp"
@@ -15,27 +16,44 @@ struct AnimateOptions {
     std::optional<double> speed = {}, from = {}, to = {};
     std::optional<bool> ascii = {};
 };
-inline constexpr text::Option animate_options[] = {
+inline constexpr text::Option animate_target_options[] = {
     {.name = "file",
      .meaning = "where it is written instead of shown: .svg, which a browser plays, or .gif (by gnuplot)",
      .filled = text::fills<&AnimateOptions::file>},
+    {.name = "ascii", .meaning = "plain characters", .filled = text::fills<&AnimateOptions::ascii>},
+};
+inline constexpr text::Option animate_take_options[] = {
     {"speed", "time units per second", text::its_own, text::positive, "how fast, else all of it in ten seconds",
      text::fills<&AnimateOptions::speed>},
     {"from", "time units", text::its_own, text::any_finite, "where it begins, else with the run",
      text::fills<&AnimateOptions::from>},
     {"to", "time units", text::its_own, text::any_finite, "where it ends, else with the run",
      text::fills<&AnimateOptions::to>},
-    {.name = "ascii", .meaning = "plain characters", .filled = text::fills<&AnimateOptions::ascii>},
 };
-inline constexpr auto all_animate_options = text::joined(animate_options, model::units_option);
+inline constexpr auto all_animate_options =
+    text::joined(animate_target_options, animate_take_options, model::units_option);
 inline constexpr text::Call animate_call{"run:animate", "run:animate{ speed = 2 }", all_animate_options, true};
+inline constexpr auto all_report_animate_options = text::joined(animate_take_options, model::units_option);
+inline constexpr text::Call report_animate_call{"r:animate", "r:animate(run, { speed = 2 })",
+                                                all_report_animate_options, true};
 
 int animate_run(lua_State* L);
+
+/// A run in motion as SVG that a browser plays, and its title.
+struct Animation {
+    std::string svg, title;
+};
+/// Of the run at `index`, with the options of report_animate_call behind it.
+Animation animation_at(lua_State* L, int index);
+
+/// Where animations go, files besides, while what sees them is no terminal: the page of a script, or a notebook.
+using AnimationViewer = void (*)(const Animation& animation, Shown where);
+void show_animations_by(AnimationViewer viewer);
 
 inline constexpr lua::Doc animate_doc{
     "run:animate{ OPTIONS }",
     "Shows the mass in motion, with its spring, its walls, the surface (a belt moves) and where it sticks: in the terminal, "
-    "until Ctrl-C, or in a file. It is drawn at equal steps of time, between the rows, too.",
+    "until Ctrl-C, in a notebook, on the page of --report, or in a file. It is drawn at equal steps of time, between the rows, too.",
     "run = system{ I = 1, k = 4, Rd = 0.3, Re = 0.5 }:simulate{ theta0 = 1, t_end = 6, dt = 1 }\n"
     "file = os.tmpname() .. \".svg\"\n"
     "run:animate{ file = file, speed = 2 }\n"

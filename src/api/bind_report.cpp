@@ -155,6 +155,13 @@ int add_plot(lua_State* L) {
     return 0;
 }
 
+int add_animation(lua_State* L) {
+    const ReportHandle report = report_self(L, "r:animate");
+    if (lua::test<RunHandle>(L, 2) == nullptr) lua::raise_got(L, 2, "r:animate", "r:animate takes a run");
+    report->items.emplace_back(drawn(animation_at(L, 2)));
+    return 0;
+}
+
 /// The script that runs, as text; nothing at the prompt.
 std::string running_script(lua_State* L) {
     lua_pushglobaltable(L);
@@ -238,6 +245,12 @@ constexpr lua::Member report_members[] = {
       "Adds a plot: what plot{ ... } takes, or a picture such as run:plot{ show = false }.",
       DINAL_REPORT "x = vector.linspace(0, 6, 61)\nr:plot{ { x, x:sin() }, xlabel = \"x\" }\n"
                    "print(r)  --> report \"Free decay\" with 1 part"}},
+    {lua::a_method<add_animation>,
+     {"r:animate(run, { OPTIONS })",
+      "Adds a run in motion, as run:animate shows it: a browser plays it, on paper its start stands.",
+      DINAL_REPORT "run = nondimensional{ friction_ratio = 0.1 }:simulate{ theta0 = 1, t_end = 3, dt = 0.01 }\n"
+                   "r:animate(run, { speed = 0.5 })\nprint(r)  --> report \"Free decay\" with 1 part",
+      {&report_animate_call}}},
     {lua::a_method<save_report>,
      {"r:save(file)",
       "Writes it: .html is one page that any browser shows and prints on A4, with the pictures in it; .md is Markdown, "

@@ -189,15 +189,15 @@ std::string text_of(const Data& data, std::size_t width) {
 }
 
 std::string html_of(const Data& data, std::size_t rows) {
-    std::string all = "<table>\n<tr>";
+    std::string all = "<div class=\"table\" style=\"overflow-x: auto\"><table>\n<thead><tr>";
     for (const DataColumn& column : data.columns) all += "<th>" + text::html(column.label()) + "</th>";
-    all += "</tr>\n";
+    all += "</tr></thead>\n<tbody>\n";
     for (std::size_t row = 0; row < std::min(rows, data.size()); ++row) {
         all += "<tr>";
         for (const DataColumn& column : data.columns) all += "<td>" + text::html(column.text(row)) + "</td>";
         all += "</tr>\n";
     }
-    all += "</table>\n";
+    all += "</tbody>\n</table></div>\n";
     return data.size() <= rows ? all : all + fmt::format("<p>{} of {}</p>\n", rows, text::counted(data.size(), "row"));
 }
 

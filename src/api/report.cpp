@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstddef>
 #include <string_view>
 
@@ -12,6 +13,8 @@ namespace dinal::api {
 namespace {
 
 constexpr std::size_t most_table_rows = 1000;
+constexpr std::ptrdiff_t most_lines_together =
+    30;  // on one sheet of paper; what is longer would leave half of one empty
 
 constexpr const char* page_head = R"(<!DOCTYPE html>
 <html lang="en">
@@ -20,16 +23,22 @@ constexpr const char* page_head = R"(<!DOCTYPE html>
 <meta name="viewport" content="width=device-width, initial-scale=1">
 <title>{0}</title>
 <style>
-body {{ font: 11pt/1.45 "DejaVu Sans", Verdana, sans-serif; max-width: 46em; margin: 2em auto; padding: 0 1em; color: #222; }}
+:root {{ color-scheme: only light; }}
+body {{ font: 11pt/1.45 "DejaVu Sans", Verdana, sans-serif; max-width: 46em; margin: 2em auto; padding: 0 1em; color: #222; background: #fff; overflow-wrap: anywhere; }}
 h1 {{ font-size: 1.6em; margin-bottom: 0; }} h2 {{ font-size: 1.2em; margin-top: 1.6em; }}
 .author {{ color: #555; margin-top: .2em; }}
-pre {{ background: #f4f4f4; padding: .6em .8em; overflow-x: auto; font: 9.5pt/1.35 "DejaVu Sans Mono", monospace; white-space: pre-wrap; }}
+pre {{ background: #f4f4f4; padding: .6em .8em; overflow-x: auto; font: 9.5pt/1.35 "DejaVu Sans Mono", monospace; }}
 table {{ border-collapse: collapse; font-size: .92em; margin: 1em 0; }}
-th, td {{ border-bottom: 1px solid #ccc; padding: .2em .8em; text-align: right; }} th {{ border-bottom: 2px solid #888; }}
+th, td {{ border-bottom: 1px solid #ccc; padding: .2em .8em; text-align: right; overflow-wrap: normal; }} th {{ border-bottom: 2px solid #888; }}
 figure {{ margin: 1em 0; }} figure svg {{ max-width: 100%; height: auto; }}
 details {{ margin-top: 1em; }} summary {{ cursor: pointer; color: #555; }}
 @page {{ size: A4; margin: 2cm; }}
-@media print {{ body {{ margin: 0; max-width: none; font-size: 10pt; }} figure, table, pre {{ break-inside: avoid; }} h2 {{ break-after: avoid; }} }}
+@media print {{
+body {{ margin: 0; padding: 0; max-width: none; font-size: 10pt; }} h2, summary {{ break-after: avoid; }}
+pre {{ white-space: pre-wrap; font-size: 8pt; orphans: 4; widows: 4; }} .table {{ overflow: visible !important; }} table {{ font-size: 8pt; }} th, td {{ padding: .15em .5em; }}
+figure, tr, pre {{ break-inside: avoid; }} pre.long {{ break-inside: auto; }}
+table:not(:has(tr:nth-child(30))) {{ break-inside: avoid; }}
+}}
 </style>
 </head>
 <body>
@@ -72,7 +81,8 @@ struct HtmlWriter {
         for (const std::string_view one : paragraphs(item.text)) page += "<p>" + text::html(one) + "</p>\n";
     }
     void operator()(const ReportLines& item) {
-        const std::string lines = "<pre>" + text::html(item.text) + "</pre>\n";
+        const bool fits = std::count(item.text.begin(), item.text.end(), '\n') < most_lines_together;
+        const std::string lines = (fits ? "<pre>" : "<pre class=\"long\">") + text::html(item.text) + "</pre>\n";
         page += item.caption.empty()
                     ? lines
                     : "<details open><summary>" + text::html(item.caption) + "</summary>\n" + lines + "</details>\n";
@@ -131,6 +141,10 @@ struct MarkdownWriter {
 ReportPicture drawn(const Picture& picture) {
     auto svg = svg_of(picture);
     return {svg ? std::move(svg).value() : "", text_of_picture(picture), plots::title_of(picture.figures)};
+}
+
+ReportPicture drawn(const Animation& animation) {
+    return {animation.svg, animation.title, animation.title};
 }
 
 std::string html_of(const Report& report) {

@@ -7,6 +7,7 @@
 #include <variant>
 #include <vector>
 
+#include "api/animate.hpp"
 #include "api/data.hpp"
 #include "api/picture.hpp"
 
@@ -40,6 +41,7 @@ using ReportHandle = std::shared_ptr<Report>;
 
 /// The picture as a report keeps it.
 ReportPicture drawn(const Picture& picture);
+ReportPicture drawn(const Animation& animation);
 
 /// One page that needs nothing else: pictures are SVG in it, and it prints on A4.
 std::string html_of(const Report& report);

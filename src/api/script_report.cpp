@@ -51,6 +51,10 @@ ScriptReport::ScriptReport(std::string script, const std::string& errors)
         picture_taker->take_printed();
         picture_taker->report_.items.emplace_back(drawn(picture));
     });
+    show_animations_by([](const Animation& animation, Shown /*where*/) {
+        picture_taker->take_printed();
+        picture_taker->report_.items.emplace_back(drawn(animation));
+    });
 }
 
 ScriptReport::~ScriptReport() {
@@ -66,6 +70,7 @@ void ScriptReport::give_back() {
     output_ = -1;
     picture_taker = nullptr;
     show_pictures_by(nullptr);
+    show_animations_by(nullptr);
 }
 
 void ScriptReport::take_printed() {

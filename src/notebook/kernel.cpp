@@ -14,6 +14,7 @@
 #include <optional>
 #include <string>
 
+#include "api/animate.hpp"
 #include "api/data.hpp"
 #include "api/picture.hpp"
 #include "files/file.hpp"
@@ -96,6 +97,11 @@ Json shown_picture(const api::Picture& picture) {
 void show_picture(const api::Picture& picture, api::Shown where) {
     if (where == api::Shown::in_file) return;
     answer({{"show", shown_picture(picture)}});
+}
+
+void show_animation(const api::Animation& animation, api::Shown where) {
+    if (where == api::Shown::in_file) return;
+    answer({{"show", {{"text/plain", animation.title}, {"image/svg+xml", animation.svg}}}});
 }
 
 int show_values_as_json(lua_State* L) {
@@ -208,6 +214,7 @@ bool run_kernel(lua_State* L, int answers) {
     prompt::Session session(L);
     session.show_values = lua::guarded<show_values_as_json>;
     api::show_pictures_by(show_picture);
+    api::show_animations_by(show_animation);
     while (!session.leaving) {
         const auto line = requests.next();
         if (!line) break;
@@ -219,6 +226,7 @@ bool run_kernel(lua_State* L, int answers) {
         answer(answered);
     }
     api::show_pictures_by(nullptr);
+    api::show_animations_by(nullptr);
     return true;
 }
 

@@ -80,6 +80,35 @@ test("names of columns are no markup, bytes that are no letters no letters, and 
     raises_here(function() r:add{ io.stdout } end, "r:add: not all that is in this table can be shown")
 end)
 
+test("nothing wide pushes the page apart, and what is long may go on over the next sheet", function()
+    local r = report{ title = "x" }
+    r:table(data{ n = vector.linspace(1, 40, 40) })
+    r:add(("line\n"):rep(40))
+    r:add "short"
+    local page = saved(r, ".html")
+    assert(page:find('<div class="table" style="overflow-x: auto"><table>\n<thead>', 1, true), page)
+    assert(page:find('<pre class="long">line', 1, true), page)
+    assert(page:find("overflow-wrap: anywhere", 1, true) and page:find("only light", 1, true))
+end)
+
+test("a run in motion is on the page, and beside Markdown", function()
+    local r = report{ title = "x" }
+    r:animate(run, { speed = 2, from = 1, to = 3 })
+    r:animate(run)
+    local page = saved(r, ".html")
+    equal(select(2, page:gsub("<title>A run in motion, t = 1 to 3</title>", "")), 1)
+    assert(page:find('id="p2-floor"', 1, true) and page:find('url(#p2-floor)', 1, true) and page:find('dur="1.000s"', 1, true))
+    local text, name = saved(r, ".md")
+    for i = 1, 2 do
+        local picture = name:gsub("%.md$", ("-%d.svg"):format(i))
+        assert(read(picture):find("animateTransform", 1, true))
+        os.remove(picture)
+    end
+    assert(text:find("![A run in motion, t = 0 to 6](", 1, true), text)
+    raises_here(function() r:animate(3) end, "r:animate takes a run, got 3")
+    raises_here(function() r:animate(run, { file = "x.svg" }) end, "file")
+end)
+
 test("what cannot be reported is told in a sentence", function()
     raises_here(function() report{} end, "report needs title")
     raises_here(function() report{ title = 3 } end, "title must be")

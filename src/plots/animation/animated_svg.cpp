@@ -29,8 +29,7 @@ public:
         : scene_(scene), first_(scene.spring ? 110 : 40), last_(sheet_width - (scene.walls ? 44 : 32)) {}
 
     std::string text() {
-        const std::string title =
-            fmt::format("A run in motion, t = {:.6g} to {:.6g}", scene_.frames.front().t, scene_.frames.back().t);
+        const std::string title = title_of(scene_);
         add("<svg xmlns=\"http://www.w3.org/2000/svg\" role=\"img\" aria-label=\"{0}\" viewBox=\"0 0 {1} {2}\" "
             "width=\"{1}\" height=\"{2}\" font-family=\"Arial, sans-serif\" font-size=\"11\" fill=\"{3}\">\n<title>{0}</title>\n",
             title, sheet_width, sheet_height, grey_ink);
@@ -182,6 +181,10 @@ private:
 };
 
 }  // namespace
+
+std::string title_of(const Scene& scene) {
+    return fmt::format("A run in motion, t = {:.6g} to {:.6g}", scene.frames.front().t, scene.frames.back().t);
+}
 
 std::string animated_svg(const Scene& scene) {
     return AnimatedSvg(scene).text();

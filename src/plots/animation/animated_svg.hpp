@@ -10,4 +10,7 @@ namespace dinal::plots::animation {
 /// The mass, its spring, walls and surface, and below them theta over t with a dot that goes along. Repeats for ever.
 std::string animated_svg(const Scene& scene);
 
+/// "A run in motion, t = 0 to 10"
+std::string title_of(const Scene& scene);
+
 }  // namespace dinal::plots::animation
