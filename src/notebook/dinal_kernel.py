@@ -5,8 +5,11 @@ scripts print comes on standard output and standard error, answers as lines of J
 (docs/notebook.md).
 """
 
+import base64
+import codecs
 import json
 import os
+import re
 import selectors
 import signal
 import subprocess
@@ -100,6 +103,17 @@ class Dinal:
                 self.interrupt()
 
 
+def with_image(forms):
+    """A picture as an image of HTML, too: as SVG in the page, nbconvert 6.5 (Debian 12) takes all lines out of it, and
+    several on a page mix up their names."""
+    if "image/svg+xml" not in forms or "text/html" in forms:
+        return forms
+    svg = base64.b64encode(forms["image/svg+xml"].encode()).decode()
+    title = re.search("<title>(.*?)</title>", forms["image/svg+xml"], re.DOTALL)
+    words = title.group(1).replace('"', "&quot;") if title else "a picture"
+    return {**forms, "text/html": f'<img alt="{words}" style="max-width: 100%" src="data:image/svg+xml;base64,{svg}">'}
+
+
 class Output:
     """What one cell prints, up to a limit."""
 
@@ -107,13 +121,14 @@ class Output:
         self.kernel = kernel
         self.left = MOST_OUTPUT
         self.dropped = 0
+        self.letters = {name: codecs.getincrementaldecoder("utf-8")("replace") for name in ("stdout", "stderr")}
 
     def hear(self, name, piece):
         shown = piece[:self.left]
         self.left -= len(shown)
         self.dropped += len(piece) - len(shown)
         if shown:
-            self.kernel.write(name, shown.decode("utf-8", "replace"))
+            self.kernel.write(name, self.letters[name].decode(shown))  # a piece may end within a letter
 
     def finish(self):
         if self.dropped:
@@ -158,10 +173,11 @@ class DinalKernel(Kernel):
             if silent:
                 return
             if "show" in message:
-                self.send_response(self.iopub_socket, "display_data", {"data": message["show"], "metadata": {}})
+                self.send_response(self.iopub_socket, "display_data", {"data": with_image(message["show"]), "metadata": {}})
             else:
                 self.send_response(self.iopub_socket, "execute_result",
-                                   {"data": message["value"], "metadata": {}, "execution_count": self.execution_count})
+                                   {"data": with_image(message["value"]), "metadata": {},
+                                    "execution_count": self.execution_count})
 
         try:
             answer = self.dinal.ask({"do": "execute", "code": code}, hear, show)

@@ -4,12 +4,15 @@
     kernel_test.py PROGRAM SOURCE
 """
 
+import base64
 import json
 import os
+import re
 import subprocess
 import sys
 import tempfile
 import time
+from xml.etree import ElementTree
 
 PROGRAM, SOURCE = sys.argv[1:]
 
@@ -66,6 +69,13 @@ class Notebook:
         return seen
 
 
+def image_in(html):
+    """The SVG of an <img>, which a browser shows only with its namespace."""
+    match = re.fullmatch('<img alt="[^"<]+" style="max-width: 100%" src="data:image/svg\\+xml;base64,([^"]+)">', html)
+    svg = base64.b64decode(match.group(1)).decode() if match else "<nothing/>"
+    return svg if ElementTree.fromstring(svg).tag == "{http://www.w3.org/2000/svg}svg" else ""
+
+
 def cells():
     notebook = Notebook()
     seen = notebook.run("x = 3\nprint('hello')\nx * 2")
@@ -75,6 +85,11 @@ def cells():
 
     seen = notebook.run("run = nondimensional{}:simulate{ theta0 = 1, t_end = 3, dt = 0.01 }\nrun:plot()")
     check("a plot is an SVG", "<svg" in seen["shown"][0]["image/svg+xml"] and len(seen["shown"]) == 1, seen["stderr"])
+    check("and an image for pages", image_in(seen["shown"][0]["text/html"]) == seen["shown"][0]["image/svg+xml"], seen)
+    seen = notebook.run("run:animate()")
+    check("a run in motion, too", "<animateTransform" in image_in(seen["shown"][0]["text/html"]), seen["stderr"])
+    seen = notebook.run("print(('\u00e4'):rep(200000))")
+    check("letters are whole", seen["stdout"] == "\u00e4"*200000 + "\n", seen["stdout"][:100])
     seen = notebook.run("run:plot{ show = false }")
     check("so is a picture that is a value", "<svg" in seen["value"].get("image/svg+xml", ""), seen)
     seen = notebook.run("data{ a = { 1, 2 }, b = { '<b>', '&' } }")
@@ -154,6 +169,10 @@ def notebooks():
                 seen = ["".join(output.get("text", "")) or output.get("data", {}).get("text/plain", "")
                         for output in new.outputs if not output.get("data", {}).get("image/svg+xml")]
                 check(f"{name}, cell {number + 1}", told == seen, seen)
+        page = subprocess.run([sys.executable, "-m", "nbconvert", "--to", "html", "--stdout", target],
+                              capture_output=True, text=True, cwd=HOME, check=False).stdout
+        pictures = sum("image/svg+xml" in output.get("data", {}) for cell in after.cells for output in cell.get("outputs", []))
+        check(f"{name} has its pictures on a page", page.count('src="data:image/svg+xml;base64,') == pictures > 0, pictures)
 
 
 said = subprocess.run([PROGRAM, "--jupyter-install"], capture_output=True, text=True, check=False)
