@@ -15,10 +15,10 @@ namespace {
 
 constexpr double no_number = std::numeric_limits<double>::quiet_NaN();
 
-// Of a hundred questions at most three are put again: one of 64 in turn, and one of 128 because of a jump.
+// Of a hundred questions at most three are put again: one of 64 in turn, and two of 160 because of a jump.
 constexpr std::uint64_t first_again = 12;  ///< the first question after which one is put again
 constexpr std::uint64_t questions_between = 64;
-constexpr std::uint64_t questions_a_jump = 128;
+constexpr std::uint64_t questions_a_jump = 160;
 /// A jump is a change this many times as great as changes mostly are.
 constexpr double jump_factor = 8;
 
@@ -75,50 +75,42 @@ bool Witness::ask_again() {
     return true;
 }
 
+/// Takes note of an answer, and asks again what it makes doubtful. False when the function is found out.
+bool Witness::heard(const Answer& answer, std::span<const double> states) {
+    ++asked_;
+    bool jumped = false;
+    if (asked_ >= first_again && answer.t >= answers_[last_].t) {
+        const double change = std::fabs(answer.value - answers_[last_].value);
+        if (change > jump_factor * usual_) {
+            std::swap(last_, before_jump_);
+            jumped = jumps_asked_ * questions_a_jump <= asked_;
+        }
+        usual_ += (change - usual_) / 16;
+    }
+    keep(last_, answer, states);
+    keep_for_later(answer, states);
+    if (!jumped) return asked_ < next_ || ask_again();
+    ++jumps_asked_;
+    // What a relay in a closure said before it switched, it does not say again; nor chance what it said once.
+    return stands_by(before_jump_) && stands_by(last_);
+}
+
 double Witness::value_with(double t, const model::State& state, std::span<const double> states) {
     if (testimony_->over) return function_->value_with(t, state, states);
     if (testimony_->found) return no_number;
     const double value = function_->value_with(t, state, states);
     if (!std::isfinite(value)) return value;
-    ++asked_;
-    const Answer& last = answers_[last_];
-    if (asked_ >= first_again && t >= last.t) {
-        const double change = std::fabs(value - last.value);
-        if (change > jump_factor * usual_) {
-            // What a relay in a closure said before it switched, it does not say again.
-            std::swap(last_, before_jump_);
-            if (jumps_asked_ * questions_a_jump <= asked_) {
-                ++jumps_asked_;
-                if (!stands_by(before_jump_)) return no_number;
-            }
-        }
-        usual_ += (change - usual_) / 16;
-    }
-    keep(last_, {t, state, value}, states);
-    if (asked_ >= next_ && !ask_again()) return no_number;
-    keep_for_later({t, state, value}, states);
-    return value;
+    return heard({t, state, value}, states) ? value : no_number;
 }
 
 std::size_t Witness::fill(std::span<const double> times, std::span<double> out) {
     if (testimony_->over) return function_->fill(times, out);
-    if (testimony_->found) {
-        out[0] = no_number;
-        return 0;
+    std::size_t good = testimony_->found ? 0 : function_->fill(times, out);
+    for (std::size_t i = 0; i < good; ++i) {
+        if (!heard({times[i], {}, out[i]}, {})) good = 0;
     }
-    const std::size_t good = function_->fill(times, out);
-    if (good == 0) return good;
-    const std::uint64_t before = asked_;
-    if (before == 0) keep(first_place, {times[0], {}, out[0]}, {});
-    for (std::uint64_t n = before / 4 * 4 + 4; n <= before + good; n += 4) {
-        const std::size_t i = n - before - 1;
-        asked_ = n;
-        keep_for_later({times[i], {}, out[i]}, {});
-    }
-    asked_ = before + good;
-    if (good < times.size() || asked_ < next_ || ask_again()) return good;
-    out[0] = no_number;
-    return 0;
+    if (testimony_->found) out[0] = no_number;
+    return good;
 }
 
 void Witness::conclude() {

@@ -58,6 +58,7 @@ private:
     void keep_for_later(const Answer& answer, std::span<const double> states);
     bool stands_by(std::size_t place);
     bool ask_again();
+    bool heard(const Answer& answer, std::span<const double> states);
 
     std::shared_ptr<model::UserFunction> function_;
     std::shared_ptr<Testimony> testimony_;
@@ -65,7 +66,7 @@ private:
     const char* argument_;
 
     std::uint64_t asked_ = 0, next_ = 0;  ///< questions, and when one of them comes again
-    std::uint64_t jumps_asked_ = 0;       ///< of those, because of a jump
+    std::uint64_t jumps_asked_ = 0;       ///< jumps because of which two were put again
     std::size_t turn_ = 0, last_ = first_place + 1, before_jump_ = first_place + 2;
     double usual_ = 0;         ///< change from one question to the next
     std::uint64_t known_ = 0;  ///< a bit for each place
