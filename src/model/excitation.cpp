@@ -36,7 +36,7 @@ double ask(const Scripted& s, double t, const State& state, Side side) {
 /// the sum, so that no other script is called after it.
 template <Side side>
 double sum_of(std::span<const Component> components, double t, const State& state) {
-    const double native_t = side == Side::before ? std::nextafter(t, -never) : t;
+    const double native_t = side == Side::before ? std::nextafter(t, -never) : t, rest = t - native_t;
     double sum = 0;
     for (const Component& c : components) {
         if (c.gain == 0 || native_t < c.from || native_t >= c.to) {
@@ -51,9 +51,9 @@ double sum_of(std::span<const Component> components, double t, const State& stat
             continue;
         }
         sum += c.gain * std::visit(
-                            [native_t](const auto& term) {
+                            [native_t, rest](const auto& term) {
                                 if constexpr (terms::NativeTerm<std::decay_t<decltype(term)>>) {
-                                    return term.value(native_t);
+                                    return terms::value_near(term, native_t, rest);
                                 } else {
                                     return 0.0;
                                 }
@@ -159,6 +159,18 @@ bool Excitation::has_feedback() const {
 
 bool Excitation::has_script() const {
     return std::any_of(components().begin(), components().end(), is_script);
+}
+
+bool Excitation::tells_rests() const {
+    return std::all_of(components().begin(), components().end(), [](const Component& c) {
+        return std::visit(
+            [](const auto& term) {
+                return requires {
+                    term.value(0.0, 0.0);
+                };
+            },
+            c.term);
+    });
 }
 
 bool Excitation::may_go_on() const {

@@ -42,8 +42,11 @@ public:
     /// M needs theta and velocity.
     [[nodiscard]] bool has_feedback() const;
     [[nodiscard]] bool has_script() const;
+    /// All of it is known at times between two doubles.
+    [[nodiscard]] bool tells_rests() const;
     /// out[i] = value(times[i]); not for feedback. Returns how many were filled: fewer when one is not finite.
-    std::size_t fill(std::span<const double> times, std::span<double> out) const;
+    /// `rests`, if given, is what was rounded off each time, for the terms that tell such times apart.
+    std::size_t fill(std::span<const double> times, std::span<double> out, std::span<const double> rests = {}) const;
 
     /// After a value that was not finite: whether the functions in it may be asked again, at other times.
     [[nodiscard]] bool may_go_on() const;

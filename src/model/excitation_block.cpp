@@ -10,9 +10,10 @@ namespace dinal::model {
 namespace {
 
 template <class T>
-std::size_t add(const T& term, const Component& c, std::span<const double> times, std::span<double> out) {
+std::size_t add(const T& term, const Component& c, std::span<const double> times, std::span<double> out,
+                std::span<const double> rests) {
     const std::size_t n = times.size();
-    if (c.from == -never && c.to == never) {
+    if (rests.empty() && c.from == -never && c.to == never) {
         for (std::size_t i = 0; i < n; ++i) {
             out[i] += c.gain * term.value(times[i]);
         }
@@ -20,7 +21,7 @@ std::size_t add(const T& term, const Component& c, std::span<const double> times
     }
     for (std::size_t i = 0; i < n; ++i) {
         if (times[i] >= c.from && times[i] < c.to) {
-            out[i] += c.gain * term.value(times[i]);
+            out[i] += c.gain * terms::value_near(term, times[i], rests.empty() ? 0 : rests[i]);
         }
     }
     return n;
@@ -41,12 +42,13 @@ bool evenly_spaced(std::span<const double> times, double spacing) {
 /// At evenly spaced times, as a stepping loop has them, a sine costs two products by the addition theorem:
 /// sin(a + b) with `a` at every sixteenth time and `b` from a table of sixteen. Good to the rounding of the times.
 // NOTE: but never above the amplitude, as sin() itself: a load of amplitude Re that rounding lifted would end a stick.
-std::size_t add(const Harmonic& h, const Component& c, std::span<const double> times, std::span<double> out) {
+std::size_t add(const Harmonic& h, const Component& c, std::span<const double> times, std::span<double> out,
+                std::span<const double> rests) {
     constexpr std::size_t stride = 16;
     const std::size_t n = times.size();
     const double spacing = n > 1 ? (times[n - 1] - times[0]) / static_cast<double>(n - 1) : 0;
     if (n < 2 * stride || c.from != -never || c.to != never || !evenly_spaced(times, spacing)) {
-        return add<Harmonic>(h, c, times, out);
+        return add<Harmonic>(h, c, times, out, rests);
     }
     std::array<double, stride> sine{}, cosine{};
     for (std::size_t j = 0; j < stride; ++j) {
@@ -66,7 +68,8 @@ std::size_t add(const Harmonic& h, const Component& c, std::span<const double> t
 }
 
 /// In blocks, which are short enough for the stack.
-std::size_t add(const Scripted& script, const Component& c, std::span<const double> times, std::span<double> out) {
+std::size_t add(const Scripted& script, const Component& c, std::span<const double> times, std::span<double> out,
+                std::span<const double> /*rests*/) {
     constexpr std::size_t block = 128;
     std::array<double, block> own_times;
     std::array<double, block> values;
@@ -112,7 +115,8 @@ std::size_t fill_in_turn(const Excitation& excitation, std::span<const double> t
 
 }  // namespace
 
-std::size_t Excitation::fill(std::span<const double> times, std::span<double> out) const {
+std::size_t Excitation::fill(std::span<const double> times, std::span<double> out,
+                             std::span<const double> rests) const {
     std::size_t n = times.size();
     if (script_count(components()) > 1) {
         return fill_in_turn(*this, times, out);
@@ -120,7 +124,7 @@ std::size_t Excitation::fill(std::span<const double> times, std::span<double> ou
     std::fill_n(out.begin(), n, 0.0);
     for (const Component& c : components()) {
         if (c.gain != 0) {
-            n = std::visit([&](const auto& term) { return add(term, c, times.first(n), out.first(n)); }, c.term);
+            n = std::visit([&](const auto& term) { return add(term, c, times.first(n), out.first(n), rests); }, c.term);
         }
     }
     const auto filled = out.first(n);

@@ -317,3 +317,28 @@ TEST_CASE("an overdamped mass that creeps to its place is told to be at rest, no
         CHECK(run.state_at_stop.theta == within(0.3, 1e-11));
     }
 }
+
+TEST_CASE("a blow far shorter than times near it can be told apart gives all of its impulse", "[spectral]") {
+    // Of some hundred times of the last bit of t; its ends are doubles. What comes after it is a free motion.
+    constexpr double at = 1, width = 0x1p-44, end = 1.3, impulse = 1;
+    const Oscillator system =
+        Oscillator::make({.inertia = 1 / (4 * pi * pi), .stiffness = 1, .damping = 0.1 / pi, .kinetic_friction = 0.01})
+            .value();
+    const ExactMotion after(system, {{at, {}}}, {0, impulse / system.inertia()}, at, end);
+    const auto table = [](std::vector<double> t, std::vector<double> M, Interpolation between) {
+        return std::make_shared<const Samples>(Samples{.t = std::move(t), .M = std::move(M), .interpolation = between});
+    };
+    const std::vector<Term> blows{
+        Exponential{1 / width, width, at}, HalfSine{pi / 2 / width, at, width},
+        Gaussian{1 / (std::sqrt(2 * pi) * width), at, width}, Pulse{1 / width, at, width},
+        Polyline(table({at, at + width / 2, at + width}, {0, 2 / width, 0}, Interpolation::linear)),
+        // Simpson's rule, of which the parabola through these is an example.
+        Polyline(table({at, at + width / 2, at + width}, {0, 1.5 / width, 0}, Interpolation::cubic))};
+    for (const Term& blow : blows) {
+        INFO(made(blow).components().front().term.index());
+        auto run = simulate(system, made(blow), {}, {0, end}, Grid::at({end}), Spectral{});
+        REQUIRE(run);
+        // It acts up to 40 widths late, in which the mass goes 40 rad per time unit.
+        CHECK(run->state_at_stop.theta == within(static_cast<double>(after.at(end).theta), 1e-11));
+    }
+}

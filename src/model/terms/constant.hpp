@@ -10,7 +10,7 @@ struct Constant {
 
     double level = 0;
 
-    [[nodiscard]] double value(double) const { return level; }
+    [[nodiscard]] double value(double, double = 0) const { return level; }
     [[nodiscard]] double next_break(double) const { return never; }
     [[nodiscard]] double constant_from() const { return -never; }
     [[nodiscard]] double most() const { return std::fabs(level); }

@@ -11,7 +11,9 @@ struct Exponential {
 
     double amplitude = 1, tau = 0, at = 0;
 
-    [[nodiscard]] double value(double t) const { return t < at ? 0 : amplitude * std::exp(-(t - at) / tau); }
+    [[nodiscard]] double value(double t, double rest = 0) const {
+        return t < at ? 0 : amplitude * std::exp(-((t - at) + rest) / tau);
+    }
     [[nodiscard]] double next_break(double t) const { return first_after(t, {at}); }
     [[nodiscard]] double constant_from() const { return never; }
     [[nodiscard]] double most() const { return amplitude == 0 ? 0 : tau > 0 ? std::fabs(amplitude) : never; }

@@ -11,8 +11,8 @@ struct Gaussian {
 
     double amplitude = 1, at = 0, width = 0;
 
-    [[nodiscard]] double value(double t) const {
-        const double x = (t - at) / width;
+    [[nodiscard]] double value(double t, double rest = 0) const {
+        const double x = ((t - at) + rest) / width;
         return amplitude * std::exp(-0.5 * x * x);
     }
     [[nodiscard]] double next_break(double) const { return never; }

@@ -11,11 +11,11 @@ struct HalfSine {
 
     double amplitude = 1, at = 0, width = 0;
 
-    [[nodiscard]] double value(double t) const {
+    [[nodiscard]] double value(double t, double rest = 0) const {
         if (t < at || t >= at + width) {
             return 0;
         }
-        return amplitude * std::sin(std::numbers::pi * ((t - at) / width));
+        return amplitude * std::sin(std::numbers::pi * (((t - at) + rest) / width));
     }
     [[nodiscard]] double next_break(double t) const { return first_after(t, {at, at + width}); }
     [[nodiscard]] double constant_from() const { return at + width; }

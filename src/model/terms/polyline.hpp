@@ -51,9 +51,9 @@ struct Polyline {
 
     Polyline(std::shared_ptr<const Samples> points) : samples(prepared(std::move(points))) {}
 
-    [[nodiscard]] double value(double t) const {
+    [[nodiscard]] double value(double t, double rest = 0) const {
         const Samples& s = *samples;
-        if (s.period) return on_piece(piece(t), t);
+        if (s.period) return on_piece(piece(t), t, rest);
         if (!(t >= s.t.front())) {
             return s.M.front();
         }
@@ -61,8 +61,8 @@ struct Polyline {
             return s.M.back();
         }
         const std::size_t i = segment(t);
-        if (!s.slopes.empty()) return on_piece(piece_of(i), t);
-        return s.M[i] + (s.M[i + 1] - s.M[i]) * ((t - s.t[i]) / (s.t[i + 1] - s.t[i]));
+        if (!s.slopes.empty()) return on_piece(piece_of(i), t, rest);
+        return s.M[i] + (s.M[i + 1] - s.M[i]) * (((t - s.t[i]) + rest) / (s.t[i + 1] - s.t[i]));
     }
     [[nodiscard]] double next_break(double t) const {
         const std::vector<double>& times = samples->t;
@@ -114,10 +114,10 @@ private:
         const double a = s.slopes[now.first], b = s.slopes[now.second];
         return {s.M[now.first], a, (3 * rise - 2 * a - b) / h, (a + b - 2 * rise) / (h * h)};
     }
-    [[nodiscard]] double on_piece(const Piece& now, double t) const {
+    [[nodiscard]] double on_piece(const Piece& now, double t, double rest) const {
         const Samples& s = *samples;
         if (now.first == now.second) return s.M.front();
-        const double d = t - now.from;
+        const double d = (t - now.from) + rest;
         if (s.slopes.empty()) return s.M[now.first] + (s.M[now.second] - s.M[now.first]) * (d / (now.to - now.from));
         const std::array<double, 4> c = powers(now);
         return c[0] + d * (c[1] + d * (c[2] + d * c[3]));

@@ -11,7 +11,7 @@ struct Pulse {
 
     double amplitude = 1, at = 0, width = 0;
 
-    [[nodiscard]] double value(double t) const { return t >= at && t < at + width ? amplitude : 0; }
+    [[nodiscard]] double value(double t, double = 0) const { return t >= at && t < at + width ? amplitude : 0; }
     [[nodiscard]] double next_break(double t) const { return first_after(t, {at, at + width}); }
     [[nodiscard]] double constant_from() const { return at + width; }
     [[nodiscard]] double most() const { return std::fabs(amplitude); }

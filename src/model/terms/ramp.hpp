@@ -11,11 +11,11 @@ struct Ramp {
 
     double slope = 1, at = 0, width = never;
 
-    [[nodiscard]] double value(double t) const {
+    [[nodiscard]] double value(double t, double rest = 0) const {
         if (t < at) {
             return 0;
         }
-        return slope * (t < at + width ? t - at : width);
+        return slope * (t < at + width ? (t - at) + rest : width);
     }
     [[nodiscard]] double next_break(double t) const { return first_after(t, {at, at + width}); }
     [[nodiscard]] double constant_from() const { return at + width; }

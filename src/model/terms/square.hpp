@@ -19,7 +19,7 @@ struct Square {
         const double n = cycle_at(t, (t - at) / period, edge);
         return {edge(n + duty), edge(n + 1)};
     }
-    [[nodiscard]] double value(double t) const { return t < cycle(t).fall ? amplitude : -amplitude; }
+    [[nodiscard]] double value(double t, double = 0) const { return t < cycle(t).fall ? amplitude : -amplitude; }
     [[nodiscard]] double next_break(double t) const {
         const Cycle c = cycle(t);
         return later(t, c.fall > t ? c.fall : c.end);

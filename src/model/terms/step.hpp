@@ -11,7 +11,7 @@ struct Step {
 
     double level = 1, at = 0;
 
-    [[nodiscard]] double value(double t) const { return t < at ? 0 : level; }
+    [[nodiscard]] double value(double t, double = 0) const { return t < at ? 0 : level; }
     [[nodiscard]] double next_break(double t) const { return first_after(t, {at}); }
     [[nodiscard]] double constant_from() const { return at; }
     [[nodiscard]] double most() const { return std::fabs(level); }

@@ -45,6 +45,8 @@ struct TermText {
 /// The answers of a term that is a function of time alone. The ranges of its options are in `about`; it may also have
 ///     std::optional<text::Error> complaint() const;   what is wrong with it besides
 ///     void closed_form(double inside, Sum& sum) const;   for any Sum: says what it is, as a formula (closed_form.hpp)
+///     double value(double t, double rest = 0) const;   at t + rest, where t is that rounded: what it does may be so
+///     quick that rounded times are too far apart for it
 template <class T>
 concept NativeTerm = requires(const T& term, T& own, double x) {
     { term.value(x) } -> std::same_as<double>;
@@ -63,6 +65,16 @@ concept NativeTerm = requires(const T& term, T& own, double x) {
     { term.formula(x) } -> std::same_as<std::string>;
     { T::about } -> std::same_as<const TermText&>;
 };
+
+/// At t + rest, if the term can tell that from t.
+template <NativeTerm T>
+double value_near(const T& term, double t, double rest) {
+    if constexpr (requires { term.value(t, rest); }) {
+        return term.value(t, rest);
+    } else {
+        return term.value(t);
+    }
+}
 
 /// x, or at least the next double after t: a break must always lead on.
 inline double later(double t, double x) {

@@ -33,6 +33,7 @@ constexpr std::size_t most_found_breaks = 50;
 }  // namespace
 
 double PanelSolver::lost_in_time() const {
+    if (tells_rests_) return 0;
     const double slope = chebyshev::derivative_bound<1>(panel_.M);
     const double late = std::max(std::fabs(panel_.start.hi), std::fabs(panel_.end));
     // A jump has a slope, too, on a panel short enough; it must not pass for this.
@@ -124,7 +125,7 @@ PanelSolver::Attempt PanelSolver::judge(double unresolved) {
     }
     if (unresolved > gross) missed_step();
     const double late = std::max(std::fabs(panel_.start.hi), std::fabs(panel_.end));
-    if (2 * panel_.h <= std::max(shortest * pace_, 16 * epsilon * late)) {
+    if (!tells_rests_ && 2 * panel_.h <= std::max(shortest * pace_, 16 * epsilon * late)) {
         // Whatever goes on here is over before it can move the mass. A feedback that switches may do so again at once.
         h_ = feedback_ ? 64 * panel_.h : h_max_;
         if (++patience_.unresolved <= most_unresolved) return pass_over();

@@ -22,6 +22,7 @@ PanelSolver::PanelSolver(const Problem& problem, const Spectral& options)
       h_max_(options.longest(problem) / 2),
       feedback_(problem.excitation.has_feedback() || system_.has_remainder()),
       script_(problem.excitation.has_script()),
+      tells_rests_(problem.excitation.tells_rests()),
       oscillator_(problem.system),
       h_(h_max_),
       patience_{.since = problem.window.start} {}
@@ -55,8 +56,13 @@ void PanelSolver::lay(const Present& now, model::Motion way, double h, double en
     panel_.length = 2 * h;
     panel_.end = end;
     if (system_.has_remainder()) own_spring_ = std::fabs(system_.spring(now.y.theta));
-    for (std::size_t j = 0; j + 1 < points; ++j) panel_.times[j] = panel_.time(chebyshev::nodes[j]);
+    const double before_end = std::max(std::nextafter(end, -model::never), now.clock.hi);  // where M may jump
+    for (std::size_t j = 0; j + 1 < points; ++j) {
+        panel_.times[j] = std::min(panel_.time(chebyshev::nodes[j]), before_end);
+        panel_.rests[j] = h * (1 + chebyshev::nodes[j]) - now.clock.until(panel_.times[j]);
+    }
     panel_.times[points - 1] = panel_.end;
+    panel_.rests[points - 1] = 2 * h - now.clock.until(panel_.end);
 }
 
 double PanelSolver::sampled(std::size_t node, const model::State& state) const {
@@ -78,7 +84,8 @@ bool PanelSolver::sample_all(const Present& now) {
         const bool at_break = panel_.ends == SolvedPanel::End::at_break;
         const std::size_t last = at_break ? points - 1 : points;
         const std::size_t count = last - first;
-        const std::size_t good = excitation_.fill({&panel_.times[first], count}, {&panel_.samples[first], count});
+        const std::size_t good = excitation_.fill({&panel_.times[first], count}, {&panel_.samples[first], count},
+                                                  {&panel_.rests[first], count});
         if (good < count) return bad_at(first + good);
         if (at_break) panel_.samples[points - 1] = excitation_.value_before(panel_.end);
         if (!std::isfinite(panel_.samples[points - 1])) return bad_at(points - 1);

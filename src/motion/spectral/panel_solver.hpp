@@ -35,6 +35,7 @@ struct SolvedPanel : Panel {
     double end = 0;
     End ends = End::inside;
     chebyshev::Samples times{}, samples{};         ///< M as it was given, at the nodes
+    chebyshev::Samples rests{};                    ///< what was rounded off the times
     chebyshev::Series<chebyshev::points + 1> v{};  ///< h theta'
     chebyshev::Series<chebyshev::points + 2> p{};  ///< theta - begin.theta
 
@@ -150,7 +151,7 @@ private:
     double tolerance_;
     double pace_;   // what short times are measured in: T0, or all of a run that is shorter
     double h_max_;  // half the length of the longest panel
-    bool feedback_, script_;
+    bool feedback_, script_, tells_rests_;
     const model::Oscillator& oscillator_;  // whose functions may fail as M may
 
     double h_;                          // half the length of the next panel
