@@ -51,19 +51,33 @@ void set_partial_sweep(lua_State* L, const SweepTask& task, const SweepResults& 
     lua_pop(L, 1);
 }
 
+void add_column(source::Fingerprint& print, const DataColumn& column) {
+    print.add(column.name);
+    print.add(static_cast<double>(column.size()));
+    if (const lua::Vector* numbers = column.numbers()) {
+        for (const double x : numbers->values()) print.add(x);
+    } else {
+        for (const std::string& word : *std::get<Words>(column.values)) print.add(word);
+    }
+}
+
+bool add_data(lua_State* L, int index, source::Fingerprint& print) {
+    const auto* data = lua::test<DataHandle>(L, index);
+    if (data == nullptr) return false;
+    print.add((*data)->heading);
+    for (const DataColumn& column : (*data)->columns) {
+        add_column(print, column);
+        print.add(column.unit);
+    }
+    return true;
+}
+
 std::uint64_t fingerprint_of(lua_State* L, const SweepTask& task) {
-    source::Fingerprint print(L);
+    source::Fingerprint print(L, add_data);
     print.add(std::string_view(task.call));
     for (const double number : task.settings) print.add(number);
     const SweepGrid& grid = task.grid;
-    for (const DataColumn& parameter : grid.parameters()) {
-        print.add(parameter.name);
-        if (const lua::Vector* numbers = parameter.numbers()) {
-            for (const double x : numbers->values()) print.add(x);
-        } else {
-            for (const std::string& word : *std::get<Words>(parameter.values)) print.add(word);
-        }
-    }
+    for (const DataColumn& parameter : grid.parameters()) add_column(print, parameter);
     print.add(task.seed);
     print.add_value(task.function);
     return print.number();

@@ -61,6 +61,14 @@ void push_dinal_table(lua_State* L) {
     lua_rawgetp(L, LUA_REGISTRYINDEX, &dinal_key);
 }
 
+bool is_global_table(lua_State* L, int index) {
+    index = lua_absindex(L, index);
+    lua_pushglobaltable(L);
+    const bool same = lua_rawequal(L, -1, index) != 0;
+    lua_pop(L, 1);
+    return same;
+}
+
 void copy_fields(lua_State* L) {
     lua_pushnil(L);
     while (lua_next(L, -3) != 0) {
@@ -121,6 +129,10 @@ bool is_of_dinal(lua_State* L, std::string_view name) {
 
 void push_standard_globals(lua_State* L) {
     lua_rawgetp(L, LUA_REGISTRYINDEX, &standard_key);
+}
+
+void push_standard_fields(lua_State* L) {
+    lua_rawgetp(L, LUA_REGISTRYINDEX, &fields_key);
 }
 
 std::vector<std::string> users_globals(lua_State* L) {

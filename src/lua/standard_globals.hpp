@@ -15,6 +15,9 @@ void make_dinal_table(lua_State* L);
 /// Pushes the table that make_dinal_table() made, whatever the user has done to the global of that name.
 void push_dinal_table(lua_State* L);
 
+/// The value at the index is the table of all globals.
+bool is_global_table(lua_State* L, int index);
+
 /// Copies all fields of the table below the top into the table on the top.
 void copy_fields(lua_State* L);
 
@@ -23,6 +26,9 @@ void note_standard_globals(lua_State* L);
 
 /// Pushes a table of them: name -> value.
 void push_standard_globals(lua_State* L);
+
+/// Pushes a table of the libraries among them as they were at the start: library -> a copy of its fields.
+void push_standard_fields(lua_State* L);
 
 /// Whether a global of that name was there at the start, and is something else now; the same of a field in a library
 /// that was there at the start: math.pi.

@@ -14,6 +14,8 @@ namespace dinal::model {
 
 class Controller : public terms::UserFunction {
 public:
+    std::shared_ptr<terms::UserFunction> function;  ///< of t, theta, velocity, states; none where a relay needs none
+
     /// Outside of a run there is no value.
     double value(double /*t*/, const State& /*state*/) final { return std::numeric_limits<double>::quiet_NaN(); }
     bool may_go_on() final { return false; }
@@ -21,7 +23,6 @@ public:
 
 /// Asked once at each instant at + n every, in order; what it says acts `delay` later and is held until the next.
 struct SampledController final : Controller {
-    std::shared_ptr<terms::UserFunction> function;
     double every = 0, delay = 0;
     double at = 0;
 };
@@ -32,14 +33,12 @@ struct RelayController final : Controller {
     double on = 0, off = 0;
     std::array<double, 2> levels{};
     Of of = Of::theta;
-    std::string state;                              ///< the name, of a state
-    std::shared_ptr<terms::UserFunction> function;  ///< of t, theta, velocity, states
+    std::string state;  ///< the name, of a state
     bool starts_on = true;
 };
 
 /// A function of what was measured `by` ago; before the start that is the initial state.
 struct DelayedController final : Controller {
-    std::shared_ptr<terms::UserFunction> function;
     double by = 0;
 };
 

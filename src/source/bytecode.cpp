@@ -12,6 +12,11 @@ constexpr std::uint8_t short_string = 4, long_string = 20, integer_number = 3, f
 constexpr std::uint32_t get_upvalue = 9, get_global = 11, set_global = 15;  // OP_GETUPVAL, OP_GETTABUP, OP_SETTABUP
 constexpr int no_environment = -1;
 
+int append_piece(lua_State* /*L*/, const void* piece, std::size_t size, void* text) {
+    static_cast<std::string*>(text)->append(static_cast<const char*>(piece), size);
+    return 0;
+}
+
 class CodeReader {
 public:
     explicit CodeReader(std::string_view dumped) : rest_(dumped) {}
@@ -133,6 +138,14 @@ private:
 };
 
 }  // namespace
+
+std::string dumped_function(lua_State* L, int index) {
+    std::string dumped;
+    lua_pushvalue(L, index);
+    lua_dump(L, append_piece, &dumped, 0);
+    lua_pop(L, 1);
+    return dumped;
+}
 
 std::optional<CodeFacts> facts_of_code(std::string_view dumped, int environment) {
     return CodeReader(dumped).read(environment);

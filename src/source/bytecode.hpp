@@ -8,6 +8,8 @@
 #include <string_view>
 #include <vector>
 
+#include "lua/lua_headers.hpp"
+
 namespace dinal::source {
 
 struct CodeFacts {
@@ -15,6 +17,9 @@ struct CodeFacts {
     std::vector<std::string> perhaps;  ///< texts in a function that may look up such names in a way that is not seen
     std::uint64_t digest = 0;          ///< of instructions and constants
 };
+
+/// The Lua function at the index as lua_dump writes it, with its debug information.
+std::string dumped_function(lua_State* L, int index);
 
 /// Of what lua_dump has written, with its debug information; `environment` is the number (from 0) of the upvalue that
 /// is the table of globals, -1 when none is. None when it is not written as Lua 5.4 writes it.

@@ -14,18 +14,6 @@ constexpr int deepest_value = 5000;  // tables within tables; each takes some of
 
 const char memory_key = 0;  // registry key, in the state that is carried to
 
-int append_dump(lua_State* /*L*/, const void* piece, std::size_t size, void* text) {
-    static_cast<std::string*>(text)->append(static_cast<const char*>(piece), size);
-    return 0;
-}
-
-bool is_globals(lua_State* L, int index) {
-    lua_pushglobaltable(L);
-    const bool same = lua_rawequal(L, -1, index < 0 ? index - 1 : index) != 0;
-    lua_pop(L, 1);
-    return same;
-}
-
 }  // namespace
 
 Carrier::Carrier(lua_State* from, lua_State* to, CarryObject other_objects)
@@ -123,15 +111,20 @@ std::optional<text::Error> Carrier::carry(int index, const std::string& name) {
     return good ? std::nullopt : error_;
 }
 
-/// "run > helper > cfg.last"
+/// "run > helper > cfg.last"; of a long one, its beginning and its end.
 std::string Carrier::way() const {
+    constexpr std::size_t most = 12;
     std::string text;
-    for (const std::string& step : way_) text += step;
+    for (std::size_t i = 0; i < way_.size(); ++i) {
+        const bool left_out = way_.size() > most && i >= most / 2 && i + most / 2 < way_.size();
+        if (!left_out) text += way_[i];
+        if (left_out && i == most / 2) text += "...";
+    }
     return text;
 }
 
 bool Carrier::fail(int index, std::string_view cure) {
-    const std::string what = lua_type(from_, index) == LUA_TFUNCTION ? "a function that is written in C"
+    const std::string what = lua_iscfunction(from_, index) != 0      ? "a function that is written in C"
                              : lua_type(from_, index) == LUA_TTHREAD ? "a coroutine"
                                                                      : lua::describe(from_, index);
     std::string culprit = way_.back();
@@ -245,13 +238,10 @@ bool Carrier::function(int index) {
     if (depth_ >= deepest_value) return fail(index, fmt::format(": it is within {} others", deepest_value));
     int environment = -1;
     for (int i = 1; lua_getupvalue(from_, index, i) != nullptr; ++i) {
-        if (is_globals(from_, -1)) environment = i - 1;
+        if (lua::is_global_table(from_, -1)) environment = i - 1;
         lua_pop(from_, 1);
     }
-    std::string dumped;
-    lua_pushvalue(from_, index);
-    lua_dump(from_, append_dump, &dumped, 0);
-    lua_pop(from_, 1);
+    const std::string dumped = dumped_function(from_, index);
     if (luaL_loadbufferx(to_, dumped.data(), dumped.size(), "=carried", "b") != LUA_OK) {
         lua_pop(to_, 1);
         return fail(index);

@@ -1,183 +1,316 @@
+// The value and what it leads to are a graph, perhaps deep and with circles. It is walked object after object, each
+// when its turn comes; an object that is met gets the next number, and whoever refers to it again has that number. So
+// the order in which they are met must be the same in every process, which Lua's own order of fields is not.
 #include "source/fingerprint.hpp"
-
-#include <fmt/format.h>
 
 #include <algorithm>
 #include <bit>
+#include <optional>
+#include <tuple>
 
 #include "lua/bind.hpp"
 #include "lua/lua_text.hpp"
 #include "lua/standard_globals.hpp"
 #include "lua/user_function.hpp"
 #include "lua/vector.hpp"
+#include "model/controller.hpp"
 #include "model/laws/user_law.hpp"
 #include "model/oscillator.hpp"
 #include "model/springs/user_spring.hpp"
 #include "source/bytecode.hpp"
 #include "source/describe.hpp"
+#include "source/value_text.hpp"
 
 namespace dinal::source {
 namespace {
-
-constexpr std::uint64_t being_looked_at = 0x5c0de;  // a value that leads back to itself
 
 std::uint64_t joined_digest(std::uint64_t a, std::uint64_t b) {
     return digest_of({reinterpret_cast<const char*>(&b), sizeof b}, a);
 }
 
-std::uint64_t digest_of_numbers(std::span<const double> numbers, std::uint64_t before) {
-    return digest_of({reinterpret_cast<const char*>(numbers.data()), numbers.size_bytes()}, before);
-}
-
-int collect_dump(lua_State* /*L*/, const void* piece, std::size_t size, void* text) {
-    static_cast<std::string*>(text)->append(static_cast<const char*>(piece), size);
-    return 0;
+/// Digests that are to be summed: every bit of the result depends on every bit (the finalizer of MurmurHash3). Without
+/// it the sum is often the same when two fields have changed their values with each other.
+std::uint64_t stirred(std::uint64_t digest) {
+    digest = (digest ^ digest >> 33U) * 0xff51afd7ed558ccdU;
+    digest = (digest ^ digest >> 33U) * 0xc4ceb9fe1a85ec53U;
+    return digest ^ digest >> 33U;
 }
 
 }  // namespace
 
+void Fingerprint::join(std::uint64_t digest) {
+    number_ = joined_digest(number_, digest);
+}
+
 void Fingerprint::add(std::string_view bytes) {
-    number_ = joined_digest(digest_of(bytes, number_), bytes.size());
+    number_ = digest_of(bytes, number_);
+    join(bytes.size());
 }
 
 void Fingerprint::add(double number) {
-    number_ = joined_digest(number_, std::bit_cast<std::uint64_t>(number));
+    join(std::bit_cast<std::uint64_t>(number));
 }
 
 void Fingerprint::add_value(int index) {
-    number_ = joined_digest(number_, of_value(lua_absindex(L_, index)));
-}
-
-std::string Fingerprint::text() const {
-    return fmt::format("{:016x}", number_);
-}
-
-std::uint64_t Fingerprint::of_value(int index) {
-    luaL_checkstack(L_, 10, "for a fingerprint");
+    luaL_checkstack(L_, LUA_MINSTACK, "for a fingerprint");
     index = lua_absindex(L_, index);
+    lua_newtable(L_);
+    objects_ = lua_gettop(L_);
+    numbers_.clear();
+    order_.clear();
+    libraries();
+    join(reference(index));
+    for (std::size_t i = 0; i < order_.size(); ++i) {
+        lua_rawgetp(L_, objects_, order_[i]);
+        content(lua_gettop(L_));
+        lua_settop(L_, objects_);
+    }
+    lua_settop(L_, objects_ - 1);
+}
+
+/// What the libraries had at the start is known by its name. A function that a user has put there since, a string.trim,
+/// belongs to every value: nothing may name it where it is called, ("x"):trim().
+void Fingerprint::libraries() {
+    const int top = lua_gettop(L_), globals = top + 1, fields = top + 2, library = top + 4, copy = top + 5;
+    std::vector<std::pair<std::string, Piece>> additions;
+    const auto note = [this](int index, const std::string& name) {
+        if (const void* identity = lua_topointer(L_, index)) standard_[identity] += stirred(digest_of(name));
+    };
+    standard_.clear();
+    lua::push_dinal_table(L_);
+    note(-1, "dinal");
+    lua_pop(L_, 1);
+    lua::push_standard_globals(L_);
+    lua::push_standard_fields(L_);
+    lua_pushnil(L_);
+    while (lua_next(L_, globals) != 0) {
+        const std::string name = lua_type(L_, -2) == LUA_TSTRING ? lua_tostring(L_, -2) : "";
+        note(library, name);
+        lua_pushvalue(L_, library);
+        if (name != LUA_GNAME && lua_istable(L_, library) && lua_rawget(L_, fields) == LUA_TTABLE) {
+            lua_pushnil(L_);
+            while (lua_next(L_, copy) != 0) {
+                if (lua_type(L_, -2) == LUA_TSTRING) note(-1, name + '.' + lua_tostring(L_, -2));
+                lua_pop(L_, 1);
+            }
+            lua_pushnil(L_);
+            while (name != LUA_LOADLIBNAME && lua_next(L_, library) != 0) {
+                lua_pushvalue(L_, -2);
+                lua_rawget(L_, copy);
+                const bool own =
+                    lua_type(L_, -3) == LUA_TSTRING && lua_isfunction(L_, -2) && lua_rawequal(L_, -1, -2) == 0;
+                if (own) additions.emplace_back(name + '.' + lua_tostring(L_, -3), piece(lua_gettop(L_) - 1));
+                lua_pop(L_, 2);
+            }
+        }
+        lua_settop(L_, library - 1);
+    }
+    lua_settop(L_, top);
+    std::sort(additions.begin(), additions.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+    for (const auto& [name, own] : additions) {
+        add(name);
+        join(reference(own));
+    }
+}
+
+Fingerprint::Piece Fingerprint::piece(int index) {
     const int type = lua_type(L_, index);
     const std::uint64_t start = joined_digest(digest_start, static_cast<std::uint64_t>(type));
     switch (type) {
         case LUA_TBOOLEAN:
-            return joined_digest(start, static_cast<std::uint64_t>(lua_toboolean(L_, index)));
+            return {joined_digest(start, static_cast<std::uint64_t>(lua_toboolean(L_, index)))};
         case LUA_TNUMBER:
-            return lua_isinteger(L_, index) != 0
-                       ? joined_digest(start, static_cast<std::uint64_t>(lua_tointeger(L_, index)))
-                       : joined_digest(start + 1, std::bit_cast<std::uint64_t>(lua_tonumber(L_, index)));
+            return {lua_isinteger(L_, index) != 0
+                        ? joined_digest(start, static_cast<std::uint64_t>(lua_tointeger(L_, index)))
+                        : joined_digest(start + 1, std::bit_cast<std::uint64_t>(lua_tonumber(L_, index)))};
         case LUA_TSTRING:
-            return digest_of(lua::text_at(L_, index), start);
+            return {digest_of(lua::text_at(L_, index), start)};
         case LUA_TTABLE:
         case LUA_TFUNCTION:
         case LUA_TUSERDATA: {
             const void* identity = lua_topointer(L_, index);
-            const auto [place, is_new] = known_.try_emplace(identity, being_looked_at);
-            if (!is_new) return place->second;
-            const std::uint64_t digest = type == LUA_TTABLE      ? of_table(index)
-                                         : type == LUA_TFUNCTION ? of_function(index)
-                                                                 : of_object(index);
-            return known_[identity] = joined_digest(start, digest);
+            if (const auto found = standard_.find(identity); found != standard_.end()) {
+                return {joined_digest(start, found->second)};
+            }
+            lua_pushvalue(L_, index);
+            lua_rawsetp(L_, objects_, identity);
+            return {start, identity};
         }
         default:
-            return start;
+            return {start};
     }
 }
 
-std::uint64_t Fingerprint::of_table(int index) {
-    lua_pushglobaltable(L_);
-    const bool globals = lua_rawequal(L_, -1, index) != 0;
-    lua_pop(L_, 1);
-    if (globals || lua::documented(L_, index).owner != nullptr) return 0;  // of the library
-    std::uint64_t sum = 0;                                                 // in whatever order lua_next gives them
-    lua_pushnil(L_);
-    while (lua_next(L_, index) != 0) {
-        sum += joined_digest(of_value(-2), of_value(-1));
-        lua_pop(L_, 1);
-    }
-    if (lua_getmetatable(L_, index) != 0) {
-        sum = joined_digest(sum, of_value(-1));
+std::uint64_t Fingerprint::reference(const Piece& piece) {
+    if (piece.object == nullptr) return piece.digest;
+    const auto [place, is_new] = numbers_.try_emplace(piece.object, numbers_.size());
+    if (is_new) order_.push_back(piece.object);
+    return joined_digest(piece.digest, place->second);
+}
+
+/// What can be said of a value without numbers of objects, to put keys that are objects in an order. Where two look the
+/// same the order is as it happens.
+std::uint64_t Fingerprint::sketch(int index, int depth) {
+    luaL_checkstack(L_, LUA_MINSTACK, "for a fingerprint");
+    index = lua_absindex(L_, index);
+    const Piece own = piece(index);
+    if (own.object == nullptr || depth == 0) return own.digest;
+    std::uint64_t sum = own.digest;
+    if (lua_isfunction(L_, index)) {
+        const std::string code = lua_iscfunction(L_, index) != 0 ? "" : dumped_function(L_, index);
+        if (const auto facts = facts_of_code(code, -1)) sum += facts->digest;
+    } else if (lua_istable(L_, index)) {
+        lua_pushnil(L_);
+        while (lua_next(L_, index) != 0) {
+            sum += stirred(joined_digest(sketch(-2, depth - 1), sketch(-1, depth - 1)));
+            lua_pop(L_, 1);
+        }
+    } else if (lua::documented(L_, index).owner != nullptr) {
+        luaL_tolstring(L_, index, nullptr);
+        sum += digest_of(lua::text_at(L_, -1));
         lua_pop(L_, 1);
     }
     return sum;
 }
 
-std::uint64_t Fingerprint::of_function(int index) {
-    if (lua_iscfunction(L_, index) != 0) return 1;  // which one is told by the name that leads to it
-    int environment = -1;
-    std::uint64_t digest = digest_start;
-    for (int i = 1; lua_getupvalue(L_, index, i) != nullptr; ++i) {
-        lua_pushglobaltable(L_);
-        const bool globals = lua_rawequal(L_, -1, -2) != 0;
-        lua_pop(L_, 1);
-        environment = globals ? i - 1 : environment;
-        digest = joined_digest(digest, globals ? 0 : of_value(-1));
-        lua_pop(L_, 1);
+void Fingerprint::content(int index) {
+    switch (lua_type(L_, index)) {
+        case LUA_TTABLE:
+            return table(index);
+        case LUA_TFUNCTION:
+            return function(index);
+        default:
+            return object(index);
     }
-    std::string dumped;
-    lua_pushvalue(L_, index);
-    lua_dump(L_, collect_dump, &dumped, 0);
-    lua_pop(L_, 1);
-    const auto facts = facts_of_code(dumped, environment);
-    if (!facts) return digest_of(dumped, digest);
-    digest = joined_digest(digest, facts->digest);
-    for (const std::string& name : facts->globals) digest = joined_digest(digest, of_global(name));
-    return digest;
 }
 
-std::uint64_t Fingerprint::of_global(const std::string& name) {
+void Fingerprint::table(int index) {
+    if (lua::documented(L_, index).owner != nullptr) return;  // a class of ours
+    struct Entry {
+        std::uint64_t key_sketch, value_sketch;
+        Piece key, value;
+    };
+    constexpr int deep_enough = 2;
+    std::vector<Entry> entries;
+    std::uint64_t sum = 0;  // of the others, in whatever order lua_next gives them
+    lua_pushnil(L_);
+    while (lua_next(L_, index) != 0) {
+        const Piece key = piece(-2), value = piece(-1);
+        if (key.object == nullptr && value.object == nullptr) {
+            sum += stirred(joined_digest(key.digest, value.digest));
+        } else if (key.object == nullptr) {
+            entries.push_back({key.digest, 0, key, value});
+        } else {
+            entries.push_back({sketch(-2, deep_enough), sketch(-1, deep_enough), key, value});
+        }
+        lua_pop(L_, 1);
+    }
+    std::sort(entries.begin(), entries.end(), [](const Entry& a, const Entry& b) {
+        return std::tie(a.key_sketch, a.value_sketch) < std::tie(b.key_sketch, b.value_sketch);
+    });
+    join(sum);
+    join(entries.size());
+    for (const Entry& entry : entries) {
+        join(reference(entry.key));
+        join(reference(entry.value));
+    }
+    if (lua_getmetatable(L_, index) != 0) join(reference(-1));
+}
+
+void Fingerprint::function(int index) {
+    if (lua_iscfunction(L_, index) != 0) {  // a method that was taken out of its object; others cannot be carried
+        const lua::Documented found = lua::documented(L_, index);
+        if (found.member != nullptr) add(found.member->doc.signature);
+        return;
+    }
+    int environment = -1;
+    for (int i = 1; lua_getupvalue(L_, index, i) != nullptr; ++i) {
+        if (lua::is_global_table(L_, -1)) {
+            environment = i - 1;
+        } else {
+            join(numbers_.try_emplace(lua_upvalueid(L_, index, i), numbers_.size()).first->second);
+            join(reference(-1));
+        }
+        lua_pop(L_, 1);
+    }
+    const std::string dumped = dumped_function(L_, index);
+    const auto facts = facts_of_code(dumped, environment);
+    if (!facts) return add(dumped);
+    join(facts->digest);
+    for (const std::string& name : facts->globals) global(name);
+    for (const std::string& name : facts->perhaps) global(name);
+}
+
+void Fingerprint::global(const std::string& name) {
+    const int top = lua_gettop(L_);
     lua_pushglobaltable(L_);
     lua::push_text(L_, name);
     lua_rawget(L_, -2);
     lua::push_standard_globals(L_);
     lua::push_text(L_, name);
     lua_rawget(L_, -2);
-    const bool standard = lua_rawequal(L_, -1, -3) != 0 || name == "dinal" || name == "_G";
-    lua_pop(L_, 2);
-    const std::uint64_t digest = standard ? 0 : of_value(-1);
-    lua_pop(L_, 2);
-    return digest;
+    const bool standard = lua_rawequal(L_, -1, -3) != 0 || name == "dinal" || name == LUA_GNAME;
+    join(standard ? 0 : reference(top + 2));
+    lua_settop(L_, top);
 }
 
-std::uint64_t Fingerprint::of_user_function(const model::terms::UserFunction& function) {
-    const auto* own = dynamic_cast<const lua::LuaFunction*>(&function);
-    if (own == nullptr) return 0;
-    own->push(L_);
-    const std::uint64_t digest = of_value(-1);
-    lua_pop(L_, 1);
-    return digest;
+void Fingerprint::user_function(const model::terms::UserFunction& function) {
+    if (const auto* own = dynamic_cast<const lua::LuaFunction*>(&function)) {
+        own->push(L_);
+        join(reference(-1));
+        lua_pop(L_, 1);
+    } else if (const auto* controller = dynamic_cast<const model::Controller*>(&function)) {
+        if (controller->function != nullptr) user_function(*controller->function);
+    }
 }
 
-std::uint64_t Fingerprint::of_excitation(const model::Excitation& excitation) {
-    std::uint64_t digest = digest_of(describe(L_, excitation));
+void Fingerprint::excitation(const model::Excitation& excitation) {
+    const auto numbers = [this](const std::vector<double>& all) {
+        join(all.size());
+        for (const double x : all) add(x);
+    };
     for (const model::Component& component : excitation.components()) {
         if (const auto* script = std::get_if<model::Scripted>(&component.term)) {
-            digest = joined_digest(digest, of_user_function(*script->function));
+            user_function(*script->function);
         } else if (const auto* line = std::get_if<model::Polyline>(&component.term)) {
-            digest = digest_of_numbers(line->samples->M, digest_of_numbers(line->samples->t, digest));
+            numbers(line->samples->t);
+            numbers(line->samples->M);
         }
     }
-    return digest;
 }
 
-std::uint64_t Fingerprint::of_object(int index) {
+/// By its text, in which the functions are left out, and by these.
+void Fingerprint::object(int index) {
+    ValueText no_functions(L_, 0);
     if (const auto* vector = lua::test<lua::Vector>(L_, index)) {
-        return digest_of_numbers(vector->values(), digest_start);
+        join(vector->size());
+        for (const double x : *vector) add(x);
+        return;
     }
-    if (const auto* excitation = lua::test<model::Excitation>(L_, index)) return of_excitation(*excitation);
+    if (const auto* own = lua::test<model::Excitation>(L_, index)) {
+        add(describe(L_, *own, &no_functions));
+        return excitation(*own);
+    }
+    if (other_objects_(L_, index, *this)) return;
     const model::Friction* law = lua::test<model::Friction>(L_, index);
     const model::Spring* spring = lua::test<model::Spring>(L_, index);
     if (const auto* system = lua::test<model::Oscillator>(L_, index)) {
+        add(lua_text(L_, *system, &no_functions));
         law = &system->friction();
         spring = &system->spring();
-    }
-    const auto* written = law == nullptr ? nullptr : law->as<model::laws::UserLaw>();
-    std::uint64_t digest = written == nullptr ? 0 : of_user_function(*written->function);
-    const auto* own = spring == nullptr ? nullptr : spring->as<model::springs::UserSpring>();
-    if (own != nullptr) digest = joined_digest(digest, of_user_function(*own->function));
-    if (lua::documented(L_, index).owner != nullptr) {
-        digest = digest_of(lua::text_at(L_, (luaL_tolstring(L_, index, nullptr), -1)), digest);
+    } else if (law != nullptr) {
+        add(lua_text(L_, *law, &no_functions));
+    } else if (spring != nullptr) {
+        add(lua_text(L_, *spring, &no_functions));
+    } else if (lua::documented(L_, index).owner != nullptr) {
+        luaL_tolstring(L_, index, nullptr);
+        add(lua::text_at(L_, -1));
         lua_pop(L_, 1);
     }
-    return digest;
+    const auto* written = law == nullptr ? nullptr : law->as<model::laws::UserLaw>();
+    if (written != nullptr) user_function(*written->function);
+    const auto* own = spring == nullptr ? nullptr : spring->as<model::springs::UserSpring>();
+    if (own != nullptr) user_function(*own->function);
 }
 
 }  // namespace dinal::source

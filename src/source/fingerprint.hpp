@@ -15,30 +15,48 @@ namespace dinal::source {
 
 class Fingerprint {
 public:
-    explicit Fingerprint(lua_State* L) : L_(L) {}
+    /// Adds the object of a class that this room does not know, at that index; false when it is none.
+    using AddObject = bool (*)(lua_State* L, int index, Fingerprint& print);
+
+    Fingerprint(lua_State* L, AddObject other_objects) : L_(L), other_objects_(other_objects) {}
 
     void add(std::string_view bytes);
     void add(double number);
     /// Functions by their code (not by the lines where it stands), their local variables and the globals that they
-    /// name; tables whatever the order of their fields.
+    /// name; tables whatever the order of their fields; what is there twice or leads back to itself as such.
     void add_value(int index);
 
     [[nodiscard]] std::uint64_t number() const { return number_; }
-    /// 16 digits.
-    [[nodiscard]] std::string text() const;
 
 private:
-    std::uint64_t of_value(int index);
-    std::uint64_t of_table(int index);
-    std::uint64_t of_function(int index);
-    std::uint64_t of_object(int index);
-    std::uint64_t of_excitation(const model::Excitation& excitation);
-    std::uint64_t of_user_function(const model::terms::UserFunction& function);
-    std::uint64_t of_global(const std::string& name);
+    /// A value on the way: one that says all by itself, or a table, function or object whose turn will come.
+    struct Piece {
+        std::uint64_t digest;
+        const void* object = nullptr;
+    };
+
+    void join(std::uint64_t digest);
+    void libraries();
+    Piece piece(int index);
+    std::uint64_t reference(const Piece& piece);
+    std::uint64_t reference(int index) { return reference(piece(index)); }
+    std::uint64_t sketch(int index, int depth);
+
+    void content(int index);
+    void table(int index);
+    void function(int index);
+    void object(int index);
+    void excitation(const model::Excitation& excitation);
+    void user_function(const model::terms::UserFunction& function);
+    void global(const std::string& name);
 
     lua_State* L_;
+    AddObject other_objects_;
     std::uint64_t number_ = 0xcbf29ce484222325U;
-    std::unordered_map<const void*, std::uint64_t> known_;  // what is being looked at has a number of its own
+    int objects_ = 0;                                          // index of a Lua table: identity -> what was met
+    std::unordered_map<const void*, std::uint64_t> standard_;  // what is known by its name
+    std::unordered_map<const void*, std::uint64_t> numbers_;   // of objects and variables, by when they were met first
+    std::vector<const void*> order_;                           // of objects
 };
 
 }  // namespace dinal::source

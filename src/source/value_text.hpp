@@ -14,7 +14,8 @@ namespace dinal::source {
 /// go into the expression, global ones become lines of their own.
 class ValueText {
 public:
-    explicit ValueText(lua_State* L) : L_(L) {}
+    /// At most so many values are written down; what is larger belongs into a file of its own.
+    explicit ValueText(lua_State* L, int most_values = 10'000) : L_(L), budget_(most_values) {}
 
     /// An expression that gives the value at `index` again; `nil` and one of the remarks() when there is none.
     std::string expression(int index);
@@ -38,7 +39,7 @@ private:
     std::vector<std::string> names_;  // of globals that are done or being done
     std::vector<const void*> open_;   // tables and functions being written: a cycle has no text
     std::vector<std::string> remarks_;
-    int budget_ = 10'000;  // values; what is larger belongs into a file of its own
+    int budget_;  // values that may still be written down
 };
 
 }  // namespace dinal::source

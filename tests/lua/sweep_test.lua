@@ -216,6 +216,20 @@ test("what cannot be carried is refused with the way to it", function()
     raises(function() sweep { x = { 1 }, run = function() return steady end } end, "run uses steady, a steady motion")
 end)
 
+test("what is nested without end is refused in a short sentence", function()
+    local nested, chain = {}, function() return 1 end
+    for _ = 1, 100000 do  -- each level once took some of the stack of C++
+        nested = { nested }
+        local inner = chain
+        chain = function() return inner() end
+    end
+    for what, run in pairs { nested = function() return nested end, chain = function() return chain end } do
+        local fine, message = pcall(sweep, { x = { 1 }, run = run })
+        assert(not fine and #message < 400, #message)
+        assert(message:find("run uses " .. what .. ".*%.%.%..*within 5000 others"), message)
+    end
+end)
+
 -- ---- what goes wrong
 
 test("a point that fails keeps its message, the others go on, and the map says so", function()
