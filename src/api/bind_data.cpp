@@ -167,6 +167,10 @@ DataColumn column_on_top(lua_State* L, const std::string& name) {
         }
         lua_pop(L, 1);
     }
+    if (const std::string key = lua::key_beside_list(L, -1); !key.empty()) {
+        fail_data(L, {.sentence = fmt::format("{} must be a list such as {{ 1, 2, 3 }}, but it has {}", name, key),
+                      .option = name});
+    }
     return words.empty() ? column_of(name, std::move(numbers)) : column_of(name, std::move(words));
 }
 

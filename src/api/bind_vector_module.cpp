@@ -105,7 +105,13 @@ std::mt19937_64 engine_of(double seed) {
 }
 
 int vector_random(lua_State* L) {
-    const auto asked = lua::read<UniformNumbers>(L, 1, uniform_call);
+    const lua::Options options(L, 1, uniform_call);
+    UniformNumbers asked;
+    options.fill(asked);
+    if (asked.from > asked.to) {
+        options.fail(options.has("from") ? "from" : "to",
+                     fmt::format("from = {:.6g} must not be greater than to = {:.6g}", asked.from, asked.to));
+    }
     std::mt19937_64 engine = engine_of(asked.seed);
     std::vector<double> values = lua::new_numbers(L, static_cast<std::size_t>(asked.n));
     for (double& x : values) x = asked.from + (asked.to - asked.from) * unit(engine);

@@ -40,6 +40,12 @@ DataColumn parameter_on_top(lua_State* L, const text::Call& call, const std::str
             words.emplace_back(lua::text_at(L, -1));
             lua_pop(L, 1);
         }
+        if (const std::string key = lua::key_beside_list(L, -1); !key.empty()) {
+            fail_sweep(
+                L, call,
+                {.sentence = fmt::format("{} must be a list such as {{ \"a\", \"b\" }}, but it has {}", name, key),
+                 .option = name});
+        }
         return column_of(name, std::move(words));
     }
     if (!lua_istable(L, -1) && lua::test<lua::Vector>(L, -1) == nullptr) {

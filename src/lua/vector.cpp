@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "lua/gaps.hpp"
+#include "lua/lua_text.hpp"
 
 namespace dinal::lua {
 
@@ -18,6 +19,21 @@ void push_vector(lua_State* L, std::vector<double> values) {
     const std::size_t bytes = values.size() * sizeof(double);
     push(L, Vector(std::move(values)));
     note_external_memory(L, bytes);
+}
+
+std::string key_beside_list(lua_State* L, int index) {
+    index = lua_absindex(L, index);
+    const auto n = static_cast<lua_Integer>(lua_rawlen(L, index));
+    std::string key;
+    lua_pushnil(L);
+    while (lua_next(L, index) != 0) {
+        const bool listed = lua_isinteger(L, -2) != 0 && lua_tointeger(L, -2) >= 1 && lua_tointeger(L, -2) <= n;
+        const bool named = lua_type(L, -2) == LUA_TSTRING && is_name(text_at(L, -2));
+        const std::string own = listed ? "" : (named ? std::string(text_at(L, -2)) : "[" + describe(L, -2) + "]");
+        if (!listed && (key.empty() || own < key)) key = own;  // the first one, in whatever order Lua has them
+        lua_pop(L, 1);
+    }
+    return key;
 }
 
 namespace {
@@ -43,6 +59,9 @@ std::vector<double> numbers_of_table(lua_State* L, int index, std::string_view c
         numbers.push_back(lua_tonumber(L, -1));
         lua_pop(L, 1);
     }
+    if (const std::string key = key_beside_list(L, index); !key.empty()) {
+        refuse(L, index, call, option, fmt::format(" must be a list such as {{ 1, 2, 3 }}, but it has {}", key));
+    }
     return numbers;
 }
 
@@ -62,7 +81,8 @@ std::vector<double> numbers_that_are(lua_State* L, int index, std::string_view c
     }
     const auto bad = std::find_if_not(numbers.begin(), numbers.end(), allowed);
     if (bad != numbers.end()) {
-        refuse(L, index, call, option, fmt::format("[{}] = {} must be finite", bad - numbers.begin() + 1, *bad));
+        const std::string number = std::isnan(*bad) ? "nan" : fmt::format("{}", *bad);  // whatever its sign
+        refuse(L, index, call, option, fmt::format("[{}] = {} must be finite", bad - numbers.begin() + 1, number));
     }
     return numbers;
 }

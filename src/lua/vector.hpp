@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <memory>
 #include <span>
+#include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
@@ -39,6 +40,9 @@ std::vector<double> new_numbers(lua_State* L, std::size_t n);
 
 /// Gives Lua a vector with data of its own, and its garbage collector the news of how much memory that takes.
 void push_vector(lua_State* L, std::vector<double> values);
+
+/// "x" or "[2]": a field of the table at `index` besides 1 to #t, which no list has; empty when there is none.
+std::string key_beside_list(lua_State* L, int index);
 
 /// The finite numbers of a table or a vector at `index`, which is that option of the call, or all that it takes. They
 /// head the sentence when there is something else: "sys:simulate: times".

@@ -149,3 +149,15 @@ assert(math.abs(u:mean() - 0.5) < 5 / math.sqrt(12 * 20000))
 assert(math.abs(n:mean() - 1) < 5 * 2 / math.sqrt(20000) and math.abs(n:std() - 2) < 5 * 2 / math.sqrt(40000))
 fails(function() return vector.random{ n = 0, seed = 1 } end, "n = 0 must be a whole number from 1")
 fails(function() return vector.normal{ n = 2, seed = 1, std = -1 } end, "std = -1 must not be negative")
+fails(function() return vector.random{ n = 2, seed = 1, from = 0, to = -1 } end,
+    "from = 0 must not be greater than to = -1")
+fails(function() return vector.random{ n = 2, seed = 1, from = 3 } end, "from = 3 must not be greater than to = 1")
+
+-- A table that is no list; a number that is none, whatever its sign.
+fails(function() vector{ [2] = 1 } end, "vector must be a list such as { 1, 2, 3 }, but it has [2]")
+fails(function() vector{ x = 1 } end, "it has x")
+fails(function() vector{ 1, x = 2, ["a b"] = 3 } end, 'it has [the string "a b"]')
+fails(function() nondimensional{}:simulate{ theta0 = 1, times = { 1, from = 2 } } end, "times must be a list", "it has from")
+fails(function() vector{ 1, 2, -(0/0) } end, "vector[3] = nan must be finite")
+fails(function() vector{ 1, 2, 0/0 } end, "vector[3] = nan must be finite")
+assert(#vector{} == 0)
