@@ -154,7 +154,7 @@ double Options::number_on_top(const text::Option& option) const {
     if (lua_type(L_, -1) != LUA_TNUMBER || std::isnan(number) || (!infinite && std::isinf(number))) {
         wrong(option.name, infinite ? "a number" : "a finite number");
     }
-    return number;
+    return number + 0.0;  // no minus zero: -0.0 * a user's factor means 0, and 1/k must not be -inf
 }
 
 std::size_t Options::choice_on_top(const text::Option& option) const {

@@ -42,6 +42,14 @@ text::Expected<Oscillator> Oscillator::make(const OscillatorParameters& p) {
     o.walls_ = p.walls;
     if (auto wrong = p.units.complaint()) return *wrong;
     if (!p.units.usual()) o.units_ = std::make_shared<const Units>(p.units);
+    // Overflows where something is added to it.
+    constexpr double room = 1e6;
+    const double from = o.has_spring() ? o.stiffness() : o.inertia();
+    if (!std::isfinite(room * o.breakaway() / from) || !std::isfinite(room * o.kinetic_friction() / from)) {
+        return text::Error{.sentence = fmt::format("friction of {:.6g} and {} = {:.6g} are too far apart for double "
+                                                   "precision: choose other units",
+                                                   o.breakaway(), o.has_spring() ? "k" : "I", from)};
+    }
     if (!o.has_spring()) {
         if (std::isfinite(o.damping() / o.inertia())) return o;
         return text::Error{

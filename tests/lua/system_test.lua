@@ -123,6 +123,18 @@ test("dinal is a table whose members are globals, and a user may overwrite these
     assert(ok, problem)
 end)
 
+test("a spring of -0 is none, friction beyond all numbers is told", function()
+    local block = system{ I = 1, k = -0.0, Rd = 0.5 }
+    equal(tostring(block.k), "0.0")
+    local r = block:simulate{ velocity0 = 1, t_end = 3, dt = 1 }  -- it stops at v^2/(2 Rd) = 1
+    assert(math.abs(r.theta[4] - 1) < 1e-12, r.theta[4])
+    raises_here(function() nondimensional{ friction_ratio = 1e308 } end,
+        "nondimensional: friction of 1e+308 and k = 1 are too far apart for double precision")
+    raises_here(function() system{ I = 1e-10, k = 0, Rd = 1e300 } end, "friction of 1e+300 and I = 1e-10")
+    -- What is a thousandth of that holds the mass where it is.
+    equal(nondimensional{ friction_ratio = 1e300 }:simulate{ velocity0 = 6, t_end = 3, dt = 1 }.theta:abs():max() < 1e-12, true)
+end)
+
 test("a misspelt name in dinal is an error with a suggestion", function()
     raises_here(function() return dinal.sytem end, "there is no dinal.sytem; did you mean 'system'?")
 end)
