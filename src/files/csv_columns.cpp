@@ -50,9 +50,9 @@ public:
         separator_ = separator ? *separator : separator_in(rows_.front().text).value_or(Separator::blanks);
         split(rows_.front().text, separator_, fields_);
         result_.columns.resize(fields_.size());
-        const bool named = std::none_of(fields_.begin(), fields_.end(), [this](std::string_view field) {
-            return !field.empty() && lenient_number(field, decimal_comma()).has_value();
-        });
+        const bool named =
+            std::none_of(fields_.begin(), fields_.end(), [this](auto field) { return is_number(field); }) ||
+            is_word_above_numbers(fields_.front());
         std::optional<text::Error> fault = take_names(named);
         if (named) rows_.erase(rows_.begin());
         for (std::size_t i = 0; i < rows_.size() && !fault; ++i) fault = take_numbers(rows_[i]);
@@ -86,6 +86,20 @@ private:
     }
 
     [[nodiscard]] bool decimal_comma() const { return separator_ == Separator::semicolon; }
+
+    [[nodiscard]] bool is_number(std::string_view field) const {
+        return !field.empty() && lenient_number(field, decimal_comma()).has_value();
+    }
+
+    /// "t,100,200" is a line of names: in all other rows the first column has numbers.
+    [[nodiscard]] bool is_word_above_numbers(std::string_view first) const {
+        if (rows_.size() < 2 || first.empty() || is_number(first)) return false;
+        std::vector<std::string_view> fields;
+        return std::all_of(rows_.begin() + 1, rows_.end(), [&](const Row& row) {
+            split(row.text, separator_, fields);
+            return is_number(fields.front());
+        });
+    }
 
     std::optional<text::Error> take_names(bool named) {
         std::vector<ReadColumn>& columns = result_.columns;
