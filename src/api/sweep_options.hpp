@@ -41,7 +41,9 @@ inline constexpr text::Option sweep_options[] = {
     {.name = "max_time",
      .unit = "s",
      .range = text::positive,
-     .meaning = "how long a point may take; a longer one is given up with a message, and the others go on",
+     .meaning =
+         "how long a point may take; a longer one is given up with a message, and the others go on; a single call "
+         "of Lua's own libraries (a search for a pattern, os.execute) cannot be broken off, and ends first",
      .filled = text::fills<&SweepOptions::max_time>},
 };
 inline constexpr text::Call sweep_call{
