@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "api/classes.hpp"
+#include "api/run.hpp"
 #include "api/sweep_parameters.hpp"
 #include "api/sweep_run.hpp"
 #include "lua/lua_text.hpp"
@@ -35,6 +36,19 @@ double period_of_point(lua_State* L, int more, double otherwise) {
     }
     if (!(otherwise > 0)) lua::raise(L, "bifurcation needs period, a number, or run must return { period = ... }");
     return otherwise;
+}
+
+/// What the bifurcation itself says to sys:simulate.
+void refuse_own_options(lua_State* L, int more) {
+    for (const char* name : {"t_end", "dt", "times", "M", "dense"}) {
+        const bool given = lua_istable(L, more) && lua_getfield(L, more, name) != LUA_TNIL;
+        if (given) {
+            lua::raise(L, fmt::format("run returned {} among the options, which bifurcation itself gives to "
+                                      "sys:simulate: period, skip and keep say when it looks",
+                                      name));
+        }
+        if (lua_istable(L, more)) lua_pop(L, 1);
+    }
 }
 
 /// sys:simulate{ M = M, times = ..., dense = false, and what else the table at 4 says }; pushes the run.
@@ -86,8 +100,13 @@ int looks_of_point(lua_State* L) {
     const double period = period_of_point(L, 4, lua_tonumber(L, lua_upvalueindex(2)));
     const auto skip = static_cast<std::size_t>(lua_tointeger(L, lua_upvalueindex(3)));
     const auto keep = static_cast<std::size_t>(lua_tointeger(L, lua_upvalueindex(4)));
+    refuse_own_options(L, 4);
     run_point(L, period, skip, keep);
     const int run = lua_gettop(L);
+    if (const auto* own = lua::test<RunHandle>(L, run); own != nullptr && !is_whole((*own)->trajectory.outcome)) {
+        lua::raise(
+            L, fmt::format("the run ended before the last look at it: {}", motion::outcome_text((*own)->trajectory)));
+    }
     lua_createtable(L, 0, static_cast<int>(2 * keep));
     const int looks = run + 1;
     for (const char* column : {"theta", "velocity"}) {

@@ -177,6 +177,16 @@ test("what is wrong with a bifurcation is told", function()
         "run must return a system and its M, got 1")
     raises_here(function() bifurcation { a = { 1 }, period = 1, run = function() return nondimensional {}, 1, 2 end } end,
         "what run returns after M must be a table of options")
+    for name, value in pairs { t_end = 5, dt = 0.1, times = { 1 } } do
+        raises_here(function()
+            bifurcation { a = { 1 }, period = 1, run = function() return nondimensional {}, 0, { [name] = value } end }
+        end, "run returned " .. name .. " among the options, which bifurcation itself gives")
+    end
+    raises_here(function()
+        bifurcation { a = { 1 }, period = 1, skip = 1, keep = 2, run = function()
+            return nondimensional {}, 0, { events = { { when = function(t) return t - 1.5 end, stop = true } } }
+        end }
+    end, "a = 1 failed: the run ended before the last look at it: stopped at")
 end)
 
 support.finish()
