@@ -58,6 +58,7 @@ void Fingerprint::add_value(int index) {
     objects_ = lua_gettop(L_);
     numbers_.clear();
     order_.clear();
+    sketches_ = {};
     libraries();
     join(reference(index));
     for (std::size_t i = 0; i < order_.size(); ++i) {
@@ -155,6 +156,8 @@ std::uint64_t Fingerprint::sketch(int index, int depth) {
     index = lua_absindex(L_, index);
     const Piece own = piece(index);
     if (own.object == nullptr || depth == 0) return own.digest;
+    auto& known = sketches_.at(static_cast<std::size_t>(depth) - 1);
+    if (const auto found = known.find(own.object); found != known.end()) return found->second;
     std::uint64_t sum = own.digest;
     if (lua_isfunction(L_, index)) {
         const std::string code = lua_iscfunction(L_, index) != 0 ? "" : dumped_function(L_, index);
@@ -170,6 +173,7 @@ std::uint64_t Fingerprint::sketch(int index, int depth) {
         sum += digest_of(lua::text_at(L_, -1));
         lua_pop(L_, 1);
     }
+    known[own.object] = sum;
     return sum;
 }
 
@@ -190,7 +194,7 @@ void Fingerprint::table(int index) {
         std::uint64_t key_sketch, value_sketch;
         Piece key, value;
     };
-    constexpr int deep_enough = 2;
+    constexpr int deep_enough = std::tuple_size_v<decltype(sketches_)>;
     std::vector<Entry> entries;
     std::uint64_t sum = 0;  // of the others, in whatever order lua_next gives them
     lua_pushnil(L_);

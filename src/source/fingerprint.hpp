@@ -2,6 +2,7 @@
 // asked now was asked before.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <string>
 #include <string_view>
@@ -57,6 +58,7 @@ private:
     std::unordered_map<const void*, std::uint64_t> standard_;  // what is known by its name
     std::unordered_map<const void*, std::uint64_t> numbers_;   // of objects and variables, by when they were met first
     std::vector<const void*> order_;                           // of objects
+    std::array<std::unordered_map<const void*, std::uint64_t>, 2> sketches_;  // by depth, from 1
 };
 
 }  // namespace dinal::source
