@@ -71,7 +71,10 @@ std::string definition(lua_State* L) {
 CallState::CallState(lua_State* L) : L_(L), outer_(current), depth_(outer_ == nullptr ? 1 : outer_->depth_ + 1) {
     constexpr int deepest = 50;
     if (depth_ > deepest) {
-        raise(L, fmt::format("a run within M of a run within M of a run, and so on: {} deep is too much", deepest));
+        raise(L,
+              fmt::format("a function of M, friction or a spring asks a run or another M, whose function asks the next "
+                          "one, and so on: {} deep is too much",
+                          deepest));
     }
     luaL_checkstack(L, LUA_MINSTACK, "for the call of a user function");  // once, not at each value
     current = this;
