@@ -12,10 +12,16 @@
 namespace dinal::api {
 namespace {
 
+/// Has a place on the axis.
+bool is_drawn(double value, bool logarithmic) {
+    return std::fabs(value) <= 1e300 && (value > 0 || !logarithmic);
+}
+
 /// The different values, increasing.
-std::vector<double> different_values(std::span<const double> all) {
+std::vector<double> different_values(std::span<const double> all, bool logarithmic) {
     std::vector<double> values;
-    std::copy_if(all.begin(), all.end(), std::back_inserter(values), [](double v) { return std::fabs(v) <= 1e300; });
+    std::copy_if(all.begin(), all.end(), std::back_inserter(values),
+                 [logarithmic](double v) { return is_drawn(v, logarithmic); });
     std::sort(values.begin(), values.end());
     values.erase(std::unique(values.begin(), values.end()), values.end());
     return values;
@@ -28,7 +34,11 @@ std::size_t place_among(const std::vector<double>& values, double value) {
 plots::Shades shades_of(const lua::Options& options, const std::array<std::string, 3>& names,
                         const std::array<plots::Numbers, 3>& columns) {
     const auto [x, y, z] = std::array{columns[0].values, columns[1].values, columns[2].values};
-    plots::Shades shades{.x = different_values(x), .y = different_values(y), .z = {}, .label = names[2]};
+    const auto is_asked = [&](const char* name) {
+        return options.has(name) && std::get<bool>(options.value(options.row(name)));
+    };
+    const bool xlog = is_asked("xlog"), ylog = is_asked("ylog");
+    plots::Shades shades{.x = different_values(x, xlog), .y = different_values(y, ylog), .z = {}, .label = names[2]};
     constexpr double sparse = 16;  // places for a row: what is scattered has no neighbours
     const double places = static_cast<double>(shades.x.size()) * static_cast<double>(shades.y.size());
     if (shades.x.empty() || shades.y.empty() || places > sparse * static_cast<double>(z.size())) {
@@ -40,7 +50,7 @@ plots::Shades shades_of(const lua::Options& options, const std::array<std::strin
     shades.z.assign(shades.x.size() * shades.y.size(), std::numeric_limits<double>::quiet_NaN());
     std::vector<bool> filled(shades.z.size());
     for (std::size_t row = 0; row < z.size(); ++row) {
-        if (!(std::fabs(x[row]) <= 1e300 && std::fabs(y[row]) <= 1e300)) continue;
+        if (!is_drawn(x[row], xlog) || !is_drawn(y[row], ylog)) continue;
         const std::size_t place = place_among(shades.y, y[row]) * shades.x.size() + place_among(shades.x, x[row]);
         if (filled[place]) {
             options.fail({.sentence = fmt::format("there are two rows with {} = {:.6g}, {} = {:.6g}: pick one, as with "

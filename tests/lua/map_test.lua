@@ -33,6 +33,15 @@ test("contours lie over the shades and have names", function()
     assert(dotted > 20, text)
 end)
 
+test("on logarithmic axes a map leaves out what has no place there", function()
+    local with = sweep { x = { -1, 0, 1, 10 }, y = { 0, 1, 2 }, run = function(p) return { z = p.x + p.y } end }
+    local without = with:filter(function(p) return p.x > 0 and p.y > 0 end)
+    local function text(d) return tostring(d:plot { z = "z", xlog = true, ylog = true, show = false }) end
+    equal(text(with), text(without))
+    raises_here(function() data { x = { 0, 0 }, y = { 1, 2 }, z = { 1, 2 } }:plot { z = "z", xlog = true, show = false } end,
+        "0 different values of x")
+end)
+
 test("a map goes into files with a legend, and an SVG of a fine one stays small", function()
     local fine = sweep { x = vector.linspace(0.1, 2, 150), y = vector.linspace(0, 1, 120), run = function(p)
         return { z = math.sin(9 * p.x) * math.cos(7 * p.y) }
