@@ -21,6 +21,7 @@ FixedPointSearch::Try FixedPointSearch::at(const Place& x, double size) const {
     maps_ += result.step.differentiable ? 1 : 5;
     result.off = sign_ * result.step.to - x;
     result.size = std::max({x.norm(), result.step.to.norm(), result.step.high - result.step.low, 1e-300});
+    result.rounding = map_.rounding();
     return result;
 }
 
@@ -65,7 +66,7 @@ std::optional<FixedPointSearch::Try> FixedPointSearch::newton(const Try& now) co
 }
 
 FixedPointSearch::Try FixedPointSearch::polished(Try now) const {
-    for (int i = 0; i < 2 && now.step.differentiable && !now.at(as_closed_as_can_be); ++i) {
+    for (int i = 0; i < 2 && now.step.differentiable && now.residual() > as_closed_as_can_be * now.size; ++i) {
         const Place whole = step(now);
         if (whole.norm() <= as_near_as_need_be * now.size) break;
         Try next = at(now.x + whole, now.size);

@@ -1,6 +1,7 @@
 // A fixed point of the period map, or of its opposite: Newton's method with damped steps, and waiting where it is lost.
 #pragma once
 
+#include <algorithm>
 #include <optional>
 
 #include "analysis/period_map.hpp"
@@ -16,8 +17,11 @@ public:
         Place x = Place::Zero(), off = Place::Zero();
         MapStep step;
         double size = 0;
+        double rounding = 0;  ///< of a place: a motion may be so small that this is more than its own digits
         [[nodiscard]] double residual() const { return off.norm(); }
-        [[nodiscard]] bool at(double tolerance) const { return step.finished && residual() <= tolerance * size; }
+        [[nodiscard]] bool at(double tolerance) const {
+            return step.finished && residual() <= std::max(tolerance * size, rounding);
+        }
     };
 
     [[nodiscard]] Try at(const Place& x, double size) const;

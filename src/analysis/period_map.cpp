@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include "analysis/stretches.hpp"
-#include "model/lowered.hpp"
 #include "theory/theory_modes.hpp"
 
 namespace dinal::analysis {
@@ -13,12 +13,18 @@ namespace dinal::analysis {
 PeriodMap::PeriodMap(const model::Oscillator& system, const model::Excitation& excitation, double start, double length,
                      const motion::Monitor& monitor)
     : system_(system),
+      lowered_(system),
       excitation_(excitation),
       integrator_(motion::integrator_for(system, excitation)),
       start_(start),
       length_(length),
       omega_(system.stiffness() > 0 ? system.natural_frequency() : 2 * std::numbers::pi / length),
       monitor_(monitor) {}
+
+double PeriodMap::rounding() const {
+    constexpr double few = 4 * std::numeric_limits<double>::epsilon();
+    return system_.has_linear_spring() ? few * lowered_.greatest_holding() / lowered_.stiffness() : 0;
+}
 
 motion::Trajectory PeriodMap::run(const Place& from, double length, bool dense) const {
     motion::Limits limits;
@@ -99,7 +105,7 @@ double PeriodMap::slope_before(double t) const {
 }
 
 void PeriodMap::differentiate(const motion::Trajectory& run, MapStep& step) const {
-    const model::Lowered system(system_);
+    const model::Lowered& system = lowered_;
     Eigen::Matrix2d total = Eigen::Matrix2d::Identity();
     step.differentiable = !system.has_remainder() && !excitation_.has_feedback();
     for (const Stretch& s : stretches(run)) {

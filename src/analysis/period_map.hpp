@@ -9,6 +9,7 @@
 #include <complex>
 
 #include "model/excitation.hpp"
+#include "model/lowered.hpp"
 #include "motion/integrators.hpp"
 #include "motion/simulate.hpp"
 
@@ -43,6 +44,8 @@ public:
 
     [[nodiscard]] double length() const { return length_; }
     [[nodiscard]] double omega() const { return omega_; }  ///< of Place; w0 where there is a spring
+    /// Of a place at which a linear spring and friction hold each other.
+    [[nodiscard]] double rounding() const;
     [[nodiscard]] model::State state(const Place& place) const { return {place[0], place[1] * omega_}; }
     [[nodiscard]] motion::Trajectory run(const Place& from, double length, bool dense) const;
     [[nodiscard]] const model::Oscillator& system() const { return system_; }
@@ -57,6 +60,7 @@ private:
     [[nodiscard]] double slope_before(double t) const;
 
     const model::Oscillator& system_;
+    model::Lowered lowered_;
     const model::Excitation& excitation_;
     motion::Integrator integrator_;  // the usual one
     double start_, length_, omega_;

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "analysis/fixed_point.hpp"
+#include "analysis/sine/short_slides.hpp"
 #include "analysis/sine/sliding_start.hpp"
 #include "analysis/sine/stopping_start.hpp"
 #include "analysis/steady_facts.hpp"
@@ -30,21 +31,15 @@ public:
         const Place start = place_of(question_.initial, map_.omega());
         answer_.period = question_.drive.period;
         if (const double growth = resonant_growth(); growth > 0) return growing(start, growth);
-        if (question_.periods > 0) {
-            if (question_.periods > 1) {
-                answer_.status = search_multiple(start, question_.periods, true) ? answer_.status : SteadyStatus::none;
-                return answer_;
-            }
-            if (!search_once(start, symmetric_) && !search_once(start, false)) brute(start, 1);
-            return answer_;
+        if (question_.periods > 1) {
+            if (!search_multiple(start, question_.periods, true)) answer_.status = SteadyStatus::none;
+        } else if (question_.periods == 1 || contracts_) {
+            const bool found = (contracts_ && symmetric_ && follows_sine()) || search_once(start, symmetric_) ||
+                               search_once(start, false);
+            if (!found) brute(start, 1);
+        } else {
+            brute(start, longest_);
         }
-        if (contracts_) {
-            if (symmetric_ && follows_sine()) return answer_;
-            if (search_once(start, symmetric_) || search_once(start, false)) return answer_;
-            brute(start, 1);
-            return answer_;
-        }
-        brute(start, longest_);
         return answer_;
     }
 
@@ -106,10 +101,15 @@ private:
         return answer_;
     }
 
-    /// Under one sine closed forms from event to event give the answer, and one look confirms it.
+    /// Under one sine closed forms from event to event give the answer, and one look confirms it; a motion too small
+    /// for that has a closed form to the end.
     bool follows_sine() {
         const auto own = sine::single_sine(question_);
         if (!own) return false;
+        if (const auto slides = sine::ShortSlides::of(question_)) {
+            answer_ = slides->motion(question_);
+            return true;
+        }
         auto start = sine::sliding_start(*own);
         if (!start) start = sine::stopping_start(*own);
         if (!start) return false;
@@ -129,7 +129,7 @@ private:
         if (std::isfinite(question_.excitation.most())) return true;
         const MapStep whole = map_(found.x);
         ++answer_.maps;
-        const double alike = 1e-9 * found.size;
+        const double alike = std::max(1e-9 * found.size, 4 * found.rounding);
         return whole.finished && (whole.to - found.x).norm() <= alike && std::fabs(whole.high + whole.low) <= alike;
     }
 
@@ -177,7 +177,7 @@ private:
     [[nodiscard]] bool is_symmetric(const Place& x, double size) {
         const MapStep step = half_(x);
         ++answer_.maps;
-        return step.finished && (step.to + x).norm() <= 1e-8 * size;
+        return step.finished && (step.to + x).norm() <= std::max(1e-8 * size, 4 * half_.rounding());
     }
 
     /// Runs the motion itself, and sees whether it comes back after some periods, or grows.

@@ -20,6 +20,9 @@ bool acts_evenly(const model::Friction& law, const model::Lowered& system) {
            system.holding(Motion::forward) == system.holding(Motion::backward);
 }
 
+/// After a stop what is left of a disturbance is a product of cosines, or so, which has no error to speak of.
+constexpr double kept_within = 1e-12;
+
 std::array<std::complex<double>, 2> eigenvalues(const Eigen::Matrix2d& D) {
     const double mean = (D(0, 0) + D(1, 1)) / 2, half = (D(0, 0) - D(1, 1)) / 2;
     const double square = half * half + D(0, 1) * D(1, 0);
@@ -112,7 +115,7 @@ SteadyMotion facts_of(const SteadyQuestion& question, const PeriodMap& map, cons
     const auto& m = motion.multipliers;
     motion.stable = !step.moved || (step.differentiable && std::max(std::abs(m[0]), std::abs(m[1])) <= 1 + slack);
     if (contracting && step.moved && step.differentiable && !step.on_edge) {
-        motion.unique = std::min(std::abs(m[0] - 1.0), std::abs(m[1] - 1.0)) > neutral_within;
+        motion.unique = std::min(std::abs(m[0] - 1.0), std::abs(m[1] - 1.0)) > (step.stuck > 0 ? kept_within : slack);
     }
     motion.symmetric = half;
     return motion;

@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "analysis/friction_wave.hpp"
+#include "analysis/sine/short_slides.hpp"
 #include "analysis/steady.hpp"
 #include "analysis/stretches.hpp"
 #include "model/lowered.hpp"
@@ -86,7 +87,9 @@ SteadyShape shape_of(const SteadyQuestion& question, const SteadyMotion& motion,
     const std::complex<double> M_wave = feedback ? 0 : harmonic_of(question.excitation, drive, 1);
     const bool drives = !feedback && is_more_than_rounding(question, M_wave);
     std::optional<Fundamental> found;
-    if (drives && is_linear_but_for_friction(question)) {
+    if (const auto slides = drives ? sine::ShortSlides::of(question) : std::nullopt) {
+        found = Fundamental{0, slides->fundamental()};
+    } else if (drives && is_linear_but_for_friction(question)) {
         const motion::Trajectory run =
             map.run({motion.start.theta, motion.start.velocity / map.omega()}, length, false);
         if (!model::is_whole(run.outcome)) return shape;

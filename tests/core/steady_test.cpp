@@ -135,6 +135,51 @@ TEST_CASE("the closed form from stop to stop is where the motion is, at any begi
     CHECK(found > 80);
 }
 
+TEST_CASE("a load that hardly exceeds friction moves the mass a little twice a period", "[steady]") {
+    struct Truth {
+        double r, gamma, zeta, amplitude, lag, stuck, multiplier;
+    };
+    // From release to rest in closed form with 34 digits, by a program of its own.
+    for (const Truth& truth : {
+             Truth{0.32959798658976, 0.99999, 0, 2.07167794557593802e-09, 90.2049825518561761, 0.995729211909474055,
+                   0.9983438228467979},
+             Truth{1, 1 - 1e-7, 0.05, 2.24987990811004456e-14, 90.0204981422755282, 0.999572947219737218,
+                   0.99999820015},
+             Truth{0.05, 0.9999, 0, 1.0107932331529254e-05, 90.6399041563079777, 0.986185447255688796,
+                   0.41777935204290279},
+         }) {
+        INFO("r = " << truth.r << ", gamma = 1 - " << 1 - truth.gamma);
+        for (const bool in_two : {false, true}) {
+            SteadyQuestion question = driven(truth.r, truth.gamma, truth.zeta);
+            const auto half = truth::harmonic(0.5, 2 * pi * truth.r);
+            if (in_two) question.excitation = half + half;  // which has no closed form of its own
+            const SteadyMotion found = steady_motion(question);
+            REQUIRE(found.status == SteadyStatus::steady);
+            // What is found by runs is no better than a place at which torques of 1 hold each other.
+            CHECK(found.amplitude == within(truth.amplitude, in_two ? 1e-15 : 1e-13 * truth.amplitude));
+            CHECK(found.stops == 2);
+            CHECK(found.symmetric);
+            CHECK(found.unique == std::optional(true));
+            CHECK(std::abs(found.multipliers[0]) == within(truth.multiplier, 1e-9));
+            CHECK(found.stuck == within(truth.stuck, in_two ? 1e-7 : 1e-13));
+            if (!in_two) CHECK(*shape_of(question, found).lag == within(truth.lag, 1e-10));
+        }
+    }
+    // Begun within a slide, half a period later and at the crest: the same motion.
+    SteadyQuestion question = driven(0.7, 0.995, 0.1);
+    const double amplitude = steady_motion(question).amplitude;
+    for (const double phase : {pi / 2, -pi / 2, pi / 2 + 0.1, 3.0}) {
+        INFO("phase " << phase);
+        question.excitation = truth::harmonic(1, 2 * pi * 0.7, phase);
+        const SteadyMotion found = steady_motion(question);
+        CHECK(found.amplitude == within(amplitude, 1e-15));
+        const auto run = truth::must_run(question.system, question.excitation, found.start, {0, 1 / 0.7},
+                                         motion::Grid::none(), motion::Spectral{});
+        CHECK(run.state_at_stop.theta == within(found.start.theta, 1e-13));
+        CHECK(run.state_at_stop.velocity == within(found.start.velocity, 1e-12));
+    }
+}
+
 TEST_CASE("without dry friction the multipliers and the lag are those of linear theory", "[steady]") {
     for (const double zeta : {0.05, 0.3, 1.0, 1.7}) {
         const double r = 0.7;

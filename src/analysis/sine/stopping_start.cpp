@@ -2,14 +2,11 @@
 
 #include <array>
 #include <cmath>
-#include <numbers>
 
 #include "analysis/sine/sine_arcs.hpp"
 
 namespace dinal::analysis::sine {
 namespace {
-
-constexpr double half_load = std::numbers::pi;  // half a period of the load, as a phase
 
 /// At rest, and released when the load has reached this phase.
 struct Stick {

@@ -1,0 +1,143 @@
+#include "analysis/sine/short_slides.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace dinal::analysis::sine {
+namespace {
+
+constexpr double longest = 3;  // of a slide, in the shortest time of all parts: e^3 of the digits go
+
+}  // namespace
+
+std::optional<ShortSlides> ShortSlides::of(const SteadyQuestion& question) {
+    const auto sine = single_sine(question);
+    if (!sine || sine->holding != sine->sliding || !(sine->spare > 0)) return {};
+    const double turns = sine->r * sine->omega0 * question.drive.period / (2 * half_load);
+    constexpr double once = 1e-12;
+    if (std::fabs(turns - 1) > once) return {};
+    ShortSlides slides(*sine);
+    return slides.solve() ? std::optional(slides) : std::nullopt;
+}
+
+/// Released from -y, it must get 2 y far. What a little more y changes is what a shifted start is back by then.
+bool ShortSlides::solve() {
+    constexpr int most_steps = 30;
+    constexpr double nearly = 1e-7;  // the next step of Newton leaves about rounding
+    for (int i = 0; i < most_steps; ++i) {
+        start(sine_.spare + rest_);
+        if (!find_end()) return false;
+        const double left = way(end_) - 2 * rest_;
+        const double step = left / (2 - forgets(end_));
+        rest_ += step;
+        if (!(rest_ > 0)) return false;
+        if (std::fabs(step) > nearly * rest_) continue;
+        start(sine_.spare + rest_);
+        const double pull = std::sin(release_ + sine_.r * end_) - rest_;
+        return find_end() && std::fabs(pull) <= sine_.holding;
+    }
+    return false;
+}
+
+/// The slide from a place where the crest of the load exceeds what holds the mass by `spare`: at the release the load
+/// is cos d, d of phase before its crest, and x later cos d cos rx + sin d sin rx.
+void ShortSlides::start(double spare) {
+    const double d = 2 * std::asin(std::sqrt(spare / 2)), r = sine_.r;
+    release_ = half_load / 2 - d;
+    end_ = 3 * std::tan(d) / r;  // where the first two terms of the speed cancel
+    const std::array<double, 4> turn{std::cos(d), std::sin(d), -std::cos(d), -std::sin(d)};
+    double power = 1;
+    series_[0] = series_[1] = 0;
+    for (std::size_t n = 0; n + 2 < terms; ++n) {
+        const auto number = static_cast<double>(n);
+        if (n > 0) power *= r / number;
+        const double load = n == 0 ? 0 : power * turn[n % 4];
+        series_[n + 2] =
+            (load - 2 * sine_.zeta * (number + 1) * series_[n + 1] - series_[n]) / ((number + 1) * (number + 2));
+    }
+}
+
+/// The first time after the release at which it stands still. The speed begins with x squared, by which it is divided.
+bool ShortSlides::find_end() {
+    const double fastest = std::max({1.0, sine_.r, 2 * sine_.zeta});
+    constexpr int most_steps = 40;
+    double before = 0.9 * end_, value_before = speed_by_square(before);
+    for (int i = 0; i < most_steps && end_ > 0 && end_ * fastest <= longest; ++i) {
+        const double value = speed_by_square(end_);
+        if (value == value_before) return value == 0;
+        const double step = value * (end_ - before) / (value - value_before);
+        before = end_, value_before = value;
+        end_ -= step;
+        constexpr double nearly = 1e-15;
+        if (std::fabs(step) <= nearly * end_) return end_ * fastest <= longest;
+    }
+    return false;
+}
+
+double ShortSlides::way(double x) const {
+    double sum = 0;
+    for (std::size_t n = terms; n-- > 0;) sum = sum * x + series_[n];
+    return sum;
+}
+
+double ShortSlides::speed_by_square(double x) const {
+    double sum = 0;
+    for (std::size_t n = terms; n-- > 3;) sum = sum * x + static_cast<double>(n) * series_[n];
+    return sum;
+}
+
+/// What of a shift of the place is gone after x of free motion: the answer to a constant load of 1.
+double ShortSlides::forgets(double x) const {
+    double before = 0, now = 0, sum = 0, power = 1;  // terms n and n + 1 of the series, and x^n
+    for (std::size_t n = 0; n + 2 < terms; ++n) {
+        const auto number = static_cast<double>(n);
+        const double next =
+            ((n == 0 ? 1 : 0) - 2 * sine_.zeta * (number + 1) * now - before) / ((number + 1) * (number + 2));
+        power *= n == 0 ? x * x : x;
+        sum += next * power;
+        before = now, now = next;
+    }
+    return sum;
+}
+
+SteadyMotion ShortSlides::motion(const SteadyQuestion& question) const {
+    const double halves = std::floor((sine_.phase - release_) / half_load);
+    const double since = (sine_.phase - release_ - halves * half_load) / sine_.r;
+    const double sign = std::fmod(halves, 2) == 0 ? 1 : -1;
+    const bool slides = since < end_;
+    SteadyMotion motion;
+    motion.status = SteadyStatus::steady;
+    motion.period = question.drive.period;
+    motion.start = sine_.state(
+        {sign * (slides ? way(since) - rest_ : rest_), slides ? sign * speed_by_square(since) * since * since : 0.0});
+    motion.amplitude = motion.high = sine_.unit * rest_;
+    motion.low = -motion.high;
+    const double stop = release_ + sine_.r * end_;
+    motion.t_high = question.drive.start + (stop - sine_.phase) / (sine_.r * sine_.omega0);
+    motion.stops = 2;
+    motion.stuck = 1 - sine_.r * end_ / half_load;
+    const double kept = 1 - forgets(end_);
+    motion.multipliers = {kept * kept, 0};
+    motion.differentiable = motion.stable = motion.symmetric = true;
+    motion.unique = true;  // a period brings any two motions nearer to each other, or lets them be
+    return motion;
+}
+
+/// By parts: of the speed, which is zero but in the two slides, and these are opposites half a period apart.
+std::complex<double> ShortSlides::fundamental() const {
+    std::array<std::complex<double>, terms> wave{1.0};  // e^(-i r x)
+    for (std::size_t n = 1; n < terms; ++n) {
+        wave[n] = wave[n - 1] * std::complex<double>(0, -sine_.r / static_cast<double>(n));
+    }
+    std::complex<double> sum;
+    double power = end_;
+    for (std::size_t n = 0; n + 1 < terms; ++n) {
+        std::complex<double> product;
+        for (std::size_t m = 0; m <= n; ++m) product += static_cast<double>(m + 1) * series_[m + 1] * wave[n - m];
+        sum += product * (power / static_cast<double>(n + 1));
+        power *= end_;
+    }
+    return sine_.unit * std::complex<double>(0, -2 / half_load) * std::polar(1.0, sine_.phase - release_) * sum;
+}
+
+}  // namespace dinal::analysis::sine
