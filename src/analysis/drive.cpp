@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <vector>
 
 #include "model/forcing.hpp"
 
@@ -17,6 +18,31 @@ constexpr double golden = 0.6180339887498949;  // multiples of it, less their wh
 double probe(const Drive& drive, int i) {
     const double place = (i + 0.5) * golden;
     return drive.start + drive.period * (place - std::floor(place));
+}
+
+/// Times all over the period, and some within each piece of half a period in which neither M nor what it is half a
+/// period later breaks: a difference as short as that piece is seen. None where there are too many pieces to look at.
+std::optional<std::vector<double>> probes_of_halves(const model::Excitation& excitation, const Drive& drive) {
+    constexpr int spread = 24;
+    constexpr std::size_t most_breaks = 20000;
+    std::vector<double> times;
+    for (int i = 0; i < spread; ++i) times.push_back(probe(drive, i));
+    const double half = drive.period / 2;
+    std::vector<double> breaks{0, half};
+    for (double t = excitation.next_break(drive.start); t < drive.start + drive.period; t = excitation.next_break(t)) {
+        const double since = t - drive.start;
+        breaks.push_back(since < half ? since : since - half);
+        if (breaks.size() > most_breaks) return {};
+    }
+    if (breaks.size() == 2) return times;
+    std::sort(breaks.begin(), breaks.end());
+    for (std::size_t i = 0; i + 1 < breaks.size(); ++i) {
+        const double length = breaks[i + 1] - breaks[i];
+        constexpr double rounding = 1e-12;
+        if (!(length > rounding * (std::fabs(drive.start) + drive.period))) continue;
+        for (const double part : {0.21, 0.5, 0.83}) times.push_back(drive.start + breaks[i] + part * length);
+    }
+    return times;
 }
 
 /// The extreme of sign * M near the middle one of three times, which has the greatest value of them.
@@ -102,10 +128,12 @@ bool is_antisymmetric(const model::Excitation& excitation, const Drive& drive) {
         })) {
         return true;
     }
-    constexpr int probes = 24;
+    const auto times = probes_of_halves(excitation, drive);
+    if (!times) return false;
     double greatest = 0, worst = 0;
-    for (int i = 0; i < probes; ++i) {
-        const double t = probe(drive, i);
+    for (std::size_t j = 0; j < times->size(); ++j) {
+        const double t = (*times)[j];
+        const int i = static_cast<int>(j % 35);
         const model::State y{0.13 * (i % 5 - 2), 0.17 * (i % 7 - 3)}, opposite{-y.theta, -y.velocity};
         const double now = excitation.value(t, y), half = excitation.value(t + drive.period / 2, opposite);
         if (!std::isfinite(now) || !std::isfinite(half)) return false;
