@@ -71,18 +71,32 @@ local function near(x, y, question)
   return math.abs(x - y) <= (within or question.tolerance*math.abs(y))
 end
 
--- What goes wrong everywhere: what such a mistake makes of the answer, and what is said. `only` and `never` are units.
+--- The same for a part or a multiple of the answer: an absolute tolerance shrinks with it.
+local function near_in_proportion(x, y, question)
+  if question.whole then return x == y end
+  return math.abs(x - y) <= (question.within and question.within/math.abs(question.answer) or question.tolerance)*math.abs(y)
+end
+
+-- What goes wrong everywhere: what such a mistake makes of the answer, what is said, and the units of the answers that it can
+-- happen to ("" is a plain number): a torque is never in degrees.
+local angles = { ["rad"] = true, ["rad per time unit"] = true }
+local swings = { ["rad"] = true, ["time units"] = true, ["speed"] = true, ["M0/k"] = true }
+local turns = { ["rad"] = true, ["rad per time unit"] = true, ["time units"] = true, ["T0"] = true, [""] = true }
+local plain, percent, degrees, times = { [""] = true }, { ["percent"] = true }, { ["degrees"] = true }, { ["time units"] = true }
 local usual = {
   { function(x) return -x end, "the size is right, the sign is not" },
-  { function(x) return 2*x end, "that is twice as much: a whole cycle for half of one, both sides for one, peak to peak for an amplitude?" },
-  { function(x) return x/2 end, "that is half of it: half a cycle for a whole one, one side for both, a radius for a diameter?" },
-  { math.deg, "that is in degrees; radians are asked for", never = "degrees" },
-  { math.rad, "that is in radians; degrees are asked for", only = "degrees" },
-  { function(x) return x/(2*math.pi) end, "there is a 2 pi missing in it: cycles per time unit where rad per time unit are meant?" },
-  { function(x) return 2*math.pi*x end, "there is a 2 pi too much in it: rad per time unit where cycles per time unit are meant?" },
-  { function(x) return 1/x end, "that is its reciprocal: a frequency, where a time is asked for?", only = "time units" },
-  { function(x) return x/100 end, "that is a hundred times too small: a fraction where percent are asked for?", only = "percent" },
-  { function(x) return 100*x end, "that is a hundred times too much: percent where the plain number is asked for?", never = "percent" },
+  { function(x) return 2*x end,
+    "that is twice as much: a whole cycle for half of one, both sides for one, peak to peak for an amplitude?", swings },
+  { function(x) return 2*x end, "that is twice as much: where does the factor 2 come in?" },
+  { function(x) return x/2 end, "that is half of it: half a cycle for a whole one, one side for both, an amplitude for peak to peak?", swings },
+  { function(x) return x/2 end, "that is half of it: where does the factor 2 come in?" },
+  { math.deg, "that is in degrees; radians are asked for", angles },
+  { math.rad, "that is in radians; degrees are asked for", degrees },
+  { function(x) return x/(2*math.pi) end, "there is a 2 pi missing in it: whole turns for radians, or radians for turns?", turns },
+  { function(x) return 2*math.pi*x end, "there is a 2 pi too much in it: whole turns for radians, or radians for turns?", turns },
+  { function(x) return 1/x end, "that is its reciprocal: a frequency, where a time is asked for?", times },
+  { function(x) return x/100 end, "that is a hundred times too small: a fraction where percent are asked for?", percent },
+  { function(x) return 100*x end, "that is a hundred times too much: percent where the plain number is asked for?", plain },
   { function(x) return 1000*x end, "that is a thousand times too much: a prefix of the unit?" },
   { function(x) return x/1000 end, "that is a thousand times too small: a prefix of the unit?" },
 }
@@ -120,8 +134,8 @@ local function hint_for(question, value)
     if said then return said end
   end
   for _, case in ipairs(usual) do
-    local fits = (not case.only or case.only == question.unit) and case.never ~= (question.unit or "")
-    if fits and near(value, case[1](question.answer), question) then return case[2] end
+    local fits = not case[3] or case[3][question.unit or ""]
+    if fits and near_in_proportion(value, case[1](question.answer), question) then return case[2] end
   end
   local tolerance = question.within or not question.whole and question.tolerance*math.abs(question.answer)
   if tolerance and math.abs(value - question.answer) <= 4*tolerance then

@@ -153,7 +153,8 @@ class DinalKernel(Kernel):
         self.dinal.end()
         code = self.dinal.process.returncode
         self.dinal = Dinal()
-        return f"dinal has ended (exit code {code}); what it knew is lost, and the next cell begins anew"
+        how = f"exit code {code}" if code >= 0 else f"killed by {signal.Signals(-code).name}"
+        return f"dinal has ended ({how}); what it knew is lost, and the next cell begins anew"
 
     def ask(self, request):
         try:
