@@ -265,8 +265,7 @@ without a script: a prompt on a terminal, else standard input is run as a script
   --lab-marks FILE   note at the end of FILE what became of each answer in the lab
   --lab-solutions NUMBER  the answers of a student number, for instructors
   --report   run the script, and make a page to hand in of what it prints and
-             draws, also into files (but for animations): lab.html of lab.lua,
-             in the current folder
+             draws, also into files: lab.html of lab.lua, in the current folder
   --jupyter-install  make dinal a kernel of Jupyter notebooks, for this user
   --kernel=N         what such a kernel runs: requests on standard input, answers
                      on the descriptor N, as lines of JSON
