@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "plots/svg_words.hpp"
+#include "text/characters.hpp"
 #include "text/html.hpp"
 
 namespace dinal::api {
@@ -101,10 +102,22 @@ std::string fence(std::string_view text) {
     return marks;
 }
 
+/// The text with its lines and tabs, and no other character that steers what shows it.
+std::string lines_shown(std::string_view text) {
+    std::string all;
+    while (!text.empty()) {
+        const std::size_t end = std::min(text.find_first_of("\n\t"), text.size());
+        all += text::displayable(text.substr(0, end));
+        if (end < text.size()) all += text[end];
+        text.remove_prefix(std::min(end + 1, text.size()));
+    }
+    return all;
+}
+
 /// A line that Markdown would read as something else than text stays text.
 std::string plain_markdown(std::string_view text) {
     std::string all;
-    for (const char c : text) {
+    for (const char c : lines_shown(text)) {
         if (std::string_view("\\`*_{}[]<>#|").find(c) != std::string_view::npos) all += '\\';
         all += c;
     }
@@ -115,14 +128,16 @@ struct MarkdownWriter {
     MarkdownReport report;
     const std::string& stem;
 
-    void operator()(const ReportHeading& item) { report.text += "## " + plain_markdown(item.text) + "\n\n"; }
+    void operator()(const ReportHeading& item) {
+        report.text += "## " + plain_markdown(text::displayable(item.text)) + "\n\n";
+    }
     void operator()(const ReportText& item) {
         for (const std::string_view one : paragraphs(item.text)) report.text += plain_markdown(one) + "\n\n";
     }
     void operator()(const ReportLines& item) {
         const std::string marks = fence(item.text);
-        report.text += (item.caption.empty() ? "" : plain_markdown(item.caption) + ":\n\n") + marks + "\n" + item.text +
-                       "\n" + marks + "\n\n";
+        report.text += (item.caption.empty() ? "" : plain_markdown(item.caption) + ":\n\n") + marks + "\n" +
+                       lines_shown(item.text) + "\n" + marks + "\n\n";
     }
     void operator()(const ReportPicture& item) {
         if (item.svg.empty()) {
@@ -156,7 +171,7 @@ std::string html_of(const Report& report) {
 
 MarkdownReport markdown_of(const Report& report, const std::string& stem) {
     MarkdownWriter writer{{}, stem};
-    writer.report.text = "# " + plain_markdown(report.title) + "\n\n";
+    writer.report.text = "# " + plain_markdown(text::displayable(report.title)) + "\n\n";
     if (!report.author.empty()) writer.report.text += plain_markdown(report.author) + "\n\n";
     for (const ReportItem& item : report.items) std::visit(writer, item);
     return std::move(writer.report);

@@ -109,6 +109,11 @@ std::string with_words(std::string svg, std::span<const Figure> figures) {
     if (const std::size_t root = svg.find("<svg"); root != std::string::npos) {
         svg.insert(root + 4, " role=\"img\" aria-label=\"" + text::html(title) + "\"");
     }
+    // gnuplot leaves > as it is in labels, and XML has this only at the end of CDATA, which gnuplot does not write.
+    constexpr std::string_view end_of_data = "]]>";
+    for (std::size_t at = svg.find(end_of_data); at != std::string::npos; at = svg.find(end_of_data, at)) {
+        svg.replace(at, end_of_data.size(), "]]&gt;");
+    }
     return svg;
 }
 

@@ -9,12 +9,19 @@ namespace {
 
 constexpr std::string_view no_letter = "\xEF\xBF\xBD";  // U+FFFD
 
-/// How many bytes the letter has that begins the text; 0 when it is no UTF-8.
-std::size_t letter_at(std::string_view text) {
+struct Letter {
+    std::size_t bytes = 0;  ///< 0 when it is no UTF-8
+    bool shown = false;     ///< and neither a control character nor a turn of the direction of writing
+};
+
+/// The one that begins the text.
+Letter letter_at(std::string_view text) {
     utf8proc_int32_t code = 0;
     const auto* const bytes = reinterpret_cast<const utf8proc_uint8_t*>(text.data());  // NOLINT: all may be seen so
-    return static_cast<std::size_t>(
-        std::max<utf8proc_ssize_t>(utf8proc_iterate(bytes, static_cast<utf8proc_ssize_t>(text.size()), &code), 0));
+    const auto size = utf8proc_iterate(bytes, static_cast<utf8proc_ssize_t>(text.size()), &code);
+    if (size <= 0) return {};
+    const bool turns = (code >= 0x202A && code <= 0x202E) || (code >= 0x2066 && code <= 0x2069);
+    return {static_cast<std::size_t>(size), code >= 0xA0 && !turns};
 }
 
 }  // namespace
@@ -25,9 +32,9 @@ std::string html(std::string_view text) {
     for (std::size_t at = 0; at < text.size(); ++at) {
         const char c = text[at];
         if (static_cast<unsigned char>(c) >= 0x80) {
-            const std::size_t bytes = letter_at(text.substr(at));
-            result += bytes > 0 ? text.substr(at, bytes) : no_letter;
-            at += std::max<std::size_t>(bytes, 1) - 1;
+            const Letter letter = letter_at(text.substr(at));
+            result += letter.shown ? text.substr(at, letter.bytes) : no_letter;
+            at += std::max<std::size_t>(letter.bytes, 1) - 1;
             continue;
         }
         switch (c) {
@@ -47,7 +54,7 @@ std::string html(std::string_view text) {
                 result += "&#39;";
                 break;
             default:
-                if (static_cast<unsigned char>(c) < 0x20 && c != '\t' && c != '\n') {
+                if ((static_cast<unsigned char>(c) < 0x20 || c == '\x7F') && c != '\t' && c != '\n') {
                     result += no_letter;
                 } else {
                     result += c;

@@ -76,6 +76,15 @@ test("names of columns are no markup, bytes that are no letters no letters, and 
     local markdown, page = saved(r, ".md"), saved(r, ".html")
     assert(markdown:find("| \\<b>a\\</b> | \\`c\\` \\[d](e) |", 1, true), markdown)
     assert(not page:find "<b>" and utf8.len(page) and page:find("\u{FFFD} and \u{E4}", 1, true), page)
+    r = report{ title = "a\nb\27]0;c\7", author = "\127\194\155x" }
+    r:text "\226\128\174turned"
+    r:add "\27[2J\tkept\255"
+    local own_markdown, own_page = saved(r, ".md"), saved(r, ".html")
+    for _, text in ipairs{ own_markdown, own_page } do
+        assert(utf8.len(text) and not text:find "[%z\1-\8\11-\31\127]", text)
+        assert(not text:find "\194\155" and not text:find "\226\128\174" and text:find "\tkept", text)
+    end
+    assert(own_markdown:find("# a b?\\]0;c?\n", 1, true), own_markdown)
     assert(markdown:find('{ 1, "two", { three = 3 } }\nlist = { 1, 2 }', 1, true), markdown)
     raises_here(function() r:add{ io.stdout } end, "r:add: not all that is in this table can be shown")
 end)
@@ -107,6 +116,18 @@ test("a run in motion is on the page, and beside Markdown", function()
     assert(text:find("![A run in motion, t = 0 to 6](", 1, true), text)
     raises_here(function() r:animate(3) end, "r:animate takes a run, got 3")
     raises_here(function() r:animate(run, { file = "x.svg" }) end, "file")
+end)
+
+test("the end of CDATA in a label leaves the picture well formed", function()
+    local r = report{ title = "x" }
+    r:plot{ { run.t, run.theta, label = "]]><!--" }, title = "]]>", xlabel = "a]]]>" }
+    local text, name = saved(r, ".md")
+    assert(not text:match("^(.-)\nThe script"):find("]]>", 1, true), text)
+    if has_gnuplot then
+        local picture = name:gsub("%.md$", "-1.svg")
+        assert(not read(picture):find("]]>", 1, true) and read(picture):find("a]]]&gt;", 1, true))
+        os.remove(picture)
+    end
 end)
 
 test("what cannot be reported is told in a sentence", function()
