@@ -151,7 +151,7 @@ private:
             return {};
         }
         const auto [low, high] = rest_of(question_, x[0]);
-        const double inside = 1e-15 * std::max(std::fabs(low), std::fabs(high));
+        const double inside = std::max(1e-15 * std::max(std::fabs(low), std::fabs(high)), map_.rounding());
         return Place(std::clamp(x[0], std::min(low + inside, high), std::max(high - inside, low)), 0);
     }
 
