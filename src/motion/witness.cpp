@@ -105,12 +105,15 @@ double Witness::value_with(double t, const model::State& state, std::span<const 
 
 std::size_t Witness::fill(std::span<const double> times, std::span<double> out) {
     if (testimony_->over) return function_->fill(times, out);
-    std::size_t good = testimony_->found ? 0 : function_->fill(times, out);
-    for (std::size_t i = 0; i < good; ++i) {
-        if (!heard({times[i], {}, out[i]}, {})) good = 0;
+    if (!testimony_->found) {
+        const std::size_t good = function_->fill(times, out);
+        if (good < times.size()) return good;
+        std::size_t i = 0;
+        while (i < good && heard({times[i], {}, out[i]}, {})) ++i;
+        if (i == good) return good;
     }
-    if (testimony_->found) out[0] = no_number;
-    return good;
+    out[0] = no_number;
+    return 0;
 }
 
 void Witness::conclude() {
