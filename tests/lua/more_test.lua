@@ -295,4 +295,19 @@ test("an integral that stands still while the output is at its limit goes on whe
     assert(calls < 20000, calls) -- the jump is closed in on; differences across it took a million
 end)
 
+test("an event that sends the mass back to where it came from is told once", function()
+    -- Between two levels that it is thrown back from, without a direction given: 0.35 at 0.35, -0.35 at 1.05, …
+    local function back(t, theta, velocity) return theta, -velocity end
+    local run = system { I = 1, k = 0 }:simulate { velocity0 = 1, t_end = 3, dt = 0.5, events = {
+        { name = "right", when = function(t, theta) return theta - 0.35 end, act = back },
+        { name = "left", when = function(t, theta) return theta + 0.35 end, act = back },
+    } }
+    equal(#run.events, 4)
+    for i, event in ipairs(run.events) do
+        equal(event.name, i % 2 == 1 and "right" or "left")
+        near(event.t, 0.35 + 0.7*(i - 1), 1e-13)
+    end
+    near(run.theta[#run], -0.35 + (3 - 2.45), 1e-13)
+end)
+
 support.finish()

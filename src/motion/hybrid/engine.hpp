@@ -61,11 +61,14 @@ private:
     bool choose();
     bool handle(const Ending& ending);
     void again(Solver::Attempt attempt);
+    void watch(Ending& ending);
+
+    // engine_surface.cpp
     [[nodiscard]] std::optional<double> first_standstill() const;
     [[nodiscard]] bool creeps() const;
     bool creep();
     [[nodiscard]] std::pair<double, model::Motion> first_release() const;
-    void watch(Ending& ending);
+    void record_turns(double until);
 
     // engine_walls.cpp
     void touch_wall(bool goes_on);
@@ -78,7 +81,6 @@ private:
     [[nodiscard]] Bounces bounces(model::Motion into) const;
     [[nodiscard]] double sliding_at_wall(double belt) const;
     [[nodiscard]] double belt_at_wall(double belt) const;
-    void record_turns(double until);
     bool end_piece(double x);
     bool rows_until(double end, bool to_the_end);
     bool put_row(double t, double x);
@@ -86,8 +88,8 @@ private:
     bool belt_jumps(double before);
     bool ask();
     bool release(model::Motion towards);
-    bool act(std::size_t which);
-    void stand_where_put(const std::vector<double>& before);
+    bool act(std::size_t which, const std::vector<std::size_t>& fired);
+    void stand_where_put(const std::vector<double>& before, const std::vector<std::size_t>& fired);
     [[nodiscard]] std::vector<double> watched_values(double x) const;
     void tell(model::EventKind kind, int user = -1);
     bool too_often();

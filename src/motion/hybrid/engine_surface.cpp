@@ -1,0 +1,139 @@
+// Where a mass comes to rest on its surface, creeps there, is let go, or turns.
+#include <algorithm>
+#include <cmath>
+
+#include "motion/hybrid/engine.hpp"
+
+namespace dinal::motion::hybrid {
+
+/// Where the mass is as fast as its surface. At the end of the piece, zero within rounding is zero.
+std::optional<double> Engine::first_standstill() const {
+    using namespace spectral::chebyshev;
+    Series slip = piece_.series[1];
+    slip[0] += y_[1];
+    if (field_.has_belt()) {
+        const Series belt = fit(piece_.belt);
+        for (std::size_t k = 0; k < points; ++k) slip[k] -= belt[k];
+    }
+    const double fastest = greatest(piece_.y[1]) + greatest(piece_.belt);
+    const double torques = greatest(piece_.M) + greatest(piece_.push) + system_.greatest_holding() +
+                           system_.stiffness() * (greatest(piece_.y[0]) + std::fabs(origin_)) +
+                           std::fabs(system_.spring(theta()));
+    Bounded<points> curve(model::sign_of(standstill_.motion()), slip, derivative(slip));
+    const bool leaving = standstill_.phase() == Standstill::Phase::leaving;
+    if (field_.has_belt()) curve.raise_floor(16 * rounding * fastest);
+    curve.raise_slope_floor(piece_.h / system_.inertia() * 64 * rounding * torques);
+    const auto always = [](double) { return true; };
+    const auto zero = first_below(curve, -1, leaving ? LeftEnd::leaving : LeftEnd::anywhere, always);
+    if (!zero && curve(1) <= curve.floor()) return 1;
+    return zero;
+}
+
+/// Whether all that goes on in the piece is slower than the rounding of its torques could make it.
+bool Engine::creeps() const {
+    if (field_.has_belt() || leans()) return false;
+    const double torques = greatest(piece_.M) + greatest(piece_.push) + system_.greatest_holding() +
+                           system_.stiffness() * (greatest(piece_.y[0]) + std::fabs(origin_));
+    const double hold = system_.damping() + system_.inertia() / (2 * piece_.h);
+    return greatest(piece_.y[1]) * hold <= 4 * rounding * torques;
+}
+
+/// Where the pull passes the limit of sticking, and which way; 2 when nowhere.
+std::pair<double, model::Motion> Engine::first_release() const {
+    using namespace spectral::chebyshev;
+    std::pair<double, model::Motion> first{2, model::Motion::stuck};
+    const auto pull_at = [&](double M, double push, double rate, double belt) {
+        if (piece_.leans) return M + push + belt_at_wall(belt);
+        return M + push - system_.inertia() * rate - system_.damping() * belt;
+    };
+    Nodes pulls{};
+    for (std::size_t j = 0; j < points; ++j) {
+        pulls[j] = pull_at(piece_.M[j], piece_.push[j], piece_.belt_rate[j], piece_.belt[j]) -
+                   system_.pull_back(piece_.origin + piece_.y[0][j]);
+    }
+    const Series pull = fit(pulls);
+    const double largest = greatest(piece_.M) + greatest(piece_.push) +
+                           system_.stiffness() * (greatest(piece_.y[0]) + std::fabs(origin_)) +
+                           std::fabs(system_.spring(theta()));
+    const bool held = standstill_.phase() == Standstill::Phase::held;
+    const double at_first = pull_at(piece_.M[0], piece_.push[0], piece_.belt_rate[0], piece_.belt[0]);
+    const double clearly_beyond = held ? standstill_.clearly_beyond({now_.hi, theta(), at_first}) : 0;
+    const double rounded_rate = 256 * rounding * greatest(piece_.belt) / piece_.h;
+    const Series belt = fit(piece_.belt), rate = fit(piece_.belt_rate);
+    for (const model::Motion side : {model::Motion::forward, model::Motion::backward}) {
+        if (side == standstill_.leans()) continue;
+        const double sign = model::sign_of(side), limit = standstill_.limit(side);
+        Series left{};
+        for (std::size_t k = 0; k < points; ++k) left[k] = -sign * pull[k];
+        left[0] += limit;
+        if (held) left[0] += clearly_beyond;
+        Bounded<points> curve(1, left, derivative(left));
+        const double doubt =
+            8 * (rounding * (std::fabs(limit) + largest) + tail(pull)) + system_.inertia() * rounded_rate;
+        curve.raise_floor(doubt);
+        const auto lets_go = [&](double x) {
+            const MotionPoint at = point(x);
+            const double M = field_.load(at);
+            const double whole = value(rate, x),
+                         sure = std::copysign(std::max(0.0, std::fabs(whole) - rounded_rate), whole);
+            return standstill_.pulled(pull_at(M, field_.push(at.t, at.side), sure, value(belt, x)), at.y.theta) == side;
+        };
+        std::optional<double> touch;
+        const auto touches = [&](double x) {
+            if (held) return false;
+            for (const double place : {x, curve.lowest_near(x)}) {
+                if (!touch && lets_go(place)) touch = place;
+            }
+            return touch.has_value();
+        };
+        auto x = first_below(curve, -1, LeftEnd::anywhere, touches);
+        // Where the two meet so gently that rounding hides it the pull itself says when.
+        if (x && touch) x = first_true(lets_go, *touch);
+        if (x && *x < first.first && piece_.time(*x) < piece_.end) first = {*x, side};
+    }
+    return first;
+}
+
+bool Engine::creep() {
+    return !field_.has_belt() && standstill_.creep({now_.hi, theta(), pull(field_.load(here()))});
+}
+
+/// Without friction nothing happens at a turn, it is only told.
+void Engine::record_turns(double until) {
+    using namespace spectral::chebyshev;
+    Series v = piece_.series[1];
+    v[0] += y_[1];
+    const double moving = greatest(piece_.y[1]);
+    const double torques = greatest(piece_.M) + greatest(piece_.push) +
+                           system_.stiffness() * (greatest(piece_.y[0]) + std::fabs(origin_)) +
+                           std::fabs(system_.spring(theta()));
+    if (moving <= 100 * rounding * piece_.h / system_.inertia() * torques) return;
+    if (standstill_.motion() == model::Motion::stuck) {
+        const std::span<const double> velocities = piece_.y[1];
+        const auto first =
+            std::find_if(velocities.begin(), velocities.end(), [&](double u) { return std::fabs(u) > 1e-14 * moving; });
+        standstill_.head(model::motion_of(first == velocities.end() ? 0 : *first));
+    }
+    double from = -1;
+    LeftEnd start = y_[1] == 0 ? LeftEnd::leaving : LeftEnd::anywhere;
+    const auto no = [](double) { return false; };
+    bool headed_back = false;
+    while (standstill_.motion() != model::Motion::stuck) {
+        const model::Motion motion = standstill_.motion();
+        const Bounded<points> curve(model::sign_of(motion), v, derivative(v));
+        const auto x = first_below(curve, from, start, no);
+        if (!x || *x > until) break;
+        if (start == LeftEnd::leaving && *x <= from && (from > -1 || standstill_.last_told() == now_.hi)) {
+            standstill_.head(motion == model::Motion::forward ? model::Motion::backward : model::Motion::forward);
+            if (from > -1 || headed_back) break;  // it gets under way neither way: all of it is rounding
+            headed_back = true;
+        } else {
+            const MotionPoint at = point(*x);
+            standstill_.turned({at.t, at.y.theta, field_.load(at)});
+        }
+        from = *x;
+        start = LeftEnd::leaving;
+    }
+}
+
+}  // namespace dinal::motion::hybrid

@@ -1,0 +1,183 @@
+// Collocation: the values at the nodes of a piece by Newton's steps.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "motion/hybrid/solver.hpp"
+
+namespace dinal::motion::hybrid {
+
+namespace {
+
+constexpr int most_iterations = 40;
+constexpr double most_left_over = 1e-6;  // of the equation; a stiff rate multiplies the rounding of its steps
+
+using NodeVector = Eigen::Matrix<double, node_count, 1>;
+
+/// Row i: the integral from -1 to node i of the polynomial through values at the nodes.
+using Integration = Eigen::Matrix<double, node_count, node_count>;
+const Integration& integration() {
+    static const Integration weights = [] {
+        Integration rows = Integration::Zero();
+        for (std::size_t j = 0; j < node_count; ++j) {
+            Nodes unit{};
+            unit[j] = 1;
+            const auto F = cheb::integral(cheb::fit(unit), 0.0);
+            for (std::size_t i = 1; i < node_count; ++i) {
+                rows(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) = cheb::value(F, cheb::nodes[i]);
+            }
+        }
+        return rows;
+    }();
+    return weights;
+}
+
+}  // namespace
+
+/// How the rates depend on the values, by differences at a node, narrow against the motion there.
+bool Solver::estimate_jacobian(const Solved& piece, std::size_t node) {
+    Linear& linear = moves(piece) ? moving_ : standing_;
+    linear.jacobian = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(n_), static_cast<Eigen::Index>(n_));
+    for (Linear::Inverse& inverse : linear.of_lengths) inverse.h = 0;
+    if (linear_ && moves(piece)) {
+        linear.known = true;
+        linear.jacobian(1, 0) = -system_.stiffness() / system_.inertia();
+        linear.jacobian(1, 1) = -system_.damping() / system_.inertia();
+        return true;
+    }
+    Values y(n_), above(n_), below(n_);
+    for (std::size_t k = 0; k < n_; ++k) y[k] = piece.y[k][node];
+    const auto rates = [&](const Values& values, double* out) {
+        double M = 0;
+        return rates_of(piece, piece.times[node], piece.side(node), {values[0], values[1]}, values,
+                        piece.belt_rate[node], out, M, piece.push[node], piece.belt[node]);
+    };
+    for (std::size_t l = moves(piece) ? 0 : 2; l < n_; ++l) {
+        const double spread = std::fabs(piece.y[l][node]) + piece.h * std::fabs(piece.f[l][node]);
+        const double d = spread > 0 ? 1e-4 * spread : 1e-9;
+        Values shifted = y;
+        shifted[l] = y[l] + d;
+        if (!rates(shifted, above.data())) return false;
+        shifted[l] = y[l] - d;
+        if (!rates(shifted, below.data())) return false;
+        for (std::size_t k = 0; k < n_; ++k) {
+            linear.jacobian(static_cast<Eigen::Index>(k), static_cast<Eigen::Index>(l)) =
+                (above[k] - below[k]) / (2 * d);
+        }
+    }
+    linear.known = true;
+    return true;
+}
+
+/// The inverse of the matrix of Newton's steps: 1 - h J times the integration, where theta is the integral of the
+/// velocity.
+const Eigen::MatrixXd& Solver::newton(const Solved& piece) {
+    Linear& linear = moves(piece) ? moving_ : standing_;
+    for (const Linear::Inverse& inverse : linear.of_lengths) {
+        if (std::fabs(inverse.h / piece.h - 1) < 1e-6) return inverse.matrix;
+    }
+    const auto size = static_cast<Eigen::Index>(inner), first = static_cast<Eigen::Index>(first_unknown(piece));
+    const auto n = static_cast<Eigen::Index>(n_);
+    const auto once = integration().bottomRightCorner<inner, inner>();
+    Eigen::MatrixXd A = Eigen::MatrixXd::Identity(size * (n - first), size * (n - first));
+    for (Eigen::Index k = first; k < n; ++k) {
+        for (Eigen::Index l = first; l < n; ++l) {
+            const double slope = piece.h * linear.jacobian(k, l);
+            if (slope != 0) A.block((k - first) * size, (l - first) * size, size, size) -= slope * once;
+        }
+        const double stiffness = piece.h * piece.h * linear.jacobian(k, 0);
+        if (moves(piece) && stiffness != 0) A.block((k - first) * size, 0, size, size) -= stiffness * (once * once);
+    }
+    Linear::Inverse& inverse = linear.of_lengths[linear.next];
+    linear.next = (linear.next + 1) % linear.of_lengths.size();
+    inverse.matrix = A.partialPivLu().inverse();
+    inverse.h = piece.h;
+    return inverse.matrix;
+}
+
+/// Theta at the nodes, by the velocities there.
+void Solver::place(Solved& piece) const {
+    const Eigen::Map<const NodeVector> velocity(piece.y[1].data());
+    Eigen::Map<NodeVector> theta(piece.y[0].data());
+    theta = (piece.y[0][0] + piece.h * (integration() * velocity).array()).matrix();
+}
+
+/// Where nothing depends on the motion but C velocity and k theta, one step of Newton is all there is to do.
+bool Solver::solves_at_once(const Solved& piece) const {
+    constexpr double most = 8;  // beyond that rounding is multiplied
+    return linear_ && moves(piece) &&
+           piece.h * (piece.h * system_.stiffness() + system_.damping()) <= most * system_.inertia();
+}
+
+Solver::Attempt Solver::collocate(Solved& piece, const model::State& departing) {
+    Linear& linear = moves(piece) ? moving_ : standing_;
+    unresolved_ = std::numeric_limits<double>::infinity();
+    const std::size_t first = first_unknown(piece);
+    residual_.resize(static_cast<Eigen::Index>(inner * (n_ - first)));
+    step_.resize(residual_.size());
+    // Beside a jump of a rate differences tell a slope that is none; where a piece is short it does without any.
+    enum class Slopes { known, here, none };
+    for (const Slopes slopes : {Slopes::known, Slopes::here, Slopes::none}) {
+        const bool sloped = slopes != Slopes::none;
+        if (!evaluate(piece, 0, departing)) return Attempt::failed;
+        if (!moves(piece)) {
+            for (std::size_t j = 1; j < node_count; ++j) piece.y[1][j] = piece.carrier(j);
+        }
+        for (std::size_t k = first; k < n_; ++k) {
+            for (std::size_t j = 1; j < node_count; ++j) {
+                piece.y[k][j] = piece.y[k][0] + piece.h * (1 + cheb::nodes[j]) * piece.f[k][0];
+            }
+        }
+        if (moves(piece) || (field_.has_belt() && !piece.leans)) place(piece);
+        double before = std::numeric_limits<double>::infinity();
+        for (int i = 0; i < most_iterations; ++i) {
+            for (std::size_t j = 1; j < node_count; ++j) {
+                if (!evaluate(piece, j, {piece.y[0][j], piece.y[1][j]})) return Attempt::failed;
+            }
+            if (first == n_) return Attempt::resolved;
+            if (sloped && !linear.known && !estimate_jacobian(piece, node_count / 2)) return Attempt::failed;
+            for (std::size_t k = first; k < n_; ++k) {
+                const Eigen::Map<const NodeVector> f(piece.f[k].data()), y(piece.y[k].data());
+                residual_.segment<inner>(static_cast<Eigen::Index>((k - first) * inner)) =
+                    (y[0] - y.tail<inner>().array()).matrix() + piece.h * (integration().bottomRows<inner>() * f);
+            }
+            if (sloped) {
+                step_.noalias() = newton(piece) * residual_;
+            } else {
+                step_ = residual_;
+            }
+            double change = 0, left = 0;
+            const double gained = piece.h / system_.inertia() * torques_of(piece, greatest(piece.M));
+            for (std::size_t k = first; k < n_; ++k) {
+                const auto row = static_cast<Eigen::Index>((k - first) * inner);
+                Eigen::Map<NodeVector>(piece.y[k].data()).tail<inner>() += step_.segment<inner>(row);
+                // Torques that balance leave a velocity that is the rounding of each of them, however small it is.
+                const double scale =
+                    greatest(piece.y[k]) + (k == 1 ? gained : 0) + std::numeric_limits<double>::min() / rounding;
+                change = std::max(change, step_.segment<inner>(row).lpNorm<Eigen::Infinity>() / scale);
+                left = std::max(left, residual_.segment<inner>(row).lpNorm<Eigen::Infinity>() / scale);
+            }
+            if (moves(piece)) place(piece);
+            if (!std::isfinite(change + left)) break;
+            if (sloped && solves_at_once(piece)) {
+                for (std::size_t j = 1; j < node_count; ++j) {
+                    const double torque = (piece.M[j] - system_.braking(piece.way)) + piece.push[j];
+                    piece.f[1][j] = accelerated(torque, piece.theta_at(j), piece.y[1][j]);
+                }
+                return Attempt::resolved;
+            }
+            const double rate = before < std::numeric_limits<double>::infinity() ? change / before : 1;
+            const bool converged = change <= 16 * rounding || (i >= 1 && change * rate <= 4 * rounding) ||
+                                   (i >= 2 && change <= 1e-12 && rate > 0.3);
+            // With slopes that are far off no step goes anywhere, and the equation does not hold.
+            if (converged && left <= most_left_over) return Attempt::resolved;
+            if (i >= 3 && rate > 0.7) break;
+            before = change;
+        }
+        if (slopes == Slopes::known && !estimate_jacobian(piece, 0)) break;  // the others may be anywhere by now
+    }
+    linear.known = false;
+    return Attempt::shorten;
+}
+
+}  // namespace dinal::motion::hybrid
