@@ -7,6 +7,7 @@
 #include "support/catch.hpp"
 #include "support/linear_truth.hpp"
 #include "support/measure.hpp"
+#include "support/random_mixed.hpp"
 #include "support/within.hpp"
 #include "support/written.hpp"
 
@@ -268,4 +269,8 @@ TEST_CASE("a controller that samples is called once an instant, in order, and it
         CHECK(asked.size() == 49);
         CHECK((both->rows.matrix() - run.rows.matrix()).cwiseAbs().maxCoeff() < method.tolerance);
     }
+}
+
+TEST_CASE("systems of all kinds by lot agree with an independent integrator, event by event", "[long][hybrid][mixed]") {
+    check_random_mixed(300);
 }

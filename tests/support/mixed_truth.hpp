@@ -1,0 +1,95 @@
+// A second opinion on runs with more in them: states, controllers with a memory, belts, bases, laws of friction, walls
+// and events of a user. Fehlberg 7(8) of Boost.odeint in long double with short steps, event by event.
+//
+// Nothing of src is used. All is in units in which times, angles, velocities and torques are about 1.
+#pragma once
+
+#include <array>
+#include <deque>
+#include <functional>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "support/closed_form.hpp"
+
+namespace dinal::truth {
+
+struct MixedPoint {
+    real theta = 0, velocity = 0, z = 0;
+};
+
+struct MixedSystem {
+    template <class R>
+    using F = std::function<R(real t, const MixedPoint&)>;
+    real I = 1, C = 0, k = 1;
+    std::function<real(real theta)> spring = [](real) -> real { return 0; };
+    /// Of a way, -1 or 1, and a speed, which may be a little below 0: the smooth continuation.
+    std::function<real(int way, real speed)> sliding;
+    std::array<real, 2> holding{};  ///< backward, forward
+    F<real> M;                      ///< without controllers
+    F<real> rate = [](real, const MixedPoint&) -> real { return 0; };
+    std::function<real(real)> belt, belt_rate, base;  ///< empty: none
+    F<real> sampled;                                  ///< empty: none
+    real every = 1, delay = 0;
+    F<real> relay_of;  ///< empty: none
+    real on = 0, off = 0;
+    std::array<real, 2> levels{};
+    F<real> delayed;  ///< empty: none
+    real by = 1;
+    F<real> when;            ///< empty: none; told on its way up
+    real kept_velocity = 1;  ///< at that event: the velocity is multiplied by this
+    bool walls = false;
+    real lower = 0, upper = 0, restitution = 0;
+};
+
+struct MixedEvent {
+    real t;
+    std::string kind;
+    real theta;
+};
+
+class MixedTruth {
+public:
+    MixedTruth(MixedSystem system, const MixedPoint& start, real t_end, std::vector<double> times);
+    std::vector<MixedEvent> events;
+    std::vector<MixedPoint> motions;
+    bool doubtful = false;  ///< more happens in a step than it can tell, or it grows beyond all bounds
+
+private:
+    struct Past {
+        real t, length;
+        MixedPoint begin, end;
+        real a0, a1;
+    };
+    [[nodiscard]] real belt(real t) const { return s_.belt ? s_.belt(t) : 0; }
+    [[nodiscard]] real slip(real t, const MixedPoint& y) const { return y.velocity - belt(t); }
+    [[nodiscard]] real torque(real t, const MixedPoint& y) const;
+    [[nodiscard]] real pull(real t, const MixedPoint& y) const;
+    [[nodiscard]] MixedPoint slope(real t, const MixedPoint& y) const;
+    [[nodiscard]] MixedPoint stepped(real h) const;
+    [[nodiscard]] MixedPoint then(real t) const;
+    [[nodiscard]] bool happens(real h, int& what) const;
+    void happen(int what);
+    void settle(bool tell_stick);
+    void take_samples();
+    void tell(const char* kind) {
+        if (t_ > 0) events.push_back({t_, kind, y_.theta});
+    }
+
+    MixedSystem s_;
+    real t_ = 0;
+    mutable real middle_ = 0;  // of the step that is tried
+    MixedPoint y_, start_;
+    int way_ = 0;   // of the sliding; 0: stuck
+    int wall_ = 0;  // that it leans against
+    bool on_ = true, fresh_ = false;
+    int half_ = 0;
+    real output_ = 0;
+    long instant_ = 0;
+    std::deque<std::pair<real, real>> pending_;
+    std::set<real> breaks_;
+    std::vector<Past> past_;
+};
+
+}  // namespace dinal::truth

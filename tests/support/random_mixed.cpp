@@ -1,0 +1,347 @@
+#include "support/random_mixed.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "model/laws/asymmetric.hpp"
+#include "model/laws/stribeck.hpp"
+#include "model/laws/user_law.hpp"
+#include "model/springs/user_spring.hpp"
+#include "support/kinds.hpp"
+#include "support/measure.hpp"
+#include "support/mixed_truth.hpp"
+#include "support/random_case.hpp"
+#include "support/written.hpp"
+
+namespace dinal::truth {
+
+namespace {
+
+/// The load of the second truth is off by this, to see what an error does in a case.
+constexpr double mixed_nudge = 1e-8;
+
+struct MixedCase {
+    std::string story;
+    model::OscillatorParameters parameters;
+    model::Excitation M;
+    model::Extras extras;
+    MixedSystem truth;
+    model::State initial;
+    double z0 = 0, t_end = 0;
+    std::vector<double> times;
+
+    template <class... T>
+    void say(std::string_view words, const T&... values) {
+        story += fmt::vformat(words, fmt::make_format_args(values...)) + "; ";
+    }
+};
+
+/// A formula of t, theta, velocity and z, for both.
+template <class Formula>
+std::shared_ptr<model::UserFunction> ours(Formula f) {
+    return written([f](double t, const model::State& y, std::span<const double> z) {
+        return static_cast<double>(f(t, y.theta, y.velocity, z.empty() ? 0.0 : z[0]));
+    });
+}
+template <class Formula>
+MixedSystem::F<real> theirs(Formula f) {
+    return [f](real t, const MixedPoint& y) -> real { return f(t, y.theta, y.velocity, y.z); };
+}
+
+model::Excitation driven(const std::shared_ptr<model::UserFunction>& function, bool feedback = true) {
+    return model::Excitation::make(model::Scripted{.function = function, .feedback = feedback}).value();
+}
+
+void draw_system(Lot& lot, MixedCase& c) {
+    model::OscillatorParameters& p = c.parameters;
+    p.inertia = lot.between(0.5, 2), p.stiffness = lot.once_in(4) ? 0 : lot.between(0.3, 2);
+    p.damping = lot.once_in(3) ? 0 : lot.between(0, 0.3);
+    c.truth.I = p.inertia, c.truth.k = p.stiffness, c.truth.C = p.damping;
+    c.say("I {:.17g} k {:.17g} C {:.17g}", p.inertia, p.stiffness, p.damping);
+    if (lot.once_in(4)) {
+        const double a = lot.between(0.1, 1);
+        p.spring = model::springs::UserSpring{
+            written([a](double x, const model::State&, std::span<const double>) { return a * std::sin(x); })};
+        c.truth.spring = [a](real x) { return a * std::sin(x); };
+        c.say("pendulum {:.17g}", a);
+    }
+    const double Rd = lot.between(0.05, 0.3), Re = lot.once_in(3) ? Rd : Rd * lot.between(1, 1.6);
+    c.truth.holding = {Re, Re};
+    switch (lot.of(5)) {
+        case 0: {
+            const double other = Rd * lot.between(0.3, 1);
+            p.friction = model::laws::AsymmetricCoulomb{.forward = {Rd, Re}, .backward = {other, Re}};
+            c.truth.sliding = [=](int way, real) -> real { return way > 0 ? Rd : other; };
+            c.say("forward Rd {:.17g} Re {:.17g}, backward Rd {:.17g}", Rd, Re, other);
+            break;
+        }
+        case 1: {
+            const double speed = lot.between(0.1, 0.6);
+            p.friction = model::laws::Stribeck{.kinetic = Rd, .breakaway = Re, .speed = speed};
+            c.truth.sliding = [=](int, real v) -> real {
+                const real x = v / static_cast<real>(speed);
+                return Rd + (static_cast<real>(Re) - Rd) * std::exp(-x * x);
+            };
+            c.say("stribeck Rd {:.17g} Re {:.17g} speed {:.17g}", Rd, Re, speed);
+            break;
+        }
+        case 2: {
+            const double rise = lot.between(0, 0.3);
+            p.friction = model::laws::UserLaw{
+                .function = written([=](double v, const model::State&, auto) { return Rd + rise * v / (1 + v); }),
+                .at_zero = Rd,
+                .breakaway = Re};
+            // Below speed 0 the law goes on with the slope that it has at 0, turned about its value there.
+            c.truth.sliding = [=](int, real v) -> real { return Rd + rise * v / (1 + std::fabs(v)); };
+            c.say("law Rd {:.17g} rise {:.17g} Re {:.17g}", Rd, rise, Re);
+            break;
+        }
+        default:
+            p.kinetic_friction = Rd, p.breakaway = Re;
+            c.truth.sliding = [=](int, real) -> real { return Rd; };
+            c.say("Rd {:.17g} Re {:.17g}", Rd, Re);
+    }
+    if (lot.once_in(4)) {
+        const model::Walls walls{-lot.between(0.3, 1.2), lot.between(0.3, 1.2),
+                                 lot.once_in(3) ? 0 : lot.between(0.3, 1)};
+        p.walls = walls;
+        c.truth.walls = true;
+        c.truth.lower = walls.lower, c.truth.upper = walls.upper, c.truth.restitution = walls.restitution;
+        c.initial.theta = lot.between(walls.lower, walls.upper);
+        c.say("walls {}", walls.lua_text());
+    }
+}
+
+/// M without a memory, which may ask for the motion and for a state.
+void draw_load(Lot& lot, MixedCase& c) {
+    const double a = lot.between(0.2, 1.2), w = lot.between(0.4, 2.5), phase = lot.between(0, 6);
+    const double level = lot.between(-0.3, 0.3);
+    c.M = harmonic(a, w, phase) + model::Excitation::make(model::Constant{level}).value();
+    const bool loop = lot.once_in(3), has_state = lot.once_in(2);
+    const double P = loop ? lot.between(0.2, 3) : 0, D = loop ? lot.between(0, 1) : 0;
+    const double Z = has_state ? lot.between(-0.8, 0.8) : 0;
+    c.say("M {:.17g} sin({:.17g} t + {:.17g}) + {:.17g} - {:.17g} theta - {:.17g} velocity + {:.17g} z", a, w, phase,
+          level, P, D, Z);
+    const auto feedback_part = [=](auto, auto theta, auto velocity, auto z) {
+        return Z * z - P * theta - D * velocity;
+    };
+    if (loop || has_state) c.M = c.M + driven(ours(feedback_part));
+    c.truth.M = [=](real t, const MixedPoint& y) -> real {
+        return a * std::sin(static_cast<real>(w) * t + static_cast<real>(phase)) + static_cast<real>(level) +
+               feedback_part(t, y.theta, y.velocity, y.z);
+    };
+    if (!has_state) return;
+    const double own = lot.once_in(4) ? 0 : lot.power_of_ten(-1, 1), of_theta = lot.between(-1, 1);
+    const auto rate = [=](auto t, auto theta, auto velocity, auto z) {
+        return of_theta * theta + 0.2 * velocity - own * z + 0.3 * std::cos(t);
+    };
+    c.z0 = lot.between(-0.5, 0.5);
+    c.extras.states.push_back({.name = "z", .start = c.z0, .rate = ours(rate)});
+    c.truth.rate = theirs(rate);
+    c.say("z' = {:.17g} theta + .2 velocity - {:.17g} z + .3 cos t from {:.17g}", of_theta, own, c.z0);
+}
+
+void draw_controller(Lot& lot, MixedCase& c) {
+    const double P = lot.between(0.1, 0.8), D = lot.between(0, 0.4);
+    const auto law = [=](auto t, auto theta, auto velocity, auto z) {
+        return 0.1 * std::sin(t) - P * theta - D * velocity + 0.1 * z;
+    };
+    switch (lot.of(4)) {
+        case 0: {
+            auto controller = std::make_shared<model::SampledController>();
+            controller->function = ours(law);
+            controller->every = lot.between(0.05, 0.7);
+            controller->delay = lot.once_in(2) ? 0 : controller->every * lot.between(0.1, 2.5);
+            c.truth.sampled = theirs(law), c.truth.every = controller->every, c.truth.delay = controller->delay;
+            c.say("sampled every {:.17g} delay {:.17g} P {:.17g} D {:.17g}", controller->every, controller->delay, P,
+                  D);
+            c.M = c.M + driven(controller);
+            return;
+        }
+        case 1: {
+            auto relay = std::make_shared<model::RelayController>();
+            relay->on = lot.between(-0.3, 0.1), relay->off = relay->on + lot.between(0.05, 0.4);
+            if (lot.once_in(2)) std::swap(relay->on, relay->off);
+            relay->levels = {lot.between(-0.6, 0.6), lot.between(-0.6, 0.6)};
+            const auto mixed = [](auto, auto theta, auto velocity, auto) { return theta + 0.3 * velocity; };
+            const bool state = !c.extras.states.empty();
+            switch (lot.of(state ? 4 : 3)) {
+                case 0:
+                    c.truth.relay_of = [](real, const MixedPoint& y) { return y.theta; };
+                    break;
+                case 1:
+                    relay->of = model::RelayController::Of::velocity;
+                    c.truth.relay_of = [](real, const MixedPoint& y) { return y.velocity; };
+                    break;
+                case 2:
+                    relay->of = model::RelayController::Of::function, relay->function = ours(mixed);
+                    c.truth.relay_of = theirs(mixed);
+                    break;
+                default:
+                    relay->of = model::RelayController::Of::state, relay->state = "z";
+                    c.truth.relay_of = [](real, const MixedPoint& y) { return y.z; };
+            }
+            c.truth.on = relay->on, c.truth.off = relay->off;
+            c.truth.levels = {relay->levels[0], relay->levels[1]};
+            c.say("relay of {} on {:.17g} off {:.17g} levels {:.17g} {:.17g}", static_cast<int>(relay->of), relay->on,
+                  relay->off, relay->levels[0], relay->levels[1]);
+            c.M = c.M + driven(relay);
+            return;
+        }
+        case 2: {
+            auto delayed = std::make_shared<model::DelayedController>();
+            const auto back = [=](auto, auto theta, auto velocity, auto) { return -P * theta - D * velocity; };
+            delayed->function = ours(back);
+            delayed->by = lot.once_in(3) ? lot.between(0.02, 0.1) : lot.between(0.1, 9);
+            c.truth.delayed = theirs(back), c.truth.by = delayed->by;
+            c.say("delayed by {:.17g} P {:.17g} D {:.17g}", delayed->by, P, D);
+            c.M = c.M + driven(delayed);
+            return;
+        }
+        default:
+            return;
+    }
+}
+
+void draw_surroundings(Lot& lot, MixedCase& c) {
+    const double a = lot.between(-0.4, 0.4), w = lot.between(0.3, 2), mean = lot.between(-0.4, 0.4);
+    switch (lot.of(6)) {
+        case 0:
+            c.extras.belt = model::Excitation::make(model::Constant{mean}).value();
+            c.truth.belt = [=](real) -> real { return mean; };
+            c.truth.belt_rate = [](real) -> real { return 0; };
+            c.say("belt {:.17g}", mean);
+            break;
+        case 1:
+        case 2: {
+            const auto velocity = [=](auto t, auto, auto, auto) { return mean + a * std::sin(w * t); };
+            c.extras.belt = lot.once_in(2) ? model::Excitation::make(model::Constant{mean}).value() + harmonic(a, w)
+                                           : driven(ours(velocity), false);
+            c.truth.belt = [=](real t) -> real { return velocity(t, 0, 0, 0); };
+            c.truth.belt_rate = [=](real t) -> real { return a * w * std::cos(w * t); };
+            c.say("belt {:.17g} + {:.17g} sin({:.17g} t)", mean, a, w);
+            break;
+        }
+        default:
+            break;
+    }
+    if (lot.once_in(5)) {
+        c.extras.base = harmonic(a, w);
+        c.truth.base = [=](real t) -> real { return a * std::sin(static_cast<real>(w) * t); };
+        c.say("base {:.17g} sin({:.17g} t)", a, w);
+    }
+}
+
+struct Bounce final : model::EventAction {
+    explicit Bounce(double part) : part_(part) {}
+    bool act(double /*t*/, model::State& y, std::span<double> /*z*/) override {
+        y.velocity *= part_;
+        return true;
+    }
+
+private:
+    double part_;
+};
+
+void draw_event(Lot& lot, MixedCase& c) {
+    if (!lot.once_in(3)) return;
+    const double level = lot.between(-0.5, 0.5), part = lot.once_in(2) ? 1 : lot.between(-0.9, 0.9);
+    const auto passes = [=](auto, auto theta, auto, auto) { return theta - level; };
+    model::WantedEvent event{.name = "level", .when = ours(passes), .direction = model::Crossing::up};
+    if (part != 1) event.act = std::make_shared<Bounce>(part);
+    c.extras.events.push_back(event);
+    c.truth.when = theirs(passes), c.truth.kept_velocity = part;
+    c.say("event theta up past {:.17g} leaves {:.17g} of the velocity", level, part);
+}
+
+MixedCase mixed_case(std::uint64_t number) {
+    Lot lot(number * 0x2545f4914f6cdd1dU + 17);
+    MixedCase c;
+    c.initial = {lot.between(-1, 1), lot.once_in(3) ? 0 : lot.between(-1.2, 1.2)};
+    draw_system(lot, c);
+    draw_load(lot, c);
+    draw_controller(lot, c);
+    draw_surroundings(lot, c);
+    draw_event(lot, c);
+    c.t_end = lot.between(4, 16);
+    c.say("from {:.17g} {:.17g} to {:.17g}", c.initial.theta, c.initial.velocity, c.t_end);
+    constexpr int places = 10;
+    for (int i = 0; i < places; ++i) c.times.push_back(c.t_end * (i + lot.between(0, 1)) / places);
+    return c;
+}
+
+template <class Events>
+std::string kinds_of_all(const Events& events) {
+    std::string text;
+    for (const auto& event : events) text += event.kind + ' ';
+    return text;
+}
+
+/// Empty when it is right; "?" when that is not to be decided.
+std::string fault_of(const MixedCase& c, double accuracy) {
+    MixedSystem pushed = c.truth;
+    pushed.M = [f = c.truth.M](real t, const MixedPoint& y) { return f(t, y) + static_cast<real>(mixed_nudge); };
+    const MixedPoint start{c.initial.theta, c.initial.velocity, c.z0};
+    const MixedTruth truth(c.truth, start, c.t_end, c.times), beside(pushed, start, c.t_end, c.times);
+    const std::string expected = kinds_of_all(truth.events);
+    if (truth.doubtful || beside.doubtful || expected != kinds_of_all(beside.events)) return "?";
+    const auto run = motion::simulate(system_of(c.parameters), c.M, c.initial, {0, c.t_end}, motion::Grid::at(c.times),
+                                      motion::Spectral{}, {}, {}, c.extras);
+    if (!run) return run.error().sentence;
+    if (!model::is_whole(run->outcome)) return std::string(model::sentence(run->outcome));
+    std::string found;
+    for (const model::Event& event : run->events) {
+        found += event.kind == model::EventKind::user ? "user " : std::string(name(as_stop(event.kind))) + ' ';
+    }
+    if (found != expected) return "events " + found + "but they are " + expected;
+    const auto wrong = [&](double is, real right, real moved) {
+        return !(std::fabs(is - static_cast<double>(right)) <=
+                 accuracy * (10 + std::fabs(static_cast<double>(moved - right)) / mixed_nudge));
+    };
+    for (std::size_t i = 0; i < truth.events.size(); ++i) {
+        const MixedEvent &e = truth.events[i], &s = beside.events[i];
+        const model::Event& f = run->events[i];
+        if (!wrong(f.t, e.t, s.t) && !wrong(f.theta, e.theta, s.theta)) continue;
+        return fmt::format("event {}, {} at {:.15g}: off by {:.2e}, {:.2e}; moved {:.2e}", i, e.kind,
+                           static_cast<double>(e.t), f.t - static_cast<double>(e.t),
+                           f.theta - static_cast<double>(e.theta), static_cast<double>(s.t - e.t));
+    }
+    for (std::size_t i = 0; i < c.times.size(); ++i) {
+        // A row beside a jump of the velocity may be on its other side.
+        const bool beside_event = std::any_of(truth.events.begin(), truth.events.end(), [&](const MixedEvent& e) {
+            return std::fabs(static_cast<double>(e.t) - c.times[i]) < 1e-6;
+        });
+        if (beside_event) continue;
+        const auto row = static_cast<Eigen::Index>(i);
+        const MixedPoint &e = truth.motions[i], &s = beside.motions[i];
+        const bool z = !c.extras.states.empty() && wrong(run->rows(row, 6), e.z, s.z);
+        if (!z && !wrong(run->rows(row, 1), e.theta, s.theta) && !wrong(run->rows(row, 2), e.velocity, s.velocity)) {
+            continue;
+        }
+        return fmt::format("at {:.15g}: off by {:.2e}, {:.2e}{}; moved {:.2e}", c.times[i],
+                           run->rows(row, 1) - static_cast<double>(e.theta),
+                           run->rows(row, 2) - static_cast<double>(e.velocity), z ? ", and z" : "",
+                           static_cast<double>(s.theta - e.theta));
+    }
+    return "";
+}
+
+}  // namespace
+
+void check_random_mixed(int cases) {
+    cases = static_cast<int>(number_from("DINAL_ORACLE_CASES", cases));
+    const auto first = static_cast<int>(number_from("DINAL_ORACLE_FIRST", 0));
+    int ambiguous = 0;
+    for (int number = first; number < first + cases; ++number) {
+        const MixedCase c = mixed_case(static_cast<std::uint64_t>(number));
+        const std::string fault = fault_of(c, 1e-10);
+        ambiguous += fault == "?" ? 1 : 0;
+        if (!fault.empty() && fault != "?") FAIL_CHECK("case " << number << ": " << fault << "\n" << c.story);
+    }
+    INFO(ambiguous << " ambiguous");
+    CHECK(5 * ambiguous <= cases + 5);
+}
+
+}  // namespace dinal::truth
