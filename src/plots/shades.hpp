@@ -29,7 +29,7 @@ struct ShadeBand {
 std::vector<ShadeBand> bands_of(const Shades& shades, int most);
 /// Those on paper, where they may be as many as one can tell apart and a file of decent size can hold.
 std::vector<ShadeBand> paper_bands(const Shades& shades);
-/// Which band has the value; none for nan.
+/// Which band has the value; none for nan, and for an infinite value where each band is one number.
 std::optional<std::size_t> band_of(const std::vector<ShadeBand>& bands, double z);
 
 /// Half way between the values, and as far beyond the first and the last.

@@ -59,6 +59,14 @@ TEST_CASE("a contour ends at the edge of the grid and where a value is missing",
     CHECK(points == 4);  // y = -1, -0.5 and 0.5, 1
 }
 
+TEST_CASE("where each shade is one number infinity has none", "[shades]") {
+    const std::vector<ShadeBand> bands = bands_of(shades_over(3, [](double x, double) { return x; }), 5);
+    REQUIRE(bands.size() == 3);
+    CHECK(!band_of(bands, INFINITY));
+    CHECK(!band_of(bands, -INFINITY));
+    CHECK(band_of(bands, 1) == 2u);
+}
+
 TEST_CASE("a few whole numbers have a shade each, other values round bands", "[shades]") {
     const Shades stops = shades_over(9, [](double x, double y) { return std::floor(2 * (x * x + y * y)); });
     std::string all;
