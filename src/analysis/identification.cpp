@@ -8,6 +8,19 @@
 #include "analysis/identification_search.hpp"
 
 namespace dinal::analysis {
+namespace {
+
+double omega0_of(const Parameters& p) {
+    return std::sqrt(at(p, Unknown::k) / at(p, Unknown::I));
+}
+double zeta_of(const Parameters& p) {
+    return at(p, Unknown::C) / (2 * std::sqrt(at(p, Unknown::I) * at(p, Unknown::k)));
+}
+double dry_of(const Parameters& p) {
+    return at(p, Unknown::Rd) / at(p, Unknown::k);
+}
+
+}  // namespace
 
 text::Expected<Identified> Identification::identified() {
     const std::vector<Parameters> starts = question_.M ? forced_starts() : free_starts();
@@ -19,7 +32,8 @@ text::Expected<Identified> Identification::identified() {
     }
     if (!best_) return text::Error{"no motion of such a system comes near this record"};
     if (!question_.M && !stopped_) try_rests();
-    if (seeks_Re_) try_breakaways();
+    if (question_.M && !stopped_) try_jumps();
+    if (question_.M) tell_stops_from_cuts();
     if (seeks_Re_ && !stopped_) try_none(Unknown::Re, 0.1);
     if (question_.M && is_sought(question_, Unknown::velocity0) && !stopped_) try_none(Unknown::velocity0, 1e-4);
     return result();
@@ -60,10 +74,18 @@ std::optional<model::Oscillator> Identification::system_of(const Parameters& p) 
     return system ? std::optional(*system) : std::nullopt;
 }
 
+bool Identification::is_seen(const Parameters& p) const {
+    const double highest = highest_omega0();
+    constexpr double most = 10;  // ranges of the record from one sample to the next
+    const bool seeks_omega0 = is_sought(question_, Unknown::I) || is_sought(question_, Unknown::k);
+    return (!seeks_omega0 || at(p, Unknown::k) <= highest * highest * at(p, Unknown::I)) &&
+           (is_given(Unknown::velocity0) || std::fabs(at(p, Unknown::velocity0)) <= most * range_ * highest);
+}
+
 std::optional<Eigen::VectorXd> Identification::moved(const Parameters& p, std::size_t rows) {
     ++runs_;
     const auto system = system_of(p);
-    if (!system) return {};
+    if (!system || !is_seen(p)) return {};
     const model::State initial{at(p, Unknown::theta0), at(p, Unknown::velocity0)};
     if (!question_.M) {
         stopped_ = stopped_ || (monitor_ && !monitor_(question_.t.front()));
@@ -167,6 +189,7 @@ std::vector<std::size_t> Identification::stages(double period) const {
 }
 
 void Identification::keep_if_better(const std::optional<LeastSquares>& all, const FitScale& scale) {
+    if (all && question_.M) seen_.emplace_back(all->sum, filled(all->parameters));
     if (!all || (best_ && !(all->sum < best_->sum))) return;
     if (best_ && all->sum < (1 - same_fit) * best_->sum) agreed_ = 0;
     best_ = all;
@@ -193,7 +216,7 @@ Identified Identification::result() {
     Identified found;
     const Covariance covariance = weigh_rests();
     breakaway_ = best_breakaway_;
-    found.value = filled_best();
+    found.value = best_filled_ = filled_best();
     if (!question_.M && !is_given(Unknown::Re)) {
         at(found.value, Unknown::Re) = std::max(at(found.value, Unknown::Rd), breakaway_ * at(found.value, Unknown::k));
         found.silent[static_cast<std::size_t>(Unknown::Re)] = true;
@@ -203,7 +226,7 @@ Identified Identification::result() {
     for (Eigen::Index i = 0; i < count(); ++i) {
         const auto which = static_cast<std::size_t>(unknowns_[static_cast<std::size_t>(i)]);
         found.fitted[which] = true;
-        found.silent[which] = covariance.silent[static_cast<std::size_t>(i)];
+        found.silent[which] = covariance.silent[static_cast<std::size_t>(i)] || tells_nothing_[which];
         for (Eigen::Index j = 0; j < count(); ++j) {
             full(static_cast<Eigen::Index>(which), static_cast<Eigen::Index>(unknowns_[static_cast<std::size_t>(j)])) =
                 covariance.matrix(i, j);
@@ -217,8 +240,8 @@ Identified Identification::result() {
     for (const Unknown which : unknowns_) {
         const auto i = static_cast<std::size_t>(which);
         const auto place = static_cast<Eigen::Index>(which);
-        full(place, place) = std::max(full(place, place), least_errors_[i] * least_errors_[i]);
-        found.error[i] = found.silent[i] ? 0 : found.noise * std::sqrt(full(place, place));
+        const double open = least_error([which](const Parameters& p) { return at(p, which); });
+        found.error[i] = found.silent[i] ? 0 : std::max(open, found.noise * std::sqrt(full(place, place)));
     }
     ratios(full, found);
     judge(found);
@@ -242,25 +265,27 @@ void Identification::judge(Identified& found) const {
         if (apart > 0) step = std::min(step, apart);
     }
     found.scatter = std::max(noise_, step);
-    constexpr double much = 5, part = 0.1;
+    constexpr double much = 5, part = 0.01;
     found.is_unexplained = found.noise > much * found.scatter && left > part * all;
 }
 
 void Identification::ratios(const Eigen::MatrixXd& covariance, Identified& found) const {
     const double I = at(found.value, Unknown::I), k = at(found.value, Unknown::k);
-    const double C = at(found.value, Unknown::C), Rd = at(found.value, Unknown::Rd);
-    found.omega0 = std::sqrt(k / I);
-    found.zeta = C / (2 * std::sqrt(I * k));
-    found.Rd_over_k = Rd / k;
-    const auto error = [&](Unknown told, double by_I, double by_k, double by_C, double by_Rd) {
+    const double Rd = at(found.value, Unknown::Rd);
+    found.omega0 = omega0_of(found.value);
+    found.zeta = zeta_of(found.value);
+    found.Rd_over_k = dry_of(found.value);
+    using Value = double (*)(const Parameters&);
+    const auto error = [&](Unknown told, Value value, double by_I, double by_k, double by_C, double by_Rd) {
         if (!question_.M && found.silent[static_cast<std::size_t>(told)]) return 0.0;
         Eigen::VectorXd by = Eigen::VectorXd::Zero(unknown_count);
         by.head(4) << by_I, by_k, by_C, by_Rd;
-        return found.noise * std::sqrt(std::max(0.0, by.dot(covariance * by)));
+        return std::max(least_error(value), found.noise * std::sqrt(std::max(0.0, by.dot(covariance * by))));
     };
-    found.omega0_error = error(Unknown::k, -found.omega0 / (2 * I), found.omega0 / (2 * k), 0, 0);
-    found.zeta_error = error(Unknown::C, -found.zeta / (2 * I), -found.zeta / (2 * k), 1 / (2 * std::sqrt(I * k)), 0);
-    found.Rd_over_k_error = error(Unknown::Rd, 0, -Rd / (k * k), 0, 1 / k);
+    found.omega0_error = error(Unknown::k, omega0_of, -found.omega0 / (2 * I), found.omega0 / (2 * k), 0, 0);
+    found.zeta_error =
+        error(Unknown::C, zeta_of, -found.zeta / (2 * I), -found.zeta / (2 * k), 1 / (2 * std::sqrt(I * k)), 0);
+    found.Rd_over_k_error = error(Unknown::Rd, dry_of, 0, -Rd / (k * k), 0, 1 / k);
 }
 
 text::Expected<Identified> identify(const IdentifyQuestion& question, const motion::Monitor& monitor) {

@@ -1,4 +1,4 @@
-// Where the mass stands: at which turn a free decay comes to rest, and what a driven motion says about Re.
+// Where the mass stands: at which turn a free decay comes to rest, and what stops make of a driven fit.
 //
 // Whether one more swing comes about depends on the parameters, and each number of swings is a valley of its own, whose
 // walls the many samples at rest make steep. When the number is prescribed the place of rest is a smooth function of
@@ -6,10 +6,7 @@
 // move at the turn before and holds it at this one. What the sum of squares says for a way to come to rest is not all:
 // one that is possible in a tiny part of the space of parameters only was a tiny part as likely before, so each counts
 // by exp(-sum / 2 noise^2) times the volume that its errors leave open.
-//
-// Re of a driven motion counts only where the mass stands, so the sum of squares has steps: at some Re a stop comes
-// about, lasts over a whole swing of M, or is no more. No slope leads over a step. So the whole range of Re is looked
-// at, and fits go on from wherever that is best.
+#include <Eigen/QR>
 #include <optional>
 
 #include "analysis/identification_search.hpp"
@@ -144,7 +141,7 @@ Covariance Identification::covariance_at(const Rest& rest, double noise) {
     rests_at_ = rest.turn ? rest.turn : resting_turn(p, noise);
     const FitScale scale = scale_of(p);
     const auto J = derivative([this](const Eigen::VectorXd& q) { return predicted(filled(q), question_.t.size()); },
-                              rest.fit.parameters, scale, measured_.size());
+                              rest.fit.parameters, scale, noise);
     rests_at_.reset();
     return covariance_of(J.value_or(Eigen::MatrixXd::Zero(measured_.size(), count())), scale.whole, noise);
 }
@@ -152,8 +149,12 @@ Covariance Identification::covariance_at(const Rest& rest, double noise) {
 Covariance Identification::weigh_rests() {
     base_ = best_base_;
     const double noise = deviation(), least = best_->sum;
-    Rest best{*best_, best_breakaway_, best_rest_, {}};
+    Rest best{freest_.value_or(*best_), best_breakaway_, best_rest_, {}};
     best.covariance = covariance_at(best, noise);
+    if (freest_ && noise > 0) {
+        const Eigen::VectorXd apart = (freest_->parameters - best_->parameters) / noise;
+        best.covariance.matrix += apart * apart.transpose();
+    }
     if (rests_.empty() || !(noise > 0)) return best.covariance;
     constexpr double unlikely = 40;
     std::vector<Rest> ways{best};
@@ -180,12 +181,21 @@ Covariance Identification::weigh_rests() {
     return all;
 }
 
-// ---- Re of a driven motion
+// ---- what no slope leads to in a driven motion
+//
+// Re counts only where the mass stands, so the sum of squares has steps: at some Re a stop comes about, lasts over a
+// whole swing of M, or is no more. No slope leads over a step. So the whole range of Re is looked at, and fits go on
+// from wherever that is best. What the slopes there say of the errors is not all, then: each motion that was looked at
+// and is about as near to the record shows how far off the parameters may be.
 
-void Identification::try_breakaways() {
+/// What no slope leads to, as long as it makes the fit better.
+void Identification::try_jumps() {
     constexpr int rounds = 3;
-    for (int round = 0; round < rounds && !stopped_; ++round) {
-        if (!try_other_breakaways()) break;
+    bool better = true;
+    for (int round = 0; round < rounds && better && !stopped_; ++round) {
+        better = try_other_beginnings();
+        better = (seeks_Re_ && try_other_breakaways()) || better;
+        better = (!stopped_ && try_beyond_steps()) || better;
     }
 }
 
@@ -202,7 +212,9 @@ bool Identification::try_other_breakaways() {
         const double part = static_cast<double>(i) / looks;
         at(p, Unknown::Re) = Rd + whole * part * part;
         const auto theta = predicted(p, question_.t.size());
-        if (theta) sums.emplace_back((measured_ - *theta).squaredNorm(), at(p, Unknown::Re));
+        if (!theta) continue;
+        sums.emplace_back((measured_ - *theta).squaredNorm(), at(p, Unknown::Re));
+        seen_.emplace_back(sums.back().first, p);
     }
     std::sort(sums.begin(), sums.end());
     constexpr std::size_t tries = 2;
@@ -216,10 +228,30 @@ bool Identification::try_other_breakaways() {
     return best_->sum < (1 - same_fit) * before;
 }
 
+/// Small steps of the sum of squares stop a search by slopes in the midst of a valley; differences over as much as the
+/// noise lead on.
+bool Identification::try_beyond_steps() {
+    const double noise = deviation(), before = best_->sum;
+    base_ = best_base_;
+    const auto J = derivative([this](const Eigen::VectorXd& q) { return predicted(filled(q), question_.t.size()); },
+                              best_->parameters, best_scale_, noise);
+    if (!J || count() == 0) return false;
+    const Eigen::VectorXd way = J->colPivHouseholderQr().solve(best_->residual);
+    if (!way.allFinite()) return false;
+    for (const double part : {1.0, 0.5, 0.25}) {
+        const Eigen::VectorXd p = (best_->parameters + part * way).cwiseMax(best_scale_.least);
+        const auto theta = stopped_ ? std::nullopt : predicted(filled(p), question_.t.size());
+        if (!theta || !((measured_ - *theta).squaredNorm() < before - 0.01 * noise * noise)) continue;
+        keep_if_better(fit(p, question_.t.size(), best_scale_, 30), best_scale_);
+        break;
+    }
+    return best_->sum < (1 - same_fit) * before;
+}
+
 /// A motion that never stands says nothing about Re but that a greater one would have held it, and one that stands at
 /// first nothing about its velocity. Where nothing depends on what Re exceeds Rd by, or on the velocity, about 0, and 0
 /// is as good as the noise can tell, no stop that another value makes is believed, nor what it does to other
-/// parameters.
+/// parameters. But how sure those are is what the fit leaves open to which it was free.
 void Identification::try_none(Unknown which, double little) {
     const LeastSquares best = *best_;
     base_ = best_base_;
@@ -232,12 +264,7 @@ void Identification::try_none(Unknown which, double little) {
     const auto without = fit(start, question_.t.size(), scale, 40);
     if (!without) return;
     const double variance = deviation() * deviation(), rise = without->sum - best.sum;
-    // A stop that has just begun to matter does so by the square of the parameter: the slope at the fit promises more
-    // than the sum of squares keeps.
-    constexpr double doubtful = 16, telling = 4;  // four and two standard errors
-    if (rise > 0 && rise < doubtful * variance) {
-        least_errors_[static_cast<std::size_t>(which)] = std::fabs(best.parameters[place]) / std::sqrt(rise);
-    }
+    constexpr double telling = 4;  // two standard errors
     if (rise > telling * variance) return;
     constexpr double same = 1e-8;
     Eigen::VectorXd more = without->parameters;
@@ -245,8 +272,37 @@ void Identification::try_none(Unknown which, double little) {
     const auto theta = predicted(filled(more), question_.t.size());
     const bool is_flat = theta && (measured_ - *theta - without->residual).cwiseAbs().maxCoeff() <= same * range_;
     if (rise > 0 && !is_flat) return;
+    if (!freest_) freest_ = best;
     best_ = without;
     best_->parameters[place] = 0;  // from which it was held but for roundings
+    tells_nothing_[static_cast<std::size_t>(which)] = is_flat;
+    if (is_flat && which == Unknown::velocity0 && !is_given(Unknown::theta0)) see_short_beginnings();
+}
+
+/// A record that stands at its least or greatest value may be cut off there, or show where the mass stood: then the
+/// fit goes beyond it nowhere.
+void Identification::tell_stops_from_cuts() {
+    if (cut_.at_low + cut_.at_high == 0) return;
+    const auto whole = moved(filled_best(), question_.t.size());
+    if (!whole) return;
+    const double beyond = 3 * deviation() + 1e-6 * range_;
+    if (whole->maxCoeff() < cut_.high + beyond) cut_.at_high = 0;
+    if (whole->minCoeff() > cut_.low - beyond) cut_.at_low = 0;
+    if (cut_.at_low + cut_.at_high > 0) return;
+    if (const auto uncut = fit(best_->parameters, question_.t.size(), best_scale_, 15)) best_ = uncut;
+}
+
+/// Were the sum of squares a parabola, a motion that is so far from the best fit, by so little worse, would show the
+/// standard error.
+double Identification::least_error(const std::function<double(const Parameters&)>& value) const {
+    const double noise = deviation(), best = value(best_filled_);
+    constexpr double possible = 16;
+    double least = 0;
+    for (const auto& [sum, p] : seen_) {
+        const double rise = (sum - best_->sum) / (noise * noise);
+        if (rise < possible) least = std::max(least, std::fabs(value(p) - best) / std::sqrt(std::max(1.0, rise)));
+    }
+    return least;
 }
 
 }  // namespace dinal::analysis

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <numbers>
 #include <utility>
 
@@ -51,7 +52,7 @@ public:
         const auto [low, high] = std::minmax_element(question.theta.begin(), question.theta.end());
         range_ = *high - *low;
         span_ = question.t.back() - question.t.front();
-        if (!question.M) cut_ = cut_off(question.theta);
+        cut_ = cut_off(question.theta);
         noise_ = noise_of(question.theta);
         turns_ = turning_points(question.theta, std::clamp(6 * noise_, 0.04 * range_, 0.4 * range_));
         choose_unknowns();
@@ -86,6 +87,13 @@ private:
         return std::find(unknowns_.begin(), unknowns_.end(), which) - unknowns_.begin();
     }
 
+    /// Each swing has samples, and the first velocity is one that the samples show: beyond that, where a search may fly
+    /// to, runs have no end and fits no meaning.
+    [[nodiscard]] bool is_seen(const Parameters& p) const;
+    [[nodiscard]] double highest_omega0() const {
+        constexpr double a_sample = 2 * std::numbers::pi;
+        return a_sample * static_cast<double>(question_.t.size() - 1) / span_;
+    }
     /// What the instrument shows of the motion with these parameters.
     [[nodiscard]] std::optional<Eigen::VectorXd> predicted(const Parameters& p, std::size_t rows);
     [[nodiscard]] std::optional<Eigen::VectorXd> moved(const Parameters& p, std::size_t rows);
@@ -102,7 +110,8 @@ private:
     [[nodiscard]] std::optional<LeastSquares> fit(const Eigen::VectorXd& p, std::size_t rows, const FitScale& scale,
                                                   int steps);
     [[nodiscard]] double deviation() const {
-        return std::sqrt(best_->sum / static_cast<double>(std::max<Eigen::Index>(1, measured_.size() - count())));
+        const auto told = measured_.size() - static_cast<Eigen::Index>(cut_.at_low + cut_.at_high) - count();
+        return std::sqrt(best_->sum / static_cast<double>(std::max<Eigen::Index>(1, told)));
     }
     /// As good as the noise, which is known to a few parts of its root from a record of this length.
     [[nodiscard]] bool is_settled() const { return deviation() <= std::max(1.06 * noise_, 1e-9 * range_); }
@@ -130,11 +139,16 @@ private:
         return filled(best_->parameters);
     }
 
-    // ---- what the record of a driven motion says about Re, there, too
+    // ---- what no slope leads to in a driven motion, there, too, and in identification_starts.cpp
 
-    void try_breakaways();
+    void try_jumps();
+    [[nodiscard]] bool try_other_beginnings();
     [[nodiscard]] bool try_other_breakaways();
+    [[nodiscard]] bool try_beyond_steps();
     void try_none(Unknown which, double little);
+    void see_short_beginnings();
+    void tell_stops_from_cuts();
+    [[nodiscard]] double least_error(const std::function<double(const Parameters&)>& value) const;
 
     // ---- how sure it is
 
@@ -156,7 +170,6 @@ private:
     std::vector<std::size_t> turns_;
     std::vector<Unknown> unknowns_;
     bool seeks_Re_ = false;
-    Parameters least_errors_{};  // for noise of 1
     Parameters base_{}, best_base_{};
     double breakaway_ = 0, best_breakaway_ = 0;  // Re/k of a free decay; 0: Rd/k
     std::optional<double> rests_at_ = {};        // the turn at which a free decay is made to rest
@@ -164,6 +177,10 @@ private:
     std::vector<Rest> rests_ = {};               // the best fit of each such turn
     std::optional<double> best_rest_ = {};
     std::optional<LeastSquares> best_;
+    std::optional<LeastSquares> freest_;  // before the best one was made to do without what tells nothing
+    std::array<bool, unknown_count> tells_nothing_{};
+    std::vector<std::pair<double, Parameters>> seen_;  // of a driven motion: sums of squares, and what has them
+    Parameters best_filled_{};
     std::optional<Eigen::VectorXd> moving_;  // what the moving part of a free decay says by itself
     FitScale best_scale_;
     std::size_t left_out_ = 0;  // of the last turns of a free decay: noise, or the motion's end, may have made them

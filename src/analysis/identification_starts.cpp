@@ -175,6 +175,9 @@ Parameters Identification::weak_form() const {
     for (const double t : question_.t) most = std::max(most, std::fabs(question_.M->value(t)));
     if (!(x[1] > 0)) x[1] = x[0] > 0 ? x[0] * omega * omega : 2 * most / range_;
     if (!(x[0] > 0)) x[0] = x[1] / (omega * omega);
+    if (x[1] > x[0] * highest_omega0() * highest_omega0()) {
+        (is_given(Unknown::I) ? x[1] : x[0]) = is_given(Unknown::I) ? x[0] * omega * omega : x[1] / (omega * omega);
+    }
     x[2] = std::max(x[2], 0.0);
     x[3] = x[3] > 0 ? x[3] : is_given(Unknown::Rd) ? given(Unknown::Rd, 0) : 0.05 * most;
     const double omega0 = std::sqrt(x[1] / x[0]);
@@ -185,6 +188,94 @@ Parameters Identification::weak_form() const {
     at(p, Unknown::Rd) = x[3];
     at(p, Unknown::Re) = given(Unknown::Re, x[3]);
     return p;
+}
+
+// ---- how a driven mass began
+//
+// A mass that M cannot move at first stays where it is at each small velocity, too: at 0 nothing depends on the
+// velocity. So the beginning of the record is fitted from velocities of all sizes, and fits of all of it go on from
+// there.
+
+/// Fits the first angle and velocity to the beginning of the record, the other parameters being as they are, from
+/// velocities of both signs and all sizes, or where that is given from such angles. Goes on from the best ones where
+/// they are better than the best fit is there. True when one of them is better.
+bool Identification::try_other_beginnings() {
+    std::vector<Unknown> first;
+    for (const Unknown which : {Unknown::velocity0, Unknown::theta0}) {
+        if (!is_given(which)) first.push_back(which);
+    }
+    if (first.empty()) return false;
+    const Parameters best = filled_best();
+    const double before = best_->sum;
+    const FitScale scale = scale_of(best);
+    const auto size = static_cast<Eigen::Index>(first.size());
+    FitScale of_first{Eigen::VectorXd(size), Eigen::VectorXd::Constant(size, -1e300), Eigen::VectorXd(size),
+                      Eigen::VectorXd::Zero(size)};
+    Eigen::VectorXd now(size);
+    for (Eigen::Index i = 0; i < size; ++i) {
+        const Unknown which = first[static_cast<std::size_t>(i)];
+        of_first.typical[i] = scale.typical[place_of(which)];
+        now[i] = at(best, which);
+    }
+    const auto with = [&](const Eigen::VectorXd& q) {
+        Parameters p = best;
+        for (Eigen::Index i = 0; i < size; ++i) at(p, first[static_cast<std::size_t>(i)]) = q[i];
+        return p;
+    };
+    const double half = std::numbers::pi * std::sqrt(at(best, Unknown::I) / at(best, Unknown::k));
+    const auto until = std::upper_bound(question_.t.begin(), question_.t.end(), question_.t.front() + half);
+    constexpr std::ptrdiff_t least_rows = 8;
+    const auto rows = static_cast<std::size_t>(std::max(until - question_.t.begin(), least_rows));
+    const Prediction model = [&](const Eigen::VectorXd& q) { return predicted(with(q), rows); };
+    const auto head = static_cast<Eigen::Index>(rows);
+    const double whole = scale.whole[place_of(first.front())];
+    std::vector<LeastSquares> found;
+    for (const double part : {0.03, -0.03, 0.1, -0.1, 0.3, -0.3, 1.0, -1.0}) {
+        Eigen::VectorXd q = now;
+        q[0] = part * whole + (first.front() == Unknown::theta0 ? now[0] : 0);
+        constexpr int steps = 10;
+        auto one = least_squares(model, measured_.head(head), q, of_first, steps);
+        if (one) found.push_back(std::move(*one));
+    }
+    std::sort(found.begin(), found.end(), [](const auto& a, const auto& b) { return a.sum < b.sum; });
+    const double told = best_->residual.head(head).squaredNorm();
+    constexpr std::size_t tries = 2;
+    for (std::size_t i = 0; i < std::min(tries, found.size()) && !stopped_; ++i) {
+        if (is_settled() && found[i].sum > told - noise_ * noise_) break;
+        if (i > 0 && is_same(found[i], found[i - 1])) continue;
+        base_ = with(found[i].parameters);
+        const FitScale from = scale_of(base_);
+        keep_if_better(fit(fitted_of(base_), question_.t.size(), from, 30), from);
+    }
+    return best_->sum < (1 - same_fit) * before;
+}
+
+/// A mass that stops before there are many samples began elsewhere, as each velocity has it: that is how sure the first
+/// angle is.
+void Identification::see_short_beginnings() {
+    const Parameters best = filled_best();
+    const FitScale scale = scale_of(best);
+    const double whole = scale.whole[place_of(Unknown::velocity0)];
+    FitScale of_angle{Eigen::VectorXd::Constant(1, scale.typical[place_of(Unknown::theta0)]),
+                      Eigen::VectorXd::Constant(1, -1e300), Eigen::VectorXd(1), Eigen::VectorXd::Zero(1)};
+    for (const double side : {1.0, -1.0}) {
+        double angle = at(best, Unknown::theta0);
+        for (const double part : {0.02, 0.04, 0.06, 0.09, 0.13, 0.2}) {
+            Parameters p = best;
+            at(p, Unknown::velocity0) = side * part * whole;
+            const Prediction model = [&](const Eigen::VectorXd& q) {
+                at(p, Unknown::theta0) = q[0];
+                return predicted(p, question_.t.size());
+            };
+            constexpr int steps = 4;
+            const auto found = least_squares(model, measured_, Eigen::VectorXd::Constant(1, angle), of_angle, steps);
+            if (!found) break;
+            at(p, Unknown::theta0) = angle = found->parameters[0];
+            seen_.emplace_back(found->sum, p);
+            constexpr double possible = 16;
+            if (found->sum > best_->sum + possible * deviation() * deviation()) break;
+        }
+    }
 }
 
 }  // namespace dinal::analysis

@@ -29,16 +29,55 @@ std::optional<Eigen::MatrixXd> slopes(const Prediction& model, const Eigen::Vect
 }  // namespace
 
 std::optional<Eigen::MatrixXd> derivative(const Prediction& model, const Eigen::VectorXd& p, const FitScale& scale,
-                                          Eigen::Index rows) {
-    Eigen::MatrixXd J(rows, p.size());
+                                          double noise) {
+    const auto here = model(p);
+    if (!here) return {};
+    const auto slope = [&](Eigen::Index i, double step) -> std::optional<Eigen::VectorXd> {
+        Eigen::VectorXd other = p;
+        other[i] = std::max(p[i] + step, scale.least[i]);
+        if (other[i] == p[i]) return {};
+        const auto there = model(other);
+        if (!there) return {};
+        return (*there - *here) / (other[i] - p[i]);
+    };
+    // To one side by a step that changes as much as the noise, which is looked for between these two.
+    const auto secant = [&](Eigen::Index i, double side) {
+        double h = 1e-6 * size_of(p, scale, i), too_long = INFINITY;
+        auto found = slope(i, side * h);
+        constexpr int most_tries = 12;
+        for (int tries = 0; tries < most_tries && found; ++tries) {
+            const double change = h * found->norm();
+            if (change > noise / 2) return found;
+            const double next = std::isfinite(too_long)
+                                    ? std::sqrt(h * too_long)
+                                    : std::min(h * std::min(noise / std::max(change, 1e-300), 1e3), scale.whole[i]);
+            if (!(next > 1.05 * h)) break;
+            auto further = slope(i, side * next);
+            if (!further || next * further->norm() > 2 * noise) {
+                too_long = next;
+            } else {
+                h = next;
+                found = std::move(further);
+            }
+        }
+        // It stands before a jump: what the jump does is not known better than that it is not here.
+        const auto beyond = found && std::isfinite(too_long) ? slope(i, side * too_long) : std::nullopt;
+        if (beyond) found = *beyond * std::min(1.0, noise / (too_long * beyond->norm()));
+        return found;
+    };
+    Eigen::MatrixXd J(here->size(), p.size());
     for (Eigen::Index i = 0; i < p.size(); ++i) {
-        const double h = 1e-6 * size_of(p, scale, i);
-        Eigen::VectorXd up = p, down = p;
-        up[i] += h;
-        down[i] = std::max(p[i] - h, scale.least[i]);
-        const auto above = model(up), below = model(down);
-        if (!above || !below) return {};
-        J.col(i) = (*above - *below) / (up[i] - down[i]);
+        const auto up = secant(i, 1), down = secant(i, -1);
+        if (!up && !down) return {};
+        constexpr double jump = 3;  // so much steeper is no bend
+        const double above = up ? up->norm() : INFINITY, below = down ? down->norm() : INFINITY;
+        if (above > jump * below) {
+            J.col(i) = *down;
+        } else if (below > jump * above) {
+            J.col(i) = *up;
+        } else {
+            J.col(i) = (*up + *down) / 2;
+        }
     }
     return J;
 }
@@ -50,6 +89,7 @@ std::optional<LeastSquares> least_squares(const Prediction& model, const Eigen::
     if (!first) return {};
     now.residual = measured - *first;
     now.sum = now.residual.squaredNorm();
+    if (!std::isfinite(now.sum)) return {};
     if (start.size() == 0) return now;
     const Eigen::VectorXd& hold = scale.hold;
     const auto held = [&](const Eigen::VectorXd& p) { return (p - start).cwiseProduct(hold).squaredNorm(); };
@@ -82,7 +122,11 @@ std::optional<LeastSquares> least_squares(const Prediction& model, const Eigen::
             Eigen::MatrixXd damped = normal;
             damped.diagonal() *= 1 + damping;
             const Eigen::VectorXd way = damped.ldlt().solve(gradient).cwiseProduct(size);
-            const Eigen::VectorXd next = (now.parameters + way).cwiseMax(scale.least);
+            Eigen::VectorXd next = (now.parameters + way).cwiseMax(scale.least);
+            for (Eigen::Index i = 0; i < next.size(); ++i) {
+                // What must stay above 0 comes nearer to it by factors: one long step there would not come back.
+                if (scale.least[i] > 0) next[i] = std::max(next[i], now.parameters[i] / 4);
+            }
             if (!next.allFinite()) continue;
             const auto predicted = model(next);
             if (!predicted) continue;

@@ -27,10 +27,11 @@ struct FitScale {
 std::optional<LeastSquares> least_squares(const Prediction& model, const Eigen::VectorXd& measured,
                                           const Eigen::VectorXd& start, const FitScale& scale, int most_steps);
 
-/// The derivatives of the first rows of the prediction, a column a parameter: central differences, one-sided at a
-/// bound.
+/// The derivatives of the prediction, a column a parameter, by steps that change it by about the noise. A model that is
+/// run jumps where a stop comes about: a small jump counts by what it does within the noise, and one that the parameter
+/// stands just before is not looked across, no more than a bound is.
 std::optional<Eigen::MatrixXd> derivative(const Prediction& model, const Eigen::VectorXd& p, const FitScale& scale,
-                                          Eigen::Index rows);
+                                          double noise);
 
 /// Variances of the parameters for noise of variance 1, and those that the record says nothing about.
 struct Covariance {

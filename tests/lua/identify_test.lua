@@ -1,7 +1,7 @@
 -- identify: free decays without a guess, driven records, errors that are true, and records that cannot be one.
 package.path = "tests/lua/?.lua;" .. package.path
 local support = require "support"
-local test, equal, near, raises_here = support.test, support.equal, support.near, support.raises_here
+local test, equal, near, raises_here, judge = support.test, support.equal, support.near, support.raises_here, support.judge
 
 local sys = system{ I = 1, k = 40, C = 0.3, Rd = 0.8 }
 local decay = sys:simulate{ theta0 = 1, t_end = 8, dt = 0.02 }
@@ -19,21 +19,6 @@ test("an exact record gives the system back, with nothing said about where to lo
         equal(table.concat(fit.silent), "Re")
     end
 end)
-
--- What z = (found - true) / error must be: 95 % of all within 1.96, and its root mean square, which is the ratio to the
--- bound of Cramer and Rao (errors are computed from the exact derivatives at the fit), at most 1.3.
-local function judge()
-    local inside, all, square = 0, 0, 0
-    return function(fit, truth)
-        for name, true_value in pairs(truth) do
-            if fit.error[name] > 0 then
-                local z = (fit[name] - true_value) / fit.error[name]
-                inside, all, square = inside + (math.abs(z) <= 1.96 and 1 or 0), all + 1, square + z * z
-            end
-        end
-        return inside / all, (square / all)^0.5
-    end
-end
 
 test("the errors are true: 95 % intervals hold the truth in 90 to 98 % of 200 records with rest in them", function()
     local judged, part, ratio = judge()

@@ -100,4 +100,19 @@ function support.program()
     return arg[first]
 end
 
+-- What z = (found - true) / error must be: 95 % of all within 1.96, and its root mean square, which is the ratio to the
+-- bound of Cramer and Rao (errors are computed from the derivatives at the fit), at most 1.3.
+function support.judge()
+    local inside, all, square = 0, 0, 0
+    return function(fit, truth)
+        for name, true_value in pairs(truth) do
+            if fit.error[name] > 0 then
+                local z = (fit[name] - true_value) / fit.error[name]
+                inside, all, square = inside + (math.abs(z) <= 1.96 and 1 or 0), all + 1, square + z * z
+            end
+        end
+        return inside / all, (square / all)^0.5
+    end
+end
+
 return support
