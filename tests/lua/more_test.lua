@@ -310,4 +310,19 @@ test("an event that sends the mass back to where it came from is told once", fun
     near(run.theta[#run], -0.35 + (3 - 2.45), 1e-13)
 end)
 
+test("a mass that stands is torn off by a base as quick as one likes when I a = Re", function()
+    local sys = system { I = 1, k = 1, Rd = 0.05, Re = 0.1 }
+    for _, omega in ipairs { 3, 5, 10, 20, 50, 1000 } do
+        local shake = 0.5 * excitation.harmonic { omega = omega }
+        local run = sys:simulate { base = shake, t_end = 5, dt = 0.5 }
+        near(run.events[1].t, math.asin(0.2) / omega, 1e-14)
+        local loaded = sys:simulate { M = -shake, t_end = 5, dt = 0.5 } -- closed forms
+        equal(#run.events, #loaded.events)
+        near((run.theta - loaded.theta):abs():max(), 0, 1e-13)
+    end
+    local bump = 3 * excitation.gaussian { at = 2.123, width = 0.1 }
+    -- The flank where 3 exp(-((t - 2.123)/0.1)^2/2) = Re.
+    near(sys:simulate { base = bump, t_end = 5, dt = 5 }.events[1].t, 2.123 - 0.1 * math.sqrt(2 * math.log(30)), 1e-12)
+end)
+
 support.finish()

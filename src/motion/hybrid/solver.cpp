@@ -147,6 +147,8 @@ void Solver::judge(const Solved& piece) {
     unresolved_ = 0;
     const double h = piece.h, per_torque = h * (h / system_.inertia());
     const Series M = cheb::fit(piece.M);
+    Series load = cheb::fit(piece.push);
+    for (std::size_t k = 0; k < node_count; ++k) load[k] += M[k];
     const double torques = torques_of(piece, cheb::size(M));
     const double smallest = std::numeric_limits<double>::min() / rounding;
     // Times far from t = 0 are rounded, and with them what is asked at them. A jump is no slope.
@@ -156,7 +158,7 @@ void Solver::judge(const Solved& piece) {
         for (std::size_t k = 1; k < node_count; ++k) slope += static_cast<double>(k * k) * std::fabs(series[k]);
         return std::min(4 * rounding * late / h * slope, 1e-6 * most);
     };
-    const double lost = lost_in_time(M, torques);
+    const double lost = lost_in_time(load, torques);
     if (moves(piece)) {
         Nodes w{};
         for (std::size_t j = 0; j < node_count; ++j) w[j] = h * h * piece.f[1][j];
@@ -166,7 +168,7 @@ void Solver::judge(const Solved& piece) {
                                64 * rounding * (size + per_torque * torques) + per_torque * lost + smallest;
         unresolved_ = cheb::tail(series) / allowed;
     } else {
-        unresolved_ = cheb::tail(M) / ((cut_.tolerance + 16 * rounding) * torques + lost + smallest);
+        unresolved_ = cheb::tail(load) / ((cut_.tolerance + 16 * rounding) * torques + lost + smallest);
     }
     // Near a zero of a belt or of a rate its rounding is that of what it was before.
     if (field_.has_belt()) {
