@@ -119,4 +119,15 @@ test("a law that jumps up, or begins infinitely steep, is told with its speed an
     assert(run.outcome:find("tanh would not, nor excitation.sampled or excitation.relay", 1, true), run.outcome)
 end)
 
+test("a law as steep as can be at standstill lets go", function()
+    for _, shape in ipairs { 0.1, 0.2, 0.3 } do
+        local sys = system { I = 1, k = 1, C = 0.05, friction = friction.stribeck { Rd = 0.3, Re = 0.6, speed = 0.1, shape = shape } }
+        local task = { M = excitation.harmonic { omega = 0.8, amplitude = 1.2 }, t_end = 20, dt = 1 }
+        local run = sys:simulate(task)
+        equal(run.outcome, "reached the end")
+        task.integrator = integrator.rk4 { h = 0.001 }
+        near((run.theta - sys:simulate(task).theta):abs():max(), 0, 1e-4) -- what rk4 is off by beside the cusp
+    end
+end)
+
 support.finish()

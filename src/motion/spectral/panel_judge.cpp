@@ -97,12 +97,15 @@ bool PanelSolver::find_break_among(std::span<const double> times, std::span<cons
     return true;
 }
 
-/// A panel too short to matter, with M held at its first value: nothing happens in it, and M is asked at its end.
+/// A panel too short to matter, with its torques held at their first values: nothing happens in it, and M is asked at
+/// its end.
 PanelSolver::Attempt PanelSolver::pass_over() {
     panel_.M = {};
     panel_.M[0] = panel_.samples[0];
     falls_.theta = falls_.velocity = 0;
-    if (panel_.motion != model::Motion::stuck) solve_for(panel_.M);
+    Series torque = panel_.M;
+    if (system_.has_remainder()) torque[0] -= remainder(panel_.begin);
+    if (panel_.motion != model::Motion::stuck) solve_for(torque);
     return Attempt::resolved;
 }
 
