@@ -119,6 +119,95 @@ test("a law that jumps up, or begins infinitely steep, is told with its speed an
     assert(run.outcome:find("tanh would not, nor excitation.sampled or excitation.relay", 1, true), run.outcome)
 end)
 
+-- Both homes of a law, with a belt that stands still and without one.
+local function stops(k, law, start)
+    local sys, found = system { I = 1, k = k, friction = law }, {}
+    start.t_end, start.dt = 5, 5
+    for _, belt in ipairs { false, function() return 0 end } do
+        start.belt = belt or nil
+        found[#found + 1] = sys:simulate(start).events[1]
+    end
+    return found
+end
+
+test("friction that rises right before a stop is felt, however low the speed", function()
+    local Rd, Re = 0.3, 0.6
+    for _, speed in ipairs { 1e-3, 0.01, 0.03, 0.1 } do
+        for _, law in ipairs { friction.stribeck { Rd = Rd, Re = Re, speed = speed },
+            friction.law(function(v) return Rd + (Re - Rd) * math.exp(-(v / speed) ^ 2) end) } do
+            for _, stop in ipairs(stops(0, law, { velocity0 = 1 })) do
+                -- The integral of v dv/friction.
+                near(stop.theta, 1 / (2 * Rd) - speed ^ 2 / (2 * Rd) * math.log(Re / Rd), 1e-12)
+            end
+        end
+        -- Straight lines: 2 Rd up to that speed, Rd from twice that on.
+        local law = friction.table { speed = { 0, speed, 2 * speed }, torque = { 2 * Rd, 2 * Rd, Rd } }
+        for _, stop in ipairs(stops(0, law, { velocity0 = 1 })) do
+            near(stop.t, (1 - 2 * speed) / Rd + speed / Rd * math.log(2) + speed / (2 * Rd), 1e-11)
+        end
+    end
+end)
+
+test("the same under a spring, as a Runge-Kutta of its own says", function()
+    local C, speed = 0.05, 0.03
+    for _, shape in ipairs { 2, 10 } do
+        local function acceleration(theta, v) return 0.3 + 0.3 * math.exp(-(v / speed) ^ shape) - C * v - theta end
+        local function step(theta, v, h)
+            local a = acceleration(theta, v)
+            local v2 = v + h / 2 * a
+            local b = acceleration(theta + h / 2 * v, v2)
+            local v3 = v + h / 2 * b
+            local c = acceleration(theta + h / 2 * v2, v3)
+            local v4 = v + h * c
+            local d = acceleration(theta + h * v3, v4)
+            return theta + h / 6 * (v + 2 * v2 + 2 * v3 + v4), v + h / 6 * (a + 2 * b + 2 * c + d)
+        end
+        local theta, v, h, n = 5, 0, 1e-4, 0
+        while true do
+            local next_theta, next_v = step(theta, v, h)
+            if next_v >= 0 then break end
+            theta, v, n = next_theta, next_v, n + 1
+        end
+        local low, high = 0, h
+        for _ = 1, 60 do
+            local middle = (low + high) / 2
+            local _, there = step(theta, v, middle)
+            if there < 0 then low = middle else high = middle end
+        end
+        local law = friction.stribeck { Rd = 0.3, Re = 0.6, speed = speed, shape = shape }
+        for _, belt in ipairs { false, function() return 0 end } do
+            local turn = system { I = 1, k = 1, C = C, friction = law }:simulate {
+                theta0 = 5, t_end = 4, dt = 4, belt = belt or nil }.events[1]
+            near(turn.t, n * h + low, 1e-7)  -- (h acceleration/speed)^4, and what the sharp shape makes of it
+            near(turn.theta, (step(theta, v, low)), 1e-8)
+        end
+    end
+end)
+
+test("a corner of a law that the motion passes for a short while is not missed", function()
+    local law = friction.table { speed = { 0, 1, 3 }, torque = { 0.1, 0.1, 2000.1 } }
+    local own = friction.law(function(v) return v > 1 and 0.1 + 1000 * (v - 1) or 0.1 end)
+    for _, farther in ipairs { 1e-4, 1e-3, 0.1 } do
+        -- About theta = -0.1: a circle up to speed 1, above it y'' + 1000 y' + y = 1000, then a circle again.
+        local y = -math.sqrt((1 + farther) ^ 2 - 1)
+        local slow, fast = -1 / (500 + math.sqrt(249999)), -500 - math.sqrt(249999)
+        local b = (1 - slow * (y - 1000)) / (fast - slow)
+        local a = y - 1000 - b
+        local function speed(t) return slow * a * math.exp(slow * t) + fast * b * math.exp(fast * t) end
+        local low, high = -y / 2, -2 * y
+        for _ = 1, 100 do
+            local middle = (low + high) / 2
+            if speed(middle) > 1 then low = middle else high = middle end
+        end
+        local back = 1000 + a * math.exp(slow * low) + b * math.exp(fast * low)
+        for _, each in ipairs { law, own } do
+            for _, stop in ipairs(stops(1, each, { theta0 = -1.1 - farther })) do
+                near(stop.theta, math.sqrt(1 + back ^ 2) - 0.1, 1e-10)
+            end
+        end
+    end
+end)
+
 test("a law as steep as can be at standstill lets go", function()
     for _, shape in ipairs { 0.1, 0.2, 0.3 } do
         local sys = system { I = 1, k = 1, C = 0.05, friction = friction.stribeck { Rd = 0.3, Re = 0.6, speed = 0.1, shape = shape } }

@@ -110,4 +110,19 @@ test("the museum piece and the closed forms know k theta only", function()
     raises_here(function() theory.time_to_rest { system = sys, theta0 = 1 } end, "the closed forms know the spring k theta only")
 end)
 
+test("a stiff contact that is touched for a short while is felt", function()
+    local stiff = 1e4
+    local function contact(theta) return theta > 0.5 and stiff * (theta - 0.5) or 0 end
+    for _, Rd in ipairs { 0, 0.05 } do
+        for _, belt in ipairs { false, function() return 0 end } do
+            local velocity = math.sqrt(0.5001 ^ 2 + Rd)  -- it comes to 0.5001 if nothing is there, more or less
+            local turn = system { I = 1, k = 1, Rd = Rd, spring = contact }:simulate {
+                velocity0 = velocity, belt = belt or nil, t_end = 2.5, dt = 2.5 }.events[1]
+            -- velocity^2 = theta^2 + 2 Rd theta + stiff (theta - 1/2)^2
+            local a, b, c = 1 + stiff, Rd - stiff / 2, stiff / 4 - velocity ^ 2
+            near(turn.theta, (math.sqrt(b ^ 2 - a * c) - b) / a, 1e-11)
+        end
+    end
+end)
+
 support.finish()

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "motion/interpolation.hpp"
+#include "motion/spectral/corner_look.hpp"
 
 namespace dinal::motion::hybrid {
 
@@ -82,6 +83,7 @@ Solver::Attempt Solver::solve(Solved& piece, const Values& begin, const model::S
     }
     if (cut_.h > 0) return attempt;
     judge(piece);
+    if (unresolved_ <= 1 && moves(piece) && system_.has_remainder()) look_at_corners(piece);
     return unresolved_ <= 1 ? Attempt::resolved : Attempt::shorten;
 }
 
@@ -167,6 +169,7 @@ void Solver::judge(const Solved& piece) {
         const double allowed = cut_.tolerance * std::max(h * greatest(piece.y[1]), size) +
                                64 * rounding * (size + per_torque * torques) + per_torque * lost + smallest;
         unresolved_ = cheb::tail(series) / allowed;
+        uncertain_ = allowed / per_torque;
     } else {
         unresolved_ = cheb::tail(load) / ((cut_.tolerance + 16 * rounding) * torques + lost + smallest);
     }
@@ -187,6 +190,21 @@ void Solver::judge(const Solved& piece) {
                                64 * rounding * h * fastest_[k - 2] + lost_in_time(series, h * fastest_[k - 2]);
         unresolved_ = std::max(unresolved_, cheb::tail(series) / (allowed + smallest));
     }
+}
+
+/// Friction and springs may turn a corner where no node is.
+void Solver::look_at_corners(const Solved& piece) {
+    constexpr double too_short = 1e-6, clearly = 64;
+    if (2 * piece.h <= too_short * cut_.longest) return;
+    spectral::CornerLook look{system_, piece.way, piece.y[0], piece.y[1], {}};
+    for (std::size_t j = 0; j < node_count; ++j) {
+        look.theta[j] += piece.origin, look.slip[j] -= piece.belt[j];
+        look.remainder[j] = system_.inertia() * (accelerated((piece.M[j] - system_.braking(piece.way)) + piece.push[j],
+                                                             look.theta[j], piece.y[1][j]) -
+                                                 piece.f[1][j]);
+    }
+    const auto missed = spectral::missed_corner(look, clearly * uncertain_);
+    if (missed) unresolved_ = std::max(2.0, std::pow(0.9 / spectral::shorter_by_corner(*missed), cheb::degree));
 }
 
 void Solver::pass_over(Solved& piece) const {

@@ -97,6 +97,7 @@ private:
     [[nodiscard]] std::size_t first_unknown(const Solved& piece) const { return moves(piece) ? 1 : 2; }
     [[nodiscard]] double torques_of(const Solved& piece, double M) const;
     void judge(const Solved& piece);
+    void look_at_corners(const Solved& piece);
     [[nodiscard]] bool moves(const Solved& piece) const { return piece.way != model::Motion::stuck; }
 
     model::Lowered system_;
@@ -104,7 +105,7 @@ private:
     Cut cut_;
     std::size_t n_;  // values
     bool linear_;    // without a remainder, states and functions of the motion
-    double bad_time_ = 0, unresolved_ = 0;
+    double bad_time_ = 0, unresolved_ = 0, uncertain_ = 0;
     double fastest_belt_ = 0;  // so far
     Values fastest_;           // rates of the states, so far
 

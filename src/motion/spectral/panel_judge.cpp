@@ -120,7 +120,9 @@ PanelSolver::Attempt PanelSolver::accept() {
 
 PanelSolver::Attempt PanelSolver::judge(double unresolved) {
     if (unresolved <= 1) {
-        const Look look = script_ ? look_between() : Look::agrees;
+        Look look = script_ ? look_between() : Look::agrees;
+        const bool corners = system_.has_remainder() && panel_.motion != model::Motion::stuck;
+        if (corners && look == Look::agrees) look = look_at_corners();
         if (look != Look::agrees) return looked(look);
         if (accept() == Attempt::ended) return Attempt::ended;
         lengthen(unresolved);

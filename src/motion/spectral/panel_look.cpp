@@ -3,6 +3,7 @@
 #include <array>
 #include <cmath>
 
+#include "motion/spectral/corner_look.hpp"
 #include "motion/spectral/panel_solver.hpp"
 
 namespace dinal::motion::spectral {
@@ -85,6 +86,26 @@ PanelSolver::Look PanelSolver::look_between() {
         times[place] = looks[i], values[place] = found[i];
     }
     find_break_among(std::span(times).first(count), std::span(values).first(count));
+    return Look::differs;
+}
+
+/// Asks friction and springs where no node is.
+PanelSolver::Look PanelSolver::look_at_corners() {
+    if (2 * panel_.h <= too_short_to_look * pace_) return Look::agrees;
+    const double h = panel_.h, per_torque = h * (h / system_.inertia());
+    const auto w = chebyshev::at_nodes(panel_.w), M = chebyshev::at_nodes(panel_.M);
+    CornerLook look{system_, panel_.motion, chebyshev::at_nodes(panel_.p), chebyshev::at_nodes(panel_.v), {}};
+    for (std::size_t j = 0; j < points; ++j) {
+        look.theta[j] += panel_.begin.theta, look.slip[j] /= h;
+        look.remainder[j] = M[j] - system_.braking(panel_.motion) - system_.damping() * look.slip[j] -
+                            system_.stiffness() * look.theta[j] - w[j] / per_torque;
+    }
+    const double motion = std::max(chebyshev::size(panel_.v), chebyshev::size(panel_.w)), lost = lost_in_time();
+    const double allowed = (tolerance_ + 4 * epsilon) * torques() + noise_ + lost +
+                           (tolerance_ * motion + rounding_of_motion(lost)) / per_torque;
+    const auto missed = missed_corner(look, clearly * allowed);
+    if (!missed) return Look::agrees;
+    h_ = panel_.h * shorter_by_corner(*missed);
     return Look::differs;
 }
 

@@ -138,6 +138,7 @@ private:
     // panel_look.cpp: M where no node is, and on every scale.
     enum class Look { agrees, differs, failed };
     Look look_between();
+    Look look_at_corners();
     Attempt looked(Look look);
     bool found_noise();
     /// Of a run that gets nowhere: whose fault it is.
