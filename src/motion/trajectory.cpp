@@ -90,6 +90,15 @@ namespace {
 
 /// Where it switched without end, and what would not.
 std::string chatter_text(const Trajectory& run) {
+    if (!run.events.empty() && run.events.back().t == run.t_stop) {
+        if (run.events.back().kind == model::EventKind::user) {
+            return "events come without end in no time: a bounce made by act dies out and never rests, one by walls = "
+                   "{...} does";
+        }
+        if (run.events.back().kind == model::EventKind::switched) {
+            return "a relay switches without end in no time: its on and off are too near to each other";
+        }
+    }
     if (run.course && run.course->system().friction().depends_on_speed() && !run.on_belt) {
         return fmt::format(
             "switched without end in no time: it chatters at speed {:.6g}, where the law of friction (or M) jumps or is "

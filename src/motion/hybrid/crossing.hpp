@@ -36,11 +36,12 @@ double first_true(const Condition& holds, double x) {
 template <class F>
 class Watched {
 public:
-    Watched(const Nodes& values, const F& exact)
-        : values_(values), exact_(exact), series_(spectral::chebyshev::fit(values)) {
+    /// What is not beyond `rounded` may be zero.
+    Watched(const Nodes& values, const F& exact, double rounded = 0)
+        : values_(values), exact_(exact), rounded_(rounded), series_(spectral::chebyshev::fit(values)) {
         constexpr double few = 64;
         size_ = spectral::chebyshev::size(series_);
-        floor_ = few * rounding * size_;
+        floor_ = std::max(few * rounding * size_, rounded);
         smooth_ = spectral::chebyshev::tail(series_) <= 1e-9 * size_;
     }
     /// The first x after `from` at which it leaves the half that it is in; that is looked up when it is not known.
@@ -61,7 +62,8 @@ private:
     }
     [[nodiscard]] std::optional<double> of_series(Half half, double from, bool at_zero) const {
         using namespace spectral::chebyshev;
-        const Bounded<points> curve(half, series_, derivative(series_));
+        Bounded<points> curve(half, series_, derivative(series_));
+        curve.raise_floor(rounded_);
         const auto no = [](double) { return false; };
         const auto x = first_below(curve, from, at_zero ? LeftEnd::leaving : LeftEnd::anywhere, no);
         if (!x) return {};
@@ -90,12 +92,14 @@ private:
     [[nodiscard]] std::optional<double> refined(Half half, double a, double b) const {
         const auto beyond = [&](double x) { return -half * exact_(x); };
         const double fa = beyond(a), fb = beyond(b);
-        if (!(fa <= 0 && fb > 0)) return {};
+        if (!(fa <= rounded_ && fb > rounded_)) return {};
+        if (fa > 0) return a;
         return first_positive(beyond, a, fa, b, fb, 1e-16).second;
     }
 
     const Nodes& values_;
     const F& exact_;
+    double rounded_;
     Series series_;
     double size_ = 0, floor_ = 0;
     bool smooth_ = false;

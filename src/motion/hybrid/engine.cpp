@@ -12,8 +12,6 @@ namespace {
 constexpr double shortest = 1e-13, near_failure = 1e-9;
 /// So many pieces that are not resolved one after the other, or so many in next to no time, lead nowhere.
 constexpr int most_short = 2000, most_attempts = 20000;
-/// How often a delay brings back a kink before it is too smooth to be seen.
-constexpr int most_echoes = 8;
 
 /// As the Standstill sees the problem: velocities against the belt.
 Problem on_belt(const Problem& problem, double belt) {
@@ -49,6 +47,7 @@ Engine::Engine(const Problem& problem, const Cut& cut, Trajectory& trajectory, s
       now_{problem.window.start, 0},
       h_(cut.longest / 2),
       pace_(pace_of(problem)),
+      born_(problem.window.start),
       attempts_since_(problem.window.start) {
     trajectory.names = column_names();
     for (const model::OwnState& state : extras_.states) trajectory.names.push_back(state.name);
@@ -65,10 +64,13 @@ bool Engine::begin() {
     }
     after_break_ = breaks_at(field_, now_.hi);
     halves_.assign(extras_.events.size(), 0);
+    fading_.resize(extras_.events.size());
+    rounded_.assign(extras_.events.size(), 0);
     if (left != nullptr) {
         field_.remember(left->controllers);
         halves_ = left->halves;
         echoes_ = left->echoes;
+        born_ = left->born;
     } else {
         field_.begin(here());
         echo(now_.hi, 1);
@@ -101,7 +103,7 @@ model::Outcome Engine::run() {
 /// Where the next piece ends.
 bool Engine::choose() {
     const double breaks = std::min(field_.next_break(now_.hi), echoes_.empty() ? model::never : echoes_.front().first);
-    double limit = std::min(problem_.window.end, breaks);
+    double limit = std::min({problem_.window.end, breaks, belt_turns_});
     if (cut_.h > 0) {
         // A break that rounding puts beside a step's end is that end.
         const double beside = std::max(1e-9 * cut_.h, 4 * rounding * std::fabs(now_.hi));
@@ -114,6 +116,7 @@ bool Engine::choose() {
     if (bad_time_ < model::never) h = std::min(h, now_.until(bad_time_) / 4);
     // As long as it takes to a wall, or back to it, and a little more: a small bounce is to be seen.
     if (problem_.system.walls() && !standstill_.stuck()) h = std::min(h, std::max(0.6 * until_wall(), 1e-9 * pace_));
+    if (flight_ < model::never) h = std::min(h, std::max(0.6 * flight_, 1e-9 * pace_));
     const double remaining = now_.until(limit);
     const bool to_limit = remaining <= 2 * h * (1 + 1e-9);
     piece_.start = now_;
@@ -151,7 +154,7 @@ bool Engine::advance() {
     if (standstill_.stuck() && standstill_.phase() != Standstill::Phase::held) {
         const double M = field_.load(here());
         if (!std::isfinite(pull(M))) return fail(model::Outcome::excitation_not_finite);
-        const model::Motion towards = standstill_.pulled(pull(M), theta());
+        const model::Motion towards = standstill_.pulled(surely(pull(M), theta()), theta());
         if (towards != model::Motion::stuck && !release(towards)) return false;
     }
     if (!choose()) return false;
@@ -176,6 +179,9 @@ bool Engine::advance() {
         if (cut_.h == 0) h_ = std::min(cut_.longest / 2, std::max(h_, piece_.h * std::min(factor, 8.0)));
     }
 
+    fastest_belt_ = std::max(fastest_belt_, greatest(piece_.belt));
+    if (belt_turns_at_wall()) return true;
+
     Ending ending;
     if (standstill_.stuck()) {
         const auto [x, towards] = first_release();
@@ -190,7 +196,7 @@ bool Engine::advance() {
         if (zero) ending = {*zero, By::surface};
     }
     if (ending.x > -1 && ending.x < 1 && piece_.time(ending.x) >= piece_.end) ending.x = 1;
-    if (problem_.system.walls()) leans() ? watch_belt_at_wall(ending) : watch_walls(ending);
+    if (problem_.system.walls() && !leans()) watch_walls(ending);
     watch(ending);
     if (outcome_ != model::Outcome::reached_end) return false;
     if (standstill_.passes()) record_turns(ending.x);
@@ -206,11 +212,15 @@ bool Engine::end_piece(double x) {
     }
     keep(length);
     gap_ = std::max(gap_, std::min(length, cut_.h > 0 ? piece_.h : 2 * cheb::widest_gap * piece_.h));
-    for (std::size_t k = 0; k < y_.size(); ++k) y_[k] = piece_.at(k, x);
+    if (x > -1) {
+        for (std::size_t k = 0; k < y_.size(); ++k) y_[k] = piece_.at(k, x);
+    }
     now_ = whole && (piece_.to_break || piece_.end == problem_.window.end) ? Clock{piece_.end, 0}
                                                                            : piece_.start.later(length);
     after_break_ = whole && piece_.to_break;
     if (bad_time_ <= now_.hi) bad_time_ = model::never;
+    if (belt_turns_ <= now_.hi) belt_turns_ = model::never;
+    flight_ = model::never;
     const double belt_here = whole ? piece_.belt[node_count - 1] : belt();
     if (standstill_.stuck()) y_[1] = leans() ? 0 : belt_here;
     if (whole && length > 0) standstill_.go_on();
@@ -223,15 +233,6 @@ bool Engine::end_piece(double x) {
     if (!whole || (after_break_ && generation == 0)) echo(now_.hi, 1);
     if (!field_.arrive(here())) return fail(model::Outcome::excitation_not_finite);
     return !after_break_ || !field_.belt_breaks(now_.hi) || belt_jumps(belt_here);
-}
-
-/// Jumps and kinks come back when what acts with a delay sees them, each time smoother.
-void Engine::echo(double t, int generation) {
-    if (generation > most_echoes) return;
-    for (const double by : field_.delays()) {
-        const std::pair<double, int> back{t + by, generation};
-        echoes_.insert(std::lower_bound(echoes_.begin(), echoes_.end(), back), back);
-    }
 }
 
 void Engine::keep(double length) {
@@ -312,13 +313,14 @@ void Engine::leave(Trajectory& trajectory) const {
     trajectory.state_at_stop = {theta(), y_[1]};
     trajectory.motion_at_stop = standstill_.motion();
     trajectory.began_stuck = standstill_.began_stuck();
-    if (problem_.excitation.has_script()) trajectory.gap = gap_;
+    if (field_.asks_functions()) trajectory.gap = gap_;
     if (next_row_ < problem_.rows.count()) trajectory.rows = Rows(trajectory.rows.table().first(next_row_));
     auto left = std::make_shared<Left>();
     left->states.assign(y_.begin() + 2, y_.end());
     left->controllers = field_.memory();
     left->halves = halves_;
     left->echoes = echoes_;
+    left->born = born_;
     if (!field_.delays().empty()) left->past = pieces_;
     trajectory.carried = std::move(left);
 }

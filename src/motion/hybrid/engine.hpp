@@ -19,6 +19,7 @@ struct Left final : Carried {
     std::vector<Half> halves;
     std::vector<std::pair<double, int>> echoes;
     std::shared_ptr<const Pieces> past;
+    double born = 0;
 };
 
 /// Runs the problem, which has extras. The columns of its states stand behind the others.
@@ -52,6 +53,17 @@ private:
             return count > most;
         }
     };
+    /// What a user throws back each time sooner than before, until that is next to nothing: it has no end.
+    struct Fading {
+        double last = -model::never, gap = model::never, first = 0;
+        bool after(double t) {
+            constexpr double next_to_nothing = 1e-5;
+            const double now = t - last;
+            if (!(now < gap) || gap == model::never) first = now;
+            last = t, gap = now;
+            return now < first && now <= next_to_nothing * first;
+        }
+    };
     struct Bounces {
         double once = 0, all = 0;
     };
@@ -69,11 +81,22 @@ private:
     bool creep();
     [[nodiscard]] std::pair<double, model::Motion> first_release() const;
     void record_turns(double until);
+    [[nodiscard]] bool keeps_its_way() const;
+
+    // engine_acts.cpp
+    void watch_users(Ending& ending);
+    bool act_all(const std::vector<std::size_t>& told);
+    bool act(std::size_t which, const std::vector<std::size_t>& told);
+    [[nodiscard]] double until_back() const;
+    [[nodiscard]] double rounding_of(std::size_t event) const;
+    void stand_where_put(const std::vector<double>& before, const std::vector<std::size_t>& told);
+    [[nodiscard]] std::vector<double> watched_values(double x) const;
 
     // engine_walls.cpp
     void touch_wall(bool goes_on);
     void watch_walls(Ending& ending) const;
-    void watch_belt_at_wall(Ending& ending) const;
+    [[nodiscard]] bool belt_turns_at_wall();
+    [[nodiscard]] double acceleration() const;
     [[nodiscard]] double until_wall() const;
     bool hit(model::Motion into);
     void come_to_lean(model::Motion against);
@@ -88,9 +111,6 @@ private:
     bool belt_jumps(double before);
     bool ask();
     bool release(model::Motion towards);
-    bool act(std::size_t which, const std::vector<std::size_t>& fired);
-    void stand_where_put(const std::vector<double>& before, const std::vector<std::size_t>& fired);
-    [[nodiscard]] std::vector<double> watched_values(double x) const;
     void tell(model::EventKind kind, int user = -1);
     bool too_often();
     void echo(double t, int generation);
@@ -112,6 +132,12 @@ private:
         const double loads = M + field_.push(now_.hi, after_break_ ? Side::after : Side::at);
         if (standstill_.leans() != model::Motion::stuck) return loads + belt_at_wall(belt());
         return loads - system_.inertia() * field_.sure_belt_rate(now_.hi) - system_.damping() * belt();
+    }
+    /// What states of the user's may be wrong by, as a part of the torques that come from them.
+    [[nodiscard]] double blurred() const { return y_.size() > 2 ? 3e-12 : 0; }
+    /// A pull at a mass that rests, nearer to that of its springs by so much: what only touches a limit holds.
+    [[nodiscard]] double surely(double pull, double at) const {
+        return pull - blurred() * (pull - system_.pull_back(at));
     }
     bool fail(model::Outcome outcome) {
         outcome_ = outcome;
@@ -144,9 +170,15 @@ private:
     double h_, pace_;
     double gap_ = 0;  // the longest between two looks at M
     double bad_time_ = model::never;
+    double belt_turns_ = model::never;  // while the mass stands at a wall
+    double fastest_belt_ = 0;           // so far
+    double flight_ = model::never;      // how long the mass may be away that a user has just thrown
+    double born_;                       // when the run began that goes on here
     int attempts_ = 0, too_short_ = 0;
     double attempts_since_ = 0;
     Storm storm_, impacts_;
+    std::vector<Fading> fading_;   // of the events of the user
+    std::vector<double> rounded_;  // what is zero of their values, since an act
     std::size_t next_row_ = 0;
     double* column_ = nullptr;
     model::Outcome outcome_ = model::Outcome::reached_end;

@@ -1,4 +1,5 @@
-// What ends a piece of a run with more in it: the surface, a relay, an event of the user; and what happens then.
+// What ends a piece of a run with more in it: the surface, a relay; and what happens then. Events of the user are in
+// engine_acts.cpp.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -12,11 +13,8 @@ namespace {
 
 /// Events that follow each other within this time, in units of the pace, so often, go on for ever.
 constexpr double at_once = 1e-9;
-constexpr std::size_t most_passages = 200;
-/// Passages of user events that are so near to each other on a piece, of which the half is 1, are one instant.
-constexpr double one_instant = 64 * rounding;
-/// A value that is this part of what it was on the piece stands at zero.
-constexpr double at_zero = 1e-12;
+/// How often a delay brings back a kink before it is too smooth to be seen.
+constexpr int most_echoes = 8;
 
 }  // namespace
 
@@ -44,46 +42,7 @@ void Engine::watch(Ending& ending) {
         const auto x = values[0] < 0 ? std::optional(-1.0) : Watched(values, exact).leaves(half, -1);
         if (x && *x < ending.x) ending = {*x, By::relay, i};
     }
-    std::vector<std::pair<std::size_t, double>> wanted_ones, unwanted;  // passages; the others only change the half
-    for (std::size_t i = 0; i < extras_.events.size(); ++i) {
-        const model::WantedEvent& wanted = extras_.events[i];
-        const auto at = [&](const MotionPoint& p) { return wanted.when->value_with(p.t, p.y, p.states); };
-        const auto exact = [&](double x) { return at(point(x)); };
-        for (std::size_t j = 0; j < node_count; ++j) {
-            values[j] = at(point_at(j));
-            if (!std::isfinite(values[j])) {
-                fail(model::Outcome::excitation_not_finite);
-                return;
-            }
-        }
-        const Watched watched(values, exact);
-        double from = -1;
-        Half half = halves_[i];
-        while (const auto x = watched.leaves(half, from)) {
-            if (!(*x < ending.x)) break;
-            if (wanted.direction == model::Crossing::both || (half < 0) == (wanted.direction == model::Crossing::up)) {
-                wanted_ones.emplace_back(i, *x);
-                break;
-            }
-            if (unwanted.size() > most_passages) break;
-            if (halves_[i] == 0) halves_[i] = half;
-            unwanted.emplace_back(i, *x);
-            half = -half;
-            from = *x;
-        }
-        if (halves_[i] == 0) halves_[i] = half;
-    }
-    if (!wanted_ones.empty()) {
-        double first = 1;
-        for (const auto& [event, x] : wanted_ones) first = std::min(first, x);
-        ending = {first, By::user};
-        for (const auto& [event, x] : wanted_ones) {
-            if (x <= first + one_instant) ending.users.push_back(event);
-        }
-    }
-    for (const auto& [event, x] : unwanted) {
-        if (x <= ending.x) halves_[event] = -halves_[event];
-    }
+    watch_users(ending);
 }
 
 bool Engine::handle(const Ending& ending) {
@@ -103,73 +62,9 @@ bool Engine::handle(const Ending& ending) {
             tell(model::EventKind::switched);
             return !too_often() || fail(model::Outcome::chattering);
         case By::user:
-            for (const std::size_t which : ending.users) halves_[which] = -halves_[which];
-            return std::all_of(ending.users.begin(), ending.users.end(),
-                               [&](std::size_t which) { return act(which, ending.users); });
+            return act_all(ending.users);
     }
     return true;
-}
-
-bool Engine::act(std::size_t which, const std::vector<std::size_t>& fired) {
-    const model::WantedEvent& wanted = extras_.events[which];
-    tell(model::EventKind::user, static_cast<int>(which));
-    if (wanted.act != nullptr) {
-        const std::vector<double> before = watched_values(2);
-        model::State state{theta(), y_[1]};
-        if (!wanted.act->act(now_.hi, state, {y_.data() + 2, y_.size() - 2})) {
-            return fail(model::Outcome::excitation_not_finite);
-        }
-        if (const auto& walls = problem_.system.walls()) {
-            state.theta = std::clamp(state.theta, walls->lower, walls->upper);
-        }
-        const auto energy = [&](double theta, double velocity) {
-            return (system_.inertia() * velocity * velocity + system_.stiffness() * theta * theta) / 2 +
-                   problem_.system.spring().energy(theta);
-        };
-        if (problem_.limits.dense) {
-            pieces_->add_jump(now_.hi, {.acts = energy(state.theta, state.velocity) - energy(theta(), y_[1])});
-        }
-        const bool moved = state.theta != theta() || state.velocity != y_[1];
-        if (moved) {
-            set_theta(state.theta);
-            y_[1] = state.velocity;
-            standstill_.lean(model::Motion::stuck);
-        }
-        const double slip = y_[1] - belt();
-        if (moved && !standstill_.passes()) {
-            standstill_.return_to({slip == 0 ? model::Motion::stuck : model::motion_of(slip),
-                                   slip == 0 ? Standstill::Phase::arrived : Standstill::Phase::moving});
-        } else if (moved) {
-            standstill_.thrown(model::motion_of(slip));
-        }
-        if (moved) touch_wall(false);
-        stand_where_put(before, fired);
-        echo(now_.hi, 1);
-    }
-    if (wanted.stop) return fail(model::Outcome::stopped);
-    return !too_often() || fail(model::Outcome::chattering);
-}
-
-/// What all events of the user watch, at x of the piece; beyond it, now.
-std::vector<double> Engine::watched_values(double x) const {
-    const MotionPoint at = x > 1 ? here() : point(x);
-    std::vector<double> values;
-    values.reserve(extras_.events.size());
-    for (const model::WantedEvent& event : extras_.events)
-        values.push_back(event.when->value_with(at.t, at.y, at.states));
-    return values;
-}
-
-/// What the user did may have put watched values on the other side of zero, which is no passing; and what has come to
-/// zero, and was told, may be sent back to where it came from, which is none either.
-void Engine::stand_where_put(const std::vector<double>& before, const std::vector<std::size_t>& fired) {
-    const std::vector<double> now = watched_values(2), begin = watched_values(-1), end = watched_values(1);
-    for (std::size_t i = 0; i < halves_.size(); ++i) {
-        const bool told = std::find(fired.begin(), fired.end(), i) != fired.end();
-        if (now[i] == before[i] && !told) continue;
-        const double size = std::max({std::fabs(begin[i]), std::fabs(end[i]), std::fabs(now[i])});
-        halves_[i] = std::fabs(now[i]) <= at_zero * size ? 0 : now[i] > 0 ? 1 : -1;
-    }
 }
 
 /// A surface that changes its velocity at once leaves the mass behind, or turns the sliding round.
@@ -192,6 +87,15 @@ bool Engine::belt_jumps(double before) {
     }
     standstill_.return_to({motion, Standstill::Phase::moving});
     return true;
+}
+
+/// Jumps and kinks come back when what acts with a delay sees them, each time smoother.
+void Engine::echo(double t, int generation) {
+    if (generation > most_echoes) return;
+    for (const double by : field_.delays()) {
+        const std::pair<double, int> back{t + by, generation};
+        echoes_.insert(std::lower_bound(echoes_.begin(), echoes_.end(), back), back);
+    }
 }
 
 void Engine::tell(model::EventKind kind, int user) {

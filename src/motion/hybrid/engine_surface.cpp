@@ -1,14 +1,29 @@
 // Where a mass comes to rest on its surface, creeps there, is let go, or turns.
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "motion/hybrid/engine.hpp"
 
 namespace dinal::motion::hybrid {
 
+/// Whether a step of Runge-Kutta goes one way by what is known at its ends. A jump of M at one of them bends the curve
+/// between them further than the motion goes.
+bool Engine::keeps_its_way() const {
+    const std::size_t end = node_count - 1;
+    const double way = model::sign_of(standstill_.motion());
+    const auto slip = [&](const Nodes& mass, const Nodes& surface, std::size_t j) {
+        return way * (mass[j] - surface[j]);
+    };
+    const double a0 = slip(piece_.f[1], piece_.belt_rate, 0), a1 = slip(piece_.f[1], piece_.belt_rate, end);
+    const bool leaves = standstill_.phase() != Standstill::Phase::leaving || a0 > 0;
+    return leaves && slip(piece_.y[1], piece_.belt, end) > 0 && !(a0 < 0 && a1 > 0);
+}
+
 /// Where the mass is as fast as its surface. At the end of the piece, zero within rounding is zero.
 std::optional<double> Engine::first_standstill() const {
     using namespace spectral::chebyshev;
+    if (cut_.h > 0 && keeps_its_way()) return {};
     Series slip = piece_.series[1];
     slip[0] += y_[1];
     if (field_.has_belt()) {
@@ -42,7 +57,12 @@ bool Engine::creeps() const {
 std::pair<double, model::Motion> Engine::first_release() const {
     using namespace spectral::chebyshev;
     std::pair<double, model::Motion> first{2, model::Motion::stuck};
+    // Along a mass at a wall a belt slides one way on a piece; where it begins or ends with zero, rounding does not
+    // say.
+    const double drags = piece_.belt[node_count / 2] < 0 ? -1 : 1, slowest = std::numeric_limits<double>::min();
+    const bool dragged = piece_.leans && piece_.belt[node_count / 2] != 0;
     const auto pull_at = [&](double M, double push, double rate, double belt) {
+        if (dragged) belt = drags * std::max(drags * belt, slowest);
         if (piece_.leans) return M + push + belt_at_wall(belt);
         return M + push - system_.inertia() * rate - system_.damping() * belt;
     };
@@ -58,7 +78,9 @@ std::pair<double, model::Motion> Engine::first_release() const {
     const bool held = standstill_.phase() == Standstill::Phase::held;
     const double at_first = pull_at(piece_.M[0], piece_.push[0], piece_.belt_rate[0], piece_.belt[0]);
     const double clearly_beyond = held ? standstill_.clearly_beyond({now_.hi, theta(), at_first}) : 0;
-    const double rounded_rate = 256 * rounding * greatest(piece_.belt) / piece_.h;
+    // Near its zero a belt is rounded as it is elsewhere, and at a late time as that is.
+    const double late = std::max(std::fabs(piece_.start.hi), std::fabs(piece_.end));
+    const double rounded_rate = 256 * rounding * std::max(fastest_belt_, late * greatest(piece_.belt_rate)) / piece_.h;
     const Series belt = fit(piece_.belt), rate = fit(piece_.belt_rate);
     for (const model::Motion side : {model::Motion::forward, model::Motion::backward}) {
         if (side == standstill_.leans()) continue;
@@ -68,15 +90,16 @@ std::pair<double, model::Motion> Engine::first_release() const {
         left[0] += limit;
         if (held) left[0] += clearly_beyond;
         Bounded<points> curve(1, left, derivative(left));
-        const double doubt =
-            8 * (rounding * (std::fabs(limit) + largest) + tail(pull)) + system_.inertia() * rounded_rate;
+        const double doubt = 8 * (rounding * (std::fabs(limit) + largest) + tail(pull)) +
+                             system_.inertia() * rounded_rate + blurred() * limit;
         curve.raise_floor(doubt);
         const auto lets_go = [&](double x) {
             const MotionPoint at = point(x);
             const double M = field_.load(at);
             const double whole = value(rate, x),
                          sure = std::copysign(std::max(0.0, std::fabs(whole) - rounded_rate), whole);
-            return standstill_.pulled(pull_at(M, field_.push(at.t, at.side), sure, value(belt, x)), at.y.theta) == side;
+            const double torque = pull_at(M, field_.push(at.t, at.side), sure, value(belt, x));
+            return standstill_.pulled(surely(torque, at.y.theta), at.y.theta) == side;
         };
         std::optional<double> touch;
         const auto touches = [&](double x) {

@@ -63,14 +63,18 @@ void Engine::touch_wall(bool goes_on) {
     }
 }
 
-/// How long it would take to a wall under the present acceleration; `never` when that leads to none.
-double Engine::until_wall() const {
+/// Of a mass that moves, now.
+double Engine::acceleration() const {
     const double M = field_.load(here()), slip = y_[1] - belt();
     const model::Motion motion = way();
     const double friction = system_.braking(motion) + system_.friction_remainder(motion, {theta(), slip});
-    const double a =
-        (M + field_.push(now_.hi, here().side) - friction - system_.damping() * y_[1] - system_.pull_back(theta())) /
-        system_.inertia();
+    return (M + field_.push(now_.hi, here().side) - friction - system_.damping() * y_[1] - system_.pull_back(theta())) /
+           system_.inertia();
+}
+
+/// How long it would take to a wall under the present acceleration; `never` when that leads to none.
+double Engine::until_wall() const {
+    const double a = acceleration();
     double first = model::never;
     for (const int side : {1, -1}) {
         const double gap = std::max(0.0, side * ((problem_.system.walls()->at(side) - origin_) - y_[0]));
@@ -100,13 +104,16 @@ void Engine::watch_walls(Ending& ending) const {
     }
 }
 
-/// A belt that turns round slides the other way along a mass at a wall.
-void Engine::watch_belt_at_wall(Ending& ending) const {
-    if (!field_.has_belt()) return;
+/// Where a belt turns round along a mass at a wall the piece is to end, and is solved again: friction jumps there.
+bool Engine::belt_turns_at_wall() {
+    if (!field_.has_belt() || !leans() || belt_turns_ < model::never) return false;
+    constexpr double within = 1 - 1e-9;
     const auto exact = [&](double x) { return field_.belt(piece_.time(x), Side::at); };
     Half half = 0;
     const auto x = Watched(piece_.belt, exact).leaves(half, -1);
-    if (x && *x > -1 && *x < ending.x) ending = {*x, By::nobody};
+    if (!x || !(std::fabs(*x) < within) || !(piece_.time(*x) > now_.hi)) return false;
+    belt_turns_ = piece_.time(*x);
+    return true;
 }
 
 /// How long the bounce lasts that begins now, and how long all of them go on; `never` when they do not end.
@@ -131,6 +138,7 @@ bool Engine::hit(model::Motion into) {
     const model::Walls& walls = *problem_.system.walls();
     const int side = side_of(into);
     const double before = std::max(0.0, side * y_[1]);
+    const bool other = origin_ != walls.at(side);
     const bool stayed = y_[0] == 0 && origin_ == walls.at(side) && before == 0;
     origin_ = walls.at(side), y_[0] = 0;
     if (stayed) {
@@ -144,10 +152,12 @@ bool Engine::hit(model::Motion into) {
     double after = y_[1] * side * -1;
     const auto [once, all] = after > 0 ? bounces(into) : Bounces{};
     const double soon = std::min(field_.next_break(now_.hi), problem_.window.end);
-    const bool over = all <= last_bounces * pace_ || once <= shortest_bounce * pace_;
+    // Without a spring the run so far tells what is short: not t_end, so that one may stop anywhere and go on.
+    const double pace = std::min(problem_.system.natural_period(), now_.hi - born_);
+    const bool over = all <= last_bounces * pace || once <= shortest_bounce * pace;
     const double rest = all < model::never ? all : once;
     // To and fro between walls that are too near to each other.
-    if (impacts_.after(now_.hi, shortest_bounce * pace_)) return fail(model::Outcome::chattering);
+    if (other && impacts_.after(now_.hi, shortest_bounce * pace_)) return fail(model::Outcome::chattering);
     if (over) after = 0;
     const double lost = system_.inertia() / 2 * (before - after) * (before + after);
     if (problem_.limits.dense) pieces_->add_jump(now_.hi, {.impacts = lost});

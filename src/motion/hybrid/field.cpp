@@ -56,13 +56,21 @@ double Field::asked(std::size_t component, const MotionPoint& at) const {
     }
     if (kind.relay != nullptr) return kind.relay->levels[memory_[component].on ? 0 : 1];
     if (kind.sampled != nullptr) return memory_[component].output;
-    const model::State then = past_.at(at.t - kind.delayed->by, at.side);
-    return kind.delayed->function->value_with(towards(at.t, at.side), then, at.states);
+    // A jump comes back at a time that is rounded: on its sides the past is asked beside it.
+    const double asked_at = towards(at.t, at.side);
+    return kind.delayed->function->value_with(asked_at, past_.at(asked_at - kind.delayed->by, at.side), at.states);
 }
 
 bool Field::asks_the_motion() const {
     return std::any_of(kinds_.begin(), kinds_.end(),
                        [](const Kind& kind) { return kind.function != nullptr && kind.function->feedback; });
+}
+
+bool Field::asks_functions() const {
+    return std::any_of(kinds_.begin(), kinds_.end(), [](const Kind& kind) {
+        return kind.function != nullptr || kind.delayed != nullptr ||
+               (kind.relay != nullptr && kind.relay->of == model::RelayController::Of::function);
+    });
 }
 
 double Field::load(const MotionPoint& at) const {

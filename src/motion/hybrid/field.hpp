@@ -62,6 +62,9 @@ public:
     [[nodiscard]] bool has_belt() const { return !extras_.belt.components().empty(); }
     /// Whether a function wants to know theta or velocity of the moment itself.
     [[nodiscard]] bool asks_the_motion() const;
+    /// Whether M has a function that is known where it was asked only. What is held is known, and so is when a relay
+    /// switches, but for one of a function.
+    [[nodiscard]] bool asks_functions() const;
     /// M of the user.
     [[nodiscard]] double load(const MotionPoint& at) const;
     /// -I a(t) of the base.

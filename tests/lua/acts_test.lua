@@ -1,0 +1,212 @@
+-- What a user does at his events, and what comes at the same instant as something else: where things end that rounding
+-- must not decide.
+package.path = "tests/lua/?.lua;" .. package.path
+local support = require "support"
+local test, near, equal = support.test, support.near, support.equal
+
+local block = system { I = 1, k = 0 }
+local methods = { integrator.spectral {}, integrator.rk4 { h = 0.01 } }
+
+-- The times of the events of these kinds; of all, without any.
+local function times(run, ...)
+    local wanted, list = { ... }, {}
+    for _, e in ipairs(run.events) do
+        local take = #wanted == 0
+        for _, kind in ipairs(wanted) do take = take or e.kind == kind end
+        if take then list[#list + 1] = e.t end
+    end
+    return list
+end
+
+local function above(t, theta) return theta - 0.1 end
+
+-- A fall from 1.5 above: it comes down after sqrt(3), with velocity sqrt(3), in a field where the rest is closed form, too.
+local function fall(act, t_end, method, direction)
+    return block:simulate {
+        theta0 = 1.6, M = -1, t_end = t_end, dt = 0.1, integrator = method,
+        events = { { when = above, act = act, direction = direction } },
+    }
+end
+
+test("a bounce by act, told both ways, is told once, and the mass stays above", function()
+    for _, method in ipairs(methods) do
+        for _, act in ipairs { function(_, theta, v) return theta, -v end, function(_, theta, v) return theta, math.abs(v) end } do
+            local run = fall(act, 100, method)
+            local bounces = times(run, "user")
+            equal(#bounces, 29) -- sqrt(3) (2 n - 1) <= 100
+            -- rk4 is exact under a constant torque, too; the clock loses some ulps of 100
+            for n, t in ipairs(bounces) do near(t, math.sqrt(3) * (2 * n - 1), 1e-10) end
+            assert(run.theta:min() >= 0.1 - 1e-12)
+            equal(run.outcome, "reached the end")
+        end
+    end
+end)
+
+test("an act that slows the mass down and lets it through is told once", function()
+    for _, method in ipairs(methods) do
+        local run = fall(function(_, theta, v) return theta, v / 2 end, 3, method)
+        equal(#run.events, 1)
+        local since = 3 - math.sqrt(3)
+        near(run.theta[#run], 0.1 - math.sqrt(3) / 2 * since - since ^ 2 / 2, 1e-11)
+    end
+end)
+
+test("what stands at zero may be sent back by a state, too", function()
+    for _, method in ipairs(methods) do
+        local run = block:simulate {
+            t_end = 10, dt = 1, integrator = method,
+            states = { way = { start = 1, rate = function() return 0 end }, x = { rate = function(_, _, _, z) return z.way end } },
+            events = { { when = function(_, _, _, z) return math.abs(z.x - 0.25) - 1 end, act = function(_, _, _, z) z.way = -z.way end } },
+        }
+        local at = times(run)
+        equal(#at, 5) -- to 1.25, and then to and fro over a length of 2
+        for n, t in ipairs(at) do near(t, 1.25 + 2 * (n - 1), 1e-10) end
+    end
+end)
+
+test("bounces by act that die out end the run with what to do, and never fall through", function()
+    for _, method in ipairs(methods) do
+        for _, direction in ipairs { "down", "both" } do
+            for kept, most in pairs { [0.9] = 1e-3, [0.5] = 1e-4, [0.01] = 1e-4 } do
+                local run = fall(function(_, theta, v) return theta, -kept * v end, 100, method, direction)
+                assert(run.outcome:find("without end", 1, true) and run.outcome:find("walls", 1, true), run.outcome)
+                -- the sum of the bounces; the last ones, 1e-5 of the first, are not waited for
+                near(run.events[#run.events].t, math.sqrt(3) * (1 + 2 * kept / (1 - kept)), most)
+                assert(run.theta:min() >= 0.1 - 1e-12)
+                assert(run:explain():gsub("%s+", " "):find("a bounce made by act dies out", 1, true), run:explain())
+            end
+        end
+    end
+end)
+
+test("acts that come at even times do not die out", function()
+    local run = block:simulate {
+        velocity0 = 1, t_end = 10.02, dt = 1,
+        events = { { when = function(t) return math.sin(20 * math.pi * t) end, act = function(_, theta, v) return theta, v + 1 end } },
+    }
+    equal(#run.events, 200)
+    equal(run.outcome, "reached the end")
+end)
+
+test("a user's event where the velocity is zero comes after the turn, and makes no slip of it", function()
+    for _, zeta in ipairs { 0, 0.02, 0.1 } do
+        local sys = nondimensional { zeta = zeta, friction_ratio = 0.3 }:with { Re = 0.5 }
+        for i = 0, 19 do
+            local task = { theta0 = 2 + 0.0371 * i, t_end = 20, dt = 1 }
+            local alone = sys:simulate(task)
+            task.events = { { when = function(_, _, v) return v end } }
+            local watched = sys:simulate(task)
+            local own, seen = {}, {}
+            for _, e in ipairs(alone.events) do own[#own + 1] = e.kind end
+            for k, e in ipairs(watched.events) do
+                if e.kind ~= "user" then seen[#seen + 1] = e.kind end
+                if e.kind == "user" then equal(watched.events[k - 1].kind, "turn") end
+            end
+            equal(table.concat(seen, " "), table.concat(own, " "))
+        end
+    end
+    -- 3 - .6 n at the turns, by hand: the fourth, at .6 > Re/k, is one, and the next is a rest
+    local peaks = system { I = 1, k = 1, Rd = 0.3, Re = 0.5 }:simulate {
+        theta0 = 3, t_end = 20, dt = 1, events = { { when = function(_, _, v) return v end } },
+    }
+    equal(#times(peaks, "turn"), 4)
+    equal(#times(peaks, "user"), 4)
+    equal(#times(peaks, "slip"), 0)
+    equal(peaks.events[#peaks.events].kind, "rest")
+end)
+
+test("a state that reaches Re exactly, or touches it, holds; one that passes it lets go", function()
+    local sys = system { I = 1, k = 4, C = 0.2, Rd = 0.3, Re = 0.5 }
+    local function run(rate, t_end)
+        return sys:simulate { M = function(_, _, _, z) return z.e end, t_end = t_end, dt = 1, states = { e = { rate = rate } } }
+    end
+    for _, rate in ipairs {
+        function(t) return t < 0.5 and 1 or 0 end,
+        function(_, _, _, z) return z.e < 0.5 and 1 or 0 end,
+        function(t) return 0.5 * math.pi * math.cos(math.pi * t) end,
+    } do
+        local held = run(rate, 5)
+        equal(#held.events, 0)
+        equal(held.theta[#held], 0.0)
+    end
+    -- what may be the rounding of a state, 3e-12, is not past the limit
+    near(run(function() return 0.4 end, 3).events[1].t, 1.25, 1e-11)
+    near(run(function(t) return 0.5001 * math.pi * math.cos(math.pi * t) end, 3).events[1].t, math.asin(0.5 / 0.5001) / math.pi, 1e-9)
+end)
+
+test("a belt that soon turns round pulls a mass off its wall where the net torque says so", function()
+    -- Rd pulls off, M = .5 - .1 t presses on: balance at t = 2, whenever the belt turns after that
+    for _, k in ipairs { 0, 1 } do
+        for _, turns in ipairs { 2.5, 2.3, 2.1, 2.05, 2.01 } do
+            local run = system { I = 1, k = k, Rd = 0.3, Re = 0.35, walls = { upper = 0, restitution = 0 } }:simulate {
+                M = excitation.polynomial { coefficients = { 0.5, -0.1 } },
+                belt = excitation.polynomial { coefficients = { -0.1 * turns, 0.1 } }, t_end = 5, dt = 1,
+            }
+            equal(run.events[1].kind, "slip")
+            near(run.events[1].t, 2, 1e-12)
+        end
+    end
+    -- without a spring: v = -s^2/20 meets the belt (s - .5)/10 after s = sqrt(2) - 1
+    local run = system { I = 1, k = 0, Rd = 0.3, Re = 0.35, walls = { upper = 0, restitution = 0 } }:simulate {
+        M = excitation.polynomial { coefficients = { 0.5, -0.1 } },
+        belt = excitation.polynomial { coefficients = { -0.25, 0.1 } }, t_end = 5, dt = 1,
+    }
+    equal(run.events[2].kind, "stick")
+    near(run.events[2].t, 1 + math.sqrt(2), 1e-11)
+end)
+
+test("a jump of velocity comes back through a delay, whatever the step of rk4", function()
+    -- v = 1 - .1 t up to the wall at t1, then -v1 - .1 (t - t1); from 1.7 on M = -.1 v(t - 1.7): polynomials all of them
+    local by, t1 = 1.7, 10 - math.sqrt(80)
+    local v1, T = 1 - 0.1 * t1, 3
+    local v2 = -v1 - 0.1 * (by - t1)
+    local x2 = 1 - v1 * (by - t1) - 0.05 * (by - t1) ^ 2
+    local v3, x3 = v2 - 0.1 * t1 + 0.005 * t1 ^ 2, x2 + v2 * t1 - 0.05 * t1 ^ 2 + 0.005 * t1 ^ 3 / 3
+    local s = T - by - t1
+    local x = x3 + v3 * s + 0.1 * v1 * s ^ 2 / 2 + 0.01 * s ^ 3 / 6
+    local sys = system { I = 1, k = 0, walls = { lower = -1, upper = 1, restitution = 1 } }
+    for _, method in ipairs { integrator.spectral {}, integrator.rk4 { h = 0.0025 }, integrator.rk4 { h = 0.001 }, integrator.rk4 { h = 0.0003 } } do
+        local run = sys:simulate {
+            M = excitation.delayed(function(_, _, v) return -0.1 * v end, { by = by }), velocity0 = 1, t_end = T, dt = T,
+            integrator = method,
+        }
+        near(run.theta[#run], x, 1e-11) -- cubics at most: no step loses anything but rounding
+    end
+end)
+
+test("a belt that reaches Re in its trough, where its velocity is zero, holds under rk4, too", function()
+    local run = system { I = 1, k = 0, Rd = 0.3, Re = 0.5 }:simulate {
+        belt = excitation.harmonic { amplitude = 1, omega = 0.5 }, t_end = 40, dt = 1, integrator = integrator.rk4 { h = 0.005 },
+    }
+    equal(#run.events, 0)
+    near(run.theta[#run], 2 * (1 - math.cos(20)), 1e-9)
+end)
+
+test("how many bounces are told does not hang on t_end, nor on where the run went on", function()
+    local sys = system { I = 1, k = 0, walls = { lower = 0, restitution = 0.5 } }
+    local whole = sys:simulate { M = -1, theta0 = 1, t_end = 10, dt = 1 }
+    local later = sys:simulate { M = -1, theta0 = 1, t_end = 1e4, dt = 1000 }
+    local on = sys:simulate { M = -1, theta0 = 1, t_end = 3, dt = 1 }:continue { t_end = 10 }
+    equal(#later.events, #whole.events)
+    equal(#on.events, #whole.events)
+    near(whole.events[#whole.events].t, 3 * math.sqrt(2), 1e-12)
+    near(on.events[#on.events].t, 3 * math.sqrt(2), 1e-12)
+end)
+
+test("where a function M jumps at the end of a step of rk4 no motion is made up before it", function()
+    local sys = nondimensional { zeta = 0.05, friction_ratio = 0.1 }
+    local steps
+    for n = 1, 10 do steps = (steps or 0) + excitation.step { at = n } end
+    local truth = sys:simulate { M = steps, theta0 = 1, t_end = 10, dt = 0.1, integrator = integrator.exact {} }
+    local run = sys:simulate {
+        M = function(t) return math.floor(t) end, theta0 = 1, t_end = 10, dt = 0.1, integrator = integrator.rk4 { h = 0.002 },
+        states = { way = { rate = function(_, _, v) return math.abs(v) end } },
+    }
+    equal(run.outcome, "reached the end")
+    equal(#run.events, #truth.events)
+    -- a step sees the jump a sixth of its length too early: ten of them
+    for i, e in ipairs(truth.events) do near(run.events[i].t, e.t, 5e-3) end
+    near(run.theta[#run], truth.theta[#truth], 5e-3)
+end)
+
+support.finish()
