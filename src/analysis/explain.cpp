@@ -6,8 +6,8 @@
 namespace dinal::analysis {
 
 std::string explain(const motion::Trajectory& trajectory, const model::Oscillator& system,
-                    const model::Excitation& excitation, motion::MethodView method) {
-    return Story(trajectory, system, excitation, method).told();
+                    const model::Excitation& excitation, motion::MethodView method, const model::Extras& extras) {
+    return Story(trajectory, system, excitation, method, extras).told();
 }
 
 std::string explain_rows(const motion::Trajectory& trajectory, const model::Units& units) {

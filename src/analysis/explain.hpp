@@ -4,6 +4,7 @@
 #include <string>
 
 #include "model/excitation.hpp"
+#include "model/extras.hpp"
 #include "model/oscillator.hpp"
 #include "motion/method.hpp"
 #include "motion/trajectory.hpp"
@@ -11,9 +12,9 @@
 namespace dinal::analysis {
 
 /// Paragraphs of lines that fit 80 columns. Of a long run only the first and the last stops are told one by one. No
-/// user function is called.
+/// user function is called, but for a spring, a belt and a base.
 std::string explain(const motion::Trajectory& trajectory, const model::Oscillator& system,
-                    const model::Excitation& excitation, motion::MethodView method);
+                    const model::Excitation& excitation, motion::MethodView method, const model::Extras& extras = {});
 
 /// What rows alone tell, of a trajectory that was read from a file.
 std::string explain_rows(const motion::Trajectory& trajectory, const model::Units& units = {});

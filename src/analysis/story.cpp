@@ -6,6 +6,7 @@
 
 #include "model/forcing.hpp"
 #include "model/laws/coulomb.hpp"
+#include "motion/spectral/chebyshev.hpp"
 #include "text/characters.hpp"
 
 namespace dinal::analysis {
@@ -19,14 +20,18 @@ constexpr std::size_t most_turns = 4;
 }  // namespace
 
 Story::Story(const motion::Trajectory& trajectory, const model::Oscillator& system, const model::Excitation& excitation,
-             motion::MethodView method)
+             motion::MethodView method, const model::Extras& extras)
     : run_(trajectory),
       system_(system),
       excitation_(excitation),
       own_rule_(method.own_rule()),
       stretches_(stretches(trajectory)),
+      extras_(extras),
+      on_base_(!extras.base.components().empty()),
+      on_belt_(!extras.belt.components().empty()),
+      steady_belt_(extras.belt.constant_from() <= trajectory.t_start),
       T0_(system.has_spring() ? system.natural_period() : 1),
-      constant_from_(excitation.has_feedback() ? model::never : excitation.constant_from()) {
+      constant_from_(excitation.has_feedback() || on_base_ || on_belt_ ? model::never : excitation.constant_from()) {
     for (const Stretch& s : stretches_) {
         s.stuck ? void(stuck_ += s.lasts()) : void(++half_cycles_);
         if (s.stuck && s.begun_by) stops_.push_back(&s);
@@ -74,7 +79,7 @@ void Story::tell_setting() {
     if (!system_.units().usual()) say("Units: {}.", system_.units().in_words());
     const double period = model::period_from(excitation_, run_.t_start);
     if (excitation_.components().empty()) {
-        say("There is no M: the motion is free.");
+        say("There is no M{}", on_base_ || on_belt_ ? "." : ": the motion is free.");
     } else if (excitation_.has_feedback()) {
         say("M depends on the motion itself: a feedback.");
     } else if (free()) {
@@ -86,6 +91,7 @@ void Story::tell_setting() {
     } else if (constant_from_ < run_.t_stop) {
         say("M changes until t = {}, then it is constant.", at(constant_from_));
     }
+    tell_surroundings();
     if (run_.gap > 0) {
         say("Of M only values are known, at times at most {} apart: a shorter pulse would not have been seen.",
             text::number_text(run_.gap, T0_));
@@ -95,6 +101,40 @@ void Story::tell_setting() {
     }
     if (own_rule_) say("{}", own_rule_->setting);
     end_paragraph();
+}
+
+void Story::tell_surroundings() {
+    if (on_base_) say("The support shakes: its acceleration a acts on the mass as -I a, and theta is relative to it.");
+    if (!on_belt_) return;
+    if (steady_belt_) {
+        say("Dry friction acts against a belt that moves with velocity vb = {:.5g}.", belt_velocity(run_.t_start));
+    } else {
+        say("Dry friction acts against a belt of velocity vb.");
+    }
+}
+
+double Story::belt_velocity(double t) const {
+    const bool breaks = extras_.belt.next_break(std::nextafter(t, -model::never)) == t;
+    return breaks ? extras_.belt.value_after(t) : extras_.belt.value(t);
+}
+
+double Story::around(double t) const {
+    double torque = on_base_ ? -system_.inertia() * extras_.base.value_after(t) : 0;
+    if (on_belt_) torque -= system_.damping() * belt_velocity(t) + system_.inertia() * belt_rate(t);
+    return torque;
+}
+
+/// By the polynomial through a short stretch ahead, as the integrator has it.
+double Story::belt_rate(double t) const {
+    namespace cheb = motion::spectral::chebyshev;
+    if (steady_belt_) return 0;
+    const double next = extras_.belt.next_break(t), h = std::min(0.05 * T0_, (next - t) / 2);
+    cheb::Samples values{};
+    for (std::size_t j = 0; j < values.size(); ++j) {
+        const double at = t + h * (1 + cheb::nodes[j]);
+        values[j] = j == 0 ? belt_velocity(t) : at >= next ? extras_.belt.value_before(next) : extras_.belt.value(at);
+    }
+    return cheb::value(cheb::derivative(cheb::fit(values)), -1) / h;
 }
 
 void Story::tell_friction() {
@@ -137,11 +177,11 @@ void Story::tell_start() {
     say("It started at t = {} from theta = {:.5g} with velocity {:.5g}", at(run_.t_start), y.theta, y.velocity);
     const bool known = run_.size() > 0 && run_.column(motion::Column::t)[0] == run_.t_start;
     const bool told = y.velocity == 0 && !system_.friction().none() && !own_rule_ && known && first.lasts() > 0;
-    if (first.stuck) add(" and stuck there");
+    if (first.stuck) add(" and stuck {}", on_belt_ && !at_wall(y.theta) ? "to the belt" : "there");
     if (told && first.stuck && at_wall(y.theta)) {
         add(" at the wall");
     } else if (told) {
-        const double torque = pull_at(y.theta, run_.column(motion::Column::M)[0]);
+        const double torque = pull_at(y.theta, run_.column(motion::Column::M)[0], run_.t_start);
         add("{} because {}", first.stuck ? "" : " and moved off", reason(torque));
     }
     if (first.stuck && first.ended_by) {
@@ -204,7 +244,9 @@ void Story::tell_turns() {
         if (n < most_turns) places += fmt::format("{}{} (t = {})", n == 0 ? "" : ", ", place(s), at(s.to));
         ++n;
     }
-    if (n > 0) say("It turned at theta = {}{}", places, n > most_turns ? " ..." : ".");
+    if (n > 0)
+        say("{} at theta = {}{}", on_belt_ ? "The sliding turned round" : "It turned", places,
+            n > most_turns ? " ..." : ".");
     tell_decay();
     end_paragraph();
 }
@@ -254,7 +296,8 @@ void Story::tell_stop(const Stretch& stop) {
     if (at_wall(begun.theta)) {
         say("It came to rest at the wall, theta = {:.5g}, at t = {}", begun.theta, at(begun.t));
     } else {
-        say("It stopped at t = {} at theta = {} because {}", at(begun.t), place(*(&stop - 1)), reason(pull(begun)));
+        say("It {} at t = {} at theta = {} because {}", on_belt_ ? "stuck to the belt" : "stopped", at(begun.t),
+            place(*(&stop - 1)), reason(pull(begun)));
     }
     if (stop.ended_by) {
         add("; stuck for {:.5g}, until {}.", stop.lasts(), slip(*stop.ended_by, !at_wall(begun.theta)));
@@ -273,7 +316,7 @@ void Story::tell_stop(const Stretch& stop) {
 std::string Story::slip(const model::Event& event, bool told) const {
     if (at_wall(event.theta)) return slip_from_wall(event);
     const double torque = pull(event);
-    std::string why = fmt::format("M jumped, {},", reason(torque));
+    std::string why = fmt::format("{} jumped, {},", on_base_ || on_belt_ ? "the pull" : "M", reason(torque));
     if (own_rule_) {
         why = fmt::format("{} {}", own_rule_->release, reason(torque));
     } else if (at_limit(torque, event)) {

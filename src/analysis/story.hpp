@@ -10,6 +10,7 @@
 
 #include "analysis/recurrence.hpp"
 #include "model/excitation.hpp"
+#include "model/extras.hpp"
 #include "motion/method.hpp"
 #include "text/sentences.hpp"
 
@@ -19,7 +20,7 @@ class Story {
 public:
     /// All of it must outlive the story.
     Story(const motion::Trajectory& trajectory, const model::Oscillator& system, const model::Excitation& excitation,
-          motion::MethodView method);
+          motion::MethodView method, const model::Extras& extras);
     std::string told();
 
 private:
@@ -40,11 +41,16 @@ private:
         return text::number_text(s.end.theta, std::max(std::fabs(s.begin.theta), std::fabs(s.end.theta)));
     }
     [[nodiscard]] bool at_limit(double torque, const model::Event& event) const;
-    /// M - k theta, and less what another spring pulls back with.
-    [[nodiscard]] double pull(const model::Event& event) const { return pull_at(event.theta, event.M); }
-    [[nodiscard]] double pull_at(double theta, double M) const {
-        return std::fma(-system_.stiffness(), theta, M - system_.spring().torque(theta));
+    /// M - k theta, less what another spring pulls back with, and with what the support and a belt do to a mass at
+    /// rest.
+    [[nodiscard]] double pull(const model::Event& event) const { return pull_at(event.theta, event.M, event.t); }
+    [[nodiscard]] double pull_at(double theta, double M, double t) const {
+        return std::fma(-system_.stiffness(), theta, M + around(t) - system_.spring().torque(theta));
     }
+    /// -I a - I vb' - C vb, from the right.
+    [[nodiscard]] double around(double t) const;
+    [[nodiscard]] double belt_velocity(double t) const;
+    [[nodiscard]] double belt_rate(double t) const;
     /// Re, against a pull this way.
     [[nodiscard]] double limit(double pull) const {
         return system_.friction().holding(pull < 0 ? model::Motion::backward : model::Motion::forward);
@@ -53,14 +59,20 @@ private:
     [[nodiscard]] std::string reason(double pull) const {
         return fmt::format("|{}| = {}", pull_name(), text::against_limit(std::fabs(pull), limit(pull)));
     }
-    [[nodiscard]] const char* pull_name() const {
-        return system_.spring().none() ? "M - k theta" : system_.has_spring() ? "M - k theta - spring" : "M - spring";
+    [[nodiscard]] std::string pull_name() const {
+        std::string name = "M";
+        if (on_base_) name += " - I a";
+        if (on_belt_ && !steady_belt_) name += " - I vb'";
+        if (on_belt_ && system_.damping() > 0) name += " - C vb";
+        if (system_.spring().none() || system_.has_spring()) name += " - k theta";
+        return name + (system_.spring().none() ? "" : " - spring");
     }
     /// At a wall, which carries what pulls against it.
     [[nodiscard]] bool at_wall(double theta) const {
         const auto& walls = system_.walls();
         return walls && (theta == walls->lower || theta == walls->upper);
     }
+    void tell_surroundings();
     void tell_walls();
     void tell_impacts();
     [[nodiscard]] std::string slip_from_wall(const model::Event& event) const;
@@ -93,6 +105,8 @@ private:
     std::optional<motion::OwnRule> own_rule_;  // of stops, which are not the law's then
     std::vector<Stretch> stretches_;
     std::vector<const Stretch*> stops_;
+    const model::Extras& extras_;
+    bool on_base_, on_belt_, steady_belt_;
     double T0_, constant_from_;
     double stuck_ = 0;
     std::size_t half_cycles_ = 0;

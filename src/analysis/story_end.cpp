@@ -28,6 +28,10 @@ void Story::tell_end() {
 void Story::tell_stillness() {
     still_ = run_.outcome == model::Outcome::at_rest;
     if (!still_) return;
+    if (on_base_ || on_belt_) {
+        say("It rests there for good.");
+        return;
+    }
     if (constant_from_ <= run_.t_stop) {
         say("M is constant{}, so it rests there for good.",
             free() ? "" : fmt::format(" from t = {} on", at(constant_from_)));

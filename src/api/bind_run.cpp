@@ -24,9 +24,9 @@
 namespace dinal::api {
 
 std::string story_of_run(lua_State* L, const Run& run) {
-    lua::CallState call(L);  // a spring may be a user's function
+    lua::CallState call(L);  // a spring, a belt and a base may be a user's functions
     std::string text = run.origin ? analysis::explain(run.trajectory, run.origin->system, run.origin->excitation,
-                                                      run.origin->integrator)
+                                                      run.origin->integrator, run.origin->extras)
                                   : analysis::explain_rows(run.trajectory, run.units);
     if (call.failed()) {
         call.raise_error();

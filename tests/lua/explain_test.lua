@@ -88,4 +88,40 @@ test("an M that is rough on every scale is told once, in the outcome, the summar
     assert(run:explain():gsub("%s+", " "):find("M is rough on every scale, by", 1, true), run:explain())
 end)
 
+test("what a support and a belt do is part of the pull, and named", function()
+    local function story(sys, task)
+        return (sys:simulate(task):explain():gsub("%s+", " "))
+    end
+    local function has(text, part)
+        assert(text:find(part, 1, true), text)
+    end
+    local shaken = story(system { I = 2, k = 0, Rd = 0.3, Re = 0.5 }, { base = excitation.half_sine { width = 1 }, t_end = 5, dt = 1 })
+    has(shaken, "The support shakes")
+    -- 2 sin(pi t) = Re at asin(.25)/pi
+    has(shaken, "until t = 0.080431, when that grew past Re and it slipped backward.")
+    assert(not shaken:find("jumped", 1, true) and not shaken:find("free", 1, true), shaken)
+    -- C vb + k theta = .1 + .2 t is Re at t = 2
+    local carried = story(system { I = 1, k = 1, Rd = 0.3, Re = 0.5, C = 0.5 }, { belt = 0.2, velocity0 = 0.2, t_end = 10, dt = 1 })
+    has(carried, "belt that moves with velocity vb = 0.2")
+    has(carried, "stuck to the belt until t = 2, when |M - C vb - k theta| grew past Re and it slipped backward.")
+    -- I vb' = .8 at the start
+    local rubbed = story(system { I = 1, k = 0, Rd = 0.3, Re = 0.5 },
+        { belt = excitation.harmonic { amplitude = 1, omega = 0.8 }, t_end = 20, dt = 1 })
+    has(rubbed, "moved off because |M - I vb' - k theta| = 0.8 > Re = 0.5.")
+    local jerked = story(system { I = 1, k = 0, Rd = 0.3, Re = 0.5 }, { base = excitation.step { at = 1 }, t_end = 1.5, dt = 0.5 })
+    has(jerked, "until t = 1, when the pull jumped, |M - I a - k theta| = 1 > Re = 0.5, and it slipped backward.")
+end)
+
+test("outputs that are held, and relays of the motion, hide no pulse", function()
+    local sys = system { I = 1, k = 1, Rd = 0.1 }
+    for M, hides in pairs {
+        [excitation.sampled(function(_, theta) return -theta end, { every = 0.5 })] = false,
+        [excitation.relay { of = "theta", on = -0.1, off = 0.1, levels = { 1, -1 } }] = false,
+        [excitation.delayed(function(_, theta) return -theta end, { by = 0.5 })] = true,
+    } do
+        local text = sys:simulate { M = M, theta0 = 1, t_end = 10, dt = 1 }:explain()
+        equal(text:find("Of M only values are known", 1, true) ~= nil, hides)
+    end
+end)
+
 support.finish()
