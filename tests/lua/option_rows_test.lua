@@ -31,6 +31,7 @@ world.run = world.sys:simulate { theta0 = 1, t_end = 1, dt = 0.25 }
 world.M = excitation.constant { level = 1 }
 world.t, world.theta = world.run.t, world.run.theta
 world.fit = identify { data = world.sys:simulate { theta0 = 1, t_end = 3, dt = 0.1 } }
+world.r = report { title = "x" }
 world.d = data { r = { 1, 2 }, A = { 3, 4 } }
 world.f = function() return 1 end
 local record = os.tmpname()
@@ -38,7 +39,7 @@ assert(io.open(record, "w")):write("t,M\n0,1\n1,2\n"):close()
 
 --- The example in the sentence that refuses a call without a table.
 local function example_of(heading)
-    local wrong_calls = { ["run:save"] = 'run:save("x.csv", 1)', ["excitation.scripted"] = "excitation.scripted(f, 1)",
+    local wrong_calls = { ["run:save"] = 'run:save("x.csv", 1)', ["r:animate"] = "r:animate(run, 1)", ["excitation.scripted"] = "excitation.scripted(f, 1)",
         ["excitation.samples 2"] = "excitation.samples{}" }
     local message = support.raises(assert(load(wrong_calls[heading] or heading .. "(1)", "=call", "t", world)))
     return assert(message:match "for example (.+)$", message):gsub("record.csv", record)
