@@ -126,4 +126,13 @@ test("what follows lines and powers of t late is left to spectral, which says th
     equal(tostring(late:simulate { M = excitation.harmonic { frequency = 1 }, t_end = 1, dt = 1 }.integrator), "integrator.exact{}")
 end)
 
+test("an exponential that outgrows the motion is followed at once", function()
+    local sys = nondimensional { zeta = 0.1, friction_ratio = 0.3 }
+    local M = excitation.exponential { tau = -0.02, amplitude = 1e-3 }
+    local run = sys:simulate { M = M, t_end = 2, dt = 2 }
+    -- All but the forced part is e^-100 of it; friction and the rounding of t in the exponent: 100 eps.
+    local forced = 1e-3*math.exp(100)/(sys.I/0.02^2 + sys.C/0.02 + sys.k)
+    near(run.theta[2]/forced, 1, 1e-12)
+end)
+
 support.finish()
