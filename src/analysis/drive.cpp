@@ -25,14 +25,16 @@ double probe(const Drive& drive, int i) {
 std::optional<std::vector<double>> probes_of_halves(const model::Excitation& excitation, const Drive& drive) {
     constexpr int spread = 24;
     constexpr std::size_t most_breaks = 20000;
-    std::vector<double> times;
-    for (int i = 0; i < spread; ++i) times.push_back(probe(drive, i));
+    std::vector<double> times(spread);
+    for (int i = 0; i < spread; ++i) times[static_cast<std::size_t>(i)] = probe(drive, i);
     const double half = drive.period / 2;
     std::vector<double> breaks{0, half};
-    for (double t = excitation.next_break(drive.start); t < drive.start + drive.period; t = excitation.next_break(t)) {
+    double t = excitation.next_break(drive.start);
+    while (t < drive.start + drive.period) {
         const double since = t - drive.start;
         breaks.push_back(since < half ? since : since - half);
         if (breaks.size() > most_breaks) return {};
+        t = excitation.next_break(t);
     }
     if (breaks.size() == 2) return times;
     std::sort(breaks.begin(), breaks.end());

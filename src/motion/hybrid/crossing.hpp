@@ -20,10 +20,12 @@ template <class Condition>
 double first_true(const Condition& holds, double x) {
     constexpr double finest = 1e-15;
     double before = x, from = x;
-    for (double step = 1e-9; before == from; step *= 2) {
+    double step = 1e-9;
+    while (before == from) {
         if (from <= -1) return -1;
         before = std::max(-1.0, from - step);
         if (holds(before)) from = before;
+        step *= 2;
     }
     while (from - before > finest) {
         const double middle = before + (from - before) / 2;
