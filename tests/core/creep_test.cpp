@@ -43,7 +43,7 @@ std::vector<Way> ways() {
 }  // namespace
 
 TEST_CASE("#4 - a ramp that pulls a creeping mass on moves it at once, though Re > Rd",
-          "[exact][spectral][rk4][creep]") {
+          "[exact][spectral][rk4][creep][long]") {
     for (const double zeta : {1.0, 1.5, 4.0}) {
         const double at = 60 * zeta, slope = -0.04;
         const Creeper creeper{zeta, slope, at};
@@ -65,7 +65,7 @@ TEST_CASE("#4 - a ramp that pulls a creeping mass on moves it at once, though Re
 }
 
 TEST_CASE("#4 - a ramp that pulls a creeping mass back holds it until Re is passed on the other side",
-          "[exact][spectral][rk4][creep]") {
+          "[exact][spectral][rk4][creep][long]") {
     for (const double zeta : {1.0, 2.0}) {
         const double at = 60 * zeta, slope = 0.4;
         for (const auto& [method, watched] : ways()) {
