@@ -39,7 +39,7 @@ def files(endings):
 
 
 def lines(path):
-    with open(os.path.join(ROOT, path), encoding="utf-8") as file:
+    with open(os.path.join(ROOT, path), encoding="utf-8", errors="replace") as file:  # what a fuzzer found is no text
         return list(enumerate(file.read().split("\n"), 1))
 
 

@@ -126,7 +126,7 @@ TEST_CASE("the file to be restyled draws the same picture as the pipe", "[gnuplo
     CHECK(*again == svg(figure));
 }
 
-TEST_CASE("an SVG of a million points is smaller than 200 kB", "[gnuplot]") {
+TEST_CASE("an SVG of a million points is smaller than 200 kB", "[gnuplot][long]") {
     CHECK(svg(wave(1'000'000)).size() < 200'000);
     CHECK(svg(spiral(1'000'000)).size() < 200'000);
     Figure many;
@@ -136,7 +136,7 @@ TEST_CASE("an SVG of a million points is smaller than 200 kB", "[gnuplot]") {
     CHECK(svg(many).size() < 200'000);
 }
 
-TEST_CASE("an SVG of a million random points is smaller than 200 kB and shows all of the square", "[gnuplot]") {
+TEST_CASE("an SVG of a million random points is smaller than 200 kB and shows all of the square", "[gnuplot][long]") {
     std::vector<double> x, y;
     std::uint64_t state = 1;
     const auto random = [&state] {  // Knuth's MMIX

@@ -186,7 +186,7 @@ TEST_CASE("exact tells the same motion as an independent integrator, at any damp
     compare_cases(random_case_of_closed_forms, Exact{}, number_from("DINAL_ORACLE_CASES", usual_cases), 10);
 }
 
-TEST_CASE("no bump is too narrow for spectral, whether the mass rests or moves", "[oracle][spectral][gaussian]") {
+TEST_CASE("no bump is too narrow for spectral, whether the mass rests or moves", "[oracle][spectral][gaussian][long]") {
     // In so short a time as a bump is long, much is too close to call.
     compare_cases(random_case_of_bumps, Spectral{}, number_from("DINAL_ORACLE_CASES", usual_cases / 4), 6);
 }

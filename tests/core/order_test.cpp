@@ -157,7 +157,7 @@ TEST_CASE("run.at says what a row there would have said", "[spectral][rk4][dinal
     }
 }
 
-TEST_CASE("the rows asked for do not change the motion", "[spectral][rk4][dinal1989][rows]") {
+TEST_CASE("the rows asked for do not change the motion", "[spectral][rk4][dinal1989][rows][long]") {
     for (const ReferenceSystem& s : reference_systems()) {
         CAPTURE(s.name);
         const double h = std::min(s.oscillator.natural_period() / 1000, rk4::stability_limit(s.oscillator) / 10);
@@ -184,7 +184,8 @@ TEST_CASE("the rows asked for do not change the motion", "[spectral][rk4][dinal1
     }
 }
 
-TEST_CASE("W3 over 1000 periods stays within 1e-9 with h = 0.001, and within 1e-5 with h = 0.01", "[order][rk4]") {
+TEST_CASE("W3 over 1000 periods stays within 1e-9 with h = 0.001, and within 1e-5 with h = 0.01",
+          "[order][rk4][long]") {
     ReferenceSystem s = reference_system("W3: one stop per half cycle (fig 24)");
     s.window.end = 1000;
     const ExactMotion exact = s.exact();

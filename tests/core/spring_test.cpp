@@ -64,8 +64,8 @@ TEST_CASE("Duffing's free motion is the elliptic cosine, with and without k", "[
                     CHECK(run.rows(i, 1) == within(static_cast<double>(theta), 40 * tolerance));
                 }
             }
-            const auto potential = [k = k, c = c](double theta) {
-                return k * theta * theta / 2 + c * std::pow(theta, 4) / 4;
+            const auto potential = [linear = k, cubed = c](double theta) {
+                return linear * theta * theta / 2 + cubed * std::pow(theta, 4) / 4;
             };
             for (Eigen::Index i = 0; i < run.size(); ++i) {
                 const double v = run.rows(i, 2);
