@@ -1,21 +1,54 @@
 #include "analysis/spectrum.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <complex>
+#include <cstdint>
+#include <limits>
 #include <numbers>
-#include <numeric>
 #include <unsupported/Eigen/FFT>
 
 namespace dinal::analysis {
 namespace {
 
-/// The transform takes n times the sum of the prime factors of n.
+using Wave = std::complex<double>;
+
+/// Eigen's transform takes n times the sum of the prime factors of n.
 bool is_fast(std::size_t n) {
     for (const std::size_t factor : {2U, 3U, 5U, 7U, 11U, 13U}) {
         while (n % factor == 0) n /= factor;
     }
     return n < 100;
+}
+
+/// Of a number of values with a large prime factor, as a convolution of a length without one (Bluestein 1970): the
+/// product i k in the exponent is (i^2 + k^2 - (i - k)^2)/2.
+std::vector<Wave> transform_by_chirp(const std::vector<double>& values) {
+    const std::size_t n = values.size(), length = std::bit_ceil(2 * n);
+    std::vector<Wave> chirp(n), left(length), right(length);
+    for (std::size_t i = 0; i < n; ++i) {
+        // The whole turns are taken out while the number is whole: i^2 alone would cost digits.
+        const auto turns = static_cast<double>(std::uint64_t{i} * i % (2 * n)) / static_cast<double>(n);
+        chirp[i] = std::polar(1.0, -std::numbers::pi * turns);
+        left[i] = values[i] * chirp[i];
+        right[i] = right[(length - i) % length] = std::conj(chirp[i]);
+    }
+    Eigen::FFT<double> fft;
+    std::vector<Wave> left_waves, right_waves, sum;
+    fft.fwd(left_waves, left);
+    fft.fwd(right_waves, right);
+    for (std::size_t i = 0; i < length; ++i) left_waves[i] *= right_waves[i];
+    fft.inv(sum, left_waves);
+    for (std::size_t i = 0; i < n; ++i) chirp[i] *= sum[i];
+    return chirp;
+}
+
+std::vector<Wave> transform(const std::vector<double>& values) {
+    if (!is_fast(values.size())) return transform_by_chirp(values);
+    std::vector<Wave> waves;
+    Eigen::FFT<double>().fwd(waves, values);
+    return waves;
 }
 
 double weight(SpectrumWindow window, double phase) {
@@ -36,31 +69,34 @@ double weight(SpectrumWindow window, double phase) {
 std::size_t evenly_spaced(std::span<const double> times) {
     if (times.size() < 3) return times.size();
     const double step = times[1] - times[0];
+    // Late times are rounded, and with them the step.
+    const double rounding =
+        2 * std::numeric_limits<double>::epsilon() * std::max(std::fabs(times[0]), std::fabs(times.back()));
     std::size_t n = 2;
-    while (n < times.size() && std::fabs(times[n] - times[0] - static_cast<double>(n) * step) <= 1e-6 * step) ++n;
+    for (; n < times.size(); ++n) {
+        const auto steps = static_cast<double>(n);
+        if (!(std::fabs(times[n] - times[0] - steps * step) <= 1e-6 * step + steps * rounding)) break;
+    }
     return n;
 }
 
 Spectrum spectrum_of(std::span<const double> values, double dt, SpectrumWindow window) {
-    std::size_t n = values.size();
-    while (!is_fast(n)) --n;
-    const std::span<const double> last = values.last(n);
-    const double mean = std::accumulate(last.begin(), last.end(), 0.0) / static_cast<double>(n);
+    const std::size_t n = values.size();
     std::vector<double> weighted(n);
-    double sum = 0;
+    double weights = 0, sum = 0;
     for (std::size_t i = 0; i < n; ++i) {
-        const double w = weight(window, static_cast<double>(i) / static_cast<double>(n));
-        weighted[i] = w * (last[i] - mean);
-        sum += w;
+        weighted[i] = weight(window, static_cast<double>(i) / static_cast<double>(n));
+        weights += weighted[i];
+        sum += weighted[i] * values[i];
     }
-    std::vector<std::complex<double>> waves;
-    Eigen::FFT<double>().fwd(waves, weighted);
+    const double mean = sum / weights;
+    for (std::size_t i = 0; i < n; ++i) weighted[i] *= values[i] - mean;
+    const std::vector<Wave> waves = transform(weighted);
     Spectrum result;
-    result.used = n;
     for (std::size_t i = 0; i <= n / 2; ++i) {
         const double sides = i == 0 || 2 * i == n ? 1 : 2;
         result.frequency.push_back(static_cast<double>(i) / (static_cast<double>(n) * dt));
-        result.amplitude.push_back(i == 0 ? std::fabs(mean) : sides * std::abs(waves[i]) / sum);
+        result.amplitude.push_back(i == 0 ? std::fabs(mean) : sides * std::abs(waves[i]) / weights);
     }
     return result;
 }

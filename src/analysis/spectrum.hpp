@@ -10,11 +10,11 @@ enum class SpectrumWindow { hann, rectangle, flat_top };
 
 struct Spectrum {
     std::vector<double> frequency, amplitude;  ///< cycles per time unit; of a sine in the unit of the values
-    std::size_t used = 0;                      ///< the last so many values: a number without large prime factors
 };
 
-/// Of values dt apart, at least 8. The mean stands at frequency 0; from the rest it is taken away first. A sine of
-/// amplitude A that goes into the time a whole number of times gives A at its frequency, whatever the window.
+/// Of values dt apart, at least 8, all of them. The mean with the window's weights stands at frequency 0, and is taken
+/// away before the rest. A sine of amplitude A that goes into the time a whole number of times gives A at its
+/// frequency, whatever the window.
 Spectrum spectrum_of(std::span<const double> values, double dt, SpectrumWindow window);
 
 /// How many of the times, from the first one, are evenly spaced.

@@ -42,10 +42,11 @@ struct DataCompanion {
 
 struct Data {
     std::vector<DataColumn> columns;
-    std::string heading = {};    ///< what the first line of its text says, else how many rows of which columns
-    std::string points_of = {};  ///< d:plot() draws this column as points, unless it is told otherwise
-    std::string pieces_of = {};  ///< a line of d:plot() breaks where this column changes
-    std::string dotted_of = {};  ///< and is dotted where this one is 0
+    std::string heading = {};      ///< what the first line of its text says, else how many rows of which columns
+    std::string points_of = {};    ///< d:plot() draws this column as points, unless it is told otherwise
+    std::string points_over = {};  ///< and over this one, else over the first
+    std::string pieces_of = {};    ///< a line of d:plot() breaks where this column changes
+    std::string dotted_of = {};    ///< and is dotted where this one is 0
     std::vector<DataCompanion> companions = {};
 
     [[nodiscard]] std::size_t size() const { return columns.empty() ? 0 : columns.front().size(); }

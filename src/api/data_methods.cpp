@@ -19,7 +19,11 @@ namespace {
 
 /// The same columns with these rows only.
 Data with_rows(const Data& data, const std::vector<std::size_t>& rows) {
-    Data picked{.columns = {}, .pieces_of = data.pieces_of, .dotted_of = data.dotted_of};
+    Data picked{.columns = {},
+                .points_of = data.points_of,
+                .points_over = data.points_over,
+                .pieces_of = data.pieces_of,
+                .dotted_of = data.dotted_of};
     for (const DataColumn& column : data.columns) {
         if (const lua::Vector* numbers = column.numbers()) {
             std::vector<double> values(rows.size());

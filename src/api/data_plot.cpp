@@ -134,7 +134,7 @@ int plot(lua_State* L) {
     const lua::Options options(L, 2, plot_data_call);
     std::vector<std::string> x = asked_names(L, options, "x"), y = asked_names(L, options, "y");
     if (x.size() > 1) options.fail("x", "x must be one column");
-    if (x.empty()) x.push_back(data->columns.front().name);
+    if (x.empty()) x.push_back(data->points_over.empty() ? data->columns.front().name : data->points_over);
     for (std::size_t i = 0; i < data->columns.size() && y.empty(); ++i) {
         const DataColumn& column = data->columns[i];
         if (column.name != x.front() && column.numbers() != nullptr) y.push_back(column.name);
@@ -158,7 +158,7 @@ int plot(lua_State* L) {
     plots::Figure figure;
     figure.x.label = label_of(*data, x.front());
     plots::Curve curve;
-    if (!data->points_of.empty() && !options.has("y")) y = {data->points_of};
+    if (!data->points_of.empty() && !options.has("y") && x.front() != data->points_of) y = {data->points_of};
     if (!data->points_of.empty()) curve.style = plots::Style::points;
     figure.y.label = y.size() == 1 ? label_of(*data, y.front()) : "";
     options.fill(curve);

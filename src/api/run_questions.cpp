@@ -3,9 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
+#include "analysis/drive.hpp"
 #include "api/data.hpp"
 #include "api/run.hpp"
 #include "api/units_option.hpp"
@@ -21,17 +21,17 @@ std::span<const double> column_values(const motion::Trajectory& trajectory, Eige
     return {values.data(), static_cast<std::size_t>(values.size())};
 }
 
-/// The last of these rows is the first one again: the motion between them is periodic.
-bool closes(const motion::Trajectory& trajectory, std::size_t first, std::size_t last) {
-    constexpr double same = 1e-9;  // of what the column goes through
-    constexpr std::array state{"theta", "velocity"};
-    return std::all_of(state.begin(), state.end(), [&](const char* name) {
-        const auto column = trajectory.find(name);
-        if (!column) return false;
-        const std::span<const double> values = column_values(trajectory, *column).subspan(first, last - first + 1);
-        const auto [low, high] = std::minmax_element(values.begin(), values.end());
-        return std::fabs(values.front() - values.back()) <= same * (*high - *low);
-    });
+/// The last of the values is the first one again: one period, or several, and a row too many.
+bool closes(std::span<const double> values) {
+    constexpr double same = 1e-9;  // of what they go through
+    const auto [low, high] = std::minmax_element(values.begin(), values.end());
+    return *high > *low && std::fabs(values.front() - values.back()) <= same * (*high - *low);
+}
+
+/// That of M, where it knows one; else 0.
+double period_of_run(const Run& run) {
+    const auto drive = run.origin ? analysis::drive_of(run.origin->excitation, 0) : std::nullopt;
+    return drive ? drive->period : 0;
 }
 
 }  // namespace
@@ -69,12 +69,12 @@ int spectrum_of_run(lua_State* L) {
                           : fmt::format("rows must be evenly spaced, but row {} is not; simulate with dt = ...",
                                         first + even + 1)});
     }
-    // Whole periods from a row to a row have one row more than a transform takes.
-    const bool twice =
-        asked.window == analysis::SpectrumWindow::rectangle && closes(trajectory, first, first + even - 1);
+    const bool twice = closes(values.first(even));
     analysis::Spectrum found = analysis::spectrum_of(
         values.first(twice ? even - 1 : even), (t[even - 1] - t[0]) / static_cast<double>(even - 1), asked.window);
     Data data;
+    data.heading = fmt::format("spectrum of {}: {} rows, {} window", name, twice ? even - 1 : even,
+                               window_names[static_cast<std::size_t>(asked.window)]);
     const ColumnUnits in(units_of(*run));
     data.columns = {column_of("frequency", std::move(found.frequency), in.frequency),
                     column_of("amplitude", std::move(found.amplitude), in.of(name))};
@@ -88,19 +88,24 @@ int poincare_of_run(lua_State* L) {
     PoincareOptions asked;
     options.fill(asked);
     const motion::Trajectory& trajectory = run->trajectory;
+    const double period = asked.period.value_or(period_of_run(*run));
+    if (!(period > 0)) {
+        options.fail(
+            {.sentence = "run:poincare needs period, because the M of this run does not know one", .option = "period"});
+    }
     const double from = asked.from.value_or(trajectory.t_start);
     if (from < trajectory.t_start || from > trajectory.t_stop) {
         options.fail({.sentence = fmt::format("from = {:.6g} is not in the run, t {:.6g} ... {:.6g}", from,
                                               trajectory.t_start, trajectory.t_stop),
                       .option = "from"});
     }
-    const double looks = std::floor((trajectory.t_stop - from) / asked.period * (1 + 1e-12)) + 1;
+    const double looks = std::floor((trajectory.t_stop - from) / period * (1 + 1e-12)) + 1;
     constexpr double most = 1e7;
     if (looks > most) options.fail({fmt::format("{:.3g} looks are more than {:.3g}", looks, most)});
     std::vector<double> t, theta, velocity;
     lua::CallState call(L);
     for (std::size_t i = 0; i < static_cast<std::size_t>(looks); ++i) {
-        const double at = std::min(from + static_cast<double>(i) * asked.period, trajectory.t_stop);
+        const double at = std::min(from + static_cast<double>(i) * period, trajectory.t_stop);
         const auto state = trajectory.at(at);
         if (call.failed()) call.raise_error();
         if (!state) options.fail(state.error());
@@ -108,7 +113,7 @@ int poincare_of_run(lua_State* L) {
         theta.push_back(state->theta);
         velocity.push_back(state->velocity);
     }
-    Data data;
+    Data data{.columns = {}, .points_of = "velocity", .points_over = "theta"};
     const ColumnUnits in(units_of(*run));
     data.columns = {column_of("t", std::move(t), in.t), column_of("theta", std::move(theta), in.theta),
                     column_of("velocity", std::move(velocity), in.speed)};

@@ -30,20 +30,20 @@ inline constexpr text::Call spectrum_call{"run:spectrum", "run:spectrum(\"theta\
                                           spectrum_options, true};
 
 struct PoincareOptions {
-    double period = 0;
+    std::optional<double> period = {};
     std::optional<double> from = {};
 };
 inline constexpr text::Option poincare_options[] = {
     {.name = "period",
      .unit = "time units",
-     .otherwise = text::needed,
+     .otherwise = "that of M",
      .range = text::positive,
-     .meaning = "from look to look, mostly that of M",
+     .meaning = "from look to look; needed where M does not know its own: native terms do, a Lua function does not",
      .filled = text::fills<&PoincareOptions::period>},
     {.name = "from",
      .unit = "time units",
      .otherwise = "the beginning",
-     .meaning = "the time of the first look, after the transient",
+     .meaning = "the time of the first look, after the transient; it chooses the phase too",
      .filled = text::fills<&PoincareOptions::from>},
 };
 inline constexpr text::Call poincare_call{"run:poincare", "run:poincare{ period = 1 }", poincare_options};
@@ -53,9 +53,11 @@ int poincare_of_run(lua_State* L);
 
 inline constexpr lua::Doc spectrum_doc{
     "run:spectrum(column = \"theta\", { OPTIONS }) -> data",
-    "The one-sided amplitude spectrum of a column: frequency (cycles per time unit) and amplitude (of a sine, in the unit "
-    "of the column), from rows with one dt; a shorter last row is left out, and so is one "
-    "in which a rectangle's whole periods begin again. The mean stands at frequency 0.",
+    "The one-sided amplitude spectrum of a column: frequency (cycles per time unit, up to half a cycle per dt) and "
+    "amplitude (of a sine, in the unit of the column), from rows with one dt; a shorter last row is left out, and so is "
+    "one with which whole periods begin again, as it has the value of the first. A sine of whole periods has its amplitude in any window; one "
+    "that falls midway between two frequencies has 64 % of it in rectangle, 85 % in hann and 99.9 % in flat top. The mean "
+    "(with the weights of the window) stands at frequency 0.",
     "run = nondimensional{}:simulate{ theta0 = 1, t_end = 16, dt = 0.125 }\n"
     "s = run:spectrum(\"theta\", { window = \"rectangle\" })\n"
     "i = s.amplitude:argmax()\n"
@@ -64,9 +66,9 @@ inline constexpr lua::Doc spectrum_doc{
 inline constexpr lua::Doc poincare_doc{
     "run:poincare{ OPTIONS } -> data",
     "The motion looked at once a period: t, theta and velocity, at the accuracy of run:at. A periodic motion is one "
-    "point, a subharmonic one several, an irregular one a cloud.",
+    "point, a subharmonic one several, an irregular one a cloud; its plot shows velocity over theta.",
     "run = nondimensional{ zeta = 0.2 }:simulate{ M = excitation.harmonic{ frequency = 0.5 }, t_end = 60, dt = 1 }\n"
-    "d = run:poincare{ period = 2, from = 40 }\n"
+    "d = run:poincare{ from = 40 }\n"
     "print(#d, d.theta:max() - d.theta:min() < 1e-9)  --> 11\ttrue",
     {&poincare_call}};
 

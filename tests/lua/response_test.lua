@@ -112,11 +112,20 @@ test("a spectrum shows each sine with its amplitude, whatever the window", funct
         near(s.amplitude[100], 0, 1e-9)
     end
     -- From t = 8 to 24 it closes on itself, and has one row more than periods take.
-    local whole = run:spectrum("M", { window = "rectangle", from = 8 })
-    equal(#whole, 513)
-    near(whole.amplitude[17], 4, 1e-9)
-    near(whole.amplitude[18], 0, 1e-9)
+    for _, window in ipairs{ "hann", "rectangle", "flat top" } do
+        local whole = run:spectrum("M", { window = window, from = 8 })
+        equal(#whole, 513)
+        near(whole.amplitude[17], 4, 1e-9)
+        near(whole.amplitude[100], 0, 1e-9)
+    end
+    equal(tostring(run:spectrum("M")):match("^[^\n]*"), "spectrum of M: 1536 rows, hann window")
+    -- A prime number of rows is used as it is: 97 of them, 3 periods.
+    local prime = sys:simulate{ M = excitation.harmonic{ amplitude = 4, frequency = 1 }, t_end = 3 * 96/97, dt = 3/97 }
+    equal(#prime, 97)
+    near(prime:spectrum("M").amplitude[4], 4, 1e-9)
     equal(#run:spectrum(), #run:spectrum("theta"))
+    local late = nondimensional{}:simulate{ theta0 = 1, t_start = 1e9, t_end = 1e9 + 10, dt = 0.1 }
+    near(late:spectrum("theta"):select("frequency").frequency[late:spectrum("theta").amplitude:argmax()], 1, 0.05)
     raises_here(function() run:spectrum("tetha") end, "did you mean 'theta'?")
     raises_here(function() run:spectrum(3) end, "must be a string")
     raises_here(function() run:spectrum("theta", { window = "round" }) end, "window")
@@ -131,7 +140,14 @@ test("a motion looked at once a period", function()
     equal(d.t[21], 50.0)
     assert((d.theta - d.theta[1]):abs():max() < 1e-10)
     near(d.velocity[21], run.velocity[#run], 1e-10)
-    raises_here(function() run:poincare{} end, "run:poincare needs period")
+    -- M knows its period; a function does not, and a constant has none. The first look chooses the phase.
+    equal(run:poincare{ from = 25 }.t[21], 50.0)
+    near(run:poincare{ from = 25.3 }.theta[9], (run:at(35.3)), 1e-12)
+    local function of(M) return nondimensional{}:simulate{ M = M, t_end = 2, dt = 1 } end
+    raises_here(function() of(function(t) return t end):poincare{} end, "does not know one")
+    raises_here(function() of(2):poincare{} end, "run:poincare needs period")
+    local picture = tostring(d:plot{ show = false })
+    assert(picture:find("^velocity") and picture:find("theta"), picture)
     raises_here(function() run:poincare{ period = 1, from = 60 } end, "is not in the run")
     raises_here(function() run:poincare{ period = 1e-9 } end, "looks are more than")
 end)
