@@ -258,7 +258,7 @@ void Identification::try_none(Unknown which, double little) {
     const Eigen::Index place = place_of(which);
     FitScale scale = best_scale_;
     constexpr double firmly = 1e8;
-    scale.hold[place] = firmly / scale.typical[place];
+    scale.hold[place] = firmly * range_ / scale.typical[place];
     Eigen::VectorXd start = best.parameters;
     start[place] = 0;
     const auto without = fit(start, question_.t.size(), scale, 40);

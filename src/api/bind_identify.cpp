@@ -221,6 +221,14 @@ std::string fit_summary(const FitAnswer& fit) {
         text = model::with_unit(std::move(text), unit_of_value(fit.units, name));
     }
     if (!fit.silent.empty()) text += fmt::format("\n  the record says nothing about {}", fmt::join(fit.silent, ", "));
+    constexpr auto kinetic = static_cast<std::size_t>(Unknown::Rd), holding = static_cast<std::size_t>(Unknown::Re);
+    const double Rd = fit.found.value[kinetic], Re = fit.question.given[holding].value_or(Rd);
+    if (Re < Rd * (1 - 1e-9) - 3 * fit.found.error[kinetic]) {  // a record without noise leaves rounding
+        text += fmt::format(
+            "\n  Re = {:.6g} is given, but the Rd that was found is greater: what holds is never less than what "
+            "slides, so the fit has Re = Rd; leave Re out, or give Rd too if you know it",
+            Re);
+    }
     if (fit.found.is_noise) {
         text += "\n  it explains no more of the record than it would of noise alone, so there may be no motion in it";
     } else if (fit.found.is_unexplained) {

@@ -102,4 +102,30 @@ test("no search flies away: swings that no sample shows are none", function()
     raises_here(function() identify{ data = decay, I = 1, Rd = 1.2, Re = 0.8 } end, "Re = 0.8 is less than Rd = 1.2")
 end)
 
+test("a record in other units is the same record", function()
+    -- Angles and torques times a power of two: the same numbers, to a ten-thousandth of their errors.
+    local function fitted(unit)
+        local M = unit * (excitation.harmonic{ amplitude = 2, omega = 1.1 } + excitation.harmonic{ omega = 2.7 })
+        local s = system{ I = 1, k = 4, C = 0.2, Rd = 0.3 * unit, Re = 0.5 * unit }
+        local run = s:simulate{ M = M, theta0 = 0.2 * unit, t_end = 30, dt = 0.1 }
+        return identify{ data = { t = run.t, theta = run.theta + vector.normal{ n = #run, seed = 3, std = 0.002 } * unit }, M = M }
+    end
+    local fit = fitted(1)
+    for _, unit in ipairs{ 2 ^ 40, 2 ^ -40 } do
+        local same = fitted(unit)
+        near(same.Rd / unit, fit.Rd, 1e-4 * fit.error.Rd)
+        near(same.velocity0 / unit, fit.velocity0, 1e-4 * fit.error.velocity0)
+        near(same.error.velocity0 / unit, fit.error.velocity0, 1e-3 * fit.error.velocity0)
+    end
+end)
+
+test("an Re that is less than the Rd that is found is told", function()
+    local told = "Re = 0.7 is given, but the Rd that was found is greater"
+    local fit = identify{ data = decay, I = 1, Re = 0.7 }
+    assert(tostring(fit):find(told, 1, true), fit)
+    equal(fit.system.Re, fit.system.Rd)
+    assert(not tostring(identify{ data = decay, I = 1, Re = 0.8 }):find("is given, but", 1, true))
+    assert(not tostring(identify{ data = decay, I = 1 }):find("is given, but", 1, true))
+end)
+
 support.finish()
