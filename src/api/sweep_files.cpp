@@ -23,6 +23,15 @@ std::string word_at(const files::ReadColumn& column, std::size_t row) {
     return column.of_words ? column.words[row] : "";
 }
 
+/// What we write ends with its last line. Files come under their names when they are whole; but a power failure, or a
+/// copy to another machine that was broken off, can leave a part of one.
+bool is_cut_off(const std::string& file) {
+    std::error_code error;
+    if (!fs::is_regular_file(file, error)) return false;
+    const auto text = files::read_file(file);
+    return text && !text->ends_with('\n');
+}
+
 }  // namespace
 
 std::size_t chunk_size_for(std::size_t points) {
@@ -72,12 +81,7 @@ std::optional<text::Error> SweepFiles::open() {
         return text::Error{.sentence = fmt::format("cannot write '{}': {}", file_, *why), .option = "file"};
     }
     std::error_code error;
-    if (fs::exists(file_, error)) {
-        auto wrong = take(file_, true);
-        finished_ = !wrong;
-        if (finished_) remove_folder(folder_ + ".merging");  // somebody was killed before the last of his work
-        return wrong;
-    }
+    if (fs::exists(file_, error)) return take_result();
     // Somebody was killed between taking the folder and writing the file.
     if (!fs::exists(folder_, error) && fs::exists(folder_ + ".merging", error)) {
         fs::rename(folder_ + ".merging", folder_, error);
@@ -88,14 +92,31 @@ std::optional<text::Error> SweepFiles::open() {
                            .option = "file",
                            .culprit = file_};
     }
-    if (auto wrong = check_mark()) return wrong;
+    // Somebody may have finished it since we looked: then the folder is ours and empty.
+    if (fs::exists(file_, error)) {
+        fs::remove(folder_, error);
+        return take_result();
+    }
+    if (auto wrong = check_mark()) {
+        // Somebody may have taken the folder away under us, as all of it was done: then there is his result.
+        constexpr int often_enough = 10;
+        return !fs::exists(folder_, error) && ++opened_ < often_enough ? open() : wrong;
+    }
     return take_chunks();
+}
+
+std::optional<text::Error> SweepFiles::take_result() {
+    auto wrong = take(file_, true);
+    finished_ = !wrong;
+    if (finished_) remove_folder(folder_ + ".merging");  // somebody was killed before the last of his work
+    return wrong;
 }
 
 std::optional<text::Error> SweepFiles::take_chunks() {
     for (std::size_t chunk = 0; chunk < results_.chunks(); ++chunk) {
         std::error_code error;
         if (results_.is_complete(chunk) || !fs::exists(chunk_file(chunk), error)) continue;
+        if (is_cut_off(chunk_file(chunk))) continue;  // done anew
         if (auto wrong = take(chunk_file(chunk), false)) return wrong;
         written_[chunk] = results_.is_complete(chunk);
     }
@@ -111,6 +132,7 @@ std::optional<text::Error> SweepFiles::take(const std::string& file, bool is_res
     const auto read = files::read_columns(file);
     const bool has_mark = read && !read->comments.empty() && read->comments.front() == mark_;
     if (is_result && !has_mark) return another("is there, and is not the result of this sweep");
+    if (is_result && is_cut_off(file)) return another("is no longer as it was written");
     std::error_code error;
     if (!read && !fs::exists(folder_, error)) return std::nullopt;  // another process has found all, and took it away
     if (!read) return read.error();
@@ -178,7 +200,12 @@ std::optional<text::Error> SweepFiles::write(std::size_t chunk) {
     }
     columns.push_back({.name = "error", .words = errors});
     const auto written = files::write_columns(chunk_file(chunk), columns);
-    return written ? std::nullopt : std::optional(written.error());
+    if (written) return std::nullopt;
+    // Somebody with the same share, who was not killed after all, may have done it, and all of it be finished.
+    std::error_code error;
+    const bool taken =
+        !fs::exists(folder_, error) && (fs::exists(file_, error) || fs::exists(folder_ + ".merging", error));
+    return taken ? std::nullopt : std::optional(written.error());
 }
 
 std::optional<text::Error> SweepFiles::write_complete() {

@@ -59,6 +59,7 @@ private:
     std::optional<text::Error> check_mark();
     std::optional<text::Error> write(std::size_t chunk);
     std::optional<text::Error> take_chunks();
+    std::optional<text::Error> take_result();
     std::optional<text::Error> take(const std::string& file, bool is_result);
     void remove_folder(const std::string& folder);
 
@@ -67,6 +68,7 @@ private:
     SweepResults& results_;
     TakeColumns taken_;
     std::vector<bool> written_;  // chunks
+    int opened_ = 0;
     bool finished_ = false;
 };
 

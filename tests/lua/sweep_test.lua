@@ -319,4 +319,14 @@ test("a point that takes longer than max_time is given up, in Lua or in a run, a
     raises_here(function() sweep { x = { 1 }, max_time = 0, run = print } end, "max_time = 0 must be positive")
 end)
 
+test("sweeps within a sweep open their states on several threads at once", function()
+    -- Each thread writes what all of them share; the thread sanitizer found it, here only the answer is seen.
+    local m = sweep { x = vector.linspace(1, 12, 12), workers = 4, run = function(p)
+        return { sum = sweep { y = { 1, 2, 3 }, workers = 2, run = function(q)
+            return { z = q.y * p.x + coroutine.wrap(function(a) return a end)(1) }
+        end }.z:sum() }
+    end }
+    equal(m.sum:sum(), 6 * 78 + 3 * 12)
+end)
+
 support.finish()
