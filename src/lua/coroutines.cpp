@@ -4,36 +4,39 @@
 // So what is called here is what Lua itself provides. Only what coroutine.wrap returns is written anew: Lua's own
 // closes a coroutine that failed before it returns, and in one that was stopped no hook is called any more, so that an
 // endless __close there could not be stopped.
+#include <atomic>
+
 #include "lua/interrupt.hpp"
 
 namespace dinal::lua {
 
 namespace {
 
-// Set once, before any user code runs, and the same in every lua_State of the process.
-lua_CFunction original_resume = nullptr;
-lua_CFunction original_close = nullptr;
-lua_CFunction original_create = nullptr;
+// The same in every lua_State of the process. Atomic, because sweeps within a sweep open states on several threads at
+// once, each of which writes them.
+std::atomic<lua_CFunction> original_resume = nullptr;
+std::atomic<lua_CFunction> original_close = nullptr;
+std::atomic<lua_CFunction> original_create = nullptr;
 
 int resume(lua_State* L) {
     lua_State* coroutine = lua_tothread(L, 1);
     if (coroutine == nullptr) {
-        return original_resume(L);  // raises its own sentence about the argument
+        return original_resume.load()(L);  // raises its own sentence about the argument
     }
     const RunningThread note(L, coroutine);
-    return original_resume(L);
+    return original_resume.load()(L);
 }
 
 int close(lua_State* L) {
     lua_State* coroutine = lua_tothread(L, 1);
     if (coroutine == nullptr) {
-        return original_close(L);
+        return original_close.load()(L);
     }
     if (interrupt_requested()) {
         raise_interrupted(L);  // its variables stay open: nothing of this chunk runs on
     }
     const RunningThread note(L, coroutine);
-    return original_close(L);
+    return original_close.load()(L);
 }
 
 /// Closes the coroutine that failed and raises its error here, headed by the position of the caller, as Lua does.
@@ -61,7 +64,7 @@ int wrapped(lua_State* L) {
 }
 
 int wrap(lua_State* L) {
-    original_create(L);
+    original_create.load()(L);
     lua_pushcclosure(L, wrapped, 1);
     return 1;
 }

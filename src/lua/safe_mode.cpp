@@ -3,6 +3,7 @@
 #include <unistd.h>
 
 #include <array>
+#include <atomic>
 #include <cstdio>
 #include <cstring>
 #include <string>
@@ -48,11 +49,12 @@ const std::initializer_list<Library> libraries = {
     {LUA_DBLIBNAME, luaopen_debug, {"traceback"}},
 };
 
-bool is_safe = false;
-lua_CFunction original_load = nullptr;
-lua_CFunction original_setmetatable = nullptr;
-lua_CFunction original_xpcall = nullptr;
-lua_CFunction original_warn = nullptr;
+std::atomic<bool> is_safe = false;
+// Atomic for the same reason as in coroutines.cpp.
+std::atomic<lua_CFunction> original_load = nullptr;
+std::atomic<lua_CFunction> original_setmetatable = nullptr;
+std::atomic<lua_CFunction> original_xpcall = nullptr;
+std::atomic<lua_CFunction> original_warn = nullptr;
 
 // ---- what is not quite what it is in Lua
 
@@ -63,7 +65,7 @@ int load(lua_State* L) {
     }
     lua_pushliteral(L, "t");
     lua_replace(L, 3);
-    return original_load(L);
+    return original_load.load()(L);
 }
 
 /// Without __gc: in a finalizer nothing can stop an endless loop.
@@ -76,7 +78,7 @@ int set_metatable(lua_State* L) {
         }
         lua_pop(L, 1);
     }
-    return original_setmetatable(L);
+    return original_setmetatable.load()(L);
 }
 
 /// The handler of xpcall, the upvalue. Lua calls it with hooks switched off when what runs is being stopped.
@@ -96,7 +98,7 @@ int xpcall_safely(lua_State* L) {
         lua_pushcclosure(L, handle, 1);
         lua_replace(L, 2);
     }
-    return original_xpcall(L);
+    return original_xpcall.load()(L);
 }
 
 int collect_garbage(lua_State* L) {
@@ -157,7 +159,7 @@ int warn_safely(lua_State* L) {
         lua_pushlstring(L, shown.data(), shown.size());
         lua_replace(L, i);
     }
-    return original_warn(L);
+    return original_warn.load()(L);
 }
 
 // ---- io: standard output, error and input, and no files
@@ -282,8 +284,8 @@ void replace_globals(lua_State* L) {
 }  // namespace
 
 void open_safe_libraries(lua_State* L) {
-    is_safe = true;
-    files::confine_files();
+    // Once: a sweep within a sweep opens states while other threads already read files.
+    if (!is_safe.exchange(true)) files::confine_files();
     replace_globals(L);
     lua_pushglobaltable(L);
     original_load = replace(L, "load", load);

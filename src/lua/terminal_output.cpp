@@ -1,5 +1,7 @@
 #include "lua/terminal_output.hpp"
 
+#include <atomic>
+
 #include "lua/lua_text.hpp"
 #include "terminal/progress.hpp"
 
@@ -7,10 +9,10 @@ namespace dinal::lua {
 
 namespace {
 
-// Lua's own functions, called on the frame of ours, as in coroutines.cpp. The same in every lua_State of the process.
-lua_CFunction original_print = nullptr;
-lua_CFunction original_write = nullptr;       // io.write
-lua_CFunction original_file_write = nullptr;  // file:write
+// Lua's own functions, called on the frame of ours, as in coroutines.cpp, and atomic for the same reason.
+std::atomic<lua_CFunction> original_print = nullptr;
+std::atomic<lua_CFunction> original_write = nullptr;       // io.write
+std::atomic<lua_CFunction> original_file_write = nullptr;  // file:write
 
 /// The cursor will stand at the beginning of a line.
 bool last_ends_line(lua_State* L) {
@@ -19,12 +21,12 @@ bool last_ends_line(lua_State* L) {
 
 int print(lua_State* L) {
     terminal::make_way_for_output(true);
-    return original_print(L);
+    return original_print.load()(L);
 }
 
 int write_below_progress(lua_State* L) {
     terminal::make_way_for_output(last_ends_line(L));
-    return original_write(L);
+    return original_write.load()(L);
 }
 
 int file_write(lua_State* L) {
@@ -32,11 +34,11 @@ int file_write(lua_State* L) {
     if (file != nullptr && (file->f == stdout || file->f == stderr)) {
         terminal::make_way_for_output(last_ends_line(L));
     }
-    return original_file_write(L);
+    return original_file_write.load()(L);
 }
 
 /// In the table on the top of the stack, which is taken; if there is one, and if it has the function.
-void replace(lua_State* L, const char* name, lua_CFunction& original, lua_CFunction ours) {
+void replace(lua_State* L, const char* name, std::atomic<lua_CFunction>& original, lua_CFunction ours) {
     if (lua_istable(L, -1)) {
         lua_getfield(L, -1, name);
         const bool plain = lua_getupvalue(L, -1, 1) == nullptr;  // those of safe mode are not

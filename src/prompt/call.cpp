@@ -29,7 +29,9 @@ struct Frame {
 std::string function_name(const lua_Debug& info) {
     const std::string_view kind = info.namewhat;
     if (*info.what == 'm') {
-        return fmt::format("in file {}", info.short_src);
+        // Of load(), which names it by its text in brackets; or by a name that the script has given it.
+        const bool in_file = *info.source == '@';
+        return fmt::format("in {} {}", in_file ? "file" : "what load() made of", info.short_src);
     }
     if (info.name == nullptr || kind.empty()) {
         return fmt::format("in the function at {}:{}", info.short_src, info.linedefined);

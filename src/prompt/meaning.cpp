@@ -17,6 +17,12 @@ bool closes(const lua::Token& token) {
     return token.is(")") || token.is("}") || token.is("]");
 }
 
+/// One that means what stands between its quotes.
+bool is_plain_string(const lua::Token& token) {
+    return token.kind == lua::TokenKind::string && !token.open && token.text.front() != '[' &&
+           token.text.find('\\') == std::string_view::npos;
+}
+
 const lua::Member* member_of(const lua::Class& description, std::string_view name) {
     const auto found =
         std::find_if(description.members.begin(), description.members.end(),
@@ -185,12 +191,14 @@ Meaning meaning(lua_State* L, std::span<const lua::Token> expression) {
         if (token.kind == lua::TokenKind::name) {
             walk.go_to_field(token.text);
         } else if (token.kind == lua::TokenKind::string || token.is("(") || token.is("{") || token.is("[")) {
-            const bool number = i + 2 < expression.size() && expression[i + 1].kind == lua::TokenKind::number &&
-                                expression[i + 2].is("]");
+            const lua::Token* key =
+                i + 2 < expression.size() && expression[i + 2].is("]") ? &expression[i + 1] : nullptr;
             if (!token.is("[")) {
                 walk.call();
-            } else if (number) {
-                walk.index(std::strtoll(std::string(expression[i + 1].text).c_str(), nullptr, 10));
+            } else if (key != nullptr && key->kind == lua::TokenKind::number) {
+                walk.index(std::strtoll(std::string(key->text).c_str(), nullptr, 10));
+            } else if (key != nullptr && is_plain_string(*key)) {
+                walk.go_to_field(key->text.substr(1, key->text.size() - 2));
             } else {
                 walk.forget();
             }

@@ -74,33 +74,47 @@ std::vector<std::string_view> rows_of(std::string_view text, std::size_t width) 
     return rows;
 }
 
-/// How many rows are wanted now; none to end.
-std::size_t asked_rows(std::size_t shown, std::size_t all, std::size_t page) {
+enum class Wanted { row, page, nothing };
+
+Wanted ask(std::size_t shown, std::size_t all, std::size_t width) {
     const std::string line = fmt::format("-- {} of {} lines: Space goes on, q ends --", shown, all);
-    write_out(fmt::format("\x1b[7m{}\x1b[0m", line));
+    write_out(fmt::format("\x1b[7m{}\x1b[0m", text::cut_to_columns(line, width - 1)));
     static_cast<void>(std::fflush(stdout));
     const char key = Keys().read();
     write_out("\r\x1b[K");
-    if (key == '\r' || key == '\n' || key == 'j') return 1;
-    return key == ' ' || key == 'f' ? page : 0;
+    if (key == '\r' || key == '\n' || key == 'j') return Wanted::row;
+    return key == ' ' || key == 'f' ? Wanted::page : Wanted::nothing;
+}
+
+/// The rows that are not shown yet, cut anew for a terminal that has another width by now.
+void cut_anew(std::vector<std::string_view>& rows, std::size_t shown, std::string_view text, std::size_t width) {
+    const auto at = static_cast<std::size_t>(rows[shown].data() - text.data());
+    rows.resize(shown);
+    const std::vector<std::string_view> rest = rows_of(text.substr(at), width);
+    rows.insert(rows.end(), rest.begin(), rest.end());
 }
 
 }  // namespace
 
 void show_in_pages(std::string_view text) {
     static_cast<void>(std::fflush(stdout));
-    const Display screen = display_of(STDOUT_FILENO);
+    Display screen = display_of(STDOUT_FILENO);
     constexpr int least_rows = 5;
     if (screen.rows < least_rows || !has_pages(screen)) {
         write_out(text);
         return;
     }
-    const std::vector<std::string_view> rows = rows_of(text, screen.width);
-    const auto page = static_cast<std::size_t>(screen.rows) - 1;
-    std::size_t shown = 0;
+    std::vector<std::string_view> rows = rows_of(text, screen.width);
+    std::size_t shown = 0, page = static_cast<std::size_t>(screen.rows) - 1;
     for (std::size_t wanted = rows.size() <= page ? rows.size() : page; wanted > 0;) {
         for (; wanted > 0 && shown < rows.size(); --wanted, ++shown) write_out(rows[shown]);
-        wanted = shown < rows.size() ? asked_rows(shown, rows.size(), page - 1) : 0;
+        if (shown == rows.size()) break;
+        const Wanted more = ask(shown, rows.size(), screen.width);
+        const Display now = display_of(STDOUT_FILENO);  // somebody may have pulled at the window meanwhile
+        if (now.width != screen.width) cut_anew(rows, shown, text, now.width);
+        screen = now;
+        page = static_cast<std::size_t>(std::max(screen.rows, least_rows)) - 1;
+        wanted = more == Wanted::page ? page - 1 : more == Wanted::row ? 1 : 0;
     }
     static_cast<void>(std::fflush(stdout));
 }

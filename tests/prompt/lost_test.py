@@ -8,7 +8,7 @@ import unittest
 
 sys.dont_write_bytecode = True  # no folder __pycache__ in the source tree
 
-from session import CONTINUATION, CTRL_C, Session
+from session import CONTINUATION, CTRL_C, ESCAPES, Session
 from screen import Terminal
 
 PROGRAM = ""
@@ -198,6 +198,20 @@ class Typing(Lost):
         session.press("q")
         session.until_prompt()
         self.assertEqual(session.enter("6 * 7"), "42")
+
+    def test_the_next_page_has_the_size_of_the_window_by_then(self):
+        session = self.session(PAGER="less")
+        session.press("?simulate\r")
+        session.child.expect_exact("Space goes on, q ends --")
+        session.child.setwinsize(12, 40)
+        session.press(" ")
+        session.child.expect_exact(" lines: Space goes on")
+        shown = ESCAPES.sub("", session.child.before).splitlines()[:-1]
+        rows = sum(max(1, -(-len(line) // 40)) for line in shown)  # the terminal goes on in the next row
+        self.assertLessEqual(rows, 11, shown)
+        self.assertGreater(rows, 7, shown)
+        session.press("q")
+        session.until_prompt()
 
 
 if __name__ == "__main__":

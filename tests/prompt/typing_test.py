@@ -52,7 +52,7 @@ class Completion(Typing):
         terminal = self.start(TERM="dumb")
         terminal.enter(SYSTEM)
         terminal.enter("run = sys:simulate{ theta0 = 1, t_end = 1, dt = 0.1 }")
-        terminal.enter("lab = { inner = { depth = 1 }, ['no name'] = 2 }")
+        terminal.enter("lab = { inner = { depth = 1 }, ['no name'] = 2, ['by hand'] = sys }")
         for typed, whole in [("nond", "nondimensional{ "), ("excitation.har", "excitation.harmonic{ "),
                              ("sys:sim", "sys:simulate{ "), ("sys.dead", "sys.dead_zone"), ("run.th", "run.theta"),
                              ("run.theta:me", "run.theta:mean("), ("run:ener", "run:energy("),
@@ -60,6 +60,8 @@ class Completion(Typing):
                              ("run:continue{}:exp", "run:continue{}:explain("), ("theory.magn", "theory.magnification{ "),
                              ("vector{ 1 }:mea", "vector{ 1 }:mean("), ("run.system:sim", "run.system:simulate{ "),
                              ("math.fl", "math.floor("), ("lab.in", "lab.inner"), ("lab.inner.", "lab.inner.depth"),
+                             ('lab["inner"].de', 'lab["inner"].depth'),
+                             ("lab['by hand']:sim", "lab['by hand']:simulate{ "),
                              ("x = whi", "x = while"), ("sys:simulate{ dt = 1 }:sav", "sys:simulate{ dt = 1 }:save("),
                              ("excitation.step{}:win", "excitation.step{}:window("), ("('x'):low", "('x'):low")]:
             self.completes(terminal, typed, whole)
