@@ -143,7 +143,8 @@ void note_external_memory(lua_State* L, std::size_t bytes) {
 }  // namespace dinal::lua
 
 // NOTE: the forms for arrays lead here. Those for over-aligned types do not, which nothing here has.
-void* operator new(std::size_t size) {
+// Never inlined: a checker of memory puts its own in their places, and would see half of a pair.
+[[gnu::noinline]] void* operator new(std::size_t size) {
     const bool limited = dinal::lua::limited();
     if (limited && !dinal::lua::allowed(static_cast<dinal::lua::Bytes>(std::min<std::size_t>(size, 1ULL << 62U)))) {
         dinal::lua::stop_here(dinal::lua::Stop::memory);
@@ -159,7 +160,7 @@ void* operator new(std::size_t size) {
     return block;
 }
 
-void* operator new(std::size_t size, const std::nothrow_t&) noexcept {
+[[gnu::noinline]] void* operator new(std::size_t size, const std::nothrow_t&) noexcept {
     try {
         return operator new(size);
     } catch (const std::bad_alloc&) {
@@ -167,13 +168,13 @@ void* operator new(std::size_t size, const std::nothrow_t&) noexcept {
     }
 }
 
-void operator delete(void* block) noexcept {
+[[gnu::noinline]] void operator delete(void* block) noexcept {
     if (dinal::lua::limited()) {
         dinal::lua::count(-dinal::lua::size_of(block));
     }
     std::free(block);  // NOLINT
 }
 
-void operator delete(void* block, std::size_t) noexcept {
+[[gnu::noinline]] void operator delete(void* block, std::size_t) noexcept {
     operator delete(block);
 }
