@@ -32,7 +32,8 @@ Standstill::Standstill(const Problem& problem, std::vector<model::Event>* events
       at_once_(at_once),
       pace_(std::min(problem.system.natural_period(), problem.window.end - problem.window.start)),
       events_(events),
-      motion_(problem.before.value_or(model::motion_of(problem.initial.velocity))) {
+      motion_(problem.before.value_or(model::motion_of(problem.initial.velocity))),
+      torques_before_(std::fabs(system_.pull_back(problem.initial.theta))) {
     if (passes()) return;
     if (problem.before == model::Motion::stuck) {
         phase_ = Phase::stuck;
@@ -96,8 +97,27 @@ bool Standstill::jumps(double t, double theta) const {
     return std::fabs(above - below) > rounding * torques;
 }
 
+double Standstill::arrived_at(const Moment& now) const {
+    const double k = system_.stiffness();
+    if (at_start(now.t) || k == 0 || feedback_ || system_.has_spring() || wall_ != model::Motion::stuck)
+        return now.theta;
+    const double rounding = rounding_of_torques * std::max(torques(now), torques_before_);
+    if (phase_ != Phase::creeping) {  // most are clearly on one side of the limit
+        const double torque = now.M - k * now.theta;
+        const double over = std::fabs(torque) - system_.holding(model::motion_of(torque));
+        if (!(std::fabs(over) <= 2 * rounding)) return now.theta;
+    }
+    const model::Motion way = pulled(now.M, now.theta);
+    if (way == model::Motion::stuck || excess(now.M, now.theta) > rounding) return now.theta;
+    const double side = model::sign_of(way);
+    double place = (now.M - side * system_.holding(way)) / k;
+    while (pulled(now.M, place) == way) place = std::nextafter(place, side * model::never);
+    return place;
+}
+
 bool Standstill::ask(const Moment& now) {
     const model::Motion before = motion_;
+    torques_before_ = torques(now);
     motion_ = pulled(now.M, now.theta);
     phase_ = motion_ == model::Motion::stuck ? Phase::stuck : Phase::leaving;
     came_ = before, M_stuck_ = now.M;

@@ -74,6 +74,10 @@ public:
         return feedback_ ? excitation_.value(t, {theta, 0}) : M;
     }
 
+    /// Where the mass stands that has arrived: theta, or, past the limit of sticking by no more than the roundings of
+    /// its way there, the place at the limit, which holds it.
+    [[nodiscard]] double arrived_at(const Moment& now) const;
+
     /// The velocity is down to zero.
     void arrive() { phase_ = Phase::arrived; }
     /// The velocity is down to what is rounding. Where more than the friction of sliding would hold a standing mass,
@@ -152,6 +156,7 @@ private:
     Phase phase_ = Phase::moving;
     model::Motion came_ = model::Motion::stuck;  // which way it moved before it stuck,
     double M_stuck_ = 0;                         // and under which M
+    double torques_before_;                      // at the standstill before
     Moment crept_{};                             // since when it creeps
     double apart_ = 0;                           // how far M may be from what balances a creep
     bool began_stuck_ = false;

@@ -59,7 +59,8 @@ double HalfCycles::until_within(double dead_zone, double X) const {
     constexpr double countable = 0x1p50;
     if (!(guess < countable)) return std::ceil(guess);
     double n = std::max(1.0, std::ceil(guess) - 1);
-    for (int i = 0; i < 4 && shrunk(n, size) > dead_zone; ++i) ++n;  // the guess is off by a rounding at most
+    const double edge = dead_zone + 8 * std::numeric_limits<double>::epsilon() * size;  // where sums of sizes are there
+    for (int i = 0; i < 4 && shrunk(n, size) > edge; ++i) ++n;  // the guess is off by a rounding at most
     return n;
 }
 

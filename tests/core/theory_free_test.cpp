@@ -187,6 +187,23 @@ TEST_CASE("next to no damping takes as many half cycles as none", "[theory]") {
     }
 }
 
+TEST_CASE("the closed form of a decay whose last extreme is Re/k ends there", "[theory]") {
+    for (const double k : {1.0, 4.0, 39.478417604357, 2.5}) {
+        for (const double Rd : {0.5, 0.1, 0.25, 0.3}) {
+            for (const double ratio : {1.0, 1.25, 1.5, 2.0, 3.0}) {
+                for (int n = 1; n <= 6; ++n) {
+                    const double Re = ratio * Rd;
+                    const FreeMotion motion(
+                        truth::system_of({.inertia = 1, .stiffness = k, .kinetic_friction = Rd, .breakaway = Re}),
+                        {(Re + 2 * n * Rd) / k, 0});
+                    CAPTURE(k, Rd, ratio, n);
+                    CHECK(motion.extremes() == n + 1);
+                }
+            }
+        }
+    }
+}
+
 TEST_CASE("inside the dead zone nothing begins", "[theory]") {
     const FreeMotion motion(nondimensional(0.1, 0.1, 0.2), {0.2, 0});
     CHECK(motion.time_to_rest() == 0);

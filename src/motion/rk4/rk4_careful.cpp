@@ -45,7 +45,7 @@ bool Rk4Engine::careful_step(double end, const Sampled* known) {
 
 bool Rk4Engine::piece(double end, bool break_at_end, const Sampled* known) {
     while (t_ < end) {
-        if (standstill_.phase() == Standstill::Phase::arrived && !go_on(standstill_.ask(moment()))) return false;
+        if (standstill_.phase() == Standstill::Phase::arrived && !go_on(ask())) return false;
         if (standstill_.stuck()) {
             if (!stay(end, break_at_end, known)) return false;
             continue;

@@ -97,6 +97,11 @@ private:
         }
     }
     [[nodiscard]] Standstill::Moment moment() const { return {t_, y_.theta, M_}; }
+    /// What the mass does that has come to velocity zero.
+    bool ask() {
+        y_.theta = standstill_.arrived_at(moment());
+        return standstill_.ask(moment());
+    }
     /// After a word with the standstill, which may have seen enough; the motion may be another now.
     bool go_on(bool sane) {
         friction_ = system_.braking(standstill_.motion());
