@@ -57,6 +57,8 @@ public:
     [[nodiscard]] double bend() const;
     /// The greatest of its frequencies and rates (per time unit), 0 for a polynomial.
     [[nodiscard]] double fastest() const;
+    /// How long its fastest growing part takes to grow by e; `never` without one.
+    [[nodiscard]] double grows_in() const;
 
 private:
     [[nodiscard]] double since(double at) const { return (time_ - at) + rest_; }
@@ -76,5 +78,8 @@ bool has_closed_form(const Excitation& excitation);
 /// The closed form from `time` on, up to the next break after it, counted from `time` + `rest`. Only for an excitation
 /// that has one.
 void closed_form(const Excitation& excitation, double time, double rest, ClosedForm& sum);
+
+/// Whether a native component is constant on the stretch between its breaks in which this time lies.
+bool stays_as_it_is(const Component& component, double inside);
 
 }  // namespace dinal::model

@@ -63,9 +63,10 @@ std::optional<text::Error> too_many_rows(double count, const Grid& grid, const W
 /// Rows of the grid with spacing dt: start + i dt before the end, and the end. As a double, because it may be too many.
 double row_count(const Window& window, double dt) {
     const double ratio = (window.end - window.start) / dt;
-    const double whole = std::round(ratio);
-    // A last interval shorter than the rounding of the division is no interval.
-    return std::fabs(ratio - whole) <= 4e-16 * whole ? whole + 1 : std::floor(ratio) + 2;
+    const double whole = std::round(ratio), latest = std::max(std::fabs(window.start), std::fabs(window.end));
+    // A last interval shorter than the rounding of the division, or of the times themselves, is no interval.
+    const double rounding = 4e-16 * whole + std::numeric_limits<double>::epsilon() * latest / dt;
+    return std::fabs(ratio - whole) <= rounding ? whole + 1 : std::floor(ratio) + 2;
 }
 
 /// Times that doubles can tell apart: a spacing well above the rounding of the largest time in the window.

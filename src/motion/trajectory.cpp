@@ -78,9 +78,8 @@ std::string events_text(std::span<const model::Event> events) {
 text::Expected<model::State> Trajectory::at(double t) const {
     if (!computed) return between_rows(*this, t);
     if (!(t >= t_start) || !(t <= t_stop)) {
-        return text::Error{
-            .sentence = fmt::format("t = {:.6g} is outside the run from {:.6g} to {:.6g}", t, t_start, t_stop),
-            .option = "t"};
+        return text::Error{.sentence = fmt::format("t = {} is outside the run from {} to {}", t, t_start, t_stop),
+                           .option = "t"};
     }
     if (!course) return text::Error{"the motion between the rows was not kept: run without dense = false"};
     return course->at(t);
@@ -92,8 +91,7 @@ namespace {
 std::string chatter_text(const Trajectory& run) {
     if (!run.events.empty() && run.events.back().t == run.t_stop) {
         if (run.events.back().kind == model::EventKind::user) {
-            return "events come without end in no time: a bounce made by act dies out and never rests, one by walls = "
-                   "{...} does";
+            return "events come without end in no time; bounces made by act never come to rest, those of walls = {...} do";
         }
         if (run.events.back().kind == model::EventKind::switched) {
             return "a relay switches without end in no time: its on and off are too near to each other";

@@ -299,3 +299,18 @@ TEST_CASE("along a record of samples exact goes from line to line, whatever rows
         }
     }
 }
+
+TEST_CASE("a row stands where it stands, whatever the arc before it was made of", "[exact][rows]") {
+    // A pulse shorter than 0.3 rad is told by its Taylor series, and the arc after it has a row as long after it.
+    const Oscillator system = Oscillator::make({.inertia = 1, .stiffness = 1}).value();
+    const double width = 0.125;
+    const Excitation M = Excitation::make(Pulse{.amplitude = 1, .at = 1, .width = width}).value();
+    const Trajectory run = must_run(system, M, {1, 0}, {0, 4}, Grid::every(width), Exact{});
+    const auto stepped = [](double since) { return since > 0 ? 1 - std::cos(since) : 0; };
+    for (Eigen::Index i = 0; i < run.size(); ++i) {
+        const double t = run.rows(i, 0);
+        CAPTURE(t);
+        // A few roundings of numbers near 1.
+        CHECK(std::fabs(run.rows(i, 1) - (std::cos(t) + stepped(t - 1) - stepped(t - 1 - width))) <= 1e-15);
+    }
+}

@@ -57,6 +57,14 @@ TEST_CASE("a dt that divides the window but for rounding gives no sliver of a la
     }
     CHECK(times_of(Grid::every(0.1), {0, 0.3}).size() == 4);  // 3 * 0.1 > 0.3
     CHECK(times_of(Grid::every(0.01), {0, 20}).size() == 2001);
+    // Late times are rounded by more than the division is.
+    for (const double start : {0.1, 1e3 + 0.1, -149121.09375, 1e6 + 1.0 / 3, 1e9 + 0.7}) {
+        for (const double dt : {0.1, 1e-3 / 3, 8.0299443320945283e-07}) {
+            if (dt < 32 * std::numeric_limits<double>::epsilon() * std::fabs(start)) continue;
+            CAPTURE(start, dt);
+            CHECK(times_of(Grid::every(dt), {start, start + 16 * dt}).size() == 17);
+        }
+    }
 }
 
 TEST_CASE("rows increase and their times do not add up roundings", "[rows]") {

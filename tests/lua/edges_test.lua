@@ -129,10 +129,23 @@ end)
 test("an exponential that outgrows the motion is followed at once", function()
     local sys = nondimensional { zeta = 0.1, friction_ratio = 0.3 }
     local M = excitation.exponential { tau = -0.02, amplitude = 1e-3 }
-    local run = sys:simulate { M = M, t_end = 2, dt = 2 }
     -- All but the forced part is e^-100 of it; friction and the rounding of t in the exponent: 100 eps.
     local forced = 1e-3*math.exp(100)/(sys.I/0.02^2 + sys.C/0.02 + sys.k)
-    near(run.theta[2]/forced, 1, 1e-12)
+    for _, method in ipairs { integrator.exact {}, integrator.spectral {} } do
+        local run = sys:simulate { M = M, t_end = 2, dt = 2, integrator = method }
+        near(run.theta[2]/forced, 1, 1e-12)
+    end
+    -- The exponential itself is a number where exp(x) is none, and nothing times any of them is nothing.
+    near(excitation.exponential { amplitude = 1e-300, tau = -1 }(750)/(math.exp(375)*1e-300*math.exp(375)), 1, 1e-14)
+    equal(excitation.exponential { amplitude = 0, tau = -1 }(1e10), 0.0)
+    equal(sys:simulate { M = excitation.exponential { amplitude = 0, tau = -1e-3 }, theta0 = 1, t_end = 5, dt = 5 }.outcome, "at rest")
+    -- It comes to an end where M does.
+    local run = sys:simulate { M = M, t_end = 1e9, dt = 1e8 }
+    assert(run.outcome:find("finite", 1, true) and #run == 1, run.outcome)
+    -- The motion is too great before its fourth derivative is.
+    local slow = excitation.exponential { amplitude = -1.5, tau = -1.766 }
+    run = system { I = 1.8, k = 1.6, C = 1.2, Rd = 1.8 }:simulate { M = slow, theta0 = -1.25, velocity0 = -1.5, t_end = 1e12, dt = 1e11, integrator = integrator.exact {} }
+    assert(run.outcome:find("finite", 1, true) and #run == 1, run.outcome)
 end)
 
 support.finish()

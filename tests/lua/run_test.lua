@@ -59,6 +59,7 @@ test("run:at gives theta and velocity at rows and between them", function()
     local fine = nd:simulate { M = run.excitation, theta0 = 1, t_end = 5, dt = 0.0025 }
     near((run:at(3.2125)), fine.theta[1286], 1e-10) -- both integrate with h = 0.001, whose error is below 1e-10
     raises_here(function() run:at(5.1) end, "t = 5.1 is outside the run from 0 to 5")
+    raises_here(function() run:at(5.00000001) end, "t = 5.00000001 is outside the run from 0 to 5")
     raises_here(function() run:at(-1) end, "outside")
     raises_here(function() run:at("1") end, "finite number")
     raises_here(function() run.at(1) end, "use a colon: run:at(t)")

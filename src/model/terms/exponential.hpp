@@ -12,7 +12,14 @@ struct Exponential {
     double amplitude = 1, tau = 0, at = 0;
 
     [[nodiscard]] double value(double t, double rest = 0) const {
-        return t < at ? 0 : amplitude * std::exp(-((t - at) + rest) / tau);
+        return t < at ? 0 : grown(amplitude, -((t - at) + rest) / tau);
+    }
+    /// amplitude exp(x), which may be a number where exp(x) is none.
+    static double grown(double amplitude, double x) {
+        constexpr double most = 700;
+        if (std::fabs(x) < most || amplitude == 0) return amplitude == 0 ? 0 : amplitude * std::exp(x);
+        const double half = std::exp(x / 2);
+        return amplitude * half * half;
     }
     [[nodiscard]] double next_break(double t) const { return first_after(t, {at}); }
     [[nodiscard]] double constant_from() const { return never; }

@@ -51,6 +51,7 @@ void WalkedCurve::make_table() {
 }
 
 void WalkedCurve::begin() {
+    if (free_part_ && !turns_free_) turns_free_ = changed_ = true;
     if (changed_ || sines_ != omega_.size() || rates_ != rate_.size() || !same_resonances()) make_table();
     only_swings_ = powers_.empty() && rates_ == 0 && resonances_.empty();
     now_ = &start_, next_ = &first_;
@@ -119,7 +120,7 @@ void WalkedCurve::make_turn(double tau, Turn& to) {
             turned[j] = {difference, to.root + times(resonances_[j].from_root, difference)};
         }
         step = free_.step(to.root);
-    } else if (free_part_) {
+    } else if (turns_free_) {
         step = free_.after(tau);
     }
     to.along = step.along, to.moved = step.moved, to.kept = step.kept;

@@ -219,6 +219,7 @@ private:
     std::vector<double> powers_, way_powers_, omega_, rate_;
     std::vector<Resonance> resonances_;
     bool free_part_ = false;
+    bool turns_free_ = false;  // the turns are made for free motions, too: since the first one
     bool only_swings_ = true;  // it has no powers, exponentials and resonances
     bool changed_ = true;      // since the turns were made
     std::size_t sines_ = 0, rates_ = 0;

@@ -12,21 +12,18 @@ namespace dinal::motion::exact {
 
 bool Exact::goes_slowly(const model::Oscillator& system, const model::Excitation& excitation) {
     constexpr double most_damped = 200;
-    const bool damped = system.damping_ratio() > most_damped;
-    const double soon = system.natural_period() / 3;
-    const auto slow = [&](const auto& term) {
-        using Term = std::decay_t<decltype(term)>;
-        if constexpr (std::is_same_v<Term, model::Exponential>) {
-            return term.tau < 0 && -term.tau < soon;
-        } else {
-            return damped && (std::is_same_v<Term, model::Polyline> || std::is_same_v<Term, model::Polynomial> ||
-                              std::is_same_v<Term, model::Ramp> || std::is_same_v<Term, model::Sawtooth> ||
-                              std::is_same_v<Term, model::Triangle>);
-        }
-    };
+    if (!(system.damping_ratio() > most_damped)) return false;
     const auto& components = excitation.components();
-    return std::any_of(components.begin(), components.end(),
-                       [&](const model::Component& c) { return std::visit(slow, c.term); });
+    return std::any_of(components.begin(), components.end(), [](const model::Component& c) {
+        return std::visit(
+            [](const auto& term) {
+                using Term = std::decay_t<decltype(term)>;
+                return std::is_same_v<Term, model::Polyline> || std::is_same_v<Term, model::Polynomial> ||
+                       std::is_same_v<Term, model::Ramp> || std::is_same_v<Term, model::Sawtooth> ||
+                       std::is_same_v<Term, model::Triangle>;
+            },
+            c.term);
+    });
 }
 
 std::optional<text::Error> Exact::wrong_for(const model::Oscillator& system,

@@ -11,8 +11,7 @@ struct Exact {
     /// constant each way.
     [[nodiscard]] std::optional<text::Error> wrong_for(const model::Oscillator& system,
                                                        const model::Excitation& excitation) const;
-    /// Its arcs are short where lines and powers of t meet a damping that makes the motion follow them late, and where
-    /// M grows much faster than the motion can.
+    /// Its arcs are short where lines and powers of t meet a damping that makes the motion follow them late.
     [[nodiscard]] static bool goes_slowly(const model::Oscillator& system, const model::Excitation& excitation);
     [[nodiscard]] Resolution resolution(const model::Oscillator& system) const;
     [[nodiscard]] Trajectory run(const Problem& problem) const;
@@ -24,7 +23,7 @@ inline constexpr MethodText Exact::about{
     "included. Every event is proven to be the next. For an M of native terms (all but chirp and gaussian; gains, "
     "delays, windows and sums of them), k > 0, no spring besides and no walls, and dry friction that does not depend on speed; for all "
     "else there is integrator.spectral{}. A run that names no integrator takes this one where it can, but for "
-    "lines and powers of t under a damping ratio above 200 and an exponential that grows by e in less than T0/3.",
+    "lines and powers of t under a damping ratio above 200.",
     "sys = nondimensional{ friction_ratio = 0.167 }\n"
     "run = sys:simulate{ velocity0 = 2*math.pi, t_end = 3, dt = 0.5, integrator = integrator.exact{} }\n"
     "print(string.format(\"%.9f\", (run:at(3))))  --> 0.155151392"};

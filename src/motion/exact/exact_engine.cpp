@@ -52,7 +52,7 @@ model::Outcome ExactEngine::run() {
     bool alive = std::isfinite(M_) || fail(model::Outcome::excitation_not_finite);
     while (alive && clock_.hi < window_.end) {
         if (cost_ >= cost_between_questions && asked_to_stop(clock_.hi)) {
-            if (standstill_.phase() == Standstill::Phase::arrived) standstill_.ask(moment());
+            if (standstill_.phase() == Standstill::Phase::arrived) ask();
             break;
         }
         alive = advance();
@@ -76,7 +76,7 @@ void ExactEngine::ask_M() {
 }
 
 bool ExactEngine::advance() {
-    if (standstill_.phase() == Standstill::Phase::arrived && !go_on(standstill_.ask(moment()))) return false;
+    if (standstill_.phase() == Standstill::Phase::arrived && !go_on(ask())) return false;
     if (along_lines()) return outcome_ == model::Outcome::reached_end;
     if (!standstill_.stuck()) return move();
     return standstill_.for_good(moment()) ? rest_until_end() : stay();
@@ -102,7 +102,7 @@ bool ExactEngine::rest_until_end() {
 
 void ExactEngine::finish() {
     while (rows_.next_time() < model::never) put_row();
-    if (standstill_.phase() == Standstill::Phase::arrived) standstill_.ask(moment());
+    if (standstill_.phase() == Standstill::Phase::arrived) ask();
     if (standstill_.finish()) outcome_ = model::Outcome::stuck_at_end;
 }
 
@@ -113,7 +113,7 @@ bool ExactEngine::move() {
     const double start_pull = pull_at_release_ ? *pull_at_release_ : pull();
     pull_at_release_.reset();
     const double cost = arc_.cost(formula_);
-    asked_ = std::min(clock_.until(piece_end_), longest_arc_);
+    asked_ = std::min({clock_.until(piece_end_), longest_arc_, formula_.grows_in() * growth_of_an_arc});
     if (cost * asked_ > greatest_cost) asked_ = greatest_cost / cost;
     const double length = arc_.begin(formula_, {y_.velocity, start_pull}, asked_);
     cost_ += cost * length + cost_between_questions / arcs_between_questions;

@@ -38,6 +38,11 @@ private:
     bool rest_until_end();
     void finish();
     [[nodiscard]] Standstill::Moment moment() const { return {clock_.hi, y_.theta, M_}; }
+    /// What the mass does that has come to velocity zero.
+    bool ask() {
+        if (const double theta = standstill_.arrived_at(moment()); theta != y_.theta) y_.theta = theta, theta_rest_ = 0;
+        return standstill_.ask(moment());
+    }
     /// After a word with the standstill, which may have seen enough.
     bool go_on(bool sane) { return sane || fail(model::Outcome::chattering); }
     bool asked_to_stop(double t);
@@ -87,6 +92,8 @@ private:
     /// Between two questions to the monitor the arcs cost so much, in radians of their parts; a line is cheap.
     static constexpr double cost_between_questions = 1e7;
     static constexpr double cost_of_a_line = cost_between_questions / 65536;
+    /// The looks on an arc are as short as its end needs them: by so many e-folds an M that grows does so on one.
+    static constexpr double growth_of_an_arc = 4;
 
     model::Lowered system_;
     const model::Excitation& excitation_;

@@ -29,8 +29,9 @@ void ExactEngine::make_load() {
 /// Stuck, up to the first time that |M - k theta| > Re or the end of the piece.
 bool ExactEngine::stay() {
     const double cost = formula_.fastest() * static_cast<double>(1 + formula_.omega().size() + formula_.rate().size());
-    const double length = std::min(clock_.until(piece_end_), greatest_cost_at_rest / cost);
-    cost_ += cost * length + 1;
+    const double length =
+        std::min({clock_.until(piece_end_), greatest_cost_at_rest / cost, formula_.grows_in() * growth_of_an_arc});
+    cost_ += cost * length + cost_of_a_line;
     const bool held = standstill_.phase() == Standstill::Phase::held;
     if (!held) {
         const model::Motion towards = standstill_.pulled(M_, y_.theta);

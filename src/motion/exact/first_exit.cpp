@@ -97,6 +97,7 @@ std::optional<Exit> FirstExit::search(double until) {
             finer = 0;
             continue;
         }
+        if (!std::isfinite(cubic.high - cubic.low)) return {};  // where it ends it is no number, which ends the run
         const int side = there.f < band_.low - rounding ? -1 : there.f > band_.high + rounding ? 1 : 0;
         const double doubt = fourth * of_slope;
         const bool one_way = side < 0 ? cubic.rise() + doubt < 0 : cubic.fall() - doubt > 0;

@@ -27,6 +27,10 @@ public:
     [[nodiscard]] double fastest() const { return fastest_; }
     [[nodiscard]] FreeStep after(double tau) const;
 
+    /// When the velocity of a motion comes to zero first that begins with this velocity and acceleration, not both 0,
+    /// and goes on freely about any place; `never` when it does not.
+    [[nodiscard]] double turns_after(double velocity, double acceleration) const;
+
     /// What |the fourth derivative of the velocity| does not exceed from this state on.
     [[nodiscard]] double fourth_bound(double theta, double velocity) const;
 
