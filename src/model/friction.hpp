@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <concepts>
+#include <cstddef>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -38,8 +40,24 @@ concept FrictionLaw = requires(const Law& law, Motion way, double speed) {
     { law.complaint() } -> std::same_as<std::optional<text::Error>>;
 };
 
+/// Speeds between two corners of a law, on which it is one smooth formula.
+struct SpeedRange {
+    double from = 0, to = std::numeric_limits<double>::infinity();
+    /// The formula is torque + slope (speed - from). Else it is sliding(), which goes on smoothly beyond both ends.
+    bool straight = false;
+    double torque = 0, slope = 0;
+
+    [[nodiscard]] double at(double speed) const { return torque + slope * (speed - from); }
+};
+
 // A law may also have
 //     std::string lua_text() const;   the Lua expression that makes it again
+// and, the same both ways, what lets an integrator pass all its corners at sight instead of looking for them:
+//     std::size_t ranges() const;                 how many there are, from speed 0 on and without gaps
+//     model::SpeedRange range(std::size_t i) const;
+//     double slope(double speed) const;              on ranges that are not straight: its derivative,
+//     double scale(double speed) const;              and over which change of speed from here a polynomial of degree 16
+//                                                    follows it to twelve digits, about
 
 /// For a law's complaint(): what is wrong with a sliding torque Rd and a holding torque Re. `of` stands before their
 /// names: "forward.".
@@ -56,6 +74,20 @@ public:
     [[nodiscard]] double sliding(Motion way, double speed) const { return law_ ? law_->sliding(way, speed) : 0; }
     [[nodiscard]] double holding(Motion way) const { return law_ ? law_->holding(way) : 0; }
     [[nodiscard]] bool depends_on_speed() const { return law_ && law_->depends_on_speed(); }
+    /// 0: it does not name its corners.
+    [[nodiscard]] std::size_t ranges() const { return law_ ? law_->ranges() : 0; }
+    [[nodiscard]] SpeedRange range(std::size_t i) const { return law_->range(i); }
+    /// The range of this speed; of a corner, the one above it.
+    [[nodiscard]] std::size_t range_of(double speed) const {
+        std::size_t low = 0, high = ranges();
+        while (high - low > 1) {
+            const std::size_t middle = low + (high - low) / 2;
+            (range(middle).from <= speed ? low : high) = middle;
+        }
+        return low;
+    }
+    [[nodiscard]] double slope(double speed) const { return law_->slope(speed); }
+    [[nodiscard]] double scale(double speed) const { return law_->scale(speed); }
     [[nodiscard]] std::optional<text::Error> complaint() const {
         return law_ ? law_->complaint() : std::optional<text::Error>();
     }
@@ -88,6 +120,10 @@ private:
         [[nodiscard]] virtual bool depends_on_speed() const = 0;
         [[nodiscard]] virtual std::optional<text::Error> complaint() const = 0;
         [[nodiscard]] virtual std::string lua_text() const = 0;
+        [[nodiscard]] virtual std::size_t ranges() const = 0;
+        [[nodiscard]] virtual SpeedRange range(std::size_t i) const = 0;
+        [[nodiscard]] virtual double slope(double speed) const = 0;
+        [[nodiscard]] virtual double scale(double speed) const = 0;
     };
     template <class Law>
     struct Held final : Any {
@@ -101,6 +137,34 @@ private:
                 return law.lua_text();
             } else {
                 return "";
+            }
+        }
+        [[nodiscard]] std::size_t ranges() const override {
+            if constexpr (requires { law.ranges(); }) {
+                return law.ranges();
+            } else {
+                return 0;
+            }
+        }
+        [[nodiscard]] SpeedRange range(std::size_t i) const override {
+            if constexpr (requires { law.range(i); }) {
+                return law.range(i);
+            } else {
+                return {};
+            }
+        }
+        [[nodiscard]] double slope(double speed) const override {
+            if constexpr (requires { law.slope(speed); }) {
+                return law.slope(speed);
+            } else {
+                return 0;
+            }
+        }
+        [[nodiscard]] double scale(double speed) const override {
+            if constexpr (requires { law.scale(speed); }) {
+                return law.scale(speed);
+            } else {
+                return std::numeric_limits<double>::infinity();
             }
         }
         Law law;

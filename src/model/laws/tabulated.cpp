@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+
 namespace dinal::model::laws {
 
 std::optional<text::Error> Tabulated::complaint() const {
@@ -29,6 +31,13 @@ std::optional<text::Error> Tabulated::complaint() const {
     if (holding(Motion::forward) >= torque.front()) return std::nullopt;
     return error("Re", fmt::format("Re = {:.6g} must be at least torque[1] = {:.6g}, the friction at speed 0",
                                    holding(Motion::forward), torque.front()));
+}
+
+std::size_t Tabulated::ranges() const {
+    for (std::size_t i = 0; i < speed.size(); ++i) {
+        if (!std::isfinite(range(i).slope)) return 0;
+    }
+    return speed.size();
 }
 
 std::string Tabulated::lua_text() const {

@@ -24,6 +24,15 @@ struct Tabulated {
         return torque[i - 1] + part * (torque[i] - torque[i - 1]);
     }
     [[nodiscard]] double holding(Motion /*way*/) const { return breakaway.value_or(torque.front()); }
+    /// None when a line is too steep for a number.
+    [[nodiscard]] std::size_t ranges() const;
+    [[nodiscard]] SpeedRange range(std::size_t i) const {
+        SpeedRange line{.from = speed[i], .straight = true, .torque = torque[i]};
+        if (i + 1 == speed.size()) return line;
+        line.to = speed[i + 1];
+        line.slope = (torque[i + 1] - torque[i]) / (speed[i + 1] - speed[i]);
+        return line;
+    }
     [[nodiscard]] std::optional<text::Error> complaint() const;
     [[nodiscard]] std::string lua_text() const;
 };

@@ -45,7 +45,8 @@ std::optional<double> missed_corner(const CornerLook& piece, double allowed) {
                remainder = chebyshev::fit(piece.remainder);
     Places places;
     places.add_zeros(chebyshev::derivative(theta), a_little);
-    if (piece.system.has_friction_remainder()) {
+    const bool looks_at_friction = piece.system.has_friction_remainder() && !piece.slide.inside();
+    if (looks_at_friction) {
         places.add_zeros(slip, a_little);
         places.add_zeros(chebyshev::derivative(slip), 0);
     }
@@ -55,8 +56,9 @@ std::optional<double> missed_corner(const CornerLook& piece, double allowed) {
         const double x = places.x[i], v = chebyshev::value(slip, x);
         // Beyond a stop there is no motion that could miss anything.
         if (first ? x >= *first : sign * v < 0) continue;
-        const double off =
-            piece.system.remainder(piece.way, {chebyshev::value(theta, x), v}) - chebyshev::value(remainder, x);
+        const model::State state{chebyshev::value(theta, x), v};
+        const double friction = piece.slide.friction_remainder(piece.system, piece.way, state);
+        const double off = friction + piece.system.spring(state.theta) - chebyshev::value(remainder, x);
         if (!(std::fabs(off) <= allowed) && sign * v >= 0) first = x;
     }
     return first;

@@ -4,7 +4,7 @@
 
 #include <optional>
 
-#include "model/lowered.hpp"
+#include "model/slide.hpp"
 #include "motion/spectral/chebyshev.hpp"
 
 namespace dinal::motion::spectral {
@@ -12,9 +12,10 @@ namespace dinal::motion::spectral {
 /// A piece that moves, at its nodes.
 struct CornerLook {
     const model::Lowered& system;
+    const model::Slide& slide;
     model::Motion way;
     chebyshev::Samples theta, slip;  ///< slip: the velocity against the surface
-    chebyshev::Samples remainder;    ///< system.remainder() as the motion on the piece has felt it
+    chebyshev::Samples remainder;    ///< what system.remainder() is, as the motion on the piece has felt it
 };
 
 /// The first place found at which the remainder is more than `allowed` away from the polynomial through its values at

@@ -80,7 +80,7 @@ void PanelEquation::prepare(double a, double b) {
     m00_ = r11 / determinant, m01_ = -r01 / determinant, m10_ = -r10 / determinant, m11_ = r00 / determinant;
 }
 
-Series<n> PanelEquation::solve(const Series<n>& r, double v0) const {
+Series<n> PanelEquation::solve(const Series<n>& r, double v0, double relative) const {
     Series<n> w{};
     double alpha1 = 0, alpha2 = 0;
     for (std::size_t k = degree; k >= 2; --k) {
@@ -88,7 +88,7 @@ Series<n> PanelEquation::solve(const Series<n>& r, double v0) const {
         alpha2 = alpha1, alpha1 = w[k];
     }
     for (std::size_t k = 3; k < n; ++k) w[k] += beta_[k] * w[k - 1] + gamma_[k] * (k == 3 ? 0 : w[k - 2]);
-    const double s0 = r[0] - (a_ + b_) * v0 - dot(row0_, w);
+    const double s0 = r[0] - ((a_ - relative) + b_) * v0 - dot(row0_, w);
     const double s1 = r[1] - b_ * v0 - dot(row1_, w);
     const double w0 = m00_ * s0 + m01_ * s1, w1 = m10_ * s0 + m11_ * s1;
     for (std::size_t k = 0; k < n; ++k) w[k] += w0 * from_w0_[k] + w1 * from_w1_[k];

@@ -13,9 +13,9 @@ class PanelEquation {
 public:
     /// The elimination depends on a and b alone and is kept while they stay the same.
     void prepare(double a, double b);
-    /// w.
-    [[nodiscard]] chebyshev::Series<chebyshev::points> solve(const chebyshev::Series<chebyshev::points>& r,
-                                                             double v0) const;
+    /// w. Of a, the part `relative` acts on v - v0 only: a steep line of friction is known from where it begins.
+    [[nodiscard]] chebyshev::Series<chebyshev::points> solve(const chebyshev::Series<chebyshev::points>& r, double v0,
+                                                             double relative = 0) const;
 
 private:
     static constexpr std::size_t n = chebyshev::points;

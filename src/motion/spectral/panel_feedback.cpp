@@ -75,7 +75,7 @@ PanelSolver::Iteration PanelSolver::iterate(const model::State& departing) {
 /// from one end of the panel to the other: more than a little is none that a polynomial follows.
 bool PanelSolver::well_conditioned() const {
     constexpr double most = 4;
-    const double a = panel_.h * ((system_.damping() + falls_.velocity) / system_.inertia());
+    const double a = panel_.h * ((system_.damping() + falls_.velocity + slope_of_line()) / system_.inertia());
     const double b = panel_.h * (panel_.h * ((system_.stiffness() + falls_.theta) / system_.inertia()));
     return a >= -most && std::fabs(b) <= most;
 }

@@ -65,13 +65,14 @@ double PanelSolver::unresolved_motion() const {
 /// What theta'' on the panel may differ by because its torques are rounded, and M by `uncertain` more.
 double PanelSolver::rounding_of_motion(double uncertain) const {
     const double per_torque = panel_.h * (panel_.h / system_.inertia());
-    const double a = panel_.h * ((system_.damping() + std::fabs(falls_.velocity)) / system_.inertia());
+    const double slope = std::fabs(falls_.velocity) + std::fabs(slope_of_line());
+    const double a = panel_.h * ((system_.damping() + slope) / system_.inertia());
     const double b = per_torque * (system_.stiffness() + std::fabs(falls_.theta));
     const double terms = chebyshev::size(panel_.w) + a * chebyshev::size(panel_.v) + b * chebyshev::size(panel_.p);
     const double asked =
         torques() + std::fabs(falls_.theta * panel_.begin.theta);  // a feedback is asked at a rounded theta
     const double rounding = 64 * epsilon * (terms + per_torque * asked) + per_torque * uncertain;
-    if (!feedback_) return rounding;
+    if (!iterates()) return rounding;
     // The slopes of a feedback that switches are none; what it does must not pass for rounding.
     constexpr double most = 1e-6;
     return std::min(rounding, most * per_torque * torques());
@@ -121,7 +122,8 @@ PanelSolver::Attempt PanelSolver::accept() {
 PanelSolver::Attempt PanelSolver::judge(double unresolved) {
     if (unresolved <= 1) {
         Look look = script_ ? look_between() : Look::agrees;
-        const bool corners = system_.has_remainder() && panel_.motion != model::Motion::stuck;
+        const bool known = slide_.inside() && !system_.has_spring();
+        const bool corners = system_.has_remainder() && !known && panel_.motion != model::Motion::stuck;
         if (corners && look == Look::agrees) look = look_at_corners();
         if (look != Look::agrees) return looked(look);
         if (accept() == Attempt::ended) return Attempt::ended;

@@ -94,7 +94,7 @@ PanelSolver::Look PanelSolver::look_at_corners() {
     if (2 * panel_.h <= too_short_to_look * pace_) return Look::agrees;
     const double h = panel_.h, per_torque = h * (h / system_.inertia());
     const auto w = chebyshev::at_nodes(panel_.w), M = chebyshev::at_nodes(panel_.M);
-    CornerLook look{system_, panel_.motion, chebyshev::at_nodes(panel_.p), chebyshev::at_nodes(panel_.v), {}};
+    CornerLook look{system_, slide_, panel_.motion, chebyshev::at_nodes(panel_.p), chebyshev::at_nodes(panel_.v), {}};
     for (std::size_t j = 0; j < points; ++j) {
         look.theta[j] += panel_.begin.theta, look.slip[j] /= h;
         look.remainder[j] = M[j] - system_.braking(panel_.motion) - system_.damping() * look.slip[j] -

@@ -15,12 +15,14 @@ constexpr double near_failure = 1e-9;
 
 PanelSolver::PanelSolver(const Problem& problem, const Spectral& options)
     : system_(problem.system),
+      slide_(system_),
       excitation_(problem.excitation),
       end_of_run_(problem.window.end),
       tolerance_(options.tolerance),
       pace_(std::min(problem.system.natural_period(), problem.window.end - problem.window.start)),
       h_max_(options.longest(problem) / 2),
-      feedback_(problem.excitation.has_feedback() || system_.has_remainder()),
+      feedback_(problem.excitation.has_feedback() || system_.has_spring() ||
+                (system_.has_friction_remainder() && !slide_.has_corners())),
       script_(problem.excitation.has_script()),
       tells_rests_(problem.excitation.tells_rests()),
       oscillator_(problem.system),
@@ -54,6 +56,12 @@ void PanelSolver::lay(const Present& now, model::Motion way, double h, double en
     panel_.motion = way;
     panel_.h = h;
     panel_.length = 2 * h;
+    panel_.friction = {};
+    panel_.line = -1;
+    if (const model::SpeedRange* line = slide_.line(); way != model::Motion::stuck && line != nullptr) {
+        panel_.friction = *line;
+        panel_.line = static_cast<std::int32_t>(slide_.index());
+    }
     panel_.end = end;
     if (system_.has_remainder()) own_spring_ = std::fabs(system_.spring(now.y.theta));
     const double before_end = std::max(std::nextafter(end, -model::never), now.clock.hi);  // where M may jump
@@ -111,6 +119,7 @@ PanelSolver::Attempt PanelSolver::before_failure() {
 
 PanelSolver::Attempt PanelSolver::stand(const Present& now) {
     steps_.stop = model::never;
+    follows_ = false;
     choose(now, model::Motion::stuck);
     if (!sample_all(now)) return before_failure();
     return judge(unresolved_load());
@@ -118,22 +127,26 @@ PanelSolver::Attempt PanelSolver::stand(const Present& now) {
 
 /// The motion under this torque (M, or what is not linear in a feedback), from the state at the beginning.
 void PanelSolver::solve_for(const Series& torque) {
-    const double h = panel_.h, inertia = system_.inertia();
-    equation_.prepare(h * ((system_.damping() + falls_.velocity) / inertia),
+    const double h = panel_.h, inertia = system_.inertia(), slope = slope_of_line();
+    equation_.prepare(h * ((system_.damping() + falls_.velocity + slope) / inertia),
                       h * (h * ((system_.stiffness() + falls_.theta) / inertia)));
     const double scale = h * (h / inertia);
     Series r{};
     for (std::size_t k = 1; k < points; ++k) r[k] = scale * torque[k];
-    const double friction = system_.braking(panel_.motion);
+    const double sign = model::sign_of(panel_.motion);
+    const double friction = panel_.friction.straight ? sign * panel_.friction.at(sign * panel_.begin.velocity)
+                                                     : system_.braking(panel_.motion);
     const double k = system_.stiffness();
     r[0] = scale * ((std::fma(-k, panel_.begin.theta, torque[0]) - friction) - k * theta_rest_);
-    panel_.w = equation_.solve(r, h * panel_.begin.velocity);
+    panel_.w = equation_.solve(r, h * panel_.begin.velocity, h * (slope / inertia));
     panel_.v = chebyshev::integral(panel_.w, h * panel_.begin.velocity);
     panel_.p = chebyshev::integral(panel_.v, 0.0);
 }
 
 PanelSolver::Attempt PanelSolver::move(const Present& now, model::Motion way, const model::State& departing) {
     theta_rest_ = now.theta_rest;
+    if (slide_.inside()) foresee_friction(now, way);
+    follows_ = !feedback_ && slide_.has_corners() && slide_.line() == nullptr;
     if (feedback_) {
         go_on_from(now, way);
         const auto is_here = [&] {
@@ -162,7 +175,12 @@ PanelSolver::Attempt PanelSolver::move(const Present& now, model::Motion way, co
     } else {
         choose(now, way);
         if (!sample_all(now)) return before_failure();
-        solve_for(panel_.M);
+        if (!follows_) {
+            falls_.velocity = 0;
+            solve_for(panel_.M);
+        } else if (!follow_friction(now)) {
+            return judge(std::numeric_limits<double>::infinity());
+        }
     }
     if (!within_range()) return end_with(model::Outcome::state_not_finite);
     return judge(feedback_ ? unresolved_motion() : std::max(unresolved_load(), unresolved_motion()));

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "model/lowered.hpp"
+#include "model/slide.hpp"
 #include "motion/simulate.hpp"
 #include "motion/spectral/panel_equation.hpp"
 #include "motion/spectral/panels.hpp"
@@ -34,6 +35,7 @@ struct SolvedPanel : Panel {
     };
     double end = 0;
     End ends = End::inside;
+    model::SpeedRange friction{};                  ///< if straight, what friction is along it, beyond its ends, too
     chebyshev::Samples times{}, samples{};         ///< M as it was given, at the nodes
     chebyshev::Samples rests{};                    ///< what was rounded off the times
     chebyshev::Series<chebyshev::points + 1> v{};  ///< h theta'
@@ -72,8 +74,13 @@ public:
     }
     /// What h^2 theta'' may differ by because its torques are rounded, and the times at which M was asked.
     [[nodiscard]] double rounding() const { return rounding_of_motion(lost_in_time() + noise_); }
-    /// The torques depend on the motion, which was found by iteration.
-    [[nodiscard]] bool iterates() const { return feedback_; }
+    /// The torques on the panel depend on the motion, which was found by iteration.
+    [[nodiscard]] bool iterates() const { return feedback_ || follows_; }
+    /// M on the panel is a function of time alone, and its series holds for a mass at rest, too.
+    [[nodiscard]] bool M_of_time() const { return !feedback_; }
+    /// The friction of the next panel that moves.
+    [[nodiscard]] model::Slide& slide() { return slide_; }
+    [[nodiscard]] const model::Slide& slide() const { return slide_; }
     /// The longest time on the panel between two looks at a function of the user, of those between the nodes, too.
     [[nodiscard]] double gap() const;
     /// What keeps M from being smooth on any scale, torque; 0 when nothing was seen.
@@ -98,8 +105,17 @@ private:
     }
     void solve_for(const Series& torque);
     [[nodiscard]] bool within_range() const;
-    /// The friction that is not in the linear part and its constant.
-    [[nodiscard]] double remainder(const model::State& state) const { return system_.remainder(panel_.motion, state); }
+    /// What is not in the linear part, its constant and the line of friction.
+    [[nodiscard]] double remainder(const model::State& state) const {
+        const double friction = panel_.friction.straight ? 0 : system_.friction_remainder(panel_.motion, state);
+        return friction + system_.spring(state.theta);
+    }
+    /// What a line of friction adds to the damping.
+    [[nodiscard]] double slope_of_line() const { return panel_.friction.straight ? panel_.friction.slope : 0; }
+
+    // panel_friction.cpp: laws that name their corners.
+    void foresee_friction(const Present& now, model::Motion way);
+    [[nodiscard]] bool follow_friction(const Present& now);
 
     // panel_feedback.cpp: torques that depend on the motion.
     enum class Iteration { converged, diverges, failed };
@@ -147,12 +163,14 @@ private:
     }
 
     model::Lowered system_;
+    model::Slide slide_;
     const model::Excitation& excitation_;
     double end_of_run_;
     double tolerance_;
     double pace_;   // what short times are measured in: T0, or all of a run that is shorter
     double h_max_;  // half the length of the longest panel
     bool feedback_, script_, tells_rests_;
+    bool follows_ = false;  // the present panel goes along a friction that bends, and nothing else is iterated
     const model::Oscillator& oscillator_;  // whose functions may fail as M may
 
     double h_;                          // half the length of the next panel

@@ -19,7 +19,11 @@ public:
         input_ = chebyshev::integral(chebyshev::product(panel.M, v), 0);
         way_ = chebyshev::integral(v, 0);
         dry_ = system.braking(panel.motion);
-        if (system.has_friction_remainder()) add_remainder(system, v);
+        if (panel.line >= 0) {
+            add_line(system.law_with_corners()->range(static_cast<std::size_t>(panel.line)), v);
+        } else if (system.has_friction_remainder()) {
+            add_remainder(system, v);
+        }
         if (system.damping() == 0) return;
         squared_ = chebyshev::integral(chebyshev::product(v, v), 0);
         viscous_ = system.damping() / panel.h;
@@ -37,6 +41,16 @@ private:
     static constexpr std::size_t points = chebyshev::points;
     [[nodiscard]] bool standing() const { return panel_.motion == model::Motion::stuck; }
 
+    /// All of a friction that is a line.
+    void add_line(const model::SpeedRange& line, const chebyshev::Series<points + 1>& v) {
+        const double sign = model::sign_of(panel_.motion);
+        dry_ = sign * line.torque;
+        auto above = v;
+        above[0] -= sign * line.from * panel_.h;
+        for (double& c : above) c *= line.slope / panel_.h;
+        changing_ = chebyshev::integral(chebyshev::product(above, v), 0);
+        changes_ = true;
+    }
     /// The part of the friction that changes with speed.
     void add_remainder(const model::Lowered& system, const chebyshev::Series<points + 1>& v) {
         const auto v_at = chebyshev::at_nodes(v), theta_at = chebyshev::at_nodes(way_);
@@ -45,7 +59,8 @@ private:
             friction[j] =
                 system.friction_remainder(panel_.motion, {panel_.begin.theta + theta_at[j], v_at[j] / panel_.h});
         }
-        changing_ = chebyshev::integral(chebyshev::product(chebyshev::fit(friction), v), 0);
+        const auto work = chebyshev::integral(chebyshev::product(chebyshev::fit(friction), v), 0);
+        std::copy(work.begin(), work.end(), changing_.begin());
         changes_ = true;
     }
 
@@ -53,7 +68,7 @@ private:
     double dry_ = 0, viscous_ = 0;
     bool changes_ = false;
     chebyshev::Series<2 * points + 1> input_{};     // of M v
-    chebyshev::Series<2 * points + 1> changing_{};  // of the changing part of friction and v
+    chebyshev::Series<2 * points + 2> changing_{};  // of the changing part of friction and v
     chebyshev::Series<2 * points + 2> squared_{};   // of v^2
     chebyshev::Series<points + 2> way_{};
 };

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <bit>
+#include <cstdint>
 #include <limits>
 #include <vector>
 
@@ -22,6 +23,7 @@ struct Panel {
     double length = 0;  ///< how much of it was used, at most 2 h
     model::State begin;
     model::Motion motion = model::Motion::stuck;
+    std::int32_t line = -1;  ///< of the ranges of the law of friction, if friction is straight on it: this one
     chebyshev::Series<chebyshev::points> w{};  ///< h^2 theta''; without meaning while stuck
     chebyshev::Series<chebyshev::points> M{};
 

@@ -35,7 +35,8 @@ SpectralEngine::SpectralEngine(const Problem& problem, const Spectral& options, 
       T0_(std::min(problem.system.natural_period(), problem.window.end - problem.window.start)),
       now_{.clock = {problem.window.start, 0}, .y = problem.initial},
       standstill_(problem, &events, at_once(problem)),
-      solver_(problem, options) {}
+      solver_(problem, options),
+      corners_(solver_.slide()) {}
 
 model::Outcome SpectralEngine::run() {
     begin();
@@ -43,7 +44,7 @@ model::Outcome SpectralEngine::run() {
     while (alive && now_.clock.hi < window_.end) {
         if (pieces_++ % pieces_between_questions == 0 && monitor_ && !monitor_(now_.clock.hi)) {
             outcome_ = model::Outcome::interrupted;
-            if (standstill_.phase() == Standstill::Phase::arrived) standstill_.ask(moment());
+            if (standstill_.phase() == Standstill::Phase::arrived) ask();
             break;
         }
         alive = advance();
@@ -64,7 +65,7 @@ void SpectralEngine::begin() {
 }
 
 bool SpectralEngine::advance() {
-    if (standstill_.phase() == Standstill::Phase::arrived && !go_on(standstill_.ask(moment()))) return false;
+    if (standstill_.phase() == Standstill::Phase::arrived && !go_on(ask())) return false;
     if (!standstill_.stuck()) return move();
     return standstill_.for_good(moment()) ? rest_until_end() : stay();
 }
@@ -92,7 +93,7 @@ bool SpectralEngine::rest_until_end() {
 
 void SpectralEngine::finish() {
     while (rows_.next_time() < model::never) put_row(now_.M);
-    if (standstill_.phase() == Standstill::Phase::arrived) standstill_.ask(moment());
+    if (standstill_.phase() == Standstill::Phase::arrived) ask();
     if (standstill_.finish()) outcome_ = model::Outcome::stuck_at_end;
 }
 
@@ -102,11 +103,13 @@ bool SpectralEngine::move() {
     standing_from_ = nowhere;
     const bool leaving = standstill_.phase() == Standstill::Phase::leaving;
     const model::State departing = leaving ? standstill_.on_its_way(now_.y) : now_.y;
+    corners_.enter(model::sign_of(standstill_.motion()) * now_.y.velocity);
     const auto attempt = solver_.move(now_, sliding(), departing);
     if (attempt != PanelSolver::Attempt::resolved) return again(attempt);
     const bool stops = !standstill_.passes(), crept = stops && creeps();
     if (!stops) record_turns();
     const std::optional<double> zero = stops && !crept ? first_standstill() : std::nullopt;
+    if (const auto corner = crept ? std::nullopt : first_corner(zero.value_or(1))) return cross(*corner);
     if (leaving && (crept || (zero && *zero <= -1))) {
         return standstill_.creep(moment()) || go_on(standstill_.never_left(moment()));
     }
@@ -117,16 +120,15 @@ bool SpectralEngine::move() {
         Clock{now_.y.theta, now_.theta_rest}.later(chebyshev::value(panel.p, x));  // a sum like that of time
     now_.theta_rest = theta.lo;
     const model::State state{theta.hi, zero || crept ? 0 : chebyshev::value(panel.v, x) / panel.h};
-    const double M = x == 1               ? 0
-                     : solver_.iterates() ? excitation_.value(panel.time(x), state)
-                                          : chebyshev::value(panel.M, x);
+    const double M = x == 1 ? 0 : M_at(x, state);
     const bool stands = crept || zero;
     const double M_before = stands && x == 1 ? chebyshev::value(panel.M, 1) : M;  // from the left
     end_piece(x, state, M);
+    stands ? corners_.stop() : corners_.passed_on();
     if (crept) settle();
     const bool creeping = stands && !solver_.iterates() && standstill_.creep({now_.clock.hi, now_.y.theta, M_before});
     if (stands && !creeping) standstill_.arrive();
-    standing_from_ = zero && x < 1 && !solver_.iterates() ? x : nowhere;
+    standing_from_ = zero && x < 1 && solver_.M_of_time() ? x : nowhere;
     return std::isfinite(now_.M) || fail(model::Outcome::excitation_not_finite);
 }
 
@@ -153,6 +155,7 @@ std::optional<double> SpectralEngine::first_standstill() const {
     const double sign = model::sign_of(standstill_.motion());
     const bool leaving = standstill_.phase() == Standstill::Phase::leaving;
     const SolvedPanel& panel = solver_.panel();
+    if (const model::Slide& slide = solver_.slide(); slide.inside() && slide.range().from > 0) return {};
     Bounded<points + 1> velocity(sign, panel.v, panel.w);
     velocity.raise_slope_floor(solver_.least_rounding());
     if (solver_.iterates()) velocity.raise_floor(solver_.rounding());
@@ -224,11 +227,17 @@ void SpectralEngine::end_piece(double x, model::State state, double M) {
     standstill_.go_on();
 }
 
+/// Within the panel.
+double SpectralEngine::M_at(double x, const model::State& state) const {
+    const SolvedPanel& panel = solver_.panel();
+    return solver_.M_of_time() ? chebyshev::value(panel.M, x) : excitation_.value(panel.time(x), state);
+}
+
 /// M from the right at the end of the panel, where the mass is now.
 double SpectralEngine::M_at_end() const {
     const SolvedPanel& panel = solver_.panel();
     if (panel.ends == SolvedPanel::End::at_break) return excitation_.value_after(panel.end, now_.y);
-    return solver_.iterates() ? excitation_.value(panel.end, now_.y) : panel.samples[points - 1];
+    return solver_.M_of_time() ? panel.samples[points - 1] : excitation_.value(panel.end, now_.y);
 }
 
 /// A stuck piece may begin within the panel.
@@ -259,7 +268,7 @@ bool SpectralEngine::rows_until(double length) {
             state = {now_.y.theta + chebyshev::value(panel.p, x), chebyshev::value(panel.v, x) / panel.h};
         }
         double M = panel.samples[0];  // as it was given: M(0) = 0 is to be read as 0
-        if (solver_.iterates()) {
+        if (!solver_.M_of_time()) {
             M = excitation_.value(t, state);
         } else if (x > -1) {
             M = chebyshev::value(panel.M, x);

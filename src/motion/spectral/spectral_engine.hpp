@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "motion/rows.hpp"
+#include "motion/spectral/corner_watch.hpp"
 #include "motion/spectral/panel_solver.hpp"
 #include "motion/spectral/spectral.hpp"
 #include "motion/standstill.hpp"
@@ -45,7 +46,18 @@ private:
     [[nodiscard]] bool creeps() const;
     void settle();
     void record_turns();
+
+    // spectral_corners.cpp: laws of friction that name their corners.
+    [[nodiscard]] std::optional<CornerWatch::Corner> first_corner(double until) const;
+    bool cross(const CornerWatch::Corner& corner);
+
     [[nodiscard]] Standstill::Moment moment() const { return {now_.clock.hi, now_.y.theta, now_.M}; }
+    /// What the mass does that has come to velocity zero.
+    bool ask() {
+        if (const double theta = standstill_.arrived_at(moment()); theta != now_.y.theta)
+            now_.y.theta = theta, now_.theta_rest = 0;
+        return standstill_.ask(moment());
+    }
     /// After a word with the standstill, which may have seen enough.
     bool go_on(bool sane) { return sane || fail(model::Outcome::chattering); }
     /// Which friction acts on a panel from here: without any, the same both ways.
@@ -57,6 +69,7 @@ private:
     void end_piece(double x, model::State state, double M);
     bool rows_until(double length);
     void keep(double length);
+    [[nodiscard]] double M_at(double x, const model::State& state) const;
     [[nodiscard]] double M_at_end() const;
     void put_row(double M) { rows_.put(now_.y, M, model::friction_torque(system_, standstill_.motion(), M, now_.y)); }
     bool fail(model::Outcome outcome) {
@@ -72,7 +85,6 @@ private:
     bool stay();
     [[nodiscard]] std::pair<double, model::Motion> first_release(double from) const;
     [[nodiscard]] double release_towards(model::Motion side, double from) const;
-    [[nodiscard]] double clearly_beyond() const;
     [[nodiscard]] bool lets_go(double x, model::Motion side) const;
     [[nodiscard]] double moment_of_release(double x, double off, double from, model::Motion side) const;
     bool release_at(double x, model::Motion direction);
@@ -88,6 +100,7 @@ private:
     Present now_;
     Standstill standstill_;
     PanelSolver solver_;
+    CornerWatch corners_;
     double standing_from_ = nowhere;  // from here on the panel's M serves a mass that came to a stop in it
     unsigned pieces_ = 0;
     double gap_ = 0;  // the longest between two looks at a function of the user

@@ -55,7 +55,7 @@ double SpectralEngine::release_towards(model::Motion side, double from) const {
     for (double& c : slope) c *= -sign;
     left[0] = Re - mean;
     const bool held = standstill_.phase() == Standstill::Phase::held;
-    if (held) left[0] += clearly_beyond();
+    if (held) left[0] += standstill_.clearly_beyond({now_.clock.hi, now_.y.theta, now_.M});
     chebyshev::Bounded<points> curve(1, left, slope);
     curve.raise_floor(doubt);
     std::optional<double> touch;
@@ -73,17 +73,6 @@ double SpectralEngine::release_towards(model::Motion side, double from) const {
     const double off = doubt / std::fabs(curve.slope(*x));
     if (held || (!touch && off * panel.h <= exact_enough * T0_)) return *x;
     return moment_of_release(touch.value_or(*x), off, from, side);
-}
-
-/// How far M must pass the limit before a mass is let go that did not get under way here: twice as far as it is now, so
-/// that a crest which only comes out of the rounding is tried some fifty times at most. A feedback that is clearly
-/// beyond the limit at rest, and holds in motion, is none.
-double SpectralEngine::clearly_beyond() const {
-    constexpr double crest = 1e-6;
-    const double back = std::fabs(system_.pull_back(now_.y.theta));
-    const double torques = std::fabs(now_.M) + back + system_.greatest_holding();
-    const double excess = std::max(standstill_.excess(now_.M, now_.y.theta), 0.0);
-    return excess > crest * torques ? 0 : 2 * excess + 64 * epsilon * torques;
 }
 
 bool SpectralEngine::lets_go(double x, model::Motion side) const {
@@ -120,7 +109,7 @@ double SpectralEngine::moment_of_release(double x, double off, double from, mode
 bool SpectralEngine::release_at(double x, model::Motion direction) {
     const bool at_once_only = x == nowhere;
     if (!at_once_only) {
-        const bool asked = solver_.iterates() && x > -1;
+        const bool asked = !solver_.M_of_time() && x > -1;
         const double M =
             asked ? excitation_.value(solver_.panel().time(x), now_.y) : chebyshev::value(solver_.panel().M, x);
         if (!std::isfinite(M)) return fail(model::Outcome::excitation_not_finite);
