@@ -34,6 +34,14 @@ double first_true(const Condition& holds, double x) {
     return from;
 }
 
+/// Whether a series times this sign is clearly positive all over a piece, as most are: its other terms are less than
+/// the constant one. It may be a difference of values of this size.
+inline bool stays_above_zero(double sign, const Series& series, double of_size = 0) {
+    constexpr double few = 64;
+    const double all = spectral::chebyshev::size(series), others = all - std::fabs(series[0]);
+    return sign * series[0] - others > few * rounding * std::max(all, of_size);
+}
+
 /// A watched value on a piece: at its nodes, and anywhere.
 template <class F>
 class Watched {
@@ -62,18 +70,32 @@ private:
     [[nodiscard]] Half half_of(double value, Half otherwise) const {
         return value > floor_ ? 1 : value < -floor_ ? -1 : otherwise;
     }
+    /// The series says where to look, and is right to some digits less than the value itself, which says what is there.
     [[nodiscard]] std::optional<double> of_series(Half half, double from, bool at_zero) const {
         using namespace spectral::chebyshev;
         Bounded<points> curve(half, series_, derivative(series_));
         curve.raise_floor(rounded_);
         const auto no = [](double) { return false; };
-        const auto x = first_below(curve, from, at_zero ? LeftEnd::leaving : LeftEnd::anywhere, no);
-        if (!x) return {};
-        if (at_zero && *x <= from) return from;  // it stood at zero, and now goes where it was not
-        // The series is right to some digits less than the value itself.
-        constexpr double near = 1e-7;
-        const double a = std::max(from, *x - near), b = std::min(1.0, *x + near);
-        return refined(half, a, b).value_or(*x);
+        double start = from;
+        if (at_zero) {  // outwards from within the rounding, until it is clear which way it goes
+            double d = 0x1p-46;
+            while (from + d < 1 && std::fabs(exact_(from + d)) <= floor_) d *= 2;
+            start = std::min(1.0, from + d);
+            if (half_of(exact_(start), half) != half) return from;
+        }
+        double near = 1e-7;
+        while (start < 1) {
+            const auto x = first_below(curve, start, LeftEnd::anywhere, no);
+            if (!x) break;
+            double a = std::max(start, *x - near);
+            while (a > start && half * exact_(a) < -rounded_) a = std::max(start, *x - (near *= 2));
+            if (half * exact_(a) < -rounded_) return a;  // it has been there before
+            const double b = std::min(1.0, *x + near);
+            if (const auto zero = refined(half, a, b)) return zero;
+            start = b;
+            near *= 2;
+        }
+        return {};
     }
     [[nodiscard]] std::optional<double> of_values(Half half, double from) const {
         constexpr int parts = 4;

@@ -43,6 +43,7 @@ Engine::Engine(const Problem& problem, const Cut& cut, Trajectory& trajectory, s
       field_(problem, *pieces),
       cut_(cut),
       solver_(problem, field_, cut),
+      corners_(solver_.slide()),
       standstill_(on_belt(problem, field_.belt(problem.window.start, Side::after)), &events, 1e-6 * pace_of(problem)),
       now_{problem.window.start, 0},
       h_(cut.longest / 2),
@@ -116,17 +117,21 @@ bool Engine::choose() {
     if (bad_time_ < model::never) h = std::min(h, now_.until(bad_time_) / 4);
     // As long as it takes to a wall, or back to it, and a little more: a small bounce is to be seen.
     if (problem_.system.walls() && !standstill_.stuck()) h = std::min(h, std::max(0.6 * until_wall(), 1e-9 * pace_));
+    if (watches_corners()) h = std::min(h, longest_under_friction() / 2);
     if (flight_ < model::never) h = std::min(h, std::max(0.6 * flight_, 1e-9 * pace_));
     const double remaining = now_.until(limit);
     const bool to_limit = remaining <= 2 * h * (1 + 1e-9);
     piece_.start = now_;
     piece_.way = way();
     piece_.leans = leans();
+    const model::SpeedRange* line = piece_.way == model::Motion::stuck ? nullptr : solver_.slide().line();
+    piece_.friction = line != nullptr ? *line : model::SpeedRange{};
     piece_.origin = origin_;
     piece_.h = to_limit ? remaining / 2 : remaining < 4 * h ? remaining / 4 : h;
     piece_.end = to_limit ? limit : now_.after(2 * piece_.h);
     piece_.from_break = after_break_;
     piece_.to_break = to_limit && limit == breaks;
+    piece_.to_the_end = piece_.to_break || (to_limit && limit == problem_.window.end);
     return piece_.h > 0 || fail(model::Outcome::chattering);
 }
 
@@ -157,6 +162,7 @@ bool Engine::advance() {
         const model::Motion towards = standstill_.pulled(surely(pull(M), theta()), theta());
         if (towards != model::Motion::stuck && !release(towards)) return false;
     }
+    if (watches_corners()) corners_.enter(model::sign_of(standstill_.motion()) * (y_[1] - belt()));
     if (!choose()) return false;
     const bool leaving = standstill_.phase() == Standstill::Phase::leaving && !standstill_.passes();
     model::State departing{y_[0], y_[1]};
@@ -179,12 +185,13 @@ bool Engine::advance() {
         if (cut_.h == 0) h_ = std::min(cut_.longest / 2, std::max(h_, piece_.h * std::min(factor, 8.0)));
     }
 
-    fastest_belt_ = std::max(fastest_belt_, greatest(piece_.belt));
     if (belt_turns_at_wall()) return true;
 
     Ending ending;
     if (standstill_.stuck()) {
-        const auto [x, towards] = first_release();
+        // A pull that stays has been asked already.
+        const bool asked = piece_.held && standstill_.phase() != Standstill::Phase::held;
+        const auto [x, towards] = asked ? std::pair(2.0, model::Motion::stuck) : first_release();
         if (x < 1) ending = {x, By::surface, 0, towards};
     } else if (!standstill_.passes()) {
         const bool crept = creeps();
@@ -195,12 +202,21 @@ bool Engine::advance() {
         }
         if (zero) ending = {*zero, By::surface};
     }
+    const auto corner = watches_corners() ? first_corner(ending.x) : std::nullopt;
+    if (corner) ending = {corner->x, By::corner};
     if (ending.x > -1 && ending.x < 1 && piece_.time(ending.x) >= piece_.end) ending.x = 1;
     if (problem_.system.walls() && !leans()) watch_walls(ending);
     watch(ending);
     if (outcome_ != model::Outcome::reached_end) return false;
     if (standstill_.passes()) record_turns(ending.x);
-    return end_piece(ending.x) && handle(ending);
+    if (ending.by == By::corner && !corners_.cross(*corner)) return true;
+    if (!end_piece(ending.x)) return false;
+    if (ending.by == By::corner) {
+        go_over(*corner);
+    } else {
+        ending.by == By::nobody ? corners_.passed_on() : corners_.stop();
+    }
+    return handle(ending);
 }
 
 /// The piece has come to an end at x: its rows, and the present.
@@ -215,8 +231,7 @@ bool Engine::end_piece(double x) {
     if (x > -1) {
         for (std::size_t k = 0; k < y_.size(); ++k) y_[k] = piece_.at(k, x);
     }
-    now_ = whole && (piece_.to_break || piece_.end == problem_.window.end) ? Clock{piece_.end, 0}
-                                                                           : piece_.start.later(length);
+    now_ = whole && piece_.to_the_end ? Clock{piece_.end, 0} : piece_.start.later(length);
     after_break_ = whole && piece_.to_break;
     if (bad_time_ <= now_.hi) bad_time_ = model::never;
     if (belt_turns_ <= now_.hi) belt_turns_ = model::never;
@@ -244,7 +259,8 @@ void Engine::keep(double length) {
                 .leans = piece_.leans,
                 .begin = y_,
                 .series = piece_.series,
-                .M = cheb::fit(piece_.M)};
+                .M = cheb::fit(piece_.M),
+                .friction = piece_.friction};
     if (field_.has_surroundings()) {
         piece.around = std::make_shared<const Piece::Surroundings>(
             Piece::Surroundings{cheb::fit(piece_.push), cheb::fit(piece_.belt), cheb::fit(piece_.belt_rate)});
@@ -254,57 +270,6 @@ void Engine::keep(double length) {
     if (problem_.limits.dense) return;
     const auto delays = field_.delays();
     pieces_->forget(now_.hi - 2 * *std::max_element(delays.begin(), delays.end()));
-}
-
-bool Engine::rows_until(double end, bool to_the_end) {
-    const Grid& rows = problem_.rows;
-    while (next_row_ < rows.count()) {
-        const double t = rows.time(next_row_);
-        if (!(t < end) && !(to_the_end && t < piece_.end)) return true;
-        if (!put_row(t, std::clamp(piece_.start.until(t) / piece_.h - 1, -1.0, 1.0))) return false;
-    }
-    return true;
-}
-
-/// At x of the piece; -2 is the present.
-bool Engine::put_row(double t, double x) {
-    const bool present = x < -1;
-    const double at = present ? -1 : x;
-    Values y = y_;
-    if (!present) {
-        for (std::size_t k = 0; k < y.size(); ++k) y[k] = at == -1 ? piece_.y[k][0] : piece_.at(k, at);
-    }
-    const Side side = present || at == -1 ? (after_break_ ? Side::after : Side::at) : Side::at;
-    const double belt = field_.belt(t, side);
-    const bool stands = standstill_.stuck(), leaning = leans();
-    y[0] += origin_;
-    if (const auto& walls = problem_.system.walls()) y[0] = std::clamp(y[0], walls->lower, walls->upper);
-    if (stands) y[1] = leaning ? 0 : belt;
-    const double M = field_.load({t, side, {y[0], y[1]}, {y.data() + 2, y.size() - 2}});
-    double friction = 0;
-    if (leaning) {
-        // The wall carries what presses against it, friction what pulls away from it.
-        const double loads = std::fma(-system_.stiffness(), y[0], M - system_.spring(y[0])) + field_.push(t, side);
-        const bool presses = loads * model::sign_of(standstill_.leans()) >= 0;
-        friction = belt != 0 ? sliding_at_wall(belt) : presses || !system_.dry() ? 0 : -loads;
-    } else if (stands) {
-        const double rate = !field_.has_belt() ? 0
-                            : present          ? field_.belt_rate(t)
-                                      : spectral::chebyshev::value(spectral::chebyshev::fit(piece_.belt_rate), at);
-        friction = system_.inertia() * rate + system_.damping() * belt -
-                   (std::fma(-system_.stiffness(), y[0], M - system_.spring(y[0])) + field_.push(t, side));
-    } else if (system_.dry()) {
-        const model::Motion motion = way();
-        friction = 0.0 - (system_.braking(motion) + system_.friction_remainder(motion, {y[0], y[1] - belt}));
-    }
-    double* row = column_ + next_row_;
-    const std::size_t stride = problem_.rows.count();
-    const double own[] = {t, y[0], y[1], M, friction, 0.0 - system_.damping() * y[1]};
-    if (!std::isfinite(M + friction) || !std::isfinite(y[0]) || !std::isfinite(y[1])) return false;
-    for (const double value : own) *row = value, row += stride;
-    for (std::size_t k = 2; k < y.size(); ++k) *row = y[k], row += stride;
-    ++next_row_;
-    return true;
 }
 
 void Engine::leave(Trajectory& trajectory) const {

@@ -9,6 +9,7 @@
 
 #include "motion/hybrid/crossing.hpp"
 #include "motion/hybrid/pieces.hpp"
+#include "motion/spectral/corner_watch.hpp"
 #include "motion/standstill.hpp"
 
 namespace dinal::motion::hybrid {
@@ -34,7 +35,7 @@ public:
 
 private:
     /// Whose event ends a piece.
-    enum class By { nobody, surface, wall, relay, user };
+    enum class By { nobody, surface, corner, wall, relay, user };
     struct Ending {
         double x = 1;
         By by = By::nobody;
@@ -68,20 +69,48 @@ private:
         double once = 0, all = 0;
     };
 
+    // engine.cpp
     bool begin();
     bool advance();
     bool choose();
-    bool handle(const Ending& ending);
     void again(Solver::Attempt attempt);
+    bool end_piece(double x);
+    void keep(double length);
+
+    // engine_rows.cpp
+    bool rows_until(double end, bool to_the_end);
+    bool put_row(double t, double x);
+
+    // engine_events.cpp
     void watch(Ending& ending);
+    bool handle(const Ending& ending);
+    bool belt_jumps(double before);
+    bool ask();
+    bool release(model::Motion towards);
+    void tell(model::EventKind kind, int user = -1);
+    bool too_often();
+    void echo(double t, int generation);
+    [[nodiscard]] MotionPoint point(double x) const;
+    [[nodiscard]] MotionPoint point_at(std::size_t node) const;
+    [[nodiscard]] std::optional<double> first_switch(std::size_t relay) const;
+    [[nodiscard]] std::optional<double> first_switch(std::size_t relay, std::size_t place, double until) const;
 
     // engine_surface.cpp
     [[nodiscard]] std::optional<double> first_standstill() const;
+    [[nodiscard]] std::optional<double> turn_of_held(const Series& velocity) const;
     [[nodiscard]] bool creeps() const;
     bool creep();
     [[nodiscard]] std::pair<double, model::Motion> first_release() const;
     void record_turns(double until);
     [[nodiscard]] bool keeps_its_way() const;
+    /// Corners of a law are passed at sight where pieces are right to rounding.
+    [[nodiscard]] bool watches_corners() const {
+        return cut_.h == 0 && solver_.slide().has_corners() && !standstill_.stuck() && !standstill_.passes();
+    }
+    [[nodiscard]] Series slip_series() const;
+    [[nodiscard]] double longest_under_friction() const;
+    [[nodiscard]] std::optional<spectral::CornerWatch::Corner> first_corner(double until) const;
+    void go_over(const spectral::CornerWatch::Corner& corner);
 
     // engine_acts.cpp
     void watch_users(Ending& ending);
@@ -104,23 +133,11 @@ private:
     [[nodiscard]] Bounces bounces(model::Motion into) const;
     [[nodiscard]] double sliding_at_wall(double belt) const;
     [[nodiscard]] double belt_at_wall(double belt) const;
-    bool end_piece(double x);
-    bool rows_until(double end, bool to_the_end);
-    bool put_row(double t, double x);
-    void keep(double length);
-    bool belt_jumps(double before);
-    bool ask();
-    bool release(model::Motion towards);
-    void tell(model::EventKind kind, int user = -1);
-    bool too_often();
-    void echo(double t, int generation);
 
     [[nodiscard]] double belt() const { return field_.belt(now_.hi, after_break_ ? Side::after : Side::at); }
     [[nodiscard]] MotionPoint here() const {
         return {now_.hi, after_break_ ? Side::after : Side::at, {theta(), y_[1]}, {y_.data() + 2, y_.size() - 2}};
     }
-    [[nodiscard]] MotionPoint point(double x) const;
-    [[nodiscard]] MotionPoint point_at(std::size_t node) const;
     [[nodiscard]] double theta() const { return origin_ + y_[0]; }
     void set_theta(double theta) { origin_ = 0, y_[0] = theta; }
     /// The mass stands at a wall.
@@ -157,6 +174,7 @@ private:
     Field field_;
     Cut cut_;
     Solver solver_;
+    spectral::CornerWatch corners_;
     Standstill standstill_;
 
     Clock now_;
@@ -171,7 +189,6 @@ private:
     double gap_ = 0;  // the longest between two looks at M
     double bad_time_ = model::never;
     double belt_turns_ = model::never;  // while the mass stands at a wall
-    double fastest_belt_ = 0;           // so far
     double flight_ = model::never;      // how long the mass may be away that a user has just thrown
     double born_;                       // when the run began that goes on here
     int attempts_ = 0, too_short_ = 0;

@@ -66,7 +66,11 @@ void Engine::watch_users(Ending& ending) {
 
 bool Engine::act_all(const std::vector<std::size_t>& told) {
     for (const std::size_t which : told) halves_[which] = -halves_[which];
-    return std::all_of(told.begin(), told.end(), [&](std::size_t which) { return act(which, told); });
+    if (!std::all_of(told.begin(), told.end(), [&](std::size_t which) { return act(which, told); })) return false;
+    // What comes at the same instant is told before one of them stops the run: it would not be told when that goes on.
+    const bool stops =
+        std::any_of(told.begin(), told.end(), [&](std::size_t which) { return extras_.events[which].stop; });
+    return !stops || fail(model::Outcome::stopped);
 }
 
 bool Engine::act(std::size_t which, const std::vector<std::size_t>& told) {
@@ -109,8 +113,7 @@ bool Engine::act(std::size_t which, const std::vector<std::size_t>& told) {
         if (moved) flight_ = until_back();
         if (moved && fading_[which].after(now_.hi) && !wanted.stop) return fail(model::Outcome::chattering);
     }
-    if (wanted.stop) return fail(model::Outcome::stopped);
-    return !too_often() || fail(model::Outcome::chattering);
+    return wanted.stop || !too_often() || fail(model::Outcome::chattering);
 }
 
 /// What all events of the user watch, at x of the piece; beyond it, now.

@@ -33,21 +33,53 @@ MotionPoint Engine::point_at(std::size_t node) const {
 
 /// Relays and events of the user, if one of them comes before the end that is known so far.
 void Engine::watch(Ending& ending) {
-    Nodes values{};
     for (std::size_t i = 0; i < field_.component_count(); ++i) {
         if (field_.relay(i) == nullptr) continue;
-        const auto exact = [&](double x) { return field_.until_switch(i, point(x)); };
-        for (std::size_t j = 0; j < node_count; ++j) values[j] = field_.until_switch(i, point_at(j));
-        Half half = 1;
-        const auto x = values[0] < 0 ? std::optional(-1.0) : Watched(values, exact).leaves(half, -1);
+        const auto place = field_.looks_at(i);
+        const auto x = place ? first_switch(i, *place, ending.x) : first_switch(i);
         if (x && *x < ending.x) ending = {*x, By::relay, i};
     }
     watch_users(ending);
 }
 
+/// Of a relay that looks at a function.
+std::optional<double> Engine::first_switch(std::size_t relay) const {
+    Nodes values{};
+    const auto exact = [&](double x) { return field_.until_switch(relay, point(x)); };
+    for (std::size_t j = 0; j < node_count; ++j) values[j] = field_.until_switch(relay, point_at(j));
+    Half half = 1;
+    return values[0] < 0 ? std::optional(-1.0) : Watched(values, exact).leaves(half, -1);
+}
+
+/// Of one that looks at theta, the velocity or a state: its series tells. Beyond `until` nobody asks.
+std::optional<double> Engine::first_switch(std::size_t relay, std::size_t place, double until) const {
+    using namespace spectral::chebyshev;
+    const auto [sign, level] = field_.threshold(relay);
+    const auto left = [&, s = sign, l = level](double y) { return s * ((place == 0 ? piece_.origin + y : y) - l); };
+    const double first = left(piece_.y[place][0]);
+    if (first < 0) return -1;
+    Series series = piece_.series[place];
+    for (double& c : series) c *= sign;
+    series[0] += first;
+    if (stays_above_zero(1, series)) return {};
+    const double all = cheb::size(series);
+    const bool touches = first <= 64 * rounding * all;
+    // Between two standstills theta goes one way.
+    if (place == 0 && !touches && !standstill_.passes() && !field_.has_belt() && cut_.h == 0) {
+        const double last = left(piece_.at(0, until));
+        if (!(last < -16 * rounding * all)) return {};
+        const auto beyond = [&](double x) { return -value(series, x); };
+        return first_positive(beyond, -1, -first, until, -last, 1e-16).second;
+    }
+    const auto no = [](double) { return false; };
+    const Bounded<points> curve(1, series, derivative(series));
+    return first_below(curve, -1, touches ? LeftEnd::leaving : LeftEnd::anywhere, no);
+}
+
 bool Engine::handle(const Ending& ending) {
     switch (ending.by) {
         case By::nobody:
+        case By::corner:
             return true;
         case By::surface:
             if (ending.towards != model::Motion::stuck) return release(ending.towards);
@@ -86,6 +118,7 @@ bool Engine::belt_jumps(double before) {
         tell(model::EventKind::turn);
     }
     standstill_.return_to({motion, Standstill::Phase::moving});
+    corners_.stop();
     return true;
 }
 
@@ -112,6 +145,8 @@ bool Engine::ask() {
     const double M = field_.load(here());
     if (!std::isfinite(M + y_[1] + pull(M))) return fail(model::Outcome::excitation_not_finite);
     const std::size_t told = events_.size();
+    const double place = standstill_.arrived_at({now_.hi, theta(), pull(M)});
+    if (place != theta()) y_[0] = place - origin_;
     const bool sane = standstill_.ask({now_.hi, theta(), pull(M)});
     if (events_.size() > told) events_.back().M = M, events_.back().velocity = y_[1];
     go_from_wall();

@@ -20,22 +20,78 @@ bool Engine::keeps_its_way() const {
     return leaves && slip(piece_.y[1], piece_.belt, end) > 0 && !(a0 < 0 && a1 > 0);
 }
 
+/// Where the closed form of a held piece has its first zero of the velocity, refined on its series; 2 when nowhere.
+/// None where rounding has a say in it.
+std::optional<double> Engine::turn_of_held(const Series& velocity) const {
+    if (!piece_.held) return {};
+    constexpr double clearly = 1e-6, at_rest = 1e-9;
+    const double way = model::sign_of(standstill_.motion()), fastest = greatest(piece_.y[1]), a = piece_.f[1][0];
+    const double torques =
+        std::fabs(piece_.M[0]) + system_.greatest_holding() + system_.stiffness() * std::fabs(theta());
+    const bool under_way = way * y_[1] > at_rest * fastest;
+    if (!under_way && !(y_[1] == 0 && way * a * system_.inertia() > at_rest * torques)) return {};
+    const double tau = solver_.free().turns_after(y_[1], a);
+    if (tau > 2 * piece_.h * (1 + clearly)) {
+        return way * piece_.y[1][node_count - 1] > at_rest * fastest ? std::optional(2.0) : std::nullopt;
+    }
+    const double guess = tau / piece_.h - 1;
+    if (!(guess > -1 + clearly && guess < 1 - clearly)) return {};
+    double x = guess, slope = 0;
+    for (int i = 0; i < 2; ++i) {
+        slope = cheb::value(cheb::derivative(velocity), x);
+        x -= cheb::value(velocity, x) / slope;
+    }
+    if (!(way * slope < -clearly * fastest && std::fabs(x - guess) < clearly)) return {};
+    return x;
+}
+
+Series Engine::slip_series() const {
+    Series slip = piece_.series[1];
+    slip[0] += y_[1];
+    if (!field_.has_belt()) return slip;
+    const Series belt = cheb::fit(piece_.belt);
+    for (std::size_t k = 0; k < slip.size(); ++k) slip[k] -= belt[k];
+    return slip;
+}
+
+/// How long a piece may be under a law of friction that names its corners.
+double Engine::longest_under_friction() const {
+    const model::Slide& slide = solver_.slide();
+    if (!slide.inside()) return model::never;
+    const double sign = model::sign_of(standstill_.motion()), I = system_.inertia(), C = system_.damping();
+    const double first = acceleration() - field_.belt_rate(now_.hi);
+    const double second = (std::fabs(system_.stiffness() * y_[1]) + std::fabs(C * first)) / I;
+    return slide.longest_step(sign * (y_[1] - belt()), sign * first, second, C, I);
+}
+
+/// Where friction turns a corner.
+std::optional<spectral::CornerWatch::Corner> Engine::first_corner(double until) const {
+    const Series slip = slip_series();
+    const auto slope = cheb::derivative(slip);
+    const double rounded = 16 * rounding * (greatest(piece_.y[1]) + greatest(piece_.belt));
+    return corners_.first<node_count>({model::sign_of(standstill_.motion()), slip, slope, 1, rounded, 0}, until);
+}
+
+/// The piece has ended at a corner, and the speed is that of the corner.
+void Engine::go_over(const spectral::CornerWatch::Corner& corner) {
+    y_[1] = belt() + model::sign_of(standstill_.motion()) * corner.speed;
+    standstill_.go_on();
+}
+
 /// Where the mass is as fast as its surface. At the end of the piece, zero within rounding is zero.
 std::optional<double> Engine::first_standstill() const {
     using namespace spectral::chebyshev;
     if (cut_.h > 0 && keeps_its_way()) return {};
-    Series slip = piece_.series[1];
-    slip[0] += y_[1];
-    if (field_.has_belt()) {
-        const Series belt = fit(piece_.belt);
-        for (std::size_t k = 0; k < points; ++k) slip[k] -= belt[k];
-    }
+    if (const model::Slide& slide = solver_.slide(); slide.inside() && slide.range().from > 0) return {};
+    const bool leaving = standstill_.phase() == Standstill::Phase::leaving;
+    const Series slip = slip_series();
     const double fastest = greatest(piece_.y[1]) + greatest(piece_.belt);
+    if (!leaving && stays_above_zero(model::sign_of(standstill_.motion()), slip, fastest)) return {};
+    if (const auto x = turn_of_held(slip)) return *x < 1 ? x : std::nullopt;
     const double torques = greatest(piece_.M) + greatest(piece_.push) + system_.greatest_holding() +
                            system_.stiffness() * (greatest(piece_.y[0]) + std::fabs(origin_)) +
                            std::fabs(system_.spring(theta()));
     Bounded<points> curve(model::sign_of(standstill_.motion()), slip, derivative(slip));
-    const bool leaving = standstill_.phase() == Standstill::Phase::leaving;
     if (field_.has_belt()) curve.raise_floor(16 * rounding * fastest);
     curve.raise_slope_floor(piece_.h / system_.inertia() * 64 * rounding * torques);
     const auto always = [](double) { return true; };
@@ -80,7 +136,8 @@ std::pair<double, model::Motion> Engine::first_release() const {
     const double clearly_beyond = held ? standstill_.clearly_beyond({now_.hi, theta(), at_first}) : 0;
     // Near its zero a belt is rounded as it is elsewhere, and at a late time as that is.
     const double late = std::max(std::fabs(piece_.start.hi), std::fabs(piece_.end));
-    const double rounded_rate = 256 * rounding * std::max(fastest_belt_, late * greatest(piece_.belt_rate)) / piece_.h;
+    const double fastest = std::max(solver_.fastest_belt(), late * greatest(piece_.belt_rate));
+    const double rounded_rate = 256 * rounding * fastest / piece_.h;
     const Series belt = fit(piece_.belt), rate = fit(piece_.belt_rate);
     for (const model::Motion side : {model::Motion::forward, model::Motion::backward}) {
         if (side == standstill_.leans()) continue;
@@ -127,6 +184,7 @@ void Engine::record_turns(double until) {
     Series v = piece_.series[1];
     v[0] += y_[1];
     const double moving = greatest(piece_.y[1]);
+    if (stays_above_zero(model::sign_of(standstill_.motion()), v, moving)) return;
     const double torques = greatest(piece_.M) + greatest(piece_.push) +
                            system_.stiffness() * (greatest(piece_.y[0]) + std::fabs(origin_)) +
                            std::fabs(system_.spring(theta()));

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "model/closed_form.hpp"
 #include "motion/hybrid/solver.hpp"
 #include "motion/spectral/chebyshev.hpp"
 
@@ -71,6 +72,15 @@ bool Field::asks_functions() const {
         return kind.function != nullptr || kind.delayed != nullptr ||
                (kind.relay != nullptr && kind.relay->of == model::RelayController::Of::function);
     });
+}
+
+bool Field::is_held(double inside) const {
+    if (has_surroundings()) return false;
+    for (std::size_t i = 0; i < kinds_.size(); ++i) {
+        if (kinds_[i].sampled != nullptr || kinds_[i].relay != nullptr) continue;
+        if (!model::stays_as_it_is(excitation_.components()[i], inside)) return false;
+    }
+    return true;
 }
 
 double Field::load(const MotionPoint& at) const {
@@ -210,20 +220,28 @@ bool Field::may_go_on() const {
                        [](const model::OwnState& state) { return state.rate->may_go_on(); });
 }
 
-double Field::until_switch(std::size_t component, const MotionPoint& at) const {
+Field::Threshold Field::threshold(std::size_t component) const {
     const model::RelayController& own = *relay(component);
-    double measured = at.y.theta;
-    if (own.of == model::RelayController::Of::velocity) {
-        measured = at.y.velocity;
-    } else if (own.of == model::RelayController::Of::function) {
-        measured = own.function->value_with(at.t, at.y, at.states);
-    } else if (own.of == model::RelayController::Of::state) {
-        for (std::size_t i = 0; i < extras_.states.size(); ++i) {
-            if (extras_.states[i].name == own.state) measured = at.states[i];
-        }
-    }
     const double way = own.off > own.on ? 1 : -1;
-    return memory_[component].on ? way * (own.off - measured) : way * (measured - own.on);
+    return memory_[component].on ? Threshold{-way, own.off} : Threshold{way, own.on};
+}
+
+std::optional<std::size_t> Field::looks_at(std::size_t component) const {
+    using Of = model::RelayController::Of;
+    const model::RelayController& own = *relay(component);
+    if (own.of == Of::function) return {};
+    std::size_t place = own.of == Of::velocity ? 1 : 0;
+    for (std::size_t i = 0; own.of == Of::state && i < extras_.states.size(); ++i) {
+        if (extras_.states[i].name == own.state) place = 2 + i;
+    }
+    return place;
+}
+
+double Field::until_switch(std::size_t component, const MotionPoint& at) const {
+    const auto [sign, level] = threshold(component);
+    const auto place = looks_at(component);
+    if (!place) return sign * (relay(component)->function->value_with(at.t, at.y, at.states) - level);
+    return sign * ((*place == 0 ? at.y.theta : *place == 1 ? at.y.velocity : at.states[*place - 2]) - level);
 }
 
 }  // namespace dinal::motion::hybrid

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <deque>
 #include <memory>
+#include <optional>
 #include <span>
 #include <utility>
 #include <vector>
@@ -65,6 +66,9 @@ public:
     /// Whether M has a function that is known where it was asked only. What is held is known, and so is when a relay
     /// switches, but for one of a function.
     [[nodiscard]] bool asks_functions() const;
+    /// Whether nothing that acts on the mass but itself changes on the stretch without a jump in which this time lies:
+    /// what controllers give is held.
+    [[nodiscard]] bool is_held(double inside) const;
     /// M of the user.
     [[nodiscard]] double load(const MotionPoint& at) const;
     /// -I a(t) of the base.
@@ -97,6 +101,13 @@ public:
     // Relays, by their place among the components.
     [[nodiscard]] const model::RelayController* relay(std::size_t component) const { return kinds_[component].relay; }
     [[nodiscard]] std::size_t component_count() const { return kinds_.size(); }
+    /// What it looks at, and where that switches it: sign (measured - level) is positive until then.
+    struct Threshold {
+        double sign, level;
+    };
+    [[nodiscard]] Threshold threshold(std::size_t component) const;
+    /// The place among theta, velocity and states of what it looks at; none where that is a function.
+    [[nodiscard]] std::optional<std::size_t> looks_at(std::size_t component) const;
     /// Positive until it is to switch.
     [[nodiscard]] double until_switch(std::size_t component, const MotionPoint& at) const;
     void toggle(std::size_t component) { memory_[component].on = !memory_[component].on; }

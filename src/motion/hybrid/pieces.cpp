@@ -59,10 +59,14 @@ private:
             return friction;
         }
         const Nodes theta_at = cheb::at_nodes(theta), v_at = cheb::at_nodes(v), belt_at = cheb::at_nodes(around_.belt);
+        const double sign = model::sign_of(piece_.way);
+        const model::SpeedRange& line = piece_.friction;
         Nodes values{};
         for (std::size_t j = 0; j < node_count; ++j) {
-            values[j] = -system.braking(piece_.way) -
-                        system.friction_remainder(piece_.way, {theta_at[j], v_at[j] - belt_at[j]});
+            const double slip = v_at[j] - belt_at[j];
+            values[j] = line.straight
+                            ? -sign * line.at(sign * slip)
+                            : -system.braking(piece_.way) - system.friction_remainder(piece_.way, {theta_at[j], slip});
         }
         return cheb::fit(values);
     }

@@ -20,6 +20,7 @@ struct Piece {
     Values begin{};
     std::vector<Series> series{};  ///< of each value less its first
     Series M{};
+    model::SpeedRange friction{};  ///< if straight, what friction was along it, also beyond what was used
     struct Surroundings {
         Series push{}, belt{}, belt_rate{};
     };

@@ -11,6 +11,8 @@ namespace dinal::motion::hybrid {
 
 Solver::Solver(const Problem& problem, const Field& field, const Cut& cut)
     : system_(problem.system),
+      free_(system_),
+      slide_(system_),
       field_(field),
       cut_(cut),
       n_(2 + field.state_count()),
@@ -44,7 +46,9 @@ bool Solver::rates_of(const Solved& piece, double t, Side side, const model::Sta
     M = field_.load(at);
     field_.rates(at, out + 2);
     if (moves(piece)) {
-        const double friction = system_.braking(piece.way) + system_.remainder(piece.way, {theta, y[1] - belt});
+        const double friction = system_.braking(piece.way) +
+                                slide_.friction_remainder(system_, piece.way, {theta, y[1] - belt}) +
+                                system_.spring(theta);
         out[0] = y[1];
         out[1] = accelerated(((M - friction) + push), theta, y[1]);
     } else {
@@ -68,12 +72,19 @@ bool Solver::evaluate(Solved& piece, std::size_t node, const model::State& asked
 }
 
 Solver::Attempt Solver::solve(Solved& piece, const Values& begin, const model::State& departing) {
+    const bool linear = linear_ && cut_.h == 0;
+    Swing* swing = linear && moves(piece) ? &swing_over(piece) : nullptr;
+    if (swing != nullptr && !swing->resolved) swing = nullptr;
+    piece.held = linear && field_.is_held(piece.time(0));
     for (std::size_t j = 0; j + 1 < node_count; ++j) piece.times[j] = piece.time(cheb::nodes[j]);
     piece.times[node_count - 1] = piece.end;
     piece.y.resize(n_), piece.f.resize(n_), piece.series.resize(n_);
     for (std::size_t k = 0; k < n_; ++k) piece.y[k].fill(begin[k]);
+    if (piece.held && (swing != nullptr || !moves(piece))) return go_on_held(piece, swing);
     if (!sample_surroundings(piece)) return Attempt::failed;
-    const Attempt attempt = cut_.h > 0 ? runge_kutta(piece, departing) : collocate(piece, departing);
+    const Attempt attempt = cut_.h > 0         ? runge_kutta(piece, departing)
+                            : swing != nullptr ? follow_load(piece, *swing)
+                                               : collocate(piece, departing);
     if (attempt != Attempt::resolved) return attempt;
     for (std::size_t k = 0; k < n_; ++k) {
         Nodes change{};
@@ -83,7 +94,8 @@ Solver::Attempt Solver::solve(Solved& piece, const Values& begin, const model::S
     }
     if (cut_.h > 0) return attempt;
     judge(piece);
-    if (unresolved_ <= 1 && moves(piece) && system_.has_remainder()) look_at_corners(piece);
+    const bool known = slide_.inside() && !system_.has_spring();
+    if (unresolved_ <= 1 && moves(piece) && system_.has_remainder() && !known) look_at_corners(piece);
     return unresolved_ <= 1 ? Attempt::resolved : Attempt::shorten;
 }
 
@@ -196,7 +208,7 @@ void Solver::judge(const Solved& piece) {
 void Solver::look_at_corners(const Solved& piece) {
     constexpr double too_short = 1e-6, clearly = 64;
     if (2 * piece.h <= too_short * cut_.longest) return;
-    spectral::CornerLook look{system_, piece.way, piece.y[0], piece.y[1], {}};
+    spectral::CornerLook look{system_, slide_, piece.way, piece.y[0], piece.y[1], {}};
     for (std::size_t j = 0; j < node_count; ++j) {
         look.theta[j] += piece.origin, look.slip[j] -= piece.belt[j];
         look.remainder[j] = system_.inertia() * (accelerated((piece.M[j] - system_.braking(piece.way)) + piece.push[j],

@@ -10,7 +10,9 @@
 #include <optional>
 #include <vector>
 
+#include "model/slide.hpp"
 #include "motion/clock.hpp"
+#include "motion/exact/free_motion.hpp"
 #include "motion/hybrid/field.hpp"
 #include "motion/spectral/chebyshev.hpp"
 
@@ -44,9 +46,12 @@ struct Solved {
     double h = 0;    ///< half its length
     double end = 0;  ///< exactly
     model::Motion way = model::Motion::stuck;
-    bool leans = false;  ///< stuck at a wall, whatever the belt does
-    double origin = 0;   ///< theta is this and y[0]: a wall that was hit, so that small bounces keep their digits
+    bool leans = false;            ///< stuck at a wall, whatever the belt does
+    model::SpeedRange friction{};  ///< if straight, friction is along it on all of the piece
+    double origin = 0;  ///< theta is this and y[0]: a wall that was hit, so that small bounces keep their digits
     bool from_break = false, to_break = false;
+    bool to_the_end = false;  ///< it ends at `end` to the letter, be that a little earlier or later than 2 h
+    bool held = false;        ///< nothing that acts on the mass but itself changes: M is M[0], and nothing pushes
     Nodes times{};
     std::vector<Nodes> y{}, f{};  ///< of each value: at the nodes, and its rate
     Nodes M{}, push{}, belt{}, belt_rate{};
@@ -77,21 +82,50 @@ public:
     [[nodiscard]] double bad_time() const { return bad_time_; }
     /// Over 1: by how much the last piece was not resolved.
     [[nodiscard]] double unresolved() const { return unresolved_; }
+    /// The greatest speed of the belt so far.
+    [[nodiscard]] double fastest_belt() const { return fastest_belt_; }
+    /// Of the linear part.
+    [[nodiscard]] const exact::LinearMotion& free() const { return free_; }
+    /// The friction of the next piece that moves.
+    [[nodiscard]] model::Slide& slide() { return slide_; }
+    [[nodiscard]] const model::Slide& slide() const { return slide_; }
     /// A piece too short to matter is a straight line.
     void pass_over(Solved& piece) const;
 
 private:
     static constexpr std::size_t inner = node_count - 1;
+    /// How the linear part goes on from a velocity of 1 or an acceleration of 1, from theta = 0, over a piece.
+    struct Swing {
+        double h = 0;
+        bool resolved = false;  ///< by the polynomials
+        struct Course {
+            Nodes nodes{};
+            Series series{};
+        };
+        Course slowed{};  ///< what the velocity of 1 has changed by
+        Course moved{};   ///< theta of the velocity of 1, or the velocity of the acceleration of 1
+        Course driven{};  ///< theta of the acceleration of 1
+        /// What accelerations at the nodes, 0 at the first, do to the velocities there. Empty until it is needed.
+        Eigen::MatrixXd answer{};
+    };
     bool evaluate(Solved& piece, std::size_t node, const model::State& asked);
     bool rates_of(const Solved& piece, double t, Side side, const model::State& asked, const Values& y,
                   double belt_rate, double* out, double& M, double push, double belt) const;
     Attempt collocate(Solved& piece, const model::State& departing);
+
+    // solver_linear.cpp: what needs no iterations.
+    [[nodiscard]] Swing& swing_over(Solved& piece);
+    void swing_on(Solved& piece, const Swing& swing) const;
+    Attempt go_on_held(Solved& piece, const Swing* swing);
+    Attempt follow_load(Solved& piece, Swing& swing);
+    void prepare_answer(Swing& swing) const;
+    void end_in_time(Solved& piece) const;
+
     Attempt runge_kutta(Solved& piece, const model::State& departing);
     bool sample_surroundings(Solved& piece);
     bool estimate_jacobian(const Solved& piece, std::size_t node);
     [[nodiscard]] const Eigen::MatrixXd& newton(const Solved& piece);
     void place(Solved& piece) const;
-    [[nodiscard]] bool solves_at_once(const Solved& piece) const;
     [[nodiscard]] double accelerated(double torque, double theta, double velocity) const;
     /// Theta is the integral of the velocity, and that of a mass at rest is its surface's.
     [[nodiscard]] std::size_t first_unknown(const Solved& piece) const { return moves(piece) ? 1 : 2; }
@@ -101,6 +135,8 @@ private:
     [[nodiscard]] bool moves(const Solved& piece) const { return piece.way != model::Motion::stuck; }
 
     model::Lowered system_;
+    exact::LinearMotion free_;
+    model::Slide slide_;
     const Field& field_;
     Cut cut_;
     std::size_t n_;  // values
@@ -121,6 +157,8 @@ private:
         bool known = false;
     };
     Linear moving_, standing_;
+    std::array<Swing, 8> swings_;  // of some lengths that were
+    std::size_t next_swing_ = 0;
     Eigen::VectorXd residual_, step_;
     mutable Values point_;
     mutable Values rate_;

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <limits>
 
+#include "motion/hybrid/integration.hpp"
 #include "motion/hybrid/solver.hpp"
 
 namespace dinal::motion::hybrid {
@@ -13,25 +14,6 @@ constexpr int most_iterations = 40;
 constexpr double most_left_over = 1e-6;  // of the equation; a stiff rate multiplies the rounding of its steps
 
 using NodeVector = Eigen::Matrix<double, node_count, 1>;
-
-/// Row i: the integral from -1 to node i of the polynomial through values at the nodes.
-using Integration = Eigen::Matrix<double, node_count, node_count>;
-const Integration& integration() {
-    static const Integration weights = [] {
-        Integration rows = Integration::Zero();
-        for (std::size_t j = 0; j < node_count; ++j) {
-            Nodes unit{};
-            unit[j] = 1;
-            const auto F = cheb::integral(cheb::fit(unit), 0.0);
-            for (std::size_t i = 1; i < node_count; ++i) {
-                rows(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) = cheb::value(F, cheb::nodes[i]);
-            }
-        }
-        return rows;
-    }();
-    return weights;
-}
-
 }  // namespace
 
 /// How the rates depend on the values, by differences at a node, narrow against the motion there.
@@ -102,13 +84,6 @@ void Solver::place(Solved& piece) const {
     theta = (piece.y[0][0] + piece.h * (integration() * velocity).array()).matrix();
 }
 
-/// Where nothing depends on the motion but C velocity and k theta, one step of Newton is all there is to do.
-bool Solver::solves_at_once(const Solved& piece) const {
-    constexpr double most = 8;  // beyond that rounding is multiplied
-    return linear_ && moves(piece) &&
-           piece.h * (piece.h * system_.stiffness() + system_.damping()) <= most * system_.inertia();
-}
-
 Solver::Attempt Solver::collocate(Solved& piece, const model::State& departing) {
     Linear& linear = moves(piece) ? moving_ : standing_;
     unresolved_ = std::numeric_limits<double>::infinity();
@@ -159,13 +134,6 @@ Solver::Attempt Solver::collocate(Solved& piece, const model::State& departing) 
             }
             if (moves(piece)) place(piece);
             if (!std::isfinite(change + left)) break;
-            if (sloped && solves_at_once(piece)) {
-                for (std::size_t j = 1; j < node_count; ++j) {
-                    const double torque = (piece.M[j] - system_.braking(piece.way)) + piece.push[j];
-                    piece.f[1][j] = accelerated(torque, piece.theta_at(j), piece.y[1][j]);
-                }
-                return Attempt::resolved;
-            }
             const double rate = before < std::numeric_limits<double>::infinity() ? change / before : 1;
             const bool converged = change <= 16 * rounding || (i >= 1 && change * rate <= 4 * rounding) ||
                                    (i >= 2 && change <= 1e-12 && rate > 0.3);
