@@ -4,7 +4,8 @@
 #include "support/catch.hpp"
 #include "support/measure.hpp"
 
-using namespace dinal;
+namespace dinal::arrival_test {
+
 using namespace dinal::model;
 using namespace dinal::motion;
 using namespace dinal::truth;
@@ -35,3 +36,5 @@ TEST_CASE("a decay whose last extreme is Re/k ends there", "[razor]") {
         }
     }
 }
+
+}  // namespace dinal::arrival_test

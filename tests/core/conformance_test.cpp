@@ -13,7 +13,8 @@
 #include "support/measure.hpp"
 #include "support/within.hpp"
 
-using namespace dinal;
+namespace dinal::conformance_test {
+
 using namespace dinal::model;
 using namespace dinal::motion;
 using namespace dinal::truth;
@@ -234,3 +235,5 @@ TEST_CASE("a copy scaled by powers of two moves alike, bit for bit", "[conforman
         }
     }
 }
+
+}  // namespace dinal::conformance_test

@@ -6,7 +6,8 @@
 #include "support/within.hpp"
 #include "support/written.hpp"
 
-using namespace dinal;
+namespace dinal::controller_test {
+
 using namespace dinal::model;
 using namespace dinal::motion;
 using namespace dinal::truth;
@@ -98,3 +99,5 @@ TEST_CASE("events of a user are located to rounding, each once, and may act or s
     }
     CHECK(run.events.back().user == 2);
 }
+
+}  // namespace dinal::controller_test

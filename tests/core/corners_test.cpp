@@ -12,7 +12,8 @@
 #include "support/within.hpp"
 #include "support/written.hpp"
 
-using namespace dinal;
+namespace dinal::corners_test {
+
 using namespace dinal::model;
 using namespace dinal::motion;
 using namespace dinal::truth;
@@ -222,3 +223,5 @@ TEST_CASE("a speed that only touches a corner, or stays at it, goes on", "[laws]
     const Trajectory back = must_run(block, push, {0, 1.5}, {0, 20}, Grid::every(0.5), Spectral{});
     CHECK(back.state_at_stop.velocity == within(1 + 0.5 * std::exp(-6), 1e-12));
 }
+
+}  // namespace dinal::corners_test

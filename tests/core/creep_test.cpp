@@ -7,9 +7,10 @@
 #include "support/within.hpp"
 #include "support/written.hpp"
 
+namespace dinal::creep_test {
+
 namespace {
 
-using namespace dinal;
 using namespace dinal::model;
 using namespace dinal::motion;
 using namespace dinal::truth;
@@ -106,3 +107,5 @@ TEST_CASE("#4 - what creeps at the end of a run is stuck there, and goes on cree
         CHECK(still->events[0].t == first.events[0].t);
     }
 }
+
+}  // namespace dinal::creep_test

@@ -6,9 +6,10 @@
 #include "support/measure.hpp"
 #include "support/written.hpp"
 
+namespace dinal::crest_test {
+
 namespace {
 
-using namespace dinal;
 using namespace dinal::model;
 using namespace dinal::motion;
 using namespace dinal::truth;
@@ -98,3 +99,5 @@ TEST_CASE(
         }
     }
 }
+
+}  // namespace dinal::crest_test

@@ -5,8 +5,9 @@
 #include "files/csv.hpp"
 #include "support/catch.hpp"
 
+namespace dinal::csv_rows_test {
+
 using Catch::Matchers::Contains;
-using namespace dinal;
 using namespace dinal::files;
 
 namespace {
@@ -33,3 +34,5 @@ TEST_CASE("a row whose first numbers are plain is read once and as a whole, or r
     CHECK_THAT(fault("a,b\n1,2\n3\n"), Contains("found 1 field, expected 2"));
     CHECK_THAT(fault("a,b\n1,2\n3 4,5\n"), Contains("column 1 (a)"));
 }
+
+}  // namespace dinal::csv_rows_test

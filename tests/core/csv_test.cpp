@@ -9,9 +9,10 @@
 #include "support/catch.hpp"
 #include "support/temporary_folder.hpp"
 
+namespace dinal::csv_test {
+
 using Catch::Matchers::Contains;
 using Catch::Matchers::Equals;
-using namespace dinal;
 using namespace dinal::files;
 using namespace dinal::testing;
 using Strings = std::vector<std::string>;
@@ -342,3 +343,5 @@ TEST_CASE("the columns of a matrix are its columns, not copies", "[table]") {
     CHECK(columns[1].values.data() == values.data() + 2);
     CHECK(columns[1].values[1] == 4);
 }
+
+}  // namespace dinal::csv_test

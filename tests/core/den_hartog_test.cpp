@@ -13,7 +13,8 @@
 #include "support/within.hpp"
 #include "theory/theory_forced.hpp"
 
-using namespace dinal;
+namespace dinal::den_hartog_test {
+
 using namespace dinal::model;
 using namespace dinal::motion;
 using namespace dinal::theory;
@@ -252,3 +253,5 @@ TEST_CASE("at gamma = 0.4 the boundary lies between r = 0.45, with stops, and r 
     CHECK(amplitude(0.45, 0.4) == -1);
     CHECK(amplitude(0.55, 0.4) > 1);
 }
+
+}  // namespace dinal::den_hartog_test

@@ -8,7 +8,8 @@
 #include "support/measure.hpp"
 #include "support/within.hpp"
 
-using namespace dinal;
+namespace dinal::dinal1989_test {
+
 using namespace dinal::model;
 using namespace dinal::motion;
 using namespace dinal::truth;
@@ -276,3 +277,5 @@ TEST_CASE("with Re > Rd the rule of 1989 holds no more than Rd after the first s
     CHECK(greatest_pull(Dinal1989{.h = 1e-4}, 1) == within(19.62 + 2, 0.01));
     CHECK(greatest_pull(Rk4{1e-4}, 1) == within(in_truth, 1e-4));
 }
+
+}  // namespace dinal::dinal1989_test

@@ -8,7 +8,8 @@
 #include "support/excitations.hpp"
 #include "support/measure.hpp"
 
-using namespace dinal;
+namespace dinal::energy_test {
+
 using namespace dinal::analysis;
 using namespace dinal::model;
 using namespace dinal::motion;
@@ -297,3 +298,5 @@ TEST_CASE("a run that kept no panels says what to do for its energy", "[energy]"
     CAPTURE(complaint(*small), complaint(rk4));
     CHECK(complaint(*small).find("for want of memory") != std::string::npos);
 }
+
+}  // namespace dinal::energy_test

@@ -13,7 +13,8 @@
 #include "support/random_case.hpp"
 #include "support/within.hpp"
 
-using namespace dinal;
+namespace dinal::exact_test {
+
 using namespace dinal::model;
 using namespace dinal::motion;
 using namespace dinal::truth;
@@ -314,3 +315,5 @@ TEST_CASE("a row stands where it stands, whatever the arc before it was made of"
         CHECK(std::fabs(run.rows(i, 1) - (std::cos(t) + stepped(t - 1) - stepped(t - 1 - width))) <= 1e-15);
     }
 }
+
+}  // namespace dinal::exact_test

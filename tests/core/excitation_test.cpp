@@ -5,7 +5,8 @@
 #include "support/excitations.hpp"
 #include "support/within.hpp"
 
-using namespace dinal;
+namespace dinal::excitation_test {
+
 using namespace dinal::model;
 using namespace dinal::excitations;
 
@@ -255,3 +256,5 @@ TEST_CASE("two sums that go on from the same one do not see each other's terms",
     CHECK((Excitation() + one).value(0) == 15);
     CHECK((one + Excitation()).value(0) == 15);
 }
+
+}  // namespace dinal::excitation_test

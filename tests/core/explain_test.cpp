@@ -14,7 +14,8 @@
 #include "text/characters.hpp"
 #include "text/sentences.hpp"
 
-using namespace dinal;
+namespace dinal::explain_test {
+
 using namespace dinal::analysis;
 using namespace dinal::model;
 using namespace dinal::motion;
@@ -300,3 +301,5 @@ TEST_CASE("lines are not broken within a formula", "[explain]") {
     const std::string ninety(90, 'x');
     CHECK(wrapped(ninety + " y") == ninety + "\ny");
 }
+
+}  // namespace dinal::explain_test

@@ -6,7 +6,8 @@
 #include "support/measure.hpp"
 #include "support/within.hpp"
 
-using namespace dinal;
+namespace dinal::field_cases_test {
+
 using namespace dinal::model;
 using namespace dinal::motion;
 using namespace dinal::truth;
@@ -78,3 +79,5 @@ TEST_CASE("a mass at rest for 20 periods is still hit by a pulse of a twentieth 
         CHECK(run.outcome == Outcome::at_rest);
     }
 }
+
+}  // namespace dinal::field_cases_test

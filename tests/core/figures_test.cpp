@@ -7,6 +7,8 @@
 #include "plots/paper_layout.hpp"
 #include "support/catch.hpp"
 
+namespace dinal::figures_test {
+
 using namespace dinal::plots;
 
 namespace {
@@ -59,3 +61,5 @@ TEST_CASE("figures below others have their boxes below theirs, as wide", "[plots
     CHECK(sheet.panels[2].left > sheet.panels[0].right);
     CHECK(sheet.panels[2].bottom < sheet.panels[1].top);
 }
+
+}  // namespace dinal::figures_test

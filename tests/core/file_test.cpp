@@ -12,9 +12,10 @@
 
 #include "support/temporary_folder.hpp"
 
+namespace dinal::file_test {
+
 using Catch::Matchers::Contains;
 using Catch::Matchers::Equals;
-using namespace dinal;
 using namespace dinal::files;
 using namespace dinal::testing;
 namespace fs = std::filesystem;
@@ -286,3 +287,5 @@ TEST_CASE("who is told to stop reads no further", "[file]") {
     REQUIRE(table);
     CHECK(table->values.rows() < 20'000);
 }
+
+}  // namespace dinal::file_test

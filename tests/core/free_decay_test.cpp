@@ -10,7 +10,8 @@
 #include "support/within.hpp"
 #include "theory/theory_free.hpp"
 
-using namespace dinal;
+namespace dinal::free_decay_test {
+
 using namespace dinal::model;
 
 namespace {
@@ -57,3 +58,5 @@ TEST_CASE("a sparse record of a long decay, one sample, and a mass that never mo
     const Oscillator held = truth::nondimensional(0.1, 0.5, 0.5);
     for (const double y : analysis::free_decay(held, {0.4, 0}, even_times(0, 0.1, 20))) CHECK(y == 0.4);
 }
+
+}  // namespace dinal::free_decay_test

@@ -5,7 +5,8 @@
 
 #include "support/catch.hpp"
 
-using namespace dinal;
+namespace dinal::friction_test {
+
 using namespace dinal::model;
 
 namespace {
@@ -88,3 +89,5 @@ TEST_CASE("without dry friction any load moves the mass", "[friction]") {
     CHECK(motion_from_standstill(system, std::numeric_limits<double>::denorm_min(), 0) == Motion::forward);
     CHECK(motion_from_standstill(system, -1e-300, 0) == Motion::backward);
 }
+
+}  // namespace dinal::friction_test

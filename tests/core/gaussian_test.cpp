@@ -6,7 +6,8 @@
 #include "support/random_case.hpp"
 #include "support/within.hpp"
 
-using namespace dinal;
+namespace dinal::gaussian_test {
+
 using namespace dinal::model;
 using namespace dinal::motion;
 using namespace dinal::excitations;
@@ -139,3 +140,5 @@ TEST_CASE("a method with a step refuses what it would step over, and says which 
         must_run(oscillator(0, 0), made(Gaussian{1, 5, 0.01}), {}, {0, 7.3}, Grid::at({7.3}), Rk4{0.005});
     CHECK(run.rows(0, 1) == within(swing * std::sin(w0 * 2.3), 1e-6 * swing));
 }
+
+}  // namespace dinal::gaussian_test

@@ -6,7 +6,8 @@
 #include "support/catch.hpp"
 #include "support/temporary_folder.hpp"
 
-using namespace dinal;
+namespace dinal::gnuplot_process_test {
+
 using namespace dinal::plots;
 
 namespace {
@@ -86,3 +87,5 @@ TEST_CASE("gnuplot gets no more memory than allowed above what it needs itself",
     CHECK(run_gnuplot("set terminal pdfcairo\nplot sin(x)\n", {.memory = little}));
     CHECK(!run_gnuplot("set terminal pngcairo size 20000,20000\nplot sin(x)\n", {.memory = little}));
 }
+
+}  // namespace dinal::gnuplot_process_test

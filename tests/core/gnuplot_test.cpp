@@ -12,7 +12,8 @@
 #include "support/catch.hpp"
 #include "support/temporary_folder.hpp"
 
-using namespace dinal;
+namespace dinal::gnuplot_test {
+
 using namespace dinal::plots;
 
 namespace {
@@ -314,3 +315,5 @@ TEST_CASE("a phase plane that is flat or steep gets a sheet that fits it", "[gnu
     figure.y.limits = Interval{-20, 20};
     CHECK(height() >= round - 1);
 }
+
+}  // namespace dinal::gnuplot_test

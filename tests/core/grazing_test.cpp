@@ -7,9 +7,10 @@
 #include "support/measure.hpp"
 #include "support/reference_systems.hpp"
 
+namespace dinal::grazing_test {
+
 namespace {
 
-using namespace dinal;
 using namespace dinal::model;
 using namespace dinal::motion;
 using namespace dinal::truth;
@@ -54,3 +55,5 @@ TEST_CASE("a velocity that dips through zero and back within a step turns twice"
         }
     }
 }
+
+}  // namespace dinal::grazing_test

@@ -7,6 +7,8 @@
 
 #include "support/catch.hpp"
 
+namespace dinal::growing_test {
+
 using dinal::motion::Growing;
 
 namespace {
@@ -135,3 +137,5 @@ TEST_CASE("room to grow is not taken beyond what is allowed", "[growing]") {
     CHECK(first.followed_by(1000, numbers(1000, 1100), 1200).own_bytes() == 1200 * sizeof(int));
     CHECK(first.followed_by(1000, numbers(1000, 1100), 500).own_bytes() == 1100 * sizeof(int));  // what must be must be
 }
+
+}  // namespace dinal::growing_test

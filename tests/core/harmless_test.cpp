@@ -3,6 +3,8 @@
 
 #include "support/catch.hpp"
 
+namespace dinal::harmless_test {
+
 using dinal::text::harmless;
 
 TEST_CASE("lines, tabs, letters and colours pass", "[text]") {
@@ -26,3 +28,5 @@ TEST_CASE("what moves the cursor, names the window, hides or blinks does not", "
     CHECK(harmless("\x1b[38;5;1m") == "?[38;5;1m");
     CHECK(harmless("\x1b[31") == "?[31");
 }
+
+}  // namespace dinal::harmless_test

@@ -13,7 +13,8 @@
 #include "support/within.hpp"
 #include "support/written.hpp"
 
-using namespace dinal;
+namespace dinal::held_test {
+
 using namespace dinal::model;
 using namespace dinal::motion;
 using namespace dinal::truth;
@@ -325,3 +326,5 @@ TEST_CASE("a relay makes the limit cycle that arcs by hand make", "[hybrid][held
         CHECK(std::fabs(energy->total.error()) < 1e-12);
     }
 }
+
+}  // namespace dinal::held_test

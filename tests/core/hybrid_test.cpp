@@ -11,7 +11,8 @@
 #include "support/within.hpp"
 #include "support/written.hpp"
 
-using namespace dinal;
+namespace dinal::hybrid_test {
+
 using namespace dinal::model;
 using namespace dinal::motion;
 using namespace dinal::truth;
@@ -140,7 +141,7 @@ TEST_CASE("a stiff state, the lag of an actuator, costs no accuracy", "[hybrid]"
     const Matrix A = rows({{0, 1, 0}, {-1, -0.1L, 1}, {0, -0.5L / 6e-4L, -1 / 6e-4L}});
     const Trajectory run = run_more(system, M, {1, 0}, 20, 0.5, Spectral{}, extras);
     for (Eigen::Index i = 0; i < run.size(); ++i) {
-        const Vector x = (A * static_cast<long double>(run.rows(i, 0))).exp() * vector_of({1, 0, 0});
+        const Vector x = exponential(A * static_cast<long double>(run.rows(i, 0))) * vector_of({1, 0, 0});
         CHECK(run.rows(i, 1) == within(static_cast<double>(x(0)), 1e-11));
         CHECK(run.rows(i, 6) == within(static_cast<double>(x(2)), 1e-10));
     }
@@ -274,3 +275,5 @@ TEST_CASE("a controller that samples is called once an instant, in order, and it
 TEST_CASE("systems of all kinds by lot agree with an independent integrator, event by event", "[long][hybrid][mixed]") {
     check_random_mixed(300);
 }
+
+}  // namespace dinal::hybrid_test

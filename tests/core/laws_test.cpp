@@ -15,7 +15,8 @@
 #include "support/stribeck.hpp"
 #include "support/within.hpp"
 
-using namespace dinal;
+namespace dinal::laws_test {
+
 using namespace dinal::model;
 using namespace dinal::motion;
 using namespace dinal::truth;
@@ -275,3 +276,5 @@ TEST_CASE("the story names both sides of a friction, and no closed form that doe
     CHECK_THAT(story(truth::Stribeck{0.1, 0.3, 0.4}), Catch::Contains("changes with the speed"));
     CHECK_THAT(story(Coulomb{0.1, 0.3}), Catch::Contains("2 Rd/k"));
 }
+
+}  // namespace dinal::laws_test

@@ -7,7 +7,8 @@
 #include "support/within.hpp"
 #include "support/written.hpp"
 
-using namespace dinal;
+namespace dinal::leaning_test {
+
 using namespace dinal::model;
 using namespace dinal::motion;
 using namespace dinal::truth;
@@ -118,3 +119,5 @@ TEST_CASE("a load that only touches the limit does not take the mass off the wal
         CHECK(run.outcome == Outcome::at_rest);
     }
 }
+
+}  // namespace dinal::leaning_test

@@ -6,7 +6,8 @@
 #include "support/catch.hpp"
 #include "support/within.hpp"
 
-using namespace dinal;
+namespace dinal::least_squares_test {
+
 using namespace dinal::analysis;
 
 namespace {
@@ -58,3 +59,5 @@ TEST_CASE("with nothing to fit there is what is left, and no variance", "[identi
     CHECK(fit->sum == within(ramp.squaredNorm(), 1e-14));
     CHECK(covariance_of(Eigen::MatrixXd(100, 0), Eigen::VectorXd(0), 1).silent.empty());
 }
+
+}  // namespace dinal::least_squares_test

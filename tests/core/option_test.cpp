@@ -4,9 +4,9 @@
 
 #include "support/catch.hpp"
 
-namespace {
+namespace dinal::option_test {
 
-using namespace dinal;
+namespace {
 
 struct Pump {
     enum class Mode { slow, fast };
@@ -95,3 +95,5 @@ TEST_CASE("a number out of its range is told by the name, the value and the limi
     pump.breaks = {1, infinity};
     CHECK(complaint(pump) == "breaks[2] = inf must be finite");
 }
+
+}  // namespace dinal::option_test

@@ -10,7 +10,8 @@
 #include "support/oracle.hpp"
 #include "support/random_case.hpp"
 
-using namespace dinal;
+namespace dinal::oracle_test {
+
 using namespace dinal::model;
 using namespace dinal::motion;
 using namespace dinal::truth;
@@ -190,3 +191,5 @@ TEST_CASE("no bump is too narrow for spectral, whether the mass rests or moves",
     // In so short a time as a bump is long, much is too close to call.
     compare_cases(random_case_of_bumps, Spectral{}, number_from("DINAL_ORACLE_CASES", usual_cases / 4), 6);
 }
+
+}  // namespace dinal::oracle_test

@@ -5,7 +5,8 @@
 #include "support/catch.hpp"
 #include "support/measure.hpp"
 
-using namespace dinal;
+namespace dinal::order_test {
+
 using namespace dinal::model;
 using namespace dinal::motion;
 using namespace dinal::truth;
@@ -194,3 +195,5 @@ TEST_CASE("W3 over 1000 periods stays within 1e-9 with h = 0.001, and within 1e-
     // The same in rows at the steps themselves.
     CHECK(error_of(must_run(s, Grid::every(0.01), Rk4{0.01}), exact, s.oscillator) <= 1e-5);
 }
+
+}  // namespace dinal::order_test

@@ -6,7 +6,8 @@
 
 #include "support/catch.hpp"
 
-using namespace dinal;
+namespace dinal::oscillator_test {
+
 using namespace dinal::model;
 
 namespace {
@@ -110,3 +111,5 @@ TEST_CASE("parameters whose derived values leave the doubles are refused, extrem
     CHECK(tiny->natural_frequency() == Approx(1));
     CHECK(tiny->damping_ratio() == Approx(1));
 }
+
+}  // namespace dinal::oscillator_test

@@ -12,7 +12,8 @@
 #include "support/stribeck.hpp"
 #include "support/within.hpp"
 
-using namespace dinal;
+namespace dinal::panel_solver_test {
+
 using namespace dinal::model;
 using namespace dinal::motion;
 using namespace dinal::motion::spectral;
@@ -172,3 +173,5 @@ TEST_CASE("where M fails, panels end before it, and there the run", "[panel]") {
     CHECK(attempt == Attempt::ended);
     CHECK(there.solver.outcome() == Outcome::excitation_not_finite);
 }
+
+}  // namespace dinal::panel_solver_test

@@ -4,7 +4,8 @@
 #include "support/catch.hpp"
 #include "terminal/progress_text.hpp"
 
-using namespace dinal;
+namespace dinal::progress_text_test {
+
 using namespace dinal::terminal;
 
 namespace {
@@ -85,3 +86,5 @@ TEST_CASE("durations are told as on a clock", "[progress]") {
     CHECK(duration_text(1e300) == "1000000 days");
     CHECK(duration_text(std::numeric_limits<double>::quiet_NaN()) == "1000000 days");
 }
+
+}  // namespace dinal::progress_text_test

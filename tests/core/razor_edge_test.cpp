@@ -8,7 +8,8 @@
 #include "support/measure.hpp"
 #include "support/within.hpp"
 
-using namespace dinal;
+namespace dinal::razor_edge_test {
+
 using namespace dinal::model;
 using namespace dinal::motion;
 using namespace dinal::truth;
@@ -348,3 +349,5 @@ TEST_CASE("linear feedback is the damping that it imitates", "[razor]") {
     REQUIRE(run.events.size() == s.exact().events().size());
     CHECK(run.events.back().kind == EventKind::stick);
 }
+
+}  // namespace dinal::razor_edge_test

@@ -6,8 +6,9 @@
 #include "support/catch.hpp"
 #include "support/temporary_folder.hpp"
 
+namespace dinal::record1989_test {
+
 using Catch::Matchers::Contains;
-using namespace dinal;
 using namespace dinal::files;
 using namespace dinal::model;
 using namespace dinal::motion;
@@ -177,3 +178,5 @@ TEST_CASE("every beginning of a record gives a table or a sentence", "[record198
         CHECK((table || !table.error().sentence.empty()));
     }
 }
+
+}  // namespace dinal::record1989_test

@@ -9,7 +9,8 @@
 #include "support/measure.hpp"
 #include "support/within.hpp"
 
-using namespace dinal;
+namespace dinal::recurrence_test {
+
 using namespace dinal::analysis;
 using namespace dinal::model;
 using truth::harmonic;
@@ -96,3 +97,5 @@ TEST_CASE("the lag of a steady motion does not depend on where M is in its perio
         CHECK(*found == within(lag, 1e-6));
     }
 }
+
+}  // namespace dinal::recurrence_test

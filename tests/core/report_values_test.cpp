@@ -8,7 +8,8 @@
 #include "support/measure.hpp"
 #include "support/within.hpp"
 
-using namespace dinal;
+namespace dinal::report_values_test {
+
 using namespace dinal::model;
 using namespace dinal::motion;
 using namespace dinal::truth;
@@ -345,3 +346,5 @@ TEST_CASE("the number of stops per cycle falls as the load quickens", "[report]"
     for (const double r : {0.25, 0.35, 0.45}) CHECK(stops(r) == within(2, 0.05));
     for (const double r : {0.55, 0.8, 1.5}) CHECK(stops(r) == 0);
 }
+
+}  // namespace dinal::report_values_test

@@ -12,7 +12,8 @@
 #include "support/measure.hpp"
 #include "support/within.hpp"
 
-using namespace dinal;
+namespace dinal::response_curve_test {
+
 using namespace dinal::analysis;
 using namespace dinal::model;
 
@@ -185,3 +186,5 @@ TEST_CASE("where there is one motion the curve has a row for each value, and no 
     REQUIRE(curve.branches[0].size() == values.size());
     for (std::size_t i = 0; i < values.size(); ++i) CHECK(curve.branches[0][i].parameter == values[i]);
 }
+
+}  // namespace dinal::response_curve_test

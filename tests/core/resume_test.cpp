@@ -4,7 +4,8 @@
 #include "support/catch.hpp"
 #include "support/measure.hpp"
 
-using namespace dinal;
+namespace dinal::resume_test {
+
 using namespace dinal::model;
 using namespace dinal::motion;
 using namespace dinal::truth;
@@ -254,3 +255,5 @@ TEST_CASE("rows at given times go on with more of them", "[resume]") {
     REQUIRE_FALSE(wrong);
     CHECK(wrong.error().sentence == "times[5] = 1.125 is not after times[4] = 1.25: times must increase");
 }
+
+}  // namespace dinal::resume_test

@@ -6,9 +6,10 @@
 #include "support/measure.hpp"
 #include "support/within.hpp"
 
+namespace dinal::rounding_events_test {
+
 namespace {
 
-using namespace dinal;
 using namespace dinal::model;
 using namespace dinal::motion;
 using namespace dinal::truth;
@@ -55,3 +56,5 @@ TEST_CASE("#5 - a feedback that chatters is told to, and the turns of its chatte
         CHECK(run.rows(run.size() - 1, 0) <= run.t_stop);
     }
 }
+
+}  // namespace dinal::rounding_events_test

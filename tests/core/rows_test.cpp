@@ -7,7 +7,8 @@
 #include "support/measure.hpp"
 #include "support/within.hpp"
 
-using namespace dinal;
+namespace dinal::rows_test {
+
 using namespace dinal::model;
 using namespace dinal::motion;
 using namespace dinal::truth;
@@ -207,3 +208,5 @@ TEST_CASE("a monitor that says no stops the run, which keeps its rows", "[rows]"
         CHECK_FALSE(run->at(500));
     }
 }
+
+}  // namespace dinal::rows_test

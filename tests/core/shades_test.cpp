@@ -4,6 +4,8 @@
 
 #include <cmath>
 
+namespace dinal::shades_test {
+
 using namespace dinal::plots;
 
 namespace {
@@ -118,3 +120,5 @@ TEST_CASE("edges lie half way between the values, on logarithmic axes by ratio",
     CHECK(std::fabs(edges[1] - 10) < 1e-12);
     CHECK(edges_between({4}, false) == std::vector<double>{3, 5});
 }
+
+}  // namespace dinal::shades_test

@@ -9,7 +9,8 @@
 #include "support/excitations.hpp"
 #include "support/random_case.hpp"
 
-using namespace dinal;
+namespace dinal::spectral_look_test {
+
 using namespace dinal::model;
 using namespace dinal::motion;
 using namespace dinal::excitations;
@@ -212,3 +213,5 @@ TEST_CASE("a function that is rough at every scale ends with its own outcome, so
         CHECK(climb.calls < 20000000);
     }
 }
+
+}  // namespace dinal::spectral_look_test

@@ -7,7 +7,8 @@
 #include "support/catch.hpp"
 #include "support/excitations.hpp"
 
-using namespace dinal;
+namespace dinal::spectral_steps_test {
+
 using namespace dinal::model;
 using namespace dinal::motion;
 using namespace dinal::excitations;
@@ -90,3 +91,5 @@ TEST_CASE("spectral passes each step of an encoder in a feedback where it is, in
         CHECK(calls < 70 * truth.crossings + 2000);  // these until it knows that M jumps
     }
 }
+
+}  // namespace dinal::spectral_steps_test

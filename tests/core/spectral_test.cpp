@@ -13,7 +13,8 @@
 #include "support/random_case.hpp"
 #include "support/within.hpp"
 
-using namespace dinal;
+namespace dinal::spectral_test {
+
 using namespace dinal::analysis;
 using namespace dinal::model;
 using namespace dinal::motion;
@@ -342,3 +343,5 @@ TEST_CASE("a blow far shorter than times near it can be told apart gives all of 
         CHECK(run->state_at_stop.theta == within(static_cast<double>(after.at(end).theta), 1e-11));
     }
 }
+
+}  // namespace dinal::spectral_test

@@ -8,6 +8,8 @@
 #include "support/catch.hpp"
 #include "support/within.hpp"
 
+namespace dinal::spectrum_test {
+
 using dinal::within;
 using namespace dinal::analysis;
 
@@ -86,3 +88,5 @@ TEST_CASE("a mean does not lean on a sine that is cut off", "[spectrum]") {
     CHECK(s.amplitude[0] == within(3, 1e-3));  // hann's leakage 10 bins away: 1/(2 pi 10^3)
     CHECK(s.amplitude[1] == within(0, 1e-3));
 }
+
+}  // namespace dinal::spectrum_test

@@ -13,7 +13,8 @@
 #include "support/measure.hpp"
 #include "support/within.hpp"
 
-using namespace dinal;
+namespace dinal::spline_test {
+
 using namespace dinal::model;
 
 namespace {
@@ -199,3 +200,5 @@ TEST_CASE("points that cannot be a period are refused", "[spline]") {
     CHECK(complaint(cubic({0, 1, 1}, {0, 1, 0}, 1.5)).find("times must increase") != std::string::npos);
     CHECK(complaint(cubic({0, 1, 2}, {0, 1, 0}, 2)).empty());
 }
+
+}  // namespace dinal::spline_test

@@ -18,7 +18,8 @@
 #include "support/within.hpp"
 #include "support/written.hpp"
 
-using namespace dinal;
+namespace dinal::spring_test {
+
 using namespace dinal::model;
 using namespace dinal::motion;
 using namespace dinal::truth;
@@ -235,3 +236,5 @@ TEST_CASE("the story of a run names a spring of its own", "[spring][explain]") {
     CHECK_THAT(story(bare), Catch::Contains("a block on a spring of its own"));
     CHECK_THAT(story(bare), Catch::Contains("|M - spring| ="));
 }
+
+}  // namespace dinal::spring_test

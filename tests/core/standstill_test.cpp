@@ -12,7 +12,8 @@
 #include "support/measure.hpp"
 #include "support/within.hpp"
 
-using namespace dinal;
+namespace dinal::standstill_test {
+
 using namespace dinal::model;
 using namespace dinal::motion;
 using excitations::made;
@@ -237,3 +238,5 @@ TEST_CASE("a run knows whether it began stuck, whatever came later", "[standstil
         CHECK_FALSE(began_stuck({}, {0, 0}, nondimensional(0.05, 0)));
     }
 }
+
+}  // namespace dinal::standstill_test

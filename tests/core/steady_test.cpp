@@ -13,7 +13,8 @@
 #include "support/within.hpp"
 #include "theory/den_hartog.hpp"
 
-using namespace dinal;
+namespace dinal::steady_test {
+
 using namespace dinal::analysis;
 using namespace dinal::model;
 
@@ -326,3 +327,5 @@ TEST_CASE("M with an offset that begins late, and a square wave: halves, breaks 
     CHECK(shape_of(question, found).mean == within(0.7, 1e-11));
     CHECK((found.low + found.high) / 2 == within(0.7, 1e-11));
 }
+
+}  // namespace dinal::steady_test

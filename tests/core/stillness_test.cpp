@@ -9,7 +9,8 @@
 #include "support/catch.hpp"
 #include "support/excitations.hpp"
 
-using namespace dinal;
+namespace dinal::stillness_test {
+
 using namespace dinal::model;
 using namespace dinal::motion;
 
@@ -108,3 +109,5 @@ TEST_CASE("the peak on a belt is where the mass turns against the ground, which 
     CHECK(run.events.empty());
     CHECK(std::fabs(peak(run) - 3.2) <= 1e-9);
 }
+
+}  // namespace dinal::stillness_test

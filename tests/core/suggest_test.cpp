@@ -4,6 +4,8 @@
 
 #include "support/catch.hpp"
 
+namespace dinal::suggest_test {
+
 using dinal::text::did_you_mean;
 using dinal::text::suggestions;
 using Names = std::vector<std::string>;
@@ -101,3 +103,5 @@ TEST_CASE("the suggestion ends an error sentence", "[suggest]") {
     CHECK(did_you_mean("R", of_system) == "; did you mean 'Rd' or 'Re'?");
     CHECK(did_you_mean("colour", columns).empty());
 }
+
+}  // namespace dinal::suggest_test

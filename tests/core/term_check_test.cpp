@@ -2,7 +2,8 @@
 
 #include "support/excitations.hpp"
 
-using namespace dinal;
+namespace dinal::term_check_test {
+
 using namespace dinal::model;
 using namespace dinal::excitations;
 
@@ -46,3 +47,5 @@ TEST_CASE("hints that cannot be true of a script are refused", "[excitation]") {
           "excitation.scripted: breaks from 0 to 4 span more than the period 3; give those of one period");
     CHECK(complaint(Scripted{}) == "excitation.scripted: there is no function");
 }
+
+}  // namespace dinal::term_check_test

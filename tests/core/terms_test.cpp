@@ -4,7 +4,8 @@
 #include "support/excitations.hpp"
 #include "support/within.hpp"
 
-using namespace dinal;
+namespace dinal::terms_test {
+
 using namespace dinal::model;
 using namespace dinal::excitations;
 
@@ -277,3 +278,5 @@ TEST_CASE("the greatest value and the period that a term tells are its own", "[e
     CHECK(made(Ramp{0, 1}).most() == 0);
     CHECK(made(Ramp{-2, 1}).most() == never);
 }
+
+}  // namespace dinal::terms_test

@@ -3,7 +3,8 @@
 #include "support/catch.hpp"
 #include "text/characters.hpp"
 
-using namespace dinal;
+namespace dinal::text_frame_test {
+
 using namespace dinal::plots;
 using namespace dinal::plots::animation;
 
@@ -68,3 +69,5 @@ TEST_CASE("the pattern of a belt goes with it", "[animation]") {
     CHECK(still.starts_with("---/---/"));
     CHECK(text_frame(all, all.frames[10], format)[3] != still);
 }
+
+}  // namespace dinal::text_frame_test

@@ -8,7 +8,8 @@
 #include "support/catch.hpp"
 #include "text/characters.hpp"
 
-using namespace dinal;
+namespace dinal::textplot_test {
+
 using namespace dinal::plots;
 using namespace dinal::text;
 
@@ -249,15 +250,15 @@ TEST_CASE("who looks at a piece of time sees the values of that piece", "[textpl
 TEST_CASE("a window far away from the curves is drawn, too", "[textplot]") {
     for (const double far : {-1e9, 1e9, 1e200}) {
         for (const Style style : {Style::line, Style::points, Style::fill}) {
-            Figure figure = ::figure(curve({0, 1, 0.5}, {0, 1, 2}));
-            figure.curves[0].style = style;
-            figure.marks = {{1, 1, MarkKind::start}};
-            figure.stuck = {{0, 1}};
-            figure.dead_zone = Interval{-1, 1};
-            figure.equal = figure.circles = true;
-            for (Axis* axis : {&figure.x, &figure.y}) {
+            Figure far_off = figure(curve({0, 1, 0.5}, {0, 1, 2}));
+            far_off.curves[0].style = style;
+            far_off.marks = {{1, 1, MarkKind::start}};
+            far_off.stuck = {{0, 1}};
+            far_off.dead_zone = Interval{-1, 1};
+            far_off.equal = far_off.circles = true;
+            for (Axis* axis : {&far_off.x, &far_off.y}) {
                 axis->limits = Interval{far, far + std::fabs(far) / 1000};
-                CHECK(drawn(figure, 40, 12).find("(no points)") != std::string::npos);
+                CHECK(drawn(far_off, 40, 12).find("(no points)") != std::string::npos);
             }
         }
     }
@@ -313,3 +314,5 @@ TEST_CASE("text without UTF-8 spells Greek letters", "[textplot]") {
     CHECK(cut_to_columns("θθθ", 2) == "θθ");
     CHECK(displayable("a\nb\xff") == "a b\xEF\xBF\xBD");
 }
+
+}  // namespace dinal::textplot_test

@@ -8,6 +8,8 @@
 
 #include "support/catch.hpp"
 
+namespace dinal::theory_forced_test {
+
 using namespace dinal::theory;
 
 namespace {
@@ -98,3 +100,5 @@ TEST_CASE("figure 23: at resonance the amplitude grows by pi - 4 gamma a period,
     CHECK(growth_at_resonance(0) == pi);
     CHECK(growth_at_resonance(0.8) == 0);
 }
+
+}  // namespace dinal::theory_forced_test

@@ -9,7 +9,8 @@
 #include "support/measure.hpp"
 #include "support/within.hpp"
 
-using namespace dinal;
+namespace dinal::theory_free_test {
+
 using namespace dinal::model;
 using namespace dinal::motion;
 using namespace dinal::theory;
@@ -266,3 +267,5 @@ TEST_CASE("decrements of viscous and of dry friction", "[theory]") {
     const HalfCycles map(0, 0.03);
     CHECK(1 - map.after(2, 1) == Approx(friction_decrement(0.06, 2)).epsilon(1e-15));
 }
+
+}  // namespace dinal::theory_free_test

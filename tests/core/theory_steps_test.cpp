@@ -9,7 +9,8 @@
 #include "support/catch.hpp"
 #include "support/reference_systems.hpp"
 
-using namespace dinal;
+namespace dinal::theory_steps_test {
+
 using namespace dinal::model;
 using namespace dinal::motion;
 using namespace dinal::theory;
@@ -55,3 +56,5 @@ TEST_CASE("step limits without friction or without motion", "[theory]") {
     CHECK(printed_step_limit(truth::nondimensional(0, 0), {0, 0}, 0) == 0);
     CHECK(euler_step_limit(truth::nondimensional(0, 0.1), {0, 0}) == std::numeric_limits<double>::infinity());
 }
+
+}  // namespace dinal::theory_steps_test

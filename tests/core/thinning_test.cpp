@@ -6,7 +6,8 @@
 
 #include "support/catch.hpp"
 
-using namespace dinal;
+namespace dinal::thinning_test {
+
 using namespace dinal::plots;
 
 namespace {
@@ -193,3 +194,5 @@ TEST_CASE("points that cannot be seen are left out, and so is what has no place"
     const Paper paper{{Scale({0, 1}, false), Scale({0, 1}, false)}, {600, 400}};
     CHECK(thinned(cloud, paper) == std::vector<std::size_t>{0, 3});
 }
+
+}  // namespace dinal::thinning_test

@@ -14,7 +14,8 @@
 #include "support/within.hpp"
 #include "support/written.hpp"
 
-using namespace dinal;
+namespace dinal::walls_test {
+
 using namespace dinal::model;
 using namespace dinal::motion;
 using namespace dinal::truth;
@@ -241,3 +242,5 @@ TEST_CASE("the story tells of walls, impacts and rest at a wall", "[walls][expla
         CHECK_THAT(flat, Catch::Contains(part));
     }
 }
+
+}  // namespace dinal::walls_test

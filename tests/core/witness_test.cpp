@@ -10,7 +10,8 @@
 #include "support/catch.hpp"
 #include "support/excitations.hpp"
 
-using namespace dinal;
+namespace dinal::witness_test {
+
 using namespace dinal::model;
 using namespace dinal::motion;
 using namespace dinal::excitations;
@@ -123,3 +124,5 @@ TEST_CASE("a witness asks at most three questions of a hundred again", "[witness
         CHECK(heard->calls <= 1.03 * alone->calls);
     }
 }
+
+}  // namespace dinal::witness_test

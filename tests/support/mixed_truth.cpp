@@ -9,7 +9,7 @@ namespace dinal::truth {
 namespace {
 
 /// The fastest thing takes some 0.1 of time: (0.01/0.1)^9 in a step, of what little it does in one.
-constexpr real longest = 0.01L;
+constexpr real longest_step = 0.01L;
 enum What { nothing, stands, lets_go, hits, switches, user };
 
 int sign(real x) {
@@ -30,7 +30,7 @@ MixedTruth::MixedTruth(MixedSystem system, const MixedPoint& start, real t_end, 
     if (way_ == 0) settle(false);
     for (long steps = 0; t_ < t_end && !doubtful; ++steps) {
         while (!breaks_.empty() && *breaks_.begin() <= t_) breaks_.erase(breaks_.begin());
-        real end = std::min(t_end, t_ + longest);
+        real end = std::min(t_end, t_ + longest_step);
         if (!breaks_.empty()) end = std::min(end, *breaks_.begin());
         if (s_.sampled) end = std::min(end, s_.every * static_cast<real>(instant_));
         if (!pending_.empty()) end = std::min(end, pending_.front().first);
@@ -63,7 +63,7 @@ MixedTruth::MixedTruth(MixedSystem system, const MixedPoint& start, real t_end, 
         t_ = found ? t_ + h : end;
         y_ = next;
         fresh_ = false;
-        middle_ = t_ + longest / 2;
+        middle_ = t_ + longest_step / 2;
         if (way_ == 0) y_.velocity = wall_ != 0 ? 0 : belt(t_);
         if (found) {
             if (s_.delayed) {

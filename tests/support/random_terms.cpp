@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "support/random_case.hpp"
+#include "support/written.hpp"
 
 namespace dinal::truth {
 
@@ -22,10 +23,6 @@ Load load_of(Shape shape, std::vector<double> breaks = {}, double quickest = 0) 
             quickest};
 }
 
-model::Excitation native(model::Term term) {
-    return model::Excitation::make(std::move(term)).value();
-}
-
 /// From, from + step, ... all over the window, also when they are delayed later on.
 std::vector<double> every(double from, double step, const Units& u, std::vector<double> parts = {0}) {
     std::vector<double> times;
@@ -37,20 +34,11 @@ std::vector<double> every(double from, double step, const Units& u, std::vector<
     return times;
 }
 
-class Written : public model::UserFunction {
-public:
-    explicit Written(std::function<double(double, const model::State&)> f) : f_(std::move(f)) {}
-    double value(double t, const model::State& state) override { return f_(t, state); }
-
-private:
-    std::function<double(double, const model::State&)> f_;
-};
-
 template <class Shape>
 model::Excitation script_of(Shape shape, std::vector<double> breaks = {}) {
-    return native(model::Scripted{
-        .function = std::make_shared<Written>([shape](double t, const model::State&) { return shape(t, t); }),
-        .breaks = std::move(breaks)});
+    return native(
+        model::Scripted{.function = written([shape](double t, const model::State&, auto) { return shape(t, t); }),
+                        .breaks = std::move(breaks)});
 }
 
 /// n times in the window, at least `apart` from each other.
@@ -335,8 +323,9 @@ Ingredient random_feedback(Lot& lot, const Units& u) {
                 return in < at ? 0 * x : -torque * (b * x + a * v);
         }
     };
-    const auto function = std::make_shared<Written>(
-        [shape](double t, const model::State& y) { return static_cast<double>(shape(t, t, y.theta, y.velocity)); });
+    const auto function = written([shape](double t, const model::State& y, auto) {
+        return static_cast<double>(shape(t, t, y.theta, y.velocity));
+    });
     const Load load{[shape](real t, real in, const Motion& y) -> real { return shape(t, in, y.theta, y.velocity); },
                     kind == 8 ? std::vector<double>{at} : std::vector<double>{}, w};
     return {

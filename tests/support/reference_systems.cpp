@@ -3,22 +3,20 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <numbers>
 #include <stdexcept>
 #include <utility>
+
+#include "support/written.hpp"
 
 namespace dinal::truth {
 
 namespace {
 
-constexpr double pi = 3.141592653589793;
-constexpr model::State from_origin{0, 2 * pi};  // the report's free cases: unit amplitude without losses
-constexpr model::State drawn_out{1, 0};         // and its driven ones
+constexpr model::State from_origin{0, 2 * std::numbers::pi};  // the report's free cases: unit amplitude without losses
+constexpr model::State drawn_out{1, 0};                       // and its driven ones
 
 const std::vector<Piece> no_drive{{-1, {}}};
-
-model::Excitation native(model::Term term) {
-    return model::Excitation::make(std::move(term)).value();
-}
 
 void add_free(std::vector<ReferenceSystem>& list) {
     const auto free = [&](std::string name, const model::Oscillator& system, double t_end) {
@@ -148,9 +146,9 @@ model::Oscillator system_of(const model::OscillatorParameters& parameters) {
 }
 
 model::Oscillator nondimensional(double zeta, double friction_ratio, double breakaway_ratio) {
-    return system_of({.inertia = 1 / (4 * pi * pi),
+    return system_of({.inertia = 1 / (4 * std::numbers::pi * std::numbers::pi),
                       .stiffness = 1,
-                      .damping = zeta / pi,  // 2 zeta sqrt(I k)
+                      .damping = zeta / std::numbers::pi,  // 2 zeta sqrt(I k)
                       .kinetic_friction = friction_ratio,
                       .breakaway = breakaway_ratio});
 }

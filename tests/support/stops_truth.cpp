@@ -11,7 +11,7 @@ namespace dinal::truth {
 namespace {
 
 using model::EventKind;
-constexpr long most_steps = 20000;
+constexpr long patience = 20000;
 /// Bounces slower than this follow each other under a torque that stays as it is: their sum is a geometric series.
 constexpr real slowest_bounce = 1e-9L;
 
@@ -33,7 +33,7 @@ StopsTruth::StopsTruth(StopsSystem system, const Motion& initial, real t_start, 
     begin();
     while (t_ < t_end_ && !gave_up_) {
         mode_ == Mode::moving ? move() : stand();
-        gave_up_ = gave_up_ || steps_ > most_steps;
+        gave_up_ = gave_up_ || steps_ > patience;
     }
     while (motions_.size() < times_.size()) motions_.push_back({y_[0] + origin_, y_[1]});
 }
@@ -101,7 +101,7 @@ void StopsTruth::move() {
         const real a = acceleration(t_, y_);
         if (a * y_[1] < 0) h = std::min(h, std::fabs(y_[1] / a) / 3);
     }
-    while (t_ < t_end_ && mode_ == Mode::moving && ++steps_ < most_steps) {
+    while (t_ < t_end_ && mode_ == Mode::moving && ++steps_ < patience) {
         const bool last = t_ + h >= t_end_;
         const real length = last ? t_end_ - t_ : h;
         const Point once = stepped(y_, t_, length);

@@ -25,8 +25,11 @@ private:
 inline std::shared_ptr<model::UserFunction> written(Body body) {
     return std::make_shared<Written>(std::move(body));
 }
+inline model::Excitation native(model::Term term) {
+    return model::Excitation::make(std::move(term)).value();
+}
 inline model::Excitation feedback(Body body) {
-    return model::Excitation::make(model::Scripted{.function = written(std::move(body)), .feedback = true}).value();
+    return native(model::Scripted{.function = written(std::move(body)), .feedback = true});
 }
 
 inline motion::Trajectory run_more(const model::Oscillator& system, const model::Excitation& M,
