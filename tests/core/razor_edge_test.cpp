@@ -7,6 +7,7 @@
 #include "support/catch.hpp"
 #include "support/measure.hpp"
 #include "support/within.hpp"
+#include "support/written.hpp"
 
 namespace dinal::razor_edge_test {
 
@@ -33,13 +34,6 @@ double tolerance_of(const Integrator& integrator, double of_rk4) {
     return std::holds_alternative<Rk4>(integrator) ? of_rk4 : 2e-14;
 }
 
-Excitation of(Term term) {
-    return Excitation::make(std::move(term)).value();
-}
-Excitation constant(double level) {
-    return of(Constant{level});
-}
-
 /// I = 1/(4 pi^2), k = 1: T0 = 1.
 Trajectory run_of(const Oscillator& system, const Excitation& M, const State& initial, double t_end,
                   const Integrator& integrator) {
@@ -62,11 +56,11 @@ TEST_CASE("a load of exactly Re holds for ever, one unit in the last place more 
             system_of({.inertia = 1, .stiffness = 1, .kinetic_friction = 0.5 * Re, .breakaway = Re});
         for (const double side : {1.0, -1.0}) {
             CAPTURE(Re, side);
-            const Trajectory held = run_of(system, constant(side * Re), {0, 0}, 20, integrator);
+            const Trajectory held = run_of(system, native(Constant{side * Re}), {0, 0}, 20, integrator);
             check_never_moved(held, 0);
             CHECK(held.outcome == Outcome::at_rest);
             const Trajectory released =
-                run_of(system, constant(side * std::nextafter(Re, infinity)), {0, 0}, 3, integrator);
+                run_of(system, native(Constant{side * std::nextafter(Re, infinity)}), {0, 0}, 3, integrator);
             CHECK(side * released.rows(released.size() - 1, 1) > 0.5 * Re);
             CHECK(released.events.empty());  // nothing is an event at the start
         }
@@ -98,22 +92,23 @@ TEST_CASE("a load that only touches the limit does not release", "[razor]") {
     }
     SECTION("a parabola with its top at the limit") {
         // 1/2 - (t - 1)^2, and never more in doubles either.
-        const Excitation parabola = of(Polynomial{.coefficients = {0.5, 0, -1}, .at = 1});
+        const Excitation parabola = native(Polynomial{.coefficients = {0.5, 0, -1}, .at = 1});
         check_never_moved(must_run(system, parabola, {0, 0}, {0.1, 1.9}, Grid::every(0.01), integrator), 0);
         check_never_moved(must_run(system, parabola, {0, 0}, {0.1003, 1.9}, Grid::every(0.01), either(0.0371)), 0);
     }
     SECTION("the corners of a triangle wave, which are breaks") {
-        check_never_moved(run_of(system, of(Triangle{.amplitude = 0.5, .period = 1.7}), {0, 0}, 20, integrator), 0);
+        check_never_moved(run_of(system, native(Triangle{.amplitude = 0.5, .period = 1.7}), {0, 0}, 20, integrator), 0);
     }
     SECTION("a step up to the limit and back") {
-        check_never_moved(run_of(system, of(Pulse{.amplitude = 0.5, .at = 1, .width = 0.3}), {0, 0}, 5, integrator), 0);
+        check_never_moved(run_of(system, native(Pulse{.amplitude = 0.5, .at = 1, .width = 0.3}), {0, 0}, 5, integrator),
+                          0);
     }
 }
 
 TEST_CASE("a load that passes the limit between two samples releases", "[razor]") {
     const Oscillator system = nondimensional(0, 0.25, 0.5);
     // 1e-6 over the limit for a time of 2e-3, in steps of 0.01 that straddle it.
-    const Excitation parabola = of(Polynomial{.coefficients = {0.5 + 1e-6, 0, -1}, .at = 1.0025});
+    const Excitation parabola = native(Polynomial{.coefficients = {0.5 + 1e-6, 0, -1}, .at = 1.0025});
     const Integrator integrator = either(0.01);
     const Trajectory run = must_run(system, parabola, {0, 0}, {0.1, 1.9}, Grid::none(), integrator);
     REQUIRE_FALSE(run.events.empty());
@@ -127,7 +122,7 @@ TEST_CASE("a release is at the moment when M passes the limit, to rounding", "[r
     for (const Integrator& integrator :
          std::vector<Integrator>{Exact{}, Spectral{}, Rk4{0.01}, Rk4{0.0137}, Rk4{0.001}}) {
         const Trajectory run =
-            must_run(system, of(Ramp{.slope = 0.3, .at = 0.2}), {0, 0}, {0, 3}, Grid::none(), integrator);
+            must_run(system, native(Ramp{.slope = 0.3, .at = 0.2}), {0, 0}, {0, 3}, Grid::none(), integrator);
         REQUIRE_FALSE(run.events.empty());
         CHECK(run.events[0].kind == EventKind::slip);
         CHECK(run.events[0].t == Approx(0.2 + 0.5 / 0.3).epsilon(4e-15));
@@ -193,7 +188,7 @@ TEST_CASE("a jump of M exactly at a turn: the mass goes on from there under the 
         const double at = 0.5 + ulps * 0x1p-53;
         CAPTURE(ulps);
         // To 0.5: on towards 0.3 +- 0.9, turn at t = 1, theta = 1.2.
-        const Trajectory onward = run_of(system, of(Step{.level = 0.5, .at = at}), {1, 0}, 1.2, integrator);
+        const Trajectory onward = run_of(system, native(Step{.level = 0.5, .at = at}), {1, 0}, 1.2, integrator);
         REQUIRE(onward.events.size() == 2);
         CHECK(onward.events[0].kind == EventKind::turn);
         CHECK(onward.events[0].theta == within(-0.6, near));
@@ -201,7 +196,7 @@ TEST_CASE("a jump of M exactly at a turn: the mass goes on from there under the 
         CHECK(onward.events[1].t == within(1, near));
         CHECK(onward.events[1].theta == within(1.2, near));
         // To -0.6, which balances the spring: at rest there, whichever comes first by rounding.
-        const Trajectory balanced = run_of(system, of(Step{.level = -0.6, .at = at}), {1, 0}, 3, integrator);
+        const Trajectory balanced = run_of(system, native(Step{.level = -0.6, .at = at}), {1, 0}, 3, integrator);
         CHECK(balanced.outcome == Outcome::at_rest);
         REQUIRE_FALSE(balanced.events.empty());
         CHECK(balanced.events.size() <= 2);
@@ -217,7 +212,7 @@ TEST_CASE("a jump of M on a stuck mass releases it at that very time", "[razor]"
          std::vector<Integrator>{Exact{}, Spectral{}, Rk4{0.01}, Rk4{0.003}, Rk4{0.25}}) {
         for (const double at : {0.5, 0.503, 1.0 / 3}) {
             const Trajectory run =
-                must_run(system, of(Step{.level = 0.5, .at = at}), {0.1, 0}, {0, 2}, Grid::none(), integrator);
+                must_run(system, native(Step{.level = 0.5, .at = at}), {0.1, 0}, {0, 2}, Grid::none(), integrator);
             REQUIRE_FALSE(run.events.empty());
             CHECK(run.events[0].kind == EventKind::slip);
             CHECK(run.events[0].t == at);
@@ -231,8 +226,8 @@ TEST_CASE("a break of M at t_start is the load from the beginning", "[razor]") {
     const Oscillator system = nondimensional(0.1, 0.1);
     for (const Integrator& integrator :
          std::vector<Integrator>{Exact{}, Spectral{}, Rk4{0.001}, Dinal1989{.h = 0.001}}) {
-        const Trajectory step = run_of(system, of(Step{.level = 0.7, .at = 0}), {0.2, 0.3}, 3, integrator);
-        const Trajectory level = run_of(system, constant(0.7), {0.2, 0.3}, 3, integrator);
+        const Trajectory step = run_of(system, native(Step{.level = 0.7, .at = 0}), {0.2, 0.3}, 3, integrator);
+        const Trajectory level = run_of(system, native(Constant{0.7}), {0.2, 0.3}, 3, integrator);
         CHECK(step.rows == level.rows);
         CHECK(step.rows(0, 3) == 0.7);
     }
@@ -243,7 +238,7 @@ TEST_CASE("a break of M at t_end does not change the motion before it", "[razor]
     CAPTURE(integrator.index());
     const Oscillator system = nondimensional(0.1, 0.1);
     const Trajectory without = run_of(system, {}, {1, 0.3}, 0.8, integrator);
-    const Trajectory with = run_of(system, of(Step{.level = 5, .at = 0.8}), {1, 0.3}, 0.8, integrator);
+    const Trajectory with = run_of(system, native(Step{.level = 5, .at = 0.8}), {1, 0.3}, 0.8, integrator);
     const Eigen::Index last = with.size() - 1;
     REQUIRE(with.rows(last, 0) == 0.8);
     CHECK(with.rows(last, 1) == Approx(without.rows(last, 1)).epsilon(1e-13));
@@ -256,11 +251,11 @@ TEST_CASE("breaks closer together than a step, and than rounding, are all obeyed
     const Integrator integrator = either(0.01);
     const Oscillator system = nondimensional(0, 0);
     // An impulse of 1e3 * 1e-4 at t = 0.5: velocity jumps by 0.1/I = 0.4 pi^2.
-    const Trajectory run = must_run(system, of(Pulse{.amplitude = 1e3, .at = 0.5, .width = 1e-4}), {0, 0}, {0, 0.75},
-                                    Grid::at({0.75}), integrator);
+    const Trajectory run = must_run(system, native(Pulse{.amplitude = 1e3, .at = 0.5, .width = 1e-4}), {0, 0},
+                                    {0, 0.75}, Grid::at({0.75}), integrator);
     // theta = 0.1/(I w0) sin w0 (t - 0.50005), but for the width: (w0 1e-4)^2/24.
     CHECK(run.rows(0, 1) == Approx(0.1 * 2 * pi * std::sin(2 * pi * (0.75 - 0.50005))).epsilon(1e-6));
-    const Trajectory spike = must_run(system, of(Pulse{.amplitude = 1e3, .at = 0.5, .width = 0x1p-53}), {0, 0},
+    const Trajectory spike = must_run(system, native(Pulse{.amplitude = 1e3, .at = 0.5, .width = 0x1p-53}), {0, 0},
                                       {0, 0.75}, Grid::at({0.75}), integrator);
     CHECK(std::fabs(spike.rows(0, 1)) < 1e-11);
 }
@@ -301,7 +296,7 @@ TEST_CASE("a function that is not a number ends the run with what there is", "[r
     };
     for (const bool feedback : {false, true}) {
         for (const Integrator& integrator : std::vector<Integrator>{Spectral{}, Rk4{0.01}, Dinal1989{.h = 0.01}}) {
-            const Excitation M = of(Scripted{.function = std::make_shared<Breaking>(), .feedback = feedback});
+            const Excitation M = native(Scripted{.function = std::make_shared<Breaking>(), .feedback = feedback});
             const Trajectory run = must_run(nondimensional(0.1, 0.1), M, {1, 0}, {0, 5}, Grid::every(0.1), integrator);
             CAPTURE(feedback, integrator.index());
             CHECK(run.outcome == Outcome::excitation_not_finite);
@@ -319,7 +314,7 @@ TEST_CASE("feedback that no damping stops overflows into an outcome, not into a 
     public:
         double value(double, const State& state) override { return 50 * state.velocity; }
     };
-    const Excitation M = of(Scripted{.function = std::make_shared<Driving>(), .feedback = true});
+    const Excitation M = native(Scripted{.function = std::make_shared<Driving>(), .feedback = true});
     const Trajectory run = run_of(nondimensional(0, 0.1), M, {1, 0}, 100, either_for_functions());
     CHECK((run.outcome == Outcome::state_not_finite || run.outcome == Outcome::excitation_not_finite));
     CHECK(run.rows.matrix().allFinite());
@@ -339,7 +334,7 @@ TEST_CASE("linear feedback is the damping that it imitates", "[razor]") {
     public:
         double value(double, const State& state) override { return -0.2 / pi * state.velocity; }
     };
-    const Excitation M = of(Scripted{.function = std::make_shared<Damping>(), .feedback = true});
+    const Excitation M = native(Scripted{.function = std::make_shared<Damping>(), .feedback = true});
     const ReferenceSystem s{"equivalent", nondimensional(0.2, 0.05), {}, {{-1, {}}}, {1, 0}, {0, 4}, 1};
     const Integrator integrator = either_for_functions(0.002);
     const Trajectory run = must_run(nondimensional(0, 0.05), M, {1, 0}, {0, 4}, Grid::every(0.0371), integrator);
