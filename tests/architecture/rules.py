@@ -157,6 +157,14 @@ def lua_tests_can_fail():
                 complain(path, len(lines(path)), "a file of tests ends with support.finish()")
 
 
+def tests_are_namespaces():
+    """They are compiled together, and what one of them uses or calls something is no matter of the next."""
+    for path in files((".cpp",)):
+        own = f"namespace dinal::{os.path.basename(path)[:-4]} {{"
+        if path.startswith("tests/core/") and not path.endswith("allocation_test.cpp") and own not in dict(lines(path)).values():
+            complain(path, 1, f"a test lives in a {own[:-2]}")
+
+
 def catch_is_included_once():
     """Debian 12 and 13 have two versions of it."""
     for path in files(SOURCES):
@@ -217,7 +225,7 @@ def anchors(goal):
 
 
 for rule in (includes_point_down, rooms_are_namespaces, rooms_are_small, types_have_names_of_their_own,
-             forbidden_things_are_absent, headers_say_what_they_hold, files_are_short, lua_tests_can_fail,
+             forbidden_things_are_absent, headers_say_what_they_hold, files_are_short, lua_tests_can_fail, tests_are_namespaces,
              catch_is_included_once, names_are_unique, nothing_is_left_for_later, links_lead_somewhere, documents_name_what_is_there):
     rule()
 if not any(True for _ in files((".hpp",))):
