@@ -159,7 +159,7 @@ TEST_CASE("random tables move as an independent integrator says", "[laws][corner
     }
 }
 
-TEST_CASE("Stribeck's law is followed where the motion passes its fall in no time", "[laws][corners]") {
+TEST_CASE("Stribeck's law is followed where the motion passes its fall in no time", "[laws][corners][long]") {
     for (const double speed : {1.0, 0.1, 0.02}) {
         for (const double shape : {1.0, 2.0, 3.0}) {
             CAPTURE(speed, shape);
