@@ -175,8 +175,9 @@ int load(lua_State* L) {
     files::ReadColumns content = lua::value_or_raise(L, "data.load", std::move(read));
     Data data;
     for (files::ReadColumn& column : content.columns) {
-        data.columns.push_back(column.of_words ? column_of(std::move(column.name), std::move(column.words))
-                                               : column_of(std::move(column.name), std::move(column.numbers)));
+        data.columns.push_back(
+            column.of_words ? column_of(std::move(column.name), std::move(column.words))
+                            : column_of(std::move(column.name), std::move(column.numbers), std::move(column.unit)));
     }
     push_data(L, std::move(data));
     return 1;

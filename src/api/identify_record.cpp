@@ -50,7 +50,9 @@ RecordColumns record_columns(lua_State* L, const lua::Options& options) {
     } else if (lua_isnil(L, place)) {
         options.missing("data");
     } else {
-        options.wrong("data", "data, a run, or a table of columns");
+        options.wrong("data", lua_type(L, place) == LUA_TSTRING
+                                  ? "what data.load gives for that file (or a run, or a table of columns)"
+                                  : "data, a run, or a table of columns");
     }
     lua_pop(L, 1);
     return record;

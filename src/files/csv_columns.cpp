@@ -17,7 +17,7 @@ namespace {
 
 /// A field that may be empty, nan or infinite; `decimal_comma`: 1,5 is a number, too.
 std::optional<double> lenient_number(std::string_view field, bool decimal_comma) {
-    if (const auto plain = parse_number(field)) return plain;
+    if (const auto plain = parse_field(field)) return plain;
     const std::string word = text::lower(field);
     if (word.empty() || word == "nan" || word == "-nan" || word == "na") {
         return std::numeric_limits<double>::quiet_NaN();
@@ -55,6 +55,10 @@ public:
             is_word_above_numbers(fields_.front());
         std::optional<text::Error> fault = take_names(named);
         if (named) rows_.erase(rows_.begin());
+        if (named && may_be_units()) {
+            take_units();
+            rows_.erase(rows_.begin());
+        }
         for (std::size_t i = 0; i < rows_.size() && !fault; ++i) fault = take_numbers(rows_[i]);
         if (fault) return *fault;
         take_words();
@@ -113,6 +117,32 @@ private:
             }
         }
         return std::nullopt;
+    }
+
+    /// A line of words, and numbers in all lines under it.
+    [[nodiscard]] bool may_be_units() const {
+        if (rows_.size() < 2) return false;
+        std::vector<std::string_view> fields;
+        const auto number = [&](std::string_view field) { return is_number(field); };
+        const auto number_or_gap = [&](std::string_view field) { return field.empty() || is_number(field); };
+        split(rows_.front().text, separator_, fields);
+        if (fields.size() != result_.columns.size() || std::any_of(fields.begin(), fields.end(), number)) return false;
+        if (std::all_of(fields.begin(), fields.end(), [](std::string_view field) { return field.empty(); }))
+            return false;
+        return std::all_of(rows_.begin() + 1, rows_.end(), [&](const Row& row) {
+            split(row.text, separator_, fields);
+            return std::all_of(fields.begin(), fields.end(), number_or_gap);
+        });
+    }
+
+    void take_units() {
+        split(rows_.front().text, separator_, fields_);
+        for (std::size_t i = 0; i < fields_.size(); ++i) {
+            std::string unit = word_in(fields_[i]);
+            const bool in_brackets = unit.size() > 2 && ((unit.front() == '(' && unit.back() == ')') ||
+                                                         (unit.front() == '[' && unit.back() == ']'));
+            result_.columns[i].unit = in_brackets ? unit.substr(1, unit.size() - 2) : unit;
+        }
     }
 
     std::optional<text::Error> take_numbers(const Row& row) {

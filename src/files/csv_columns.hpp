@@ -18,6 +18,7 @@ struct ReadColumn {
     std::vector<double> numbers;
     std::vector<std::string> words;
     bool of_words = false;
+    std::string unit = {};
 };
 struct ReadColumns {
     std::vector<ReadColumn> columns;  ///< of one length, each name once
@@ -26,7 +27,8 @@ struct ReadColumns {
 
 /// Lines that begin with # are comments and blank lines are skipped. The separator (semicolon, comma, tab or blanks) is
 /// taken from the second line; with semicolons a decimal comma is one. The first line has the names unless it has a
-/// number: then they are "1", "2", ... Errors name the file and the line.
+/// number: then they are "1", "2", ... Where words stand under the names and numbers only in all lines below them, the
+/// words are the units. Errors name the file and the line.
 text::Expected<ReadColumns> read_columns(const std::string& path);
 
 /// The same of a text in memory; `name` stands for the file in errors.

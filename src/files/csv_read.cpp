@@ -65,7 +65,7 @@ private:
         const std::optional<Separator> of_first = separator_in(first);
         separator_ = of_first.value_or(Separator::blanks);
         split(first, separator_, fields_);
-        const auto is_number = [](std::string_view field) { return parse_number(field).has_value(); };
+        const auto is_number = [](std::string_view field) { return parse_field(field).has_value(); };
         const auto numeric = std::count_if(fields_.begin(), fields_.end(), is_number);
         if (numeric == 0) {
             if (next_line()) {
@@ -132,7 +132,7 @@ private:
                                 ", expected " + std::to_string(table_.names.size()) + " " + width_source_);
         }
         for (std::size_t i = 0; i < fields_.size(); ++i) {
-            const std::optional<double> number = parse_number(fields_[i]);
+            const std::optional<double> number = parse_field(fields_[i]);
             if (!number) {
                 std::string column = std::to_string(i + 1);
                 if (table_.names[i] != column) {

@@ -131,6 +131,13 @@ std::optional<double> parse_fortran_number(std::string_view field) {
     return parse_number({text.data(), length});
 }
 
+std::optional<double> parse_field(std::string_view field) {
+    if (const std::optional<double> plain = parse_number(field)) return plain;
+    const std::size_t point = field.find('.'), letter = field.find_first_of("dD");
+    const bool of_fortran = point != std::string_view::npos && letter != std::string_view::npos && point < letter;
+    return of_fortran ? parse_fortran_number(field) : std::nullopt;
+}
+
 std::string shown(std::string_view field) {
     constexpr std::size_t most = 40;
     const std::string text = text::displayable(field);

@@ -39,6 +39,10 @@ std::optional<double> parse_number(std::string_view field);
 /// The same as Fortran writes it: 1.5D+00, 1.5d0, 1.5+300 too.
 std::optional<double> parse_fortran_number(std::string_view field);
 
+/// What is a number in a table of strangers: as parse_number, or double precision of Fortran with its decimal point and
+/// its D (1.5D+00). 1-2 and 3d are none.
+std::optional<double> parse_field(std::string_view field);
+
 /// A field in quotes as it can stand in a sentence: short and printable.
 std::string shown(std::string_view field);
 

@@ -28,6 +28,10 @@ TEST_CASE("a row whose first numbers are plain is read once and as a whole, or r
         REQUIRE(table->values.rows() == 2);
         for (int i = 0; i < 6; ++i) CHECK(table->values(i / 3, i % 3) == i + 1);
     }
+    const auto of_fortran = parse_csv("1.0D+00 2.5d-1\n -.3D1 4.\n", "x.csv");
+    REQUIRE(of_fortran);
+    CHECK(of_fortran->values(0, 1) == 0.25);
+    CHECK(of_fortran->values(1, 0) == -3);
     CHECK_THAT(fault("a,b\n1,2\n3,4x\n"), Contains("x.csv:3: column 2 (b) is '4x', not a number"));
     CHECK_THAT(fault("a,b\n1,2\n3,inf\n"), Contains("only finite numbers"));
     CHECK_THAT(fault("a,b\n1,2,3\n"), Contains("found 3 fields, expected 2"));

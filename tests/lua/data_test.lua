@@ -60,6 +60,9 @@ test("files of others: separators, decimal commas, no names, comments, empty fie
     equal(load("1 2\n3 4\n")["2"], vector{ 2, 4 })
     equal(table.concat(load("t\tkind\n1\tturn\n2\t\n").kind, "|"), "turn|")
     equal(#load("only,names\n"), 0)
+    -- Fortran's double precision; a word that begins as a number is none.
+    equal(load("t,x\n0.0D0,1.5D+02\n.5d0,-2.0d-1\n").x, vector{ 150, -0.2 })
+    equal(load("t,x\n1,3d\n2,1-2\n").x[2], "1-2")
     raises(function() load("a,b\n1,2\n3\n") end, ":3: found 1 field, expected 2")
     raises(function() load("a,a\n1,2\n") end, "belongs to two columns")
     raises(function() load('"a\nb",x\n1,2\n') end, ":1: a double quote is opened and not closed")
@@ -69,6 +72,16 @@ test("files of others: separators, decimal commas, no names, comments, empty fie
     raises(function() data.load("missing.csv") end, "data.load: ", "missing.csv")
     raises(function() data.load("run.dat") end, "trajectory.load")
     raises(function() data.load(3) end, "must be a string")
+end)
+
+test("words between the names and the numbers are units, unless there are other words below", function()
+    local d = load("time;angle;note\n[s];(rad);\n0,5;1,25;\n1;;3\n")
+    equal(d.time, vector{ 0.5, 1 })
+    equal(d.angle[1], 1.25)
+    assert(tostring(d):find("time, s +angle, rad +note\n"), tostring(d))
+    equal(load("kind,x\nspring,linear\nwall,2\n").kind[2], "wall")
+    equal(load("kind,x\nspring,2\n").x[1], 2.0)
+    equal(#load("a,b\nc,d\n"), 1)
 end)
 
 test("events are data: columns, rows, save and load", function()
