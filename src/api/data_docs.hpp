@@ -100,7 +100,8 @@ inline constexpr lua::Doc load_doc{
     "Reads any CSV file: fields between semicolons, commas, tabs or blanks, names in the first line (without it they "
     "are \"1\", \"2\", ...), lines with # are skipped. Numbers may be among the names, t,100,200, if the first is a "
     "word and has only numbers below it. A column with anything but numbers, nan and empty fields (nan) is one of "
-    "words. In a file with semicolons 1,5 is a number.",
+    "words. A line of words between the names and the numbers has the units of the columns. In a file with semicolons "
+    "1,5 is a number, and 1.5D+00 is one everywhere.",
     "file = os.tmpname() .. \".csv\"\n"
     "run = nondimensional{}:simulate{ theta0 = 1, t_end = 1.2, dt = 0.1 }\n"
     "run.events:save(file)\n"
