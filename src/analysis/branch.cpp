@@ -28,7 +28,7 @@ FixedPointSearch::Try BranchWalk::look(const Place& x, double p, std::optional<S
     const PeriodMap map(question.system, question.excitation, question.drive.start, length, monitor_);
     found.step = map(x);
     found.off = sign_ * found.step.to - x;
-    found.size = std::max({x.norm(), found.step.to.norm(), found.step.high - found.step.low, 1e-300});
+    found.size = std::max({length_of(x), length_of(found.step.to), found.step.high - found.step.low, 1e-300});
     if (map.contradiction()) contradiction_ = map.contradiction();
     const model::Outcome outcome = found.step.outcome;
     stopped_ = stopped_ || contradiction_ || outcome == model::Outcome::interrupted ||

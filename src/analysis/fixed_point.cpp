@@ -17,10 +17,10 @@ constexpr double nearly_closed = 1e-9;        // where rounding lets no more be 
 FixedPointSearch::Try FixedPointSearch::at(const Place& x, double size) const {
     Try result;
     result.x = x;
-    result.step = map_.with_derivative(x, std::max(size, x.norm()));
+    result.step = map_.with_derivative(x, std::max(size, length_of(x)));
     maps_ += result.step.differentiable ? 1 : 5;
     result.off = sign_ * result.step.to - x;
-    result.size = std::max({x.norm(), result.step.to.norm(), result.step.high - result.step.low, 1e-300});
+    result.size = std::max({length_of(x), length_of(result.step.to), result.step.high - result.step.low, 1e-300});
     result.rounding = map_.rounding();
     return result;
 }
@@ -68,7 +68,7 @@ std::optional<FixedPointSearch::Try> FixedPointSearch::newton(const Try& now) co
 FixedPointSearch::Try FixedPointSearch::polished(Try now) const {
     for (int i = 0; i < 2 && now.step.differentiable && now.residual() > as_closed_as_can_be * now.size; ++i) {
         const Place whole = step(now);
-        if (whole.norm() <= as_near_as_need_be * now.size) break;
+        if (length_of(whole) <= as_near_as_need_be * now.size) break;
         Try next = at(now.x + whole, now.size);
         if (!next.step.finished || !(next.residual() < now.residual() / 2)) break;
         now = next;

@@ -18,7 +18,7 @@ public:
         MapStep step;
         double size = 0;
         double rounding = 0;  ///< of a place: a motion may be so small that this is more than its own digits
-        [[nodiscard]] double residual() const { return off.norm(); }
+        [[nodiscard]] double residual() const { return length_of(off); }
         [[nodiscard]] bool at(double tolerance) const {
             return step.finished && residual() <= std::max(tolerance * size, rounding);
         }

@@ -40,7 +40,9 @@ motion::Trajectory PeriodMap::run(const Place& from, double length, bool dense) 
 
 MapStep PeriodMap::operator()(const Place& from) const {
     MapStep step;
-    const bool finite = from.allFinite() && from.norm() < 1e100;
+    constexpr double most = 1e100;  // where powers of the motion would soon be no numbers
+    const bool powers = lowered_.has_remainder() || excitation_.has_feedback();
+    const bool finite = from.allFinite() && !(powers && length_of(from) >= most);
     const motion::Trajectory run = finite ? this->run(from, length_, false) : motion::Trajectory{};
     step.outcome = finite ? run.outcome : model::Outcome::state_not_finite;
     step.finished = model::is_whole(step.outcome);

@@ -6,6 +6,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cmath>
 #include <complex>
 
 #include "model/excitation.hpp"
@@ -17,6 +18,11 @@ namespace dinal::analysis {
 
 /// theta and velocity/omega, which are of one kind: a distance of these is the root of an energy.
 using Place = Eigen::Vector2d;
+
+/// Its squares would be no numbers where it is very large, and none where it is very small.
+inline double length_of(const Place& place) {
+    return std::hypot(place[0], place[1]);
+}
 
 struct MapStep {
     Place to;

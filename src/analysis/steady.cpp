@@ -130,14 +130,14 @@ private:
         const MapStep whole = map_(found.x);
         ++answer_.maps;
         const double alike = std::max(1e-9 * found.size, 4 * found.rounding);
-        return whole.finished && (whole.to - found.x).norm() <= alike && std::fabs(whole.high + whole.low) <= alike;
+        return whole.finished && length_of(whole.to - found.x) <= alike && std::fabs(whole.high + whole.low) <= alike;
     }
 
     bool search_multiple(const Place& start, int periods, bool any) {
         const PeriodMap map(question_.system, question_.excitation, question_.drive.start,
                             periods * question_.drive.period, monitor_);
         const auto found = FixedPointSearch(map, 1, answer_.maps).search(start, any ? 40 : 12);
-        const bool good = found && (any || (found->x - start).norm() <= 0.2 * found->size);
+        const bool good = found && (any || length_of(found->x - start) <= 0.2 * found->size);
         const bool settled = good && settle(*found, map, periods, false);
         if (map.contradiction()) contradiction_ = map.contradiction();
         return settled;
@@ -177,13 +177,13 @@ private:
     [[nodiscard]] bool is_symmetric(const Place& x, double size) {
         const MapStep step = half_(x);
         ++answer_.maps;
-        return step.finished && (step.to + x).norm() <= std::max(1e-8 * size, 4 * half_.rounding());
+        return step.finished && length_of(step.to + x) <= std::max(1e-8 * size, 4 * half_.rounding());
     }
 
     /// Runs the motion itself, and sees whether it comes back after some periods, or grows.
     void brute(const Place& start, int longest) {
         std::vector<Place> places{start};
-        std::vector<double> sizes{start.norm()};
+        std::vector<double> sizes{length_of(start)};
         for (const std::size_t until : {40U, 120U, 320U}) {
             while (places.size() <= until) {
                 const MapStep step = map_(places.back());
@@ -194,7 +194,7 @@ private:
                     return;
                 }
                 places.push_back(step.to);
-                sizes.push_back(std::max({std::fabs(step.low), std::fabs(step.high), step.to.norm()}));
+                sizes.push_back(std::max({std::fabs(step.low), std::fabs(step.high), length_of(step.to)}));
             }
             if (recurs(places, sizes.back(), longest, 1e-5) || recurs(places, sizes.back(), longest, 3e-2)) return;
         }
@@ -212,7 +212,7 @@ private:
         const Place& last = places.back();
         int tries = 0;  // chaos comes near to itself again and again
         for (int m = 1; tries < 5 && m <= longest && static_cast<std::size_t>(m) < places.size(); ++m) {
-            if ((last - places[places.size() - 1 - static_cast<std::size_t>(m)]).norm() > near * size) continue;
+            if (length_of(last - places[places.size() - 1 - static_cast<std::size_t>(m)]) > near * size) continue;
             ++tries;
             if (m == 1 && symmetric_ && search_once(last, true) && answer_.stable && is_near(last, size)) return true;
             if (!search_multiple(last, m, false) || !answer_.stable) continue;
@@ -225,14 +225,14 @@ private:
     void reduce(int m) {
         const SteadyMotion whole = answer_;
         const Place x = place_of(whole.start, map_.omega());
-        const double size = std::max({std::fabs(whole.low), std::fabs(whole.high), x.norm()});
+        const double size = std::max({std::fabs(whole.low), std::fabs(whole.high), length_of(x)});
         for (int n = 1; n <= m / 2; ++n) {
             if (m % n != 0) continue;
             const PeriodMap map(question_.system, question_.excitation, question_.drive.start,
                                 n * question_.drive.period, monitor_);
             const MapStep step = map(x);
             ++answer_.maps;
-            if (!step.finished || (step.to - x).norm() > 1e-6 * size) continue;
+            if (!step.finished || length_of(step.to - x) > 1e-6 * size) continue;
             const bool found = n > 1
                                    ? search_multiple(x, n, false)
                                    : (symmetric_ && search_once(x, true) && is_near(x, size)) || search_once(x, false);
@@ -241,7 +241,7 @@ private:
         }
     }
     [[nodiscard]] bool is_near(const Place& place, double size) const {
-        return (place_of(answer_.start, map_.omega()) - place).norm() <= 0.2 * size;
+        return length_of(place_of(answer_.start, map_.omega()) - place) <= 0.2 * size;
     }
 
     /// A linear spring off resonance, and friction, which only takes.
@@ -295,9 +295,9 @@ bool goes_on(const SteadyQuestion& question, const SteadyMotion& motion, const m
     const PeriodMap map(question.system, question.excitation, question.drive.start, periods * motion.period, monitor);
     const Place start = place_of(motion.start, map.omega());
     const MapStep step = map(start);
-    const double size = std::max({std::fabs(motion.low), std::fabs(motion.high), start.norm()});
+    const double size = std::max({std::fabs(motion.low), std::fabs(motion.high), length_of(start)});
     constexpr double alike = 1e-8;
-    return step.finished && (step.to - start).norm() <= alike * size &&
+    return step.finished && length_of(step.to - start) <= alike * size &&
            std::fabs(step.high - motion.high) + std::fabs(step.low - motion.low) <= alike * size;
 }
 

@@ -188,6 +188,19 @@ test("the peak of a motion that stands at its top is where it came to stand, whe
     end
 end)
 
+test("a motion of any size is as it is in other units", function()
+    local function amplitude(u, M) return system{ I = 1, k = 40, C = 0.1, Rd = 0.3 * u, Re = 0.35 * u }:steady(M).amplitude / u end
+    for _, u in ipairs{ 1e-290, 1e-200, 1e-160, 1e99, 1e101, 1e200, 1e290 } do
+        local sine, square = { M = u * excitation.harmonic{ frequency = 0.7 } }, { M = u * excitation.square{ frequency = 0.7 } }
+        local script = { M = function(t) return u * math.sin(1.4 * math.pi * t) end, period = 1 / 0.7 }
+        for _, asked in ipairs{ { sine, { M = excitation.harmonic{ frequency = 0.7 } } }, { square, { M = excitation.square{ frequency = 0.7 } } },
+            { script, { M = excitation.harmonic{ frequency = 0.7 } } } } do
+            local one = amplitude(1, asked[2])
+            near(amplitude(u, asked[1]), one, 1e-9 * one)
+        end
+    end
+end)
+
 test("a motion between bounds does not grow, and one of a family is not called the only one", function()
     local wells = system{ I = 1, k = 0, C = 0.25, spring = spring.polynomial{ [1] = -1, [3] = 1 } }
     local s = wells:steady{ M = excitation.harmonic{ amplitude = 0.34, omega = 1 }, theta0 = 1 }
