@@ -196,36 +196,55 @@ private:
                 places.push_back(step.to);
                 sizes.push_back(std::max({std::fabs(step.low), std::fabs(step.high), length_of(step.to)}));
             }
-            if (recurs(places, sizes.back(), longest, 1e-5) || recurs(places, sizes.back(), longest, 3e-2)) return;
+            for (const double near : {1e-5, 3e-2}) {
+                if (recurs(places, sizes.back(), longest, near, true)) return;
+            }
         }
         // Near resonance a beat may be as slow as the growth of a motion that has no bound.
         if (is_bounded() && symmetric_ && follows_sine() && answer_.stable) return;
         if (!is_bounded() && grows(sizes, false)) return;
-        // Nothing that this motion approaches; a motion that others leave is better than none.
+        // Nothing that this motion is seen to approach: it may do so slowly, and a motion that others leave is better
+        // than none.
+        for (const double near : {1e-5, 3e-2}) {
+            if (recurs(places, sizes.back(), longest, near, false)) return;
+        }
         const int maps = answer_.maps;
         if (search_once(places.back(), symmetric_) || search_once(places.back(), false)) return;
         answer_.maps = std::max(answer_.maps, maps);
         answer_.status = SteadyStatus::none;
     }
 
-    bool recurs(const std::vector<Place>& places, double size, int longest, double near) {
+    bool recurs(const std::vector<Place>& places, double size, int longest, double near, bool approaching) {
         const Place& last = places.back();
+        const auto is_it = [&](int m) {
+            return answer_.stable && (approaching ? approaches(places, m, size) : is_near(last, 0.2 * size));
+        };
         int tries = 0;  // chaos comes near to itself again and again
         for (int m = 1; tries < 5 && m <= longest && static_cast<std::size_t>(m) < places.size(); ++m) {
             if (length_of(last - places[places.size() - 1 - static_cast<std::size_t>(m)]) > near * size) continue;
             ++tries;
-            if (m == 1 && symmetric_ && search_once(last, true) && answer_.stable && is_near(last, size)) return true;
-            if (!search_multiple(last, m, false) || !answer_.stable) continue;
+            if (m == 1 && symmetric_ && search_once(last, true) && is_it(m)) return true;
+            if (!search_multiple(last, m, false) || !is_it(m)) continue;
             reduce(m);
             return true;
         }
         return false;
     }
+    /// Beside the motion that a run comes to there may be others, to which Newton's method may lead: it is this one
+    /// where the run comes nearer to it all the time.
+    [[nodiscard]] bool approaches(const std::vector<Place>& places, int m, double size) const {
+        const std::size_t last = places.size() - 1, period = static_cast<std::size_t>(m);
+        const std::size_t back = period * std::max<std::size_t>(1, last / (2 * period));
+        const Place found = place_of(answer_.start, map_.omega());
+        constexpr double there = 1e-6, nearer = 0.7;
+        const double now = length_of(found - places.back());
+        return now <= there * size || now <= nearer * length_of(found - places[last - back]);
+    }
     /// What comes back after m periods may have come back before: the answer is that of the fewest.
     void reduce(int m) {
         const SteadyMotion whole = answer_;
         const Place x = place_of(whole.start, map_.omega());
-        const double size = std::max({std::fabs(whole.low), std::fabs(whole.high), length_of(x)});
+        const double size = std::max({std::fabs(whole.low), std::fabs(whole.high), length_of(x)}), same = 0.01 * size;
         for (int n = 1; n <= m / 2; ++n) {
             if (m % n != 0) continue;
             const PeriodMap map(question_.system, question_.excitation, question_.drive.start,
@@ -235,13 +254,13 @@ private:
             if (!step.finished || length_of(step.to - x) > 1e-6 * size) continue;
             const bool found = n > 1
                                    ? search_multiple(x, n, false)
-                                   : (symmetric_ && search_once(x, true) && is_near(x, size)) || search_once(x, false);
-            if (found && is_near(x, size)) return;
+                                   : (symmetric_ && search_once(x, true) && is_near(x, same)) || search_once(x, false);
+            if (found && is_near(x, same)) return;
             answer_ = whole;
         }
     }
-    [[nodiscard]] bool is_near(const Place& place, double size) const {
-        return length_of(place_of(answer_.start, map_.omega()) - place) <= 0.2 * size;
+    [[nodiscard]] bool is_near(const Place& place, double distance) const {
+        return length_of(place_of(answer_.start, map_.omega()) - place) <= distance;
     }
 
     /// A linear spring off resonance, and friction, which only takes.

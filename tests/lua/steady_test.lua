@@ -201,6 +201,25 @@ test("a motion of any size is as it is in other units", function()
     end
 end)
 
+test("with Re > Rd the motion that a run comes to is told, not another one beside it", function()
+    local sys = nondimensional{ friction_ratio = 0.2, breakaway_ratio = 0.4 }
+    for _, r in ipairs{ 0.545, 0.55, 0.555, 0.56 } do -- below 0.56 the run stops once a period, and a motion without stops is near
+        local M = excitation.harmonic{ frequency = r }
+        local s, run = sys:steady{ M = M }, sys:simulate{ M = M, t_end = 100 / r, dt = 1 / r }
+        local low, high, stops = math.huge, -math.huge, 0
+        for i = #run.events, 1, -1 do
+            local e = run.events[i]
+            if e.t < 98.6 / r then break end
+            low, high = math.min(low, e.theta), math.max(high, e.theta)
+            if e.kind == "stick" and e.t > 99 / r then stops = stops + 1 end
+        end
+        near(s.amplitude, (high - low) / 2, 1e-10)
+        equal(s.stops, stops)
+        equal(s.symmetric, stops == 0)
+    end
+    near(sys:steady{ M = excitation.harmonic{ frequency = 0.55 } }.amplitude, 1.4584044928, 1e-9) -- by exact steps elsewhere
+end)
+
 test("a motion between bounds does not grow, and one of a family is not called the only one", function()
     local wells = system{ I = 1, k = 0, C = 0.25, spring = spring.polynomial{ [1] = -1, [3] = 1 } }
     local s = wells:steady{ M = excitation.harmonic{ amplitude = 0.34, omega = 1 }, theta0 = 1 }
