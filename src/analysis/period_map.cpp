@@ -71,8 +71,9 @@ MapStep PeriodMap::operator()(const Place& from) const {
             step.t_high = event.t;
         }
     }
-    // What stands when the period begins came to stand before it did, as it does at the end.
-    const bool stands_on = run.began_stuck && run.motion_at_stop == model::Motion::stuck && !run.events.empty();
+    // What stands when the period begins came to stand before it did, as it does at the end; also where M jumps just
+    // then and frees it.
+    const bool stands_on = run.motion_at_stop == model::Motion::stuck && !run.events.empty();
     if (stands_on) {
         const double since = run.events.back().t;
         for (double* t : {&step.t_low, &step.t_high}) {

@@ -220,6 +220,19 @@ test("with Re > Rd the motion that a run comes to is told, not another one besid
     near(sys:steady{ M = excitation.harmonic{ frequency = 0.55 } }.amplitude, 1.4584044928, 1e-9) -- by exact steps elsewhere
 end)
 
+test("the peak of a motion that stands at its top when M jumps and frees it is where it came to stand", function()
+    local M = excitation.square{ amplitude = 0.6, period = 2.5 } + excitation.triangle{ amplitude = 0.5, period = 2.5 / 3 }
+    local sys = system{ I = 0.05, C = 0.45, k = 2, Rd = 0.2 }
+    local s = sys:steady{ M = M }
+    local came, top = nil, s.run.theta:max()
+    for _, e in ipairs(s.run.events) do
+        if e.kind == "stick" and math.abs(e.theta - top) < 1e-9 then came = e.t end
+        if e.kind == "slip" and e.theta == top then near(e.t, 1.25, 1e-12) end
+    end
+    near(s.peak_lag, 360 * came / 2.5 - 90, 1e-6) -- the fundamental of M is greatest after a quarter of the period
+    near(s.peak_lag, sys:steady{ M = M:delay(0.3) }.peak_lag, 1e-6)
+end)
+
 test("a motion between bounds does not grow, and one of a family is not called the only one", function()
     local wells = system{ I = 1, k = 0, C = 0.25, spring = spring.polynomial{ [1] = -1, [3] = 1 } }
     local s = wells:steady{ M = excitation.harmonic{ amplitude = 0.34, omega = 1 }, theta0 = 1 }
