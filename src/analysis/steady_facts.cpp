@@ -36,6 +36,18 @@ std::array<std::complex<double>, 2> eigenvalues(const Eigen::Matrix2d& D) {
     return {std::complex(first), std::complex(first == 0 ? 0 : determinant / first)};
 }
 
+/// By how much this multiplier misses 1, in one period or in some: others beside the motion are periodic, too, where it
+/// does not.
+double misses_one(const std::complex<double>& multiplier) {
+    double least = std::abs(multiplier - 1.0);
+    constexpr double far = 1e-3;  // from the unit circle, on which a disturbance stays
+    constexpr int most = 32;
+    if (std::fabs(std::abs(multiplier) - 1) > far) return least;
+    std::complex<double> power = multiplier;
+    for (int n = 2; n <= most; ++n) least = std::min(least, std::abs((power *= multiplier) - 1.0));
+    return least;
+}
+
 /// How far from here, this way, the springs pull back with no more than friction can hold through all of the period.
 double edge_of_rest(const model::Lowered& system, double here, double way, const DriveRange& M) {
     const double least = M.high - system.holding(Motion::forward), most = M.low + system.holding(Motion::backward);
@@ -115,7 +127,7 @@ SteadyMotion facts_of(const SteadyQuestion& question, const PeriodMap& map, cons
     const auto& m = motion.multipliers;
     motion.stable = !step.moved || (step.differentiable && std::max(std::abs(m[0]), std::abs(m[1])) <= 1 + slack);
     if (contracting && step.moved && step.differentiable && !step.on_edge) {
-        motion.unique = std::min(std::abs(m[0] - 1.0), std::abs(m[1] - 1.0)) > (step.stuck > 0 ? kept_within : slack);
+        motion.unique = std::min(misses_one(m[0]), misses_one(m[1])) > (step.stuck > 0 ? kept_within : slack);
     }
     motion.symmetric = half;
     return motion;

@@ -233,6 +233,18 @@ test("the peak of a motion that stands at its top when M jumps and frees it is w
     near(s.peak_lag, sys:steady{ M = M:delay(0.3) }.peak_lag, 1e-6)
 end)
 
+test("without any loss, at a part of the natural period, there are others that come back after some periods", function()
+    local free = nondimensional{}
+    for _, r in ipairs{ 2, 1.5, 0.75, 5 } do
+        local s = free:steady{ M = excitation.harmonic{ frequency = r } }
+        near(s.amplitude, 1 / math.abs(1 - r * r), 1e-12)
+        assert(s.unique == false, r)
+        assert(s:explain():find("one%s+of%s+a%s+family"))
+    end
+    equal(free:steady{ M = excitation.harmonic{ frequency = 2^0.5 } }.unique, true)
+    equal(nondimensional{ zeta = 0.01 }:steady{ M = excitation.harmonic{ frequency = 2 } }.unique, true)
+end)
+
 test("a motion between bounds does not grow, and one of a family is not called the only one", function()
     local wells = system{ I = 1, k = 0, C = 0.25, spring = spring.polynomial{ [1] = -1, [3] = 1 } }
     local s = wells:steady{ M = excitation.harmonic{ amplitude = 0.34, omega = 1 }, theta0 = 1 }
