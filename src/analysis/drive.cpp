@@ -179,7 +179,8 @@ DriveRange extremes(const model::Excitation& excitation, const Drive& drive) {
         range.high = std::max(range.high, value);
     };
     double jump = excitation.next_break(drive.start);
-    while (jump < end) {
+    const double behind_end = end + 1e-12 * (std::fabs(end) + drive.period);  // where a period ends it may jump, too
+    while (jump < behind_end) {
         see(excitation.value(jump));
         see(excitation.value_before(jump));
         jump = excitation.next_break(jump);

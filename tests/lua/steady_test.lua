@@ -245,6 +245,18 @@ test("without any loss, at a part of the natural period, there are others that c
     equal(nondimensional{ zeta = 0.01 }:steady{ M = excitation.harmonic{ frequency = 2 } }.unique, true)
 end)
 
+test("what a load comes to just before it jumps back, at the end of its period, counts for where the mass may rest", function()
+    local sys = nondimensional{ zeta = 0.3, friction_ratio = 0.7, breakaway_ratio = 1.05 }
+    for _, M in ipairs{ excitation.sawtooth{ period = 2 }, excitation.sawtooth{ period = 0.7, at = 0.1 } } do
+        for _, theta0 in ipairs{ 0, 0.1 } do -- from 0.1 it creeps up to the edge of where it may rest
+            local s = sys:steady{ M = M, theta0 = theta0 }
+            equal(s.status, "adheres")
+            near(s.rest.lower, -0.05, 1e-14)
+            near(s.rest.upper, 0.05, 1e-14)
+        end
+    end
+end)
+
 test("a motion between bounds does not grow, and one of a family is not called the only one", function()
     local wells = system{ I = 1, k = 0, C = 0.25, spring = spring.polynomial{ [1] = -1, [3] = 1 } }
     local s = wells:steady{ M = excitation.harmonic{ amplitude = 0.34, omega = 1 }, theta0 = 1 }
