@@ -44,7 +44,10 @@ MapStep PeriodMap::operator()(const Place& from) const {
     const bool powers = lowered_.has_remainder() || excitation_.has_feedback();
     const bool finite = from.allFinite() && !(powers && length_of(from) >= most);
     const motion::Trajectory run = finite ? this->run(from, length_, false) : motion::Trajectory{};
-    step.outcome = finite ? run.outcome : model::Outcome::state_not_finite;
+    // Springs may have no number for what goes beyond all bounds. (Were it M, the user's function has told it.)
+    const bool flew_away =
+        run.outcome == model::Outcome::excitation_not_finite && lowered_.has_remainder() && !excitation_.has_feedback();
+    step.outcome = finite && !flew_away ? run.outcome : model::Outcome::state_not_finite;
     step.finished = model::is_whole(step.outcome);
     if (!step.finished) {
         step.to = from;

@@ -244,7 +244,8 @@ private:
     void reduce(int m) {
         const SteadyMotion whole = answer_;
         const Place x = place_of(whole.start, map_.omega());
-        const double size = std::max({std::fabs(whole.low), std::fabs(whole.high), length_of(x)}), same = 0.01 * size;
+        const double size = std::max({std::fabs(whole.low), std::fabs(whole.high), length_of(x)});
+        const double beside = 0.01 * size;
         for (int n = 1; n <= m / 2; ++n) {
             if (m % n != 0) continue;
             const PeriodMap map(question_.system, question_.excitation, question_.drive.start,
@@ -252,10 +253,10 @@ private:
             const MapStep step = map(x);
             ++answer_.maps;
             if (!step.finished || length_of(step.to - x) > 1e-6 * size) continue;
-            const bool found = n > 1
-                                   ? search_multiple(x, n, false)
-                                   : (symmetric_ && search_once(x, true) && is_near(x, same)) || search_once(x, false);
-            if (found && is_near(x, same)) return;
+            const bool found =
+                n > 1 ? search_multiple(x, n, false)
+                      : (symmetric_ && search_once(x, true) && is_near(x, beside)) || search_once(x, false);
+            if (found && is_near(x, beside)) return;
             answer_ = whole;
         }
     }

@@ -157,4 +157,21 @@ test("a branch that ends at resonance jumps nowhere", function()
     for i = 1, #c.jumps do assert(c.jumps.from[i] < 1e6, c.jumps) end
 end)
 
+test("a mass that a softening spring lets go is told to grow, and the response has its rows on both sides", function()
+    local sys = system{ I = 1 / (4 * math.pi^2), k = 1, C = 0.1 / math.pi, Rd = 0.2, spring = spring.polynomial{ [3] = -0.1 } }
+    local c = sys:response{ frequency = { 0.3, 2.2 }, points = 30 }
+    near(c.frequency:max(), 2.2, 1e-12)
+    for _, row in ipairs{ 1, #c } do -- the motion is that of a long run, by other steps
+        local f = c.frequency[row]
+        local run = sys:simulate{ M = excitation.harmonic{ frequency = f }, t_end = 80 / f, dt = 1 / f, integrator = integrator.rk4{ h = 1e-3 } }
+        local low, high = math.huge, -math.huge
+        for _, e in ipairs(run.events) do
+            if e.t > 78 / f then low, high = math.min(low, e.theta), math.max(high, e.theta) end
+        end
+        near(c.amplitude[row], (high - low) / 2, 1e-6)
+    end
+    equal(sys:steady{ M = excitation.harmonic{ frequency = 0.5 } }.status, "grows")
+    equal(sys:steady{ M = function(t) return math.sin(math.pi * t) end, period = 2 }.status, "grows")
+end)
+
 support.finish()
