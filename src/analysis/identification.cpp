@@ -26,13 +26,14 @@ text::Expected<Identified> Identification::identified() {
     const std::vector<Parameters> starts = question_.M ? forced_starts() : free_starts();
     for (left_out_ = 0; left_out_ < (question_.M ? 1U : 3U); ++left_out_) {
         for (const Parameters& start : starts) {
-            if (stopped_ || (best_ && (is_settled() || agreed_ > 1))) break;
+            if (stopped_ || (best_ && (is_settled() || (agreed_ > 1 && !leaves_pattern(suspected))))) break;
             try_from(start);
         }
     }
     if (!best_) return text::Error{"no motion of such a system comes near this record"};
     if (!question_.M && !stopped_) try_rests();
     if (question_.M && !stopped_) try_jumps();
+    if (question_.M && !stopped_ && leaves_pattern(suspected)) try_other_valleys();
     if (question_.M) tell_stops_from_cuts();
     if (seeks_Re_ && !stopped_) try_none(Unknown::Re, 0.1);
     if (question_.M && is_sought(question_, Unknown::velocity0) && !stopped_) try_none(Unknown::velocity0, 1e-4);
@@ -245,12 +246,26 @@ Identified Identification::result() {
     }
     ratios(full, found);
     judge(found);
+    if (found.is_noise) {  // the errors are those of a motion, and there may be none
+        found.error.fill(0);
+        found.omega0_error = found.zeta_error = found.Rd_over_k_error = 0;
+        for (const Unknown which : unknowns_) found.silent[static_cast<std::size_t>(which)] = true;
+    }
     const Eigen::VectorXd predicted_all = measured_ - best_->residual;
     found.predicted.assign(predicted_all.begin(), predicted_all.end());
     found.runs = runs_;
     found.cut_low = cut_.at_low;
     found.cut_high = cut_.at_high;
     return found;
+}
+
+/// What noise leaves at a sample has nothing to do with what it leaves at the next one: in square the differences of
+/// neighbours are then twice as large, with a standard deviation of 2/sqrt(n).
+bool Identification::leaves_pattern(double deviations) const {
+    const Eigen::VectorXd& left = best_->residual;
+    const Eigen::Index n = left.size() - 1;
+    const double ratio = (left.tail(n) - left.head(n)).squaredNorm() / left.squaredNorm();
+    return ratio < 2 - deviations * 2 / std::sqrt(static_cast<double>(n));
 }
 
 /// Whether the fit explains the record. A search among noise finds a motion, too: it takes some ten squares of it.
@@ -266,7 +281,9 @@ void Identification::judge(Identified& found) const {
     }
     found.scatter = std::max(noise_, step);
     constexpr double much = 5, part = 0.01;
-    found.is_unexplained = found.noise > much * found.scatter && left > part * all;
+    constexpr double more = 1.25, little = 1e-4, sure = 5;
+    found.is_unexplained = (found.noise > much * found.scatter && left > part * all) ||
+                           (found.noise > more * found.scatter && left > little * all && leaves_pattern(sure));
 }
 
 void Identification::ratios(const Eigen::MatrixXd& covariance, Identified& found) const {

@@ -263,6 +263,7 @@ void Identification::try_none(Unknown which, double little) {
     start[place] = 0;
     const auto without = fit(start, question_.t.size(), scale, 40);
     if (!without) return;
+    seen_.emplace_back(without->sum, filled(without->parameters));
     const double variance = deviation() * deviation(), rise = without->sum - best.sum;
     constexpr double telling = 4;  // two standard errors
     if (rise > telling * variance) return;

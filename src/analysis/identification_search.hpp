@@ -36,6 +36,10 @@ inline bool is_same(const LeastSquares& a, const LeastSquares& b) {
     return std::fabs(a.sum - b.sum) <= same_fit * a.sum;
 }
 
+/// In standard deviations of noise: what is left after a fit that is so much more alike from sample to sample is looked
+/// at again.
+inline constexpr double suspected = 3;
+
 /// A fit of a free decay that rests at a turn; without one, where its own friction stops it.
 struct Rest {
     LeastSquares fit;
@@ -145,6 +149,7 @@ private:
     [[nodiscard]] bool try_other_beginnings();
     [[nodiscard]] bool try_other_breakaways();
     [[nodiscard]] bool try_beyond_steps();
+    void try_other_valleys();
     void try_none(Unknown which, double little);
     void see_short_beginnings();
     void tell_stops_from_cuts();
@@ -158,6 +163,7 @@ private:
     /// is not sure because the others are possible, too.
     [[nodiscard]] Covariance weigh_rests();
     [[nodiscard]] Identified result();
+    [[nodiscard]] bool leaves_pattern(double deviations) const;
     void judge(Identified& found) const;
     /// omega0, zeta and Rd/k, with the errors that their parts have together.
     void ratios(const Eigen::MatrixXd& covariance, Identified& found) const;

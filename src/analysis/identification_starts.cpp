@@ -1,6 +1,7 @@
 // Where the search of identify() starts: from the extremes of a free decay, or by the weak form of the driven equation.
 #include <Eigen/QR>
 
+#include "analysis/drive.hpp"
 #include "analysis/identification_search.hpp"
 
 namespace dinal::analysis {
@@ -107,6 +108,8 @@ std::vector<Parameters> Identification::forced_starts() const {
 /// I int w'' theta - C int w' theta + k int w (theta - offset) + s Rd int w = int w M.
 void Identification::add_window(std::size_t first, std::size_t last, double sign,
                                 std::vector<std::array<double, 6>>& rows) const {
+    const model::Excitation& M = *question_.M;
+    const bool asks_all = std::isfinite(M.most()) && !M.has_feedback();  // its jumps are known, and it costs little
     const double a = question_.t[first], length = question_.t[last] - a;
     std::array<double, 6> row{};
     for (std::size_t i = first; i <= last; ++i) {
@@ -119,7 +122,14 @@ void Identification::add_window(std::size_t first, std::size_t last, double sign
         row[2] -= weight * w1 * theta;
         row[3] += weight * w * sign;
         row[4] -= weight * w;
-        row[5] += weight * w * question_.M->value(question_.t[i], {theta, 0});
+        if (!asks_all) row[5] += weight * w * M.value(question_.t[i], {theta, 0});
+    }
+    if (asks_all) {
+        constexpr double pieces = 16;
+        row[5] = integral(M, a, a + length, length / pieces, [&](double t) {
+            const double s = (t - a) / length, u = s * (1 - s);
+            return u * u * u * M.value(t);
+        });
     }
     rows.push_back(row);
 }
@@ -188,6 +198,47 @@ Parameters Identification::weak_form() const {
     at(p, Unknown::Rd) = x[3];
     at(p, Unknown::Re) = given(Unknown::Re, x[3]);
     return p;
+}
+
+// ---- another valley
+//
+// Dry and viscous friction take about the same from a motion of one size, and a mass that stands stops as long under
+// many loads: the search may end in a valley beside the right one, or where nothing moves. There what is left shows.
+
+/// Looks at systems of other natural frequencies, losses and shares of dry friction in them, and goes on from the best.
+void Identification::try_other_valleys() {
+    const double before = best_->sum;
+    std::vector<std::pair<double, Parameters>> looks;
+    const std::size_t rows = question_.t.size();
+    for (const Parameters& from : {filled_best(), weak_form()}) {
+        const double I = at(from, Unknown::I), k = at(from, Unknown::k);
+        for (const double faster : {0.6, 0.8, 1.0, 1.25, 1.6}) {
+            Parameters p = from;
+            if (!is_given(Unknown::I)) at(p, Unknown::I) = I / (faster * faster);
+            if (is_given(Unknown::I) && !is_given(Unknown::k)) at(p, Unknown::k) = k * faster * faster;
+            const double omega0 = std::sqrt(at(p, Unknown::k) / at(p, Unknown::I));
+            const double speed = range_ * omega0 * std::numbers::pi / 8;  // the mean one of a swing over half the range
+            const double least = 0.02 * k * range_, most = k * range_;
+            const double lost = std::clamp(at(from, Unknown::C) * speed + at(from, Unknown::Rd), least, most);
+            for (const double more : {0.5, 1.0, 2.0}) {
+                for (const double dry : {0.05, 0.35, 0.65, 0.95}) {
+                    for (const double breakaway : {1.05, 1.4}) {
+                        at(p, Unknown::Rd) = given(Unknown::Rd, dry * more * lost);
+                        at(p, Unknown::C) = given(Unknown::C, (1 - dry) * more * lost / speed);
+                        at(p, Unknown::Re) = given(Unknown::Re, breakaway * at(p, Unknown::Rd));
+                        const auto theta = stopped_ ? std::nullopt : predicted(p, rows);
+                        if (theta) looks.emplace_back((measured_ - *theta).squaredNorm(), p);
+                    }
+                }
+            }
+        }
+    }
+    std::sort(looks.begin(), looks.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+    constexpr std::size_t tries = 8;
+    for (std::size_t i = 0; i < std::min(tries, looks.size()); ++i) {
+        if (!stopped_ && leaves_pattern(suspected)) try_from(looks[i].second);
+    }
+    if (best_->sum < (1 - same_fit) * before && !stopped_) try_jumps();
 }
 
 // ---- how a driven mass began

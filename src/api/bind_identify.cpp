@@ -52,6 +52,7 @@ void name_values(FitAnswer& fit) {
          ++i) {
         add(analysis::unknown_names[i], found.value[i], found.error[i]);
     }
+    if (absolute && found.is_noise) fit.silent = {"omega0", "zeta", "Rd_over_k"};
     for (std::size_t i = 0; i < analysis::unknown_names.size(); ++i) {
         if (!found.silent[i]) continue;
         std::string name(analysis::unknown_names[i]);
@@ -234,7 +235,7 @@ std::string fit_summary(const FitAnswer& fit) {
     } else if (fit.found.is_unexplained) {
         text += fmt::format(
             "\n  neighbouring samples scatter by {:.3g} only: what is left is no noise, so another system made this "
-            "record, or what is given is wrong",
+            "record, what is given is wrong, or a nearer fit was not found",
             fit.found.scatter);
     }
     if (const std::size_t cut = fit.found.cut_low + fit.found.cut_high; cut > 0) {
