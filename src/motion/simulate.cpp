@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <string>
 
 #include "model/controller.hpp"
@@ -69,10 +70,17 @@ double row_count(const Window& window, double dt) {
     return std::fabs(ratio - whole) <= rounding ? whole + 1 : std::floor(ratio) + 2;
 }
 
-/// Times that doubles can tell apart: a spacing well above the rounding of the largest time in the window.
+double latest_time(const Window& window) {
+    return std::max(std::fabs(window.start), std::fabs(window.end));
+}
+/// What doubles can tell apart near the latest time in the window: well above their rounding.
+double least_spacing(const Window& window) {
+    return 16 * std::numeric_limits<double>::epsilon() * latest_time(window);
+}
+
+/// Times that doubles can tell apart.
 std::optional<text::Error> lost_in_time(const char* name, double spacing, const Window& window) {
-    const double latest = std::max(std::fabs(window.start), std::fabs(window.end));
-    const double least = 16 * std::numeric_limits<double>::epsilon() * latest;
+    const double latest = latest_time(window), least = least_spacing(window);
     if (spacing >= least) return {};
     return text::Error{
         .sentence = fmt::format(
@@ -92,10 +100,25 @@ std::optional<text::Error> stepped_over(const char* name, double step, const mod
         name, step, from, to, name, 0.999 * apart)};
 }
 
+/// A sine that turns more than once between two times: it has no phase, and no integrator comes to its end.
+std::optional<text::Error> lost_sine(const model::Harmonic& sine, const Window& window) {
+    const double omega = std::fabs(sine.omega), most = 2 * std::numbers::pi / least_spacing(window);
+    if (omega <= most) return {};
+    return text::Error{
+        .sentence = fmt::format(
+            "a sine of omega = {:.6g} is lost in the rounding of times near {:.6g}: use at most omega = {:.2g} (frequency "
+            "= {:.2g}), or start nearer to t = 0",
+            omega, latest_time(window), 0.9 * most, 0.9 * most / (2 * std::numbers::pi)),
+        .option = "M"};
+}
+
 /// A term of M that comes again, or acts later, after less than times can tell apart.
 std::optional<text::Error> lost_term(const model::Excitation& excitation, const Window& window) {
     for (const model::Component& c : excitation.components()) {
-        if (std::holds_alternative<model::Harmonic>(c.term)) continue;  // which has no breaks
+        if (const auto* sine = std::get_if<model::Harmonic>(&c.term)) {
+            if (auto lost = lost_sine(*sine, window)) return lost;
+            continue;
+        }
         const auto* sampled = model::controller_of<model::SampledController>(c);
         const auto* delayed = model::controller_of<model::DelayedController>(c);
         const double period = std::visit([](const auto& term) { return term.repeats_after(); }, c.term);

@@ -93,6 +93,15 @@ test("what comes again after less than times can tell apart is refused", functio
     refused({ belt = excitation.square { period = 1e-300 } }, "period")
 end)
 
+test("a sine that turns between two times is refused, by every integrator", function()
+    for _, engine in ipairs { integrator.exact {}, integrator.spectral {}, integrator.rk4 { h = 0.01 } } do
+        for _, M in ipairs { excitation.harmonic { omega = 1e22 }, excitation.half_sine { width = 1 } + excitation.harmonic { frequency = 1e15 } } do
+            local ok, problem = pcall(dry.simulate, dry, { M = M, t_end = 10, dt = 1, integrator = engine })
+            assert(not ok and tostring(problem):find("is lost in the rounding of times near 10: use at most omega = 1.6e+14 (frequency = 2.5e+13), or start nearer to t = 0", 1, true), problem)
+        end
+    end
+end)
+
 test("a state that does not exist is neither read nor written", function()
     local function states() return { n = { rate = function() return 0 end } } end
     raises(function() dry:simulate { M = function(t, theta, v, z) return z.m end, states = states(), t_end = 1, dt = 1 } end, "there is no state 'm'; there is n")
