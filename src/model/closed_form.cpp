@@ -69,9 +69,10 @@ void ClosedForm::add_sine(double amplitude, double omega, double at, double phas
 }
 
 void ClosedForm::add_exponential(double amplitude, double rate, double at) {
-    if (amplitude == 0) return;
+    const double amount = terms::Exponential::grown(gain_ * amplitude, rate * since(at));
+    if (amount == 0) return;  // what has decayed to nothing must not keep the arcs short
     rate_.push_back(rate);
-    amount_.push_back(terms::Exponential::grown(gain_ * amplitude, rate * since(at)));
+    amount_.push_back(amount);
 }
 
 double ClosedForm::value() const {

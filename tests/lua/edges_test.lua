@@ -102,6 +102,12 @@ test("a sine that turns between two times is refused, by every integrator", func
     end
 end)
 
+test("what has decayed to nothing holds no run up", function()
+    local free = system { I = 1, k = 1, Rd = 0.1 }
+    local function last(M) return free:simulate { M = M, theta0 = 1, t_end = 10, dt = 10 }.theta[2] end
+    near(last(excitation.exponential { tau = 1e-20 }), last(excitation.constant { level = 0 }), 1e-15)
+end)
+
 test("a state that does not exist is neither read nor written", function()
     local function states() return { n = { rate = function() return 0 end } } end
     raises(function() dry:simulate { M = function(t, theta, v, z) return z.m end, states = states(), t_end = 1, dt = 1 } end, "there is no state 'm'; there is n")
