@@ -162,23 +162,32 @@ TEST_CASE("an M that is rough on every scale is followed as exactly as it can be
         {"noise of 1e-7", 1e-7, [](double t) { return smooth(t) + 1e-7 * noise(t); }},
         {"16 bit", 20 * 0x1p-15, rounded(20 * 0x1p-15)},
         {"24 bit", 20 * 0x1p-23, rounded(20 * 0x1p-23)},
-        {"only late", 20 * 0x1p-24,
-         [](double t) { return t < 5 ? smooth(t) : static_cast<double>(static_cast<float>(smooth(t))); }},
     };
-    for (const Case& c : cases) {
+    const auto followed = [&](const Case& c) {
         CAPTURE(c.name);
         const Seen one = look(system, c.M, {1, 0});
         CHECK(one.run.outcome == Outcome::reached_end);
         CHECK(one.run.events.size() == clean.run.events.size());
-        // Within a few panels, and then no slower than a smooth one.
-        CHECK(one.calls <= 2.5 * clean.calls);
         // The size of the noise, as a few coefficients tell it.
         CHECK(one.run.noise >= c.size / 30);
         CHECK(one.run.noise <= 10 * c.size);
         // A constant error of that size would move the mass by its own size over k, and it is not constant.
         CHECK(std::fabs(one.run.state_at_stop.theta - clean.run.state_at_stop.theta) <= c.size);
         CHECK(outcome_text(one.run).find("within the noise of M") != std::string::npos);
+        return one.calls;
+    };
+    // Within a few panels, and then no slower than a smooth one.
+    for (const Case& c : cases) CHECK(followed(c) <= 2.5 * clean.calls);
+    // Where it becomes rough under way, chance has a say in how soon that is seen.
+    constexpr int times = 40;
+    long calls = 0;
+    for (int i = 0; i < times; ++i) {
+        const auto late = [from = 4.9 + 0.005 * i](double t) {
+            return t < from ? smooth(t) : static_cast<double>(static_cast<float>(smooth(t)));
+        };
+        calls += followed({"only late", 20 * 0x1p-24, late});
     }
+    CHECK(static_cast<double>(calls) <= 2.5 * clean.calls * times);
     // Below the tolerance nothing is noise, and few steps are jumps, each in its place.
     CHECK(look(system, [](double t) { return smooth(t) + 1e-12 * noise(t); }, {1, 0}).run.noise == 0);
     CHECK(look(system, rounded(20 * 0x1p-4), {1, 0}).run.noise == 0);

@@ -77,22 +77,27 @@ private:
 
 namespace detail {
 
-/// The zero between f(a) > 0 and f(b) <= 0 of a curve that falls all the way: Newton within the bracket.
+/// The zero between f(a) > 0 and f(b) <= 0 of a curve that falls all the way: Newton within the bracket, up to the step
+/// that leaves no more than rounding. (Steps within the rounding of f would go on for long.)
 template <class F>
 double polish(const F& f, double a, double fa, double b, double fb) {
+    constexpr double rounding = 2e-16;
     double x = a + (b - a) * (fa / (fa - fb));
     for (int i = 0; i < 60; ++i) {
-        const double fx = f(x);
+        const double fx = f(x), slope = f.slope(x);
+        if (fx == 0) break;
         (fx > 0 ? a : b) = x;
-        const double slope = f.slope(x);
-        double next = slope < 0 ? x - fx / slope : a;
-        if (!(next > a && next < b)) {
-            if (b - a <= 4e-16) break;
-            next = fx == 0 ? x : a + (b - a) / 2;
+        double next = a;
+        if (slope < 0) {
+            const double step = -fx / slope;
+            next = x + step;
+            if (step * step * f.second_bound() <= -2 * rounding * slope) return std::clamp(next, a, b);
         }
-        const double step = std::fabs(next - x);
+        if (!(next > a && next < b)) {
+            if (b - a <= 2 * rounding) break;
+            next = a + (b - a) / 2;
+        }
         x = next;
-        if (step <= 2e-16) break;
     }
     return x;
 }
