@@ -7,6 +7,8 @@
 
 #include "support/catch.hpp"
 
+namespace dinal::first_below_test {
+
 using namespace dinal::motion::spectral;
 
 namespace {
@@ -48,3 +50,5 @@ TEST_CASE("a zero is polished in a few looks, to what the noise of the curve let
         }
     }
 }
+
+}  // namespace dinal::first_below_test
