@@ -6,17 +6,48 @@
 
 namespace dinal::api {
 
+inline constexpr text::Option state_options[] = {
+    {.name = "start", .meaning = "its value at t_start", .filled = text::fills<&model::OwnState::start>},
+    {.name = "rate",
+     .otherwise = text::needed,
+     .meaning = "a function of t, theta, velocity, z",
+     .wanted = "a function of t, theta, velocity, z"},
+};
+inline constexpr text::Call state_call{
+    "states.e", "e = { start = 0, rate = function(t, theta, velocity, z) return 1 - theta end }", state_options};
+
+inline constexpr const char* crossing_names[] = {"up", "down", "both"};
+inline constexpr text::Option event_options[] = {
+    {.name = "when",
+     .otherwise = text::needed,
+     .meaning = "a function of t, theta, velocity, z: the event is where it passes zero",
+     .wanted = "a function of t, theta, velocity, z"},
+    {.name = "direction",
+     .meaning = "which way it passes zero",
+     .filled = text::fills<&model::WantedEvent::direction>,
+     .choices = crossing_names},
+    {.name = "stop", .meaning = "true ends the run there", .filled = text::fills<&model::WantedEvent::stop>},
+    {.name = "name", .meaning = "what it is called in run.events", .filled = text::fills<&model::WantedEvent::name>},
+    {.name = "act",
+     .meaning = "a function of t, theta, velocity, z that returns what theta and velocity are from there on",
+     .wanted = "a function of t, theta, velocity, z"},
+};
+inline constexpr text::Call event_call{
+    "events[1]", "{ when = function(t, theta, velocity, z) return theta - 1 end, name = \"limit\" }", event_options};
+
 inline constexpr text::Option extras_options[] = {
     {.name = "states",
      .meaning = "variables that go along with the motion: { NAME = { start = 0, rate = function(t, theta, velocity, z) "
                 "... end } }; z.NAME has their values, the fourth argument of M, rates and events",
-     .wanted = "a table such as { e = { start = 0, rate = function(t, theta, velocity, z) return 1 - theta end } }"},
+     .wanted = "a table such as { e = { start = 0, rate = function(t, theta, velocity, z) return 1 - theta end } }",
+     .fields = {&state_call, text::Fields::Place::by_name}},
     {.name = "events",
      .meaning =
          "what is to be located: a list of { when = function(t, theta, velocity, z), direction = \"up\" or "
          "\"down\", stop = true, name = \"...\", act = function(t, theta, velocity, z) return theta, velocity end "
          "}, told where `when` passes zero",
-     .wanted = "a list such as { { when = function(t, theta) return theta - 1 end, name = \"limit\" } }"},
+     .wanted = "a list such as { { when = function(t, theta) return theta - 1 end, name = \"limit\" } }",
+     .fields = {&event_call, text::Fields::Place::listed}},
     {.name = "belt",
      .unit = "rad per time unit",
      .otherwise = "0",

@@ -52,8 +52,7 @@ std::optional<model::Walls> asked_walls(lua_State* L, const lua::Options& option
         return std::nullopt;
     }
     lua_pop(L, 2);
-    const text::Call own{"walls", "walls = { lower = -0.8, upper = 0.8, restitution = 0.7 }", model::wall_options};
-    const auto walls = lua::read<model::Walls>(L, lua_gettop(L), own);
+    const auto walls = lua::read<model::Walls>(L, lua_gettop(L), model::walls_call);
     lua_pop(L, 1);
     return walls;
 }

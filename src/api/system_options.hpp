@@ -54,7 +54,8 @@ inline constexpr text::Option spring_change[] = {
     {.name = "walls",
      .unit = "rad",
      .meaning = "other end stops; {} is none",
-     .wanted = "a table such as { lower = -0.8, upper = 0.8, restitution = 0.7 }"},
+     .wanted = "a table such as { lower = -0.8, upper = 0.8, restitution = 0.7 }",
+     .fields = {&model::walls_call}},
 };
 inline constexpr auto change_options = text::joined(number_changes, law_option, spring_change, model::units_option);
 inline constexpr text::Call with_call{"sys:with", "sys:with{ Rd = 1 }", change_options};

@@ -13,8 +13,7 @@ std::optional<model::Units> asked_units(lua_State* L, const lua::Options& option
     if (lua_type(L, -1) != LUA_TTABLE) {
         options.wrong("units", options.row("units").wanted);
     }
-    const text::Call own{"units", "units = { theta = \"m\", t = \"s\", M = \"N\" }", model::unit_options};
-    auto units = lua::read<model::Units>(L, lua_gettop(L), own);
+    auto units = lua::read<model::Units>(L, lua_gettop(L), model::units_call);
     lua_pop(L, 1);
     if (const auto wrong = units.complaint()) {
         options.fail(*wrong);

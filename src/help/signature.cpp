@@ -17,7 +17,13 @@ std::string with_default(const text::Option& option) {
     return otherwise.empty() ? option.name : fmt::format("{} = {}", option.name, otherwise);
 }
 
-/// "M = 0, t_end, dt | times"
+bool is_class_of_objects(const Section& section) {
+    return std::none_of(section.description->members.begin(), section.description->members.end(),
+                        [](const lua::Member& member) { return member.kind == lua::Kind::function; });
+}
+
+}  // namespace
+
 std::string option_list(std::span<const text::Option> options) {
     std::string list;
     for (const text::Option& option : options) {
@@ -26,13 +32,6 @@ std::string option_list(std::span<const text::Option> options) {
     }
     return list;
 }
-
-bool is_class_of_objects(const Section& section) {
-    return std::none_of(section.description->members.begin(), section.description->members.end(),
-                        [](const lua::Member& member) { return member.kind == lua::Kind::function; });
-}
-
-}  // namespace
 
 std::string signature(const lua::Doc& doc) {
     std::string text = doc.signature;

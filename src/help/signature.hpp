@@ -29,6 +29,9 @@ struct OptionLine {
 };
 std::vector<OptionLine> option_lines(std::span<const text::Option> options);
 
+/// "M = 0, t_end, dt | times"
+std::string option_list(std::span<const text::Option> options);
+
 /// What stands in the brackets of the call: "M = 0, t_end, dt | times".
 std::string parameters(std::string_view signature);
 

@@ -59,7 +59,8 @@ inline constexpr text::Option mechanical_options[] = {
     {.name = "walls",
      .unit = "rad",
      .meaning = "end stops: { lower, upper, restitution }, either wall or both; restitution 0 ... 1, 1 unless given",
-     .wanted = "a table such as { lower = -0.8, upper = 0.8, restitution = 0.7 }"},
+     .wanted = "a table such as { lower = -0.8, upper = 0.8, restitution = 0.7 }",
+     .fields = {&walls_call}},
 };
 inline constexpr auto oscillator_options = text::joined(mechanical_options, units_option);
 

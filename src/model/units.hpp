@@ -54,12 +54,14 @@ inline constexpr text::Option unit_options[] = {
     {.name = "t", .meaning = "of the time, else it has none", .filled = text::fills<&Units::t>},
     {.name = "M", .meaning = "of the torque, or of the force, else it has none", .filled = text::fills<&Units::M>},
 };
+inline constexpr text::Call units_call{"units", "units = { theta = \"m\", t = \"s\", M = \"N\" }", unit_options};
 inline constexpr text::Option units_option[] = {
     {.name = "units",
      .meaning =
          "what theta, t and M are measured in, words for cards, columns and axes: { theta = \"m\", t = \"s\", M = "
          "\"N\" }",
-     .wanted = "a table such as { theta = \"m\", t = \"s\", M = \"N\" }"},
+     .wanted = "a table such as { theta = \"m\", t = \"s\", M = \"N\" }",
+     .fields = {&units_call}},
 };
 
 }  // namespace dinal::model

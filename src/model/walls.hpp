@@ -35,5 +35,7 @@ inline constexpr text::Option wall_options[] = {
     {"restitution", "", text::its_own, from_0_to_1,
      "what an impact leaves of the velocity; 0: the mass stays at the wall", text::fills<&Walls::restitution>},
 };
+inline constexpr text::Call walls_call{"walls", "walls = { lower = -0.8, upper = 0.8, restitution = 0.7 }",
+                                       wall_options};
 
 }  // namespace dinal::model

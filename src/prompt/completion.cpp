@@ -100,16 +100,42 @@ const lua::Doc* called_doc(lua_State* L, const OpenCall& call) {
     return function.kind == Meaning::Kind::member ? &function.member->doc : nullptr;
 }
 
-/// The rows of the options that the call takes; none when it is none of ours.
-std::span<const text::Option> options_of(lua_State* L, const OpenCall& call) {
+/// The table that the cursor is in.
+struct OpenTable {
+    std::span<const text::Option> options = {};  ///< its fields; none when they are not known
+    bool list = false;                           ///< of tables
+};
+
+OpenTable open_table(lua_State* L, const OpenCall& call) {
     const lua::Doc* doc = called_doc(L, call);
     const text::Call* known = doc != nullptr ? help::call_with(*doc, call.braces) : nullptr;
-    return known != nullptr ? known->options : std::span<const text::Option>();
+    text::Fields::Place place = text::Fields::Place::itself;
+    for (const std::string_view name : call.path) {
+        if (known != nullptr && place == text::Fields::Place::itself) {
+            const auto row = std::find_if(known->options.begin(), known->options.end(),
+                                          [name](const text::Option& option) { return option.name == name; });
+            const text::Fields table = row == known->options.end() ? text::Fields{} : row->fields;
+            known = table.call;
+            place = table.place;
+        } else if (name.empty() == (place == text::Fields::Place::listed)) {
+            place = text::Fields::Place::itself;
+        } else {
+            return {};
+        }
+    }
+    if (known == nullptr || place == text::Fields::Place::by_name) {
+        return {};
+    }
+    return place == text::Fields::Place::listed ? OpenTable{.list = true} : OpenTable{.options = known->options};
 }
 
 std::vector<std::string> option_names(lua_State* L, const OpenCall& call) {
+    const OpenTable table = open_table(L, call);
     std::vector<std::string> names;
-    for (const text::Option& option : options_of(L, call)) {
+    if (table.list) {
+        names.emplace_back("{ ");
+    }
+    for (const text::Option& option : table.options) {
         if (std::find(call.given.begin(), call.given.end(), option.name) == call.given.end()) {
             names.push_back(std::string(option.name) + " = ");
         }
@@ -134,12 +160,15 @@ std::vector<std::string> constructors(std::string_view name) {
 /// What the value of an option may be, as far as its row tells. `quote` stands around choices.
 std::vector<std::string> option_values(lua_State* L, const OpenCall& call, std::string_view quote) {
     std::vector<std::string> values;
-    for (const text::Option& option : options_of(L, call)) {
+    for (const text::Option& option : open_table(L, call).options) {
         if (option.name != call.option) {
             continue;
         }
         for (const char* choice : option.choices) {
             values.push_back(std::string(quote) + choice + "\"");
+        }
+        if (option.fields.call != nullptr) {
+            values.emplace_back("{ ");
         }
         if (option.filled.kind == text::OptionKind::flag) {
             values.insert(values.end(), {"true", "false"});
@@ -223,9 +252,12 @@ Completion complete(lua_State* L, std::string_view before) {
         case Cursor::string:
             if (typed.call() && !help) {
                 completion.names = option_values(L, *typed.call(), "");
-                if (const std::string_view option = typed.call()->option; option == "x" || option == "y") {
-                    completion.names = columns_of_owner(L, typed.call()->function);
-                    for (std::string& name : completion.names) name += '"';
+                const OpenCall& call = *typed.call();
+                const bool listed = call.option.empty() && call.path.size() == 1;  // y = { "theta", "
+                if (const std::string_view name = listed ? call.path.front() : call.option;
+                    name == "x" || name == "y") {
+                    completion.names = columns_of_owner(L, call.function);
+                    for (std::string& column : completion.names) column += '"';
                 }
             }
             completion.files = !help && completion.names.empty() && (!typed.call() || takes_file(L, *typed.call()));
@@ -266,7 +298,11 @@ std::string signature_hint(lua_State* L, std::string_view before) {
     if (doc == nullptr) {
         return "";
     }
-    const std::string all = help::parameters(help::signature(*doc));
+    if (!typed.call()->path.empty() && open_table(L, *typed.call()).options.empty()) {
+        return "";
+    }
+    const std::string all = typed.call()->path.empty() ? help::parameters(help::signature(*doc))
+                                                       : help::option_list(open_table(L, *typed.call()).options);
     std::string hint;
     std::string part;
     int depth = 0;

@@ -89,6 +89,20 @@ std::vector<std::size_t> TypedText::open_brackets() const {
     return open;
 }
 
+/// How the table that begins at one bracket stands in what begins at another: under which name, "" without one. None
+/// when it is part of an expression there.
+std::optional<std::string_view> TypedText::name_of_table(std::size_t bracket, std::size_t outer) const {
+    const auto separates_items = [&](std::size_t i) {
+        return i == outer || tokens_[i].is(",") || (tokens_[i].is(";") && tokens_[outer].is("{"));
+    };
+    if (separates_items(bracket - 1)) {
+        return "";
+    }
+    const bool named = bracket - outer > 2 && tokens_[bracket - 1].is("=") && tokens_[outer].is("{") &&
+                       tokens_[bracket - 2].kind == lua::TokenKind::name && separates_items(bracket - 3);
+    return named ? std::optional(tokens_[bracket - 2].text) : std::nullopt;
+}
+
 void TypedText::find_call() {
     const std::vector<std::size_t> open = open_brackets();
     if (cursor_ == Cursor::string && !tokens_.empty() && tokens_.back().kind == lua::TokenKind::name) {
@@ -101,15 +115,21 @@ void TypedText::find_call() {
     const std::size_t bracket = open.back();
     OpenCall call{.function = expression_before(bracket)};
     call.options = tokens_[bracket].is("{");
-    if (call.options && call.function.empty() && open.size() > 1) {
-        const lua::Token& outer = tokens_[open[open.size() - 2]];
-        if (tokens_[bracket - 1].is(",") || tokens_[bracket - 1].is(outer.text)) {
-            call.function = expression_before(open[open.size() - 2]);
-            call.braces = outer.is("(") ? help::Braces::in_parentheses : help::Braces::nested;
+    std::size_t around = open.size() - 1;
+    for (; call.function.empty() && around > 0 && tokens_[open[around]].is("{"); --around) {
+        const std::optional<std::string_view> name = name_of_table(open[around], open[around - 1]);
+        if (!name) {
+            return;
         }
+        call.path.insert(call.path.begin(), *name);
+        call.function = expression_before(open[around - 1]);
     }
     if (call.function.empty()) {
         return;
+    }
+    if (!call.path.empty() && call.path.front().empty()) {
+        call.braces = tokens_[open[around]].is("(") ? help::Braces::in_parentheses : help::Braces::nested;
+        call.path.erase(call.path.begin());
     }
     int depth = 0;
     for (std::size_t i = bracket + 1; i + 1 < tokens_.size(); ++i) {

@@ -20,8 +20,11 @@ struct OpenCall {
     std::span<const lua::Token> function;       ///< the tokens before the bracket: sys : simulate
     bool options = false;                       ///< the cursor is in a table of options,
     help::Braces braces = help::Braces::alone;  ///< which is passed like this
-    std::vector<std::string_view> given = {};   ///< the options that are there already
-    std::string_view option = {};               ///< the one whose value the cursor is at
+    /// From the options of the call to the table with the cursor: the names that lead there, "" in a list:
+    /// events, "" in f{ events = { { ... } } }.
+    std::vector<std::string_view> path = {};
+    std::vector<std::string_view> given = {};  ///< the options that are there already
+    std::string_view option = {};              ///< the one whose value the cursor is at
 };
 
 /// What stands before the cursor. Refers to the text.
@@ -45,6 +48,7 @@ private:
     void find_call();
     [[nodiscard]] std::span<const lua::Token> expression_before(std::size_t end) const;
     [[nodiscard]] std::vector<std::size_t> open_brackets() const;
+    [[nodiscard]] std::optional<std::string_view> name_of_table(std::size_t bracket, std::size_t outer) const;
 
     std::vector<lua::Token> tokens_;  // without the word at the cursor
     Cursor cursor_ = Cursor::nothing;

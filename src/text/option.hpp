@@ -62,6 +62,19 @@ struct OptionTarget {
 inline constexpr const char* needed = nullptr;
 inline constexpr const char* its_own = "";  ///< what a new object has; nothing to tell when that is infinite or absent
 
+struct Call;
+
+/// An option that is a table with named fields of its own, as walls = { lower = -1 }: what they are, and where.
+struct Fields {
+    enum class Place {
+        itself,   ///< { lower = -1 }
+        listed,   ///< a list of such tables: { { when = f } }
+        by_name,  ///< such tables under names of the user's: { e = { rate = f } }
+    };
+    const Call* call = nullptr;  ///< that describes them; none: the option is no such table
+    Place place = Place::itself;
+};
+
 struct Option {
     const char* name = "";
     const char* unit = "";
@@ -73,6 +86,7 @@ struct Option {
     bool instead_of_previous = false;           ///< frequency | omega: one of the two is given, never both
     const char* object = "";                    ///< the class of Lua whose constructors Tab offers: "integrator"
     const char* wanted = "";                    ///< of a kind `other`: "a system such as system{ I = 1, k = 39.5 }"
+    Fields fields = {};
 };
 
 /// A call that takes one table of named options.

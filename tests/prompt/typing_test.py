@@ -104,6 +104,27 @@ class Completion(Typing):
         self.completes(terminal, "sys:simulate{ M = excitation.pulse{ wi", "sys:simulate{ M = excitation.pulse{ width = ")
         self.completes(terminal, "sys:simulate{ integrator = integrator.rk", "sys:simulate{ integrator = integrator.rk4{ ")
 
+    def test_fields_of_tables_within_options(self):
+        terminal = self.start(TERM="dumb")
+        terminal.enter(SYSTEM)
+        seen = self.offers(terminal, "system{ I = 1, walls = { lower = -1, ", ["upper", "restitution"])
+        self.assertEqual(seen.count("lower"), 2)  # the line, twice on the screen; not in the list
+        self.offers(terminal, "sys:simulate{ events = { { when = f }, { ", ["when", "direction", "stop", "name", "act"])
+        self.completes(terminal, "sys:simulate{ events = { { direction = \"bo",
+                       "sys:simulate{ events = { { direction = \"both\"")
+        self.offers(terminal, "sys:simulate{ states = { e = { ", ["start", "rate"])
+        self.offers(terminal, "friction.asymmetric{ forward = { R", ["Rd", "Re"])
+        self.offers(terminal, "sys:with{ units = { ", ["theta", "t", "M"])
+        for typed, whole in [("system{ walls = ", "system{ walls = {"),
+                             ("sys:simulate{ events = { ", "sys:simulate{ events = { {"),
+                             ("f({ g = 1 }, sys:simulate{ states = { e = { ra",
+                              "f({ g = 1 }, sys:simulate{ states = { e = { rate =")]:
+            self.completes(terminal, typed, whole)
+        terminal.enter("run = sys:simulate{ theta0 = 1, t_end = 1, dt = 0.1 }")
+        self.completes(terminal, 'run:plot{ y = { "theta", "vel', 'run:plot{ y = { "theta", "velocity"')
+        for typed in ["sys:simulate{ walls = { ", "sys:simulate{ M = function(t) local walls = { ", "x = { walls = { "]:
+            self.assertNotIn("upper", self.offers(terminal, typed, ["print"]))
+
     def test_options_on_a_later_line_and_the_key_that_indents(self):
         terminal = self.start(TERM="dumb")
         terminal.enter(SYSTEM)

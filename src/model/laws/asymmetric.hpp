@@ -29,11 +29,13 @@ inline constexpr text::Option asymmetric_options[] = {
     {.name = "forward",
      .otherwise = text::needed,
      .meaning = "friction of a motion forward",
-     .wanted = "a table such as { Rd = 0.3, Re = 0.4 }"},
+     .wanted = "a table such as { Rd = 0.3, Re = 0.4 }",
+     .fields = {&coulomb_call}},
     {.name = "backward",
      .otherwise = text::needed,
      .meaning = "friction of a motion backward",
-     .wanted = "a table such as { Rd = 0.3, Re = 0.4 }"},
+     .wanted = "a table such as { Rd = 0.3, Re = 0.4 }",
+     .fields = {&coulomb_call}},
 };
 inline constexpr text::Call asymmetric_call{
     "friction.asymmetric", "friction.asymmetric{ forward = { Rd = 0.1 }, backward = { Rd = 0.3, Re = 0.5 } }",
