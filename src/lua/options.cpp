@@ -25,6 +25,16 @@ std::string joined(const Names& names, std::string_view last_separator, std::str
     return text;
 }
 
+/// "; did you mean 'theta0' for 'theta' and 't_end' for 'tend'?", of those that have a likely cure.
+std::string cures(const Names& unknown, const Names& known) {
+    std::vector<std::string> words;
+    for (const std::string_view name : unknown) {
+        const std::vector<std::string> best = text::suggestions(name, known);
+        if (!best.empty()) words.push_back(fmt::format("'{}' for '{}'", best.front(), name));
+    }
+    return words.empty() ? "" : fmt::format("; did you mean {}?", fmt::join(words, " and "));
+}
+
 }  // namespace
 
 Options::Options(lua_State* L, int index, const text::Call& call) : L_(L), index_(index), call_(call) {
@@ -49,6 +59,7 @@ void Options::check_table() {
                        fmt::format("{} takes one table of named options, for example {}", call_.name, call_.example),
                    .call = call_.name});
     }
+    Names unknown;
     lua_pushnil(L_);
     while (lua_next(L_, index_) != 0) {
         if (lua_type(L_, -2) != LUA_TSTRING) {
@@ -60,18 +71,26 @@ void Options::check_table() {
         const std::string_view name = text_at(L_, -2);
         const std::size_t row = place(name);
         if (row == most_options) {
-            Names known;
-            for (const text::Option& option : call_.options) known.emplace_back(option.name);
-            raise(L_, {.sentence = known.empty() ? fmt::format("{} has no options, so no '{}' either", call_.name, name)
-                                                 : fmt::format("{} has no option '{}' among {}", call_.name, name,
-                                                               joined(known, " and ")),
-                       .call = call_.name,
-                       .culprit = std::string(name),
-                       .cure = text::did_you_mean(name, known)});
+            unknown.push_back(name);
+        } else {
+            given_.set(row);
         }
-        given_.set(row);
         lua_pop(L_, 1);
     }
+    if (!unknown.empty()) refuse(unknown);
+}
+
+void Options::refuse(std::vector<std::string_view>& unknown) const {
+    std::sort(unknown.begin(), unknown.end());  // a table has no order, and what is said must be the same each time
+    Names known;
+    for (const text::Option& option : call_.options) known.emplace_back(option.name);
+    const std::string names = joined(unknown, " and ", "'");
+    raise(L_, {.sentence = known.empty() ? fmt::format("{} has no options, so no {} either", call_.name, names)
+                                         : fmt::format("{} has no option{} {} among {}", call_.name,
+                                                       unknown.size() > 1 ? "s" : "", names, joined(known, " and ")),
+               .call = call_.name,
+               .culprit = std::string(unknown.front()),
+               .cure = unknown.size() == 1 ? text::did_you_mean(unknown.front(), known) : cures(unknown, known)});
 }
 
 void Options::push(std::string_view name) const {

@@ -72,6 +72,8 @@ private:
     static constexpr std::size_t most_options = 64;
 
     void check_table();
+    /// Raises that the call has no options of these names.
+    [[noreturn]] void refuse(std::vector<std::string_view>& unknown) const;
     /// Of a row; `most_options` when there is none.
     [[nodiscard]] std::size_t place(std::string_view name) const;
     void fill(const void* owner, void* object) const;

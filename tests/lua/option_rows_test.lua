@@ -113,4 +113,14 @@ os.remove(record)
 
 test("there are many of them", function() assert(tested > 140, tested) end)
 
+test("names that are no options are told all at once, in an order that does not change from run to run", function()
+    for _ = 1, 20 do
+        local given = { zz = 1, Rf = 2, kk = 3, I = 1 }
+        given.aa, given.zz = 4, nil -- another order in the table
+        local message = support.raises(function() system(given) end)
+        assert(message:find("system has no options 'Rf', 'aa' and 'kk' among I, k,", 1, true), message)
+        assert(message:find("; did you mean 'Rd' for 'Rf'", 1, true), message)
+    end
+end)
+
 support.finish()
