@@ -33,7 +33,10 @@ model::Excitation to_excitation(lua_State* L, int index, std::string_view what, 
                                                lua::describe(L, index)),
                        .call = std::string(what),
                        .option = std::string(option),
-                       .culprit = lua::written(L, index)});
+                       .culprit = lua::written(L, index),
+                       .cure = lua_type(L, index) == LUA_TSTRING
+                                   ? "; a function of t is written: function(t) return math.sin(t) end"
+                                   : ""});
     }
     auto made = model::Excitation::make(std::move(term));
     if (!made) {

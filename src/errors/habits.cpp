@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "errors/misspelling.hpp"
 #include "errors/shell_words.hpp"
 #include "lua/safe_mode.hpp"
 #include "lua/standard_globals.hpp"
@@ -13,7 +14,7 @@
 namespace dinal::errors {
 namespace {
 
-constexpr std::array<std::pair<std::string_view, std::string_view>, 23> foreign_names = {{
+constexpr std::array<std::pair<std::string_view, std::string_view>, 24> foreign_names = {{
     {"echo", "; did you mean 'print'?"},
     {"disp", "; did you mean 'print'?"},
     {"puts", "; did you mean 'print'?"},
@@ -23,6 +24,7 @@ constexpr std::array<std::pair<std::string_view, std::string_view>, 23> foreign_
     {"None", "; did you mean 'nil'?"},
     {"null", "; did you mean 'nil'?"},
     {"NULL", "; did you mean 'nil'?"},
+    {"t", "; what depends on t is a function: function(t) return 2*t end"},
     {"range", "; a loop is: for i = 1, 10 do ... end"},
     {"len", "; the length of x is #x"},
     {"length", "; the length of x is #x"},
@@ -86,6 +88,22 @@ std::string called_value(lua_State* L, const lua::LuaMessage& message) {
     return simple ? "; it is a value and no function: leave out the parentheses" : "";
 }
 
+/// run.energy.total: a function in which something is looked for, where what it gives was meant.
+std::string uncalled_function(lua_State* L, const lua::LuaMessage& message, std::string_view statement) {
+    const std::vector<lua::Token> all = lua::tokens(statement);
+    for (std::size_t i = 0; i < all.size(); ++i) {
+        if (!all[i].is(message.name)) continue;
+        std::string name(message.name);
+        if (i > 1 && all[i - 1].is(".")) {
+            push_variable(L, nullptr, all[i - 2].text);
+            name.insert(0, std::string(all[i - 2].text) + (lua_isuserdata(L, -1) != 0 ? ":" : "."));
+            lua_pop(L, 1);
+        }
+        return "; " + name + " is to be called first";
+    }
+    return "";
+}
+
 /// What Lua has and safe mode has not.
 std::string left_out_in_safe_mode(const lua::LuaMessage& message, std::string_view statement) {
     if (!lua::safe_mode() || message.type != "nil") {
@@ -133,6 +151,9 @@ std::string running_habit(lua_State* L, const lua::LuaMessage& message, std::str
     }
     if (message.calls) {
         return called_value(L, message);
+    }
+    if (message.type == "function" && !message.calculates) {
+        return uncalled_function(L, message, statement);
     }
     if (message.type == "nil" && message.kind == "global") {
         if (std::string shell = instead_of_shell_line(L, statement); !shell.empty()) {

@@ -25,7 +25,7 @@ struct Symptom {
     std::string_view cure;
 };
 
-constexpr std::array<Symptom, 19> symptoms = {{
+constexpr std::array<Symptom, 20> symptoms = {{
     {"", "!", "; in Lua 'not equal' is ~= and 'not' is a word"},
     {"", "+", "; in Lua that is x = x + 1"},
     {"syntax error", "-", "; in Lua that is x = x - 1"},
@@ -42,13 +42,14 @@ constexpr std::array<Symptom, 19> symptoms = {{
     {"'then' expected", "=", "; comparing is =="},
     {"'do' expected", "=", "; comparing is =="},
     {"'do' expected", "", "; a loop is: for i = 1, 10 do ... end, or: while x < 3 do ... end"},
+    {"',' expected", ":", "; a loop is: for i = 1, 10 do ... end"},
     {"')' expected", "=", "; named options stand in braces: system{ I = 1, k = 4 }"},
     {"unfinished string", "", "; its closing quote is missing"},
     {"'}' expected", "", "; is a comma missing there?"},
 }};
 
 /// What stands before a name in other languages: "def f", "var x", "import math".
-constexpr std::array<Cure, 19> leading_words = {{
+constexpr std::array<Cure, 22> leading_words = {{
     {"def", "; a function is written: function f(x) return 2*x end"},
     {"func", "; a function is written: function f(x) return 2*x end"},
     {"fn", "; a function is written: function f(x) return 2*x end"},
@@ -67,6 +68,9 @@ constexpr std::array<Cure, 19> leading_words = {{
     {"elif", "; did you mean 'elseif'?"},
     {"elsif", "; did you mean 'elseif'?"},
     {"is", "; comparing is =="},
+    {"DO", "; a loop is: for i = 1, 10 do ... end"},
+    {"CALL", "; a call needs parentheses and no word before it: f(x)"},
+    {"PRINT", "; a value is shown by print(x)"},
     {"help", "; write ?name, or help \"name\""},
 }};
 
@@ -124,6 +128,9 @@ Stumble stumble_in(const lua::SyntaxMessage& message, std::string_view statement
 std::string printed_sign(const lua::SyntaxMessage& message, std::string_view statement) {
     if (!message.near.starts_with("<\\")) {
         return "";
+    }
+    if (message.near == "<\\255>" || message.near == "<\\254>") {  // its first byte, and none of UTF-8
+        return "; this is text in UTF-16: save it as UTF-8";
     }
     for (const auto& [sign, meant] : printed_signs) {
         if (statement.find(sign) != std::string_view::npos) {
@@ -257,6 +264,31 @@ std::string missing_star(const Stumble& stumble) {
     return product ? "; a product needs a star: " + std::string(word.substr(0, digits)) + "*" + std::string(name) : "";
 }
 
+/// "function(t) 3*t end"
+std::string missing_return(const Stumble& stumble) {
+    const auto& all = stumble.all;
+    const std::string_view complaint = stumble.message.complaint;
+    if (complaint != "unexpected symbol" && complaint != "syntax error") return "";
+    std::size_t body = 0;  // of the innermost function before the place
+    for (std::size_t i = 0; i < stumble.at; ++i) {
+        if (!all[i].is("function")) continue;
+        while (i < stumble.at && !all[i].is(")")) ++i;
+        body = i + 1;
+    }
+    if (body == 0 || body > stumble.at || (stumble.at + 1 < all.size() && all[stumble.at + 1].is("="))) return "";
+    const auto first = all.begin() + static_cast<std::ptrdiff_t>(body);
+    const auto place = all.begin() + static_cast<std::ptrdiff_t>(stumble.at);
+    const lua::Token& token = stumble.token();
+    const bool value = token.kind == lua::TokenKind::number || token.kind == lua::TokenKind::string;
+    const bool sign = token.kind == lua::TokenKind::symbol &&
+                      (std::string_view("+-*/^%<>").find(token.text.front()) != std::string_view::npos ||
+                       token.is("..") || token.is("==") || token.is("~="));
+    const bool expression = (value || sign) && std::none_of(first, place, [](const lua::Token& other) {
+                                return other.kind == lua::TokenKind::keyword || other.is("=") || other.is(";");
+                            });
+    return expression ? "; is the word return missing there?" : "";
+}
+
 /// What the tokens around the place tell: braces and colons of other languages, "I : 1", "M(t) = 2*t".
 std::string other_grammar(const Stumble& stumble) {
     if (stumble.at == 0) {
@@ -266,6 +298,9 @@ std::string other_grammar(const Stumble& stumble) {
     const lua::Token& before = stumble.before();
     const auto& all = stumble.all;
     const std::string_view complaint = stumble.message.complaint;
+    if (all.front().is("WRITE") || all.front().is("PRINT")) {  // WRITE(*,*) X
+        return "; a value is shown by print(x)";
+    }
     if (complaint == "<name> expected" && before.is(":")) {
         return token.is("=") ? "; assigning is =" : "; a named value is written with =, I = 1";
     }
@@ -302,7 +337,7 @@ std::string syntax_habit(lua_State* L, const lua::SyntaxMessage& message, std::s
     }
     for (std::string advice : {degrees(stumble, statement), printed_sign(message, statement), doubled_sign(stumble),
                                name_without_quotes(stumble), two_words(L, stumble), misspelt_keyword(stumble),
-                               missing_star(stumble), other_grammar(stumble)}) {
+                               missing_star(stumble), missing_return(stumble), other_grammar(stumble)}) {
         if (!advice.empty()) {
             return advice;
         }

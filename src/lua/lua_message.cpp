@@ -43,7 +43,8 @@ LuaMessage running_message(std::string_view words) {
     message.name = variable.substr(std::min(message.kind.size() + 2, variable.size()));
     message.calls = words.starts_with("attempt to call a ");
     message.calculates = words.starts_with("attempt to perform arithmetic on ");
-    message.adds_texts = words.starts_with("attempt to add a 'string' with a 'string'");
+    message.adds_texts = words.starts_with("attempt to add a 'string' with ") ||
+                         words.starts_with("attempt to add a 'number' with a 'string'");
     message.misses_a_value =
         words.find("nil") != std::string_view::npos && words.find("nil value (") == std::string_view::npos;
     return message;

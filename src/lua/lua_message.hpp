@@ -18,7 +18,7 @@ struct LuaMessage {
     std::vector<std::string_view> quoted = {};  ///< all that stands in quotes
     bool calls = false;                         ///< "attempt to call"
     bool calculates = false;                    ///< "attempt to perform arithmetic on"
-    bool adds_texts = false;                    ///< "attempt to add a 'string' with a 'string'"
+    bool adds_texts = false;                    ///< "attempt to add a 'string' with a 'number'"
     bool misses_a_value = false;                ///< some nil that has no name here: "(number expected, got nil)"
 };
 LuaMessage running_message(std::string_view words);

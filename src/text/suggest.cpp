@@ -16,7 +16,7 @@ constexpr int most_slips = 2;
 constexpr int far = 1000;
 
 // What other books and programs call the things here. A word may stand for several: only those that are known count.
-constexpr std::array<std::pair<std::string_view, std::string_view>, 62> synonyms = {{
+constexpr std::array<std::pair<std::string_view, std::string_view>, 63> synonyms = {{
     {"sin", "harmonic"},
     {"sine", "harmonic"},
     {"cos", "harmonic"},
@@ -72,6 +72,7 @@ constexpr std::array<std::pair<std::string_view, std::string_view>, 62> synonyms
     {"time", "t"},
     {"f", "frequency"},
     {"w", "omega"},
+    {"phi", "phase"},
     {"maximum", "max"},
     {"minimum", "min"},
     {"average", "mean"},
