@@ -44,16 +44,24 @@ Columns columns_of(const PaperPanel& panel, const Curve& curve, const Places& pl
     return columns;
 }
 
+/// As vectors: where one line ends and the next begins, gnuplot's pngcairo draws spikes.
 Columns columns_of(const PaperPanel& panel, const std::vector<Stroke>& strokes) {
-    Columns columns(2);
+    Columns columns(4);
     const double width = panel.right - panel.left;
     for (const Stroke& stroke : strokes) {
-        const double y = panel.view.y.at(stroke.y / (panel.top - panel.bottom));
-        columns[0].insert(columns[0].end(),
-                          {panel.view.x.at(stroke.from / width), panel.view.x.at(stroke.to / width), std::nan("")});
-        columns[1].insert(columns[1].end(), {y, y, std::nan("")});
+        const double from = panel.view.x.at(stroke.from / width);
+        columns[0].push_back(from);
+        columns[1].push_back(panel.view.y.at(stroke.y / (panel.top - panel.bottom)));
+        columns[2].push_back(panel.view.x.at(stroke.to / width) - from);
+        columns[3].push_back(0);
     }
     return columns;
+}
+
+std::string stroke_element(const PaperPanel& panel, const Strokes& strokes, double overlap, const std::string& colour,
+                           GnuplotData& data) {
+    return fmt::format("{} with vectors nohead lt 1 dt 1 lw {:.3f} lc rgb '{}'",
+                       data.add(columns_of(panel, strokes.all)), overlap * strokes.height, colour);
 }
 
 bool is_dot(const PaperPanel& panel, const Curve& curve, const Places& piece) {
@@ -155,8 +163,19 @@ std::vector<std::string> curve_elements(const PaperPanel& panel, std::size_t pla
     const Curve& curve = panel.figure->curves[place];
     if (!trace.ink.all.empty()) {
         constexpr double overlap = 1.6;  // or a screen shows the seams between rows
-        return {fmt::format("{} with lines lt 1 dt 1 lw {:.3f} lc rgb '{}'", data.add(columns_of(panel, trace.ink.all)),
-                            overlap * trace.ink.height, colour_of(*panel.figure, place))};
+        return {stroke_element(panel, trace.ink, overlap, colour_of(*panel.figure, place), data)};
+    }
+    if (!trace.layers.empty()) {
+        constexpr double overlap = 1.2;   // the seams show the layer below
+        constexpr double faintest = 0.4;  // that is still seen
+        std::vector<std::string> elements;
+        double above = static_cast<double>(trace.layers.size());
+        for (const Strokes& layer : trace.layers) {
+            const double strength =
+                1 - (1 - faintest) * --above / std::max(1.0, static_cast<double>(trace.layers.size()) - 1);
+            elements.push_back(stroke_element(panel, layer, overlap, tint_of(*panel.figure, place, strength), data));
+        }
+        return elements;
     }
     if (curve.style == Style::fill) {
         return fill_elements(panel, place, trace.places, data);

@@ -14,6 +14,7 @@ namespace dinal::plots {
 struct Trace {
     std::vector<std::size_t> places = {};  ///< of its points, `gap` where the pen is lifted
     Strokes ink = {};                      ///< or in their place; in pixels of the sheet from the corner of the box
+    std::vector<Strokes> layers = {};      ///< or these, of a crowd of points: the darker, the more there are
 };
 
 /// In the order in which they are to be drawn, for the panel's curve of that place.

@@ -21,11 +21,15 @@ constexpr double point_bytes = 15;  // "L293.68,135.55 "
 constexpr double stroke_bytes = 2 * point_bytes;
 constexpr double mark_bytes = 110;
 
+constexpr std::size_t crowd_of_points = 10'000;  // whose ink alone would be solid blocks
+
 double bytes_of(const Curve& curve, const Trace& trace) {
     const double each = curve.style == Style::points ? mark_bytes
                         : curve.style == Style::fill ? 2 * point_bytes  // there and back
                                                      : point_bytes;
-    return static_cast<double>(trace.ink.all.size()) * stroke_bytes + static_cast<double>(trace.places.size()) * each;
+    std::size_t strokes = trace.ink.all.size();
+    for (const Strokes& layer : trace.layers) strokes += layer.all.size();
+    return static_cast<double>(strokes) * stroke_bytes + static_cast<double>(trace.places.size()) * each;
 }
 
 /// An area has the corners of both its edges, and is interrupted where one of them is.
@@ -52,15 +56,26 @@ std::vector<std::size_t> between_edges(const Curve& curve, const Paper& paper) {
     return kept;
 }
 
+void to_sheet(Strokes& strokes) {
+    strokes.height /= fineness;
+    for (Stroke& stroke : strokes.all) {
+        stroke = {stroke.from / fineness, stroke.to / fineness, stroke.y / fineness};
+    }
+}
+
 /// No larger than `most` bytes, if there is a way to make it so with this coarseness.
 Trace trace_of(const Curve& curve, const Paper& paper, double most) {
     Trace trace{curve.style == Style::fill && curve.base ? between_edges(curve, paper) : thinned(curve, paper)};
     if (bytes_of(curve, trace) > most && curve.style != Style::fill && !has_columns(curve)) {
-        trace = {.ink = inked(curve, paper, line_width * fineness, static_cast<std::size_t>(most / stroke_bytes))};
-        trace.ink.height /= fineness;
-        for (Stroke& stroke : trace.ink.all) {
-            stroke = {stroke.from / fineness, stroke.to / fineness, stroke.y / fineness};
+        const auto strokes = static_cast<std::size_t>(most / stroke_bytes);
+        trace.places.clear();
+        if (curve.style == Style::points && curve.size() > crowd_of_points) {
+            trace.layers = crowded(curve, paper, strokes);
+        } else {
+            trace.ink = inked(curve, paper, line_width * fineness, strokes);
         }
+        to_sheet(trace.ink);
+        for (Strokes& layer : trace.layers) to_sheet(layer);
     }
     return trace;
 }

@@ -34,6 +34,16 @@ std::string colour_of(const Figure& figure, std::size_t curve) {
     return std::string(palette[(own > 0 ? static_cast<std::size_t>(own - 1) : curve) % palette.size()]);
 }
 
+std::string tint_of(const Figure& figure, std::size_t curve, double strength) {
+    const auto full = static_cast<unsigned>(std::stoul(colour_of(figure, curve).substr(1), nullptr, 16));
+    unsigned tint = 0;
+    for (const unsigned shift : {16U, 8U, 0U}) {
+        const double paper = 255, own = (full >> shift) & 255U;
+        tint |= static_cast<unsigned>(paper + strength * (own - paper)) << shift;
+    }
+    return fmt::format("#{:06X}", tint);
+}
+
 std::string line_style(const Figure& figure, std::size_t curve) {
     return fmt::format("lt 1 lw {} dt {} lc rgb '{}'", line_width, dash_type(figure.curves[curve].dashes, curve),
                        colour_of(figure, curve));

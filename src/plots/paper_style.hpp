@@ -16,6 +16,8 @@ inline constexpr std::string_view dead_zone_colour = "#B0B0B0";  // and the moti
 
 // The figure's curve of that place, from 0:
 std::string colour_of(const Figure& figure, std::size_t curve);
+/// The same, paler: 1 is full, 0 white.
+std::string tint_of(const Figure& figure, std::size_t curve, double strength);
 std::string line_style(const Figure& figure, std::size_t curve);
 std::string point_style(const Figure& figure, std::size_t curve);
 std::string fill_style(const Figure& figure, std::size_t curve);

@@ -170,4 +170,53 @@ Strokes inked(const Curve& curve, const Paper& paper, double pen, std::size_t mo
     return strokes;
 }
 
+std::vector<Strokes> crowded(const Curve& curve, const Paper& paper, std::size_t most) {
+    constexpr double finest = 2, coarsest = 16;                   // pixels
+    constexpr std::array<double, 4> within = {0, 0.4, 0.7, 0.9};  // of the cells that have points
+    const Projected project(curve, paper);
+    double cell = finest;
+    while (true) {
+        const auto columns = static_cast<std::size_t>(std::ceil(paper.pixels.width / cell));
+        const auto rows = static_cast<std::size_t>(std::ceil(paper.pixels.height / cell));
+        std::vector<std::size_t> counts(columns * rows, 0);
+        for (std::size_t i = 0; i < curve.size(); ++i) {
+            if (!project.has(i)) continue;
+            const Point point = project(i);
+            const double column = std::floor(point.x / cell), row = std::floor(point.y / cell);
+            if (column >= 0 && row >= 0 && column < static_cast<double>(columns) && row < static_cast<double>(rows)) {
+                ++counts[static_cast<std::size_t>(row) * columns + static_cast<std::size_t>(column)];
+            }
+        }
+        std::vector<std::size_t> sorted = counts;
+        std::erase(sorted, 0);
+        std::sort(sorted.begin(), sorted.end());
+        std::vector<Strokes> layers;
+        std::size_t strokes = 0, before = 0;
+        for (const double part : within) {
+            const auto rank = static_cast<std::size_t>(part * static_cast<double>(sorted.size()));
+            const std::size_t more_than = part == 0 || sorted.empty() ? 0 : sorted[rank];
+            if (part > 0 && more_than == before) continue;
+            before = more_than;
+            Strokes layer{{}, cell};
+            for (std::size_t place = 0; place < counts.size(); ++place) {
+                if (counts[place] <= more_than) continue;
+                const std::size_t column = place % columns, row = place / columns;
+                const double from = static_cast<double>(column) * cell;
+                const double y = (static_cast<double>(row) + 0.5) * cell;
+                if (column > 0 && counts[place - 1] > more_than) {
+                    layer.all.back().to = from + cell;
+                } else {
+                    layer.all.push_back({from, from + cell, y});
+                }
+            }
+            strokes += layer.all.size();
+            if (!layer.all.empty()) layers.push_back(std::move(layer));
+        }
+        if (strokes <= most || cell > coarsest) {
+            return layers;
+        }
+        cell *= 1.25;
+    }
+}
+
 }  // namespace dinal::plots

@@ -32,4 +32,8 @@ std::vector<std::size_t> thinned(const Curve& curve, const Paper& paper);
 /// ink. The fewer strokes, the coarser they are.
 Strokes inked(const Curve& curve, const Paper& paper, double pen, std::size_t most);
 
+/// Of a crowd of points: how many of them there are, as up to four layers of strokes, each within the one before it;
+/// the first is where there are any. At most so many strokes in all, in cells as fine as these let them be.
+std::vector<Strokes> crowded(const Curve& curve, const Paper& paper, std::size_t most);
+
 }  // namespace dinal::plots

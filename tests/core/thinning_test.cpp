@@ -195,4 +195,46 @@ TEST_CASE("points that cannot be seen are left out, and so is what has no place"
     CHECK(thinned(cloud, paper) == std::vector<std::size_t>{0, 3});
 }
 
+TEST_CASE("a crowd of points shows where it is denser", "[plots]") {
+    // 40000 points, three in four of them in the left tenth of the sheet.
+    std::vector<double> xs, ys;
+    double x = 0.5, y = 0.5;  // low-discrepancy steps: no two runs differ
+    for (int i = 0; i < 40000; ++i) {
+        x = std::fmod(x + 0.7548776662466927, 1.0);
+        y = std::fmod(y + 0.5698402909980532, 1.0);
+        xs.push_back(i % 4 == 0 ? x : x / 10);
+        ys.push_back(y);
+    }
+    const Curve crowd{.x = Numbers::own(xs), .y = Numbers::own(ys), .style = Style::points};
+    const Paper paper = paper_for(crowd, {600, 400});
+    constexpr std::size_t most = 4000;
+    const std::vector<Strokes> layers = crowded(crowd, paper, most);
+    REQUIRE(layers.size() >= 2);
+    std::size_t strokes = 0;
+    for (const Strokes& layer : layers) strokes += layer.all.size();
+    CHECK(strokes <= most);
+    const auto inked = [](const Strokes& layer, double from, double to) {
+        double length = 0;
+        for (const Stroke& s : layer.all) length += std::max(0.0, std::min(to, s.to) - std::max(from, s.from));
+        return length * layer.height;
+    };
+    const double left = paper.view.x(0.1) * 600;
+    const double right = inked(layers.front(), left, 600), dense = inked(layers.back(), 0, left);
+    CHECK(right > 0.5 * (600 - left) * 400 * 0.8);             // there are points everywhere,
+    CHECK(dense > 10 * inked(layers.back(), left + 20, 600));  // and most of them on the left
+    CHECK(inked(layers.back(), 0, 600) <= inked(layers.front(), 0, 600));
+}
+
+TEST_CASE("a crowd that is as dense everywhere has one layer", "[plots]") {
+    std::vector<double> xs, ys;
+    for (int i = 0; i < 100; ++i) {
+        for (int k = 0; k < 100; ++k) {
+            xs.push_back(i);
+            ys.push_back(k);
+        }
+    }
+    const Curve crowd{.x = Numbers::own(xs), .y = Numbers::own(ys), .style = Style::points};
+    CHECK(crowded(crowd, paper_for(crowd, {600, 600}), 100'000).size() == 1);
+}
+
 }  // namespace dinal::thinning_test
