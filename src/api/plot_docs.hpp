@@ -51,7 +51,8 @@ inline constexpr lua::Doc plot_run_doc{
 inline constexpr lua::Doc phase_plot_run_doc{
     "run:phase_plot{ OPTIONS }",
     "Draws the phase plane, velocity/omega0 over theta, one to one: circles about the origin are lines of equal "
-    "energy, and a mass that comes to rest within the dead zone stays there.",
+    "energy, and a mass that comes to rest within the dead zone stays there. With another spring there are no circles; "
+    "without k it is the velocity itself.",
     "run = nondimensional{ friction_ratio = 0.1 }:simulate{ theta0 = 1, t_end = 3, dt = 0.01 }\n"
     "print(run:phase_plot{ width = 60, height = 14, ascii = true, show = false })\n"
     "--> theta'/omega0, rad   o start   @ end   = dead zone\n"

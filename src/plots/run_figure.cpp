@@ -238,6 +238,42 @@ text::Expected<std::vector<Figure>> column_figures(const RunData& run, const Col
     return figures;
 }
 
+namespace {
+
+/// The curve of rows over theta with the corners between the rows: impacts, and where a relay switched. `by` divides
+/// velocities.
+void add_corners(Curve& curve, const motion::Trajectory& trajectory, double by) {
+    const auto is_corner = [](const model::Event& e) {
+        return e.kind == model::EventKind::impact || e.kind == model::EventKind::switched;
+    };
+    const auto times = trajectory.find("t");
+    if (!times || std::none_of(trajectory.events.begin(), trajectory.events.end(), is_corner)) {
+        return;
+    }
+    std::vector<double> x, y;
+    const auto put = [&x, &y](double theta, double velocity) {
+        x.push_back(theta);
+        y.push_back(velocity);
+    };
+    auto event = trajectory.events.begin();
+    for (std::size_t i = 0; i < curve.size(); ++i) {
+        for (;
+             event != trajectory.events.end() && event->t <= trajectory.rows.col(*times)[static_cast<Eigen::Index>(i)];
+             ++event) {
+            if (!is_corner(*event)) continue;
+            put(event->theta, event->velocity / by);
+            if (event->kind == model::EventKind::impact) {
+                put(event->theta, -trajectory.restitution * event->velocity / by);
+            }
+        }
+        put(curve.x.values[i], curve.y.values[i]);
+    }
+    curve.x = Numbers::own(std::move(x));
+    curve.y = Numbers::own(std::move(y));
+}
+
+}  // namespace
+
 text::Expected<Figure> phase_figure(const RunData& run) {
     const bool record = run.system == nullptr && has(run, "velocity_over_omega0");
     if (run.system == nullptr && !record) {
@@ -245,13 +281,18 @@ text::Expected<Figure> phase_figure(const RunData& run) {
             "the phase plane needs omega0, which a run that was read from a .csv file no longer has; use run:plot{ x = "
             "\"theta\", y = \"velocity\" }"};
     }
-    auto figures = column_figures(run, {.x = "theta", .ys = {record ? "velocity_over_omega0" : "velocity/omega0"}});
+    const bool scaled = record || run.system->has_spring();  // without k there is no omega0
+    const char* velocity = record ? "velocity_over_omega0" : scaled ? "velocity/omega0" : "velocity";
+    auto figures = column_figures(run, {.x = "theta", .ys = {velocity}});
     if (!figures) {
         return figures.error();
     }
     Figure plane = std::move(figures).value().front();
-    plane.equal = true;
-    plane.circles = true;
+    plane.equal = scaled;
+    plane.circles = record || run.system->has_linear_spring();
+    if (!record) {
+        add_corners(plane.curves.front(), *run.trajectory, scaled ? run.system->natural_frequency() : 1);
+    }
     const Curve& motion = plane.curves.front();
     if (const std::size_t rows = motion.size(); rows > 0) {
         plane.marks = {{motion.x.values[0], motion.y.values[0], MarkKind::start},

@@ -32,7 +32,8 @@ struct ColumnsToDraw {
 /// Columns over a column. What is measured in different units stands in figures one below the other.
 text::Expected<std::vector<Figure>> column_figures(const RunData& run, const ColumnsToDraw& asked = {});
 
-/// theta'/omega0 over theta, 1:1: circles about the origin are lines of equal energy.
+/// theta'/omega0 over theta, 1:1: where k theta alone pulls back, circles about the origin are lines of equal energy.
+/// Without k it is theta'.
 text::Expected<Figure> phase_figure(const RunData& run);
 
 /// When the mass stuck, from the events.

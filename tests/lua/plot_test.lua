@@ -64,6 +64,23 @@ test("a run that began stuck, and one that never moved, show it", function()
     assert(bar and #bar > 45, still) -- all along the axis of about 50 columns
 end)
 
+test("a phase plane without k is that of the velocity, and has corners where a wall or a relay makes them", function()
+    local well = system { I = 1, k = 0, Rd = 0.01, spring = spring.polynomial { [1] = -1, [3] = 1 } }
+    has(text(well:simulate { theta0 = 1.2, t_end = 5, dt = 0.1 }, "phase_plot"), "theta', rad/time")
+    -- Rows far apart: only the impact knows that the mass was at the wall, with the velocity 1 before and -0.5 after it.
+    local ball = system { I = 1, k = 1, walls = { upper = 0, restitution = 0.5 } }
+    local run = ball:simulate { theta0 = -1, t_end = 3, dt = 1 }
+    local gp = support.temporary ".gp"
+    run:phase_plot { file = gp }
+    local before, corner
+    for x, y in support.read(gp):gmatch "(%S+) (%S+)\n" do
+        local at_wall = tonumber(x) and math.abs(x) < 1e-9 and tonumber(y) -- as exact as the file writes it
+        corner = corner or (before and at_wall and math.abs(before - 1) < 1e-9 and math.abs(at_wall + 0.5) < 1e-9)
+        before = at_wall
+    end
+    assert(corner, "the velocity does not jump at the wall")
+end)
+
 test("a run from a file is drawn, too", function()
     local csv, dat = support.temporary ".csv", support.temporary ".dat"
     run:save(csv)
