@@ -142,6 +142,9 @@ int plot(lua_State* L) {
     if (y.empty()) options.fail({"there is no other column of numbers to draw"});
     if (data->size() == 0) options.fail({"there are no rows to draw"});
     if (const std::vector<std::string> z = asked_names(L, options, "z"); !z.empty()) {
+        for (const char* option : {"style", "overlay"}) {
+            if (options.has(option)) options.fail(option, fmt::format("{} is for curves: leave it out, or z", option));
+        }
         if (z.size() > 1) options.fail("z", "z must be one column");
         if (options.has("y") && y.size() > 1) options.fail("y", "y must be one column where z is drawn over x and y");
         std::vector<plots::Figure> map{
@@ -173,6 +176,7 @@ int plot(lua_State* L) {
         }
     }
     for (const std::string& name : asked_names(L, options, "overlay")) {
+        if (figure.curves.front().label.empty()) figure.curves.front().label = label_of(*data, y.front());
         figure.curves.push_back(overlay_curve(options, *data, name, x.front(), y.front()));
     }
     apply_options(L, options, figure);

@@ -95,7 +95,7 @@ test("the curves of theory beside a response are Den Hartog's and that of equiva
         near(math.pi*2*X*math.sin(math.rad(about.lag[i])), math.pi*0.1*w*X^2 + 4*0.3*X, 1e-12)
     end
     local picture = tostring(c:plot{ overlay = { "linearised", "den_hartog" }, show = false })
-    assert(picture:find("linearised") and picture:find("den_hartog"), picture)
+    assert(picture:find("a amplitude", 1, true) and picture:find("linearised") and picture:find("den_hartog"), picture)
 end)
 
 test("a spectrum shows each sine with its amplitude, whatever the window", function()
