@@ -36,7 +36,7 @@ details {{ margin-top: 1em; }} summary {{ cursor: pointer; color: #555; }}
 @page {{ size: A4; margin: 2cm; }}
 @media print {{
 body {{ margin: 0; padding: 0; max-width: none; font-size: 10pt; }} h2, summary {{ break-after: avoid; }}
-pre {{ white-space: pre-wrap; font-size: 8pt; orphans: 4; widows: 4; }} .table {{ overflow: visible !important; }} table {{ font-size: 8pt; }} th, td {{ padding: .15em .5em; }}
+pre {{ white-space: pre-wrap; font-size: 8pt; orphans: 4; widows: 4; }} .table {{ overflow: visible !important; }} table {{ font-size: 8pt; }} th, td {{ padding: .15em .5em; overflow-wrap: anywhere; }}
 figure, tr, pre {{ break-inside: avoid; }} pre.long {{ break-inside: auto; }}
 table:not(:has(tr:nth-child(30))) {{ break-inside: avoid; }}
 }}

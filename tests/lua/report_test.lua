@@ -98,6 +98,7 @@ test("nothing wide pushes the page apart, and what is long may go on over the ne
     assert(page:find('<div class="table" style="overflow-x: auto"><table>\n<thead>', 1, true), page)
     assert(page:find('<pre class="long">line', 1, true), page)
     assert(page:find("overflow-wrap: anywhere", 1, true) and page:find("only light", 1, true))
+    assert(page:find("padding: .15em .5em; overflow-wrap: anywhere", 1, true)) -- on paper no column is beyond the edge
 end)
 
 test("a run in motion is on the page, and beside Markdown", function()
