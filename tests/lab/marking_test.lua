@@ -100,6 +100,7 @@ test("thirty hand-ins are marked at once, and none touches the others", function
   hand_in("loop", "lab.number(3001) check('1c', 3) while true do end")
   hand_in("flood", "while true do print(('x'):rep(1e5)) end")
   hand_in("wrong", "lab.number(3002)\ncheck('1a', 3")
+  hand_in("-e", "lab.number(3003)\ncheck('1a', 1)") -- not an option
   hand_in("twin", "lab.number(1001)\ncheck('1a', 1)")
   local loop = block "--lab-marks"
   local began = os.time()
@@ -115,6 +116,7 @@ test("thirty hand-ins are marked at once, and none touches the others", function
   assert(rows.liar:find "^3000 +%-  %.  %.  %.  0 of 4", rows.liar)
   assert(rows.loop:find "^3001 +%.  %.  %-  %.  0 of 4", rows.loop)
   assert(rows.wrong:find "none +.*nothing was checked", rows.wrong)
+  assert(said:find "%-e%.lua +3003 +%-", said)
   assert(rows.twin:find "has the number of s01.lua", rows.twin)
   assert(said:find("loop ended with an error", 1, true) and said:find("wrong ended with an error", 1, true), said)
   assert(not said:find("s01 ended", 1, true), said)
