@@ -13,6 +13,9 @@ import re
 import selectors
 import signal
 import subprocess
+import sys
+
+sys.modules["debugpy"] = None  # ipykernel's debugger of Python: a third of the start, and a warning on the terminal
 
 from ipykernel.kernelapp import IPKernelApp
 from ipykernel.kernelbase import Kernel

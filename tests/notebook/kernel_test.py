@@ -159,6 +159,7 @@ def notebooks():
         done = subprocess.run([sys.executable, "-m", "nbconvert", "--to", "notebook", "--execute", "--output", target,
                                os.path.join(folder, name)], capture_output=True, text=True, cwd=HOME, check=False)
         check(f"{name} runs", done.returncode == 0, done.stderr[-2000:])
+        check(f"{name} runs without a word of the debugger of Python", "ebugger" not in done.stderr, done.stderr)
         if done.returncode != 0:
             continue
         before, after = nbformat.read(os.path.join(folder, name), 4), nbformat.read(target, 4)
