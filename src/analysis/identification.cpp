@@ -31,6 +31,7 @@ text::Expected<Identified> Identification::identified() {
         }
     }
     if (!best_) return text::Error{"no motion of such a system comes near this record"};
+    if (!question_.M && !stopped_ && leaves_pattern(suspected)) try_let_go(starts);
     if (!question_.M && !stopped_) try_rests();
     if (question_.M && !stopped_) try_jumps();
     if (question_.M && !stopped_ && leaves_pattern(suspected)) try_other_valleys();

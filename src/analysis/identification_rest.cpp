@@ -257,7 +257,6 @@ void Identification::try_none(Unknown which, double little) {
     base_ = best_base_;
     const Eigen::Index place = place_of(which);
     FitScale scale = best_scale_;
-    constexpr double firmly = 1e8;
     scale.hold[place] = firmly * range_ / scale.typical[place];
     Eigen::VectorXd start = best.parameters;
     start[place] = 0;

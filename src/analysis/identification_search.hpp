@@ -40,6 +40,9 @@ inline bool is_same(const LeastSquares& a, const LeastSquares& b) {
 /// at again.
 inline constexpr double suspected = 3;
 
+/// What is held so stays where it is.
+inline constexpr double firmly = 1e8;
+
 /// A fit of a free decay that rests at a turn; without one, where its own friction stops it.
 struct Rest {
     LeastSquares fit;
@@ -107,6 +110,7 @@ private:
 
     /// First the beginning of the record, so that no swing is taken for the next one, then all of it.
     void try_from(const Parameters& start);
+    void try_let_go(const std::vector<Parameters>& starts);
     void keep_if_better(const std::optional<LeastSquares>& all, const FitScale& scale);
     /// How many samples are fitted one after another; the last of a free decay end at its last turn, for behind it the
     /// motion may end.

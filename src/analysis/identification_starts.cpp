@@ -89,6 +89,24 @@ std::vector<Parameters> Identification::free_starts() const {
     return starts;
 }
 
+/// A search may fly to a velocity that is gone between two samples: so it also begins with a mass that was let go.
+void Identification::try_let_go(const std::vector<Parameters>& starts) {
+    if (is_given(Unknown::velocity0)) return;
+    const Eigen::Index place = place_of(Unknown::velocity0);
+    for (const Parameters& start : starts) {
+        if (stopped_ || !leaves_pattern(suspected)) return;
+        base_ = start;
+        at(base_, Unknown::velocity0) = 0;
+        const FitScale scale = scale_of(base_);
+        FitScale held = scale;
+        held.hold[place] = firmly * range_ / scale.typical[place];
+        const auto let_go = fit(fitted_of(base_), question_.t.size(), held, 40);
+        const auto all = let_go ? fit(let_go->parameters, question_.t.size(), scale, 40) : std::nullopt;
+        if (all && all->sum < best_->sum) moving_ = all->parameters;
+        keep_if_better(all, scale);
+    }
+}
+
 std::vector<Parameters> Identification::forced_starts() const {
     std::vector<Parameters> starts;
     const Parameters weak = weak_form();

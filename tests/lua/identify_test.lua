@@ -277,4 +277,15 @@ test("a record that the fit does not explain is told, and an honest one never", 
     equal(says(honest.theta), "explained")
 end)
 
+test("a decay of half a swing is not taken for one whose velocity is gone before the second sample", function()
+    local w0, zeta, x_f, rows = 8.408525222452, 0.58211330742053, 0.088764403553165, 335
+    local heavy = system{ I = 1, k = w0^2, C = 2 * zeta * w0, Rd = x_f * w0^2 }
+    local length = 4.9446161586827
+    local run = heavy:simulate{ theta0 = 0.73507176709916, t_end = length, times = vector.linspace(0, length, rows) }
+    local noise = vector.normal{ n = rows, seed = 92, std = 0.013017970259308 }
+    local fit = identify{ data = { t = run.t, theta = run.theta + noise - 0.042899731623798 } }
+    assert(fit.residual:dot(fit.residual) < 1.02 * noise:dot(noise), fit)
+    near(fit.omega0, w0, 4 * fit.error.omega0)
+end)
+
 support.finish()
