@@ -9,6 +9,7 @@
 #include <string>
 
 #include "model/controller.hpp"
+#include "model/springs/polynomial_spring.hpp"
 #include "motion/stillness.hpp"
 #include "motion/witness.hpp"
 
@@ -228,6 +229,12 @@ text::Expected<Trajectory> run_from(const Past& past, const model::Oscillator& s
     problem.carried = past.carried;
     Trajectory trajectory = more ? method.run_more(problem) : method.run(problem);
     trajectory.initial = initial;
+    // A native M is a number at all times: then the spring had none, as the motion went beyond all bounds.
+    const bool own_spring = system.spring().as<model::springs::PolynomialSpring>() != nullptr;
+    if (trajectory.outcome == model::Outcome::excitation_not_finite && own_spring && !excitation.has_script() &&
+        std::isfinite(excitation.most())) {
+        trajectory.outcome = model::Outcome::state_not_finite;
+    }
     trajectory.on_belt = !extras.belt.components().empty();
     if (system.walls()) trajectory.restitution = system.walls()->restitution;
     if (oath) {

@@ -125,4 +125,15 @@ test("a stiff contact that is touched for a short while is felt", function()
     end
 end)
 
+test("a motion that a softening spring lets go ends with a sentence about itself, not about M", function()
+    local sys = system { I = 1, k = 40, C = 1, Rd = 8, spring = spring.polynomial { [3] = -4 } }
+    for _, M in ipairs { 40 * excitation.harmonic { frequency = 0.5 }, excitation.constant { level = 200 } } do
+        for _, with in ipairs { integrator.spectral {}, integrator.rk4 { h = 1e-3 } } do
+            local run = sys:simulate { M = M, t_end = 20, dt = 0.1, integrator = with }
+            assert(run.outcome:find("the state stopped being finite", 1, true), run.outcome)
+            assert(run:explain():gsub("%s+", " "):find("broke off at t = [%d.]+: the state stopped being finite"), run:explain())
+        end
+    end
+end)
+
 support.finish()
