@@ -108,6 +108,14 @@ test("what has decayed to nothing holds no run up", function()
     near(last(excitation.exponential { tau = 1e-20 }), last(excitation.constant { level = 0 }), 1e-15)
 end)
 
+test("a mass at rest waits for a slow load as long as that takes", function()
+    local slip = math.pi / 6 * 1e12
+    local run = system { I = 1, k = 1, Rd = 1 }:simulate { M = excitation.harmonic { amplitude = 2, omega = 1e-12 }, t_end = slip + 10, dt = 1e12 }
+    equal(#run.events, 1)
+    equal(run.events[1].kind, "slip")
+    near(run.events[1].t, slip, 1e-3) -- a few roundings of such a time
+end)
+
 test("a state that does not exist is neither read nor written", function()
     local function states() return { n = { rate = function() return 0 end } } end
     raises(function() dry:simulate { M = function(t, theta, v, z) return z.m end, states = states(), t_end = 1, dt = 1 } end, "there is no state 'm'; there is n")

@@ -39,6 +39,12 @@ void FirstExit::choose_level(double bound) {
     while (level_ + 1 < WalkedCurve::levels && !fits(level_)) ++level_;
 }
 
+/// The length of a look that hides no more than a quarter of how far the curve is from the edges.
+double FirstExit::farthest_look(double bound) const {
+    const double away = std::fabs(margin(curve_.here().f)) / 4;
+    return std::sqrt(std::sqrt(away / (bound * hermite)));
+}
+
 /// Whether it stays slower than rounding, also where the looks are shorter than a creep.
 bool FirstExit::creeps_from_here(double until) {
     const double h = creep_.shortest, from = curve_.place();
@@ -61,7 +67,8 @@ double FirstExit::odd_length(double bound, int level, double left, int finer) co
 
 std::optional<Exit> FirstExit::search(double until) {
     end_ = {};
-    int finer = 0;  // halvings of the present look
+    int finer = 0, beyond = 0;  // halvings of the present look, and those of it beyond the table
+    double far = 0;
     double rounding = 0, bound = bound_;
     for (unsigned looks = 0; curve_.place() < until; ++looks) {
         if (looks % looks_between_bounds == 0) {
@@ -70,11 +77,19 @@ std::optional<Exit> FirstExit::search(double until) {
         }
         const WalkedCurve::Value here = curve_.here();
         if (std::fabs(here.f) <= creep_.fastest && creeps_from_here(until)) return {};
-        if (finer == 0 && bound != 0) choose_level(bound);
-        const int level = level_ + finer;
         const double from = curve_.place(), left = until - from;
-        const bool tabled = bound != 0 && level < WalkedCurve::levels;
-        double h = tabled ? curve_.length(level) : odd_length(bound, level, left, finer);
+        if (finer == 0) {
+            if (bound != 0) choose_level(bound);
+            far = bound != 0 && level_ == 0 ? std::min(farthest_look(bound), left) : 0;
+            beyond = 0;
+        }
+        // What changes slowly is looked at from farther away than the table reaches.
+        const double h_far = std::ldexp(far, -finer);
+        const bool is_far = h_far > curve_.length(0);
+        if (is_far) beyond = finer + 1;
+        const int level = level_ + finer - beyond;
+        const bool tabled = bound != 0 && !is_far && level < WalkedCurve::levels;
+        double h = tabled ? curve_.length(level) : is_far ? h_far : odd_length(bound, level, left, finer);
         WalkedCurve::Value there;
         if (tabled && h < left) {
             there = curve_.look(level);
@@ -107,7 +122,7 @@ std::optional<Exit> FirstExit::search(double until) {
             return Exit{polish(from, from + h, from + cubic_crossing(here, there, h, edge), edge, side, bound), side,
                         true};
         }
-        if (hidden + cubic.bend() <= rounding || h <= 4 * epsilon * (from + h) || finer > 100) {
+        if (hidden + cubic.bend() <= rounding || h <= 4 * epsilon * (from + h) || finer - beyond > 100) {
             // All of the look is a straight line within rounding.
             if (side != 0) {
                 const double edge = side < 0 ? band_.low : band_.high, off = here.f - edge;

@@ -123,6 +123,7 @@ private:
     Exit crossing(double tau, int side);
     bool creeps_from_here(double until);
     void choose_level(double bound);
+    [[nodiscard]] double farthest_look(double bound) const;
     [[nodiscard]] double odd_length(double bound, int level, double left, int finer) const;
     [[nodiscard]] double margin(double f) const { return std::min(f - band_.low, band_.high - f); }
 
