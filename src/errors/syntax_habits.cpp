@@ -126,9 +126,7 @@ Stumble stumble_in(const lua::SyntaxMessage& message, std::string_view statement
 }
 
 std::string printed_sign(const lua::SyntaxMessage& message, std::string_view statement) {
-    if (!message.near.starts_with("<\\")) {
-        return "";
-    }
+    if (!message.near.starts_with("<\\")) return "";
     if (message.near == "<\\255>" || message.near == "<\\254>") {  // its first byte, and none of UTF-8
         return "; this is text in UTF-16: save it as UTF-8";
     }
@@ -249,9 +247,7 @@ std::string name_without_quotes(const Stumble& stumble) {
 
 /// "3t", "2pi"
 std::string missing_star(const Stumble& stumble) {
-    if (stumble.message.complaint != "malformed number") {
-        return "";
-    }
+    if (stumble.message.complaint != "malformed number") return "";
     std::string_view word = stumble.message.near;
     for (const lua::Token& token : stumble.all) {  // the message breaks off at 2p
         word = token.kind == lua::TokenKind::number && token.text.starts_with(word) ? token.text : word;
@@ -291,9 +287,7 @@ std::string missing_return(const Stumble& stumble) {
 
 /// What the tokens around the place tell: braces and colons of other languages, "I : 1", "M(t) = 2*t".
 std::string other_grammar(const Stumble& stumble) {
-    if (stumble.at == 0) {
-        return "";
-    }
+    if (stumble.at == 0) return "";
     const lua::Token& token = stumble.token();
     const lua::Token& before = stumble.before();
     const auto& all = stumble.all;
