@@ -34,12 +34,14 @@ Triple most_bent_half(const Triple& t, const F& f) {
     return side.bend() >= centre.bend() ? side : centre;
 }
 
-/// The first double at which f has the value it has at b rather than the one at a.
+/// The first double at which f has the value it has at b rather than the one at a. Beside t = 0 doubles are so close
+/// that no length between them is a number to compute with: nearer than any motion can tell is near enough.
 template <class F>
 double jump_between(double a, double fa, double b, double fb, const F& f) {
+    const double finest = (b - a) * 0x1p-100;
     for (;;) {
         const double middle = a + (b - a) / 2;
-        if (!(middle > a && middle < b)) return b;
+        if (!(middle > a && middle < b) || b - a <= finest) return b;
         const double fm = f(middle);
         if (std::fabs(fm - fa) <= std::fabs(fm - fb)) {
             a = middle, fa = fm;
