@@ -10,6 +10,8 @@ namespace {
 
 /// In units of the pace: what cannot be seen in the motion, and how near a run comes to where a function fails.
 constexpr double shortest = 1e-13, near_failure = 1e-9;
+/// Shorter than this part of the longest piece is short.
+constexpr double short_part = 1e-3;
 /// So many pieces that are not resolved one after the other, or so many in next to no time, lead nowhere.
 constexpr int most_short = 2000, most_attempts = 20000;
 
@@ -182,7 +184,9 @@ bool Engine::advance() {
     } else {
         if (2 * piece_.h > 1e-7 * pace_) too_short_ = 0;
         const double factor = 0.9 * std::pow(std::max(solver_.unresolved(), 1e-16), -1.0 / 16);
-        if (cut_.h == 0) h_ = std::min(cut_.longest / 2, std::max(h_, piece_.h * std::min(factor, 8.0)));
+        // Where a short piece is resolved but for noise, longer ones are no rougher.
+        const double least = piece_.h < short_part * cut_.longest ? 2 : 0;
+        if (cut_.h == 0) h_ = std::min(cut_.longest / 2, std::max(h_, piece_.h * std::clamp(factor, least, 8.0)));
     }
 
     if (belt_turns_at_wall()) return true;
@@ -245,9 +249,10 @@ bool Engine::end_piece(double x) {
         echoes_.erase(echoes_.begin());
     }
     if (generation > 0) echo(now_.hi, generation + 1);
-    if (!whole || (after_break_ && generation == 0)) echo(now_.hi, 1);
+    if (!whole || ((after_break_ || piece_.passed) && generation == 0)) echo(now_.hi, 1);
     if (!field_.arrive(here())) return fail(model::Outcome::excitation_not_finite);
-    return !after_break_ || !field_.belt_breaks(now_.hi) || belt_jumps(belt_here);
+    const bool may_jump = (whole && piece_.passed) || (after_break_ && field_.belt_breaks(now_.hi));
+    return !may_jump || !field_.has_belt() || belt_jumps(belt_here);
 }
 
 void Engine::keep(double length) {

@@ -35,6 +35,7 @@ Field::Field(const Problem& problem, const Past& past)
       extras_(*problem.extras),
       past_(past),
       inertia_(problem.system.inertia()),
+      rubs_(!extras_.belt.components().empty() && model::Lowered(problem.system).dry()),
       short_stretch_(0.05 * pace_of(problem)),
       initial_(problem.initial),
       memory_(problem.excitation.components().size()) {
@@ -135,15 +136,23 @@ double Field::sure_belt_rate(double t) const {
 std::pair<double, double> Field::belt_slope(double t) const {
     using namespace spectral::chebyshev;
     if (!has_belt() || extras_.belt.constant_from() <= t) return {0, 0};
-    const double next = extras_.belt.next_break(t);
-    const double h = std::min(short_stretch_, (next - t) / 2);
-    Samples values{};
-    for (std::size_t j = 0; j < points; ++j) {
-        const double at = t + h * (1 + nodes[j]);
-        values[j] = belt(at, j == 0 ? Side::after : at >= next ? Side::before : Side::at);
-    }
+    constexpr double smooth = 1e-9, shorter = 0.25, shortest = 1e-14;
     constexpr double roundings = 256;  // in a slope at the end of a polynomial of this degree
-    return {value(derivative(fit(values)), -1) / h, roundings * rounding * greatest(values) / h};
+    const double next = extras_.belt.next_break(t);
+    // A jump that nobody announced is no part of the slope before it.
+    for (double h = std::min(short_stretch_, (next - t) / 2); h > shortest * short_stretch_; h *= shorter) {
+        Samples values{};
+        for (std::size_t j = 0; j < points; ++j) {
+            const double at = t + h * (1 + nodes[j]);
+            values[j] = belt(at, j == 0 ? Side::after : at >= next ? Side::before : Side::at);
+        }
+        const Series curve = fit(values);
+        const double all = cheb::size(curve);
+        if (!(tail(curve) > smooth * all)) {
+            return {value(derivative(curve), -1) / h, roundings * rounding * greatest(values) / h};
+        }
+    }
+    return {0, 0};
 }
 
 void Field::rates(const MotionPoint& at, double* out) const {

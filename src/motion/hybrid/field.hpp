@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdint>
 #include <deque>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <span>
@@ -60,7 +61,8 @@ public:
 
     [[nodiscard]] std::size_t state_count() const { return extras_.states.size(); }
     [[nodiscard]] bool has_surroundings() const { return has_belt() || !extras_.base.components().empty(); }
-    [[nodiscard]] bool has_belt() const { return !extras_.belt.components().empty(); }
+    /// Without dry friction it is as if there were none.
+    [[nodiscard]] bool has_belt() const { return rubs_; }
     /// Whether a function wants to know theta or velocity of the moment itself.
     [[nodiscard]] bool asks_the_motion() const;
     /// Whether M has a function that is known where it was asked only. What is held is known, and so is when a relay
@@ -136,6 +138,7 @@ private:
     const model::Extras& extras_;
     const Past& past_;
     double inertia_;
+    bool rubs_;             // a belt, with dry friction
     double short_stretch_;  // in which a belt may be differentiated, time units
     model::State initial_;
     std::vector<Kind> kinds_;               // of each component

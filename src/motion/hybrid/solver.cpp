@@ -75,6 +75,7 @@ Solver::Attempt Solver::solve(Solved& piece, const Values& begin, const model::S
     const bool linear = linear_ && cut_.h == 0;
     Swing* swing = linear && moves(piece) ? &swing_over(piece) : nullptr;
     if (swing != nullptr && !swing->resolved) swing = nullptr;
+    piece.passed = false;
     piece.held = linear && field_.is_held(piece.time(0));
     for (std::size_t j = 0; j + 1 < node_count; ++j) piece.times[j] = piece.time(cheb::nodes[j]);
     piece.times[node_count - 1] = piece.end;
@@ -220,6 +221,11 @@ void Solver::look_at_corners(const Solved& piece) {
 }
 
 void Solver::pass_over(Solved& piece) const {
+    // A belt that jumps here has no slope that it could give to a mass.
+    piece.passed = true;
+    piece.belt_rate = {};
+    piece.push.fill(piece.push[0]), piece.belt.fill(piece.belt[0]);
+    if (!moves(piece)) piece.f[1].fill(0);
     for (std::size_t k = 0; k < n_; ++k) {
         Nodes change{};
         for (std::size_t j = 1; j < node_count; ++j) {

@@ -51,6 +51,7 @@ struct Solved {
     double origin = 0;  ///< theta is this and y[0]: a wall that was hit, so that small bounces keep their digits
     bool from_break = false, to_break = false;
     bool to_the_end = false;  ///< it ends at `end` to the letter, be that a little earlier or later than 2 h
+    bool passed = false;      ///< over a jump that nobody announced
     bool held = false;        ///< nothing that acts on the mass but itself changes: M is M[0], and nothing pushes
     Nodes times{};
     std::vector<Nodes> y{}, f{};  ///< of each value: at the nodes, and its rate
