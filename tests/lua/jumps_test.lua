@@ -63,6 +63,21 @@ test("without dry friction a belt is as none, and no turn is told where the mass
     near(run.events[1].t, math.pi, 1e-14)
 end)
 
+test("a belt that sets off along a wall takes a mass from it, by sliding or by sticking", function()
+    local sys = system { I = 2, k = 0, Rd = 0.5, Re = 0.75, walls = { lower = 0, upper = 1, restitution = 0.5 } }
+    for rate, theta in pairs { [1] = 0.125, [0.1] = 0.05 } do -- slower than the belt, or as it goes
+        for _, belt in ipairs { function(t) return rate * t end, excitation.ramp { slope = rate } } do
+            local run = sys:simulate { belt = belt, t_end = 1, dt = 1 }
+            equal(#run.events, 0)
+            near(run.theta[#run], theta, 1e-12)
+        end
+    end
+    -- Towards the wall it lets go what only sticking held: 0.6 - 0.5 pulls 2.
+    local into = sys:simulate { belt = function(t) return -t end, M = 0.6, t_end = 1, dt = 1 }
+    near(into.theta[#into], 0.1 / 2 / 2, 1e-12)
+    equal(sys:simulate { belt = function(t) return -t end, M = 0.4, t_end = 1, dt = 1 }.theta[2], 0)
+end)
+
 test("a switch that stops a mass at its turn is followed by a stick", function()
     -- It comes up under -1 and would go back; the relay that looks at its velocity then pulls with 0.3 < Re.
     local run = system { I = 1, k = 0, Rd = 0.5 }:simulate {

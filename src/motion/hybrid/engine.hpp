@@ -133,6 +133,7 @@ private:
     [[nodiscard]] Bounces bounces(model::Motion into) const;
     [[nodiscard]] double sliding_at_wall(double belt) const;
     [[nodiscard]] double belt_at_wall(double belt) const;
+    [[nodiscard]] double belt_at_wall() const;
 
     [[nodiscard]] double belt() const { return field_.belt(now_.hi, after_break_ ? Side::after : Side::at); }
     [[nodiscard]] MotionPoint here() const {
@@ -142,12 +143,15 @@ private:
     void set_theta(double theta) { origin_ = 0, y_[0] = theta; }
     /// The mass stands at a wall.
     [[nodiscard]] bool leans() const { return standstill_.stuck() && standstill_.leans() != model::Motion::stuck; }
+    [[nodiscard]] double belt_heading() const {
+        return field_.belt_heading(now_.hi, after_break_ ? Side::after : Side::at);
+    }
     /// The velocity of what a mass at rest stands on: the belt, or the wall.
     [[nodiscard]] double carrier() const { return standstill_.leans() != model::Motion::stuck ? 0 : belt(); }
     /// All that pulls at a mass which rests on its surface, or at a wall, but for the springs.
     [[nodiscard]] double pull(double M) const {
         const double loads = M + field_.push(now_.hi, after_break_ ? Side::after : Side::at);
-        if (standstill_.leans() != model::Motion::stuck) return loads + belt_at_wall(belt());
+        if (standstill_.leans() != model::Motion::stuck) return loads + belt_at_wall();
         return loads - system_.inertia() * field_.sure_belt_rate(now_.hi) - system_.damping() * belt();
     }
     /// What states of the user's may be wrong by, as a part of the torques that come from them.

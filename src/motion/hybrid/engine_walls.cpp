@@ -41,6 +41,16 @@ double Engine::belt_at_wall(double belt) const {
     return sliding_at_wall(belt) + model::sign_of(away) * system_.holding(away);
 }
 
+/// The same, now. A belt that sets off from the wall takes the mass along where sticking can do that.
+double Engine::belt_at_wall() const {
+    const double heading = belt_heading();
+    const double added = belt_at_wall(heading);
+    const model::Motion into = standstill_.leans(), away = opposite(into);
+    if (std::fabs(heading) != Field::hair || model::motion_of(heading) != away) return added;
+    const double follows = system_.holding(into) - system_.inertia() * std::fabs(field_.sure_belt_rate(now_.hi));
+    return added + model::sign_of(away) * std::max(0.0, follows - std::fabs(sliding_at_wall(heading)));
+}
+
 /// At the start, or where a user put it: a mass that is exactly at a wall stands there, or hits it.
 void Engine::touch_wall(bool goes_on) {
     const auto& walls = problem_.system.walls();
@@ -184,7 +194,17 @@ void Engine::come_to_lean(model::Motion against) {
 /// What a wall let go on a moving belt slides as the belt says, wherever it goes.
 void Engine::go_from_wall() {
     if (standstill_.leans() == model::Motion::stuck || standstill_.stuck()) return;
-    if (const double b = belt(); b != 0) standstill_.thrown(model::motion_of(-b));
+    const double heading = belt_heading();
+    if (heading == 0) return;
+    const model::Motion away = opposite(standstill_.leans());
+    standstill_.thrown(model::motion_of(-heading));
+    if (std::fabs(heading) != Field::hair) return;
+    // It and the belt have the same velocity still: if the belt outruns it, or it the belt, the law says.
+    const double M = field_.load(here());
+    const model::Motion towards =
+        model::motion_of(heading) == away ? standstill_.pulled(pull(M), theta()) : model::motion_of(-heading);
+    standstill_.return_to(
+        {towards, towards == model::Motion::stuck ? Standstill::Phase::stuck : Standstill::Phase::leaving});
 }
 
 }  // namespace dinal::motion::hybrid

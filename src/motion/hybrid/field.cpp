@@ -122,6 +122,14 @@ double Field::belt(double t, Side side) const {
     return value_on(extras_.belt, t, side == Side::at || belt_breaks(t) ? side : Side::at);
 }
 
+double Field::belt_heading(double t, Side side) const {
+    constexpr double soon = 1e-4, nothing = 1e-10;
+    if (!has_belt()) return 0;
+    const double now = belt(t, side);
+    const double ahead = belt(t + std::min(soon * short_stretch_, (extras_.belt.next_break(t) - t) / 2), Side::at);
+    return std::fabs(now) <= nothing * std::fabs(ahead) ? std::copysign(hair, ahead) : now;
+}
+
 /// By the derivative of a polynomial through a short stretch ahead, which is right to some twelve digits.
 double Field::belt_rate(double t) const {
     return belt_slope(t).first;

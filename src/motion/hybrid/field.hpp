@@ -80,6 +80,9 @@ public:
     }
     /// The velocity of the belt.
     [[nodiscard]] double belt(double t, Side side) const;
+    /// The same, but where it is passing zero: a hair of velocity that way on which it goes.
+    [[nodiscard]] double belt_heading(double t, Side side) const;
+    static constexpr double hair = std::numeric_limits<double>::min();
     /// How fast that changes, from the right.
     [[nodiscard]] double belt_rate(double t) const;
     /// The same, nearer to zero by what rounding may have made of it.
