@@ -78,6 +78,32 @@ test("a belt that sets off along a wall takes a mass from it, by sliding or by s
     equal(sys:simulate { belt = function(t) return -t end, M = 0.4, t_end = 1, dt = 1 }.theta[2], 0)
 end)
 
+test("what happens at the time of a row is in the row, and in the motion at that time", function()
+    for _, stop in ipairs { true, false } do
+        local run = system { I = 1, k = 0 }:simulate {
+            velocity0 = 1, t_end = 2, dt = 0.25,
+            events = { { when = function(t) return t - 1.5 end, act = function(_, theta) return theta, -3 end, stop = stop } },
+        }
+        equal(run.events[1].t, 1.5)
+        equal(run.t[7], 1.5)
+        equal(run.velocity[7], -3)
+        equal(select(2, run:at(1.5)), -3)
+        near(run.theta[#run], stop and 1.5 or 0, 1e-14)
+    end
+end)
+
+test("what an impact takes past zero is told there, and so is its way back", function()
+    local run = system { I = 1, k = 0, walls = { upper = 1, restitution = 0.5 } }:simulate {
+        velocity0 = 1, M = 0.5, t_end = 3, dt = 1, -- at the wall at 2 (sqrt 2 - 1), with sqrt 2
+        events = { { when = function(_, _, v) return v - 0.1 end, name = "slow" } },
+    }
+    local hit = 2 * (math.sqrt(2) - 1)
+    equal(run.events[1].kind .. " " .. run.events[2].kind .. " " .. run.events[3].kind, "impact user turn")
+    near(run.events[2].t, hit, 1e-14)
+    equal(run.events[4].kind, "user")
+    near(run.events[4].t, hit + 2 * (math.sqrt(0.5) + 0.1), 1e-13)
+end)
+
 test("a switch that stops a mass at its turn is followed by a stick", function()
     -- It comes up under -1 and would go back; the relay that looks at its velocity then pulls with 0.3 < Re.
     local run = system { I = 1, k = 0, Rd = 0.5 }:simulate {

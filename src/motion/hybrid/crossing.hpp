@@ -63,6 +63,9 @@ public:
             }
             if (half == 0) return {};
         }
+        // What an impact has put on the other side, farther than roundings of time do, has passed zero on the way.
+        constexpr double clearly = 1e-9;
+        if (from == -1 && half * values_[0] < -std::max(floor_, clearly * size_)) return from;
         return smooth_ ? of_series(half, from, at_zero) : of_values(half, from);
     }
 
@@ -118,7 +121,8 @@ private:
         const double fa = beyond(a), fb = beyond(b);
         if (!(fa <= rounded_ && fb > rounded_)) return {};
         if (fa > 0) return a;
-        return first_positive(beyond, a, fa, b, fb, 1e-16).second;
+        const auto [zero, passed] = first_positive(beyond, a, fa, b, fb, 1e-16);
+        return beyond(zero) == 0 ? zero : passed;
     }
 
     const Nodes& values_;

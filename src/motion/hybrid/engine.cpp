@@ -227,7 +227,7 @@ bool Engine::advance() {
 bool Engine::end_piece(double x) {
     const bool whole = x >= 1;
     const double length = whole ? 2 * piece_.h : piece_.h * (1 + x);
-    if (!rows_until(whole ? piece_.end : piece_.start.after(length), whole)) {
+    if (!rows_until(whole ? piece_.end : piece_.start.later(length).hi, whole)) {
         return fail(model::Outcome::excitation_not_finite);
     }
     keep(length);
@@ -292,6 +292,9 @@ void Engine::leave(Trajectory& trajectory) const {
     left->echoes = echoes_;
     left->born = born_;
     if (!field_.delays().empty()) left->past = pieces_;
+    Values end = y_;
+    end[0] += origin_;
+    pieces_->close(now_, std::move(end));
     trajectory.carried = std::move(left);
 }
 

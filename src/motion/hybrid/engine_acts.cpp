@@ -150,13 +150,15 @@ double Engine::rounding_of(std::size_t event) const {
 void Engine::stand_where_put(const std::vector<double>& before, const std::vector<std::size_t>& told) {
     const std::vector<double> now = watched_values(2), begin = watched_values(-1), end = watched_values(1);
     for (std::size_t i = 0; i < halves_.size(); ++i) {
+        const double size = std::max({std::fabs(begin[i]), std::fabs(end[i]), std::fabs(now[i])});
         if (now[i] == before[i]) {
-            if (std::find(told.begin(), told.end(), i) == told.end()) continue;
+            // One that an impact took past zero does not stand there.
+            const bool stands = std::fabs(now[i]) <= at_zero * size + 2 * rounding_of(i);
+            if (!stands || std::find(told.begin(), told.end(), i) == told.end()) continue;
             halves_[i] = 0;
             rounded_[i] = 2 * std::fabs(now[i]) + rounding_of(i);
             continue;
         }
-        const double size = std::max({std::fabs(begin[i]), std::fabs(end[i]), std::fabs(now[i])});
         halves_[i] = std::fabs(now[i]) <= at_zero * size ? 0 : now[i] > 0 ? 1 : -1;
     }
 }

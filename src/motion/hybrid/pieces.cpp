@@ -119,6 +119,12 @@ void Pieces::add(Piece piece) {
     list_.push_back(std::move(piece));
 }
 
+void Pieces::close(const Clock& end, Values state) {
+    if (list_.empty()) return;
+    std::vector<Series> still(state.size());
+    add({.start = end, .h = 1, .begin = std::move(state), .series = std::move(still)});
+}
+
 void Pieces::forget(double t) {
     const auto old = std::partition_point(list_.begin(), list_.end(),
                                           [t](const Piece& piece) { return piece.start.after(piece.length) < t; });
@@ -129,10 +135,9 @@ void Pieces::forget(double t) {
 }
 
 const Piece* Pieces::piece_at(double t, Side side) const {
-    // The last piece that begins at or before t; before it, for a limit from the left.
+    // The last piece that begins at or before t, as far as a double can say it; before it, for a limit from the left.
     const auto after = std::partition_point(list_.begin(), list_.end(), [t, side](const Piece& piece) {
-        const double since = piece.start.until(t);
-        return side == Side::before ? since > 0 : since >= 0;
+        return side == Side::before ? piece.start.hi < t : piece.start.hi <= t;
     });
     return after == list_.begin() ? nullptr : &*(after - 1);
 }
@@ -166,7 +171,7 @@ void Pieces::legs(const std::function<void(const Leg&)>& told) const {
     auto jump = jumps_.begin();
     for (std::size_t i = 0; i <= list_.size(); ++i) {
         for (; jump != jumps_.end() && jump->piece == i; ++jump) told(JumpLeg(jump->t, jump->work));
-        if (i < list_.size()) told(PieceLeg(lowered, list_[i]));
+        if (i < list_.size() && list_[i].length > 0) told(PieceLeg(lowered, list_[i]));
     }
 }
 

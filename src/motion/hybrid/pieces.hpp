@@ -45,6 +45,8 @@ public:
     void add(Piece piece);
     /// What took no time: what a user did to the motion at one of his events, an impact.
     void add_jump(double t, const Work& work) { jumps_.push_back({list_.size(), t, work}); }
+    /// Where the run has ended: what took no time then counts from there on.
+    void close(const Clock& end, Values state);
     /// Keeps only what is later than this time.
     void forget(double t);
 
