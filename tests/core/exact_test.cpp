@@ -316,4 +316,13 @@ TEST_CASE("a row stands where it stands, whatever the arc before it was made of"
     }
 }
 
+TEST_CASE("who may stop a run is asked often, also where M turns a million times a period", "[exact]") {
+    const Oscillator system = Oscillator::make({.inertia = 1, .stiffness = 1}).value();
+    const Excitation M = Excitation::make(Harmonic{.amplitude = 1, .omega = 1e6}).value();
+    int asked = 0;
+    const auto run = simulate(system, M, {1, 0}, {0, 20}, Grid::none(), Exact{}, [&](double) { return ++asked < 4; });
+    REQUIRE(run);
+    CHECK(run->outcome == Outcome::interrupted);  // 2e7 radians were one arc, between two questions
+}
+
 }  // namespace dinal::exact_test

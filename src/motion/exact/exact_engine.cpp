@@ -12,9 +12,9 @@ namespace {
 constexpr double longest_arc = 16;
 /// A creep is looked for over so many natural periods.
 constexpr double creeps_over = 0.5 * (1 - 1e-9);
-/// An arc costs so many radians of its parts at most, which is a fraction of a second. Between two questions to the
-/// monitor there are so many arcs, or rows.
-constexpr double greatest_cost = 1e8;
+/// An arc costs so many radians of its parts at most: a fraction of a second, also where each of them is a turn.
+/// Between two questions to the monitor there are so many arcs, or rows.
+constexpr double greatest_cost = 1e7;
 constexpr double arcs_between_questions = 16;
 constexpr std::size_t rows_between_questions = 1U << 16U;
 
