@@ -136,4 +136,12 @@ test("a motion that a softening spring lets go ends with a sentence about itself
     end
 end)
 
+test("a spring that fails where the mass stands between walls ends the run, and tells why", function()
+    local function brittle(theta)
+        if theta > 0.5 then error("too far") end
+        return theta
+    end
+    support.raises(function() system { I = 1, k = 1, Rd = 0.1, spring = brittle, walls = { upper = 1.5 } }:simulate { theta0 = 1, t_end = 2, dt = 0.1 } end, "too far")
+end)
+
 support.finish()

@@ -113,7 +113,7 @@ std::optional<double> search(const F& f, double a, double fa, double b, double f
         if (fb < -f.floor()) return fa > 0 ? polish(f, a, fa, b, fb) : a;
         return confirm(b) ? std::optional(b) : std::nullopt;
     }
-    if (dip <= f.floor() || width < 1e-12) {
+    if (!(dip > f.floor()) || width < 1e-12) {  // also where it is no number
         if (fb < -f.floor()) return fa > 0 ? polish(f, a, fa, b, fb) : a;
         const double lowest = fa < fb ? a : b;
         return std::min(fa, fb) <= f.floor() && confirm(lowest) ? std::optional(lowest) : std::nullopt;
