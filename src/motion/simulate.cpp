@@ -74,14 +74,14 @@ double row_count(const Window& window, double dt) {
 double latest_time(const Window& window) {
     return std::max(std::fabs(window.start), std::fabs(window.end));
 }
-/// What doubles can tell apart near the latest time in the window: well above their rounding.
-double least_spacing(const Window& window) {
-    return 16 * std::numeric_limits<double>::epsilon() * latest_time(window);
+/// Between two doubles near the latest time in the window.
+double rounding_of_time(const Window& window) {
+    return std::numeric_limits<double>::epsilon() * latest_time(window);
 }
 
-/// Times that doubles can tell apart.
+/// Times that doubles can tell apart: a spacing well above their rounding.
 std::optional<text::Error> lost_in_time(const char* name, double spacing, const Window& window) {
-    const double latest = latest_time(window), least = least_spacing(window);
+    const double latest = latest_time(window), least = 16 * rounding_of_time(window);
     if (spacing >= least) return {};
     return text::Error{
         .sentence = fmt::format(
@@ -103,7 +103,7 @@ std::optional<text::Error> stepped_over(const char* name, double step, const mod
 
 /// A sine that turns more than once between two times: it has no phase, and no integrator comes to its end.
 std::optional<text::Error> lost_sine(const model::Harmonic& sine, const Window& window) {
-    const double omega = std::fabs(sine.omega), most = 2 * std::numbers::pi / least_spacing(window);
+    const double omega = std::fabs(sine.omega), most = 2 * std::numbers::pi / rounding_of_time(window);
     if (omega <= most) return {};
     return text::Error{
         .sentence = fmt::format(
