@@ -29,9 +29,12 @@ int push_steady(lua_State* L, const lua::Options& options, analysis::SteadyQuest
         });
         if (!same) {
             options.fail(
-                {"what the sampled, relay or delayed terms of M remember goes on from one period into the "
-                 "next, and a steady motion is sought by theta and velocity alone; choose an every that "
-                 "divides the period, or run some periods and see run:poincare"});
+                {fmt::format("what the sampled, relay or delayed terms of M remember goes on from one period "
+                             "into the next, and a steady motion is sought by theta and velocity alone; {}run "
+                             "some periods and see run:poincare",
+                             model::has_memory<model::SampledController>(steady->question.excitation)
+                                 ? "choose an every that divides the period, or "
+                                 : "")});
         }
     }
     lua::push<SteadyHandle>(L, steady);

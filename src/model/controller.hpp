@@ -49,10 +49,12 @@ const C* controller_of(const Component& component) {
     return scripted == nullptr ? nullptr : dynamic_cast<const C*>(scripted->function.get());
 }
 
-inline bool has_memory(const Excitation& excitation) {
+/// Whether a controller of this kind is in M, or any.
+template <class C = Controller>
+bool has_memory(const Excitation& excitation) {
     const auto& components = excitation.components();
     return std::any_of(components.begin(), components.end(),
-                       [](const Component& c) { return controller_of(c) != nullptr; });
+                       [](const Component& c) { return controller_of<C>(c) != nullptr; });
 }
 
 }  // namespace dinal::model

@@ -163,7 +163,7 @@ test("what M remembers from one period to the next is no part of what steady see
     local light = system{ I = 1, k = 1, C = 0.3 }
     local function late(by) return harmonic(1.2 / (2 * math.pi)) + excitation.delayed(function(t, theta) return -0.2 * theta end, { by = by }) end
     for _, by in ipairs{ 0.02, 3 } do
-        raises(function() light:steady{ M = late(by), period = 2 * math.pi / 1.2 } end, "goes on from one period into the next")
+        raises(function() light:steady{ M = late(by), period = 2 * math.pi / 1.2 } end, "by theta and velocity alone; run some periods and see run:poincare")
     end
     local M = excitation.sampled(function(t) return math.sin(math.pi * t) end, { every = 0.3 })
     local dry = nondimensional{ friction_ratio = 0.3, zeta = 0.05 }
