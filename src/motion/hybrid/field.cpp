@@ -144,11 +144,13 @@ double Field::sure_belt_rate(double t) const {
 std::pair<double, double> Field::belt_slope(double t) const {
     using namespace spectral::chebyshev;
     if (!has_belt() || extras_.belt.constant_from() <= t) return {0, 0};
-    constexpr double smooth = 1e-9, shorter = 0.25, shortest = 1e-14;
+    constexpr double smooth = 1e-9, shorter = 0.25;
+    constexpr int most_looks = 23;     // down to 1e-14 of the stretch
     constexpr double roundings = 256;  // in a slope at the end of a polynomial of this degree
     const double next = extras_.belt.next_break(t);
     // A jump that nobody announced is no part of the slope before it.
-    for (double h = std::min(short_stretch_, (next - t) / 2); h > shortest * short_stretch_; h *= shorter) {
+    double h = std::min(short_stretch_, (next - t) / 2);
+    for (int look = 0; look < most_looks; ++look, h *= shorter) {
         Samples values{};
         for (std::size_t j = 0; j < points; ++j) {
             const double at = t + h * (1 + nodes[j]);
