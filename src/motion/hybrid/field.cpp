@@ -150,7 +150,7 @@ std::pair<double, double> Field::belt_slope(double t) const {
     const double next = extras_.belt.next_break(t);
     // A jump that nobody announced is no part of the slope before it.
     double h = std::min(short_stretch_, (next - t) / 2);
-    for (int look = 0; look < most_looks; ++look, h *= shorter) {
+    for (int look = 0; look < most_looks; ++look) {
         Samples values{};
         for (std::size_t j = 0; j < points; ++j) {
             const double at = t + h * (1 + nodes[j]);
@@ -161,6 +161,7 @@ std::pair<double, double> Field::belt_slope(double t) const {
         if (!(tail(curve) > smooth * all)) {
             return {value(derivative(curve), -1) / h, roundings * rounding * greatest(values) / h};
         }
+        h *= shorter;
     }
     return {0, 0};
 }
