@@ -175,8 +175,9 @@ bool Standstill::never_left(const Moment& now) {
             events_->pop_back();
         } else if (last.kind == model::EventKind::turn) {
             last.kind = model::EventKind::stick;
-        } else if (last.kind > model::EventKind::impact && motion_ != model::Motion::stuck && !at_start(now.t)) {
-            tell(model::EventKind::stick, now);  // a switch, or what a user did, has stopped it
+        } else if ((last.kind == model::EventKind::switched || last.kind == model::EventKind::user) &&
+                   motion_ != model::Motion::stuck && !at_start(now.t)) {
+            tell(model::EventKind::stick, now);
         }
     } else if (at_start(now.t)) {
         began_stuck_ = true;

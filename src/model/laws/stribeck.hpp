@@ -20,10 +20,9 @@ struct Stribeck {
     [[nodiscard]] double sliding(Motion /*way*/, double v) const {
         if (v == 0) return breakaway;
         constexpr double farthest = 20;  // below speed 0, where an odd power grows beyond all numbers
-        const double x = std::fabs(v / speed);
-        const double power = shape == 2 ? x * x : shape == 1 ? x : std::pow(x, shape);
+        const double exponent = power(v);
         const bool grows = v < 0 && std::fmod(shape, 2) == 1;
-        return kinetic + (breakaway - kinetic) * std::exp(grows ? std::min(power, farthest) : -power);
+        return kinetic + (breakaway - kinetic) * std::exp(grows ? std::min(exponent, farthest) : -exponent);
     }
     [[nodiscard]] double holding(Motion /*way*/) const { return breakaway; }
     /// Beyond some speed there is nothing left of the difference, to rounding, and the law is Coulomb's.
@@ -38,6 +37,11 @@ struct Stribeck {
     [[nodiscard]] std::string lua_text() const;
 
 private:
+    /// (|v|/speed)^shape
+    [[nodiscard]] double power(double v) const {
+        const double x = std::fabs(v / speed);
+        return shape == 2 ? x * x : shape == 1 ? x : std::pow(x, shape);
+    }
     [[nodiscard]] double flat_from() const {
         constexpr double nothing = 38;  // exp(-nothing) < 2^-54
         return speed * std::pow(nothing, 1 / shape);
@@ -58,14 +62,13 @@ inline constexpr text::Call stribeck_call{"friction.stribeck", "friction.stribec
 
 inline double Stribeck::slope(double v) const {
     if (v == 0) return 0;
-    const double x = std::fabs(v / speed), power = shape == 2 ? x * x : shape == 1 ? x : std::pow(x, shape);
-    return -(breakaway - kinetic) * shape * power / v * std::exp(-power);
+    const double exponent = power(v);
+    return -(breakaway - kinetic) * shape * exponent / v * std::exp(-exponent);
 }
 /// Measured: 4.5 speeds of shape 1, 1.26 of shape 2, 0.7 of shape 3; wider where there is less left to follow.
 inline double Stribeck::scale(double v) const {
-    const double x = std::fabs(v / speed), power = shape == 2 ? x * x : shape == 1 ? x : std::pow(x, shape);
     constexpr double at_zero = 4.5, narrower = 1.83, less = 20;
-    return speed * at_zero * std::pow(shape, -narrower) * std::exp(std::min(power, 4 * less) / less);
+    return speed * at_zero * std::pow(shape, -narrower) * std::exp(std::min(power(v), 4 * less) / less);
 }
 inline std::optional<text::Error> Stribeck::complaint() const {
     if (auto wrong = wrong_torques("", kinetic, breakaway)) return wrong;

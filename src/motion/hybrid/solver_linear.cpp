@@ -108,7 +108,7 @@ void Solver::prepare_answer(Swing& swing) const {
     swing.answer = A.partialPivLu().solve(h * once);
 }
 
-/// The free motion, and the answer to what the load changes by. False when M is not finite somewhere.
+/// The free motion, and the answer to what the load changes by. It fails where M is not finite.
 Solver::Attempt Solver::follow_load(Solved& piece, Swing& swing) {
     Eigen::Matrix<double, inner, 1> change, answer;
     for (std::size_t j = 0; j < node_count; ++j) {
