@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "api/extras_options.hpp"
+#include "api/system_options.hpp"
 #include "lua/bind.hpp"
 #include "lua/options.hpp"
 #include "motion/integrators.hpp"
@@ -68,7 +69,7 @@ inline constexpr text::Option plain_simulate_options[] = {
 };
 inline constexpr auto simulate_options = text::joined(plain_simulate_options, extras_options, model::units_option);
 inline constexpr text::Call simulate_call{"sys:simulate", "sys:simulate{ M = M, theta0 = 1, t_end = 20, dt = 0.01 }",
-                                          simulate_options};
+                                          simulate_options, false, &with_call};
 
 /// What is asked of run:continue.
 struct MoreTime {
@@ -82,7 +83,8 @@ inline constexpr text::Option continue_options[] = {
     {"times", "time units", text::its_own, text::any_finite, "more rows of a run that had times",
      text::fills<&MoreTime::times>},
 };
-inline constexpr text::Call continue_call{"run:continue", "run:continue{ t_end = 40 }", continue_options, true};
+inline constexpr text::Call continue_call{"run:continue", "run:continue{ t_end = 40 }", continue_options, true,
+                                          &simulate_call};
 
 inline constexpr text::FixedText<600> simulate_summary{
     "Runs the system, by ", motion::default_integrator.c_str(),

@@ -19,7 +19,7 @@ namespace dinal::api {
 namespace {
 
 constexpr text::Call system_call{"system", "system{ I = 1, k = 39.5, C = 1.5, Rd = 2, Re = 3 }",
-                                 model::oscillator_options};
+                                 model::oscillator_options, false, &simulate_call};
 
 /// Ratios to k = 1 and to the characteristic torque Mc = 1.
 struct Ratios {
@@ -35,7 +35,7 @@ constexpr text::Option ratio_options[] = {
 };
 constexpr auto nondimensional_options = text::joined(ratio_options, law_option, model::units_option);
 constexpr text::Call nondimensional_call{"nondimensional", "nondimensional{ zeta = 0.1, friction_ratio = 0.2 }",
-                                         nondimensional_options, true};
+                                         nondimensional_options, true, &simulate_call};
 
 int system(lua_State* L) {
     const lua::Options options(L, 1, system_call);

@@ -4,6 +4,7 @@
 #include <optional>
 #include <string>
 
+#include "api/system_options.hpp"
 #include "lua/bind.hpp"
 #include "text/option.hpp"
 
@@ -49,7 +50,7 @@ inline constexpr text::Option response_options[] = {
      .filled = text::fills<&ResponseOptions::velocity0>},
 };
 inline constexpr text::Call response_call{"sys:response", "sys:response{ frequency = { 0.05, 3 }, points = 200 }",
-                                          response_options};
+                                          response_options, false, &with_call};
 
 int response_of_system(lua_State* L);
 

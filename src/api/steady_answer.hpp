@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "analysis/steady.hpp"
+#include "api/system_options.hpp"
 #include "lua/interrupt.hpp"
 #include "lua/options.hpp"
 #include "lua/user_function.hpp"
@@ -50,7 +51,7 @@ inline constexpr text::Option drive_options[] = {
 };
 inline constexpr auto steady_options = text::joined(drive_options, period_options, start_options);
 inline constexpr text::Call steady_call{"sys:steady", "sys:steady{ M = excitation.harmonic{ frequency = 0.4 } }",
-                                        steady_options};
+                                        steady_options, false, &with_call};
 inline constexpr text::Call steady_run_call{"run:steady", "run:steady{ period = 2.5 }", period_options, true};
 
 struct Steady {

@@ -35,6 +35,21 @@ std::string cures(const Names& unknown, const Names& known) {
     return words.empty() ? "" : fmt::format("; did you mean {}?", fmt::join(words, " and "));
 }
 
+/// Takes the names out of `unknown` that are right for the neighbour, and says so.
+std::string options_of_neighbour(Names& unknown, const text::Call* neighbour) {
+    if (neighbour == nullptr) return "";
+    const auto has = [&](std::string_view name) {
+        return std::any_of(neighbour->options.begin(), neighbour->options.end(),
+                           [&](const text::Option& option) { return name == option.name; });
+    };
+    const auto theirs = std::stable_partition(unknown.begin(), unknown.end(), [&](auto name) { return !has(name); });
+    const Names moved(theirs, unknown.end());
+    unknown.erase(theirs, unknown.end());
+    if (moved.empty()) return "";
+    return fmt::format("; {} {} of {}", joined(moved, " and ", "'"), moved.size() > 1 ? "are options" : "is an option",
+                       neighbour->name);
+}
+
 }  // namespace
 
 Options::Options(lua_State* L, int index, const text::Call& call) : L_(L), index_(index), call_(call) {
@@ -84,13 +99,17 @@ void Options::refuse(std::vector<std::string_view>& unknown) const {
     std::sort(unknown.begin(), unknown.end());  // a table has no order, and what is said must be the same each time
     Names known;
     for (const text::Option& option : call_.options) known.emplace_back(option.name);
-    const std::string names = joined(unknown, " and ", "'");
+    const std::string names = joined(unknown, " and ", "'"), first(unknown.front());
+    const bool several = unknown.size() > 1;
+    const std::string elsewhere = options_of_neighbour(unknown, call_.neighbour);
     raise(L_, {.sentence = known.empty() ? fmt::format("{} has no options, so no {} either", call_.name, names)
-                                         : fmt::format("{} has no option{} {} among {}", call_.name,
-                                                       unknown.size() > 1 ? "s" : "", names, joined(known, " and ")),
+                                         : fmt::format("{} has no option{} {} among {}", call_.name, several ? "s" : "",
+                                                       names, joined(known, " and ")),
                .call = call_.name,
-               .culprit = std::string(unknown.front()),
-               .cure = unknown.size() == 1 ? text::did_you_mean(unknown.front(), known) : cures(unknown, known)});
+               .culprit = first,
+               .cure = elsewhere + (several           ? cures(unknown, known)
+                                    : unknown.empty() ? ""
+                                                      : text::did_you_mean(first, known))});
 }
 
 void Options::push(std::string_view name) const {

@@ -94,7 +94,8 @@ struct Call {
     const char* name;     ///< heads all sentences: "excitation.pulse"
     const char* example;  ///< a right one: "excitation.pulse{ at = 1, width = 0.2 }"
     std::span<const Option> options = {};
-    bool may_be_bare = false;  ///< run:continue() without a table is as good as with an empty one
+    bool may_be_bare = false;         ///< run:continue() without a table is as good as with an empty one
+    const Call* neighbour = nullptr;  ///< whose options are given to this one by mistake
 };
 
 /// "width = -1 must be positive", "breaks[2] = inf must be finite"; none when the value may stand.
