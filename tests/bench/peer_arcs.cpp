@@ -4,9 +4,9 @@
 namespace bench {
 namespace {
 
-template <class Watch>
+template <Looks looks, class Watch>
 double integrate(const Workload& work, Watch& watch) {
-    ArcWalker<double> arcs(harmonic_problem<double>(work));
+    ArcWalker<double, looks> arcs(harmonic_problem<double>(work));
     watch(0, arcs.position());
     while (!arcs.at_end()) {
         watch((arcs.start() + arcs.next()) / 2, arcs.position((arcs.start() + arcs.next()) / 2));
@@ -20,6 +20,7 @@ double integrate(const Workload& work, Watch& watch) {
 
 }  // namespace
 
-BENCH_PEER(arcs_peer, "closed-form arcs by hand", integrate);
+BENCH_PEER(arcs_peer, "closed-form arcs by hand", integrate<Looks::by_sines>);
+BENCH_PEER(rotated_arcs_peer, "the same, looks by rotating phasors", integrate<Looks::by_rotation>);
 
 }  // namespace bench

@@ -24,7 +24,8 @@ extern const Peer cut_peer_coarse;  ///< the same, h = .01
 extern const Peer odeint_peer;
 extern const Peer gsl_peer;
 extern const Peer cvode_peer;
-extern const Peer arcs_peer;
+extern const Peer arcs_peer;          ///< written as it is written down: sin, cos, Newton
+extern const Peer rotated_arcs_peer;  ///< as fast as by hand can be
 
 /// Makes both functions of a peer from integrate<Watch>(work, watch) -> last position.
 #define BENCH_PEER(id, title, integrate)                \

@@ -50,9 +50,9 @@ void Collector::ReportRuns(const std::vector<Run>& runs) {
             failed_ = true;
             continue;
         }
-        // Processor time, because the machine is shared; whole processes are timed by the wall clock.
-        const bool by_hand = run.run_name.time_type == "manual_time";
-        const double total = by_hand ? run.real_accumulated_time : run.cpu_accumulated_time;
+        // Processor time, because the machine is shared; what is not done by this thread is timed by the wall clock.
+        const bool by_clock = !run.run_name.time_type.empty();
+        const double total = by_clock ? run.real_accumulated_time : run.cpu_accumulated_time;
         results_.of(full.substr(0, slash), full.substr(slash + 1))
             .seconds.push_back(total / static_cast<double>(run.iterations));
     }
