@@ -71,7 +71,8 @@ inline constexpr std::string_view analysis_group = "questions", steady_native = 
 inline constexpr std::string_view rows_group = "rows", files_group = "files", lua_group = "Lua", plots_group = "plots",
                                   start_group = "start";
 inline constexpr std::string_view csv_in_memory = "CSV, 1e6 rows of W4, file in memory",
-                                  csv_on_disk = "CSV, 1e6 rows of W4, file on the disk";
+                                  csv_on_disk = "CSV, 1e6 rows of W4, file on the disk",
+                                  csv_read = "CSV, 1e6 rows of W4, file in memory read";
 inline constexpr std::string_view terminal_response = "terminal, W4 over time",
                                   terminal_phase = "terminal, phase plane of W4", svg_response = "SVG, W4 over time",
                                   svg_phase = "SVG, phase plane of W4", report_figures = "all figures of the report";

@@ -30,14 +30,21 @@ std::filesystem::path memory_folder() {
     return access("/dev/shm", W_OK) == 0 ? "/dev/shm" : std::filesystem::temp_directory_path();
 }
 
-void write_csv(benchmark::State& state, const std::filesystem::path& folder) {
+enum class Timed { writing, reading };
+
+void csv(benchmark::State& state, const std::filesystem::path& folder, Timed timed) {
     const dinal::motion::Trajectory run =
         trajectory(driven_motion, dinal::motion::Rk4{0.001}, dinal::motion::Grid::every(0.001));
     const auto columns = dinal::files::named_columns(run.names, run.rows.matrix());
     const std::string path = (folder / ("dinal-bench-" + std::to_string(getpid()) + ".csv")).string();
+    const auto good = [&](const auto& done) {
+        if (!done) state.SkipWithError(done.error().sentence.c_str());
+        return static_cast<bool>(done);
+    };
+    if (timed == Timed::reading && !good(dinal::files::write_csv(path, columns))) return;
     for ([[maybe_unused]] auto iteration : state) {
-        if (const auto written = dinal::files::write_csv(path, columns); !written) {
-            state.SkipWithError(written.error().sentence.c_str());
+        if (!(timed == Timed::writing ? good(dinal::files::write_csv(path, columns))
+                                      : good(dinal::files::read_csv(path)))) {
             break;
         }
     }
@@ -58,9 +65,11 @@ void register_rows(Results& results) {
     add(rows_group, "W1 with a row a step", 1e7, "step",
         [](benchmark::State& state) { keep_rows(state, dinal::motion::Grid::every(0.001)); });
     add(files_group, std::string(csv_in_memory), 1e6, "row",
-        [](benchmark::State& state) { write_csv(state, memory_folder()); });
+        [](benchmark::State& state) { csv(state, memory_folder(), Timed::writing); });
     add(files_group, std::string(csv_on_disk), 1e6, "row",
-        [](benchmark::State& state) { write_csv(state, std::filesystem::temp_directory_path()); });
+        [](benchmark::State& state) { csv(state, std::filesystem::temp_directory_path(), Timed::writing); });
+    add(files_group, std::string(csv_read), 1e6, "row",
+        [](benchmark::State& state) { csv(state, memory_folder(), Timed::reading); });
 }
 
 }  // namespace bench

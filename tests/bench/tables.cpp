@@ -168,9 +168,10 @@ void print_bars(const Results& results) {
                        median(results, rows_group, "W1 without rows")) /
                       1e7 * 1e9;
            });
-    for (const std::string_view csv : {csv_in_memory, csv_on_disk}) {
-        bar_of(results, {{files_group, csv}}, fmt::format("{}: a row", csv), 250, "ns",
-               [&] { return median(results, files_group, csv) / 1e6 * 1e9; });
+    for (const auto& [item, most] : {std::pair{csv_in_memory, 300.}, {csv_on_disk, 300.}, {csv_read, 250.}}) {
+        const std::string_view csv = item;
+        bar_of(results, {{files_group, csv}}, fmt::format("{}: a row", csv), most, "ns",
+               [&, csv] { return median(results, files_group, csv) / 1e6 * 1e9; });
     }
     for (const std::string_view plot : {terminal_response, terminal_phase}) {
         bar_of(results, {{plots_group, plot}}, fmt::format("plot of 1e6 rows, {}", plot), 50, "ms",
