@@ -11,6 +11,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <typeinfo>
 
 #include "text/expected.hpp"
 
@@ -105,8 +106,8 @@ public:
     /// The law itself, if it is of this kind.
     template <FrictionLaw Law>
     [[nodiscard]] const Law* as() const {
-        const auto* held = dynamic_cast<const Held<Law>*>(law_.get());
-        return held != nullptr ? &held->law : nullptr;
+        const Any* law = law_.get();
+        return law != nullptr && typeid(*law) == typeid(Held<Law>) ? &static_cast<const Held<Law>*>(law)->law : nullptr;
     }
 
 private:

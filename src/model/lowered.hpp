@@ -23,8 +23,8 @@ public:
             braking_[index(way)] = sign_of(way) * law.sliding(way, 0);
             holding_[index(way)] = law.holding(way);
         }
-        dry_ = !law.none();
         if (law.depends_on_speed()) friction_ = &law;
+        dry_ = friction_ != nullptr || greatest_holding() != 0;  // the law is not none()
         if (!system.spring().none()) spring_ = &system.spring();
     }
 

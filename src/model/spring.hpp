@@ -8,6 +8,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <typeinfo>
 
 #include "text/expected.hpp"
 
@@ -49,8 +50,10 @@ public:
     /// The law itself, if it is of this kind.
     template <SpringLaw Law>
     [[nodiscard]] const Law* as() const {
-        const auto* held = dynamic_cast<const HeldSpring<Law>*>(law_.get());
-        return held != nullptr ? &held->law : nullptr;
+        const AnySpring* law = law_.get();
+        return law != nullptr && typeid(*law) == typeid(HeldSpring<Law>)
+                   ? &static_cast<const HeldSpring<Law>*>(law)->law
+                   : nullptr;
     }
 
 private:

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <vector>
 
 #include "model/forcing.hpp"
@@ -30,10 +31,9 @@ bool moved_by_others(const model::Extras& extras) {
 }
 
 /// M may have jumped at the very end, where no integrator has asked the law any more.
-bool stays(const Trajectory& run, const model::Oscillator& system, double M) {
+bool stays(const Trajectory& run, const model::Lowered& system, const std::optional<model::Walls>& walls, double M) {
     const double theta = run.state_at_stop.theta;
-    const model::Motion way = model::motion_from_standstill(model::Lowered(system), M, theta);
-    const auto& walls = system.walls();
+    const model::Motion way = model::motion_from_standstill(system, M, theta);
     const bool leans = walls && ((way == model::Motion::backward && theta <= walls->lower) ||
                                  (way == model::Motion::forward && theta >= walls->upper));
     return way == model::Motion::stuck || leans;
@@ -45,7 +45,7 @@ bool for_good(const Trajectory& run, const model::Oscillator& oscillator, const 
     const bool creeps = run.motion_at_stop != model::Motion::stuck;
     if (const double constant = std::max(excitation.constant_from(), base.constant_from()); constant <= run.t_stop) {
         const double t = run.t_stop, M = excitation.value(t) - oscillator.inertia() * base.value(t);
-        return creeps ? constant < t : stays(run, oscillator, M);
+        return creeps ? constant < t : stays(run, system, oscillator.walls(), M);
     }
     if (!base.components().empty()) return false;
     if (creeps) return false;  // it creeps, and yields to every change of M
