@@ -28,8 +28,8 @@ public:
     /// One column.
     explicit Growing(std::vector<T> values) {
         if (values.empty()) return;
-        auto own = std::make_shared<std::vector<T>>(std::move(values));
-        *this = Growing(own->size(), own->data(), 1, own);
+        size_ = values.size();
+        store_ = std::make_shared<Store>(Store{nullptr, values.data(), size_, 1, size_, std::move(values)});
     }
     /// The columns at `values`, which `owner` keeps alive.
     Growing(std::size_t rows, T* values, std::size_t columns, std::shared_ptr<void> owner)
@@ -100,10 +100,12 @@ private:
         std::shared_ptr<void> owner;
         T* values;
         std::size_t room, columns;
-        std::size_t used;  ///< rows that belong to some table
+        std::size_t used;       ///< rows that belong to some table
+        std::vector<T> list{};  // the owner of a list is the store itself
 
         [[nodiscard]] T* column(std::size_t i) const { return values + i * room; }
         static std::shared_ptr<Store> with_room(std::size_t rows, std::size_t columns) {
+            if (rows == 0) return std::make_shared<Store>(Store{nullptr, nullptr, 0, columns, 0});
             auto own = std::make_shared_for_overwrite<T[]>(rows * columns);
             T* values = own.get();
             return std::make_shared<Store>(Store{std::move(own), values, rows, columns, 0});

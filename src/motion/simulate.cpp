@@ -295,10 +295,8 @@ text::Expected<Trajectory> simulate(const model::Oscillator& system, const model
                                     MethodView method, const Monitor& monitor, const Limits& limits,
                                     const model::Extras& extras) {
     auto result = run_from({}, system, excitation, initial, window, rows, method, monitor, limits, extras);
-    if (!result) return result;
-    Trajectory trajectory = std::move(result).value();
-    settle(trajectory, system, excitation, extras);
-    return trajectory;
+    if (result) settle(result.value(), system, excitation, extras);
+    return result;
 }
 
 text::Expected<Trajectory> resume(const model::Oscillator& system, const model::Excitation& excitation,

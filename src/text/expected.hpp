@@ -31,11 +31,13 @@ template <class T>
 class [[nodiscard]] Expected {
 public:
     // Implicit on purpose: `return value;` and `return Error{...};` both read as they should.
-    Expected(T value) : content_(std::move(value)) {}      // NOLINT(google-explicit-constructor)
+    Expected(const T& value) : content_(value) {}          // NOLINT(google-explicit-constructor)
+    Expected(T&& value) : content_(std::move(value)) {}    // NOLINT(google-explicit-constructor)
     Expected(Error error) : content_(std::move(error)) {}  // NOLINT(google-explicit-constructor)
 
     explicit operator bool() const { return std::holds_alternative<T>(content_); }
 
+    T& value() & { return std::get<T>(content_); }
     const T& value() const& { return std::get<T>(content_); }
     T&& value() && { return std::get<T>(std::move(content_)); }
     const T& operator*() const& { return value(); }

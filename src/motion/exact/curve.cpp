@@ -96,8 +96,8 @@ std::uint8_t WalkedCurve::new_turn(double tau) {
     const std::size_t row = turns_.size();
     turns_.emplace_back().row = row;
     sine_rows_.resize((row + 1) * sines_);
-    growth_rows_.resize((row + 1) * rates_);
-    resonance_rows_.resize((row + 1) * resonances_.size());
+    if (rates_ > 0) growth_rows_.resize((row + 1) * rates_);
+    if (!resonances_.empty()) resonance_rows_.resize((row + 1) * resonances_.size());
     make_turn(tau, turns_.back());
     return static_cast<std::uint8_t>(row);
 }
