@@ -26,8 +26,8 @@ std::string column_on_top(lua_State* L, const lua::Options& options, std::string
     if (lua_type(L, -1) == LUA_TSTRING) {
         return lua_tostring(L, -1);
     }
-    const Eigen::Index column = options.value_or_fail(column_at(L, -1, run->trajectory.names, what));
-    return run->trajectory.names[static_cast<std::size_t>(column)];
+    const Eigen::Index column = options.value_or_fail(column_at(L, -1, run->trajectory.names(), what));
+    return run->trajectory.names()[static_cast<std::size_t>(column)];
 }
 
 std::vector<std::string> asked_columns(lua_State* L, const lua::Options& options, std::string_view option,

@@ -47,7 +47,7 @@ void push_column(lua_State* L, const RunHandle& run, Eigen::Index column) {
 
 /// Members and columns: what a misspelt name may have meant.
 [[noreturn]] void raise_unknown(lua_State* L, const motion::Trajectory& trajectory, std::string_view wrong) {
-    std::vector<std::string_view> names(trajectory.names.begin(), trajectory.names.end());
+    std::vector<std::string_view> names(trajectory.names().begin(), trajectory.names().end());
     for (const lua::Member& member : run_class.members) {
         const bool column = member.kind == lua::Kind::field && trajectory.find(member.name) == std::nullopt &&
                             std::find(motion::column_names().begin(), motion::column_names().end(), member.name) !=
@@ -57,7 +57,7 @@ void push_column(lua_State* L, const RunHandle& run, Eigen::Index column) {
         }
     }
     lua::raise(L, {.sentence = fmt::format("this run has no field '{}'; its columns are {}", wrong,
-                                           fmt::join(trajectory.names, ", ")),
+                                           fmt::join(trajectory.names(), ", ")),
                    .culprit = std::string(wrong),
                    .cure = text::did_you_mean(wrong, names)});
 }
@@ -86,7 +86,7 @@ int other_column(lua_State* L) {
 
 int columns(lua_State* L) {
     const RunHandle run = run_self(L, "run:columns(\"t\", \"theta\")");
-    const auto& names = run->trajectory.names;
+    const auto& names = run->trajectory.names();
     const int asked = lua_gettop(L) - 1;
     if (asked == 0) {
         luaL_checkstack(L, static_cast<int>(names.size()) + 5, "too many columns");
@@ -104,7 +104,7 @@ int columns(lua_State* L) {
 }
 
 int names(lua_State* L) {
-    const auto& names = run_self(L, "run.names")->trajectory.names;
+    const auto& names = run_self(L, "run.names")->trajectory.names();
     lua_createtable(L, static_cast<int>(names.size()), 0);
     for (std::size_t i = 0; i < names.size(); ++i) {
         lua::push_text(L, names[i]);

@@ -39,7 +39,7 @@ int load(lua_State* L) {
     run.units = model::Units::from_file(run.comments);
     motion::Trajectory& trajectory = run.trajectory;
     trajectory.computed = false;
-    trajectory.names = std::move(content.names);
+    trajectory.own_names = std::move(content.names);
     run.rows = lua::MemoryCharge(static_cast<std::size_t>(content.values.size()) * sizeof(double));
     trajectory.rows = motion::Rows(std::move(content.values));
     if (const auto time = trajectory.find("t"); time && trajectory.size() > 0) {

@@ -34,9 +34,9 @@ RecordColumns record_columns(lua_State* L, const lua::Options& options) {
         }
     } else if (const auto* run = lua::test<RunHandle>(L, place)) {
         const motion::Trajectory& trajectory = (*run)->trajectory;
-        for (std::size_t i = 0; i < trajectory.names.size(); ++i) {
+        for (std::size_t i = 0; i < trajectory.names().size(); ++i) {
             const auto values = trajectory.rows.col(static_cast<Eigen::Index>(i));
-            add_column(record, trajectory.names[i], {values.data(), static_cast<std::size_t>(values.size())});
+            add_column(record, trajectory.names()[i], {values.data(), static_cast<std::size_t>(values.size())});
         }
     } else if (lua_istable(L, place)) {
         lua_pushnil(L);

@@ -38,11 +38,11 @@ plots::Numbers numbers_of_run(lua_State* L, const RunHandle& run, const char* na
     }
     const auto column = run->trajectory.find(name);
     if (!column) {
-        lua::raise(L,
-                   {.sentence = fmt::format("{}: the run has no column '{}'; its columns are vectors, and a curve is "
-                                            "{{ run.{}, run.{} }}",
-                                            call, name, run->trajectory.names.front(), run->trajectory.names.back()),
-                    .call = call});
+        lua::raise(
+            L, {.sentence = fmt::format("{}: the run has no column '{}'; its columns are vectors, and a curve is "
+                                        "{{ run.{}, run.{} }}",
+                                        call, name, run->trajectory.names().front(), run->trajectory.names().back()),
+                .call = call});
     }
     const auto values = run->trajectory.rows.col(*column);
     return {run, {values.data(), static_cast<std::size_t>(values.size())}};

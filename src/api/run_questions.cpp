@@ -52,7 +52,7 @@ int spectrum_of_run(lua_State* L) {
     const lua::Options options(L, 3, spectrum_call);
     SpectrumOptions asked;
     options.fill(asked);
-    const auto column = files::find_column(trajectory.names, std::string_view(name));
+    const auto column = files::find_column(trajectory.names(), std::string_view(name));
     if (!column) options.fail(column.error());
     const auto time = trajectory.find("t");
     if (!time) options.fail({"the run has no column t, so its rows have no times"});

@@ -56,7 +56,7 @@ int run_at(lua_State* L) {
     lua_createtable(L, 0, static_cast<int>(states.size()));
     for (std::size_t i = 0; i < states.size(); ++i) {
         lua_pushnumber(L, states[i]);
-        lua_setfield(L, -2, trajectory.names[motion::column_count + i].c_str());
+        lua_setfield(L, -2, trajectory.names()[motion::column_count + i].c_str());
     }
     return 3;
 }
@@ -64,7 +64,7 @@ int run_at(lua_State* L) {
 int run_states(lua_State* L) {
     const RunHandle& run = lua::self<RunHandle>(L, 1, "run.states");
     // In a file, too, what stands after the columns that every run has are states.
-    const std::vector<std::string>& names = run->trajectory.names;
+    const std::vector<std::string>& names = run->trajectory.names();
     const std::vector<std::string>& always = motion::column_names();
     const bool has_all = names.size() >= always.size() && std::equal(always.begin(), always.end(), names.begin());
     const std::size_t count = has_all ? names.size() - always.size() : 0;

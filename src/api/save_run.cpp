@@ -18,7 +18,7 @@ namespace {
 /// The columns asked for by `columns = { name or number, ... }`, all without it.
 std::vector<files::NamedColumn> asked_columns(lua_State* L, const lua::Options& options,
                                               const motion::Trajectory& trajectory) {
-    std::vector<files::NamedColumn> all = files::named_columns(trajectory.names, trajectory.rows.matrix());
+    std::vector<files::NamedColumn> all = files::named_columns(trajectory.names(), trajectory.rows.matrix());
     if (!options.has("columns")) {
         return all;
     }
@@ -29,7 +29,7 @@ std::vector<files::NamedColumn> asked_columns(lua_State* L, const lua::Options& 
     std::vector<files::NamedColumn> asked;
     for (lua_Integer i = 1; i <= static_cast<lua_Integer>(lua_rawlen(L, -1)); ++i) {
         lua_rawgeti(L, -1, i);
-        const auto column = column_at(L, -1, trajectory.names, fmt::format("columns[{}]", i));
+        const auto column = column_at(L, -1, trajectory.names(), fmt::format("columns[{}]", i));
         asked.push_back(all[static_cast<std::size_t>(options.value_or_fail(column))]);
         lua_pop(L, 1);
     }
@@ -41,7 +41,7 @@ text::Expected<files::Written> write_record(const std::string& file, const Run& 
     if (run.origin) {
         return files::write_record1989(file, run.trajectory, run.origin->system);
     }
-    if (run.trajectory.names == files::record1989_names()) {
+    if (run.trajectory.names() == files::record1989_names()) {
         return files::write_record1989(file, run.trajectory.rows.matrix());
     }
     return text::Error{

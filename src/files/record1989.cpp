@@ -160,7 +160,7 @@ text::Expected<Written> write_record1989(const std::string& path, const motion::
     Eigen::MatrixXd values(trajectory.rows.rows(), static_cast<Eigen::Index>(width));
     for (std::size_t i = 0; i < width; ++i) {
         const auto& [name, unit] = sources[i];
-        const text::Expected<Eigen::Index> column = find_column(trajectory.names, name);
+        const text::Expected<Eigen::Index> column = find_column(trajectory.names(), name);
         if (!column) {
             return text::Error{"cannot write '" + path + "': the record of 1989 needs six columns and " +
                                column.error().message()};

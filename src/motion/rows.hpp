@@ -17,7 +17,6 @@ public:
     /// The grid went through Grid::within; the columns get room for all of it.
     RowWriter(const model::Oscillator& system, const Grid& grid, Trajectory& trajectory)
         : grid_(grid), trajectory_(trajectory), damping_(system.damping()) {
-        trajectory.names = column_names();
         Growing<double> table(grid.count(), column_count);
         column_ = table.writable();
         trajectory.rows = Rows(std::move(table));

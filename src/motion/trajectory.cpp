@@ -25,9 +25,10 @@ Rows::Rows(Eigen::MatrixXd values) {
 }
 
 std::optional<Eigen::Index> Trajectory::find(std::string_view name) const {
-    const auto it = std::find(names.begin(), names.end(), name);
-    if (it == names.end()) return {};
-    return static_cast<Eigen::Index>(it - names.begin());
+    const std::vector<std::string>& all = names();
+    const auto it = std::find(all.begin(), all.end(), name);
+    if (it == all.end()) return {};
+    return static_cast<Eigen::Index>(it - all.begin());
 }
 
 text::Expected<model::State> between_rows(const Trajectory& trajectory, double t) {
@@ -121,8 +122,8 @@ std::string summary(const Trajectory& trajectory) {
     const auto& rows = trajectory.rows;
     std::string text = text::counted(static_cast<std::size_t>(rows.rows()), "row");
     if (!trajectory.computed) {
-        for (std::size_t i = 0; i < trajectory.names.size(); ++i)
-            text += (i == 0 ? " of " : ", ") + text::displayable(trajectory.names[i]);
+        for (std::size_t i = 0; i < trajectory.names().size(); ++i)
+            text += (i == 0 ? " of " : ", ") + text::displayable(trajectory.names()[i]);
         return text;
     }
     text +=

@@ -63,9 +63,9 @@ struct Carried {
 };
 
 struct Trajectory {
-    std::vector<std::string> names;  ///< one for each column of `rows`
-    Rows rows;                       ///< never NaN
-    Growing<model::Event> events;    ///< in order of time
+    std::vector<std::string> own_names = {};  ///< where these are not the six of every run: see names()
+    Rows rows;                                ///< never NaN
+    Growing<model::Event> events;             ///< in order of time
     model::Outcome outcome = model::Outcome::reached_end;
     model::State initial;  ///< at t_start
     double t_start = 0;
@@ -84,6 +84,10 @@ struct Trajectory {
     std::shared_ptr<const Course> course;  ///< none when it was declined, or the trajectory read from a file
 
     [[nodiscard]] Eigen::Index size() const { return rows.rows(); }
+    /// One for each column of `rows`.
+    [[nodiscard]] const std::vector<std::string>& names() const {
+        return computed && own_names.empty() ? column_names() : own_names;
+    }
     [[nodiscard]] std::optional<Eigen::Index> find(std::string_view name) const;
     [[nodiscard]] auto column(Column which) const { return rows.col(static_cast<Eigen::Index>(which)); }
 

@@ -61,7 +61,7 @@ std::string axis_label(const RunData& run, std::string_view name) {
 }
 
 text::Expected<Numbers> plain_column(const RunData& run, std::string_view name) {
-    const auto column = files::find_column(run.trajectory->names, name);
+    const auto column = files::find_column(run.trajectory->names(), name);
     if (!column) {
         return column.error();
     }
@@ -108,7 +108,7 @@ bool is_excited(const RunData& run, std::string_view name) {
 /// Any other table of numbers: the second column over the first.
 std::vector<std::string> usual_columns(const RunData& run, std::string_view x) {
     if (!has(run, "theta")) {
-        const auto& names = run.trajectory->names;
+        const auto& names = run.trajectory->names();
         const auto other = std::find_if(names.begin(), names.end(), [x](const std::string& name) { return name != x; });
         return {other != names.end() ? *other : std::string(x)};
     }
@@ -206,10 +206,10 @@ text::Expected<Figure> figure_of_columns(const RunData& run, const std::string& 
 }  // namespace
 
 text::Expected<std::vector<Figure>> column_figures(const RunData& run, const ColumnsToDraw& asked) {
-    if (run.trajectory->names.empty()) {
+    if (run.trajectory->names().empty()) {
         return text::Error{"the run has no columns to draw"};
     }
-    const std::string across = !asked.x.empty() ? asked.x : has(run, "t") ? "t" : run.trajectory->names.front();
+    const std::string across = !asked.x.empty() ? asked.x : has(run, "t") ? "t" : run.trajectory->names().front();
     const std::vector<std::string> names = asked.ys.empty() ? usual_columns(run, across) : asked.ys;
     const auto x_values = column(run, across);
     if (!x_values) {

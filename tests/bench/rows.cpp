@@ -35,7 +35,7 @@ enum class Timed { writing, reading };
 void csv(benchmark::State& state, const std::filesystem::path& folder, Timed timed) {
     const dinal::motion::Trajectory run =
         trajectory(driven_motion, dinal::motion::Rk4{0.001}, dinal::motion::Grid::every(0.001));
-    const auto columns = dinal::files::named_columns(run.names, run.rows.matrix());
+    const auto columns = dinal::files::named_columns(run.names(), run.rows.matrix());
     const std::string path = (folder / ("dinal-bench-" + std::to_string(getpid()) + ".csv")).string();
     const auto good = [&](const auto& done) {
         if (!done) state.SkipWithError(done.error().sentence.c_str());

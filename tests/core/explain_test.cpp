@@ -246,10 +246,11 @@ TEST_CASE("the story does not need dense output, rows, or units of a certain siz
 TEST_CASE("rows alone tell what rows can", "[explain]") {
     Trajectory loaded = must_run(nondimensional(0, 0.167), {}, {0, 2 * pi}, {0, 5}, Grid::every(0.01), Spectral{});
     loaded.computed = false;
+    loaded.own_names = column_names();
     loaded.events = {};
     const std::string text = explain_rows(loaded);
     CHECK_THAT(text, Contains("read from a file") && Contains("501 rows") && Contains("changes its sign 3 times"));
-    loaded.names = {"a", "b", "c", "d", "e", "f"};
+    loaded.own_names = {"a", "b", "c", "d", "e", "f"};
     CHECK_THAT(explain_rows(loaded), Contains("501 rows of a, b"));
 }
 

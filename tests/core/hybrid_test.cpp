@@ -101,7 +101,7 @@ TEST_CASE("a PID controller with its integral as a state hunts as matrix exponen
         const Trajectory run = run_more(block, M, {0, 0}, 150, 0.97, method.integrator, extras);
         check(run, truth, method.tolerance, go_straight);
         CHECK(run.events.size() > 6);  // the integral lets it go again and again
-        CHECK(run.names.back() == "e");
+        CHECK(run.names().back() == "e");
         const auto z = run.course->states_at(17.123);
         truth = LinearTruth({sliding(0.3L), sliding(-0.3L), rows({{}, {}, {-1, 0, 0, 1}, {}}), form({0, 1, 0, 0}),
                              form({-8, 0, 3, 8}), 0.5L},

@@ -35,7 +35,7 @@ Oscillator system_with_stiffness_4() {
 
 Trajectory small_run() {
     Trajectory run;
-    run.names = {"t", "theta", "velocity", "M", "friction", "damping"};
+    run.own_names = {"t", "theta", "velocity", "M", "friction", "damping"};
     Eigen::MatrixXd rows(2, 6);
     rows << 0, 1, 0, 2, -0.0, 0,  //
         0.1, 0.75, -3, 1, 1, 1.5;
@@ -54,13 +54,13 @@ TEST_CASE("a run is recorded as time and five angles behind the number of rows",
 TEST_CASE("columns are taken by name, whatever their order", "[record1989]") {
     const TemporaryFolder folder;
     Trajectory run = small_run();
-    std::swap(run.names[0], run.names[5]);
+    std::swap(run.own_names[0], run.own_names[5]);
     Eigen::MatrixXd rows = run.rows.matrix();
     rows.col(0).swap(rows.col(5));
     run.rows = Rows(rows);
     REQUIRE(write_record1989(folder.file("x.dat"), run, system_with_stiffness_4()));
     CHECK(text_of(folder.file("x.dat")) == "2\n0 1 0 0.5 -0 0\n0.1 0.75 -1.5 0.25 0.25 0.375\n");
-    run.names[3] = "load";
+    run.own_names[3] = "load";
     const auto written = write_record1989(folder.file("y.dat"), run, system_with_stiffness_4());
     REQUIRE_FALSE(written);
     CHECK_THAT(written.error().sentence, Contains("needs six columns") && Contains("there is no column 'M'"));

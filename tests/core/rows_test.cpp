@@ -130,7 +130,7 @@ TEST_CASE("no rows at all is fine", "[rows]") {
     CHECK(times_of(Grid::none(), {0, 1}).empty());
     const Trajectory run = must_run(nondimensional(0, 0.1), {}, {1, 0}, {0, 5}, Grid::none(), Rk4{0.01});
     CHECK(run.size() == 0);
-    CHECK(run.names == column_names());
+    CHECK(run.names() == column_names());
     CHECK_FALSE(run.events.empty());
     // Third half cycle: 0.5 cos about 0.1, at its quarter.
     CHECK(run.at(1.25)->theta == within(0.1, 1e-5));
@@ -138,7 +138,7 @@ TEST_CASE("no rows at all is fine", "[rows]") {
 
 TEST_CASE("a trajectory has six columns, named", "[rows]") {
     const Trajectory run = must_run(nondimensional(0, 0.1), {}, {1, 0}, {0, 1}, Grid::every(0.1), Rk4{0.01});
-    CHECK(run.names == std::vector<std::string>{"t", "theta", "velocity", "M", "friction", "damping"});
+    CHECK(run.names() == std::vector<std::string>{"t", "theta", "velocity", "M", "friction", "damping"});
     CHECK(run.rows.cols() == 6);
     CHECK(*run.find("friction") == 4);
     CHECK_FALSE(run.find("speed"));

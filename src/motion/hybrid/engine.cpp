@@ -52,9 +52,9 @@ Engine::Engine(const Problem& problem, const Cut& cut, Trajectory& trajectory, s
       pace_(pace_of(problem)),
       born_(problem.window.start),
       attempts_since_(problem.window.start) {
-    trajectory.names = column_names();
-    for (const model::OwnState& state : extras_.states) trajectory.names.push_back(state.name);
-    Growing<double> table(problem.rows.count(), trajectory.names.size());
+    if (!extras_.states.empty()) trajectory.own_names = column_names();
+    for (const model::OwnState& state : extras_.states) trajectory.own_names.push_back(state.name);
+    Growing<double> table(problem.rows.count(), trajectory.names().size());
     column_ = table.writable();
     trajectory.rows = Rows(std::move(table));
 }
