@@ -63,60 +63,47 @@ void ClosedForm::add_sine(double amplitude, double omega, double at, double phas
         powers_[0] += a * (s + small * c);
         return;
     }
-    omega_.push_back(omega);
-    in_phase_.push_back(a * (c - small * s));
-    quadrature_.push_back(a * (s + small * c));
+    sines_.push_back({omega, a * (c - small * s), a * (s + small * c)});
+    fastest_ = std::max(fastest_, std::fabs(omega));
 }
 
 void ClosedForm::add_exponential(double amplitude, double rate, double at) {
     const double amount = terms::Exponential::grown(gain_ * amplitude, rate * since(at));
     if (amount == 0) return;  // what has decayed to nothing must not keep the arcs short
-    rate_.push_back(rate);
-    amount_.push_back(amount);
+    exponentials_.push_back({rate, amount});
+    fastest_ = std::max(fastest_, std::fabs(rate));
+    growth_ = std::max(growth_, rate);
 }
 
 double ClosedForm::value() const {
     double sum = powers_[0];
-    for (const double q : quadrature_) sum += q;
-    for (const double a : amount_) sum += a;
+    for (const Sine& sine : sines_) sum += sine.quadrature;
+    for (const Exponential& e : exponentials_) sum += e.amount;
     return sum;
 }
 
 double ClosedForm::value(double tau) const {
     double sum = 0;
     for (std::size_t n = powers_.size(); n-- > 0;) sum = sum * tau + powers_[n];
-    for (std::size_t j = 0; j < omega_.size(); ++j) {
-        sum += in_phase_[j] * std::sin(omega_[j] * tau) + quadrature_[j] * std::cos(omega_[j] * tau);
+    for (const auto& [omega, in_phase, quadrature] : sines_) {
+        sum += in_phase * std::sin(omega * tau) + quadrature * std::cos(omega * tau);
     }
-    for (std::size_t j = 0; j < rate_.size(); ++j) sum += amount_[j] * std::exp(rate_[j] * tau);
+    for (const auto& [rate, amount] : exponentials_) sum += amount * std::exp(rate * tau);
     return sum;
 }
 
 double ClosedForm::slope() const {
     double sum = powers_.size() > 1 ? powers_[1] : 0;
-    for (std::size_t j = 0; j < omega_.size(); ++j) sum += omega_[j] * in_phase_[j];
-    for (std::size_t j = 0; j < rate_.size(); ++j) sum += rate_[j] * amount_[j];
+    for (const Sine& sine : sines_) sum += sine.omega * sine.in_phase;
+    for (const auto& [rate, amount] : exponentials_) sum += rate * amount;
     return sum;
 }
 
 double ClosedForm::bend() const {
     double sum = powers_.size() > 2 ? 2 * powers_[2] : 0;
-    for (std::size_t j = 0; j < omega_.size(); ++j) sum -= omega_[j] * omega_[j] * quadrature_[j];
-    for (std::size_t j = 0; j < rate_.size(); ++j) sum += rate_[j] * rate_[j] * amount_[j];
+    for (const Sine& sine : sines_) sum -= sine.omega * sine.omega * sine.quadrature;
+    for (const auto& [rate, amount] : exponentials_) sum += rate * rate * amount;
     return sum;
-}
-
-double ClosedForm::fastest() const {
-    double most = 0;
-    for (const double omega : omega_) most = std::max(most, std::fabs(omega));
-    for (const double r : rate_) most = std::max(most, std::fabs(r));
-    return most;
-}
-
-double ClosedForm::grows_in() const {
-    double most = 0;
-    for (const double r : rate_) most = std::max(most, r);
-    return most > 0 ? 1 / most : never;
 }
 
 bool has_closed_form(const Excitation& excitation) {

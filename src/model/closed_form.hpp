@@ -19,9 +19,10 @@ public:
     /// Nothing yet, counted from `time` + `rest`.
     void begin(double time, double rest) {
         time_ = time, rest_ = rest;
-        powers_.assign(1, 0.0);
-        omega_.clear(), in_phase_.clear(), quadrature_.clear();
-        rate_.clear(), amount_.clear();
+        powers_.resize(1);
+        powers_[0] = 0;
+        sines_.clear(), exponentials_.clear();
+        fastest_ = growth_ = 0;
     }
     /// What terms say is this many times as much, from here on.
     void set_gain(double gain) { gain_ = gain; }
@@ -43,11 +44,17 @@ public:
 
     // The sum.
     [[nodiscard]] std::span<const double> powers() const { return powers_; }
-    [[nodiscard]] std::span<const double> omega() const { return omega_; }
-    [[nodiscard]] std::span<const double> in_phase() const { return in_phase_; }      ///< of sin(omega tau)
-    [[nodiscard]] std::span<const double> quadrature() const { return quadrature_; }  ///< of cos(omega tau)
-    [[nodiscard]] std::span<const double> rate() const { return rate_; }
-    [[nodiscard]] std::span<const double> amount() const { return amount_; }
+    struct Sine {
+        double omega;
+        double in_phase, quadrature;  ///< of sin(omega tau) and cos(omega tau)
+    };
+    [[nodiscard]] std::span<const Sine> sines() const { return sines_; }
+    struct Exponential {
+        double rate, amount;
+    };
+    [[nodiscard]] std::span<const Exponential> exponentials() const { return exponentials_; }
+    /// Of those and these.
+    [[nodiscard]] std::size_t turning_parts() const { return sines_.size() + exponentials_.size(); }
 
     /// At the origin.
     [[nodiscard]] double value() const;
@@ -56,9 +63,9 @@ public:
     [[nodiscard]] double slope() const;
     [[nodiscard]] double bend() const;
     /// The greatest of its frequencies and rates (per time unit), 0 for a polynomial.
-    [[nodiscard]] double fastest() const;
+    [[nodiscard]] double fastest() const { return fastest_; }
     /// How long its fastest growing part takes to grow by e; `never` without one.
-    [[nodiscard]] double grows_in() const;
+    [[nodiscard]] double grows_in() const { return growth_ > 0 ? 1 / growth_ : never; }
 
 private:
     [[nodiscard]] double since(double at) const { return (time_ - at) + rest_; }
@@ -68,8 +75,9 @@ private:
 
     double time_ = 0, rest_ = 0, gain_ = 1;
     std::vector<double> powers_ = {0.0};
-    std::vector<double> omega_, in_phase_, quadrature_;
-    std::vector<double> rate_, amount_;
+    std::vector<Sine> sines_;
+    std::vector<Exponential> exponentials_;
+    double fastest_ = 0, growth_ = 0;
 };
 
 /// Whether M has a closed form on each of its smooth stretches.

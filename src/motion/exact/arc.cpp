@@ -42,8 +42,8 @@ bool Arc::begin_closed(const model::ClosedForm& M, const Start& start, double le
     double theta = 0, velocity = start.velocity;  // of the free motion
 
     double still = start.pull;
-    for (const double q : M.quadrature()) still -= q;
-    for (const double a : M.amount()) still -= a;
+    for (const auto& sine : M.sines()) still -= sine.quadrature;
+    for (const auto& exponential : M.exponentials()) still -= exponential.amount;
     if (M.powers().size() == 1) {
         still /= k;
         velocity_.add_way_power(still);
@@ -52,21 +52,20 @@ bool Arc::begin_closed(const model::ClosedForm& M, const Start& start, double le
         return false;
     }
 
-    for (std::size_t j = 0; j < M.rate().size(); ++j) {
-        const double r = M.rate()[j], held = I * r * r + C * r + k;
+    for (const auto& [r, amount] : M.exponentials()) {
+        const double held = I * r * r + C * r + k;
         if (std::fabs(held) * most_cancelled < I * r * r + C * std::fabs(r) + k) return false;
-        const double way = M.amount()[j] / held;
+        const double way = amount / held;
         velocity_.add_exponential(r, r * way);
         theta -= way;
         velocity -= r * way;
     }
 
-    const std::span<const double> frequencies = M.omega(), in_phase = M.in_phase(), quadrature = M.quadrature();
-    for (std::size_t j = 0; j < frequencies.size(); ++j) {
-        const double omega = frequencies[j];
+    std::size_t j = 0;
+    for (const auto& [omega, in_phase, quadrature] : M.sines()) {
         if (j >= answers_.size() || answers_[j].omega != omega) answer(j, omega);
-        const Answer& to = answers_[j];
-        const Complex F{in_phase[j], quadrature[j]};
+        const Answer& to = answers_[j++];
+        const Complex F{in_phase, quadrature};
         if (to.resonant) {
             // F (g(mu, lambda) - g(mu, conj lambda)) / (2 i w1 I), of which only the first is near resonance.
             const Complex root = free_.root(), growing = times(F, to.gain), turning = times(growing, to.other_gain);
@@ -155,18 +154,18 @@ void Arc::begin_series(const model::ClosedForm& M, const Start& start, double le
     load_.assign(order, 0.0);
     std::copy(M.powers().begin(), M.powers().end(), load_.begin());
     load_[0] = start.pull;
-    for (std::size_t j = 0; j < M.omega().size(); ++j) {
-        double p = M.in_phase()[j], q = M.quadrature()[j];
+    for (const auto& [omega, in_phase, quadrature] : M.sines()) {
+        double p = in_phase, q = quadrature;
         for (std::size_t n = 1; n < order; ++n) {
-            const double by = M.omega()[j] / static_cast<double>(n), next = p * by;
+            const double by = omega / static_cast<double>(n), next = p * by;
             p = -q * by;
             q = next;
             load_[n] += q;
         }
     }
-    for (std::size_t j = 0; j < M.rate().size(); ++j) {
-        double a = M.amount()[j];
-        for (std::size_t n = 1; n < order; ++n) load_[n] += a *= M.rate()[j] / static_cast<double>(n);
+    for (const auto& [rate_of_part, amount] : M.exponentials()) {
+        double a = amount;
+        for (std::size_t n = 1; n < order; ++n) load_[n] += a *= rate_of_part / static_cast<double>(n);
     }
     velocity_.clear();
     way_.assign(order + 2, 0.0);

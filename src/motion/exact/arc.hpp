@@ -19,7 +19,7 @@ public:
     double begin(const model::ClosedForm& M, const Start& start, double length);
     /// What a time unit of the arc costs at most, about: radians of its fastest part times the parts that turn.
     [[nodiscard]] double cost(const model::ClosedForm& M) const {
-        return fastest_rate(M) * static_cast<double>(1 + M.omega().size() + M.rate().size());
+        return fastest_rate(M) * static_cast<double>(1 + M.turning_parts());
     }
 
     struct Point {

@@ -17,18 +17,14 @@ constexpr double greatest_cost_at_rest = 1e6;
 void ExactEngine::make_load() {
     load_.clear();
     for (const double c : formula_.powers()) load_.add_power(c);
-    for (std::size_t j = 0; j < formula_.omega().size(); ++j) {
-        load_.add_sine(formula_.omega()[j], {formula_.in_phase()[j], formula_.quadrature()[j]});
-    }
-    for (std::size_t j = 0; j < formula_.rate().size(); ++j) {
-        load_.add_exponential(formula_.rate()[j], formula_.amount()[j]);
-    }
+    for (const auto& [omega, in_phase, quadrature] : formula_.sines()) load_.add_sine(omega, {in_phase, quadrature});
+    for (const auto& [rate, amount] : formula_.exponentials()) load_.add_exponential(rate, amount);
     load_.begin();
 }
 
 /// Stuck, up to the first time that |M - k theta| > Re or the end of the piece.
 bool ExactEngine::stay() {
-    const double cost = formula_.fastest() * static_cast<double>(1 + formula_.omega().size() + formula_.rate().size());
+    const double cost = formula_.fastest() * static_cast<double>(1 + formula_.turning_parts());
     const double length =
         std::min({clock_.until(piece_end_), greatest_cost_at_rest / cost, formula_.grows_in() * growth_of_an_arc});
     cost_ += cost * length + cost_of_a_line;
