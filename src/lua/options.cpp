@@ -58,7 +58,8 @@ Options::Options(lua_State* L, int index, const text::Call& call) : L_(L), index
 
 std::size_t Options::place(std::string_view name) const {
     for (std::size_t i = 0; i < call_.options.size(); ++i) {
-        if (name == call_.options[i].name) return i;
+        const char* own = call_.options[i].name;  // few have the first letter: the length of the others is not asked
+        if (!name.empty() && *own == name.front() && name == own) return i;
     }
     return most_options;
 }

@@ -44,7 +44,8 @@ std::string literal(const Option& option, const OptionValue& value) {
 
 std::optional<Error> complaint(const Option& option, const OptionValue& value) {
     std::optional<std::string> wrong;
-    if (const double* number = std::get_if<double>(&value); number != nullptr && !fits(option.range, *number)) {
+    if (const double* number = std::get_if<double>(&value)) {
+        if (fits(option.range, *number)) return std::nullopt;
         wrong = complaint(option.range, *number, option.name);
     }
     if (const auto* numbers = std::get_if<std::vector<double>>(&value)) {
