@@ -66,7 +66,8 @@ Polyline::Piece Polyline::piece(double at) const {
     return {point(i), point(i + 1), i, i + 1 == t.size() ? 0 : i + 1};
 }
 
-double Polyline::most() const {
+double Polyline::greatest() const {
+    if (!samples) return 0;
     const Samples& s = *samples;
     double peak = 0;
     for (const double M : s.M) peak = std::max(peak, std::fabs(M));
@@ -85,6 +86,7 @@ void Polyline::delay_by(double d) {
     for (double& t : moved.t) t += d;
     moved.delay += d;
     samples = std::make_shared<const Samples>(std::move(moved));
+    most_ = greatest();
 }
 
 std::string Polyline::formula(double gain) const {

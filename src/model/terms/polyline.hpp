@@ -49,7 +49,7 @@ struct Polyline {
 
     std::shared_ptr<const Samples> samples;
 
-    Polyline(std::shared_ptr<const Samples> points) : samples(prepared(std::move(points))) {}
+    Polyline(std::shared_ptr<const Samples> points) : samples(prepared(std::move(points))), most_(greatest()) {}
 
     [[nodiscard]] double value(double t, double rest = 0) const {
         const Samples& s = *samples;
@@ -76,8 +76,7 @@ struct Polyline {
         if (samples->period) return never;
         return samples->t.back();
     }
-    /// A spline lies within the hull of its control points.
-    [[nodiscard]] double most() const;
+    [[nodiscard]] double most() const { return most_; }
     [[nodiscard]] double repeats_after() const { return samples->t.size() == 1 ? 0 : samples->period.value_or(0); }
     [[nodiscard]] Detail detail() const { return no_detail; }
     template <class Sum>
@@ -124,6 +123,8 @@ private:
     }
     /// With the slopes of a spline, and without a last point that is the first one again.
     static std::shared_ptr<const Samples> prepared(std::shared_ptr<const Samples> points);
+    /// Of |M|: a spline lies within the hull of its control points.
+    [[nodiscard]] double greatest() const;
 
     /// The index i with t[i] <= at < t[i + 1], for times inside the table. Records are mostly sampled evenly, so the
     /// guess is mostly right.
@@ -137,6 +138,8 @@ private:
         }
         return static_cast<std::size_t>(std::upper_bound(t.begin(), t.end(), at) - t.begin()) - 1;
     }
+
+    double most_;  // every run asks for it, and a record may be long
 };
 
 inline constexpr TermText Polyline::about{
