@@ -324,9 +324,9 @@ text::Expected<Eigen::Index> column_at(lua_State* L, int index, std::span<const 
         .culprit = lua::written(L, index)};
 }
 
-void push_run(lua_State* L, Run run) {
-    const std::size_t bytes = run.trajectory.rows.table().own_bytes();
-    lua::push<RunHandle>(L, std::make_shared<const Run>(std::move(run)));
+void push_run(lua_State* L, RunHandle run) {
+    const std::size_t bytes = run->trajectory.rows.table().own_bytes();
+    lua::push<RunHandle>(L, std::move(run));
     lua::note_external_memory(L, bytes);
 }
 

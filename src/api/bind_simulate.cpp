@@ -103,25 +103,25 @@ void set_partial(lua_State* L) {
 
 int run_task(lua_State* L, const lua::Options& options, source::Origin origin, double from, bool dense,
              const Compute& compute) {
-    const std::size_t bytes = bytes_of_rows(origin);
+    if (lua::memory_limit() > 0) lua::make_room(L, bytes_of_rows(origin));
     const double to = origin.window.end;
-    Run run{.trajectory = {}, .origin = std::move(origin)};
-    lua::make_room(L, bytes);
+    const auto run = std::make_shared<Run>();
+    run->origin = std::move(origin);
     const motion::Limits limits = limits_of(dense);
 
     lua::CallState call(L);
-    if (!run.origin->extras.states.empty()) call.name_states(names_of(run.origin->extras));
+    if (!run->origin->extras.states.empty()) call.name_states(names_of(run->origin->extras));
     terminal::Progress progress = terminal::Progress::of_time(from, to);
     const auto monitor = [&progress](double t) {
         progress.advance(t);
         return !lua::interrupt_requested();
     };
-    run.trajectory = options.value_or_fail(compute(*run.origin, monitor, limits));
+    run->trajectory = options.value_or_fail(compute(*run->origin, monitor, limits));
     if (call.failed() && lua::interrupt_requested()) {
-        run.trajectory.outcome = model::Outcome::interrupted;  // M was stopped, it did not fail
+        run->trajectory.outcome = model::Outcome::interrupted;  // M was stopped, it did not fail
     }
-    const bool interrupted = run.trajectory.outcome == model::Outcome::interrupted;
-    push_run(L, std::move(run));
+    const bool interrupted = run->trajectory.outcome == model::Outcome::interrupted;
+    push_run(L, run);
     if (call.failed() || interrupted) {
         set_partial(L);
         call.failed() ? call.raise_error() : lua::raise_interrupted(L);

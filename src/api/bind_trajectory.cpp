@@ -46,7 +46,7 @@ int load(lua_State* L) {
         trajectory.t_start = trajectory.rows(0, *time);
         trajectory.t_stop = trajectory.rows(trajectory.size() - 1, *time);
     }
-    push_run(L, std::move(run));
+    push_run(L, std::make_shared<const Run>(std::move(run)));
     return 1;
 }
 

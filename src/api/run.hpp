@@ -25,7 +25,7 @@ struct Run {
 using RunHandle = std::shared_ptr<const Run>;
 
 /// The new run as a Lua object on the top of the stack.
-void push_run(lua_State* L, Run run);
+void push_run(lua_State* L, RunHandle run);
 
 /// The column whose name or number stands at `index`; an error names it `what`.
 text::Expected<Eigen::Index> column_at(lua_State* L, int index, std::span<const std::string> names,

@@ -79,7 +79,7 @@ int run_of_steady(lua_State* L) {
                                        task.integrator, monitor);
         if (result) made.trajectory = std::move(result).value();
     });
-    push_run(L, std::move(made));
+    push_run(L, std::make_shared<const Run>(std::move(made)));
     lua_pushvalue(L, -1);
     lua_setiuservalue(L, 1, 1);
     return 1;
