@@ -10,6 +10,14 @@
 
 namespace dinal::analysis {
 
+namespace {
+
+double omega_of(const model::Oscillator& system, double length) {
+    return system.stiffness() > 0 ? system.natural_frequency() : 2 * std::numbers::pi / length;
+}
+
+}  // namespace
+
 PeriodMap::PeriodMap(const model::Oscillator& system, const model::Excitation& excitation, double start, double length,
                      const motion::Monitor& monitor)
     : system_(system),
@@ -18,8 +26,13 @@ PeriodMap::PeriodMap(const model::Oscillator& system, const model::Excitation& e
       integrator_(motion::integrator_for(system, excitation)),
       start_(start),
       length_(length),
-      omega_(system.stiffness() > 0 ? system.natural_frequency() : 2 * std::numbers::pi / length),
+      omega_(omega_of(system, length)),
       monitor_(monitor) {}
+
+PeriodMap::PeriodMap(const PeriodMap& other, double length) : PeriodMap(other) {
+    length_ = length;
+    omega_ = omega_of(system_, length);
+}
 
 double PeriodMap::rounding() const {
     constexpr double few = 4 * std::numeric_limits<double>::epsilon();
@@ -92,9 +105,8 @@ MapStep PeriodMap::operator()(const Place& from) const {
 Eigen::Matrix2d PeriodMap::free_motion(double length) const {
     Eigen::Matrix2d matrix;
     if (system_.stiffness() > 0) {
-        const theory::Modes modes(system_.damping_ratio());
-        const double x = omega_ * length, pushed = modes.pushed(x);
-        matrix << modes.released(x), pushed, -pushed, modes.pushed_velocity(x);
+        const auto [released, pushed, velocity] = theory::Modes(system_.damping_ratio()).after(omega_ * length);
+        matrix << released, pushed, -pushed, velocity;
         return matrix;
     }
     const double rate = system_.damping() / system_.inertia();

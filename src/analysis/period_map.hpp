@@ -43,6 +43,8 @@ public:
     /// Of `length` time units from `start`. All of it must outlive the map.
     PeriodMap(const model::Oscillator& system, const model::Excitation& excitation, double start, double length,
               const motion::Monitor& monitor);
+    /// The same, of another length.
+    PeriodMap(const PeriodMap& other, double length);
 
     [[nodiscard]] MapStep operator()(const Place& from) const;
     /// The step with its derivative by differences, when the step itself has none. `scale` of the motion.

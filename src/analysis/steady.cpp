@@ -22,7 +22,7 @@ public:
           system_(question.system),
           monitor_(monitor),
           map_(question.system, question.excitation, question.drive.start, question.drive.period, monitor),
-          half_(question.system, question.excitation, question.drive.start, question.drive.period / 2, monitor) {
+          half_(map_, question.drive.period / 2) {
         symmetric_ = is_alike_both_ways(question);
         contracts_ = contracts(question);
     }

@@ -13,8 +13,10 @@ using model::Motion;
 
 /// Friction is the same both ways.
 bool acts_evenly(const model::Friction& law, const model::Lowered& system) {
-    for (const double speed : {1e-3, 0.1, 1.0, 10.0}) {
-        if (law.sliding(Motion::forward, speed) != law.sliding(Motion::backward, speed)) return false;
+    if (law.depends_on_speed()) {
+        for (const double speed : {1e-3, 0.1, 1.0, 10.0}) {
+            if (law.sliding(Motion::forward, speed) != law.sliding(Motion::backward, speed)) return false;
+        }
     }
     return system.braking(Motion::forward) == -system.braking(Motion::backward) &&
            system.holding(Motion::forward) == system.holding(Motion::backward);

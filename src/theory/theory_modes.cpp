@@ -35,4 +35,10 @@ double Modes::released(double x) const {
     return (fast_root() * std::exp(-slow_root() * x) - slow_root() * std::exp(-fast_root() * x)) / (2 * rate_);
 }
 
+Modes::Answers Modes::after(double x) const {
+    if (!swings() && rate_ >= apart) return {released(x), pushed(x), pushed_velocity(x)};
+    const double cosine = damped_cosine(x), g = pushed(x);
+    return {cosine + zeta_ * g, g, cosine - zeta_ * g};
+}
+
 }  // namespace dinal::theory

@@ -26,6 +26,11 @@ public:
     [[nodiscard]] double pushed_velocity(double x) const;
     /// y(0) = 1, y'(0) = 0; its velocity is -pushed(x).
     [[nodiscard]] double released(double x) const;
+    /// All three, for little more than one of them.
+    struct Answers {
+        double released, pushed, pushed_velocity;
+    };
+    [[nodiscard]] Answers after(double x) const;
 
 private:
     double zeta_;
@@ -38,8 +43,8 @@ struct Motion2 {
     double dy = 0;  ///< by x
 };
 inline Motion2 free_motion(const Modes& modes, const Motion2& start, double x) {
-    const double g = modes.pushed(x);
-    return {start.y * modes.released(x) + start.dy * g, start.dy * modes.pushed_velocity(x) - start.y * g};
+    const auto [released, pushed, pushed_velocity] = modes.after(x);
+    return {start.y * released + start.dy * pushed, start.dy * pushed_velocity - start.y * pushed};
 }
 
 }  // namespace dinal::theory

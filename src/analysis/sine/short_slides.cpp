@@ -25,14 +25,13 @@ bool ShortSlides::solve() {
     constexpr int most_steps = 30;
     constexpr double nearly = 1e-7;  // the next step of Newton leaves about rounding
     for (int i = 0; i < most_steps; ++i) {
-        start(sine_.spare + rest_);
-        if (!find_end()) return false;
+        if (!start(sine_.spare + rest_) || !find_end()) return false;
         const double left = way(end_) - 2 * rest_;
         const double step = left / (2 - forgets(end_));
         rest_ += step;
         if (!(rest_ > 0)) return false;
         if (std::fabs(step) > nearly * rest_) continue;
-        start(sine_.spare + rest_);
+        if (!start(sine_.spare + rest_)) return false;
         const double pull = std::sin(release_ + sine_.r * end_) - rest_;
         return find_end() && std::fabs(pull) <= sine_.holding;
     }
@@ -40,11 +39,12 @@ bool ShortSlides::solve() {
 }
 
 /// The slide from a place where the crest of the load exceeds what holds the mass by `spare`: at the release the load
-/// is cos d, d of phase before its crest, and x later cos d cos rx + sin d sin rx.
-void ShortSlides::start(double spare) {
+/// is cos d, d of phase before its crest, and x later cos d cos rx + sin d sin rx. False when it is no short one.
+bool ShortSlides::start(double spare) {
     const double d = 2 * std::asin(std::sqrt(spare / 2)), r = sine_.r;
     release_ = half_load / 2 - d;
     end_ = 3 * std::tan(d) / r;  // where the first two terms of the speed cancel
+    if (!is_short()) return false;
     const std::array<double, 4> turn{std::cos(d), std::sin(d), -std::cos(d), -std::sin(d)};
     double power = 1;
     series_[0] = series_[1] = 0;
@@ -54,22 +54,27 @@ void ShortSlides::start(double spare) {
         const double load = n == 0 ? 0 : power * turn[n % 4];
         series_[n + 2] =
             (load - 2 * sine_.zeta * (number + 1) * series_[n + 1] - series_[n]) / ((number + 1) * (number + 2));
+        speed_[n + 2] = (number + 2) * series_[n + 2];
     }
+    return true;
+}
+
+bool ShortSlides::is_short() const {
+    return end_ > 0 && end_ * std::max({1.0, sine_.r, 2 * sine_.zeta}) <= longest;
 }
 
 /// The first time after the release at which it stands still. The speed begins with x squared, by which it is divided.
 bool ShortSlides::find_end() {
-    const double fastest = std::max({1.0, sine_.r, 2 * sine_.zeta});
     constexpr int most_steps = 40;
     double before = 0.9 * end_, value_before = speed_by_square(before);
-    for (int i = 0; i < most_steps && end_ > 0 && end_ * fastest <= longest; ++i) {
+    for (int i = 0; i < most_steps && is_short(); ++i) {
         const double value = speed_by_square(end_);
         if (value == value_before) return value == 0;
         const double step = value * (end_ - before) / (value - value_before);
         before = end_, value_before = value;
         end_ -= step;
         constexpr double nearly = 1e-15;
-        if (std::fabs(step) <= nearly * end_) return end_ * fastest <= longest;
+        if (std::fabs(step) <= nearly * end_) return is_short();
     }
     return false;
 }
@@ -82,7 +87,7 @@ double ShortSlides::way(double x) const {
 
 double ShortSlides::speed_by_square(double x) const {
     double sum = 0;
-    for (std::size_t n = terms; n-- > 3;) sum = sum * x + static_cast<double>(n) * series_[n];
+    for (std::size_t n = terms; n-- > 3;) sum = sum * x + speed_[n];
     return sum;
 }
 

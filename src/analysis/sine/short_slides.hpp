@@ -27,8 +27,9 @@ private:
 
     explicit ShortSlides(const SingleSine& sine) : sine_(sine) {}
     bool solve();
-    void start(double spare);
+    bool start(double spare);
     [[nodiscard]] bool find_end();
+    [[nodiscard]] bool is_short() const;
     [[nodiscard]] double way(double x) const;
     [[nodiscard]] double speed_by_square(double x) const;
     [[nodiscard]] double forgets(double x) const;
@@ -37,7 +38,8 @@ private:
     double rest_ = 0;     ///< the mass is released from -rest_ forward
     double release_ = 0;  ///< the phase of that
     double end_ = 0;      ///< of the slide, in x since then
-    Series series_{};     ///< of the way since then
+    Series series_{};     ///< of the way since then,
+    Series speed_{};      ///< and of its speed, times x
 };
 
 }  // namespace dinal::analysis::sine
