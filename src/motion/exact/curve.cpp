@@ -92,7 +92,7 @@ WalkedCurve::Value WalkedCurve::powers(double tau) const {
 
 std::uint8_t WalkedCurve::new_turn(double tau) {
     constexpr std::size_t few = 8;
-    if (turns_.empty()) turns_.reserve(few);
+    if (turns_.empty()) turns_.reserve(few), sine_rows_.reserve(few * sines_);
     const std::size_t row = turns_.size();
     turns_.emplace_back().row = row;
     sine_rows_.resize((row + 1) * sines_);
