@@ -17,10 +17,9 @@ from session import PATIENCE
 PROGRAM = ""
 POINTS = 600  # in chunks of three
 SCRIPT = """
-local wait = {wait}
 local map = sweep{{ r = vector.linspace(0.1, 2, 30), g = vector.linspace(0, 1, 20), file = "map.csv", workers = {workers},
     run = function(p)
-        local t = os.clock()
+        local t, wait = os.clock(), tonumber(os.getenv("WAIT")) or 0 -- in a process that is to be killed in the middle
         while os.clock() - t < wait do end
         if p.r > 1.9 and p.g > 0.9 then error("far \\"away\\", at " .. p.r) end
         return {{ y = math.sin(p.r)/(p.g + 0.1), chance = math.random(), infinite = p.g == 0 and 1/0 or nil }}
@@ -38,7 +37,7 @@ class SweepFiles(unittest.TestCase):
         self.addCleanup(folder.cleanup)
         self.home = pathlib.Path(folder.name)
         self.parts = self.home / "map.csv.parts"
-        self.write(wait=0, workers=2)
+        self.write(workers=2)
 
     def write(self, text=SCRIPT, **values):
         (self.home / "map.lua").write_text(text.format(**values))
@@ -90,10 +89,9 @@ class SweepFiles(unittest.TestCase):
         self.assertEqual((self.home / "map.csv").stat().st_mtime_ns, mark)
 
     def test_what_was_killed_goes_on(self):
-        self.write(wait=0.003, workers=2)
         asked = []
         for count in (5, 20):
-            process = self.start()
+            process = self.start(WAIT="0.003")
             self.wait_for_parts(count)
             process.kill()
             process.wait()
@@ -106,8 +104,8 @@ class SweepFiles(unittest.TestCase):
 
     def test_a_part_of_a_chunk_is_not_taken(self):
         # A machine that loses its power can leave it. Of the first chunk, whose points all fail, each field is cut.
-        self.write(SCRIPT.replace("p.r > 1.9 and p.g > 0.9", "p.g < 0.04 and p.r < 0.4"), wait=0.002, workers=1)
-        process = self.start()
+        self.write(SCRIPT.replace("p.r > 1.9 and p.g > 0.9", "p.g < 0.04 and p.r < 0.4"), workers=1)
+        process = self.start(WAIT="0.002")
         self.wait_for_parts(8)
         process.kill()
         process.wait()
@@ -131,8 +129,7 @@ class SweepFiles(unittest.TestCase):
         self.assertIn("is no longer as it was written", self.run_script()[2])
 
     def test_ctrl_c_keeps_every_point(self):
-        self.write(wait=0.01, workers=2)
-        process = self.start()
+        process = self.start(WAIT="0.01")
         self.wait_for_parts(3)
         process.send_signal(signal.SIGINT)
         self.assertEqual(process.wait(PATIENCE), 130)
@@ -143,18 +140,17 @@ class SweepFiles(unittest.TestCase):
         self.check_result(out)
 
     def test_another_sweep_is_refused(self):
-        self.write(wait=0.003, workers=2)
-        process = self.start()
+        process = self.start(WAIT="0.003")
         self.wait_for_parts(2)
         process.kill()
         process.wait()
-        self.write(SCRIPT.replace("math.sin", "math.cos"), wait=0, workers=2)
+        self.write(SCRIPT.replace("math.sin", "math.cos"), workers=2)
         code, _, err = self.run_script()
         self.assertEqual(code, 1)
-        self.assertIn("map.lua:3: sweep: 'map.csv.parts' holds the chunks of another sweep", err)
+        self.assertIn("map.lua:2: sweep: 'map.csv.parts' holds the chunks of another sweep", err)
         shutil.rmtree(self.parts)
         self.assertEqual(self.run_script()[0], 0)
-        self.write(SCRIPT.replace("0.1, 2, 30", "0.1, 3, 30"), wait=0, workers=2)
+        self.write(SCRIPT.replace("0.1, 2, 30", "0.1, 3, 30"), workers=2)
         code, _, err = self.run_script()
         self.assertEqual(code, 1)
         self.assertIn("'map.csv' is there, and is not the result of this sweep; remove it, or give another file", err)
@@ -162,27 +158,26 @@ class SweepFiles(unittest.TestCase):
     def test_lines_may_move_and_the_sweep_is_the_same(self):
         code, out, _ = self.run_script()
         self.assertEqual(code, 0)
-        self.write("-- a remark\n\n" + SCRIPT, wait=0, workers=1)
+        self.write("-- a remark\n\n" + SCRIPT, workers=1)
         self.assertEqual(self.run_script()[:2], (0, out))
 
     def test_what_fails_everywhere_leaves_nothing(self):
-        self.write(SCRIPT.replace("math.sin", "math.sine"), wait=0, workers=2)
+        self.write(SCRIPT.replace("math.sin", "math.sine"), workers=2)
         code, _, err = self.run_script()
         self.assertEqual(code, 1)
         self.assertIn("all 600 points failed", err)
         self.assertEqual([entry.name for entry in self.home.iterdir()], ["map.lua"])
 
     def test_a_place_that_cannot_be_written_is_told_at_once(self):
-        self.write(SCRIPT.replace("map.csv", "nowhere/map.csv"), wait=1, workers=2)
+        self.write(SCRIPT.replace("map.csv", "nowhere/map.csv"), workers=2)
         code, _, err = self.run_script()
         self.assertEqual(code, 1)
         self.assertIn("sweep: cannot make the folder 'nowhere/map.csv.parts'", err)
-        self.write(SCRIPT.replace("map.csv", "map.txt"), wait=1, workers=2)
+        self.write(SCRIPT.replace("map.csv", "map.txt"), workers=2)
         self.assertIn("must end in .csv", self.run_script()[2])
 
     @unittest.skipUnless(os.path.exists("/dev/full"), "there is no /dev/full")
     def test_a_full_disk_keeps_what_is_done(self):
-        self.write(wait=0.003, workers=2)
         self.parts.mkdir()
         (self.parts / "000020.csv").symlink_to("/dev/full")
         code, _, err = self.run_script()
@@ -213,8 +208,8 @@ class SweepFiles(unittest.TestCase):
                 (self.home / "map.csv").unlink()
 
     def test_processes_at_once_one_killed(self):
-        self.write(wait=0.003, workers=1)
-        processes = [self.start(DINAL_RANK=str(rank), DINAL_SIZE="4") for rank in range(4)]
+        self.write(workers=1)
+        processes = [self.start(DINAL_RANK=str(rank), DINAL_SIZE="4", WAIT="0.003") for rank in range(4)]
         self.wait_for_parts(8)
         processes[2].kill()
         outs = [process.communicate(timeout=PATIENCE)[0] for process in processes]
@@ -234,25 +229,25 @@ class SweepFiles(unittest.TestCase):
         self.assertIn("DINAL_RANK = 3 and DINAL_SIZE = 3 name no share", err)
 
     def test_a_sweep_without_a_file_is_refused_under_a_launcher(self):
-        self.write(SCRIPT.replace('file = "map.csv", ', ""), wait=0, workers=1)
+        self.write(SCRIPT.replace('file = "map.csv", ', ""), workers=1)
         code, _, err = self.run_script(DINAL_RANK="1", DINAL_SIZE="3")
         self.assertEqual(code, 1)
         self.assertIn('process 1 of 3, which share their work in a file: give one, file = "map.csv"', err)
 
     @unittest.skipUnless(shutil.which("mpirun"), "there is no mpirun: apt-get install openmpi-bin")
     def test_under_mpirun(self):
-        self.write(wait=0.002, workers=1)
+        self.write(workers=1)
         launcher = ["mpirun", "--allow-run-as-root", "--oversubscribe", "-n", "4"]
-        code, out, err = self.run_script(*launcher)
+        code, out, err = self.run_script(*launcher, WAIT="0.002")
         self.assertEqual(code, 0, err)
         self.check_result(out)
         self.assertEqual(self.run_script(*launcher)[:2], (0, out))
 
     @unittest.skipUnless(shutil.which("mpirun"), "there is no mpirun: apt-get install openmpi-bin")
     def test_under_mpirun_killed_in_the_middle(self):
-        self.write(wait=0.01, workers=1)  # so slow that the middle is never missed
+        self.write(workers=1)
         launcher = ["mpirun", "--allow-run-as-root", "--oversubscribe", "-n", "4"]
-        process = self.started([*launcher, PROGRAM, "map.lua"])
+        process = self.started([*launcher, PROGRAM, "map.lua"], WAIT="0.01")
         self.wait_for_parts(8)
         process.terminate()
         process.wait(PATIENCE)
