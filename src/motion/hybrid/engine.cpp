@@ -61,6 +61,7 @@ Engine::Engine(const Problem& problem, const Cut& cut, Trajectory& trajectory, s
 
 bool Engine::begin() {
     y_ = {problem_.initial.theta, problem_.initial.velocity};
+    reach_ = std::fabs(y_[0]);
     const auto* left = dynamic_cast<const Left*>(problem_.carried);
     for (std::size_t i = 0; i < extras_.states.size(); ++i) {
         y_.push_back(left != nullptr ? left->states[i] : extras_.states[i].start);
@@ -235,6 +236,7 @@ bool Engine::end_piece(double x) {
     if (x > -1) {
         for (std::size_t k = 0; k < y_.size(); ++k) y_[k] = piece_.at(k, x);
     }
+    reach_ = std::max(reach_, std::fabs(y_[0]));
     now_ = whole && piece_.to_the_end ? Clock{piece_.end, 0} : piece_.start.later(length);
     after_break_ = whole && piece_.to_break;
     if (bad_time_ <= now_.hi) bad_time_ = model::never;

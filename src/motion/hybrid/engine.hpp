@@ -124,6 +124,9 @@ private:
     // engine_walls.cpp
     void touch_wall(bool goes_on);
     void watch_walls(Ending& ending) const;
+    void stand_at(double wall) { origin_ = wall, y_[0] = 0, reach_ = 0; }
+    [[nodiscard]] double blurred_gap(double wall) const;
+    void touch();
     [[nodiscard]] bool belt_turns_at_wall();
     [[nodiscard]] double acceleration() const;
     [[nodiscard]] double until_wall() const;
@@ -140,7 +143,7 @@ private:
         return {now_.hi, after_break_ ? Side::after : Side::at, {theta(), y_[1]}, {y_.data() + 2, y_.size() - 2}};
     }
     [[nodiscard]] double theta() const { return origin_ + y_[0]; }
-    void set_theta(double theta) { origin_ = 0, y_[0] = theta; }
+    void set_theta(double theta) { origin_ = 0, y_[0] = theta, reach_ = std::fabs(theta); }
     /// The mass stands at a wall.
     [[nodiscard]] bool leans() const { return standstill_.stuck() && standstill_.leans() != model::Motion::stuck; }
     [[nodiscard]] double belt_heading() const {
@@ -183,6 +186,7 @@ private:
 
     Clock now_;
     double origin_ = 0;  // theta is this and y_[0]: the wall that was hit last
+    double reach_ = 0;   // how far from there the mass has been since, or from 0
     Values y_;
     mutable Values point_states_;
     bool after_break_ = false;

@@ -85,6 +85,7 @@ bool Engine::handle(const Ending& ending) {
             if (ending.towards != model::Motion::stuck) return release(ending.towards);
             standstill_.lean(model::Motion::stuck);
             y_[1] = belt();
+            touch();
             if (!creep()) standstill_.arrive();
             return true;
         case By::wall:

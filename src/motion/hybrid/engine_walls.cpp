@@ -57,7 +57,7 @@ void Engine::touch_wall(bool goes_on) {
     if (!walls) return;
     for (const int side : {1, -1}) {
         if (theta() != walls->at(side)) continue;
-        origin_ = walls->at(side), y_[0] = 0;
+        stand_at(walls->at(side));
         if (y_[1] * side < 0) return;
         if (y_[1] != 0) {
             hit(way_of(side));
@@ -96,6 +96,23 @@ double Engine::until_wall() const {
     return first;
 }
 
+/// What the roundings of its way may have made of the distance to a wall. An arrival at velocity 0 that they push into
+/// the wall would be an impact, and lose their square root.
+double Engine::blurred_gap(double wall) const {
+    constexpr double few = 64;
+    return few * rounding * std::max(reach_, std::fabs(wall - origin_));
+}
+
+/// Where the velocity came down to zero right at a wall the mass is there to the letter.
+void Engine::touch() {
+    const auto& walls = problem_.system.walls();
+    if (!walls || leans()) return;
+    for (const int side : {1, -1}) {
+        const double wall = walls->at(side);
+        if (std::isfinite(wall) && std::fabs((wall - origin_) - y_[0]) <= blurred_gap(wall)) return stand_at(wall);
+    }
+}
+
 /// A wall, if the mass comes to it before the end that is known so far.
 void Engine::watch_walls(Ending& ending) const {
     using namespace spectral::chebyshev;
@@ -108,7 +125,8 @@ void Engine::watch_walls(Ending& ending) const {
         for (double& c : gap) c *= -side;
         const double begin = side * ((wall - origin_) - y_[0]);
         gap[0] += begin;
-        const Bounded<points> curve(1, gap, derivative(gap));
+        Bounded<points> curve(1, gap, derivative(gap));
+        curve.raise_floor(blurred_gap(wall));
         const auto x = first_below(curve, -1, begin == 0 ? LeftEnd::leaving : LeftEnd::anywhere, no);
         if (x && *x < ending.x) ending = {*x, By::wall, 0, way_of(side)};
     }
@@ -150,7 +168,7 @@ bool Engine::hit(model::Motion into) {
     const double before = std::max(0.0, side * y_[1]);
     const bool other = origin_ != walls.at(side);
     const bool stayed = y_[0] == 0 && origin_ == walls.at(side) && before == 0;
-    origin_ = walls.at(side), y_[0] = 0;
+    stand_at(walls.at(side));
     if (stayed) {
         standstill_.lean(into);
         return standstill_.never_left({now_.hi, theta(), pull(field_.load(here()))}) ||
@@ -185,7 +203,8 @@ bool Engine::hit(model::Motion into) {
 
 /// At rest at a wall; the law of friction is asked before anything else.
 void Engine::come_to_lean(model::Motion against) {
-    origin_ = problem_.system.walls()->at(side_of(against)), y_[0] = 0, y_[1] = 0;
+    stand_at(problem_.system.walls()->at(side_of(against)));
+    y_[1] = 0;
     standstill_.thrown(opposite(against));
     standstill_.lean(against);
     standstill_.arrive();
