@@ -123,4 +123,22 @@ test("a run may end where a function jumps, at t = 0, too", function()
     near(run.theta[#run], 2, 1e-13)
 end)
 
+test("a belt that is rounded to eight digits has the slope of one that is not", function()
+    local cases = { { k = 4, Rd = 0.3, Re = 0.4, w = 3 }, { k = 0, Rd = 0.1, Re = 0.15, w = 2 }, { k = 1, Rd = 0.1, Re = 0.35, w = 2, velocity0 = 1 } }
+    for _, case in ipairs(cases) do
+        local sys = system { I = 1, k = case.k, Rd = case.Rd, Re = case.Re }
+        local function on(belt)
+            return sys:simulate { belt = belt, velocity0 = case.velocity0 or 0, t_end = 10, dt = 0.5, integrator = integrator.spectral { tolerance = 1e-6 } }
+        end
+        local smooth = on(function(t) return 0.2*math.sin(case.w*t) end)
+        local rough = on(function(t) return math.floor(0.2*math.sin(case.w*t)*1e8)/1e8 end)
+        equal(#rough.events, #smooth.events)
+        for i, event in ipairs(smooth.events) do
+            equal(rough.events[i].kind, event.kind)
+            near(rough.events[i].t, event.t, 1e-5)  -- the noise in the belt's acceleration, some hundred times that in it
+        end
+        near((rough.theta - smooth.theta):abs():max(), 0, 1e-6)
+    end
+end)
+
 support.finish()

@@ -140,30 +140,32 @@ double Field::sure_belt_rate(double t) const {
     return std::copysign(std::max(0.0, std::fabs(rate) - rounded), rate);
 }
 
-/// The belt's acceleration, and how much of it may be rounding.
+/// The belt's acceleration, and how much of it may be rounding, or the belt's own noise.
 std::pair<double, double> Field::belt_slope(double t) const {
     using namespace spectral::chebyshev;
     if (!has_belt() || extras_.belt.constant_from() <= t) return {0, 0};
-    constexpr double smooth = 1e-9, shorter = 0.25;
-    constexpr int most_looks = 23;     // down to 1e-14 of the stretch
-    constexpr double roundings = 256;  // in a slope at the end of a polynomial of this degree
+    constexpr double smooth = 1e-9, noise = 1e-5, shorter = 0.25;
+    constexpr double clearly_worse = 8;  // two looks on, what is no smoother in shorter stretches is worse by 16
+    constexpr int most_looks = 23;       // down to 1e-14 of the stretch
+    constexpr double roundings = 256;    // in a slope at the end of a polynomial of this degree
     const double next = extras_.belt.next_break(t);
+    std::pair<double, double> best{0, model::never};
     // A jump that nobody announced is no part of the slope before it.
     double h = std::min(short_stretch_, (next - t) / 2);
-    for (int look = 0; look < most_looks; ++look) {
+    for (int look = 0; look < most_looks; ++look, h *= shorter) {
         Samples values{};
         for (std::size_t j = 0; j < points; ++j) {
             const double at = t + h * (1 + nodes[j]);
             values[j] = belt(at, j == 0 ? Side::after : at >= next ? Side::before : Side::at);
         }
         const Series curve = fit(values);
-        const double all = cheb::size(curve);
-        if (!(tail(curve) > smooth * all)) {
-            return {value(derivative(curve), -1) / h, roundings * rounding * greatest(values) / h};
-        }
-        h *= shorter;
+        const double all = cheb::size(curve), rough = tail(curve), slope = value(derivative(curve), -1) / h;
+        if (!(rough > smooth * all)) return {slope, roundings * rounding * greatest(values) / h};
+        const double doubt = roundings * rough / h;
+        if (rough <= noise * all && doubt > clearly_worse * best.second) break;
+        if (doubt < best.second) best = {slope, doubt};
     }
-    return {0, 0};
+    return best.second < model::never ? best : std::pair(0.0, 0.0);
 }
 
 void Field::rates(const MotionPoint& at, double* out) const {
