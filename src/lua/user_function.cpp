@@ -86,23 +86,27 @@ CallState::~CallState() {
         lua_pushnil(L_);
         lua_rawsetp(L_, LUA_REGISTRYINDEX, this);
     }
-    if (!names_.empty()) {
-        lua_pushnil(L_);
-        lua_rawsetp(L_, LUA_REGISTRYINDEX, &names_);
+    luaL_unref(L_, LUA_REGISTRYINDEX, state_table_);
+    for (const int name : names_) {
+        luaL_unref(L_, LUA_REGISTRYINDEX, name);
     }
 }
 
-void CallState::name_states(std::vector<std::string> names) {
-    names_ = std::move(names);
-    push_state_table(L_, names_);
-    lua_rawsetp(L_, LUA_REGISTRYINDEX, &names_);
+void CallState::name_states(const std::vector<std::string>& names) {
+    push_state_table(L_, names);
+    state_table_ = luaL_ref(L_, LUA_REGISTRYINDEX);
+    names_.reserve(names.size());
+    for (const std::string& name : names) {
+        lua_pushlstring(L_, name.data(), name.size());
+        names_.push_back(luaL_ref(L_, LUA_REGISTRYINDEX));
+    }
 }
 
 /// The table is always the same one, so that a call costs no memory.
 void CallState::push_states(std::span<const double> states) const {
-    lua_rawgetp(L_, LUA_REGISTRYINDEX, &names_);
+    lua_rawgeti(L_, LUA_REGISTRYINDEX, state_table_);
     for (std::size_t i = 0; i < states.size(); ++i) {
-        lua_pushlstring(L_, names_[i].data(), names_[i].size());
+        lua_rawgeti(L_, LUA_REGISTRYINDEX, names_[i]);
         lua_pushnumber(L_, states[i]);
         lua_rawset(L_, -3);
     }
@@ -134,10 +138,10 @@ bool is_callable(lua_State* L, int index) {
 }
 
 bool CallState::read_states(std::span<double> states) const {
-    lua_rawgetp(L_, LUA_REGISTRYINDEX, &names_);
+    lua_rawgeti(L_, LUA_REGISTRYINDEX, state_table_);
     bool good = true;
     for (std::size_t i = 0; i < states.size(); ++i) {
-        lua_pushlstring(L_, names_[i].data(), names_[i].size());
+        lua_rawgeti(L_, LUA_REGISTRYINDEX, names_[i]);
         lua_rawget(L_, -2);
         states[i] = lua_tonumber(L_, -1);
         good = good && lua_type(L_, -1) == LUA_TNUMBER && std::isfinite(states[i]);
@@ -246,12 +250,12 @@ double LuaFunction::value_with(double t, const model::State& state, std::span<co
         call->push_states(states);
     }
     const int status = lua_pcall(L, has_states ? 4 : feedback_ ? 3 : 1, 1, handler);
-    lua_remove(L, handler);
     double M = 0;
     if (status == LUA_OK && is_good(L, M)) {
-        lua_pop(L, 1);
+        lua_settop(L, handler - 1);
         return M;
     }
+    lua_remove(L, handler);
     return fail(*call, status, t);
 }
 

@@ -25,7 +25,7 @@ public:
     /// A user function has failed during this call. From then on none is called, all give NaN, until may_go_on().
     [[nodiscard]] bool failed() const { return failed_ || failed_before_; }
     /// From now on functions get their states as a table with these names, their fourth argument.
-    void name_states(std::vector<std::string> names);
+    void name_states(const std::vector<std::string>& names);
 
     /// Raises what the user function raised, unchanged, or the sentence about what it returned. Only when failed().
     [[noreturn]] void raise_error();
@@ -41,9 +41,10 @@ private:
     lua_State* L_;
     CallState* outer_;
     int depth_;
-    std::vector<std::string> names_;  // of the states, whose table the registry keeps
-    bool failed_ = false;             // and nobody has said that it may go on
-    bool failed_before_ = false;      // the error is kept all the same
+    int state_table_ = LUA_NOREF;  // kept in the registry, as the names of the states
+    std::vector<int> names_;
+    bool failed_ = false;         // and nobody has said that it may go on
+    bool failed_before_ = false;  // the error is kept all the same
 };
 
 /// What Lua calls like a function: a Lua function, a C function, a table or userdata with __call.
