@@ -19,7 +19,8 @@ Solver::Solver(const Problem& problem, const Field& field, const Cut& cut)
       linear_(n_ == 2 && !system_.has_remainder() && !field.asks_the_motion()),
       fastest_(n_ - 2),
       point_(n_),
-      rate_(n_) {}
+      rate_(n_),
+      other_rate_(n_) {}
 
 /// False when one of the user's functions has failed.
 bool Solver::sample_surroundings(Solved& piece) {

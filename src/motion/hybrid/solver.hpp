@@ -125,7 +125,7 @@ private:
     Attempt runge_kutta(Solved& piece, const model::State& departing);
     bool sample_surroundings(Solved& piece);
     bool estimate_jacobian(const Solved& piece, std::size_t node);
-    [[nodiscard]] const Eigen::MatrixXd& newton(const Solved& piece);
+    void take_newton_step(const Solved& piece);
     void place(Solved& piece) const;
     [[nodiscard]] double accelerated(double torque, double theta, double velocity) const;
     /// Theta is the integral of the velocity, and that of a mass at rest is its surface's.
@@ -148,21 +148,23 @@ private:
 
     /// Newton's matrix for the lengths of some pieces that were: most pieces of a run have one of a few lengths.
     struct Linear {
-        struct Inverse {
+        struct Matrix {
             double h = 0;
-            Eigen::MatrixXd matrix{};
+            int steps = 0;  ///< taken with it
+            Eigen::PartialPivLU<Eigen::MatrixXd> factors{};
+            Eigen::MatrixXd inverse{};  ///< of one that comes again and again
         };
         Eigen::MatrixXd jacobian;
-        std::array<Inverse, 8> of_lengths{};
+        std::array<Matrix, 8> of_lengths{};
         std::size_t next = 0;  // to be replaced
         bool known = false;
     };
+    Linear::Matrix& newton_matrix(const Solved& piece);
     Linear moving_, standing_;
     std::array<Swing, 8> swings_;  // of some lengths that were
     std::size_t next_swing_ = 0;
     Eigen::VectorXd residual_, step_;
-    mutable Values point_;
-    mutable Values rate_;
+    Values point_, rate_, other_rate_;
 };
 
 }  // namespace dinal::motion::hybrid

@@ -11,6 +11,7 @@ namespace dinal::motion::hybrid {
 namespace {
 
 constexpr int most_iterations = 40;
+constexpr int many_iterations = 4;       // of which it takes so many, the slopes are of no use to the next piece
 constexpr double most_left_over = 1e-6;  // of the equation; a stiff rate multiplies the rounding of its steps
 
 using NodeVector = Eigen::Matrix<double, node_count, 1>;
@@ -19,29 +20,29 @@ using NodeVector = Eigen::Matrix<double, node_count, 1>;
 /// How the rates depend on the values, by differences at a node, narrow against the motion there.
 bool Solver::estimate_jacobian(const Solved& piece, std::size_t node) {
     Linear& linear = moves(piece) ? moving_ : standing_;
-    linear.jacobian = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(n_), static_cast<Eigen::Index>(n_));
-    for (Linear::Inverse& inverse : linear.of_lengths) inverse.h = 0;
+    linear.jacobian.setZero(static_cast<Eigen::Index>(n_), static_cast<Eigen::Index>(n_));
+    for (Linear::Matrix& matrix : linear.of_lengths) matrix.h = 0;
     if (linear_ && moves(piece)) {
         linear.known = true;
         linear.jacobian(1, 0) = -system_.stiffness() / system_.inertia();
         linear.jacobian(1, 1) = -system_.damping() / system_.inertia();
         return true;
     }
-    Values y(n_), above(n_), below(n_);
+    Values &y = point_, &above = rate_, &below = other_rate_;
     for (std::size_t k = 0; k < n_; ++k) y[k] = piece.y[k][node];
-    const auto rates = [&](const Values& values, double* out) {
+    const auto rates = [&](double* out) {
         double M = 0;
-        return rates_of(piece, piece.times[node], piece.side(node), {values[0], values[1]}, values,
-                        piece.belt_rate[node], out, M, piece.push[node], piece.belt[node]);
+        return rates_of(piece, piece.times[node], piece.side(node), {y[0], y[1]}, y, piece.belt_rate[node], out, M,
+                        piece.push[node], piece.belt[node]);
     };
     for (std::size_t l = moves(piece) ? 0 : 2; l < n_; ++l) {
         const double spread = std::fabs(piece.y[l][node]) + piece.h * std::fabs(piece.f[l][node]);
         const double d = spread > 0 ? 1e-4 * spread : 1e-9;
-        Values shifted = y;
-        shifted[l] = y[l] + d;
-        if (!rates(shifted, above.data())) return false;
-        shifted[l] = y[l] - d;
-        if (!rates(shifted, below.data())) return false;
+        y[l] = piece.y[l][node] + d;
+        if (!rates(above.data())) return false;
+        y[l] = piece.y[l][node] - d;
+        if (!rates(below.data())) return false;
+        y[l] = piece.y[l][node];
         for (std::size_t k = 0; k < n_; ++k) {
             linear.jacobian(static_cast<Eigen::Index>(k), static_cast<Eigen::Index>(l)) =
                 (above[k] - below[k]) / (2 * d);
@@ -51,30 +52,42 @@ bool Solver::estimate_jacobian(const Solved& piece, std::size_t node) {
     return true;
 }
 
-/// The inverse of the matrix of Newton's steps: 1 - h J times the integration, where theta is the integral of the
-/// velocity.
-const Eigen::MatrixXd& Solver::newton(const Solved& piece) {
+/// The matrix of Newton's steps: 1 - h J times the integration, where theta is the integral of the velocity.
+Solver::Linear::Matrix& Solver::newton_matrix(const Solved& piece) {
     Linear& linear = moves(piece) ? moving_ : standing_;
-    for (const Linear::Inverse& inverse : linear.of_lengths) {
-        if (std::fabs(inverse.h / piece.h - 1) < 1e-6) return inverse.matrix;
+    for (Linear::Matrix& matrix : linear.of_lengths) {
+        if (std::fabs(matrix.h / piece.h - 1) < 1e-6) return matrix;
     }
     const auto size = static_cast<Eigen::Index>(inner), first = static_cast<Eigen::Index>(first_unknown(piece));
     const auto n = static_cast<Eigen::Index>(n_);
-    const auto once = integration().bottomRightCorner<inner, inner>();
+    using Inner = Eigen::Matrix<double, inner, inner>;
+    static const Inner once = integration().bottomRightCorner<inner, inner>(), twice = once * once;
     Eigen::MatrixXd A = Eigen::MatrixXd::Identity(size * (n - first), size * (n - first));
     for (Eigen::Index k = first; k < n; ++k) {
         for (Eigen::Index l = first; l < n; ++l) {
             const double slope = piece.h * linear.jacobian(k, l);
-            if (slope != 0) A.block((k - first) * size, (l - first) * size, size, size) -= slope * once;
+            if (slope != 0) A.block<inner, inner>((k - first) * size, (l - first) * size) -= slope * once;
         }
         const double stiffness = piece.h * piece.h * linear.jacobian(k, 0);
-        if (moves(piece) && stiffness != 0) A.block((k - first) * size, 0, size, size) -= stiffness * (once * once);
+        if (moves(piece) && stiffness != 0) A.block<inner, inner>((k - first) * size, 0) -= stiffness * twice;
     }
-    Linear::Inverse& inverse = linear.of_lengths[linear.next];
+    Linear::Matrix& matrix = linear.of_lengths[linear.next];
     linear.next = (linear.next + 1) % linear.of_lengths.size();
-    inverse.matrix = A.partialPivLu().inverse();
-    inverse.h = piece.h;
-    return inverse.matrix;
+    matrix.factors.compute(A);
+    matrix.inverse.resize(0, 0);
+    matrix.h = piece.h, matrix.steps = 0;
+    return matrix;
+}
+
+void Solver::take_newton_step(const Solved& piece) {
+    constexpr int worth_an_inverse = 32;
+    Linear::Matrix& matrix = newton_matrix(piece);
+    if (++matrix.steps == worth_an_inverse) matrix.inverse = matrix.factors.inverse();
+    if (matrix.inverse.size() == 0) {
+        step_ = matrix.factors.solve(residual_);
+    } else {
+        step_.noalias() = matrix.inverse * residual_;
+    }
 }
 
 /// Theta at the nodes, by the velocities there.
@@ -117,7 +130,7 @@ Solver::Attempt Solver::collocate(Solved& piece, const model::State& departing) 
                     (y[0] - y.tail<inner>().array()).matrix() + piece.h * (integration().bottomRows<inner>() * f);
             }
             if (sloped) {
-                step_.noalias() = newton(piece) * residual_;
+                take_newton_step(piece);
             } else {
                 step_ = residual_;
             }
@@ -138,7 +151,10 @@ Solver::Attempt Solver::collocate(Solved& piece, const model::State& departing) 
             const bool converged = change <= 16 * rounding || (i >= 1 && change * rate <= 4 * rounding) ||
                                    (i >= 2 && change <= 1e-12 && rate > 0.3);
             // With slopes that are far off no step goes anywhere, and the equation does not hold.
-            if (converged && left <= most_left_over) return Attempt::resolved;
+            if (converged && left <= most_left_over) {
+                if (i >= many_iterations) linear.known = false;
+                return Attempt::resolved;
+            }
             if (i >= 3 && rate > 0.7) break;
             before = change;
         }
