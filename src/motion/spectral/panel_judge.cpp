@@ -130,7 +130,8 @@ PanelSolver::Attempt PanelSolver::judge(double unresolved) {
         lengthen(unresolved);
         return Attempt::resolved;
     }
-    if (unresolved > gross) missed_step();
+    // On a short panel a jump of M is next to nothing in the motion.
+    if (unresolved > gross || unresolved_load() > gross) missed_step();
     const double late = std::max(std::fabs(panel_.start.hi), std::fabs(panel_.end));
     if (!tells_rests_ && 2 * panel_.h <= std::max(shortest * pace_, 16 * epsilon * late)) {
         // Whatever goes on here is over before it can move the mass. A feedback that switches may do so again at once.

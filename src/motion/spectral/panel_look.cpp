@@ -31,6 +31,7 @@ constexpr double short_stretch = 1e-3;
 
 double PanelSolver::gap() const {
     if (!script_) return 0;
+    if (steps_.strides) return panel_.h;
     const bool looks = 2 * panel_.h > too_short_to_look * pace_;
     return 2 * panel_.h * (looks ? widest_left : chebyshev::widest_gap);
 }

@@ -149,6 +149,8 @@ PanelSolver::Attempt PanelSolver::move(const Present& now, model::Motion way, co
     follows_ = !feedback_ && slide_.has_corners() && slide_.line() == nullptr;
     if (feedback_) {
         go_on_from(now, way);
+        steps_.strides = false;
+        if (stride(now, way, departing)) return accept();
         const auto is_here = [&] {
             return std::fabs(now.clock.until(steps_.stop)) <= 8 * epsilon * std::fabs(now.clock.hi);
         };

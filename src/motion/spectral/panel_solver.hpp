@@ -11,6 +11,7 @@
 #include "model/lowered.hpp"
 #include "model/slide.hpp"
 #include "motion/simulate.hpp"
+#include "motion/spectral/edge_search.hpp"
 #include "motion/spectral/panel_equation.hpp"
 #include "motion/spectral/panels.hpp"
 #include "motion/spectral/spectral.hpp"
@@ -128,14 +129,21 @@ private:
     void missed_step();
     void go_on_from(const Present& now, model::Motion way);
     [[nodiscard]] double line(double since) const;
+    [[nodiscard]] double finest_edge(double t) const;
+    [[nodiscard]] static double surely_behind(const Edge& edge, const model::State& there);
+    [[nodiscard]] bool is_behind_step(double M, double since) const;
     bool predict(const model::State& departing);
+    bool follow_line();
     [[nodiscard]] double direction() const;
     [[nodiscard]] model::State state_at(double x) const;
     [[nodiscard]] double guessed_step() const;
     double sought_step();
     bool foresee(const Present& now, model::Motion way, const model::State& departing);
     bool cross_step(const Present& now, model::Motion way, const model::State& departing);
-    void remember_step(double jump);
+    void remember_step(double jump, const Edge& edge);
+
+    // panel_stride.cpp: many of them, in one panel each.
+    bool stride(const Present& now, model::Motion way, const model::State& departing);
 
     // panel_judge.cpp: resolved?
     /// What M may differ by because times far from t = 0 are rounded.
@@ -198,6 +206,9 @@ private:
         double part = 1;                          // of the way, by how much more than usual is left for the crossing
         double theta = 0, direction = 0, last = -model::never;  // where the last one was, which way, and when
         double apart = 0, spacing = 0, jump = 0;  // from one to the next: rad, time units; and how high, torque
+        int ways = 0;                             // of which that is the mean
+        bool strides = false;                     // the panel reaches from one to the next
+        int walks = 0;                            // so many more panels do not try to
     } steps_;
     SolvedPanel panel_;
     double theta_rest_ = 0;  // of its beginning

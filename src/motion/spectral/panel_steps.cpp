@@ -3,7 +3,9 @@
 // it went on as it is; and a short panel crosses it, with M as it was before the jump up to the jump.
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
+#include "motion/spectral/edge_search.hpp"
 #include "motion/spectral/panel_solver.hpp"
 
 namespace dinal::motion::spectral {
@@ -66,11 +68,30 @@ double PanelSolver::line(double since) const {
     return panel_.samples[0] + since * (steps_.slope + since * steps_.bend / 2);
 }
 
+/// How well the time of a jump can be known.
+double PanelSolver::finest_edge(double t) const {
+    return std::max(located_to * pace_, 4 * epsilon * std::fabs(t));
+}
+
+/// Whether this value of M is none of those before the jump.
+bool PanelSolver::is_behind_step(double M, double since) const {
+    return std::fabs(M - line(since)) > behind * steps_.jump;
+}
+
+/// When theta is behind a jump however it is rounded.
+double PanelSolver::surely_behind(const Edge& edge, const model::State& there) {
+    const double rounded = 4 * epsilon * std::fabs(there.theta / there.velocity);
+    return edge.high + std::min(rounded, 4 * (edge.high - edge.low));
+}
+
 /// The motion on the panel if M goes on so.
 bool PanelSolver::predict(const model::State& departing) {
-    falls_.theta = falls_.velocity = 0;
     panel_.samples[0] = sampled(0, departing);
-    if (!std::isfinite(panel_.samples[0])) return false;
+    return std::isfinite(panel_.samples[0]) && follow_line();
+}
+
+bool PanelSolver::follow_line() {
+    falls_.theta = falls_.velocity = 0;
     const double h = panel_.h, bend = steps_.bend * h * h;
     panel_.M = {};
     panel_.M[0] = panel_.samples[0] + steps_.slope * h + bend * 3 / 4;
@@ -169,7 +190,9 @@ double PanelSolver::sought_step() {
 bool PanelSolver::foresee(const Present& now, model::Motion way, const model::State& departing) {
     steps_.stop = model::never;
     steps_.sampled = steps_.predicted = steps_.guessed = false;
-    if (steps_.expected && ++steps_.quiet > most_quiet) steps_.expected = false;
+    // Very short panels may have passed jumps that were too low to be seen on them.
+    const bool long_ago = now.clock.hi - steps_.last > most_quiet * steps_.spacing;
+    if (steps_.expected && ++steps_.quiet > most_quiet && long_ago) steps_.expected = false;
     if (steps_.expected && steps_.spacing > 0) {
         h_ = std::min(h_, std::ldexp(reaches / 2 * steps_.spacing, steps_.quiet - 1));
     }
@@ -205,36 +228,34 @@ bool PanelSolver::cross_step(const Present& now, model::Motion way, const model:
     double value = 0;
     const auto is_behind = [&](double since) {
         const double found = excitation_.value(panel_.start.after(since), state_at(since / panel_.h - 1));
-        const bool far = std::fabs(found - line(since)) > behind * steps_.jump;
+        const bool far = is_behind_step(found, since);
         if (far) value = found;
         return far;
     };
-    const double fine = std::max(located_to * pace_, 4 * epsilon * std::fabs(t));
-    double low = 0, high = most;
-    if (steps_.guessed) {
-        const double guess = guessed_step();
-        if (guess + 2 * fine < most && is_behind(guess + 2 * fine)) {
-            high = guess + 2 * fine;
-            if (guess > 2 * fine && !is_behind(guess - 2 * fine)) low = guess - 2 * fine;
-        }
-    }
-    if (high == most && !is_behind(most)) {
+    const double fine = finest_edge(t);
+    std::optional<Edge> edge;
+    if (steps_.guessed) edge = edge_near(guessed_step(), most, fine, is_behind);
+    if (!edge) steps_.ways = 0;
+    if (!edge && is_behind(most)) edge = narrowed({0, most}, fine, is_behind);
+    if (!edge) {
         if (steps_.guessed) steps_.trust = -wary;
         return false;
     }
-    while (high - low > 4 * fine) {
-        const double middle = low + (high - low) / 2;
-        (is_behind(middle) ? high : low) = middle;
-    }
-    lay(now, way, high / 2, now.clock.after(high));
+    const double end = surely_behind(*edge, state_at(edge->high / panel_.h - 1));
+    lay(now, way, end / 2, now.clock.after(end));
     if (!predict(departing)) return false;
-    remember_step(std::fabs(value - line(high)));
+    remember_step(std::fabs(value - line(end)), *edge);
     return true;
 }
 
-void PanelSolver::remember_step(double jump) {
-    const double theta = panel_.begin.theta + chebyshev::value(panel_.p, 1);
-    if (direction() == steps_.direction) steps_.apart = std::fabs(theta - steps_.theta);
+void PanelSolver::remember_step(double jump, const Edge& edge) {
+    const double theta = state_at(edge.middle() / panel_.h - 1).theta;
+    if (direction() == steps_.direction) {
+        // The mean of many ways, each of which is known as well as the times of two jumps.
+        constexpr int most_ways = 64;
+        steps_.ways = std::min(steps_.ways + 1, most_ways);
+        steps_.apart += (std::fabs(theta - steps_.theta) - steps_.apart) / steps_.ways;
+    }
     if (steps_.last > -model::never) steps_.spacing = panel_.end - steps_.last;
     ++steps_.trust;
     steps_.theta = theta, steps_.direction = direction(), steps_.jump = jump, steps_.last = panel_.end;

@@ -1,0 +1,102 @@
+// A feedback with very many steps, as an encoder has: from one to right behind the next in a single panel, on which M
+// is a parabola through three values.
+#include <algorithm>
+#include <cmath>
+
+#include "motion/spectral/edge_search.hpp"
+#include "motion/spectral/panel_solver.hpp"
+
+namespace dinal::motion::spectral {
+
+namespace {
+
+/// Where that does not go, so many panels are of the other kind.
+constexpr int until_next_try = 32;
+
+/// A way so short that four derivatives tell where it goes.
+struct ShortWay {
+    double velocity, first, second, third;
+    [[nodiscard]] double place(double t) const {
+        return t * (velocity + t * (first / 2 + t * (second / 6 + t * third / 24)));
+    }
+    [[nodiscard]] double speed(double t) const { return velocity + t * (first + t * (second / 2 + t * third / 6)); }
+
+    /// When it has gone so far; `never` when it turns before, or soon.
+    [[nodiscard]] double arrival(double way) const {
+        const double square = velocity * velocity + 2 * first * way;
+        if (!(velocity * way > 0 && square > velocity * velocity / 4)) return model::never;
+        double t = 2 * way / (velocity + std::copysign(std::sqrt(square), velocity));
+        for (int i = 0; i < 3; ++i) t -= (place(t) - way) / speed(t);
+        return t;
+    }
+};
+
+}  // namespace
+
+/// From here to right behind the next step, if that is where it is guessed and the way there short: five values of M
+/// where a panel up to it and one across take forty. False when M or the motion is more than such a panel can be.
+bool PanelSolver::stride(const Present& now, model::Motion way, const model::State& departing) {
+    const bool foreseen = steps_.expected && steps_.trust > 0 && steps_.apart > 0;
+    if (!foreseen || system_.has_remainder() || bad_time_ < model::never) return false;
+    if (steps_.walks > 0) {
+        --steps_.walks;
+        return false;
+    }
+    const double t = now.clock.hi, fine = finest_edge(t), inertia = system_.inertia();
+    const double widest_look = 2 * h_max_ * chebyshev::widest_gap;  // between two of the looks below: half of the way
+    const double most = std::min({now.clock.until(std::min(end_of_run_, break_after(t))) / 2, 2 * widest_look,
+                                  excitation_.view(t, chebyshev::widest_gap)});
+    const bool same = departing.theta == now.y.theta && departing.velocity == now.y.velocity;
+    const double M = now.M_sampled && same ? now.M : excitation_.value(t, departing);
+    panel_.samples[0] = M;
+    const auto give_up = [&, slope = steps_.slope, bend = steps_.bend] {
+        steps_.slope = slope, steps_.bend = bend;
+        return false;
+    };
+    constexpr int rounds = 3;
+    for (int round = 0; round < rounds; ++round) {
+        ShortWay ahead{};
+        ahead.velocity = now.y.velocity;
+        const auto acceleration = [&](double torque, double velocity, double theta) {
+            return (torque - system_.damping() * velocity - system_.stiffness() * theta) / inertia;
+        };
+        ahead.first = acceleration(M - system_.braking(way), ahead.velocity, now.y.theta);
+        ahead.second = acceleration(steps_.slope, ahead.first, ahead.velocity);
+        ahead.third = acceleration(steps_.bend, ahead.second, ahead.first);
+        const double sign = ahead.velocity > 0 ? 1 : -1;
+        const double place = steps_.theta + (sign == steps_.direction ? sign * steps_.apart : 0);
+        const double guess = ahead.arrival(place - now.y.theta);
+        if (!(guess < most)) return give_up();
+        const auto M_after = [&](double since) {
+            return excitation_.value(now.clock.after(since), {now.y.theta + ahead.place(since), ahead.speed(since)});
+        };
+        double before = M, behind = M;
+        const auto edge = edge_near(guess, most, fine, [&](double since) {
+            const double found = M_after(since);
+            const bool far = is_behind_step(found, since);
+            (far ? behind : before) = found;
+            return far;
+        });
+        if (!edge) return give_up();
+        const double middle = M_after(edge->low / 2), quarter = M_after(edge->low / 4);
+        steps_.slope = (4 * middle - before - 3 * M) / edge->low;
+        steps_.bend = 4 * ((M - middle) + (before - middle)) / (edge->low * edge->low);
+        const double end = surely_behind(*edge, {place, ahead.speed(edge->high)});
+        lay(now, way, end / 2, now.clock.after(end));
+        if (!follow_line()) return give_up();
+        const double allowed = (tolerance_ + 4 * epsilon) * torques() + noise_;
+        if (!(std::fabs(quarter - line(edge->low / 4)) <= allowed)) break;
+        const double off = std::max(std::fabs(chebyshev::value(panel_.p, 1) - ahead.place(end)),
+                                    std::fabs(chebyshev::value(panel_.v, 1) - panel_.h * ahead.speed(end)));
+        if (off <= 16 * epsilon * (chebyshev::size(panel_.v) + chebyshev::size(panel_.p))) {
+            steps_.stop = model::never;
+            steps_.strides = true;
+            remember_step(std::fabs(behind - line(end)), *edge);
+            return true;
+        }
+    }
+    steps_.walks = until_next_try;
+    return give_up();
+}
+
+}  // namespace dinal::motion::spectral
