@@ -152,7 +152,7 @@ std::pair<double, double> Field::belt_slope(double t) const {
     std::pair<double, double> best{0, model::never};
     // A jump that nobody announced is no part of the slope before it.
     double h = std::min(short_stretch_, (next - t) / 2);
-    for (int look = 0; look < most_looks; ++look, h *= shorter) {
+    for (int look = 0; look < most_looks; ++look) {
         Samples values{};
         for (std::size_t j = 0; j < points; ++j) {
             const double at = t + h * (1 + nodes[j]);
@@ -164,6 +164,7 @@ std::pair<double, double> Field::belt_slope(double t) const {
         const double doubt = roundings * rough / h;
         if (rough <= noise * all && doubt > clearly_worse * best.second) break;
         if (doubt < best.second) best = {slope, doubt};
+        h *= shorter;
     }
     return best.second < model::never ? best : std::pair(0.0, 0.0);
 }
