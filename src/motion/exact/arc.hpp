@@ -17,9 +17,11 @@ public:
     /// The arc under M from its origin on, which is wanted for `length`. Returns for how long it holds: less where
     /// numbers that nearly cancel must be avoided.
     double begin(const model::ClosedForm& M, const Start& start, double length);
-    /// What a time unit of the arc costs at most, about: radians of its fastest part times the parts that turn.
+    /// What a time unit of the arc costs at most, about: radians of its fastest part times the parts that turn. What
+    /// an overdamped system forgets at once does not.
     [[nodiscard]] double cost(const model::ClosedForm& M) const {
-        return fastest_rate(M) * static_cast<double>(1 + M.turning_parts());
+        const double rate = free_.swings() ? fastest_rate(M) : std::max(free_.w0(), M.fastest());
+        return rate * static_cast<double>(1 + M.turning_parts());
     }
 
     struct Point {
