@@ -70,11 +70,11 @@ bool PanelSolver::stride(const Present& now, model::Motion way, const model::Sta
         const auto M_after = [&](double since) {
             return excitation_.value(now.clock.after(since), {now.y.theta + ahead.place(since), ahead.speed(since)});
         };
-        double before = M, behind = M;
+        double before = M, after = M;
         const auto edge = edge_near(guess, most, fine, [&](double since) {
             const double found = M_after(since);
             const bool far = is_behind_step(found, since);
-            (far ? behind : before) = found;
+            (far ? after : before) = found;
             return far;
         });
         if (!edge) return give_up();
@@ -91,7 +91,7 @@ bool PanelSolver::stride(const Present& now, model::Motion way, const model::Sta
         if (off <= 16 * epsilon * (chebyshev::size(panel_.v) + chebyshev::size(panel_.p))) {
             steps_.stop = model::never;
             steps_.strides = true;
-            remember_step(std::fabs(behind - line(end)), *edge);
+            remember_step(std::fabs(after - line(end)), *edge);
             return true;
         }
     }
