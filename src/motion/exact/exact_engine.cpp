@@ -10,9 +10,6 @@ namespace {
 
 /// An arc without events ends after so many natural periods, that what its looks round does not add up.
 constexpr double longest_arc = 16;
-/// Far above critical damping the motion remembers the roundings of so many arcs that they would add up: so there they
-/// are longer, by so much at most.
-constexpr double much_longer = 1024;
 /// A creep is looked for over so many natural periods.
 constexpr double creeps_over = 0.5 * (1 - 1e-9);
 /// An arc costs so many radians of its parts at most: a fraction of a second, also where each of them is a turn.
@@ -43,8 +40,7 @@ ExactEngine::ExactEngine(const Problem& problem, RowWriter& rows, std::vector<mo
       load_(arc_.free()) {
     find_record();
     const double T0 = 2 * std::numbers::pi / arc_.free().w0();
-    const double zeta = arc_.free().delta() / arc_.free().w0();
-    longest_arc_ = longest_arc * T0 * std::clamp(zeta / longest_arc, 1.0, much_longer);
+    longest_arc_ = longest_arc * T0;
     const double half = arc_.free().swings() ? std::numbers::pi / arc_.free().root().imag() : 0;
     moves_ = {Habit(half), Habit(half)}, swings_ = Habit(half);
     creep_ = {.damping = system_.damping(), .inertia = system_.inertia(), .shortest = creeps_over * T0};
