@@ -25,20 +25,15 @@ double Modes::pushed(double x) const {
     return -std::exp(-slow_root() * x) * std::expm1(-2 * rate_ * x) / (2 * rate_);
 }
 
-double Modes::pushed_velocity(double x) const {
-    if (swings() || rate_ < apart) return damped_cosine(x) - zeta_ * pushed(x);
-    return (fast_root() * std::exp(-fast_root() * x) - slow_root() * std::exp(-slow_root() * x)) / (2 * rate_);
-}
-
-double Modes::released(double x) const {
-    if (swings() || rate_ < apart) return damped_cosine(x) + zeta_ * pushed(x);
-    return (fast_root() * std::exp(-slow_root() * x) - slow_root() * std::exp(-fast_root() * x)) / (2 * rate_);
-}
-
 Modes::Answers Modes::after(double x) const {
-    if (!swings() && rate_ >= apart) return {released(x), pushed(x), pushed_velocity(x)};
-    const double cosine = damped_cosine(x), g = pushed(x);
-    return {cosine + zeta_ * g, g, cosine - zeta_ * g};
+    const double g = pushed(x);
+    if (swings() || rate_ < apart) {
+        const double cosine = damped_cosine(x);
+        return {cosine + zeta_ * g, g, cosine - zeta_ * g};
+    }
+    const double slow = std::exp(-slow_root() * x), fast = std::exp(-fast_root() * x), between = 2 * rate_;
+    return {(fast_root() * slow - slow_root() * fast) / between, g,
+            (fast_root() * fast - slow_root() * slow) / between};
 }
 
 }  // namespace dinal::theory

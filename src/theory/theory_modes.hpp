@@ -22,13 +22,9 @@ public:
     [[nodiscard]] double damped_cosine(double x) const;
     /// y(0) = 0, y'(0) = 1: e^(-zeta x) (sin qx)/q.
     [[nodiscard]] double pushed(double x) const;
-    /// y' of it.
-    [[nodiscard]] double pushed_velocity(double x) const;
-    /// y(0) = 1, y'(0) = 0; its velocity is -pushed(x).
-    [[nodiscard]] double released(double x) const;
-    /// All three, for little more than one of them.
     struct Answers {
-        double released, pushed, pushed_velocity;
+        double released;                 ///< y(0) = 1, y'(0) = 0; its velocity is -pushed
+        double pushed, pushed_velocity;  ///< y(0) = 0, y'(0) = 1
     };
     [[nodiscard]] Answers after(double x) const;
 

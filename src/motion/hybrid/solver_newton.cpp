@@ -11,7 +11,7 @@ namespace dinal::motion::hybrid {
 namespace {
 
 constexpr int most_iterations = 40;
-constexpr int many_iterations = 4;       // of which it takes so many, the slopes are of no use to the next piece
+constexpr int many_iterations = 4;       // slopes that need so many no longer serve, and are asked anew
 constexpr double most_left_over = 1e-6;  // of the equation; a stiff rate multiplies the rounding of its steps
 
 using NodeVector = Eigen::Matrix<double, node_count, 1>;

@@ -80,8 +80,8 @@ bool PanelSolver::is_behind_step(double M, double since) const {
 
 /// When theta is behind a jump however it is rounded.
 double PanelSolver::surely_behind(const Edge& edge, const model::State& there) {
-    const double rounded = 4 * epsilon * std::fabs(there.theta / there.velocity);
-    return edge.high + std::min(rounded, 4 * (edge.high - edge.low));
+    const double rounded = 4 * epsilon * std::fabs(there.theta / there.velocity), most = 4 * (edge.high - edge.low);
+    return edge.high + (rounded < most ? rounded : most);  // at theta = 0 and velocity 0 it is no number
 }
 
 /// The motion on the panel if M goes on so.
