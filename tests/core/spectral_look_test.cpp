@@ -145,6 +145,63 @@ TEST_CASE("a jump that is not announced costs at most 70 values of M more than o
     CHECK(more <= 70 * jumps);
 }
 
+TEST_CASE("even jumps that are not announced are foreseen: at most 40 values of M a step of a staircase",
+          "[spectral][look]") {
+    const Oscillator system = nondimensional(0.05, 0.05);
+    struct Case {
+        const char* name;
+        double period;
+        int jumps;  // in it
+        double most;
+        std::function<double(double)> M;
+        std::vector<double> breaks;  // of the first period
+    };
+    const auto stairs = [](double width) { return [width](double t) { return width * std::floor(t / width); }; };
+    // The mass turns on most steps of the last two, which is a panel more each time.
+    const std::vector<Case> cases = {
+        {"many steps", 0.0371, 1, 40, stairs(0.0371), {0.0371}},
+        {"few steps, the last one at the very end", 0.25, 1, 40, stairs(0.25), {0.25}},
+        {"a square wave", 0.3, 2, 60, [](double t) { return std::fmod(t, 0.3) < 0.2 ? 1.0 : -1.0; }, {0.2, 0.3}},
+        {"three in turn",
+         0.5,
+         3,
+         75,
+         [](double t) {
+             const double since = std::fmod(t, 0.5);
+             return since < 0.1 ? 1.0 : since < 0.2 ? 0.3 : -1.0;
+         },
+         {0.1, 0.2, 0.5}},
+    };
+    for (const Case& c : cases) {
+        CAPTURE(c.name);
+        const auto run = [&](const std::vector<double>& breaks) {
+            const auto function = probe(c.M);
+            const auto made_of = made(Scripted{.function = function, .breaks = breaks});
+            const auto result = simulate(system, made_of, {0.1, 0}, {0, length}, Grid::none(), Spectral{});
+            REQUIRE(result);
+            return std::pair{*result, function->calls};
+        };
+        std::vector<double> all;
+        for (int i = 0; i * c.period < length; ++i) {
+            for (const double at : c.breaks) all.push_back(i * c.period + at);
+        }
+        const auto [found, calls] = run({});
+        const auto announced = run(all).first;
+        CHECK(calls <= c.most * c.jumps * length / c.period);
+        REQUIRE(found.events.size() == announced.events.size());
+        // Both know a jump to the rounding of its time, some 1e-15, and a turn's time follows it.
+        CHECK(std::fabs(found.state_at_stop.theta - announced.state_at_stop.theta) < 1e-12);
+    }
+}
+
+TEST_CASE("an M that fails behind the end of the run is not asked there for its next jump", "[spectral][look]") {
+    double last = 0;
+    const auto function = probe([&](double t) { return last = std::max(last, t), 0.25 * std::floor(t / 0.25); });
+    REQUIRE(simulate(nondimensional(0.05, 0.05), made(Scripted{.function = function, .breaks = {}}), {1, 0}, {0, 2.5},
+                     Grid::none(), Spectral{}));
+    CHECK(last == 2.5);
+}
+
 TEST_CASE("an M that is rough on every scale is followed as exactly as it can be, and the run says so",
           "[spectral][look]") {
     const Oscillator system = nondimensional(0.05, 0.05);
@@ -215,7 +272,7 @@ TEST_CASE("a function that is rough at every scale ends with its own outcome, so
     // What is left of it on short panels may be small enough to be taken for noise. Either end is honest.
     for (const double friction_ratio : {0.0, 0.3}) {
         const Seen climb = look(nondimensional(0.05, friction_ratio), staircase, {0.3, 0});
-        const bool followed = climb.run.outcome == Outcome::reached_end;
+        const bool followed = is_whole(climb.run.outcome);
         CHECK((followed || climb.run.outcome == Outcome::unresolved));
         CHECK((climb.run.noise > 0) == followed);
         CHECK(climb.run.noise < 1e-4 * k);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <limits>
@@ -113,5 +114,36 @@ std::optional<double> find_break(std::span<const double> times, std::span<const 
     }
     return t.middle;
 }
+
+/// The breaks that were passed last. Of a staircase, a square wave or a train of pulses the next one can be foreseen.
+class PassedBreaks {
+public:
+    void pass(double t) {
+        std::rotate(last_.begin(), last_.begin() + 1, last_.end());
+        last_.back() = t;
+    }
+    /// Where the next jump of f is, if the last ones come again after one, two or three of them, and f jumps there:
+    /// some six values, where finding it anew takes sixty. f is not asked behind `end`.
+    template <class F>
+    [[nodiscard]] std::optional<double> next(double end, const F& f) const {
+        constexpr double known_to = 8 * std::numeric_limits<double>::epsilon();  // of the time
+        const std::size_t n = last_.size() - 1;
+        for (std::size_t after = 1; 2 * after <= n; ++after) {
+            const double period = last_[n] - last_[n - after], before = last_[n - after] - last_[n - 2 * after];
+            if (!(std::fabs(period - before) <= known_to * std::fabs(last_[n]))) continue;
+            const double due = last_[n + 1 - after] + period, off = known_to * std::fabs(due);
+            const double a = due - off, b = std::min(due + off, end);
+            if (!(a > last_[n] && b > a)) return {};
+            const double fa = f(a), fb = f(b);
+            if (!(std::fabs(fb - fa) > detail::few_roundings * (std::fabs(fa) + std::fabs(fb)))) return {};
+            return detail::jump_between(a, fa, b, fb, f);
+        }
+        return {};
+    }
+
+private:
+    static constexpr double none = std::numeric_limits<double>::quiet_NaN();
+    std::array<double, 7> last_{none, none, none, none, none, none, none};
+};
 
 }  // namespace dinal::motion::spectral

@@ -3,7 +3,6 @@
 #include <cmath>
 #include <limits>
 
-#include "motion/spectral/break_search.hpp"
 #include "motion/spectral/panel_solver.hpp"
 
 namespace dinal::motion::spectral {
@@ -89,7 +88,7 @@ bool PanelSolver::found_break() {
 bool PanelSolver::find_break_among(std::span<const double> times, std::span<const double> values) {
     const auto found = find_break(times, values, [&](double t) { return excitation_.value(t, panel_.begin); });
     // One at the very beginning is not a break but a singular point, which ever shorter panels leave behind.
-    if (!found || !(*found < panel_.end)) return false;
+    if (!found || !(*found <= panel_.end) || *found == break_after(panel_.start.hi)) return false;
     if (panel_.start.until(*found) < 1e-6 * panel_.h) {
         searched_.h = 0;  // and need not be looked for again
         return false;
@@ -164,8 +163,20 @@ void PanelSolver::lengthen(double unresolved) {
     h_ = std::min(h_max_, std::max(h_, panel_.h * std::min(factor, 8.0)));
 }
 
+/// Where M has jumped evenly, its next jump is known before it is met.
+void PanelSolver::foresee_break() {
+    const auto next = passed_breaks_.next(end_of_run_, [&](double t) { return excitation_.value(t); });
+    if (next) found_breaks_.push_back(*next);
+}
+
 void PanelSolver::passed() {
-    std::erase_if(found_breaks_, [&](double b) { return b <= panel_.end; });
+    bool at_found = false;
+    std::erase_if(found_breaks_, [&](double b) {
+        if (!(b <= panel_.end)) return false;
+        passed_breaks_.pass(b);
+        return at_found = true;
+    });
+    if (at_found && !feedback_ && found_breaks_.empty()) foresee_break();
     if (seen_ <= panel_.end) seen_ = model::never;
 }
 

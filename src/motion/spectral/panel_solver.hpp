@@ -11,6 +11,7 @@
 #include "model/lowered.hpp"
 #include "model/slide.hpp"
 #include "motion/simulate.hpp"
+#include "motion/spectral/break_search.hpp"
 #include "motion/spectral/edge_search.hpp"
 #include "motion/spectral/panel_equation.hpp"
 #include "motion/spectral/panels.hpp"
@@ -152,6 +153,7 @@ private:
     [[nodiscard]] double unresolved_motion() const;
     [[nodiscard]] double rounding_of_motion(double uncertain) const;
     bool found_break();
+    void foresee_break();
     bool find_break_among(std::span<const double> times, std::span<const double> values);
     Attempt pass_over();
     Attempt judge(double unresolved);
@@ -183,6 +185,7 @@ private:
 
     double h_;                          // half the length of the next panel
     std::vector<double> found_breaks_;  // of a function that did not announce them, in order
+    PassedBreaks passed_breaks_;
     struct {
         double from = model::never, h = 0;
     } searched_;                      // where one was looked for last

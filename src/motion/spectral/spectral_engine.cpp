@@ -236,7 +236,11 @@ double SpectralEngine::M_at(double x, const model::State& state) const {
 /// M from the right at the end of the panel, where the mass is now.
 double SpectralEngine::M_at_end() const {
     const SolvedPanel& panel = solver_.panel();
-    if (panel.ends == SolvedPanel::End::at_break) return excitation_.value_after(panel.end, now_.y);
+    if (panel.ends == SolvedPanel::End::at_break) {
+        // At a jump that was found M has jumped already; behind the end of the run it may fail.
+        const bool found = excitation_.next_break(std::nextafter(panel.end, -model::never)) != panel.end;
+        return found ? excitation_.value(panel.end, now_.y) : excitation_.value_after(panel.end, now_.y);
+    }
     return solver_.M_of_time() ? panel.samples[points - 1] : excitation_.value(panel.end, now_.y);
 }
 
