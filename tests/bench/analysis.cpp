@@ -10,8 +10,8 @@
 #include "analysis/identification.hpp"
 #include "analysis/steady.hpp"
 #include "dinal_runs.hpp"
-#include "help/library.hpp"
 #include "items.hpp"
+#include "lua_state.hpp"
 
 namespace bench {
 namespace {
@@ -87,27 +87,11 @@ return function(workers) whole(sweep{ r = r, g = g, workers = workers, run = poi
        function() return sweep{ x = nothing, workers = 1, run = function(p) return { y = p.x } end } end
 )";
 
-class Questions {
-public:
-    Questions() : state_(luaL_newstate(), lua_close) {
-        luaL_openlibs(state_.get());
-        help::open_library(state_.get());
-        failed_ = luaL_dostring(state_.get(), questions) != LUA_OK;
+void ask(LuaState& lua, benchmark::State& state, int function, int workers) {
+    for ([[maybe_unused]] auto iteration : state) {
+        if (!lua.call(function, workers)) return state.SkipWithError(lua.failure().c_str());
     }
-    void ask(benchmark::State& state, int function, int workers) {
-        lua_State* L = state_.get();
-        for ([[maybe_unused]] auto iteration : state) {
-            if (failed_) return state.SkipWithError(lua_tostring(L, -1));
-            lua_pushvalue(L, function);
-            lua_pushinteger(L, workers);
-            if (lua_pcall(L, 1, 0, 0) != LUA_OK) return state.SkipWithError(lua_tostring(L, -1));
-        }
-    }
-
-private:
-    std::unique_ptr<lua_State, void (*)(lua_State*)> state_;
-    bool failed_ = false;
-};
+}
 
 }  // namespace
 
@@ -120,9 +104,9 @@ void register_analysis(Results& results) {
     };
     constexpr double points = side * side;
     add(steady_native, points, "point", steady_plane);
-    const auto own = std::make_shared<Questions>();
+    const auto own = std::make_shared<LuaState>(questions);
     const auto asking = [&](int function, int workers) {
-        return [own, function, workers](benchmark::State& state) { own->ask(state, function, workers); };
+        return [own, function, workers](benchmark::State& state) { ask(*own, state, function, workers); };
     };
     // By the wall clock: that of the process counts both workers.
     add(sweep_one_worker, points, "point", asking(1, 1))->UseRealTime();

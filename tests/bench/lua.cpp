@@ -1,11 +1,10 @@
 // M(t) as a Lua function: rk4 and spectral through sys:simulate{...}, against nothing but the same number of calls.
 #include <benchmark/benchmark.h>
 
-#include <memory>
 #include <string>
 
-#include "help/library.hpp"
 #include "items.hpp"
+#include "lua_state.hpp"
 #include "workload.hpp"
 
 namespace bench {
@@ -39,69 +38,41 @@ local function count()
 end
 return M, function() simulate(w3, M, 1000, 1e-3) end, count, function() exact(M) end
 )";
-constexpr int functions = 4;
 
-class Script {
-public:
-    Script() {
-        luaL_openlibs(state());
-        dinal::help::open_library(state());
-        if (luaL_dostring(state(), script) != LUA_OK) {
-            failure_ = lua_tostring(state(), -1);
-        }
-    }
-    [[nodiscard]] lua_State* state() const { return state_.get(); }
-    [[nodiscard]] const std::string& failure() const { return failure_; }
-    /// False, and a failure, when it raises.
-    bool simulate_rk4() { return call(2, 0); }
-    bool simulate_spectral() { return call(4, 0); }
-    bool count(LuaCalls& calls) {
-        if (!call(3, 4)) {
-            return false;
-        }
-        calls = {.on_w3 = lua_tonumber(state(), -4),
-                 .events_on_w3 = lua_tonumber(state(), -3),
-                 .without_events = lua_tonumber(state(), -2),
-                 .spectral_on_w3 = lua_tonumber(state(), -1)};
-        return true;
-    }
-    /// The bare cost: argument, call, result, and no more.
-    void call_bare(double count) {
-        lua_settop(state(), functions);
-        lua_State* L = state();
-        for (double i = 0; i < count; ++i) {
-            lua_pushvalue(L, 1);
-            lua_pushnumber(L, i * 0.0005);
-            lua_call(L, 1, 1);
-            benchmark::DoNotOptimize(lua_tonumber(L, -1));
-            lua_pop(L, 1);
-        }
-    }
-
-private:
-    bool call(int which, int results) {
-        lua_settop(state(), functions);
-        lua_pushvalue(state(), which);
-        if (!failure_.empty() || lua_pcall(state(), 0, results, 0) == LUA_OK) {
-            return failure_.empty();
-        }
-        failure_ = lua_tostring(state(), -1);
-        return false;
-    }
-
-    std::unique_ptr<lua_State, decltype(&lua_close)> state_{luaL_newstate(), lua_close};
-    std::string failure_;
-};
-
-Script& the_script() {
-    static Script one;
+LuaState& the_script() {
+    static LuaState one(script);
     return one;
 }
 
-void register_script(const std::string& name, bool (Script::*simulate)()) {
-    benchmark::RegisterBenchmark(name.c_str(), [simulate](benchmark::State& state) {
+/// False, and a failure, when it raises.
+bool count(LuaCalls& calls) {
+    LuaState& lua = the_script();
+    if (!lua.call(3, 0, 4)) {
+        return false;
+    }
+    calls = {.on_w3 = lua.number(-4),
+             .events_on_w3 = lua.number(-3),
+             .without_events = lua.number(-2),
+             .spectral_on_w3 = lua.number(-1)};
+    return true;
+}
+
+/// The bare cost: argument, call, result, and no more.
+void call_bare(double count) {
+    lua_State* L = the_script().get();
+    for (double i = 0; i < count; ++i) {
+        lua_pushvalue(L, 1);
+        lua_pushnumber(L, i * 0.0005);
+        lua_call(L, 1, 1);
+        benchmark::DoNotOptimize(lua_tonumber(L, -1));
+        lua_pop(L, 1);
+    }
+}
+
+void register_script(const std::string& name, int function) {
+    benchmark::RegisterBenchmark(name.c_str(), [function](benchmark::State& state) {
         for ([[maybe_unused]] auto iteration : state) {
-            if (!(the_script().*simulate)()) {
+            if (!the_script().call(function)) {
                 state.SkipWithError(the_script().failure().c_str());
                 break;
             }
@@ -116,18 +87,18 @@ void register_lua(Results& results) {
     Item& rk4 = results.of(group, "rk4 on W3, M in Lua");
     rk4.per = "step";
     rk4.count = workloads[2].length / 0.001;
-    register_script(group + "/" + rk4.name, &Script::simulate_rk4);
+    register_script(group + "/" + rk4.name, 2);
     const Item& spectral = results.of(group, "spectral on W3, M in Lua");
-    register_script(group + "/" + spectral.name, &Script::simulate_spectral);
+    register_script(group + "/" + spectral.name, 4);
     Item& bare = results.of(group, "the same number of bare calls");
     bare.per = "call";
     benchmark::RegisterBenchmark((group + "/" + bare.name).c_str(), [&results, &bare](benchmark::State& state) {
-        if (bare.count == 0 && !the_script().count(results.lua_calls)) {
+        if (bare.count == 0 && !count(results.lua_calls)) {
             state.SkipWithError(the_script().failure().c_str());
         }
         bare.count = results.lua_calls.on_w3;
         for ([[maybe_unused]] auto iteration : state) {
-            the_script().call_bare(bare.count);
+            call_bare(bare.count);
         }
     });
 }

@@ -17,6 +17,7 @@ int main(int argc, char** argv) {
     bench::register_analysis(results);
     bench::register_rows(results);
     bench::register_lua(results);
+    bench::register_systems(results);
     bench::register_plots(results);
     bench::register_start(results);
 

@@ -17,6 +17,7 @@ struct Item {
     double error = -1;            ///< max |u - truth| in units of Mc/k; negative: not asked
     double count = 0;             ///< of what `per` names, in one iteration
     std::string per;              ///< "step", "row", "call"; empty: the whole only
+    double calls = 0;             ///< of a Lua function M in one iteration, where they are counted
 
     [[nodiscard]] double median() const;
 };
@@ -40,6 +41,18 @@ public:
 private:
     std::deque<Item> items_;  // whose elements stay where they are
 };
+
+/// What a bar is of: a time for one of what an item counts, or calls of M.
+enum class Figure { microseconds, seconds, calls };
+
+/// A benchmark that is a Lua script, with its bar for one of what `per` names.
+struct LuaRow {
+    std::string_view name, per;
+    double most;
+    Figure figure;
+    const char* script;
+};
+const std::vector<LuaRow>& lua_rows();
 
 /// Collects the repetitions and shows how far it is; prints nothing else.
 class Collector : public benchmark::BenchmarkReporter {
@@ -69,7 +82,7 @@ inline constexpr std::string_view analysis_group = "questions", steady_native = 
                                   response_300 = "response, 300 points",
                                   identify_1000 = "identify, free decay, 1000 samples";
 inline constexpr std::string_view rows_group = "rows", files_group = "files", lua_group = "Lua", plots_group = "plots",
-                                  start_group = "start";
+                                  start_group = "start", systems_group = "Lua, more in it";
 inline constexpr std::string_view csv_in_memory = "CSV, 1e6 rows of W4, file in memory",
                                   csv_on_disk = "CSV, 1e6 rows of W4, file on the disk",
                                   csv_read = "CSV, 1e6 rows of W4, file in memory read";

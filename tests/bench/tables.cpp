@@ -137,11 +137,28 @@ static void print_question_bars(const Results& results) {
            });
 }
 
+static void print_systems_bars(const Results& results) {
+    for (const LuaRow& row : lua_rows()) {
+        bar_of(results, {{systems_group, row.name}}, fmt::format("{}: a {}", row.name, row.per), row.most,
+               row.figure == Figure::microseconds ? "us"
+               : row.figure == Figure::seconds    ? "s"
+                                                  : "",
+               [&] {
+                   const Item& item = *results.find(systems_group, row.name);
+                   const double all = row.figure == Figure::calls          ? item.calls
+                                      : row.figure == Figure::microseconds ? item.median() * 1e6
+                                                                           : item.median();
+                   return all / item.count;
+               });
+    }
+}
+
 void print_bars(const Results& results) {
     fmt::print("\n{:<66}{:>8} {:<3}{:>8}\n", "bar", "measured", "", "at most");
     print_arcs_bars(results);
     print_spectral_bars(results);
     print_question_bars(results);
+    print_systems_bars(results);
     for (const Peer* peer : {&dinal_rk4, &dinal_1989}) {
         bar_of(results, {{"W1", peer->name}, {"W1", baseline}},
                fmt::format("{}: W1, time against the hand-inlined RK4", peer->name), 0.2, "x",
