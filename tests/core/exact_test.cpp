@@ -316,26 +316,6 @@ TEST_CASE("a row stands where it stands, whatever the arc before it was made of"
     }
 }
 
-TEST_CASE("a very overdamped motion of a million natural periods has its digits", "[exact]") {
-    constexpr double damping = 2e6, omega = 1.5e-6, start = 0.75, end = 6 * std::numbers::pi / omega;
-    const auto system = Oscillator::make({.inertia = 1, .stiffness = 1, .damping = damping}).value();
-    const auto M = Excitation::make(Harmonic{.amplitude = 1, .omega = omega}).value();
-    const Trajectory run = must_run(system, M, {start, 0}, {0, end}, Grid::every(end / 50), Exact{});
-
-    const long double w = omega, zeta = damping / 2, fast = zeta + std::sqrt(zeta * zeta - 1), slow = 1 / fast;
-    const long double real = 1 - w * w, imaginary = 2 * zeta * w, size = real * real + imaginary * imaginary;
-    const long double in_phase = real / size, quadrature = -imaginary / size, v = -w * in_phase;
-    const long double x = start - quadrature, slowly = (fast * x + v) / (fast - slow), at_once = x - slowly;
-    for (Eigen::Index i = 0; i < run.size(); ++i) {
-        const long double t = run.rows(i, 0);
-        const long double truth = in_phase * std::sin(w * t) + quadrature * std::cos(w * t) +
-                                  slowly * std::exp(-slow * t) + at_once * std::exp(-fast * t);
-        // Sixteen natural periods an arc are 125,000 arcs, whose roundings of theta add up to 1.1e-12; shorter ones, to
-        // 5e-12.
-        CHECK(std::fabs(static_cast<double>(run.rows(i, 1) - truth)) < 3e-12);
-    }
-}
-
 TEST_CASE("who may stop a run is asked often, also where M turns a million times a period", "[exact]") {
     const Oscillator system = Oscillator::make({.inertia = 1, .stiffness = 1}).value();
     const Excitation M = Excitation::make(Harmonic{.amplitude = 1, .omega = 1e6}).value();

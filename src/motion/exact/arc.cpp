@@ -14,11 +14,17 @@ constexpr double short_of = 0.3;
 constexpr double most_cancelled = 256;
 /// Nearer than this part of k to resonance a sine is told relative to the resonant motion.
 constexpr double near_resonance = 1.0 / 64;
+/// The longest arc: so many natural periods, or turns of what is fastest and slower than these.
+constexpr double most_turns = 16;
 
 }  // namespace
 
 double Arc::fastest_rate(const model::ClosedForm& M) const {
     return std::max(free_.fastest(), M.fastest());
+}
+
+double Arc::longest(const model::ClosedForm& M) const {
+    return most_turns * 2 * std::numbers::pi / std::min(free_.w0(), lasting_rate(M));
 }
 
 double Arc::begin(const model::ClosedForm& M, const Start& start, double length) {

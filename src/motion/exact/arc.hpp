@@ -20,9 +20,10 @@ public:
     /// What a time unit of the arc costs at most, about: radians of its fastest part times the parts that turn. What
     /// an overdamped system forgets at once does not.
     [[nodiscard]] double cost(const model::ClosedForm& M) const {
-        const double rate = free_.swings() ? fastest_rate(M) : std::max(free_.w0(), M.fastest());
-        return rate * static_cast<double>(1 + M.turning_parts());
+        return lasting_rate(M) * static_cast<double>(1 + M.turning_parts());
     }
+    /// Where an arc without events ends, that what its looks round does not add up; and what the arcs round adds up.
+    [[nodiscard]] double longest(const model::ClosedForm& M) const;
 
     struct Point {
         double way;  ///< theta less that of the beginning
@@ -48,6 +49,10 @@ private:
     bool begin_closed(const model::ClosedForm& M, const Start& start, double length);
     void begin_series(const model::ClosedForm& M, const Start& start, double length, double rate);
     [[nodiscard]] double fastest_rate(const model::ClosedForm& M) const;
+    /// Of the parts that are not forgotten at once.
+    [[nodiscard]] double lasting_rate(const model::ClosedForm& M) const {
+        return std::max(free_.lasting(), M.fastest());
+    }
 
     model::Lowered system_;
     LinearMotion free_;

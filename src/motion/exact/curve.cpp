@@ -67,8 +67,8 @@ void WalkedCurve::begin() {
     }
     sines_size_ = size, sines_fourth_ = fourth;
     if (free_part_) {
-        y.f += start_.velocity;
-        y.slope -= free_.w0_squared() * start_.theta + free_.twice_delta() * start_.velocity;
+        y.f += free_.velocity(start_.free);
+        y.slope += free_.acceleration(start_.free);
     }
     if (!only_swings_) {
         const Value more = powers(0);
@@ -121,7 +121,7 @@ void WalkedCurve::make_turn(double tau, Turn& to) {
         }
         step = free_.step(to.root);
     } else if (turns_free_) {
-        step = free_.after(tau);
+        step = free_.parts_after(tau);
     }
     to.along = step.along, to.moved = step.moved, to.kept = step.kept;
     to.bent = free_.w0_squared() * step.moved;
@@ -160,11 +160,9 @@ const WalkedCurve::Jet& WalkedCurve::derive(const Value& y) {
         third -= square * (omega * z.real());
     }
     if (free_part_) {
-        const double square = free_.w0_squared(), twice = free_.twice_delta();
-        const double first = -(square * asked.theta + twice * asked.velocity);
-        const double bend = -(square * asked.velocity + twice * first);
-        second += bend;
-        third -= square * first + twice * bend;
+        const FreeParts bend = free_.derivative(free_.derivative(asked.free));
+        second += free_.velocity(bend);
+        third += free_.acceleration(bend);
     }
     jet_[0] = y.f, jet_[1] = y.slope, jet_[2] = second / 2, jet_[3] = third * over_factorial[3];
     jet_size_ = 4;
@@ -184,13 +182,10 @@ const WalkedCurve::Jet& WalkedCurve::further_jet() {
         jet_[6] -= fourth * (square * z.imag());
     }
     if (free_part_) {
-        const double square = -free_.w0_squared(), twice = -free_.twice_delta();
-        double before = asked.velocity, f = square * asked.theta + twice * before;
-        for (std::size_t i = 2; i <= jet_order; ++i) {
-            const double next = square * before + twice * f;
-            before = f;
-            f = next;
-            if (i >= first) jet_[i] += f;
+        FreeParts y = asked.free;
+        for (std::size_t i = 1; i <= jet_order; ++i) {
+            y = free_.derivative(y);
+            if (i >= first) jet_[i] += free_.velocity(y);
         }
     }
     for (std::size_t i = first; i <= jet_order; ++i) jet_[i] *= over_factorial[i];
@@ -242,7 +237,7 @@ double WalkedCurve::way() const {
         const Resonance& r = resonances_[j];
         sum += imaginary(r.way_growing, asked.resonances[j][0], r.way_turning, asked.resonances[j][1]);
     }
-    if (free_part_) sum += asked.theta;
+    if (free_part_) sum += free_.theta(asked.free);
     if (aside_ == 0) return sum;
     double further = 0;
     for (std::size_t i = jet_size_; i-- > 4;) further = (further + jet_[i] * over[i + 1]) * aside_;
@@ -275,7 +270,7 @@ double WalkedCurve::growing_bound(double until) const {
 
 double WalkedCurve::size(double until) const {
     double sum = sines_size_;
-    if (free_part_) sum += std::fabs(now_->velocity) + free_.w0() * std::fabs(now_->theta);
+    if (free_part_) sum += free_.size(now_->free);
     if (only_swings_) return sum;
     double of_powers = 0;
     for (std::size_t n = powers_.size(); n-- > 0;) of_powers = of_powers * until + std::fabs(powers_[n]);

@@ -54,9 +54,7 @@ public:
     }
     void add_resonance(const Resonance& resonance) { resonances_.push_back(resonance); }
     /// The velocity of a free motion from this state.
-    void add_free(double theta, double velocity) {
-        start_.theta = theta, start_.velocity = velocity, free_part_ = true;
-    }
+    void add_free(double theta, double velocity) { start_.free = free_.parts(theta, velocity), free_part_ = true; }
     /// All is there: the walk begins at 0.
     void begin();
 
@@ -112,8 +110,7 @@ public:
     }
     /// What |f''''| does not exceed from here to there.
     [[nodiscard]] double fourth_bound(double until) const {
-        const double bound =
-            free_part_ ? sines_fourth_ + free_.fourth_bound(now_->theta, now_->velocity) : sines_fourth_;
+        const double bound = free_part_ ? sines_fourth_ + free_.fourth_bound(now_->free) : sines_fourth_;
         return may_grow() ? bound + growing_bound(until) : bound;
     }
     /// Whether that grows with `until`.
@@ -146,7 +143,7 @@ private:
         std::vector<Complex> sines;
         std::vector<double> amounts;
         std::vector<std::array<Complex, 2>> resonances;  // the divided difference, and exp(mu tau)
-        double theta = 0, velocity = 0;
+        FreeParts free{};
     };
     /// What a time does to each part; to sines, exponentials and resonances in a row of each.
     struct Turn {
@@ -200,11 +197,11 @@ private:
             y.slope += omega[j] * z.real();
         }
         if (free_part_) {
-            const double theta = by.along * from.theta + by.moved * from.velocity;
-            const double velocity = by.kept * from.velocity - by.bent * from.theta;
-            to.theta = theta, to.velocity = velocity;
-            y.f += velocity;
-            y.slope -= free_.w0_squared() * theta + free_.twice_delta() * velocity;
+            const FreeParts free{by.along * from.free.first + by.moved * from.free.second,
+                                 by.kept * from.free.second - by.bent * from.free.first};
+            to.free = free;
+            y.f += free_.velocity(free);
+            y.slope += free_.acceleration(free);
         }
         if (!only_swings_) turn_others(from, by, to, place, y);
         return y;

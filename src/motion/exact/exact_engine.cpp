@@ -8,8 +8,6 @@ namespace dinal::motion::exact {
 
 namespace {
 
-/// An arc without events ends after so many natural periods, that what its looks round does not add up.
-constexpr double longest_arc = 16;
 /// A creep is looked for over so many natural periods.
 constexpr double creeps_over = 0.5 * (1 - 1e-9);
 /// An arc costs so many radians of its parts at most: a fraction of a second, also where each of them is a turn.
@@ -40,7 +38,6 @@ ExactEngine::ExactEngine(const Problem& problem, RowWriter& rows, std::vector<mo
       load_(arc_.free()) {
     find_record();
     const double T0 = 2 * std::numbers::pi / arc_.free().w0();
-    longest_arc_ = longest_arc * T0;
     const double half = arc_.free().swings() ? std::numbers::pi / arc_.free().root().imag() : 0;
     moves_ = {Habit(half), Habit(half)}, swings_ = Habit(half);
     creep_ = {.damping = system_.damping(), .inertia = system_.inertia(), .shortest = creeps_over * T0};
@@ -113,7 +110,7 @@ bool ExactEngine::move() {
     const double start_pull = pull_at_release_ ? *pull_at_release_ : pull();
     pull_at_release_.reset();
     const double cost = arc_.cost(formula_);
-    asked_ = std::min({clock_.until(piece_end_), longest_arc_, formula_.grows_in() * growth_of_an_arc});
+    asked_ = std::min({clock_.until(piece_end_), arc_.longest(formula_), formula_.grows_in() * growth_of_an_arc});
     if (cost * asked_ > greatest_cost) asked_ = greatest_cost / cost;
     const double length = arc_.begin(formula_, {y_.velocity, start_pull}, asked_);
     cost_ += cost * length + cost_between_questions / arcs_between_questions;
@@ -213,8 +210,8 @@ void ExactEngine::settle() {
 void ExactEngine::record_turns(double start_pull, double length) {
     WalkedCurve& velocity = arc_.velocity();
     // At its equilibrium a system changes the sign of its velocity by rounding alone.
-    const double k = system_.stiffness(), w0 = arc_.free().w0();
-    const double floor = 2 * epsilon * w0 * (std::fabs(M_) / k + std::fabs(y_.theta));
+    const double k = system_.stiffness();
+    const double floor = 2 * epsilon * arc_.free().lasting() * (std::fabs(M_) / k + std::fabs(y_.theta));
     constexpr double nothing = 1e-290;
     if (velocity.size(length) <= std::max(floor, nothing)) return;
     FirstExit exit(velocity, {}, 0);

@@ -104,11 +104,10 @@ private:
 
     Clock clock_;
     model::State y_;
-    double theta_rest_ = 0;  // what theta lacks
-    double M_ = 0;           // from the right
-    double piece_end_;       // the next break of M, or the end of the run
-    double asked_ = 0;       // for how long the present arc was wanted
-    double longest_arc_;
+    double theta_rest_ = 0;                   // what theta lacks
+    double M_ = 0;                            // from the right
+    double piece_end_;                        // the next break of M, or the end of the run
+    double asked_ = 0;                        // for how long the present arc was wanted
     std::array<Habit, 2> moves_{}, rests_{};  // backward and forward: from one standstill to the next
     Habit swings_;
     Habit* rest_ = rests_.data();

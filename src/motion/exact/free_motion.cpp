@@ -22,6 +22,10 @@ LinearMotion::LinearMotion(const model::Lowered& system) {
     fast_ = static_cast<double>(swings_ ? delta : delta + w1);
     slow_ = static_cast<double>(swings_ ? delta : square / (delta + w1));
     fastest_ = swings_ ? w0_ : fast_;
+    constexpr double far_apart = 4;
+    apart_ = !swings_ && fast_ >= far_apart * slow_;
+    by_first_ = apart_ ? -slow_ : -w0_squared_;
+    by_second_ = apart_ ? -fast_ : -2 * delta_;
     // (p, q) of the n-th derivative of the velocity, p w0 theta + q velocity in units of w0^n.
     const double twice_zeta = 2 * delta_ / w0_;
     double p = 0, q = 1;
@@ -60,15 +64,22 @@ double LinearMotion::turns_after(double velocity, double acceleration) const {
     return w1_ * part < 1 ? std::atanh(w1_ * part) / w1_ : model::never;
 }
 
-double LinearMotion::fourth_bound(double theta, double velocity) const {
+FreeParts LinearMotion::parts(double theta, double velocity) const {
+    if (!apart_) return {theta, velocity};
+    const double between = fast_ - slow_;
+    return {-slow_ * (velocity + fast_ * theta) / between, fast_ * (velocity + slow_ * theta) / between};
+}
+
+FreeStep LinearMotion::parts_after(double tau) const {
+    if (!apart_) return after(tau);
+    return {std::exp(-slow_ * tau), 0, std::exp(-fast_ * tau)};
+}
+
+double LinearMotion::fourth_bound(const FreeParts& at) const {
     // The energy of a free motion does not grow.
-    const double of_energy = energy_fourth_ * (std::fabs(w0_ * theta) + std::fabs(velocity));
-    if (swings_ || fast_ < 4 * slow_) return of_energy;
-    // Far above critical damping each part is bounded by itself: the fast one is soon gone.
-    const double apart = fast_ - slow_, slow_4 = slow_ * slow_ * slow_ * slow_, fast_4 = fast_ * fast_ * fast_ * fast_;
-    return (slow_ * std::fabs(velocity + fast_ * theta) * slow_4 +
-            fast_ * std::fabs(velocity + slow_ * theta) * fast_4) /
-           apart;
+    if (!apart_) return energy_fourth_ * (std::fabs(w0_ * at.first) + std::fabs(at.second));
+    const double slow_square = slow_ * slow_, fast_square = fast_ * fast_;
+    return std::fabs(at.first) * (slow_square * slow_square) + std::fabs(at.second) * (fast_square * fast_square);
 }
 
 std::complex<double> LinearMotion::turned(double tau) const {

@@ -1,6 +1,7 @@
 // The free motion of the linear part, theta'' + 2 delta theta' + w0^2 theta = 0, over any time and at any damping.
 #pragma once
 
+#include <cmath>
 #include <complex>
 #include <limits>
 
@@ -15,6 +16,13 @@ struct FreeStep {
     double along, moved, kept;
 };
 
+/// A free motion at some time, as it is followed: theta and velocity, or, of a system far above critical damping, what
+/// is slow and what is fast of its velocity: the slow velocity is w0 theta/(2 zeta), and would drown in the roundings
+/// of w0 theta.
+struct FreeParts {
+    double first, second;
+};
+
 class LinearMotion {
 public:
     explicit LinearMotion(const model::Lowered& system);
@@ -25,14 +33,35 @@ public:
     [[nodiscard]] double twice_delta() const { return 2 * delta_; }
     /// Of the faster of its two parts, per time unit: no derivative grows faster.
     [[nodiscard]] double fastest() const { return fastest_; }
+    /// Of the parts that are not soon gone: it is what rounding makes of an angle in the velocity, too.
+    [[nodiscard]] double lasting() const { return apart_ ? slow_ : w0_; }
     [[nodiscard]] FreeStep after(double tau) const;
 
     /// When the velocity of a motion comes to zero first that begins with this velocity and acceleration, not both 0,
     /// and goes on freely about any place; `never` when it does not.
     [[nodiscard]] double turns_after(double velocity, double acceleration) const;
 
-    /// What |the fourth derivative of the velocity| does not exceed from this state on.
-    [[nodiscard]] double fourth_bound(double theta, double velocity) const;
+    // The same motion by its parts:
+    [[nodiscard]] FreeParts parts(double theta, double velocity) const;
+    /// Its step, of which first and second are theta and velocity.
+    [[nodiscard]] FreeStep parts_after(double tau) const;
+    [[nodiscard]] double velocity(const FreeParts& at) const { return apart_ ? at.first + at.second : at.second; }
+    [[nodiscard]] double acceleration(const FreeParts& at) const {
+        return by_first_ * at.first + by_second_ * at.second;
+    }
+    [[nodiscard]] double theta(const FreeParts& at) const {
+        return apart_ ? -(at.first / slow_ + at.second / fast_) : at.first;
+    }
+    [[nodiscard]] FreeParts derivative(const FreeParts& at) const {
+        if (apart_) return {-slow_ * at.first, -fast_ * at.second};
+        return {at.second, acceleration(at)};
+    }
+    /// What |the fourth derivative of the velocity| does not exceed from here on, and the size of the numbers that the
+    /// velocity is the sum of.
+    [[nodiscard]] double fourth_bound(const FreeParts& at) const;
+    [[nodiscard]] double size(const FreeParts& at) const {
+        return std::fabs(at.second) + (apart_ ? 1 : w0_) * std::fabs(at.first);
+    }
 
     // Of a system that swings:
     [[nodiscard]] bool swings() const { return swings_; }
@@ -52,8 +81,10 @@ private:
     double w1_ = 0, w1_rest_ = 0;  // sqrt |w0^2 - delta^2|, and what that lacks
     double slow_ = 0, fast_ = 0;   // of an overdamped system: its two rates
     bool swings_;
+    bool apart_;  // its two parts are followed each by itself
     double fastest_;
-    double energy_fourth_;  // of |v''''|, for a speed of 1 or an angle of 1/w0
+    double by_first_, by_second_;  // the acceleration, for each part
+    double energy_fourth_;         // of |v''''|, for a speed of 1 or an angle of 1/w0
 };
 
 }  // namespace dinal::motion::exact

@@ -1,0 +1,90 @@
+// Far above critical damping: motions that are some 1e6 times slower than the system's own period.
+#include <cmath>
+#include <numbers>
+#include <string>
+
+#include "support/catch.hpp"
+#include "support/measure.hpp"
+#include "support/reference_systems.hpp"
+
+namespace dinal::overdamped_test {
+
+using namespace dinal::model;
+using namespace dinal::motion;
+using namespace dinal::truth;
+
+namespace {
+
+constexpr double damping = 2e6, omega = 1.5e-6;
+
+/// Of I = k = 1 under sin(omega t): what it makes of the sine, and its two rates.
+struct Answer {
+    long double zeta = damping / 2, fast = zeta + std::sqrt(zeta * zeta - 1), slow = 1 / fast, w = omega;
+    long double real = 1 - w * w, imaginary = 2 * zeta * w, size = real * real + imaginary * imaginary;
+    long double in_phase = real / size, quadrature = -imaginary / size;
+
+    [[nodiscard]] long double theta(long double t) const {
+        return in_phase * std::sin(w * t) + quadrature * std::cos(w * t);
+    }
+    [[nodiscard]] long double velocity(long double t) const {
+        return w * (in_phase * std::cos(w * t) - quadrature * std::sin(w * t));
+    }
+};
+
+/// A free motion by its two parts.
+struct Free {
+    long double fast, slow, soon, late;
+    Free(const Answer& of, long double theta, long double velocity)
+        : fast(of.fast), slow(of.slow), soon(-(velocity + slow * theta) / (fast - slow)), late(theta - soon) {}
+    [[nodiscard]] long double theta(long double since) const {
+        return late * std::exp(-slow * since) + soon * std::exp(-fast * since);
+    }
+    [[nodiscard]] long double velocity(long double since) const {
+        return -slow * late * std::exp(-slow * since) - fast * soon * std::exp(-fast * since);
+    }
+};
+
+const Excitation M = Excitation::make(Harmonic{.amplitude = 1, .omega = omega}).value();
+
+}  // namespace
+
+TEST_CASE("a very overdamped motion of a million natural periods has its digits", "[exact]") {
+    constexpr double start = 0.75, end = 6 * std::numbers::pi / omega;
+    const auto system = system_of({.inertia = 1, .stiffness = 1, .damping = damping});
+    const Trajectory run = must_run(system, M, {start, 0}, {0, end}, Grid::every(end / 50), Exact{});
+    const Answer answer;
+    const Free free(answer, start - answer.theta(0), -answer.velocity(0));
+    for (Eigen::Index i = 0; i < run.size(); ++i) {
+        const long double t = run.rows(i, 0);
+        // Some roundings of numbers near 1.
+        CHECK(std::fabs(static_cast<double>(run.rows(i, 1) - (answer.theta(t) + free.theta(t)))) < 2e-15);
+    }
+}
+
+TEST_CASE("a very overdamped mass slips when M passes Re, and stops when it must", "[exact]") {
+    // The velocity is soon above its own rounding, which is 1e-6 of that of theta: the slip was told when M was 3e-9
+    // past Re.
+    constexpr double friction = 0.1;
+    const auto system = system_of({.inertia = 1, .stiffness = 1, .damping = damping, .kinetic_friction = friction});
+    const Trajectory run = must_run(system, M, {0, 0}, {0, 3 / omega}, Grid::none(), Exact{});
+    std::string kinds;
+    for (const Event& event : run.events) kinds.append(name(event.kind)) += ' ';
+    REQUIRE(kinds == "slip stick slip ");
+
+    const Answer answer;
+    const long double slips = std::asin(static_cast<long double>(friction)) / answer.w;
+    const Free free(answer, friction - answer.theta(slips), -answer.velocity(slips));
+    long double before = 0.5L / answer.w, after = 3 / answer.w;
+    for (int i = 0; i < 70; ++i) {
+        const long double middle = (before + after) / 2;
+        (answer.velocity(middle) + free.velocity(middle - slips) > 0 ? before : after) = middle;
+    }
+    const auto off = [&](std::size_t i, long double truth) {
+        return std::fabs(static_cast<double>((run.events[i].t - truth) * answer.w));
+    };
+    // Radians of M: a few roundings of M.
+    CHECK(off(0, slips) < 1e-15);
+    CHECK(off(1, before) < 5e-15);
+}
+
+}  // namespace dinal::overdamped_test
