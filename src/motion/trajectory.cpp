@@ -92,7 +92,7 @@ namespace {
 std::string chatter_text(const Trajectory& run) {
     if (!run.events.empty() && run.events.back().t == run.t_stop) {
         if (run.events.back().kind == model::EventKind::user) {
-            return "events come without end in no time; bounces made by act never come to rest, those of walls = {...} do";
+            return "events come without end in no time; bounces and stops made by act never come to rest, those of walls = {...} do";
         }
         if (run.events.back().kind == model::EventKind::switched) {
             return "a relay switches without end in no time: its on and off are too near to each other";

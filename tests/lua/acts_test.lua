@@ -73,9 +73,59 @@ test("bounces by act that die out end the run with what to do, and never fall th
                 -- the sum of the bounces; the last ones, 1e-5 of the first, are not waited for
                 near(run.events[#run.events].t, math.sqrt(3) * (1 + 2 * kept / (1 - kept)), most)
                 assert(run.theta:min() >= 0.1 - 1e-12)
-                assert(run:explain():gsub("%s+", " "):find("bounces made by act never come to rest", 1, true), run:explain())
+                assert(run:explain():gsub("%s+", " "):find("bounces and stops made by act never come to rest", 1, true), run:explain())
             end
         end
+    end
+end)
+
+test("an act that keeps little of the speed, or none, does not let the mass through either", function()
+    for _, method in ipairs(methods) do
+        for _, place in ipairs { 0, -0.06, 3.5, 28, 1e4 } do
+            for _, Rd in ipairs { 0, 0.05 } do
+                for _, kept in ipairs { 0, 1e-9, 1e-5, 1e-3, 0.02, 0.1, 0.3 } do
+                    local run = system { I = 1, k = 0.1, Rd = Rd }:simulate {
+                        M = 0.1 * place + 1, theta0 = place - 0.1, t_end = 30, dt = 1, integrator = method,
+                        events = { { when = function(_, theta) return theta - place end, act = function(_, theta, v) return theta, -kept * v end } },
+                    }
+                    local what = ("at %g, kept %g, Rd %g: "):format(place, kept, Rd)
+                    assert(run.outcome:find("without end", 1, true) and run.outcome:find("walls", 1, true), what .. run.outcome)
+                    -- theta is located to roundings of what it is made of
+                    local last = run.events[#run.events]
+                    assert(last.kind == "user" and math.abs(last.theta - place) <= 1e-13 + 4e-15 * math.abs(place), what .. last.theta - place)
+                    -- about 1 pulls on; Rd changes a bounce by some percent, and the least that can be seen, of the height of
+                    -- a rounding, lasts as long as its root
+                    local first = run.events[1]
+                    near(last.t - first.t, 2 * first.velocity * kept / (1 - kept), 0.2 * first.velocity * kept + 1e-7 + math.sqrt(4e-15 * math.abs(place)))
+                end
+            end
+        end
+    end
+end)
+
+test("what an act stops may stick there, go back, or be carried on by time", function()
+    for _, method in ipairs(methods) do
+        local function stopped(sys, task)
+            task.theta0, task.t_end, task.dt, task.integrator = 0, 3, 1, method
+            task.events = { { when = task.when or function(_, theta) return theta - 0.5 end, act = function(_, theta) return theta, 0 end } }
+            task.when = nil
+            return sys:simulate(task)
+        end
+        local dry = system { I = 1, k = 0, Rd = 0.1 }
+        local stuck = stopped(dry, { velocity0 = 1, M = 0.05 })
+        near(stuck.theta[#stuck], 0.5, 1e-14)
+        equal(stuck.outcome, "stuck at the end")
+        -- x = t - 0.05 t^2 to the place, and back from rest
+        local back = stopped(block, { velocity0 = 1, M = -0.1 })
+        local t = 10 - math.sqrt(90)
+        near(back.theta[#back], 0.5 - 0.05 * (3 - t) ^ 2, 1e-12)
+        local clock = stopped(block, { velocity0 = 1, M = 0.1, when = function(s) return s - 1 end })
+        near(clock.theta[#clock], 1.05 + 0.05 * 2 ^ 2, 1e-12)
+        -- a stop that does not hold is not for ever
+        local slips = stopped(dry, { velocity0 = 1, M = excitation.ramp { slope = 0.05 } })
+        assert(slips.outcome:find("without end", 1, true), slips.outcome)
+        near(slips.t_end, 2, 1e-6)
+        near(slips.theta:max(), 0.5, 1e-13)
     end
 end)
 

@@ -69,6 +69,15 @@ public:
         return smooth_ ? of_series(half, from, at_zero) : of_values(half, from);
     }
 
+    /// Whether it is beyond rounding in this half somewhere before x: at a node, or half way to x.
+    [[nodiscard]] bool is_clearly(Half half, double x) const {
+        if (!(x > -1)) return false;
+        for (std::size_t j = 0; j < node_count; ++j) {
+            if (spectral::chebyshev::nodes[j] <= x && half_of(values_[j], 0) == half) return true;
+        }
+        return half_of(exact_((x - 1) / 2), 0) == half;
+    }
+
 private:
     [[nodiscard]] Half half_of(double value, Half otherwise) const {
         return value > floor_ ? 1 : value < -floor_ ? -1 : otherwise;

@@ -70,6 +70,7 @@ bool Engine::begin() {
     halves_.assign(extras_.events.size(), 0);
     fading_.resize(extras_.events.size());
     rounded_.assign(extras_.events.size(), 0);
+    sent_back_.assign(extras_.events.size(), false);
     if (left != nullptr) {
         field_.remember(left->controllers);
         halves_ = left->halves;
@@ -121,7 +122,10 @@ bool Engine::choose() {
     // As long as it takes to a wall, or back to it, and a little more: a small bounce is to be seen.
     if (problem_.system.walls() && !standstill_.stuck()) h = std::min(h, std::max(0.6 * until_wall(), 1e-9 * pace_));
     if (watches_corners()) h = std::min(h, longest_under_friction() / 2);
-    if (flight_ < model::never) h = std::min(h, std::max(0.6 * flight_, 1e-9 * pace_));
+    if (flight_.side != 0 && flight_.side * (flight_.from - theta()) < 0) flight_.side = 0;
+    if (flight_.side != 0 && !standstill_.stuck()) {
+        h = std::min(h, std::max(0.6 * until(flight_.side, flight_.from, acceleration()), 1e-9 * pace_));
+    }
     const double remaining = now_.until(limit);
     const bool to_limit = remaining <= 2 * h * (1 + 1e-9);
     piece_.start = now_;
@@ -241,7 +245,6 @@ bool Engine::end_piece(double x) {
     after_break_ = whole && piece_.to_break;
     if (bad_time_ <= now_.hi) bad_time_ = model::never;
     if (belt_turns_ <= now_.hi) belt_turns_ = model::never;
-    flight_ = model::never;
     const double belt_here = whole ? piece_.belt[node_count - 1] : belt();
     if (standstill_.stuck()) y_[1] = leans() ? 0 : belt_here;
     if (whole && length > 0) standstill_.go_on();

@@ -65,6 +65,11 @@ private:
             return now < first && now <= next_to_nothing * first;
         }
     };
+    /// Of a mass that a user threw: from where, and on which side of it that is; 0 when it is none that is soon back.
+    struct Flight {
+        double from = 0;
+        int side = 0;
+    };
     struct Bounces {
         double once = 0, all = 0;
     };
@@ -116,7 +121,9 @@ private:
     void watch_users(Ending& ending);
     bool act_all(const std::vector<std::size_t>& told);
     bool act(std::size_t which, const std::vector<std::size_t>& told);
-    [[nodiscard]] double until_back() const;
+    void come_again(std::size_t event);
+    [[nodiscard]] bool passes_on(std::size_t event) const;
+    void throw_from_here();
     [[nodiscard]] double rounding_of(std::size_t event) const;
     void stand_where_put(const std::vector<double>& before, const std::vector<std::size_t>& told);
     [[nodiscard]] std::vector<double> watched_values(double x) const;
@@ -129,6 +136,7 @@ private:
     void touch();
     [[nodiscard]] bool belt_turns_at_wall();
     [[nodiscard]] double acceleration() const;
+    [[nodiscard]] double until(int side, double place, double a) const;
     [[nodiscard]] double until_wall() const;
     bool hit(model::Motion into);
     void come_to_lean(model::Motion against);
@@ -197,13 +205,15 @@ private:
     double gap_ = 0;  // the longest between two looks at M
     double bad_time_ = model::never;
     double belt_turns_ = model::never;  // while the mass stands at a wall
-    double flight_ = model::never;      // how long the mass may be away that a user has just thrown
-    double born_;                       // when the run began that goes on here
+    Flight flight_;
+    double born_;  // when the run began that goes on here
     int attempts_ = 0, too_short_ = 0;
     double attempts_since_ = 0;
     Storm storm_, impacts_;
     std::vector<Fading> fading_;   // of the events of the user
     std::vector<double> rounded_;  // what is zero of their values, since an act
+    std::vector<Half> came_from_;  // when they were told last
+    std::vector<bool> sent_back_;  // by an act, and not clearly there yet
     std::size_t next_row_ = 0;
     double* column_ = nullptr;
     model::Outcome outcome_ = model::Outcome::reached_end;

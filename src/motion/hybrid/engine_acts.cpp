@@ -39,6 +39,7 @@ void Engine::watch_users(Ending& ending) {
         Half half = halves_[i];
         while (const auto x = watched.leaves(half, from)) {
             if (!(*x < before)) break;
+            if (sent_back_[i] && !watched.is_clearly(half, *x)) return come_again(i);
             if (wanted.direction == model::Crossing::both || (half < 0) == (wanted.direction == model::Crossing::up)) {
                 wanted_ones.emplace_back(i, *x);
                 break;
@@ -50,6 +51,7 @@ void Engine::watch_users(Ending& ending) {
             from = *x;
         }
         if (halves_[i] == 0) halves_[i] = half;
+        if (sent_back_[i]) sent_back_[i] = !watched.is_clearly(halves_[i], 1);
     }
     if (!wanted_ones.empty()) {
         double first = 1;
@@ -64,7 +66,16 @@ void Engine::watch_users(Ending& ending) {
     }
 }
 
+/// What an act threw back, or stopped, is through zero without having been beyond rounding on the side that it came
+/// from: it would be thrown back again at once, and again.
+void Engine::come_again(std::size_t event) {
+    const bool told = !events_.empty() && events_.back().kind == model::EventKind::user && events_.back().t == now_.hi;
+    if (!told) tell(model::EventKind::user, static_cast<int>(event));
+    fail(model::Outcome::chattering);
+}
+
 bool Engine::act_all(const std::vector<std::size_t>& told) {
+    came_from_ = halves_;
     for (const std::size_t which : told) halves_[which] = -halves_[which];
     if (!std::all_of(told.begin(), told.end(), [&](std::size_t which) { return act(which, told); })) return false;
     // What comes at the same instant is told before one of them stops the run: it would not be told when that goes on.
@@ -110,7 +121,7 @@ bool Engine::act(std::size_t which, const std::vector<std::size_t>& told) {
         const bool changed = moved || !std::equal(states.begin(), states.end(), y_.begin() + 2);
         stand_where_put(before, changed ? told : std::vector<std::size_t>());
         echo(now_.hi, 1);
-        if (moved) flight_ = until_back();
+        if (moved) throw_from_here();
         if (moved && fading_[which].after(now_.hi) && !wanted.stop) return fail(model::Outcome::chattering);
     }
     return wanted.stop || !too_often() || fail(model::Outcome::chattering);
@@ -126,10 +137,11 @@ std::vector<double> Engine::watched_values(double x) const {
     return values;
 }
 
-/// How long until a mass that was thrown is as fast the other way; `never` when nothing turns it.
-double Engine::until_back() const {
+/// A mass that was thrown, and is soon back, is to be seen on its way.
+void Engine::throw_from_here() {
     const double a = standstill_.stuck() ? 0 : acceleration();
-    return y_[1] * a < 0 ? 2 * std::fabs(y_[1] / a) : model::never;
+    const bool short_flight = y_[1] * a < 0 && std::fabs(y_[1]) < std::fabs(a) * cut_.longest;
+    flight_ = {theta(), !short_flight ? 0 : y_[1] > 0 ? -1 : 1};
 }
 
 /// How far a watched value goes when what it is made of changes by some ulps.
@@ -144,19 +156,35 @@ double Engine::rounding_of(std::size_t event) const {
                     std::fabs(value(at.y.theta, at.y.velocity * ulps) - own));
 }
 
+/// Whether a value at zero goes on to the side to which it has come, now that the user has acted, as it does at once;
+/// else he threw it back, or stopped it.
+bool Engine::passes_on(std::size_t event) const {
+    constexpr double soon = 1e-4;
+    const double step = soon * h_, a = standstill_.stuck() ? 0 : acceleration();
+    Values rates(y_.size()), states(y_.size() - 2);
+    field_.rates(here(), rates.data() + 2);
+    const auto value = [&](double after) {
+        for (std::size_t k = 2; k < y_.size(); ++k) states[k - 2] = y_[k] + after * rates[k];
+        return extras_.events[event].when->value_with(now_.hi + after, {theta() + after * y_[1], y_[1] + after * a},
+                                                      states);
+    };
+    return came_from_[event] * (value(step) - value(-step)) < -rounded_[event];
+}
+
 /// What the user did may have put watched values on the other side of zero, which is no passing. A value that was told
-/// stands at zero still when he changed something else, as a bounce does: its half is what it comes to next, be it the
-/// one that it came from.
+/// stands at zero still when he changed something else, as a bounce does: its half is the one that it came from, or,
+/// when it goes on, what it comes to next.
 void Engine::stand_where_put(const std::vector<double>& before, const std::vector<std::size_t>& told) {
     const std::vector<double> now = watched_values(2), begin = watched_values(-1), end = watched_values(1);
     for (std::size_t i = 0; i < halves_.size(); ++i) {
         const double size = std::max({std::fabs(begin[i]), std::fabs(end[i]), std::fabs(now[i])});
         if (now[i] == before[i]) {
             // One that an impact took past zero does not stand there.
-            const bool stands = std::fabs(now[i]) <= at_zero * size + 2 * rounding_of(i);
+            const bool stands = std::fabs(now[i]) <= at_zero * size + 2 * rounding_of(i) + rounded_[i];
             if (!stands || std::find(told.begin(), told.end(), i) == told.end()) continue;
-            halves_[i] = 0;
             rounded_[i] = 2 * std::fabs(now[i]) + rounding_of(i);
+            sent_back_[i] = !passes_on(i);
+            halves_[i] = sent_back_[i] ? came_from_[i] : 0;
             continue;
         }
         halves_[i] = std::fabs(now[i]) <= at_zero * size ? 0 : now[i] > 0 ? 1 : -1;

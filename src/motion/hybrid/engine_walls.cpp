@@ -82,18 +82,19 @@ double Engine::acceleration() const {
            system_.inertia();
 }
 
-/// How long it would take to a wall under the present acceleration; `never` when that leads to none.
+/// How long it would take under this acceleration to a place on this side; `never` when that does not lead there.
+double Engine::until(int side, double place, double a) const {
+    const double gap = std::max(0.0, side * ((place - origin_) - y_[0]));
+    const double v = side * y_[1], b = side * a, root = v * v + 2 * b * gap;
+    if (!(root >= 0) || !(gap < model::never)) return model::never;
+    const double t = v > 0 ? 2 * gap / (v + std::sqrt(root)) : b > 0 ? (std::sqrt(root) - v) / b : model::never;
+    return t > 0 ? t : model::never;
+}
+
 double Engine::until_wall() const {
+    const model::Walls& walls = *problem_.system.walls();
     const double a = acceleration();
-    double first = model::never;
-    for (const int side : {1, -1}) {
-        const double gap = std::max(0.0, side * ((problem_.system.walls()->at(side) - origin_) - y_[0]));
-        const double v = side * y_[1], b = side * a, root = v * v + 2 * b * gap;
-        if (!(root >= 0) || !(gap < model::never)) continue;
-        const double t = v > 0 ? 2 * gap / (v + std::sqrt(root)) : b > 0 ? (std::sqrt(root) - v) / b : model::never;
-        if (t > 0) first = std::min(first, t);
-    }
-    return first;
+    return std::min(until(1, walls.upper, a), until(-1, walls.lower, a));
 }
 
 /// What the roundings of its way may have made of the distance to a wall. An arrival at velocity 0 that they push into
