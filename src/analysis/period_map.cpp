@@ -5,7 +5,6 @@
 #include <limits>
 #include <numbers>
 
-#include "analysis/stretches.hpp"
 #include "theory/theory_modes.hpp"
 
 namespace dinal::analysis {
@@ -67,15 +66,25 @@ MapStep PeriodMap::operator()(const Place& from) const {
         step.differentiable = false;
         return step;
     }
+    const std::vector<Stretch> parts = stretches(run);
+    step = told(run, parts);
+    differentiate(parts, step);
+    return step;
+}
+
+MapStep PeriodMap::told(const motion::Trajectory& run, const std::vector<Stretch>& parts) const {
+    MapStep step;
+    step.outcome = run.outcome;
+    const double begins = run.t_start, ends = run.t_stop, first = run.initial.theta;
     const model::State end = run.motion_at_stop == model::Motion::stuck && !run.events.empty()
                                  ? model::State{run.events.back().theta, 0}
                                  : run.state_at_stop;
     step.to = {end.theta, end.velocity / omega_};
     step.moved = !(run.began_stuck && run.events.empty());
-    step.low = std::min(from[0], step.to[0]);
-    step.high = std::max(from[0], step.to[0]);
-    step.t_low = from[0] <= step.to[0] ? start_ : start_ + length_;
-    step.t_high = from[0] >= step.to[0] ? start_ : start_ + length_;
+    step.low = std::min(first, step.to[0]);
+    step.high = std::max(first, step.to[0]);
+    step.t_low = first <= step.to[0] ? begins : ends;
+    step.t_high = first >= step.to[0] ? begins : ends;
     for (const model::Event& event : run.events) {
         if (event.kind == model::EventKind::slip) continue;  // it stood there before
         if (event.theta < step.low) {
@@ -93,11 +102,15 @@ MapStep PeriodMap::operator()(const Place& from) const {
     if (stands_on) {
         const double since = run.events.back().t;
         for (double* t : {&step.t_low, &step.t_high}) {
-            if (*t == start_) *t = since - length_;
-            if (*t == start_ + length_) *t = since;
+            if (*t == begins) *t = since - (ends - begins);
+            if (*t == ends) *t = since;
         }
     }
-    differentiate(run, step);
+    for (const Stretch& s : parts) {
+        if (!s.stuck) continue;
+        step.stops += s.begun_by ? 1U : 0U;
+        step.stuck += s.lasts();
+    }
     return step;
 }
 
@@ -122,16 +135,12 @@ double PeriodMap::slope_before(double t) const {
     return (3 * now - 4 * one + two) / (2 * h);
 }
 
-void PeriodMap::differentiate(const motion::Trajectory& run, MapStep& step) const {
+void PeriodMap::differentiate(const std::vector<Stretch>& parts, MapStep& step) const {
     const model::Lowered& system = lowered_;
     Eigen::Matrix2d total = Eigen::Matrix2d::Identity();
     step.differentiable = !system.has_remainder() && !excitation_.has_feedback();
-    for (const Stretch& s : stretches(run)) {
-        if (s.stuck) {
-            step.stops += s.begun_by ? 1U : 0U;
-            step.stuck += s.lasts();
-        }
-        if (!step.differentiable) continue;
+    for (const Stretch& s : parts) {
+        if (!step.differentiable) break;
         if (s.stuck) {
             total.row(1).setZero();
         } else {

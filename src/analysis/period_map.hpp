@@ -8,7 +8,9 @@
 #include <Eigen/Core>
 #include <cmath>
 #include <complex>
+#include <vector>
 
+#include "analysis/stretches.hpp"
 #include "model/excitation.hpp"
 #include "model/lowered.hpp"
 #include "motion/integrators.hpp"
@@ -56,6 +58,8 @@ public:
     [[nodiscard]] double rounding() const;
     [[nodiscard]] model::State state(const Place& place) const { return {place[0], place[1] * omega_}; }
     [[nodiscard]] motion::Trajectory run(const Place& from, double length, bool dense) const;
+    /// All of a step but its derivative, from a run of any length.
+    [[nodiscard]] MapStep told(const motion::Trajectory& run, const std::vector<Stretch>& parts) const;
     [[nodiscard]] const model::Oscillator& system() const { return system_; }
     [[nodiscard]] const model::Excitation& excitation() const { return excitation_; }
     [[nodiscard]] double start() const { return start_; }
@@ -63,7 +67,7 @@ public:
     [[nodiscard]] const std::optional<model::Contradiction>& contradiction() const { return contradiction_; }
 
 private:
-    void differentiate(const motion::Trajectory& run, MapStep& step) const;
+    void differentiate(const std::vector<Stretch>& parts, MapStep& step) const;
     [[nodiscard]] Eigen::Matrix2d free_motion(double length) const;
     [[nodiscard]] double slope_before(double t) const;
 

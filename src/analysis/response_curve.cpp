@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "model/controller.hpp"
+
 namespace dinal::analysis {
 namespace {
 
@@ -45,6 +47,11 @@ private:
         return motion;
     }
 
+    /// Of more than one motion, by theta and velocity alone.
+    [[nodiscard]] static bool has_map(const SteadyQuestion& question) {
+        return !contracts(question) && !model::has_memory(question.excitation);
+    }
+
     void sweep() {
         const std::vector<double>& values = question_.values;
         model::State start = question_.start;
@@ -53,7 +60,7 @@ private:
         for (std::size_t i = 0; i < values.size() && !stopped();) {
             const SteadyMotion motion = motion_at(values[i], start, near);
             const bool moves = motion.status == SteadyStatus::steady;
-            const bool branches = walkable_ && moves && !contracts(question_.family(values[i]));
+            const bool branches = walkable_ && moves && has_map(question_.family(values[i]));
             if (!branches) {
                 near = moves;
                 if (moves) start = motion.start;

@@ -6,10 +6,12 @@
 #include <vector>
 
 #include "analysis/fixed_point.hpp"
+#include "analysis/settling/settled.hpp"
 #include "analysis/sine/short_slides.hpp"
 #include "analysis/sine/sliding_start.hpp"
 #include "analysis/sine/stopping_start.hpp"
 #include "analysis/steady_facts.hpp"
+#include "model/controller.hpp"
 #include "model/lowered.hpp"
 
 namespace dinal::analysis {
@@ -300,25 +302,21 @@ private:
 }  // namespace
 
 SteadyMotion steady_motion(const SteadyQuestion& question, const motion::Monitor& monitor) {
+    const bool remembers = model::has_memory(question.excitation);
+    if (model::has_memory<model::DelayedController>(question.excitation))
+        return settling::settled_motion(question, monitor);
     SteadySearch search(question, monitor);
-    return search.judged(search.found());
+    SteadyMotion motion = search.judged(search.found());
+    if (remembers && !settling::goes_on(question, motion, monitor) && motion.outcome != model::Outcome::interrupted) {
+        return settling::settled_motion(question, monitor);
+    }
+    return motion;
 }
 
 SteadyMotion steady_motion_near(const SteadyQuestion& question, const motion::Monitor& monitor) {
+    if (model::has_memory(question.excitation)) return steady_motion(question, monitor);
     SteadySearch search(question, monitor);
     return search.judged(search.found_near());
-}
-
-bool goes_on(const SteadyQuestion& question, const SteadyMotion& motion, const motion::Monitor& monitor) {
-    if (motion.status != SteadyStatus::steady && motion.status != SteadyStatus::adheres) return false;
-    constexpr double periods = 4;
-    const PeriodMap map(question.system, question.excitation, question.drive.start, periods * motion.period, monitor);
-    const Place start = place_of(motion.start, map.omega());
-    const MapStep step = map(start);
-    const double size = std::max({std::fabs(motion.low), std::fabs(motion.high), length_of(start)});
-    constexpr double alike = 1e-8;
-    return step.finished && length_of(step.to - start) <= alike * size &&
-           std::fabs(step.high - motion.high) + std::fabs(step.low - motion.low) <= alike * size;
 }
 
 std::optional<SteadyMotion> another_motion(const SteadyQuestion& question, const SteadyMotion& known,

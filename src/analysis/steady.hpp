@@ -4,6 +4,7 @@
 
 #include <array>
 #include <complex>
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
@@ -45,6 +46,7 @@ struct SteadyMotion {
     double residual = 0;                                     ///< what is left of the fixed point, in amplitudes
     model::Outcome outcome = model::Outcome::reached_end;    ///< of the last run
     std::optional<model::Contradiction> contradiction = {};  ///< of Outcome::not_a_function
+    std::shared_ptr<const motion::Trajectory> settled = {};  ///< one period, of a motion that has more than a state
 };
 
 /// Where the motion from `initial` leads.
@@ -52,10 +54,6 @@ SteadyMotion steady_motion(const SteadyQuestion& question, const motion::Monitor
 
 /// The same from a place near the answer, as when a parameter has changed a little.
 SteadyMotion steady_motion_near(const SteadyQuestion& question, const motion::Monitor& monitor = {});
-
-/// Whether the motion goes on so in one run of some periods: what terms with a memory hold at the end of a period is
-/// no part of theta and velocity, with which the search begins each period.
-bool goes_on(const SteadyQuestion& question, const SteadyMotion& motion, const motion::Monitor& monitor = {});
 
 /// A motion from another start that is not this one; none was seen from `other_starts` of them.
 inline constexpr int other_starts = 8;

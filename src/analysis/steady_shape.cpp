@@ -9,6 +9,7 @@
 #include "analysis/sine/short_slides.hpp"
 #include "analysis/steady.hpp"
 #include "analysis/stretches.hpp"
+#include "model/controller.hpp"
 #include "model/lowered.hpp"
 #include "text/sentences.hpp"
 
@@ -51,7 +52,9 @@ namespace {
 std::optional<Fundamental> by_motion(const SteadyQuestion& question, const SteadyMotion& motion, const PeriodMap& map,
                                      double length) {
     const Drive& drive = question.drive;
-    const motion::Trajectory run = map.run({motion.start.theta, motion.start.velocity / map.omega()}, length, true);
+    const motion::Trajectory run =
+        motion.settled ? *motion.settled
+                       : map.run({motion.start.theta, motion.start.velocity / map.omega()}, length, true);
     if (!model::is_whole(run.outcome)) return {};
     const double omega = 2 * std::numbers::pi / drive.period;
     const double middle = motion.symmetric ? 0 : (motion.low + motion.high) / 2;
@@ -81,7 +84,7 @@ SteadyShape shape_of(const SteadyQuestion& question, const SteadyMotion& motion,
     if (motion.status != SteadyStatus::steady) return shape;
     const Drive& drive = question.drive;
     // Half a period of a symmetric motion tells all of it.
-    const double length = motion.symmetric ? motion.period / 2 : motion.period;
+    const double length = motion.symmetric && !motion.settled ? motion.period / 2 : motion.period;
     const PeriodMap map(question.system, question.excitation, drive.start, length, monitor);
     const bool feedback = question.excitation.has_feedback();
     const std::complex<double> M_wave = feedback ? 0 : harmonic_of(question.excitation, drive, 1);
@@ -136,6 +139,10 @@ public:
                 say("Nothing periodic was found in {} periods of M, up to 32 of them in one: the motion is irregular, "
                     "or it settles very slowly.",
                     motion_.maps);
+                if (model::has_memory<model::SampledController>(question_.excitation)) {
+                    say("A controller that samples may have no period in common with M: choose an every that divides "
+                        "the period.");
+                }
                 break;
         }
         tell_others(other);
@@ -166,6 +173,11 @@ private:
         if (motion_.symmetric) say("Each half period is the opposite of the other.");
     }
     void tell_stability() {
+        if (motion_.settled) {
+            say("A run of {} periods of M came to it; it has no multipliers, because what M remembers is a part of the "
+                "state.",
+                motion_.maps);
+        }
         if (!motion_.differentiable) return;
         const double largest = std::max(std::abs(motion_.multipliers[0]), std::abs(motion_.multipliers[1]));
         if (!motion_.stable) {

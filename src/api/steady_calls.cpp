@@ -6,7 +6,6 @@
 #include "api/bind_excitation.hpp"
 #include "api/run.hpp"
 #include "api/steady_answer.hpp"
-#include "model/controller.hpp"
 
 namespace dinal::api {
 namespace {
@@ -22,21 +21,6 @@ int push_steady(lua_State* L, const lua::Options& options, analysis::SteadyQuest
         options.fail({fmt::format("the motion could not be followed: {}", model::sentence(outcome))});
     }
     check_function(options, steady->motion);
-    if (model::has_memory(steady->question.excitation)) {
-        bool same = false;
-        asking(L, [&](const motion::Monitor& monitor) {
-            same = analysis::goes_on(steady->question, steady->motion, monitor);
-        });
-        if (!same) {
-            options.fail(
-                {fmt::format("what the sampled, relay or delayed terms of M remember goes on from one period "
-                             "into the next, and a steady motion is sought by theta and velocity alone; {}run "
-                             "some periods and see run:poincare",
-                             model::has_memory<model::SampledController>(steady->question.excitation)
-                                 ? "choose an every that divides the period, or "
-                                 : "")});
-        }
-    }
     lua::push<SteadyHandle>(L, steady);
     return 1;
 }
@@ -66,6 +50,22 @@ int run_of_steady(lua_State* L) {
     }
     if (lua_getiuservalue(L, 1, 1) == LUA_TUSERDATA) return 1;
     constexpr double rows = 400;
+    if (s->motion.settled) {
+        // What led there is a part of the run that is asked for again, and its rows are those of its last period.
+        const motion::Trajectory& last = *s->motion.settled;
+        const auto times = last.column(motion::Column::t);
+        source::Task whole{.system = s->question.system,
+                           .excitation = s->question.excitation,
+                           .initial = s->question.initial,
+                           .window = {.start = s->question.drive.start, .end = last.t_stop},
+                           .rows = motion::Grid::at({times.begin(), times.end()}),
+                           .integrator = {}};
+        Run found{.trajectory = last, .origin = source::origin_of(L, whole)};
+        push_run(L, std::make_shared<const Run>(std::move(found)));
+        lua_pushvalue(L, -1);
+        lua_setiuservalue(L, 1, 1);
+        return 1;
+    }
     const double start = s->question.drive.start, length = s->motion.period;
     source::Task task{.system = s->question.system,
                       .excitation = s->question.excitation,

@@ -159,18 +159,74 @@ test("Ctrl-C and limits reach the search: a function that never ends is stopped 
 end)
 
 
-test("what M remembers from one period to the next is no part of what steady seeks", function()
-    local light = system{ I = 1, k = 1, C = 0.3 }
-    local function late(by) return harmonic(1.2 / (2 * math.pi)) + excitation.delayed(function(t, theta) return -0.2 * theta end, { by = by }) end
-    for _, by in ipairs{ 0.02, 3 } do
-        raises(function() light:steady{ M = late(by), period = 2 * math.pi / 1.2 } end, "by theta and velocity alone; run some periods and see run:poincare")
+test("with a dead time in the loop the run itself goes on until it repeats itself: a linear oscillator by hand", function()
+    local light, w, G, D = system{ I = 1, k = 1, C = 0.3 }, 1.2, 0.2, 0.05
+    for _, by in ipairs{ 0.02, 0.4, 3, 11 } do -- less than a look apart, and more than two periods of M
+        local late = excitation.delayed(function(t, theta, velocity) return -G * theta - D * velocity end, { by = by })
+        local s = light:steady{ M = excitation.harmonic{ omega = w } + late, period = 2 * math.pi / w }
+        -- theta = X e^(iwt): (1 - w^2 + 0.3 i w + (G + i w D) e^(-iw by)) X = 1
+        local cosine, sine = math.cos(w * by), math.sin(w * by)
+        local real = 1 - w * w + G * cosine + w * D * sine
+        local imaginary = 0.3 * w - G * sine + w * D * cosine
+        near(s.amplitude, 1 / math.sqrt(real^2 + imaginary^2), 1e-9) -- it is taken when 1e-10 away
+        equal(s.status, "steady")
+        equal(s.periods, 1)
+        equal(s.symmetric, true)
+        equal(s.stable, true)
+        equal(s.unique, true)
+        equal(s.multipliers, nil)
+        near(s.mean, 0, 1e-9)
+        equal(s:explain():gsub("%s+", " "):find("no multipliers", 1, true) ~= nil, true)
+        local run = s.run
+        equal(#run, 401)
+        near(run.t_end - run.t_start, s.period, 1e-9)
+        local on = run:continue{ times = { run.t_end + 7 * s.period } } -- with the past that it has
+        near(on.theta[#on], run.theta[1], 1e-9)
     end
-    local M = excitation.sampled(function(t) return math.sin(math.pi * t) end, { every = 0.3 })
+end)
+
+test("with a dead time, friction and stops it is the end of a long run, also in response", function()
+    local dry = system{ I = 1, k = 1, C = 0.1, Rd = 0.3, Re = 0.35 }
+    local function M(omega)
+        return excitation.harmonic{ omega = omega } + excitation.delayed(function(t, theta, velocity) return -0.3 * velocity end, { by = 0.5 })
+    end
+    local period = 4 * math.pi
+    local s = dry:steady{ M = M(0.5), period = period }
+    local run = dry:simulate{ M = M(0.5), t_end = 60 * period, dt = period }
+    local low, high, stops = math.huge, -math.huge, 0
+    for _, event in ipairs(run.events) do
+        if event.t > 59 * period then
+            low, high = math.min(low, event.theta), math.max(high, event.theta)
+            if event.kind == "stick" then stops = stops + 1 end
+        end
+    end
+    near(s.amplitude, (high - low) / 2, 1e-9)
+    equal(s.stops, stops)
+    local c = dry:response{ M = function(f) return M(2 * math.pi * f) end, frequency = { 0.5 / (2 * math.pi), 0.1, 0.15 } }
+    near(c.amplitude[1], s.amplitude, 1e-9)
+    equal(c.stops[1], stops)
+
+    local held = system{ I = 1, k = 1, Rd = 2 }:steady{ M = M(1), period = 2 * math.pi, theta0 = 0.3 }
+    equal(held.status, "adheres")
+    equal(held.rest[1], 0.3)
+    local torn = system{ I = 1, k = 1, C = 0.01 }:steady{ period = 2 * math.pi,
+        M = excitation.harmonic{ omega = 1 } + excitation.delayed(function(t, theta) return -0.3 * theta end, { by = 0.5 }) }
+    equal(torn.status, "grows")
+end)
+
+test("what a controller that samples holds goes on from one period into the next", function()
     local dry = nondimensional{ friction_ratio = 0.3, zeta = 0.05 }
-    raises(function() dry:steady{ M = M, period = 2 } end, "choose an every that divides the period")
-    local run = dry:simulate{ M = M, t_end = 306, dt = 0.01 }
+    local function sampled(every) return excitation.sampled(function(t) return math.sin(math.pi * t) end, { every = every }) end
+    local run = dry:simulate{ M = sampled(0.3), t_end = 306, dt = 0.01 }
     local last = run.theta:slice(30001, #run)
-    near(dry:steady{ M = M, period = 6 }.amplitude, (last:max() - last:min()) / 2, 1e-4) -- rows of 0.01 miss the peaks
+    for _, period in ipairs{ 2, 6 } do -- of the sine, and of what is sampled of it
+        local s = dry:steady{ M = sampled(0.3), period = period }
+        near(s.period, 6, 1e-12)
+        near(s.amplitude, (last:max() - last:min()) / 2, 1e-4) -- rows of 0.01 miss the peaks
+    end
+    local s = dry:steady{ M = sampled(0.3 * math.sqrt(2)), period = 2 }
+    equal(s.status, "none")
+    equal(s:explain():gsub("%s+", " "):find("choose an every", 1, true) ~= nil, true)
     -- A run with more in it than a system and its M.
     local more = dry:simulate{ M = harmonic(0.4), belt = 0.3, t_end = 30, dt = 1 }
     raises(function() more:steady() end, "this run has states, events, a belt or a base besides")
