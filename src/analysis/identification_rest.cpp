@@ -236,7 +236,8 @@ bool Identification::try_beyond_steps() {
     const auto J = derivative([this](const Eigen::VectorXd& q) { return predicted(filled(q), question_.t.size()); },
                               best_->parameters, best_scale_, noise);
     if (!J || count() == 0) return false;
-    const Eigen::VectorXd way = J->colPivHouseholderQr().solve(best_->residual);
+    const auto units = best_scale_.whole.asDiagonal();
+    const Eigen::VectorXd way = units * (*J * units).colPivHouseholderQr().solve(best_->residual);
     if (!way.allFinite()) return false;
     for (const double part : {1.0, 0.5, 0.25}) {
         const Eigen::VectorXd p = (best_->parameters + part * way).cwiseMax(best_scale_.least);

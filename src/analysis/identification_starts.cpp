@@ -13,11 +13,11 @@ std::pair<double, double> line_through(const std::vector<double>& swings) {
     Eigen::MatrixXd A(n, 2);
     Eigen::VectorXd b(n);
     for (Eigen::Index i = 0; i < n; ++i) {
-        A.row(i) << swings[static_cast<std::size_t>(i)], -1;
+        A.row(i) << swings[static_cast<std::size_t>(i)], -swings.front();
         b[i] = swings[static_cast<std::size_t>(i) + 1];
     }
     const Eigen::VectorXd x = A.colPivHouseholderQr().solve(b);
-    return {x[0], x[1]};
+    return {x[0], x[1] * swings.front()};
 }
 
 }  // namespace
@@ -172,10 +172,10 @@ Parameters Identification::weak_form() const {
     }
     // I, k, C, Rd and k offset; what is given goes to the other side.
     const std::array<Unknown, 4> order{Unknown::I, Unknown::k, Unknown::C, Unknown::Rd};
-    std::vector<int> columns;
-    for (int c = 0; c < 5; ++c) {
-        const bool known = c < 4 ? is_given(order[static_cast<std::size_t>(c)])
-                                 : question_.given[static_cast<std::size_t>(Unknown::offset)] == 0.0;
+    std::vector<std::size_t> columns;
+    for (std::size_t c = 0; c < 5; ++c) {
+        const bool known =
+            c < 4 ? is_given(order[c]) : question_.given[static_cast<std::size_t>(Unknown::offset)] == 0.0;
         if (!known) columns.push_back(c);
     }
     const auto n = static_cast<Eigen::Index>(rows.size()), m = static_cast<Eigen::Index>(columns.size());
@@ -188,12 +188,12 @@ Parameters Identification::weak_form() const {
             const auto& row = rows[static_cast<std::size_t>(i)];
             b[i] = row[5];
             for (std::size_t c = 0; c < 5; ++c) b[i] -= row[c] * x[c];
-            for (Eigen::Index j = 0; j < m; ++j)
-                A(i, j) = row[static_cast<std::size_t>(columns[static_cast<std::size_t>(j)])];
+            for (Eigen::Index j = 0; j < m; ++j) A(i, j) = row[columns[static_cast<std::size_t>(j)]];
         }
-        const Eigen::VectorXd solved = A.colPivHouseholderQr().solve(b);
-        for (Eigen::Index j = 0; j < m; ++j)
-            x[static_cast<std::size_t>(columns[static_cast<std::size_t>(j)])] = solved[j];
+        // Of one length each: which of them says nothing is not for the units to decide.
+        const Eigen::VectorXd lengths = A.colwise().norm().cwiseMax(1e-300);
+        const Eigen::VectorXd solved = (A * lengths.cwiseInverse().asDiagonal()).colPivHouseholderQr().solve(b);
+        for (Eigen::Index j = 0; j < m; ++j) x[columns[static_cast<std::size_t>(j)]] = solved[j] / lengths[j];
     }
     const double omega = turns_.size() >= 2 ? std::numbers::pi * static_cast<double>(turns_.size() - 1) /
                                                   (question_.t[turns_.back()] - question_.t[turns_.front()])

@@ -101,7 +101,7 @@ std::optional<LeastSquares> least_squares(const Prediction& model, const Eigen::
         for (Eigen::Index i = 0; i < size.size(); ++i) J->col(i) *= size[i] = size_of(now.parameters, scale, i);
         Eigen::MatrixXd normal = J->transpose() * *J;
         Eigen::VectorXd gradient = J->transpose() * now.residual;
-        const double most = normal.diagonal().maxCoeff();
+        const double most = std::max(normal.diagonal().maxCoeff(), 1e-300);
         normal.diagonal() += size.cwiseProduct(hold).cwiseAbs2();
         gradient -= (now.parameters - start).cwiseProduct(hold.cwiseAbs2()).cwiseProduct(size);
         for (Eigen::Index i = 0; i < size.size(); ++i) {
@@ -110,7 +110,7 @@ std::optional<LeastSquares> least_squares(const Prediction& model, const Eigen::
             if (!at_bound && normal(i, i) > 1e-10 * most) continue;
             normal.row(i).setZero();
             normal.col(i).setZero();
-            normal(i, i) = 1;
+            normal(i, i) = most;
             gradient[i] = 0;
         }
         const double before = now.sum;

@@ -166,6 +166,21 @@ test("a record in other units is the same record", function()
     end
 end)
 
+test("units of time, angle and torque that are powers of two of others change no bit of a fit", function()
+    local function fitted(time, angle, torque)
+        local M = torque * (excitation.harmonic{ amplitude = 1.6, omega = 2.2 / time } + excitation.harmonic{ amplitude = 0.6, omega = 5.9 / time })
+        local s = system{ I = 1.2 * torque / angle * time ^ 2, k = 33 * torque / angle, C = 0.8 * torque / angle * time, Rd = 0.6 * torque, Re = 0.8 * torque }
+        local run = s:simulate{ M = M, t_end = 12 * time, dt = time / 32 }
+        local fit = identify{ data = { t = run.t, theta = run.theta + vector.normal{ n = #run, seed = 4, std = 0.002 } * angle }, M = M }
+        return { fit.C / torque * angle / time, fit.Rd / torque, fit.error.C / torque * angle / time, fit.error.Rd / torque,
+            fit.error.I / torque * angle / time ^ 2, fit.error.theta0 / angle, fit.error.Re / torque }
+    end
+    local here = fitted(1, 1, 1)
+    for _, units in ipairs{ { 1024, 1, 1 }, { 1, 64, 1 }, { 2 ^ -9, 2 ^ -10, 4096 } } do
+        for i, value in ipairs(fitted(table.unpack(units))) do equal(value, here[i]) end
+    end
+end)
+
 test("an Re that is less than the Rd that is found is told", function()
     local told = "Re = 0.7 is given, but the Rd that was found is greater"
     local fit = identify{ data = decay, I = 1, Re = 0.7 }
