@@ -285,6 +285,9 @@ void Identification::judge(Identified& found) const {
     constexpr double more = 1.25, little = 1e-4, sure = 5;
     found.is_unexplained = (found.noise > much * found.scatter && left > part * all) ||
                            (found.noise > more * found.scatter && left > little * all && leaves_pattern(sure));
+    Eigen::Index which = 0;
+    const double most = best_->residual.cwiseAbs().maxCoeff(&which);
+    if (2 * most * most > left) found.wild = static_cast<std::size_t>(which);
 }
 
 void Identification::ratios(const Eigen::MatrixXd& covariance, Identified& found) const {

@@ -40,6 +40,7 @@ struct Identified {
     double scatter = 0;                     ///< what neighbouring samples differ by that a smooth motion would not
     bool is_noise = false;                  ///< it explains no more of the record than it would of noise
     bool is_unexplained = false;            ///< it leaves much of the record, and what it leaves is not noise
+    std::optional<std::size_t> wild = {};   ///< the sample that makes more than half of the sum of squares
     int runs = 0;                           ///< motions that were compared with the record
 };
 

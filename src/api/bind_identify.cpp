@@ -237,6 +237,10 @@ std::string fit_summary(const FitAnswer& fit) {
             "\n  neighbouring samples scatter by {:.3g} only: what is left is no noise, so another system made this "
             "record, what is given is wrong, or a nearer fit was not found",
             fit.found.scatter);
+        if (const auto wild = fit.found.wild) {
+            text += fmt::format("; sample {} at t = {:.6g} makes more than half of it alone: is it one?", *wild + 1,
+                                fit.question.t[*wild]);
+        }
     }
     if (const std::size_t cut = fit.found.cut_low + fit.found.cut_high; cut > 0) {
         text += fmt::format(

@@ -288,4 +288,15 @@ test("a decay of half a swing is not taken for one whose velocity is gone before
     near(fit.omega0, w0, 4 * fit.error.omega0)
 end)
 
+test("a sample that is none is named", function()
+    local run = system{ I = 1, k = 40, C = 0.1, Rd = 0.4 }:simulate{ theta0 = 0.2, t_end = 10, dt = 1/60 }
+    for _, wild in ipairs{ 5, 0.5 } do
+        local theta = (run.theta + vector.normal{ n = #run, seed = 3, std = 0.002 }):table()
+        local function told() return tostring(identify{ data = { t = run.t, theta = vector(theta) } }):match("sample (%d+) at t") end
+        equal(told(), nil)
+        theta[200] = wild
+        equal(told(), "200")
+    end
+end)
+
 support.finish()
