@@ -46,6 +46,12 @@ struct SolvedPanel : Panel {
     [[nodiscard]] double time(double at_x) const { return start.after(h * (1 + at_x)); }
 };
 
+/// A torque on a short way, by the time since its beginning.
+struct Parabola {
+    double value = 0, slope = 0, bend = 0;
+    [[nodiscard]] double at(double since) const { return value + since * (slope + since * bend / 2); }
+};
+
 class PanelSolver {
 public:
     enum class Attempt {
@@ -135,6 +141,7 @@ private:
     [[nodiscard]] bool is_behind_step(double M, double since) const;
     bool predict(const model::State& departing);
     bool follow_line();
+    bool follow(const Parabola& other);
     [[nodiscard]] double direction() const;
     [[nodiscard]] model::State state_at(double x) const;
     [[nodiscard]] double guessed_step() const;
@@ -203,6 +210,7 @@ private:
         int quiet = 0;                            // panels since then
         double stop = model::never, left = 0;     // where the panel ends before the next one, and how long before
         double slope = 0, bend = 0;               // of M at the beginning of the panel: its derivatives by time
+        double other_slope = 0, other_bend = 0;   // of what friction and springs do, after the last of the strides
         bool predicted = false, sampled = false;  // the panel has a motion already, and M on it
         bool guessed = false;                     // the next one is where it is if they are evenly spaced
         int trust = 0;                            // in guesses; none below 0

@@ -65,7 +65,7 @@ void PanelSolver::go_on_from(const Present& now, model::Motion way) {
 
 /// M since the beginning of the panel, if it goes on so.
 double PanelSolver::line(double since) const {
-    return panel_.samples[0] + since * (steps_.slope + since * steps_.bend / 2);
+    return Parabola{panel_.samples[0], steps_.slope, steps_.bend}.at(since);
 }
 
 /// How well the time of a jump can be known.
@@ -91,20 +91,32 @@ bool PanelSolver::predict(const model::State& departing) {
 }
 
 bool PanelSolver::follow_line() {
+    if (!system_.has_remainder()) return follow({});
+    Parabola other{remainder(panel_.begin)};
+    if (!follow(other)) return false;
+    other.slope = (remainder(state_at(1)) - other.value) / panel_.length;
+    return follow(other);
+}
+
+/// The motion if M goes on so, less what friction and springs do besides.
+bool PanelSolver::follow(const Parabola& other) {
     falls_.theta = falls_.velocity = 0;
-    const double h = panel_.h, bend = steps_.bend * h * h;
-    panel_.M = {};
-    panel_.M[0] = panel_.samples[0] + steps_.slope * h + bend * 3 / 4;
-    panel_.M[1] = steps_.slope * h + bend;
-    panel_.M[2] = bend / 4;
+    const double h = panel_.h;
+    const auto series = [h](const Parabola& y) {
+        const double bend = y.bend * h * h;
+        Series sum{};
+        sum[0] = y.value + y.slope * h + bend * 3 / 4;
+        sum[1] = y.slope * h + bend;
+        sum[2] = bend / 4;
+        return sum;
+    };
+    panel_.M = series({panel_.samples[0], steps_.slope, steps_.bend});
     Series torque = panel_.M;
-    torque[0] -= remainder(panel_.begin);
-    solve_for(torque);
-    if (system_.has_remainder()) {  // in a straight line, too
-        const double change = (remainder(state_at(1)) - remainder(panel_.begin)) / 2;
-        torque[0] -= change, torque[1] -= change;
-        solve_for(torque);
+    if (system_.has_remainder()) {
+        const Series less = series(other);
+        for (std::size_t k = 0; k < 3; ++k) torque[k] -= less[k];
     }
+    solve_for(torque);
     return std::isfinite(torque[0]) && within_range();
 }
 

@@ -31,13 +31,19 @@ struct ShortWay {
     }
 };
 
+/// Through its values at 0, at half of a way and at the end of it.
+Parabola through(double start, double middle, double end, double whole) {
+    return {start, (4 * middle - end - 3 * start) / whole, 4 * ((start - middle) + (end - middle)) / (whole * whole)};
+}
+
 }  // namespace
 
 /// From here to right behind the next step, if that is where it is guessed and the way there short: five values of M
-/// where a panel up to it and one across take forty. False when M or the motion is more than such a panel can be.
+/// where a panel up to it and one across take forty. What friction and springs do besides goes along as a parabola,
+/// too. False when one of these or the motion is more than such a panel can be.
 bool PanelSolver::stride(const Present& now, model::Motion way, const model::State& departing) {
     const bool foreseen = steps_.expected && steps_.trust > 0 && steps_.apart > 0;
-    if (!foreseen || system_.has_remainder() || bad_time_ < model::never) return false;
+    if (!foreseen || bad_time_ < model::never) return false;
     if (steps_.walks > 0) {
         --steps_.walks;
         return false;
@@ -53,22 +59,34 @@ bool PanelSolver::stride(const Present& now, model::Motion way, const model::Sta
         steps_.slope = slope, steps_.bend = bend;
         return false;
     };
-    constexpr int rounds = 3;
+    const model::SpeedRange* friction = slide_.line();
+    const double slope_of_friction = friction != nullptr ? friction->slope : 0, side = model::sign_of(way);
+    const double braking = friction != nullptr ? side * friction->at(side * now.y.velocity) : system_.braking(way);
+    const auto other_torque = [&](const model::State& y) {
+        return (friction != nullptr ? 0 : system_.friction_remainder(way, y)) + system_.spring(y.theta);
+    };
+    const bool others = system_.has_remainder();
+    Parabola other{others ? other_torque(now.y) : 0, steps_.other_slope, steps_.other_bend};
+    constexpr int rounds = 4;
     for (int round = 0; round < rounds; ++round) {
         ShortWay ahead{};
         ahead.velocity = now.y.velocity;
-        const auto acceleration = [&](double torque, double velocity, double theta) {
-            return (torque - system_.damping() * velocity - system_.stiffness() * theta) / inertia;
+        const auto acceleration = [&](double torque, double velocity, double change, double theta) {
+            const double line = slope_of_friction * change;
+            return (torque - system_.damping() * velocity - line - system_.stiffness() * theta) / inertia;
         };
-        ahead.first = acceleration(M - system_.braking(way), ahead.velocity, now.y.theta);
-        ahead.second = acceleration(steps_.slope, ahead.first, ahead.velocity);
-        ahead.third = acceleration(steps_.bend, ahead.second, ahead.first);
+        ahead.first = acceleration(M - braking - other.value, ahead.velocity, 0, now.y.theta);
+        ahead.second = acceleration(steps_.slope - other.slope, ahead.first, ahead.first, ahead.velocity);
+        ahead.third = acceleration(steps_.bend - other.bend, ahead.second, ahead.second, ahead.first);
         const double sign = ahead.velocity > 0 ? 1 : -1;
         const double place = steps_.theta + (sign == steps_.direction ? sign * steps_.apart : 0);
         const double guess = ahead.arrival(place - now.y.theta);
         if (!(guess < most)) return give_up();
+        const auto state_after = [&](double since) {
+            return model::State{now.y.theta + ahead.place(since), ahead.speed(since)};
+        };
         const auto M_after = [&](double since) {
-            return excitation_.value(now.clock.after(since), {now.y.theta + ahead.place(since), ahead.speed(since)});
+            return excitation_.value(now.clock.after(since), state_after(since));
         };
         double before = M, after = M;
         const auto edge = edge_near(guess, most, fine, [&](double since) {
@@ -78,19 +96,25 @@ bool PanelSolver::stride(const Present& now, model::Motion way, const model::Sta
             return far;
         });
         if (!edge) return give_up();
-        const double middle = M_after(edge->low / 2), quarter = M_after(edge->low / 4);
-        steps_.slope = (4 * middle - before - 3 * M) / edge->low;
-        steps_.bend = 4 * ((M - middle) + (before - middle)) / (edge->low * edge->low);
+        const double whole = edge->low, half = whole / 2, quarter = whole / 4;
+        const Parabola torque = through(M, M_after(half), before, whole);
+        const double M_on_the_way = M_after(quarter);
+        steps_.slope = torque.slope, steps_.bend = torque.bend;
+        if (others) {
+            other = through(other.value, other_torque(state_after(half)), other_torque(state_after(whole)), whole);
+        }
         const double end = surely_behind(*edge, {place, ahead.speed(edge->high)});
         lay(now, way, end / 2, now.clock.after(end));
-        if (!follow_line()) return give_up();
+        if (!follow(other)) return give_up();
         const double allowed = (tolerance_ + 4 * epsilon) * torques() + noise_;
-        if (!(std::fabs(quarter - line(edge->low / 4)) <= allowed)) break;
+        if (!(std::fabs(M_on_the_way - torque.at(quarter)) <= allowed)) break;
+        if (others && !(std::fabs(other_torque(state_after(quarter)) - other.at(quarter)) <= allowed)) break;
         const double off = std::max(std::fabs(chebyshev::value(panel_.p, 1) - ahead.place(end)),
                                     std::fabs(chebyshev::value(panel_.v, 1) - panel_.h * ahead.speed(end)));
         if (off <= 16 * epsilon * (chebyshev::size(panel_.v) + chebyshev::size(panel_.p))) {
             steps_.stop = model::never;
             steps_.strides = true;
+            steps_.other_slope = other.slope + whole * other.bend, steps_.other_bend = other.bend;
             remember_step(std::fabs(after - line(end)), *edge);
             return true;
         }
