@@ -237,11 +237,15 @@ bool PanelSolver::cross_step(const Present& now, model::Motion way, const model:
     if (!(most > 0)) return false;
     lay(now, way, most / 2, now.clock.after(most));
     if (!predict(departing)) return false;
-    double value = 0;
+    double value = 0, off = 0;  // behind it, and how far before it M is off the line
     const auto is_behind = [&](double since) {
         const double found = excitation_.value(panel_.start.after(since), state_at(since / panel_.h - 1));
         const bool far = is_behind_step(found, since);
-        if (far) value = found;
+        if (far) {
+            value = found;
+        } else {
+            off = std::fabs(found - line(since));
+        }
         return far;
     };
     const double fine = finest_edge(t);
@@ -253,6 +257,7 @@ bool PanelSolver::cross_step(const Present& now, model::Motion way, const model:
         if (steps_.guessed) steps_.trust = -wary;
         return false;
     }
+    if (off > behind / 2 * steps_.jump) return false;  // steep, and no jump: M was on its way before
     const double end = surely_behind(*edge, state_at(edge->high / panel_.h - 1));
     lay(now, way, end / 2, now.clock.after(end));
     if (!predict(departing)) return false;
