@@ -19,6 +19,7 @@
 #include "api/picture.hpp"
 #include "files/file.hpp"
 #include "lua/bind.hpp"
+#include "notebook/keyboard.hpp"
 #include "prompt/commands.hpp"
 #include "prompt/completion.hpp"
 #include "prompt/output.hpp"
@@ -49,7 +50,7 @@ void answer(const Json& message) {
     }
 }
 
-/// The lines of standard input, which scripts do not get to see: what they read is empty.
+/// The lines of standard input, which scripts do not get to see: what programs that they start read of it is empty.
 class Requests {
 public:
     Requests() : input_(::fcntl(STDIN_FILENO, F_DUPFD_CLOEXEC, STDERR_FILENO + 1)) {
@@ -213,6 +214,7 @@ bool run_kernel(lua_State* L, int answers) {
     Requests requests;
     prompt::Session session(L);
     session.show_values = lua::guarded<show_values_as_json>;
+    take_keyboard_away(L);
     api::show_pictures_by(show_picture);
     api::show_animations_by(show_animation);
     while (!session.leaving) {

@@ -83,6 +83,13 @@ def cells():
     check("what is printed", seen["stdout"] == "hello\n", seen)
     check("printed before the value", seen["order"] == ["execute_input", "stream", "execute_result"], seen["order"])
 
+    for code in "io.read()", "io.read('n')", "for line in io.lines() do end", "io.stdin:read('a')":
+        seen = notebook.run(code)
+        check(f"{code} says that there is no keyboard", "has no keyboard" in (seen["error"] or seen["stderr"]), seen)
+    seen = notebook.run("name = os.tmpname() f = io.open(name, 'w') f:write('7 8') f:close() io.input(name)\n"
+                        "print(io.read('n', 'n')) io.input(io.stdin) for line in io.lines(name) do print(line) end")
+    check("files are read", seen["stdout"].split() == ["7", "8", "7", "8"], seen)
+
     seen = notebook.run("run = nondimensional{}:simulate{ theta0 = 1, t_end = 3, dt = 0.01 }\nrun:plot()")
     check("a plot is an SVG", "<svg" in seen["shown"][0]["image/svg+xml"] and len(seen["shown"]) == 1, seen["stderr"])
     check("and an image for pages", image_in(seen["shown"][0]["text/html"]) == seen["shown"][0]["image/svg+xml"], seen)
