@@ -11,6 +11,7 @@ namespace {
 Data map_of(const SweepGrid& grid, const SweepResults& results) {
     Data map = results.data(grid, results.done_points());
     map.heading = heading_of_map(grid, results);
+    for (const DataColumn& parameter : grid.parameters()) map.parameters.push_back(parameter.name);
     return map;
 }
 

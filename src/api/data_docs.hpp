@@ -55,7 +55,8 @@ inline constexpr lua::Doc markdown_doc{"d:markdown() -> string", "All rows as a 
 inline constexpr lua::Doc plot_data_doc{
     "d:plot{ OPTIONS }",
     "Draws columns over a column; with z a map, as of a sweep: in files colours that the colour-blind tell apart, in the "
-    "terminal shades, or digits where z has a few whole numbers.",
+    "terminal shades, or digits where z has a few whole numbers. A sweep over two parameters is drawn as the map of its "
+    "first result, and as a curve for each value of the first one where y names a result.",
     DINAL_DATA "print(#tostring(d:plot{ x = \"r\", y = \"A\", show = false }) > 500)  --> true",
     {&plot_data_call}};
 inline constexpr lua::Doc save_data_doc{

@@ -23,7 +23,8 @@ Data with_rows(const Data& data, const std::vector<std::size_t>& rows) {
                 .points_of = data.points_of,
                 .points_over = data.points_over,
                 .pieces_of = data.pieces_of,
-                .dotted_of = data.dotted_of};
+                .dotted_of = data.dotted_of,
+                .parameters = data.parameters};
     for (const DataColumn& column : data.columns) {
         if (const lua::Vector* numbers = column.numbers()) {
             std::vector<double> values(rows.size());

@@ -1,8 +1,10 @@
 // d:plot{ ... }: columns over a column, maps, and what data bring along to be drawn with them.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <limits>
 
 #include "api/data.hpp"
@@ -54,13 +56,13 @@ std::string label_of(const Data& data, const std::string& name) {
 }
 
 /// The line broken where its data are, and a dotted one of what is unstable.
-std::vector<plots::Curve> curve_in_pieces(const Data& data, const plots::Curve& whole) {
+std::vector<plots::Curve> curve_in_pieces(const Data& data, const std::string& pieces, const plots::Curve& whole) {
     constexpr double gap = std::numeric_limits<double>::quiet_NaN();
     const auto numbers_of = [&data](const std::string& name) -> const lua::Vector* {
         const DataColumn* column = data.find(name);
         return column != nullptr ? column->numbers() : nullptr;
     };
-    const lua::Vector* piece = numbers_of(data.pieces_of);
+    const lua::Vector* piece = numbers_of(pieces);
     const lua::Vector* solid = numbers_of(data.dotted_of);
     std::array<std::vector<double>, 2> x, y;  // of the dotted line, of the other one
     std::array<bool, 2> any{};
@@ -123,8 +125,33 @@ plots::Curve overlay_curve(const lua::Options& options, const Data& data, const 
         *numbers = plots::Numbers::own({values.begin(), values.end()});
     }
     curve.label = name;
-    curve.dashes = plots::Dashes::dashed;
     return curve;
+}
+
+/// Those that are not the same in all rows.
+std::vector<std::string> different_parameters(const Data& data) {
+    std::vector<std::string> names;
+    for (const std::string& name : data.parameters) {
+        const DataColumn* column = data.find(name);
+        if (column == nullptr) continue;
+        const auto differ = [](const auto& values) {
+            return std::adjacent_find(values.begin(), values.end(), std::not_equal_to<>()) != values.end();
+        };
+        const lua::Vector* numbers = column->numbers();
+        if (numbers != nullptr ? differ(*numbers) : differ(*std::get<Words>(column->values))) names.push_back(name);
+    }
+    return names;
+}
+
+/// The columns of numbers that are neither x nor parameters of a grid.
+std::vector<std::string> drawable_results(const Data& data, const std::string& x) {
+    std::vector<std::string> names;
+    for (const DataColumn& column : data.columns) {
+        const bool given =
+            std::find(data.parameters.begin(), data.parameters.end(), column.name) != data.parameters.end();
+        if (!given && column.name != x && column.numbers() != nullptr) names.push_back(column.name);
+    }
+    return names;
 }
 
 }  // namespace
@@ -134,14 +161,23 @@ int plot(lua_State* L) {
     const lua::Options options(L, 2, plot_data_call);
     std::vector<std::string> x = asked_names(L, options, "x"), y = asked_names(L, options, "y");
     if (x.size() > 1) options.fail("x", "x must be one column");
-    if (x.empty()) x.push_back(data->points_over.empty() ? data->columns.front().name : data->points_over);
-    for (std::size_t i = 0; i < data->columns.size() && y.empty(); ++i) {
-        const DataColumn& column = data->columns[i];
-        if (column.name != x.front() && column.numbers() != nullptr) y.push_back(column.name);
+    std::vector<std::string> z = asked_names(L, options, "z");
+    // Points over two parameters are a map, of the first result where none is named, or a curve for each of the first.
+    const std::vector<std::string> over = different_parameters(*data);
+    const bool curves = !y.empty() || options.has("style") || options.has("overlay");
+    const bool is_map = over.size() > 1 && (!z.empty() || (x.empty() && !curves));
+    if (is_map && z.empty() && over.size() > 2) {
+        options.fail({fmt::format("points over {} are no map: pick those of one {} with d:filter, or name x, y and z",
+                                  fmt::join(over, ", "), over.front())});
     }
-    if (y.empty()) options.fail({"there is no other column of numbers to draw"});
+    if (x.empty() && !over.empty()) x = {over.size() == 2 && !is_map ? over[1] : over[0]};
+    if (x.empty()) x.push_back(data->points_over.empty() ? data->columns.front().name : data->points_over);
+    const std::vector<std::string> results = drawable_results(*data, x.front());
+    if (y.empty() && results.empty()) options.fail({"there is no other column of numbers to draw"});
+    if (is_map && z.empty()) z = {results.front()};
+    if (y.empty()) y = {is_map ? over[x.front() == over[1] ? 0 : 1] : results.front()};
     if (data->size() == 0) options.fail({"there are no rows to draw"});
-    if (const std::vector<std::string> z = asked_names(L, options, "z"); !z.empty()) {
+    if (!z.empty()) {
         for (const char* option : {"style", "overlay"}) {
             if (options.has(option)) options.fail(option, fmt::format("{} is for curves: leave it out, or z", option));
         }
@@ -162,22 +198,28 @@ int plot(lua_State* L) {
     figure.x.label = label_of(*data, x.front());
     plots::Curve curve;
     if (!data->points_of.empty() && !options.has("y") && x.front() != data->points_of) y = {data->points_of};
-    if (!data->points_of.empty()) curve.style = plots::Style::points;
+    const bool leaps = over.size() == 2 && x.front() == over[0];  // from row to row
+    if (!data->points_of.empty() || leaps) curve.style = plots::Style::points;
     figure.y.label = y.size() == 1 ? label_of(*data, y.front()) : "";
     options.fill(curve);
     for (const std::string& name : y) {
         curve.x = drawn(L, *data, x.front());
         curve.y = drawn(L, *data, name);
         curve.label = y.size() == 1 ? "" : name;
-        if (data->pieces_of.empty() || curve.style != plots::Style::line) {
+        const std::string pieces = over.size() == 2 ? over[0] : data->pieces_of;
+        if (pieces.empty() || curve.style != plots::Style::line) {
             figure.curves.push_back(curve);
         } else {
-            for (plots::Curve& piece : curve_in_pieces(*data, curve)) figure.curves.push_back(std::move(piece));
+            for (plots::Curve& piece : curve_in_pieces(*data, pieces, curve)) figure.curves.push_back(std::move(piece));
         }
     }
+    std::size_t overlays = 0;
     for (const std::string& name : asked_names(L, options, "overlay")) {
         if (figure.curves.front().label.empty()) figure.curves.front().label = label_of(*data, y.front());
+        constexpr std::array<plots::Dashes, 3> dashes{plots::Dashes::dashed, plots::Dashes::dash_dotted,
+                                                      plots::Dashes::dotted};
         figure.curves.push_back(overlay_curve(options, *data, name, x.front(), y.front()));
+        figure.curves.back().dashes = dashes[overlays++ % dashes.size()];
     }
     apply_options(L, options, figure);
     std::vector<plots::Figure> figures{std::move(figure)};

@@ -33,7 +33,7 @@ struct Interval {
 
 enum class Style { line, points, fill };
 /// How a line is broken; `by_place` is another one for each curve, so that a grey print still tells them apart.
-enum class Dashes { by_place, solid, dashed, dotted };
+enum class Dashes { by_place, solid, dashed, dotted, dash_dotted };
 
 /// The shorter of x and y counts. What is not finite, or cannot stand on a logarithmic axis, is a gap.
 struct Curve {
@@ -48,7 +48,7 @@ struct Curve {
 };
 
 inline constexpr const char* style_names[] = {"line", "points", "fill"};
-inline constexpr const char* dashes_names[] = {"automatic", "solid", "dashed", "dotted"};
+inline constexpr const char* dashes_names[] = {"automatic", "solid", "dashed", "dotted", "dash-dotted"};
 inline constexpr text::Option curve_options[] = {
     {.name = "label", .meaning = "its name in the picture", .filled = text::fills<&Curve::label>},
     {.name = "style",

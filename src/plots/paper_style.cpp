@@ -21,6 +21,8 @@ std::string_view dash_type(Dashes dashes, std::size_t curve) {
             return dash_types[1];
         case Dashes::dotted:
             return dash_types[2];
+        case Dashes::dash_dotted:
+            return dash_types[3];
         case Dashes::by_place:
             break;
     }

@@ -31,6 +31,8 @@ Dashing stroke_of(const Figure& figure, std::size_t curve, Charset charset) {
             return strokes[2];
         case Dashes::dotted:
             return strokes[1];
+        case Dashes::dash_dotted:
+            return strokes[3];
         case Dashes::by_place:
             break;
     }

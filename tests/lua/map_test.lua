@@ -23,6 +23,26 @@ test("a map shows shades of other values, in ASCII too", function()
     assert(plain:find("###", 1, true) and not plain:find("[\128-\255]"), plain)
 end)
 
+test("points over two parameters are a map, or a curve for each value of the first", function()
+    local function text(options) options.show = false return tostring(map:plot(options)) end
+    local result = "slope" -- which comes first is for sweep to say, by the alphabet
+    equal(text{}, text{ x = "x", y = "y", z = result })
+    equal(text{ z = "steps" }, text{ x = "x", y = "y", z = "steps" })
+    -- A line from the end of one curve to the beginning of the next would cross the corner below the diagonal of the last.
+    local family = sweep{ a = { 1, 2 }, b = vector.linspace(0, 1, 30), run = function(p) return { v = p.a * 10 + p.b * 0 } end }
+    local lines, rows = tostring(family:plot{ y = "v", show = false, ascii = true }), 0
+    for line in lines:gmatch("[^\n]+") do
+        if line:find("|.*[^%s|+-]") or line:find("%+.*[^%s|+%d-]") then rows = rows + 1 end
+    end
+    assert(rows <= 3, lines) -- two straight lines lie on two rows
+    -- Of one value of a parameter it is a curve over the other.
+    local one = family:filter(function(p) return p.a == 2 end)
+    equal(tostring(one:plot{ show = false }), tostring(data{ b = one.b, v = one.v }:plot{ x = "b", y = "v", show = false }))
+    local three = sweep{ a = { 1, 2 }, b = { 1, 2 }, c = { 1, 2 }, run = function(p) return { v = p.a } end }
+    raises_here(function() three:plot{ show = false } end, "points over a, b, c are no map")
+    assert(tostring(three:filter(function(p) return p.a == 1 end):plot{ show = false }):find("v:", 1, true))
+end)
+
 test("contours lie over the shades and have names", function()
     local text = tostring(map:plot { z = "slope", contours = { 1, 2 }, show = false })
     assert(text:find("slope = 1", 1, true) and text:find("slope = 2", 1, true), text)
@@ -66,7 +86,7 @@ test("what is no grid is refused", function()
     raises_here(function() data { x = v, y = v, z = v }:plot { x = "x", y = "y", z = "z" } end, "x and y form no grid")
     raises_here(function() map:plot { z = "steep" } end, "no column 'steep'")
     raises_here(function() map:plot { z = "error" } end, "holds words")
-    raises_here(function() map:plot { zlim = { 0, 1 } } end, "zlim is for maps")
+    raises_here(function() d:plot { zlim = { 0, 1 } } end, "zlim is for maps")
     raises_here(function() map:plot { z = "steps", zlim = { 1, 0 } } end, "zlim must be two increasing numbers")
     raises_here(function() map:plot { z = "steps", y = { "x", "y" } } end, "y must be one column")
 end)
