@@ -185,6 +185,13 @@ test("with a dead time in the loop the run itself goes on until it repeats itsel
     end
 end)
 
+test("a motion that turns slowly as it settles has the period of M, and not the five of them after which it is nearly back", function()
+    local late = excitation.delayed(function(t, theta, velocity) return -0.02 * velocity end, { by = 0.3 })
+    local s = system{ I = 1, k = 1, C = 0.02 }:steady{ M = excitation.harmonic{ omega = 1.2 } + late, period = 2 * math.pi / 1.2 }
+    equal(s.periods, 1)
+    equal(s.symmetric, true)
+end)
+
 test("with a dead time, friction and stops it is the end of a long run, also in response", function()
     local dry = system{ I = 1, k = 1, C = 0.1, Rd = 0.3, Re = 0.35 }
     local function M(omega)

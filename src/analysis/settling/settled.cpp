@@ -33,7 +33,7 @@ public:
 
     SteadyMotion found() {
         answer_.period = question_.drive.period;
-        const std::size_t most = std::max(most_periods, 4 * past_);
+        const std::size_t most = std::clamp(4 * past_, most_periods, 4 * most_periods);
         for (std::size_t until = least_periods; periods_ < most; until += std::max(least_periods, until / 4)) {
             if (!goes_on_until(std::min(until, most))) return answer_;
             if (const int m = comes_back(settled); m > 0 && tells(m)) return answer_;
@@ -122,14 +122,19 @@ private:
     /// The fewest periods of M after which the motion comes back to this part of its size; 0: it does not.
     [[nodiscard]] int comes_back(double within) const {
         const double size = std::max(*std::max_element(sizes_.end() - least_periods, sizes_.end()), 1e-300);
-        for (int m = std::max(question_.periods, 1); m <= std::max(question_.periods, longest); ++m) {
+        const int first = std::max(question_.periods, 1), last = question_.periods > 0 ? first : longest;
+        for (int m = first; m <= last; ++m) {
             const auto n = static_cast<std::size_t>(m);
             const double now = off(n, 0), before = off(n, 4 * n);
             if (!(now <= alike * size)) continue;
             // Differences that shrink by so much in a period of the motion add up to this.
             const double kept = std::pow(now / before, 0.25), left = kept < 1 ? now / (1 - kept) : model::never;
-            if (now <= finest * size || left <= within * size) return m;
-            if (question_.periods > 0) break;
+            if (now > finest * size && left > within * size) continue;
+            // What turns slowly on its way to a motion comes near to it sooner after some periods than after one.
+            for (int fewer = first; fewer < m; ++fewer) {
+                if (off(static_cast<std::size_t>(fewer), 0) <= alike * size) return fewer;
+            }
+            return m;
         }
         return 0;
     }
