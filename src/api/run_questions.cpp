@@ -91,7 +91,7 @@ int poincare_of_run(lua_State* L) {
     const double period = asked.period.value_or(period_of_run(*run));
     if (!(period > 0)) {
         options.fail(
-            {.sentence = "run:poincare needs period, because the M of this run does not know one", .option = "period"});
+            {.sentence = "period must be given, because the M of this run does not know one", .option = "period"});
     }
     const double from = asked.from.value_or(trajectory.t_start);
     if (from < trajectory.t_start || from > trajectory.t_stop) {

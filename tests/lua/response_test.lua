@@ -145,7 +145,7 @@ test("a motion looked at once a period", function()
     near(run:poincare{ from = 25.3 }.theta[9], (run:at(35.3)), 1e-12)
     local function of(M) return nondimensional{}:simulate{ M = M, t_end = 2, dt = 1 } end
     raises_here(function() of(function(t) return t end):poincare{} end, "does not know one")
-    raises_here(function() of(2):poincare{} end, "run:poincare needs period")
+    raises_here(function() of(2):poincare{} end, "period must be given, because")
     local picture = tostring(d:plot{ show = false })
     assert(picture:find("^velocity") and picture:find("theta"), picture)
     raises_here(function() run:poincare{ period = 1, from = 60 } end, "is not in the run")
