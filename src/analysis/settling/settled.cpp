@@ -33,7 +33,8 @@ public:
 
     SteadyMotion found() {
         answer_.period = question_.drive.period;
-        const std::size_t most = std::clamp(4 * past_, most_periods, 4 * most_periods);
+        const std::size_t most = std::clamp(std::max(4 * past_, 8 * static_cast<std::size_t>(question_.periods)),
+                                            most_periods, 4 * most_periods);
         for (std::size_t until = least_periods; periods_ < most; until += std::max(least_periods, until / 4)) {
             if (!goes_on_until(std::min(until, most))) return answer_;
             if (const int m = comes_back(settled); m > 0 && tells(m)) return answer_;
