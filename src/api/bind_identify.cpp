@@ -14,6 +14,7 @@
 #include "api/run.hpp"
 #include "api/steady_answer.hpp"
 #include "lua/vector.hpp"
+#include "text/suggest.hpp"
 
 namespace dinal::api {
 namespace {
@@ -117,7 +118,14 @@ int fit_value(lua_State* L) {
             L, {.sentence = fmt::format("a free decay tells ratios, so there is no {}: give I or k to identify", name),
                 .culprit = std::string(name)});
     }
-    return 0;
+    std::vector<std::string_view> names;
+    for (const auto& value : fit->values) names.emplace_back(value.first);
+    for (const lua::Member& member : fit_class.members) {
+        if (member.kind != lua::Kind::metamethod) names.emplace_back(member.name);
+    }
+    lua::raise(L, {.sentence = fmt::format("a fit has no field '{}'", name),
+                   .culprit = std::string(name),
+                   .cure = text::did_you_mean(name, names)});
 }
 
 int fit_error(lua_State* L) {

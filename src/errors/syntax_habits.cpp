@@ -316,7 +316,9 @@ std::string other_grammar(const Stumble& stumble) {
     const bool number = token.kind == lua::TokenKind::number || before.kind == lua::TokenKind::number;
     const bool expression = stumble.message.expected.empty() || stumble.message.expected == ")";
     if (expression && number && is_operand(token) && is_operand(before)) {
-        return "; is an operator missing there, such as *?";
+        const bool call = before.kind == lua::TokenKind::name && token.kind == lua::TokenKind::number;
+        return "; is an operator missing there, such as *" +
+               (call ? ", or ( ), as in f(" + std::string(token.text) + ")?" : "?");
     }
     return "";
 }
