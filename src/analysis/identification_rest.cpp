@@ -51,6 +51,12 @@ double Identification::try_rest_at(double turn, bool goes_on) {
         const auto other = fit(best_->parameters, question_.t.size(), best_scale_, 30);
         if (other && (!found || other->sum < found->sum)) found = other;
     }
+    constexpr double few = 4, much = 0.02;  // with less noise the moving part leads to the right one
+    const bool is_open = turn <= few && noise_ > much * range_;
+    for (const Parameters& start : is_open ? shares_of_loss() : std::vector<Parameters>()) {
+        const auto other = fit(fitted_of(start), question_.t.size(), best_scale_, 30);
+        if (other && (!found || other->sum < found->sum)) found = other;
+    }
     rests_at_.reset();
     if (!found) return std::numeric_limits<double>::infinity();
     const double sum = found->sum;
@@ -67,6 +73,24 @@ double Identification::try_rest_at(double turn, bool goes_on) {
     const auto is_it = [&](const Rest& other) { return is_same(other.fit, *found); };
     if (std::none_of(rests_.begin(), rests_.end(), is_it)) rests_.push_back(rest);
     return breakaway ? sum : std::numeric_limits<double>::infinity();
+}
+
+/// Systems whose first half swing loses as much as that of the best fit, more or less of it by dry friction. A record
+/// of a few swings that rests a turn sooner or later may be one of these, to which no slope leads from the best fit.
+std::vector<Parameters> Identification::shares_of_loss() {
+    const Parameters best = filled_best();
+    const auto decay = decay_of(best);
+    if (!decay) return {};
+    const double whole = std::fabs(decay->first.theta), least = 0.05 * whole, most = 0.95 * whole;
+    const double lost = std::clamp(whole - decay->size_at(1), least, most);
+    const double omega0 = std::sqrt(at(best, Unknown::k) / at(best, Unknown::I));
+    std::vector<Parameters> starts;
+    for (const double dry : {0.2, 0.5, 0.8}) {
+        const double q = 1 - (1 - dry) * lost / whole, ratio = -std::log(q) / std::numbers::pi;
+        starts.push_back(
+            common_start(omega0, ratio / std::hypot(1, ratio), dry * lost / (1 + q), at(best, Unknown::offset)));
+    }
+    return starts;
 }
 
 /// The Re/k that lets a free decay rest at this turn and not before; 0 when Rd does, none when nothing can.

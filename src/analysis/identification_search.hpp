@@ -141,6 +141,7 @@ private:
     void number_turns(const Parameters& p);
     [[nodiscard]] double turns_before(const Parameters& p) const;
     double try_rest_at(double turn, bool goes_on = false);
+    [[nodiscard]] std::vector<Parameters> shares_of_loss();
     [[nodiscard]] std::optional<double> holding(const Parameters& p, double turn) const;
     [[nodiscard]] Parameters filled_best() {
         base_ = best_base_;

@@ -289,6 +289,15 @@ test("a decay of half a swing is not taken for one whose velocity is gone before
     near(fit.omega0, w0, 4 * fit.error.omega0)
 end)
 
+test("in a few swings with much noise more viscous and less dry friction may rest a turn later: the errors say so", function()
+    local w, dry, zeta = 2 * math.pi, 0.12893769535422, 0.19175827349652
+    local run = system{ I = 1, k = w * w, C = 2 * zeta * w, Rd = dry * w * w }:simulate{ theta0 = 1, t_end = 2.0547377730242, dt = 2.0547377730242 / 99 }
+    local noise = vector.normal{ n = #run, seed = 160, std = 0.064778531849788 }
+    local fit = identify{ data = { t = run.t, theta = run.theta + noise + 0.05 } }
+    near(fit.Rd_over_k, dry, 3 * fit.error.Rd_over_k) -- it was 12 errors off
+    near(fit.zeta, zeta, 3 * fit.error.zeta)
+end)
+
 test("a sample that is none is named", function()
     local run = system{ I = 1, k = 40, C = 0.1, Rd = 0.4 }:simulate{ theta0 = 0.2, t_end = 10, dt = 1/60 }
     for _, wild in ipairs{ 5, 0.5 } do
