@@ -99,6 +99,11 @@ void Story::tell_setting() {
     if (run_.noise > 0) {
         say("M is rough on every scale, by {:.2g}: the motion is as exact as that allows.", run_.noise);
     }
+    if (run_.jumps_often()) {
+        say("M jumps {} times along the motion. Each jump was located, in six values of M at least: without steps so "
+            "fine, as of an encoder, the run takes a few thousand values.",
+            run_.jumps);
+    }
     if (own_rule_) say("{}", own_rule_->setting);
     end_paragraph();
 }

@@ -285,6 +285,7 @@ Trajectory joined(const Trajectory& first, std::size_t kept, Trajectory second, 
     second.t_start = first.t_start;
     second.gap = std::max(first.gap, second.gap);
     second.noise = std::max(first.noise, second.noise);
+    second.jumps += first.jumps;
     return second;
 }
 

@@ -140,6 +140,7 @@ std::string summary(const Trajectory& trajectory) {
                                              : std::string(model::sentence(trajectory.outcome));
     }
     if (trajectory.noise > 0) text += fmt::format("; M is rough by {:.2g}", trajectory.noise);
+    if (trajectory.jumps_often()) text += fmt::format("; M jumped {} times", trajectory.jumps);
     return text + fmt::format("; peak |theta| {:.3g}", peak(trajectory));
 }
 

@@ -78,11 +78,17 @@ struct Trajectory {
     bool computed = true;      ///< false when it was read from a file
     double gap = 0;    ///< the longest between two looks at a function M, time units; 0 where M tells when it changes
     double noise = 0;  ///< what keeps a function M from being smooth on any scale, torque
-    std::vector<std::string> event_names = {};               ///< of the user's events, by Event::user
-    std::shared_ptr<const Carried> carried = nullptr;        ///< of a run with more in it
+    std::size_t jumps = 0;                             ///< of a function M along the motion, each of which was located
+    std::vector<std::string> event_names = {};         ///< of the user's events, by Event::user
+    std::shared_ptr<const Carried> carried = nullptr;  ///< of a run with more in it
     std::optional<model::Contradiction> contradiction = {};  ///< of Outcome::not_a_function
     std::shared_ptr<const Course> course;  ///< none when it was declined, or the trajectory read from a file
 
+    /// Jumps so many that they are what the run takes long for.
+    [[nodiscard]] bool jumps_often() const {
+        constexpr std::size_t often = 10000;
+        return jumps >= often;
+    }
     [[nodiscard]] Eigen::Index size() const { return rows.rows(); }
     /// One for each column of `rows`.
     [[nodiscard]] const std::vector<std::string>& names() const {

@@ -88,6 +88,18 @@ test("an M that is rough on every scale is told once, in the outcome, the summar
     assert(run:explain():gsub("%s+", " "):find("M is rough on every scale, by", 1, true), run:explain())
 end)
 
+test("what a very fine encoder costs is told in the summary and the story", function()
+    local function encoder(step)
+        return function(t, theta, v) return math.sin(t) - math.floor(theta / step) * step end
+    end
+    local sys = nondimensional { zeta = 0.1 }
+    local run = sys:simulate { M = encoder(2e-5), theta0 = 0.1, t_end = 2, dt = 1 }
+    local jumps = tonumber(tostring(run):match "M jumped (%d+) times")
+    assert(jumps and jumps > 1e4 and jumps < 1e5, tostring(run))
+    assert(run:explain():gsub("%s+", " "):find("M jumps " .. jumps .. " times along the motion.", 1, true), run:explain())
+    assert(not tostring(sys:simulate { M = encoder(1e-2), theta0 = 0.1, t_end = 2, dt = 1 }):find "jumped")
+end)
+
 test("what a support and a belt do is part of the pull, and named", function()
     local function story(sys, task)
         return (sys:simulate(task):explain():gsub("%s+", " "))

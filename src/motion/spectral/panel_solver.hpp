@@ -93,6 +93,8 @@ public:
     [[nodiscard]] double gap() const;
     /// What keeps M from being smooth on any scale, torque; 0 when nothing was seen.
     [[nodiscard]] double noise() const { return noise_; }
+    /// How many jumps of a feedback were passed where they are.
+    [[nodiscard]] std::size_t jumps() const { return steps_.count; }
 
 private:
     static constexpr std::size_t points = chebyshev::points;
@@ -220,6 +222,7 @@ private:
         int ways = 0;                             // of which that is the mean
         bool strides = false;                     // the panel reaches from one to the next
         int walks = 0;                            // so many more panels do not try to
+        std::size_t count = 0;                    // of all there were
     } steps_;
     SolvedPanel panel_;
     double theta_rest_ = 0;  // of its beginning

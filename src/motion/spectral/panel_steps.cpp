@@ -274,7 +274,7 @@ void PanelSolver::remember_step(double jump, const Edge& edge) {
         steps_.apart += (std::fabs(theta - steps_.theta) - steps_.apart) / steps_.ways;
     }
     if (steps_.last > -model::never) steps_.spacing = panel_.end - steps_.last;
-    ++steps_.trust;
+    ++steps_.trust, ++steps_.count;
     steps_.theta = theta, steps_.direction = direction(), steps_.jump = jump, steps_.last = panel_.end;
     steps_.quiet = 0;
     h_ = std::min(h_max_, std::max(h_, reaches / 2 * steps_.spacing));  // it became short on the way here

@@ -29,6 +29,7 @@ public:
         trajectory.gap = gap_;
         const bool lost = outcome_ == model::Outcome::unresolved || outcome_ == model::Outcome::chattering;
         trajectory.noise = lost ? 0 : solver_.noise();
+        trajectory.jumps = solver_.jumps();
     }
 
 private:
