@@ -108,7 +108,7 @@ bool Arc::begin_powers(const model::ClosedForm& M, double still, double length, 
     // Powers: from the highest down, k b_n = c_n - C (n + 1) b_(n+1) - I (n + 2) (n + 1) b_(n+2).
     way_.assign(M.powers().begin(), M.powers().end());
     way_[0] = still;
-    const double span = std::min(length, 2 * std::numbers::pi / free_.w0());
+    const double span = std::min(length, 2 * std::numbers::pi / free_.lasting());
     double load = 0;
     for (std::size_t i = way_.size(); i-- > 0;) load = load * span + std::fabs(way_[i]);
     for (std::size_t i = way_.size(); i-- > 0;) {
@@ -117,7 +117,7 @@ bool Arc::begin_powers(const model::ClosedForm& M, double still, double length, 
         if (i + 2 < way_.size()) way_[i] -= I * (n + 2) * (n + 1) * way_[i + 2];
         way_[i] /= k;
     }
-    if (k * (std::fabs(way_[0]) + std::fabs(way_[1]) / free_.w0()) > most_cancelled * load) {
+    if (k * (std::fabs(way_[0]) + std::fabs(way_[1]) / free_.lasting()) > most_cancelled * load) {
         return false;
     }
     for (std::size_t i = 0; i < way_.size(); ++i) {
