@@ -108,11 +108,21 @@ std::string chatter_text(const Trajectory& run) {
            "excitation.sampled or excitation.relay";
 }
 
+/// What is rough, and what would go on over that.
+std::string rough_text(const Rough& rough) {
+    constexpr double above = 8;  // of two coefficients, what others may be
+    const int digits = static_cast<int>(std::ceil(std::log10(above * rough.part)));
+    std::string text = fmt::format("{} is rough on every scale, by {:.2g}: try ", rough.who, rough.by);
+    if (digits < -2) text += fmt::format("integrator.spectral{{ tolerance = 1e{} }}, or ", digits);
+    return text + "rk4";
+}
+
 }  // namespace
 
 std::string outcome_text(const Trajectory& trajectory) {
     if (trajectory.contradiction) return model::sentence_with_cure(*trajectory.contradiction);
     if (trajectory.outcome == model::Outcome::chattering) return chatter_text(trajectory);
+    if (trajectory.rough) return rough_text(*trajectory.rough);
     std::string text(model::sentence(trajectory.outcome));
     if (trajectory.noise > 0) text += fmt::format(", within the noise of M, {:.2g}", trajectory.noise);
     return text;
@@ -137,6 +147,7 @@ std::string summary(const Trajectory& trajectory) {
             break;
         default:
             text += trajectory.contradiction ? model::sentence(*trajectory.contradiction)
+                    : trajectory.rough       ? rough_text(*trajectory.rough)
                                              : std::string(model::sentence(trajectory.outcome));
     }
     if (trajectory.noise > 0) text += fmt::format("; M is rough by {:.2g}", trajectory.noise);

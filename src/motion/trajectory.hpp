@@ -62,6 +62,12 @@ struct Carried {
     std::vector<double> states;
 };
 
+/// What was so rough on every scale that a run got nowhere.
+struct Rough {
+    std::string who;
+    double by = 0, part = 0;  ///< in its own units, and as a part of what it is and acts beside
+};
+
 struct Trajectory {
     std::vector<std::string> own_names = {};  ///< where these are not the six of every run: see names()
     Rows rows;                                ///< never NaN
@@ -79,6 +85,7 @@ struct Trajectory {
     double gap = 0;    ///< the longest between two looks at a function M, time units; 0 where M tells when it changes
     double noise = 0;  ///< what keeps a function M from being smooth on any scale, torque
     std::size_t jumps = 0;                             ///< of a function M along the motion, each of which was located
+    std::optional<Rough> rough = {};                   ///< of Outcome::unresolved, where it is known
     std::vector<std::string> event_names = {};         ///< of the user's events, by Event::user
     std::shared_ptr<const Carried> carried = nullptr;  ///< of a run with more in it
     std::optional<model::Contradiction> contradiction = {};  ///< of Outcome::not_a_function

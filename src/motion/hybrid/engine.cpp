@@ -67,13 +67,10 @@ bool Engine::begin() {
         y_.push_back(left != nullptr ? left->states[i] : extras_.states[i].start);
     }
     after_break_ = breaks_at(field_, now_.hi);
-    halves_.assign(extras_.events.size(), 0);
-    fading_.resize(extras_.events.size());
-    rounded_.assign(extras_.events.size(), 0);
-    sent_back_.assign(extras_.events.size(), false);
+    watches_.resize(extras_.events.size());
     if (left != nullptr) {
         field_.remember(left->controllers);
-        halves_ = left->halves;
+        watches_ = left->watches;
         echoes_ = left->echoes;
         born_ = left->born;
     } else {
@@ -144,7 +141,10 @@ bool Engine::choose() {
 
 void Engine::again(Solver::Attempt attempt) {
     if (++attempts_ >= most_attempts) {
-        if (now_.hi - attempts_since_ < 1e-7 * most_attempts * pace_) fail(model::Outcome::unresolved);
+        if (now_.hi - attempts_since_ < 1e-7 * most_attempts * pace_) {
+            get_nowhere(model::Outcome::unresolved);
+            return;
+        }
         attempts_ = 0, attempts_since_ = now_.hi;
     }
     if (attempt == Solver::Attempt::failed) {
@@ -180,7 +180,7 @@ bool Engine::advance() {
     const auto attempt = solver_.solve(piece_, y_, departing);
     const double late = std::max(std::fabs(now_.hi), std::fabs(piece_.end));
     if (attempt == Solver::Attempt::shorten && 2 * piece_.h <= std::max(shortest * pace_, 16 * rounding * late)) {
-        if (++too_short_ > most_short) return fail(model::Outcome::chattering);
+        if (++too_short_ > most_short) return get_nowhere(model::Outcome::chattering);
         solver_.pass_over(piece_);
         h_ = 64 * piece_.h;
     } else if (attempt != Solver::Attempt::resolved) {
@@ -285,20 +285,24 @@ void Engine::keep(double length) {
 void Engine::leave(Trajectory& trajectory) const {
     trajectory.t_start = problem_.window.start;
     trajectory.t_stop = now_.hi;
-    trajectory.state_at_stop = {theta(), y_[1]};
+    const auto& walls = problem_.system.walls();
+    // Beside a wall its distance has digits that theta has not.
+    const double place = walls ? std::clamp(theta(), walls->lower, walls->upper) : theta();
+    trajectory.state_at_stop = {place, y_[1]};
     trajectory.motion_at_stop = standstill_.motion();
     trajectory.began_stuck = standstill_.began_stuck();
+    trajectory.rough = rough_;
     if (field_.asks_functions()) trajectory.gap = gap_;
     if (next_row_ < problem_.rows.count()) trajectory.rows = Rows(trajectory.rows.table().first(next_row_));
     auto left = std::make_shared<Left>();
     left->states.assign(y_.begin() + 2, y_.end());
     left->controllers = field_.memory();
-    left->halves = halves_;
+    left->watches = watches_;
     left->echoes = echoes_;
     left->born = born_;
     if (!field_.delays().empty()) left->past = pieces_;
     Values end = y_;
-    end[0] += origin_;
+    end[0] = place;
     pieces_->close(now_, std::move(end));
     trajectory.carried = std::move(left);
 }

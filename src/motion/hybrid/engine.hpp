@@ -14,10 +14,30 @@
 
 namespace dinal::motion::hybrid {
 
+/// What a user throws back each time sooner than before, until that is next to nothing: it has no end.
+struct Fading {
+    double last = -model::never, gap = model::never, first = 0;
+    bool after(double t) {
+        constexpr double next_to_nothing = 1e-5;
+        const double now = t - last;
+        if (!(now < gap) || gap == model::never) first = now;
+        last = t, gap = now;
+        return now < first && now <= next_to_nothing * first;
+    }
+};
+
+/// An event of the user's, from one act to the next.
+struct Watch {
+    Half half = 0;
+    Fading fading = {};
+    double rounded = 0;      ///< what is zero of its values, since an act
+    bool sent_back = false;  ///< by an act, and not clearly there yet
+};
+
 /// What a run with more in it leaves to the one that goes on from there.
 struct Left final : Carried {
     std::vector<ControllerMemory> controllers;
-    std::vector<Half> halves;
+    std::vector<Watch> watches;
     std::vector<std::pair<double, int>> echoes;
     std::shared_ptr<const Pieces> past;
     double born = 0;
@@ -54,17 +74,6 @@ private:
             return count > most;
         }
     };
-    /// What a user throws back each time sooner than before, until that is next to nothing: it has no end.
-    struct Fading {
-        double last = -model::never, gap = model::never, first = 0;
-        bool after(double t) {
-            constexpr double next_to_nothing = 1e-5;
-            const double now = t - last;
-            if (!(now < gap) || gap == model::never) first = now;
-            last = t, gap = now;
-            return now < first && now <= next_to_nothing * first;
-        }
-    };
     /// Of a mass that a user threw: from where, and on which side of it that is; 0 when it is none that is soon back.
     struct Flight {
         double from = 0;
@@ -81,6 +90,9 @@ private:
     void again(Solver::Attempt attempt);
     bool end_piece(double x);
     void keep(double length);
+
+    // engine_noise.cpp
+    bool get_nowhere(model::Outcome outcome);
 
     // engine_rows.cpp
     bool rows_until(double end, bool to_the_end);
@@ -199,7 +211,7 @@ private:
     mutable Values point_states_;
     bool after_break_ = false;
     Solved piece_;
-    std::vector<Half> halves_;                    // of the events of the user
+    std::vector<Watch> watches_;                  // of the events of the user
     std::vector<std::pair<double, int>> echoes_;  // breaks that delays bring back, and how often they did, in order
     double h_, pace_;
     double gap_ = 0;  // the longest between two looks at M
@@ -210,13 +222,11 @@ private:
     int attempts_ = 0, too_short_ = 0;
     double attempts_since_ = 0;
     Storm storm_, impacts_;
-    std::vector<Fading> fading_;   // of the events of the user
-    std::vector<double> rounded_;  // what is zero of their values, since an act
-    std::vector<Half> came_from_;  // when they were told last
-    std::vector<bool> sent_back_;  // by an act, and not clearly there yet
+    std::vector<Half> came_from_;  // the events of the user that were told last
     std::size_t next_row_ = 0;
     double* column_ = nullptr;
     model::Outcome outcome_ = model::Outcome::reached_end;
+    std::optional<Rough> rough_;
 };
 
 }  // namespace dinal::motion::hybrid

@@ -34,24 +34,24 @@ void Engine::watch_users(Ending& ending) {
                 return;
             }
         }
-        const Watched watched(values, exact, rounded_[i]);
+        const Watched watched(values, exact, watches_[i].rounded);
         double from = -1;
-        Half half = halves_[i];
+        Half half = watches_[i].half;
         while (const auto x = watched.leaves(half, from)) {
             if (!(*x < before)) break;
-            if (sent_back_[i] && !watched.is_clearly(half, *x)) return come_again(i);
+            if (watches_[i].sent_back && !watched.is_clearly(half, *x)) return come_again(i);
             if (wanted.direction == model::Crossing::both || (half < 0) == (wanted.direction == model::Crossing::up)) {
                 wanted_ones.emplace_back(i, *x);
                 break;
             }
             if (unwanted.size() > most_passages) break;
-            if (halves_[i] == 0) halves_[i] = half;
+            if (watches_[i].half == 0) watches_[i].half = half;
             unwanted.emplace_back(i, *x);
             half = -half;
             from = *x;
         }
-        if (halves_[i] == 0) halves_[i] = half;
-        if (sent_back_[i]) sent_back_[i] = !watched.is_clearly(halves_[i], 1);
+        if (watches_[i].half == 0) watches_[i].half = half;
+        if (watches_[i].sent_back) watches_[i].sent_back = !watched.is_clearly(watches_[i].half, 1);
     }
     if (!wanted_ones.empty()) {
         double first = 1;
@@ -62,7 +62,7 @@ void Engine::watch_users(Ending& ending) {
         }
     }
     for (const auto& [event, x] : unwanted) {
-        if (x <= ending.x) halves_[event] = -halves_[event];
+        if (x <= ending.x) watches_[event].half = -watches_[event].half;
     }
 }
 
@@ -75,8 +75,9 @@ void Engine::come_again(std::size_t event) {
 }
 
 bool Engine::act_all(const std::vector<std::size_t>& told) {
-    came_from_ = halves_;
-    for (const std::size_t which : told) halves_[which] = -halves_[which];
+    came_from_.clear();
+    for (const Watch& watch : watches_) came_from_.push_back(watch.half);
+    for (const std::size_t which : told) watches_[which].half = -watches_[which].half;
     if (!std::all_of(told.begin(), told.end(), [&](std::size_t which) { return act(which, told); })) return false;
     // What comes at the same instant is told before one of them stops the run: it would not be told when that goes on.
     const bool stops =
@@ -122,7 +123,7 @@ bool Engine::act(std::size_t which, const std::vector<std::size_t>& told) {
         stand_where_put(before, changed ? told : std::vector<std::size_t>());
         echo(now_.hi, 1);
         if (moved) throw_from_here();
-        if (moved && fading_[which].after(now_.hi) && !wanted.stop) return fail(model::Outcome::chattering);
+        if (moved && watches_[which].fading.after(now_.hi) && !wanted.stop) return fail(model::Outcome::chattering);
     }
     return wanted.stop || !too_often() || fail(model::Outcome::chattering);
 }
@@ -168,7 +169,7 @@ bool Engine::passes_on(std::size_t event) const {
         return extras_.events[event].when->value_with(now_.hi + after, {theta() + after * y_[1], y_[1] + after * a},
                                                       states);
     };
-    return came_from_[event] * (value(step) - value(-step)) < -rounded_[event];
+    return came_from_[event] * (value(step) - value(-step)) < -watches_[event].rounded;
 }
 
 /// What the user did may have put watched values on the other side of zero, which is no passing. A value that was told
@@ -176,18 +177,19 @@ bool Engine::passes_on(std::size_t event) const {
 /// when it goes on, what it comes to next.
 void Engine::stand_where_put(const std::vector<double>& before, const std::vector<std::size_t>& told) {
     const std::vector<double> now = watched_values(2), begin = watched_values(-1), end = watched_values(1);
-    for (std::size_t i = 0; i < halves_.size(); ++i) {
+    for (std::size_t i = 0; i < watches_.size(); ++i) {
         const double size = std::max({std::fabs(begin[i]), std::fabs(end[i]), std::fabs(now[i])});
         if (now[i] == before[i]) {
             // One that an impact took past zero does not stand there.
-            const bool stands = std::fabs(now[i]) <= at_zero * size + 2 * rounding_of(i) + rounded_[i];
+            const bool stands = std::fabs(now[i]) <= at_zero * size + 2 * rounding_of(i) + watches_[i].rounded;
             if (!stands || std::find(told.begin(), told.end(), i) == told.end()) continue;
-            rounded_[i] = 2 * std::fabs(now[i]) + rounding_of(i);
-            sent_back_[i] = !passes_on(i);
-            halves_[i] = sent_back_[i] ? came_from_[i] : 0;
+            watches_[i].rounded = 2 * std::fabs(now[i]) + rounding_of(i);
+            watches_[i].sent_back = !passes_on(i);
+            watches_[i].half = watches_[i].sent_back ? came_from_[i] : 0;
             continue;
         }
-        halves_[i] = std::fabs(now[i]) <= at_zero * size ? 0 : now[i] > 0 ? 1 : -1;
+        watches_[i].half = std::fabs(now[i]) <= at_zero * size ? 0 : now[i] > 0 ? 1 : -1;
+        watches_[i].sent_back = false;
     }
 }
 

@@ -1,0 +1,61 @@
+-- Functions with noise in them, in runs with more in them: what ends such a run says what is rough, and what goes on.
+package.path = "tests/lua/?.lua;" .. package.path
+local support = require "support"
+local test, near = support.test, support.near
+
+-- A number within 1 that depends on t alone, and not smoothly anywhere.
+local function noise(t)
+    local s = math.sin(12345.678 * t + 1) * 43758545.3
+    return 2 * (s - math.floor(s)) - 1
+end
+
+local sys = system { I = 1, k = 1, C = 0.1, Rd = 0.3, Re = 0.5 }
+
+-- The options of a run with this much noise in one of its functions, by its name.
+local noisy = {
+    ["the belt"] = function(size)
+        return { M = 0.2, belt = function(t) return 0.5 + 0.3 * math.sin(t) + size * noise(t) end }
+    end,
+    ["the base"] = function(size)
+        return { M = 0.2, velocity0 = 1, base = function(t) return 0.9 * math.sin(0.7 * t) + size * noise(t) end }
+    end,
+    ["M"] = function(size)
+        return {
+            M = function(t, _, _, z) return math.sin(0.7 * t) - 0.1 * z.u + size * noise(t) end, velocity0 = 1,
+            states = { u = { rate = function(_, theta, _, z) return theta - z.u end } },
+        }
+    end,
+    ["the rate of u"] = function(size)
+        return {
+            M = function(t, _, _, z) return math.sin(0.7 * t) - 0.1 * z.u end, velocity0 = 1,
+            states = { u = { start = 1, rate = function(t, theta, _, z) return theta - z.u + size * noise(t) end } },
+        }
+    end,
+}
+
+for who, options in pairs(noisy) do
+    test("noise ends a run with a sentence about " .. who .. ", and the tolerance that it names goes on", function()
+        local function run(size, tolerance)
+            local task = options(size)
+            task.t_end, task.dt, task.integrator = 12, 0.5, tolerance and integrator.spectral { tolerance = tolerance }
+            return sys:simulate(task)
+        end
+        local clean, sentences = run(0), 0
+        for _, size in ipairs { 1e-11, 1e-10, 1e-9, 1e-8, 1e-7, 1e-6 } do
+            local found = run(size)
+            local tolerance = found.outcome:match("tolerance = (%S+)")
+            if tolerance then
+                sentences = sentences + 1
+                assert(found.outcome:find(who .. " is rough on every scale", 1, true) == 1, found.outcome)
+                assert(found:explain():gsub("%s+", " "):find(who .. " is rough", 1, true) and tostring(found):find(who .. " is rough", 1, true))
+                found = run(size, tonumber(tolerance))
+            end
+            assert(#found == #clean, ("%g: %s"):format(size, found.outcome))
+            -- what the noise, or the tolerance that takes it for nothing, does to a motion of size 1
+            near((found.theta - clean.theta):abs():max(), 0, 100 * size)
+        end
+        assert(sentences >= 3, sentences)
+    end)
+end
+
+support.finish()
