@@ -141,4 +141,25 @@ test("a belt that is rounded to eight digits has the slope of one that is not", 
     end
 end)
 
+test("under rk4 a mass that slides on a belt which jumps, and does not say so, keeps its velocity", function()
+    local sys, block = system { I = 1, k = 1, C = 0.1, Rd = 0.3, Re = 0.5 }, system { I = 1, k = 0, Rd = 0.3, Re = 0.5 }
+    for _, s in ipairs { sys, block } do
+        for _, at in ipairs { 1, 1.2345 } do -- 1 is the end of a step
+            for _, belt in ipairs { { 0.5, -0.5 }, { 0.5, 0 }, { 0.5, 0.2 }, { -0.3, 0.3 } } do
+                local task = { velocity0 = 0.1, t_end = 10, dt = 0.5, belt = belt[1] + excitation.step { level = belt[2] - belt[1], at = at } }
+                local told = s:simulate(task)
+                task.belt = function(t) return t < at and belt[1] or belt[2] end
+                for _, h in ipairs { 0.01, 0.001 } do
+                    task.integrator = integrator.rk4 { h = h }
+                    local run = s:simulate(task)
+                    equal(run.outcome, told.outcome)
+                    equal(#run.events, #told.events)
+                    -- the step that meets the jump does not know when, which is first order
+                    near((run.theta - told.theta):abs():max(), 0, 3 * h)
+                end
+            end
+        end
+    end
+end)
+
 support.finish()

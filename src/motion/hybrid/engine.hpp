@@ -101,6 +101,7 @@ private:
     // engine_events.cpp
     void watch(Ending& ending);
     bool handle(const Ending& ending);
+    [[nodiscard]] bool passed_by_jump() const;
     bool belt_jumps(double before);
     bool ask();
     bool release(model::Motion towards);

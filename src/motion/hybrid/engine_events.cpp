@@ -83,6 +83,7 @@ bool Engine::handle(const Ending& ending) {
             return true;
         case By::surface:
             if (ending.towards != model::Motion::stuck) return release(ending.towards);
+            if (passed_by_jump()) return belt_jumps(y_[1]);
             standstill_.lean(model::Motion::stuck);
             y_[1] = belt();
             touch();
@@ -98,6 +99,13 @@ bool Engine::handle(const Ending& ending) {
             return act_all(ending.users);
     }
     return true;
+}
+
+/// Within a step of Runge-Kutta the belt may jump where nobody announced it: past the velocity of the mass, which does
+/// not follow it. The place is approached from step to step.
+bool Engine::passed_by_jump() const {
+    constexpr double clearly = 1e-6;
+    return cut_.h > 0 && field_.has_belt() && std::fabs(y_[1] - belt()) > clearly * greatest(piece_.belt);
 }
 
 /// A surface that changes its velocity at once leaves the mass behind, or turns the sliding round.
