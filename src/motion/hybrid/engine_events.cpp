@@ -105,7 +105,8 @@ bool Engine::handle(const Ending& ending) {
 /// not follow it. The place is approached from step to step.
 bool Engine::passed_by_jump() const {
     constexpr double clearly = 1e-6;
-    return cut_.h > 0 && field_.has_belt() && std::fabs(y_[1] - belt()) > clearly * greatest(piece_.belt);
+    const double fastest = greatest(piece_.y[1]) + greatest(piece_.belt);
+    return cut_.h > 0 && field_.has_belt() && std::fabs(y_[1] - belt()) > clearly * fastest;
 }
 
 /// A surface that changes its velocity at once leaves the mass behind, or turns the sliding round.
