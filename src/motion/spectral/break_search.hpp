@@ -127,13 +127,14 @@ public:
     template <class F>
     [[nodiscard]] std::optional<double> next(double end, const F& f) const {
         constexpr double known_to = 8 * std::numeric_limits<double>::epsilon();  // of the time
-        const std::size_t n = last_.size() - 1;
-        for (std::size_t after = 1; 2 * after <= n; ++after) {
-            const double period = last_[n] - last_[n - after], before = last_[n - after] - last_[n - 2 * after];
-            if (!(std::fabs(period - before) <= known_to * std::fabs(last_[n]))) continue;
-            const double due = last_[n + 1 - after] + period, off = known_to * std::fabs(due);
+        const std::size_t latest = last_.size() - 1;
+        for (std::size_t after = 1; 2 * after <= latest; ++after) {
+            const double period = last_[latest] - last_[latest - after],
+                         before = last_[latest - after] - last_[latest - 2 * after];
+            if (!(std::fabs(period - before) <= known_to * std::fabs(last_[latest]))) continue;
+            const double due = last_[latest + 1 - after] + period, off = known_to * std::fabs(due);
             const double a = due - off, b = std::min(due + off, end);
-            if (!(a > last_[n] && b > a)) return {};
+            if (!(a > last_[latest] && b > a)) return {};
             const double fa = f(a), fb = f(b);
             if (!(std::fabs(fb - fa) > detail::few_roundings * (std::fabs(fa) + std::fabs(fb)))) return {};
             return detail::jump_between(a, fa, b, fb, f);
