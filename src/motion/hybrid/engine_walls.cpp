@@ -88,7 +88,8 @@ double Engine::until(int side, double place, double a) const {
     const double v = side * y_[1], b = side * a, root = v * v + 2 * b * gap;
     if (!(root >= 0) || !(gap < model::never)) return model::never;
     const double t = v > 0 ? 2 * gap / (v + std::sqrt(root)) : b > 0 ? (std::sqrt(root) - v) / b : model::never;
-    return t > 0 ? t : model::never;
+    if (t > 0) return t;
+    return model::never;
 }
 
 double Engine::until_wall() const {
