@@ -111,8 +111,9 @@ private:
     /// How far all that is remembered, and a whole period of the motion, is from what it was m periods before, looked
     /// at from `back` periods before the end.
     [[nodiscard]] double off(std::size_t m, std::size_t back) const {
-        const std::size_t span = looks * std::max(m, past_ + 1), end = seen_.size() - looks * back;
-        if (end < span + looks * m) return model::never;
+        const std::size_t span = looks * std::max(m, past_ + 1);
+        if (seen_.size() < looks * (back + m) + span) return model::never;
+        const std::size_t end = seen_.size() - looks * back;
         double most = 0;
         for (std::size_t i = end - span; i < end; ++i) {
             most = std::max(most, length_of(seen_[i] - seen_[i - looks * m]));
