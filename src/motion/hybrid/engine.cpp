@@ -106,6 +106,9 @@ model::Outcome Engine::run() {
 bool Engine::choose() {
     const double breaks = std::min(field_.next_break(now_.hi), echoes_.empty() ? model::never : echoes_.front().first);
     double limit = std::min({problem_.window.end, breaks, belt_turns_});
+    // Up to a jump of the belt, and from there over it.
+    const double at_jump = before_jump() ? belt_jump_ : std::nextafter(belt_jump_, -model::never);
+    limit = std::min(limit, at_jump);
     if (cut_.h > 0) {
         // A break that rounding puts beside a step's end is that end.
         const double beside = std::max(1e-9 * cut_.h, 4 * rounding * std::fabs(now_.hi));
@@ -135,7 +138,7 @@ bool Engine::choose() {
     piece_.end = to_limit ? limit : now_.after(2 * piece_.h);
     piece_.from_break = after_break_;
     piece_.to_break = to_limit && limit == breaks;
-    piece_.to_the_end = piece_.to_break || (to_limit && limit == problem_.window.end);
+    piece_.to_the_end = piece_.to_break || (to_limit && (limit == problem_.window.end || limit == at_jump));
     return piece_.h > 0 || fail(model::Outcome::chattering);
 }
 
@@ -163,11 +166,13 @@ void Engine::again(Solver::Attempt attempt) {
 
 bool Engine::advance() {
     if (standstill_.phase() == Standstill::Phase::arrived && !ask()) return false;
-    if (standstill_.stuck() && standstill_.phase() != Standstill::Phase::held) {
+    // Right before a jump of the belt its slope is none.
+    if (standstill_.stuck() && standstill_.phase() != Standstill::Phase::held && !before_jump()) {
         const double M = field_.load(here());
         if (!std::isfinite(pull(M))) return fail(model::Outcome::excitation_not_finite);
         const model::Motion towards = standstill_.pulled(surely(pull(M), theta()), theta());
-        if (towards != model::Motion::stuck && !release(towards)) return false;
+        const bool goes = towards != model::Motion::stuck && !find_jump_here() && lets_go_for_sure(M, towards);
+        if (goes && !release(towards)) return false;
     }
     if (watches_corners()) corners_.enter(model::sign_of(standstill_.motion()) * (y_[1] - belt()));
     if (!choose()) return false;
@@ -179,7 +184,16 @@ bool Engine::advance() {
     }
     const auto attempt = solver_.solve(piece_, y_, departing);
     const double late = std::max(std::fabs(now_.hi), std::fabs(piece_.end));
-    if (attempt == Solver::Attempt::shorten && 2 * piece_.h <= std::max(shortest * pace_, 16 * rounding * late)) {
+    const bool over_jump = piece_.end == belt_jump_;
+    const bool may_jump = attempt == (cut_.h > 0 ? Solver::Attempt::resolved : Solver::Attempt::shorten);
+    if (may_jump && field_.has_belt() && !over_jump) {
+        belt_jump_ = std::min(belt_jump_, solver_.jump_of_belt(piece_));
+        if (belt_jump_ <= piece_.end) return true;
+    }
+    if (over_jump && attempt != Solver::Attempt::failed) {
+        solver_.pass_over(piece_);
+    } else if (attempt == Solver::Attempt::shorten &&
+               2 * piece_.h <= std::max(shortest * pace_, 16 * rounding * late)) {
         if (++too_short_ > most_short) return get_nowhere(model::Outcome::chattering);
         solver_.pass_over(piece_);
         h_ = 64 * piece_.h;
@@ -198,8 +212,8 @@ bool Engine::advance() {
 
     Ending ending;
     if (standstill_.stuck()) {
-        // A pull that stays has been asked already.
-        const bool asked = piece_.held && standstill_.phase() != Standstill::Phase::held;
+        // A pull that stays has been asked already; that of a jump is none.
+        const bool asked = (piece_.held && standstill_.phase() != Standstill::Phase::held) || over_jump;
         const auto [x, towards] = asked ? std::pair(2.0, model::Motion::stuck) : first_release();
         if (x < 1) ending = {x, By::surface, 0, towards};
     } else if (!standstill_.passes()) {
@@ -245,6 +259,7 @@ bool Engine::end_piece(double x) {
     after_break_ = whole && piece_.to_break;
     if (bad_time_ <= now_.hi) bad_time_ = model::never;
     if (belt_turns_ <= now_.hi) belt_turns_ = model::never;
+    if (belt_jump_ <= now_.hi) belt_jump_ = model::never;
     const double belt_here = whole ? piece_.belt[node_count - 1] : belt();
     if (standstill_.stuck()) y_[1] = leans() ? 0 : belt_here;
     if (whole && length > 0) standstill_.go_on();

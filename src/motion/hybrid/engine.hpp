@@ -101,7 +101,8 @@ private:
     // engine_events.cpp
     void watch(Ending& ending);
     bool handle(const Ending& ending);
-    [[nodiscard]] bool passed_by_jump() const;
+    [[nodiscard]] bool before_jump() const;
+    bool find_jump_here();
     bool belt_jumps(double before);
     bool ask();
     bool release(model::Motion towards);
@@ -119,6 +120,7 @@ private:
     [[nodiscard]] bool creeps() const;
     bool creep();
     [[nodiscard]] std::pair<double, model::Motion> first_release() const;
+    [[nodiscard]] bool lets_go_for_sure(double M, model::Motion towards) const;
     void record_turns(double until);
     [[nodiscard]] bool keeps_its_way() const;
     /// Corners of a law are passed at sight where pieces are right to rounding.
@@ -176,7 +178,7 @@ private:
     [[nodiscard]] double pull(double M) const {
         const double loads = M + field_.push(now_.hi, after_break_ ? Side::after : Side::at);
         if (standstill_.leans() != model::Motion::stuck) return loads + belt_at_wall();
-        return loads - system_.inertia() * field_.sure_belt_rate(now_.hi) - system_.damping() * belt();
+        return loads - system_.inertia() * field_.belt_slope(now_.hi).sure() - system_.damping() * belt();
     }
     /// What states of the user's may be wrong by, as a part of the torques that come from them.
     [[nodiscard]] double blurred() const { return y_.size() > 2 ? 3e-12 : 0; }
@@ -218,6 +220,7 @@ private:
     double gap_ = 0;  // the longest between two looks at M
     double bad_time_ = model::never;
     double belt_turns_ = model::never;  // while the mass stands at a wall
+    double belt_jump_ = model::never;   // where nobody announced it
     Flight flight_;
     double born_;  // when the run began that goes on here
     int attempts_ = 0, too_short_ = 0;

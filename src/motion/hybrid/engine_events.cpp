@@ -6,6 +6,7 @@
 #include <span>
 
 #include "motion/hybrid/engine.hpp"
+#include "motion/spectral/break_search.hpp"
 
 namespace dinal::motion::hybrid {
 
@@ -13,6 +14,8 @@ namespace {
 
 /// Events that follow each other within this time, in units of the pace, so often, go on for ever.
 constexpr double at_once = 1e-9;
+/// Times that far apart, as a part of themselves, differ by rounding.
+constexpr double few_times = 16 * rounding;
 /// How often a delay brings back a kink before it is too smooth to be seen.
 constexpr int most_echoes = 8;
 
@@ -83,7 +86,6 @@ bool Engine::handle(const Ending& ending) {
             return true;
         case By::surface:
             if (ending.towards != model::Motion::stuck) return release(ending.towards);
-            if (passed_by_jump()) return belt_jumps(y_[1]);
             standstill_.lean(model::Motion::stuck);
             y_[1] = belt();
             touch();
@@ -101,12 +103,22 @@ bool Engine::handle(const Ending& ending) {
     return true;
 }
 
-/// Within a step of Runge-Kutta the belt may jump where nobody announced it: past the velocity of the mass, which does
-/// not follow it. The place is approached from step to step.
-bool Engine::passed_by_jump() const {
+/// Whether a jump of the belt is so near that what lies before it is nothing but roundings.
+bool Engine::before_jump() const {
+    return belt_jump_ - now_.hi <= few_times * std::fabs(now_.hi) ||
+           std::nextafter(now_.hi, model::never) == belt_jump_;
+}
+
+/// Whether the belt jumps next to here.
+bool Engine::find_jump_here() {
+    if (!field_.has_belt()) return false;
+    const auto belt = [&](double t) { return field_.belt(t, Side::at); };
+    const double ahead = std::max(now_.hi + few_times * std::fabs(now_.hi), std::nextafter(now_.hi, model::never));
+    const double here = belt(now_.hi), there = belt(ahead);
     constexpr double clearly = 1e-6;
-    const double fastest = greatest(piece_.y[1]) + greatest(piece_.belt);
-    return cut_.h > 0 && field_.has_belt() && std::fabs(y_[1] - belt()) > clearly * fastest;
+    if (!(std::fabs(there - here) > clearly * std::max(solver_.fastest_belt(), std::fabs(there)))) return false;
+    belt_jump_ = std::min(belt_jump_, spectral::jump_between(now_.hi, here, ahead, there, belt));
+    return true;
 }
 
 /// A surface that changes its velocity at once leaves the mass behind, or turns the sliding round.
@@ -114,8 +126,9 @@ bool Engine::belt_jumps(double before) {
     const double slip = y_[1] - belt();
     if (!std::isfinite(slip)) return fail(model::Outcome::excitation_not_finite);
     // Where it only turns a corner its values differ by rounding, and by what it does in a hair of time.
-    const double rate = std::max(std::fabs(piece_.belt_rate[node_count - 1]), std::fabs(field_.belt_rate(now_.hi)));
-    const double corner = 64 * rounding * (std::fabs(belt()) + std::fabs(before) + rate * std::fabs(now_.hi));
+    const double rate = std::max(std::fabs(piece_.belt_rate[node_count - 1]), std::fabs(field_.belt_slope(now_.hi).rate));
+    const double hair = 64 * rounding * std::fabs(now_.hi) + (piece_.passed ? 4 * piece_.h : 0);
+    const double corner = 64 * rounding * (std::fabs(belt()) + std::fabs(before)) + rate * hair;
     if (std::fabs(belt() - before) <= corner || standstill_.passes() || leans()) return true;
     if (slip == 0) {
         standstill_.arrive();

@@ -39,7 +39,7 @@ bool Engine::put_row(double t, double x) {
         friction = belt != 0 ? sliding_at_wall(belt) : presses || !system_.dry() ? 0 : -loads;
     } else if (stands) {
         const double rate = !field_.has_belt() ? 0
-                            : present          ? field_.belt_rate(t)
+                            : present          ? field_.belt_slope(t).rate
                                       : spectral::chebyshev::value(spectral::chebyshev::fit(piece_.belt_rate), at);
         friction = system_.inertia() * rate + system_.damping() * belt -
                    (std::fma(-system_.stiffness(), y[0], M - system_.spring(y[0])) + field_.push(t, side));

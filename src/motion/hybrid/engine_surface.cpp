@@ -59,7 +59,7 @@ double Engine::longest_under_friction() const {
     const model::Slide& slide = solver_.slide();
     if (!slide.inside()) return model::never;
     const double sign = model::sign_of(standstill_.motion()), I = system_.inertia(), C = system_.damping();
-    const double first = acceleration() - field_.belt_rate(now_.hi);
+    const double first = acceleration() - field_.belt_slope(now_.hi).rate;
     const double second = (std::fabs(system_.stiffness() * y_[1]) + std::fabs(C * first)) / I;
     return slide.longest_step(sign * (y_[1] - belt()), sign * first, second, C, I);
 }
@@ -153,9 +153,8 @@ std::pair<double, model::Motion> Engine::first_release() const {
         const auto lets_go = [&](double x) {
             const MotionPoint at = point(x);
             const double M = field_.load(at);
-            const double whole = value(rate, x),
-                         sure = std::copysign(std::max(0.0, std::fabs(whole) - rounded_rate), whole);
-            const double torque = pull_at(M, field_.push(at.t, at.side), sure, value(belt, x));
+            const double least = value(rate, x) + sign * rounded_rate;
+            const double torque = pull_at(M, field_.push(at.t, at.side), least, value(belt, x));
             return standstill_.pulled(surely(torque, at.y.theta), at.y.theta) == side;
         };
         std::optional<double> touch;
@@ -172,6 +171,15 @@ std::pair<double, model::Motion> Engine::first_release() const {
         if (x && *x < first.first && piece_.time(*x) < piece_.end) first = {*x, side};
     }
     return first;
+}
+
+/// Whether it is let go now, whatever of the belt's slope is rounding.
+bool Engine::lets_go_for_sure(double M, model::Motion towards) const {
+    if (!field_.has_belt() || leans()) return true;
+    const Field::Slope slope = field_.belt_slope(now_.hi);
+    const double less = slope.rate + model::sign_of(towards) * slope.doubt - slope.sure();
+    const double least = pull(M) - system_.inertia() * less;
+    return standstill_.pulled(surely(least, theta()), theta()) == towards;
 }
 
 bool Engine::creep() {

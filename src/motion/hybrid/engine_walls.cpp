@@ -47,7 +47,7 @@ double Engine::belt_at_wall() const {
     const double added = belt_at_wall(heading);
     const model::Motion into = standstill_.leans(), away = opposite(into);
     if (std::fabs(heading) != Field::hair || model::motion_of(heading) != away) return added;
-    const double follows = system_.holding(into) - system_.inertia() * std::fabs(field_.sure_belt_rate(now_.hi));
+    const double follows = system_.holding(into) - system_.inertia() * std::fabs(field_.belt_slope(now_.hi).sure());
     return added + model::sign_of(away) * std::max(0.0, follows - std::fabs(sliding_at_wall(heading)));
 }
 

@@ -131,17 +131,7 @@ double Field::belt_heading(double t, Side side) const {
 }
 
 /// By the derivative of a polynomial through a short stretch ahead, which is right to some twelve digits.
-double Field::belt_rate(double t) const {
-    return belt_slope(t).first;
-}
-
-double Field::sure_belt_rate(double t) const {
-    const auto [rate, rounded] = belt_slope(t);
-    return std::copysign(std::max(0.0, std::fabs(rate) - rounded), rate);
-}
-
-/// The belt's acceleration, and how much of it may be rounding, or the belt's own noise.
-std::pair<double, double> Field::belt_slope(double t) const {
+Field::Slope Field::belt_slope(double t) const {
     using namespace spectral::chebyshev;
     if (!has_belt() || extras_.belt.constant_from() <= t) return {0, 0};
     constexpr double smooth = 1e-9, noise = 1e-5, shorter = 0.25;
@@ -149,7 +139,7 @@ std::pair<double, double> Field::belt_slope(double t) const {
     constexpr int most_looks = 23;       // down to 1e-14 of the stretch
     constexpr double roundings = 256;    // in a slope at the end of a polynomial of this degree
     const double next = extras_.belt.next_break(t);
-    std::pair<double, double> best{0, model::never};
+    Slope best{0, model::never};
     // A jump that nobody announced is no part of the slope before it.
     double h = std::min(short_stretch_, (next - t) / 2);
     for (int look = 0; look < most_looks; ++look) {
@@ -162,11 +152,11 @@ std::pair<double, double> Field::belt_slope(double t) const {
         const double all = cheb::size(curve), rough = tail(curve), slope = value(derivative(curve), -1) / h;
         if (!(rough > smooth * all)) return {slope, roundings * rounding * greatest(values) / h};
         const double doubt = roundings * rough / h;
-        if (rough <= noise * all && doubt > clearly_worse * best.second) break;
-        if (doubt < best.second) best = {slope, doubt};
+        if (rough <= noise * all && doubt > clearly_worse * best.doubt) break;
+        if (doubt < best.doubt) best = {slope, doubt};
         h *= shorter;
     }
-    return best.second < model::never ? best : std::pair(0.0, 0.0);
+    return best.doubt < model::never ? best : Slope{0, 0};
 }
 
 void Field::rates(const MotionPoint& at, double* out) const {

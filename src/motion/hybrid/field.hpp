@@ -83,10 +83,14 @@ public:
     /// The same, but where it is passing zero: a hair of velocity that way on which it goes.
     [[nodiscard]] double belt_heading(double t, Side side) const;
     static constexpr double hair = std::numeric_limits<double>::min();
-    /// How fast that changes, from the right.
-    [[nodiscard]] double belt_rate(double t) const;
-    /// The same, nearer to zero by what rounding may have made of it.
-    [[nodiscard]] double sure_belt_rate(double t) const;
+    /// How fast the belt changes its velocity, and what of that may be rounding, or the belt's own noise.
+    struct Slope {
+        double rate, doubt;
+        /// Nearer to zero by the doubt.
+        [[nodiscard]] double sure() const { return std::copysign(std::max(0.0, std::fabs(rate) - doubt), rate); }
+    };
+    /// From the right.
+    [[nodiscard]] Slope belt_slope(double t) const;
     void rates(const MotionPoint& at, double* out) const;
     /// The first time after t at which anything is known to jump.
     [[nodiscard]] double next_break(double t) const;
@@ -121,7 +125,6 @@ public:
     void remember(const std::vector<ControllerMemory>& memory) { memory_ = memory; }
 
 private:
-    [[nodiscard]] std::pair<double, double> belt_slope(double t) const;
     /// What a component is, looked up once: at most one of these.
     struct Kind {
         const model::Scripted* function = nullptr;

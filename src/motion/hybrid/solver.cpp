@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <span>
 
 #include "motion/interpolation.hpp"
+#include "motion/spectral/break_search.hpp"
 #include "motion/spectral/corner_look.hpp"
 
 namespace dinal::motion::hybrid {
@@ -35,6 +37,7 @@ bool Solver::sample_surroundings(Solved& piece) {
     }
     piece.belt_rate = {};
     if (!has_belt) return true;
+    fastest_belt_ = std::max(fastest_belt_, greatest(piece.belt));
     const auto slope = cheb::derivative(cheb::fit(piece.belt));
     for (std::size_t j = 0; j < node_count; ++j) piece.belt_rate[j] = cheb::value(slope, cheb::nodes[j]) / piece.h;
     return true;
@@ -190,10 +193,12 @@ void Solver::judge(const Solved& piece) {
     // Near a zero of a belt or of a rate its rounding is that of what it was before.
     if (field_.has_belt()) {
         const Series belt = cheb::fit(piece.belt);
-        fastest_belt_ = std::max(fastest_belt_, greatest(piece.belt));
         const double allowed = (cut_.tolerance + 16 * rounding) * greatest(piece.belt) + 16 * rounding * fastest_belt_ +
                                lost_in_time(belt, fastest_belt_) + smallest;
-        unresolved_ = std::max(unresolved_, cheb::tail(belt) / allowed);
+        // Jumps that come evenly cancel in every second coefficient, and may in the last.
+        const double tail =
+            std::max({cheb::tail(belt), std::fabs(belt[node_count - 3]), std::fabs(belt[node_count - 4])});
+        unresolved_ = std::max(unresolved_, tail / allowed);
     }
     for (std::size_t k = 2; k < n_; ++k) {
         Nodes rate{};
@@ -221,10 +226,39 @@ void Solver::look_at_corners(const Solved& piece) {
     if (missed) unresolved_ = std::max(2.0, std::pow(0.9 / spectral::shorter_by_corner(*missed), cheb::degree));
 }
 
+double Solver::jump_of_belt(const Solved& piece) const {
+    constexpr double clearly = 1e-6, near = 1e-3;
+    const double seen = clearly * std::max(fastest_belt_, greatest(piece.belt));
+    const auto [least, most] = std::minmax_element(piece.belt.begin(), piece.belt.end());
+    const double change = *most - *least;
+    std::size_t first = 1;  // of the greatest differences
+    const auto difference = [&](std::size_t j) { return std::fabs(piece.belt[j] - piece.belt[j - 1]); };
+    for (std::size_t j = 2; j < node_count; ++j) {
+        if (difference(j) > 2 * difference(first)) first = j;
+    }
+    if (!(change > seen) || !(difference(first) > change / 4)) return model::never;
+    const auto belt = [&](double t) { return field_.belt(t, Side::at); };
+    const std::size_t from = std::max<std::size_t>(first, 2) - 2;
+    const auto found =
+        spectral::find_break(std::span(piece.times).subspan(from, 3), std::span(piece.belt).subspan(from, 3), belt);
+    if (!found || !(*found > piece.start.hi)) return model::never;
+    // Of noise a jump is no more than what lies beside it.
+    const double before = belt(std::nextafter(*found, -model::never)), after = belt(*found);
+    const double jump = std::fabs(after - before);
+    if (!(jump > seen)) return model::never;
+    for (const double part : {0.25, 0.5, 1.0}) {
+        const double by = part * near * piece.h;
+        const double off_before = std::fabs(belt(std::max(*found - by, piece.start.hi)) - before);
+        const double off_after = std::fabs(belt(std::min(*found + by, piece.end)) - after);
+        if (!(std::max(off_before, off_after) < jump / 4)) return model::never;
+    }
+    return *found;
+}
+
 void Solver::pass_over(Solved& piece) const {
-    // A belt that jumps here has no slope that it could give to a mass.
     piece.passed = true;
-    piece.belt_rate = {};
+    // Whatever jumps here, the belt goes on as it did before.
+    piece.belt_rate.fill(field_.has_belt() ? field_.belt_slope(piece.start.hi).rate : 0);
     piece.push.fill(piece.push[0]), piece.belt.fill(piece.belt[0]);
     if (!moves(piece)) piece.f[1].fill(0);
     for (std::size_t k = 0; k < n_; ++k) {

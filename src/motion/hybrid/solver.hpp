@@ -90,6 +90,8 @@ public:
     /// The friction of the next piece that moves.
     [[nodiscard]] model::Slide& slide() { return slide_; }
     [[nodiscard]] const model::Slide& slide() const { return slide_; }
+    /// Where the belt jumps on a piece, and nobody announced it; `never` when it does not.
+    [[nodiscard]] double jump_of_belt(const Solved& piece) const;
     /// A piece too short to matter is a straight line.
     void pass_over(Solved& piece) const;
 

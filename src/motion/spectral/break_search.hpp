@@ -11,6 +11,23 @@
 
 namespace dinal::motion::spectral {
 
+/// The first double at which f has the value it has at b rather than the one at a. Beside t = 0 doubles are so close
+/// that no length between them is a number to compute with: nearer than any motion can tell is near enough.
+template <class F>
+double jump_between(double a, double fa, double b, double fb, const F& f) {
+    const double finest = (b - a) * 0x1p-100;
+    for (;;) {
+        const double middle = a + (b - a) / 2;
+        if (!(middle > a && middle < b) || b - a <= finest) return b;
+        const double fm = f(middle);
+        if (std::fabs(fm - fa) <= std::fabs(fm - fb)) {
+            a = middle, fa = fm;
+        } else {
+            b = middle, fb = fm;
+        }
+    }
+}
+
 namespace detail {
 
 constexpr double few_roundings = 64 * std::numeric_limits<double>::epsilon();
@@ -33,23 +50,6 @@ Triple most_bent_half(const Triple& t, const F& f) {
         right{t.middle, t.fm, q3, f3, t.b, t.fb};
     const Triple& side = left.bend() >= right.bend() ? left : right;
     return side.bend() >= centre.bend() ? side : centre;
-}
-
-/// The first double at which f has the value it has at b rather than the one at a. Beside t = 0 doubles are so close
-/// that no length between them is a number to compute with: nearer than any motion can tell is near enough.
-template <class F>
-double jump_between(double a, double fa, double b, double fb, const F& f) {
-    const double finest = (b - a) * 0x1p-100;
-    for (;;) {
-        const double middle = a + (b - a) / 2;
-        if (!(middle > a && middle < b) || b - a <= finest) return b;
-        const double fm = f(middle);
-        if (std::fabs(fm - fa) <= std::fabs(fm - fb)) {
-            a = middle, fa = fm;
-        } else {
-            b = middle, fb = fm;
-        }
-    }
 }
 
 /// The jump between a and b, if halving shows that it is one: the values at both ends of a jump stay apart, whatever
@@ -107,7 +107,7 @@ std::optional<double> find_break(std::span<const double> times, std::span<const 
         t = detail::most_bent_half(t, f);
         if (i == judged_at && !(t.bend() > smooth * at_first)) return {};
         const bool jumps = t.bend() > at_first / 8;
-        if (i >= 3 * judged_at && jumps) return detail::jump_between(t.a, t.fa, t.b, t.fb, f);
+        if (i >= 3 * judged_at && jumps) return jump_between(t.a, t.fa, t.b, t.fb, f);
         if (t.bend() <= t.noise() || !(t.middle > t.a && t.middle < t.b)) {
             return i > judged_at ? std::optional(t.middle) : std::nullopt;
         }
@@ -137,7 +137,7 @@ public:
             if (!(a > last_[latest] && b > a)) return {};
             const double fa = f(a), fb = f(b);
             if (!(std::fabs(fb - fa) > detail::few_roundings * (std::fabs(fa) + std::fabs(fb)))) return {};
-            return detail::jump_between(a, fa, b, fb, f);
+            return jump_between(a, fa, b, fb, f);
         }
         return {};
     }
