@@ -6,7 +6,7 @@
 
 #include "model/forcing.hpp"
 #include "model/laws/coulomb.hpp"
-#include "motion/spectral/chebyshev.hpp"
+#include "motion/belt_slope.hpp"
 #include "text/characters.hpp"
 
 namespace dinal::analysis {
@@ -112,34 +112,19 @@ void Story::tell_surroundings() {
     if (on_base_) say("The support shakes: its acceleration a acts on the mass as -I a, and theta is relative to it.");
     if (!on_belt_) return;
     if (steady_belt_) {
-        say("Dry friction acts against a belt that moves with velocity vb = {:.5g}.", belt_velocity(run_.t_start));
+        say("Dry friction acts against a belt that moves with velocity vb = {:.5g}.",
+            motion::belt_from(extras_.belt, run_.t_start));
     } else {
         say("Dry friction acts against a belt of velocity vb.");
     }
 }
 
-double Story::belt_velocity(double t) const {
-    const bool breaks = extras_.belt.next_break(std::nextafter(t, -model::never)) == t;
-    return breaks ? extras_.belt.value_after(t) : extras_.belt.value(t);
-}
-
 double Story::around(double t) const {
     double torque = on_base_ ? -system_.inertia() * extras_.base.value_after(t) : 0;
-    if (on_belt_) torque -= system_.damping() * belt_velocity(t) + system_.inertia() * belt_rate(t);
+    if (!on_belt_) return torque;
+    const double rate = motion::belt_slope(extras_.belt, t, motion::belt_stretch * T0_).rate;
+    torque -= system_.damping() * motion::belt_from(extras_.belt, t) + system_.inertia() * rate;
     return torque;
-}
-
-/// By the polynomial through a short stretch ahead, as the integrator has it.
-double Story::belt_rate(double t) const {
-    namespace cheb = motion::spectral::chebyshev;
-    if (steady_belt_) return 0;
-    const double next = extras_.belt.next_break(t), h = std::min(0.05 * T0_, (next - t) / 2);
-    cheb::Samples values{};
-    for (std::size_t j = 0; j < values.size(); ++j) {
-        const double at = t + h * (1 + cheb::nodes[j]);
-        values[j] = j == 0 ? belt_velocity(t) : at >= next ? extras_.belt.value_before(next) : extras_.belt.value(at);
-    }
-    return cheb::value(cheb::derivative(cheb::fit(values)), -1) / h;
 }
 
 void Story::tell_friction() {
@@ -320,6 +305,13 @@ void Story::tell_stop(const Stretch& stop) {
 /// Why it slipped and which way; after a sentence about |M - k theta| that is "that".
 std::string Story::slip(const model::Event& event, bool told) const {
     if (at_wall(event.theta)) return slip_from_wall(event);
+    if (on_belt_) {
+        const double vb = motion::belt_from(extras_.belt, event.t), slides = event.velocity - vb;
+        constexpr double clearly = 1e-6;
+        if (std::fabs(slides) > clearly * (std::fabs(vb) + std::fabs(event.velocity))) {
+            return fmt::format("vb jumped to {:.5g} and it slipped {}", vb, slides < 0 ? "backward" : "forward");
+        }
+    }
     const double torque = pull(event);
     std::string why = fmt::format("{} jumped, {},", on_base_ || on_belt_ ? "the pull" : "M", reason(torque));
     if (own_rule_) {

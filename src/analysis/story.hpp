@@ -49,8 +49,6 @@ private:
     }
     /// -I a - I vb' - C vb, from the right.
     [[nodiscard]] double around(double t) const;
-    [[nodiscard]] double belt_velocity(double t) const;
-    [[nodiscard]] double belt_rate(double t) const;
     /// Re, against a pull this way.
     [[nodiscard]] double limit(double pull) const {
         return system_.friction().holding(pull < 0 ? model::Motion::backward : model::Motion::forward);

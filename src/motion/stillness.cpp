@@ -39,18 +39,19 @@ bool stays(const Trajectory& run, const model::Lowered& system, const std::optio
     return way == model::Motion::stuck || leans;
 }
 
-bool for_good(const Trajectory& run, const model::Oscillator& oscillator, const model::Excitation& excitation,
+bool for_good(const Trajectory& run, const model::Oscillator& oscillator, const model::Excitation& M,
               const model::Excitation& base, double since) {
     const model::Lowered system(oscillator);
     const bool creeps = run.motion_at_stop != model::Motion::stuck;
-    if (const double constant = std::max(excitation.constant_from(), base.constant_from()); constant <= run.t_stop) {
-        const double t = run.t_stop, M = excitation.value(t) - oscillator.inertia() * base.value(t);
-        return creeps ? constant < t : stays(run, system, oscillator.walls(), M);
+    std::optional<model::Excitation> with_base;
+    if (!base.components().empty()) with_base = M + base.scaled(-oscillator.inertia());
+    const model::Excitation& loads = with_base ? *with_base : M;
+    if (const double constant = loads.constant_from(); constant <= run.t_stop) {
+        return creeps ? constant < run.t_stop : stays(run, system, oscillator.walls(), loads.value(run.t_stop));
     }
-    if (!base.components().empty()) return false;
     if (creeps) return false;  // it creeps, and yields to every change of M
-    if (model::held_against(system, excitation.most(), run.state_at_stop.theta)) return true;
-    const double period = excitation.has_feedback() ? 0 : model::period_from(excitation, since);
+    if (model::held_against(system, loads.most(), run.state_at_stop.theta)) return true;
+    const double period = loads.has_feedback() ? 0 : model::period_from(loads, since);
     return period > 0 && run.t_stop - since >= period;
 }
 

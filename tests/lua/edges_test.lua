@@ -116,6 +116,20 @@ test("a mass at rest waits for a slow load as long as that takes", function()
     near(run.events[1].t, slip, 1e-3) -- a few roundings of such a time
 end)
 
+test("a mass that the support shakes too little comes to rest for good, as under the load that it is", function()
+    local sys = system { I = 2, k = 1, Rd = 0.3, Re = 0.5 }
+    local shaking = excitation.harmonic { amplitude = 0.1, omega = 1.3 } -- 0.2 as a load
+    local task = { theta0 = 0.9, t_end = 20, dt = 1 }
+    task.M = -2 * shaking
+    local loaded = sys:simulate(task)
+    task.M, task.base = nil, shaking
+    local shaken = sys:simulate(task)
+    equal(loaded.outcome, "at rest")
+    equal(shaken.outcome, "at rest")
+    equal(shaken.events[#shaken.events].kind, "rest")
+    near(shaken.events[#shaken.events].t, loaded.events[#loaded.events].t, 1e-12)
+end)
+
 test("a state that does not exist is neither read nor written", function()
     local function states() return { n = { rate = function() return 0 end } } end
     raises(function() dry:simulate { M = function(t, theta, v, z) return z.m end, states = states(), t_end = 1, dt = 1 } end, "there is no state 'm'; there is n")

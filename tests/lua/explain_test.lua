@@ -136,4 +136,13 @@ test("outputs that are held, and relays of the motion, hide no pulse", function(
     end
 end)
 
+test("a belt that jumps, told or not, is what throws a mass off, and which way", function()
+    local sys = system { I = 1, k = 1, C = 0.1, Rd = 0.3, Re = 0.5 }
+    for _, belt in ipairs { 0.2 + excitation.step { level = -0.7, at = 1 }, function(t) return t < 1 and 0.2 or -0.5 end } do
+        local told = sys:simulate { velocity0 = 0.1, t_end = 10, dt = 0.5, belt = belt }:explain():gsub("%s+", " ")
+        assert(told:find("|M - I vb' - C vb - k theta| = 0.078872 <= Re = 0.5", 1, true), told)
+        assert(told:find("until vb jumped to -0.5 and it slipped forward", 1, true), told)
+    end
+end)
+
 support.finish()

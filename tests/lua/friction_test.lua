@@ -219,4 +219,10 @@ test("a law as steep as can be at standstill lets go", function()
     end
 end)
 
+test("a law whose value at speed 0 is Re but for rounding holds what it says", function()
+    local law = friction.law(function(speed) return 0.1 + 0.2 * math.exp(-speed) end, { Re = 0.3 }) -- 0.1 + 0.2 > 0.3
+    equal(law.Re, 0.1 + 0.2)
+    raises_here(function() friction.law(function() return 0.3 + 1e-12 end, { Re = 0.3 }) end, "Re = 0.3 must be at least")
+end)
+
 support.finish()

@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <limits>
 #include <memory>
 
 #include "model/friction.hpp"
@@ -23,9 +25,11 @@ struct UserLaw {
         if (speed > 0) return function->value(speed, {});
         return 2 * at_zero - function->value(-speed, {});  // with the slope that it has at 0
     }
-    [[nodiscard]] double holding(Motion /*way*/) const { return breakaway.value_or(at_zero); }
+    [[nodiscard]] double holding(Motion /*way*/) const { return std::max(breakaway.value_or(at_zero), at_zero); }
     [[nodiscard]] std::optional<text::Error> complaint() const {
-        if (breakaway && *breakaway < at_zero) {
+        // A sum that gives Re at speed 0 is off by its roundings.
+        constexpr double rounded = 16 * std::numeric_limits<double>::epsilon();
+        if (breakaway && *breakaway < at_zero * (1 - rounded)) {
             return text::Error{.sentence = fmt::format("Re = {:.6g} must be at least the friction at speed 0, {:.6g}",
                                                        *breakaway, at_zero),
                                .option = "Re"};

@@ -126,7 +126,8 @@ bool Engine::belt_jumps(double before) {
     const double slip = y_[1] - belt();
     if (!std::isfinite(slip)) return fail(model::Outcome::excitation_not_finite);
     // Where it only turns a corner its values differ by rounding, and by what it does in a hair of time.
-    const double rate = std::max(std::fabs(piece_.belt_rate[node_count - 1]), std::fabs(field_.belt_slope(now_.hi).rate));
+    const double rate =
+        std::max(std::fabs(piece_.belt_rate[node_count - 1]), std::fabs(field_.belt_slope(now_.hi).rate));
     const double hair = 64 * rounding * std::fabs(now_.hi) + (piece_.passed ? 4 * piece_.h : 0);
     const double corner = 64 * rounding * (std::fabs(belt()) + std::fabs(before)) + rate * hair;
     if (std::fabs(belt() - before) <= corner || standstill_.passes() || leans()) return true;

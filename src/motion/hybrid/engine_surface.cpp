@@ -176,7 +176,7 @@ std::pair<double, model::Motion> Engine::first_release() const {
 /// Whether it is let go now, whatever of the belt's slope is rounding.
 bool Engine::lets_go_for_sure(double M, model::Motion towards) const {
     if (!field_.has_belt() || leans()) return true;
-    const Field::Slope slope = field_.belt_slope(now_.hi);
+    const BeltSlope slope = field_.belt_slope(now_.hi);
     const double less = slope.rate + model::sign_of(towards) * slope.doubt - slope.sure();
     const double least = pull(M) - system_.inertia() * less;
     return standstill_.pulled(surely(least, theta()), theta()) == towards;

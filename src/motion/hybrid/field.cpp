@@ -6,7 +6,6 @@
 
 #include "model/closed_form.hpp"
 #include "motion/hybrid/solver.hpp"
-#include "motion/spectral/chebyshev.hpp"
 
 namespace dinal::motion::hybrid {
 
@@ -36,7 +35,7 @@ Field::Field(const Problem& problem, const Past& past)
       past_(past),
       inertia_(problem.system.inertia()),
       rubs_(!extras_.belt.components().empty() && model::Lowered(problem.system).dry()),
-      short_stretch_(0.05 * pace_of(problem)),
+      short_stretch_(belt_stretch * pace_of(problem)),
       initial_(problem.initial),
       memory_(problem.excitation.components().size()) {
     kinds_.reserve(memory_.size());
@@ -130,33 +129,8 @@ double Field::belt_heading(double t, Side side) const {
     return std::fabs(now) <= nothing * std::fabs(ahead) ? std::copysign(hair, ahead) : now;
 }
 
-/// By the derivative of a polynomial through a short stretch ahead, which is right to some twelve digits.
-Field::Slope Field::belt_slope(double t) const {
-    using namespace spectral::chebyshev;
-    if (!has_belt() || extras_.belt.constant_from() <= t) return {0, 0};
-    constexpr double smooth = 1e-9, noise = 1e-5, shorter = 0.25;
-    constexpr double clearly_worse = 8;  // two looks on, what is no smoother in shorter stretches is worse by 16
-    constexpr int most_looks = 23;       // down to 1e-14 of the stretch
-    constexpr double roundings = 256;    // in a slope at the end of a polynomial of this degree
-    const double next = extras_.belt.next_break(t);
-    Slope best{0, model::never};
-    // A jump that nobody announced is no part of the slope before it.
-    double h = std::min(short_stretch_, (next - t) / 2);
-    for (int look = 0; look < most_looks; ++look) {
-        Samples values{};
-        for (std::size_t j = 0; j < points; ++j) {
-            const double at = t + h * (1 + nodes[j]);
-            values[j] = belt(at, j == 0 ? Side::after : at >= next ? Side::before : Side::at);
-        }
-        const Series curve = fit(values);
-        const double all = cheb::size(curve), rough = tail(curve), slope = value(derivative(curve), -1) / h;
-        if (!(rough > smooth * all)) return {slope, roundings * rounding * greatest(values) / h};
-        const double doubt = roundings * rough / h;
-        if (rough <= noise * all && doubt > clearly_worse * best.doubt) break;
-        if (doubt < best.doubt) best = {slope, doubt};
-        h *= shorter;
-    }
-    return best.doubt < model::never ? best : Slope{0, 0};
+BeltSlope Field::belt_slope(double t) const {
+    return has_belt() ? motion::belt_slope(extras_.belt, t, short_stretch_) : BeltSlope{0, 0};
 }
 
 void Field::rates(const MotionPoint& at, double* out) const {

@@ -15,6 +15,7 @@
 #include "model/controller.hpp"
 #include "model/extras.hpp"
 #include "model/lowered.hpp"
+#include "motion/belt_slope.hpp"
 #include "motion/simulate.hpp"
 
 namespace dinal::motion::hybrid {
@@ -83,14 +84,8 @@ public:
     /// The same, but where it is passing zero: a hair of velocity that way on which it goes.
     [[nodiscard]] double belt_heading(double t, Side side) const;
     static constexpr double hair = std::numeric_limits<double>::min();
-    /// How fast the belt changes its velocity, and what of that may be rounding, or the belt's own noise.
-    struct Slope {
-        double rate, doubt;
-        /// Nearer to zero by the doubt.
-        [[nodiscard]] double sure() const { return std::copysign(std::max(0.0, std::fabs(rate) - doubt), rate); }
-    };
-    /// From the right.
-    [[nodiscard]] Slope belt_slope(double t) const;
+    /// How fast that changes, from the right.
+    [[nodiscard]] BeltSlope belt_slope(double t) const;
     void rates(const MotionPoint& at, double* out) const;
     /// The first time after t at which anything is known to jump.
     [[nodiscard]] double next_break(double t) const;
