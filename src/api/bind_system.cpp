@@ -54,7 +54,7 @@ int nondimensional(lua_State* L) {
     options.fill(ratios);
     const double breakaway_ratio = ratios.breakaway.value_or(ratios.friction);
     if (breakaway_ratio < ratios.friction) {  // the core would speak of Rd and Re, which the user has not typed
-        options.fail("breakaway_ratio", fmt::format("breakaway_ratio = {:.6g} must be at least friction_ratio = {:.6g}",
+        options.fail("breakaway_ratio", fmt::format("breakaway_ratio = {} must be at least friction_ratio = {}",
                                                     breakaway_ratio, ratios.friction));
     }
     // NOTE: no double is both I = 1/(4 pi^2), for which T0 is 1 to the last bit, and a square, so that C/2 = sqrt(I k)

@@ -16,8 +16,8 @@ motion::Grid asked_rows(const lua::Options& options, const MoreTime& asked, cons
     const std::span<const double> times = task.rows.times();
     std::vector<double> more = asked.times.value_or(std::vector<double>());
     if (!more.empty() && more.front() <= so_far.t_stop) {
-        options.fail("times", fmt::format("times[1] = {:.17g} must be after t = {:.6g}, where the run ended",
-                                          more.front(), so_far.t_stop));
+        options.fail("times", fmt::format("times[1] = {} must be after t = {}, where the run ended", more.front(),
+                                          so_far.t_stop));
     }
     if (const auto wrong = motion::Grid::at(more).within({so_far.t_stop, t_end}); !wrong) {
         options.fail(wrong.error());

@@ -26,7 +26,7 @@ int sliding_motion(lua_State* L, const text::Call& call, Select select) {
     return arguments.push_results([&](std::size_t i) {
         if (breakaway_ratio[i] < friction_ratio[i]) {
             arguments.refuse("breakaway_ratio", i, breakaway_ratio[i],
-                             fmt::format("must be at least friction_ratio = {:.6g}", friction_ratio[i]));
+                             fmt::format("must be at least friction_ratio = {}", friction_ratio[i]));
         }
         const auto motion = DenHartog(r[i], zeta[i]).motion(friction_ratio[i], breakaway_ratio[i]);
         return motion ? select(*motion) : std::array{no_value, no_value};

@@ -132,7 +132,7 @@ int half_cycle(lua_State* L) {
     const Quantity dead_zone = quantity("dead_zone", [](const model::Oscillator& sys) { return sys.dead_zone(); });
     return arguments.push_result([&](std::size_t i) {
         if (dead_zone[i] < x_f[i]) {
-            arguments.refuse("dead_zone", i, dead_zone[i], fmt::format("must be at least x_f = {:.6g}", x_f[i]));
+            arguments.refuse("dead_zone", i, dead_zone[i], fmt::format("must be at least x_f = {}", x_f[i]));
         }
         const HalfCycles map(zeta[i], x_f[i]);
         return map.after(std::min(n[i], map.until_within(dead_zone[i], X[i])), X[i]);

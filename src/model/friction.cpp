@@ -17,7 +17,7 @@ std::optional<text::Error> wrong_torques(std::string_view of, double Rd, double 
         if (torque < 0) return error(name, fmt::format("{}{} = {:.6g} must not be negative", of, name, torque));
     }
     if (Re >= Rd) return {};
-    return error("Re", fmt::format("{0}Re = {1:.6g} must be at least {0}Rd = {2:.6g}: breakaway takes no less than "
+    return error("Re", fmt::format("{0}Re = {1} must be at least {0}Rd = {2}: breakaway takes no less than "
                                    "kinetic friction",
                                    of, Re, Rd));
 }

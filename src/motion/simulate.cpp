@@ -35,10 +35,10 @@ std::optional<text::Error> wrong_times(std::span<const double> times, std::size_
                 .option = "times"};
         }
         if (t < window.start || t > window.end) {
-            return text::Error{.sentence = fmt::format(
-                                   "times[{}] = {:.17g} is outside the run from t_start = {:.6g} to t_end = {:.6g}",
-                                   i + 1, t, window.start, window.end),
-                               .option = "times"};
+            return text::Error{
+                .sentence = fmt::format("times[{}] = {:.17g} is outside the run from t_start = {} to t_end = {}", i + 1,
+                                        t, window.start, window.end),
+                .option = "times"};
         }
     }
     return {};
@@ -184,7 +184,7 @@ text::Expected<Trajectory> run_from(const Past& past, const model::Oscillator& s
                            .option = "t_end"};
     if (!(window.end > window.start)) {
         return text::Error{
-            .sentence = fmt::format("t_end = {:.6g} must be after t_start = {:.6g}", window.end, window.start),
+            .sentence = fmt::format("t_end = {} must be after t_start = {:.6g}", window.end, window.start),
             .option = "t_end"};
     }
     if (system.walls()) {
@@ -305,9 +305,9 @@ text::Expected<Trajectory> resume(const model::Oscillator& system, const model::
                                   const Monitor& monitor, const Limits& limits, const model::Extras& extras) {
     const Window window{so_far.t_stop, t_end};
     if (!(t_end > window.start)) {
-        return text::Error{.sentence = fmt::format("t_end = {:.6g} must be after t = {:.6g}, where the run ended",
-                                                   t_end, window.start),
-                           .option = "t_end"};
+        return text::Error{
+            .sentence = fmt::format("t_end = {} must be after t = {}, where the run ended", t_end, window.start),
+            .option = "t_end"};
     }
     const auto grid = rows.within({so_far.t_start, t_end});
     if (!grid) return grid.error();

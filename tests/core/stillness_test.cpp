@@ -74,9 +74,13 @@ TEST_CASE("a periodic M that did not move a mass in a whole period never will", 
 }
 
 TEST_CASE("a belt, a base and what a user does at an event may move what M cannot", "[outcome]") {
-    Extras shaken;
-    shaken.base = wave(0.01, 0.6);
-    CHECK(outcome_of({}, 10, shaken, true) == Outcome::stuck_at_end);
+    Extras shaken, carried;
+    carried.belt = wave(0.01, 0.6);
+    CHECK(outcome_of({}, 10, carried, true) == Outcome::stuck_at_end);
+    // A support acts as a load of -I a; see above.
+    shaken.base = wave(0.05, 0.06);
+    CHECK(outcome_of({}, 10, shaken, true) == Outcome::at_rest);
+    CHECK(outcome_of(wave(-0.1, 0.06), 10, {.belt = {}, .base = wave(0.1, 0.06)}, true) == Outcome::stuck_at_end);
 }
 
 TEST_CASE("going on from a stop that M may end, and from one that it cannot, is one run", "[outcome][resume]") {

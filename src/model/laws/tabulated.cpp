@@ -29,7 +29,7 @@ std::optional<text::Error> Tabulated::complaint() const {
                                           i + 1, speed[i], i, speed[i - 1]));
     }
     if (holding(Motion::forward) >= torque.front()) return std::nullopt;
-    return error("Re", fmt::format("Re = {:.6g} must be at least torque[1] = {:.6g}, the friction at speed 0",
+    return error("Re", fmt::format("Re = {} must be at least torque[1] = {}, the friction at speed 0",
                                    holding(Motion::forward), torque.front()));
 }
 

@@ -30,9 +30,9 @@ struct UserLaw {
         // A sum that gives Re at speed 0 is off by its roundings.
         constexpr double rounded = 16 * std::numeric_limits<double>::epsilon();
         if (breakaway && *breakaway < at_zero * (1 - rounded)) {
-            return text::Error{.sentence = fmt::format("Re = {:.6g} must be at least the friction at speed 0, {:.6g}",
-                                                       *breakaway, at_zero),
-                               .option = "Re"};
+            return text::Error{
+                .sentence = fmt::format("Re = {} must be at least the friction at speed 0, {}", *breakaway, at_zero),
+                .option = "Re"};
         }
         return std::nullopt;
     }
