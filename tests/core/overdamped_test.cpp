@@ -102,4 +102,43 @@ TEST_CASE("a very overdamped mass follows a line in a few arcs", "[exact]") {
     }
 }
 
+TEST_CASE("an overdamped motion that comes from afar has its digits when it is near", "[exact][razor]") {
+    // theta = Rd/k + a free motion; it never turns.
+    const double I = 0.12, C = 1.25, k = 1.6, Rd = 1.8;
+    const long double delta = static_cast<long double>(C) / (2 * static_cast<long double>(I)),
+                      root = std::sqrt(delta * delta - static_cast<long double>(k) / static_cast<long double>(I)),
+                      fast = delta + root, slow = (static_cast<long double>(k) / static_cast<long double>(I)) / fast;
+    for (const double start : {1e3, 1e6, 1e12, 1e24}) {
+        CAPTURE(start);
+        const auto system = system_of({.inertia = I, .stiffness = k, .damping = C, .kinetic_friction = Rd});
+        const Trajectory run = must_run(system, {}, {start, 0}, {0, 100}, Grid::every(0.5), Exact{});
+        const long double place = static_cast<long double>(Rd) / static_cast<long double>(k), far = start - place;
+        for (Eigen::Index i = 0; i < run.size(); ++i) {
+            const long double t = run.rows(i, 0);
+            const long double way = far * (fast * std::exp(-slow * t) - slow * std::exp(-fast * t)) / (fast - slow);
+            // Each arc decays to exp(-4) of what it was: 55 roundings, and some for each of up to 25 arcs.
+            CHECK(std::fabs(static_cast<double>(run.rows(i, 1) - (place + way))) <=
+                  1e-12 * static_cast<double>(place + way));
+        }
+        REQUIRE(run.events.size() == 1);
+        CHECK(run.events[0].kind == EventKind::rest);
+        CHECK(run.events[0].theta == within(static_cast<double>(place), 1e-14));
+    }
+}
+
+TEST_CASE("a mass at its limit under a load that decays for ever waits without looking each moment", "[exact][razor]") {
+    // It creeps to Rd/k = Re/k; the exponential is 1e-44 when it is there, and then 0.
+    const auto system = system_of({.inertia = 0.12106475830078126,
+                                   .stiffness = 1.5738525390625,
+                                   .damping = 1.2460479736328125,
+                                   .kinetic_friction = 1.790374755859375});
+    const Excitation load = Excitation::make(Exponential{.amplitude = 1.09492, .tau = 0.18127, .at = -17.8864}).value();
+    int looks = 0;
+    const auto run =
+        simulate(system, load, {1e6, 0}, {0, 1e12}, Grid::none(), Exact{}, [&](double) { return ++looks < 100; });
+    REQUIRE(run);
+    CHECK(run->outcome == Outcome::stuck_at_end);
+    CHECK(looks < 100);
+}
+
 }  // namespace dinal::overdamped_test

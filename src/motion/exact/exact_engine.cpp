@@ -8,6 +8,8 @@ namespace dinal::motion::exact {
 
 namespace {
 
+/// An arc that comes from afar decays to exp of that at most.
+constexpr double decay_of_an_arc = 4;
 /// A creep is looked for over so many natural periods.
 constexpr double creeps_over = 0.5 * (1 - 1e-9);
 /// An arc costs so many radians of its parts at most: a fraction of a second, also where each of them is a turn.
@@ -105,6 +107,15 @@ void ExactEngine::finish() {
 
 // ---- moving
 
+/// A way is known as well as the place where it began, or ended: far from all that acts there that is too little once
+/// the motion has decayed.
+bool ExactEngine::comes_from_afar() const {
+    constexpr double far = 1024;
+    const double k = system_.stiffness(), w0 = arc_.free().w0();
+    return k * std::fabs(y_.theta) + system_.inertia() * w0 * std::fabs(y_.velocity) >
+           far * (std::fabs(M_) + system_.greatest_holding());
+}
+
 bool ExactEngine::move() {
     const bool leaving = standstill_.phase() == Standstill::Phase::leaving;
     const double start_pull = pull_at_release_ ? *pull_at_release_ : pull();
@@ -112,6 +123,7 @@ bool ExactEngine::move() {
     const double cost = arc_.cost(formula_);
     asked_ = std::min({clock_.until(piece_end_), arc_.longest(formula_), formula_.grows_in() * growth_of_an_arc});
     if (cost * asked_ > greatest_cost) asked_ = greatest_cost / cost;
+    if (comes_from_afar()) asked_ = std::min(asked_, decay_of_an_arc / arc_.free().decay());
     const double length = arc_.begin(formula_, {y_.velocity, start_pull}, asked_);
     cost_ += cost * length + cost_between_questions / arcs_between_questions;
     bound_ = arc_.velocity().fourth_bound(length);

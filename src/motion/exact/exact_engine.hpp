@@ -34,6 +34,7 @@ public:
 private:
     // One arc after the other. What returns false has ended the run.
     bool advance();
+    [[nodiscard]] bool comes_from_afar() const;
     bool move();
     bool rest_until_end();
     void finish();

@@ -32,17 +32,21 @@ Exit FirstExit::crossing(double tau, int side) {
 }
 
 /// A look as long as the bound lets it be, seen from where the curve is and where it heads.
-void FirstExit::choose_level(double bound) {
-    const double away = std::fabs(margin(curve_.here().f)) / 4, heads = std::fabs(curve_.here().slope) / 12;
+void FirstExit::choose_level(double bound, double rounding) {
+    const double away = far_from_edges(rounding), heads = std::fabs(curve_.here().slope) / 12;
     const auto fits = [&](int level) { return bound * curve_.hides(level) <= away + heads * curve_.length(level); };
     while (level_ > 0 && fits(level_ - 1)) --level_;
     while (level_ + 1 < WalkedCurve::levels && !fits(level_)) ++level_;
 }
 
-/// The length of a look that hides no more than a quarter of how far the curve is from the edges.
-double FirstExit::farthest_look(double bound) const {
-    const double away = std::fabs(margin(curve_.here().f)) / 4;
-    return std::sqrt(std::sqrt(away / (bound * hermite)));
+/// The length of a look that hides no more than that.
+double FirstExit::farthest_look(double bound, double rounding) const {
+    return std::sqrt(std::sqrt(far_from_edges(rounding) / (bound * hermite)));
+}
+
+/// A quarter of how far the curve is from the edges; where it stays at one, of what rounding hides anyway.
+double FirstExit::far_from_edges(double rounding) const {
+    return std::max(std::fabs(margin(curve_.here().f)), rounding) / 4;
 }
 
 /// Whether it stays slower than rounding, also where the looks are shorter than a creep.
@@ -79,8 +83,8 @@ std::optional<Exit> FirstExit::search(double until) {
         if (std::fabs(here.f) <= creep_.fastest && creeps_from_here(until)) return {};
         const double from = curve_.place(), left = until - from;
         if (finer == 0) {
-            if (bound != 0) choose_level(bound);
-            far = bound != 0 && level_ == 0 ? std::min(farthest_look(bound), left) : 0;
+            if (bound != 0) choose_level(bound, rounding);
+            far = bound != 0 && level_ == 0 ? std::min(farthest_look(bound, rounding), left) : 0;
             beyond = 0;
         }
         // What changes slowly is looked at from farther away than the table reaches.

@@ -122,8 +122,9 @@ private:
     double step_by_step(double from, double to, double guess, double edge, int side);
     Exit crossing(double tau, int side);
     bool creeps_from_here(double until);
-    void choose_level(double bound);
-    [[nodiscard]] double farthest_look(double bound) const;
+    void choose_level(double bound, double rounding);
+    [[nodiscard]] double farthest_look(double bound, double rounding) const;
+    [[nodiscard]] double far_from_edges(double rounding) const;
     [[nodiscard]] double odd_length(double bound, int level, double left, int finer) const;
     [[nodiscard]] double margin(double f) const { return std::min(f - band_.low, band_.high - f); }
 

@@ -35,6 +35,8 @@ public:
     [[nodiscard]] double fastest() const { return fastest_; }
     /// Of the parts that are not soon gone: it is what rounding makes of an angle in the velocity, too.
     [[nodiscard]] double lasting() const { return apart_ ? slow_ : w0_; }
+    /// How fast the slowest of its parts decays, per time unit.
+    [[nodiscard]] double decay() const { return slow_; }
     [[nodiscard]] FreeStep after(double tau) const;
 
     /// When the velocity of a motion comes to zero first that begins with this velocity and acceleration, not both 0,
