@@ -1,7 +1,7 @@
 // Native excitations at any scale: systems and sums of terms whose numbers are all that a double can be between 1e-30
 // and 1e30, run by every engine that takes them. Rows and events are finite, in order and within the run, and the same
-// motion in other units of torque or angle, a power of two away, is the same: to the last bit, but for tails of M that
-// underflow in one of them.
+// motion in other units of torque or angle, a power of two away, is the same to the last bit; but for Gaussian pulses,
+// whose tails underflow in one of them first.
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -204,14 +204,18 @@ bool ordinary(const motion::Trajectory& run) {
     return model::is_whole(run.outcome);
 }
 
+bool underflows(const model::Excitation& M) {
+    const auto components = M.components();
+    return std::any_of(components.begin(), components.end(),
+                       [](const model::Component& each) { return std::holds_alternative<model::Gaussian>(each.term); });
+}
+
 void compare(const motion::Trajectory& a, const motion::Trajectory& b, const Scale& scale) {
     if (a.outcome != b.outcome || a.rows.rows() != b.rows.rows()) wrong("another end in other units");
-    constexpr double few_roundings = 0x1p-48;
-    for (Eigen::Index k = 1; k < a.rows.cols(); ++k) {
-        const double unit = k < 3 ? scale.angle : scale.torque;
-        const double allowed = few_roundings * unit * a.rows.col(k).cwiseAbs().maxCoeff();
-        for (Eigen::Index i = 0; i < a.rows.rows(); ++i) {
-            if (!(std::fabs(a.rows(i, k) * unit - b.rows(i, k)) <= allowed)) wrong("another motion in other units");
+    for (Eigen::Index i = 0; i < a.rows.rows(); ++i) {
+        for (Eigen::Index k = 1; k < a.rows.cols(); ++k) {
+            if (a.rows(i, k) * (k < 3 ? scale.angle : scale.torque) != b.rows(i, k))
+                wrong("another motion in other units");
         }
     }
     if (a.events.size() != b.events.size()) wrong("other events in other units");
@@ -230,7 +234,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     const motion::spectral::Spectral spectral{};
     for (const motion::MethodView method : {motion::MethodView(exact), motion::MethodView(spectral)}) {
         const auto there = run(*written, method);
-        if (!there || !ordinary(*there)) continue;
+        if (!there || !ordinary(*there) || underflows(written->M)) continue;
         for (const Scale& scale : {Scale{0x1p20, 1}, Scale{1, 0x1p-15}}) {
             const auto other = case_of(data, size, scale);
             if (const auto here = other ? run(*other, method) : std::nullopt) compare(*there, *here, scale);

@@ -166,13 +166,11 @@ void Engine::again(Solver::Attempt attempt) {
 
 bool Engine::advance() {
     if (standstill_.phase() == Standstill::Phase::arrived && !ask()) return false;
-    // Right before a jump of the belt its slope is none.
-    if (standstill_.stuck() && standstill_.phase() != Standstill::Phase::held && !before_jump()) {
+    if (standstill_.stuck() && standstill_.phase() != Standstill::Phase::held) {
         const double M = field_.load(here());
         if (!std::isfinite(pull(M))) return fail(model::Outcome::excitation_not_finite);
         const model::Motion towards = standstill_.pulled(surely(pull(M), theta()), theta());
-        const bool goes = towards != model::Motion::stuck && !find_jump_here() && lets_go_for_sure(M, towards);
-        if (goes && !release(towards)) return false;
+        if (towards != model::Motion::stuck && !find_jump_here() && !release(towards)) return false;
     }
     if (watches_corners()) corners_.enter(model::sign_of(standstill_.motion()) * (y_[1] - belt()));
     if (!choose()) return false;
@@ -212,8 +210,8 @@ bool Engine::advance() {
 
     Ending ending;
     if (standstill_.stuck()) {
-        // A pull that stays has been asked already; that of a jump is none.
-        const bool asked = (piece_.held && standstill_.phase() != Standstill::Phase::held) || over_jump;
+        // A pull that stays has been asked already.
+        const bool asked = piece_.held && standstill_.phase() != Standstill::Phase::held;
         const auto [x, towards] = asked ? std::pair(2.0, model::Motion::stuck) : first_release();
         if (x < 1) ending = {x, By::surface, 0, towards};
     } else if (!standstill_.passes()) {

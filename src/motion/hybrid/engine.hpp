@@ -120,7 +120,6 @@ private:
     [[nodiscard]] bool creeps() const;
     bool creep();
     [[nodiscard]] std::pair<double, model::Motion> first_release() const;
-    [[nodiscard]] bool lets_go_for_sure(double M, model::Motion towards) const;
     void record_turns(double until);
     [[nodiscard]] bool keeps_its_way() const;
     /// Corners of a law are passed at sight where pieces are right to rounding.

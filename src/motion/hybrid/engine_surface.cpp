@@ -173,15 +173,6 @@ std::pair<double, model::Motion> Engine::first_release() const {
     return first;
 }
 
-/// Whether it is let go now, whatever of the belt's slope is rounding.
-bool Engine::lets_go_for_sure(double M, model::Motion towards) const {
-    if (!field_.has_belt() || leans()) return true;
-    const BeltSlope slope = field_.belt_slope(now_.hi);
-    const double less = slope.rate + model::sign_of(towards) * slope.doubt - slope.sure();
-    const double least = pull(M) - system_.inertia() * less;
-    return standstill_.pulled(surely(least, theta()), theta()) == towards;
-}
-
 bool Engine::creep() {
     return !field_.has_belt() && standstill_.creep({now_.hi, theta(), pull(field_.load(here()))});
 }

@@ -195,10 +195,7 @@ void Solver::judge(const Solved& piece) {
         const Series belt = cheb::fit(piece.belt);
         const double allowed = (cut_.tolerance + 16 * rounding) * greatest(piece.belt) + 16 * rounding * fastest_belt_ +
                                lost_in_time(belt, fastest_belt_) + smallest;
-        // Jumps that come evenly cancel in every second coefficient, and may in the last.
-        const double tail =
-            std::max({cheb::tail(belt), std::fabs(belt[node_count - 3]), std::fabs(belt[node_count - 4])});
-        unresolved_ = std::max(unresolved_, tail / allowed);
+        unresolved_ = std::max(unresolved_, cheb::tail(belt) / allowed);
     }
     for (std::size_t k = 2; k < n_; ++k) {
         Nodes rate{};

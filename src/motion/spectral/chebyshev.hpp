@@ -137,9 +137,13 @@ double size(const Series<n>& c) {
     return sum_of<n>([&](std::size_t k) { return std::fabs(c[k]); });
 }
 
-/// The last two coefficients: about what a series that has decayed is off by.
+/// The last two coefficients: about what a series that has decayed is off by. Of jumps that come evenly every second
+/// one is zero, and sometimes the last: so the two before are to be small as well, which those of a smooth function are
+/// by far.
 inline double tail(const Series<points>& c) {
-    return std::max(std::fabs(c[degree - 1]), std::fabs(c[degree]));
+    constexpr double by_far = 1e-4;
+    const double before = std::max(std::fabs(c[degree - 3]), std::fabs(c[degree - 2]));
+    return std::max(std::max(std::fabs(c[degree - 1]), std::fabs(c[degree])), by_far * before);
 }
 
 /// Bounds of |Tk'|, k^2, of |Tk''|, k^2 (k^2 - 1)/3, and of |Tk'''|, k^2 (k^2 - 1)(k^2 - 4)/15.
