@@ -253,6 +253,21 @@ test("a mass that comes to a belt whose jumps lie evenly before it knows the bel
     near((run.theta - expected.theta):abs():max(), 0, 1e-9)
 end)
 
+test("a belt may jump right behind the start", function()
+    local sys = system { I = 1, k = 1, C = 0.1, Rd = 0.3, Re = 0.5 }
+    for _, v0 in ipairs { 0, 0.1, 0.5 } do
+        for _, method in ipairs { integrator.spectral {}, integrator.rk4 { h = 0.01 } } do
+            local task = { M = 0.2, velocity0 = v0, t_end = 10, dt = 0.5, integrator = method, belt = 0.5 }
+            local expected = sys:simulate(task)
+            task.belt = function(t) return t > 0 and 0.5 or 0 end
+            local run = sys:simulate(task)
+            equal(run.outcome, expected.outcome)
+            equal(#run.events, #expected.events + 1) -- it stands or slides the other way for that moment
+            near((run.theta - expected.theta):abs():max(), 0, 1e-12)
+        end
+    end
+end)
+
 test("noise of a belt is not taken for jumps: a step of rk4 asks it a few times", function()
     local function noise(t)
         local x = math.sin(t * 12.9898e4) * 43758.5453

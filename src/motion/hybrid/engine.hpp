@@ -101,6 +101,7 @@ private:
     // engine_events.cpp
     void watch(Ending& ending);
     bool handle(const Ending& ending);
+    [[nodiscard]] double least_time() const;
     [[nodiscard]] bool before_jump() const;
     bool find_jump_here();
     bool belt_jumps(double before);

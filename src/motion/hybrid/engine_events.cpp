@@ -14,8 +14,6 @@ namespace {
 
 /// Events that follow each other within this time, in units of the pace, so often, go on for ever.
 constexpr double at_once = 1e-9;
-/// Times that far apart, as a part of themselves, differ by rounding.
-constexpr double few_times = 16 * rounding;
 /// How often a delay brings back a kink before it is too smooth to be seen.
 constexpr int most_echoes = 8;
 
@@ -103,18 +101,21 @@ bool Engine::handle(const Ending& ending) {
     return true;
 }
 
-/// Whether a jump of the belt is so near that what lies before it is nothing but roundings.
+/// What is nearer than that differs by rounding, or at t = 0 by less than any motion can tell.
+double Engine::least_time() const {
+    constexpr double nothing = 1e-25, few = 16;
+    return std::max(few * rounding * std::fabs(now_.hi), nothing * pace_);
+}
+
 bool Engine::before_jump() const {
-    return belt_jump_ - now_.hi <= few_times * std::fabs(now_.hi) ||
-           std::nextafter(now_.hi, model::never) == belt_jump_;
+    return belt_jump_ - now_.hi <= least_time();
 }
 
 /// Whether the belt jumps next to here.
 bool Engine::find_jump_here() {
     if (!field_.has_belt()) return false;
     const auto belt = [&](double t) { return field_.belt(t, Side::at); };
-    const double ahead = std::max(now_.hi + few_times * std::fabs(now_.hi), std::nextafter(now_.hi, model::never));
-    const double here = belt(now_.hi), there = belt(ahead);
+    const double ahead = now_.hi + least_time(), here = belt(now_.hi), there = belt(ahead);
     constexpr double clearly = 1e-6;
     if (!(std::fabs(there - here) > clearly * std::max(solver_.fastest_belt(), std::fabs(there)))) return false;
     belt_jump_ = std::min(belt_jump_, spectral::jump_between(now_.hi, here, ahead, there, belt));

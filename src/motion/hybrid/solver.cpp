@@ -240,7 +240,8 @@ double Solver::jump_of_belt(const Solved& piece) const {
         spectral::find_break(std::span(piece.times).subspan(from, 3), std::span(piece.belt).subspan(from, 3), belt);
     if (!found || !(*found > piece.start.hi)) return model::never;
     // Of noise a jump is no more than what lies beside it.
-    const double before = belt(std::nextafter(*found, -model::never)), after = belt(*found);
+    const double right_before = std::min(std::nextafter(*found, -model::never), *found - spectral::nearest * piece.h);
+    const double before = belt(std::max(right_before, piece.start.hi)), after = belt(*found);
     const double jump = std::fabs(after - before);
     if (!(jump > seen)) return model::never;
     for (const double part : {0.25, 0.5, 1.0}) {

@@ -11,14 +11,17 @@
 
 namespace dinal::motion::spectral {
 
+/// Beside t = 0: of the stretch that is searched.
+inline constexpr double nearest = 0x1p-100;
+
 /// The first double at which f has the value it has at b rather than the one at a. Beside t = 0 doubles are so close
 /// that no length between them is a number to compute with: nearer than any motion can tell is near enough.
 template <class F>
 double jump_between(double a, double fa, double b, double fb, const F& f) {
-    const double finest = (b - a) * 0x1p-100;
+    const double smallest = (b - a) * nearest;
     for (;;) {
         const double middle = a + (b - a) / 2;
-        if (!(middle > a && middle < b) || b - a <= finest) return b;
+        if (!(middle > a && middle < b) || b - a <= smallest) return b;
         const double fm = f(middle);
         if (std::fabs(fm - fa) <= std::fabs(fm - fb)) {
             a = middle, fa = fm;
