@@ -183,9 +183,8 @@ text::Expected<Trajectory> run_from(const Past& past, const model::Oscillator& s
         return text::Error{.sentence = fmt::format("t_end = {} must be a finite number", window.end),
                            .option = "t_end"};
     if (!(window.end > window.start)) {
-        return text::Error{
-            .sentence = fmt::format("t_end = {} must be after t_start = {:.6g}", window.end, window.start),
-            .option = "t_end"};
+        return text::Error{.sentence = fmt::format("t_end = {} must be after t_start = {}", window.end, window.start),
+                           .option = "t_end"};
     }
     if (system.walls()) {
         if (auto wrong = system.walls()->crossed_by(initial.theta)) return *wrong;

@@ -107,11 +107,12 @@ double Engine::least_time() const {
     return std::max(few * rounding * std::fabs(now_.hi), nothing * pace_);
 }
 
+/// Whether a jump of the belt is so near that no piece fits before it.
 bool Engine::before_jump() const {
     return belt_jump_ - now_.hi <= least_time();
 }
 
-/// Whether the belt jumps next to here.
+/// Right before a jump the slope of the belt is none: whether that is what would let a stuck mass go.
 bool Engine::find_jump_here() {
     if (!field_.has_belt()) return false;
     const auto belt = [&](double t) { return field_.belt(t, Side::at); };

@@ -11,7 +11,7 @@
 
 namespace dinal::motion::spectral {
 
-/// Beside t = 0: of the stretch that is searched.
+/// No jump is located nearer than this part of the stretch that is searched; only beside t = 0 doubles lie closer.
 inline constexpr double nearest = 0x1p-100;
 
 /// The first double at which f has the value it has at b rather than the one at a. Beside t = 0 doubles are so close
