@@ -21,7 +21,7 @@ const model::Component* record_of(const model::Excitation& excitation) {
 
 }  // namespace
 
-LineStep::End LineStep::over_another(double length, const Start& start) {
+void LineStep::make(double length) {
     // The Taylor series of the motion, whose coefficients follow from the equation one by one.
     constexpr std::size_t order = 16;
     length_ = length;
@@ -40,7 +40,6 @@ LineStep::End LineStep::over_another(double length, const Start& start) {
         }
         way_[unit] = way, velocity_[unit] = velocity;
     }
-    return over(length, start);
 }
 
 void ExactEngine::find_record() {
@@ -88,37 +87,49 @@ void ExactEngine::rest_along(double until) {
 
 /// The velocity on a line is not farther from its chord than h^2/8 of its second derivative.
 void ExactEngine::move_along(double until) {
+    // What is rounded off the angle is put back every so many lines: until then that is less than what rounds the pull.
+    constexpr std::size_t lines_between_roundings = 16;
     const model::Motion motion = standstill_.motion();
     const double sign = model::sign_of(motion), braking = system_.braking(motion), k = system_.stiffness();
     const bool kept = arcs_ != nullptr;
-    Clock theta{y_.theta, theta_rest_};
-    double velocity = y_.velocity, M = M_, next_row = rows_.next_time();
-    bool whole = true;
-    for (; whole && record_.goes_on(until) && cost_ < cost_between_questions; ++record_.place) {
-        const double h = record_.length(), next_M = record_.torque(1), start_pull = pull_of(k, theta.hi, M, braking);
+    const double *t = record_.samples->t.data(), *samples = record_.samples->M.data();
+    const std::size_t count = record_.samples->t.size(), began = record_.place;
+    const double affordable = std::ceil(std::max((cost_between_questions - cost_) / cost_of_a_line, 0.0));
+    const std::size_t last = std::min(count - 1, began + static_cast<std::size_t>(affordable));
+    double theta = y_.theta, rest = theta_rest_, velocity = y_.velocity, M = M_, next_row = rows_.next_time();
+    const auto round = [&] {
+        const Clock whole = Clock{theta, 0}.later(rest);
+        theta = whole.hi, rest = whole.lo;
+    };
+    std::size_t i = began;
+    const auto stand = [&] {
+        round();
+        y_ = {theta, velocity};
+        theta_rest_ = rest;
+        M_ = M;
+        clock_ = {t[i], 0};
+        record_.place = i;
+    };
+    for (; i < last && t[i + 1] <= until; ++i) {
+        const double h = t[i + 1] - t[i], next_M = record_.gain * samples[i + 1];
         if (!line_.takes(h)) break;
-        const auto y = line_.over(h, {velocity, start_pull, (next_M - M) / h});
+        const auto y = line_.over(h, {velocity, (M - braking) - k * theta, (next_M - M) / h});
         const double least = std::min(sign * velocity, sign * y.velocity);
         if (!(least > h * h / 4 * y.bend && std::isfinite(y.velocity))) break;
-        const Clock moved = theta.later(y.way);
-        if (kept || next_row < record_.time(1)) {
-            y_ = {theta.hi, velocity};
-            theta_rest_ = theta.lo;
-            M_ = M;
-            clock_ = {record_.time(0), 0};
-            whole = tell_line(h, next_M, {moved.hi, y.velocity}, start_pull);
-            if (!whole) return;
+        if (kept || next_row < t[i + 1]) {
+            stand();
+            const double end = Clock{theta, rest}.later(y.way).hi;
+            if (!tell_line(h, next_M, {end, y.velocity}, pull_of(k, theta, M, braking))) return;
             next_row = rows_.next_time();
         }
-        theta = moved;
-        velocity = y.velocity;
-        M = next_M;
-        cost_ += cost_of_a_line;
+        // The angle is the sum of all ways, and of what that rounds off.
+        const double sum = theta + y.way, part = sum - theta;
+        rest += (theta - (sum - part)) + (y.way - part);
+        theta = sum, velocity = y.velocity, M = next_M;
+        if (i % lines_between_roundings == 0) round();
     }
-    y_ = {theta.hi, velocity};
-    theta_rest_ = theta.lo;
-    M_ = M;
-    clock_ = {record_.time(0), 0};
+    cost_ += static_cast<double>(i - began) * cost_of_a_line;
+    stand();
 }
 
 /// The rows on a line in motion, and what is kept of it.

@@ -28,16 +28,25 @@ public:
         double way, velocity;
         double bend;  ///< what |the second derivative of the velocity| does not exceed on the way
     };
-    /// Whether a stretch is short enough for the factors: some tenths of a radian.
-    [[nodiscard]] bool takes(double length) const { return length <= longest_; }
-    [[nodiscard]] End over(double length, const Start& start) {
-        // Times are rounded: by a part of 1e-9 the factors are turned to what they are without losing a digit.
+    /// Whether the factors are those of this length, or nearly: times are rounded, and by a part of 1e-9 they are
+    /// turned to what they are without losing a digit.
+    [[nodiscard]] bool is_made_for(double length) const {
         constexpr double nearly = 1e-9;
-        const double more = length - length_;
-        if (!(more <= nearly * length_ && -more <= nearly * length_)) return over_another(length, start);
+        return std::fabs(length - length_) <= nearly * length_;
+    }
+    /// Whether a stretch is short enough for the factors: some tenths of a radian. They are made if they are not.
+    bool takes(double length) {
+        if (is_made_for(length)) return true;
+        if (!(length <= longest_)) return false;
+        make(length);
+        return true;
+    }
+    /// Over a stretch that it takes.
+    [[nodiscard]] End over(double length, const Start& start) const {
         const auto& [v, P, S] = start;
-        const double way = v * way_[0] + (P * way_[1] + S * way_[2]);
-        const double velocity = v * velocity_[0] + (P * velocity_[1] + S * velocity_[2]);
+        const double more = length - length_;
+        const double way = (v * way_[0] + S * way_[2]) + P * way_[1];  // the pull is known last
+        const double velocity = (v * velocity_[0] + S * velocity_[2]) + P * velocity_[1];
         const double torque = P + S * length_ - damping_ * velocity - stiffness_ * way;
         const double first = (P - damping_ * v) * per_inertia_;
         const double second = (S - damping_ * first - stiffness_ * v) * per_inertia_;
@@ -49,7 +58,7 @@ public:
 
 private:
     static constexpr double short_of = 0.3;
-    End over_another(double length, const Start& start);
+    void make(double length);
 
     double inertia_, damping_, stiffness_, per_inertia_, per_w0_, longest_;
     double length_ = 0;
