@@ -1,7 +1,6 @@
 // Native excitations at any scale: systems and sums of terms whose numbers are all that a double can be between 1e-30
 // and 1e30, run by every engine that takes them. Rows and events are finite, in order and within the run, and the same
-// motion in other units of torque or angle, a power of two away, is the same to the last bit; but for Gaussian pulses,
-// whose tails underflow in one of them first.
+// motion in other units of torque or angle, a power of two away, is the same to the last bit.
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -193,8 +192,8 @@ std::optional<motion::Trajectory> run(const Case& c, motion::MethodView method) 
 }
 
 /// Far from where numbers end, where rounding is the same at every scale.
+constexpr double least = 1e-120, most = 1e120;
 bool ordinary(const motion::Trajectory& run) {
-    constexpr double least = 1e-120, most = 1e120;
     const auto fits = [](double x) { return x == 0 || (std::fabs(x) > least && std::fabs(x) < most); };
     for (Eigen::Index i = 0; i < run.rows.rows(); ++i) {
         for (Eigen::Index k = 1; k < run.rows.cols(); ++k) {
@@ -204,18 +203,13 @@ bool ordinary(const motion::Trajectory& run) {
     return model::is_whole(run.outcome);
 }
 
-bool underflows(const model::Excitation& M) {
-    const auto components = M.components();
-    return std::any_of(components.begin(), components.end(),
-                       [](const model::Component& each) { return std::holds_alternative<model::Gaussian>(each.term); });
-}
-
 void compare(const motion::Trajectory& a, const motion::Trajectory& b, const Scale& scale) {
     if (a.outcome != b.outcome || a.rows.rows() != b.rows.rows()) wrong("another end in other units");
     for (Eigen::Index i = 0; i < a.rows.rows(); ++i) {
         for (Eigen::Index k = 1; k < a.rows.cols(); ++k) {
-            if (a.rows(i, k) * (k < 3 ? scale.angle : scale.torque) != b.rows(i, k))
-                wrong("another motion in other units");
+            const double there = a.rows(i, k) * (k < 3 ? scale.angle : scale.torque), here = b.rows(i, k);
+            // A 0 may be what underflowed, and something of 1e-322 in other units.
+            if (there != here && !(there == 0 && std::fabs(here) < least)) wrong("another motion in other units");
         }
     }
     if (a.events.size() != b.events.size()) wrong("other events in other units");
@@ -234,7 +228,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     const motion::spectral::Spectral spectral{};
     for (const motion::MethodView method : {motion::MethodView(exact), motion::MethodView(spectral)}) {
         const auto there = run(*written, method);
-        if (!there || !ordinary(*there) || underflows(written->M)) continue;
+        if (!there || !ordinary(*there)) continue;
         for (const Scale& scale : {Scale{0x1p20, 1}, Scale{1, 0x1p-15}}) {
             const auto other = case_of(data, size, scale);
             if (const auto here = other ? run(*other, method) : std::nullopt) compare(*there, *here, scale);

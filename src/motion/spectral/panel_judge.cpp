@@ -9,8 +9,7 @@ namespace dinal::motion::spectral {
 
 namespace {
 
-/// No torque, and no motion: what comes of numbers so small that they have lost their digits. A bump that wakes a mass
-/// at rest begins with these.
+/// No torque, and no motion: what comes of numbers so small that they have lost their digits.
 constexpr double underflow = std::numeric_limits<double>::min() / epsilon;
 // Lengths of time are in units of pace_.
 /// A panel so short that what it does not resolve cannot be seen in the motion.
@@ -31,6 +30,13 @@ constexpr std::size_t most_found_breaks = 50;
 
 }  // namespace
 
+double PanelSolver::no_torque(const model::Excitation& excitation) {
+    // So small a part of the greatest one, where that is known: then no unit makes a difference.
+    constexpr double part = 1e-250;
+    const double most = excitation.most();
+    return most < model::never ? std::max(underflow, part * most) : underflow;
+}
+
 double PanelSolver::lost_in_time() const {
     if (tells_rests_) return 0;
     const double slope = chebyshev::derivative_bound<1>(panel_.M);
@@ -43,7 +49,7 @@ double PanelSolver::lost_in_time() const {
 /// The last coefficients of M over what the tolerance allows, in units of the torques that are at play.
 double PanelSolver::unresolved_load() const {
     const Series& M = panel_.M;
-    double allowed = (tolerance_ + 4 * epsilon) * torques() + underflow + noise_;
+    double allowed = (tolerance_ + 4 * epsilon) * torques() + no_torque_ + noise_;
     const double last = chebyshev::tail(M);
     if (last <= allowed) return last / allowed;
     allowed += lost_in_time();
@@ -55,9 +61,10 @@ double PanelSolver::unresolved_motion() const {
     const auto& w = panel_.w;
     const double last = chebyshev::tail(w);
     const double v = chebyshev::size(panel_.v), acceleration = chebyshev::size(w);
-    double allowed = tolerance_ * std::max(v, acceleration) + underflow;
+    const double none = std::max(underflow, panel_.h * (panel_.h / system_.inertia()) * no_torque_);
+    double allowed = tolerance_ * std::max(v, acceleration) + none;
     if (last <= allowed) return last / allowed;
-    allowed += rounding_of_motion(lost_in_time() + underflow + noise_);
+    allowed += rounding_of_motion(lost_in_time() + no_torque_ + noise_);
     return last / allowed;
 }
 

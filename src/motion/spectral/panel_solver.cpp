@@ -20,6 +20,7 @@ PanelSolver::PanelSolver(const Problem& problem, const Spectral& options)
       end_of_run_(problem.window.end),
       tolerance_(options.tolerance),
       pace_(std::min(problem.system.natural_period(), problem.window.end - problem.window.start)),
+      no_torque_(no_torque(excitation_)),
       h_max_(options.longest(problem) / 2),
       feedback_(problem.excitation.has_feedback() || system_.has_spring() ||
                 (system_.has_friction_remainder() && !slide_.has_corners())),

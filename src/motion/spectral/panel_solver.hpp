@@ -78,10 +78,10 @@ public:
     /// What h^2 theta'' is off by at least, as a difference of torques that may balance each other.
     [[nodiscard]] double least_rounding() const {
         return panel_.h * (panel_.h / system_.inertia()) *
-               (64 * std::numeric_limits<double>::epsilon() * torques() + lost_in_time() + noise_);
+               (64 * std::numeric_limits<double>::epsilon() * torques() + lost_in_time() + no_torque_ + noise_);
     }
     /// What h^2 theta'' may differ by because its torques are rounded, and the times at which M was asked.
-    [[nodiscard]] double rounding() const { return rounding_of_motion(lost_in_time() + noise_); }
+    [[nodiscard]] double rounding() const { return rounding_of_motion(lost_in_time() + no_torque_ + noise_); }
     /// The torques on the panel depend on the motion, which was found by iteration.
     [[nodiscard]] bool iterates() const { return feedback_ || follows_; }
     /// M on the panel is a function of time alone, and its series holds for a mass at rest, too.
@@ -156,6 +156,8 @@ private:
     bool stride(const Present& now, model::Motion way, const model::State& departing);
 
     // panel_judge.cpp: resolved?
+    /// What is none. A bump that wakes a mass at rest begins with less.
+    [[nodiscard]] static double no_torque(const model::Excitation& excitation);
     /// What M may differ by because times far from t = 0 are rounded.
     [[nodiscard]] double lost_in_time() const;
     [[nodiscard]] double unresolved_load() const;
@@ -187,6 +189,7 @@ private:
     double end_of_run_;
     double tolerance_;
     double pace_;   // what short times are measured in: T0, or all of a run that is shorter
+    double no_torque_;
     double h_max_;  // half the length of the longest panel
     bool feedback_, script_, tells_rests_;
     bool follows_ = false;  // the present panel goes along a friction that bends, and nothing else is iterated
