@@ -8,12 +8,32 @@
 #include <memory>
 #include <span>
 #include <utility>
+#include <vector>
 
 #include "model/components.hpp"
 #include "model/oscillator.hpp"
 #include "text/expected.hpp"
 
 namespace dinal::model {
+
+/// Times that lie about a middle in the same way again and again, as the nodes of panels do.
+struct Spread {
+    /// What a sine makes of these distances from the middle.
+    struct Turn {
+        double omega = 0, half = 0;
+        std::vector<double> sine{}, cosine{};
+    };
+
+    std::span<const double> places;   ///< from -1 to 1, the same on both sides of 0
+    std::size_t first = 0;            ///< the place of the first time that is asked for
+    double middle = 0, rest = 0;      ///< the time of place 0, and what was rounded off it
+    double half = 0;                  ///< from there to place 1
+    std::span<const double> rests{};  ///< what was rounded off each time, for the terms that tell such times apart
+    std::vector<Turn> turns{};        ///< of each sine in its turn: as a rule those of the times before
+    std::size_t next_turn = 0;
+
+    const Turn& turn(double omega);
+};
 
 class Excitation {
 public:
@@ -45,8 +65,7 @@ public:
     /// All of it is known at times between two doubles.
     [[nodiscard]] bool tells_rests() const;
     /// out[i] = value(times[i]); not for feedback. Returns how many were filled: fewer when one is not finite.
-    /// `rests`, if given, is what was rounded off each time, for the terms that tell such times apart.
-    std::size_t fill(std::span<const double> times, std::span<double> out, std::span<const double> rests = {}) const;
+    std::size_t fill(std::span<const double> times, std::span<double> out, Spread* spread = nullptr) const;
 
     /// After a value that was not finite: whether the functions in it may be asked again, at other times.
     [[nodiscard]] bool may_go_on() const;

@@ -11,9 +11,9 @@ namespace {
 
 template <class T>
 std::size_t add(const T& term, const Component& c, std::span<const double> times, std::span<double> out,
-                std::span<const double> rests) {
+                const Spread* spread) {
     const std::size_t n = times.size();
-    if (rests.empty() && c.from == -never && c.to == never) {
+    if (spread == nullptr && c.from == -never && c.to == never) {
         for (std::size_t i = 0; i < n; ++i) {
             out[i] += c.gain * term.value(times[i]);
         }
@@ -21,7 +21,7 @@ std::size_t add(const T& term, const Component& c, std::span<const double> times
     }
     for (std::size_t i = 0; i < n; ++i) {
         if (times[i] >= c.from && times[i] < c.to) {
-            out[i] += c.gain * terms::value_near(term, times[i], rests.empty() ? 0 : rests[i]);
+            out[i] += c.gain * terms::value_near(term, times[i], spread == nullptr ? 0 : spread->rests[i]);
         }
     }
     return n;
@@ -39,29 +39,54 @@ bool evenly_spaced(std::span<const double> times, double spacing) {
     return worst <= rounding;
 }
 
+/// What comes of the addition theorem for a sine of this peak: never above that, as of sin() itself. A load of
+/// amplitude Re that rounding lifted would end a stick.
+struct Sum {
+    double sine, cosine, peak;
+    Sum(double amplitude, double angle)
+        : sine(amplitude * std::sin(angle)), cosine(amplitude * std::cos(angle)), peak(std::fabs(amplitude)) {}
+    [[nodiscard]] double at(double sine_of, double cosine_of) const {
+        return std::clamp(sine * cosine_of + cosine * sine_of, -peak, peak);
+    }
+};
+
+/// The same at times about a middle, where a turn from there is known. The ends, at which one panel meets the next, are
+/// what the term says.
+std::size_t add_about(const Harmonic& h, const Component& c, std::span<const double> times, std::span<double> out,
+                      Spread& spread) {
+    const Spread::Turn& turn = spread.turn(h.omega);
+    const Sum sum(c.gain * h.amplitude, (h.omega * spread.middle + h.phase) + h.omega * spread.rest);
+    const std::size_t last = spread.places.size() - 1, n = times.size();
+    std::size_t i = 0, end = n;
+    if (spread.first == 0) out[0] += c.gain * h.value(times[0]), i = 1;
+    if (spread.first + n - 1 == last) --end, out[end] += c.gain * h.value(times[end]);
+    const double *sine = turn.sine.data() + spread.first, *cosine = turn.cosine.data() + spread.first;
+    for (; i < end; ++i) out[i] += sum.at(sine[i], cosine[i]);
+    return n;
+}
+
 /// At evenly spaced times, as a stepping loop has them, a sine costs two products by the addition theorem:
 /// sin(a + b) with `a` at every sixteenth time and `b` from a table of sixteen. Good to the rounding of the times.
-// NOTE: but never above the amplitude, as sin() itself: a load of amplitude Re that rounding lifted would end a stick.
 std::size_t add(const Harmonic& h, const Component& c, std::span<const double> times, std::span<double> out,
-                std::span<const double> rests) {
+                Spread* spread) {
     constexpr std::size_t stride = 16;
     const std::size_t n = times.size();
+    const bool always = c.from == -never && c.to == never;
+    if (always && spread != nullptr && n > 1) return add_about(h, c, times, out, *spread);
     const double spacing = n > 1 ? (times[n - 1] - times[0]) / static_cast<double>(n - 1) : 0;
-    if (n < 2 * stride || c.from != -never || c.to != never || !evenly_spaced(times, spacing)) {
-        return add<Harmonic>(h, c, times, out, rests);
+    if (n < 2 * stride || !always || !evenly_spaced(times, spacing)) {
+        return add<Harmonic>(h, c, times, out, spread);
     }
     std::array<double, stride> sine{}, cosine{};
     for (std::size_t j = 0; j < stride; ++j) {
         sine[j] = std::sin(h.omega * (static_cast<double>(j) * spacing));
         cosine[j] = std::cos(h.omega * (static_cast<double>(j) * spacing));
     }
-    const double peak = std::fabs(c.gain * h.amplitude);
     for (std::size_t i = 0; i < n; i += stride) {
-        const double angle = h.omega * times[i] + h.phase;
-        const double s = c.gain * h.amplitude * std::sin(angle), k = c.gain * h.amplitude * std::cos(angle);
+        const Sum sum(c.gain * h.amplitude, h.omega * times[i] + h.phase);
         const std::size_t count = std::min(stride, n - i);
         for (std::size_t j = 0; j < count; ++j) {
-            out[i + j] += std::clamp(s * cosine[j] + k * sine[j], -peak, peak);
+            out[i + j] += sum.at(sine[j], cosine[j]);
         }
     }
     return n;
@@ -69,7 +94,7 @@ std::size_t add(const Harmonic& h, const Component& c, std::span<const double> t
 
 /// In blocks, which are short enough for the stack.
 std::size_t add(const Scripted& script, const Component& c, std::span<const double> times, std::span<double> out,
-                std::span<const double> /*rests*/) {
+                const Spread* /*spread*/) {
     constexpr std::size_t block = 128;
     std::array<double, block> own_times;
     std::array<double, block> values;
@@ -115,16 +140,32 @@ std::size_t fill_in_turn(const Excitation& excitation, std::span<const double> t
 
 }  // namespace
 
-std::size_t Excitation::fill(std::span<const double> times, std::span<double> out,
-                             std::span<const double> rests) const {
+const Spread::Turn& Spread::turn(double omega) {
+    if (next_turn == turns.size()) turns.emplace_back();
+    Turn& turn = turns[next_turn++];
+    if (turn.omega == omega && turn.half == half && !turn.sine.empty()) return turn;
+    const std::size_t n = places.size();
+    turn.omega = omega, turn.half = half;
+    turn.sine.resize(n), turn.cosine.resize(n);
+    for (std::size_t j = 0; 2 * j < n; ++j) {
+        const double angle = omega * (half * places[j]), s = std::sin(angle), c = std::cos(angle);
+        turn.sine[j] = s, turn.sine[n - 1 - j] = -s;
+        turn.cosine[j] = turn.cosine[n - 1 - j] = c;
+    }
+    return turn;
+}
+
+std::size_t Excitation::fill(std::span<const double> times, std::span<double> out, Spread* spread) const {
     std::size_t n = times.size();
     if (script_count(components()) > 1) {
         return fill_in_turn(*this, times, out);
     }
     std::fill_n(out.begin(), n, 0.0);
+    if (spread != nullptr) spread->next_turn = 0;
     for (const Component& c : components()) {
         if (c.gain != 0) {
-            n = std::visit([&](const auto& term) { return add(term, c, times.first(n), out.first(n), rests); }, c.term);
+            n = std::visit([&](const auto& term) { return add(term, c, times.first(n), out.first(n), spread); },
+                           c.term);
         }
     }
     const auto filled = out.first(n);

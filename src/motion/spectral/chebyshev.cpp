@@ -28,6 +28,18 @@ constexpr Matrix<half + 1, columns> polynomials(std::size_t parity) {
 constexpr auto even_terms = polynomials<half + 1>(0);
 constexpr auto odd_terms = polynomials<half>(1);
 
+/// Row i: the same term at all nodes.
+template <std::size_t columns>
+constexpr Matrix<columns, half + 1> turned(const Matrix<half + 1, columns>& terms) {
+    Matrix<columns, half + 1> m{};
+    for (std::size_t j = 0; j <= half; ++j) {
+        for (std::size_t i = 0; i < columns; ++i) m[i][j] = terms[j][i];
+    }
+    return m;
+}
+constexpr auto even_at = turned(even_terms);
+constexpr auto odd_at = turned(odd_terms);
+
 /// Row j: the weight of f(x_j) + f(-x_j), or of the difference, in the coefficients of that parity.
 template <std::size_t columns>
 constexpr Matrix<half + 1, columns> weights(const Matrix<half + 1, columns>& terms, std::size_t parity) {
@@ -69,15 +81,19 @@ Series<points> fit(const Samples& f) {
 }
 
 Samples at_nodes(const Series<points>& c) {
+    // All nodes side by side, which the processor does by twos.
+    std::array<double, half + 1> even{}, odd{};
+    for (std::size_t i = 0; i < half; ++i) {
+        for (std::size_t j = 0; j <= half; ++j) {
+            even[j] += c[2 * i] * even_at[i][j];
+            odd[j] += c[2 * i + 1] * odd_at[i][j];
+        }
+    }
     Samples f{};
     for (std::size_t j = 0; j <= half; ++j) {
-        double even = c[degree] * even_terms[j][half], odd = 0;
-        for (std::size_t i = 0; i < half; ++i) {
-            even += c[2 * i] * even_terms[j][i];
-            odd += c[2 * i + 1] * odd_terms[j][i];
-        }
-        f[j] = even + odd;
-        f[degree - j] = even - odd;
+        const double whole = even[j] + c[degree] * even_at[half][j];
+        f[j] = whole + odd[j];
+        f[degree - j] = whole - odd[j];
     }
     return f;
 }

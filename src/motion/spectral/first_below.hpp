@@ -15,17 +15,25 @@ template <std::size_t n>
 class Bounded {
 public:
     /// `sign` * f; `slope` is the derivative of f.
-    Bounded(double sign, const Series<n>& f, const Series<n - 1>& slope) : f_(f), slope_(slope) {
+    Bounded(double sign, const Series<n>& f, const Series<n - 1>& slope) : Bounded(sign, f, slope, {}) {
+        at_nodes_ = chebyshev::at_nodes(f_);
+    }
+    /// Of known values at the nodes.
+    Bounded(double sign, const Series<n>& f, const Series<n - 1>& slope, const Samples& at_nodes)
+        : f_(f), slope_(slope), at_nodes_(at_nodes) {
         for (double& c : f_) c *= sign;
         for (double& c : slope_) c *= sign;
         second_ = derivative_bound<2>(f_);
-        at_nodes_ = chebyshev::at_nodes(f_);
         floor_ = rounding * size(f_);
         slope_floor_ = rounding * size(slope_);
     }
     [[nodiscard]] double operator()(double x) const { return value(f_, x); }
     [[nodiscard]] double slope(double x) const { return value(slope_, x); }
     [[nodiscard]] double second_bound() const { return second_; }
+    /// How far below its chord over this width the curve may sag.
+    [[nodiscard]] double dip(double width) const { return second_ * width * width / 8; }
+    /// Whether the curve between these two values, so far apart, is positive.
+    [[nodiscard]] bool stays_above(double a, double b, double width) const { return std::min(a, b) > dip(width); }
     /// What may be rounding alone.
     [[nodiscard]] double floor() const { return floor_; }
     /// For a curve that is a difference of larger numbers, or whose slope is.
@@ -51,18 +59,19 @@ public:
         for (double& value : at_nodes_) value = -value;
     }
 
-    /// Whether a curve that leaves zero at -1 is certainly positive up to -1 + d: by its slope there, or, where that
-    /// is zero too, by its curvature.
-    [[nodiscard]] bool leaves_upward(double d) const {
+    /// Up to which distance from -1 a curve that leaves zero there is certainly positive: by its slope there, or, where
+    /// that is zero too, by its curvature. None when neither tells.
+    [[nodiscard]] double leaves_upward() const {
         double at_left = 0, bend = 0;
         for (std::size_t k = 0; k + 1 < n; ++k) at_left += k % 2 == 0 ? slope_[k] : -slope_[k];
-        if (at_left > second_ * d / 2) return true;
-        if (at_left < -slope_floor_) return false;
+        const double by_slope = at_left > 0 ? 2 * at_left / second_ : 0;
+        if (at_left < -slope_floor_) return 0;
         for (std::size_t k = 2; k < n; ++k) {
             const auto k2 = static_cast<double>(k * k);
             bend += (k % 2 == 0 ? f_[k] : -f_[k]) * (k2 * (k2 - 1) / 3);
         }
-        return bend > derivative_bound<3>(f_) * d / 3;
+        const double by_bend = bend > 0 ? 3 * bend / derivative_bound<3>(f_) : 0;
+        return by_slope > by_bend ? by_slope : by_bend;  // where it is no number it tells nothing
     }
 
 private:
@@ -105,15 +114,14 @@ double polish(const F& f, double a, double fa, double b, double fb) {
 template <class F, class Confirm>
 std::optional<double> search(const F& f, double a, double fa, double b, double fb, const Confirm& confirm) {
     const double width = b - a;
-    const double dip = f.second_bound() * width * width / 8;  // how far below its chord the curve may sag
-    if (std::min(fa, fb) > dip) return {};
+    if (f.stays_above(fa, fb, width)) return {};
     const double middle = a + width / 2;
     if (const double slope = f.slope(middle); std::fabs(slope) > f.second_bound() * width / 2) {
         if (slope > 0 || fb > f.floor()) return {};
         if (fb < -f.floor()) return fa > 0 ? polish(f, a, fa, b, fb) : a;
         return confirm(b) ? std::optional(b) : std::nullopt;
     }
-    if (!(dip > f.floor()) || width < 1e-12) {  // also where it is no number
+    if (!(f.dip(width) > f.floor()) || width < 1e-12) {  // also where it is no number
         if (fb < -f.floor()) return fa > 0 ? polish(f, a, fa, b, fb) : a;
         const double lowest = fa < fb ? a : b;
         return std::min(fa, fb) <= f.floor() && confirm(lowest) ? std::optional(lowest) : std::nullopt;
@@ -141,9 +149,10 @@ std::optional<double> first_below(const F& f, double from, LeftEnd start, const 
     double left = from;
     double f_left = start == LeftEnd::leaving ? 0 : from == -1 ? at_node[0] : f(from);
     if (start == LeftEnd::leaving) {
-        const double right = nodes[j];
-        if (from == -1 && f.leaves_upward(right - from)) {
-            left = right, f_left = at_node[j], ++j;
+        const double right = nodes[j], far = from == -1 ? f.leaves_upward() : 0;
+        if (far >= right - from) {
+            while (j < degree && nodes[j + 1] - from <= far) ++j;
+            left = nodes[j], f_left = at_node[j], ++j;
             if (f_left <= 0) f_left = f.floor();  // positive, and small
         } else {
             // From within the rounding outwards, until it is clear which way the curve goes.
@@ -154,7 +163,7 @@ std::optional<double> first_below(const F& f, double from, LeftEnd start, const 
         }
     }
     for (; j <= degree; ++j) {
-        if (nodes[j] > left) {
+        if (nodes[j] > left && !f.stays_above(f_left, at_node[j], nodes[j] - left)) {
             if (const auto x = detail::search(f, left, f_left, nodes[j], at_node[j], confirm)) return x;
         }
         left = nodes[j], f_left = at_node[j];

@@ -70,6 +70,8 @@ void PanelSolver::lay(const Present& now, model::Motion way, double h, double en
         panel_.times[j] = std::min(panel_.time(chebyshev::nodes[j]), before_end);
         panel_.rests[j] = h * (1 + chebyshev::nodes[j]) - now.clock.until(panel_.times[j]);
     }
+    spread_.middle = panel_.times[chebyshev::degree / 2], spread_.rest = panel_.rests[chebyshev::degree / 2],
+    spread_.half = h;
     panel_.times[points - 1] = panel_.end;
     panel_.rests[points - 1] = 2 * h - now.clock.until(panel_.end);
 }
@@ -93,8 +95,10 @@ bool PanelSolver::sample_all(const Present& now) {
         const bool at_break = panel_.ends == SolvedPanel::End::at_break;
         const std::size_t last = at_break ? points - 1 : points;
         const std::size_t count = last - first;
-        const std::size_t good = excitation_.fill({&panel_.times[first], count}, {&panel_.samples[first], count},
-                                                  {&panel_.rests[first], count});
+        spread_.first = first;
+        spread_.rests = {&panel_.rests[first], count};
+        const std::size_t good =
+            excitation_.fill({&panel_.times[first], count}, {&panel_.samples[first], count}, &spread_);
         if (good < count) return bad_at(first + good);
         if (at_break) panel_.samples[points - 1] = excitation_.value_before(panel_.end);
         if (!std::isfinite(panel_.samples[points - 1])) return bad_at(points - 1);

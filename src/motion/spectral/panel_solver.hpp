@@ -188,7 +188,7 @@ private:
     const model::Excitation& excitation_;
     double end_of_run_;
     double tolerance_;
-    double pace_;   // what short times are measured in: T0, or all of a run that is shorter
+    double pace_;  // what short times are measured in: T0, or all of a run that is shorter
     double no_torque_;
     double h_max_;  // half the length of the longest panel
     bool feedback_, script_, tells_rests_;
@@ -228,8 +228,9 @@ private:
         std::size_t count = 0;                    // of all there were
     } steps_;
     SolvedPanel panel_;
-    double theta_rest_ = 0;  // of its beginning
-    double own_spring_ = 0;  // the torque there of a spring besides k theta, without sign
+    model::Spread spread_{.places = chebyshev::nodes};  // its times, for M
+    double theta_rest_ = 0;                             // of its beginning
+    double own_spring_ = 0;                             // the torque there of a spring besides k theta, without sign
     PanelEquation equation_;
     struct {
         int unresolved = 0, too_short = 0;  // panels in a row

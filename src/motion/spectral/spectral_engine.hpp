@@ -86,6 +86,7 @@ private:
     bool stay();
     [[nodiscard]] std::pair<double, model::Motion> first_release(double from) const;
     [[nodiscard]] double release_towards(model::Motion side, double from) const;
+    [[nodiscard]] double greatest_sample(model::Motion side, double from) const;
     [[nodiscard]] bool lets_go(double x, model::Motion side) const;
     [[nodiscard]] double moment_of_release(double x, double off, double from, model::Motion side) const;
     bool release_at(double x, model::Motion direction);

@@ -47,16 +47,29 @@ double SpectralEngine::release_towards(model::Motion side, double from) const {
     const double varying = chebyshev::sum_of<points>([&](std::size_t k) { return k == 0 ? 0 : std::fabs(panel.M[k]); });
     const double mean = sign * (panel.M[0] - k_theta);
     if (mean + varying < Re - doubt) return nowhere;
+    const bool sampled = varying > 0 && solver_.M_of_time();
+    if (sampled) {
+        // Between two nodes it does not come nearer to the limit than a curve so bent can.
+        constexpr double width = 2 * chebyshev::widest_gap;
+        const double hidden = chebyshev::derivative_bound<2>(panel.M) * (width * width) / 8;
+        if (greatest_sample(side, from) + hidden < Re + sign * k_theta - doubt) return nowhere;
+    }
 
     // What is left of the limit: Re - side (M - k theta).
     Series left{};
     chebyshev::Series<points - 1> slope = chebyshev::derivative(panel.M);
     for (std::size_t k = 1; k < points; ++k) left[k] = -sign * panel.M[k];
     for (double& c : slope) c *= -sign;
-    left[0] = Re - mean;
     const bool held = standstill_.phase() == Standstill::Phase::held;
-    if (held) left[0] += standstill_.clearly_beyond({now_.clock.hi, now_.y.theta, now_.M});
-    chebyshev::Bounded<points> curve(1, left, slope);
+    const double limit = held ? Re + standstill_.clearly_beyond({now_.clock.hi, now_.y.theta, now_.M}) : Re;
+    left[0] = limit - mean;
+    chebyshev::Samples at_nodes{};
+    if (sampled) {
+        for (std::size_t j = 0; j < points; ++j) at_nodes[j] = limit - sign * (panel.samples[j] - k_theta);
+    } else {
+        at_nodes = chebyshev::at_nodes(left);
+    }
+    chebyshev::Bounded<points> curve(1, left, slope, at_nodes);
     curve.raise_floor(doubt);
     std::optional<double> touch;
     const auto touches = [&](double x) {
@@ -73,6 +86,17 @@ double SpectralEngine::release_towards(model::Motion side, double from) const {
     const double off = doubt / std::fabs(curve.slope(*x));
     if (held || (!touch && off * panel.h <= exact_enough * T0_)) return *x;
     return moment_of_release(touch.value_or(*x), off, from, side);
+}
+
+/// The greatest M of this side at the nodes from there on, and at the one before.
+double SpectralEngine::greatest_sample(model::Motion side, double from) const {
+    const chebyshev::Samples& M = solver_.panel().samples;
+    const double sign = model::sign_of(side);
+    double greatest = sign * M[points - 1];
+    for (std::size_t j = points - 1; j > 0 && chebyshev::nodes[j] > from; --j) {
+        greatest = std::max(greatest, sign * M[j - 1]);
+    }
+    return greatest;
 }
 
 bool SpectralEngine::lets_go(double x, model::Motion side) const {
