@@ -75,6 +75,54 @@ TEST_CASE("a block of a sine never passes its amplitude, not even by rounding", 
     CHECK(above == 0);
 }
 
+TEST_CASE("sines at times about a middle are those of the times, and no more than their amplitude", "[excitation]") {
+    const std::vector<double> places{-1, -0.9, -0.4, 0, 0.4, 0.9, 1};
+    const std::size_t n = places.size(), middle = n / 2;
+    const double ulp = std::numeric_limits<double>::epsilon(), omega = 2 * pi;
+    const Excitation M = made(Harmonic{3, omega, 0.7}) + made(Harmonic{-0.5, 0.3 * omega, 0}) +
+                         made(Constant{0.25}).windowed(-1, 1e7) + made(Harmonic{2, omega, 0}).windowed(0.5, 0.6) +
+                         made(Gaussian{1, 0.1, 0.2});
+    Spread spread{.places = places};
+    double above = 0;
+    for (const double start : {0.0, 1000.0, -0.7}) {
+        // Lengths that come again, and others; of some the first time is not asked, of some not the last.
+        for (const double half : {0.3, 0.3, 0.1, 0.3}) {
+            for (const std::size_t first : {std::size_t{0}, std::size_t{1}}) {
+                for (const std::size_t end : {n, n - 1}) {
+                    std::vector<double> times(n), rests(n);
+                    for (std::size_t j = 0; j < n; ++j) {
+                        const double since = half * (1 + places[j]);
+                        times[j] = start + since, rests[j] = since - (times[j] - start);
+                    }
+                    const std::size_t count = end - first;
+                    std::vector<double> out(count);
+                    spread.first = first, spread.half = half;
+                    spread.middle = times[middle], spread.rest = rests[middle];
+                    spread.rests = {rests.data() + first, count};
+                    REQUIRE(M.fill({times.data() + first, count}, out, &spread) == count);
+                    for (std::size_t i = 0; i < count; ++i) {
+                        const std::size_t j = i + first;
+                        CAPTURE(start, half, j);
+                        // Roundings of omega t, at the middle and here, and a few of the results.
+                        const double rounding = 3 * ulp * (2 * omega * (std::fabs(start) + 1) + 4);
+                        REQUIRE(out[i] == within(M.value(times[j]), rounding));
+                        if (j == 0 || j + 1 == n) REQUIRE(out[i] == within(M.value(times[j]), 4 * ulp));
+                    }
+                }
+            }
+        }
+    }
+    const Excitation alone = made(Harmonic{0.167, omega, 0});
+    for (int i = 0; i < 4000; ++i) {
+        std::vector<double> times(n), rests(n), out(n);
+        spread.half = 0.25 / 0.9, spread.middle = 0.5 * i, spread.rest = 0, spread.first = 0, spread.rests = rests;
+        for (std::size_t j = 0; j < n; ++j) times[j] = spread.middle + spread.half * places[j];
+        REQUIRE(alone.fill(times, out, &spread) == n);
+        for (const double x : out) above = std::max(above, std::fabs(x) - 0.167);
+    }
+    CHECK(above <= 0);
+}
+
 TEST_CASE("gain, sum, delay and window are what they are on paper", "[excitation]") {
     const auto terms = one_of_each();
     for (const Excitation& a : terms) {
