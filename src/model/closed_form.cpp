@@ -53,11 +53,7 @@ void ClosedForm::add_sine(double amplitude, double omega, double at, double phas
     const double far = time_ - at;
     const double back = time_ - far;
     const double rest = ((time_ - (far + back)) + (back - at)) + rest_;
-    const double turned = omega * far;
-    const double turned_rest = std::fma(omega, far, -turned) + omega * rest;
-    const double angle = turned + phase;
-    const double part = angle - turned;
-    const double small = ((turned - (angle - part)) + (phase - part)) + turned_rest;
+    const auto [angle, small] = terms::angle_at(far, rest, omega, phase);
     const double s = std::sin(angle), c = std::cos(angle), a = gain_ * amplitude;
     if (omega == 0) {
         powers_[0] += a * (s + small * c);

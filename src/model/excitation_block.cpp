@@ -43,8 +43,10 @@ bool evenly_spaced(std::span<const double> times, double spacing) {
 /// amplitude Re that rounding lifted would end a stick.
 struct Sum {
     double sine, cosine, peak;
-    Sum(double amplitude, double angle)
-        : sine(amplitude * std::sin(angle)), cosine(amplitude * std::cos(angle)), peak(std::fabs(amplitude)) {}
+    Sum(double amplitude, const terms::Angle& angle) : peak(std::fabs(amplitude)) {
+        const double s = std::sin(angle.rounded), c = std::cos(angle.rounded);
+        sine = amplitude * (s + angle.lack * c), cosine = amplitude * (c - angle.lack * s);
+    }
     [[nodiscard]] double at(double sine_of, double cosine_of) const {
         return std::clamp(sine * cosine_of + cosine * sine_of, -peak, peak);
     }
@@ -55,7 +57,7 @@ struct Sum {
 std::size_t add_about(const Harmonic& h, const Component& c, std::span<const double> times, std::span<double> out,
                       Spread& spread) {
     const Spread::Turn& turn = spread.turn(h.omega);
-    const Sum sum(c.gain * h.amplitude, (h.omega * spread.middle + h.phase) + h.omega * spread.rest);
+    const Sum sum(c.gain * h.amplitude, terms::angle_at(spread.middle, spread.rest, h.omega, h.phase));
     const std::size_t last = spread.places.size() - 1, n = times.size();
     std::size_t i = 0, end = n;
     if (spread.first == 0) out[0] += c.gain * h.value(times[0]), i = 1;
@@ -83,7 +85,7 @@ std::size_t add(const Harmonic& h, const Component& c, std::span<const double> t
         cosine[j] = std::cos(h.omega * (static_cast<double>(j) * spacing));
     }
     for (std::size_t i = 0; i < n; i += stride) {
-        const Sum sum(c.gain * h.amplitude, h.omega * times[i] + h.phase);
+        const Sum sum(c.gain * h.amplitude, {h.omega * times[i] + h.phase, 0});
         const std::size_t count = std::min(stride, n - i);
         for (std::size_t j = 0; j < count; ++j) {
             out[i + j] += sum.at(sine[j], cosine[j]);

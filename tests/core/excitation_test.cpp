@@ -112,6 +112,25 @@ TEST_CASE("sines at times about a middle are those of the times, and no more tha
             }
         }
     }
+    // Between the ends only what is left of the time is rounded, however late it is.
+    for (const double start : {0.3, -54321.1, 1e7}) {
+        const Excitation late = made(Harmonic{3, omega, 0.7});
+        std::vector<double> times(n), rests(n), out(n);
+        for (std::size_t j = 0; j < n; ++j) {
+            const double since = 0.3 * (1 + places[j]);
+            times[j] = start + since, rests[j] = since - (times[j] - start);
+        }
+        spread.first = 0, spread.half = 0.3, spread.middle = times[middle], spread.rest = rests[middle];
+        spread.rests = rests;
+        REQUIRE(late.fill(times, out, &spread) == n);
+        for (std::size_t j = 1; j + 1 < n; ++j) {
+            const long double t = static_cast<long double>(times[j]) + rests[j];
+            const auto exact = static_cast<double>(3 * std::sin(static_cast<long double>(omega) * t + 0.7L));
+            CAPTURE(start, j);
+            // The phase is 0.7 in doubles; then some roundings of the turns and of the sum.
+            REQUIRE(out[j] == within(exact, 3 * 6 * ulp + 3 * std::fabs(static_cast<double>(omega * t)) * 0x1p-63));
+        }
+    }
     const Excitation alone = made(Harmonic{0.167, omega, 0});
     for (int i = 0; i < 4000; ++i) {
         std::vector<double> times(n), rests(n), out(n);

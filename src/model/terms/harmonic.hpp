@@ -5,6 +5,15 @@
 
 namespace dinal::model::terms {
 
+/// omega t + phase at `t` + `rest`, and what it lacks: far from t = 0 that is all a sine loses.
+struct Angle {
+    double rounded, lack;
+};
+inline Angle angle_at(double t, double rest, double omega, double phase) {
+    const double turned = omega * t, angle = turned + phase, part = angle - turned;
+    return {angle, ((turned - (angle - part)) + (phase - part)) + (std::fma(omega, t, -turned) + omega * rest)};
+}
+
 /// amplitude sin(omega t + phase)
 struct Harmonic {
     static const TermText about;

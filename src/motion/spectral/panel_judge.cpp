@@ -32,7 +32,7 @@ constexpr std::size_t most_found_breaks = 50;
 
 double PanelSolver::no_torque(const model::Excitation& excitation) {
     // So small a part of the greatest one, where that is known: then no unit makes a difference.
-    constexpr double part = 1e-250;
+    constexpr double part = 1e-200;
     const double most = excitation.most();
     return most < model::never ? std::max(underflow, part * most) : underflow;
 }
