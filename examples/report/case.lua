@@ -269,11 +269,13 @@ function case.response(curves)
   curves.show = false
   return plot(curves)
 end
+local symbols = { theta = "θ*", ["M/k"] = "M*", ["friction/k"] = "friction*" }
 function case.columns(run, names, options)
   options = options or {}
-  options.y, options.xlabel, options.show = names, "t*", false
-  options.ylabel = #names > 1 and "θ*, M*" or "θ*"
-  options.labels = #names > 1 and { "θ*", "M*" } or nil
+  local labels = {}
+  for i, name in ipairs(names) do labels[i] = symbols[name] end
+  options.y, options.xlabel, options.ylabel, options.show = names, "t*", table.concat(labels, ", "), false
+  options.labels = #names > 1 and labels or nil
   return run:plot(options)
 end
 function case.plane(run, size)

@@ -157,6 +157,13 @@ else
         .. "and look at it", figure.name, difference)
     end
     assert(#now.words > 5 and next(now.ink), "nothing found in " .. figure.file)
+    -- These draw dry friction beside the angle, and no excitation.
+    local words = table.concat(now.words, " ")
+    if figure.name == "22" or figure.name == "26" then
+      if not words:find("friction*", 1, true) or words:find("M*", 1, true) then
+        complain("docs/report/fig%s.svg does not call friction by its name: %s", figure.name, words)
+      end
+    end
   end
   -- A curve two pixels off, and another word.
   local svg = read(figures[#figures].file)
