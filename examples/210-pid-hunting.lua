@@ -35,8 +35,8 @@ print(string.format("without the integral: %s at %.4f", run.outcome, (run:at(200
 --[[ prints
   Re   misses the goal by   hunts with a period of
  0.3   comes to rest
- 0.4               0.0070                    63.31
- 0.5               0.0154                    32.12
- 0.6               0.0258                    22.37
+ 0.4               0.0086                    53.27
+ 0.5               0.0173                    30.09
+ 0.6               0.0259                    22.36
 without the integral: stuck at the end at 0.9708
 ]]

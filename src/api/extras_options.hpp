@@ -29,7 +29,7 @@ inline constexpr text::Option event_options[] = {
     {.name = "stop", .meaning = "true ends the run there", .filled = text::fills<&model::WantedEvent::stop>},
     {.name = "name", .meaning = "what it is called in run.events", .filled = text::fills<&model::WantedEvent::name>},
     {.name = "act",
-     .meaning = "a function of t, theta, velocity, z that returns what theta and velocity are from there on",
+     .meaning = "a function of t, theta, velocity, z that returns the new theta and velocity, and may assign to z",
      .wanted = "a function of t, theta, velocity, z"},
 };
 inline constexpr text::Call event_call{
@@ -45,7 +45,7 @@ inline constexpr text::Option extras_options[] = {
      .meaning =
          "what is to be located: a list of { when = function(t, theta, velocity, z), direction = \"up\" or "
          "\"down\", stop = true, name = \"...\", act = function(t, theta, velocity, z) return theta, velocity end "
-         "}, told where `when` passes zero",
+         "}, told where `when` passes zero; act may also set a state: z.NAME = 0",
      .wanted = "a list such as { { when = function(t, theta) return theta - 1 end, name = \"limit\" } }",
      .fields = {&event_call, text::Fields::Place::listed}},
     {.name = "belt",

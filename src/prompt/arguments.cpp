@@ -259,7 +259,8 @@ without a script: a prompt on a terminal, else standard input is run as a script
   -          no more options: run standard input as the script
   --no-init  a prompt without the file ~/.config/dinal/init.lua
   --safe     for scripts of strangers: no files outside the current folder, no
-             processes, no modules, and limits: --max-memory 256M --max-time 10
+             processes except gnuplot, no modules, and limits:
+             --max-memory 256M --max-time 10
   --max-memory SIZE  end a script that needs more, for example 256M or 2G
   --max-time SECONDS end a script that runs longer; at the prompt, an input
   --lab-marks FILE   note at the end of FILE what became of each answer in the lab

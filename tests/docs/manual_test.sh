@@ -9,6 +9,14 @@ complaints=$(groff -man -ww -Tutf8 "$source/docs/dinal.1" 2>&1 >/dev/null)
 version=$("$program" -e 'print(dinal.version)')
 grep -q "^\.TH DINAL 1 [0-9-]* \"dinal $version\"" "$source/docs/dinal.1" || { echo "the man page is not that of $version"; exit 1; }
 grep -q "^## $version " "$source/CHANGELOG.md" || { echo "CHANGELOG.md has no heading for $version"; exit 1; }
+# The man page names each member of the table dinal.
+for name in $("$program" -e 'for name in pairs(dinal) do print(name) end'); do
+    sed -n '/^\.SH DESCRIPTION/,/^\.SH OPTIONS/p' "$source/docs/dinal.1" | grep -qE "^\.BR? $name( |\$)" ||
+        { echo "the man page lacks dinal.$name"; exit 1; }
+done
+# The help and the manual say nothing that is not so.
+"$program" --help | tr -s ' \n' ' ' | grep -q "no processes except gnuplot" || { echo "--help: safe mode runs gnuplot"; exit 1; }
+! grep -n "for any M" "$source/docs/manual.md" || { echo "the manual promises too much"; exit 1; }
 # Each option that the program lists has its place in the man page.
 "$program" --help | grep -oE '(^|[ ,])--?[A-Za-z][a-z-]*' | tr -d ' ,' | sort -u >options.$$
 for option in $(cat options.$$); do

@@ -36,10 +36,11 @@ inline constexpr text::Option spectral_options[] = {
 
 inline constexpr MethodText Spectral::about{
     {"integrator.spectral", "integrator.spectral{ tolerance = 1e-12 }", spectral_options},
-    "The motion as polynomials on panels between events and breaks of M, right to rounding for any M, with every event "
-    "in its place. tolerance is relative, for each panel. A pulse of a scripted M that falls between the 17 samples of "
-    "a panel is not seen: run.gap is the longest time between them. Announce it by "
-    "excitation.scripted(f, { breaks = {...} }), or say by narrowest (time units) how short the shortest pulse is.",
+    "The motion as polynomials on panels between events and breaks of M, with every event in its place: right to "
+    "rounding where the samples resolve M. Noise in M limits the accuracy. tolerance is relative, for each panel. A "
+    "pulse of a scripted M that falls between two samples is not seen: run.gap is the longest time between them. "
+    "Announce it by excitation.scripted(f, { breaks = {...} }), or say by narrowest (time units) how short the "
+    "shortest pulse is.",
     "sys = nondimensional{ friction_ratio = 0.167 }\n"
     "run = sys:simulate{ velocity0 = 2*math.pi, t_end = 3, dt = 0.5, integrator = integrator.spectral{} }\n"
     "print(string.format(\"%.9f\", (run:at(3))))  --> 0.155151392"};
