@@ -62,6 +62,22 @@ test("a belt moves, walls and springs are there if the system has them", functio
     assert(svg:find("between walls", 1, true) and not animated(run, {}):find("patternTransform", 1, true))
 end)
 
+test("the axis ends at the extremes of the run, which lie between two steps of the animation", function()
+    local swing = system{ I = 1, k = 4, Rd = 0.26, Re = 0.5 }:simulate{ theta0 = 1, t_end = 8, dt = 0.001 }
+    local least = swing.events[1].theta
+    support.near(least, -0.87, 1e-12)
+    local file = support.temporary ".csv"
+    swing:save(file)
+    for _, one in ipairs{ swing, trajectory.load(file) } do
+        for _, part in ipairs{ { speed = 8/0.32 }, { speed = 8/0.4, from = 0, to = 8 } } do  -- some ten steps
+            local svg = animated(one, part)
+            assert(svg:find(">-0.87</text>", 1, true), svg:match ">-0[^<]*</text>")
+        end
+    end
+    local later = animated(swing, { from = 3, to = 8, speed = 20 })  -- the turn is not in this part
+    assert(not later:find(">-0.87</text>", 1, true))
+end)
+
 test("a part of a run, a run from a file, units", function()
     local part = animated(run, { from = 2, to = 4, speed = 1 })
     assert(part:find("t = 2 to 4", 1, true))

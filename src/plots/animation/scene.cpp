@@ -17,10 +17,18 @@ bool is_stuck(const std::vector<Interval>& stuck, double t) {
     return next != stuck.begin() && t <= std::prev(next)->high;
 }
 
-Interval reach_of(const std::vector<Frame>& frames, const std::optional<model::Walls>& walls) {
-    const auto [low, high] = std::minmax_element(frames.begin(), frames.end(),
-                                                 [](const Frame& a, const Frame& b) { return a.theta < b.theta; });
-    Interval reach{low->theta, high->theta};
+Interval reach_of(const std::vector<Frame>& frames, const motion::Trajectory& run,
+                  const std::optional<model::Walls>& walls) {
+    Interval reach{frames.front().theta, frames.front().theta};
+    const auto include = [&](double t, double theta) {
+        if (t < frames.front().t || t > frames.back().t) return;
+        reach = {std::min(reach.low, theta), std::max(reach.high, theta)};
+    };
+    for (const Frame& frame : frames) include(frame.t, frame.theta);
+    // Extremes lie between frames: a computed run knows its turns, one from a file has only its rows.
+    for (const model::Event& event : run.events) include(event.t, event.theta);
+    const auto t = run.find("t"), theta = run.find("theta");
+    for (Eigen::Index i = 0; t && theta && i < run.size(); ++i) include(run.rows(i, *t), run.rows(i, *theta));
     if (walls) {
         reach.low = std::isfinite(walls->lower) ? std::min(reach.low, walls->lower) : reach.low;
         reach.high = std::isfinite(walls->upper) ? std::max(reach.high, walls->upper) : reach.high;
@@ -62,7 +70,7 @@ text::Expected<Scene> scene_of(const RunData& run, const model::Excitation* belt
         scene.walls = run.system->walls();
         scene.spring = run.system->has_spring() || !run.system->spring().none();
     }
-    scene.reach = reach_of(scene.frames, scene.walls);
+    scene.reach = reach_of(scene.frames, *run.trajectory, scene.walls);
     return scene;
 }
 
