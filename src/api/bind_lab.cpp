@@ -170,6 +170,8 @@ std::string judged(lua_State* L, LabDesk& desk, const std::string& question, dou
         answer.right = right;
         ++answer.tries;
         note_lab_mark({desk.number, question, right ? "right" : "wrong", answer.tries, value});
+    } else if (!right) {
+        answer.said += " (an earlier answer was right, and counts)";
     }
     return answer.said;
 }

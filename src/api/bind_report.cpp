@@ -254,7 +254,8 @@ constexpr lua::Member report_members[] = {
     {lua::a_method<save_report>,
      {"r:save(file)",
       "Writes it: .html is one page that any browser shows and prints on A4, with the pictures in it; .md is Markdown, "
-      "with the pictures as files beside it. The script that makes the report stands at its end.",
+      "with the pictures as files beside it. The script that makes the report stands at its end; a "
+      "report made at the prompt has none: add what you typed, which :save session.lua keeps, to what you hand in.",
       DINAL_REPORT "name = os.tmpname() .. \".html\"\nr:save(name)\n"
                    "print(io.open(name):read(\"l\"))  --> <!DOCTYPE html>"}},
     {lua::a_metamethod<report_text>("__tostring"),
@@ -273,7 +274,8 @@ const lua::Class report_functions = {
 
 const lua::Class report_class = {
     "report",
-    {"report{ ... } -> r", "A report: text, values, tables, pictures and the script that made them, saved as one file.",
+    {"report{ ... } -> r",
+     "A report: text, values, tables, pictures and, from a script, the script itself, saved as one file.",
      "r = report{ title = \"Free decay\" }\nprint(r)  --> report \"Free decay\" with 0 parts"},
     report_members};
 
