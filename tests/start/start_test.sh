@@ -105,5 +105,10 @@ if [ "$(id -u)" = 0 ] && command -v setpriv >/dev/null; then
 fi
 mv "$small" "$work/moved" && touch "$work/moved/src/main.cpp"
 expect "a moved folder builds again" fifth "$("$work/moved/scripts/dinal" 2>err)"
+# scripts/package builds there, too. This small project has nothing to install, so no package comes of it.
+mv "$work/moved" "$work/again" && mkdir "$work/again/src/text" && echo '#define DINAL_VERSION "0.0.1"' >"$work/again/src/text/version.hpp"
+"$work/again/scripts/package" >out 2>err
+expect "a moved folder is built for a package" 0 "$(grep -c 'the build failed' err)"
+expect "by a cache of its own" 1 "$(grep -cxF "CMAKE_HOME_DIRECTORY:INTERNAL=$work/again" "$work/again/build/release/CMakeCache.txt")"
 
 [ "$failures" = 0 ] || { echo "$failures failed"; exit 1; }
