@@ -4,8 +4,10 @@ local file = assert(io.open(name))
 
 local scripts, answers, numbers, questions = {}, {}, {}, {}
 for line in file:lines() do
-  local script, number, question, verdict, tries = line:match '^"(.-)",(%d+),(%w*),(%a+),(%d+),'
-  if not script then
+  -- The name of a script may hold quotes (written twice) and commas, so what stands behind it is read from the end.
+  local script, number, question, verdict, tries = line:match '^"(.*)",(%d+),(%w*),(%a+),(%d+),[^,"]*$'
+  script = script and script:gsub('""', '"')
+  if not script or verdict ~= "begun" and not answers[script] then
     print("no line of --lab-marks: " .. line)
   elseif verdict == "begun" then
     if not answers[script] then scripts[#scripts + 1] = script end

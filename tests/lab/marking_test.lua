@@ -101,6 +101,7 @@ test("thirty hand-ins are marked at once, and none touches the others", function
   hand_in("flood", "while true do print(('x'):rep(1e5)) end")
   hand_in("wrong", "lab.number(3002)\ncheck('1a', 3")
   hand_in("-e", "lab.number(3003)\ncheck('1a', 1)") -- not an option
+  hand_in('a",1,1a,right,1,"b', "lab.number(3004)\ncheck('1a', 1)") -- a name like a line of marks
   hand_in("twin", "lab.number(1001)\ncheck('1a', 1)")
   local loop = block "--lab-marks"
   local began = os.time()
@@ -117,6 +118,7 @@ test("thirty hand-ins are marked at once, and none touches the others", function
   assert(rows.loop:find "^3001 +%.  %.  %-  %.  0 of 4", rows.loop)
   assert(rows.wrong:find "none +.*nothing was checked", rows.wrong)
   assert(said:find "%-e%.lua +3003 +%-", said)
+  assert(said:find('\na",1,1a,right,1,"b.lua +3004 +%-  %.  %.  %.  0 of 4'), said)
   assert(rows.twin:find "has the number of s01.lua", rows.twin)
   assert(said:find("loop ended with an error", 1, true) and said:find("wrong ended with an error", 1, true), said)
   assert(not said:find("s01 ended", 1, true), said)
