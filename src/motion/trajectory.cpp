@@ -104,6 +104,10 @@ std::string chatter_text(const Trajectory& run) {
             "too steep; a line over some small range of speeds would not",
             std::fabs(run.state_at_stop.velocity));
     }
+    if (run.state_count() > 0) {  // what cures a jump of M does not cure that of a rate
+        return "switched without end in no time: a jump of M, of friction or of the rate of a state chatters; a steep "
+               "line or tanh in its place would not";
+    }
     return "switched without end in no time: a jump of M or friction chatters; a steep line or tanh would not, nor "
            "excitation.sampled or excitation.relay";
 }

@@ -117,6 +117,11 @@ test("a law that jumps up, or begins infinitely steep, is told with its speed an
     run = system { I = 1, k = 0 }:simulate { theta0 = 1, t_end = 5, dt = 1,
         M = function(t, theta, velocity) return theta + 0.2*velocity > 0 and -5 or 5 end }
     assert(run.outcome:find("tanh would not, nor excitation.sampled or excitation.relay", 1, true), run.outcome)
+    -- A jump in the rate of a state, which these two terms of M do not cure.
+    run = system { I = 1, k = 1, Rd = 0.1 }:simulate { theta0 = 1, t_end = 5, dt = 1,
+        states = { x = { start = 1, rate = function(t, theta, velocity, z) return z.x > 0 and -1 or 1 end } } }
+    assert(run.outcome:find("the rate of a state chatters; a steep line or tanh in its place would not", 1, true), run.outcome)
+    assert(not run.outcome:find("sampled", 1, true), run.outcome)
 end)
 
 -- Both homes of a law, with a belt that stands still and without one.
