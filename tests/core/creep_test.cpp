@@ -43,7 +43,7 @@ std::vector<Way> ways() {
 
 }  // namespace
 
-TEST_CASE("#4 - a ramp that pulls a creeping mass on moves it at once, though Re > Rd",
+TEST_CASE("a ramp that pulls a creeping mass on moves it at once, though Re > Rd",
           "[exact][spectral][rk4][creep][long]") {
     for (const double zeta : {1.0, 1.5, 4.0}) {
         const double at = 60 * zeta, slope = -0.04;
@@ -65,7 +65,7 @@ TEST_CASE("#4 - a ramp that pulls a creeping mass on moves it at once, though Re
     }
 }
 
-TEST_CASE("#4 - a ramp that pulls a creeping mass back holds it until Re is passed on the other side",
+TEST_CASE("a ramp that pulls a creeping mass back holds it until Re is passed on the other side",
           "[exact][spectral][rk4][creep][long]") {
     for (const double zeta : {1.0, 2.0}) {
         const double at = 60 * zeta, slope = 0.4;
@@ -82,7 +82,7 @@ TEST_CASE("#4 - a ramp that pulls a creeping mass back holds it until Re is pass
     }
 }
 
-TEST_CASE("#4 - what creeps at the end of a run is stuck there, and goes on creeping when the run goes on",
+TEST_CASE("what creeps at the end of a run is stuck there, and goes on creeping when the run goes on",
           "[exact][spectral][creep][resume]") {
     for (const Integrator& method : std::vector<Integrator>{Exact{}, Spectral{}}) {
         CAPTURE(method.index());

@@ -16,7 +16,7 @@ using namespace dinal::truth;
 
 }  // namespace
 
-TEST_CASE("#5 - a block drawn with Re = Rd comes down to velocity zero once a period, and never stops",
+TEST_CASE("a block drawn with Re = Rd comes down to velocity zero once a period, and never stops",
           "[long][exact][spectral][rounding]") {
     // theta' = V (1 - cos w0 t) after the slip: it only touches zero, so one event is true.
     for (const double k : {4000.0, 1.0, 37.5, 1e-3}) {
@@ -39,7 +39,7 @@ TEST_CASE("#5 - a block drawn with Re = Rd comes down to velocity zero once a pe
     }
 }
 
-TEST_CASE("#5 - a feedback that chatters is told to, and the turns of its chatter are none", "[spectral][rounding]") {
+TEST_CASE("a feedback that chatters is told to, and the turns of its chatter are none", "[spectral][rounding]") {
     class Sign : public UserFunction {
     public:
         double value(double t, const State& y) override {

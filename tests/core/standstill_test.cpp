@@ -197,8 +197,7 @@ TEST_CASE("an M that is nowhere great enough holds for good, each side by its ow
 
 // ---- the integrators
 
-TEST_CASE("#3 - a feedback that jumps at velocity zero rests alike in every integrator",
-          "[standstill][spectral][rk4]") {
+TEST_CASE("a feedback that jumps at velocity zero rests alike in every integrator", "[standstill][spectral][rk4]") {
     // M adds 0.1 to Rd while it moves: half cycles lose 2 (Rd + 0.1), 1.1 -> -0.7 -> 0.3 -> 0.1, at 3 pi, where
     // M = 0 and the spring pulls less than Re.
     const Oscillator system = system_of({.inertia = 1, .stiffness = 1, .kinetic_friction = 0.1, .breakaway = 0.2});

@@ -150,7 +150,12 @@ test("run:steady goes on from where the run has got to", function()
     raises_here(function() run:steady{ theta0 = 1 } end, "no option 'theta0'")
 end)
 
-test("Ctrl-C and limits reach the search: a function that never ends is stopped by its own error", function()
+test("an error of M ends the search, and so does a limit of time; tests/lua/interrupt_test.lua has Ctrl-C", function()
+    local long = support.temporary ".lua"
+    support.write(long, "nondimensional{ friction_ratio = 0.01 }:steady{ M = excitation.harmonic{ frequency = 1e-7 } }")
+    local pipe <close> = io.popen(("'%s' --max-time 0.1 %s 2>&1"):format(support.program(), long))
+    local said = pipe:read "a"
+    assert(said:find("it ran longer than the 0.1 s that --max-time allows", 1, true), said)
     local calls = 0
     raises(function()
         sliding:steady{ M = function(t) calls = calls + 1 if calls > 500 then error("enough") end return math.sin(t) end,
