@@ -2,6 +2,7 @@
 
 import os
 import pathlib
+import resource
 import shutil
 import signal
 import subprocess
@@ -12,7 +13,8 @@ import unittest
 
 sys.dont_write_bytecode = True  # no folder __pycache__ in the source tree
 
-from session import PATIENCE
+# No clock decides how long anything may take: a process has so much processor time, and ends by a signal beyond it.
+MOST_SECONDS = 120
 
 PROGRAM = ""
 POINTS = 600  # in chunks of three
@@ -21,6 +23,10 @@ local map = sweep{{ r = vector.linspace(0.1, 2, 30), g = vector.linspace(0, 1, 2
     run = function(p)
         local t, wait = os.clock(), tonumber(os.getenv("WAIT")) or 0 -- in a process that is to be killed in the middle
         while os.clock() - t < wait do end
+        if os.getenv("HOLD") and p.r > 0.2 and p.r < 0.25 and p.g > 0.05 and p.g < 0.1 then -- point 33 of 600
+            io.open(os.getenv("HOLD"), "w"):close()
+            while true do end
+        end
         if p.r > 1.9 and p.g > 0.9 then error("far \\"away\\", at " .. p.r) end
         return {{ y = math.sin(p.r)/(p.g + 0.1), chance = math.random(), infinite = p.g == 0 and 1/0 or nil }}
     end }}
@@ -44,7 +50,8 @@ class SweepFiles(unittest.TestCase):
 
     def command(self, **variables):
         clean = {name: value for name, value in os.environ.items() if not name.startswith(LAUNCHERS)}
-        return {"cwd": self.home, "env": {**clean, **variables}, "text": True}
+        return {"cwd": self.home, "env": {**clean, **variables}, "text": True,
+                "preexec_fn": lambda: resource.setrlimit(resource.RLIMIT_CPU, (MOST_SECONDS, MOST_SECONDS))}
 
     def start(self, **variables):
         return self.started([PROGRAM, "map.lua"], **variables)
@@ -56,15 +63,14 @@ class SweepFiles(unittest.TestCase):
         return process
 
     def run_script(self, *launcher, **variables):
-        done = subprocess.run([*launcher, PROGRAM, "map.lua"], capture_output=True, timeout=PATIENCE,
-                              **self.command(**variables))
+        done = subprocess.run([*launcher, PROGRAM, "map.lua"], capture_output=True, **self.command(**variables))
         return done.returncode, done.stdout, done.stderr
 
     def expected(self):
         """What one process gives, in a folder of its own: the file and what is printed."""
         with tempfile.TemporaryDirectory() as folder:
             shutil.copy(self.home / "map.lua", folder)
-            out = subprocess.run([PROGRAM, "map.lua"], capture_output=True, check=True, timeout=PATIENCE,
+            out = subprocess.run([PROGRAM, "map.lua"], capture_output=True, check=True,
                                  **{**self.command(), "cwd": folder}).stdout
             return (pathlib.Path(folder) / "map.csv").read_bytes(), out
 
@@ -74,11 +80,14 @@ class SweepFiles(unittest.TestCase):
         self.assertEqual((self.home / "map.csv").read_bytes(), file)
         self.assertEqual(sorted(entry.name for entry in self.home.iterdir()), ["map.csv", "map.lua"])
 
-    def wait_for_parts(self, count):
-        until = time.monotonic() + PATIENCE
-        while time.monotonic() < until and (not self.parts.exists() or len(list(self.parts.glob("*.csv"))) < count):
+    def wait_for(self, process, sign):
+        """Waits until sign() is true; the process must not end before."""
+        while not sign():
+            self.assertIsNone(process.poll(), "it ended too early")
             time.sleep(0.005)
-        self.assertLess(time.monotonic(), until)
+
+    def wait_for_parts(self, process, count):
+        self.wait_for(process, lambda: self.parts.exists() and len(list(self.parts.glob("*.csv"))) >= count)
 
     def test_the_result_is_a_file_and_the_same_call_reads_it(self):
         code, out, err = self.run_script()
@@ -92,7 +101,7 @@ class SweepFiles(unittest.TestCase):
         asked = []
         for count in (5, 20):
             process = self.start(WAIT="0.003")
-            self.wait_for_parts(count)
+            self.wait_for_parts(process, count)
             process.kill()
             process.wait()
             self.assertFalse((self.home / "map.csv").exists())
@@ -106,7 +115,7 @@ class SweepFiles(unittest.TestCase):
         # A machine that loses its power can leave it. Of the first chunk, whose points all fail, each field is cut.
         self.write(SCRIPT.replace("p.r > 1.9 and p.g > 0.9", "p.g < 0.04 and p.r < 0.4"), workers=1)
         process = self.start(WAIT="0.002")
-        self.wait_for_parts(8)
+        self.wait_for_parts(process, 8)
         process.kill()
         process.wait()
         kept, first = self.home.parent / (self.home.name + ".kept"), sorted(self.parts.glob("*.csv"))[0]
@@ -129,19 +138,23 @@ class SweepFiles(unittest.TestCase):
         self.assertIn("is no longer as it was written", self.run_script()[2])
 
     def test_ctrl_c_keeps_every_point(self):
-        process = self.start(WAIT="0.01")
-        self.wait_for_parts(3)
-        process.send_signal(signal.SIGINT)
-        self.assertEqual(process.wait(PATIENCE), 130)
-        rows = sum(len(part.read_text().splitlines()) - 1 for part in self.parts.glob("*.csv"))
-        self.assertGreater(rows, 8)
+        # One worker is held at the third point of the eleventh chunk: ten whole chunks are kept, and two points of this one.
+        self.write(workers=1)
+        with tempfile.TemporaryDirectory() as folder:
+            held = os.path.join(folder, "held")
+            process = self.start(HOLD=held)
+            self.wait_for(process, lambda: os.path.exists(held))
+            process.send_signal(signal.SIGINT)
+            self.assertEqual(process.wait(), 130)
+        rows = sum(len(part.read_text().splitlines()) - 1 for part in self.parts.iterdir() if part.name != "mark")
+        self.assertEqual(rows, 32)
         code, out, _ = self.run_script()
         self.assertEqual(code, 0)
         self.check_result(out)
 
     def test_another_sweep_is_refused(self):
         process = self.start(WAIT="0.003")
-        self.wait_for_parts(2)
+        self.wait_for_parts(process, 2)
         process.kill()
         process.wait()
         self.write(SCRIPT.replace("math.sin", "math.cos"), workers=2)
@@ -176,14 +189,23 @@ class SweepFiles(unittest.TestCase):
         self.write(SCRIPT.replace("map.csv", "map.txt"), workers=2)
         self.assertIn("must end in .csv", self.run_script()[2])
 
-    @unittest.skipUnless(os.path.exists("/dev/full"), "there is no /dev/full")
     def test_a_full_disk_keeps_what_is_done(self):
-        self.parts.mkdir()
-        (self.parts / "000020.csv").symlink_to("/dev/full")
-        code, _, err = self.run_script()
-        self.assertEqual(code, 1)
-        self.assertIn("000020.csv", err)
-        (self.parts / "000020.csv").unlink()
+        # No file may grow beyond 2 kB, which one chunk needs: its points fail with many words.
+        self.write(SCRIPT.replace('"far ', '("far "):rep(1000) .. "'), workers=1)
+        command = self.command()
+        limit = command["preexec_fn"]
+
+        def full():
+            limit()
+            signal.signal(signal.SIGXFSZ, signal.SIG_IGN)  # or the program would be killed, as no full disk does
+            resource.setrlimit(resource.RLIMIT_FSIZE, (2000, 2000))
+
+        done = subprocess.run([PROGRAM, "map.lua"], capture_output=True, **{**command, "preexec_fn": full})
+        self.assertEqual(done.returncode, 1)
+        self.assertRegex(done.stderr, r"cannot write '.*map\.csv\.parts.*': File too large")
+        kept = {part.name: part.read_bytes() for part in self.parts.glob("*.csv")}
+        self.assertGreater(len(kept), 150)
+        self.assertFalse((self.home / "map.csv").exists())
         code, out, _ = self.run_script()
         self.assertEqual(code, 0)
         self.check_result(out)
@@ -210,9 +232,9 @@ class SweepFiles(unittest.TestCase):
     def test_processes_at_once_one_killed(self):
         self.write(workers=1)
         processes = [self.start(DINAL_RANK=str(rank), DINAL_SIZE="4", WAIT="0.003") for rank in range(4)]
-        self.wait_for_parts(8)
+        self.wait_for_parts(processes[0], 8)
         processes[2].kill()
-        outs = [process.communicate(timeout=PATIENCE)[0] for process in processes]
+        outs = [process.communicate()[0] for process in processes]
         self.assertEqual(outs, [""] * 4)
         code, out, _ = self.run_script(DINAL_RANK="2", DINAL_SIZE="4")
         self.assertEqual(code, 0)
@@ -248,9 +270,9 @@ class SweepFiles(unittest.TestCase):
         self.write(workers=1)
         launcher = ["mpirun", "--allow-run-as-root", "--oversubscribe", "-n", "4"]
         process = self.started([*launcher, PROGRAM, "map.lua"], WAIT="0.01")
-        self.wait_for_parts(8)
+        self.wait_for_parts(process, 8)
         process.terminate()
-        process.wait(PATIENCE)
+        process.wait()
         self.assertFalse((self.home / "map.csv").exists())
         code, out, _ = self.run_script(*launcher)
         self.assertEqual(code, 0)
