@@ -184,7 +184,8 @@ constexpr lua::Member system_module_members[] = {
     {lua::a_function<nondimensional>,
      {"nondimensional{ OPTIONS } -> system",
       "The system with k = 1 and I = 1/(4 pi^2): its period T0 is 1 and torques are in units of the characteristic "
-      "torque Mc, so that M is M* of the report.",
+      "torque Mc, so that M is M* of the report. Cards and axes say rad unless you give units = { theta = \"Mc/k\", "
+      "t = \"T0\", M = \"Mc\" }.",
       "sys = nondimensional{ zeta = 0.119, friction_ratio = 0.418 }\n"
       "print(sys.k, sys.Rd, string.format(\"%.3f\", sys.zeta))  --> 1.0\t0.418\t0.119",
       {&nondimensional_call}}},
