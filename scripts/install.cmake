@@ -5,7 +5,9 @@ include(CMakePackageConfigHelpers)
 
 # The program needs no file at run time: it runs from wherever it is put. Shared libraries that were put beside it
 # (scripts/package does) come before those of the machine, for what they load in turn, too: hence the old kind of tag.
-set_target_properties(dinal PROPERTIES INSTALL_RPATH "$ORIGIN/../lib/dinal")
+# The program in the build tree has the same entry: CMake would pad its own one with empty entries, and each of them is the
+# current folder, where a stranger may have put a library.
+set_target_properties(dinal PROPERTIES INSTALL_RPATH "$ORIGIN/../lib/dinal" BUILD_WITH_INSTALL_RPATH ON)
 target_link_options(dinal PRIVATE -Wl,--disable-new-dtags)
 set(CMAKE_INSTALL_DEFAULT_COMPONENT_NAME program)
 install(TARGETS dinal)

@@ -8,6 +8,13 @@ prefix=$(mktemp -d)
 trap 'rm -rf "$prefix"' EXIT
 DESTDIR='' "$cmake" --install "$build" --prefix "$prefix/usr" >"$prefix/log"
 
+# An empty entry in the path of libraries is the current folder: a library planted there would run.
+for program in "$build/dinal" "$prefix/usr/bin/dinal"; do
+    readelf -d "$program" >"$prefix/out"
+    path=$(sed -n 's/.*(R[A-Z]*PATH).*\[\(.*\)\]$/\1/p' "$prefix/out")
+    [ "$path" = '$ORIGIN/../lib/dinal' ] || { echo "$program looks for libraries in '$path'"; exit 1; }
+done
+
 for file in bin/dinal share/man/man1/dinal.1 share/dinal/examples/README.md share/dinal/examples/classic.lua \
     share/doc/dinal/LICENSE share/doc/dinal/README.md share/doc/dinal/docs/manual.md share/doc/dinal/docs/report/fig22.svg; do
     [ -s "$prefix/usr/$file" ] || { echo "$file was not installed"; exit 1; }
