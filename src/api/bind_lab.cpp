@@ -7,6 +7,7 @@
 #include "api/classes.hpp"
 #include "api/data.hpp"
 #include "api/lab_course.hpp"
+#include "lua/worker_state.hpp"
 #include "terminal/progress.hpp"
 
 namespace dinal::api {
@@ -33,7 +34,8 @@ const char desk_key = 0;
 
 const lua::Class desk_class = {"lab desk", {"lab", "The place of a student.", ""}, {}};
 
-LabDesk& desk_of(lua_State* L) {
+LabDesk& desk_of(lua_State* L, const char* call) {
+    lua::refuse_in_worker(L, call);  // each worker would have a desk of its own, and with it all tries again
     lua_rawgetp(L, LUA_REGISTRYINDEX, &desk_key);
     auto& desk = *lua::test<LabDesk>(L, -1);
     lua_pop(L, 1);  // the registry holds it
@@ -45,7 +47,7 @@ LabDesk& desk_of(lua_State* L) {
 
 /// The desk of a student who has said who he is.
 LabDesk& desk_with_number(lua_State* L, const char* call) {
-    LabDesk& desk = desk_of(L);
+    LabDesk& desk = desk_of(L, call);
     if (desk.number == 0) {
         lua::raise(L, {.sentence = fmt::format("{}: say first whose lab it is: lab.number(4711), with your own student "
                                                "number",
@@ -78,7 +80,7 @@ void refuse_more(lua_State* L, const char* call, const char* wanted, int most) {
 }
 
 int lab_number(lua_State* L) {
-    LabDesk& desk = desk_of(L);
+    LabDesk& desk = desk_of(L, "lab.number");
     refuse_more(L, "lab.number", "one number", 1);
     if (lua_gettop(L) > 0) {
         int is_whole = 0;

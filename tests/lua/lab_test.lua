@@ -18,6 +18,16 @@ test("before a number is said, nothing is given and nothing judged", function()
   support.raises_here(function() lab.marks() end, "lab.marks: say first whose lab it is")
 end)
 
+test("a sweep judges no answers: each of its workers would begin with all tries", function()
+  for call, code in pairs {
+    ["lab.number"] = "lab.number(4711)", ["check"] = "check('1a', p.n)", ["lab.given"] = "lab.given(1)",
+    ["lab.experiment"] = "lab.experiment(1)", ["lab.marks"] = "lab.marks()",
+  } do
+    local said = output("lab.number(4711) sweep{ n = { 1, 2 }, run = function(p) " .. code .. " return { n2 = p.n } end }")
+    assert(said:find(call .. " is not possible within the function of a sweep", 1, true), said)
+  end
+end)
+
 test("a number that is none gets one sentence", function()
   for _, wrong in ipairs { 0, -3, 1.5, 1e9, math.huge, 0/0 } do
     support.raises_here(function() lab.number(wrong) end, "lab.number: a student number is a whole number from 1 to 999999999, got ")
