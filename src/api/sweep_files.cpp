@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <limits>
 #include <system_error>
 
 #include "files/confinement.hpp"
@@ -16,7 +15,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* point_column = "point of the grid";
-constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
 
 /// Where a read column has something to say at this row; an empty column of words is one of nan.
 std::string word_at(const files::ReadColumn& column, std::size_t row) {
@@ -30,6 +28,13 @@ bool is_cut_off(const std::string& file) {
     if (!fs::is_regular_file(file, error)) return false;
     const auto text = files::read_file(file);
     return text && !text->ends_with('\n');
+}
+
+/// Nothing is made, renamed, read or removed through a link, which may lead anywhere.
+bool is_wrong_kind(const std::string& path, fs::file_type wanted) {
+    std::error_code error;
+    const fs::file_type found = fs::symlink_status(path, error).type();
+    return found != wanted && found != fs::file_type::not_found;
 }
 
 }  // namespace
@@ -60,8 +65,15 @@ bool SweepFiles::has_chunks() const {
                        [](const fs::directory_entry& one) { return one.path().extension() == ".csv"; });
 }
 
+text::Error SweepFiles::refused(const std::string& path, std::string_view why) const {
+    return {.sentence = fmt::format("'{}' {}; remove it, or give another file", path, why),
+            .option = "file",
+            .culprit = file_};
+}
+
 std::optional<text::Error> SweepFiles::check_mark() {
     const std::string path = folder_ + "/mark";
+    if (is_wrong_kind(path, fs::file_type::regular)) return refused(path, "is no regular file");
     if (const auto mark = files::read_file(path)) {
         if (*mark == mark_ + "\n") return std::nullopt;
         if (has_chunks())
@@ -79,6 +91,9 @@ std::optional<text::Error> SweepFiles::check_mark() {
 std::optional<text::Error> SweepFiles::open() {
     if (const auto why = files::outside(file_, files::Access::write)) {
         return text::Error{.sentence = fmt::format("cannot write '{}': {}", file_, *why), .option = "file"};
+    }
+    for (const std::string& folder : {folder_, folder_ + ".merging"}) {
+        if (is_wrong_kind(folder, fs::file_type::directory)) return refused(folder, "is no folder");
     }
     std::error_code error;
     if (fs::exists(file_, error)) return take_result();
@@ -115,7 +130,10 @@ std::optional<text::Error> SweepFiles::take_result() {
 std::optional<text::Error> SweepFiles::take_chunks() {
     for (std::size_t chunk = 0; chunk < results_.chunks(); ++chunk) {
         std::error_code error;
-        if (results_.is_complete(chunk) || !fs::exists(chunk_file(chunk), error)) continue;
+        if (results_.is_complete(chunk)) continue;
+        if (is_wrong_kind(chunk_file(chunk), fs::file_type::regular))
+            return refused(chunk_file(chunk), "is no regular file");
+        if (!fs::exists(chunk_file(chunk), error)) continue;
         if (is_cut_off(chunk_file(chunk))) continue;  // done anew
         if (auto wrong = take(chunk_file(chunk), false)) return wrong;
         written_[chunk] = results_.is_complete(chunk);
@@ -124,11 +142,7 @@ std::optional<text::Error> SweepFiles::take_chunks() {
 }
 
 std::optional<text::Error> SweepFiles::take(const std::string& file, bool is_result) {
-    const auto another = [&](std::string_view what) {
-        return text::Error{.sentence = fmt::format("'{}' {}; remove it, or give another file", file, what),
-                           .option = "file",
-                           .culprit = file_};
-    };
+    const auto another = [&](std::string_view what) { return refused(file, what); };
     const auto read = files::read_columns(file);
     const bool has_mark = read && !read->comments.empty() && read->comments.front() == mark_;
     if (is_result && !has_mark) return another("is there, and is not the result of this sweep");
@@ -143,7 +157,9 @@ std::optional<text::Error> SweepFiles::take(const std::string& file, bool is_res
     const std::size_t first = is_result ? grid_.parameters().size() : 1;
     const std::size_t rows = columns.empty() ? 0 : std::max(columns[0].numbers.size(), columns[0].words.size());
     const bool broken = columns.size() <= first || columns.back().name != "error" ||
-                        (is_result ? rows != results_.size() : columns[0].of_words);
+                        (is_result ? rows != results_.size() : columns[0].of_words) ||
+                        std::any_of(columns.begin() + static_cast<std::ptrdiff_t>(first), columns.end() - 1,
+                                    [](const files::ReadColumn& column) { return column.of_words; });
     if (broken) return another("is no longer as it was written");
     for (std::size_t row = 0; row < rows; ++row) {
         const double place = is_result ? static_cast<double>(row) : columns[0].numbers[row];
@@ -157,7 +173,7 @@ std::optional<text::Error> SweepFiles::take(const std::string& file, bool is_res
         }
         for (std::size_t i = first; i + 1 < columns.size(); ++i) {
             if (double* numbers = results_.column(columns[i].name)) {
-                numbers[point] = columns[i].of_words ? nothing : columns[i].numbers[row];
+                numbers[point] = columns[i].numbers[row];
             }
         }
         results_.finish(point);
@@ -260,6 +276,7 @@ void SweepFiles::discard() {
 
 /// With what we have written into it, and nothing else; what a killed process was writing is ours, too.
 void SweepFiles::remove_folder(const std::string& folder) {
+    if (is_wrong_kind(folder, fs::file_type::directory)) return;
     std::error_code error;
     for (const fs::directory_entry& entry : fs::directory_iterator(folder, error)) {
         if (entry.path().filename().string().starts_with(".dinal-")) fs::remove(entry.path(), error);

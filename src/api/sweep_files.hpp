@@ -56,6 +56,7 @@ public:
 private:
     [[nodiscard]] std::string chunk_file(std::size_t chunk) const;
     [[nodiscard]] bool has_chunks() const;
+    [[nodiscard]] text::Error refused(const std::string& path, std::string_view why) const;
     std::optional<text::Error> check_mark();
     std::optional<text::Error> write(std::size_t chunk);
     std::optional<text::Error> take_chunks();

@@ -137,6 +137,45 @@ class SweepFiles(unittest.TestCase):
         (self.home / "map.csv").write_bytes(file[:-3])
         self.assertIn("is no longer as it was written", self.run_script()[2])
 
+    def test_a_damaged_number_of_a_chunk_is_refused(self):
+        process = self.start(WAIT="0.003")
+        self.wait_for_parts(3)
+        process.kill()
+        process.wait()
+        first = sorted(self.parts.glob("*.csv"))[0]
+        first.write_text(first.read_text().replace("0.", "0x", 1))
+        code, _, err = self.run_script()
+        self.assertEqual(code, 1)
+        self.assertIn(f"'map.csv.parts/{first.name}' is no longer as it was written; remove it", err)
+
+    def test_nothing_is_touched_through_a_link(self):
+        other = self.home / "other"
+        kept = ["000000.csv", "mark", ".dinal-1-1.tmp"]
+        for name in ("map.csv.parts", "map.csv.parts.merging"):
+            for finished in (False, True):
+                with self.subTest(name, finished=finished):
+                    if finished:
+                        self.assertEqual(self.run_script()[0], 0)
+                    other.mkdir()
+                    for file in kept:
+                        (other / file).write_text("mine")
+                    (self.home / name).symlink_to("other")
+                    code, _, err = self.run_script()
+                    self.assertEqual(code, 1)
+                    self.assertIn(f"sweep: '{name}' is no folder; remove it, or give another file", err)
+                    self.assertEqual(sorted(entry.name for entry in other.iterdir()), sorted(kept))
+                    (self.home / name).unlink()
+                    shutil.rmtree(other)
+                    (self.home / "map.csv").unlink(missing_ok=True)
+        for name in ("mark", "000003.csv"):
+            with self.subTest(name):
+                self.parts.mkdir()
+                (self.parts / name).symlink_to(self.home / "map.lua")
+                code, _, err = self.run_script()
+                self.assertEqual(code, 1)
+                self.assertIn(f"sweep: 'map.csv.parts/{name}' is no regular file; remove it", err)
+                shutil.rmtree(self.parts)
+
     def test_ctrl_c_keeps_every_point(self):
         # One worker is held at the third point of the eleventh chunk: ten whole chunks are kept, and two points of this one.
         self.write(workers=1)
