@@ -165,7 +165,8 @@ std::string no_help(std::string_view words) {
     if (const std::size_t last = words.find_last_of(".:"); hint.empty() && last != std::string_view::npos) {
         hint = likely(words.substr(last + 1));  // run.enrgy
     }
-    return fmt::format("nothing about '{}'{}{}\n", words, hint,
+    const std::string shown = text::quoted(words);  // control characters would steer the terminal
+    return fmt::format("nothing about '{}'{}{}\n", shown.substr(1, shown.size() - 2), hint,
                        hint.empty() ? "; help \"contents\" lists what there is" : "");
 }
 

@@ -138,6 +138,14 @@ test("help searches words, suggests names, and shows where to begin", function()
     assert(output "help(function() end)":find("no help", 1, true))
 end)
 
+test("help shows what steers a terminal, and does not send it", function()
+    local name = support.temporary ".lua"
+    support.write(name, [[help("\27]0;title\7") help "how do I \27[2J"]])
+    local pipe <close> = io.popen(('"%s" "%s" 2>&1'):format(support.program(), name))
+    local said = pipe:read "a"
+    assert(not said:find "[%z\1-\9\11-\31\127]" and said:find([['\x1B]0;title\x07']], 1, true), said)
+end)
+
 test("an entry names what to look at next, and help knows these names", function()
     -- What help prints about each of these names, by one process.
     local function pages(names)
