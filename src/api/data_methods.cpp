@@ -12,6 +12,7 @@
 #include "lua/options.hpp"
 #include "lua/worker_state.hpp"
 #include "text/characters.hpp"
+#include "text/html.hpp"
 #include "text/words.hpp"
 
 namespace dinal::api::data_functions {
@@ -56,12 +57,7 @@ std::string file_argument(lua_State* L, int index, const char* call) {
 }
 
 std::string in_markdown(const std::string& words) {
-    std::string text = text::displayable(words);
-    constexpr std::string_view marks = "|\\<`[";  // what ends a cell, or makes something else than text of it
-    for (std::size_t at = text.find_first_of(marks); at != std::string::npos; at = text.find_first_of(marks, at + 2)) {
-        text.insert(at, "\\");
-    }
-    return text;
+    return text::markdown(text::displayable(words), "|\\`[");  // the marks end a cell, or are no text
 }
 
 }  // namespace

@@ -116,12 +116,7 @@ std::string lines_shown(std::string_view text) {
 
 /// A line that Markdown would read as something else than text stays text.
 std::string plain_markdown(std::string_view text) {
-    std::string all;
-    for (const char c : lines_shown(text)) {
-        if (std::string_view("\\`*_{}[]<>#|").find(c) != std::string_view::npos) all += '\\';
-        all += c;
-    }
-    return all;
+    return text::markdown(lines_shown(text), "\\`*_{}[]#|");
 }
 
 struct MarkdownWriter {

@@ -64,4 +64,13 @@ std::string html(std::string_view text) {
     return result;
 }
 
+std::string markdown(std::string_view text, std::string_view marks) {
+    std::string result;
+    for (const char& c : text) {
+        if (marks.find(c) != std::string_view::npos) result += '\\';
+        result += c == '&' || c == '<' || c == '>' ? html({&c, 1}) : std::string(1, c);
+    }
+    return result;
+}
+
 }  // namespace dinal::text
