@@ -100,7 +100,7 @@ class Dinal:
                 for message in self.messages(hear):
                     if "done" not in message:
                         show(message)
-                    elif message["done"] == self.number:
+                    elif message["done"] in (self.number, None):  # None: the request was not understood
                         return message
             except KeyboardInterrupt:
                 self.interrupt()

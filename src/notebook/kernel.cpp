@@ -36,6 +36,8 @@ using Json = nlohmann::json;
 
 int answers_descriptor = -1;
 
+constexpr std::size_t longest_request = std::size_t{16} << 20;
+
 /// A line of JSON, all of it; bytes that are no UTF-8 become U+FFFD.
 void answer(const Json& message) {
     const std::string line = message.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
@@ -63,13 +65,16 @@ public:
     Requests& operator=(const Requests&) = delete;
 
     std::optional<std::string> next() {
-        for (;;) {
-            if (const std::size_t end = read_.find('\n'); end != std::string::npos) {
+        for (std::size_t searched = 0;;) {
+            if (const std::size_t end = read_.find('\n', searched); end != std::string::npos) {
                 std::string line = read_.substr(0, end);
                 read_.erase(0, end + 1);
+                if (end > longest_request) line.clear();  // it is refused
                 return line;
             }
-            std::array<char, 1U << 16U> piece{};
+            if (read_.size() > longest_request) read_.resize(longest_request + 1);
+            searched = read_.size();
+            std::array<char, 1U << 14U> piece{};
             const ssize_t count = ::read(input_, piece.data(), piece.size());
             if (count > 0) {
                 read_.append(piece.data(), static_cast<std::size_t>(count));
@@ -221,9 +226,14 @@ bool run_kernel(lua_State* L, int answers) {
         const auto line = requests.next();
         if (!line) break;
         const Json request = Json::parse(*line, nullptr, false);
-        Json answered = request.is_object() ? answer_to_request(session, request)
-                                            : Json{{"wrong", "a request is an object of JSON in one line"}};
-        answered["done"] = request.is_object() ? request.value("id", Json()) : Json();
+        const auto id = request.find("id");
+        // Only a plain one is copied and written: both recurse into a nested one, as deep as it is.
+        const bool plain = request.is_object() && (id == request.end() || id->is_primitive());
+        Json answered = plain ? answer_to_request(session, request)
+                              : Json{{"wrong",
+                                      "a request is an object of JSON in one line of at most 16 MiB, and its id is a "
+                                      "number or a string"}};
+        answered["done"] = plain && id != request.end() ? *id : Json();
         lua_settop(L, 0);
         answer(answered);
     }
