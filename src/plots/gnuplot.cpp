@@ -82,7 +82,7 @@ bool write_all(int descriptor, std::string_view text) {
 /// To the end; nothing when go_on() says no before.
 std::optional<std::string> read_all(int descriptor, const std::function<bool()>& go_on) {
     std::string text;
-    std::array<char, 1U << 16U> piece{};
+    std::vector<char> piece(std::size_t{1} << 16U);  // not on the stack, which may be small
     for (;;) {
         constexpr int now_and_then = 50;  // ms; a signal to this thread wakes it up at once
         pollfd readable{descriptor, POLLIN, 0};

@@ -161,8 +161,12 @@ extern "C" void on_resize(int) {
     resized = 1;
 }
 
+/// readline divides by a third of the width when it scrolls a line sideways.
+constexpr int least_columns = 3;
+
 /// NOTE: readline leaves the old line where it is when somebody else draws: so nobody else does meanwhile.
 void fit_to_window() {
+    if (terminal::display_of(STDOUT_FILENO).columns < least_columns) return;
     erase_hint();
     rl_redisplay_function = rl_redisplay;
     rl_resize_terminal();
@@ -243,6 +247,9 @@ void start_readline(const std::string& history) {
     notice(SIGWINCH, on_resize);
     notice(SIGCONT, on_continue);
     rl_initialize();
+    int rows = 0, columns = 0;
+    rl_get_screen_size(&rows, &columns);
+    if (columns < least_columns) rl_set_screen_size(rows, least_columns + 1);
     // After the user's inputrc. A blinking parenthesis would swallow a Ctrl-C that is typed within its half second.
     rl_variable_bind("blink-matching-paren", "off");
     rl_variable_bind("enable-bracketed-paste", terminal::obeys_escapes() ? "on" : "off");

@@ -8,7 +8,9 @@ import unittest
 
 sys.dont_write_bytecode = True  # no folder __pycache__ in the source tree
 
-from session import CONTINUATION, CTRL_C, ESCAPES, Session
+import pexpect
+
+from session import CONTINUATION, CTRL_C, ESCAPES, PATIENCE, Session, environment
 from screen import Terminal
 
 PROGRAM = ""
@@ -198,6 +200,20 @@ class Typing(Lost):
         session.press("q")
         session.until_prompt()
         self.assertEqual(session.enter("6 * 7"), "42")
+
+    def test_a_window_of_one_row_and_two_columns(self):
+        child = pexpect.spawn(PROGRAM, env=environment(self.home), cwd=str(self.home), dimensions=(1, 2), timeout=PATIENCE)
+        self.addCleanup(child.close, True)
+        child.expect_exact("?2004h")
+        for keys in ("p\t\t", "n", "\x03", "run:\t\t\x03"):
+            child.send(keys)
+        child.expect_exact("?2004h")
+        child.setwinsize(1, 80)
+        child.setwinsize(1, 2)
+        child.send("os.exit(7)\r")
+        child.expect(pexpect.EOF)
+        child.close()
+        self.assertEqual((child.exitstatus, child.signalstatus), (7, None))
 
     def test_the_next_page_has_the_size_of_the_window_by_then(self):
         session = self.session(PAGER="less")
