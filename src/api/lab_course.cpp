@@ -136,6 +136,7 @@ LabCourse::LabCourse(lua_State* L) : state_(new_state(), lua_close) {
     if (lua_pcall(course, 0, 0, 0) != LUA_OK) {
         lua::raise(L, "the lab course does not open: " + take_message(course));
     }
+    charge_ = lua::MemoryCharge(static_cast<std::size_t>(lua_gc(course, LUA_GCCOUNT)) << 10U);
 }
 
 text::Expected<int> LabCourse::call(lua_State* L, const char* function, int arguments) {

@@ -11,6 +11,7 @@
 #include <string_view>
 
 #include "lua/bind.hpp"
+#include "lua/memory_limit.hpp"
 
 namespace dinal::api {
 
@@ -26,6 +27,7 @@ public:
 
 private:
     std::unique_ptr<lua_State, void (*)(lua_State*)> state_;
+    lua::MemoryCharge charge_;  // its allocator is Lua's own, which does not count
 };
 
 /// Whether there can be a student of that number.
