@@ -1,6 +1,6 @@
 """dinal in a Jupyter notebook: Debian's ipykernel speaks with the notebook, `dinal --kernel` does the work.
 
-Written by `dinal --jupyter-install`, which also says in kernel.json where the program is (the variable DINAL). What
+Written by `dinal --jupyter-install`, which also says in kernel.json where the program is (DINAL) and its options. What
 scripts print comes on standard output and standard error, answers as lines of JSON on a pipe of their own
 (docs/notebook.md).
 """
@@ -33,7 +33,8 @@ class Dinal:
     def __init__(self):
         answers, answers_end = os.pipe()
         # Its own session: Jupyter's Ctrl-C reaches Python only, which passes it on while a cell runs.
-        self.process = subprocess.Popen([os.environ.get("DINAL", "dinal"), f"--kernel={answers_end}"],
+        options = os.environ.get("DINAL_KERNEL_OPTIONS", "").split()
+        self.process = subprocess.Popen([os.environ.get("DINAL", "dinal"), *options, f"--kernel={answers_end}"],
                                         stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
                                         pass_fds=[answers_end], start_new_session=True)
         os.close(answers_end)

@@ -13,6 +13,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
+#include <tuple>
 
 #include "api/animate.hpp"
 #include "api/data.hpp"
@@ -245,24 +246,28 @@ bool run_kernel(lua_State* L, int answers) {
 text::Expected<std::string> install_kernel() {
     const fs::path data = jupyter_folder();
     if (data.empty()) return text::Error{"HOME is not set, so there is no folder for the kernel: set JUPYTER_DATA_DIR"};
-    const fs::path folder = data / "kernels" / "dinal", script = folder / "dinal_kernel.py";
     std::error_code failed;
-    fs::create_directories(folder, failed);
-    if (failed) return text::Error{fmt::format("cannot make the folder {}: {}", folder.string(), failed.message())};
     const fs::path program = fs::read_symlink("/proc/self/exe", failed);
-    const nlohmann::json kernel{{"argv", {"/usr/bin/python3", script.string(), "-f", "{connection_file}"}},
-                                {"display_name", "dinal"},
-                                {"language", "lua"},
-                                {"interrupt_mode", "signal"},
-                                {"env", {{"DINAL", failed ? "dinal" : program.string()}}}};
-    for (const auto& [path, content] :
-         {std::pair{script, std::string(kernel_script)}, std::pair{folder / "kernel.json", kernel.dump(1) + "\n"}}) {
-        if (const auto written = files::write_file(path.string(), content); !written) return written.error();
+    for (const auto& [name, shown, options] :
+         {std::tuple{"dinal", "dinal", ""}, std::tuple{"dinal-safe", "dinal (safe)", "--safe"}}) {
+        const fs::path folder = data / "kernels" / name, script = folder / "dinal_kernel.py";
+        std::error_code unmade;
+        fs::create_directories(folder, unmade);
+        if (unmade) return text::Error{fmt::format("cannot make the folder {}: {}", folder.string(), unmade.message())};
+        const Json kernel{{"argv", {"/usr/bin/python3", script.string(), "-f", "{connection_file}"}},
+                          {"display_name", shown},
+                          {"language", "lua"},
+                          {"interrupt_mode", "signal"},
+                          {"env", {{"DINAL", failed ? "dinal" : program.string()}, {"DINAL_KERNEL_OPTIONS", options}}}};
+        for (const auto& [path, content] : {std::pair{script, std::string(kernel_script)},
+                                            std::pair{folder / "kernel.json", kernel.dump(1) + "\n"}}) {
+            if (const auto written = files::write_file(path.string(), content); !written) return written.error();
+        }
     }
     return fmt::format(
-        "the kernel 'dinal' for notebooks is in {}\n"
-        "it needs Debian's python3-ipykernel, and a notebook such as the package jupyter-notebook\n",
-        folder.string());
+        "the kernels 'dinal' and 'dinal (safe)' for notebooks are in {}\n"
+        "they need Debian's python3-ipykernel, and a notebook such as the package jupyter-notebook\n",
+        (data / "kernels").string());
 }
 
 }  // namespace dinal::notebook

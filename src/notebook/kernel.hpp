@@ -13,8 +13,9 @@ namespace dinal::notebook {
 /// standard output and standard error as ever, and is there before the answer. False when that descriptor is not open.
 bool run_kernel(lua_State* L, int answers);
 
-/// Writes kernel.json and the program in Python beside it into the user's folder of Jupyter: $JUPYTER_DATA_DIR, or
-/// jupyter in $XDG_DATA_HOME, or ~/.local/share/jupyter. What was done, in words.
+/// Writes two kernels, one of them with --safe, into the user's folder of Jupyter: $JUPYTER_DATA_DIR, or jupyter in
+/// $XDG_DATA_HOME, or ~/.local/share/jupyter. Each is a kernel.json with the program in Python beside it. Returns what
+/// was done, in words.
 text::Expected<std::string> install_kernel();
 
 /// dinal_kernel.py, which CMake puts into the program.

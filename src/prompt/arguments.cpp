@@ -267,7 +267,7 @@ without a script: a prompt on a terminal, else standard input is run as a script
   --lab-solutions NUMBER  the answers of a student number, for instructors
   --report   run the script, and make a page to hand in of what it prints and
              draws, also into files: lab.html of lab.lua, in the current folder
-  --jupyter-install  make dinal a kernel of Jupyter notebooks, for this user
+  --jupyter-install  make dinal a kernel of Jupyter notebooks, for this user, also a safe one
   --kernel=N         what such a kernel runs: requests on standard input, answers
                      on the descriptor N, as lines of JSON
   --help     this text

@@ -42,8 +42,12 @@ def check(what, truth, seen=""):
 
 
 class Notebook:
-    def __init__(self):
-        self.manager, self.client = jupyter_client.manager.start_new_kernel(kernel_name="dinal", startup_timeout=PATIENCE)
+    def __init__(self, kernel="dinal"):
+        self.manager, self.client = jupyter_client.manager.start_new_kernel(kernel_name=kernel, startup_timeout=PATIENCE)
+
+    def end(self):
+        self.client.stop_channels()
+        self.manager.shutdown_kernel(now=True)
 
     def run(self, code, meanwhile=None):
         """What a cell shows: streams as text, displays and results as lists, the error."""
@@ -153,8 +157,7 @@ def cells():
     notebook.client.wait_for_ready(timeout=PATIENCE)
     seen = notebook.run("y")
     check("a restart forgets", seen["value"] == {"text/plain": "nil"}, seen)
-    notebook.client.stop_channels()
-    notebook.manager.shutdown_kernel(now=True)
+    notebook.end()
 
 
 def notebooks():
@@ -184,9 +187,15 @@ def notebooks():
 
 
 said = subprocess.run([PROGRAM, "--jupyter-install"], capture_output=True, text=True, check=False)
-check("--jupyter-install", said.returncode == 0 and "kernels/dinal" in said.stdout, said)
+check("--jupyter-install", said.returncode == 0 and "dinal (safe)" in said.stdout, said)
 with open(HOME + "/.local/share/jupyter/kernels/dinal/kernel.json", encoding="utf-8") as file:
     check("the kernel knows its program", os.path.samefile(json.load(file)["env"]["DINAL"], PROGRAM))
+notebook = Notebook("dinal-safe")
+seen = notebook.run("print(os.execute, io.popen, dinal ~= nil)")
+check("the safe kernel has no processes", seen["stdout"] == "nil\tnil\ttrue\n", seen)
+seen = notebook.run("nondimensional{}:simulate{ theta0 = 1, t_end = 1, dt = 0.1 }:save('../outside.csv')")
+check("and writes nothing outside of its folder", "safe mode allows files in the current folder" in (seen["error"] or ""), seen)
+notebook.end()
 said = subprocess.run([PROGRAM, "--kernel=77"], capture_output=True, text=True, check=False)
 check("--kernel by hand", said.returncode == 2 and "--jupyter-install" in said.stderr, said)
 cells()
