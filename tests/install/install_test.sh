@@ -47,7 +47,19 @@ if command -v dpkg-shlibdeps >/dev/null; then
     dpkg-deb -f "$prefix"/made/dinal_"$version"_*.deb Depends >"$prefix/out"
     grep -q 'libc6 (>= ' "$prefix/out" && ! grep -qE 'lua|fmt|utf8proc' "$prefix/out" || { cat "$prefix/out"; exit 1; }
     # Nothing of this machine is left in what was made for all users.
-    grep -q '"DINAL": "/usr/bin/dinal"' "$prefix/package/usr/share/jupyter/kernels/dinal/kernel.json"
+    for kernel in dinal dinal-safe; do
+        grep -q '"DINAL": "/usr/bin/dinal"' "$prefix/package/usr/share/jupyter/kernels/$kernel/kernel.json"
+    done
+    # The licences of all that is compiled in or carried; no example that needs the library for C++.
+    for words in Eigen MPL-2.0 nlohmann-json; do
+        grep -q "$words" "$prefix/package/usr/share/doc/dinal/copyright" || { echo "the copyright is silent on $words"; exit 1; }
+    done
+    for tree in "$prefix"/anywhere/dinal-"$version"-* "$prefix/package/usr"; do
+        for text in libeigen3-dev nlohmann-json3-dev MPL-2.0 GPL-3; do
+            [ -s "$tree/share/doc/dinal/licences/$text" ] || { echo "the text of $text is missing in $tree"; exit 1; }
+        done
+        [ ! -e "$tree/share/dinal/examples/cpp" ] || { echo "$tree has an example that it cannot build"; exit 1; }
+    done
     ! grep -rlF "$prefix" "$prefix/package" "$prefix/anywhere" || exit 1
     gzip -dc "$prefix/package/usr/share/man/man1/dinal.1.gz" | cmp - "$source/docs/dinal.1"
 else
