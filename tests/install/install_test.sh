@@ -12,6 +12,7 @@ DESTDIR='' "$cmake" --install "$build" --prefix "$prefix/usr" >"$prefix/log"
 for program in "$build/dinal" "$prefix/usr/bin/dinal"; do
     readelf -d "$program" >"$prefix/out"
     path=$(sed -n 's/.*(R[A-Z]*PATH).*\[\(.*\)\]$/\1/p' "$prefix/out")
+    grep -q BIND_NOW "$prefix/out" || { echo "$program binds its symbols late"; exit 1; }
     [ "$path" = '$ORIGIN/../lib/dinal' ] || { echo "$program looks for libraries in '$path'"; exit 1; }
 done
 
