@@ -35,9 +35,10 @@ std::size_t count_argument(lua_State* L, const std::string& call) {
 std::vector<double> spaced(lua_State* L, double from, double to, std::size_t n) {
     std::vector<double> values = lua::new_numbers(L, n);
     for (std::size_t i = 0; i < n; ++i) {
-        values[i] = from + (to - from) * (static_cast<double>(i) / static_cast<double>(n - 1));
+        // A mean of the ends with whole weights: what is a round number comes out exactly.
+        const long double last = n - 1, weight = i;
+        values[i] = static_cast<double>((from * (last - weight) + to * weight) / last);
     }
-    values.back() = to;
     return values;
 }
 

@@ -79,6 +79,12 @@ assert(type(copy) == "table" and #copy == 3 and copy[3] == 4)
 -- Even spacing, with exact ends.
 local line = vector.linspace(-0.1, 0.7, 81)
 assert(#line == 81 and line[1] == -0.1 and line[81] == 0.7 and math.abs(line[41] - 0.3) < 1e-15)
+-- Round numbers are exact, equal ends a constant, and the greatest numbers no overflow.
+local whole, tenths, same = vector.linspace(1, 1000, 1000), vector.linspace(-1, 1, 21), vector.linspace(0.1, 0.1, 8)
+for i = 1, 1000 do assert(whole[i] == i) end
+for i = 1, 21 do assert(tenths[i] == (i - 11) / 10) end
+for i = 1, 8 do assert(same[i] == 0.1) end
+assert(vector.linspace(-1e308, 1e308, 5)[3] == 0)
 fails(function() return vector.linspace(0, 1, 1) end, "n = 1 must be a whole number")
 fails(function() return vector.linspace(0, 1, 2.5) end, "n = 2.5 must be a whole number")
 fails(function() return vector.linspace(0, 1 / 0, 5) end, "to must be a finite number, got inf")
