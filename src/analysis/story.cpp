@@ -6,6 +6,7 @@
 
 #include "model/forcing.hpp"
 #include "model/laws/coulomb.hpp"
+#include "model/laws/stribeck.hpp"
 #include "motion/belt_slope.hpp"
 #include "text/characters.hpp"
 
@@ -129,7 +130,8 @@ double Story::around(double t) const {
 
 void Story::tell_friction() {
     const model::Friction& law = system_.friction();
-    const auto Rd = [&](model::Motion way) { return law.sliding(way, 0); };
+    const bool stribeck = law.as<model::laws::Stribeck>() != nullptr;
+    const auto Rd = [&](model::Motion way) { return stribeck ? system_.kinetic_friction() : law.sliding(way, 0); };
     const auto Re = [&](model::Motion way) { return law.holding(way); };
     using enum model::Motion;
     if (law.none()) {
@@ -143,7 +145,11 @@ void Story::tell_friction() {
     } else {
         add(" and dry friction: Rd = {:.5g} brakes it, up to Re = {:.5g} holds it.", Rd(forward), Re(forward));
     }
-    if (law.depends_on_speed()) say("That is near standstill: friction changes with the speed.");
+    if (stribeck) {
+        say("Friction falls from Re at standstill to Rd at great speeds.");
+    } else if (law.depends_on_speed()) {
+        say("That is near standstill: friction changes with the speed.");
+    }
     tell_walls();
 }
 

@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "model/laws/coulomb.hpp"
+#include "model/laws/stribeck.hpp"
 #include "model/laws/user_law.hpp"
 
 namespace dinal::model {
@@ -111,6 +112,11 @@ Regime Oscillator::regime() const {
     const double zeta = damping_ratio();
     if (zeta == 1) return Regime::critical;
     return zeta < 1 ? Regime::underdamped : Regime::overdamped;
+}
+
+double Oscillator::kinetic_friction() const {
+    const auto* stribeck = friction_.as<laws::Stribeck>();
+    return stribeck != nullptr ? stribeck->kinetic : friction_.greatest_sliding();
 }
 
 double Oscillator::friction_ratio(double characteristic_torque) const {

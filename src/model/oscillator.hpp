@@ -94,8 +94,8 @@ public:
     [[nodiscard]] bool has_linear_spring() const { return has_spring() && spring_.none(); }
     /// After a torque that was no number: whether what a user has written of the system may be asked again.
     [[nodiscard]] bool may_go_on() const;
-    /// Rd; of a law with other numbers each way the greater one, of one that depends on speed that at speed 0.
-    [[nodiscard]] double kinetic_friction() const { return friction_.greatest_sliding(); }
+    /// Rd; the greater one of a law with other numbers each way, at speed 0 where a law has no Rd of its own.
+    [[nodiscard]] double kinetic_friction() const;
     /// Re; of a law with other numbers each way the greater one.
     [[nodiscard]] double breakaway() const { return friction_.greatest_holding(); }
 

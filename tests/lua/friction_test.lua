@@ -230,4 +230,12 @@ test("a law whose value at speed 0 is Re but for rounding holds what it says", f
     raises_here(function() friction.law(function() return 0.3 + 1e-12 end, { Re = 0.3 }) end, "Re = 0.3 must be at least")
 end)
 
+test("a system with Stribeck's law shows Rd, not the friction at standstill", function()
+    local sys = system { I = 1, k = 1, friction = friction.stribeck { Rd = 0.3, Re = 0.6, speed = 0.1 } }
+    equal(sys.Rd, 0.3)
+    equal(sys.Re, 0.6)
+    local told = sys:simulate { theta0 = 1, t_end = 5, dt = 1 }:explain():gsub("%s+", " ")
+    assert(told:find("Rd = 0.3 brakes it, up to Re = 0.6 holds it. Friction falls from Re at standstill to Rd at great speeds.", 1, true), told)
+end)
+
 support.finish()
