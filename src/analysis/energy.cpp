@@ -149,7 +149,7 @@ text::Expected<Energy> energy_of(const motion::Trajectory& trajectory) {
         return text::Error{"there is no motion to integrate over: the run ended where it started"};
     }
     const model::Lowered system(trajectory.course->system());
-    const std::vector<Stretch> cut = stretches(trajectory);
+    const std::vector<Stretch> cut = half_cycles(trajectory);
     Bookkeeper books(system, cut);
     trajectory.course->legs([&books](const motion::Leg& leg) { books.add(leg); });
     Energy energy = books.finish(trajectory.initial);

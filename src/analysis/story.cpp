@@ -27,6 +27,8 @@ Story::Story(const motion::Trajectory& trajectory, const model::Oscillator& syst
       excitation_(excitation),
       own_rule_(method.own_rule()),
       stretches_(stretches(trajectory)),
+      swings_(analysis::half_cycles(trajectory)),
+      events_(trajectory.events.begin(), trajectory.events.end()),
       extras_(extras),
       on_base_(!extras.base.components().empty()),
       on_belt_(!extras.belt.components().empty()),
@@ -34,9 +36,20 @@ Story::Story(const motion::Trajectory& trajectory, const model::Oscillator& syst
       T0_(system.has_spring() ? system.natural_period() : 1),
       constant_from_(excitation.has_feedback() || on_base_ || on_belt_ ? model::never : excitation.constant_from()) {
     for (const Stretch& s : stretches_) {
-        s.stuck ? void(stuck_ += s.lasts()) : void(++half_cycles_);
+        if (s.stuck) stuck_ += s.lasts();
         if (s.stuck && s.begun_by) stops_.push_back(&s);
     }
+    if (on_belt_ && run_.course == nullptr) return;  // nobody knows where theta turned
+    for (const Stretch& s : swings_) {
+        half_cycles_ += s.stuck ? 0 : 1;
+        if (!on_belt_ || !s.ended_by) continue;
+        // An event that is an extreme itself stands for it.
+        const double same = 1e-9 * T0_;
+        const auto next = std::lower_bound(run_.events.begin(), run_.events.end(), s.to - same,
+                                           [](const model::Event& event, double t) { return event.t < t; });
+        if (next == run_.events.end() || next->t > s.to + same) events_.push_back(*s.ended_by);
+    }
+    std::sort(events_.begin(), events_.end(), [](const auto& a, const auto& b) { return a.t < b.t; });
 }
 
 std::string Story::told() {
@@ -172,7 +185,9 @@ void Story::tell_start() {
     const Stretch& first = stretches_.front();
     say("It started at t = {} from theta = {:.5g} with velocity {:.5g}", at(run_.t_start), y.theta, y.velocity);
     const bool known = run_.size() > 0 && run_.column(motion::Column::t)[0] == run_.t_start;
-    const bool told = y.velocity == 0 && !system_.friction().none() && !own_rule_ && known && first.lasts() > 0;
+    const bool beside_belt = on_belt_ && !first.stuck && motion::belt_from(extras_.belt, run_.t_start) != 0;
+    const bool told =
+        y.velocity == 0 && !beside_belt && !system_.friction().none() && !own_rule_ && known && first.lasts() > 0;
     if (first.stuck) add(" and stuck {}", on_belt_ && !at_wall(y.theta) ? "to the belt" : "there");
     if (told && first.stuck && at_wall(y.theta)) {
         add(" at the wall");
@@ -195,16 +210,16 @@ void Story::tell_start() {
 
 void Story::tell_counts() {
     if (half_cycles_ == 0 || stretches_.back().to == run_.t_start) return;
-    if (run_.events.empty()) {
+    if (stretches_.size() == 1 && stretches_.front().stuck) return;
+    if (run_.events.empty() && swings_.size() == 1) {
         const model::State &begin = run_.initial, &end = run_.state_at_stop;
         const bool stayed = begin.velocity == 0 && end.velocity == 0 && begin.theta == end.theta;
         say("{}", stayed ? "It stayed there: M and the spring are in balance." : "It moved one way all the time.");
         return;
     }
-    const auto turns =
-        static_cast<std::size_t>(std::count_if(run_.events.begin(), run_.events.end(), [](const model::Event& event) {
-            return event.kind == model::EventKind::turn;
-        }));
+    const auto turns = static_cast<std::size_t>(std::count_if(swings_.begin(), swings_.end(), [](const Stretch& s) {
+        return s.ended_by && s.ended_by->kind == model::EventKind::turn;
+    }));
     say("It made {} with {} and {}", text::counted(half_cycles_, "half cycle"), text::counted(turns, "turn"),
         text::counted(stops_.size(), "stop"));
     if (stuck_ > 0) {

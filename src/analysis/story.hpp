@@ -101,7 +101,8 @@ private:
     const model::Oscillator& system_;
     const model::Excitation& excitation_;
     std::optional<motion::OwnRule> own_rule_;  // of stops, which are not the law's then
-    std::vector<Stretch> stretches_;
+    std::vector<Stretch> stretches_, swings_;  // the same but on a belt: against the belt, and of theta
+    std::vector<model::Event> events_;         // with the extremes of theta on a belt
     std::vector<const Stretch*> stops_;
     const model::Extras& extras_;
     bool on_base_, on_belt_, steady_belt_;

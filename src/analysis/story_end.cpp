@@ -10,7 +10,7 @@ void Story::tell_end() {
     const bool over = still_ || (stretches_.back().stuck && constant_from_ <= run_.t_stop);
     const bool failed = !model::is_whole(run_.outcome);
     if (half_cycles_ > 0 && !over) {
-        if (const auto motion = recurrence(run_.events)) {
+        if (const auto motion = recurrence(events_)) {
             tell_recurrence(*motion);
         } else if (!decay_told_) {
             tell_trend();
@@ -89,7 +89,7 @@ void Story::tell_period(const Recurrence& motion) {
             at(motion.period), of, text::percent(motion.change));
         return;
     }
-    const bool always = motion.since == run_.events.front().t;
+    const bool always = motion.since == events_.front().t;
     say("{} steady: it repeats itself every {} ({}).",
         always ? "The motion is" : fmt::format("From t = {} on the motion is", at(motion.since)), at(motion.period),
         of);
@@ -98,7 +98,7 @@ void Story::tell_period(const Recurrence& motion) {
 
 void Story::tell_trend() {
     const double period = model::period_from(excitation_, stretches_.back().from);
-    const Swings last = swings(stretches_, period);
+    const Swings last = swings(swings_, period);
     if (last.trend == Trend::unknown) {
         if (!free() && run_.events.size() > 1) say("That is too short to tell whether it becomes steady.");
         end_paragraph();

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "motion/stillness.hpp"
+
 namespace dinal::analysis {
 
 std::vector<Stretch> stretches(const motion::Trajectory& trajectory) {
@@ -22,6 +24,14 @@ std::vector<Stretch> stretches(const motion::Trajectory& trajectory) {
     now.end = now.stuck && trajectory.carried == nullptr ? now.begin : trajectory.state_at_stop;
     list.push_back(now);
     return list;
+}
+
+std::vector<Stretch> half_cycles(const motion::Trajectory& trajectory) {
+    if (!trajectory.on_belt) return stretches(trajectory);
+    motion::Trajectory swings = trajectory;
+    swings.events = motion::Growing<model::Event>(motion::turns_on_belt(trajectory));
+    swings.began_stuck = false;
+    return stretches(swings);
 }
 
 }  // namespace dinal::analysis

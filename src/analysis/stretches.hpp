@@ -21,4 +21,7 @@ struct Stretch {
 /// In order and without gaps from t_start to t_stop; a stretch may last no time. Of a computed run only.
 std::vector<Stretch> stretches(const motion::Trajectory& trajectory);
 
+/// The half cycles of theta, and where it stands: the same but on a belt, where they run from one extreme to the next.
+std::vector<Stretch> half_cycles(const motion::Trajectory& trajectory);
+
 }  // namespace dinal::analysis

@@ -55,49 +55,6 @@ bool for_good(const Trajectory& run, const model::Oscillator& oscillator, const 
     return period > 0 && run.t_stop - since >= period;
 }
 
-/// Where the velocity passes zero between two times, by halving; the course tells it.
-double extreme(const Trajectory& run, double from, double to, bool rising) {
-    constexpr int halvings = 50;
-    double theta = 0;
-    for (int i = 0; i < halvings; ++i) {
-        const double middle = from + (to - from) / 2;
-        const auto y = run.at(middle);
-        if (!y) break;
-        theta = std::fabs(y->theta);
-        ((y->velocity > 0) == rising ? from : to) = middle;
-    }
-    return theta;
-}
-
-/// On a belt no event says where the mass turns against the ground: it is looked for between events and rows.
-double peak_on_belt(const Trajectory& run) {
-    constexpr std::size_t most_looks = 100'000;
-    std::vector<double> times = {run.t_start, run.t_stop};
-    for (const model::Event& event : run.events) times.push_back(event.t);
-    const std::size_t stride = static_cast<std::size_t>(run.size()) / most_looks + 1;
-    for (std::size_t i = 0; i < static_cast<std::size_t>(run.size()); i += stride) {
-        times.push_back(run.rows(static_cast<Eigen::Index>(i), 0));
-    }
-    std::sort(times.begin(), times.end());
-    constexpr int parts = 8;
-    double greatest = 0;
-    for (std::size_t i = 0; i + 1 < times.size(); ++i) {
-        const double width = (times[i + 1] - times[i]) / parts;
-        auto before = run.at(times[i]);
-        for (int k = 1; k <= parts && width > 0; ++k) {
-            const double from = times[i] + (k - 1) * width, to = k == parts ? times[i + 1] : times[i] + k * width;
-            auto now = run.at(to);
-            if (!before || !now) break;
-            greatest = std::max({greatest, std::fabs(before->theta), std::fabs(now->theta)});
-            if (before->velocity * now->velocity < 0) {
-                greatest = std::max(greatest, extreme(run, from, to, before->velocity > 0));
-            }
-            before = std::move(now);
-        }
-    }
-    return greatest;
-}
-
 }  // namespace
 
 void settle(Trajectory& trajectory, const model::Oscillator& system, const model::Excitation& excitation,
@@ -119,6 +76,47 @@ void settle(Trajectory& trajectory, const model::Oscillator& system, const model
                                                       std::numeric_limits<std::size_t>::max());
 }
 
+std::vector<model::Event> turns_on_belt(const Trajectory& run) {
+    constexpr std::size_t most_looks = 100'000;
+    std::vector<double> times = {run.t_start, run.t_stop};
+    for (const model::Event& event : run.events) times.push_back(event.t);
+    const std::size_t stride = static_cast<std::size_t>(run.size()) / most_looks + 1;
+    for (std::size_t i = 0; i < static_cast<std::size_t>(run.size()); i += stride) {
+        times.push_back(run.rows(static_cast<Eigen::Index>(i), 0));
+    }
+    std::sort(times.begin(), times.end());
+    constexpr double parts = 8, halvings = 50;
+    std::vector<model::Event> turns;
+    if (!run.course) return turns;
+    const double longest = run.course->system().natural_period();
+    double moved_at = run.t_start, velocity = run.initial.velocity;  // where it was last seen to move
+    const auto look = [&](double to) {
+        const auto now = run.at(to);
+        if (!now || now->velocity == 0) return;
+        if (now->velocity * velocity < 0) {
+            model::State y = *now;
+            double turn = to;
+            for (int i = 0; i < halvings; ++i) {
+                const double middle = moved_at + (turn - moved_at) / 2;
+                const model::State there = run.at(middle).value();
+                if (there.velocity * velocity > 0) {
+                    moved_at = middle;
+                } else {
+                    turn = middle, y = there;
+                }
+            }
+            turns.push_back({.t = turn, .theta = y.theta, .velocity = y.velocity});
+        }
+        moved_at = to, velocity = now->velocity;
+    };
+    for (std::size_t i = 0; i + 1 < times.size(); ++i) {
+        const double width = times[i + 1] - times[i], steps = parts * std::ceil(std::max(1.0, width / longest));
+        for (double k = 1; k < steps && width > 0; ++k) look(times[i] + k * width / steps);
+        look(times[i + 1]);
+    }
+    return turns;
+}
+
 double peak(const Trajectory& trajectory) {
     double greatest = std::max(std::fabs(trajectory.initial.theta), std::fabs(trajectory.state_at_stop.theta));
     if (const auto theta = trajectory.find("theta"); theta && trajectory.size() > 0) {
@@ -129,7 +127,10 @@ double peak(const Trajectory& trajectory) {
         if (event.kind != model::EventKind::user || !trajectory.course) continue;
         if (const auto y = trajectory.at(event.t)) greatest = std::max(greatest, std::fabs(y->theta));  // he moved it
     }
-    return trajectory.on_belt && trajectory.course ? std::max(greatest, peak_on_belt(trajectory)) : greatest;
+    if (trajectory.on_belt) {
+        for (const model::Event& turn : turns_on_belt(trajectory)) greatest = std::max(greatest, std::fabs(turn.theta));
+    }
+    return greatest;
 }
 
 }  // namespace dinal::motion

@@ -12,6 +12,9 @@ namespace dinal::motion {
 void settle(Trajectory& trajectory, const model::Oscillator& system, const model::Excitation& excitation,
             const model::Extras& extras);
 
+/// Where theta has its extremes on a belt, which no event tells: looked for between events and rows.
+std::vector<model::Event> turns_on_belt(const Trajectory& run);
+
 /// The greatest |theta| of the motion, not only of the rows; rad.
 double peak(const Trajectory& trajectory);
 

@@ -133,4 +133,27 @@ test("what was done of a broken run has its energy", function()
     assert(part.total.dry > 1 and part.total.closure <= 1e-12)
 end)
 
+test("half cycles on a belt run from one extreme of theta to the next and make up the total", function()
+    local block = system { I = 1, k = 8, C = 0.6, Rd = 0.15, Re = 0.3 }
+    for _, belt in ipairs { 0.1, 0.35, 2, excitation.harmonic { amplitude = 0.3, omega = 1.7 } } do
+        for _, task in ipairs { { M = excitation.harmonic { amplitude = 1.2, omega = 4 } }, { velocity0 = 0.1 } } do
+            task.belt, task.t_end, task.dt = belt, 30, 0.5
+            local driven = block:simulate(task)
+            local found = driven:energy()
+            local sums = { input = 0, kinetic = 0, spring = 0, viscous = 0, dry = 0, belt = 0 }
+            for i, half in ipairs(found.half_cycles) do
+                for name in pairs(sums) do sums[name] = sums[name] + half[name] end
+                if i > 1 then
+                    equal(half.t_start, found.half_cycles[i - 1].t_end)
+                    local theta, velocity = driven:at(half.t_start)
+                    near(theta, half.theta_start, 1e-12)
+                    near(velocity, 0, 1e-9)
+                end
+                near(half.error, 0, 1e-10)
+            end
+            for name, sum in pairs(sums) do near(sum, found.total[name], 1e-12 * found.total.flow) end
+        end
+    end
+end)
+
 support.finish()

@@ -145,4 +145,20 @@ test("a belt that jumps, told or not, is what throws a mass off, and which way",
     end
 end)
 
+test("on a belt the extremes of theta are told, not where the sliding turns round", function()
+    local sys = system { I = 1, k = 8, C = 0.6, Rd = 0.15 }
+    for _, dt in ipairs { 0.01, 60 } do
+        local run = sys:simulate { M = excitation.harmonic { amplitude = 1.2, omega = 4 }, belt = 0.35, t_end = 60, dt = dt }
+        says(run, "It started at t = 0 from theta = 0 with velocity 0.")
+        says(run, "it repeats itself every 1.5708 (the period of M). The amplitude is 0.1369 about theta = 0.0066314.")
+    end
+    -- Friction from a belt that is always faster is the constant 0.2: it swings by 3 about 0.2, and no event tells so.
+    local far = { belt = 50, theta0 = 0.2, velocity0 = 3, t_end = 30, dt = 1 }
+    local swinging = system { I = 1, k = 1, Rd = 0.2 }
+    says(swinging:simulate(far), "It made 11 half cycles with 10 turns and 0 stops.")
+    says(swinging:simulate(far), "The motion is steady: it repeats itself every 6.2832 (1 T0). The amplitude is 3 about theta = 0.2.")
+    far.dense = false
+    assert(not told(swinging:simulate(far)):find "one way")
+end)
+
 support.finish()
