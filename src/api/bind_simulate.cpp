@@ -11,6 +11,8 @@
 #include "lua/interrupt.hpp"
 #include "lua/standard_globals.hpp"
 #include "lua/user_function.hpp"
+#include "model/controller.hpp"
+#include "source/fingerprint.hpp"
 #include "terminal/progress.hpp"
 
 namespace dinal::api {
@@ -92,6 +94,69 @@ source::Task asked_task(lua_State* L, const lua::Options& options, const RunOpti
     return task;
 }
 
+/// A number that stands for what M's functions remember, and for all else that they use.
+std::uint64_t memory_of(lua_State* L, const model::Excitation& M) {
+    source::Fingerprint print(L, [](lua_State*, int, source::Fingerprint&) { return false; });
+    lua::push(L, M);
+    print.add_value(-1);
+    lua_pop(L, 1);
+    return print.number();
+}
+
+/// Refuses sampled controllers that still remember an earlier run, themselves or in a variable that they share with
+/// those of the last run: what they answer would depend on it.
+class Memories {
+public:
+    Memories(lua_State* L, const lua::Options& options, const model::Excitation& M, bool goes_on)
+        : L_(L), options_(options), M_(M), wanted_(model::has_memory<model::SampledController>(M)), goes_on_(goes_on) {
+        if (!wanted_) return;
+        before_ = memory_of(L, M);
+        if (!goes_on && is_used(M, before_)) fail();
+        lua_getfield(L, LUA_REGISTRYINDEX, last_run);
+        if (const auto* last = lua::test<model::Excitation>(L, -1)) last_ = *last;
+        lua_pop(L, 1);
+        last_before_ = memory_of(L, last_);
+    }
+    void note(const void* run) const {
+        if (!wanted_) return;
+        const bool changed = memory_of(L_, M_) != before_;
+        for (const model::Component& component : M_.components()) {
+            const auto* sampled = model::controller_of<model::SampledController>(component);
+            if (sampled == nullptr) continue;
+            sampled->latest = run;
+            if (changed) sampled->first = sampled->first.value_or(before_);
+            if (changed && sampled->carried) fail();
+        }
+        const bool shared = is_used(last_, last_before_) && memory_of(L_, last_) != last_before_;
+        if (shared && !goes_on_) fail();
+        lua::push(L_, M_);
+        lua_setfield(L_, LUA_REGISTRYINDEX, last_run);
+    }
+
+private:
+    static constexpr const char* last_run = "dinal.sampled";
+
+    static bool is_used(const model::Excitation& M, std::uint64_t memory) {
+        const auto& components = M.components();
+        return std::any_of(components.begin(), components.end(), [&](const model::Component& component) {
+            const auto* sampled = model::controller_of<model::SampledController>(component);
+            return sampled != nullptr && sampled->first.value_or(memory) != memory;
+        });
+    }
+    [[noreturn]] void fail() const {
+        options_.fail({.sentence = "the function of excitation.sampled keeps a memory from one run to the next: make "
+                                   "the controller and its variables anew for each run, in a function that returns it",
+                       .option = "M"});
+    }
+
+    lua_State* L_;
+    const lua::Options& options_;
+    const model::Excitation& M_;
+    model::Excitation last_;
+    std::uint64_t before_ = 0, last_before_ = 0;
+    bool wanted_, goes_on_;
+};
+
 void set_partial(lua_State* L) {
     lua::push_dinal_table(L);
     lua_insert(L, -2);
@@ -109,6 +174,7 @@ int run_task(lua_State* L, const lua::Options& options, source::Origin origin, d
     run->origin = std::move(origin);
     const motion::Limits limits = limits_of(dense);
 
+    const Memories memories(L, options, run->origin->excitation, from != run->origin->window.start);
     lua::CallState call(L);
     if (!run->origin->extras.states.empty()) call.name_states(names_of(run->origin->extras));
     terminal::Progress progress = terminal::Progress::of_time(from, to);
@@ -122,6 +188,7 @@ int run_task(lua_State* L, const lua::Options& options, source::Origin origin, d
     }
     const bool interrupted = run->trajectory.outcome == model::Outcome::interrupted;
     push_run(L, run);
+    memories.note(run.get());
     if (call.failed() || interrupted) {
         set_partial(L);
         call.failed() ? call.raise_error() : lua::raise_interrupted(L);

@@ -5,6 +5,7 @@
 
 #include "api/bind_simulate.hpp"
 #include "api/run.hpp"
+#include "model/controller.hpp"
 
 namespace dinal::api {
 
@@ -58,6 +59,13 @@ int continue_run(lua_State* L) {
              "velocity0, t_start, ... }"});
     }
     source::Origin origin = *run->origin;
+    for (const model::Component& component : origin.excitation.components()) {
+        const auto* sampled = model::controller_of<model::SampledController>(component);
+        if (sampled != nullptr && sampled->first && sampled->latest != run.get()) {
+            options.fail(
+                {"the function of excitation.sampled has been used in another run since: simulate this run again"});
+        }
+    }
     const bool spaced = origin.rows.dt() > 0;
     if (spaced && asked.times) {
         options.fail("times", fmt::format("this run has a row every dt = {:.6g}, and goes on so; times are for runs "

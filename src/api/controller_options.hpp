@@ -84,8 +84,9 @@ inline constexpr lua::Member controller_functions[] = {
     {lua::a_function<sampled_controller>,
      {"excitation.sampled(f, { OPTIONS }) -> excitation",
       "A controller that samples: f(t, theta, velocity, z) is called once at each instant, in order, so it may keep a "
-      "memory in variables of its own. What it returns is held until the next; before the first one M is 0. It has "
-      "values in a run only.",
+      "memory in variables of its own. Such a controller serves one run and its run:continue: make it and these "
+      "variables anew for each run, in a function that returns it. What f returns is held until the next instant; "
+      "before the first one M is 0. It has values in a run only.",
       "M = excitation.sampled(function(t, theta, velocity) return -3*velocity end, { every = 0.1 })\n"
       "run = nondimensional{}:simulate{ M = M, theta0 = 1, t_end = 1, dt = 0.25 }\n"
       "print(run.M[1], run.M[2] == run.M[3])  --> 0.0\tfalse",

@@ -4,8 +4,10 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdint>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "model/excitation.hpp"
@@ -25,6 +27,10 @@ public:
 struct SampledController final : Controller {
     double every = 0, delay = 0;
     double at = 0;
+    bool carried = false;  ///< to a worker of a sweep, and not made there
+    mutable std::optional<std::uint64_t> first =
+        {};                                ///< what it remembered before its first run, if a run changes that
+    mutable const void* latest = nullptr;  ///< its last run
 };
 
 /// Two levels with hysteresis: past `off`, seen from `on`, it gives levels[1], back past `on` levels[0].

@@ -67,7 +67,7 @@ std::shared_ptr<model::terms::UserFunction> Carrier::controller(const model::ter
         if constexpr (requires { own.by; }) {
             copy->by = own.by;
         } else if constexpr (requires { own.every; }) {
-            copy->every = own.every, copy->delay = own.delay, copy->at = own.at;
+            copy->every = own.every, copy->delay = own.delay, copy->at = own.at, copy->carried = true;
         } else {
             copy->on = own.on, copy->off = own.off, copy->levels = own.levels;
             copy->of = own.of, copy->state = own.state, copy->starts_on = own.starts_on;
