@@ -39,17 +39,16 @@ Story::Story(const motion::Trajectory& trajectory, const model::Oscillator& syst
         if (s.stuck) stuck_ += s.lasts();
         if (s.stuck && s.begun_by) stops_.push_back(&s);
     }
-    if (on_belt_ && run_.course == nullptr) return;  // nobody knows where theta turned
+    if ((stretches_.size() == 1 && stuck_ > 0) || (on_belt_ && run_.course == nullptr)) return;  // no turns are known
+    const auto before = [](const model::Event& event, double t) { return event.t < t; };
     for (const Stretch& s : swings_) {
         half_cycles_ += s.stuck ? 0 : 1;
         if (!on_belt_ || !s.ended_by) continue;
-        // An event that is an extreme itself stands for it.
         const double same = 1e-9 * T0_;
-        const auto next = std::lower_bound(run_.events.begin(), run_.events.end(), s.to - same,
-                                           [](const model::Event& event, double t) { return event.t < t; });
-        if (next == run_.events.end() || next->t > s.to + same) events_.push_back(*s.ended_by);
+        const auto end = run_.events.end(), next = std::lower_bound(run_.events.begin(), end, s.to - same, before);
+        if (next == end || next->t > s.to + same) events_.push_back(*s.ended_by);  // else that is it
     }
-    std::sort(events_.begin(), events_.end(), [](const auto& a, const auto& b) { return a.t < b.t; });
+    std::sort(events_.begin(), events_.end(), [&](const auto& a, const auto& b) { return before(a, b.t); });
 }
 
 std::string Story::told() {
@@ -158,10 +157,9 @@ void Story::tell_friction() {
     } else {
         add(" and dry friction: Rd = {:.5g} brakes it, up to Re = {:.5g} holds it.", Rd(forward), Re(forward));
     }
-    if (stribeck) {
-        say("Friction falls from Re at standstill to Rd at great speeds.");
-    } else if (law.depends_on_speed()) {
-        say("That is near standstill: friction changes with the speed.");
+    if (law.depends_on_speed()) {
+        say("{}", stribeck ? "Friction falls from Re at standstill to Rd at great speeds."
+                           : "That is near standstill: friction changes with the speed.");
     }
     tell_walls();
 }
@@ -185,9 +183,9 @@ void Story::tell_start() {
     const Stretch& first = stretches_.front();
     say("It started at t = {} from theta = {:.5g} with velocity {:.5g}", at(run_.t_start), y.theta, y.velocity);
     const bool known = run_.size() > 0 && run_.column(motion::Column::t)[0] == run_.t_start;
-    const bool beside_belt = on_belt_ && !first.stuck && motion::belt_from(extras_.belt, run_.t_start) != 0;
+    const bool stands = first.stuck || motion::belt_from(extras_.belt, run_.t_start) == 0;
     const bool told =
-        y.velocity == 0 && !beside_belt && !system_.friction().none() && !own_rule_ && known && first.lasts() > 0;
+        y.velocity == 0 && stands && !system_.friction().none() && !own_rule_ && known && first.lasts() > 0;
     if (first.stuck) add(" and stuck {}", on_belt_ && !at_wall(y.theta) ? "to the belt" : "there");
     if (told && first.stuck && at_wall(y.theta)) {
         add(" at the wall");
@@ -210,7 +208,6 @@ void Story::tell_start() {
 
 void Story::tell_counts() {
     if (half_cycles_ == 0 || stretches_.back().to == run_.t_start) return;
-    if (stretches_.size() == 1 && stretches_.front().stuck) return;
     if (run_.events.empty() && swings_.size() == 1) {
         const model::State &begin = run_.initial, &end = run_.state_at_stop;
         const bool stayed = begin.velocity == 0 && end.velocity == 0 && begin.theta == end.theta;

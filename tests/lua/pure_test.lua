@@ -110,4 +110,57 @@ test("the oath costs at most three calls of a hundred", function()
     end
 end)
 
+-- A sampled controller of a block on a spring that sums up how far it is from 0.5.
+local spring = system { I = 1, k = 4, C = 0.1, Rd = 0.05, Re = 0.08 }
+local function summing(gain)
+    local sum = 0
+    return excitation.sampled(function(_, theta)
+        sum = sum + 0.05 * (0.5 - theta)
+        return gain * sum
+    end, { every = 0.05 })
+end
+local another = "the function of excitation.sampled keeps a memory from one run to the next"
+
+test("a sampled controller that remembers a run is refused in another one", function()
+    local task = { M = summing(6), t_end = 5, dt = 1 }
+    local run = spring:simulate(task)
+    support.raises_here(function() spring:simulate(task) end, another)
+    local whole = run:continue { t_end = 7 }:continue { t_end = 10 }
+    support.raises_here(function() run:continue { t_end = 10 } end, "the function of excitation.sampled has been used in another run since")
+    near(whole:at(10), (spring:simulate { M = summing(6), t_end = 10, dt = 1 }:at(10)), 1e-10)
+    support.raises_here(function() spring:simulate { M = 1 + 2 * task.M, t_end = 5, dt = 1 } end, another)
+end)
+
+test("so is a new one that shares its memory, unless that was reset; others may be used again", function()
+    local sum, gain = 0, 1
+    local function task()
+        return { M = excitation.sampled(function(_, theta) sum = sum + 0.05 * (0.5 - theta) return gain * sum end, { every = 0.05 }), t_end = 5, dt = 1 }
+    end
+    local first = spring:simulate(task())
+    gain = 2
+    support.raises_here(function() spring:simulate(task()) end, another)
+    sum, gain = 0, 1
+    equal(spring:simulate(task()).theta[6], first.theta[6])
+    local forgetful = { M = excitation.sampled(function(_, theta) return gain * (0.5 - theta) end, { every = 0.05 }), t_end = 5, dt = 1 }
+    local once = spring:simulate(forgetful).theta[6]
+    gain = 2
+    assert(spring:simulate(forgetful).theta[6] ~= once)
+    gain = 1
+    equal(spring:simulate(forgetful).theta[6], once)
+end)
+
+test("a sweep with controllers gives the same with any number of workers", function()
+    local shared = summing(1)
+    local seen
+    for workers = 1, 3 do
+        local function swept(run) return sweep { gain = { 1, 2, 3, 4 }, workers = workers, run = run } end
+        raises(function()
+            swept(function(p) return { x = spring:simulate { M = p.gain * shared, t_end = 5, dt = 1 }:at(5) } end)
+        end, "all 4 points failed", another)
+        local x = swept(function(p) return { x = (spring:simulate { M = summing(p.gain), t_end = 5, dt = 1 }:at(5)) } end).x
+        seen = seen or x
+        for i = 1, 4 do equal(x[i], seen[i]) end
+    end
+end)
+
 support.finish()
