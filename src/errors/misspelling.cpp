@@ -1,5 +1,7 @@
 #include "errors/misspelling.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <utility>
@@ -254,6 +256,40 @@ std::string similar_global(lua_State* L, std::string_view name) {
     add_keys(L, names);
     lua_pop(L, 1);
     return meant_by(L, name, names);
+}
+
+std::string nil_option(lua_State* L, lua_Debug* frame, std::string_view text) {
+    luaL_checkstack(L, LUA_MINSTACK, "for the values of options");
+    const std::vector<lua::Token> all = lua::tokens(text);
+    const std::vector<std::string> local = variables(L, frame);
+    const int top = lua_gettop(L);
+    int braces = 0;
+    for (std::size_t i = 2; i + 1 < all.size(); ++i) {
+        braces += all[i - 2].is("{") ? 1 : all[i - 2].is("}") ? -1 : 0;
+        const std::string_view name = all[i].text;
+        const bool field = all[i + 1].is(".") && i + 3 < all.size();
+        const lua::Token& behind = all[i + (field ? 3 : 1)];
+        if (braces == 0 || !all[i - 1].is("=") || all[i].kind != lua::TokenKind::name ||
+            !(behind.is(",") || behind.is("}") || behind.is(";"))) {
+            continue;
+        }
+        push_variable(L, frame, name);
+        const bool is_nil = lua_isnil(L, -1), is_table = lua_istable(L, -1);
+        const std::vector<std::string> names = field && is_table ? member_names(L) : std::vector<std::string>();
+        lua_settop(L, top);
+        std::string told = "'" + std::string(name), hint;
+        if (field) {
+            told.append(".").append(all[i + 2].text);
+            hint = likely(all[i + 2].text, names, text::Likeness::of_meaning);
+            if (hint.empty() || std::find(names.begin(), names.end(), all[i + 2].text) != names.end()) continue;
+        } else {
+            hint = similar_global(L, name);
+            if (!is_nil || is_declared(all, name) || std::find(local.begin(), local.end(), name) != local.end())
+                continue;
+        }
+        return fmt::format("{}' is nil, so {} is not given{}", told, all[i - 2].text, hint);
+    }
+    return "";
 }
 
 Advice help_with(lua_State* L, lua_Debug* frame, const text::Error& error, std::string_view statement) {

@@ -31,4 +31,9 @@ std::string similar_global(lua_State* L, std::string_view name);
 /// members. Runs no code of the user. The value is on the top of the stack.
 std::vector<std::string> member_names(lua_State* L);
 
+/// "'theta_0' is nil, so theta0 is not given": a global, or a field of a table, that is not there and stands alone as
+/// the value of an option in the text. A field only where another one has nearly its name: it may be left out on
+/// purpose.
+std::string nil_option(lua_State* L, lua_Debug* frame, std::string_view text);
+
 }  // namespace dinal::errors

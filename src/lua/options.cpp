@@ -94,6 +94,7 @@ void Options::check_table() {
         lua_pop(L_, 1);
     }
     if (!unknown.empty()) refuse(unknown);
+    if (look_at_options != nullptr) look_at_options(L_);
 }
 
 void Options::refuse(std::vector<std::string_view>& unknown) const {

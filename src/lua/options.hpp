@@ -88,6 +88,9 @@ private:
     std::bitset<most_options + 1> given_;  ///< by row
 };
 
+/// Called for each table of options, in the function that was called with it.
+inline void (*look_at_options)(lua_State* L) = nullptr;
+
 /// The table of a call whose options all fill one struct.
 template <class T>
 [[nodiscard]] T read(lua_State* L, int index, const text::Call& call) {

@@ -4,12 +4,15 @@
 
 #include <algorithm>
 #include <array>
+#include <set>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "errors/meant_method.hpp"
 #include "errors/misspelling.hpp"
 #include "errors/shell_words.hpp"
+#include "errors/source_text.hpp"
 #include "help/help_text.hpp"
 #include "help/signature.hpp"
 #include "lua/bind.hpp"
@@ -160,10 +163,9 @@ std::string local_notice(const std::string& text) {
 }
 
 std::string nil_notice(lua_State* L, const std::string& text) {
+    if (std::string notice = errors::nil_option(L, nullptr, text); !notice.empty()) return notice;
     const std::vector<lua::Token> all = lua::tokens(text);
-    int braces = 0;
     for (std::size_t i = 0; i < all.size(); ++i) {
-        braces += all[i].is("{") ? 1 : all[i].is("}") ? -1 : 0;
         if (all[i].is("function")) {
             break;  // what it uses may come later
         }
@@ -173,9 +175,6 @@ std::string nil_notice(lua_State* L, const std::string& text) {
         if (all[i].kind == lua::TokenKind::name && assigned && alone && uses(all, all[i].text) == 1 &&
             !is_global(L, all[i].text)) {
             const std::string hint = errors::similar_global(L, all[i].text);
-            if (braces > 0) {
-                return fmt::format("'{}' is nil, so {} is not given{}", all[i].text, all[i - 2].text, hint);
-            }
             return hint.empty() ? "" : fmt::format("'{}' is nil{}", all[i].text, hint);
         }
     }
@@ -261,6 +260,17 @@ void say_notice(const std::string& notice) {
     if (!notice.empty()) {
         say_error("(" + notice + ")");
     }
+}
+
+void tell_nil_option(lua_State* L) {
+    static std::set<std::pair<const void*, int>> seen;  // by the main thread: the functions of others are of no file
+    lua_Debug frame{};
+    if (lua_getstack(L, 1, &frame) == 0 || lua_getinfo(L, "Sl", &frame) == 0 || *frame.source != '@') return;
+    if (!seen.emplace(frame.source, frame.currentline).second) return;
+    const auto source = errors::source_of_frame(L, frame);
+    if (!source) return;
+    const std::string notice = errors::nil_option(L, &frame, source->statement(frame.currentline));
+    if (!notice.empty()) say_notice(fmt::format("{}:{}: {}", frame.short_src, frame.currentline, notice));
 }
 
 }  // namespace dinal::prompt

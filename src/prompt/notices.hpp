@@ -39,4 +39,7 @@ std::string greatest_notice(lua_State* L, int index, const Chunk& chunk);
 /// On standard error, unless it is empty.
 void say_notice(const std::string& notice);
 
+/// For lua::look_at_options: which option of a call in a file is nil by a misspelt name, once for each line.
+void tell_nil_option(lua_State* L);
+
 }  // namespace dinal::prompt

@@ -22,11 +22,13 @@
 #include "lua/last_words.hpp"
 #include "lua/limits.hpp"
 #include "lua/lua_headers.hpp"
+#include "lua/options.hpp"
 #include "lua/safe_mode.hpp"
 #include "lua/standard_globals.hpp"
 #include "lua/time_limit.hpp"
 #include "prompt/call.hpp"
 #include "prompt/line_editor.hpp"
+#include "prompt/notices.hpp"
 #include "prompt/output.hpp"
 #include "prompt/repl.hpp"
 #include "source/function_source.hpp"
@@ -230,6 +232,7 @@ void open(lua_State* L, const Arguments& arguments) {
     }
     arguments.safe ? lua::open_safe_libraries(L) : luaL_openlibs(L);
     help::open_library(L);
+    lua::look_at_options = tell_nil_option;
     set_arg(L, arguments);
     lua_gc(L, LUA_GCGEN, 0, 0);  // as lua does
     lua::set_limits(L, arguments.limits);

@@ -115,9 +115,12 @@ class Notices(PromptTest):
         terminal = self.start()
         terminal.enter(SYSTEM)
         terminal.enter("M = math.sin")
+        terminal.enter("given = { theta0 = 1 }")
         for typed, notice in [("sys:simulate{ M = m, t_end = 1, dt = 0.5 };", "('m' is nil, so M is not given; did you mean 'M'?)"),
                               ("sys:simulate{ t_end = 1, dt = 0.5, integrator = rk4 };",
                                "('rk4' is nil, so integrator is not given; did you mean 'integrator.rk4'?)"),
+                              ("sys:simulate{ theta0 = given.theta_0, t_end = 1, dt = 1 };",
+                               "('given.theta_0' is nil, so theta0 is not given; did you mean 'theta0'?)"),
                               ("N = m", "('m' is nil; did you mean 'M'?)"),
                               ("x = 1,5", "(1,5 are two numbers, and x is the first; a decimal point is a point: 1.5)"),
                               ("x = pi", "('pi' is nil; did you mean 'math.pi'?)")]:
