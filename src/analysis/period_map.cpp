@@ -195,9 +195,10 @@ MapStep PeriodMap::with_derivative(const Place& from, double scale) const {
     const double h = 1e-6 * std::max(scale, 1e-300);
     step.differentiable = true;
     for (int i = 0; i < 2; ++i) {
-        const MapStep ahead = (*this)(from + h * Place::Unit(i)), behind = (*this)(from - h * Place::Unit(i));
+        const Place up = inside(system_, from + h * Place::Unit(i)), down = inside(system_, from - h * Place::Unit(i));
+        const MapStep ahead = (*this)(up), behind = (*this)(down);
         step.differentiable = step.differentiable && ahead.finished && behind.finished;
-        step.derivative.col(i) = (ahead.to - behind.to) / (2 * h);
+        step.derivative.col(i) = (ahead.to - behind.to) / (up - down)[i];
     }
     return step;
 }

@@ -6,6 +6,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <cmath>
 #include <complex>
 #include <vector>
@@ -24,6 +25,12 @@ using Place = Eigen::Vector2d;
 /// Its squares would be no numbers where it is very large, and none where it is very small.
 inline double length_of(const Place& place) {
     return std::hypot(place[0], place[1]);
+}
+
+/// The nearest place between the walls.
+inline Place inside(const model::Oscillator& system, Place place) {
+    if (const auto& walls = system.walls()) place[0] = std::clamp(place[0], walls->lower, walls->upper);
+    return place;
 }
 
 struct MapStep {

@@ -30,7 +30,7 @@ public:
     }
 
     SteadyMotion found() {
-        const Place start = place_of(question_.initial, map_.omega());
+        const Place start = inside(question_.system, place_of(question_.initial, map_.omega()));
         answer_.period = question_.drive.period;
         if (const double growth = resonant_growth(); growth > 0) return growing(start, growth);
         if (question_.periods > 1) {
@@ -46,7 +46,7 @@ public:
     }
 
     SteadyMotion found_near() {
-        const Place start = place_of(question_.initial, map_.omega());
+        const Place start = inside(question_.system, place_of(question_.initial, map_.omega()));
         answer_.period = question_.drive.period;
         if (resonant_growth() > 0) return found();
         if (contracts_ && symmetric_ && follows_sine()) return answer_;
@@ -99,7 +99,6 @@ private:
         answer_.status = SteadyStatus::grows;
         answer_.growth = growth;
         answer_.outcome = step.outcome;
-        answer_.unique = true;
         return answer_;
     }
 
@@ -171,7 +170,7 @@ private:
         answer_.symmetric = half || (symmetric_ && periods == 1 && is_symmetric(last.x, last.size));
         if (!last.step.moved) {
             answer_.rest = rest_of(question_, last.x[0]);
-            answer_.unique = answer_.rest.first == answer_.rest.second;
+            if (answer_.rest.first < answer_.rest.second) answer_.unique = false;
         }
         return true;
     }
@@ -325,11 +324,19 @@ std::optional<SteadyMotion> another_motion(const SteadyQuestion& question, const
     const double omega = question.system.stiffness() > 0 ? question.system.natural_frequency()
                                                          : 2 * std::numbers::pi / question.drive.period;
     const double size = std::max({std::fabs(known.low), std::fabs(known.high), 1e-300});
+    // A motion at resonance may be far larger than the one found, and the mass may adhere where M alone would hold it.
+    const auto M = question.excitation.has_feedback() ? DriveRange{} : extremes(question.excitation, question.drive);
+    const double stiff = question.system.inertia() * omega * omega;
+    const double soft = std::max(question.system.damping() * omega, 0.01 * stiff);
+    const double widest = std::max(2.5 * size, (M.high - M.low) / 2 / soft);
+    const double least = std::max(0.3 * size, 1e-3 * widest);
     for (int i = 0; i < other_starts; ++i) {
-        const double angle = (0.3 + i) * std::numbers::pi / 2, radius = i < other_starts / 2 ? 0.3 : 2.5;
+        const double radius = least * std::pow(widest / least, i / (other_starts - 1.0));
+        const auto spot = i == 0 ? (M.high + M.low) / 2 / stiff : std::polar(radius, (0.3 + i) * std::numbers::pi / 2);
+        const Place start = inside(question.system, Place(spot.real(), spot.imag()));
         SteadyQuestion other = question;
         other.periods = 0;
-        other.initial = {size * radius * std::cos(angle), size * radius * std::sin(angle) * omega};
+        other.initial = {start[0], start[1] * omega};
         const SteadyMotion found = steady_motion(other, monitor);
         if (found.status == SteadyStatus::none || found.outcome == model::Outcome::interrupted) continue;
         const double apart = std::fabs(std::fabs(found.high) - std::fabs(known.high)) +

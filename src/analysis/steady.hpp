@@ -56,7 +56,7 @@ SteadyMotion steady_motion(const SteadyQuestion& question, const motion::Monitor
 SteadyMotion steady_motion_near(const SteadyQuestion& question, const motion::Monitor& monitor = {});
 
 /// A motion from another start that is not this one; none was seen from `other_starts` of them.
-inline constexpr int other_starts = 8;
+inline constexpr int other_starts = 16;
 std::optional<SteadyMotion> another_motion(const SteadyQuestion& question, const SteadyMotion& known,
                                            const motion::Monitor& monitor = {});
 

@@ -206,7 +206,7 @@ private:
                 say("It is one of a family: others beside it are periodic, too.");
             }
         } else if (motion_.status == SteadyStatus::steady) {
-            say("No other motion was seen from {} starts.", other_starts);
+            say("No other motion was seen from {} other starts, which is no proof.", other_starts);
         }
     }
 

@@ -84,7 +84,7 @@ int steady_shape_angle(lua_State* L) {
 
 int steady_stops(lua_State* L) {
     const Steady& s = *steady_self(L, "s.stops");
-    is_found(s) ? lua_pushinteger(L, static_cast<lua_Integer>(s.motion.stops)) : lua_pushnil(L);
+    is_moving(s) ? lua_pushinteger(L, static_cast<lua_Integer>(s.motion.stops)) : lua_pushnil(L);
     return 1;
 }
 
@@ -151,7 +151,11 @@ int steady_unique(lua_State* L) {
         return 1;
     }
     look_around_steady(L, s);
-    lua_pushboolean(L, s->motion.unique.value_or(!s->other.has_value()) ? 1 : 0);
+    if (!s->motion.unique && !s->other) {
+        lua_pushliteral(L, "not seen");
+    } else {
+        lua_pushboolean(L, s->motion.unique.value_or(false) ? 1 : 0);
+    }
     return 1;
 }
 
@@ -253,7 +257,8 @@ constexpr lua::Member steady_members[] = {
     {"stops",
      lua::guarded<steady_stops>,
      lua::Kind::field,
-     {"s.stops -> integer", "How often it stops in a period.", DINAL_STEADY "print(s.stops)  --> 2"}},
+     {"s.stops -> integer", "How often it stops in a period; nil when it adheres.",
+      DINAL_STEADY "print(s.stops)  --> 2"}},
     {"stuck",
      lua::guarded<steady_found_number<&analysis::SteadyMotion::stuck>>,
      lua::Kind::field,
@@ -275,9 +280,9 @@ constexpr lua::Member steady_members[] = {
     {"unique",
      lua::guarded<steady_unique>,
      lua::Kind::field,
-     {"s.unique -> boolean",
-      "There is no other periodic motion. With Re = Rd and an M of time alone that is proven; else it says that none was "
-      "seen from eight other starts.",
+     {"s.unique -> boolean or string",
+      "true: no other periodic motion exists; this is proven for a linear spring with Re = Rd, no walls and an M of time "
+      "alone. false: another one exists. \"not seen\": none was seen from sixteen other starts, which is no proof.",
       DINAL_STEADY "print(s.unique)  --> true"}},
     {"symmetric",
      lua::guarded<steady_found_flag<&analysis::SteadyMotion::symmetric>>,

@@ -111,6 +111,9 @@ int steady_of_system(lua_State* L) {
     const lua::Options options(L, 2, steady_call);
     SteadyOptions asked;
     options.fill(asked);
+    if (const auto& walls = system.walls()) {
+        if (const auto beyond = walls->crossed_by(asked.theta0)) options.fail(*beyond);
+    }
     options.push("M");
     analysis::SteadyQuestion question{.system = system,
                                       .excitation = to_excitation(L, -1, "sys:steady: M", "M"),

@@ -84,6 +84,37 @@ test("a steady motion between walls, and a response", function()
     assert(#c >= 2 and c.frequency:min() == 0.15 and c.frequency:max() == 0.2, c)
 end)
 
+test("between walls nothing grows, and a mass that rests against one is stable", function()
+    local at_wall = 0
+    for seed = 1, 25 do
+        math.randomseed(seed, 7)
+        local function pick(a, b) return a + (b - a) * math.random() end
+        local Rd = pick(0.02, 0.4)
+        local sys = system { I = 1, k = pick(0.5, 2), C = pick(0.05, 0.4), Rd = Rd, Re = Rd * pick(1, 1.3),
+            walls = { lower = -pick(0.1, 0.8), upper = pick(0.1, 0.8), restitution = math.random(0, 2) / 3 } }
+        local M = excitation.harmonic { amplitude = pick(0.5, 2), omega = pick(0.3, 1), phase = pick(0, 6) } + pick(-0.5, 0.5)
+        local s = sys:steady { M = M }
+        assert(s.status ~= "grows", seed)
+        assert(not s:explain():find "grows%.", seed)
+        if s.status == "steady" then
+            assert(s.unique ~= true, seed)
+            local theta, velocity, T = s.run.theta[1], s.run.velocity[1], s.period
+            local function later(x) -- what 300 periods leave of a disturbance
+                local last = sys:simulate { M = M, theta0 = x, velocity0 = velocity, t_end = 300 * T, dt = 300 * T }
+                return math.abs(last.theta[2] - theta) + math.abs(last.velocity[2] - velocity)
+            end
+            local inwards = theta > 0 and -1e-6 or 1e-6
+            equal(s.stable, later(theta + inwards) < 2e-6, seed)
+            if velocity == 0 and (theta == sys.walls.lower or theta == sys.walls.upper) then
+                at_wall = at_wall + 1
+                assert(s.stable, seed)
+            end
+        end
+    end
+    assert(at_wall > 0)
+    raises_here(function() system { I = 1, k = 1, walls = { upper = 1 } }:steady { theta0 = 2 } end, "theta0 = 2 is beyond the wall at upper = 1")
+end)
+
 test("what is wrong with walls is one sentence with the name of the option", function()
     local function with_walls(w) return function() system { I = 1, k = 1, walls = w } end end
     raises_here(with_walls(3), "system: walls must be a table such as { lower = -0.8", "got 3")

@@ -1,0 +1,78 @@
+-- Whether a steady motion is the only one: what is proven, what was not seen, what there is beside it. Run by dinal.
+package.path = "tests/lua/?.lua;" .. package.path
+local support = require "support"
+local test, equal, near = support.test, support.equal, support.near
+
+local function harmonic(r) return excitation.harmonic{ frequency = r } end
+
+test("without any loss, at a part of the natural period, there are others that come back after some periods", function()
+    local free = nondimensional{}
+    for _, r in ipairs{ 2, 1.5, 0.75, 5 } do
+        local s = free:steady{ M = excitation.harmonic{ frequency = r } }
+        near(s.amplitude, 1 / math.abs(1 - r * r), 1e-12)
+        assert(s.unique == false, r)
+        assert(s:explain():find("one%s+of%s+a%s+family"))
+    end
+    equal(free:steady{ M = excitation.harmonic{ frequency = 2^0.5 } }.unique, true)
+    equal(nondimensional{ zeta = 0.01 }:steady{ M = excitation.harmonic{ frequency = 2 } }.unique, true)
+end)
+
+test("a motion between bounds does not grow, and one of a family is not called the only one", function()
+    local wells = system{ I = 1, k = 0, C = 0.25, spring = spring.polynomial{ [1] = -1, [3] = 1 } }
+    local s = wells:steady{ M = excitation.harmonic{ amplitude = 0.34, omega = 1 }, theta0 = 1 }
+    assert(s.status ~= "grows", s.status)
+    local sys = system{ I = 1 / (4 * math.pi ^ 2), k = 1, Rd = 0.5854, Re = 0.5854 }
+    local M = excitation.square{ period = 1 / 0.1334, duty = 0.333 }
+    local at = {} -- two starts that end apart
+    for i, theta0 in ipairs{ -1.2, 0.9 } do
+        local run = sys:simulate{ M = M, theta0 = theta0, t_end = 40 / 0.1334, dt = 1 / 0.1334 }
+        near(run.theta[#run], run.theta[#run - 1], 1e-12)
+        at[i] = run.theta[#run]
+    end
+    assert(math.abs(at[1] - at[2]) > 0.1)
+    assert(sys:steady{ M = M }.unique ~= true)
+end)
+
+test("unique is true only where it is proven", function()
+    local load = harmonic(0.7)
+    local uneven = system{ I = 1, k = 4, friction = friction.asymmetric{ forward = { Rd = 0.3 }, backward = { Rd = 0.2 } } }
+    for _, sys in ipairs{ nondimensional{ friction_ratio = 0.3 }, uneven } do
+        equal(sys:steady{ M = load }.unique, true)
+    end
+    local linear = { I = 1, k = 4, C = 0.4 }
+    local unproven = { { walls = { upper = 50 } }, { spring = spring.polynomial{ [3] = 1e-3 } },
+        { friction = friction.stribeck{ Rd = 0.1, Re = 0.2, speed = 0.1 } }, { Rd = 0.1, Re = 0.12 } }
+    for i, more in ipairs(unproven) do
+        for name, value in pairs(linear) do more[name] = value end
+        local s = system(more):steady{ M = 2 * load }
+        equal(s.unique, "not seen", i)
+        assert(s:explain():gsub("%s+", " "):find("which is no proof.", 1, true))
+    end
+    local fed = system(linear):steady{ M = function(t, theta) return math.sin(t) - 0.1 * theta end, period = 2 * math.pi }
+    equal(fed.unique, "not seen")
+    -- A mass without a spring may rest anywhere.
+    assert(system{ I = 1, k = 0, Rd = 1 }:steady{ M = 0.5 * load }.unique ~= true)
+end)
+
+test("other starts reach motions far larger than the one found, and the adhesion beside it", function()
+    -- Both motions of each are found from starts given by hand.
+    for i, case in ipairs{ { 0.03, 0.5, 0.25, 1.8, 5 }, { 0.05, 0.1, 0.4, 1.3, 5 }, { 0.03, 2, 0.2, 1.7, 3 } } do
+        local C, cubic, amplitude, omega, far = table.unpack(case)
+        local sys, M = system{ I = 1, k = 1, C = C, spring = spring.polynomial{ [3] = cubic } }, excitation.harmonic{ amplitude = amplitude, omega = omega }
+        local small, large = sys:steady{ M = M }
+        for theta0 = 1, far do
+            local s = sys:steady{ M = M, theta0 = theta0 }
+            if s.amplitude > 4 * small.amplitude then large = s end
+        end
+        assert(large, i)
+        equal(small.unique, false, i)
+        equal(large.unique, false, i)
+    end
+    local held = system{ I = 1, k = 1, C = 0.02, Rd = 0.3, Re = 1.1 }
+    local s = held:steady{ M = excitation.harmonic{ omega = 1 }, theta0 = 5 }
+    equal(s.status, "steady")
+    equal(s.unique, false)
+    assert(s:explain():gsub("%s+", " "):find("From another start the mass comes to rest for good.", 1, true))
+end)
+
+support.finish()
