@@ -185,7 +185,8 @@ struct ResponseColumns {
         amplitude.push_back(found ? motion.amplitude : otherwise);
         lag.push_back(angle.value_or(nan_number));
         peak.push_back(found ? std::max(std::fabs(motion.low), std::fabs(motion.high)) : otherwise);
-        stops.push_back(found ? static_cast<double>(motion.stops) : nan_number);
+        stops.push_back(motion.status == analysis::SteadyStatus::steady ? static_cast<double>(motion.stops)
+                                                                        : nan_number);
         stuck.push_back(found ? motion.stuck : nan_number);
         stable.push_back(found && motion.stable ? 1 : 0);
         branch.push_back(static_cast<double>(piece));

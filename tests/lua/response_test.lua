@@ -174,4 +174,10 @@ test("a mass that a softening spring lets go is told to grow, and the response h
     equal(sys:steady{ M = function(t) return math.sin(math.pi * t) end, period = 2 }.status, "grows")
 end)
 
+test("a mass that adheres makes no stops: nan, and not 0", function()
+    local c = nondimensional{ friction_ratio = 0.5 }:response{ amplitude = { 0.2, 0.3, 2 }, frequency = 0.5 }
+    assert(c.status[1] == "adheres" and c.stops[1] ~= c.stops[1] and c.stuck[1] == 1)
+    assert(c.status[3] == "steady" and c.stops[3] == 0)
+end)
+
 support.finish()
