@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "analysis/response_curve.hpp"
+#include "analysis/steady_facts.hpp"
 #include "api/bind_excitation.hpp"
 #include "api/data.hpp"
 #include "api/response_companions.hpp"
@@ -33,6 +34,7 @@ public:
             options.wrong("M", fmt::format("a function of the {} that returns an excitation", varied_));
         }
         if (!function_ && varied_ == "over") options.fail("over", "over needs M, a function of what it varies");
+        if (!function_ && over_frequency() && !list_) add_resonance();
     }
 
     [[nodiscard]] const std::vector<double>& values() const { return values_; }
@@ -92,6 +94,18 @@ public:
     }
 
 private:
+    /// Adds the resonance where the motion grows: a curve past it would show a finite peak.
+    void add_resonance() {
+        if (!system_.has_linear_spring()) return;
+        const double f = 1 / system_.natural_period(), from = values_.front();
+        const auto next =
+            std::find_if(values_.begin(), values_.end(), [&](double x) { return (x - f) * (from - f) <= 0; });
+        if (next == values_.end() || next == values_.begin() || std::fabs(*next / f - 1) < 1e-12) return;
+        const analysis::SteadyQuestion there = question(f);
+        const bool grows = contracts(there) && steady_motion(there).status == analysis::SteadyStatus::grows;
+        if (grows) values_.insert(next, f);
+    }
+
     /// The numbers under an option; none when it is no list.
     [[nodiscard]] std::vector<double> list_of(const char* option) const {
         options_.push(option);

@@ -5,9 +5,9 @@ local test, equal, near, raises_here = support.test, support.equal, support.near
 
 test("the response is Den Hartog's where it does not stop, and goes on where it does", function()
     local c = nondimensional{ friction_ratio = 0.5 }:response{ frequency = { 0.3, 2.1 }, points = 46 }
-    equal(#c, 46)
+    equal(#c, 47) -- and the resonance
     equal(c.frequency[1], 0.3)
-    equal(c.frequency[46], 2.1)
+    equal(c.frequency[47], 2.1)
     local compared = 0
     for i = 1, #c do
         local A = theory.den_hartog{ r = c.frequency[i], friction_ratio = 0.5 }
@@ -178,6 +178,18 @@ test("a mass that adheres makes no stops: nan, and not 0", function()
     local c = nondimensional{ friction_ratio = 0.5 }:response{ amplitude = { 0.2, 0.3, 2 }, frequency = 0.5 }
     assert(c.status[1] == "adheres" and c.stops[1] ~= c.stops[1] and c.stuck[1] == 1)
     assert(c.status[3] == "steady" and c.stops[3] == 0)
+end)
+
+test("a resonance without enough friction is no finite peak, whatever the points are", function()
+    for _, range in ipairs{ { 0.5, 1.5 }, { 1.5, 0.5 } } do
+        local c = nondimensional{ friction_ratio = 0.3 }:response{ frequency = range, points = 40 }
+        equal(#c, 41)
+        for i, status in ipairs(c.status) do equal(status == "grows", c.frequency[i] == 1) end
+        equal(c.amplitude:max(), math.huge)
+    end
+    equal(#nondimensional{ friction_ratio = 0.8 }:response{ frequency = { 0.5, 1.5 }, points = 40 }, 40)
+    equal(#nondimensional{ friction_ratio = 0.3 }:response{ frequency = { 1.1, 1.5 }, points = 40 }, 40)
+    equal(#nondimensional{ friction_ratio = 0.3 }:response{ frequency = { 0.5, 1.5 }, points = 41 }, 41)
 end)
 
 support.finish()
