@@ -41,14 +41,12 @@ void BranchWalk::differentiate(Spot& spot) {
     MapStep& step = spot.found.step;
     if (!step.differentiable) {
         const double h = 1e-6 * spot.found.size;
-        const model::Oscillator system = family_(spot.p).system;
         step.differentiable = true;
         for (int i = 0; i < 2; ++i) {
-            const Place up = inside(system, spot.x + h * Place::Unit(i)),
-                        down = inside(system, spot.x - h * Place::Unit(i));
-            const auto ahead = look(up, spot.p), behind = look(down, spot.p);
+            const auto ahead = look(spot.x + h * Place::Unit(i), spot.p),
+                       behind = look(spot.x - h * Place::Unit(i), spot.p);
             step.differentiable = step.differentiable && ahead.step.finished && behind.step.finished;
-            step.derivative.col(i) = (ahead.step.to - behind.step.to) / (up - down)[i];
+            step.derivative.col(i) = (ahead.step.to - behind.step.to) / (2 * h);
         }
     }
     const double up = std::min(spot.p + 1e-6 * range_, values_.back()),

@@ -23,7 +23,7 @@ double dry_of(const Parameters& p) {
 }  // namespace
 
 text::Expected<Identified> Identification::identified() {
-    const std::vector<Parameters> starts = question_.M ? forced_starts() : free_starts();
+    std::vector<Parameters> starts = question_.M ? forced_starts() : free_starts();
     for (left_out_ = 0; left_out_ < (question_.M ? 1U : 3U); ++left_out_) {
         for (const Parameters& start : starts) {
             if (stopped_ || (best_ && (is_settled() || (agreed_ > 1 && !leaves_pattern(suspected))))) break;
@@ -33,6 +33,10 @@ text::Expected<Identified> Identification::identified() {
     if (!best_) return text::Error{"no motion of such a system comes near this record"};
     if (!question_.M && !stopped_ && leaves_pattern(suspected)) try_let_go(starts);
     if (!question_.M && !stopped_) try_rests();
+    if (question_.M) {
+        starts.insert(starts.begin(), filled_best());
+        try_let_go(starts);
+    }
     if (question_.M && !stopped_) try_jumps();
     if (question_.M && !stopped_ && leaves_pattern(suspected)) try_other_valleys();
     if (question_.M) tell_stops_from_cuts();
@@ -272,7 +276,8 @@ bool Identification::leaves_pattern(double deviations) const {
 /// Whether the fit explains the record. A search among noise finds a motion, too: it takes some ten squares of it.
 void Identification::judge(Identified& found) const {
     const double all = (measured_.array() - measured_.mean()).square().sum(), left = best_->sum;
-    constexpr double by_search = 2, some = 2;
+    constexpr double by_search = 2;
+    const double some = question_.M ? 20 : 12;  // measured: one record of noise in some hundred explains more
     const double by_chance = by_search * std::log(static_cast<double>(measured_.size())) + some;
     found.is_noise = all - left < by_chance * found.noise * found.noise;
     double step = range_;  // of an instrument that shows steps; without them next to none
@@ -285,6 +290,11 @@ void Identification::judge(Identified& found) const {
     constexpr double more = 1.25, little = 1e-4, sure = 5;
     found.is_unexplained = (found.noise > much * found.scatter && left > part * all) ||
                            (found.noise > more * found.scatter && left > little * all && leaves_pattern(sure));
+    if (question_.M && !question_.M->has_feedback()) {
+        std::vector<double> M;
+        for (const double t : question_.t) M.push_back(question_.M->value(t));
+        found.M_is_noisy = is_noisy(M);
+    }
     Eigen::Index which = 0;
     const double most = best_->residual.cwiseAbs().maxCoeff(&which);
     if (2 * most * most > left) found.wild = static_cast<std::size_t>(which);

@@ -178,6 +178,8 @@ Covariance Identification::weigh_rests() {
     if (freest_ && noise > 0) {
         const Eigen::VectorXd apart = (freest_->parameters - best_->parameters) / noise;
         best.covariance.matrix += apart * apart.transpose();
+        const Covariance held = covariance_at({*best_, best_breakaway_, best_rest_, {}}, noise);
+        best.covariance.matrix.diagonal() = best.covariance.matrix.diagonal().cwiseMax(held.matrix.diagonal());
     }
     if (rests_.empty() || !(noise > 0)) return best.covariance;
     constexpr double unlikely = 40;

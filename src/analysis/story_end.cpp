@@ -105,7 +105,8 @@ void Story::tell_trend() {
         return;
     }
     const auto& [a, b, c] = last.amplitudes;
-    const bool grows = last.trend == Trend::growing, shrinks = last.trend == Trend::shrinking;
+    // The period of a base is not known here, so a beat may look like growth.
+    const bool grows = last.trend == Trend::growing && !on_base_, shrinks = last.trend == Trend::shrinking;
     say("The motion {}: amplitudes of {:.5g}, {:.5g} and {:.5g} in the last three {}",
         grows     ? "grows"
         : shrinks ? "gets smaller"

@@ -17,6 +17,13 @@ double noise_of(std::span<const double> theta) {
     return *middle / (0.6745 * std::sqrt(70.0));  // the median of |x|; 1 + 16 + 36 + 16 + 1 squares
 }
 
+bool is_noisy(std::span<const double> values) {
+    std::vector<double> half;
+    for (std::size_t i = 0; i < values.size(); i += 2) half.push_back(values[i]);
+    const auto [low, high] = std::minmax_element(values.begin(), values.end());
+    return noise_of(values) > std::max(1e-6 * (*high - *low), 0.5 * noise_of(half));
+}
+
 namespace {
 
 std::size_t standing_at(std::span<const double> theta, double limit) {

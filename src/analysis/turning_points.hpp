@@ -9,6 +9,8 @@ namespace dinal::analysis {
 
 /// The standard deviation of the noise of a smooth motion that is sampled about evenly, from fourth differences.
 double noise_of(std::span<const double> theta);
+/// Half the samples of a smooth curve would show far more of it.
+bool is_noisy(std::span<const double> values);
 
 /// How many samples of a free decay stand exactly at its least and at its greatest value, four and more in a row: there
 /// its instrument could show no more. Where it comes to rest is no such row.

@@ -39,7 +39,7 @@ void name_values(FitAnswer& fit) {
     const analysis::Identified& found = fit.found;
     const auto add = [&fit](std::string_view name, double value, double error) {
         fit.values.emplace_back(name, value);
-        fit.errors.emplace_back(name, error);
+        fit.errors.emplace_back(name, error > 0 ? std::max(error, 1e-15 * std::fabs(value)) : 0);  // some ulps
     };
     const auto given = [&fit](Unknown which) {
         return fit.question.given[static_cast<std::size_t>(which)].has_value();
@@ -250,10 +250,10 @@ std::string fit_summary(const FitAnswer& fit) {
                                 fit.question.t[*wild]);
         }
     }
+    if (fit.found.M_is_noisy) text += "\n  M has noise, which the errors leave out: they may be far too small";
+    if (fit.question.given.back() == 0.0) text += "\n  offset is held at 0";
     if (const std::size_t cut = fit.found.cut_low + fit.found.cut_high; cut > 0) {
-        text += fmt::format(
-            "\n  {} samples stand at the ends of the record, as if it were cut off there; they tell no more than that",
-            cut);
+        text += fmt::format("\n  {} samples stand at the ends of the record, as if it were cut off there", cut);
     }
     return text;
 }

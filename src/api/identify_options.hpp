@@ -16,6 +16,9 @@ struct IdentifyOptions {
 };
 
 inline constexpr const char* not_fitted = "known, and so not fitted";
+inline constexpr text::Range positive_k{
+    "be positive: identify needs a spring; without one give a k so small that the record is far shorter than a swing",
+    text::positive.holds};
 inline constexpr text::Option identify_options[] = {
     {.name = "data",
      .otherwise = text::needed,
@@ -39,7 +42,7 @@ inline constexpr text::Option identify_options[] = {
      .meaning = "a list of those of I, k, C, Rd, Re and offset that are fitted; the others are 0, and Re is Rd, unless "
                 "they are given. The start is always fitted unless it is given"},
     {.name = "I", .range = text::positive, .meaning = not_fitted, .filled = text::fills<&IdentifyOptions::I>},
-    {.name = "k", .range = text::positive, .meaning = not_fitted, .filled = text::fills<&IdentifyOptions::k>},
+    {.name = "k", .range = positive_k, .meaning = not_fitted, .filled = text::fills<&IdentifyOptions::k>},
     {.name = "C", .range = text::not_negative, .meaning = not_fitted, .filled = text::fills<&IdentifyOptions::C>},
     {.name = "Rd", .range = text::not_negative, .meaning = not_fitted, .filled = text::fills<&IdentifyOptions::Rd>},
     {.name = "Re", .range = text::not_negative, .meaning = not_fitted, .filled = text::fills<&IdentifyOptions::Re>},

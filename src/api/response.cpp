@@ -99,11 +99,11 @@ private:
         if (!system_.has_linear_spring()) return;
         const double f = 1 / system_.natural_period(), from = values_.front();
         const auto next =
-            std::find_if(values_.begin(), values_.end(), [&](double x) { return (x - f) * (from - f) <= 0; });
-        if (next == values_.end() || next == values_.begin() || std::fabs(*next / f - 1) < 1e-12) return;
-        const analysis::SteadyQuestion there = question(f);
-        const bool grows = contracts(there) && steady_motion(there).status == analysis::SteadyStatus::grows;
-        if (grows) values_.insert(next, f);
+            std::find_if(values_.begin(), values_.end(), [&](double x) { return (x - f) * (from - f) < 0; });
+        const auto is_it = [f](double x) { return std::fabs(x / f - 1) < 1e-12; };
+        if (next == values_.end() || std::any_of(values_.begin(), values_.end(), is_it)) return;
+        const auto there = question(f);
+        if (contracts(there) && steady_motion(there).status == analysis::SteadyStatus::grows) values_.insert(next, f);
     }
 
     /// The numbers under an option; none when it is no list.
@@ -199,8 +199,7 @@ struct ResponseColumns {
         amplitude.push_back(found ? motion.amplitude : otherwise);
         lag.push_back(angle.value_or(nan_number));
         peak.push_back(found ? std::max(std::fabs(motion.low), std::fabs(motion.high)) : otherwise);
-        stops.push_back(motion.status == analysis::SteadyStatus::steady ? static_cast<double>(motion.stops)
-                                                                        : nan_number);
+        stops.push_back(found && motion.stuck < 1 ? static_cast<double>(motion.stops) : nan_number);
         stuck.push_back(found ? motion.stuck : nan_number);
         stable.push_back(found && motion.stable ? 1 : 0);
         branch.push_back(static_cast<double>(piece));

@@ -61,7 +61,7 @@ inline constexpr lua::Doc response_doc{
     "the amplitude is infinite, where none was found nan; between { from, to } a row is added at a resonance where it "
     "grows. Where there can be several motions at once, with a spring of its own, feedback, walls, or Re > Rd, whole "
     "branches are followed, round their folds and along their unstable sides, which c:plot() draws dotted, so there are "
-    "more rows than points (a list has rows for its values only); what a sweep meets from either end is found, an island beside it only from a start on it. "
+    "more rows than points; what a sweep meets from either end is found, an island beside it only from a start on it. "
     "c.jumps then tells where a sweep leaves a branch: the place, sweep (\"up\" or \"down\"), the amplitudes from and to, "
     "and status, what it lands on. Of a linear spring under a harmonic M c.linearised and c.den_hartog are the curves of "
     "equivalent viscous damping and of Den Hartog (nan where the motion stops); c:plot{ overlay = \"linearised\" } draws "

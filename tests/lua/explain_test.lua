@@ -161,4 +161,10 @@ test("on a belt the extremes of theta are told, not where the sliding turns roun
     assert(not told(swinging:simulate(far)):find "one way")
 end)
 
+test("a beat on a shaking base is no growth", function()
+    local run = system{ I = 1, k = 1, Rd = 0.01 }:simulate{ base = excitation.harmonic{ amplitude = 0.2, omega = 1.05 }, t_end = 40, dt = 0.1 }
+    local text = run:explain():gsub("%s+", " ")
+    assert(not text:find("The motion grows", 1, true) and text:find("The motion is not periodic so far", 1, true), text)
+end)
+
 support.finish()

@@ -266,7 +266,7 @@ test("a record that the fit does not explain is told, and an honest one never", 
         for seed = 1, 10 do
             if says(rest + vector.normal{ n = 241, seed = seed, std = 0.03 }) == "noise" then alone = alone + 1 end
         end
-        assert(alone >= 7, alone)  -- in one of twenty noise looks like a motion
+        assert(alone >= 9, alone)  -- in one of some hundred noise looks like a motion
     end
     equal(says((0.2 * t):exp() * (6 * t):sin()), "unexplained")
     local honest = sys:simulate{ theta0 = 1, t_end = 8, dt = 1/30 }
@@ -307,6 +307,18 @@ test("a sample that is none is named", function()
         theta[200] = wild
         equal(told(), "200")
     end
+end)
+
+test("no error is below what a double can tell, a held offset and a missing spring are told", function()
+    local decay = system{ I = 1, k = 40, C = 0.3, Rd = 0.8 }:simulate{ theta0 = 1, t_end = 8, dt = 0.02 }
+    local fit = identify{ data = decay, I = 1 }
+    for _, name in ipairs{ "k", "C", "Rd", "omega0", "zeta" } do assert(fit.error[name] >= 2^-52 * fit[name], name) end
+    local held = identify{ data = decay, I = 1, free = { "k", "C", "Rd" } }
+    assert(tostring(held):find("offset is held at 0", 1, true))
+    for _, free in ipairs{ { "k", "offset" }, false } do
+        assert(not tostring(identify{ data = decay, I = 1, free = free or nil }):find("held at 0", 1, true))
+    end
+    raises_here(function() identify{ data = decay, k = 0 } end, "k = 0 must be positive: identify needs a spring; without one give a k so small")
 end)
 
 support.finish()
