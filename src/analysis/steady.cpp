@@ -329,9 +329,8 @@ std::optional<SteadyMotion> another_motion(const SteadyQuestion& question, const
     const double stiff = question.system.inertia() * omega * omega;
     const double soft = std::max(question.system.damping() * omega, 0.01 * stiff);
     const double widest = std::max(2.5 * size, (M.high - M.low) / 2 / soft);
-    const double least = std::max(0.3 * size, 1e-3 * widest);
     for (int i = 0; i < other_starts; ++i) {
-        const double radius = least * std::pow(widest / least, i / (other_starts - 1.0));
+        const double radius = widest * std::exp2(-0.5 * i);
         const auto spot = i == 0 ? (M.high + M.low) / 2 / stiff : std::polar(radius, (0.3 + i) * std::numbers::pi / 2);
         const Place start = inside(question.system, Place(spot.real(), spot.imag()));
         SteadyQuestion other = question;
