@@ -139,7 +139,7 @@ class SweepFiles(unittest.TestCase):
 
     def test_a_damaged_number_of_a_chunk_is_refused(self):
         process = self.start(WAIT="0.003")
-        self.wait_for_parts(3)
+        self.wait_for_parts(process, 3)
         process.kill()
         process.wait()
         first = sorted(self.parts.glob("*.csv"))[0]
