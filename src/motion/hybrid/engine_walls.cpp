@@ -193,7 +193,12 @@ bool Engine::hit(model::Motion into) {
     if (problem_.limits.dense) pieces_->add_jump(now_.hi, {.impacts = lost});
     echo(now_.hi, 1);
     if (over) {
-        if (rest > 0 && now_.after(rest) < soon) now_ = now_.later(rest);
+        if (rest > 0 && now_.after(rest) < soon) {
+            Values rates(y_.size());
+            field_.rates(here(), rates.data() + 2);
+            for (std::size_t k = 2; k < y_.size(); ++k) y_[k] += rest * rates[k];
+            now_ = now_.later(rest);
+        }
         come_to_lean(into);
         return true;
     }
