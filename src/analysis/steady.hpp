@@ -1,5 +1,5 @@
 // The periodic motion of a system under a periodic M: a fixed point of the period map, found by Newton's method, by
-// waiting where that does not lead on, and by recurrence where the motion is subharmonic. docs/theory.md, section 9.
+// waiting where that does not lead on, and by recurrence where the motion is subharmonic. docs/theory.md, section 10.
 #pragma once
 
 #include <array>

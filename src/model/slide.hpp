@@ -9,6 +9,12 @@
 
 namespace dinal::model {
 
+/// How long a polynomial of degree 16 can follow a motion from this speed on, about: along a line that makes it grow or
+/// die out fast, and along a curve until the speed has changed by its scale. `first` is the change of the speed by
+/// time, `second` the size of what that changes by, C and I those of the system.
+double longest_step(const Friction& law, const SpeedRange& range, double speed, double first, double second, double C,
+                    double I);
+
 class Slide {
 public:
     explicit Slide(const Lowered& system) : law_(system.law_with_corners()) {}
@@ -36,10 +42,10 @@ public:
     void cross(bool upwards) { enter_at(upwards ? index_ + 1 : index_ - 1); }
     void leave() { inside_ = false; }
 
-    /// How long a polynomial of degree 16 can follow the motion from this speed on, about: along a line that makes it
-    /// grow or die out fast, and along a curve until the speed has changed by its scale. `first` is the change of the
-    /// speed by time, `second` the size of what that changes by, C and I those of the system.
-    [[nodiscard]] double longest_step(double speed, double first, double second, double C, double I) const;
+    /// The same on its range.
+    [[nodiscard]] double longest_step(double speed, double first, double second, double C, double I) const {
+        return model::longest_step(*law_, range_, speed, first, second, C, I);
+    }
 
 private:
     void enter_at(std::size_t index) {

@@ -148,13 +148,14 @@ std::shared_ptr<model::UserFunction> with_witness_inside(const model::Controller
 
 }  // namespace
 
-std::shared_ptr<model::UserFunction> UnderOath::heard(const std::shared_ptr<model::UserFunction>& function,
-                                                      std::string who, const char* argument) {
-    witnesses_.push_back(std::make_shared<Witness>(function, testimony_, std::move(who), argument, states_));
+std::shared_ptr<model::UserFunction> Witnesses::heard(const std::shared_ptr<model::UserFunction>& function,
+                                                      std::string who, const char* argument, std::size_t more_states) {
+    witnesses_.push_back(
+        std::make_shared<Witness>(function, testimony_, std::move(who), argument, states_ + more_states));
     return witnesses_.back();
 }
 
-model::Excitation UnderOath::heard(const model::Excitation& excitation, const char* who) {
+model::Excitation Witnesses::heard(const model::Excitation& excitation, const std::string& who) {
     return excitation.with_functions([&](const std::shared_ptr<model::UserFunction>& function) {
         if (const auto* controller = dynamic_cast<const model::Controller*>(function.get())) {
             // One that samples is asked in order, and may remember what it likes.
@@ -166,31 +167,33 @@ model::Excitation UnderOath::heard(const model::Excitation& excitation, const ch
 }
 
 UnderOath::UnderOath(const model::Oscillator& system, const model::Excitation& excitation, const model::Extras& extras)
-    : states_(extras.states.size()),
+    : witnesses_(extras.states.size()),
       system_(system),
-      excitation_(heard(excitation, "M")),
+      excitation_(witnesses_.heard(excitation, "M")),
       extras_{.states = extras.states,
               .events = extras.events,
-              .belt = heard(extras.belt, "belt"),
-              .base = heard(extras.base, "base")} {
-    for (model::OwnState& state : extras_.states) state.rate = heard(state.rate, "states." + state.name + ".rate");
+              .belt = witnesses_.heard(extras.belt, "belt"),
+              .base = witnesses_.heard(extras.base, "base")} {
+    for (model::OwnState& state : extras_.states) {
+        state.rate = witnesses_.heard(state.rate, "states." + state.name + ".rate");
+    }
     for (model::WantedEvent& event : extras_.events) {
-        event.when = heard(event.when, event.name.empty() ? "an event" : "the event " + event.name);
+        event.when = witnesses_.heard(event.when, event.name.empty() ? "an event" : "the event " + event.name);
     }
     model::OscillatorParameters parameters = system.parameters();
     if (const auto* law = system.friction().as<model::laws::UserLaw>()) {
         model::laws::UserLaw own = *law;
-        own.function = heard(law->function, "friction", "speed");
+        own.function = witnesses_.heard(law->function, "friction", "speed");
         parameters.friction = own;
     }
     if (const auto* spring = system.spring().as<model::springs::UserSpring>()) {
-        parameters.spring = model::springs::UserSpring{heard(spring->function, "spring", "theta")};
+        parameters.spring = model::springs::UserSpring{witnesses_.heard(spring->function, "spring", "theta")};
     }
     if (!has_functions(system)) return;
     if (auto made = model::Oscillator::make(parameters)) system_ = *made;
 }
 
-std::optional<model::Contradiction> UnderOath::verdict(bool whole) {
+std::optional<model::Contradiction> Witnesses::verdict(bool whole) {
     if (whole) {
         for (const auto& witness : witnesses_) witness->conclude();
     }

@@ -74,6 +74,24 @@ private:
     std::vector<double> states_;  ///< of each place
 };
 
+/// A witness beside every function that is given to it.
+class Witnesses {
+public:
+    /// `states` is how many numbers the functions are given besides t, theta and velocity.
+    explicit Witnesses(std::size_t states) : states_(states) {}
+
+    std::shared_ptr<model::UserFunction> heard(const std::shared_ptr<model::UserFunction>& function, std::string who,
+                                               const char* argument = "t", std::size_t more_states = 0);
+    model::Excitation heard(const model::Excitation& excitation, const std::string& who);
+    /// The run is over; `whole`: nothing had failed in it. What was found.
+    [[nodiscard]] std::optional<model::Contradiction> verdict(bool whole);
+
+private:
+    std::shared_ptr<Testimony> testimony_ = std::make_shared<Testimony>();
+    std::vector<std::shared_ptr<Witness>> witnesses_ = {};
+    std::size_t states_;
+};
+
 /// What a run asks, with a witness beside every function of the user.
 class UnderOath {
 public:
@@ -83,17 +101,10 @@ public:
     [[nodiscard]] const model::Excitation& excitation() const { return excitation_; }
     [[nodiscard]] const model::Extras& extras() const { return extras_; }
 
-    /// The run is over; `whole`: nothing had failed in it. What was found.
-    [[nodiscard]] std::optional<model::Contradiction> verdict(bool whole);
+    [[nodiscard]] std::optional<model::Contradiction> verdict(bool whole) { return witnesses_.verdict(whole); }
 
 private:
-    std::shared_ptr<model::UserFunction> heard(const std::shared_ptr<model::UserFunction>& function, std::string who,
-                                               const char* argument = "t");
-    model::Excitation heard(const model::Excitation& excitation, const char* who);
-
-    std::shared_ptr<Testimony> testimony_ = std::make_shared<Testimony>();
-    std::vector<std::shared_ptr<Witness>> witnesses_ = {};
-    std::size_t states_;
+    Witnesses witnesses_;
     model::Oscillator system_;
     model::Excitation excitation_;
     model::Extras extras_;

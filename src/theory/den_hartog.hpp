@@ -3,7 +3,7 @@
 // J. P. Den Hartog, "Forced vibrations with combined Coulomb and viscous friction", Trans. ASME 53 (1931). Without
 // stops friction is a square wave whose jumps are the turns. The steady motion repeats with the other sign after half a
 // period; so its response to that square wave at a turn depends on r and zeta only, and the turn where the velocity is
-// zero gives the amplitude. docs/theory.md, section 11, has the derivation.
+// zero gives the amplitude. docs/theory.md, section 12, has the derivation.
 #pragma once
 
 #include <optional>

@@ -1,6 +1,6 @@
 // The steady motion under an M with a memory. What a delay, a relay or a controller that samples remembers is a part
 // of the state of which theta and velocity say nothing, so there is no map of these: the run itself goes on until it
-// repeats itself. docs/theory.md, section 9.
+// repeats itself. docs/theory.md, section 10.
 #pragma once
 
 #include "analysis/steady.hpp"

@@ -1,0 +1,71 @@
+// Several bodies that turn about one axis, and what acts between them: the general system, of which one mass on the
+// ground is the smallest.
+//
+//     I_i theta_i'' = M_i - I_i a - sum over its joints of the torques that they take
+//
+// A joint goes from a body to another one or to the ground. It has what a system of one body has: stiffness, damping, a
+// spring, dry friction, walls; all of these act on its angle, that of its first body less that of its second.
+#pragma once
+
+#include <array>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "model/excitation.hpp"
+#include "model/extras.hpp"
+#include "model/friction.hpp"
+#include "model/spring.hpp"
+#include "model/units.hpp"
+#include "model/walls.hpp"
+
+namespace dinal::model {
+
+/// Dry friction whose torques may depend on anything.
+struct ContactFriction {
+    Friction law = {};  ///< where the rest is empty
+    /// Instead of the law's torque while sliding: of (speed, t, theta, velocity, states). The speed is the first of the
+    /// states that it is given.
+    std::shared_ptr<UserFunction> function = {};
+    /// Instead of the law's numbers, backward and forward.
+    std::array<std::optional<Excitation>, 2> sliding = {}, holding = {};
+    /// What multiplies both torques, and counts as 0 where it is negative.
+    std::optional<Excitation> normal = {};
+
+    /// Nothing but the law.
+    [[nodiscard]] bool is_constant() const {
+        return function == nullptr && !normal && !sliding[0] && !sliding[1] && !holding[0] && !holding[1];
+    }
+    [[nodiscard]] bool none() const { return is_constant() && law.none(); }
+};
+
+struct Body {
+    std::string name;
+    double inertia = 1;
+};
+
+struct Joint {
+    static constexpr int ground = -1;
+    std::string name;  ///< of the link, or of the body whose joint with the ground it is
+    int first = 0;     ///< a body
+    int second = ground;
+    double stiffness = 0, damping = 0;
+    Spring spring = {};
+    ContactFriction friction = {};
+    std::optional<Walls> walls = {};
+};
+
+struct Assembly {
+    std::vector<Body> bodies;
+    /// Each body's with the ground, in their order, and then the links.
+    std::vector<Joint> joints;
+    /// Functions are given theta and velocity by the names of the bodies: as states, all angles, all velocities, and
+    /// then the states of the run. Else there is one body, and they are given its state.
+    bool named = true;
+    Units units = {};
+
+    [[nodiscard]] bool is_link(std::size_t joint) const { return joint >= bodies.size(); }
+};
+
+}  // namespace dinal::model

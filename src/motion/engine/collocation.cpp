@@ -1,0 +1,539 @@
+#include "motion/engine/collocation.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "motion/hybrid/integration.hpp"
+#include "motion/spectral/break_search.hpp"
+
+namespace dinal::motion::engine {
+
+namespace {
+
+constexpr int most_iterations = 40;
+constexpr int many_iterations = 4;       // slopes that need so many no longer serve, and are asked anew
+constexpr double most_left_over = 1e-6;  // of the equation; a stiff rate multiplies the rounding of its steps
+constexpr double gross = 1e3;            // not resolved by more than this factor: it may be a break
+constexpr std::size_t most_factors = 24;
+const double smallest = std::numeric_limits<double>::min() / rounding;
+
+using NodeVector = Eigen::Matrix<double, node_count, 1>;
+
+/// The integral from the first node to each, of what has these values.
+void integrate(const Nodes& values, double h, Nodes& sums) {
+    const Eigen::Map<const NodeVector> f(values.data());
+    Eigen::Map<NodeVector> F(sums.data());
+    F.noalias() = h * (hybrid::integration() * f);
+}
+
+double lost_in_time(const Series& series, double late, double h, double most) {
+    double slope = 0;
+    for (std::size_t k = 1; k < node_count; ++k) slope += static_cast<double>(k * k) * std::fabs(series[k]);
+    return std::min(4 * rounding * late / h * slope, 1e-6 * most);  // a jump is no slope
+}
+
+}  // namespace
+
+Collocation::Collocation(const Mechanics& mechanics, double tolerance, double longest)
+    : mechanics_(mechanics),
+      tolerance_(tolerance),
+      longest_(longest),
+      n_(mechanics.bodies()),
+      m_(mechanics.states()),
+      fastest_belt_(mechanics.joints()),
+      fastest_rate_(m_),
+      offset_(n_),
+      offset_rate_(n_),
+      offset_way_(n_),
+      rate_(m_) {}
+
+/// All that depends on the time alone. False when one of the user's functions has failed.
+bool Collocation::sample(Segment& s, const Mode& mode, const Frame& frame, const std::vector<double>& begin) {
+    const std::size_t joints = mechanics_.joints();
+    s.y.resize(2 * n_ + m_), s.f.resize(2 * n_ + m_), s.series.resize(2 * n_ + m_);
+    s.moved.assign(n_, {}), s.loads.resize(n_), s.torques.resize(n_);
+    s.belts.resize(joints), s.belt_rates.resize(joints), s.holding.resize(joints);
+    for (std::size_t j = 0; j + 1 < node_count; ++j) s.times[j] = s.time(cheb::nodes[j]);
+    s.times[node_count - 1] = s.end;
+    for (std::size_t k = 0; k < s.y.size(); ++k) s.y[k].fill(begin[k]);
+    for (std::size_t i = 0; i < n_; ++i) offset_[i] = {}, offset_rate_[i] = {}, offset_way_[i] = {};
+    for (std::size_t j = 0; j < node_count; ++j) {
+        mechanics_.loads_of_time(s.times[j], s.side(j), load_);
+        for (std::size_t i = 0; i < n_; ++i) {
+            s.loads[i][j] = load_[i];
+            if (std::isfinite(load_[i])) continue;
+            bad_time_ = s.times[j];
+            return false;
+        }
+    }
+    if (!mechanics_.has_belts()) {
+        for (std::size_t joint = 0; joint < joints; ++joint) s.belts[joint] = s.belt_rates[joint] = {};
+        return true;
+    }
+    for (std::size_t joint = 0; joint < joints; ++joint) {
+        s.belts[joint] = s.belt_rates[joint] = {};
+        if (!mechanics_.has_belt(joint)) continue;
+        for (std::size_t j = 0; j < node_count; ++j) {
+            s.belts[joint][j] = mechanics_.belt(joint, s.times[j], s.side(j));
+            if (std::isfinite(s.belts[joint][j])) continue;
+            bad_time_ = s.times[j];
+            return false;
+        }
+        fastest_belt_[joint] = std::max(fastest_belt_[joint], greatest(s.belts[joint]));
+        // On a segment so short its values tell no slope any more.
+        constexpr double too_short_for_slopes = 1e-7, stretch = 1e-4;
+        if (2 * s.h < too_short_for_slopes * longest_) {
+            const double within = std::min(stretch * longest_, (mechanics_.next_break(s.start.hi) - s.start.hi) / 2);
+            s.belt_rates[joint].fill(mechanics_.belt_rate(joint, s.start.hi, s.side(0), within));
+            continue;
+        }
+        const auto slope = cheb::derivative(cheb::fit(s.belts[joint]));
+        for (std::size_t j = 0; j < node_count; ++j) s.belt_rates[joint][j] = cheb::value(slope, cheb::nodes[j]) / s.h;
+    }
+    std::vector<double> of_joints(joints), of_bodies;
+    for (std::size_t j = 0; j < node_count; ++j) {
+        for (std::size_t joint = 0; joint < joints; ++joint) of_joints[joint] = s.belts[joint][j];
+        frame.offsets(of_joints, mode, of_bodies);
+        for (std::size_t i = 0; i < n_; ++i) offset_[i][j] = of_bodies[i];
+        for (std::size_t joint = 0; joint < joints; ++joint) of_joints[joint] = s.belt_rates[joint][j];
+        frame.offsets(of_joints, mode, of_bodies);
+        for (std::size_t i = 0; i < n_; ++i) offset_rate_[i][j] = of_bodies[i];
+    }
+    for (std::size_t i = 0; i < n_; ++i) integrate(offset_[i], s.h, offset_way_[i]);
+    return true;
+}
+
+/// Torques and rates at a node, where the state is y; new accelerations of the groups.
+bool Collocation::evaluate(Segment& s, const Mode& mode, const Frame& frame, std::size_t node,
+                           const std::vector<double>& y) {
+    belt_.resize(mechanics_.joints());
+    for (std::size_t joint = 0; joint < belt_.size(); ++joint) belt_[joint] = s.belts[joint][node];
+    load_.resize(n_);
+    for (std::size_t i = 0; i < n_; ++i) load_[i] = s.loads[i][node];
+    const Moment at{s.times[node], s.side(node), y};
+    mechanics_.torques(at, mode, belt_, load_, torque_);
+    mechanics_.rates(at, rate_.data());
+    for (std::size_t g = 0; g < frame.groups(); ++g) found_[g][node] = 0;
+    bool good = true;
+    for (std::size_t i = 0; i < n_; ++i) {
+        s.torques[i][node] = torque_[i];
+        good = good && std::isfinite(torque_[i]);
+        if (frame.group[i] < 0) continue;
+        const double own = offset_rate_[i][node];
+        const double inertia = mechanics_.system().bodies[i].inertia;
+        found_[static_cast<std::size_t>(frame.group[i])][node] += own == 0 ? torque_[i] : torque_[i] - inertia * own;
+    }
+    for (std::size_t g = 0; g < frame.groups(); ++g) found_[g][node] /= frame.inertia[g];
+    for (std::size_t k = 0; k < m_; ++k) {
+        found_[frame.groups() + k][node] = rate_[k];
+        good = good && std::isfinite(rate_[k]);
+    }
+    if (!good) bad_time_ = s.times[node];
+    return good;
+}
+
+/// Velocities and angles from the accelerations of the groups, states from their rates.
+void Collocation::place(Segment& s, const Frame& frame) const {
+    Nodes velocity{}, way{};
+    std::vector<char> placed(n_, 0);
+    for (std::size_t i = 0; i < n_; ++i) {
+        if (placed[i] != 0) continue;
+        const int g = frame.group[i];
+        if (g >= 0) {
+            integrate(unknown_[static_cast<std::size_t>(g)], s.h, velocity);
+            const double first = s.y[n_ + i][0] - offset_[i][0];
+            for (double& v : velocity) v += first;
+            integrate(velocity, s.h, way);
+        } else {
+            velocity = {}, way = {};
+        }
+        for (std::size_t b = i; b < n_; ++b) {
+            if (frame.group[b] != g) continue;
+            placed[b] = 1;
+            for (std::size_t j = 1; j < node_count; ++j) {
+                s.moved[b][j] = way[j] + offset_way_[b][j];
+                s.y[b][j] = s.y[b][0] + s.moved[b][j];
+                s.y[n_ + b][j] = velocity[j] + offset_[b][j];
+            }
+        }
+    }
+    for (std::size_t k = 0; k < m_; ++k) {
+        Nodes& z = s.y[2 * n_ + k];
+        integrate(unknown_[frame.groups() + k], s.h, way);
+        for (std::size_t j = 1; j < node_count; ++j) z[j] = z[0] + way[j];
+    }
+}
+
+/// How accelerations of the groups and rates depend on angles and velocities of the groups and on states.
+bool Collocation::find_slopes(const Segment& s, const Mode& mode, const Frame& frame, std::size_t node) {
+    const std::size_t groups = frame.groups(), rows = groups + m_, columns = 2 * groups + m_;
+    slopes_.setZero(static_cast<Eigen::Index>(rows), static_cast<Eigen::Index>(columns));
+    factors_.clear();
+    slopes_known_ = true;
+    if (!mechanics_.nonlinear()) {
+        for (const model::Joint& joint : mechanics_.system().joints) {
+            const int a = frame.group[static_cast<std::size_t>(joint.first)];
+            const int b = joint.second < 0 ? Frame::grounded : frame.group[static_cast<std::size_t>(joint.second)];
+            if (a == b) continue;
+            const auto G = static_cast<Eigen::Index>(groups);
+            for (const auto& [row, sign] : {std::pair(a, 1.0), std::pair(b, -1.0)}) {
+                if (row < 0) continue;
+                const double I = frame.inertia[static_cast<std::size_t>(row)];
+                if (a >= 0)
+                    slopes_(row, a) -= sign * joint.stiffness / I, slopes_(row, G + a) -= sign * joint.damping / I;
+                if (b >= 0)
+                    slopes_(row, b) += sign * joint.stiffness / I, slopes_(row, G + b) += sign * joint.damping / I;
+            }
+        }
+        return true;
+    }
+    std::vector<double> y(s.y.size());
+    for (std::size_t k = 0; k < y.size(); ++k) y[k] = s.y[k][node];
+    const auto torques = [&](std::vector<double>& out) {
+        std::vector<double> belts(mechanics_.joints()), loads(n_), of_bodies;
+        for (std::size_t joint = 0; joint < belts.size(); ++joint) belts[joint] = s.belts[joint][node];
+        for (std::size_t i = 0; i < n_; ++i) loads[i] = s.loads[i][node];
+        const Moment at{s.times[node], s.side(node), y};
+        mechanics_.torques(at, mode, belts, loads, of_bodies);
+        out.assign(rows, 0);
+        for (std::size_t i = 0; i < n_; ++i) {
+            if (frame.group[i] >= 0) out[static_cast<std::size_t>(frame.group[i])] += of_bodies[i];
+        }
+        for (std::size_t g = 0; g < groups; ++g) out[g] /= frame.inertia[g];
+        mechanics_.rates(at, out.data() + groups);
+        return std::all_of(out.begin(), out.end(), [](double x) { return std::isfinite(x); });
+    };
+    std::vector<double> above, below;
+    for (std::size_t c = 0; c < columns; ++c) {
+        // Which of y go together, and how widely they move on the segment.
+        std::vector<std::size_t> moved;
+        if (c < 2 * groups) {
+            const std::size_t from = c < groups ? 0 : n_;
+            for (std::size_t i = 0; i < n_; ++i) {
+                if (frame.group[i] == static_cast<int>(c % groups)) moved.push_back(from + i);
+            }
+        } else {
+            moved.push_back(2 * n_ + (c - 2 * groups));
+        }
+        double spread = 0;
+        for (const std::size_t k : moved) {
+            const double rate = k < n_ ? s.y[n_ + k][node] : s.f[k][node];
+            spread = std::max(spread, std::fabs(y[k]) + s.h * std::fabs(rate));
+        }
+        const double d = spread > 0 ? 1e-4 * spread : 1e-9;
+        const std::vector<double> kept = y;
+        for (const std::size_t k : moved) y[k] = kept[k] + d;
+        if (!torques(above)) return false;
+        for (const std::size_t k : moved) y[k] = kept[k] - d;
+        if (!torques(below)) return false;
+        y = kept;
+        for (std::size_t r = 0; r < rows; ++r) {
+            slopes_(static_cast<Eigen::Index>(r), static_cast<Eigen::Index>(c)) = (above[r] - below[r]) / (2 * d);
+        }
+    }
+    return true;
+}
+
+const Eigen::PartialPivLU<Eigen::MatrixXd>& Collocation::newton_matrix(double h, const Frame& frame) {
+    for (auto found = factors_.lower_bound(h * (1 - 1e-6)); found != factors_.end(); ++found) {
+        if (found->first > h * (1 + 1e-6)) break;
+        return found->second;
+    }
+    using Inner = Eigen::Matrix<double, inner, inner>;
+    static const Inner once = hybrid::integration().bottomRightCorner<inner, inner>(), twice = once * once;
+    const auto size = static_cast<Eigen::Index>(inner), rows = slopes_.rows(),
+               groups = static_cast<Eigen::Index>(frame.groups());
+    Eigen::MatrixXd A = Eigen::MatrixXd::Identity(size * rows, size * rows);
+    for (Eigen::Index r = 0; r < rows; ++r) {
+        for (Eigen::Index c = 0; c < rows; ++c) {
+            auto block = A.block<inner, inner>(r * size, c * size);
+            if (c < groups) {
+                if (const double k = h * h * slopes_(r, c); k != 0) block -= k * twice;
+                if (const double d = h * slopes_(r, groups + c); d != 0) block -= d * once;
+            } else if (const double d = h * slopes_(r, groups + c); d != 0) {
+                block -= d * once;
+            }
+        }
+    }
+    if (factors_.size() >= most_factors) factors_.clear();
+    return factors_.emplace(h, A.partialPivLu()).first->second;
+}
+
+double Collocation::torque_size(const Segment& s, std::size_t body) const {
+    double size = greatest(s.loads[body]) + greatest(s.torques[body]);
+    thread_local std::vector<double> y;
+    y.resize(s.y.size());
+    for (std::size_t k = 0; k < y.size(); ++k) y[k] = s.y[k][0];
+    for (std::size_t j = 0; j < mechanics_.joints(); ++j) {
+        const model::Joint& joint = mechanics_.system().joints[j];
+        if (joint.first != static_cast<int>(body) && joint.second != static_cast<int>(body)) continue;
+        size += mechanics_.size_of(j, {s.times[0], s.side(0), y});
+    }
+    return size;
+}
+
+Collocation::Attempt Collocation::iterate(Segment& s, const Mode& mode, const Frame& frame,
+                                          const std::vector<double>& departing) {
+    const std::size_t groups = frame.groups(), count = groups + m_;
+    unknown_.resize(count), found_.resize(count);
+    residual_.resize(static_cast<Eigen::Index>(inner * count));
+    if (slopes_of_ != frame.group) slopes_known_ = false, slopes_of_ = frame.group;
+    enum class Slopes { known, here, none };
+    // Beside a jump of a rate differences tell a slope that is none; where a segment is short it does without any.
+    for (const Slopes slopes : {Slopes::known, Slopes::here, Slopes::none}) {
+        if (!evaluate(s, mode, frame, 0, departing)) return Attempt::failed;
+        for (std::size_t k = 0; k < count; ++k) unknown_[k].fill(found_[k][0]);
+        for (std::size_t i = 0; i < n_; ++i) s.f[n_ + i].fill(0);
+        for (std::size_t k = 0; k < m_; ++k) s.f[2 * n_ + k].fill(found_[groups + k][0]);
+        place(s, frame);
+        double before = std::numeric_limits<double>::infinity();
+        for (int i = 0; i < most_iterations; ++i) {
+            point_.resize(s.y.size());
+            for (std::size_t j = 1; j < node_count; ++j) {
+                for (std::size_t k = 0; k < point_.size(); ++k) point_[k] = s.y[k][j];
+                if (!evaluate(s, mode, frame, j, point_)) return Attempt::failed;
+            }
+            if (count == 0) return Attempt::resolved;
+            if (slopes != Slopes::none && !slopes_known_ && !find_slopes(s, mode, frame, node_count / 2)) {
+                slopes_known_ = false;
+                return Attempt::failed;
+            }
+            for (std::size_t k = 0; k < count; ++k) {
+                for (std::size_t j = 1; j < node_count; ++j) {
+                    residual_(static_cast<Eigen::Index>(k * inner + j - 1)) = found_[k][j] - unknown_[k][j];
+                }
+            }
+            if (slopes == Slopes::none) {
+                step_ = residual_;
+            } else {
+                step_ = newton_matrix(s.h, frame).solve(residual_);
+            }
+            double change = 0, left = 0;
+            for (std::size_t k = 0; k < count; ++k) {
+                double moves = 0;
+                if (k < groups) {
+                    for (std::size_t b = 0; b < n_; ++b) {
+                        if (frame.group[b] != static_cast<int>(k)) continue;
+                        moves = std::max(moves, greatest(s.y[n_ + b]) + s.h / frame.inertia[k] * torque_size(s, b));
+                    }
+                } else {
+                    moves = greatest(s.y[2 * n_ + (k - groups)]) + s.h * greatest(unknown_[k]);
+                }
+                const double scale = moves + smallest;
+                for (std::size_t j = 1; j < node_count; ++j) {
+                    const auto row = static_cast<Eigen::Index>(k * inner + j - 1);
+                    unknown_[k][j] += step_(row);
+                    change = std::max(change, s.h * std::fabs(step_(row)) / scale);
+                    left = std::max(left, s.h * std::fabs(residual_(row)) / scale);
+                }
+            }
+            place(s, frame);
+            if (!std::isfinite(change + left)) break;
+            const double rate = before < std::numeric_limits<double>::infinity() ? change / before : 1;
+            const bool converged = change <= 16 * rounding || (i >= 1 && change * rate <= 4 * rounding) ||
+                                   (i >= 2 && change <= 1e-12 && rate > 0.3);
+            if (converged && left <= most_left_over) {
+                if (i >= many_iterations) slopes_known_ = false;
+                return Attempt::resolved;
+            }
+            if (i >= 3 && rate > 0.7) break;
+            before = change;
+        }
+        if (slopes == Slopes::known && !find_slopes(s, mode, frame, 0)) break;
+        if (!mechanics_.nonlinear() && slopes == Slopes::here) break;
+    }
+    slopes_known_ = false;
+    return Attempt::shorten;
+}
+
+Collocation::Attempt Collocation::solve(Segment& s, const Mode& mode, const Frame& frame,
+                                        const std::vector<double>& begin, const std::vector<double>& departing) {
+    unresolved_ = std::numeric_limits<double>::infinity();
+    if (!sample(s, mode, frame, begin)) return Attempt::failed;
+    const Attempt attempt = iterate(s, mode, frame, departing);
+    if (attempt != Attempt::resolved) return attempt;
+    const std::size_t groups = frame.groups();
+    for (std::size_t i = 0; i < n_; ++i) {
+        for (std::size_t j = 0; j < node_count; ++j) {
+            const double of_group = frame.group[i] < 0 ? 0 : unknown_[static_cast<std::size_t>(frame.group[i])][j];
+            s.f[n_ + i][j] = of_group + offset_rate_[i][j];
+        }
+    }
+    for (std::size_t k = 0; k < m_; ++k) s.f[2 * n_ + k] = unknown_[groups + k];
+    for (std::size_t k = 0; k < s.y.size(); ++k) {
+        Nodes change{};
+        for (std::size_t j = 0; j < node_count; ++j) change[j] = k < n_ ? s.moved[k][j] : s.y[k][j] - begin[k];
+        s.series[k] = cheb::fit(change);
+        if (!std::isfinite(greatest(change))) return Attempt::failed;
+    }
+    find_holding(s, mode, frame);
+    judge(s, mode, frame);
+    if (unresolved_ <= 1 && !agrees_between(s, mode, frame)) unresolved_ = 2;
+    return unresolved_ <= 1 ? Attempt::resolved : Attempt::shorten;
+}
+
+void Collocation::find_holding(Segment& s, const Mode& mode, const Frame& frame) const {
+    if (frame.edges.empty()) return;
+    std::vector<double> lacking(n_), held(mechanics_.joints());
+    for (std::size_t j = 0; j < node_count; ++j) {
+        for (std::size_t i = 0; i < n_; ++i) {
+            lacking[i] = mechanics_.system().bodies[i].inertia * s.f[n_ + i][j] - s.torques[i][j];
+        }
+        frame.multipliers(lacking, held);
+        for (std::size_t joint = 0; joint < held.size(); ++joint) {
+            if (mode.holds(joint)) s.holding[joint][j] = held[joint];
+        }
+    }
+}
+
+/// The last coefficients of what drives each value, against what that value is and how it changes.
+void Collocation::judge(const Segment& s, const Mode& mode, const Frame& frame) {
+    unresolved_ = 0;
+    allowed_.assign(n_, 0);
+    const double h = s.h, late = std::max(std::fabs(s.start.hi), std::fabs(s.end));
+    for (std::size_t i = 0; i < n_; ++i) {
+        const double torques = torque_size(s, i);
+        const Series load = cheb::fit(s.loads[i]);
+        const double lost = lost_in_time(load, late, h, torques);
+        if (frame.group[i] >= 0) {
+            const double per_torque = h * (h / frame.inertia[static_cast<std::size_t>(frame.group[i])]);
+            Nodes w{};
+            for (std::size_t j = 0; j < node_count; ++j) w[j] = h * h * s.f[n_ + i][j];
+            const Series series = cheb::fit(w);
+            const double size = cheb::size(series);
+            const double allowed = tolerance_ * std::max(h * greatest(s.y[n_ + i]), size) +
+                                   64 * rounding * (size + per_torque * torques) + per_torque * lost + smallest;
+            unresolved_ = std::max(unresolved_, cheb::tail(series) / allowed);
+            allowed_[i] = allowed / (h * h);
+        } else {
+            const Series series = cheb::fit(s.torques[i]);
+            unresolved_ =
+                std::max(unresolved_, cheb::tail(series) / ((tolerance_ + 16 * rounding) * torques + lost + smallest));
+        }
+    }
+    for (std::size_t joint = 0; joint < mechanics_.joints(); ++joint) {
+        // What a limit is compared with must be known as well as the motion.
+        if (mode.holds(joint)) {
+            const Series series = cheb::fit(s.holding[joint]);
+            const auto first = static_cast<std::size_t>(mechanics_.system().joints[joint].first);
+            const double torques = torque_size(s, first), lost = lost_in_time(series, late, h, torques);
+            unresolved_ = std::max(unresolved_, cheb::tail(series) / ((tolerance_ + 64 * rounding) * torques + lost +
+                                                                      blurred_by_belts(s) + smallest));
+        }
+        if (!mechanics_.has_belt(joint)) continue;
+        const Series belt = cheb::fit(s.belts[joint]);
+        const double allowed = (tolerance_ + 16 * rounding) * greatest(s.belts[joint]) +
+                               16 * rounding * fastest_belt_[joint] +
+                               lost_in_time(belt, late, h, fastest_belt_[joint]) + smallest;
+        unresolved_ = std::max(unresolved_, cheb::tail(belt) / allowed);
+    }
+    for (std::size_t k = 0; k < m_; ++k) {
+        Nodes rate{};
+        for (std::size_t j = 0; j < node_count; ++j) rate[j] = h * s.f[2 * n_ + k][j];
+        const Series series = cheb::fit(rate);
+        fastest_rate_[k] = std::max(fastest_rate_[k], greatest(s.f[2 * n_ + k]));
+        const double allowed = (tolerance_ + 64 * rounding) * std::max(greatest(s.y[2 * n_ + k]), cheb::size(series)) +
+                               64 * rounding * h * fastest_rate_[k] +
+                               lost_in_time(series, late, h, h * fastest_rate_[k]);
+        unresolved_ = std::max(unresolved_, cheb::tail(series) / (allowed + smallest));
+    }
+}
+
+double Collocation::blurred_by_belts(const Segment& s) const {
+    if (!mechanics_.has_belts()) return 0;
+    double fastest = 0, inertia = 0;
+    for (const double belt : fastest_belt_) fastest = std::max(fastest, belt);
+    for (const model::Body& body : mechanics_.system().bodies) inertia += body.inertia;
+    return inertia * 256 * rounding * fastest / s.h;
+}
+
+/// Asks between the nodes. A pulse of a function may be there that no node has met, or a bend of a law.
+bool Collocation::agrees_between(const Segment& s, const Mode& mode, const Frame& frame) {
+    constexpr double clearly = 64, too_short = 1e-6;
+    if (2 * s.h <= too_short * longest_) return true;
+    if (mechanics_.nonlinear()) {
+        std::vector<double> y, belts(mechanics_.joints()), loads, torques;
+        for (const std::size_t j : {0U, 7U, 9U, 15U}) {
+            const double x = (cheb::nodes[j] + cheb::nodes[j + 1]) / 2, t = s.time(x);
+            for (std::size_t joint = 0; joint < belts.size(); ++joint) {
+                belts[joint] = mechanics_.belt(joint, t, Side::at);
+            }
+            s.state(x, y);
+            mechanics_.loads_of_time(t, Side::at, loads);
+            mechanics_.torques({t, Side::at, y}, mode, belts, loads, torques);
+            for (std::size_t g = 0; g < frame.groups(); ++g) {
+                double torque = 0, found = 0, allowed = 0;
+                for (std::size_t i = 0; i < n_; ++i) {
+                    if (frame.group[i] != static_cast<int>(g)) continue;
+                    const double I = mechanics_.system().bodies[i].inertia;
+                    torque += torques[i];
+                    found += I * cheb::value(cheb::fit(s.f[n_ + i]), x);
+                    allowed += I * allowed_[i];
+                }
+                if (!(std::fabs(torque - found) <= clearly * allowed)) return false;
+            }
+        }
+        return true;
+    }
+    for (std::size_t i = 0; i < n_; ++i) {
+        const Signal& load = mechanics_.loads()[i];
+        if (!load.has_script()) continue;
+        const Series series = cheb::fit(s.loads[i]);
+        const double allowed = (tolerance_ + 4 * rounding) * torque_size(s, i) +
+                               lost_in_time(series, std::fabs(s.end), s.h, torque_size(s, i));
+        for (const std::size_t j : {7U, 8U, 9U}) {
+            const double x = (cheb::nodes[j] + cheb::nodes[j + 1]) / 2;
+            mechanics_.loads_of_time(s.time(x), Side::at, load_);
+            if (!(std::fabs(load_[i] - cheb::value(series, x)) <= clearly * allowed)) return false;
+        }
+    }
+    return true;
+}
+
+std::optional<double> Collocation::found_break(const Segment& s) const {
+    if (!(unresolved_ > gross)) return {};
+    std::vector<double> loads;
+    std::optional<double> first;
+    const auto look = [&](const Nodes& values, double size, const auto& at) {
+        if (!(cheb::tail(cheb::fit(values)) > gross * 1e-13 * size)) return;
+        const auto found = spectral::find_break(s.times, values, at);
+        if (!found || !(*found <= s.end) || s.start.until(*found) < 1e-6 * s.h) return;
+        if (!first || *found < *first) first = *found;
+    };
+    for (std::size_t i = 0; i < n_; ++i) {
+        if (!mechanics_.loads()[i].has_script()) continue;
+        look(s.loads[i], torque_size(s, i), [&](double t) {
+            mechanics_.loads_of_time(t, Side::at, loads);
+            return loads[i];
+        });
+    }
+    for (std::size_t joint = 0; joint < mechanics_.joints(); ++joint) {
+        if (!mechanics_.has_belt(joint) || !mechanics_.belt_of(joint).has_script()) continue;
+        look(s.belts[joint], fastest_belt_[joint], [&](double t) { return mechanics_.belt(joint, t, Side::at); });
+    }
+    const_cast<Mechanics&>(mechanics_).for_each_signal([&](const Signal& signal) {
+        if (!signal.has_script() || signal.asks_the_motion()) return;
+        Nodes values{};
+        for (std::size_t j = 0; j < node_count; ++j) values[j] = signal.of_time({s.times[j], s.side(j), {}});
+        look(values, greatest(values), [&](double t) { return signal.of_time({t, Side::at, {}}); });
+    });
+    return first;
+}
+
+void Collocation::pass_over(Segment& s, const Frame& /*frame*/) const {
+    for (std::size_t k = 0; k < s.y.size(); ++k) {
+        Nodes change{};
+        const double rate = k < n_ ? s.y[n_ + k][0] : s.f[k][0];
+        for (std::size_t j = 1; j < node_count; ++j) {
+            change[j] = s.h * (1 + cheb::nodes[j]) * (std::isfinite(rate) ? rate : 0);
+            s.y[k][j] = s.y[k][0] + change[j];
+        }
+        s.series[k] = cheb::fit(change);
+        if (k < n_) s.moved[k] = change;
+        s.f[k].fill(s.f[k][0]);
+    }
+    for (std::size_t i = 0; i < n_; ++i) s.torques[i].fill(s.torques[i][0]);
+    for (Nodes& held : s.holding) held.fill(held[0]);
+}
+
+}  // namespace dinal::motion::engine

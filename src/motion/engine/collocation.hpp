@@ -1,0 +1,109 @@
+// A stretch of the motion of an assembly in one mode, by collocation at Chebyshev points.
+#pragma once
+
+#include <Eigen/Dense>
+#include <map>
+#include <optional>
+#include <vector>
+
+#include "motion/clock.hpp"
+#include "motion/engine/mechanics.hpp"
+#include "motion/spectral/chebyshev.hpp"
+
+namespace dinal::motion::engine {
+
+namespace cheb = spectral::chebyshev;
+using Nodes = cheb::Samples;
+using Series = cheb::Series<cheb::points>;
+inline constexpr std::size_t node_count = cheb::points;
+inline constexpr double rounding = std::numeric_limits<double>::epsilon();
+
+inline double greatest(const Nodes& values) {
+    double most = 0;
+    for (const double x : values) most = std::max(most, std::fabs(x));
+    return most;
+}
+
+/// What a stepper yields, and all else reads: angles, velocities and states over a stretch without a jump.
+struct Segment {
+    Clock start;
+    double h = 0;    ///< half its length
+    double end = 0;  ///< exactly
+    bool from_break = false, to_break = false;
+    bool to_the_end = false;  ///< it ends at `end` to the letter, be that a little earlier or later than 2 h
+    Nodes times{};
+    std::vector<Nodes> y{};                    ///< angles, velocities, states at the nodes
+    std::vector<Nodes> f{};                    ///< their rates: of the angles without meaning
+    std::vector<Nodes> moved{};                ///< angles less their first, which have digits that these have not
+    std::vector<Series> series{};              ///< of y, each less its first
+    std::vector<Nodes> loads{};                ///< of each body: what depends on the time alone
+    std::vector<Nodes> torques{};              ///< of each body: all but those of what holds
+    std::vector<Nodes> belts{}, belt_rates{};  ///< of each joint
+    std::vector<Nodes> holding{};              ///< of each joint that holds: the torque on its first body
+
+    [[nodiscard]] double time(double x) const { return x >= 1 ? end : start.after(h * (1 + x)); }
+    [[nodiscard]] double at(std::size_t k, double x) const {
+        return x >= 1 ? y[k][node_count - 1] : x <= -1 ? y[k][0] : y[k][0] + cheb::value(series[k], x);
+    }
+    [[nodiscard]] Side side(std::size_t node) const {
+        return node == 0 && from_break ? Side::after : node + 1 == node_count && to_break ? Side::before : Side::at;
+    }
+    /// All of y.
+    void state(double x, std::vector<double>& out) const {
+        out.resize(y.size());
+        for (std::size_t k = 0; k < y.size(); ++k) out[k] = at(k, x);
+    }
+};
+
+class Collocation {
+public:
+    enum class Attempt { resolved, shorten, failed };
+    Collocation(const Mechanics& mechanics, double tolerance, double longest);
+
+    /// From `start` to `end`, 2 h later. Functions of the motion are asked at `departing` at its beginning. failed:
+    /// something is not finite at bad_time().
+    Attempt solve(Segment& segment, const Mode& mode, const Frame& frame, const std::vector<double>& begin,
+                  const std::vector<double>& departing);
+    [[nodiscard]] double bad_time() const { return bad_time_; }
+    /// Over 1: by how much the last one was not resolved.
+    [[nodiscard]] double unresolved() const { return unresolved_; }
+    /// Where a function of the time breaks in the last one; none when none does.
+    [[nodiscard]] std::optional<double> found_break(const Segment& segment) const;
+    /// A stretch too short to matter is a straight line.
+    void pass_over(Segment& segment, const Frame& frame) const;
+    /// What torques may be off by because the slopes of belts are differences.
+    [[nodiscard]] double blurred_by_belts(const Segment& segment) const;
+    [[nodiscard]] double fastest_belt(std::size_t joint) const { return fastest_belt_[joint]; }
+    /// The multipliers of what holds, at the nodes.
+    void find_holding(Segment& segment, const Mode& mode, const Frame& frame) const;
+
+private:
+    static constexpr std::size_t inner = node_count - 1;
+    bool sample(Segment& segment, const Mode& mode, const Frame& frame, const std::vector<double>& begin);
+    bool evaluate(Segment& segment, const Mode& mode, const Frame& frame, std::size_t node,
+                  const std::vector<double>& y);
+    void place(Segment& segment, const Frame& frame) const;
+    bool find_slopes(const Segment& segment, const Mode& mode, const Frame& frame, std::size_t node);
+    const Eigen::PartialPivLU<Eigen::MatrixXd>& newton_matrix(double h, const Frame& frame);
+    Attempt iterate(Segment& segment, const Mode& mode, const Frame& frame, const std::vector<double>& departing);
+    void judge(const Segment& segment, const Mode& mode, const Frame& frame);
+    bool agrees_between(const Segment& segment, const Mode& mode, const Frame& frame);
+    [[nodiscard]] double torque_size(const Segment& segment, std::size_t body) const;
+
+    const Mechanics& mechanics_;
+    double tolerance_, longest_;
+    std::size_t n_, m_;
+    double bad_time_ = 0, unresolved_ = 0;
+    std::vector<double> fastest_belt_, fastest_rate_;
+    std::vector<double> allowed_;                           ///< of each body's acceleration
+    std::vector<Nodes> offset_, offset_rate_, offset_way_;  ///< of each body against its group
+    std::vector<Nodes> unknown_, found_;                    ///< accelerations of the groups and rates, and new ones
+    std::vector<double> point_, torque_, load_, belt_, rate_;
+    Eigen::MatrixXd slopes_;
+    std::vector<int> slopes_of_;  ///< the groups that they belong to
+    bool slopes_known_ = false;
+    std::map<double, Eigen::PartialPivLU<Eigen::MatrixXd>> factors_;
+    Eigen::VectorXd residual_, step_;
+};
+
+}  // namespace dinal::motion::engine

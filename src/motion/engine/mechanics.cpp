@@ -1,0 +1,377 @@
+#include "motion/engine/mechanics.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace dinal::motion::engine {
+
+namespace {
+
+using model::Joint;
+using model::Motion;
+
+std::size_t side_of(Motion way) {
+    return way == Motion::forward ? 1 : 0;
+}
+
+/// Which bodies are held together, with the ground behind the last one.
+class Union {
+public:
+    explicit Union(std::size_t bodies) : parent_(bodies + 1) { std::iota(parent_.begin(), parent_.end(), 0U); }
+    std::size_t root(std::size_t i) {
+        while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
+        return i;
+    }
+    /// False when they were together already.
+    bool join(std::size_t a, std::size_t b) {
+        a = root(a), b = root(b);
+        if (a == b) return false;
+        parent_[std::min(a, b)] = std::max(a, b);  // the ground stays a root
+        return true;
+    }
+
+private:
+    std::vector<std::size_t> parent_;
+};
+
+}  // namespace
+
+Frame::Frame(const model::Assembly& system, const Mode& mode) : group(system.bodies.size(), grounded) {
+    const std::size_t n = system.bodies.size();
+    Union together(n);
+    std::vector<std::size_t> tree;
+    for (std::size_t j = 0; j < system.joints.size(); ++j) {
+        if (!mode.holds(j)) continue;
+        const Joint& joint = system.joints[j];
+        const std::size_t second = joint.second < 0 ? n : index(joint.second);
+        (together.join(index(joint.first), second) ? tree : closing).push_back(j);
+    }
+    std::vector<int> of_root(n + 1, grounded);
+    for (std::size_t i = 0; i < n; ++i) {
+        const std::size_t root = together.root(i);
+        if (root == together.root(n)) continue;
+        if (of_root[root] == grounded) {
+            of_root[root] = static_cast<int>(inertia.size());
+            inertia.push_back(0);
+        }
+        group[i] = of_root[root];
+        inertia[index(group[i])] += system.bodies[i].inertia;
+    }
+    // From the ground, and then from the first body of each group, outwards.
+    std::vector<char> reached(n, 0);
+    const auto grow = [&] {
+        for (bool grown = true; grown;) {
+            grown = false;
+            for (const std::size_t j : tree) {
+                const Joint& joint = system.joints[j];
+                const bool first = reached[index(joint.first)] != 0;
+                const bool second = joint.second < 0 || reached[index(joint.second)] != 0;
+                if (first == second) continue;
+                edges.push_back(first ? Edge{j, joint.second, joint.first, -1} : Edge{j, joint.first, joint.second, 1});
+                reached[index(edges.back().child)] = 1;
+                grown = true;
+            }
+        }
+    };
+    grow();
+    for (std::size_t i = 0; i < n; ++i) {
+        if (reached[i] != 0) continue;
+        reached[i] = 1;
+        grow();
+    }
+    if (closing.empty()) return;
+    // In loops torques are shared as evenly as can be: the least sum of squares.
+    sharing_of = tree;
+    sharing_of.insert(sharing_of.end(), closing.begin(), closing.end());
+    Eigen::MatrixXd on_bodies =
+        Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(n), static_cast<Eigen::Index>(sharing_of.size()));
+    for (std::size_t c = 0; c < sharing_of.size(); ++c) {
+        const Joint& joint = system.joints[sharing_of[c]];
+        on_bodies(joint.first, static_cast<Eigen::Index>(c)) = 1;
+        if (joint.second >= 0) on_bodies(joint.second, static_cast<Eigen::Index>(c)) = -1;
+    }
+    sharing = on_bodies.completeOrthogonalDecomposition().pseudoInverse();
+}
+
+void Frame::offsets(const std::vector<double>& of_joints, const Mode& mode, std::vector<double>& of_bodies) const {
+    of_bodies.assign(group.size(), 0);
+    for (const Edge& edge : edges) {
+        const double own = mode.leans[edge.joint] != 0 ? 0 : of_joints[edge.joint];
+        const double before = edge.parent < 0 ? 0 : of_bodies[index(edge.parent)];
+        of_bodies[index(edge.child)] = before + edge.sign * own;
+    }
+}
+
+void Frame::multipliers(const std::vector<double>& lacking, std::vector<double>& of_joints) const {
+    if (!closing.empty()) {
+        const Eigen::Map<const Eigen::VectorXd> r(lacking.data(), static_cast<Eigen::Index>(lacking.size()));
+        const Eigen::VectorXd shared = sharing * r;
+        for (std::size_t c = 0; c < sharing_of.size(); ++c) {
+            of_joints[sharing_of[c]] = shared(static_cast<Eigen::Index>(c));
+        }
+        return;
+    }
+    thread_local std::vector<double> behind;
+    behind = lacking;
+    for (std::size_t e = edges.size(); e-- > 0;) {
+        const Edge& edge = edges[e];
+        of_joints[edge.joint] = edge.sign * behind[index(edge.child)];
+        if (edge.parent >= 0) behind[index(edge.parent)] += behind[index(edge.child)];
+    }
+}
+
+/// By exchanging at once all that are on the wrong side of their condition, and, where that goes round, one at a time.
+Eigen::VectorXd least_in_box(const Eigen::MatrixXd& G, const Eigen::VectorXd& g, const Eigen::VectorXd& low,
+                             const Eigen::VectorXd& high) {
+    const Eigen::Index n = g.size();
+    std::vector<int> at(static_cast<std::size_t>(n), 0);  // 0 free, -1 at its lower bound, 1 at the upper one
+    Eigen::VectorXd x = Eigen::VectorXd::Zero(n);
+    Eigen::Index fewest = n + 1;
+    int patience = 10;
+    const int most = 50 + 20 * static_cast<int>(n);
+    for (int i = 0; i < most; ++i) {
+        std::vector<Eigen::Index> free;
+        for (Eigen::Index k = 0; k < n; ++k) {
+            const int bound = at[static_cast<std::size_t>(k)];
+            if (bound == 0) free.push_back(k);
+            x(k) = bound < 0 ? low(k) : bound > 0 ? high(k) : 0;
+        }
+        if (!free.empty()) {
+            const Eigen::VectorXd rest = -(g + G * x);
+            const Eigen::VectorXd of_free = rest(free);
+            const Eigen::MatrixXd among = G(free, free);
+            const Eigen::VectorXd found = among.ldlt().solve(of_free);
+            x(free) = found;
+        }
+        const Eigen::VectorXd slope = G * x + g;
+        std::vector<std::pair<Eigen::Index, int>> wrong;
+        for (Eigen::Index k = 0; k < n; ++k) {
+            const int bound = at[static_cast<std::size_t>(k)];
+            if (bound == 0 && x(k) < low(k)) wrong.emplace_back(k, -1);
+            if (bound == 0 && x(k) > high(k)) wrong.emplace_back(k, 1);
+            if (bound * slope(k) > 0) wrong.emplace_back(k, 0);
+        }
+        if (wrong.empty()) break;
+        const auto count = static_cast<Eigen::Index>(wrong.size());
+        if (count < fewest) {
+            fewest = count, patience = 10;
+        } else if (--patience < 0) {
+            wrong.erase(wrong.begin(), wrong.end() - 1);
+        }
+        for (const auto& [k, bound] : wrong) at[static_cast<std::size_t>(k)] = bound;
+    }
+    return x.cwiseMax(low).cwiseMin(high);
+}
+
+Mechanics::Mechanics(const model::Assembly& system, const Drive& drive, const Asking& asking)
+    : system_(system), drive_(drive), asking_(asking), base_(drive.base, &asking) {
+    for (const model::Excitation& load : drive.loads) {
+        loads_.emplace_back(load, &asking);
+        nonlinear_ |= loads_.back().asks_the_motion();
+    }
+    nonlinear_ |= !drive.states.empty();
+    for (std::size_t j = 0; j < joints(); ++j) {
+        const Joint& joint = system.joints[j];
+        const model::ContactFriction& friction = joint.friction;
+        Contact contact;
+        for (const std::size_t side : {0U, 1U}) {
+            if (friction.sliding[side]) contact.sliding[side] = Signal(*friction.sliding[side], &asking);
+            if (friction.holding[side]) contact.holding[side] = Signal(*friction.holding[side], &asking);
+            nonlinear_ |= contact.sliding[side].asks_the_motion();
+            contact.varies |= !contact.holding[side].none() && contact.holding[side].constant_from() == model::never;
+        }
+        if (friction.normal) contact.normal = Signal(*friction.normal, &asking);
+        contact.varies |= !friction.is_constant();
+        nonlinear_ |= contact.normal.asks_the_motion() || friction.function != nullptr ||
+                      friction.law.depends_on_speed() || !joint.spring.none();
+        contacts_.push_back(std::move(contact));
+        rubs_.push_back(friction.none() ? 0 : 1);
+        belts_.emplace_back(rubs_.back() != 0 ? drive.belts[j] : model::Excitation(), &asking);
+        has_belts_ |= !belts_.back().none();
+    }
+}
+
+/// Where it does not break it is asked at t itself: a hair beside that it may be off by less than any rounding, and a
+/// mass would slide on a belt that has its velocity.
+double Mechanics::belt(std::size_t joint, double t, Side side) const {
+    if (belts_[joint].none()) return 0;
+    const bool breaks = side != Side::at && belts_[joint].next_break(std::nextafter(t, -model::never)) == t;
+    return belts_[joint].value({t, breaks ? side : Side::at, {}});
+}
+
+/// By differences to one side, of a function whose jumps and corners are announced or stand still for so long.
+double Mechanics::belt_rate(std::size_t joint, double t, Side side, double within) const {
+    if (belts_[joint].none()) return 0;
+    const double h = side == Side::before ? -within : within;
+    const auto at = [&](double part) { return belt(joint, t + part * h, part == 0 ? side : Side::at); };
+    // Through five values: right for what a parabola of the fourth degree follows.
+    return (-25 * at(0) + 48 * at(0.25) - 36 * at(0.5) + 16 * at(0.75) - 3 * at(1)) / (3 * h);
+}
+
+void Mechanics::loads_of_time(double t, Side side, std::vector<double>& loads) const {
+    const Moment at{t, side, {}};
+    const double push = base_.none() ? 0 : base_.value(at);
+    loads.resize(bodies());
+    for (std::size_t i = 0; i < bodies(); ++i) {
+        loads[i] = loads_[i].of_time(at);
+        if (!base_.none()) loads[i] += -system_.bodies[i].inertia * push;
+    }
+}
+
+double Mechanics::angle(std::size_t joint, std::span<const double> y) const {
+    const Joint& own = system_.joints[joint];
+    return own.second < 0 ? y[index(own.first)] : y[index(own.first)] - y[index(own.second)];
+}
+
+double Mechanics::velocity(std::size_t joint, std::span<const double> y) const {
+    return angle(joint, y.subspan(bodies()));
+}
+
+double Mechanics::sliding(std::size_t joint, const Slipping& how, double slip, const Moment& at) const {
+    const model::ContactFriction& friction = system_.joints[joint].friction;
+    const Contact& contact = contacts_[joint];
+    const double speed = model::sign_of(how.way) * slip;
+    const Signal& own = contact.sliding[side_of(how.way)];
+    double torque = 0;
+    if (friction.function != nullptr) {
+        const auto asked = [&](double of_speed) {
+            std::vector<double> with_speed(1, of_speed);
+            const std::size_t from = asking_.named ? 0 : 2;
+            with_speed.insert(with_speed.end(), at.y.begin() + static_cast<std::ptrdiff_t>(from), at.y.end());
+            const model::State state = asking_.named ? model::State{} : model::State{at.y[0], at.y[1]};
+            return friction.function->value_with(Asking::towards(at.t, at.side), state, with_speed);
+        };
+        torque = speed < 0 ? 2 * asked(0) - asked(-speed) : asked(speed);  // with the slope that it has at 0
+    } else if (!own.none()) {
+        torque = own.value(at);
+    } else if (friction.law.ranges() > 0) {
+        const model::SpeedRange range = friction.law.range(how.range);
+        torque = range.straight ? range.at(speed) : friction.law.sliding(how.way, speed);
+    } else {
+        torque = friction.law.sliding(how.way, speed);
+    }
+    return contact.normal.none() ? torque : torque * std::max(0.0, contact.normal.value(at));
+}
+
+double Mechanics::holding(std::size_t joint, Motion way, const Moment& at) const {
+    const model::ContactFriction& friction = system_.joints[joint].friction;
+    const Contact& contact = contacts_[joint];
+    const Signal &own = contact.holding[side_of(way)], &sliding_own = contact.sliding[side_of(way)];
+    double torque = 0;
+    if (!own.none()) {
+        torque = own.value(at);
+    } else if (friction.function != nullptr) {
+        return sliding(joint, {.way = way}, 0, at);
+    } else if (!sliding_own.none()) {
+        torque = sliding_own.value(at);
+    } else {
+        torque = friction.law.holding(way);
+    }
+    return contact.normal.none() ? torque : torque * std::max(0.0, contact.normal.value(at));
+}
+
+std::size_t Mechanics::range_of(std::size_t joint, double speed) const {
+    const model::Friction& law = system_.joints[joint].friction.law;
+    return law.ranges() > 0 ? law.range_of(speed) : 0;
+}
+
+double Mechanics::joint_torque(std::size_t joint, const Moment& at, const Mode& mode, double belt) const {
+    const Joint& own = system_.joints[joint];
+    const double q = angle(joint, at.y), s = velocity(joint, at.y);
+    double torque = 0;
+    const Slipping& how = mode.friction[joint];
+    if (how.riding) {
+        torque += model::sign_of(how.way) * holding(joint, how.way, at);
+    } else if (how.way != Motion::stuck && rubs(joint)) {
+        Slipping present = how;
+        // Along a wall nobody watches for the speeds at which a law changes its formula.
+        if (mode.leans[joint] != 0) present.range = range_of(joint, std::fabs(belt));
+        torque += model::sign_of(how.way) * sliding(joint, present, s - belt, at);
+    }
+    if (own.damping != 0) torque += own.damping * s;
+    if (own.stiffness != 0) torque += own.stiffness * q;
+    if (!own.spring.none()) torque += own.spring.torque(q);
+    return torque;
+}
+
+void Mechanics::torques(const Moment& at, const Mode& mode, const std::vector<double>& belts,
+                        const std::vector<double>& loads, std::vector<double>& of_bodies) const {
+    of_bodies = loads;
+    for (std::size_t i = 0; i < bodies(); ++i) {
+        if (loads_[i].asks_the_motion()) of_bodies[i] += loads_[i].of_motion(at);
+    }
+    for (std::size_t j = 0; j < joints(); ++j) {
+        const double torque = joint_torque(j, at, mode, belts[j]);
+        if (torque == 0) continue;
+        of_bodies[index(system_.joints[j].first)] -= torque;
+        if (system_.joints[j].second >= 0) of_bodies[index(system_.joints[j].second)] += torque;
+    }
+}
+
+void Mechanics::rates(const Moment& at, double* out) const {
+    for (std::size_t k = 0; k < states(); ++k) out[k] = asking_.ask(*drive_.states[k].rate, at);
+}
+
+double Mechanics::size_of(std::size_t joint, const Moment& at) const {
+    const Joint& own = system_.joints[joint];
+    const double q = angle(joint, at.y);
+    double size = std::fabs(own.stiffness * q) + std::fabs(own.spring.torque(q));
+    if (rubs(joint)) {
+        size +=
+            std::max(std::fabs(holding(joint, Motion::forward, at)), std::fabs(holding(joint, Motion::backward, at)));
+    }
+    return size;
+}
+
+double Mechanics::next_break(double t) const {
+    double first = model::never;
+    for_each_signal([&](const Signal& s) { first = std::min(first, s.next_break(t)); });
+    return first;
+}
+
+double Mechanics::view(double t, double spacing) const {
+    double least = model::never;
+    for_each_signal([&](const Signal& s) { least = std::min(least, s.view(t, spacing)); });
+    return least;
+}
+
+bool Mechanics::may_go_on() const {
+    bool may = true;
+    for_each_signal([&](const Signal& s) { may = may && s.may_go_on(); });
+    for (const model::OwnState& state : drive_.states) may = may && state.rate->may_go_on();
+    for (const Joint& joint : system_.joints) {
+        may = may && joint.spring.may_go_on();
+        if (joint.friction.function != nullptr) may = may && joint.friction.function->may_go_on();
+    }
+    return may;
+}
+
+bool Mechanics::asks_functions() const {
+    bool asks = false;
+    for_each_signal([&](const Signal& s) { asks = asks || s.asks_functions(); });
+    return asks;
+}
+
+double Mechanics::fastest(const Frame& frame) const {
+    const auto n = static_cast<Eigen::Index>(frame.groups());
+    if (n == 0) return 0;
+    Eigen::MatrixXd K = Eigen::MatrixXd::Zero(n, n);
+    for (const Joint& joint : system_.joints) {
+        if (joint.stiffness == 0) continue;
+        const int a = frame.group[index(joint.first)];
+        const int b = joint.second < 0 ? Frame::grounded : frame.group[index(joint.second)];
+        if (a == b) continue;
+        const auto scaled = [&](int p, int q) {
+            return joint.stiffness / std::sqrt(frame.inertia[index(p)] * frame.inertia[index(q)]);
+        };
+        if (a >= 0) K(a, a) += scaled(a, a);
+        if (b >= 0) K(b, b) += scaled(b, b);
+        if (a >= 0 && b >= 0) K(a, b) -= scaled(a, b), K(b, a) -= scaled(a, b);
+    }
+    if (n == 1) return std::sqrt(K(0, 0));
+    const double most = Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(K, Eigen::EigenvaluesOnly).eigenvalues()(n - 1);
+    return std::sqrt(std::max(0.0, most));
+}
+
+}  // namespace dinal::motion::engine

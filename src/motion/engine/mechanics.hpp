@@ -1,0 +1,170 @@
+// The torques on each body of an assembly, the modes of its contacts, and what these decide where nothing slips.
+#pragma once
+
+#include <Eigen/Dense>
+#include <array>
+#include <string>
+#include <vector>
+
+#include "model/assembly.hpp"
+#include "motion/engine/signal.hpp"
+#include "motion/simulate.hpp"
+
+namespace dinal::motion::engine {
+
+/// Of a body, which is not the ground.
+constexpr std::size_t index(int body) {
+    return static_cast<std::size_t>(body);
+}
+
+/// What acts on an assembly in a run, and from where it starts.
+struct Drive {
+    std::vector<model::Excitation> loads;  ///< M of each body
+    std::vector<model::Excitation> belts;  ///< of each joint: the velocity of what its friction acts against
+    model::Excitation base;                ///< acceleration of the support
+    std::vector<model::OwnState> states;
+    std::vector<model::WantedEvent> events;
+    std::vector<double> theta0, velocity0;
+};
+
+/// How the friction of a joint acts.
+struct Slipping {
+    model::Motion way = model::Motion::stuck;
+    bool leaving = false;   ///< at slip 0, and about to leave it
+    bool riding = false;    ///< at slip 0 because others hold, while this one gives all that it can
+    std::size_t range = 0;  ///< of its law, while it slides
+    double blunt = 0;       ///< what the pull must pass its limit by, after it was let go and did not leave
+};
+
+struct Mode {
+    std::vector<Slipping> friction;  ///< of each joint
+    std::vector<int> leans;          ///< of each joint: 1 at its upper wall, -1 at its lower one, else 0
+
+    [[nodiscard]] bool holds(std::size_t joint) const {
+        return leans[joint] != 0 || (friction[joint].way == model::Motion::stuck && rubs[joint]);
+    }
+    std::vector<char> rubs;  ///< of each joint: it has dry friction
+};
+
+/// The bodies that move together in a mode, and the joints that hold them together.
+struct Frame {
+    struct Edge {
+        std::size_t joint;
+        int child, parent;  ///< bodies; the parent may be the ground
+        double sign;        ///< 1 where the child is the first body of the joint
+    };
+    Frame(const model::Assembly& system, const Mode& mode);
+
+    static constexpr int grounded = -1;
+    std::vector<int> group;               ///< of each body
+    std::vector<double> inertia;          ///< of each group
+    std::vector<Edge> edges;              ///< each body's after its parent's
+    std::vector<std::size_t> closing;     ///< joints that hold, and close loops
+    Eigen::MatrixXd sharing;              ///< with loops: what each joint that holds takes of the torques on bodies
+    std::vector<std::size_t> sharing_of;  ///< its rows
+
+    [[nodiscard]] std::size_t groups() const { return inertia.size(); }
+    [[nodiscard]] bool together(const model::Joint& joint) const {
+        const int a = group[static_cast<std::size_t>(joint.first)];
+        const int b = joint.second < 0 ? grounded : group[static_cast<std::size_t>(joint.second)];
+        return a == b;
+    }
+    /// Of each body, what it has more than its group, from what each joint has: the velocities of belts.
+    void offsets(const std::vector<double>& of_joints, const Mode& mode, std::vector<double>& of_bodies) const;
+    /// What each joint that holds takes: the torque on its first body. From what each body lacks, I a - torque.
+    void multipliers(const std::vector<double>& lacking, std::vector<double>& of_joints) const;
+};
+
+/// The least of x G x / 2 + g x within a box; G is symmetric, and not singular.
+Eigen::VectorXd least_in_box(const Eigen::MatrixXd& G, const Eigen::VectorXd& g, const Eigen::VectorXd& low,
+                             const Eigen::VectorXd& high);
+
+class Mechanics {
+public:
+    Mechanics(const model::Assembly& system, const Drive& drive, const Asking& asking);
+
+    [[nodiscard]] const model::Assembly& system() const { return system_; }
+    [[nodiscard]] std::size_t bodies() const { return system_.bodies.size(); }
+    [[nodiscard]] std::size_t joints() const { return system_.joints.size(); }
+    [[nodiscard]] std::size_t states() const { return drive_.states.size(); }
+    [[nodiscard]] std::size_t size() const { return 2 * bodies() + states(); }
+    /// Torques or rates depend on the motion otherwise than by constants.
+    [[nodiscard]] bool nonlinear() const { return nonlinear_; }
+    [[nodiscard]] bool rubs(std::size_t joint) const { return rubs_[joint] != 0; }
+    [[nodiscard]] const std::vector<char>& rubbing() const { return rubs_; }
+    [[nodiscard]] bool has_belts() const { return has_belts_; }
+    [[nodiscard]] bool has_belt(std::size_t joint) const { return !belts_[joint].none(); }
+    [[nodiscard]] double belt(std::size_t joint, double t, Side side) const;
+    [[nodiscard]] double belt_rate(std::size_t joint, double t, Side side, double within) const;
+    [[nodiscard]] double base(double t, Side side) const { return base_.value({t, side, {}}); }
+    [[nodiscard]] const model::Excitation& belt_of(std::size_t joint) const { return drive_.belts[joint]; }
+
+    /// The loads that depend on the time alone, the push of the base among them, on each body.
+    void loads_of_time(double t, Side side, std::vector<double>& loads) const;
+    /// M of each body.
+    [[nodiscard]] double load(std::size_t body, const Moment& at) const { return loads_[body].value(at); }
+    /// All torques on each body but those of what holds; `belts` are the velocities of each joint's.
+    void torques(const Moment& at, const Mode& mode, const std::vector<double>& belts, const std::vector<double>& loads,
+                 std::vector<double>& of_bodies) const;
+    void rates(const Moment& at, double* out) const;
+    /// Of each joint, without what holds.
+    [[nodiscard]] double joint_torque(std::size_t joint, const Moment& at, const Mode& mode, double belt) const;
+    /// What friction takes while it slides, without sign.
+    [[nodiscard]] double sliding(std::size_t joint, const Slipping& how, double slip, const Moment& at) const;
+    [[nodiscard]] std::size_t range_of(std::size_t joint, double speed) const;
+    /// What sticking holds at most against a pull this way.
+    [[nodiscard]] double holding(std::size_t joint, model::Motion way, const Moment& at) const;
+    /// The limit of holding depends on more than the way.
+    [[nodiscard]] bool varies(std::size_t joint) const { return contacts_[joint].varies; }
+    [[nodiscard]] bool has_normal(std::size_t joint) const { return !contacts_[joint].normal.none(); }
+    [[nodiscard]] double normal(std::size_t joint, const Moment& at) const { return contacts_[joint].normal.value(at); }
+    /// How great torques are at a joint: of its springs and its friction.
+    [[nodiscard]] double size_of(std::size_t joint, const Moment& at) const;
+
+    [[nodiscard]] double angle(std::size_t joint, std::span<const double> y) const;
+    [[nodiscard]] double velocity(std::size_t joint, std::span<const double> y) const;
+
+    [[nodiscard]] double next_break(double t) const;
+    [[nodiscard]] double view(double t, double spacing) const;
+    [[nodiscard]] bool may_go_on() const;
+    [[nodiscard]] bool asks_functions() const;
+    /// The greatest natural frequency of a linear system with these groups, rad per time unit; 0 without springs.
+    [[nodiscard]] double fastest(const Frame& frame) const;
+
+    /// Signals of all kinds, for what must be told to each.
+    template <class F>
+    void for_each_signal(F f) {
+        for (Signal& s : loads_) f(s);
+        for (Signal& s : belts_) f(s);
+        for (Contact& c : contacts_) {
+            for (Signal& s : c.sliding) f(s);
+            for (Signal& s : c.holding) f(s);
+            f(c.normal);
+        }
+        f(base_);
+    }
+    [[nodiscard]] std::vector<Signal>& loads() { return loads_; }
+    [[nodiscard]] const std::vector<Signal>& loads() const { return loads_; }
+
+private:
+    struct Contact {
+        std::array<Signal, 2> sliding, holding;
+        Signal normal;
+        bool varies = false;
+    };
+    template <class F>
+    void for_each_signal(F f) const {
+        const_cast<Mechanics*>(this)->for_each_signal([&](const Signal& s) { f(s); });
+    }
+
+    const model::Assembly& system_;
+    const Drive& drive_;
+    const Asking& asking_;
+    std::vector<Signal> loads_, belts_;
+    Signal base_;
+    std::vector<Contact> contacts_;
+    std::vector<char> rubs_;
+    bool nonlinear_ = false, has_belts_ = false;
+};
+
+}  // namespace dinal::motion::engine

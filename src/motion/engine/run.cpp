@@ -1,0 +1,1408 @@
+#include "motion/engine/run.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+
+#include "model/slide.hpp"
+#include "model/springs/user_spring.hpp"
+#include "motion/engine/collocation.hpp"
+#include "motion/hybrid/crossing.hpp"
+#include "motion/spectral/first_below.hpp"
+#include "motion/witness.hpp"
+
+namespace dinal::motion::engine {
+
+namespace {
+
+using hybrid::Watched;
+using model::EventKind;
+using model::Joint;
+using model::Motion;
+using model::Outcome;
+
+// In units of the pace, T0 or all of a run that is shorter.
+constexpr double shortest = 1e-13;     // what cannot be seen in the motion
+constexpr double near_failure = 1e-9;  // how near a run comes to where a function fails
+constexpr double at_once = 1e-9;       // events that follow each other within it, so often, go on for ever
+constexpr int most_at_once = 200, most_short = 2000, most_attempts = 20000;
+constexpr double short_part = 1e-3;  // shorter than this part of the longest stretch is short
+constexpr double last_bounces = 1e-7, shortest_bounce = 1e-10;
+constexpr double most_blunt = 1e-9;  // of the torques: what passes its limit by more is no rounding
+constexpr int most_echoes = 8;
+constexpr std::size_t most_found_breaks = 50;
+constexpr double longest_in_periods = 0.6, part_of_run = 1.0 / 16;
+
+double rung(double h, double longest) {
+    constexpr double rungs = 4;  // to a factor of two
+    return h >= longest ? longest : longest * std::exp2(std::floor(rungs * std::log2(h / longest)) / rungs);
+}
+
+/// What is kept of a stretch.
+struct Kept {
+    Clock start;
+    double h = 0, length = 0;
+    std::vector<double> begin;
+    std::vector<Series> series;
+};
+
+class KeptHistory final : public History {
+public:
+    KeptHistory(std::vector<double> initial, double t_start, std::shared_ptr<const History> before, std::size_t most)
+        : initial_(std::move(initial)), t_start_(t_start), before_(std::move(before)), most_(most) {}
+    void add(Kept kept) {
+        const std::size_t bytes = sizeof(Kept) + kept.begin.size() * (sizeof(double) + sizeof(Series));
+        if (bytes_ + bytes > most_) whole_until_ = std::min(whole_until_, kept.start.hi);
+        if (whole_until_ < model::never) return;
+        bytes_ += bytes;
+        list_.push_back(std::move(kept));
+    }
+    void close(double t, const std::vector<double>& y) {
+        list_.push_back({{t, 0}, 1, 0, y, std::vector<Series>(y.size())});
+    }
+    [[nodiscard]] std::vector<double> at(double t) const override { return at(t, Side::at); }
+    [[nodiscard]] std::vector<double> at(double t, Side side) const {
+        const auto after = std::partition_point(list_.begin(), list_.end(), [t, side](const Kept& kept) {
+            return side == Side::before ? kept.start.hi < t : kept.start.hi <= t;
+        });
+        if (after == list_.begin()) return before_ != nullptr && t < t_start_ ? before_->at(t) : initial_;
+        const Kept& kept = *(after - 1);
+        const double x = std::min(kept.start.until(t), kept.length) / kept.h - 1;
+        std::vector<double> y = kept.begin;
+        if (x <= -1) return y;
+        for (std::size_t k = 0; k < y.size(); ++k) y[k] += cheb::value(kept.series[k], std::min(x, 1.0));
+        return y;
+    }
+    [[nodiscard]] std::size_t bytes() const override { return bytes_; }
+    [[nodiscard]] double whole_until() const override { return whole_until_; }
+
+private:
+    std::vector<double> initial_;
+    double t_start_;
+    std::shared_ptr<const History> before_;
+    std::size_t most_, bytes_ = 0;
+    double whole_until_ = model::never;
+    std::vector<Kept> list_;
+};
+
+class Engine {
+public:
+    Engine(const AssemblyProblem& problem, AssemblyRun& result);
+    void run();
+
+private:
+    enum class By { nobody, slip, release, wall, corner, relay, user, kink, stays };
+    struct Ending {
+        double x = 1;
+        By by = By::nobody;
+        std::size_t which = 0;  ///< the joint, or the body of a relay, or the event of the user
+        int side = 0;           ///< of a wall or corner, or the way of a release; or which relay
+    };
+    /// What an exact look at a moment tells.
+    struct Look {
+        std::vector<double> torques, accelerations, holding;
+    };
+
+    // The loop.
+    void begin();
+    bool advance();
+    void choose();
+    double longest_under_friction();
+    void again(Collocation::Attempt attempt);
+    bool end_at(double x);
+    bool handle(const Ending& ending);
+    const Frame& frame();
+
+    // Decisions.
+    bool decide(bool told, std::optional<Ending> released = {});
+    bool share_loops(const std::optional<Ending>& released);
+    void project();
+    bool look(const Moment& at, const Mode& mode, const Frame& frame, Look& result);
+    [[nodiscard]] std::vector<double> departing() const;
+    [[nodiscard]] double slip(std::size_t joint) const {
+        return mechanics_.velocity(joint, y_) - mechanics_.belt(joint, now_.hi, side());
+    }
+    [[nodiscard]] double excess(std::size_t joint, const Look& look, const Mode& mode, const Moment& at,
+                                Motion& towards) const;
+    void slide(std::size_t joint, Motion way, bool leaving);
+    enum class Because { impact, act, belt };
+    bool restart_contacts(Because why, std::size_t at = 0);
+
+    // Guards.
+    void watch(Ending& ending);
+    void watch_slip(std::size_t joint, Ending& ending);
+    void take_back_slip(std::size_t joint);
+    void watch_release(std::size_t joint, Ending& ending);
+    void watch_walls(std::size_t joint, Ending& ending) const;
+    void watch_corner(std::size_t joint, Ending& ending) const;
+    void watch_normal(std::size_t joint, Ending& ending);
+    void watch_relays(Ending& ending);
+    void watch_users(Ending& ending);
+    void record_turns(double until);
+    [[nodiscard]] bool rubs_somewhere(std::size_t body) const;
+
+    bool hit(std::size_t joint, int wall);
+    bool act(std::size_t event);
+    void tell(EventKind kind, int where, int user = -1);
+    bool too_often();
+    void echo(double t, int generation);
+    bool put_row(double t, double x);
+    bool rows_until(double end, bool to_the_end);
+    bool fail(Outcome outcome) {
+        outcome_ = outcome;
+        return false;
+    }
+    [[nodiscard]] Side side() const { return after_break_ ? Side::after : Side::at; }
+    [[nodiscard]] Moment here() const { return {now_.hi, side(), y_}; }
+    [[nodiscard]] std::size_t n() const { return mechanics_.bodies(); }
+    [[nodiscard]] double torque_size(std::size_t joint) const;
+
+    const AssemblyProblem& problem_;
+    AssemblyRun& result_;
+    Asking asking_;
+    Mechanics mechanics_;
+    std::shared_ptr<KeptHistory> history_;
+    double pace_ = 1, longest_all_ = 1, longest_ = 1;
+    std::optional<Collocation> solver_;
+    std::map<std::pair<std::vector<char>, std::vector<int>>, std::pair<Frame, double>> frames_;
+    const Frame* frame_ = nullptr;
+
+    Clock now_;
+    std::vector<double> y_;
+    Mode mode_;
+    std::vector<Motion> arrived_;   ///< of each joint: which way it slid until now; stuck: it did not
+    std::vector<int> edge_;         ///< of each joint: the corner that its speed is at, 1 the upper one of its range
+    std::vector<char> at_wall_;     ///< of each joint: it begins at a wall, and leaves it
+    std::vector<char> leaned_;      ///< of each joint: it came to stand at a wall, which was told
+    std::vector<int> normal_half_;  ///< of each joint: the sign of its normal load
+    std::vector<Motion> heading_;   ///< of each body without dry friction
+    std::vector<hybrid::Half> halves_;
+    bool after_break_ = false;
+    Segment segment_;
+    std::vector<double> breaks_;                  ///< found, and still ahead
+    std::vector<std::pair<double, int>> echoes_;  ///< breaks that delays bring back
+    double h_ = 1, bad_time_ = model::never, searched_from_ = model::never, searched_h_ = 0;
+    double attempts_since_ = 0, last_event_ = -model::never;
+    int attempts_ = 0, too_short_ = 0, at_once_in_a_row_ = 0;
+    std::size_t next_row_ = 0;
+    Outcome outcome_ = Outcome::reached_end;
+    Look look_;
+    mutable std::vector<double> point_;
+};
+
+Engine::Engine(const AssemblyProblem& problem, AssemblyRun& result)
+    : problem_(problem),
+      result_(result),
+      asking_{.named = problem.system.named},
+      mechanics_(problem.system, problem.drive, asking_),
+      now_{problem.window.start, 0} {
+    const std::size_t joints = mechanics_.joints();
+    y_ = problem.drive.theta0;
+    y_.insert(y_.end(), problem.drive.velocity0.begin(), problem.drive.velocity0.end());
+    for (const model::OwnState& state : problem.drive.states) y_.push_back(state.start);
+    mode_.friction.resize(joints), mode_.leans.assign(joints, 0);
+    mode_.rubs = mechanics_.rubbing();
+    arrived_.assign(joints, Motion::stuck);
+    edge_.assign(joints, 0), at_wall_.assign(joints, 0), leaned_.assign(joints, 0), normal_half_.assign(joints, 0);
+    heading_.assign(n(), Motion::stuck);
+    halves_.assign(problem.drive.events.size(), 0);
+    if (problem.before != nullptr) {
+        y_ = problem.before->y;
+        mode_ = problem.before->mode;
+        for (std::size_t i = 0; i < n(); ++i) mechanics_.loads()[i].remember(problem.before->controllers[i]);
+    }
+    history_ = std::make_shared<KeptHistory>(y_, now_.hi, problem.before ? problem.before->past : nullptr,
+                                             problem.limits.dense ? problem.limits.memory / 4 : 0);
+    asking_.past = [this](double t, Side side) { return history_->at(t, side); };
+    const double run = problem.window.end - problem.window.start;
+    Mode free = mode_;
+    for (std::size_t j = 0; j < joints; ++j) free.friction[j].way = Motion::forward, free.leans[j] = 0;
+    const double w = mechanics_.fastest(Frame(problem.system, free));
+    const double period = w > 0 ? 2 * 3.14159265358979323846 / w : model::never;
+    pace_ = std::min(period, run);
+    longest_all_ = std::min(problem.longest, w > 0 ? longest_in_periods * period : part_of_run * run);
+    longest_ = longest_all_;
+    h_ = longest_ / 2;
+    attempts_since_ = now_.hi;
+    solver_.emplace(mechanics_, problem.tolerance, longest_all_);
+    std::size_t columns = 1 + columns_of_body * n() + columns_of_link * (joints - n()) + mechanics_.states();
+    result_.table = Growing<double>(problem.rows.count(), columns);
+}
+
+const Frame& Engine::frame() {
+    std::vector<char> holding(mechanics_.joints());
+    for (std::size_t j = 0; j < holding.size(); ++j) holding[j] = mode_.holds(j) ? 1 : 0;
+    auto key = std::pair(std::move(holding), mode_.leans);
+    auto found = frames_.find(key);
+    if (found == frames_.end()) {
+        constexpr std::size_t most_frames = 512;
+        if (frames_.size() >= most_frames) frames_.clear();
+        Frame made(problem_.system, mode_);
+        const double w = mechanics_.fastest(made);
+        const double longest =
+            w > 0 ? std::min(problem_.longest, longest_in_periods * 2 * 3.14159265358979323846 / w) : longest_all_;
+        found = frames_.emplace(std::move(key), std::pair(std::move(made), longest)).first;
+    }
+    longest_ = found->second.second;
+    frame_ = &found->second.first;
+    return *frame_;
+}
+
+double Engine::torque_size(std::size_t joint) const {
+    const auto first = index(problem_.system.joints[joint].first);
+    const auto second = problem_.system.joints[joint].second;
+    double size = mechanics_.size_of(joint, here());
+    for (std::size_t j = 0; j < mechanics_.joints(); ++j) {
+        const Joint& other = problem_.system.joints[j];
+        const bool near = other.first == static_cast<int>(first) || other.second == static_cast<int>(first) ||
+                          (second >= 0 && (other.first == second || other.second == second));
+        if (near && j != joint) size += mechanics_.size_of(j, here());
+    }
+    if (!segment_.loads.empty()) {
+        size += greatest(segment_.loads[first]);
+        if (second >= 0) size += greatest(segment_.loads[index(second)]);
+    }
+    return size;
+}
+
+// ---- decisions
+
+/// The state at which functions that jump at slip 0 are asked: a hair of velocity on the way of what leaves.
+std::vector<double> Engine::departing() const {
+    std::vector<double> y = y_;
+    for (std::size_t j = 0; j < mechanics_.joints(); ++j) {
+        const Slipping& how = mode_.friction[j];
+        if (!how.leaving || mode_.leans[j] != 0) continue;
+        double& v = y[n() + index(problem_.system.joints[j].first)];
+        if (v == 0) v = model::sign_of(how.way) * std::numeric_limits<double>::min();
+    }
+    return y;
+}
+
+/// Torques, accelerations and what holds, at a moment. False when something is not finite.
+bool Engine::look(const Moment& at, const Mode& mode, const Frame& frame, Look& result) {
+    const std::size_t joints = mechanics_.joints();
+    std::vector<double> belts(joints), rates(joints), loads, offsets;
+    for (std::size_t j = 0; j < joints; ++j) {
+        belts[j] = mechanics_.belt(j, at.t, at.side);
+        rates[j] = mechanics_.has_belt(j) ? mechanics_.belt_rate(j, at.t, at.side, 1e-4 * pace_) : 0;
+    }
+    mechanics_.loads_of_time(at.t, at.side, loads);
+    mechanics_.torques(at, mode, belts, loads, result.torques);
+    frame.offsets(rates, mode, offsets);
+    std::vector<double> of_group(frame.groups(), 0), lacking(n());
+    for (std::size_t i = 0; i < n(); ++i) {
+        const double own = problem_.system.bodies[i].inertia * offsets[i];
+        if (frame.group[i] >= 0) of_group[index(frame.group[i])] += result.torques[i] - own;
+    }
+    result.accelerations.resize(n());
+    bool good = true;
+    for (std::size_t i = 0; i < n(); ++i) {
+        const int g = frame.group[i];
+        result.accelerations[i] = offsets[i] + (g < 0 ? 0 : of_group[index(g)] / frame.inertia[index(g)]);
+        lacking[i] = problem_.system.bodies[i].inertia * result.accelerations[i] - result.torques[i];
+        good = good && std::isfinite(lacking[i]);
+    }
+    result.holding.assign(joints, 0);
+    frame.multipliers(lacking, result.holding);
+    return good;
+}
+
+/// How far what holds a joint is beyond what it can hold, and which way it would go.
+double Engine::excess(std::size_t joint, const Look& look, const Mode& mode, const Moment& at, Motion& towards) const {
+    const double pull = -look.holding[joint];
+    if (const int wall = mode.leans[joint]; wall != 0) {
+        towards = wall > 0 ? Motion::backward : Motion::forward;
+        const bool sticks = mechanics_.rubs(joint) && mode.friction[joint].way == Motion::stuck;
+        return -wall * pull - (sticks ? mechanics_.holding(joint, towards, at) : 0) - mode.friction[joint].blunt;
+    }
+    towards = pull > 0 ? Motion::forward : Motion::backward;
+    return std::fabs(pull) - mechanics_.holding(joint, towards, at) - mode.friction[joint].blunt;
+}
+
+void Engine::slide(std::size_t joint, Motion way, bool leaving) {
+    Slipping& how = mode_.friction[joint];
+    how.way = way, how.leaving = leaving, how.riding = false;
+    edge_[joint] = 0;
+    const model::Friction& law = problem_.system.joints[joint].friction.law;
+    if (law.ranges() > 0) {
+        const double speed = leaving ? 0 : std::max(0.0, model::sign_of(way) * slip(joint));
+        how.range = mechanics_.range_of(joint, speed);
+        if (speed > 0 && law.range(how.range).from == speed) edge_[joint] = -1;
+    }
+}
+
+/// What all joints at slip 0 do, at once: what can hold holds; of what can not, the one that is farthest beyond its
+/// limit goes, and the others are asked again; what would not go the way on which it was let go holds after all. What
+/// was seen to come to its limit is `released` first.
+bool Engine::decide(bool told, std::optional<Ending> released) {
+    const std::size_t joints = mechanics_.joints();
+    std::vector<char> asked(joints, 0), taken_back(joints, 0);
+    std::vector<Motion> before(joints, Motion::stuck);  // which way it slid; stuck: it did not
+    std::vector<char> was_held(joints, 0);
+    const std::vector<int> leant = mode_.leans;
+    for (std::size_t j = 0; j < joints; ++j) {
+        if (!mechanics_.rubs(j)) continue;
+        Slipping& how = mode_.friction[j];
+        if (mode_.leans[j] != 0 && how.leaving) continue;
+        if (mode_.leans[j] != 0 && mechanics_.belt(j, now_.hi, side()) != 0) {
+            const Motion way = model::motion_of(-mechanics_.belt(j, now_.hi, side()));
+            if (how.way != way) slide(j, way, false);
+            continue;
+        }
+        if (mode_.leans[j] != 0) {  // wall and friction hold it together
+            how.way = Motion::stuck, how.riding = false;
+            arrived_[j] = Motion::stuck;
+            continue;
+        }
+        const bool arrived = arrived_[j] != Motion::stuck;
+        if (how.way != Motion::stuck && !how.riding && !arrived && !how.leaving) continue;
+        before[j] = arrived ? arrived_[j] : Motion::stuck;
+        was_held[j] = !arrived && !(how.leaving && !how.riding) ? 1 : 0;
+        asked[j] = 1;
+        how.way = Motion::stuck, how.riding = how.leaving = false;
+    }
+    project();
+    if (!frame().closing.empty() && !share_loops(released)) return false;
+    Look found;
+    const int most = 8 * static_cast<int>(joints) + 16;
+    for (int i = 0;; ++i) {
+        if (i > most) return fail(Outcome::chattering);
+        const Frame& present = frame();
+        bool grown = false;
+        for (std::size_t j = 0; j < joints; ++j) {
+            Slipping& how = mode_.friction[j];
+            const bool together = present.together(problem_.system.joints[j]);
+            if (how.riding && !together) slide(j, how.way, true);
+            // What others hold together stands at slip 0 with them.
+            const bool slides = mechanics_.rubs(j) && how.way != Motion::stuck && !how.riding && mode_.leans[j] == 0;
+            if (slides && together && how.leaving) how.riding = true, how.leaving = false;
+            if (!slides || !together || how.riding || mechanics_.belt(j, now_.hi, side()) != 0) continue;
+            before[j] = how.way, asked[j] = 1, grown = true;
+            how.way = Motion::stuck;
+        }
+        if (grown) {
+            project();
+            continue;
+        }
+        const std::vector<double> y = departing();
+        if (!look({now_.hi, side(), y}, mode_, present, found)) return fail(Outcome::excitation_not_finite);
+        constexpr double nearly = 1e-10;  // of the torques: what differences tell of a belt is known no better
+        std::size_t worst = joints;
+        double most_beyond = 0;
+        Motion way = Motion::stuck;
+        for (std::size_t j = 0; j < joints; ++j) {
+            if (!mode_.holds(j)) continue;
+            Motion towards = Motion::stuck;
+            const double beyond = excess(j, found, mode_, here(), towards);
+            if (std::isnan(beyond)) return fail(Outcome::excitation_not_finite);
+            const double size = n() > 1 ? 8 * rounding * torque_size(j) : 0;
+            if (released && released->which == j && std::fabs(beyond) <= nearly * torque_size(j)) {
+                worst = j, most_beyond = model::never, way = static_cast<Motion>(released->side);
+                continue;
+            }
+            if (!(beyond > size)) continue;
+            const double part = beyond / (mechanics_.size_of(j, here()) + std::numeric_limits<double>::min());
+            if (worst == joints || part > most_beyond) worst = j, most_beyond = part, way = towards;
+        }
+        if (worst < joints) {
+            if (most_beyond == model::never) released.reset();
+            if (mode_.leans[worst] != 0) {
+                mode_.leans[worst] = 0, at_wall_[worst] = 1;
+                const Motion slides = mode_.friction[worst].way;
+                if (mechanics_.rubs(worst))
+                    slide(worst, slides == Motion::stuck ? way : slides, slides == Motion::stuck);
+            } else {
+                slide(worst, way, true);
+                // In a loop others may hold on, while this one gives all that it can.
+                if (frame().together(problem_.system.joints[worst])) {
+                    mode_.friction[worst].riding = true, mode_.friction[worst].leaving = false;
+                }
+            }
+            continue;
+        }
+        bool changed = false;
+        for (std::size_t j = 0; j < joints && !changed; ++j) {
+            Slipping& how = mode_.friction[j];
+            if (!how.leaving || taken_back[j] != 0) continue;
+            const Joint& joint = problem_.system.joints[j];
+            double rate = found.accelerations[index(joint.first)] -
+                          (joint.second < 0 ? 0 : found.accelerations[index(joint.second)]);
+            if (mechanics_.has_belt(j)) rate -= mechanics_.belt_rate(j, now_.hi, side(), 1e-4 * pace_);
+            const double I = problem_.system.bodies[index(joint.first)].inertia;
+            if (model::sign_of(how.way) * rate * I >= -64 * rounding * torque_size(j)) continue;
+            taken_back[j] = 1;
+            how.way = Motion::stuck, how.leaving = false;
+            changed = true;
+        }
+        if (!changed) break;
+    }
+    project();
+    for (std::size_t j = 0; j < joints; ++j) {
+        if (leant[j] != 0 || mode_.leans[j] != 0) {
+            if (told && leaned_[j] != 0 && mode_.leans[j] == 0) tell(EventKind::slip, static_cast<int>(j));
+            if (mode_.leans[j] == 0) leaned_[j] = 0;
+            arrived_[j] = Motion::stuck;
+            continue;
+        }
+        if (asked[j] == 0) continue;
+        const Slipping& how = mode_.friction[j];
+        const bool slides = how.way != Motion::stuck && !how.riding;
+        if (told && before[j] != Motion::stuck) {
+            if (!slides) {
+                tell(EventKind::stick, static_cast<int>(j));
+            } else if (how.way != before[j]) {
+                tell(EventKind::turn, static_cast<int>(j));
+            }
+        } else if (told && was_held[j] != 0 && slides) {
+            tell(EventKind::slip, static_cast<int>(j));
+        } else if (told && was_held[j] == 0 && !slides) {
+            take_back_slip(j);
+        }
+        arrived_[j] = Motion::stuck;
+    }
+    return true;
+}
+
+/// Where joints that hold close loops, their torques are not known from the motion. What they can hold together they
+/// do: the accelerations are the least that torques within their limits leave (Gauss), and of all such torques they
+/// have the smallest. A joint at its limit rides along, or slides when the others do not hold.
+bool Engine::share_loops(const std::optional<Ending>& released) {
+    const Frame present = frame();
+    Look found;
+    if (!look({now_.hi, side(), departing()}, mode_, present, found)) return fail(Outcome::excitation_not_finite);
+    const std::vector<std::size_t>& held = present.sharing_of;
+    const auto count = static_cast<Eigen::Index>(held.size());
+    Eigen::MatrixXd D = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(n()), count);
+    Eigen::VectorXd low(count), high(count), slope(count);
+    for (Eigen::Index c = 0; c < count; ++c) {
+        const std::size_t j = held[static_cast<std::size_t>(c)];
+        const Joint& joint = problem_.system.joints[j];
+        D(joint.first, c) = 1;
+        if (joint.second >= 0) D(joint.second, c) = -1;
+        const double near = released && released->which == j ? 64 * rounding * torque_size(j) : 0;
+        const bool sticks = mechanics_.rubs(j) && mode_.friction[j].way == Motion::stuck;
+        low(c) = sticks ? -mechanics_.holding(j, Motion::forward, here()) + near : 0;
+        high(c) = sticks ? mechanics_.holding(j, Motion::backward, here()) - near : 0;
+        constexpr double wall = 1e30;
+        if (mode_.leans[j] > 0) low(c) = -wall;
+        if (mode_.leans[j] < 0) high(c) = wall;
+        slope(c) = mode_.leans[j] == 0 ? -mechanics_.belt_rate(j, now_.hi, side(), 1e-4 * pace_) : 0;
+    }
+    Eigen::VectorXd lightness(static_cast<Eigen::Index>(n())), torques(static_cast<Eigen::Index>(n()));
+    for (std::size_t i = 0; i < n(); ++i) {
+        lightness(static_cast<Eigen::Index>(i)) = 1 / problem_.system.bodies[i].inertia;
+        torques(static_cast<Eigen::Index>(i)) = found.torques[i];
+    }
+    Eigen::MatrixXd G = D.transpose() * lightness.asDiagonal() * D;
+    constexpr double little = 1e-10;  // what makes the smallest torques the solution
+    G.diagonal() += little * G.diagonal();
+    slope += D.transpose() * lightness.cwiseProduct(torques);
+    const Eigen::VectorXd torque = least_in_box(G, slope, low, high);
+    for (Eigen::Index c = 0; c < count; ++c) {
+        const std::size_t j = held[static_cast<std::size_t>(c)];
+        const bool at_low = torque(c) <= low(c), at_high = torque(c) >= high(c);
+        if (!at_low && !at_high) continue;
+        if (mode_.leans[j] != 0) mode_.leans[j] = 0, at_wall_[j] = 1;
+        if (!mechanics_.rubs(j) || mode_.friction[j].way != Motion::stuck) continue;
+        slide(j, at_low ? Motion::forward : Motion::backward, false);
+        mode_.friction[j].riding = true;
+    }
+    return true;
+}
+
+/// What is held together has one velocity, to the letter; what leans is at its wall.
+void Engine::project() {
+    const Frame& present = frame();
+    std::vector<double> belts(mechanics_.joints()), offsets;
+    for (std::size_t j = 0; j < belts.size(); ++j) belts[j] = mechanics_.belt(j, now_.hi, side());
+    present.offsets(belts, mode_, offsets);
+    std::vector<double> momentum(present.groups(), 0), first(present.groups(), 0);
+    std::vector<char> seen(present.groups(), 0), alike(present.groups(), 1);
+    for (std::size_t i = 0; i < n(); ++i) {
+        const int g = present.group[i];
+        const double v = y_[n() + i] - offsets[i];
+        if (g < 0) {
+            y_[n() + i] = offsets[i];
+            continue;
+        }
+        momentum[index(g)] += problem_.system.bodies[i].inertia * v;
+        if (seen[index(g)] == 0) first[index(g)] = v, seen[index(g)] = 1;
+        if (v != first[index(g)]) alike[index(g)] = 0;
+    }
+    for (std::size_t i = 0; i < n(); ++i) {
+        const int g = present.group[i];
+        if (g < 0 || alike[index(g)] != 0) continue;
+        y_[n() + i] = momentum[index(g)] / present.inertia[index(g)] + offsets[i];
+    }
+    for (const Frame::Edge& edge : present.edges) {
+        const int wall = mode_.leans[edge.joint];
+        if (wall == 0) continue;
+        const double at = problem_.system.joints[edge.joint].walls->at(wall);
+        const double base = edge.parent < 0 ? 0 : y_[index(edge.parent)];
+        y_[index(edge.child)] = edge.parent < 0 ? at : base + edge.sign * at;
+    }
+}
+
+/// After velocities were changed at once, by an impact at a joint, a user, or the jump of a belt: how each slides now.
+bool Engine::restart_contacts(Because why, std::size_t at) {
+    for (std::size_t j = 0; j < mechanics_.joints(); ++j) {
+        if (!mechanics_.rubs(j) || mode_.leans[j] != 0) continue;
+        Slipping& how = mode_.friction[j];
+        const double s = slip(j);
+        const double fastest = std::fabs(mechanics_.velocity(j, y_)) + std::fabs(mechanics_.belt(j, now_.hi, side()));
+        if (std::fabs(s) <= 4 * rounding * fastest) {
+            if (how.way != Motion::stuck && !how.riding) arrived_[j] = how.way;
+            continue;
+        }
+        const Motion way = model::motion_of(s);
+        const bool held = how.way == Motion::stuck || how.riding;
+        if (!held && how.way == way) continue;
+        const bool told =
+            now_.hi > problem_.window.start && (why == Because::belt || (why == Because::impact && j != at));
+        if (held && told) tell(EventKind::slip, static_cast<int>(j));
+        if (!held && why == Because::belt) tell(EventKind::turn, static_cast<int>(j));
+        slide(j, way, false);
+    }
+    return decide(true);
+}
+
+// ---- the loop
+
+void Engine::begin() {
+    after_break_ = mechanics_.next_break(std::nextafter(now_.hi, -model::never)) == now_.hi;
+    std::vector<std::string> names;
+    if (problem_.system.named) {
+        for (const char* kind : {"theta.", "velocity."}) {
+            for (const model::Body& body : problem_.system.bodies) names.push_back(kind + body.name);
+        }
+    } else {
+        names = {"theta", "velocity"};
+    }
+    for (const model::OwnState& state : problem_.drive.states) names.push_back(state.name);
+    if (problem_.before == nullptr) {
+        mechanics_.for_each_signal([&](Signal& s) { s.begin(here(), names); });
+        bool good = true;
+        mechanics_.for_each_signal([&](Signal& s) { good = good && s.arrive(here()); });
+        if (!good) fail(Outcome::excitation_not_finite);
+        echo(now_.hi, 1);
+        for (std::size_t j = 0; j < mechanics_.joints(); ++j) {
+            const Joint& joint = problem_.system.joints[j];
+            if (mechanics_.rubs(j)) {
+                const double s = slip(j);
+                if (s != 0) {
+                    slide(j, model::motion_of(s), false);
+                } else {
+                    mode_.friction[j].way = Motion::stuck;
+                }
+            }
+            if (!joint.walls) continue;
+            for (const int wall : {1, -1}) {
+                if (mechanics_.angle(j, y_) != joint.walls->at(wall)) continue;
+                const double v = wall * mechanics_.velocity(j, y_);
+                at_wall_[j] = 1;
+                if (v == 0) mode_.leans[j] = wall;
+            }
+        }
+        if (outcome_ == Outcome::reached_end) decide(false);
+        for (std::size_t j = 0; j < mechanics_.joints(); ++j) leaned_[j] = mode_.leans[j] != 0 ? 1 : 0;
+    }
+}
+
+void Engine::run() {
+    begin();
+    unsigned pieces = 0;
+    constexpr unsigned between_questions = 16;
+    bool alive = outcome_ == Outcome::reached_end;
+    while (alive && now_.hi < problem_.window.end) {
+        if (pieces++ % between_questions == 0 && problem_.monitor && !problem_.monitor(now_.hi)) {
+            outcome_ = Outcome::interrupted;
+            break;
+        }
+        alive = advance();
+    }
+    if (outcome_ == Outcome::reached_end || outcome_ == Outcome::stopped) {
+        while (next_row_ < problem_.rows.count() && problem_.rows.time(next_row_) <= now_.hi && put_row(now_.hi, -2)) {
+        }
+    }
+    if (outcome_ == Outcome::reached_end) {
+        const Frame& present = frame();
+        bool still = true, for_good = !mechanics_.asks_functions();
+        for (std::size_t i = 0; i < n(); ++i) still = still && present.group[i] < 0 && y_[n() + i] == 0;
+        mechanics_.for_each_signal([&](const Signal& s) { for_good = for_good && s.constant_from() <= now_.hi; });
+        for_good = for_good && mechanics_.states() == 0;
+        for (const model::WantedEvent& event : problem_.drive.events) for_good = for_good && event.act == nullptr;
+        for (const Joint& joint : problem_.system.joints) {
+            for_good = for_good && (joint.friction.function == nullptr || joint.friction.holding[0]);
+        }
+        if (still) outcome_ = for_good ? Outcome::at_rest : Outcome::stuck_at_end;
+        if (still && for_good) {
+            auto last = std::find_if(result_.events.rbegin(), result_.events.rend(),
+                                     [](const JointEvent& e) { return e.kind == EventKind::stick; });
+            if (last != result_.events.rend()) last->kind = EventKind::rest;
+        }
+    }
+    result_.outcome = outcome_;
+    result_.t_start = problem_.window.start;
+    result_.t_stop = now_.hi;
+    if (next_row_ < problem_.rows.count()) result_.table = result_.table.first(next_row_);
+    history_->close(now_.hi, y_);
+    result_.history = history_;
+    auto carry = std::make_shared<Carry>();
+    carry->y = y_, carry->mode = mode_, carry->past = history_;
+    for (const Signal& load : mechanics_.loads()) carry->controllers.push_back(load.memory());
+    result_.carry = std::move(carry);
+}
+
+void Engine::choose() {
+    frame();
+    double breaks = std::min(mechanics_.next_break(now_.hi), echoes_.empty() ? model::never : echoes_.front().first);
+    if (!breaks_.empty()) breaks = std::min(breaks, breaks_.front());
+    const double limit = std::min(problem_.window.end, breaks);
+    double delay = model::never;
+    mechanics_.for_each_signal([&](const Signal& s) {
+        for (const double by : s.delays()) delay = std::min(delay, by);
+    });
+    double h =
+        std::min({rung(h_, longest_ / 2), mechanics_.view(now_.hi, cheb::widest_gap) / 2, delay / 2 * (1 - 1e-12)});
+    if (bad_time_ < model::never) h = std::min(h, now_.until(bad_time_) / 4);
+    h = std::min(h, longest_under_friction() / 2);
+    const double remaining = now_.until(limit);
+    const bool to_limit = remaining <= 2 * h * (1 + 1e-9);
+    segment_.start = now_;
+    segment_.h = to_limit ? remaining / 2 : remaining < 4 * h ? remaining / 4 : h;
+    segment_.end = to_limit ? limit : now_.after(2 * segment_.h);
+    segment_.from_break = after_break_;
+    segment_.to_break = to_limit && limit == breaks;
+    segment_.to_the_end = to_limit;
+}
+
+/// How long a stretch may be under laws of friction that bend with the speed.
+double Engine::longest_under_friction() {
+    double longest = model::never;
+    bool looked = false;
+    for (std::size_t j = 0; j < mechanics_.joints(); ++j) {
+        const Joint& joint = problem_.system.joints[j];
+        const model::Friction& law = joint.friction.law;
+        const Slipping& how = mode_.friction[j];
+        if (law.ranges() == 0 || how.way == Motion::stuck || how.riding || mode_.leans[j] != 0) continue;
+        if (!looked && !look({now_.hi, side(), departing()}, mode_, *frame_, look_)) return longest;
+        looked = true;
+        const double sign = model::sign_of(how.way);
+        double lightness = 1 / problem_.system.bodies[index(joint.first)].inertia;
+        double first = look_.accelerations[index(joint.first)];
+        if (joint.second >= 0) {
+            lightness += 1 / problem_.system.bodies[index(joint.second)].inertia;
+            first -= look_.accelerations[index(joint.second)];
+        }
+        const double C = joint.damping, v = mechanics_.velocity(j, y_);
+        const double second = (std::fabs(joint.stiffness * v) + std::fabs(C * first)) * lightness;
+        longest = std::min(longest, model::longest_step(law, law.range(how.range), std::max(0.0, sign * slip(j)),
+                                                        sign * first, second, C, 1 / lightness));
+    }
+    return longest;
+}
+
+void Engine::again(Collocation::Attempt attempt) {
+    if (++attempts_ >= most_attempts) {
+        if (now_.hi - attempts_since_ < 1e-7 * most_attempts * pace_) {
+            fail(Outcome::unresolved);
+            return;
+        }
+        attempts_ = 0, attempts_since_ = now_.hi;
+    }
+    if (attempt == Collocation::Attempt::failed) {
+        bad_time_ = solver_->bad_time();
+        const double near = std::max(near_failure * pace_, 64 * rounding * std::fabs(now_.hi));
+        if (now_.until(bad_time_) <= near || !mechanics_.may_go_on()) fail(Outcome::excitation_not_finite);
+        h_ = segment_.h / 2;
+        return;
+    }
+    const bool searched = searched_from_ == now_.hi && segment_.h > 0.1 * searched_h_;
+    if (!searched && breaks_.size() < most_found_breaks) {
+        searched_from_ = now_.hi, searched_h_ = segment_.h;
+        if (const auto found = solver_->found_break(segment_); found && *found > now_.hi) {
+            const auto place = std::lower_bound(breaks_.begin(), breaks_.end(), *found);
+            if (place == breaks_.end() || *place != *found) {
+                breaks_.insert(place, *found);
+                return;
+            }
+        }
+    }
+    const double unresolved = solver_->unresolved();
+    const double factor = unresolved < model::never ? 0.9 * std::pow(unresolved, -1.0 / 16) : 0;
+    h_ = segment_.h * std::clamp(factor, 0.5, 0.9);
+}
+
+bool Engine::advance() {
+    choose();
+    if (!(segment_.h > 0)) return fail(Outcome::chattering);
+    const Frame& present = *frame_;
+    const auto attempt = solver_->solve(segment_, mode_, present, y_, departing());
+    const double late = std::max(std::fabs(now_.hi), std::fabs(segment_.end));
+    if (attempt == Collocation::Attempt::shorten &&
+        2 * segment_.h <= std::max(shortest * pace_, 16 * rounding * late)) {
+        if (++too_short_ > most_short) return fail(Outcome::chattering);
+        solver_->pass_over(segment_, present);
+        h_ = 64 * segment_.h;
+    } else if (attempt != Collocation::Attempt::resolved) {
+        again(attempt);
+        return outcome_ == Outcome::reached_end;
+    } else {
+        if (2 * segment_.h > 1e-7 * pace_) too_short_ = 0;
+        const double factor = 0.9 * std::pow(std::max(solver_->unresolved(), 1e-16), -1.0 / 16);
+        const double least = segment_.h < short_part * longest_ ? 2 : 0;
+        h_ = std::min(longest_ / 2, std::max(h_, segment_.h * std::clamp(factor, least, 8.0)));
+    }
+    Ending ending;
+    watch(ending);
+    if (outcome_ != Outcome::reached_end) return false;
+    record_turns(ending.x);
+    if (!end_at(ending.x)) return false;
+    return handle(ending);
+}
+
+/// The stretch ends at x: its rows, and the present.
+bool Engine::end_at(double x) {
+    const bool whole = x >= 1;
+    const double length = whole ? 2 * segment_.h : segment_.h * (1 + x);
+    if (!rows_until(whole ? segment_.end : segment_.start.later(length).hi, whole)) {
+        return fail(Outcome::excitation_not_finite);
+    }
+    if (length > 0) history_->add({segment_.start, segment_.h, length, y_, segment_.series});
+    result_.gap = std::max(result_.gap, std::min(length, 2 * cheb::widest_gap * segment_.h));
+    if (x > -1) segment_.state(x, y_);
+    now_ = whole && segment_.to_the_end ? Clock{segment_.end, 0} : segment_.start.later(length);
+    after_break_ = whole && segment_.to_break;
+    if (bad_time_ <= now_.hi) bad_time_ = model::never;
+    while (!breaks_.empty() && breaks_.front() <= now_.hi) breaks_.erase(breaks_.begin());
+    if (length > 0) {
+        for (Slipping& how : mode_.friction) how.leaving = false;
+        if (whole) {
+            for (Slipping& how : mode_.friction) how.blunt = 0;
+        }
+        std::fill(edge_.begin(), edge_.end(), 0);
+        std::fill(at_wall_.begin(), at_wall_.end(), 0);
+    }
+    int generation = 0;
+    while (!echoes_.empty() && echoes_.front().first <= now_.hi) {
+        generation = std::max(generation, echoes_.front().second);
+        echoes_.erase(echoes_.begin());
+    }
+    if (generation > 0) echo(now_.hi, generation + 1);
+    if (!whole || (after_break_ && generation == 0)) echo(now_.hi, 1);
+    project();
+    bool good = true;
+    mechanics_.for_each_signal([&](Signal& s) { good = good && s.arrive(here()); });
+    if (!good) return fail(Outcome::excitation_not_finite);
+    if (!after_break_) return true;
+    // Loads, limits and belts may have jumped: what holds is asked again.
+    for (std::size_t j = 0; j < mechanics_.joints(); ++j) {
+        if (mechanics_.has_belt(j)) return restart_contacts(Because::belt);
+    }
+    return decide(true);
+}
+
+bool Engine::handle(const Ending& ending) {
+    const std::size_t j = ending.which;
+    switch (ending.by) {
+        case By::nobody:
+        case By::kink:
+            return true;
+        case By::stays:
+            return decide(true);
+        case By::slip: {
+            const double fastest = std::fabs(mechanics_.belt(j, now_.hi, side())) + greatest(segment_.y[n()]);
+            for (std::size_t i = 0; i < mechanics_.joints(); ++i) {
+                const Slipping& how = mode_.friction[i];
+                if (!mechanics_.rubs(i) || how.way == Motion::stuck || how.riding || mode_.leans[i] != 0) continue;
+                double size = fastest;
+                const Joint& joint = problem_.system.joints[i];
+                size = std::max(size, greatest(segment_.y[n() + index(joint.first)]));
+                if (i == j || std::fabs(slip(i)) <= 64 * rounding * size) arrived_[i] = how.way;
+            }
+            if (mode_.leans[j] != 0) {  // the belt turns along a mass at a wall
+                slide(j, mode_.friction[j].way == Motion::forward ? Motion::backward : Motion::forward, true);
+                arrived_[j] = Motion::stuck;
+            }
+            return decide(true) && (!too_often() || fail(Outcome::chattering));
+        }
+        case By::release: {
+            const Mode before = mode_;
+            const double blunt = mode_.friction[j].blunt;
+            mode_.friction[j].blunt = 0;
+            if (!decide(true, ending)) return false;
+            bool same = mode_.leans == before.leans;
+            for (std::size_t i = 0; i < mechanics_.joints() && same; ++i) {
+                same = mode_.friction[i].way == before.friction[i].way &&
+                       mode_.friction[i].riding == before.friction[i].riding;
+            }
+            // What only touched its limit must pass it clearly the next time.
+            if (same) {
+                Slipping& how = mode_.friction[j];
+                how.blunt = std::max(2 * blunt, 64 * rounding * torque_size(j));
+                if (how.blunt > most_blunt * torque_size(j)) return fail(Outcome::chattering);
+            }
+            return !too_often() || fail(Outcome::chattering);
+        }
+        case By::wall:
+            return hit(j, ending.side);
+        case By::corner: {
+            Slipping& how = mode_.friction[j];
+            how.range = ending.side > 0 ? how.range + 1 : how.range - 1;
+            edge_[j] = -ending.side;
+            return !too_often() || fail(Outcome::chattering);
+        }
+        case By::relay:
+            mechanics_.loads()[j].toggle(index(ending.side));
+            tell(EventKind::switched, static_cast<int>(j));
+            if (!decide(true)) return false;
+            return !too_often() || fail(Outcome::chattering);
+        case By::user:
+            return act(j);
+    }
+    return true;
+}
+
+bool Engine::too_often() {
+    at_once_in_a_row_ = now_.hi - last_event_ <= at_once * pace_ ? at_once_in_a_row_ + 1 : 0;
+    last_event_ = now_.hi;
+    return at_once_in_a_row_ > most_at_once;
+}
+
+void Engine::echo(double t, int generation) {
+    if (generation > most_echoes) return;
+    mechanics_.for_each_signal([&](const Signal& s) {
+        for (const double by : s.delays()) {
+            const std::pair<double, int> back{t + by, generation};
+            echoes_.insert(std::lower_bound(echoes_.begin(), echoes_.end(), back), back);
+        }
+    });
+}
+
+void Engine::tell(EventKind kind, int where, int user) {
+    const std::size_t joint = where < 0 ? 0 : index(where);
+    const std::size_t body =
+        kind == EventKind::switched || where < 0 ? joint : index(problem_.system.joints[joint].first);
+    JointEvent event{now_.hi, kind, where, user, 0, 0, mechanics_.load(body, here())};
+    event.theta = kind == EventKind::switched ? y_[body] : mechanics_.angle(joint, y_);
+    event.velocity = kind == EventKind::switched ? y_[n() + body] : mechanics_.velocity(joint, y_);
+    result_.events.push_back(event);
+}
+
+// ---- guards
+
+void Engine::watch(Ending& ending) {
+    for (std::size_t j = 0; j < mechanics_.joints(); ++j) {
+        if (mode_.holds(j)) watch_release(j, ending);
+        if (mechanics_.rubs(j) && mode_.friction[j].way != Motion::stuck && !mode_.friction[j].riding) {
+            watch_slip(j, ending);
+            watch_corner(j, ending);
+        }
+        if (problem_.system.joints[j].walls && mode_.leans[j] == 0) watch_walls(j, ending);
+        if (mechanics_.has_normal(j)) watch_normal(j, ending);
+    }
+    watch_relays(ending);
+    watch_users(ending);
+    if (ending.x > -1 && ending.x < 1 && segment_.time(ending.x) >= segment_.end) ending.x = 1;
+}
+
+void Engine::watch_slip(std::size_t joint, Ending& ending) {
+    const Joint& own = problem_.system.joints[joint];
+    const Slipping& how = mode_.friction[joint];
+    const double sign = model::sign_of(how.way);
+    const Nodes none{};
+    const Nodes& a = segment_.y[n() + index(own.first)];
+    const Nodes& b = own.second < 0 ? none : segment_.y[n() + index(own.second)];
+    const Nodes& belt = segment_.belts[joint];
+    const bool leans = mode_.leans[joint] != 0;
+    const double first = how.leaving ? 0 : (leans ? 0 : a[0] - b[0]) - belt[0];
+    Nodes change{};
+    for (std::size_t j = 0; j < node_count; ++j) {
+        change[j] = (leans ? 0 : (a[j] - a[0]) - (b[j] - b[0])) - (belt[j] - belt[0]);
+    }
+    Series series = cheb::fit(change);
+    series[0] += first;
+    const double fastest = greatest(a) + greatest(b) + greatest(belt);
+    if (!how.leaving && hybrid::stays_above_zero(sign, series, fastest)) return;
+    cheb::Bounded<node_count> curve(sign, series, cheb::derivative(series));
+    if (own.second >= 0 || mechanics_.has_belt(joint)) curve.raise_floor(16 * rounding * fastest);
+    double torques = torque_size(joint), inertia = problem_.system.bodies[index(own.first)].inertia;
+    if (own.second >= 0) inertia = std::min(inertia, problem_.system.bodies[index(own.second)].inertia);
+    curve.raise_slope_floor(segment_.h / inertia * 64 * rounding * torques);
+    const auto always = [](double) { return true; };
+    auto zero = cheb::first_below(curve, -1, how.leaving ? cheb::LeftEnd::leaving : cheb::LeftEnd::anywhere, always);
+    if (!zero && curve(1) <= curve.floor()) zero = 1;
+    if (!zero || *zero > ending.x) return;
+    ending = {*zero, By::slip, joint};
+    if (!how.leaving || *zero > -1) return;
+    // It was let go and does not leave: what is told of that was none, and it must be pulled clearly farther.
+    ending.by = By::stays;
+    take_back_slip(joint);
+    Slipping& stays = mode_.friction[joint];
+    stays.way = Motion::stuck, stays.leaving = false;
+    stays.blunt = std::max(2 * stays.blunt, 64 * rounding * torques);
+    if (too_often() || stays.blunt > most_blunt * torques) fail(Outcome::chattering);
+}
+
+/// What was told to slip right now, and did not.
+void Engine::take_back_slip(std::size_t joint) {
+    auto told = std::find_if(result_.events.rbegin(), result_.events.rend(), [&](const JointEvent& e) {
+        return e.where == static_cast<int>(joint) && e.kind == EventKind::slip && e.t == now_.hi;
+    });
+    if (told != result_.events.rend()) result_.events.erase(std::next(told).base());
+}
+
+/// Where what holds a joint passes what it can hold.
+void Engine::watch_release(std::size_t joint, Ending& ending) {
+    Nodes pull{};
+    for (std::size_t j = 0; j < node_count; ++j) pull[j] = -segment_.holding[joint][j];
+    const Series series = cheb::fit(pull);
+    const int wall = mode_.leans[joint];
+    const double largest = torque_size(joint);
+    for (const Motion side : {Motion::forward, Motion::backward}) {
+        const double sign = model::sign_of(side);
+        if (wall * sign > 0) continue;
+        const bool rubs = mechanics_.rubs(joint) && mode_.friction[joint].way == Motion::stuck;
+        Nodes limit{};
+        if (rubs && mechanics_.varies(joint)) {
+            for (std::size_t j = 0; j < node_count; ++j) {
+                point_.resize(y_.size());
+                for (std::size_t k = 0; k < y_.size(); ++k) point_[k] = segment_.y[k][j];
+                limit[j] = mechanics_.holding(joint, side, {segment_.times[j], segment_.side(j), point_});
+                if (std::isfinite(limit[j])) continue;
+                fail(Outcome::excitation_not_finite);
+                return;
+            }
+        } else {
+            limit.fill(rubs ? mechanics_.holding(joint, side, here()) : 0);
+        }
+        Nodes values{};
+        const double blunt = mode_.friction[joint].blunt;
+        for (std::size_t j = 0; j < node_count; ++j) values[j] = limit[j] - sign * pull[j] + blunt;
+        const Series left = cheb::fit(values);
+        cheb::Bounded<node_count> curve(1, left, cheb::derivative(left), values);
+        const double doubt = 8 * (rounding * (greatest(limit) + largest) + cheb::tail(series) +
+                                  (mechanics_.varies(joint) ? cheb::tail(cheb::fit(limit)) : 0)) +
+                             solver_->blurred_by_belts(segment_);
+        curve.raise_floor(doubt);
+        const auto lets_go = [&](double x) {
+            std::vector<double> y;
+            segment_.state(x, y);
+            const Moment at{segment_.time(x), x <= -1 ? segment_.side(0) : Side::at, y};
+            Look found;
+            if (!look(at, mode_, *frame_, found)) return false;
+            Motion towards = Motion::stuck;
+            return excess(joint, found, mode_, at, towards) > 0 && towards == side;
+        };
+        std::optional<double> touch;
+        const auto touches = [&](double x) {
+            if (blunt > 0) return false;
+            for (const double place : {x, curve.lowest_near(x)}) {
+                if (!touch && lets_go(place)) touch = place;
+            }
+            return touch.has_value();
+        };
+        auto x = cheb::first_below(curve, -1, cheb::LeftEnd::anywhere, touches);
+        if (x && touch) x = hybrid::first_true(lets_go, *touch);
+        if (!x || !(*x < ending.x) || !(segment_.time(*x) < segment_.end)) continue;
+        ending = {*x, By::release, joint, static_cast<int>(side)};
+    }
+}
+
+void Engine::watch_walls(std::size_t joint, Ending& ending) const {
+    const Joint& own = problem_.system.joints[joint];
+    const auto no = [](double) { return false; };
+    const Nodes none{};
+    const Nodes& a = segment_.y[index(own.first)];
+    const Nodes& b = own.second < 0 ? none : segment_.y[index(own.second)];
+    for (const int wall : {1, -1}) {
+        const double place = own.walls->at(wall);
+        if (!std::isfinite(place)) continue;
+        const double begin = wall * (place - mechanics_.angle(joint, y_));
+        Nodes change{};
+        for (std::size_t j = 0; j < node_count; ++j) {
+            const double second = own.second < 0 ? 0 : segment_.moved[index(own.second)][j];
+            change[j] = -wall * (segment_.moved[index(own.first)][j] - second);
+        }
+        // What begins at the wall is known as well as its way from there.
+        const bool leaving = at_wall_[joint] != 0 && std::fabs(begin) <= 4 * rounding * std::fabs(place);
+        const double far = leaving ? greatest(change) : std::max({greatest(a), greatest(b), std::fabs(place)});
+        Series gap = cheb::fit(change);
+        if (!leaving) gap[0] += begin;
+        cheb::Bounded<node_count> curve(1, gap, cheb::derivative(gap));
+        curve.raise_floor(64 * rounding * far);
+        const auto x = cheb::first_below(curve, -1, leaving ? cheb::LeftEnd::leaving : cheb::LeftEnd::anywhere, no);
+        if (x && *x < ending.x) ending = {*x, By::wall, joint, wall};
+    }
+}
+
+/// Where a law of friction goes on with another formula.
+void Engine::watch_corner(std::size_t joint, Ending& ending) const {
+    const Joint& own = problem_.system.joints[joint];
+    const model::Friction& law = own.friction.law;
+    const Slipping& how = mode_.friction[joint];
+    if (law.ranges() < 2 || own.friction.function != nullptr || mode_.leans[joint] != 0) return;
+    const model::SpeedRange range = law.range(how.range);
+    const double sign = model::sign_of(how.way);
+    Nodes speed{};
+    const Nodes none{};
+    const Nodes& a = segment_.y[n() + index(own.first)];
+    const Nodes& b = own.second < 0 ? none : segment_.y[n() + index(own.second)];
+    for (std::size_t j = 0; j < node_count; ++j) speed[j] = sign * (a[j] - b[j] - segment_.belts[joint][j]);
+    const Series series = cheb::fit(speed);
+    const auto no = [](double) { return false; };
+    for (const int side : {1, -1}) {
+        const double corner = side > 0 ? range.to : range.from;
+        if (!(corner > 0 && corner < model::never)) continue;
+        Series left = series;
+        for (double& c : left) c *= -side;
+        left[0] += side * corner;
+        cheb::Bounded<node_count> curve(1, left, cheb::derivative(left));
+        curve.raise_floor(16 * rounding * (greatest(a) + greatest(b) + greatest(segment_.belts[joint])));
+        const bool there = edge_[joint] == side;
+        const auto x = cheb::first_below(curve, -1, there ? cheb::LeftEnd::leaving : cheb::LeftEnd::anywhere, no);
+        if (x && *x < ending.x) ending = {*x, By::corner, joint, side};
+    }
+}
+
+/// A normal load that passes zero ends a stretch: what is negative counts as none.
+void Engine::watch_normal(std::size_t joint, Ending& ending) {
+    Nodes values{};
+    for (std::size_t j = 0; j < node_count; ++j) {
+        point_.resize(y_.size());
+        for (std::size_t k = 0; k < y_.size(); ++k) point_[k] = segment_.y[k][j];
+        values[j] = mechanics_.normal(joint, {segment_.times[j], segment_.side(j), point_});
+    }
+    std::vector<double> y;
+    const auto exact = [&](double x) {
+        segment_.state(x, y);
+        return mechanics_.normal(joint, {segment_.time(x), Side::at, y});
+    };
+    hybrid::Half half = normal_half_[joint];
+    const Watched watched(values, exact);
+    const auto x = watched.leaves(half, -1);
+    if (!x || *x >= ending.x) {
+        normal_half_[joint] = half;
+        return;
+    }
+    ending = {*x, By::kink, joint};
+    normal_half_[joint] = -half;
+}
+
+void Engine::watch_relays(Ending& ending) {
+    for (std::size_t i = 0; i < n(); ++i) {
+        const Signal& load = mechanics_.loads()[i];
+        for (std::size_t r = 0; r < load.relays(); ++r) {
+            Nodes values{};
+            for (std::size_t j = 0; j < node_count; ++j) {
+                point_.resize(y_.size());
+                for (std::size_t k = 0; k < y_.size(); ++k) point_[k] = segment_.y[k][j];
+                values[j] = load.until_switch(r, {segment_.times[j], segment_.side(j), point_});
+            }
+            std::vector<double> y;
+            const auto exact = [&](double x) {
+                segment_.state(x, y);
+                return load.until_switch(r, {segment_.time(x), Side::at, y});
+            };
+            hybrid::Half half = 1;
+            const auto x = values[0] < 0 ? std::optional(-1.0) : Watched(values, exact).leaves(half, -1);
+            if (x && *x < ending.x) ending = {*x, By::relay, i, static_cast<int>(r)};
+        }
+    }
+}
+
+void Engine::watch_users(Ending& ending) {
+    std::vector<double> y;
+    for (std::size_t e = 0; e < problem_.drive.events.size(); ++e) {
+        const model::WantedEvent& wanted = problem_.drive.events[e];
+        Nodes values{};
+        for (std::size_t j = 0; j < node_count; ++j) {
+            point_.resize(y_.size());
+            for (std::size_t k = 0; k < y_.size(); ++k) point_[k] = segment_.y[k][j];
+            values[j] = asking_.ask(*wanted.when, {segment_.times[j], segment_.side(j), point_});
+            if (std::isfinite(values[j])) continue;
+            fail(Outcome::excitation_not_finite);
+            return;
+        }
+        const auto exact = [&](double x) {
+            segment_.state(x, y);
+            return asking_.ask(*wanted.when, {segment_.time(x), Side::at, y});
+        };
+        const Watched watched(values, exact);
+        double from = -1;
+        constexpr int most_passages = 200;
+        for (int i = 0; i < most_passages; ++i) {
+            const auto x = watched.leaves(halves_[e], from);
+            if (!x || !(*x < ending.x)) break;
+            const bool counts = wanted.direction == model::Crossing::both ||
+                                (halves_[e] < 0) == (wanted.direction == model::Crossing::up);
+            if (counts) {
+                ending = {*x, By::user, e};
+                break;
+            }
+            halves_[e] = -halves_[e];
+            from = *x;
+        }
+    }
+}
+
+bool Engine::rubs_somewhere(std::size_t body) const {
+    for (std::size_t j = 0; j < mechanics_.joints(); ++j) {
+        const Joint& joint = problem_.system.joints[j];
+        const bool its = joint.first == static_cast<int>(body) || joint.second == static_cast<int>(body);
+        if (its && mechanics_.rubs(j)) return true;
+    }
+    return false;
+}
+
+/// Without dry friction nothing happens at a turn, it is only told.
+void Engine::record_turns(double until) {
+    const auto told = static_cast<std::ptrdiff_t>(result_.events.size());
+    for (std::size_t i = 0; i < n(); ++i) {
+        if (rubs_somewhere(i) || frame_->group[i] < 0) continue;
+        const Nodes& v = segment_.y[n() + i];
+        const double moving = greatest(v);
+        const auto exact = [&](double x) { return segment_.at(n() + i, x); };
+        const double torques = torque_size(i);
+        const double nothing = 100 * rounding * segment_.h / problem_.system.bodies[i].inertia * torques;
+        if (!(moving > nothing)) continue;
+        hybrid::Half half = static_cast<int>(heading_[i]);
+        const Watched watched(v, exact);
+        double from = -1;
+        for (;;) {
+            const auto x = watched.leaves(half, from);
+            if (!x || *x >= until - 1e-12) break;
+            const double t = segment_.time(*x);
+            if (t > problem_.window.start) {
+                std::vector<double> y;
+                segment_.state(*x, y);
+                result_.events.push_back(
+                    {t, EventKind::turn, static_cast<int>(i), -1, y[i], 0, mechanics_.load(i, {t, Side::at, y})});
+            }
+            half = -half;
+            from = *x;
+        }
+        heading_[i] = static_cast<Motion>(half);
+    }
+    std::stable_sort(result_.events.begin() + told, result_.events.end(),
+                     [](const JointEvent& a, const JointEvent& b) { return a.t < b.t; });
+}
+
+// ---- impacts, acts, rows
+
+bool Engine::hit(std::size_t joint, int wall) {
+    const Joint& own = problem_.system.joints[joint];
+    const auto a = index(own.first);
+    const double place = own.walls->at(wall), e = own.walls->restitution;
+    const bool stayed = at_wall_[joint] != 0;
+    y_[a] = own.second < 0 ? place : y_[index(own.second)] + place;
+    const double before = std::max(0.0, wall * mechanics_.velocity(joint, y_));
+    at_wall_[joint] = 1;
+    const auto stands = [&] {
+        if (mode_.leans[joint] != wall || leaned_[joint] != 0) return;
+        tell(EventKind::stick, static_cast<int>(joint));
+        leaned_[joint] = 1;
+    };
+    if (stayed && before == 0) {
+        mode_.leans[joint] = wall;
+        mode_.friction[joint].leaving = false;
+        if (!decide(true)) return false;
+        stands();
+        return !too_often() || fail(Outcome::chattering);
+    }
+    tell(EventKind::impact, static_cast<int>(joint));
+    const auto velocity = [&](double relative) {
+        if (own.second < 0) {
+            y_[n() + a] = relative;
+            return;
+        }
+        const auto b = index(own.second);
+        const double Ia = problem_.system.bodies[a].inertia, Ib = problem_.system.bodies[b].inertia;
+        const double middle = (Ia * y_[n() + a] + Ib * y_[n() + b]) / (Ia + Ib);
+        y_[n() + a] = middle + Ib / (Ia + Ib) * relative;
+        y_[n() + b] = middle - Ia / (Ia + Ib) * relative;
+    };
+    // How long the next bounces take, under torques that stay as they are.
+    velocity(-wall * e * before);
+    bool rests = e * before == 0;
+    double rest = 0;
+    if (!rests) {
+        Look found;
+        Mode thrown = mode_;
+        for (std::size_t j = 0; j < mechanics_.joints(); ++j) {
+            if (mechanics_.rubs(j) && slip(j) != 0) thrown.friction[j].way = model::motion_of(slip(j));
+        }
+        const Frame loose(problem_.system, thrown);
+        if (!look(here(), thrown, loose, found)) return fail(Outcome::excitation_not_finite);
+        const double rate = found.accelerations[a] - (own.second < 0 ? 0 : found.accelerations[index(own.second)]);
+        const double into = wall * rate;
+        const double once = into > 0 ? 2 * e * before / into : model::never;
+        const double all = e < 1 ? once / (1 - e) : model::never;
+        rests = all <= last_bounces * pace_ || once <= shortest_bounce * pace_;
+        rest = all < model::never ? all : 0;
+    }
+    echo(now_.hi, 1);
+    for (const int body : {own.first, own.second}) {
+        if (body >= 0) heading_[index(body)] = model::motion_of(rests ? 0 : y_[n() + index(body)]);
+    }
+    if (rests) {
+        velocity(0);
+        if (rest > 0 && now_.after(rest) < std::min(mechanics_.next_break(now_.hi), problem_.window.end)) {
+            std::vector<double> rates(mechanics_.states());
+            mechanics_.rates(here(), rates.data());
+            for (std::size_t k = 0; k < rates.size(); ++k) y_[2 * n() + k] += rest * rates[k];
+            now_ = now_.later(rest);
+        }
+        mode_.leans[joint] = wall;
+        if (mechanics_.rubs(joint)) {
+            Slipping& how = mode_.friction[joint];
+            if (how.way != Motion::stuck) arrived_[joint] = how.way;
+            how.leaving = false;
+        }
+    }
+    if (!restart_contacts(Because::impact, joint)) return false;
+    if (rests) stands();
+    return !too_often() || fail(Outcome::chattering);
+}
+
+bool Engine::act(std::size_t event) {
+    const model::WantedEvent& wanted = problem_.drive.events[event];
+    halves_[event] = -halves_[event];
+    tell(EventKind::user, -1, static_cast<int>(event));
+    if (wanted.act != nullptr) {
+        const std::vector<double> before = y_;
+        model::State state{y_[0], y_[n()]};
+        const bool named = problem_.system.named;
+        const std::span<double> all(y_);
+        if (!wanted.act->act(now_.hi, state, named ? all : all.subspan(2 * n()))) {
+            return fail(Outcome::excitation_not_finite);
+        }
+        if (!named) y_[0] = state.theta, y_[1] = state.velocity;
+        if (y_ != before) {
+            for (std::size_t e = 0; e < halves_.size(); ++e) {
+                const auto value = [&](const std::vector<double>& y) {
+                    return asking_.ask(*problem_.drive.events[e].when, {now_.hi, side(), y});
+                };
+                if (value(y_) != value(before)) halves_[e] = 0;
+            }
+            for (int& lean : mode_.leans) lean = 0;
+            echo(now_.hi, 1);
+            if (!restart_contacts(Because::act)) return false;
+        }
+    }
+    if (wanted.stop) return fail(Outcome::stopped);
+    return !too_often() || fail(Outcome::chattering);
+}
+
+bool Engine::rows_until(double end, bool to_the_end) {
+    const Grid& rows = problem_.rows;
+    while (next_row_ < rows.count()) {
+        const double t = rows.time(next_row_);
+        if (!(t < end) && !(to_the_end && t < segment_.end)) return true;
+        if (!put_row(t, std::clamp(segment_.start.until(t) / segment_.h - 1, -1.0, 1.0))) return false;
+    }
+    return true;
+}
+
+/// At x of the segment; -2 is the present.
+bool Engine::put_row(double t, double x) {
+    std::vector<double> y = y_;
+    if (x > -1) segment_.state(x, y);
+    const Moment at{t, x <= -1 ? side() : Side::at, y};
+    if (!look(at, mode_, frame(), look_)) return false;
+    double* cell = result_.table.writable() + next_row_;
+    const std::size_t stride = problem_.rows.count();
+    const auto put = [&](double value) {
+        *cell = value == 0 ? 0 : value;
+        cell += stride;
+        return std::isfinite(value);
+    };
+    const auto friction = [&](std::size_t j) {
+        if (!mechanics_.rubs(j)) return 0.0;
+        const Slipping& how = mode_.friction[j];
+        if (mode_.leans[j] != 0 && how.way == Motion::stuck) {
+            const double held = look_.holding[j];
+            return mode_.leans[j] * held > 0 ? held : 0.0;
+        }
+        if (how.way == Motion::stuck) return look_.holding[j];
+        if (how.riding) return -model::sign_of(how.way) * mechanics_.holding(j, how.way, at);
+        const double slips = mechanics_.velocity(j, y) - mechanics_.belt(j, t, at.side);
+        Slipping present = how;
+        if (mode_.leans[j] != 0) present.range = mechanics_.range_of(j, std::fabs(slips));
+        return -model::sign_of(how.way) * mechanics_.sliding(j, present, slips, at);
+    };
+    bool good = put(t);
+    for (std::size_t i = 0; i < n(); ++i) {
+        good = put(y[i]) && good;
+        good = put(y[n() + i]) && good;
+        good = put(mechanics_.load(i, at)) && good;
+        good = put(friction(i)) && good;
+        good = put(-problem_.system.joints[i].damping * y[n() + i]) && good;
+    }
+    for (std::size_t j = n(); j < mechanics_.joints(); ++j) {
+        const double belt = mechanics_.belt(j, t, at.side);
+        double torque = -mechanics_.joint_torque(j, at, mode_, belt);
+        if (mode_.holds(j)) torque += look_.holding[j];
+        good = put(mechanics_.angle(j, y)) && good;
+        good = put(mechanics_.velocity(j, y)) && good;
+        good = put(torque) && good;
+        good = put(friction(j)) && good;
+    }
+    for (std::size_t k = 2 * n(); k < y.size(); ++k) good = put(y[k]) && good;
+    if (good) ++next_row_;
+    return good;
+}
+
+}  // namespace
+
+AssemblyRun run(const AssemblyProblem& problem) {
+    const std::size_t own = problem.drive.states.size();
+    Witnesses witnesses(problem.system.named ? 2 * problem.system.bodies.size() + own : own);
+    model::Assembly system = problem.system;
+    Drive drive = problem.drive;
+    const auto of = [&](const char* what, std::size_t joint) {
+        return system.named ? fmt::format("{}.{}", what, system.joints[joint].name) : std::string(what);
+    };
+    for (std::size_t i = 0; i < drive.loads.size(); ++i) drive.loads[i] = witnesses.heard(drive.loads[i], of("M", i));
+    for (std::size_t j = 0; j < system.joints.size(); ++j) {
+        model::Joint& joint = system.joints[j];
+        drive.belts[j] = witnesses.heard(drive.belts[j], of("belt", j));
+        for (auto& sliding : joint.friction.sliding) {
+            if (sliding) sliding = witnesses.heard(*sliding, of("Rd", j));
+        }
+        for (auto& holding : joint.friction.holding) {
+            if (holding) holding = witnesses.heard(*holding, of("Re", j));
+        }
+        if (joint.friction.normal) joint.friction.normal = witnesses.heard(*joint.friction.normal, of("normal", j));
+        if (joint.friction.function != nullptr) {
+            joint.friction.function = witnesses.heard(joint.friction.function, of("friction", j), "t", 1);
+        }
+        if (const auto* spring = joint.spring.as<model::springs::UserSpring>()) {
+            joint.spring = model::springs::UserSpring{witnesses.heard(spring->function, of("spring", j), "theta")};
+        }
+    }
+    drive.base = witnesses.heard(drive.base, "base");
+    for (model::OwnState& state : drive.states)
+        state.rate = witnesses.heard(state.rate, "states." + state.name + ".rate");
+    for (model::WantedEvent& event : drive.events) {
+        event.when = witnesses.heard(event.when, event.name.empty() ? "an event" : "the event " + event.name);
+    }
+    AssemblyRun result;
+    const AssemblyProblem heard{system,          drive,          problem.window,    problem.rows,
+                                problem.monitor, problem.limits, problem.tolerance, problem.longest,
+                                problem.before};
+    {
+        Engine engine(heard, result);
+        engine.run();
+    }
+    const bool whole = model::is_whole(result.outcome) || result.outcome == Outcome::stopped;
+    result.contradiction = witnesses.verdict(whole);
+    if (result.contradiction) result.outcome = Outcome::not_a_function;
+    return result;
+}
+
+}  // namespace dinal::motion::engine

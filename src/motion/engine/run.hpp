@@ -1,0 +1,78 @@
+// Runs an assembly: stretch after stretch of its motion, each up to the first event in it.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "model/contradiction.hpp"
+#include "model/event.hpp"
+#include "model/outcome.hpp"
+#include "motion/engine/mechanics.hpp"
+#include "motion/growing.hpp"
+#include "motion/simulate.hpp"
+
+namespace dinal::motion::engine {
+
+/// An event of a run of several bodies.
+struct JointEvent {
+    double t = 0;
+    model::EventKind kind = model::EventKind::turn;
+    int where = -1;                  ///< the joint; of a relay the body whose M it is in; -1 of a user's event
+    int user = -1;                   ///< of a user's event: which one
+    double theta = 0, velocity = 0;  ///< of the joint
+    double M = 0;                    ///< on its first body
+};
+
+/// The motion between the rows.
+class History {
+public:
+    History() = default;
+    History(const History&) = delete;
+    History& operator=(const History&) = delete;
+    virtual ~History() = default;
+    /// All angles, velocities and states at a time of the run.
+    [[nodiscard]] virtual std::vector<double> at(double t) const = 0;
+    [[nodiscard]] virtual std::size_t bytes() const = 0;
+    /// It was kept up to this time.
+    [[nodiscard]] virtual double whole_until() const = 0;
+};
+
+/// Where a run may be taken up again.
+struct Carry {
+    std::vector<double> y;
+    Mode mode;
+    std::vector<std::vector<Signal::Memory>> controllers;  ///< of the loads of each body
+    std::shared_ptr<const History> past;
+};
+
+struct AssemblyRun {
+    /// t; theta, velocity, M, friction, damping of each body; theta, velocity, torque, friction of each link; states.
+    Growing<double> table;
+    std::vector<JointEvent> events;
+    model::Outcome outcome = model::Outcome::reached_end;
+    double t_start = 0, t_stop = 0;
+    double gap = 0;  ///< the longest between two looks at a user's function of the time
+    std::shared_ptr<const History> history;
+    std::shared_ptr<const Carry> carry;
+    std::optional<model::Contradiction> contradiction = {};  ///< of Outcome::not_a_function
+};
+inline constexpr std::size_t columns_of_body = 5, columns_of_link = 4;
+
+struct AssemblyProblem {
+    const model::Assembly& system;
+    const Drive& drive;
+    Window window;
+    const Grid& rows;
+    const Monitor& monitor;
+    const Limits& limits;
+    double tolerance = 1e-12;
+    double longest = model::never;  ///< stretch, time units
+    std::shared_ptr<const Carry> before = {};
+};
+
+/// The run, all functions of which are asked again now and then what they were asked before.
+AssemblyRun run(const AssemblyProblem& problem);
+
+}  // namespace dinal::motion::engine

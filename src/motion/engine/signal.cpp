@@ -1,0 +1,130 @@
+#include "motion/engine/signal.hpp"
+
+#include "model/components.hpp"
+
+namespace dinal::motion::engine {
+
+Signal::Signal(const model::Excitation& excitation, const Asking* asking)
+    : excitation_(excitation), asking_(asking), memory_(excitation.components().size()) {
+    for (const model::Component& c : excitation_.components()) {
+        Part part{.component = &c,
+                  .sampled = model::controller_of<model::SampledController>(c),
+                  .relay = model::controller_of<model::RelayController>(c),
+                  .delayed = model::controller_of<model::DelayedController>(c)};
+        const bool controller = part.sampled != nullptr || part.relay != nullptr || part.delayed != nullptr;
+        if (!controller) part.function = std::get_if<model::Scripted>(&c.term);
+        part.of_motion = part.function != nullptr && part.function->feedback;
+        asks_the_motion_ |= part.of_motion;
+        asks_functions_ |= part.function != nullptr || part.delayed != nullptr;
+        if (part.relay != nullptr) relays_.push_back(parts_.size());
+        if (part.delayed != nullptr) delays_.push_back(part.delayed->by);
+        parts_.push_back(part);
+    }
+}
+
+double Signal::value_of(std::size_t i, const Moment& at) const {
+    const Part& part = parts_[i];
+    if (part.function != nullptr) {
+        const double t = Asking::towards(at.t - part.function->delay, at.side);
+        return asking_->ask_at(*part.function->function, t, at.y);
+    }
+    if (part.relay != nullptr) return part.relay->levels[memory_[i].on ? 0 : 1];
+    if (part.sampled != nullptr) return memory_[i].output;
+    if (part.delayed != nullptr) {
+        // A jump comes back at a time that is rounded: on its sides the past is asked beside it.
+        const double t = Asking::towards(at.t, at.side);
+        return asking_->ask_at(*part.delayed->function, t, asking_->past(t - part.delayed->by, at.side));
+    }
+    const double t = at.side == Side::before ? std::nextafter(at.t, -model::never) : at.t;
+    return std::visit(
+        [t](const auto& term) {
+            if constexpr (model::terms::NativeTerm<std::decay_t<decltype(term)>>) {
+                return term.value(t);
+            } else {
+                return 0.0;
+            }
+        },
+        part.component->term);
+}
+
+double Signal::sum(const Moment& at, bool of_motion) const {
+    const double t = at.side == Side::before ? std::nextafter(at.t, -model::never) : at.t;
+    double sum = 0;
+    for (std::size_t i = 0; i < parts_.size(); ++i) {
+        const model::Component& c = *parts_[i].component;
+        if (parts_[i].of_motion != of_motion || c.gain == 0 || t < c.from || t >= c.to) continue;
+        const double value = value_of(i, at);
+        if (std::isnan(value)) return value;
+        sum += c.gain * value;
+    }
+    return sum;
+}
+
+double Signal::next_break(double t) const {
+    double first = excitation_.next_break(t);
+    for (std::size_t i = 0; i < parts_.size(); ++i) {
+        const auto* sampled = parts_[i].sampled;
+        if (sampled == nullptr) continue;
+        first = std::min(first, sampled->at + static_cast<double>(memory_[i].instant) * sampled->every);
+        if (!memory_[i].pending.empty()) first = std::min(first, memory_[i].pending.front().first);
+    }
+    return first;
+}
+
+void Signal::begin(const Moment& at, const std::vector<std::string>& names) {
+    for (std::size_t i = 0; i < parts_.size(); ++i) {
+        if (const auto* sampled = parts_[i].sampled) {
+            const double n = std::ceil((at.t - sampled->at) / sampled->every - 1e-9);
+            memory_[i].instant = static_cast<std::int64_t>(std::max(n, 0.0));
+            if (sampled->at + static_cast<double>(memory_[i].instant) * sampled->every < at.t) ++memory_[i].instant;
+        } else if (const auto* relay = parts_[i].relay) {
+            using Of = model::RelayController::Of;
+            const std::string wanted = relay->of == Of::theta      ? "theta"
+                                       : relay->of == Of::velocity ? "velocity"
+                                                                   : relay->state;
+            const auto found = std::find(names.begin(), names.end(), wanted);
+            if (relay->of != Of::function && found != names.end()) {
+                memory_[i].place = static_cast<std::size_t>(found - names.begin());
+            }
+            memory_[i].on = relay->starts_on;
+        }
+    }
+    for (std::size_t r = 0; r < relays_.size(); ++r) {
+        if (until_switch(r, at) < 0) toggle(r);
+    }
+}
+
+bool Signal::arrive(const Moment& at) {
+    for (std::size_t i = 0; i < parts_.size(); ++i) {
+        const auto* sampled = parts_[i].sampled;
+        if (sampled == nullptr) continue;
+        Memory& memory = memory_[i];
+        const auto take = [&] {
+            while (!memory.pending.empty() && memory.pending.front().first <= at.t) {
+                memory.output = memory.pending.front().second;
+                memory.pending.pop_front();
+            }
+        };
+        const auto instant = [&] { return sampled->at + static_cast<double>(memory.instant) * sampled->every; };
+        take();
+        while (instant() <= at.t) {
+            const double output = asking_->ask_at(*sampled->function, at.t, at.y);
+            if (!std::isfinite(output)) return false;
+            memory.pending.emplace_back(instant() + sampled->delay, output);
+            ++memory.instant;
+        }
+        take();
+    }
+    return true;
+}
+
+double Signal::until_switch(std::size_t relay, const Moment& at) const {
+    const std::size_t i = relays_[relay];
+    const model::RelayController& own = *parts_[i].relay;
+    const double way = own.off > own.on ? 1 : -1;
+    const double sign = memory_[i].on ? -way : way, level = memory_[i].on ? own.off : own.on;
+    const double measured = memory_[i].place ? at.y[*memory_[i].place] : asking_->ask_at(*own.function, at.t, at.y);
+    return sign * (measured - level);
+}
+
+}  // namespace dinal::motion::engine

@@ -1,0 +1,116 @@
+// What a user gives as a number, an excitation or a function: a load, the velocity of a belt, a normal load. Compiled
+// from an excitation, and asked with the whole state of a run.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <deque>
+#include <functional>
+#include <limits>
+#include <optional>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "model/assembly.hpp"
+#include "model/controller.hpp"
+
+namespace dinal::motion::engine {
+
+/// Of a break: the limits from the left and from the right differ there.
+enum class Side { before, at, after };
+
+/// One moment of a run: y is all angles, all velocities, and then the states of the user's.
+struct Moment {
+    double t;
+    Side side;
+    std::span<const double> y;
+};
+
+/// How a user's function is asked.
+struct Asking {
+    bool named = true;  ///< with all of y as states
+    /// The motion at an earlier time, for what acts with a delay.
+    std::function<std::vector<double>(double t, Side side)> past = {};
+
+    /// A step to the side that a user's arithmetic cannot swallow.
+    static double towards(double t, Side side) {
+        constexpr double few_ulps = 4 * std::numeric_limits<double>::epsilon();
+        const double hair = std::max(1e-300, few_ulps * std::fabs(t));
+        return side == Side::before ? t - hair : side == Side::after ? t + hair : t;
+    }
+    [[nodiscard]] double ask(model::UserFunction& function, const Moment& at) const {
+        return ask_at(function, towards(at.t, at.side), at.y);
+    }
+    [[nodiscard]] double ask_at(model::UserFunction& function, double t, std::span<const double> y) const {
+        if (named) return function.value_with(t, {}, y);
+        return function.value_with(t, {y[0], y[1]}, y.subspan(2));
+    }
+};
+
+class Signal {
+public:
+    Signal() = default;
+    Signal(const model::Excitation& excitation, const Asking* asking);
+
+    [[nodiscard]] bool none() const { return parts_.empty(); }
+    /// A function wants to know the motion.
+    [[nodiscard]] bool asks_the_motion() const { return asks_the_motion_; }
+    /// A function that is known where it was asked only.
+    [[nodiscard]] bool asks_functions() const { return asks_functions_; }
+    [[nodiscard]] bool has_script() const { return excitation_.has_script(); }
+    [[nodiscard]] double value(const Moment& at) const { return of_time(at) + of_motion(at); }
+    /// What depends on the time alone, controllers that hold a value among it.
+    [[nodiscard]] double of_time(const Moment& at) const { return sum(at, false); }
+    [[nodiscard]] double of_motion(const Moment& at) const { return asks_the_motion_ ? sum(at, true) : 0; }
+
+    [[nodiscard]] double next_break(double t) const;
+    [[nodiscard]] double view(double t, double spacing) const { return excitation_.view(t, spacing); }
+    [[nodiscard]] double constant_from() const { return excitation_.constant_from(); }
+    [[nodiscard]] bool may_go_on() const { return excitation_.may_go_on(); }
+    [[nodiscard]] const std::vector<double>& delays() const { return delays_; }
+
+    // Controllers.
+    /// At the start of a run.
+    void begin(const Moment& at, const std::vector<std::string>& names);
+    /// At the time of `at`: outputs that have waited until now, and the instants of this time. False when one failed.
+    bool arrive(const Moment& at);
+    [[nodiscard]] std::size_t relays() const { return relays_.size(); }
+    /// Positive until the relay is to switch.
+    [[nodiscard]] double until_switch(std::size_t relay, const Moment& at) const;
+    void toggle(std::size_t relay) { memory_[relays_[relay]].on = !memory_[relays_[relay]].on; }
+
+    struct Memory {
+        double output = 0;
+        std::deque<std::pair<double, double>> pending{};  ///< the time from when on, and the output
+        std::int64_t instant = 0;
+        bool on = true;                      ///< of a relay
+        std::optional<std::size_t> place{};  ///< in y, of what a relay looks at
+    };
+    [[nodiscard]] const std::vector<Memory>& memory() const { return memory_; }
+    void remember(const std::vector<Memory>& memory) { memory_ = memory; }
+
+private:
+    struct Part {
+        const model::Component* component;
+        const model::Scripted* function = nullptr;
+        const model::SampledController* sampled = nullptr;
+        const model::RelayController* relay = nullptr;
+        const model::DelayedController* delayed = nullptr;
+        bool of_motion = false;
+    };
+    [[nodiscard]] double sum(const Moment& at, bool of_motion) const;
+    [[nodiscard]] double value_of(std::size_t part, const Moment& at) const;
+
+    model::Excitation excitation_;
+    const Asking* asking_ = nullptr;
+    std::vector<Part> parts_;
+    std::vector<Memory> memory_;
+    std::vector<std::size_t> relays_;
+    std::vector<double> delays_;
+    bool asks_the_motion_ = false, asks_functions_ = false;
+};
+
+}  // namespace dinal::motion::engine

@@ -1,0 +1,233 @@
+// Several bodies: against systems of one body, against a judge that knows no modes, and at other resolutions.
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <random>
+#include <string>
+
+#include "model/laws/coulomb.hpp"
+#include "motion/engine/run.hpp"
+#include "motion/spectral/spectral.hpp"
+#include "support/catch.hpp"
+#include "support/written.hpp"
+
+namespace dinal::bodies_test {
+
+using namespace dinal::model;
+using namespace dinal::motion;
+
+namespace {
+
+struct Rig {
+    Assembly system;
+    engine::Drive drive;
+};
+
+class Lot {
+public:
+    explicit Lot(unsigned seed) : random_(seed) {}
+    double between(double a, double b) { return std::uniform_real_distribution<double>(a, b)(random_); }
+    bool chance(double part) { return between(0, 1) < part; }
+
+private:
+    std::mt19937 random_;
+};
+
+Excitation harmonic(double amplitude, double omega, double phase) {
+    Harmonic term;
+    term.amplitude = amplitude, term.omega = omega, term.phase = phase;
+    return Excitation::make(term).value();
+}
+
+/// Bodies on the ground and in a chain, most of which rub; with Re > Rd in half of the contacts when `sticky`.
+Rig random_chain(unsigned seed, bool sticky) {
+    Lot lot(seed);
+    Rig rig;
+    const int n = 2 + static_cast<int>(lot.between(0, 4));
+    const auto joint = [&](int first, int second, double rubs) {
+        Joint made;
+        made.first = first, made.second = second;
+        if (lot.chance(0.6)) made.stiffness = lot.between(0.5, 10);
+        if (lot.chance(0.4)) made.damping = lot.between(0, 0.5);
+        if (lot.chance(rubs)) {
+            laws::Coulomb law{lot.between(0.1, 1), 0};
+            law.breakaway = sticky && lot.chance(0.5) ? law.kinetic * lot.between(1, 1.6) : law.kinetic;
+            made.friction.law = law;
+        }
+        return made;
+    };
+    for (int i = 0; i < n; ++i) rig.system.bodies.push_back({"b" + std::to_string(i), lot.between(0.3, 3)});
+    for (int i = 0; i < n; ++i) {
+        rig.system.joints.push_back(joint(i, Joint::ground, 0.7));
+        const bool driven = lot.chance(0.7);
+        rig.drive.loads.push_back(driven ? harmonic(lot.between(0.5, 4), lot.between(0.3, 3), lot.between(0, 6))
+                                         : Excitation());
+        rig.drive.theta0.push_back(lot.between(-1, 1));
+        rig.drive.velocity0.push_back(lot.chance(0.3) ? 0 : lot.between(-1, 1));
+    }
+    for (int i = 0; i + 1 < n; ++i) rig.system.joints.push_back(joint(i, i + 1, 0.5));
+    rig.drive.belts.resize(rig.system.joints.size());
+    return rig;
+}
+
+engine::AssemblyRun run(const Rig& rig, double tolerance = 1e-12, double longest = never) {
+    const Window window{0, 10};
+    const Grid grid = Grid::every(0.25).within(window).value();
+    return engine::run({rig.system, rig.drive, window, grid, {}, {}, tolerance, longest});
+}
+
+/// Moreau's time stepping: impulses of friction within their bounds, found by going round, and nothing else. It knows
+/// no sticking and no events, and is wrong by its step.
+Eigen::VectorXd by_time_stepping(const Rig& rig, double end, double dt) {
+    const auto n = static_cast<Eigen::Index>(rig.system.bodies.size());
+    const std::size_t joints = rig.system.joints.size();
+    Eigen::VectorXd q(n), v(n), I(n);
+    for (Eigen::Index i = 0; i < n; ++i) {
+        const auto k = static_cast<std::size_t>(i);
+        q(i) = rig.drive.theta0[k], v(i) = rig.drive.velocity0[k], I(i) = rig.system.bodies[k].inertia;
+    }
+    const auto difference = [](const Joint& joint, const Eigen::VectorXd& of) {
+        return of(joint.first) - (joint.second < 0 ? 0 : of(joint.second));
+    };
+    std::vector<double> impulse(joints, 0);
+    const auto push = [&](const Joint& joint, double by, Eigen::VectorXd& velocity) {
+        velocity(joint.first) += by / I(joint.first);
+        if (joint.second >= 0) velocity(joint.second) -= by / I(joint.second);
+    };
+    for (double t = 0; t < end - dt / 2; t += dt) {
+        const Eigen::VectorXd middle = q + dt / 2 * v;
+        Eigen::VectorXd next = v;
+        for (Eigen::Index i = 0; i < n; ++i) {
+            next(i) += dt * rig.drive.loads[static_cast<std::size_t>(i)].value(t + dt / 2) / I(i);
+        }
+        for (const Joint& joint : rig.system.joints) {
+            const double torque = joint.stiffness * difference(joint, middle) + joint.damping * difference(joint, v);
+            push(joint, -dt * torque, next);
+        }
+        for (std::size_t j = 0; j < joints; ++j) push(rig.system.joints[j], impulse[j], next);
+        for (int round = 0; round < 200; ++round) {
+            double change = 0;
+            for (std::size_t j = 0; j < joints; ++j) {
+                const Joint& joint = rig.system.joints[j];
+                const double most = joint.friction.law.sliding(Motion::forward, 0) * dt;
+                if (most == 0) continue;
+                const double lightness = 1 / I(joint.first) + (joint.second < 0 ? 0 : 1 / I(joint.second));
+                const double wanted =
+                    std::clamp(impulse[j] - difference(joint, next) / lightness, -most, most) - impulse[j];
+                impulse[j] += wanted;
+                push(joint, wanted, next);
+                change = std::max(change, std::fabs(wanted));
+            }
+            if (change < 1e-14) break;
+        }
+        q = middle + dt / 2 * next, v = next;
+    }
+    return q;
+}
+
+bool alike(const engine::AssemblyRun& a, const engine::AssemblyRun& b) {
+    if (a.events.size() != b.events.size()) return false;
+    for (std::size_t i = 0; i < a.events.size(); ++i) {
+        const engine::JointEvent &x = a.events[i], &y = b.events[i];
+        if (x.kind != y.kind || x.where != y.where || std::fabs(x.t - y.t) > 1e-9) return false;
+    }
+    return true;
+}
+
+}  // namespace
+
+TEST_CASE("one body moves as the same system of one body does, with the same events", "[bodies]") {
+    for (unsigned seed = 1; seed <= 60; ++seed) {
+        CAPTURE(seed);
+        Lot lot(seed);
+        OscillatorParameters parameters;
+        parameters.inertia = lot.between(0.2, 5), parameters.stiffness = lot.chance(0.1) ? 0 : lot.between(0.5, 20);
+        parameters.damping = lot.chance(0.3) ? 0 : lot.between(0, 1);
+        parameters.kinetic_friction = lot.between(0.1, 1);
+        parameters.breakaway = parameters.kinetic_friction * (lot.chance(0.5) ? 1 : lot.between(1, 1.8));
+        const Oscillator system = Oscillator::make(parameters).value();
+        const Excitation M = harmonic(lot.between(0.3, 4), lot.between(0.3, 4), lot.between(0, 6));
+        const State initial{lot.chance(0.3) ? 0 : lot.between(-2, 2), lot.chance(0.4) ? 0 : lot.between(-2, 2)};
+        const Window window{0, 20};
+        const Trajectory one = simulate(system, M, initial, window, Grid::every(0.5), spectral::Spectral{}).value();
+
+        Rig rig;
+        rig.system.named = false;
+        rig.system.bodies = {{"", parameters.inertia}};
+        Joint joint;
+        joint.stiffness = parameters.stiffness, joint.damping = parameters.damping;
+        joint.friction.law = system.friction();
+        rig.system.joints = {joint};
+        rig.drive.loads = {M}, rig.drive.belts.resize(1);
+        rig.drive.theta0 = {initial.theta}, rig.drive.velocity0 = {initial.velocity};
+        const Grid grid = Grid::every(0.5).within(window).value();
+        const engine::AssemblyRun found = engine::run({rig.system, rig.drive, window, grid, {}, {}});
+
+        REQUIRE(found.table.size() == static_cast<std::size_t>(one.size()));
+        const double size = one.column(Column::theta).cwiseAbs().maxCoeff();
+        double off = 0;
+        for (std::size_t row = 0; row < found.table.size(); ++row) {
+            for (std::size_t column = 0; column < static_cast<std::size_t>(column_count); ++column) {
+                off = std::max(off, std::fabs(found.table(row, column) - one.rows(static_cast<Eigen::Index>(row),
+                                                                                  static_cast<Eigen::Index>(column))));
+            }
+        }
+        CHECK(off <= 1e-11 * std::max(size, 1.0));
+        REQUIRE(found.events.size() == one.events.size());
+        for (std::size_t i = 0; i < found.events.size(); ++i) {
+            const bool stops =
+                is_stop(found.events[i].kind) && is_stop(one.events[i].kind);  // rest is told of one body
+            CHECK((stops || found.events[i].kind == one.events[i].kind));
+            CHECK(std::fabs(found.events[i].t - one.events[i].t) <= 1e-9);
+        }
+    }
+}
+
+TEST_CASE("chains that rub move as a time stepping without modes says, and the same at other resolutions", "[bodies]") {
+    for (unsigned seed = 1; seed <= 40; ++seed) {
+        CAPTURE(seed);
+        const Rig rig = random_chain(seed, false);
+        const engine::AssemblyRun found = run(rig), finer = run(rig, 1e-10, 0.05);
+        REQUIRE(is_whole(found.outcome));
+        const std::size_t last = found.table.size() - 1;
+        for (std::size_t i = 0; i < rig.system.bodies.size(); ++i) {
+            const std::size_t theta = 1 + engine::columns_of_body * i;
+            CHECK(std::fabs(found.table(last, theta) - finer.table(last, theta)) <= 1e-11);
+        }
+        CHECK(alike(found, finer));
+        if (seed > 12) continue;  // the judge takes its time
+        const Eigen::VectorXd judged = by_time_stepping(rig, 10, 5e-4);
+        for (std::size_t i = 0; i < rig.system.bodies.size(); ++i) {
+            const double theta = found.table(last, 1 + engine::columns_of_body * i);
+            CHECK(std::fabs(theta - judged(static_cast<Eigen::Index>(i))) <= 3e-3);
+        }
+    }
+}
+
+TEST_CASE("chains whose contacts hold more than they brake are the same at other resolutions", "[bodies]") {
+    for (unsigned seed = 3000; seed < 3040; ++seed) {
+        CAPTURE(seed);
+        const Rig rig = random_chain(seed, true);
+        const engine::AssemblyRun found = run(rig), finer = run(rig, 1e-10, 0.05);
+        const std::size_t last = found.table.size() - 1;
+        REQUIRE(found.table.size() == finer.table.size());
+        for (std::size_t i = 0; i < rig.system.bodies.size(); ++i) {
+            const std::size_t theta = 1 + engine::columns_of_body * i;
+            CHECK(std::fabs(found.table(last, theta) - finer.table(last, theta)) <= 1e-11);
+        }
+        CHECK(alike(found, finer));
+    }
+}
+
+TEST_CASE("the least in a box is that of a box that holds it, and lies on the side that does not", "[bodies]") {
+    Eigen::MatrixXd G(2, 2);
+    G << 2, 1, 1, 3;
+    const Eigen::Vector2d g(-3, -4), wide(10, 10), narrow(0.5, 10);
+    const Eigen::VectorXd inside = engine::least_in_box(G, g, -wide, wide);
+    CHECK((G * inside + g).cwiseAbs().maxCoeff() <= 1e-14);
+    const Eigen::VectorXd bound = engine::least_in_box(G, g, -wide, narrow);
+    CHECK(bound(0) == 0.5);
+    CHECK(std::fabs(bound(1) - (4 - 0.5) / 3) <= 1e-14);
+}
+
+}  // namespace dinal::bodies_test
