@@ -128,7 +128,7 @@ int events(lua_State* L) {
 
 int outcome(lua_State* L) {
     const Run& run = *run_self(L, "run.outcome");
-    return lua::push_text(L, run.origin ? motion::outcome_text(run.trajectory) : "read from a file");
+    return lua::push_text(L, run.origin || run.is_part ? motion::outcome_text(run.trajectory) : "read from a file");
 }
 
 int gap_of_run(lua_State* L) {

@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "api/bind_simulate.hpp"
+#include "api/bodies.hpp"
 #include "api/cards.hpp"
 #include "api/classes.hpp"
 #include "api/response.hpp"
@@ -12,14 +13,35 @@
 #include "api/system_options.hpp"
 #include "api/units_option.hpp"
 #include "lua/options.hpp"
+#include "model/laws/coulomb.hpp"
 #include "source/describe.hpp"
 
 namespace dinal::api {
 
 namespace {
 
-constexpr text::Call system_call{"system", "system{ I = 1, k = 39.5, C = 1.5, Rd = 2, Re = 3 }",
-                                 model::oscillator_options, false, &simulate_call};
+constexpr text::Option body_numbers[] = {
+    {"I", "torque time^2 per rad", text::its_own, text::positive, "moment of inertia; it is needed but with bodies",
+     text::fills<&model::OscillatorParameters::inertia>},
+    model::mechanical_options[1],
+    model::mechanical_options[2],
+};
+constexpr text::Option other_system_options[] = {
+    model::mechanical_options[6],
+    model::mechanical_options[7],
+    {.name = "bodies",
+     .meaning = "several bodies by name: { load = { I = 0.3, Rd = 0.4 }, ... }, each with what a system of one takes, "
+                "against the ground",
+     .wanted = "a table of bodies by name, such as { motor = { I = 0.02 }, load = { I = 0.3, Rd = 0.4 } }"},
+    {.name = "links",
+     .meaning =
+         "what acts between two bodies: { shaft = { \"motor\", \"load\", k = 90 }, ... }, with what a body takes "
+         "but I; its angle is that of the first less that of the second",
+     .wanted = "a table of links by name, such as { shaft = { \"motor\", \"load\", k = 90, C = 0.01 } }"},
+};
+constexpr auto system_options = text::joined(body_numbers, friction_options, other_system_options, model::units_option);
+constexpr text::Call system_call{"system", "system{ I = 1, k = 39.5, C = 1.5, Rd = 2, Re = 3 }", system_options, false,
+                                 &simulate_call};
 
 /// Ratios to k = 1 and to the characteristic torque Mc = 1.
 struct Ratios {
@@ -40,11 +62,32 @@ constexpr text::Call nondimensional_call{"nondimensional", "nondimensional{ zeta
 int system(lua_State* L) {
     const lua::Options options(L, 1, system_call);
     model::OscillatorParameters parameters;
+    if (options.has("bodies")) return push_bodies(L, options);
+    if (options.has("links")) {
+        options.push("links");
+        if (lua_type(L, -1) != LUA_TTABLE) options.wrong("links", options.row("links").wanted);
+        options.fail("links", "links are between bodies: give these, too, as bodies = { ... }");
+    }
+    if (!options.has("I")) options.missing("I");
     options.fill(parameters);
-    parameters.friction = asked_law(L, options, {"Rd", "Re"});
+    const model::ContactFriction friction = asked_friction(L, options, "system");
     parameters.spring = asked_spring(L, options).value_or(model::Spring());
     parameters.walls = asked_walls(L, options);
     parameters.units = asked_units(L, options).value_or(model::Units());
+    if (!friction.is_constant()) {
+        options.value_or_fail(model::Oscillator::make(parameters));  // all else is as of any system
+        model::Joint joint;
+        joint.stiffness = parameters.stiffness, joint.damping = parameters.damping;
+        joint.spring = parameters.spring, joint.friction = friction, joint.walls = parameters.walls;
+        model::Assembly assembly{.bodies = {{"", parameters.inertia}}, .joints = {joint}, .named = false};
+        assembly.units = parameters.units;
+        return push_varying_body(L, std::move(assembly));
+    }
+    if (const auto* law = friction.law.as<model::laws::Coulomb>(); law != nullptr && !options.has("friction")) {
+        parameters.kinetic_friction = law->kinetic, parameters.breakaway = law->breakaway;
+    } else {
+        parameters.friction = asked_law(L, options, {"Rd", "Re"});
+    }
     return push_system(L, options, parameters);
 }
 

@@ -15,7 +15,6 @@ namespace dinal::api {
 namespace {
 
 constexpr lua::FunctionRole::Motion with_motion = lua::FunctionRole::Motion::always;
-constexpr const char* simulate_name = "sys:simulate";
 
 /// The function that the option names; nullptr when it is absent. It is called `role` wherever something is said of it.
 std::shared_ptr<model::UserFunction> function_at(lua_State* L, const lua::Options& options, const char* name,
@@ -47,6 +46,8 @@ void check_state_name(const lua::Options& options, const std::string& name) {
     }
 }
 
+}  // namespace
+
 std::vector<model::OwnState> read_states(lua_State* L, const lua::Options& options) {
     std::vector<model::OwnState> states;
     if (!options.has("states")) return states;
@@ -66,7 +67,7 @@ std::vector<model::OwnState> read_states(lua_State* L, const lua::Options& optio
     std::sort(names.begin(), names.end());  // a table has no order
     for (const std::string& name : names) {
         check_state_name(options, name);
-        const std::string of = "states." + name, call = fmt::format("{}: {}", simulate_name, of);
+        const std::string of = "states." + name, call = fmt::format("{}: {}", options.call(), of);
         lua_getfield(L, -1, name.c_str());
         if (lua_type(L, -1) != LUA_TTABLE) {
             options.fail({.sentence = fmt::format("{} must be a table such as {{ start = 0, rate = function(t, theta, "
@@ -87,9 +88,11 @@ std::vector<model::OwnState> read_states(lua_State* L, const lua::Options& optio
     return states;
 }
 
+namespace {
+
 /// The event in the table on the top.
-model::WantedEvent read_event(lua_State* L, const std::string& of) {
-    const std::string call = fmt::format("{}: {}", simulate_name, of);
+model::WantedEvent read_event(lua_State* L, const char* simulate, const std::string& of) {
+    const std::string call = fmt::format("{}: {}", simulate, of);
     const lua::Options own(L, lua_gettop(L), {call.c_str(), event_call.example, event_call.options});
     model::WantedEvent wanted;
     own.fill(wanted);
@@ -103,6 +106,8 @@ model::WantedEvent read_event(lua_State* L, const std::string& of) {
     return wanted;
 }
 
+}  // namespace
+
 std::vector<model::WantedEvent> read_events(lua_State* L, const lua::Options& options) {
     std::vector<model::WantedEvent> events;
     if (!options.has("events")) return events;
@@ -115,7 +120,7 @@ std::vector<model::WantedEvent> read_events(lua_State* L, const lua::Options& op
         if (lua_rawgeti(L, -1, i) != LUA_TTABLE) {
             options.wrong("events", options.row("events").wanted);
         }
-        events.push_back(read_event(L, fmt::format("events[{}]", i)));
+        events.push_back(read_event(L, options.call(), fmt::format("events[{}]", i)));
         lua_pop(L, 1);
     }
     lua_pushnil(L);
@@ -129,11 +134,10 @@ std::vector<model::WantedEvent> read_events(lua_State* L, const lua::Options& op
     return events;
 }
 
-/// A function of time alone.
 model::Excitation read_motion(lua_State* L, const lua::Options& options, const char* name) {
     if (!options.has(name)) return {};
     options.push(name);
-    model::Excitation motion = to_excitation(L, -1, fmt::format("{}: {}", simulate_name, name), name);
+    model::Excitation motion = to_excitation(L, -1, fmt::format("{}: {}", options.call(), name), name);
     if (motion.has_feedback() || model::has_memory(motion)) {
         options.fail({.sentence = fmt::format("{} must be a number, an excitation or a function of t alone", name),
                       .option = name});
@@ -141,8 +145,6 @@ model::Excitation read_motion(lua_State* L, const lua::Options& options, const c
     lua_pop(L, 1);
     return motion;
 }
-
-}  // namespace
 
 model::Extras read_extras(lua_State* L, const lua::Options& options) {
     return {.states = read_states(L, options),

@@ -60,6 +60,11 @@ inline constexpr text::Option extras_options[] = {
      .object = "excitation"},
 };
 
+std::vector<model::OwnState> read_states(lua_State* L, const lua::Options& options);
+std::vector<model::WantedEvent> read_events(lua_State* L, const lua::Options& options);
+/// A function of time alone.
+model::Excitation read_motion(lua_State* L, const lua::Options& options, const char* name);
+
 /// What the options say. Raises what is wrong with them.
 model::Extras read_extras(lua_State* L, const lua::Options& options);
 

@@ -19,6 +19,7 @@ struct Run {
     std::vector<std::string> comments = {};     ///< of the file it was read from
     model::Units units = {};                    ///< that stand in these; of another run those of its system
     lua::MemoryCharge rows = {};                ///< of the file it was read from
+    bool is_part = false;                       ///< of a run of several bodies, seen from one of them
 };
 
 // Shared, because every column that Lua takes out of a run is a view that keeps the whole run alive.

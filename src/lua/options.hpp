@@ -48,6 +48,8 @@ public:
         return found;
     }
 
+    /// What heads all sentences.
+    [[nodiscard]] const char* call() const { return call_.name; }
     /// The row of an option that there is.
     [[nodiscard]] const text::Option& row(std::string_view name) const;
 

@@ -22,17 +22,19 @@ int no_such_state(lua_State* L) {
     const std::vector<std::string_view> known(names.begin(), names.end());
     lua_settop(L, 2);
     const std::string wanted = written(L, 2);
-    raise(L, {.sentence = fmt::format("there is no state '{}'; there is {}", wanted, fmt::join(names, ", ")),
+    raise(L, {.sentence = fmt::format("there is no {} '{}'; there is {}", lua_tostring(L, lua_upvalueindex(1)), wanted,
+                                      fmt::join(names, ", ")),
               .culprit = wanted,
               .cure = text::did_you_mean(wanted, known)});
 }
 }  // namespace
 
-void push_state_table(lua_State* L, std::span<const std::string> names) {
+void push_state_table(lua_State* L, std::span<const std::string> names, const char* what) {
     lua_createtable(L, 0, static_cast<int>(names.size()));
     lua_createtable(L, 0, 2);
     for (const char* other : {"__index", "__newindex"}) {
-        lua_pushcfunction(L, guarded<no_such_state>);
+        lua_pushstring(L, what);
+        lua_pushcclosure(L, guarded<no_such_state>, 1);
         lua_setfield(L, -2, other);
     }
     lua_setmetatable(L, -2);

@@ -86,30 +86,62 @@ CallState::~CallState() {
         lua_pushnil(L_);
         lua_rawsetp(L_, LUA_REGISTRYINDEX, this);
     }
-    luaL_unref(L_, LUA_REGISTRYINDEX, state_table_);
-    for (const int name : names_) {
-        luaL_unref(L_, LUA_REGISTRYINDEX, name);
+    for (const int kept : {state_table_, theta_table_, velocity_table_}) luaL_unref(L_, LUA_REGISTRYINDEX, kept);
+    for (const int name : names_) luaL_unref(L_, LUA_REGISTRYINDEX, name);
+    for (const int name : bodies_) luaL_unref(L_, LUA_REGISTRYINDEX, name);
+}
+
+std::vector<int> CallState::kept_names(const std::vector<std::string>& names) const {
+    std::vector<int> kept;
+    kept.reserve(names.size());
+    for (const std::string& name : names) {
+        lua_pushlstring(L_, name.data(), name.size());
+        kept.push_back(luaL_ref(L_, LUA_REGISTRYINDEX));
     }
+    return kept;
 }
 
 void CallState::name_states(const std::vector<std::string>& names) {
     push_state_table(L_, names);
     state_table_ = luaL_ref(L_, LUA_REGISTRYINDEX);
-    names_.reserve(names.size());
-    for (const std::string& name : names) {
-        lua_pushlstring(L_, name.data(), name.size());
-        names_.push_back(luaL_ref(L_, LUA_REGISTRYINDEX));
+    names_ = kept_names(names);
+}
+
+void CallState::name_bodies(const std::vector<std::string>& names) {
+    for (int* table : {&theta_table_, &velocity_table_}) {
+        push_state_table(L_, names, "body");
+        *table = luaL_ref(L_, LUA_REGISTRYINDEX);
     }
+    bodies_ = kept_names(names);
 }
 
 /// The table is always the same one, so that a call costs no memory.
-void CallState::push_states(std::span<const double> states) const {
-    lua_rawgeti(L_, LUA_REGISTRYINDEX, state_table_);
-    for (std::size_t i = 0; i < states.size(); ++i) {
-        lua_rawgeti(L_, LUA_REGISTRYINDEX, names_[i]);
-        lua_pushnumber(L_, states[i]);
+void CallState::push_table(int table, std::span<const int> names, std::span<const double> values) const {
+    lua_rawgeti(L_, LUA_REGISTRYINDEX, table);
+    for (std::size_t i = 0; i < values.size(); ++i) {
+        lua_rawgeti(L_, LUA_REGISTRYINDEX, names[i]);
+        lua_pushnumber(L_, values[i]);
         lua_rawset(L_, -3);
     }
+}
+
+void CallState::push_states(std::span<const double> states) const {
+    push_table(state_table_, names_, states);
+}
+
+int CallState::push_motion(const model::State& state, std::span<const double> states) const {
+    const std::size_t bodies = bodies_.size();
+    if (bodies > 0 && states.size() == 2 * bodies + names_.size()) {
+        push_table(theta_table_, bodies_, states.first(bodies));
+        push_table(velocity_table_, bodies_, states.subspan(bodies, bodies));
+        states = states.subspan(2 * bodies);
+    } else {
+        lua_pushnumber(L_, state.theta);
+        lua_pushnumber(L_, state.velocity);
+    }
+    if (states.empty() || states.size() != names_.size()) return 2;
+    push_states(states);
+    return 3;
 }
 
 void CallState::keep_error_on_top() {
@@ -137,18 +169,32 @@ bool is_callable(lua_State* L, int index) {
     return true;
 }
 
-bool CallState::read_states(std::span<double> states) const {
-    lua_rawgeti(L_, LUA_REGISTRYINDEX, state_table_);
+bool CallState::read_table(int table, std::span<const int> names, std::span<double> values) const {
+    lua_rawgeti(L_, LUA_REGISTRYINDEX, table);
     bool good = true;
-    for (std::size_t i = 0; i < states.size(); ++i) {
-        lua_rawgeti(L_, LUA_REGISTRYINDEX, names_[i]);
+    for (std::size_t i = 0; i < values.size(); ++i) {
+        lua_rawgeti(L_, LUA_REGISTRYINDEX, names[i]);
         lua_rawget(L_, -2);
-        states[i] = lua_tonumber(L_, -1);
-        good = good && lua_type(L_, -1) == LUA_TNUMBER && std::isfinite(states[i]);
+        values[i] = lua_tonumber(L_, -1);
+        good = good && lua_type(L_, -1) == LUA_TNUMBER && std::isfinite(values[i]);
         lua_pop(L_, 1);
     }
     lua_pop(L_, 1);
     return good;
+}
+
+bool CallState::read_states(std::span<double> states) const {
+    return read_table(state_table_, names_, states);
+}
+
+/// Of several bodies, whose angles and velocities a user may assign to.
+bool CallState::read_motion(std::span<double> states) const {
+    const std::size_t bodies = bodies_.size();
+    if (bodies == 0) return read_states(states);
+    const bool angles = read_table(theta_table_, bodies_, states.first(bodies));
+    const bool velocities = read_table(velocity_table_, bodies_, states.subspan(bodies, bodies));
+    const std::span<double> own = states.subspan(2 * bodies);
+    return angles && velocities && (own.empty() || read_states(own));
 }
 
 LuaAction::LuaAction(lua_State* L, int index, std::string name) : main_(main_thread(L)), name_(std::move(name)) {
@@ -170,10 +216,8 @@ bool LuaAction::act(double t, model::State& state, std::span<double> states) {
     lua_pushcfunction(L, guarded<witness_error>);
     push(L);
     lua_pushnumber(L, t);
-    lua_pushnumber(L, state.theta);
-    lua_pushnumber(L, state.velocity);
-    states.empty() ? lua_pushnil(L) : call->push_states(states);
-    if (lua_pcall(L, 4, 2, top + 1) != LUA_OK) {
+    const int arguments = 1 + call->push_motion(state, states);
+    if (lua_pcall(L, arguments, 2, top + 1) != LUA_OK) {
         remember_argument(L, name_.c_str(), "t", t);
         call->keep_error_on_top();
         lua_settop(L, top);
@@ -192,7 +236,7 @@ bool LuaAction::act(double t, model::State& state, std::span<double> states) {
             name_, describe(L, -2), describe(L, -1), t);
     }
     lua_settop(L, top);
-    if (good && call->read_states(states)) {
+    if (good && call->read_motion(states)) {
         state = next;
         return true;
     }
@@ -240,16 +284,15 @@ double LuaFunction::value_with(double t, const model::State& state, std::span<co
     lua_pushcfunction(L, guarded<witness_error>);
     const int handler = lua_gettop(L);
     push(L);
+    int arguments = 1;
+    if (role_.of_speed) {
+        lua_pushnumber(L, states.front());
+        states = states.subspan(1);
+        ++arguments;
+    }
     lua_pushnumber(L, t);
-    if (feedback_) {
-        lua_pushnumber(L, state.theta);
-        lua_pushnumber(L, state.velocity);
-    }
-    const bool has_states = feedback_ && !states.empty() && states.size() == call->names_.size();
-    if (has_states) {
-        call->push_states(states);
-    }
-    const int status = lua_pcall(L, has_states ? 4 : feedback_ ? 3 : 1, 1, handler);
+    if (feedback_) arguments += call->push_motion(state, states);
+    const int status = lua_pcall(L, arguments, 1, handler);
     double M = 0;
     if (status == LUA_OK && is_good(L, M)) {
         lua_settop(L, handler - 1);

@@ -26,6 +26,8 @@ public:
     [[nodiscard]] bool failed() const { return failed_ || failed_before_; }
     /// From now on functions get their states as a table with these names, their fourth argument.
     void name_states(const std::vector<std::string>& names);
+    /// From now on functions get theta and velocity as tables with these names, out of the first of their states.
+    void name_bodies(const std::vector<std::string>& names);
 
     /// Raises what the user function raised, unchanged, or the sentence about what it returned. Only when failed().
     [[noreturn]] void raise_error();
@@ -34,15 +36,23 @@ private:
     friend class LuaFunction;
     friend class LuaAction;
     void keep_error_on_top();
+    /// Pushes theta, velocity and, where there are some, the states; returns how many that are.
+    int push_motion(const model::State& state, std::span<const double> states) const;
     void push_states(std::span<const double> states) const;
     /// What a user has made of them.
     [[nodiscard]] bool read_states(std::span<double> states) const;
+    [[nodiscard]] bool read_motion(std::span<double> states) const;
+    void push_table(int table, std::span<const int> names, std::span<const double> values) const;
+    [[nodiscard]] bool read_table(int table, std::span<const int> names, std::span<double> values) const;
+    [[nodiscard]] std::vector<int> kept_names(const std::vector<std::string>& names) const;
 
     lua_State* L_;
     CallState* outer_;
     int depth_;
     int state_table_ = LUA_NOREF;  // kept in the registry, as the names of the states
     std::vector<int> names_;
+    int theta_table_ = LUA_NOREF, velocity_table_ = LUA_NOREF;
+    std::vector<int> bodies_;
     bool failed_ = false;         // and nobody has said that it may go on
     bool failed_before_ = false;  // the error is kept all the same
 };
@@ -60,6 +70,7 @@ struct FunctionRole {
         never,
         always,
     } motion = Motion::by_parameters;
+    bool of_speed = false;  ///< it is called with a speed first, which is the first of its states
 };
 
 class LuaFunction final : public model::UserFunction {

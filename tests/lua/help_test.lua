@@ -106,9 +106,11 @@ test("help knows functions, methods, modules, objects and names", function()
         equal(output(same), harmonic)
     end
     local simulate = output "help(nondimensional{}.simulate)"
-    for _, same in ipairs { "simulate", "sys.simulate", "sys:simulate", "system.simulate" } do
+    for _, same in ipairs { "sys.simulate", "sys:simulate", "system.simulate" } do
         equal(output(('help "%s"'):format(same)), simulate)
     end
+    local both = output 'help "simulate"'
+    assert(both:find(simulate, 1, true) == 1 and both:find("rig:simulate{", #simulate, true), both)
     assert(output "help(excitation)":find("excitation.pulse", 1, true))
     assert(output "help(nondimensional{})":find("sys.dead_zone", 1, true))
     assert(output 'help "excitation"':find("excitation.pulse", 1, true))

@@ -28,6 +28,8 @@ end
 local world = setmetatable({}, { __index = _G })
 world.sys = nondimensional { zeta = 0.1, friction_ratio = 0.1 }
 world.run = world.sys:simulate { theta0 = 1, t_end = 1, dt = 0.25 }
+world.rig = system { bodies = { load = { I = 1 } } }
+world.run2 = world.rig:simulate { t_end = 1 }
 world.M = excitation.constant { level = 1 }
 world.t, world.theta = world.run.t, world.run.theta
 world.fit = identify { data = world.sys:simulate { theta0 = 1, t_end = 3, dt = 0.1 } }
@@ -39,7 +41,7 @@ assert(io.open(record, "w")):write("t,M\n0,1\n1,2\n"):close()
 
 --- The example in the sentence that refuses a call without a table.
 local function example_of(heading)
-    local wrong_calls = { ["run:save"] = 'run:save("x.csv", 1)', ["r:animate"] = "r:animate(run, 1)", ["excitation.scripted"] = "excitation.scripted(f, 1)",
+    local wrong_calls = { ["run:save"] = 'run:save("x.csv", 1)', ["r:animate"] = "r:animate(run, 1)", ["run:continue 2"] = "run2:continue(1)", ["excitation.scripted"] = "excitation.scripted(f, 1)",
         ["excitation.samples 2"] = "excitation.samples{}" }
     local message = support.raises(assert(load(wrong_calls[heading] or heading .. "(1)", "=call", "t", world)))
     return assert(message:match "for example (.+)$", message):gsub("record.csv", record)
@@ -131,7 +133,7 @@ test("an option that belongs to the system, or to the run, is told where it belo
     end
     told(function() sys:simulate { walls = {}, t_end = 1 } end, "base and units; 'walls' is an option of sys:with")
     told(function() sys:steady { M = 1, spring = {} } end, "velocity0; 'spring' is an option of sys:with")
-    told(function() system { I = 1, k = 4, theta0 = 1 } end, "walls and units; 'theta0' is an option of sys:simulate")
+    told(function() system { I = 1, k = 4, theta0 = 1 } end, "links and units; 'theta0' is an option of sys:simulate")
     told(function() sys:simulate { walls = {}, Rd = 1, t_en = 1 } end,
         "'Rd' and 'walls' are options of sys:with; did you mean 't_end' for 't_en'?")
 end)

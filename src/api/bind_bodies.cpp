@@ -1,0 +1,962 @@
+// system{ bodies = ..., links = ... }: several bodies, their runs, and what these look like from one body.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "api/bind_excitation.hpp"
+#include "api/bind_simulate.hpp"
+#include "api/bodies.hpp"
+#include "api/classes.hpp"
+#include "api/data.hpp"
+#include "api/extras_options.hpp"
+#include "api/run.hpp"
+#include "api/system_options.hpp"
+#include "api/units_option.hpp"
+#include "lua/interrupt.hpp"
+#include "lua/lua_text.hpp"
+#include "lua/standard_globals.hpp"
+#include "lua/user_function.hpp"
+#include "lua/vector.hpp"
+#include "model/laws/coulomb.hpp"
+#include "motion/engine/run.hpp"
+#include "source/describe.hpp"
+#include "terminal/progress.hpp"
+#include "text/characters.hpp"
+#include "text/sentences.hpp"
+
+namespace dinal::api {
+
+namespace {
+
+namespace engine = motion::engine;
+
+struct BodyNumbers {
+    double inertia = 0, stiffness = 0, damping = 0;
+};
+constexpr text::Option inertia_option[] = {
+    {"I", "torque time^2 per rad", text::needed, text::positive, "moment of inertia",
+     text::fills<&BodyNumbers::inertia>},
+};
+constexpr text::Option joint_options[] = {
+    {"k", "torque per rad", text::its_own, text::not_negative, "stiffness of the spring",
+     text::fills<&BodyNumbers::stiffness>},
+    {"C", "torque time per rad", text::its_own, text::not_negative, "viscous damping",
+     text::fills<&BodyNumbers::damping>},
+    {.name = "spring",
+     .unit = "torque",
+     .meaning = "a restoring torque besides k theta: a Lua function of theta, or spring.polynomial{ [3] = 0.5 }",
+     .object = "spring",
+     .wanted = "a function of theta, or a spring such as spring.polynomial{ [3] = 0.5 }"},
+    {.name = "walls",
+     .unit = "rad",
+     .meaning = "end stops: { lower, upper, restitution }; of a link, between its bodies: a backlash",
+     .wanted = "a table such as { lower = -0.8, upper = 0.8, restitution = 0.7 }",
+     .fields = {&model::walls_call}},
+};
+constexpr auto body_options = text::joined(inertia_option, joint_options, friction_options);
+constexpr auto link_options = text::joined(joint_options, friction_options);
+
+struct BodiesRun {
+    AssemblyHandle system;
+    engine::Drive drive;
+    engine::AssemblyRun run;
+    double dt = 0, tolerance = 1e-12;
+    mutable std::vector<RunHandle> parts;  ///< of each joint, made when it is asked for
+};
+using BodiesRunHandle = std::shared_ptr<const BodiesRun>;
+
+std::string name_of_joint(const model::Assembly& system, std::size_t joint) {
+    return system.joints[joint].name;
+}
+
+std::vector<std::string> body_names(const model::Assembly& system) {
+    std::vector<std::string> names;
+    for (const model::Body& body : system.bodies) names.push_back(body.name);
+    return names;
+}
+
+// ---- system{ bodies, links }
+
+/// The names in the table on the top, in their order: a table has none of its own.
+std::vector<std::string> sorted_names(lua_State* L, const lua::Options& options, const char* option) {
+    if (lua_type(L, -1) != LUA_TTABLE) options.wrong(option, options.row(option).wanted);
+    std::vector<std::string> names;
+    for (lua_pushnil(L); lua_next(L, -2) != 0; lua_pop(L, 1)) {
+        if (lua_type(L, -2) != LUA_TSTRING || lua_type(L, -1) != LUA_TTABLE) {
+            options.wrong(option, options.row(option).wanted);
+        }
+        names.emplace_back(lua_tostring(L, -2));
+    }
+    std::sort(names.begin(), names.end());
+    return names;
+}
+
+void check_name(const lua::Options& options, const char* option, const std::string& name) {
+    const auto refuse = [&](std::string_view why) {
+        options.fail({.sentence = fmt::format("{}: {}", option, why), .option = option, .culprit = name});
+    };
+    if (!lua::is_name(name)) refuse(fmt::format("'{}' is no name; take letters, digits and _", name));
+    for (const lua::Member& member : bodies_run_class.members) {
+        if (name == member.name) refuse(fmt::format("'{}' is a name that a run has already; take another", name));
+    }
+}
+
+/// All of a joint but its bodies, from the table on the top.
+model::Joint read_joint(lua_State* L, const std::string& call, std::span<const text::Option> rows,
+                        BodyNumbers& numbers) {
+    const text::Call own{call.c_str(), "{ I = 1, k = 4, Rd = 0.3 }", rows};
+    const lua::Options options(L, lua_gettop(L), own);
+    options.fill(numbers);
+    model::Joint joint;
+    joint.stiffness = numbers.stiffness, joint.damping = numbers.damping;
+    joint.spring = asked_spring(L, options).value_or(model::Spring());
+    joint.walls = asked_walls(L, options);
+    if (joint.walls) {
+        if (auto wrong = joint.walls->complaint()) options.fail(*wrong);
+    }
+    joint.friction = asked_friction(L, options, call);
+    return joint;
+}
+
+int body_index(const lua::Options& options, const model::Assembly& system, const std::string& link, lua_State* L) {
+    const std::string name = lua_type(L, -1) == LUA_TSTRING ? lua_tostring(L, -1) : "";
+    for (std::size_t i = 0; i < system.bodies.size(); ++i) {
+        if (system.bodies[i].name == name) return static_cast<int>(i);
+    }
+    const std::vector<std::string> names = body_names(system);
+    const std::vector<std::string_view> known(names.begin(), names.end());
+    options.fail({.sentence = name.empty() ? fmt::format("links.{} must begin with the names of two bodies, such as "
+                                                         "{{ \"{}\", \"{}\", k = 90 }}",
+                                                         link, names.front(), names.back())
+                                           : fmt::format("links.{}: there is no body '{}'; there is {}", link, name,
+                                                         fmt::join(names, ", ")),
+                  .option = "links",
+                  .culprit = name,
+                  .cure = name.empty() ? "" : text::did_you_mean(name, known)});
+}
+
+/// The named fields of the table on the top, without its list, in a table of their own.
+void push_named_fields(lua_State* L) {
+    lua_newtable(L);
+    for (lua_pushnil(L); lua_next(L, -3) != 0; lua_pop(L, 1)) {
+        if (lua_type(L, -2) != LUA_TSTRING) continue;
+        lua_pushvalue(L, -2);
+        lua_pushvalue(L, -2);
+        lua_rawset(L, -5);
+    }
+}
+
+}  // namespace
+
+int push_bodies(lua_State* L, const lua::Options& options) {
+    options.push("bodies");
+    const std::vector<std::string> names = sorted_names(L, options, "bodies");
+    if (names.empty()) options.wrong("bodies", options.row("bodies").wanted);
+    for (const char* alone : {"I", "k", "C", "Rd", "Re", "friction", "normal", "spring", "walls"}) {
+        if (!options.has(alone)) continue;
+        options.fail(
+            alone, fmt::format("{} belongs into one of the bodies: bodies = {{ load = {{ I = 1, {} = ... }} }}", alone,
+                               alone));
+    }
+    model::Assembly system;
+    system.units = asked_units(L, options).value_or(model::Units());
+    for (std::size_t i = 0; i < names.size(); ++i) {
+        check_name(options, "bodies", names[i]);
+        lua_getfield(L, -1, names[i].c_str());
+        BodyNumbers numbers;
+        model::Joint joint = read_joint(L, "system: bodies." + names[i], body_options, numbers);
+        joint.name = names[i], joint.first = static_cast<int>(i);
+        system.bodies.push_back({names[i], numbers.inertia});
+        system.joints.push_back(std::move(joint));
+        lua_pop(L, 1);
+    }
+    lua_pop(L, 1);
+    if (options.has("links")) {
+        options.push("links");
+        for (const std::string& name : sorted_names(L, options, "links")) {
+            check_name(options, "links", name);
+            if (std::find(names.begin(), names.end(), name) != names.end()) {
+                options.fail("links", fmt::format("links: '{}' is the name of a body already; take another", name));
+            }
+            lua_getfield(L, -1, name.c_str());
+            std::array<int, 2> ends{};
+            for (int end = 0; end < 2; ++end) {
+                lua_rawgeti(L, -1, end + 1);
+                ends.at(static_cast<std::size_t>(end)) = body_index(options, system, name, L);
+                lua_pop(L, 1);
+            }
+            if (ends[0] == ends[1]) {
+                options.fail("links", fmt::format("links.{} must be between two different bodies", name));
+            }
+            push_named_fields(L);
+            BodyNumbers numbers;
+            model::Joint joint = read_joint(L, "system: links." + name, link_options, numbers);
+            joint.name = name, joint.first = ends[0], joint.second = ends[1];
+            system.joints.push_back(std::move(joint));
+            lua_pop(L, 2);
+        }
+        lua_pop(L, 1);
+    }
+    lua::push<AssemblyHandle>(L, std::make_shared<const model::Assembly>(std::move(system)));
+    return 1;
+}
+
+int push_varying_body(lua_State* L, model::Assembly assembly) {
+    lua::push<AssemblyHandle>(L, std::make_shared<const model::Assembly>(std::move(assembly)));
+    return 1;
+}
+
+model::ContactFriction asked_friction(lua_State* L, const lua::Options& options, const std::string& call) {
+    model::ContactFriction friction;
+    const auto varying = [&](const char* name) -> std::optional<model::Excitation> {
+        if (!options.has(name)) return {};
+        options.push(name);
+        model::Excitation value = to_excitation(L, -1, fmt::format("{}: {}", call, name), name);
+        lua_pop(L, 1);
+        return value;
+    };
+    const auto number = [&](const char* name) -> std::optional<double> {
+        options.push(name);
+        const bool is = lua_type(L, -1) == LUA_TNUMBER;
+        const double value = lua_tonumber(L, -1);
+        lua_pop(L, 1);
+        if (!is) return {};
+        if (!std::isfinite(value)) options.fail(name, fmt::format("{} = {} must be finite", name, value));
+        if (value < 0) options.fail(name, fmt::format("{} = {:.6g} must not be negative", name, value));
+        return value;
+    };
+    friction.normal = varying("normal");
+    options.push("friction");
+    const bool function = lua::is_callable(L, -1) && lua::test<model::Friction>(L, -1) == nullptr;
+    if (function) {
+        friction.function =
+            std::make_shared<lua::LuaFunction>(L, -1,
+                                               lua::FunctionRole{.name = "friction",
+                                                                 .may_be_negative = false,
+                                                                 .motion = lua::FunctionRole::Motion::always,
+                                                                 .of_speed = true});
+        if (options.has("Rd")) options.fail("Rd", "friction and Rd exclude each other; give one of them");
+    }
+    lua_pop(L, 1);
+    const auto Rd = number("Rd"), Re = number("Re");
+    if (function) {
+        if (auto holding = varying("Re")) friction.holding = {holding, holding};
+        return friction;
+    }
+    if (const auto law = asked_law(L, options, {"Rd", "Re"})) {
+        friction.law = *law;
+        return friction;
+    }
+    const bool numbers = (!options.has("Rd") || Rd) && (!options.has("Re") || Re);
+    if (numbers) {
+        const model::laws::Coulomb law{Rd.value_or(0), Re.value_or(Rd.value_or(0))};
+        if (auto wrong = law.complaint()) options.fail(*wrong);
+        if (law.breakaway > 0) friction.law = law;
+        return friction;
+    }
+    auto sliding = varying("Rd"), holding = varying("Re");
+    if (!sliding) {  // nothing brakes, but something holds
+        sliding = model::Excitation::make(model::Constant{0}).value();
+    }
+    friction.sliding = {sliding, sliding};
+    if (holding) friction.holding = {holding, holding};
+    return friction;
+}
+
+namespace {
+
+// ---- simulate
+
+struct BodiesRunOptions {
+    double t_start = 0;
+    std::optional<double> t_end = {}, dt = {};
+    std::vector<double> times = {};
+    bool dense = true;
+    double tolerance = 1e-12;
+};
+constexpr const char* by_body_wanted = "a table by body, such as { load = 1 }";
+constexpr text::Option bodies_simulate_rows[] = {
+    {.name = "M",
+     .unit = "torque",
+     .otherwise = "0",
+     .meaning =
+         "the excitations by body: { load = M }, each a number, an excitation or a function of t, or of t, theta, "
+         "velocity, z, where theta.load and velocity.load are those of a body",
+     .object = "excitation",
+     .wanted = by_body_wanted},
+    {.name = "theta0",
+     .unit = "rad",
+     .otherwise = "0",
+     .meaning = "where the bodies start: { load = 0.1 }",
+     .wanted = by_body_wanted},
+    {.name = "velocity0",
+     .unit = "rad per time unit",
+     .otherwise = "0",
+     .meaning = "how fast they start",
+     .wanted = by_body_wanted},
+    {.name = "belt",
+     .unit = "rad per time unit",
+     .otherwise = "0",
+     .meaning =
+         "velocities of what the friction of a body or a link acts against, by their names: numbers, functions of t "
+         "or excitations",
+     .wanted = by_body_wanted},
+    {.name = "base",
+     .unit = "rad per time unit^2",
+     .otherwise = "0",
+     .meaning =
+         "acceleration of the support, to which all angles are relative: a number, a function of t, or an excitation",
+     .object = "excitation"},
+    {.name = "states",
+     .meaning = "variables that go along with the motion: { NAME = { start = 0, rate = function(t, theta, velocity, z) "
+                "... end } }",
+     .wanted =
+         "a table such as { e = { start = 0, rate = function(t, theta, velocity, z) return 1 - theta.load end } }",
+     .fields = {&state_call, text::Fields::Place::by_name}},
+    {.name = "events",
+     .meaning = "what is to be located: a list of { when = function(t, theta, velocity, z), ... }; act may assign to "
+                "theta.NAME, velocity.NAME and z.NAME",
+     .wanted = "a list such as { { when = function(t, theta) return theta.load - 1 end, name = \"limit\" } }",
+     .fields = {&event_call, text::Fields::Place::listed}},
+    {.name = "t_start",
+     .unit = "time units",
+     .meaning = "when it starts",
+     .filled = text::fills<&BodiesRunOptions::t_start>},
+    {"t_end", "time units", text::its_own, text::any_finite, "when the run ends; without it, at the last of the times",
+     text::fills<&BodiesRunOptions::t_end>},
+    {"dt", "time units", "(t_end - t_start)/1000", text::positive, "from row to row; t_end has a row, too",
+     text::fills<&BodiesRunOptions::dt>},
+    {.name = "times",
+     .unit = "time units",
+     .meaning = "where rows are kept: a table or a vector, increasing; {} keeps none",
+     .filled = text::fills<&BodiesRunOptions::times>},
+    {.name = "dense",
+     .meaning = "false keeps nothing between the rows, which saves memory in very long runs and costs run.load:at(t)",
+     .filled = text::fills<&BodiesRunOptions::dense>},
+    {"tolerance", "", text::its_own, text::between_0_and_1, "relative, of the motion on each stretch of time",
+     text::fills<&BodiesRunOptions::tolerance>},
+};
+constexpr text::Call bodies_simulate_call{"rig:simulate", "rig:simulate{ M = { load = 2 }, t_end = 20 }",
+                                          bodies_simulate_rows};
+
+/// Calls f with each name of the table of this option, the value on the top of the stack; names are those of `known`.
+template <class F>
+void for_each_named(lua_State* L, const lua::Options& options, const char* option, const model::Assembly& system,
+                    bool links_too, F f) {
+    if (!options.has(option)) return;
+    options.push(option);
+    if (!system.named) {
+        f(0);
+        lua_pop(L, 1);
+        return;
+    }
+    if (lua_type(L, -1) != LUA_TTABLE) options.wrong(option, options.row(option).wanted);
+    std::vector<std::string> known;
+    for (std::size_t j = 0; j < system.joints.size(); ++j) {
+        if (links_too || !system.is_link(j)) known.push_back(system.joints[j].name);
+    }
+    for (lua_pushnil(L); lua_next(L, -2) != 0; lua_pop(L, 1)) {
+        const std::string name = lua_type(L, -2) == LUA_TSTRING ? lua_tostring(L, -2) : lua::written(L, -2);
+        const auto found = std::find(known.begin(), known.end(), name);
+        if (found == known.end()) {
+            const std::vector<std::string_view> names(known.begin(), known.end());
+            options.fail({.sentence = fmt::format("{}: there is no body{} '{}'; there is {}", option,
+                                                  links_too ? " or link" : "", name, fmt::join(known, ", ")),
+                          .option = option,
+                          .culprit = name,
+                          .cure = text::did_you_mean(name, names)});
+        }
+        f(static_cast<std::size_t>(found - known.begin()));
+    }
+    lua_pop(L, 1);
+}
+
+engine::Drive asked_drive(lua_State* L, const lua::Options& options, const model::Assembly& system) {
+    engine::Drive drive;
+    const std::size_t n = system.bodies.size();
+    drive.loads.resize(n), drive.belts.resize(system.joints.size());
+    drive.theta0.assign(n, 0), drive.velocity0.assign(n, 0);
+    const auto named = [&](const char* option, std::size_t joint) {
+        return system.named ? fmt::format("rig:simulate: {}.{}", option, system.joints[joint].name)
+                            : fmt::format("sys:simulate: {}", option);
+    };
+    for_each_named(L, options, "M", system, false,
+                   [&](std::size_t i) { drive.loads[i] = to_excitation(L, -1, named("M", i), "M"); });
+    for_each_named(L, options, "belt", system, true, [&](std::size_t j) {
+        drive.belts[j] = to_excitation(L, -1, named("belt", j), "belt");
+        if (drive.belts[j].has_feedback() || model::has_memory(drive.belts[j])) {
+            options.fail("belt", "belt must be a number, an excitation or a function of t alone");
+        }
+    });
+    for (const auto& [option, values] :
+         {std::pair("theta0", &drive.theta0), std::pair("velocity0", &drive.velocity0)}) {
+        for_each_named(L, options, option, system, false, [&, name = option, to = values](std::size_t i) {
+            if (lua_type(L, -1) != LUA_TNUMBER || !std::isfinite(lua_tonumber(L, -1))) {
+                options.fail(name, fmt::format("{} must be a finite number, got {}", named(name, i).substr(14),
+                                               lua::describe(L, -1)));
+            }
+            (*to)[i] = lua_tonumber(L, -1);
+        });
+    }
+    for (std::size_t j = 0; j < system.joints.size(); ++j) {
+        const model::Joint& joint = system.joints[j];
+        if (!joint.walls) continue;
+        const double angle = drive.theta0[static_cast<std::size_t>(joint.first)] -
+                             (joint.second < 0 ? 0 : drive.theta0[static_cast<std::size_t>(joint.second)]);
+        if (auto wrong = joint.walls->crossed_by(angle)) options.fail(*wrong);
+    }
+    drive.base = read_motion(L, options, "base");
+    drive.states = read_states(L, options);
+    drive.events = read_events(L, options);
+    return drive;
+}
+
+void name_functions(lua::CallState& call, const model::Assembly& system, const engine::Drive& drive) {
+    if (system.named) call.name_bodies(body_names(system));
+    std::vector<std::string> names;
+    for (const model::OwnState& state : drive.states) names.push_back(state.name);
+    if (!names.empty()) call.name_states(names);
+}
+
+/// A course through the motion of one body or link.
+class PartCourse final : public motion::Course {
+public:
+    PartCourse(const model::Oscillator& system, BodiesRunHandle run, std::size_t joint)
+        : Course(system), run_(std::move(run)), joint_(joint) {}
+    [[nodiscard]] text::Expected<model::State> at(double t) const override {
+        const auto& history = *run_->run.history;
+        if (t > history.whole_until()) {
+            return text::Error{"the motion was kept in part only, for want of memory: take rows, or begin a run there"};
+        }
+        const std::vector<double> y = history.at(t);
+        const model::Joint& joint = run_->system->joints[joint_];
+        const std::size_t n = run_->system->bodies.size(), a = static_cast<std::size_t>(joint.first);
+        model::State state{y[a], y[n + a]};
+        if (joint.second >= 0) {
+            state.theta -= y[static_cast<std::size_t>(joint.second)];
+            state.velocity -= y[n + static_cast<std::size_t>(joint.second)];
+        }
+        return state;
+    }
+    [[nodiscard]] std::vector<double> states_at(double t) const override {
+        const std::vector<double> y = run_->run.history->at(t);
+        return {y.begin() + static_cast<std::ptrdiff_t>(2 * run_->system->bodies.size()), y.end()};
+    }
+
+private:
+    BodiesRunHandle run_;
+    std::size_t joint_;
+};
+
+/// Where the columns of a joint begin in the table of a run.
+std::size_t first_column(const model::Assembly& system, std::size_t joint) {
+    const std::size_t n = system.bodies.size();
+    return 1 + (joint < n ? engine::columns_of_body * joint
+                          : engine::columns_of_body * n + engine::columns_of_link * (joint - n));
+}
+
+motion::Trajectory trajectory_of(const BodiesRunHandle& whole, std::size_t joint) {
+    const BodiesRun& run = *whole;
+    const model::Assembly& system = *run.system;
+    const bool link = system.is_link(joint);
+    motion::Trajectory part;
+    const std::size_t own = link ? engine::columns_of_link : engine::columns_of_body, rows = run.run.table.size();
+    const std::size_t states = system.named ? 0 : run.drive.states.size();
+    motion::Growing<double> table(rows, 1 + own + states);
+    for (std::size_t c = 0; c < 1 + own + states; ++c) {
+        const auto from = run.run.table.column(c == 0 ? 0 : first_column(system, joint) + c - 1);
+        std::copy(from.begin(), from.end(), table.writable() + c * rows);
+    }
+    part.rows = motion::Rows(std::move(table));
+    if (link) {
+        part.own_names = {"t", "theta", "velocity", "torque", "friction"};
+        part.computed = false;
+    } else if (states > 0) {
+        part.own_names = motion::column_names();
+        for (const model::OwnState& state : run.drive.states) part.own_names.push_back(state.name);
+        auto carried = std::make_shared<motion::Carried>();
+        carried->states.assign(states, 0);
+        part.carried = std::move(carried);
+    }
+    std::vector<model::Event> events;
+    for (const engine::JointEvent& e : run.run.events) {
+        const bool users = e.where < 0;
+        if (!users && e.where != static_cast<int>(joint)) continue;
+        events.push_back({e.t, e.kind, e.theta, e.M, e.user, e.velocity});
+        if (users && system.named) events.pop_back();
+    }
+    part.events = motion::Growing<model::Event>(std::move(events));
+    for (const model::WantedEvent& wanted : run.drive.events) part.event_names.push_back(wanted.name);
+    part.outcome = run.run.outcome;
+    part.contradiction = run.run.contradiction;
+    part.t_start = run.run.t_start, part.t_stop = run.run.t_stop;
+    part.gap = run.run.gap;
+    const auto first = static_cast<std::size_t>(system.joints[joint].first);
+    part.initial = {run.drive.theta0[first], run.drive.velocity0[first]};
+    const auto& carry = *run.run.carry;
+    part.state_at_stop = {carry.y[first], carry.y[system.bodies.size() + first]};
+    part.motion_at_stop = carry.mode.friction[joint].way;
+    if (run.run.history != nullptr && run.run.history->bytes() > 0) {
+        model::OscillatorParameters parameters;
+        parameters.inertia = system.bodies[first].inertia;
+        parameters.stiffness = system.joints[joint].stiffness, parameters.damping = system.joints[joint].damping;
+        parameters.friction = system.joints[joint].friction.law, parameters.units = system.units;
+        auto oscillator = model::Oscillator::make(parameters);
+        if (oscillator) part.course = std::make_shared<PartCourse>(oscillator.value(), whole, joint);
+    }
+    return part;
+}
+
+const RunHandle& part_of(const BodiesRunHandle& run, std::size_t joint) {
+    run->parts.resize(run->system->joints.size());
+    RunHandle& part = run->parts[joint];
+    if (part == nullptr) {
+        auto made = std::make_shared<Run>();
+        made->trajectory = trajectory_of(run, joint);
+        made->is_part = true;
+        made->units = run->system->units;
+        part = std::move(made);
+    }
+    return part;
+}
+
+int push_bodies_run(lua_State* L, BodiesRunHandle run) {
+    if (!run->system->named) {
+        auto whole = std::make_shared<Run>();
+        whole->trajectory = trajectory_of(run, 0);
+        whole->is_part = true;
+        whole->units = run->system->units;
+        push_run(L, std::move(whole));
+        return 1;
+    }
+    const std::size_t bytes = run->run.table.own_bytes();
+    lua::push<BodiesRunHandle>(L, std::move(run));
+    lua::note_external_memory(L, bytes);
+    return 1;
+}
+
+/// Runs what `problem` says, under the limits of the script.
+int run_bodies(lua_State* L, const lua::Options& options, std::shared_ptr<BodiesRun> run, const motion::Window& window,
+               const motion::Grid& rows, bool dense, std::shared_ptr<const engine::Carry> before = {}) {
+    const auto grid = options.value_or_fail(rows.within(window));
+    const std::size_t columns = 1 + engine::columns_of_body * run->system->joints.size() + run->drive.states.size();
+    motion::Limits limits{.dense = dense};
+    limits.memory = std::min(limits.memory, lua::memory_left() / 4 * 3);
+    if (static_cast<double>(grid.count()) * static_cast<double>(columns * sizeof(double)) >
+        static_cast<double>(limits.memory)) {
+        options.fail("dt", fmt::format("{} rows are more than there is memory for: take a larger dt", grid.count()));
+    }
+    lua::CallState call(L);
+    name_functions(call, *run->system, run->drive);
+    terminal::Progress progress = terminal::Progress::of_time(window.start, window.end);
+    const motion::Monitor monitor = [&progress](double t) {
+        progress.advance(t);
+        return !lua::interrupt_requested();
+    };
+    run->run = engine::run(
+        {*run->system, run->drive, window, grid, monitor, limits, run->tolerance, model::never, std::move(before)});
+    if (call.failed() && lua::interrupt_requested()) run->run.outcome = model::Outcome::interrupted;
+    const bool interrupted = run->run.outcome == model::Outcome::interrupted;
+    push_bodies_run(L, run);
+    if (call.failed() || interrupted) {
+        lua::push_dinal_table(L);
+        lua_insert(L, -2);
+        lua_setfield(L, -2, "partial");
+        lua_pop(L, 1);
+        call.failed() ? call.raise_error() : lua::raise_interrupted(L);
+    }
+    return 1;
+}
+
+int simulate_bodies(lua_State* L) {
+    const AssemblyHandle system = lua::self<AssemblyHandle>(L, 1, bodies_simulate_call.example);
+    const lua::Options options(L, 2, bodies_simulate_call);
+    BodiesRunOptions asked;
+    options.fill(asked);
+    if (!asked.t_end && asked.times.empty()) options.missing("t_end");
+    if (asked.dt && options.has("times")) options.fail("times", "dt and times exclude each other; give one of them");
+    auto run = std::make_shared<BodiesRun>();
+    run->system = system;
+    run->drive = asked_drive(L, options, *system);
+    run->tolerance = asked.tolerance;
+    const motion::Window window{asked.t_start,
+                                asked.t_end ? *asked.t_end : *std::max_element(asked.times.begin(), asked.times.end())};
+    if (!std::isfinite(window.end) || !std::isfinite(window.start) || !(window.end > window.start)) {
+        options.fail("t_end", fmt::format("t_end = {} must be after t_start = {}", window.end, window.start));
+    }
+    constexpr double rows = 1000;
+    run->dt = asked.dt.value_or((window.end - window.start) / rows);
+    const motion::Grid grid = options.has("times") ? motion::Grid::at(asked.times) : motion::Grid::every(run->dt);
+    return run_bodies(L, options, std::move(run), window, grid, asked.dense);
+}
+
+// ---- rig
+
+const model::Assembly& rig_self(lua_State* L, const char* call) {
+    return *lua::self<AssemblyHandle>(L, 1, call);
+}
+
+int push_names(lua_State* L, const model::Assembly& system, bool links) {
+    lua_newtable(L);
+    lua_Integer count = 0;
+    for (std::size_t j = 0; j < system.joints.size(); ++j) {
+        if (system.is_link(j) != links) continue;
+        lua::push_text(L, system.joints[j].name);
+        lua_rawseti(L, -2, ++count);
+    }
+    return 1;
+}
+
+int rig_bodies(lua_State* L) {
+    return push_names(L, rig_self(L, "rig.bodies"), false);
+}
+
+int rig_links(lua_State* L) {
+    return push_names(L, rig_self(L, "rig.links"), true);
+}
+
+std::string text_of_joint(lua_State* L, const model::Assembly& system, std::size_t j) {
+    const model::Joint& joint = system.joints[j];
+    std::vector<std::string> parts;
+    const auto number = [&](const char* name, double value) {
+        if (value != 0) parts.push_back(fmt::format("{} = {}", name, text::number_literal(value)));
+    };
+    if (system.is_link(j)) {
+        parts.push_back(text::quoted(system.bodies[static_cast<std::size_t>(joint.first)].name));
+        parts.push_back(text::quoted(system.bodies[static_cast<std::size_t>(joint.second)].name));
+    } else {
+        number("I", system.bodies[j].inertia);
+    }
+    number("k", joint.stiffness);
+    number("C", joint.damping);
+    const model::ContactFriction& friction = joint.friction;
+    const auto varying = [&](const char* name, const std::optional<model::Excitation>& value) {
+        if (value) parts.push_back(fmt::format("{} = {}", name, source::describe(L, *value)));
+    };
+    if (friction.function != nullptr) parts.emplace_back("friction = function");
+    varying("Rd", friction.sliding[1]);
+    varying("Re", friction.holding[1]);
+    if (const auto* law = friction.law.as<model::laws::Coulomb>()) {
+        number("Rd", law->kinetic);
+        number("Re", law->breakaway);
+    } else if (!friction.law.none()) {
+        parts.push_back("friction = " + source::lua_text(L, friction.law));
+    }
+    varying("normal", friction.normal);
+    if (!joint.spring.none()) {
+        const std::string own = joint.spring.lua_text();
+        parts.push_back("spring = " + (own.empty() ? "function" : own));
+    }
+    if (joint.walls) parts.push_back("walls = " + joint.walls->lua_text());
+    return fmt::format("{{ {} }}", fmt::join(parts, ", "));
+}
+
+int rig_text(lua_State* L) {
+    const model::Assembly& system = rig_self(L, "tostring(rig)");
+    if (!system.named) {
+        const std::string own = text_of_joint(L, system, 0);
+        return lua::push_text(L, "system" + own);
+    }
+    std::vector<std::string> bodies, links;
+    for (std::size_t j = 0; j < system.joints.size(); ++j) {
+        (system.is_link(j) ? links : bodies)
+            .push_back(fmt::format("{} = {}", name_of_joint(system, j), text_of_joint(L, system, j)));
+    }
+    std::string text = fmt::format("system{{ bodies = {{ {} }}", fmt::join(bodies, ", "));
+    if (!links.empty()) text += fmt::format(", links = {{ {} }}", fmt::join(links, ", "));
+    return lua::push_text(L, text + " }");
+}
+
+// ---- their run
+
+const BodiesRunHandle& bodies_run_self(lua_State* L, const char* call) {
+    return lua::self<BodiesRunHandle>(L, 1, call);
+}
+
+int part_by_name(lua_State* L) {
+    if (lua_type(L, 2) != LUA_TSTRING) return 0;
+    const BodiesRunHandle run = bodies_run_self(L, "run.load");
+    const std::string name = lua_tostring(L, 2);
+    for (std::size_t j = 0; j < run->system->joints.size(); ++j) {
+        if (run->system->joints[j].name != name) continue;
+        push_run(L, part_of(run, j));
+        return 1;
+    }
+    std::vector<std::string_view> names;
+    std::vector<std::string> own;
+    for (const model::Joint& joint : run->system->joints) own.push_back(joint.name);
+    names.assign(own.begin(), own.end());
+    for (const lua::Member& member : bodies_run_class.members) {
+        if (member.kind != lua::Kind::metamethod) names.push_back(member.name);
+    }
+    lua::raise(
+        L, {.sentence = fmt::format("this run has no '{}'; its bodies and links are {}", name, fmt::join(own, ", ")),
+            .culprit = name,
+            .cure = text::did_you_mean(name, names)});
+}
+
+int run_times(lua_State* L) {
+    const BodiesRunHandle& run = bodies_run_self(L, "run.t");
+    const auto t = run->run.table.size() == 0 ? std::span<const double>() : run->run.table.column(0);
+    lua::push(L, lua::Vector(run, t.data(), t.size()));
+    return 1;
+}
+
+int run_states_table(lua_State* L) {
+    const BodiesRunHandle& run = bodies_run_self(L, "run.states");
+    const std::size_t count = run->drive.states.size();
+    lua_createtable(L, 0, static_cast<int>(count));
+    for (std::size_t k = 0; k < count; ++k) {
+        const auto values = run->run.table.column(run->run.table.columns() - count + k);
+        lua::push(L, lua::Vector(run, values.data(), values.size()));
+        lua_setfield(L, -2, run->drive.states[k].name.c_str());
+    }
+    return 1;
+}
+
+int events_of_bodies(lua_State* L) {
+    const BodiesRun& run = *bodies_run_self(L, "run.events");
+    if (lua_getiuservalue(L, 1, 1) == LUA_TUSERDATA) return 1;
+    std::vector<double> t, theta, velocity, M;
+    std::vector<std::string> kind, where, name;
+    for (const engine::JointEvent& e : run.run.events) {
+        t.push_back(e.t), theta.push_back(e.theta), velocity.push_back(e.velocity), M.push_back(e.M);
+        kind.emplace_back(model::name(e.kind));
+        where.push_back(e.where < 0 ? "" : run.system->joints[static_cast<std::size_t>(e.where)].name);
+        name.push_back(e.user < 0 ? "" : run.drive.events[static_cast<std::size_t>(e.user)].name);
+    }
+    Data data;
+    const ColumnUnits in(run.system->units);
+    data.columns = {column_of("t", std::move(t), in.t),
+                    column_of("kind", std::move(kind)),
+                    column_of("where", std::move(where)),
+                    column_of("theta", std::move(theta), in.theta),
+                    column_of("velocity", std::move(velocity), in.speed),
+                    column_of("M", std::move(M), in.M)};
+    if (!run.drive.events.empty()) data.columns.push_back(column_of("name", std::move(name)));
+    push_data(L, std::move(data));
+    lua_pushvalue(L, -1);
+    lua_setiuservalue(L, 1, 1);
+    return 1;
+}
+
+/// All columns with their names: "load.theta".
+int rows_of_bodies(lua_State* L) {
+    const BodiesRunHandle run = bodies_run_self(L, "run:data()");
+    const model::Assembly& system = *run->system;
+    const ColumnUnits in(system.units);
+    Data data;
+    const auto add = [&](std::string name, std::string_view kind, std::size_t column) {
+        const auto values = run->run.table.size() == 0 ? std::span<const double>() : run->run.table.column(column);
+        data.columns.push_back(
+            {std::move(name), lua::Vector(run, values.data(), values.size()), in.of(kind == "torque" ? "M" : kind)});
+    };
+    add("t", "t", 0);
+    for (std::size_t j = 0; j < system.joints.size(); ++j) {
+        const std::size_t first = first_column(system, j);
+        std::size_t c = 0;
+        const bool link = system.is_link(j);
+        for (const char* kind : {"theta", "velocity", link ? "torque" : "M", "friction", "damping"}) {
+            if (link && c == engine::columns_of_link) break;
+            add(system.joints[j].name + "." + kind, kind, first + c++);
+        }
+    }
+    const std::size_t count = run->drive.states.size();
+    for (std::size_t k = 0; k < count; ++k) {
+        add(run->drive.states[k].name, "", run->run.table.columns() - count + k);
+    }
+    push_data(L, std::move(data));
+    return 1;
+}
+
+int at_of_bodies(lua_State* L) {
+    const BodiesRunHandle run = bodies_run_self(L, "run:at(t)");
+    const double t = lua::finite_argument(L, 2, "run:at(t): t");
+    if (t < run->run.t_start || t > run->run.t_stop) {
+        lua::raise(L, fmt::format("run:at(t): t = {:.6g} is outside the run from {:.6g} to {:.6g}", t, run->run.t_start,
+                                  run->run.t_stop));
+    }
+    if (run->run.history == nullptr || run->run.history->bytes() == 0 || t > run->run.history->whole_until()) {
+        lua::raise(L, "run:at(t): this run kept nothing between its rows; simulate it without dense = false");
+    }
+    const std::vector<double> y = run->run.history->at(t);
+    const std::size_t n = run->system->bodies.size();
+    for (const std::size_t from : {std::size_t{0}, n}) {
+        lua_createtable(L, 0, static_cast<int>(n));
+        for (std::size_t i = 0; i < n; ++i) lua::set_number(L, run->system->bodies[i].name.c_str(), y[from + i]);
+    }
+    if (run->drive.states.empty()) return 2;
+    lua_createtable(L, 0, static_cast<int>(run->drive.states.size()));
+    for (std::size_t k = 0; k < run->drive.states.size(); ++k) {
+        lua::set_number(L, run->drive.states[k].name.c_str(), y[2 * n + k]);
+    }
+    return 3;
+}
+
+int outcome_of_bodies(lua_State* L) {
+    return lua::push_text(L, motion::outcome_text(part_of(bodies_run_self(L, "run.outcome"), 0)->trajectory));
+}
+
+template <double engine::AssemblyRun::*time>
+int time_of_bodies(lua_State* L) {
+    lua_pushnumber(L, bodies_run_self(L, "run.t_end")->run.*time);
+    return 1;
+}
+
+int system_of_run(lua_State* L) {
+    lua::push<AssemblyHandle>(L, bodies_run_self(L, "run.system")->system);
+    return 1;
+}
+
+int length_of_run(lua_State* L) {
+    lua_pushinteger(L, static_cast<lua_Integer>(bodies_run_self(L, "#run")->run.table.size()));
+    return 1;
+}
+
+int text_of_run(lua_State* L) {
+    const BodiesRun& run = *bodies_run_self(L, "tostring(run)");
+    std::size_t sticks = 0, slips = 0;
+    for (const engine::JointEvent& e : run.run.events) {
+        sticks += model::is_stop(e.kind) ? 1 : 0;
+        slips += e.kind == model::EventKind::slip ? 1 : 0;
+    }
+    return lua::push_text(
+        L, fmt::format("{} bodies, {} rows, t {:.6g} … {:.6g}; {} ({}, {}); {}", run.system->bodies.size(),
+                       run.run.table.size(), run.run.t_start, run.run.t_stop,
+                       text::counted(run.run.events.size(), "event"), text::counted(sticks, "stop"),
+                       text::counted(slips, "slip"), model::sentence(run.run.outcome)));
+}
+
+constexpr text::Option bodies_continue_rows[] = {
+    {"t_end", "time units", text::needed, text::any_finite, "how far the run goes on",
+     text::fills<&BodiesRunOptions::t_end>},
+};
+constexpr text::Call bodies_continue_call{"run:continue", "run:continue{ t_end = 40 }", bodies_continue_rows};
+
+/// The first run, and how it goes on.
+int continue_bodies(lua_State* L) {
+    const BodiesRunHandle first = bodies_run_self(L, bodies_continue_call.example);
+    const lua::Options options(L, 2, bodies_continue_call);
+    BodiesRunOptions asked;
+    options.fill(asked);
+    const double from = first->run.t_stop;
+    if (!(*asked.t_end > from)) {
+        options.fail("t_end", fmt::format("t_end = {} must be after t = {}, where the run ended", *asked.t_end, from));
+    }
+    auto run = std::make_shared<BodiesRun>();
+    run->system = first->system, run->drive = first->drive, run->dt = first->dt, run->tolerance = first->tolerance;
+    // The last row of the first run stands in the second one only where the spacing puts it there.
+    std::vector<double> times;
+    const double start = first->run.t_start;
+    for (double row = std::floor((from - start) / run->dt * (1 - 1e-12)); start + row * run->dt < *asked.t_end; ++row) {
+        if (start + row * run->dt > from * (1 + 1e-15)) times.push_back(start + row * run->dt);
+    }
+    times.push_back(*asked.t_end);
+    run_bodies(L, options, run, {from, *asked.t_end}, motion::Grid::at(std::move(times)), true, first->run.carry);
+    std::size_t kept = first->run.table.size();
+    const double last = kept == 0 ? start : first->run.table(kept - 1, 0);
+    const double nearest = start + std::round((last - start) / run->dt) * run->dt;
+    if (kept > 0 && std::fabs(last - nearest) > 1e-12 * std::max(1.0, std::fabs(last))) --kept;
+    run->run.table = first->run.table.followed_by(kept, run->run.table, std::size_t{1} << 40U);
+    run->run.events.insert(run->run.events.begin(), first->run.events.begin(), first->run.events.end());
+    run->run.t_start = start;
+    return 1;
+}
+
+#define DINAL_RIG                                                                 \
+    "rig = system{ bodies = { motor = { I = 1 }, load = { I = 3, Rd = 0.2 } },\n" \
+    "    links = { clutch = { \"motor\", \"load\", Rd = 2 } } }\n"
+
+constexpr lua::Member rig_members[] = {
+    {lua::a_method<simulate_bodies>,
+     {"rig:simulate{ OPTIONS } -> run",
+      "Runs a system of several bodies, or one whose friction depends on more than its speed: by Chebyshev polynomials "
+      "between located events, as integrator.spectral does it. All contacts that stand are decided at once.",
+      DINAL_RIG "run = rig:simulate{ velocity0 = { motor = 3 }, t_end = 10 }\n"
+                "print(string.format(\"%.6f\", run.events[1].t), run.events[1].kind, run.events[1].where)  --> "
+                "1.153846\tstick\tclutch",
+      {&bodies_simulate_call}}},
+    {lua::a_field<rig_bodies>,
+     {"rig.bodies -> table", "The names of the bodies, in alphabetical order.",
+      DINAL_RIG "print(table.concat(rig.bodies, \" \"))  --> load motor"}},
+    {lua::a_field<rig_links>,
+     {"rig.links -> table", "The names of the links, in alphabetical order.", DINAL_RIG "print(#rig.links)  --> 1"}},
+    {lua::a_metamethod<rig_text>("__tostring"),
+     {"tostring(rig) -> string", "What the system is made of, as Lua text.",
+      "print(system{ bodies = { a = { I = 1 }, b = { I = 2, k = 4 } } })  --> system{ bodies = { a = { I = 1 }, b = { I "
+      "= 2, k = 4 } } }"}},
+};
+
+#define DINAL_RIG_RUN DINAL_RIG "run = rig:simulate{ velocity0 = { motor = 3 }, t_end = 10, dt = 2 }\n"
+
+constexpr lua::Member bodies_run_members[] = {
+    {lua::a_method<at_of_bodies>,
+     {"run:at(t) -> theta, velocity, z",
+      "Angles (rad) and velocities (rad per time unit) at any time of the run, as tables by body, and the states.",
+      DINAL_RIG_RUN "theta, velocity = run:at(2)\nprint(velocity.motor == velocity.load)  --> true"}},
+    {lua::a_method<rows_of_bodies>,
+     {"run:data() -> data",
+      "All columns under their names: \"load.theta\", \"clutch.torque\"; they can be plotted and saved.",
+      DINAL_RIG_RUN "print(run:data()[\"motor.velocity\"][1])  --> 3.0"}},
+    {lua::a_method<continue_bodies>,
+     {"run:continue{ OPTIONS } -> run",
+      "A new run: this one, and how it goes on from where it ended.",
+      DINAL_RIG_RUN "print(run:continue{ t_end = 12 }.t_end)  --> 12.0",
+      {&bodies_continue_call}}},
+    {lua::a_field<run_times>, {"run.t -> vector", "The times of the rows.", DINAL_RIG_RUN "print(#run.t)  --> 6"}},
+    {lua::a_field<events_of_bodies>,
+     {"run.events -> data",
+      "What happened, in order of time: t, kind, where (the body or the link), theta, velocity (of a link between its "
+      "bodies) and M (on its first body); name of the user's events.",
+      DINAL_RIG_RUN "print(run.events.kind[1], run.events.where[1])  --> stick\tclutch"}},
+    {lua::a_field<run_states_table>,
+     {"run.states -> table", "The columns of the run's own states by their names: vectors.",
+      DINAL_RIG_RUN "print(next(run.states))  --> nil"}},
+    {lua::a_field<outcome_of_bodies>,
+     {"run.outcome -> string", "How it ended, as of a run of one body.",
+      DINAL_RIG_RUN "print(run.outcome)  --> reached the end"}},
+    {lua::a_field<time_of_bodies<&engine::AssemblyRun::t_start>>,
+     {"run.t_start -> number", "The time at which the run began.", DINAL_RIG_RUN "print(run.t_start)  --> 0.0"}},
+    {lua::a_field<time_of_bodies<&engine::AssemblyRun::t_stop>>,
+     {"run.t_end -> number", "The time at which the run ended.", DINAL_RIG_RUN "print(run.t_end)  --> 10.0"}},
+    {lua::a_field<system_of_run>,
+     {"run.system -> rig", "The system that was simulated.", DINAL_RIG_RUN "print(#run.system.bodies)  --> 2"}},
+    {lua::a_metamethod<length_of_run>("__len"),
+     {"#run -> number", "The number of rows.", DINAL_RIG_RUN "print(#run)  --> 6"}},
+    {lua::a_metamethod<text_of_run>("__tostring"),
+     {"tostring(run) -> string", "A summary in one line.",
+      DINAL_RIG_RUN "print((tostring(run):match(\"^%d+ bodies\")))  --> 2 bodies"}},
+};
+
+#undef DINAL_RIG_RUN
+#undef DINAL_RIG
+
+}  // namespace
+
+const lua::Class rig_class = {
+    "rig",
+    {"system{ bodies = { ... }, links = { ... } } -> rig",
+     "A system of several bodies, or of one whose friction depends on more than its speed. It cannot be changed.",
+     "rig = system{ I = 1, k = 4, Rd = 0.3, normal = function(t) return 1 + t end }\n"
+     "print(rig:simulate{ theta0 = 1, t_end = 20 }.outcome)  --> stuck at the end"},
+    rig_members};
+
+const lua::Class bodies_run_class = {
+    "run of several bodies",
+    {"rig:simulate{ ... } -> run",
+     "A run of several bodies. run.load is the run as seen from the body `load`: columns theta, velocity, M, friction, "
+     "damping, its events, at(t), plots; run.shaft that of a link: theta (first less second), velocity, torque (on the "
+     "first) and friction.",
+     "rig = system{ bodies = { a = { I = 1, k = 4 }, b = { I = 1 } }, links = { rod = { \"a\", \"b\", k = 2 } } }\n"
+     "run = rig:simulate{ theta0 = { a = 1 }, t_end = 3 }\nprint(run.a.theta[1], run.rod.torque[1])  --> 1.0\t-2.0"},
+    bodies_run_members,
+    part_by_name};
+
+void register_bodies(lua_State* L) {
+    lua::add_class<AssemblyHandle>(L, rig_class);
+    lua::add_class<BodiesRunHandle>(L, bodies_run_class);
+}
+
+}  // namespace dinal::api

@@ -1,0 +1,204 @@
+package.path = "tests/lua/?.lua;" .. package.path
+local support = require "support"
+local test, near, equal, raises_here = support.test, support.near, support.equal, support.raises_here
+
+local function first(run, kind, where)
+    for _, e in ipairs(run.events) do
+        if e.kind == kind and (not where or e.where == where) then return e end
+    end
+    error("there is no " .. kind .. (where and " at " .. where or ""), 2)
+end
+
+local function clutch(options)
+    options[1], options[2] = "motor", "load"
+    return system { bodies = { motor = { I = 1 }, load = { I = 3 } }, links = { clutch = options } }
+end
+
+test("a clutch locks up: its time, the common speed, and the torque that it holds then", function()
+    local run = clutch { Rd = 2 }:simulate { velocity0 = { motor = 3 }, t_end = 4, dt = 0.5 }
+    local stick = first(run, "stick", "clutch")
+    near(stick.t, 3 / (2 / 1 + 2 / 3), 1e-13)
+    near(run.motor.velocity[9], 0.75, 1e-14)
+    equal(run.motor.velocity[9], run.load.velocity[9])
+    equal(run.clutch.velocity[9], 0.0)
+    near(run.clutch.torque[1], -2, 0)
+    near(run.clutch.torque[9], 0, 1e-14)
+    -- under a torque on the load the locked clutch takes the motor along
+    run = clutch { Rd = 2 }:simulate { M = { load = 4 }, t_end = 1 }
+    near(run.motor:at(1), 0.5, 1e-14)
+    near(run.clutch.torque[500], 1, 1e-13)
+end)
+
+test("a clutch that closes: the normal load scales what it takes", function()
+    local run = clutch { Rd = 2, normal = function(t) return math.min(t, 1) end }
+        :simulate { velocity0 = { motor = 3 }, t_end = 4, dt = 0.5 }
+    -- the difference of speeds is 3 - (8/3) t^2/2 until t = 1, and then falls by 8/3 in a unit of time
+    near(first(run, "stick", "clutch").t, 1 + (3 - 4 / 3) / (8 / 3), 1e-12)
+    local sys = { I = 1, k = 4, Rd = 0.3, Re = 0.4 }
+    local M = excitation.harmonic { amplitude = 1, omega = 1.3 }
+    local plain = system(sys):simulate { M = M, theta0 = 1, t_end = 20, dt = 0.5 }
+    sys.Rd, sys.Re, sys.normal = 0.15, 0.2, 2
+    local scaled = system(sys):simulate { M = M, theta0 = 1, t_end = 20, dt = 0.5 }
+    for i = 1, #plain do near(scaled.theta[i], plain.theta[i], 1e-12) end
+    equal(#scaled.events, #plain.events)
+end)
+
+test("a capacity that falls lets go as a load that rises does", function()
+    local fading = system { I = 1, k = 0, Rd = 0.1, Re = function(t) return 1 - t / 10 end }
+    local run = fading:simulate { M = 0.5, t_end = 8 }
+    near(first(run, "slip").t, 5, 1e-12)
+    near(run:at(8), 0.5 * 0.4 * 9, 1e-12)
+    equal(run.outcome, "reached the end")
+    local other = system { I = 1, k = 0, Rd = 0.1, Re = excitation.samples { t = { 0, 10 }, M = { 1, 0.2 } } }
+    near(first(other:simulate { M = 0.6, t_end = 8 }, "slip").t, 5, 1e-12)
+end)
+
+test("without a normal load a mass flies freely, and a negative one counts as none", function()
+    local run = system { I = 1, k = 0, Rd = 1, normal = function(t) return 1 - t end }
+        :simulate { velocity0 = 2, t_end = 4 }
+    near(run:at(1), 2 - 1 / 2 + 1 / 6, 1e-12)
+    local theta, velocity = run:at(4)
+    near(velocity, 1.5, 1e-12)
+    near(theta, 2 - 1 / 3 + 3 * 1.5, 1e-12)
+end)
+
+test("friction that depends on place, on a state, and on the speed", function()
+    -- a wedge: while sliding down from theta0 > 0 friction c theta is a spring
+    local run = system { I = 1, k = 4, Rd = function(t, theta) return 3 * math.abs(theta) end,
+        Re = function(t, theta) return 3 * math.abs(theta) end }:simulate { theta0 = 1, t_end = 1.5, dt = 0.5 }
+    for i = 1, #run do near(run.theta[i], math.cos(run.t[i]), 1e-12) end
+    -- a brake that gets hot: Rd falls with the heat, the heat is the work of friction
+    local hot = system { I = 1, k = 0, Rd = function(t, theta, velocity, z) return 1 / (1 + z.heat) end }
+        :simulate { velocity0 = 3, t_end = 3, dt = 1, states = { heat = {
+            rate = function(t, theta, velocity, z) return math.abs(velocity) / (1 + z.heat) end } } }
+    local theta, velocity, z = hot:at(3)
+    near(velocity ^ 2 / 2 + z.heat, 4.5, 1e-11)
+    local law = system { I = 1, k = 0, friction = function(speed) return 0.3 + 0.5 * speed end }
+        :simulate { velocity0 = 2, t_end = 5, dt = 1 }
+    -- v' = -0.3 - v/2 from 2: at rest at t = 2 ln((2 + 0.6)/0.6)
+    near(law.events[1].t, 2 * math.log(2.6 / 0.6), 1e-12)
+end)
+
+test("a chain without friction swings in its modes", function()
+    local run = system {
+        bodies = { a = { I = 1, k = 1 }, b = { I = 1, k = 1 } }, links = { rod = { "a", "b", k = 4 } },
+    }:simulate { theta0 = { a = 1 }, t_end = 30, dt = 1 }
+    for i, t in ipairs(run.t) do
+        near(run.a.theta[i], (math.cos(t) + math.cos(3 * t)) / 2, 1e-11)
+        near(run.b.theta[i], (math.cos(t) - math.cos(3 * t)) / 2, 1e-11)
+        near(run.rod.torque[i], -4 * run.rod.theta[i], 1e-12)
+    end
+end)
+
+test("two bodies that stick to each other are one of both inertias", function()
+    local M = function(t) return 3 * math.sin(t) end
+    local pair = system { bodies = { a = { I = 1, k = 4, Rd = 0.3 }, b = { I = 2 } }, links = { glue = { "a", "b", Rd = 100 } } }
+        :simulate { M = { a = M }, t_end = 20, dt = 0.5 }
+    local one = system { I = 3, k = 4, Rd = 0.3 }:simulate { M = M, t_end = 20, dt = 0.5 }
+    for i = 1, #one do near(pair.b.theta[i], one.theta[i], 1e-11) end
+    equal(#pair.events, #one.events)
+end)
+
+test("a body of huge inertia is the ground, or a belt", function()
+    local M = excitation.harmonic { amplitude = 1, omega = 2 }
+    local free = system { bodies = { a = { I = 1 }, b = { I = 1e13 } }, links = { x = { "a", "b", k = 4, Rd = 0.3, Re = 0.4 } } }
+    local run = free:simulate { M = { a = M }, velocity0 = { b = 0.2, a = 0 }, t_end = 10, dt = 0.5 }
+    local belt = system { bodies = { a = { I = 1, Rd = 0.3, Re = 0.4 } } }
+        :simulate { M = { a = function(t, theta) return math.sin(2 * t) - 4 * (theta.a - 0.2 * t) end }, belt = { a = 0.2 }, t_end = 10, dt = 0.5 }
+    for i = 1, #run do near(run.a.theta[i], belt.a.theta[i], 1e-10) end
+end)
+
+test("a gap between two bodies: momentum is conserved and the difference of speeds is turned back", function()
+    local run = system { bodies = { a = { I = 1 }, b = { I = 2 } },
+        links = { gap = { "a", "b", walls = { lower = -1, upper = 1, restitution = 0.5 } } } }
+        :simulate { velocity0 = { a = 3 }, t_end = 1, dt = 0.5 }
+    local hit = first(run, "impact", "gap")
+    near(hit.t, 1 / 3, 1e-14)
+    equal(hit.velocity, 3.0)
+    local _, velocity = run:at(0.9)
+    near(velocity.a + 2 * velocity.b, 3, 1e-14)
+    near(velocity.a - velocity.b, -1.5, 1e-14)
+    -- restitution 0: they go on together
+    run = system { bodies = { a = { I = 1 }, b = { I = 2 } }, links = { gap = { "a", "b", walls = { upper = 1, restitution = 0 } } } }
+        :simulate { M = { a = 1 }, velocity0 = { a = 3 }, t_end = 2 }
+    equal(run.events.kind[1] .. " " .. run.events.kind[2], "impact stick")
+    near(run.gap.theta[1001], 1, 1e-15)
+end)
+
+test("one body under a name moves as a system of one does, with all that a run may have", function()
+    local sys, rig = system { I = 1, k = 4, C = 0.2, Rd = 0.3, Re = 0.4, walls = { upper = 0.6, restitution = 0.5 } },
+        system { bodies = { a = { I = 1, k = 4, C = 0.2, Rd = 0.3, Re = 0.4, walls = { upper = 0.6, restitution = 0.5 } } } }
+    local cases = {
+        { { M = function(t) return t % 2 < 1 and 2 or -2 end }, { M = { a = function(t) return t % 2 < 1 and 2 or -2 end } } },
+        { { M = excitation.relay { on = -0.1, off = 0.1, levels = { 1, -1 }, of = "theta" } },
+            { M = { a = excitation.relay { on = -0.1, off = 0.1, levels = { 1, -1 }, of = "theta.a" } } } },
+        { { M = excitation.sampled(function(t, theta, velocity) return 2 - 3 * theta - velocity end, { every = 0.2 }) },
+            { M = { a = excitation.sampled(function(t, theta, velocity) return 2 - 3 * theta.a - velocity.a end, { every = 0.2 }) } } },
+        { { M = excitation.delayed(function(t, theta) return 1 - theta end, { by = 0.3 }) },
+            { M = { a = excitation.delayed(function(t, theta) return 1 - theta.a end, { by = 0.3 }) } } },
+        { { belt = function(t) return 0.4 * math.sin(t) end }, { belt = { a = function(t) return 0.4 * math.sin(t) end } } },
+        { { base = excitation.harmonic { amplitude = 2, omega = 1.5 } }, { base = excitation.harmonic { amplitude = 2, omega = 1.5 } } },
+        { { M = function(t, theta, velocity, z) return z.e end, states = { e = { start = 1, rate = function(t, theta) return 0.3 - theta end } } },
+            { M = { a = function(t, theta, velocity, z) return z.e end }, states = { e = { start = 1, rate = function(t, theta) return 0.3 - theta.a end } } } },
+        { { M = 1, events = { { when = function(t, theta) return theta - 0.3 end, name = "up", act = function(t, theta, velocity) return theta, velocity / 2 end } } },
+            { M = { a = 1 }, events = { { when = function(t, theta) return theta.a - 0.3 end, name = "up", act = function(t, theta, velocity) velocity.a = velocity.a / 2 end } } } },
+    }
+    for i, case in ipairs(cases) do
+        for _, options in ipairs(case) do options.t_end, options.dt = 12, 0.5 end
+        case[1].velocity0, case[2].velocity0 = 0.5, { a = 0.5 }
+        case[1].integrator = integrator.spectral {}
+        local one, named = sys:simulate(case[1]), rig:simulate(case[2])
+        for row = 1, #one do near(named.a.theta[row], one.theta[row], 1e-10) end
+        local told = {}
+        for _, run in ipairs { one, named } do
+            local kinds = {}
+            for _, e in ipairs(run.events) do  -- bounces that die out end a little earlier or later
+                if e.kind ~= "impact" and e.kind ~= "turn" and e.kind ~= "rest" then kinds[#kinds + 1] = ("%s %.6f"):format(e.kind, e.t) end
+            end
+            told[#told + 1] = table.concat(kinds, ", "):gsub("rest", "stick")
+        end
+        if i ~= 1 and i ~= 3 and i ~= 4 then equal(told[2], told[1], "case " .. i) end
+    end
+end)
+
+test("a run goes on as if it had not ended", function()
+    local rig = clutch { Rd = 0.5, Re = 0.7, k = 3 }
+    local options = { M = { motor = function(t) return 2 * math.sin(t) end }, dt = 0.3 }
+    options.t_end = 10
+    local whole = rig:simulate(options)
+    options.t_end = 4
+    local parts = rig:simulate(options):continue { t_end = 10 }
+    equal(#parts, #whole)
+    equal(#parts.events, #whole.events)
+    for i = 1, #whole do near(parts.load.theta[i], whole.load.theta[i], 1e-12) end
+    near(parts.load:at(2.05), whole.load:at(2.05), 1e-12)
+end)
+
+test("closed loops of contacts hold what they can hold together", function()
+    -- two masses on the ground, with a damper of dry friction between them: a load on the first is held by three contacts
+    local rig = system { bodies = { a = { I = 1, Rd = 1 }, b = { I = 1, Rd = 1 } }, links = { damper = { "a", "b", Rd = 0.5 } } }
+    local run = rig:simulate { M = { a = function(t) return t end }, t_end = 2 }
+    near(first(run, "slip", "a").t, 1.5, 1e-9)
+end)
+
+test("what is wrong is one sentence with the name of the body, the link and the option", function()
+    raises_here(function() system { bodies = { a = { I = 1, q = 3 } } } end, "bodies.a has no option 'q'")
+    raises_here(function() system { bodies = { a = { k = 3 } } } end, "bodies.a needs I")
+    raises_here(function() system { bodies = { a = { I = 1 } }, links = { x = { "a", "bb" } } } end, "links.x: there is no body 'bb'; there is a")
+    raises_here(function() system { bodies = { a = { I = 1 } }, I = 1 } end, "I belongs into one of the bodies")
+    raises_here(function() system { bodies = { a = { I = 1 } }, links = { a = { "a", "a" } } } end, "'a' is the name of a body already")
+    raises_here(function() system { bodies = { a = { I = 1 }, b = { I = 1 } }, links = { x = { "a", "a" } } } end, "two different bodies")
+    local rig = system { bodies = { load = { I = 1, Rd = 0.1 } } }
+    raises_here(function() rig:simulate { M = { laod = 1 }, t_end = 1 } end, "M: there is no body 'laod'; there is load", "did you mean 'load'?")
+    raises_here(function() rig:simulate { M = 3, t_end = 1 } end, "M must be a table by body")
+    raises_here(function() rig:simulate { theta0 = { load = "x" }, t_end = 1 } end, "theta0.load must be a finite number")
+    raises_here(function() return rig:simulate { t_end = 1 }.laod end, "this run has no 'laod'", "did you mean 'load'?")
+    support.raises(function() rig:simulate { M = { load = function(t, theta) return theta.laod end }, t_end = 1 } end,
+        "there is no body 'laod'; there is load")
+    support.raises(function() rig:simulate { M = { load = function() return "x" end }, t_end = 1 } end, "M returned the string")
+    local count = 0
+    local run = rig:simulate { M = { load = function() count = count + 1 return count % 7 end }, t_end = 1 }
+    assert(run.outcome:find("asked again", 1, true), run.outcome)
+end)
+
+support.finish()
