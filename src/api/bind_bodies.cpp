@@ -245,7 +245,7 @@ model::ContactFriction asked_friction(lua_State* L, const lua::Options& options,
         if (auto holding = varying("Re")) friction.holding = {holding, holding};
         return friction;
     }
-    if (const auto law = asked_law(L, options, {"Rd", "Re"})) {
+    if (const auto law = asked_law(L, options, {"Rd", "Re"}, true)) {
         friction.law = *law;
         return friction;
     }
@@ -833,7 +833,7 @@ constexpr text::Option bodies_continue_rows[] = {
     {"t_end", "time units", text::needed, text::any_finite, "how far the run goes on",
      text::fills<&BodiesRunOptions::t_end>},
 };
-constexpr text::Call bodies_continue_call{"run:continue", "run:continue{ t_end = 40 }", bodies_continue_rows};
+constexpr text::Call bodies_continue_call{"rig_run:continue", "rig_run:continue{ t_end = 40 }", bodies_continue_rows};
 
 /// The first run, and how it goes on.
 int continue_bodies(lua_State* L) {
@@ -871,7 +871,7 @@ int continue_bodies(lua_State* L) {
 
 constexpr lua::Member rig_members[] = {
     {lua::a_method<simulate_bodies>,
-     {"rig:simulate{ OPTIONS } -> run",
+     {"rig:simulate{ OPTIONS } -> rig_run",
       "Runs a system of several bodies, or one whose friction depends on more than its speed: by Chebyshev polynomials "
       "between located events, as integrator.spectral does it. All contacts that stand are decided at once.",
       DINAL_RIG "run = rig:simulate{ velocity0 = { motor = 3 }, t_end = 10 }\n"
@@ -893,40 +893,40 @@ constexpr lua::Member rig_members[] = {
 
 constexpr lua::Member bodies_run_members[] = {
     {lua::a_method<at_of_bodies>,
-     {"run:at(t) -> theta, velocity, z",
+     {"rig_run:at(t) -> theta, velocity, z",
       "Angles (rad) and velocities (rad per time unit) at any time of the run, as tables by body, and the states.",
       DINAL_RIG_RUN "theta, velocity = run:at(2)\nprint(velocity.motor == velocity.load)  --> true"}},
     {lua::a_method<rows_of_bodies>,
-     {"run:data() -> data",
+     {"rig_run:data() -> data",
       "All columns under their names: \"load.theta\", \"clutch.torque\"; they can be plotted and saved.",
       DINAL_RIG_RUN "print(run:data()[\"motor.velocity\"][1])  --> 3.0"}},
     {lua::a_method<continue_bodies>,
-     {"run:continue{ OPTIONS } -> run",
+     {"rig_run:continue{ OPTIONS } -> rig_run",
       "A new run: this one, and how it goes on from where it ended.",
       DINAL_RIG_RUN "print(run:continue{ t_end = 12 }.t_end)  --> 12.0",
       {&bodies_continue_call}}},
-    {lua::a_field<run_times>, {"run.t -> vector", "The times of the rows.", DINAL_RIG_RUN "print(#run.t)  --> 6"}},
+    {lua::a_field<run_times>, {"rig_run.t -> vector", "The times of the rows.", DINAL_RIG_RUN "print(#run.t)  --> 6"}},
     {lua::a_field<events_of_bodies>,
-     {"run.events -> data",
+     {"rig_run.events -> data",
       "What happened, in order of time: t, kind, where (the body or the link), theta, velocity (of a link between its "
       "bodies) and M (on its first body); name of the user's events.",
       DINAL_RIG_RUN "print(run.events.kind[1], run.events.where[1])  --> stick\tclutch"}},
     {lua::a_field<run_states_table>,
-     {"run.states -> table", "The columns of the run's own states by their names: vectors.",
+     {"rig_run.states -> table", "The columns of the run's own states by their names: vectors.",
       DINAL_RIG_RUN "print(next(run.states))  --> nil"}},
     {lua::a_field<outcome_of_bodies>,
-     {"run.outcome -> string", "How it ended, as of a run of one body.",
+     {"rig_run.outcome -> string", "How it ended, as of a run of one body.",
       DINAL_RIG_RUN "print(run.outcome)  --> reached the end"}},
     {lua::a_field<time_of_bodies<&engine::AssemblyRun::t_start>>,
-     {"run.t_start -> number", "The time at which the run began.", DINAL_RIG_RUN "print(run.t_start)  --> 0.0"}},
+     {"rig_run.t_start -> number", "The time at which the run began.", DINAL_RIG_RUN "print(run.t_start)  --> 0.0"}},
     {lua::a_field<time_of_bodies<&engine::AssemblyRun::t_stop>>,
-     {"run.t_end -> number", "The time at which the run ended.", DINAL_RIG_RUN "print(run.t_end)  --> 10.0"}},
+     {"rig_run.t_end -> number", "The time at which the run ended.", DINAL_RIG_RUN "print(run.t_end)  --> 10.0"}},
     {lua::a_field<system_of_run>,
-     {"run.system -> rig", "The system that was simulated.", DINAL_RIG_RUN "print(#run.system.bodies)  --> 2"}},
+     {"rig_run.system -> rig", "The system that was simulated.", DINAL_RIG_RUN "print(#run.system.bodies)  --> 2"}},
     {lua::a_metamethod<length_of_run>("__len"),
-     {"#run -> number", "The number of rows.", DINAL_RIG_RUN "print(#run)  --> 6"}},
+     {"#rig_run -> number", "The number of rows.", DINAL_RIG_RUN "print(#run)  --> 6"}},
     {lua::a_metamethod<text_of_run>("__tostring"),
-     {"tostring(run) -> string", "A summary in one line.",
+     {"tostring(rig_run) -> string", "A summary in one line.",
       DINAL_RIG_RUN "print((tostring(run):match(\"^%d+ bodies\")))  --> 2 bodies"}},
 };
 
@@ -945,7 +945,7 @@ const lua::Class rig_class = {
 
 const lua::Class bodies_run_class = {
     "run of several bodies",
-    {"rig:simulate{ ... } -> run",
+    {"rig:simulate{ ... } -> rig_run",
      "A run of several bodies. run.load is the run as seen from the body `load`: columns theta, velocity, M, friction, "
      "damping, its events, at(t), plots; run.shaft that of a link: theta (first less second), velocity, torque (on the "
      "first) and friction.",

@@ -7,6 +7,7 @@
 #include "lua/options.hpp"
 #include "lua/user_function.hpp"
 #include "model/laws/asymmetric.hpp"
+#include "model/laws/bristle.hpp"
 #include "model/laws/coulomb.hpp"
 #include "model/laws/stribeck.hpp"
 #include "model/laws/tabulated.hpp"
@@ -45,6 +46,21 @@ int tabulated_law(lua_State* L) {
     const lua::Options options(L, 1, laws::tabulated_call);
     laws::Tabulated law;
     options.fill(law);
+    return push_law(L, options, law);
+}
+
+int lugre_law(lua_State* L) {
+    const lua::Options options(L, 1, laws::lugre_call);
+    laws::Bristle law;
+    options.fill(law);
+    return push_law(L, options, law);
+}
+
+int dahl_law(lua_State* L) {
+    const lua::Options options(L, 1, laws::dahl_call);
+    laws::Bristle law;
+    options.fill(law);
+    law.dahl = true;
     return push_law(L, options, law);
 }
 
@@ -143,6 +159,19 @@ constexpr lua::Member friction_module_members[] = {
       "law = friction.table{ speed = { 0, 0.1, 1 }, torque = { 0.5, 0.3, 0.35 } }\n"
       "print(law:torque(0.05), law:torque(3), law.Re)  --> 0.4\t0.35\t0.5",
       {&laws::tabulated_call}}},
+    {lua::a_function<lugre_law>,
+     {"friction.lugre{ OPTIONS } -> law",
+      "Friction as of bristles that bend before they slip (LuGre): torque = stiffness z + damping z' + viscous v, z' = v - "
+      "stiffness |v| z/g(v), g(v) = Rd + (Re - Rd) exp(-(v/speed)^2). It neither sticks nor has events: a mass at rest "
+      "creeps by as much as its bristles bend. For system{...} alone.",
+      "sys = system{ I = 1, k = 0, friction = friction.lugre{ Rd = 1, stiffness = 1e5, damping = 300 } }\n"
+      "run = sys:simulate{ M = 0.5, t_end = 10 }\nprint(string.format(\"%.3g\", (run:at(10))))  --> 8.7e-06",
+      {&laws::lugre_call}}},
+    {lua::a_function<dahl_law>,
+     {"friction.dahl{ OPTIONS } -> law",
+      "Dahl's law, bristles without damping: torque' = stiffness (v - |v| torque/Rd). For system{...} alone.",
+      "print(friction.dahl{ Rd = 1, stiffness = 100 })  --> friction.dahl{ Rd = 1, stiffness = 100 }",
+      {&laws::dahl_call}}},
     {lua::a_function<law_of_function>,
      {"friction.law(function(speed), { OPTIONS }) -> law",
       "Friction as a Lua function of the speed (>= 0, rad per time unit), the same both ways. It may be lower at speed "

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "api/units_option.hpp"
+#include "model/laws/bristle.hpp"
 #include "source/describe.hpp"
 
 namespace dinal::api {
@@ -12,9 +13,8 @@ int push_system(lua_State* L, const lua::Options& options, const model::Oscillat
     return 1;
 }
 
-/// The law that the option `friction` names, which excludes the options that are Coulomb's.
 std::optional<model::Friction> asked_law(lua_State* L, const lua::Options& options,
-                                         std::initializer_list<const char*> instead_of) {
+                                         std::initializer_list<const char*> instead_of, bool may_have_state) {
     options.push("friction");
     if (lua_type(L, -1) == LUA_TNUMBER) {
         options.fail({.sentence = fmt::format("friction must be {}, got {}", options.row("friction").wanted,
@@ -33,6 +33,9 @@ std::optional<model::Friction> asked_law(lua_State* L, const lua::Options& optio
             options.fail({.sentence = fmt::format("friction and {} exclude each other; give one of them", name),
                           .option = name});
         }
+    }
+    if (!may_have_state && law->as<model::laws::Bristle>() != nullptr) {
+        options.fail("friction", "bristles have a state of their own, which only system{ ... } takes");
     }
     return *law;
 }

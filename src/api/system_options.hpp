@@ -12,9 +12,10 @@ namespace dinal::api {
 /// Pushes the system, or raises what is wrong with it.
 int push_system(lua_State* L, const lua::Options& options, const model::OscillatorParameters& parameters);
 
-/// The law that the option `friction` names, which excludes the options that are Coulomb's.
+/// The law that the option `friction` names, which excludes the options that are Coulomb's. One with a state of its own
+/// is refused unless it may be one.
 std::optional<model::Friction> asked_law(lua_State* L, const lua::Options& options,
-                                         std::initializer_list<const char*> instead_of);
+                                         std::initializer_list<const char*> instead_of, bool may_have_state = false);
 
 /// What the option `spring` says; none when it is absent.
 std::optional<model::Spring> asked_spring(lua_State* L, const lua::Options& options);

@@ -16,6 +16,7 @@
 #include "model/excitation.hpp"
 #include "model/extras.hpp"
 #include "model/friction.hpp"
+#include "model/laws/bristle.hpp"
 #include "model/spring.hpp"
 #include "model/units.hpp"
 #include "model/walls.hpp"
@@ -33,9 +34,12 @@ struct ContactFriction {
     /// What multiplies both torques, and counts as 0 where it is negative.
     std::optional<Excitation> normal = {};
 
-    /// Nothing but the law.
+    /// Bristles, which have a state of their own, and neither stick nor slip.
+    [[nodiscard]] const laws::Bristle* bristle() const { return law.as<laws::Bristle>(); }
+    /// Nothing but the law, and that without a state.
     [[nodiscard]] bool is_constant() const {
-        return function == nullptr && !normal && !sliding[0] && !sliding[1] && !holding[0] && !holding[1];
+        return bristle() == nullptr && function == nullptr && !normal && !sliding[0] && !sliding[1] && !holding[0] &&
+               !holding[1];
     }
     [[nodiscard]] bool none() const { return is_constant() && law.none(); }
 };

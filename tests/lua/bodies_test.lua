@@ -79,6 +79,35 @@ test("friction that depends on place, on a state, and on the speed", function()
     near(law.events[1].t, 2 * math.log(2.6 / 0.6), 1e-12)
 end)
 
+test("bristles bend before they slip: LuGre and Dahl against Runge-Kutta, and in presliding", function()
+    local Rd, Re, speed, stiffness, damping, viscous = 1, 1.5, 0.1, 100, 1, 0.1
+    local function rates(t, y)
+        local v, z = y[2], y[3]
+        local bend = v - stiffness * math.abs(v) * z / (Rd + (Re - Rd) * math.exp(-(v / speed) ^ 2))
+        return { v, 3 * math.sin(t) - 2 * y[1] - (stiffness * z + damping * bend + viscous * v), bend }
+    end
+    local y, h = { 0.5, 0, 0 }, 2e-4
+    for i = 0, 5999 do
+        local function beside(k, part) return { y[1] + part * h * k[1], y[2] + part * h * k[2], y[3] + part * h * k[3] } end
+        local a = rates(i * h, y)
+        local b = rates((i + 0.5) * h, beside(a, 0.5))
+        local c = rates((i + 0.5) * h, beside(b, 0.5))
+        local d = rates((i + 1) * h, beside(c, 1))
+        for k = 1, 3 do y[k] = y[k] + h / 6 * (a[k] + 2 * b[k] + 2 * c[k] + d[k]) end
+    end
+    local sys = system { I = 1, k = 2, friction = friction.lugre { Rd = Rd, Re = Re, speed = speed, stiffness = stiffness, damping = damping, viscous = viscous } }
+    local theta, velocity = sys:simulate { M = function(t) return 3 * math.sin(t) end, theta0 = 0.5, t_end = 1.2 }:at(1.2)
+    near(theta, y[1], 1e-8)
+    near(velocity, y[2], 1e-8)
+    -- a load below Rd only bends the bristles, as a spring does
+    local block = system { I = 1, k = 0, friction = friction.dahl { Rd = 1, stiffness = 1000 } }
+    local run = block:simulate { M = function(t) return 1e-3 * math.min(t, 1) end, t_end = 1 }
+    near(run.friction[1001], -1000 * run.theta[1001], 1e-8)
+    equal(#run.events, 0)
+    raises_here(function() system { I = 1, k = 1 }:with { friction = friction.dahl { Rd = 1, stiffness = 10 } } end, "only system{ ... } takes")
+    raises_here(function() friction.dahl { Rd = 0, stiffness = 10 } end, "Rd = 0 must be positive")
+end)
+
 test("a chain without friction swings in its modes", function()
     local run = system {
         bodies = { a = { I = 1, k = 1 }, b = { I = 1, k = 1 } }, links = { rod = { "a", "b", k = 4 } },

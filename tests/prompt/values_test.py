@@ -168,7 +168,7 @@ class Help(PromptTest):
         terminal.enter(SYSTEM)
         entry = terminal.enter("help(sys.simulate)")
         self.assertIn("See also:", entry)
-        for same in ["?sys.simulate", "sys.simulate?", "? simulate", "?sys:simulate", "help 'simulate'", ":help simulate"]:
+        for same in ["?sys.simulate", "sys.simulate?", "? sys.simulate", "?sys:simulate", "help 'sys:simulate'", ":help sys:simulate"]:
             self.assertEqual(terminal.enter(same), entry)
         self.assertIn("The natural period", terminal.enter("?sys.T0"))
         self.assertIn("did you mean 'harmonic'?", terminal.enter("harmonc?"))

@@ -234,7 +234,7 @@ bool Collocation::find_slopes(const Segment& s, const Mode& mode, const Frame& f
     return true;
 }
 
-const Eigen::PartialPivLU<Eigen::MatrixXd>& Collocation::newton_matrix(double h, const Frame& frame) {
+const Collocation::Factors& Collocation::newton_matrix(double h, const Frame& frame) {
     for (auto found = factors_.lower_bound(h * (1 - 1e-6)); found != factors_.end(); ++found) {
         if (found->first > h * (1 + 1e-6)) break;
         return found->second;
@@ -243,33 +243,57 @@ const Eigen::PartialPivLU<Eigen::MatrixXd>& Collocation::newton_matrix(double h,
     static const Inner once = hybrid::integration().bottomRightCorner<inner, inner>(), twice = once * once;
     const auto size = static_cast<Eigen::Index>(inner), rows = slopes_.rows(),
                groups = static_cast<Eigen::Index>(frame.groups());
-    Eigen::MatrixXd A = Eigen::MatrixXd::Identity(size * rows, size * rows);
+    const auto block = [&](Eigen::Index r, Eigen::Index c) {
+        Inner own = Inner::Zero();
+        if (c < groups) own -= h * h * slopes_(r, c) * twice;
+        own -= h * slopes_(r, groups + c) * once;
+        if (r == c) own += Inner::Identity();
+        return own;
+    };
+    const auto empty = [&](Eigen::Index r, Eigen::Index c) {
+        return r != c && (c >= groups || slopes_(r, c) == 0) && slopes_(r, groups + c) == 0;
+    };
+    if (factors_.size() >= most_factors) factors_.clear();
+    Factors& made = factors_[h];
+    constexpr Eigen::Index many = 8;
+    if (rows < many) {
+        Eigen::MatrixXd A = Eigen::MatrixXd::Zero(size * rows, size * rows);
+        for (Eigen::Index r = 0; r < rows; ++r) {
+            for (Eigen::Index c = 0; c < rows; ++c) {
+                if (!empty(r, c)) A.block<inner, inner>(r * size, c * size) = block(r, c);
+            }
+        }
+        made.dense.compute(A);
+        return made;
+    }
+    std::vector<Eigen::Triplet<double>> entries;
     for (Eigen::Index r = 0; r < rows; ++r) {
         for (Eigen::Index c = 0; c < rows; ++c) {
-            auto block = A.block<inner, inner>(r * size, c * size);
-            if (c < groups) {
-                if (const double k = h * h * slopes_(r, c); k != 0) block -= k * twice;
-                if (const double d = h * slopes_(r, groups + c); d != 0) block -= d * once;
-            } else if (const double d = h * slopes_(r, groups + c); d != 0) {
-                block -= d * once;
+            if (empty(r, c)) continue;
+            const Inner own = block(r, c);
+            for (Eigen::Index i = 0; i < size; ++i) {
+                for (Eigen::Index k = 0; k < size; ++k) entries.emplace_back(r * size + i, c * size + k, own(i, k));
             }
         }
     }
-    if (factors_.size() >= most_factors) factors_.clear();
-    return factors_.emplace(h, A.partialPivLu()).first->second;
+    Eigen::SparseMatrix<double> A(size * rows, size * rows);
+    A.setFromTriplets(entries.begin(), entries.end());
+    made.sparse = std::make_unique<Eigen::SparseLU<Eigen::SparseMatrix<double>>>();
+    made.sparse->compute(A);
+    return made;
 }
 
-double Collocation::torque_size(const Segment& s, std::size_t body) const {
-    double size = greatest(s.loads[body]) + greatest(s.torques[body]);
-    thread_local std::vector<double> y;
-    y.resize(s.y.size());
+void Collocation::find_sizes(const Segment& s) {
+    sizes_.assign(n_, 0);
+    std::vector<double> y(s.y.size());
     for (std::size_t k = 0; k < y.size(); ++k) y[k] = s.y[k][0];
+    for (std::size_t i = 0; i < n_; ++i) sizes_[i] = greatest(s.loads[i]) + greatest(s.torques[i]);
     for (std::size_t j = 0; j < mechanics_.joints(); ++j) {
         const model::Joint& joint = mechanics_.system().joints[j];
-        if (joint.first != static_cast<int>(body) && joint.second != static_cast<int>(body)) continue;
-        size += mechanics_.size_of(j, {s.times[0], s.side(0), y});
+        const double size = mechanics_.size_of(j, {s.times[0], s.side(0), y});
+        sizes_[static_cast<std::size_t>(joint.first)] += size;
+        if (joint.second >= 0) sizes_[static_cast<std::size_t>(joint.second)] += size;
     }
-    return size;
 }
 
 Collocation::Attempt Collocation::iterate(Segment& s, const Mode& mode, const Frame& frame,
@@ -309,12 +333,13 @@ Collocation::Attempt Collocation::iterate(Segment& s, const Mode& mode, const Fr
                 step_ = newton_matrix(s.h, frame).solve(residual_);
             }
             double change = 0, left = 0;
+            find_sizes(s);
             for (std::size_t k = 0; k < count; ++k) {
                 double moves = 0;
                 if (k < groups) {
                     for (std::size_t b = 0; b < n_; ++b) {
                         if (frame.group[b] != static_cast<int>(k)) continue;
-                        moves = std::max(moves, greatest(s.y[n_ + b]) + s.h / frame.inertia[k] * torque_size(s, b));
+                        moves = std::max(moves, greatest(s.y[n_ + b]) + s.h / frame.inertia[k] * sizes_[b]);
                     }
                 } else {
                     moves = greatest(s.y[2 * n_ + (k - groups)]) + s.h * greatest(unknown_[k]);
@@ -390,9 +415,10 @@ void Collocation::find_holding(Segment& s, const Mode& mode, const Frame& frame)
 void Collocation::judge(const Segment& s, const Mode& mode, const Frame& frame) {
     unresolved_ = 0;
     allowed_.assign(n_, 0);
+    find_sizes(s);
     const double h = s.h, late = std::max(std::fabs(s.start.hi), std::fabs(s.end));
     for (std::size_t i = 0; i < n_; ++i) {
-        const double torques = torque_size(s, i);
+        const double torques = sizes_[i];
         const Series load = cheb::fit(s.loads[i]);
         const double lost = lost_in_time(load, late, h, torques);
         if (frame.group[i] >= 0) {
@@ -416,7 +442,7 @@ void Collocation::judge(const Segment& s, const Mode& mode, const Frame& frame) 
         if (mode.holds(joint)) {
             const Series series = cheb::fit(s.holding[joint]);
             const auto first = static_cast<std::size_t>(mechanics_.system().joints[joint].first);
-            const double torques = torque_size(s, first), lost = lost_in_time(series, late, h, torques);
+            const double torques = sizes_[first], lost = lost_in_time(series, late, h, torques);
             unresolved_ = std::max(unresolved_, cheb::tail(series) / ((tolerance_ + 64 * rounding) * torques + lost +
                                                                       blurred_by_belts(s) + smallest));
         }
@@ -479,8 +505,8 @@ bool Collocation::agrees_between(const Segment& s, const Mode& mode, const Frame
         const Signal& load = mechanics_.loads()[i];
         if (!load.has_script()) continue;
         const Series series = cheb::fit(s.loads[i]);
-        const double allowed = (tolerance_ + 4 * rounding) * torque_size(s, i) +
-                               lost_in_time(series, std::fabs(s.end), s.h, torque_size(s, i));
+        const double allowed =
+            (tolerance_ + 4 * rounding) * sizes_[i] + lost_in_time(series, std::fabs(s.end), s.h, sizes_[i]);
         for (const std::size_t j : {7U, 8U, 9U}) {
             const double x = (cheb::nodes[j] + cheb::nodes[j + 1]) / 2;
             mechanics_.loads_of_time(s.time(x), Side::at, load_);
@@ -502,7 +528,7 @@ std::optional<double> Collocation::found_break(const Segment& s) const {
     };
     for (std::size_t i = 0; i < n_; ++i) {
         if (!mechanics_.loads()[i].has_script()) continue;
-        look(s.loads[i], torque_size(s, i), [&](double t) {
+        look(s.loads[i], sizes_[i], [&](double t) {
             mechanics_.loads_of_time(t, Side::at, loads);
             return loads[i];
         });

@@ -2,7 +2,9 @@
 #pragma once
 
 #include <Eigen/Dense>
+#include <Eigen/Sparse>
 #include <map>
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -84,11 +86,19 @@ private:
                   const std::vector<double>& y);
     void place(Segment& segment, const Frame& frame) const;
     bool find_slopes(const Segment& segment, const Mode& mode, const Frame& frame, std::size_t node);
-    const Eigen::PartialPivLU<Eigen::MatrixXd>& newton_matrix(double h, const Frame& frame);
+    /// Newton's matrix for a length, factored: dense of a few groups, sparse of many.
+    struct Factors {
+        Eigen::PartialPivLU<Eigen::MatrixXd> dense;
+        std::unique_ptr<Eigen::SparseLU<Eigen::SparseMatrix<double>>> sparse;
+        [[nodiscard]] Eigen::VectorXd solve(const Eigen::VectorXd& right) const {
+            return sparse != nullptr ? Eigen::VectorXd(sparse->solve(right)) : Eigen::VectorXd(dense.solve(right));
+        }
+    };
+    const Factors& newton_matrix(double h, const Frame& frame);
     Attempt iterate(Segment& segment, const Mode& mode, const Frame& frame, const std::vector<double>& departing);
     void judge(const Segment& segment, const Mode& mode, const Frame& frame);
     bool agrees_between(const Segment& segment, const Mode& mode, const Frame& frame);
-    [[nodiscard]] double torque_size(const Segment& segment, std::size_t body) const;
+    void find_sizes(const Segment& segment);
 
     const Mechanics& mechanics_;
     double tolerance_, longest_;
@@ -102,7 +112,8 @@ private:
     Eigen::MatrixXd slopes_;
     std::vector<int> slopes_of_;  ///< the groups that they belong to
     bool slopes_known_ = false;
-    std::map<double, Eigen::PartialPivLU<Eigen::MatrixXd>> factors_;
+    std::map<double, Factors> factors_;
+    std::vector<double> sizes_;  ///< of each body: how great the torques on it are
     Eigen::VectorXd residual_, step_;
 };
 

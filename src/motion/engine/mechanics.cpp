@@ -10,6 +10,7 @@ namespace {
 
 using model::Joint;
 using model::Motion;
+namespace laws = model::laws;
 
 std::size_t side_of(Motion way) {
     return way == Motion::forward ? 1 : 0;
@@ -171,6 +172,7 @@ Mechanics::Mechanics(const model::Assembly& system, const Drive& drive, const As
         nonlinear_ |= loads_.back().asks_the_motion();
     }
     nonlinear_ |= !drive.states.empty();
+    bristles_.reserve(joints());
     for (std::size_t j = 0; j < joints(); ++j) {
         const Joint& joint = system.joints[j];
         const model::ContactFriction& friction = joint.friction;
@@ -186,8 +188,10 @@ Mechanics::Mechanics(const model::Assembly& system, const Drive& drive, const As
         nonlinear_ |= contact.normal.asks_the_motion() || friction.function != nullptr ||
                       friction.law.depends_on_speed() || !joint.spring.none();
         contacts_.push_back(std::move(contact));
-        rubs_.push_back(friction.none() ? 0 : 1);
-        belts_.emplace_back(rubs_.back() != 0 ? drive.belts[j] : model::Excitation(), &asking);
+        const bool bends = friction.bristle() != nullptr;
+        if (bends) bristles_.push_back(j);
+        rubs_.push_back(friction.none() || bends ? 0 : 1);
+        belts_.emplace_back(rubs_.back() != 0 || bends ? drive.belts[j] : model::Excitation(), &asking);
         has_belts_ |= !belts_.back().none();
     }
 }
@@ -289,6 +293,7 @@ double Mechanics::joint_torque(std::size_t joint, const Moment& at, const Mode& 
         if (mode.leans[joint] != 0) present.range = range_of(joint, std::fabs(belt));
         torque += model::sign_of(how.way) * sliding(joint, present, s - belt, at);
     }
+    if (own.friction.bristle() != nullptr) torque += bristle_torque(joint, at, belt);
     if (own.damping != 0) torque += own.damping * s;
     if (own.stiffness != 0) torque += own.stiffness * q;
     if (!own.spring.none()) torque += own.spring.torque(q);
@@ -310,7 +315,22 @@ void Mechanics::torques(const Moment& at, const Mode& mode, const std::vector<do
 }
 
 void Mechanics::rates(const Moment& at, double* out) const {
-    for (std::size_t k = 0; k < states(); ++k) out[k] = asking_.ask(*drive_.states[k].rate, at);
+    for (std::size_t k = 0; k < drive_.states.size(); ++k) out[k] = asking_.ask(*drive_.states[k].rate, at);
+    for (std::size_t b = 0; b < bristles_.size(); ++b) {
+        const std::size_t joint = bristles_[b], k = drive_.states.size() + b;
+        const double slips = velocity(joint, at.y) - belt(joint, at.t, at.side);
+        out[k] = system_.joints[joint].friction.bristle()->bend_rate(slips, at.y[2 * bodies() + k]);
+    }
+}
+
+double Mechanics::bristle_torque(std::size_t joint, const Moment& at, double belt) const {
+    const laws::Bristle* bristle = system_.joints[joint].friction.bristle();
+    if (bristle == nullptr) return 0;
+    const auto place = std::find(bristles_.begin(), bristles_.end(), joint) - bristles_.begin();
+    const double z = at.y[2 * bodies() + drive_.states.size() + static_cast<std::size_t>(place)];
+    const double torque = bristle->torque(velocity(joint, at.y) - belt, z);
+    const Signal& normal = contacts_[joint].normal;
+    return normal.none() ? torque : torque * std::max(0.0, normal.value(at));
 }
 
 double Mechanics::size_of(std::size_t joint, const Moment& at) const {

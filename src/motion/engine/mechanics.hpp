@@ -86,7 +86,13 @@ public:
     [[nodiscard]] const model::Assembly& system() const { return system_; }
     [[nodiscard]] std::size_t bodies() const { return system_.bodies.size(); }
     [[nodiscard]] std::size_t joints() const { return system_.joints.size(); }
-    [[nodiscard]] std::size_t states() const { return drive_.states.size(); }
+    /// Those of the user's, and behind them the bend of each joint's bristles.
+    [[nodiscard]] std::size_t states() const { return drive_.states.size() + bristles_.size(); }
+    [[nodiscard]] std::size_t states_of_user() const { return drive_.states.size(); }
+    /// The joints with bristles.
+    [[nodiscard]] const std::vector<std::size_t>& bristles() const { return bristles_; }
+    /// The torque of its bristles on a joint; 0 where it has none.
+    [[nodiscard]] double bristle_torque(std::size_t joint, const Moment& at, double belt) const;
     [[nodiscard]] std::size_t size() const { return 2 * bodies() + states(); }
     /// Torques or rates depend on the motion otherwise than by constants.
     [[nodiscard]] bool nonlinear() const { return nonlinear_; }
@@ -164,6 +170,7 @@ private:
     Signal base_;
     std::vector<Contact> contacts_;
     std::vector<char> rubs_;
+    std::vector<std::size_t> bristles_;
     bool nonlinear_ = false, has_belts_ = false;
 };
 

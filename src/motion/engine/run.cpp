@@ -139,6 +139,7 @@ private:
     void watch_walls(std::size_t joint, Ending& ending) const;
     void watch_corner(std::size_t joint, Ending& ending) const;
     void watch_normal(std::size_t joint, Ending& ending);
+    void watch_bristles(std::size_t joint, Ending& ending);
     void watch_relays(Ending& ending);
     void watch_users(Ending& ending);
     void record_turns(double until);
@@ -191,18 +192,21 @@ private:
     Outcome outcome_ = Outcome::reached_end;
     Look look_;
     mutable std::vector<double> point_;
+    mutable std::vector<double> sizes_;  ///< of each body: how great the torques on it are, at a time
+    mutable double sizes_at_ = -model::never;
 };
 
 Engine::Engine(const AssemblyProblem& problem, AssemblyRun& result)
     : problem_(problem),
       result_(result),
-      asking_{.named = problem.system.named},
+      asking_{.named = problem.system.named, .told = 2 * problem.system.bodies.size() + problem.drive.states.size()},
       mechanics_(problem.system, problem.drive, asking_),
       now_{problem.window.start, 0} {
     const std::size_t joints = mechanics_.joints();
     y_ = problem.drive.theta0;
     y_.insert(y_.end(), problem.drive.velocity0.begin(), problem.drive.velocity0.end());
     for (const model::OwnState& state : problem.drive.states) y_.push_back(state.start);
+    y_.resize(y_.size() + mechanics_.bristles().size(), 0);
     mode_.friction.resize(joints), mode_.leans.assign(joints, 0);
     mode_.rubs = mechanics_.rubbing();
     arrived_.assign(joints, Motion::stuck);
@@ -228,7 +232,8 @@ Engine::Engine(const AssemblyProblem& problem, AssemblyRun& result)
     h_ = longest_ / 2;
     attempts_since_ = now_.hi;
     solver_.emplace(mechanics_, problem.tolerance, longest_all_);
-    std::size_t columns = 1 + columns_of_body * n() + columns_of_link * (joints - n()) + mechanics_.states();
+    const std::size_t columns =
+        1 + columns_of_body * n() + columns_of_link * (joints - n()) + mechanics_.states_of_user();
     result_.table = Growing<double>(problem.rows.count(), columns);
 }
 
@@ -251,21 +256,21 @@ const Frame& Engine::frame() {
     return *frame_;
 }
 
+/// How great the torques at its bodies are.
 double Engine::torque_size(std::size_t joint) const {
-    const auto first = index(problem_.system.joints[joint].first);
-    const auto second = problem_.system.joints[joint].second;
-    double size = mechanics_.size_of(joint, here());
-    for (std::size_t j = 0; j < mechanics_.joints(); ++j) {
-        const Joint& other = problem_.system.joints[j];
-        const bool near = other.first == static_cast<int>(first) || other.second == static_cast<int>(first) ||
-                          (second >= 0 && (other.first == second || other.second == second));
-        if (near && j != joint) size += mechanics_.size_of(j, here());
+    if (sizes_at_ != now_.hi || sizes_.empty()) {
+        sizes_.assign(n(), 0);
+        for (std::size_t i = 0; i < n() && !segment_.loads.empty(); ++i) sizes_[i] = greatest(segment_.loads[i]);
+        for (std::size_t j = 0; j < mechanics_.joints(); ++j) {
+            const Joint& own = problem_.system.joints[j];
+            const double size = mechanics_.size_of(j, here());
+            sizes_[index(own.first)] += size;
+            if (own.second >= 0) sizes_[index(own.second)] += size;
+        }
+        sizes_at_ = now_.hi;
     }
-    if (!segment_.loads.empty()) {
-        size += greatest(segment_.loads[first]);
-        if (second >= 0) size += greatest(segment_.loads[index(second)]);
-    }
-    return size;
+    const Joint& own = problem_.system.joints[joint];
+    return sizes_[index(own.first)] + (own.second < 0 ? 0 : sizes_[index(own.second)]);
 }
 
 // ---- decisions
@@ -904,6 +909,7 @@ void Engine::watch(Ending& ending) {
         }
         if (problem_.system.joints[j].walls && mode_.leans[j] == 0) watch_walls(j, ending);
         if (mechanics_.has_normal(j)) watch_normal(j, ending);
+        if (problem_.system.joints[j].friction.bristle() != nullptr) watch_bristles(j, ending);
     }
     watch_relays(ending);
     watch_users(ending);
@@ -1067,6 +1073,28 @@ void Engine::watch_corner(std::size_t joint, Ending& ending) const {
         const auto x = cheb::first_below(curve, -1, there ? cheb::LeftEnd::leaving : cheb::LeftEnd::anywhere, no);
         if (x && *x < ending.x) ending = {*x, By::corner, joint, side};
     }
+}
+
+/// The rate of bristles has a corner where the slip is 0: a stretch ends there.
+void Engine::watch_bristles(std::size_t joint, Ending& ending) {
+    const Joint& own = problem_.system.joints[joint];
+    Nodes values{};
+    for (std::size_t j = 0; j < node_count; ++j) {
+        const double second = own.second < 0 ? 0 : segment_.y[n() + index(own.second)][j];
+        values[j] = segment_.y[n() + index(own.first)][j] - second - segment_.belts[joint][j];
+    }
+    std::vector<double> y;
+    const auto exact = [&](double x) {
+        segment_.state(x, y);
+        return mechanics_.velocity(joint, y) - mechanics_.belt(joint, segment_.time(x), Side::at);
+    };
+    const Watched watched(values, exact);
+    hybrid::Half half = normal_half_[joint];
+    const auto x = watched.leaves(half, -1);
+    normal_half_[joint] = half;
+    if (!x || *x >= ending.x) return;
+    if (*x > -1) ending = {*x, By::kink, joint};
+    normal_half_[joint] = -half;
 }
 
 /// A normal load that passes zero ends a stretch: what is negative counts as none.
@@ -1278,7 +1306,8 @@ bool Engine::act(std::size_t event) {
         model::State state{y_[0], y_[n()]};
         const bool named = problem_.system.named;
         const std::span<double> all(y_);
-        if (!wanted.act->act(now_.hi, state, named ? all : all.subspan(2 * n()))) {
+        const std::span<double> told = all.first(asking_.told);
+        if (!wanted.act->act(now_.hi, state, named ? told : told.subspan(2 * n()))) {
             return fail(Outcome::excitation_not_finite);
         }
         if (!named) y_[0] = state.theta, y_[1] = state.velocity;
@@ -1322,7 +1351,7 @@ bool Engine::put_row(double t, double x) {
         return std::isfinite(value);
     };
     const auto friction = [&](std::size_t j) {
-        if (!mechanics_.rubs(j)) return 0.0;
+        if (!mechanics_.rubs(j)) return -mechanics_.bristle_torque(j, at, mechanics_.belt(j, t, at.side));
         const Slipping& how = mode_.friction[j];
         if (mode_.leans[j] != 0 && how.way == Motion::stuck) {
             const double held = look_.holding[j];
@@ -1352,7 +1381,7 @@ bool Engine::put_row(double t, double x) {
         good = put(torque) && good;
         good = put(friction(j)) && good;
     }
-    for (std::size_t k = 2 * n(); k < y.size(); ++k) good = put(y[k]) && good;
+    for (std::size_t k = 0; k < mechanics_.states_of_user(); ++k) good = put(y[2 * n() + k]) && good;
     if (good) ++next_row_;
     return good;
 }

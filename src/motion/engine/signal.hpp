@@ -31,7 +31,8 @@ struct Moment {
 
 /// How a user's function is asked.
 struct Asking {
-    bool named = true;  ///< with all of y as states
+    bool named = true;     ///< with all of y as states, but those of bristles
+    std::size_t told = 0;  ///< so much of y
     /// The motion at an earlier time, for what acts with a delay.
     std::function<std::vector<double>(double t, Side side)> past = {};
 
@@ -45,8 +46,9 @@ struct Asking {
         return ask_at(function, towards(at.t, at.side), at.y);
     }
     [[nodiscard]] double ask_at(model::UserFunction& function, double t, std::span<const double> y) const {
-        if (named) return function.value_with(t, {}, y);
-        return function.value_with(t, {y[0], y[1]}, y.subspan(2));
+        if (y.empty()) return function.value(t, {});  // of the time alone
+        if (named) return function.value_with(t, {}, y.first(told));
+        return function.value_with(t, {y[0], y[1]}, y.first(told).subspan(2));
     }
 };
 

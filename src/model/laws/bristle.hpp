@@ -1,0 +1,64 @@
+// Friction with a state of its own: bristles that bend before they slip. The model of Canudas de Wit, Olsson, Astrom
+// and Lischinsky (1995), called LuGre, and Dahl's (1968), which is its case without damping and with Re = Rd.
+#pragma once
+
+#include <cmath>
+
+#include "model/friction.hpp"
+#include "text/option.hpp"
+
+namespace dinal::model::laws {
+
+/// torque = stiffness z + damping z' + viscous v with z' = v - stiffness |v| z/g(v), g(v) = Rd + (Re - Rd)
+/// exp(-(v/speed)^2).
+struct Bristle {
+    double kinetic = 0;                    ///< Rd
+    std::optional<double> breakaway = {};  ///< Re >= Rd
+    double speed = std::numeric_limits<double>::infinity();
+    double stiffness = 0, damping = 0, viscous = 0;
+    bool dahl = false;
+
+    static constexpr bool depends_on_speed = true;
+    [[nodiscard]] double greatest() const { return breakaway.value_or(kinetic); }
+    /// What a steady slip takes, but for the viscous part.
+    [[nodiscard]] double steady(double v) const {
+        const double x = v / speed;
+        return kinetic + (greatest() - kinetic) * std::exp(-x * x);
+    }
+    [[nodiscard]] double bend_rate(double v, double z) const { return v - stiffness * std::fabs(v) * z / steady(v); }
+    [[nodiscard]] double torque(double v, double z) const {
+        return stiffness * z + damping * bend_rate(v, z) + viscous * v;
+    }
+    [[nodiscard]] double sliding(Motion /*way*/, double v) const { return steady(v) + viscous * v; }
+    [[nodiscard]] double holding(Motion /*way*/) const { return greatest(); }
+    [[nodiscard]] std::optional<text::Error> complaint() const { return wrong_torques("", kinetic, greatest()); }
+    [[nodiscard]] std::string lua_text() const;
+};
+
+inline constexpr text::Option dahl_options[] = {
+    {"Rd", "torque", text::needed, text::positive, "dry friction of a steady slip", text::fills<&Bristle::kinetic>},
+    {"stiffness", "torque per rad", text::needed, text::positive, "of the bristles", text::fills<&Bristle::stiffness>},
+};
+inline constexpr text::Option lugre_options[] = {
+    dahl_options[0],
+    {"Re", "torque", "Rd", text::positive, "friction of a steady slip at small speeds, at least Rd",
+     text::fills<&Bristle::breakaway>},
+    {"speed", "rad per time unit", text::its_own, text::positive_or_infinite,
+     "where the difference of both has fallen to 1/e", text::fills<&Bristle::speed>},
+    dahl_options[1],
+    {"damping", "torque time per rad", text::its_own, text::not_negative, "of the bristles",
+     text::fills<&Bristle::damping>},
+    {"viscous", "torque time per rad", text::its_own, text::not_negative, "what grows with the speed of the slip",
+     text::fills<&Bristle::viscous>},
+};
+inline constexpr text::Call dahl_call{"friction.dahl", "friction.dahl{ Rd = 0.3, stiffness = 1000 }", dahl_options};
+inline constexpr text::Call lugre_call{
+    "friction.lugre", "friction.lugre{ Rd = 0.3, Re = 0.4, speed = 0.01, stiffness = 1000, damping = 3 }",
+    lugre_options};
+
+inline std::string Bristle::lua_text() const {
+    return dahl ? text::lua_text("friction.dahl", dahl_options, *this, text::Defaults::left_out)
+                : text::lua_text("friction.lugre", lugre_options, *this, text::Defaults::left_out);
+}
+
+}  // namespace dinal::model::laws
