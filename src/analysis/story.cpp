@@ -44,9 +44,9 @@ Story::Story(const motion::Trajectory& trajectory, const model::Oscillator& syst
     for (const Stretch& s : swings_) {
         half_cycles_ += s.stuck ? 0 : 1;
         if (!on_belt_ || !s.ended_by) continue;
-        const double same = 1e-9 * T0_;
-        const auto end = run_.events.end(), next = std::lower_bound(run_.events.begin(), end, s.to - same, before);
-        if (next == end || next->t > s.to + same) events_.push_back(*s.ended_by);  // else that is it
+        const double near = 1e-9 * T0_;
+        const auto end = run_.events.end(), next = std::lower_bound(run_.events.begin(), end, s.to - near, before);
+        if (next == end || next->t > s.to + near) events_.push_back(*s.ended_by);  // else that is it
     }
     std::sort(events_.begin(), events_.end(), [&](const auto& a, const auto& b) { return before(a, b.t); });
 }

@@ -1,15 +1,12 @@
 // Systems of several bodies, and of one whose friction depends on more than its speed, as Lua sees them.
 #pragma once
 
-#include <memory>
-
 #include "lua/options.hpp"
 #include "model/assembly.hpp"
 
 namespace dinal::api {
 
-// Shared, because its runs keep it.
-using AssemblyHandle = std::shared_ptr<const model::Assembly>;
+using model::AssemblyHandle;
 
 /// A number, an excitation or a function, where a system of one body takes a number.
 inline constexpr const char* varying_wanted = "a number, an excitation or a function of t, theta, velocity, z";

@@ -53,6 +53,10 @@ int continue_run(lua_State* L) {
     MoreTime asked;
     options.fill(asked);
     const motion::Trajectory& so_far = run->trajectory;
+    if (run->is_part) {
+        options.fail(
+            {"this run cannot go on by itself: continue the run of all bodies, or simulate again with a later t_end"});
+    }
     if (!run->origin) {
         options.fail(
             {"a run that was read from a file cannot go on; start one there with sys:simulate{ theta0, "

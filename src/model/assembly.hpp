@@ -72,4 +72,7 @@ struct Assembly {
     [[nodiscard]] bool is_link(std::size_t joint) const { return joint >= bodies.size(); }
 };
 
+// Shared, because its runs keep it.
+using AssemblyHandle = std::shared_ptr<const Assembly>;
+
 }  // namespace dinal::model

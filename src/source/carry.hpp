@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "lua/lua_headers.hpp"
+#include "model/assembly.hpp"
 #include "model/excitation.hpp"
 #include "text/expected.hpp"
 
@@ -64,6 +65,7 @@ private:
     bool excitation(const model::Excitation& own);
     bool friction(const model::Friction& own, model::Friction& copy);
     bool own_spring(const model::Spring& own, model::Spring& copy);
+    bool joint(model::Joint& own);
     std::shared_ptr<model::terms::UserFunction> controller(const model::terms::UserFunction& function);
 
     lua_State* from_;

@@ -30,6 +30,12 @@ bool Carrier::object(int index) {
         if (!friction(system->friction(), copy) || !own_spring(system->spring(), parameters.spring)) return false;
         if (parameters.friction) parameters.friction = copy;
         lua::push(to_, model::Oscillator::make(parameters).value());
+    } else if (const auto* rig = lua::test<model::AssemblyHandle>(from_, index)) {
+        model::Assembly copy = **rig;
+        for (model::Joint& own : copy.joints) {
+            if (!joint(own)) return false;
+        }
+        lua::push<model::AssemblyHandle>(to_, std::make_shared<const model::Assembly>(std::move(copy)));
     } else if (const auto* own = lua::test<model::Excitation>(from_, index)) {
         if (!excitation(*own)) return false;
     } else if (!other_objects_(from_, index, to_)) {
@@ -39,6 +45,27 @@ bool Carrier::object(int index) {
     }
     remember(lua_topointer(from_, index));
     return true;
+}
+
+/// With the functions of the other state in the place of those of this one.
+bool Carrier::joint(model::Joint& own) {
+    const auto varying = [&](std::optional<model::Excitation>& value) {
+        if (!value) return true;
+        if (!excitation(*value)) return false;
+        value = *lua::test<model::Excitation>(to_, -1);
+        lua_pop(to_, 1);
+        return true;
+    };
+    model::ContactFriction& rubs = own.friction;
+    model::Friction law;
+    if (!friction(rubs.law, law) || !own_spring(model::Spring(own.spring), own.spring)) return false;
+    rubs.law = law;
+    if (rubs.function != nullptr) {
+        rubs.function = user_function(*rubs.function, "its friction");
+        if (rubs.function == nullptr) return false;
+    }
+    return varying(rubs.sliding[0]) && varying(rubs.sliding[1]) && varying(rubs.holding[0]) &&
+           varying(rubs.holding[1]) && varying(rubs.normal);
 }
 
 /// nullptr when it fails.

@@ -13,6 +13,7 @@
 #include "lua/standard_globals.hpp"
 #include "lua/user_function.hpp"
 #include "lua/vector.hpp"
+#include "model/assembly.hpp"
 #include "model/controller.hpp"
 #include "model/laws/user_law.hpp"
 #include "model/oscillator.hpp"
@@ -294,6 +295,20 @@ void Fingerprint::object(int index) {
     if (const auto* own = lua::test<model::Excitation>(L_, index)) {
         add(describe(L_, *own, &no_functions));
         return excitation(*own);
+    }
+    if (const auto* rig = lua::test<model::AssemblyHandle>(L_, index)) {
+        luaL_tolstring(L_, index, nullptr);
+        add(lua::text_at(L_, -1));
+        lua_pop(L_, 1);
+        for (const model::Joint& joint : (*rig)->joints) {
+            for (const auto* value : {&joint.friction.sliding[1], &joint.friction.holding[1], &joint.friction.normal}) {
+                if (*value) excitation(**value);
+            }
+            if (joint.friction.function != nullptr) user_function(*joint.friction.function);
+            if (const auto* spring = joint.spring.as<model::springs::UserSpring>()) user_function(*spring->function);
+            if (const auto* law = joint.friction.law.as<model::laws::UserLaw>()) user_function(*law->function);
+        }
+        return;
     }
     if (other_objects_(L_, index, *this)) return;
     const model::Friction* law = lua::test<model::Friction>(L_, index);

@@ -210,6 +210,17 @@ test("closed loops of contacts hold what they can hold together", function()
     near(first(run, "slip", "a").t, 1.5, 1e-9)
 end)
 
+test("a sweep takes a rig along, its functions too", function()
+    local limit = 0.3
+    local rig = system { bodies = { a = { I = 1, k = 1, Rd = function(t) return limit end } } }
+    local found = sweep { x = { 1, 2, 3 }, workers = 2, run = function(p)
+        return { rest = (rig:simulate { theta0 = { a = p.x }, t_end = 30 }.a:at(30)) }
+    end }
+    for i, x in ipairs { 1, 2, 3 } do
+        near(found.rest[i], (rig:simulate { theta0 = { a = x }, t_end = 30 }.a:at(30)), 0)
+    end
+end)
+
 test("what is wrong is one sentence with the name of the body, the link and the option", function()
     raises_here(function() system { bodies = { a = { I = 1, q = 3 } } } end, "bodies.a has no option 'q'")
     raises_here(function() system { bodies = { a = { k = 3 } } } end, "bodies.a needs I")
