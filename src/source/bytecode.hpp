@@ -18,9 +18,6 @@ struct CodeFacts {
     std::uint64_t digest = 0;          ///< of instructions and constants
 };
 
-/// The Lua function at the index as lua_dump writes it, with its debug information.
-std::string dumped_function(lua_State* L, int index);
-
 /// Of what lua_dump has written, with its debug information; `environment` is the number (from 0) of the upvalue that
 /// is the table of globals, -1 when none is. None when it is not written as Lua 5.4 writes it.
 std::optional<CodeFacts> facts_of_code(std::string_view dumped, int environment);

@@ -4,6 +4,7 @@
 
 #include "lua/bind.hpp"
 #include "lua/lua_text.hpp"
+#include "lua/prototype.hpp"
 #include "lua/standard_globals.hpp"
 #include "source/bytecode.hpp"
 
@@ -241,7 +242,7 @@ bool Carrier::function(int index) {
         if (lua::is_global_table(from_, -1)) environment = i - 1;
         lua_pop(from_, 1);
     }
-    const std::string dumped = dumped_function(from_, index);
+    const std::string dumped = lua::dumped_function(from_, index);
     if (luaL_loadbufferx(to_, dumped.data(), dumped.size(), "=carried", "b") != LUA_OK) {
         lua_pop(to_, 1);
         return fail(index);

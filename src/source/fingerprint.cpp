@@ -10,6 +10,7 @@
 
 #include "lua/bind.hpp"
 #include "lua/lua_text.hpp"
+#include "lua/prototype.hpp"
 #include "lua/standard_globals.hpp"
 #include "lua/user_function.hpp"
 #include "lua/vector.hpp"
@@ -161,7 +162,7 @@ std::uint64_t Fingerprint::sketch(int index, int depth) {
     if (const auto found = known.find(own.object); found != known.end()) return found->second;
     std::uint64_t sum = own.digest;
     if (lua_isfunction(L_, index)) {
-        const std::string code = lua_iscfunction(L_, index) != 0 ? "" : dumped_function(L_, index);
+        const std::string code = lua_iscfunction(L_, index) != 0 ? "" : lua::dumped_function(L_, index);
         if (const auto facts = facts_of_code(code, -1)) sum += facts->digest;
     } else if (lua_istable(L_, index)) {
         lua_pushnil(L_);
@@ -238,7 +239,7 @@ void Fingerprint::function(int index) {
         }
         lua_pop(L_, 1);
     }
-    const std::string dumped = dumped_function(L_, index);
+    const std::string dumped = lua::dumped_function(L_, index);
     const auto facts = facts_of_code(dumped, environment);
     if (!facts) return add(dumped);
     join(facts->digest);
