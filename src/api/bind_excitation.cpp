@@ -122,7 +122,23 @@ int values(lua_State* L) {
 
 int next_break(lua_State* L) {
     const model::Excitation& excitation = self_excitation(L, "e:next_break(t)");
-    lua_pushnumber(L, excitation.next_break(lua::finite_argument(L, 2, "e:next_break(t): t")));
+    const double t = lua::finite_argument(L, 2, "e:next_break(t): t");
+    const lua::CallState call(L);
+    lua_pushnumber(L, excitation.next_break(t));
+    return 1;
+}
+
+int obstacle(lua_State* L) {
+    const model::Excitation& excitation = self_excitation(L, "e:obstacle()");
+    const lua::CallState call(L);
+    for (const model::Component& component : excitation.components()) {
+        const auto* script = std::get_if<model::Scripted>(&component.term);
+        if (script == nullptr) continue;
+        auto* function = dynamic_cast<lua::LuaFunction*>(script->function.get());
+        const std::string why = function == nullptr ? "it has a memory" : function->obstacle();
+        if (!why.empty()) return lua::push_text(L, why);
+    }
+    lua_pushnil(L);
     return 1;
 }
 
@@ -225,6 +241,11 @@ constexpr lua::Member excitation_members[] = {
      {"e:next_break(t) -> number",
       "The first time after t at which M is known to jump or kink; math.huge when there is none.",
       "print(excitation.pulse{ at = 1, width = 2 }:next_break(1))  --> 3.0"}},
+    {lua::a_method<obstacle>,
+     {"e:obstacle() -> string or nil",
+      "Why a function in it is not read as a formula: the place, and what stands there. nil when every function is read: "
+      "then values come without Lua, and conditions of t are breaks.",
+      "print(excitation.scripted(function(t) return t % 2 < 1 and 1 or 0 end):obstacle())  --> nil"}},
     {lua::a_method<delay>,
      {"e:delay(d) -> excitation", "The same, later by d: M(t - d).", "print(excitation.ramp{}:delay(2)(5))  --> 3.0"}},
     {lua::a_method<window>,

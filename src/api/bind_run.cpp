@@ -32,7 +32,7 @@ std::string story_of_run(lua_State* L, const Run& run) {
     if (call.failed()) {
         call.raise_error();
     }
-    return text;
+    return run.readings.empty() ? text : text + '\n' + text::wrapped(run.readings);
 }
 
 namespace {

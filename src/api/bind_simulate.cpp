@@ -157,6 +157,46 @@ private:
     bool wanted_, goes_on_;
 };
 
+/// All changes of the function were seen: it was read, and none of its conditions hangs on the motion.
+bool sees_all(const lua::LuaFunction* function) {
+    const model::Formula* read = function == nullptr ? nullptr : function->formula();
+    return read != nullptr && !read->gave_up() && !read->has_conditions_of_motion();
+}
+
+/// Tells of the functions of M, belt and base how they were evaluated. Where the times of all changes are known, no
+/// pulse can have been missed.
+void note_readings(Run& run) {
+    const model::Extras& extras = run.origin->extras;
+    // Of a state's rate and of an event only values are known to the integrator.
+    bool all_seen = extras.states.empty() && extras.events.empty();
+    const std::pair<const char*, const model::Excitation&> excitations[] = {
+        {"M", run.origin->excitation}, {"The belt", extras.belt}, {"The base", extras.base}};
+    for (const auto& [name, excitation] : excitations) {
+        for (const model::Component& component : excitation.components()) {
+            const auto* script = std::get_if<model::Scripted>(&component.term);
+            if (script == nullptr) continue;
+            const auto* function = dynamic_cast<const lua::LuaFunction*>(script->function.get());
+            all_seen = all_seen && sees_all(function);
+            if (function == nullptr) continue;
+            const model::Formula* read = function->formula();
+            std::string told;
+            if (read == nullptr || read->gave_up()) {
+                if (function->last_obstacle().empty()) continue;
+                told = fmt::format("{} is evaluated in Lua ({}).", name, function->last_obstacle());
+            } else {
+                told =
+                    fmt::format("{} is read as a formula{}{}.", name,
+                                read->has_conditions() ? ": the times at which its conditions change are events" : "",
+                                read->has_conditions_of_motion()
+                                    ? ", except for conditions on theta, velocity or states, which are sampled"
+                                    : "");
+            }
+            if (run.readings.find(told) == std::string::npos) run.readings += (run.readings.empty() ? "" : " ") + told;
+        }
+    }
+    if (all_seen) run.trajectory.gap = 0;
+}
+
 void set_partial(lua_State* L) {
     lua::push_dinal_table(L);
     lua_insert(L, -2);
@@ -176,6 +216,7 @@ int run_task(lua_State* L, const lua::Options& options, source::Origin origin, d
 
     const Memories memories(L, options, run->origin->excitation, from != run->origin->window.start);
     lua::CallState call(L);
+    call.set_span(to - from);
     if (!run->origin->extras.states.empty()) call.name_states(names_of(run->origin->extras));
     terminal::Progress progress = terminal::Progress::of_time(from, to);
     const auto monitor = [&progress](double t) {
@@ -186,6 +227,7 @@ int run_task(lua_State* L, const lua::Options& options, source::Origin origin, d
     if (call.failed() && lua::interrupt_requested()) {
         run->trajectory.outcome = model::Outcome::interrupted;  // M was stopped, it did not fail
     }
+    note_readings(*run);
     const bool interrupted = run->trajectory.outcome == model::Outcome::interrupted;
     push_run(L, run);
     memories.note(run.get());

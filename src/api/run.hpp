@@ -17,6 +17,7 @@ struct Run {
     motion::Trajectory trajectory;
     std::optional<source::Origin> origin = {};  ///< none when it was read from a file
     std::vector<std::string> comments = {};     ///< of the file it was read from
+    std::string readings = {};                  ///< which functions were read as formulas: sentences
     model::Units units = {};                    ///< that stand in these; of another run those of its system
     lua::MemoryCharge rows = {};                ///< of the file it was read from
     bool is_part = false;                       ///< of a run of several bodies, seen from one of them

@@ -2,10 +2,13 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <bit>
 #include <cmath>
 #include <string>
 
 #include "lua/error_memory.hpp"
+#include "lua/formula_reader.hpp"
 #include "lua/interrupt.hpp"
 #include "lua/lua_message.hpp"
 #include "lua/state_table.hpp"
@@ -17,6 +20,10 @@ namespace {
 // Of this thread of the operating system, because a Lua state belongs to one; a function that is asked from another
 // thread finds none and gives NaN.
 thread_local CallState* current = nullptr;
+
+// Counts what has run in Lua, or may have, on this thread: as long as it stands still, no variable changes.
+thread_local std::uint64_t world = 1;
+thread_local std::uint64_t calls = 0;
 
 constexpr double failure = std::numeric_limits<double>::quiet_NaN();
 
@@ -68,7 +75,9 @@ std::string definition(lua_State* L) {
 
 }  // namespace
 
-CallState::CallState(lua_State* L) : L_(L), outer_(current), depth_(outer_ == nullptr ? 1 : outer_->depth_ + 1) {
+CallState::CallState(lua_State* L)
+    : L_(L), outer_(current), depth_(outer_ == nullptr ? 1 : outer_->depth_ + 1), number_(++calls) {
+    ++world;
     constexpr int deepest = 50;
     if (depth_ > deepest) {
         raise(L,
@@ -102,6 +111,7 @@ std::vector<int> CallState::kept_names(const std::vector<std::string>& names) co
 }
 
 void CallState::name_states(const std::vector<std::string>& names) {
+    state_names_ = names;
     push_state_table(L_, names);
     state_table_ = luaL_ref(L_, LUA_REGISTRYINDEX);
     names_ = kept_names(names);
@@ -217,7 +227,9 @@ bool LuaAction::act(double t, model::State& state, std::span<double> states) {
     push(L);
     lua_pushnumber(L, t);
     const int arguments = 1 + call->push_motion(state, states);
-    if (lua_pcall(L, arguments, 2, top + 1) != LUA_OK) {
+    const int status = lua_pcall(L, arguments, 2, top + 1);
+    ++world;
+    if (status != LUA_OK) {
         remember_argument(L, name_.c_str(), "t", t);
         call->keep_error_on_top();
         lua_settop(L, top);
@@ -261,6 +273,7 @@ LuaFunction::LuaFunction(lua_State* L, int index, FunctionRole role)
 
 // Also right while lua_close runs the finalizers: the registry goes last.
 LuaFunction::~LuaFunction() {
+    luaL_unref(main_, LUA_REGISTRYINDEX, reading_.values);
     luaL_unref(main_, LUA_REGISTRYINDEX, reference_);
 }
 
@@ -274,13 +287,82 @@ bool LuaFunction::is_good(lua_State* L, double& result) const {
     return lua_type(L, -1) == LUA_TNUMBER && std::isfinite(result) && (role_.may_be_negative || result >= 0);
 }
 
-// lua_pcall, although Lua's errors would unwind the integrator just as well: the rows so far are to be kept.
+bool LuaFunction::is_allowed(double result) const {
+    return std::isfinite(result) && (role_.may_be_negative || result >= 0);
+}
+
+/// How many arguments it is called with in a run that has so many states.
+int LuaFunction::arguments_in(const CallState& call, std::size_t states) const {
+    if (!feedback_) return 1;
+    return states != 0 && states == call.names_.size() ? 4 : 3;
+}
+
+/// What it was read as, when all that this holds for constant is as it was; null where Lua must be asked: also when a
+/// hook looks on, or is to stop what runs.
+model::Formula* LuaFunction::formula(const CallState& call, Need need) {
+    if (distrusted_ || lua_gethook(call.L_) != nullptr) return nullptr;
+    const bool is_read = reading_.formula.has_value();
+    if (is_read && seen_ == world) return &*reading_.formula;
+    if (!is_read && tried_in_ == call.number_) return nullptr;
+    if (need == Need::a_value && patience_ > 0) {
+        --patience_;
+        return nullptr;
+    }
+    look_again(call, arguments_in(call, call.names_.size()));
+    return reading_.formula ? &*reading_.formula : nullptr;
+}
+
+void LuaFunction::look_again(const CallState& call, int arguments) {
+    lua_State* L = call.L_;
+    constexpr int few = 8;
+    constexpr unsigned most_doublings = 8;
+    tried_in_ = call.number_;
+    if (!reading_.formula && failures_ > 0) {  // less and less often
+        if ((++put_off_ & ((1U << std::min(failures_, most_doublings)) - 1U)) != 0) return;
+    }
+    patience_ = values_ - values_then_ < few ? few : 0;
+    values_then_ = values_;
+    seen_ = world;
+    if (reading_.formula && arguments == arguments_ && still_holds(L, reading_)) return;
+    luaL_unref(L, LUA_REGISTRYINDEX, reading_.values);
+    reading_ = {};
+    push(L);
+    reading_ = read_formula(L, -1, arguments, arguments == 4 ? call.state_names_ : std::vector<std::string>());
+    lua_pop(L, 1);
+    arguments_ = arguments;
+    values_ = values_then_ = 0;
+    if (!reading_.formula) ++failures_;
+}
+
+/// The first values, and then some of them, are compared with those of Lua.
+bool LuaFunction::agrees(double read, CallState& call, double t, const model::State& state,
+                         std::span<const double> states) {
+    constexpr std::uint64_t first = 3, between = 1024;
+    if (++values_ > first && values_ % between != 0) return true;
+    const double asked = ask(call, t, state, states);
+    if (std::bit_cast<std::uint64_t>(asked) == std::bit_cast<std::uint64_t>(read)) return true;
+    distrusted_ = true;
+    reading_.obstacle = "it gave another value than its formula";
+    return false;
+}
+
 double LuaFunction::value_with(double t, const model::State& state, std::span<const double> states) {
     CallState* call = current;
-    if (call == nullptr || call->failed_) {
-        return failure;
+    if (call == nullptr || call->failed_) return failure;
+    const int arguments = arguments_in(*call, states.size());
+    if (model::Formula* read = formula(*call, Need::a_value); read != nullptr && arguments == arguments_) {
+        const std::span<const double> given = arguments == 4 ? states : std::span<const double>();
+        const double M = read->value(t, state, given);
+        if (is_allowed(M) && agrees(M, *call, t, state, states)) return M;
     }
-    lua_State* L = call->L_;
+    const double M = ask(*call, t, state, states);
+    if (!formula()) ++world;
+    return M;
+}
+
+// lua_pcall, although Lua's errors would unwind the integrator just as well: the rows so far are to be kept.
+double LuaFunction::ask(CallState& call, double t, const model::State& state, std::span<const double> states) {
+    lua_State* L = call.L_;
     lua_pushcfunction(L, guarded<witness_error>);
     const int handler = lua_gettop(L);
     push(L);
@@ -299,7 +381,21 @@ double LuaFunction::value_with(double t, const model::State& state, std::span<co
         return M;
     }
     lua_remove(L, handler);
-    return fail(*call, status, t);
+    return fail(call, status, t);
+}
+
+const std::string& LuaFunction::obstacle() {
+    if (current != nullptr && !current->failed_) formula(*current, Need::breaks);
+    return reading_.obstacle;
+}
+
+double LuaFunction::next_break(double t) {
+    if (current == nullptr || current->failed_) return model::never;
+    model::Formula* read = formula(*current, Need::breaks);
+    if (read == nullptr) return model::never;
+    const double found = read->next_break(t, current->span_);
+    if (read->gave_up()) reading_.obstacle = "its conditions change at too many times to find them";
+    return found;
 }
 
 // Not after Ctrl-C, which means all of it.
@@ -337,13 +433,25 @@ int LuaFunction::fill_protected(lua_State* L) {
     return 0;
 }
 
-// One lua_pcall for the block: it costs as much as the call of a short function.
 std::size_t LuaFunction::fill(std::span<const double> times, std::span<double> out) {
     CallState* call = current;
-    if (call == nullptr || call->failed_ || feedback_) {
-        return model::UserFunction::fill(times, out);
+    if (call == nullptr || call->failed_ || feedback_) return model::UserFunction::fill(times, out);
+    std::size_t filled = 0;
+    if (model::Formula* read = formula(*call, Need::a_value)) {
+        for (; filled < times.size(); ++filled) {
+            out[filled] = read->value(times[filled], {}, {});
+            if (!is_allowed(out[filled]) || !agrees(out[filled], *call, times[filled], {}, {})) break;
+        }
     }
-    lua_State* L = call->L_;
+    if (filled == times.size() || call->failed_) return filled;
+    filled += ask(*call, times.subspan(filled), out.subspan(filled));
+    if (!formula()) ++world;
+    return filled;
+}
+
+// One lua_pcall for the block: it costs as much as the call of a short function.
+std::size_t LuaFunction::ask(CallState& call, std::span<const double> times, std::span<double> out) {
+    lua_State* L = call.L_;
     Block block{this, times, out};
     const int top = lua_gettop(L);
     lua_pushcfunction(L, guarded<witness_error>);
@@ -352,7 +460,7 @@ std::size_t LuaFunction::fill(std::span<const double> times, std::span<double> o
     const int status = lua_pcall(L, 1, LUA_MULTRET, top + 1);
     lua_remove(L, top + 1);
     if (lua_gettop(L) > top) {
-        out[block.filled] = fail(*call, status, times[block.filled]);
+        out[block.filled] = fail(call, status, times[block.filled]);
     }
     return block.filled;
 }

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "lua/bind.hpp"
+#include "lua/formula_reader.hpp"
 #include "model/extras.hpp"
 
 namespace dinal::lua {
@@ -29,6 +30,9 @@ public:
     /// From now on functions get theta and velocity as tables with these names, out of the first of their states.
     void name_bodies(const std::vector<std::string>& names);
 
+    /// How long a time is of interest, when that is known: conditions that change far more often are noise.
+    void set_span(double span) { span_ = span; }
+
     /// Raises what the user function raised, unchanged, or the sentence about what it returned. Only when failed().
     [[noreturn]] void raise_error();
 
@@ -49,6 +53,9 @@ private:
     lua_State* L_;
     CallState* outer_;
     int depth_;
+    std::uint64_t number_;  // of all such calls
+    std::vector<std::string> state_names_;
+    double span_ = 1;
     int state_table_ = LUA_NOREF;  // kept in the registry, as the names of the states
     std::vector<int> names_;
     int theta_table_ = LUA_NOREF, velocity_table_ = LUA_NOREF;
@@ -82,16 +89,33 @@ public:
     double value(double t, const model::State& state) override { return value_with(t, state, {}); }
     double value_with(double t, const model::State& state, std::span<const double> states) override;
     std::size_t fill(std::span<const double> times, std::span<double> out) override;
+    double next_break(double t) override;
     bool may_go_on() override;
 
     /// It wants theta and velocity: a Lua function (or __call) of two or more parameters, or with `...`.
     [[nodiscard]] bool feedback() const { return feedback_; }
     [[nodiscard]] const FunctionRole& role() const { return role_; }
+    /// Reads it, if that was not done in this call; why it could not be read, empty when it could.
+    const std::string& obstacle();
+    /// The same as it was found last.
+    [[nodiscard]] const std::string& last_obstacle() const { return reading_.obstacle; }
+    /// Its formula, when it is read.
+    [[nodiscard]] const model::Formula* formula() const {
+        return reading_.formula && !distrusted_ ? &*reading_.formula : nullptr;
+    }
     /// Pushes the function itself.
     void push(lua_State* L) const;
 
 private:
     static int fill_protected(lua_State* L);
+    enum class Need { a_value, breaks };
+    model::Formula* formula(const CallState& call, Need need);
+    void look_again(const CallState& call, int arguments);
+    bool agrees(double read, CallState& call, double t, const model::State& state, std::span<const double> states);
+    [[nodiscard]] int arguments_in(const CallState& call, std::size_t states) const;
+    double ask(CallState& call, double t, const model::State& state, std::span<const double> states);
+    std::size_t ask(CallState& call, std::span<const double> times, std::span<double> out);
+    [[nodiscard]] bool is_allowed(double result) const;
     double fail(CallState& call, int status, double t) const;
     bool is_good(lua_State* L, double& result) const;
 
@@ -99,6 +123,18 @@ private:
     int reference_;
     FunctionRole role_;
     bool feedback_;
+
+    // How it was read, and whether that still holds. Reading pays after some values only, so the first ones are asked
+    // for, and so is each value as long as other functions run between all of them.
+    Reading reading_;
+    int arguments_ = 0;           // of the reading
+    bool distrusted_ = false;     // Lua has said something else
+    std::uint64_t seen_ = 0;      // what had run when the reading was compared with all that it holds for constant
+    std::uint64_t tried_in_ = 0;  // the call in which it was read last
+    unsigned failures_ = 0, put_off_ = 0;
+    int patience_ = 12;              // values that are asked for before that is done again
+    std::uint64_t values_ = 0;       // that were read
+    std::uint64_t values_then_ = 0;  // when that was done last
 };
 
 /// What a user does at one of his events: a Lua function of t, theta, velocity, states that returns theta, velocity, or

@@ -212,7 +212,10 @@ Excitation Excitation::windowed(double from, double to) const {
 Excitation Excitation::with_functions(const FunctionChange& other) const {
     if (!has_script()) return *this;
     return changed([&other](Component& c) {
-        if (auto* script = std::get_if<Scripted>(&c.term)) script->function = other(script->function);
+        auto* script = std::get_if<Scripted>(&c.term);
+        if (script == nullptr) return;
+        if (script->original == nullptr) script->original = script->function;
+        script->function = other(script->function);
     });
 }
 

@@ -32,8 +32,10 @@ test("native terms add and scale, and know their own break times", function()
 end)
 
 test("hints for a function, both optional", function()
-    M = excitation.scripted(function(t) return t % 3 < 0.5 and 1 or 0 end, { breaks = {0.5, 2}, period = 3 })
+    M = excitation.scripted(function(t) return math.sin(t) end, { breaks = {0.5, 2}, period = 3 })
     equal(M:next_break(2), 3.5)
+    M = excitation.scripted(function(t) return t % 3 < 0.5 and 1 or 0 end, { breaks = {0.5, 2}, period = 3 })
+    equal(M:next_break(2), 3.0) -- what is read is a break, too
     M = excitation.scripted(function(t) return t end)
     equal(M(2), 2.0)
 end)

@@ -67,17 +67,46 @@ end)
 
 test("the story of a function says how closely it was looked at, and never that nothing moved the mass", function()
     local sys = nondimensional { friction_ratio = 0.3 }
-    local unseen = sys:simulate { M = function(t) return t > 3.001 and t < 3.002 and 500 or 0 end, t_end = 10, dt = 1 }
+    local function pulse(t) return ({ t > 3.001 and t < 3.002 and 500 or 0 })[1] end -- the table: not read
+    local unseen = sys:simulate { M = pulse, t_end = 10, dt = 1 }
     local story = unseen:explain():gsub("%s+", " ")
     assert(story:find("Nothing that was seen moved it until the end of the run", 1, true), story)
     assert(story:find("at times at most 0.056", 1, true) and story:find("a shorter pulse would not have been seen", 1, true), story)
     assert(unseen.gap > 0.05 and unseen.gap < 0.0585, unseen.gap)
-    local told = sys:simulate { M = function(t) return t > 3.001 and t < 3.002 and 500 or 0 end, t_end = 10, dt = 1,
+    local told = sys:simulate { M = pulse, t_end = 10, dt = 1,
         integrator = integrator.spectral { narrowest = 0.001 } }
     assert(#told.events > 0 and told.gap <= 0.001, told.gap)
     local native = sys:simulate { M = excitation.pulse { at = 3, width = 0.001, amplitude = 0.1 }, t_end = 10, dt = 1 }
     story = native:explain():gsub("%s+", " ")
     assert(native.gap == nil and story:find("Nothing moved it", 1, true) and not story:find "seen", story)
+    assert(not story:find "formula", story)
+end)
+
+test("the story says once whether M was read, and which line was the reason where it was not", function()
+    local sys = nondimensional { friction_ratio = 0.3 }
+    local function told(task)
+        task.t_end, task.dt = 10, 1
+        local run = sys:simulate(task)
+        return run:explain():gsub("%s+", " "), run
+    end
+    local story, run = told { M = function(t) return t > 3.001 and t < 3.002 and 500 or 0 end }
+    assert(story:find("M is read as a formula: the times at which its conditions change are events.", 1, true), story)
+    assert(#run.events > 0 and run.gap == nil and not story:find("seen", 1, true), story)
+    assert(select(2, story:gsub("formula", "")) == 1, story)
+    story = told { M = function(t) return 30 * math.sin(t) end }
+    assert(story:find("M is read as a formula.", 1, true), story)
+    story, run = told { M = function(t, theta) return theta > 0 and 1 or 30 * math.cos(t) end }
+    assert(story:find("is read as a formula: the times at which its conditions change are events, except for conditions on theta", 1, true), story)
+    assert(run.gap > 0)
+    local line = debug.getinfo(1, "l").currentline + 2
+    story, run = told { belt = 0.5, M = function(t)
+        local points = { t, 2 * t }
+        return points[1] < 2 and 3 or 0
+    end }
+    assert(story:find("explain_test.lua:" .. line .. ": it makes a table).", 1, true), story)
+    assert(run.gap > 0)
+    story = told { M = 3, belt = function(t) return t < 1 and 0.1 or 0.2 end, base = function(t) return #"x" + t end }
+    assert(story:find("The belt is read", 1, true) and story:find("The base is evaluated in Lua", 1, true), story)
 end)
 
 test("an M that is rough on every scale is told once, in the outcome, the summary and the story", function()

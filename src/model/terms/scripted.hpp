@@ -34,6 +34,8 @@ public:
         }
         return times.size();
     }
+    /// The first time after t at which it is known to jump or kink; `never` when nothing is known.
+    virtual double next_break(double /*t*/) { return never; }
     /// After a failure: whether it may be asked again, at other times. What failed stays known to the owner.
     virtual bool may_go_on() { return true; }
 };
@@ -49,8 +51,14 @@ struct Scripted {
     std::vector<double> breaks = {};  ///< where it jumps or kinks (in its own time), increasing
     double period = 0;                ///< > 0: the breaks repeat with this period
     double delay = 0;
+    std::shared_ptr<UserFunction> original = {};  ///< knows its breaks, where another function stands for it
 
     [[nodiscard]] double next_break(double t) const {
+        const double own = (original != nullptr ? original : function)->next_break(t - delay);
+        const double announced = next_announced_break(t);
+        return own == never ? announced : std::min(announced, later(t, own + delay));
+    }
+    [[nodiscard]] double next_announced_break(double t) const {
         if (breaks.empty()) {
             return never;
         }

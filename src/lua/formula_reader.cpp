@@ -1,0 +1,1181 @@
+#include "lua/formula_reader.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstring>
+#include <map>
+#include <memory>
+#include <tuple>
+
+#include "lua/prototype.hpp"
+#include "lua/standard_globals.hpp"
+#include "model/formula.hpp"
+
+namespace dinal::lua {
+namespace {
+
+using model::Op;
+
+/// lopcodes.h of Lua 5.4, all 83 of them.
+enum class Code : std::uint32_t {
+    move,
+    loadi,
+    loadf,
+    loadk,
+    loadkx,
+    loadfalse,
+    lfalseskip,
+    loadtrue,
+    loadnil,
+    getupval,
+    setupval,
+    gettabup,
+    gettable,
+    geti,
+    getfield,
+    settabup,
+    settable,
+    seti,
+    setfield,
+    newtable,
+    self,
+    addi,
+    addk,
+    subk,
+    mulk,
+    modk,
+    powk,
+    divk,
+    idivk,
+    bandk,
+    bork,
+    bxork,
+    shri,
+    shli,
+    add,
+    sub,
+    mul,
+    mod,
+    pow,
+    div,
+    idiv,
+    band,
+    bor,
+    bxor,
+    shl,
+    shr,
+    mmbin,
+    mmbini,
+    mmbink,
+    unm,
+    bnot,
+    not_,
+    len,
+    concat,
+    close,
+    tbc,
+    jmp,
+    eq,
+    lt,
+    le,
+    eqk,
+    eqi,
+    lti,
+    lei,
+    gti,
+    gei,
+    test,
+    testset,
+    call,
+    tailcall,
+    return_,
+    return0,
+    return1,
+    forloop,
+    forprep,
+    tforprep,
+    tforcall,
+    tforloop,
+    setlist,
+    closure,
+    vararg,
+    varargprep,
+    extraarg
+};
+static_assert(static_cast<int>(Code::extraarg) == 82);
+
+struct Instruction {
+    std::uint32_t bits;
+    [[nodiscard]] Code code() const { return static_cast<Code>(bits & 0x7fU); }
+    [[nodiscard]] int a() const { return static_cast<int>(bits >> 7U & 0xffU); }
+    [[nodiscard]] int b() const { return static_cast<int>(bits >> 16U & 0xffU); }
+    [[nodiscard]] int c() const { return static_cast<int>(bits >> 24U); }
+    [[nodiscard]] bool k() const { return (bits >> 15U & 1U) != 0; }
+    [[nodiscard]] int bx() const { return static_cast<int>(bits >> 15U); }
+    [[nodiscard]] int signed_b() const { return b() - 127; }
+    [[nodiscard]] int signed_c() const { return c() - 127; }
+    [[nodiscard]] int signed_bx() const { return bx() - 65535; }
+    [[nodiscard]] int jump() const { return static_cast<int>(bits >> 7U) - 16777215; }
+};
+
+/// What is known of a register of Lua. A number that is not constant stands in the formula's register of that number.
+struct Known {
+    enum class Kind : std::uint8_t { unknown, nil, no, yes, object, states, whole, number } kind = Kind::unknown;
+    bool constant = true;
+    double value = 0;  ///< of a constant number, as a register has it
+    int object = 0;    ///< in the list of values
+
+    [[nodiscard]] bool is_number() const { return kind == Kind::whole || kind == Kind::number; }
+    [[nodiscard]] bool is_false() const { return kind == Kind::nil || kind == Kind::no; }
+    bool operator==(const Known& other) const {
+        return same_type(other) && constant == other.constant && model::to_whole(value) == model::to_whole(other.value);
+    }
+    [[nodiscard]] bool same_type(const Known& other) const { return kind == other.kind && object == other.object; }
+};
+constexpr Known nil{.kind = Known::Kind::nil};
+Known constant_whole(std::int64_t x) {
+    return {.kind = Known::Kind::whole, .value = model::from_whole(x)};
+}
+Known constant_number(double x) {
+    return {.kind = Known::Kind::number, .value = x};
+}
+
+/// The code of one function.
+struct Function {
+    std::string dumped;
+    Prototype code;
+    std::string file;
+    std::vector<bool> is_target;  ///< of a jump: ways may meet there
+
+    void note_targets() {
+        const auto note = [this](std::size_t at) {
+            if (at < is_target.size()) is_target[at] = true;
+        };
+        is_target.resize(code.size());
+        for (std::size_t at = 0; at < code.size(); ++at) {
+            const Instruction i{code.instruction(at)};
+            const auto to = [&](int distance) { return at + 1 + static_cast<std::size_t>(distance); };
+            if (i.code() == Code::jmp) note(to(i.jump()));
+            if (i.code() == Code::forloop) note(to(0)), note(to(-i.bx()));
+            if (i.code() == Code::forprep) note(to(i.bx() + 1));
+            if (i.code() == Code::lfalseskip) note(to(1));
+        }
+    }
+};
+
+struct Frame {
+    int closure;
+    std::shared_ptr<const Function> function;
+    std::size_t at = 0;
+    int rounds = 0;  ///< jumps back so far
+    int base = 0, results = 1;
+};
+
+/// A place in the code that is being followed, and what is known there.
+struct Way {
+    std::vector<Frame> frames;
+    std::vector<Known> registers;
+    int top = 0;         ///< behind the values of an open list
+    int arguments = -1;  ///< those left of a call of math.max that is half done
+
+    Known& operator[](int i) { return registers[static_cast<std::size_t>(i)]; }
+    [[nodiscard]] bool same_place(const Way& other) const {
+        return top == other.top && arguments == other.arguments &&
+               std::equal(frames.begin(), frames.end(), other.frames.begin(), other.frames.end(),
+                          [](const Frame& a, const Frame& b) {
+                              return std::tie(a.closure, a.at, a.rounds, a.base, a.results) ==
+                                     std::tie(b.closure, b.at, b.rounds, b.base, b.results);
+                          });
+    }
+    /// In the order in which all ways go: within a call before behind it.
+    [[nodiscard]] bool is_before(const Way& other) const {
+        for (std::size_t i = 0; i < std::min(frames.size(), other.frames.size()); ++i) {
+            const auto a = std::tie(frames[i].rounds, frames[i].at);
+            const auto b = std::tie(other.frames[i].rounds, other.frames[i].at);
+            if (a != b) return a < b;
+        }
+        return frames.size() > other.frames.size();
+    }
+    [[nodiscard]] bool same_types(const Way& other) const {
+        return std::equal(registers.begin(), registers.end(), other.registers.begin(), other.registers.end(),
+                          [](const Known& a, const Known& b) { return a.same_type(b); });
+    }
+};
+
+/// A field of a step that is to lead somewhere.
+struct Loose {
+    std::size_t step;
+    std::uint32_t model::Formula::Step::*field;
+};
+struct Waiting {
+    Way way;
+    std::vector<Loose> loose;
+    bool settled = false;  ///< nothing will be joined with it
+};
+
+/// Why a function is not read.
+struct Obstacle {
+    std::string why;
+};
+
+// Registers of the formula: as many as Lua has, and these, which are put behind them in the end.
+constexpr int most_registers = 240, first_state = 0x1000, first_help = 0x2000, first_constant = 0x4000;
+constexpr std::size_t most_steps = 3000, most_versions = 3, most_waiting = 200, deepest = 30;
+constexpr int most_followed = 20000;
+
+struct Arithmetic {
+    Op number, whole;
+};
+constexpr std::array<Arithmetic, 7> arithmetic_of = {{{Op::add, Op::add_whole},
+                                                      {Op::subtract, Op::subtract_whole},
+                                                      {Op::multiply, Op::multiply_whole},
+                                                      {Op::modulo, Op::modulo_whole},
+                                                      {Op::power, Op::move},  // always floats
+                                                      {Op::divide, Op::move},
+                                                      {Op::floor_divide, Op::divide_whole}}};
+
+/// What the libraries brought; those of math without an operation are worked out in `library`.
+struct Standard {
+    const char *library, *name;
+    Op op = Op::fail;
+};
+constexpr Standard standard[] = {{"math", "sin", Op::sin},
+                                 {"math", "cos", Op::cos},
+                                 {"math", "tan", Op::tan},
+                                 {"math", "asin", Op::asin},
+                                 {"math", "acos", Op::acos},
+                                 {"math", "exp", Op::exp},
+                                 {"math", "log", Op::log},
+                                 {"math", "sqrt", Op::sqrt},
+                                 {"math", "abs", Op::abs},
+                                 {"math", "floor", Op::floor},
+                                 {"math", "ceil", Op::ceil},
+                                 {"math", "max"},
+                                 {"math", "min"},
+                                 {"math", "fmod"},
+                                 {"math", "atan"},
+                                 {"math", "rad"},
+                                 {"math", "deg"},
+                                 {"math", "tointeger"},
+                                 {nullptr, "error"},
+                                 {nullptr, "assert"}};
+
+class Reader {
+public:
+    Reader(lua_State* L, std::span<const std::string> states) : L_(L), states_(states) {
+        lua_newtable(L);
+        values_ = lua_gettop(L);
+    }
+
+    Reading read(int index, int arguments) {
+        Reading reading;
+        Way way;
+        try {
+            start(way, index, arguments);
+            follow(std::move(way), {});
+            while (!waiting_.empty()) follow_next();
+            reading.formula = formula(arguments);
+        } catch (const Obstacle& obstacle) {
+            reading.obstacle = place_ + obstacle.why;
+        }
+        reading.outside = std::move(outside_);
+        lua_pushvalue(L_, values_);
+        reading.values = luaL_ref(L_, LUA_REGISTRYINDEX);
+        return reading;
+    }
+
+private:
+    // ---- what is outside
+
+    /// The value on the top of the stack, which is popped, in the list of values.
+    int keep() {
+        const void* identity = lua_topointer(L_, -1);
+        const auto known = kept_.find(identity);
+        if (identity != nullptr && known != kept_.end()) {
+            lua_pop(L_, 1);
+            return known->second;
+        }
+        const int place = ++count_;
+        lua_rawseti(L_, values_, place);
+        if (identity != nullptr) kept_[identity] = place;
+        return place;
+    }
+    int push_kept(int place) { return lua_rawgeti(L_, values_, place); }
+    /// That value as a register has it.
+    Known known(int place) {
+        Known made{.kind = Known::Kind::object, .object = place};
+        switch (push_kept(place)) {
+            case LUA_TNIL:
+                made = nil;
+                break;
+            case LUA_TBOOLEAN:
+                made = {.kind = lua_toboolean(L_, -1) != 0 ? Known::Kind::yes : Known::Kind::no};
+                break;
+            case LUA_TNUMBER:
+                made = lua_isinteger(L_, -1) != 0 ? constant_whole(lua_tointeger(L_, -1))
+                                                  : constant_number(lua_tonumber(L_, -1));
+                break;
+            default:
+                break;
+        }
+        lua_pop(L_, 1);
+        return made;
+    }
+    Known outside(OutsideValue::Kind kind, int holder, std::int64_t key) {
+        for (const OutsideValue& met : outside_) {
+            if (met.kind == kind && met.holder == holder && met.key == key) return known(met.value);
+        }
+        const int type = push_kept(holder);
+        lua_replace(L_, values_ + 1);
+        lua_settop(L_, values_ + 1);
+        if (kind != OutsideValue::Kind::variable && type != LUA_TTABLE)
+            throw Obstacle{"it looks into what is no table"};
+        if (!push_outside(L_, values_, values_ + 1, kind, key))
+            throw Obstacle{"it looks into a table with a metatable"};
+        outside_.push_back({kind, holder, key, keep()});
+        return known(outside_.back().value);
+    }
+
+public:
+    /// The value that the holder at the index has; false, and nothing, where a metatable decides.
+    static bool push_outside(lua_State* L, int values, int holder, OutsideValue::Kind kind, std::int64_t key) {
+        switch (kind) {
+            case OutsideValue::Kind::variable:
+                return lua_getupvalue(L, holder, static_cast<int>(key)) != nullptr;
+            case OutsideValue::Kind::field:
+                lua_rawgeti(L, values, key);
+                lua_rawget(L, holder);
+                break;
+            case OutsideValue::Kind::element:
+                lua_rawgeti(L, holder, key);
+                break;
+            case OutsideValue::Kind::length:
+                lua_pushinteger(L, static_cast<lua_Integer>(lua_rawlen(L, holder)));
+                break;
+        }
+        if ((lua_isnil(L, -1) || kind == OutsideValue::Kind::length) && lua_getmetatable(L, holder) != 0) {
+            lua_pop(L, 2);
+            return false;
+        }
+        return true;
+    }
+
+private:
+    Known element(const Known& table, const Known& key) {
+        if (table.kind != Known::Kind::object) throw Obstacle{"it looks into what is no table"};
+        if (key.kind == Known::Kind::object) {
+            const bool is_text = push_kept(key.object) == LUA_TSTRING;
+            lua_pop(L_, 1);
+            if (is_text) return outside(OutsideValue::Kind::field, table.object, key.object);
+        }
+        if (key.is_number() && key.constant) {
+            const double number = key.kind == Known::Kind::number ? key.value : 0;
+            if (number == std::floor(number) && std::fabs(number) < 0x1p53) {
+                const auto whole =
+                    key.kind == Known::Kind::whole ? model::to_whole(key.value) : static_cast<std::int64_t>(number);
+                return outside(OutsideValue::Kind::element, table.object, whole);
+            }
+        }
+        throw Obstacle{"it looks up a place in a table that is not known beforehand"};
+    }
+    Known text(std::string_view word) {
+        lua_pushlstring(L_, word.data(), word.size());
+        const int place = keep();
+        return {.kind = Known::Kind::object, .object = place};
+    }
+    Known constant(const Function& function, int number) {
+        const Prototype::Constant& found = function.code.constants.at(static_cast<std::size_t>(number));
+        double value = 0;
+        if (found.number.size() == sizeof value) std::memcpy(&value, found.number.data(), sizeof value);
+        switch (found.type) {
+            case Prototype::integer_number:
+                return {.kind = Known::Kind::whole, .value = value};
+            case Prototype::float_number:
+                return constant_number(value);
+            case Prototype::no:
+                return {.kind = Known::Kind::no};
+            case Prototype::yes:
+                return {.kind = Known::Kind::yes};
+            case Prototype::short_text:
+            case Prototype::long_text:
+                return text(found.text);
+            default:
+                return nil;
+        }
+    }
+
+    // ---- steps of the formula
+
+    std::size_t emit(Op op, int to, int a, int b) {
+        if (steps_.size() >= most_steps) throw Obstacle{"it is too long"};
+        steps_.push_back(
+            {op, static_cast<std::uint16_t>(to), static_cast<std::uint16_t>(a), static_cast<std::uint16_t>(b)});
+        return steps_.size() - 1;
+    }
+    int constant_register(double value) {
+        const auto [place, is_new] =
+            constant_places_.try_emplace(model::to_whole(value), first_constant + constants_.size());
+        if (is_new) constants_.push_back(value);
+        return static_cast<int>(place->second);
+    }
+    /// Of a number, wherever it is.
+    int register_of(const Known& known, int place) { return known.constant ? constant_register(known.value) : place; }
+    static void need_number(const Known& known) {
+        if (!known.is_number()) throw Obstacle{"it calculates with what is no number"};
+    }
+    int float_register(const Known& known, int place, int help) {
+        need_number(known);
+        if (known.kind == Known::Kind::number) return register_of(known, place);
+        if (known.constant) return constant_register(static_cast<double>(model::to_whole(known.value)));
+        emit(Op::to_float, first_help + help, place, place);
+        return first_help + help;
+    }
+    /// Puts the result of the operation into the register; constants are worked out here.
+    void calculate(Way& way, Op op, int to, int a, int b, Known::Kind kind) {
+        if (a >= first_constant && b >= first_constant) {
+            Known made{.kind = kind};
+            const auto value = [this](int place) {
+                return constants_[static_cast<std::size_t>(place - first_constant)];
+            };
+            if (!model::apply(op, value(a), value(b), made.value))
+                throw Obstacle{"it divides by zero or rounds infinity"};
+            way[to] = made;
+            return;
+        }
+        emit(op, to, a, b);
+        way[to] = {.kind = kind, .constant = false};
+    }
+    void copy(Way& way, int to, int from) {
+        const Known known = way[from];
+        if (!known.constant && to != from) emit(Op::move, to, from, from);
+        way[to] = known;
+    }
+
+    struct Operand {
+        Known known;
+        int place;
+    };
+    void arithmetic(Way& way, std::size_t which, int to, const Operand& x, const Operand& y) {
+        need_number(x.known);
+        need_number(y.known);
+        const auto [number, whole] = arithmetic_of[which];
+        if (whole != Op::move && x.known.kind == Known::Kind::whole && y.known.kind == Known::Kind::whole) {
+            return calculate(way, whole, to, register_of(x.known, x.place), register_of(y.known, y.place),
+                             Known::Kind::whole);
+        }
+        const int a = float_register(x.known, x.place, 0), b = float_register(y.known, y.place, 1);
+        calculate(way, number, to, a, b, Known::Kind::number);
+    }
+
+    // ---- conditions
+
+    /// A comparison that is decided here, or the step that decides it later.
+    struct Condition {
+        std::optional<bool> decided;
+        std::size_t step = 0;
+    };
+    Condition compare(Op number, Op whole, const Operand& x, const Operand& y) {
+        if (!x.known.is_number() || !y.known.is_number()) {
+            if (number != Op::equal) throw Obstacle{"it compares what are no numbers"};
+            return {equal_objects(x.known, y.known)};
+        }
+        int a = 0, b = 0;
+        Op op = number;
+        if (x.known.kind == Known::Kind::whole && y.known.kind == Known::Kind::whole) {
+            op = whole;
+            a = register_of(x.known, x.place), b = register_of(y.known, y.place);
+        } else {
+            for (const Known& known : {x.known, y.known}) {
+                const bool far = known.kind == Known::Kind::whole && known.constant &&
+                                 std::fabs(static_cast<double>(model::to_whole(known.value))) > 0x1p53;
+                if (far) throw Obstacle{"it compares a whole number beyond 2^53"};
+            }
+            a = float_register(x.known, x.place, 0), b = float_register(y.known, y.place, 1);
+        }
+        if (x.known.constant && y.known.constant) {
+            double unused = 0;
+            const auto value = [this](int place) {
+                return constants_[static_cast<std::size_t>(place - first_constant)];
+            };
+            return {model::apply(op, value(a), value(b), unused)};
+        }
+        return {std::nullopt, emit(op, 0, a, b)};
+    }
+    bool equal_objects(const Known& x, const Known& y) {
+        if (x.kind != y.kind) return false;
+        if (x.kind != Known::Kind::object || x.object == y.object) return true;
+        const bool texts = push_kept(x.object) == LUA_TSTRING && push_kept(y.object) == LUA_TSTRING;
+        lua_settop(L_, values_ + 1);
+        if (!texts) throw Obstacle{"it compares tables"};
+        return false;
+    }
+    void jump(Way& way) {
+        Frame& frame = way.frames.back();
+        const Instruction next{frame.function->code.instruction(frame.at)};
+        const int distance = next.jump();
+        if (distance < 0) ++frame.rounds;
+        frame.at += 1 + static_cast<std::size_t>(distance);
+    }
+    void take(Way& way, bool jumps) { jumps ? jump(way) : static_cast<void>(++way.frames.back().at); }
+    /// The instruction that follows is a jump, which is taken where the condition is `wanted`. False when both ways
+    /// wait.
+    bool go_on(Way& way, const Condition& condition, bool wanted) {
+        if (condition.decided) {
+            take(way, *condition.decided == wanted);
+            return true;
+        }
+        Way other = way;
+        take(way, wanted);
+        take(other, !wanted);
+        wait(std::move(way), {{condition.step, &model::Formula::Step::yes}});
+        wait(std::move(other), {{condition.step, &model::Formula::Step::no}});
+        return false;
+    }
+    void wait(Way way, std::vector<Loose> loose) {
+        if (waiting_.size() >= most_waiting) throw Obstacle{"it has too many cases"};
+        waiting_.push_back({std::move(way), std::move(loose)});
+    }
+
+    // ---- ways
+
+    void land(const std::vector<Loose>& loose) {
+        const bool here = loose.size() == 1 && loose[0].step + 1 == steps_.size() && steps_.back().op == Op::jump;
+        if (here) return steps_.pop_back();
+        for (const Loose& end : loose) steps_[end.step].*end.field = static_cast<std::uint32_t>(steps_.size());
+    }
+    std::vector<Loose> jump_from_here() { return {{emit(Op::jump, 0, 0, 0), &model::Formula::Step::yes}}; }
+
+    /// Those that wait at the place that comes first are made one where they are the same, or too many.
+    void follow_next() {
+        const auto first = std::min_element(waiting_.begin(), waiting_.end(),
+                                            [](const Waiting& a, const Waiting& b) { return a.way.is_before(b.way); });
+        if (!first->settled) {
+            std::vector<Waiting> here{std::move(*first)};
+            waiting_.erase(first);
+            for (std::size_t i = 0; i < waiting_.size();) {
+                if (waiting_[i].way.same_place(here.front().way)) {
+                    here.push_back(std::move(waiting_[i]));
+                    waiting_.erase(waiting_.begin() + static_cast<std::ptrdiff_t>(i));
+                } else {
+                    ++i;
+                }
+            }
+            unite(here);
+            if (here.size() > most_versions) generalise(here);
+            for (Waiting& one : here) one.settled = true;
+            waiting_.insert(waiting_.begin(), std::make_move_iterator(here.begin()),
+                            std::make_move_iterator(here.end()));
+            return;
+        }
+        Waiting next = std::move(*first);
+        waiting_.erase(first);
+        follow(std::move(next.way), next.loose);
+    }
+    static void unite(std::vector<Waiting>& here) {
+        for (std::size_t i = 0; i < here.size(); ++i) {
+            for (std::size_t j = i + 1; j < here.size();) {
+                if (here[i].way.registers == here[j].way.registers) {
+                    here[i].loose.insert(here[i].loose.end(), here[j].loose.begin(), here[j].loose.end());
+                    here.erase(here.begin() + static_cast<std::ptrdiff_t>(j));
+                } else {
+                    ++j;
+                }
+            }
+        }
+    }
+    /// Where constants differ, they come into registers.
+    void generalise(std::vector<Waiting>& here) {
+        std::vector<Waiting> general;
+        for (const Waiting& one : here) {
+            const auto same = std::find_if(general.begin(), general.end(),
+                                           [&](const Waiting& g) { return g.way.same_types(one.way); });
+            if (same == general.end()) {
+                general.push_back({one.way, {}});
+                continue;
+            }
+            for (std::size_t i = 0; i < one.way.registers.size(); ++i) {
+                Known& joined = same->way.registers[i];
+                if (!(joined == one.way.registers[i])) joined.constant = false, joined.value = 0;
+            }
+        }
+        for (const Waiting& one : here) {
+            Waiting& same = *std::find_if(general.begin(), general.end(),
+                                          [&](const Waiting& g) { return g.way.same_types(one.way); });
+            land(one.loose);
+            for (std::size_t i = 0; i < one.way.registers.size(); ++i) {
+                const Known& own = one.way.registers[i];
+                if (!own.constant || same.way.registers[i].constant) continue;
+                const int from = constant_register(own.value);
+                emit(Op::move, static_cast<int>(i), from, from);
+            }
+            const auto loose = jump_from_here();
+            same.loose.insert(same.loose.end(), loose.begin(), loose.end());
+        }
+        here = std::move(general);
+    }
+
+    // ---- calls
+
+    std::shared_ptr<const Function> function_at(int place) {
+        push_kept(place);
+        auto& known = functions_[place];
+        if (known == nullptr) {
+            auto made = std::make_shared<Function>();
+            made->dumped = dumped_function(L_, -1);
+            auto code = prototype_in(made->dumped);
+            if (!code || code->lines.size() != code->size()) throw Obstacle{"its code is of another Lua"};
+            made->code = std::move(*code);
+            made->note_targets();
+            lua_Debug about{};
+            lua_pushvalue(L_, -1);
+            lua_getinfo(L_, ">S", &about);
+            made->file = static_cast<const char*>(about.short_src);
+            known = std::move(made);
+        }
+        lua_pop(L_, 1);
+        return known;
+    }
+    /// Into the function with that number of arguments, which stand from `base` on.
+    void enter(Way& way, int closure, int base, int arguments, int results) {
+        Frame frame{.closure = closure, .function = function_at(closure), .base = base, .results = results};
+        const Prototype& code = frame.function->code;
+        if (place_.empty() && !code.lines.empty()) place_ = fmt::format("{}:{}: ", frame.function->file, code.lines[0]);
+        if (code.frame[1] != 0) throw Obstacle{"it takes any number of arguments (...)"};
+        const int parameters = static_cast<std::uint8_t>(code.frame[0]),
+                  size = static_cast<std::uint8_t>(code.frame[2]);
+        if (base + size > most_registers || way.frames.size() >= deepest) throw Obstacle{"it calls too deep"};
+        way.registers.resize(static_cast<std::size_t>(std::max(base + size, base + parameters)));
+        used_ = std::max(used_, static_cast<int>(way.registers.size()));
+        for (int i = arguments; i < parameters; ++i) way[base + i] = nil;
+        for (int i = parameters; i < size; ++i) way[base + i] = {};
+        way.frames.push_back(std::move(frame));
+    }
+    void start(Way& way, int index, int arguments) {
+        lua_pushvalue(L_, index);
+        lua_insert(L_, values_ + 1);
+        lua_settop(L_, values_ + 1);
+        if (lua_type(L_, -1) != LUA_TFUNCTION || lua_iscfunction(L_, -1) != 0) throw Obstacle{"it is no Lua function"};
+        lua_pushvalue(L_, -1);
+        const int closure = keep();
+        way.registers.resize(4);
+        for (int i = 0; i < arguments; ++i) {
+            way[i] = i < 3 ? Known{.kind = Known::Kind::number, .constant = false} : Known{.kind = Known::Kind::states};
+        }
+        enter(way, closure, 0, arguments, 1);
+    }
+    /// Puts so many values, from a place on, where the caller of the innermost function wants them.
+    void leave(Way& way, int from, int count) {
+        const Frame left = way.frames.back();
+        if (way.frames.size() == 1) {
+            const Known given = count > 0 ? way[from] : nil;
+            const int place = given.is_number() ? register_of(given, from) : 0;
+            emit(given.kind == Known::Kind::number ? Op::give
+                 : given.is_number()               ? Op::give_whole
+                                                   : Op::fail,
+                 0, place, place);
+            way.frames.clear();
+            return;
+        }
+        const int function = left.base - 1;
+        for (int i = 0; i < count; ++i) copy(way, function + i, from + i);
+        way.frames.pop_back();
+        deliver(way, function, count, left.results);
+    }
+    /// `count` values stand from the place on, `wanted` are wanted; -1: all.
+    void deliver(Way& way, int place, int count, int wanted) {
+        const Frame& frame = way.frames.back();
+        const int size = frame.base + static_cast<std::uint8_t>(frame.function->code.frame[2]);
+        way.top = wanted < 0 ? place + count : 0;
+        way.registers.resize(static_cast<std::size_t>(std::max(size, place + std::max(count, wanted))));
+        for (int i = count; i < wanted; ++i) way[place + i] = nil;
+        for (std::size_t i = static_cast<std::size_t>(place + (wanted < 0 ? count : wanted)); i < way.registers.size();
+             ++i) {
+            way.registers[i] = {};
+        }
+    }
+
+    /// False when the way has come to an end, or waits.
+    bool call(Way& way, int function, int arguments, int results) {
+        const Known called = way[function];
+        if (called.kind != Known::Kind::object || push_kept(called.object) != LUA_TFUNCTION) {
+            throw Obstacle{"it calls what is no function"};
+        }
+        const bool of_lua = lua_iscfunction(L_, -1) == 0;
+        lua_pop(L_, 1);
+        if (of_lua) {
+            enter(way, called.object, function + 1, arguments, results);
+            return true;
+        }
+        const Standard* found = standard_at(called.object);
+        if (found == nullptr) throw Obstacle{"it calls a function that is not written in Lua" + name_of(way)};
+        const std::string_view name = found->name;
+        if (found->library == nullptr) {
+            if (name == "error" || arguments < 1 || way[function + 1].is_false()) {
+                emit(Op::fail, 0, 0, 0);
+                way.frames.clear();
+                return false;
+            }
+            for (int i = 0; i < arguments; ++i) copy(way, function + i, function + 1 + i);
+            deliver(way, function, arguments, results);
+            return true;
+        }
+        if (arguments < 1) throw Obstacle{fmt::format("it calls math.{} without a number", name)};
+        if (found->op == Op::fail) return library(way, name, function, arguments, results);
+        if (found->op == Op::log && arguments == 2) return logarithm(way, function, results);
+        one_argument(way, found->op, function);
+        deliver(way, function, 1, results);
+        return true;
+    }
+    /// " (print)", when the function comes from there.
+    static std::string name_of(const Way& way) {
+        const Frame& frame = way.frames.back();
+        for (std::size_t at = frame.at; at-- > 0;) {
+            const Instruction i{frame.function->code.instruction(at)};
+            const bool by_name = i.code() == Code::gettabup || i.code() == Code::getfield;
+            const bool is_call = i.code() == Code::call || i.code() == Code::tailcall;
+            if (is_call && at + 1 != frame.at) break;
+            const bool same = i.a() == Instruction{frame.function->code.instruction(frame.at - 1)}.a();
+            if (by_name && same) {
+                return fmt::format(" ({})", frame.function->code.constants.at(static_cast<std::size_t>(i.c())).text);
+            }
+        }
+        return "";
+    }
+    /// Which of those that the libraries had at the start it is; null for any other.
+    const Standard* standard_at(int object) {
+        const auto [place, is_new] = standards_.try_emplace(object, nullptr);
+        for (const Standard& one : standard) {
+            if (!is_new || place->second != nullptr) break;
+            push_standard_globals(L_);
+            if (one.library != nullptr && lua_istable(L_, -1)) {
+                push_standard_fields(L_);
+                lua_getfield(L_, -2, one.library);
+                lua_rawget(L_, -2);
+            }
+            if (lua_istable(L_, -1)) {
+                lua_pushstring(L_, one.name);
+                lua_rawget(L_, -2);
+                push_kept(object);
+                if (lua_rawequal(L_, -1, -2) != 0) place->second = &one;
+            }
+            lua_settop(L_, values_ + 1);
+        }
+        return place->second;
+    }
+    void one_argument(Way& way, Op op, int function) {
+        const int from = function + 1;
+        const Known given = way[from];
+        need_number(given);
+        const bool rounds = op == Op::floor || op == Op::ceil;
+        if (given.kind == Known::Kind::whole && (rounds || op == Op::abs)) {
+            if (rounds) return copy(way, function, from);
+            const int place = register_of(given, from);
+            return calculate(way, Op::abs_whole, function, place, place, Known::Kind::whole);
+        }
+        const int place = float_register(given, from, 0);
+        calculate(way, op, function, place, place, rounds ? Known::Kind::whole : Known::Kind::number);
+    }
+    bool logarithm(Way& way, int function, int results) {
+        const Known base = way[function + 2];
+        need_number(base);
+        const double number =
+            base.kind == Known::Kind::whole ? static_cast<double>(model::to_whole(base.value)) : base.value;
+        const bool known = base.constant && (number == 2 || number == 10);
+        one_argument(way, known ? (number == 2 ? Op::log2 : Op::log10) : Op::log, function);
+        if (!known) {
+            const Known top = way[function];
+            const int below = float_register(base, function + 2, 1);
+            calculate(way, Op::log, function + 1, below, below, Known::Kind::number);
+            arithmetic(way, 5, function, {top, function}, {way[function + 1], function + 1});
+        }
+        deliver(way, function, 1, results);
+        return true;
+    }
+    bool library(Way& way, std::string_view name, int function, int arguments, int results) {
+        const int first = function + 1, second = function + 2;
+        const Known x = way[first];
+        need_number(x);
+        if (name == "max" || name == "min") {
+            if (arguments == 1) {
+                copy(way, function, first);
+            } else {
+                need_number(way[second]);
+                return choose(way, name == "max", function, arguments, results);
+            }
+        } else if (name == "atan" || name == "fmod") {
+            const Known y = arguments > 1 ? way[second] : name == "atan" ? constant_number(1) : nil;
+            if (name == "fmod" && x.kind == Known::Kind::whole && y.kind == Known::Kind::whole) {
+                throw Obstacle{"it calls math.fmod with whole numbers"};
+            }
+            const int a = float_register(x, first, 0), b = float_register(y, second, 1);
+            calculate(way, name == "atan" ? Op::atan2 : Op::fmod, function, a, b, Known::Kind::number);
+        } else if (name == "tointeger") {
+            if (x.kind != Known::Kind::whole) throw Obstacle{"it calls math.tointeger with a float"};
+            copy(way, function, first);
+        } else {
+            constexpr double pi = 3.141592653589793238462643383279502884;
+            const double unit = name == "rad" ? pi / 180.0 : 180.0 / pi;
+            arithmetic(way, 2, function, {x, first}, {constant_number(unit), 0});
+        }
+        deliver(way, function, 1, results);
+        return true;
+    }
+    /// The greater or the less of the first two arguments takes their place; false when two ways wait.
+    bool choose(Way& way, bool greatest, int function, int arguments, int results) {
+        const int first = function + 1, second = function + 2;
+        const Operand x{way[first], first}, y{way[second], second};
+        const Condition second_wins =
+            greatest ? compare(Op::less, Op::less_whole, x, y) : compare(Op::less, Op::less_whole, y, x);
+        const auto take_winner = [&](Way& chosen, int winner) {
+            copy(chosen, first, winner);
+            for (int i = 2; i < arguments; ++i) copy(chosen, function + i, function + i + 1);
+            if (arguments == 2) {
+                copy(chosen, function, first);
+                deliver(chosen, function, 1, results);
+            } else {
+                chosen.arguments = arguments - 1;
+                --chosen.frames.back().at;
+            }
+        };
+        if (second_wins.decided) {
+            take_winner(way, *second_wins.decided ? second : first);
+            return true;
+        }
+        for (const auto field : {&model::Formula::Step::yes, &model::Formula::Step::no}) {
+            Way chosen = way;
+            land({{second_wins.step, field}});
+            take_winner(chosen, field == &model::Formula::Step::yes ? second : first);
+            wait(std::move(chosen), jump_from_here());
+        }
+        way.frames.clear();
+        return false;
+    }
+
+    // ---- loops
+
+    /// Prepares the loop, whose three numbers are constants; false when it does not run at all.
+    static bool prepare(Way& way, int a) {
+        for (int i = 0; i < 3; ++i) {
+            if (!way[a + i].is_number() || !way[a + i].constant) throw Obstacle{"its loop has no constant bounds"};
+        }
+        const Known start = way[a], limit = way[a + 1], step = way[a + 2];
+        if (start.kind != Known::Kind::whole || limit.kind != Known::Kind::whole || step.kind != Known::Kind::whole) {
+            throw Obstacle{"its loop does not count in whole numbers"};
+        }
+        const std::int64_t from = model::to_whole(start.value), to = model::to_whole(limit.value),
+                           by = model::to_whole(step.value);
+        if (by == 0) throw Obstacle{"its loop has the step 0"};
+        if (by > 0 ? from > to : from < to) return false;
+        const auto distance = by > 0 ? static_cast<std::uint64_t>(to) - static_cast<std::uint64_t>(from)
+                                     : static_cast<std::uint64_t>(from) - static_cast<std::uint64_t>(to);
+        const auto pace = by > 0 ? static_cast<std::uint64_t>(by) : static_cast<std::uint64_t>(-(by + 1)) + 1U;
+        way[a + 1] = constant_whole(static_cast<std::int64_t>(distance / pace));
+        way[a + 3] = start;
+        return true;
+    }
+    static bool loops(Way& way, int a) {
+        const auto left = static_cast<std::uint64_t>(model::to_whole(way[a + 1].value));
+        if (left == 0) return false;
+        way[a + 1] = constant_whole(static_cast<std::int64_t>(left - 1));
+        const auto next = static_cast<std::uint64_t>(model::to_whole(way[a].value)) +
+                          static_cast<std::uint64_t>(model::to_whole(way[a + 2].value));
+        way[a] = way[a + 3] = constant_whole(static_cast<std::int64_t>(next));
+        return true;
+    }
+
+    // ---- instructions
+
+    void follow(Way way, const std::vector<Loose>& loose) {
+        if (!loose.empty()) land(loose);
+        for (bool first = true;; first = false) {
+            if (++followed_ > most_followed) throw Obstacle{"it is too long"};
+            const Frame& frame = way.frames.back();
+            if (frame.at >= frame.function->code.size()) throw Obstacle{"its code is of another Lua"};
+            if (!first && !waiting_.empty() && (frame.function->is_target[frame.at] || has_returned_)) {
+                has_returned_ = false;
+                return wait(std::move(way), jump_from_here());
+            }
+            has_returned_ = false;
+            place_ = fmt::format("{}:{}: ", frame.function->file, frame.function->code.lines[frame.at]);
+            if (!step(way)) return;
+        }
+    }
+
+    [[noreturn]] static void refuse(Code code) {
+        using enum Code;
+        switch (code) {
+            case setupval:
+                throw Obstacle{"it assigns to a variable outside of it"};
+            case settabup:
+                throw Obstacle{"it assigns to a global"};
+            case settable:
+            case seti:
+            case setfield:
+                throw Obstacle{"it writes into a table"};
+            case newtable:
+                throw Obstacle{"it makes a table"};
+            case self:
+                throw Obstacle{"it calls a method"};
+            case concat:
+            case len:
+                throw Obstacle{"it works with text"};
+            case closure:
+                throw Obstacle{"it makes a function"};
+            case tforprep:
+                throw Obstacle{"it goes through a table with pairs or ipairs"};
+            default:
+                throw Obstacle{"it does what only Lua can do"};
+        }
+    }
+
+    /// Follows one instruction. False when the way has come to an end, or waits.
+    bool step(Way& way) {
+        using enum Code;
+        const std::size_t frame_number = way.frames.size() - 1;
+        const std::shared_ptr<const Function> function = way.frames.back().function;
+        std::size_t& at = way.frames[frame_number].at;
+        const int base = way.frames.back().base, closure_place = way.frames.back().closure;
+        const Instruction i{function->code.instruction(at++)};
+        const Code code = i.code();
+        const int a = base + i.a(), b = base + i.b(), c = base + i.c();
+        const auto in_register = [&](int place) { return Operand{way[place], place}; };
+        const auto constant_of = [&](int number) { return Operand{constant(*function, number), 0}; };
+        const auto immediate = [](int value) { return Operand{constant_whole(value), 0}; };
+        switch (code) {
+            case move:
+                copy(way, a, b);
+                return true;
+            case loadi:
+                way[a] = constant_whole(i.signed_bx());
+                return true;
+            case loadf:
+                way[a] = constant_number(i.signed_bx());
+                return true;
+            case loadk:
+                way[a] = constant(*function, i.bx());
+                return true;
+            case loadfalse:
+                way[a] = {.kind = Known::Kind::no};
+                return true;
+            case lfalseskip:
+                way[a] = {.kind = Known::Kind::no};
+                ++at;
+                return true;
+            case loadtrue:
+                way[a] = {.kind = Known::Kind::yes};
+                return true;
+            case loadnil:
+                for (int j = 0; j <= i.b(); ++j) way[a + j] = nil;
+                return true;
+            case getupval:
+                way[a] = outside(OutsideValue::Kind::variable, closure_place, i.b() + 1);
+                return true;
+            case gettabup:
+                way[a] = element(outside(OutsideValue::Kind::variable, closure_place, i.b() + 1),
+                                 constant(*function, i.c()));
+                return true;
+            case gettable:
+                way[a] = element(way[b], way[c]);
+                return true;
+            case geti:
+                way[a] = element(way[b], constant_whole(i.c()));
+                return true;
+            case getfield:
+                field(way, a, b, constant(*function, i.c()));
+                return true;
+            case addi:
+                arithmetic(way, 0, a, in_register(b), immediate(i.signed_c()));
+                ++at;
+                return true;
+            case addk:
+            case subk:
+            case mulk:
+            case modk:
+            case powk:
+            case divk:
+            case idivk:
+                arithmetic(way, static_cast<std::size_t>(code) - static_cast<std::size_t>(addk), a, in_register(b),
+                           constant_of(i.c()));
+                ++at;
+                return true;
+            case add:
+            case sub:
+            case mul:
+            case mod:
+            case pow:
+            case div:
+            case idiv:
+                arithmetic(way, static_cast<std::size_t>(code) - static_cast<std::size_t>(add), a, in_register(b),
+                           in_register(c));
+                ++at;  // over the instruction for values that are no numbers
+                return true;
+            case unm: {
+                need_number(way[b]);
+                const bool whole = way[b].kind == Known::Kind::whole;
+                const int from = register_of(way[b], b);
+                calculate(way, whole ? Op::negate_whole : Op::negate, a, from, from, way[b].kind);
+                return true;
+            }
+            case not_:
+                need_decided(way[b]);
+                way[a] = {.kind = way[b].is_false() ? Known::Kind::yes : Known::Kind::no};
+                return true;
+            case len:
+                if (way[b].kind != Known::Kind::object) refuse(code);
+                way[a] = outside(OutsideValue::Kind::length, way[b].object, 0);
+                return true;
+            case close:
+                return true;
+            case jmp:
+                --at;
+                jump(way);
+                return true;
+            case eq:
+                return go_on(way, compare(Op::equal, Op::equal_whole, in_register(a), in_register(b)), i.k());
+            case lt:
+                return go_on(way, compare(Op::less, Op::less_whole, in_register(a), in_register(b)), i.k());
+            case le:
+                return go_on(way, compare(Op::less_equal, Op::less_equal_whole, in_register(a), in_register(b)), i.k());
+            case eqk:
+                return go_on(way, compare(Op::equal, Op::equal_whole, in_register(a), constant_of(i.b())), i.k());
+            case eqi:
+                return go_on(way, compare(Op::equal, Op::equal_whole, in_register(a), immediate(i.signed_b())), i.k());
+            case lti:
+                return go_on(way, compare(Op::less, Op::less_whole, in_register(a), immediate(i.signed_b())), i.k());
+            case lei:
+                return go_on(
+                    way, compare(Op::less_equal, Op::less_equal_whole, in_register(a), immediate(i.signed_b())), i.k());
+            case gti:
+                return go_on(way, compare(Op::less, Op::less_whole, immediate(i.signed_b()), in_register(a)), i.k());
+            case gei:
+                return go_on(
+                    way, compare(Op::less_equal, Op::less_equal_whole, immediate(i.signed_b()), in_register(a)), i.k());
+            case test:
+                need_decided(way[a]);
+                take(way, way[a].is_false() != i.k());
+                return true;
+            case testset:
+                need_decided(way[b]);
+                if (way[b].is_false() == i.k()) {
+                    ++at;
+                } else {
+                    copy(way, a, b);
+                    take(way, true);
+                }
+                return true;
+            case Code::call:
+            case tailcall: {
+                const int given = way.arguments >= 0 ? way.arguments : i.b() > 0 ? i.b() - 1 : way.top - a - 1;
+                way.arguments = -1;
+                return this->call(way, a, given, code == tailcall ? -1 : i.c() - 1);
+            }
+            case return_:
+                return leaves(way, a, i.b() > 0 ? i.b() - 1 : way.top - a);
+            case return0:
+                return leaves(way, a, 0);
+            case return1:
+                return leaves(way, a, 1);
+            case forprep:
+                if (!prepare(way, a)) at += static_cast<std::size_t>(i.bx()) + 1;
+                return true;
+            case forloop:
+                if (loops(way, a)) at -= static_cast<std::size_t>(i.bx()), ++way.frames.back().rounds;
+                return true;
+            default:
+                refuse(code);
+        }
+    }
+    static void need_decided(const Known& known) {
+        if (known.kind == Known::Kind::unknown) throw Obstacle{"it uses a variable without a value"};
+    }
+    bool leaves(Way& way, int from, int count) {
+        leave(way, from, count);
+        has_returned_ = !way.frames.empty();
+        return has_returned_;
+    }
+    void field(Way& way, int a, int b, const Known& name) {
+        if (way[b].kind != Known::Kind::states) {
+            way[a] = element(way[b], name);
+            return;
+        }
+        push_kept(name.object);
+        const char* text = lua_tostring(L_, -1);
+        const auto found = std::find(states_.begin(), states_.end(), text == nullptr ? "" : text);
+        lua_pop(L_, 1);
+        if (found == states_.end()) throw Obstacle{"it asks for a state that is none"};
+        const int state = first_state + static_cast<int>(found - states_.begin());
+        emit(Op::move, a, state, state);
+        way[a] = {.kind = Known::Kind::number, .constant = false};
+    }
+
+    // ---- the end
+
+    model::Formula formula(int arguments) {
+        const auto used = static_cast<std::size_t>(std::max(used_, 3));
+        std::vector<double> registers(used + states_.size() + 2);
+        registers.insert(registers.end(), constants_.begin(), constants_.end());
+        const auto placed = [&](std::uint16_t place) -> std::uint16_t {
+            const std::size_t behind_states = used + states_.size();
+            if (place >= first_constant) return static_cast<std::uint16_t>(behind_states + 2 + place - first_constant);
+            if (place >= first_help) return static_cast<std::uint16_t>(behind_states + place - first_help);
+            if (place >= first_state) return static_cast<std::uint16_t>(used + place - first_state);
+            return place;
+        };
+        for (auto& step : steps_) step.to = placed(step.to), step.a = placed(step.a), step.b = placed(step.b);
+        return {std::move(steps_), std::move(registers), arguments >= 3, used, states_.size()};
+    }
+
+    lua_State* L_;
+    std::span<const std::string> states_;
+    int values_ = 0, count_ = 0;
+    std::map<const void*, int> kept_;
+    std::vector<OutsideValue> outside_;
+    std::map<int, std::shared_ptr<const Function>> functions_;
+    std::map<int, const Standard*> standards_;
+    std::vector<Waiting> waiting_;
+    std::vector<model::Formula::Step> steps_;
+    std::vector<double> constants_;
+    std::map<std::int64_t, std::size_t> constant_places_;
+    int used_ = 0, followed_ = 0;
+    bool has_returned_ = false;
+    std::string place_;
+};
+
+/// The same type and the same bits.
+bool is_same(lua_State* L) {
+    const bool numbers = lua_type(L, -1) == LUA_TNUMBER && lua_type(L, -2) == LUA_TNUMBER;
+    if (!numbers) return lua_rawequal(L, -1, -2) != 0;
+    if (lua_isinteger(L, -1) != lua_isinteger(L, -2)) return false;
+    if (lua_isinteger(L, -1) != 0) return lua_tointeger(L, -1) == lua_tointeger(L, -2);
+    return model::to_whole(lua_tonumber(L, -1)) == model::to_whole(lua_tonumber(L, -2));
+}
+
+}  // namespace
+
+Reading read_formula(lua_State* L, int index, int arguments, std::span<const std::string> states) {
+    const int top = lua_gettop(L);
+    index = lua_absindex(L, index);
+    luaL_checkstack(L, LUA_MINSTACK, "to read a function");
+    Reading reading = Reader(L, states).read(index, arguments);
+    lua_settop(L, top);
+    return reading;
+}
+
+bool still_holds(lua_State* L, const Reading& reading) {
+    const int top = lua_gettop(L);
+    lua_rawgeti(L, LUA_REGISTRYINDEX, reading.values);
+    const bool same = std::all_of(reading.outside.begin(), reading.outside.end(), [&](const OutsideValue& one) {
+        lua_settop(L, top + 1);
+        lua_rawgeti(L, top + 1, one.holder);
+        if (!Reader::push_outside(L, top + 1, top + 2, one.kind, one.key)) return false;
+        lua_rawgeti(L, top + 1, one.value);
+        return is_same(L);
+    });
+    lua_settop(L, top);
+    return same;
+}
+
+}  // namespace dinal::lua

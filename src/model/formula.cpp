@@ -1,0 +1,572 @@
+#include "model/formula.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <tuple>
+
+namespace dinal::model {
+namespace {
+
+std::uint64_t bits(double x) {
+    return std::bit_cast<std::uint64_t>(x);
+}
+double from_bits(std::uint64_t x) {
+    return std::bit_cast<double>(x);
+}
+
+/// As Lua defines them: the sign is that of the divisor, and a quotient rounds down.
+double float_modulo(double a, double b) {
+    const double rest = std::fmod(a, b);
+    return (rest > 0 ? b < 0 : (rest < 0 && b != rest)) ? rest + b : rest;
+}
+std::int64_t whole_modulo(std::int64_t a, std::int64_t b) {
+    if (b == -1) return 0;
+    const std::int64_t rest = a % b;
+    return rest != 0 && (rest ^ b) < 0 ? rest + b : rest;
+}
+std::int64_t whole_quotient(std::int64_t a, std::int64_t b) {
+    if (b == -1) return static_cast<std::int64_t>(0U - static_cast<std::uint64_t>(a));
+    const std::int64_t quotient = a / b;
+    return (a ^ b) < 0 && a % b != 0 ? quotient - 1 : quotient;
+}
+
+bool rounded(double x, double& to) {
+    constexpr double limit = 0x1p63;
+    if (!(x >= -limit && x < limit)) return false;
+    to = from_whole(static_cast<std::int64_t>(x));
+    return true;
+}
+
+[[gnu::always_inline]] inline bool operate(Op op, double a, double b, double& to) {
+    switch (op) {
+        case Op::move:
+            to = a;
+            return true;
+        case Op::add:
+            to = a + b;
+            return true;
+        case Op::subtract:
+            to = a - b;
+            return true;
+        case Op::multiply:
+            to = a * b;
+            return true;
+        case Op::divide:
+            to = a / b;
+            return true;
+        case Op::modulo:
+            to = float_modulo(a, b);
+            return true;
+        case Op::floor_divide:
+            to = std::floor(a / b);
+            return true;
+        case Op::power:
+            to = b == 2 ? a * a : std::pow(a, b);
+            return true;
+        case Op::negate:
+            to = -a;
+            return true;
+        case Op::sin:
+            to = std::sin(a);
+            return true;
+        case Op::cos:
+            to = std::cos(a);
+            return true;
+        case Op::tan:
+            to = std::tan(a);
+            return true;
+        case Op::asin:
+            to = std::asin(a);
+            return true;
+        case Op::acos:
+            to = std::acos(a);
+            return true;
+        case Op::atan2:
+            to = std::atan2(a, b);
+            return true;
+        case Op::exp:
+            to = std::exp(a);
+            return true;
+        case Op::log:
+            to = std::log(a);
+            return true;
+        case Op::log2:
+            to = std::log2(a);
+            return true;
+        case Op::log10:
+            to = std::log10(a);
+            return true;
+        case Op::sqrt:
+            to = std::sqrt(a);
+            return true;
+        case Op::abs:
+            to = std::fabs(a);
+            return true;
+        case Op::fmod:
+            to = std::fmod(a, b);
+            return true;
+        case Op::add_whole:
+            to = from_bits(bits(a) + bits(b));
+            return true;
+        case Op::subtract_whole:
+            to = from_bits(bits(a) - bits(b));
+            return true;
+        case Op::multiply_whole:
+            to = from_bits(bits(a) * bits(b));
+            return true;
+        case Op::modulo_whole:
+            if (to_whole(b) == 0) return false;
+            to = from_whole(whole_modulo(to_whole(a), to_whole(b)));
+            return true;
+        case Op::divide_whole:
+            if (to_whole(b) == 0) return false;
+            to = from_whole(whole_quotient(to_whole(a), to_whole(b)));
+            return true;
+        case Op::negate_whole:
+            to = from_bits(0U - bits(a));
+            return true;
+        case Op::abs_whole:
+            to = to_whole(a) < 0 ? from_bits(0U - bits(a)) : a;
+            return true;
+        case Op::to_float:
+            to = static_cast<double>(to_whole(a));
+            return true;
+        case Op::floor:
+            return rounded(std::floor(a), to);
+        case Op::ceil:
+            return rounded(std::ceil(a), to);
+        default:
+            return false;
+    }
+}
+
+bool holds(Op op, double a, double b) {
+    switch (op) {
+        case Op::less:
+            return a < b;
+        case Op::less_equal:
+            return a <= b;
+        case Op::equal:
+            return a == b;
+        case Op::less_whole:
+            return to_whole(a) < to_whole(b);
+        case Op::less_equal_whole:
+            return to_whole(a) <= to_whole(b);
+        default:
+            return to_whole(a) == to_whole(b);
+    }
+}
+
+bool is_comparison(Op op) {
+    return op >= Op::less && op <= Op::equal_whole;
+}
+bool is_fold(Op op) {
+    return op == Op::abs || op == Op::floor || op == Op::ceil || op == Op::modulo || op == Op::floor_divide ||
+           op == Op::fmod;
+}
+
+}  // namespace
+
+bool apply(Op op, double a, double b, double& to) {
+    if (is_comparison(op)) return holds(op, a, b);
+    return operate(op, a, b, to);
+}
+
+Formula::Formula(std::vector<Step> steps, std::vector<double> registers, bool motion, std::size_t states,
+                 std::size_t state_count)
+    : steps_(std::move(steps)),
+      registers_(std::move(registers)),
+      motion_(motion),
+      states_(states),
+      state_count_(state_count),
+      has_conditions_(std::any_of(steps_.begin(), steps_.end(),
+                                  [](const Step& s) { return is_comparison(s.op) || is_fold(s.op); })) {}
+
+double Formula::value(double t, const State& state, std::span<const double> states) {
+    constexpr double failure = std::numeric_limits<double>::quiet_NaN();
+    double* const r = registers_.data();
+    r[0] = t;
+    if (motion_) r[1] = state.theta, r[2] = state.velocity;
+    std::copy(states.begin(), states.end(), r + states_);
+    const Step* const first = steps_.data();
+    for (const Step* s = first;;) {
+        const double a = r[s->a], b = r[s->b];
+        switch (s->op) {
+            case Op::less:
+                s = first + (a < b ? s->yes : s->no);
+                continue;
+            case Op::less_equal:
+                s = first + (a <= b ? s->yes : s->no);
+                continue;
+            case Op::equal:
+            case Op::less_whole:
+            case Op::less_equal_whole:
+            case Op::equal_whole:
+                s = first + (holds(s->op, a, b) ? s->yes : s->no);
+                continue;
+            case Op::jump:
+                s = first + s->yes;
+                continue;
+            case Op::give:
+                return a;
+            case Op::give_whole:
+                return static_cast<double>(to_whole(a));
+            default:
+                if (!operate(s->op, a, b, r[s->to])) return failure;
+                ++s;
+        }
+    }
+}
+
+// ---- conditions of t
+
+/// The values that a register may have while t goes through an interval. NaN at the lower end: any value, or none.
+struct Formula::Range {
+    double lo = 0, hi = 0;
+    bool of_motion = false;  ///< it hangs on theta, velocity or a state
+
+    [[nodiscard]] bool is_one() const { return !of_motion && bits(lo) == bits(hi); }
+    [[nodiscard]] bool is_anything() const { return std::isnan(lo); }
+    static Range anything() { return {std::numeric_limits<double>::quiet_NaN(), 0}; }
+};
+
+/// One look at the program for all t of an interval: which way it goes, if that is the same way for all of them.
+class Formula::Look {
+public:
+    explicit Look(const Formula& formula) : formula_(formula) {
+        for (const double x : formula.registers_) ranges_.push_back({x, x});
+        const Range unknown{.of_motion = true};
+        if (formula.motion_) ranges_[1] = ranges_[2] = unknown;
+        std::fill_n(ranges_.begin() + static_cast<std::ptrdiff_t>(formula.states_), formula.state_count_, unknown);
+    }
+
+    /// A number that stands for the ways; none when they differ, or when that cannot be told.
+    std::optional<std::uint64_t> over(double from, double to) {
+        seen_ = 0xcbf29ce484222325U;
+        forks_ = 0;
+        part_ = std::numeric_limits<double>::quiet_NaN();
+        // What a register has held before is written again before it is read.
+        const auto motion = std::pair(ranges_[1], ranges_[2]);
+        ranges_[0] = {from, to};
+        const bool same = follow(0, ranges_);
+        if (formula_.motion_) std::tie(ranges_[1], ranges_[2]) = motion;
+        return same ? std::optional(seen_) : std::nullopt;
+    }
+    /// After a look that saw several ways: at which part of the interval another one may begin; NaN when nothing is
+    /// known.
+    [[nodiscard]] double part() const { return part_; }
+    [[nodiscard]] bool of_motion() const { return of_motion_; }
+
+private:
+    void note(std::uint64_t what) { seen_ = (seen_ ^ what) * 0x100000001b3U; }
+
+    bool follow(std::size_t at, std::vector<Range>& r) {
+        for (;;) {
+            const Step& s = formula_.steps_[at];
+            const Range a = r[s.a], b = r[s.b];
+            if (is_comparison(s.op)) {
+                if (a.of_motion || b.of_motion) {
+                    constexpr int most_forks = 64;
+                    of_motion_ = true;
+                    std::vector<Range> copy = r;
+                    if (++forks_ > most_forks || !follow(s.yes, copy)) return false;
+                    at = s.no;
+                    continue;
+                }
+                const auto found = decide(s.op, a, b);
+                if (!found) {
+                    const double least = a.lo - b.hi, part = -least / (a.hi - b.lo - least);
+                    part_ = a.is_one() ? 1 - part : part;
+                    return false;
+                }
+                note(at + at + (*found ? 1 : 0));
+                at = *found ? s.yes : s.no;
+                continue;
+            }
+            if (s.op == Op::jump) {
+                at = s.yes;
+            } else if (s.op >= Op::give) {
+                note(at);
+                return true;
+            } else {
+                const auto result = of(s.op, a, b);
+                if (!result) return false;
+                if (fails_) return note(at), fails_ = false, true;
+                r[s.to] = *result;
+                ++at;
+            }
+        }
+    }
+
+    static std::optional<bool> decide(Op op, Range a, Range b) {
+        if (a.is_one() && b.is_one()) return holds(op, a.lo, b.lo);
+        if (a.is_anything() || b.is_anything() || op >= Op::less_whole) return std::nullopt;
+        switch (op) {
+            case Op::less:
+                if (a.hi < b.lo) return true;
+                if (a.lo >= b.hi) return false;
+                break;
+            case Op::less_equal:
+                if (a.hi <= b.lo) return true;
+                if (a.lo > b.hi) return false;
+                break;
+            default:
+                if (a.hi < b.lo || a.lo > b.hi) return false;
+        }
+        return std::nullopt;
+    }
+
+    /// None when a fold lies within. Rounding keeps the order, so what the ends give holds what lies between.
+    std::optional<Range> of(Op op, Range a, Range b) {
+        if (a.of_motion || b.of_motion) {
+            of_motion_ = of_motion_ || is_fold(op);
+            return Range{.of_motion = true};
+        }
+        if (a.is_one() && b.is_one()) {
+            Range one;
+            fails_ = !operate(op, a.lo, b.lo, one.lo);
+            one.hi = one.lo;
+            if (is_fold(op)) note(fold_of(op, a.lo, b.lo, one.lo));
+            return one;
+        }
+        if (op == Op::move) return a;
+        if (is_fold(op)) return fold(op, a, b);
+        if (a.is_anything() || b.is_anything()) return Range::anything();
+        switch (op) {
+            case Op::add:
+                return checked({a.lo + b.lo, a.hi + b.hi});
+            case Op::subtract:
+                return checked({a.lo - b.hi, a.hi - b.lo});
+            case Op::divide:
+                if (b.lo <= 0 && b.hi >= 0) return Range::anything();
+                return corners(op, a, b);
+            case Op::multiply:
+                return corners(op, a, b);
+            case Op::power:
+                return power(a, b);
+            case Op::negate:
+                return Range{-a.hi, -a.lo};
+            case Op::sin:
+                return wave(op, a, -0.5);
+            case Op::cos:
+                return wave(op, a, 0);
+            case Op::exp:
+            case Op::sqrt:
+            case Op::log:
+            case Op::log2:
+            case Op::log10:
+            case Op::asin:
+                return wider(ends(op, a));  // NaN at an end: outside of where it is defined
+            case Op::acos:
+                return wider(ends(op, {a.hi, a.lo}));
+            case Op::atan2:
+                return b.is_one() && b.lo > 0 ? wider(corners(op, a, b)) : Range::anything();
+            default:
+                return Range::anything();
+        }
+    }
+    /// Which piece of a fold it is: what its result is made with.
+    static std::uint64_t fold_of(Op op, double a, double b, double result) {
+        switch (op) {
+            case Op::abs:
+                return a < 0 ? 1 : 0;
+            case Op::modulo:
+            case Op::fmod:
+                return bits(std::nearbyint((a - result) / b));
+            default:
+                return bits(result);
+        }
+    }
+    /// Where the piece ends for rising values.
+    static double next_fold(Op op, double a, double b, double result) {
+        switch (op) {
+            case Op::abs:
+                return 0;
+            case Op::modulo:
+                return a - result + std::max(b, 0.0);
+            case Op::fmod:
+                return a - result + (a < 0 ? 0 : std::fabs(b));
+            case Op::floor_divide:
+                return b > 0 ? (result + 1) * b : result * b;
+            case Op::ceil:
+                return std::ceil(a);
+            default:
+                return std::floor(a) + 1;
+        }
+    }
+    std::optional<Range> fold(Op op, Range a, Range b) {
+        const bool alone = op == Op::abs || op == Op::floor || op == Op::ceil;
+        if (a.is_anything() || !(alone || b.is_one())) return std::nullopt;
+        if (op == Op::fmod && (a.lo < 0) != (a.hi < 0)) return std::nullopt;
+        Range ends;
+        if (!operate(op, a.lo, b.lo, ends.lo) || !operate(op, a.hi, b.lo, ends.hi)) return std::nullopt;
+        const std::uint64_t piece = fold_of(op, a.lo, b.lo, ends.lo);
+        if (piece != fold_of(op, a.hi, b.lo, ends.hi)) {
+            part_ = (next_fold(op, a.lo, b.lo, ends.lo) - a.lo) / (a.hi - a.lo);
+            return std::nullopt;
+        }
+        note(piece);
+        if (op == Op::abs && a.lo < 0) std::swap(ends.lo, ends.hi);
+        return ends;
+    }
+    /// Beyond what floats hold anything may be.
+    static Range checked(Range r) { return std::isfinite(r.lo) && std::isfinite(r.hi) ? r : Range::anything(); }
+    static Range ends(Op op, Range a) {
+        Range r;
+        operate(op, a.lo, a.lo, r.lo);
+        operate(op, a.hi, a.hi, r.hi);
+        return r;
+    }
+    static Range corners(Op op, Range a, Range b) {
+        Range r{never, -never};
+        for (const double x : {a.lo, a.hi}) {
+            for (const double y : {b.lo, b.hi}) {
+                double value = 0;
+                operate(op, x, y, value);
+                if (!std::isfinite(value)) return Range::anything();
+                r.lo = std::min(r.lo, value), r.hi = std::max(r.hi, value);
+            }
+        }
+        return r;
+    }
+    /// By a few roundings, for functions of the C library are not quite monotonic; but they keep the sign.
+    static Range wider(Range r) {
+        constexpr double part = 1e-15;
+        r = checked(r);
+        if (r.is_anything()) return r;
+        if (r.lo != 0) r.lo -= std::min(part * std::fabs(r.lo), r.lo > 0 ? r.lo : never);
+        if (r.hi != 0) r.hi += std::min(part * std::fabs(r.hi), r.hi < 0 ? -r.hi : never);
+        return r;
+    }
+    static Range power(Range a, Range b) {
+        const bool whole = b.is_one() && b.lo == std::floor(b.lo);
+        if (!(a.lo > 0 || whole) || (b.lo < 0 && a.lo <= 0 && a.hi >= 0)) return Range::anything();
+        Range r = corners(Op::power, a, b);
+        if (a.lo < 0 && a.hi > 0 && !r.is_anything()) r.lo = std::min(r.lo, 0.0), r.hi = std::max(r.hi, 0.0);
+        return wider(r);
+    }
+    /// Of a sine whose greatest and least values lie at half turns, from `shift` of one.
+    static Range wave(Op op, Range a, double shift) {
+        constexpr double far = 1e6, margin = 1e-9, half_turn = 3.14159265358979323846;
+        if (!(a.hi - a.lo < 2 * half_turn) || std::fabs(a.lo) > far || std::fabs(a.hi) > far) return {-1, 1};
+        Range r = ends(op, a);
+        if (r.lo > r.hi) std::swap(r.lo, r.hi);
+        r = wider(r);
+        const double last = std::floor(a.hi / half_turn + shift + margin);
+        for (double n = std::ceil(a.lo / half_turn + shift - margin); n <= last; ++n) {
+            std::fmod(n, 2) == 0 ? r.hi = 1 : r.lo = -1;
+        }
+        return r;
+    }
+
+    const Formula& formula_;
+    std::vector<Range> ranges_{};
+    double part_ = 0;
+    std::uint64_t seen_ = 0;
+    int forks_ = 0;
+    bool of_motion_ = false, fails_ = false;
+};
+
+namespace {
+
+/// Numbers that follow one another as floats do.
+std::int64_t rank(double x) {
+    const std::int64_t whole = to_whole(x);
+    return whole < 0 ? std::numeric_limits<std::int64_t>::min() - whole : whole;
+}
+double at_rank(std::int64_t rank) {
+    return from_whole(rank < 0 ? std::numeric_limits<std::int64_t>::min() - rank : rank);
+}
+
+/// Where to divide an interval: a little before the place where something is thought to happen, or behind that, and
+/// each third time in its middle.
+double cut(double from, double to, double part, int turn) {
+    constexpr double rounding = 8 * std::numeric_limits<double>::epsilon();
+    const double place = from + (turn % 3 == 1 ? part : 1 - part) * (to - from);
+    const double near = rounding * std::max(std::fabs(from), std::fabs(place));
+    if (turn % 3 != 0 && to - from > 8 * near) {
+        if (place - near > from && place - near < to) return place - near;
+        if (place + near > from && place + near < to) return place + near;
+    }
+    return at_rank(std::midpoint(rank(from), rank(to)));
+}
+
+}  // namespace
+
+double Formula::next_break(double t, double span) {
+    constexpr double end_of_time = 1e300;
+    if (!has_conditions_ || gave_up_ || !(std::fabs(t) < end_of_time)) return never;
+    const double found = search(t + 0.0);  // not -0
+    // Breaks that come on and on where nothing much changes are roundings, or digits that somebody has cut off: no
+    // events, but roughness.
+    constexpr int most_alike = 30;
+    double last = t, next = found;
+    for (int n = 0; is_dubious(last, next, span); ++n) {
+        if (n == most_alike) gave_up_ = true;
+        if (gave_up_) return never;
+        last = next, next = search(next);
+    }
+    return gave_up_ ? never : found;
+}
+
+/// The next change is next to this one, or next to nothing.
+bool Formula::is_dubious(double t, double found, double span) {
+    constexpr double close = 1e-9, most_breaks = 50000, small = 1e-5, rounding = 1e-13;
+    if (found == never) return false;
+    if (found - t < std::max(close * std::fabs(t), span / most_breaks)) return true;
+    const double jump = std::fabs(value(found, {}, {}) - value(std::nextafter(found, -never), {}, {}));
+    if (!(jump > 0)) return false;
+    constexpr int places = 50;
+    for (int n = 0; n < places && !knows_greatest_; ++n) {
+        const double there = std::fabs(value(found + span * n / places, {}, {}));
+        if (std::isfinite(there)) greatest_ = std::max(greatest_, there);
+    }
+    knows_greatest_ = true;
+    return jump < small * greatest_ && jump > rounding * greatest_;
+}
+
+// The interval from t on is divided, the earlier part first, until the program goes one way in each part.
+double Formula::search(double t) {
+    constexpr double end_of_time = 1e300, least = 1e-300, rounding = std::numeric_limits<double>::epsilon();
+    constexpr int most_looks = 4000, most_unfinished = 20, most_flips = 60;
+    const auto behind = known_.upper_bound(t);
+    if (behind != known_.begin() && std::prev(behind)->second > t) return std::prev(behind)->second;
+    // What changes a hair later has changed already; and where a comparison changes, rounding may make it flicker.
+    const bool at_break = behind != known_.begin() && std::prev(behind)->second == t;
+    const double flicker = t + std::max(least, (at_break ? 64 : 4) * rounding * std::fabs(t));
+
+    Look look(*this);
+    std::optional<std::uint64_t> way = look.over(t, t);
+    std::vector<std::pair<double, double>> parts{{t, end_of_time}};
+    int looks = 0, flips = 0;
+    double found = never;
+    while (!parts.empty() && way) {
+        const auto [from, to] = parts.back();
+        parts.pop_back();
+        const auto seen = look.over(from, to);
+        of_motion_ = of_motion_ || look.of_motion();
+        if (seen == way) continue;
+        if (!seen && ++looks < most_looks && from < to) {
+            const double middle = cut(from, to, look.part(), looks);
+            parts.emplace_back(std::nextafter(middle, never) + 0.0, to);
+            parts.emplace_back(from, middle);
+            continue;
+        }
+        if (seen && from <= flicker && ++flips < most_flips) {
+            way = seen;
+            continue;
+        }
+        found = std::fabs(from) < least ? 0 : from;
+        const bool far = from - t > 1e-6 * std::fabs(from) && from != 0;
+        gave_up_ = !seen && (!far || ++unfinished_ > most_unfinished);
+        break;
+    }
+    if (!way || gave_up_) return gave_up_ = true, never;
+    constexpr std::size_t most_known = 10000;
+    if (known_.size() > most_known) known_.clear();
+    return known_[t] = found;
+}
+
+}  // namespace dinal::model

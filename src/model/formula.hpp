@@ -1,0 +1,125 @@
+// What a user's function computes, as a program of a few operations: the same bits as the function itself gives, but
+// without its language, and open to questions. Whoever reads the function (lua/reader) writes the program.
+#pragma once
+
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "model/oscillator.hpp"
+
+namespace dinal::model {
+
+/// An operation on registers. Floats and whole numbers (64 bits that wrap) are told apart by the operation, not by the
+/// register.
+enum class Op : std::uint16_t {
+    move,
+    // floats
+    add,
+    subtract,
+    multiply,
+    divide,
+    modulo,
+    floor_divide,
+    power,
+    negate,
+    sin,
+    cos,
+    tan,
+    asin,
+    acos,
+    atan2,
+    exp,
+    log,
+    log2,
+    log10,
+    sqrt,
+    abs,
+    fmod,
+    // whole numbers
+    add_whole,
+    subtract_whole,
+    multiply_whole,
+    modulo_whole,
+    divide_whole,
+    negate_whole,
+    abs_whole,
+    // from whole to float, and back: these two fail beyond 64 bits
+    to_float,
+    floor,
+    ceil,
+    // conditions: go on at `yes` or `no`
+    less,
+    less_equal,
+    equal,
+    less_whole,
+    less_equal_whole,
+    equal_whole,
+    jump,  ///< to `yes`
+    give,
+    give_whole,
+    fail,  ///< what the function does here is left to the function
+};
+
+/// The operation on two registers (of one operand: the same twice); false where it fails, as a whole number // 0 does.
+bool apply(Op op, double a, double b, double& to);
+
+/// A register holds either; a whole number in its bits.
+inline double from_whole(std::int64_t whole) {
+    return std::bit_cast<double>(whole);
+}
+inline std::int64_t to_whole(double bits) {
+    return std::bit_cast<std::int64_t>(bits);
+}
+
+/// Steps only lead forward, so that a program is bounded by its length.
+class Formula {
+public:
+    struct Step {
+        Op op;
+        std::uint16_t to = 0, a = 0, b = 0;
+        std::uint32_t yes = 0, no = 0;
+    };
+    /// Registers at the start: t comes into the first, with `motion` theta and velocity into the next two, and so many
+    /// states from `states` on.
+    Formula(std::vector<Step> steps, std::vector<double> registers, bool motion, std::size_t states,
+            std::size_t state_count);
+
+    /// NaN where the function must be asked.
+    [[nodiscard]] double value(double t, const State& state, std::span<const double> states);
+
+    /// The first time after t at which a condition of t changes: a comparison, the sign within abs, the step of floor,
+    /// ceil, // or %. It is the very double at which the function itself sees the change. `span`: how long a time is of
+    /// interest, so that noise is told from events.
+    [[nodiscard]] double next_break(double t, double span);
+
+    /// It compares, rounds or folds at all.
+    [[nodiscard]] bool has_conditions() const { return has_conditions_; }
+    /// Such a condition hangs on theta, velocity or a state, as far as next_break() has met it.
+    [[nodiscard]] bool has_conditions_of_motion() const { return of_motion_; }
+    /// The times of its conditions could not be found in bounded work: next_break() says `never`.
+    [[nodiscard]] bool gave_up() const { return gave_up_; }
+
+private:
+    struct Range;
+    class Look;
+    double search(double t);
+    bool is_dubious(double t, double found, double span);
+
+    std::vector<Step> steps_;
+    std::vector<double> registers_;
+    bool motion_;
+    std::size_t states_, state_count_;
+    bool has_conditions_, of_motion_ = false, gave_up_ = false;
+    std::map<double, double> known_;  ///< from a time to the next break
+    int unfinished_ = 0;              ///< searches that ended before they found one
+    double greatest_ = 0;             ///< value at some times
+    bool knows_greatest_ = false;
+};
+
+}  // namespace dinal::model

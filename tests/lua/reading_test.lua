@@ -1,0 +1,417 @@
+-- A function that is a formula is read: the same bits as Lua, and its conditions of t are breaks.
+package.path = "tests/lua/?.lua;" .. package.path
+local support = require "support"
+local test, near, equal = support.test, support.near, support.equal
+
+local times = {}
+for i = 1, 400 do times[i] = (i - 150) * 0.0371 end
+for _, t in ipairs { 0.0, -0.0, 1.0, 2.0, 0.5, 1e-300, 1e16, -1e16, 3e18, 1e300 } do times[#times + 1] = t end
+
+local function same(a, b)
+    return string.pack("d", a) == string.pack("d", b)
+end
+
+--- The values of the function, read, are those of Lua where Lua gives finite numbers.
+local function same_values(f, what)
+    local good, wanted = {}, {}
+    for _, t in ipairs(times) do
+        local ok, value = pcall(f, t)
+        if ok and math.type(value) and value == value and math.abs(value) < math.huge then
+            good[#good + 1], wanted[#wanted + 1] = t, value + 0.0
+        end
+    end
+    local e = excitation.scripted(f)
+    equal(e:obstacle(), nil, what)
+    local found = e:values(good)
+    for i, value in ipairs(wanted) do
+        if not same(found[i], value) then
+            error(("%s at t = %.17g: read %.17g, Lua %.17g"):format(what, good[i], found[i], value))
+        end
+    end
+    equal(e:obstacle(), nil, what)
+    return #good
+end
+
+local function unread(f, why)
+    local found = excitation.scripted(f):obstacle() or "nothing"
+    assert(found:find(why, 1, true), found)
+    local line = debug.getinfo(f, "S").linedefined
+    assert(found:match("reading_test.lua:(%d+): ") and tonumber(found:match(":(%d+):")) >= line, found)
+end
+
+local w, none, flag, list, deep = 2, nil, true, { 3, 4.5, 6 }, { a = 1, b = { c = 0.25, n = 3 }, f = math.cos }
+local function sq(x) return x * x end
+local function clamp(x, low, high)
+    if x < low then return low end
+    if x > high then return high end
+    return x
+end
+local function both(x) return x, -x end
+local function fact(n) return n <= 1 and 1 or n * fact(n - 1) end
+local function triangle(n) return n == 0 and 0 or n + triangle(n - 1) end
+
+test("what a formula can be made of", function()
+    local functions = {
+        function(t) return math.sin(w * t) end,
+        function(t) return deep.a * math.cos(t) + deep.b.c * deep.f(t) end,
+        function() return 3 end,
+        function(t) return 7 // 2 + 7 % -3 + -7 // 2 * t end,
+        function(t) return t // 0.3 + t % 0.7 - t % -0.7 + 2 ^ t - t ^ 2 + (-8) ^ 3 end,
+        function(t) return -t / 3 + 1e300 * t * 1e-10 end,
+        function(t) return t < 1 and 5 or t <= 2 and 6 or t == 3 and 7 or t > 4 and 8 or t >= 3.5 and 9 or 10 end,
+        function(t) return 1 < t and 5 or 2 <= t and 4 or 3 end,
+        function(t) return not (t < 1) and 5 or -5 end,
+        function(t) local a = 1 if t < 1 then a = 2.5 end if t > 0 then a = a + 1 end return a // 1 * t end,
+        function(t) local s = 0 for i = 1, 9, 2 do s = s + math.sin(i * t) / i end return s end,
+        function(t) local s = 0 for i = 5, 1, -1 do if t > i then s = s + 1 else s = s - 0.5 end end return s end,
+        function(t) for i = 3, 1 do t = t + i end return t end,
+        function(t) local s = 1.0 for i = 1, #list do s = s + list[i] * t ^ i end return s end,
+        function(t) local s = 0 for i = 1, 4 do for j = i, 4 do s = s * t + i * j end end return s end,
+        function(t) local i = 0 while i < 5 do i = i + 1 if t < i then break end end return i end,
+        function(t) local i = 0 repeat i = i + 1 until i > 3 return i + t end,
+        function(t) return math.max(0, math.sin(t)) + math.min(t, 1, 2.5) + math.max(t, -1) end,
+        function(t) return -math.max(0, t) end,
+        function(t) return math.max(1, 2) * t + math.min(2, t, 0.5, -1) end,
+        function(t) return math.abs(t) + math.abs(-3) + math.floor(t) + math.ceil(t / 2) end,
+        function(t) return math.floor(t / 0.3) % 2 == 0 and 1 or -1 end,
+        function(t) return math.floor(t) // 3 + math.floor(t) * math.floor(-t) - -math.floor(t) end,
+        function(t) return math.floor(t) < 2 and math.floor(t) or math.floor(t) == 3 and 1 or 0.5 end,
+        function(t) return math.floor(t) < t and 1 or 2 end,
+        function(t) return math.sqrt(t) + math.log(t) + math.log(t, 2) + math.log(t, 10) + math.log(t, 3) end,
+        function(t) return math.exp(-t) + math.tan(t) + math.asin(t) + math.acos(t) + math.atan(t) + math.atan(t, -2) end,
+        function(t) return math.fmod(t, 0.7) + math.fmod(-t, 3) + math.rad(t) + math.deg(t) + math.pi end,
+        function(t) return math.tointeger(3) * t + math.huge * 0 < 1 and t or -t end,
+        function(t) return math.huge > t and math.maxinteger + 1 or math.mininteger // -1 end,
+        function(t) return sq(t) - sq(sq(t)) + clamp(t, -1, 2) end,
+        function(t) local a, b = both(t) return a * 2 + b end,
+        function(t) return (both(t)) end,
+        function(t) return math.max(both(t)) end,
+        function(t) return math.sin(math.abs(math.cos(sq(t)))) end,
+        function(t) return sq(t + 1) end,
+        function(t) return fact(6) + triangle(9) * t end,
+        function(t) return flag and t or none end,
+        function(t) return none == nil and t or 2 end,
+        function(t) local x, y, z = t, 2 x, y = y, x return z == nil and x - y or x end,
+        function(t) assert(t < 1e400, "far") return t end,
+        function(t) if t < 0 then error("early") end return math.sqrt(t) end,
+        function(t) if t > 0 then return t end end,
+        function(t) local on = t < 1 return on and 2 or t end,
+        function(t) local on = t < 1 and t > 0 if on == true then return 1 end return 0 end,
+        function(t) return ({ 1, 2 })[1] == 1 and t or t end,
+    }
+    functions[#functions] = nil  -- it makes a table
+    for i, f in ipairs(functions) do assert(same_values(f, "function " .. i) > 50) end
+end)
+
+test("zeros keep their signs, and whole numbers wrap", function()
+    local minus = -0.0
+    same_values(function(t) return minus * math.abs(t) end, "-0")
+    same_values(function(t) return -(t - t) end, "-(0)")
+    same_values(function(t) return t < 1 and -0.0 or 0.0 end, "both")
+    same_values(function(t) local n = math.maxinteger if t > 0 then n = n + 1 end return n end, "wrap")
+    same_values(function(t) return math.floor(t) * math.maxinteger end, "wrap later")
+    same_values(function(t) return math.floor(t) % 7 - math.floor(t) % -7 end, "whole %")
+    same_values(function(t) return math.floor(t) // -1 + 10 // math.floor(t + 0.5) end, "whole //")
+end)
+
+test("what no formula is, is not read, and the line is told", function()
+    local n, view = 0, setmetatable({}, { __index = function() return 2 end })
+    unread(function(t) n = n + 1 return t end, "assigns to a variable outside")
+    unread(function(t) UNUSED_GLOBAL = 1 return t end, "assigns to a global")
+    unread(function(t) list[1] = 3 return t end, "writes into a table")
+    unread(function(t) local v = { t } return v[1] end, "makes a table")
+    unread(function(t) return ("x"):len() * t end, "method")
+    unread(function(t) return #tostring(t) end, "not written in Lua (tostring)")
+    unread(function(t) return t + math.random() end, "not written in Lua (random)")
+    unread(function(t) return view.a * t end, "metatable")
+    unread(function(t) return deep.b * t end, "no number")
+    unread(function(t) return list[math.floor(t)] or 0 end, "not known beforehand")
+    unread(function(t) local s = 0 for i = 1, t do s = s + i end return s end, "constant bounds")
+    unread(function(t) while t > 1 do t = t / 2 end return t end, "too")
+    unread(function(t) local s = t for i = 1, 1000000 do s = s + i end return s end, "too long")
+    unread(function(t) local f = function() return t end return f() end, "makes a function")
+    unread(function(t) for _, x in ipairs(list) do t = t + x end return t end, "ipairs")
+    unread(function(t, ...) return t end, "any number of arguments")
+    assert(excitation.scripted(math.sin):obstacle():find("no Lua function"))
+end)
+
+test("what a formula holds for constant is looked at again when anything may have changed it", function()
+    local a, p = 1, { b = 2 }
+    local e = excitation.scripted(function(t) return a * t + p.b end)
+    local many = {}
+    for i = 1, 50 do many[i] = i end
+    equal(e:values(many)[50], 52.0)
+    a = 3
+    equal(e:values(many)[50], 152.0)
+    p.b = -1
+    equal(e:values(many)[50], 149.0)
+    p = { b = 0.5 }
+    equal(e:values(many)[50], 150.5)
+    a = 3.0
+    local floor = math.floor
+    math.floor = function(x) return 10 * x end
+    local f = excitation.scripted(function(t) return math.floor(t) end)
+    equal(f:values(many)[50], 500.0)
+    math.floor = floor
+    equal(f:values(many)[50], 50.0)
+end)
+
+test("a variable that an event changes in the middle of a run is seen at once", function()
+    local function final(extra)
+        local gain = 1
+        local run = system { I = 1, k = 0 }:simulate {
+            M = extra(function(t) return gain * (1 + 0 * t) end), t_end = 4, dt = 0.5,
+            events = { { name = "half", when = function(t) return t - 2 end, act = function() gain = 3 end } },
+        }
+        return run.outcome, run.velocity[#run]
+    end
+    local read = { final(function(f) return f end) }
+    local asked = { final(function(f) return function(t) return ({ f(t) })[1] end end) }
+    equal(read[1], asked[1])
+    equal(read[2], asked[2])
+end)
+
+test("theta, velocity and states come in, and a run is the same to the last bit", function()
+    local function rows(M, integrator)
+        return system { I = 1, k = 4, Rd = 0.3, Re = 0.4 }:simulate {
+            M = M, theta0 = 1, t_end = 20, dt = 0.1, integrator = integrator,
+            states = { z = { start = 0, rate = function(_, theta, _, z) return theta - 0.5 * z.z end } },
+        }
+    end
+    local f = function(t, theta, velocity, z) return 2 * math.sin(3 * t) - 0.3 * velocity + 0.1 * theta - 0.2 * z.z end
+    local g = function(t, theta, velocity, z) return ({ f(t, theta, velocity, z) })[1] end
+    for _, i in ipairs { integrator.spectral {}, integrator.rk4 { h = 0.01 } } do
+        local a, b = rows(f, i), rows(g, i)
+        for n = 1, #a do
+            assert(same(a.theta[n], b.theta[n]) and same(a.velocity[n], b.velocity[n]), n)
+        end
+        equal(#a.events, #b.events)
+    end
+end)
+
+test("an error keeps its line, and a hook sees each call", function()
+    local f = function(t)
+        if t > 3 then error("too late") end
+        return t
+    end
+    support.raises_here(function()
+        f = function(t)
+            if t > 3 then error("too late") end
+            return t
+        end
+        system { I = 1, k = 1 }:simulate { M = f, t_end = 5, dt = 1 }
+    end, "too late")
+    local e, lines, many = excitation.scripted(function(t) return 2 * t end), 0, {}
+    for i = 1, 100 do many[i] = i end
+    e:values(many)
+    debug.sethook(function() lines = lines + 1 end, "c")
+    e:values(many)
+    debug.sethook()
+    assert(lines >= 100, lines)
+end)
+
+-- ---- conditions are breaks
+
+local function before(x)
+    local n = string.unpack("i8", string.pack("d", x))
+    return x > 0 and string.unpack("d", string.pack("i8", n - 1)) or x - 5e-324
+end
+
+local function breaks(f, from, to)
+    local e, list, t = excitation.scripted(f), {}, from
+    repeat
+        t = e:next_break(t)
+        list[#list + 1] = t < to and t or nil
+    until t >= to
+    return list
+end
+
+test("breaks are the very times at which Lua sees the change", function()
+    local third = 0.3
+    local cases = {
+        { function(t) return t < 1 and 2 or 3 end, 1 },
+        { function(t) return t <= 1 and 2 or 3 end, 1 },
+        { function(t) return t * third >= 1 and 2 or 3 end, 1 },
+        { function(t) return 0.1 > t / 7 and 2 or 3 end, 1 },
+        { function(t) return math.sin(t) > 0.5 and 2 or 3 end, 4 },
+        { function(t) return t % 2 < 1.1 and 2 or 3 end, 9 },
+        { function(t) return math.floor(t / third) end, 33 },
+        { function(t) return math.ceil(t / third) % 3 end, 33 },
+        { function(t) return t // third end, 33 },
+        { function(t) return math.exp(-t) * t > 0.3 and 2 or 3 end, 2 },
+        { function(t) return t ^ 3 > 20 and 2 or t * t < 3 and 4 or 3 end, 2 },
+        { function(t) return math.atan(t) > 1 and 2 or math.log(t + 1) > 2 and 3 or math.sqrt(t) < 1 and 4 or 5 end, 2 },
+    }
+    for i, case in ipairs(cases) do
+        local f, count = case[1], case[2]
+        local list = breaks(f, 1e-9, 10)
+        local changes = 0
+        for _, b in ipairs(list) do
+            if f(b) ~= f(before(b)) then changes = changes + 1 end
+        end
+        equal(changes, count, "function " .. i)
+    end
+end)
+
+test("kinks of abs, max and min are breaks", function()
+    local list = breaks(function(t) return math.abs(t - 1) + math.max(t, 2) + math.min(3 - t, 0.25) end, 0, 10)
+    equal(table.concat(list, " "), "1.0 2.0 2.75")
+    list = breaks(function(t) return math.abs(math.sin(t)) end, 0.1, 10)
+    equal(#list, 3)
+    near(list[3], 3 * math.pi, 1e-14)
+end)
+
+test("between breaks nothing changes", function()
+    math.randomseed(11)
+    local r = math.random
+    for case = 1, 60 do
+        local a, b, c, d, e = r() * 3, r() * 2 + 0.05, r() * 10, r(), r() * 4 - 2
+        local f = function(t)
+            local n = 0
+            if t < a then n = n + 1 end
+            if t % b < d * b then n = n + 2 elseif math.abs(t - c) < 0.01 * d then n = n + 4 end
+            if math.sin(e * t) + d > math.cos(t) then n = n + 8 end
+            return n + 16 * math.floor(t * d)
+        end
+        local list = breaks(f, 0, 20)
+        table.insert(list, 1, 0)
+        list[#list + 1] = 20
+        for i = 2, #list do
+            local from, to = list[i - 1], before(list[i])
+            if to - from > 1e-12 then
+                from = from + 1e-13
+                local value = f(from)
+                for j = 0, 20 do
+                    equal(f(math.min(to - 1e-13, from + (to - from) * j / 20)), value, "case " .. case .. " at " .. from)
+                end
+            end
+        end
+    end
+end)
+
+test("no pulse is missed, however narrow", function()
+    math.randomseed(5)
+    local T0 = 2 * math.pi
+    for i = 1, 60 do
+        local at, width, height = math.random() * 15 * T0, 1e-6 * T0, 1e5
+        local table_of = { at = at, to = at + width }
+        local kinds = {
+            function(t) if t > at and t < at + width then return height end return 0 end,
+            function(t) return math.abs(t - at - width / 2) < width / 2 and height or 0 end,
+            function(t) return t >= table_of.at and t < table_of.to and height or 0 end,
+            function(t) return math.max(0, 1 - math.abs(t - at - width / 2) * 2 / width) * 2 * height end,
+        }
+        local run = system { I = 1, k = 1 }:simulate { M = kinds[i % 4 + 1], t_end = 16 * T0, dt = T0 }
+        local wanted = width * height
+        near(math.sqrt(run.theta[#run] ^ 2 + run.velocity[#run] ^ 2), wanted, 1e-7 * wanted)
+    end
+end)
+
+test("conditions of theta are no breaks, those of t beside them are", function()
+    local e = excitation.scripted(function(t, theta, velocity)
+        if theta > 0 then return t < 1 and 1 or 2 end
+        if velocity > 0 then return t < 3 and 1 or 2 end
+        return math.abs(theta) + 3 * velocity
+    end)
+    equal(e:obstacle(), nil)
+    equal(e:next_break(0), 1.0)
+    equal(e:next_break(1), 3.0)
+    equal(e:next_break(3), math.huge)
+end)
+
+test("a delayed function has its breaks later", function()
+    local e = excitation.scripted(function(t) return t % 2 < 1 and 1 or 0 end):delay(0.25)
+    equal(e:next_break(0), 0.25)
+    equal(e:next_break(0.25), 1.25)
+    equal((e * 2 + 1):next_break(1.25), 2.25)
+end)
+
+-- ---- random functions
+
+local depth_limit = 5
+local r = math.random
+local leaves = {
+    function() return "t" end,
+    function() return "a" end,
+    function() return "p.x" end,
+    function() return "p.q.n" end,
+    function() return tostring(r(-3, 9)) end,
+    function() return ("%.3f"):format(r() * 4 - 2) end,
+    function() return "x" end,
+}
+local expression, condition
+function expression(depth)
+    if depth <= 0 or r() < 0.12 then return leaves[r(#leaves)]() end
+    local function sub() return expression(depth - 1) end
+    local choice = r(20)
+    if choice <= 8 then
+        local operators = { "+", "-", "*", "/", "//", "%", "+", "*" }
+        return "(" .. sub() .. " " .. operators[choice] .. " " .. sub() .. ")"
+    elseif choice == 9 then
+        return "(" .. sub() .. ") ^ " .. r(0, 3)
+    elseif choice == 10 then
+        return "-" .. "(" .. sub() .. ")"
+    elseif choice <= 13 then
+        local names = { "sin", "cos", "floor", "ceil", "abs", "sqrt", "atan", "exp", "tan" }
+        return "math." .. names[r(#names)] .. "(" .. sub() .. ")"
+    elseif choice == 14 then
+        return ("math.%s(%s, %s)"):format(r() < 0.5 and "max" or "min", sub(), sub())
+    elseif choice == 15 then
+        return ("math.%s(%s, %s, %s)"):format(r() < 0.5 and "max" or "min", sub(), sub(), sub())
+    elseif choice <= 17 then
+        return ("(%s and %s or %s)"):format(condition(depth - 1), sub(), sub())
+    elseif choice == 18 then
+        return "helper(" .. sub() .. ", " .. sub() .. ")"
+    elseif choice == 19 then
+        return "list[" .. r(3) .. "]"
+    end
+    return "math.fmod(" .. sub() .. ", 1.5 + " .. sub() .. ")"
+end
+function condition(depth)
+    local operators = { "<", "<=", ">", ">=", "==", "~=" }
+    local one = expression(depth) .. " " .. operators[r(6)] .. " " .. expression(depth)
+    local choice = r(5)
+    if choice == 1 and depth > 0 then return "(" .. one .. " and " .. condition(depth - 1) .. ")" end
+    if choice == 2 and depth > 0 then return "(" .. one .. " or " .. condition(depth - 1) .. ")" end
+    if choice == 3 then return "not (" .. one .. ")" end
+    return one
+end
+local function body(depth)
+    local lines = { "local x = 0.5 x = " .. expression(depth) }
+    for _ = 1, r(0, 3) do
+        local choice = r(4)
+        if choice == 1 then
+            lines[#lines + 1] = ("if %s then x = %s else x = %s end"):format(condition(2), expression(2), expression(2))
+        elseif choice == 2 then
+            lines[#lines + 1] = ("for i = %d, %d do x = x * 0.5 + i * %s if %s then break end end")
+                :format(r(-2, 1), r(1, 5), expression(2), condition(1))
+        elseif choice == 3 then
+            lines[#lines + 1] = ("if %s then return %s end"):format(condition(2), expression(2))
+        else
+            lines[#lines + 1] = "local y = x x = " .. expression(3) .. " + y"
+        end
+    end
+    lines[#lines + 1] = "return x + " .. expression(depth)
+    return table.concat(lines, "\n")
+end
+
+test("random functions give the same bits read as asked", function()
+    math.randomseed(tonumber(os.getenv("DINAL_READING_SEED")) or 1)
+    local cases, read, values = tonumber(os.getenv("DINAL_READING_CASES")) or 1500, 0, 0
+    for case = 1, cases do
+        local text = "local a, p, list, helper = ...\nreturn function(t)\n" .. body(depth_limit) .. "\nend"
+        local f = assert(load(text))(r() < 0.5 and r(5) or r() * 3, { x = r() - 0.5, q = { n = r(-4, 4) } },
+            { 1, 2.5, -3 }, function(u, v) if u < v then return u - v end return u + 0.5 * v end)
+        local why = excitation.scripted(f):obstacle()
+        if not why then
+            read = read + 1
+            values = values + same_values(f, "case " .. case .. "\n" .. text)
+        else
+            assert(why:find "divides by zero" or why:find "too " or why:find "no number" or why:find "fmod" or
+                why:find "2%^53", why)
+        end
+    end
+    assert(read > 0.8 * cases and values > 50 * cases, read .. " read, " .. values .. " values")
+end)
+
+support.finish()
