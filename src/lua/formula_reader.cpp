@@ -8,6 +8,7 @@
 #include <cstring>
 #include <map>
 #include <memory>
+#include <span>
 #include <tuple>
 
 #include "lua/prototype.hpp"
@@ -265,10 +266,8 @@ constexpr Standard standard[] = {{"math", "sin", Op::sin},
 
 class Reader {
 public:
-    Reader(lua_State* L, std::span<const std::string> states) : L_(L), states_(states) {
-        lua_newtable(L);
-        values_ = lua_gettop(L);
-    }
+    /// All values from outside come into the table at the index, which is the top.
+    Reader(lua_State* L, std::span<const std::string> states, int values) : L_(L), states_(states), values_(values) {}
 
     Reading read(int index, int arguments) {
         Reading reading;
@@ -279,11 +278,13 @@ public:
             while (!waiting_.empty()) follow_next();
             reading.formula = formula(arguments);
         } catch (const Obstacle& obstacle) {
-            reading.obstacle = place_ + obstacle.why;
+            const auto& [function, at] = place_;
+            const bool known = function != nullptr && at < function->code.lines.size();
+            reading.obstacle =
+                known ? fmt::format("{}:{}: {}", function->file, function->code.lines[at], obstacle.why) : obstacle.why;
         }
         reading.outside = std::move(outside_);
-        lua_pushvalue(L_, values_);
-        reading.values = luaL_ref(L_, LUA_REGISTRYINDEX);
+        reading.arguments = arguments;
         return reading;
     }
 
@@ -331,11 +332,13 @@ private:
         const int type = push_kept(holder);
         lua_replace(L_, values_ + 1);
         lua_settop(L_, values_ + 1);
+        // What follows may change without a value that does: the reading holds for no other run.
+        outside_.push_back({kind, holder, key, holder});
         if (kind != OutsideValue::Kind::variable && type != LUA_TTABLE)
             throw Obstacle{"it looks into what is no table"};
         if (!push_outside(L_, values_, values_ + 1, kind, key))
             throw Obstacle{"it looks into a table with a metatable"};
-        outside_.push_back({kind, holder, key, keep()});
+        outside_.back().value = keep();
         return known(outside_.back().value);
     }
 
@@ -642,7 +645,7 @@ private:
     void enter(Way& way, int closure, int base, int arguments, int results) {
         Frame frame{.closure = closure, .function = function_at(closure), .base = base, .results = results};
         const Prototype& code = frame.function->code;
-        if (place_.empty() && !code.lines.empty()) place_ = fmt::format("{}:{}: ", frame.function->file, code.lines[0]);
+        if (way.frames.empty()) place_ = {frame.function, 0};
         if (code.frame[1] != 0) throw Obstacle{"it takes any number of arguments (...)"};
         const int parameters = static_cast<std::uint8_t>(code.frame[0]),
                   size = static_cast<std::uint8_t>(code.frame[2]);
@@ -899,7 +902,7 @@ private:
                 return wait(std::move(way), jump_from_here());
             }
             has_returned_ = false;
-            place_ = fmt::format("{}:{}: ", frame.function->file, frame.function->code.lines[frame.at]);
+            place_ = {frame.function, frame.at};
             if (!step(way)) return;
         }
     }
@@ -1130,7 +1133,7 @@ private:
 
     lua_State* L_;
     std::span<const std::string> states_;
-    int values_ = 0, count_ = 0;
+    int values_, count_ = 0;
     std::map<const void*, int> kept_;
     std::vector<OutsideValue> outside_;
     std::map<int, std::shared_ptr<const Function>> functions_;
@@ -1141,7 +1144,7 @@ private:
     std::map<std::int64_t, std::size_t> constant_places_;
     int used_ = 0, followed_ = 0;
     bool has_returned_ = false;
-    std::string place_;
+    std::pair<std::shared_ptr<const Function>, std::size_t> place_;
 };
 
 /// The same type and the same bits.
@@ -1153,29 +1156,78 @@ bool is_same(lua_State* L) {
     return model::to_whole(lua_tonumber(L, -1)) == model::to_whole(lua_tonumber(L, -2));
 }
 
-}  // namespace
-
-Reading read_formula(lua_State* L, int index, int arguments, std::span<const std::string> states) {
-    const int top = lua_gettop(L);
-    index = lua_absindex(L, index);
-    luaL_checkstack(L, LUA_MINSTACK, "to read a function");
-    Reading reading = Reader(L, states).read(index, arguments);
-    lua_settop(L, top);
-    return reading;
-}
-
-bool still_holds(lua_State* L, const Reading& reading) {
-    const int top = lua_gettop(L);
-    lua_rawgeti(L, LUA_REGISTRYINDEX, reading.values);
+/// All outside is as it was; the values stand at the index.
+bool still_holds(lua_State* L, const Reading& reading, int values) {
     const bool same = std::all_of(reading.outside.begin(), reading.outside.end(), [&](const OutsideValue& one) {
-        lua_settop(L, top + 1);
-        lua_rawgeti(L, top + 1, one.holder);
-        if (!Reader::push_outside(L, top + 1, top + 2, one.kind, one.key)) return false;
-        lua_rawgeti(L, top + 1, one.value);
+        lua_settop(L, values);
+        lua_rawgeti(L, values, one.holder);
+        if (!Reader::push_outside(L, values, values + 1, one.kind, one.key)) return false;
+        lua_rawgeti(L, values, one.value);
         return is_same(L);
     });
-    lua_settop(L, top);
+    lua_settop(L, values);
     return same;
+}
+
+using Shared = std::shared_ptr<Reading>;
+const char readings_key = 0;  // in the registry: function -> its reading, as long as the function lives
+const char reading_class_key = 0;
+
+int forget_reading(lua_State* L) {
+    std::destroy_at(static_cast<Shared*>(lua_touserdata(L, 1)));
+    return 0;
+}
+
+/// Pushes the table of the key, which is made with that field of its metatable.
+void push_table(lua_State* L, const void* key) {
+    if (lua_rawgetp(L, LUA_REGISTRYINDEX, key) == LUA_TTABLE) return;
+    lua_pop(L, 1);
+    lua_newtable(L);
+    if (key == &readings_key) {
+        lua_createtable(L, 0, 1);
+        lua_pushliteral(L, "k");
+        lua_setfield(L, -2, "__mode");
+        lua_setmetatable(L, -2);
+    } else {
+        lua_pushcfunction(L, forget_reading);
+        lua_setfield(L, -2, "__gc");
+    }
+    lua_pushvalue(L, -1);
+    lua_rawsetp(L, LUA_REGISTRYINDEX, key);
+}
+
+}  // namespace
+
+Shared reading_of(lua_State* L, int index, int arguments, const std::vector<std::string>& states) {
+    luaL_checkstack(L, LUA_MINSTACK, "to read a function");
+    const int top = lua_gettop(L), readings = top + 1, made = top + 2, values = top + 3;
+    index = lua_absindex(L, index);
+    push_table(L, &readings_key);
+    lua_pushvalue(L, index);
+    if (lua_rawget(L, readings) == LUA_TUSERDATA) {
+        const Shared known = *static_cast<Shared*>(lua_touserdata(L, made));
+        lua_getiuservalue(L, made, 1);
+        if (known->arguments == arguments && known->states == states && still_holds(L, *known, values)) {
+            lua_settop(L, top);
+            return known;
+        }
+    }
+    lua_settop(L, readings);
+    auto* const place = static_cast<Shared*>(lua_newuserdatauv(L, sizeof(Shared), 1));
+    std::construct_at(place);
+    push_table(L, &reading_class_key);
+    lua_setmetatable(L, made);
+    lua_newtable(L);
+    Shared fresh = std::make_shared<Reading>(Reader(L, states, values).read(index, arguments));
+    fresh->states = states;
+    *place = fresh;
+    lua_settop(L, values);
+    lua_setiuservalue(L, made, 1);
+    lua_pushvalue(L, index);
+    lua_insert(L, made);
+    lua_rawset(L, readings);
+    lua_settop(L, top);
+    return fresh;
 }
 
 }  // namespace dinal::lua

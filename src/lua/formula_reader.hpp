@@ -8,8 +8,8 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <optional>
-#include <span>
 #include <string>
 #include <vector>
 
@@ -28,16 +28,14 @@ struct OutsideValue {
 
 struct Reading {
     std::optional<model::Formula> formula;
-    std::string obstacle;  ///< why there is none: "lab.lua:3: it assigns to a variable outside"
+    std::string obstacle;  ///< why there is none: "lab.lua:3: it assigns to a variable outside of it"
+    int arguments = 0;
+    std::vector<std::string> states;
     std::vector<OutsideValue> outside;
-    int values = LUA_NOREF;  ///< a table in the registry
 };
 
-/// The callable value at the index, when it is called with the first `arguments` of t, theta, velocity and the table of
-/// these states.
-Reading read_formula(lua_State* L, int index, int arguments, std::span<const std::string> states);
-
-/// All outside is as it was.
-bool still_holds(lua_State* L, const Reading& reading);
+/// How the callable value at the index is read when it is called with the first `arguments` of t, theta, velocity and
+/// the table of these states. All who ask share one reading, until something outside is no longer as it was.
+std::shared_ptr<Reading> reading_of(lua_State* L, int index, int arguments, const std::vector<std::string>& states);
 
 }  // namespace dinal::lua

@@ -273,7 +273,6 @@ LuaFunction::LuaFunction(lua_State* L, int index, FunctionRole role)
 
 // Also right while lua_close runs the finalizers: the registry goes last.
 LuaFunction::~LuaFunction() {
-    luaL_unref(main_, LUA_REGISTRYINDEX, reading_.values);
     luaL_unref(main_, LUA_REGISTRYINDEX, reference_);
 }
 
@@ -300,38 +299,35 @@ int LuaFunction::arguments_in(const CallState& call, std::size_t states) const {
 /// What it was read as, when all that this holds for constant is as it was; null where Lua must be asked: also when a
 /// hook looks on, or is to stop what runs.
 model::Formula* LuaFunction::formula(const CallState& call, Need need) {
-    if (distrusted_ || lua_gethook(call.L_) != nullptr) return nullptr;
-    const bool is_read = reading_.formula.has_value();
-    if (is_read && seen_ == world) return &*reading_.formula;
+    if (lua_gethook(call.L_) != nullptr) return nullptr;
+    const bool is_read = formula() != nullptr;
+    if (is_read && seen_ == world) return &*reading_->formula;
     if (!is_read && tried_in_ == call.number_) return nullptr;
     if (need == Need::a_value && patience_ > 0) {
         --patience_;
         return nullptr;
     }
-    look_again(call, arguments_in(call, call.names_.size()));
-    return reading_.formula ? &*reading_.formula : nullptr;
+    look_again(call);
+    return reading_->formula ? &*reading_->formula : nullptr;
 }
 
-void LuaFunction::look_again(const CallState& call, int arguments) {
-    lua_State* L = call.L_;
-    constexpr int few = 8;
-    constexpr unsigned most_doublings = 8;
-    tried_in_ = call.number_;
-    if (!reading_.formula && failures_ > 0) {  // less and less often
-        if ((++put_off_ & ((1U << std::min(failures_, most_doublings)) - 1U)) != 0) return;
-    }
-    patience_ = values_ - values_then_ < few ? few : 0;
-    values_then_ = values_;
+void LuaFunction::look_again(const CallState& call) {
+    constexpr std::uint64_t few = 8;
+    constexpr int longest_pause = 1024;
+    const int arguments = arguments_in(call, call.names_.size());
+    const bool new_call = tried_in_ != call.number_;
+    pause_ = values_ < few ? std::min(2 * pause_, longest_pause) : 1;
+    patience_ = pause_ - 1;
+    values_ = 0;
     seen_ = world;
-    if (reading_.formula && arguments == arguments_ && still_holds(L, reading_)) return;
-    luaL_unref(L, LUA_REGISTRYINDEX, reading_.values);
-    reading_ = {};
-    push(L);
-    reading_ = read_formula(L, -1, arguments, arguments == 4 ? call.state_names_ : std::vector<std::string>());
-    lua_pop(L, 1);
-    arguments_ = arguments;
-    values_ = values_then_ = 0;
-    if (!reading_.formula) ++failures_;
+    tried_in_ = call.number_;
+    push(call.L_);
+    reading_ = reading_of(call.L_, -1, arguments, arguments == 4 ? call.state_names_ : std::vector<std::string>());
+    lua_pop(call.L_, 1);
+    if (new_call && reading_->formula) {
+        reading_->formula->begin(call.span_);
+        reading_->obstacle.clear();
+    }
 }
 
 /// The first values, and then some of them, are compared with those of Lua.
@@ -341,8 +337,8 @@ bool LuaFunction::agrees(double read, CallState& call, double t, const model::St
     if (++values_ > first && values_ % between != 0) return true;
     const double asked = ask(call, t, state, states);
     if (std::bit_cast<std::uint64_t>(asked) == std::bit_cast<std::uint64_t>(read)) return true;
-    distrusted_ = true;
-    reading_.obstacle = "it gave another value than its formula";
+    reading_->formula.reset();
+    reading_->obstacle = "it gave another value than its formula";
     return false;
 }
 
@@ -350,7 +346,7 @@ double LuaFunction::value_with(double t, const model::State& state, std::span<co
     CallState* call = current;
     if (call == nullptr || call->failed_) return failure;
     const int arguments = arguments_in(*call, states.size());
-    if (model::Formula* read = formula(*call, Need::a_value); read != nullptr && arguments == arguments_) {
+    if (model::Formula* read = formula(*call, Need::a_value); read != nullptr && arguments == reading_->arguments) {
         const std::span<const double> given = arguments == 4 ? states : std::span<const double>();
         const double M = read->value(t, state, given);
         if (is_allowed(M) && agrees(M, *call, t, state, states)) return M;
@@ -386,15 +382,15 @@ double LuaFunction::ask(CallState& call, double t, const model::State& state, st
 
 const std::string& LuaFunction::obstacle() {
     if (current != nullptr && !current->failed_) formula(*current, Need::breaks);
-    return reading_.obstacle;
+    return reading_->obstacle;
 }
 
 double LuaFunction::next_break(double t) {
     if (current == nullptr || current->failed_) return model::never;
     model::Formula* read = formula(*current, Need::breaks);
     if (read == nullptr) return model::never;
-    const double found = read->next_break(t, current->span_);
-    if (read->gave_up()) reading_.obstacle = "its conditions change at too many times to find them";
+    const double found = read->next_break(t);
+    if (read->gave_up()) reading_->obstacle = "its conditions change at too many times to find them";
     return found;
 }
 

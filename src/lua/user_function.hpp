@@ -98,11 +98,9 @@ public:
     /// Reads it, if that was not done in this call; why it could not be read, empty when it could.
     const std::string& obstacle();
     /// The same as it was found last.
-    [[nodiscard]] const std::string& last_obstacle() const { return reading_.obstacle; }
+    [[nodiscard]] const std::string& last_obstacle() const { return reading_->obstacle; }
     /// Its formula, when it is read.
-    [[nodiscard]] const model::Formula* formula() const {
-        return reading_.formula && !distrusted_ ? &*reading_.formula : nullptr;
-    }
+    [[nodiscard]] const model::Formula* formula() const { return reading_->formula ? &*reading_->formula : nullptr; }
     /// Pushes the function itself.
     void push(lua_State* L) const;
 
@@ -110,7 +108,7 @@ private:
     static int fill_protected(lua_State* L);
     enum class Need { a_value, breaks };
     model::Formula* formula(const CallState& call, Need need);
-    void look_again(const CallState& call, int arguments);
+    void look_again(const CallState& call);
     bool agrees(double read, CallState& call, double t, const model::State& state, std::span<const double> states);
     [[nodiscard]] int arguments_in(const CallState& call, std::size_t states) const;
     double ask(CallState& call, double t, const model::State& state, std::span<const double> states);
@@ -126,15 +124,12 @@ private:
 
     // How it was read, and whether that still holds. Reading pays after some values only, so the first ones are asked
     // for, and so is each value as long as other functions run between all of them.
-    Reading reading_;
-    int arguments_ = 0;           // of the reading
-    bool distrusted_ = false;     // Lua has said something else
+    std::shared_ptr<Reading> reading_ = std::make_shared<Reading>();
     std::uint64_t seen_ = 0;      // what had run when the reading was compared with all that it holds for constant
-    std::uint64_t tried_in_ = 0;  // the call in which it was read last
-    unsigned failures_ = 0, put_off_ = 0;
-    int patience_ = 12;              // values that are asked for before that is done again
-    std::uint64_t values_ = 0;       // that were read
-    std::uint64_t values_then_ = 0;  // when that was done last
+    std::uint64_t tried_in_ = 0;  // the call in which that was done last
+    std::uint64_t values_ = 0;    // that were read since then
+    int patience_ = 12;           // values that are asked for before it is done again
+    int pause_ = 4;               // what that was last; longer and longer while few values come between
 };
 
 /// What a user does at one of his events: a Lua function of t, theta, velocity, states that returns theta, velocity, or

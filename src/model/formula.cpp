@@ -495,7 +495,7 @@ double cut(double from, double to, double part, int turn) {
 
 }  // namespace
 
-double Formula::next_break(double t, double span) {
+double Formula::next_break(double t) {
     constexpr double end_of_time = 1e300;
     if (!has_conditions_ || gave_up_ || !(std::fabs(t) < end_of_time)) return never;
     const double found = search(t + 0.0);  // not -0
@@ -503,7 +503,7 @@ double Formula::next_break(double t, double span) {
     // events, but roughness.
     constexpr int most_alike = 30;
     double last = t, next = found;
-    for (int n = 0; is_dubious(last, next, span); ++n) {
+    for (int n = 0; is_dubious(last, next); ++n) {
         if (n == most_alike) gave_up_ = true;
         if (gave_up_) return never;
         last = next, next = search(next);
@@ -512,15 +512,15 @@ double Formula::next_break(double t, double span) {
 }
 
 /// The next change is next to this one, or next to nothing.
-bool Formula::is_dubious(double t, double found, double span) {
+bool Formula::is_dubious(double t, double found) {
     constexpr double close = 1e-9, most_breaks = 50000, small = 1e-5, rounding = 1e-13;
     if (found == never) return false;
-    if (found - t < std::max(close * std::fabs(t), span / most_breaks)) return true;
+    if (found - t < std::max(close * std::fabs(t), span_ / most_breaks)) return true;
     const double jump = std::fabs(value(found, {}, {}) - value(std::nextafter(found, -never), {}, {}));
     if (!(jump > 0)) return false;
     constexpr int places = 50;
     for (int n = 0; n < places && !knows_greatest_; ++n) {
-        const double there = std::fabs(value(found + span * n / places, {}, {}));
+        const double there = std::fabs(value(found + span_ * n / places, {}, {}));
         if (std::isfinite(there)) greatest_ = std::max(greatest_, there);
     }
     knows_greatest_ = true;

@@ -94,9 +94,13 @@ public:
     [[nodiscard]] double value(double t, const State& state, std::span<const double> states);
 
     /// The first time after t at which a condition of t changes: a comparison, the sign within abs, the step of floor,
-    /// ceil, // or %. It is the very double at which the function itself sees the change. `span`: how long a time is of
-    /// interest, so that noise is told from events.
-    [[nodiscard]] double next_break(double t, double span);
+    /// ceil, // or %. It is the very double at which the function itself sees the change.
+    [[nodiscard]] double next_break(double t);
+    /// So long a time is of interest now: conditions that change far more often are noise, and no breaks.
+    void begin(double span) {
+        if (span != span_) knows_greatest_ = false, greatest_ = 0;
+        span_ = span, gave_up_ = false, unfinished_ = 0;
+    }
 
     /// It compares, rounds or folds at all.
     [[nodiscard]] bool has_conditions() const { return has_conditions_; }
@@ -109,7 +113,7 @@ private:
     struct Range;
     class Look;
     double search(double t);
-    bool is_dubious(double t, double found, double span);
+    bool is_dubious(double t, double found);
 
     std::vector<Step> steps_;
     std::vector<double> registers_;
@@ -118,7 +122,7 @@ private:
     bool has_conditions_, of_motion_ = false, gave_up_ = false;
     std::map<double, double> known_;  ///< from a time to the next break
     int unfinished_ = 0;              ///< searches that ended before they found one
-    double greatest_ = 0;             ///< value at some times
+    double span_ = 1, greatest_ = 0;  ///< value at some times
     bool knows_greatest_ = false;
 };
 
