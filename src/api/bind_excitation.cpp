@@ -11,6 +11,7 @@
 #include "lua/user_function.hpp"
 #include "lua/vector.hpp"
 #include "model/controller.hpp"
+#include "motion/witness.hpp"
 #include "source/describe.hpp"
 
 namespace dinal::api {
@@ -46,6 +47,31 @@ model::Excitation to_excitation(lua_State* L, int index, std::string_view what, 
                        .culprit = lua::written(L, index)});
     }
     return std::move(made).value();
+}
+
+std::optional<model::Excitation> terms_alone(lua_State* L, const model::Oscillator& system, const model::Excitation& M,
+                                             double from, const model::Extras& extras) {
+    if (!M.has_script() || motion::has_functions(system, {}, extras)) return {};
+    const lua::CallState call(L);
+    model::Excitation sum;
+    for (const model::Component& component : M.components()) {
+        std::vector<model::Term> terms{component.term};
+        double delay = 0;
+        if (const auto* script = std::get_if<model::Scripted>(&component.term)) {
+            auto* function = dynamic_cast<lua::LuaFunction*>(script->function.get());
+            delay = script->delay;
+            if (function == nullptr || !function->obstacle().empty() || !script->breaks.empty() || script->period > 0)
+                return {};
+            terms = function->formula()->terms(from - delay);
+            if (terms.empty()) return {};
+        }
+        for (model::Term& term : terms) {
+            const auto one = model::Excitation::make(std::move(term));
+            if (!one) return {};
+            sum = sum + one->delayed(delay).scaled(component.gain).windowed(component.from, component.to);
+        }
+    }
+    return sum;
 }
 
 namespace {

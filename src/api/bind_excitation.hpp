@@ -1,16 +1,22 @@
 // Excitations from Lua: what may stand for M, and the functions that make one.
 #pragma once
 
+#include <optional>
 #include <string_view>
 
 #include "lua/bind.hpp"
-#include "model/excitation.hpp"
+#include "model/extras.hpp"
 
 namespace dinal::api {
 
 /// What stands at `index` as an excitation: nothing (M = 0), a number, a function or callable table, an excitation.
 /// Raises a sentence headed by `what` for anything else, about that option if it is one.
 model::Excitation to_excitation(lua_State* L, int index, std::string_view what, std::string_view option = "");
+
+/// The functions in M as native terms, to rounding, from a time on. None where one is no sum of such terms, or where
+/// something else runs in Lua meanwhile, which may change what M depends on.
+std::optional<model::Excitation> terms_alone(lua_State* L, const model::Oscillator& system, const model::Excitation& M,
+                                             double from, const model::Extras& extras);
 
 /// Pushes the excitation of one term, or raises what is wrong with it.
 int push_term(lua_State* L, model::Term term);

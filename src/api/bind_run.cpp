@@ -26,7 +26,8 @@ namespace dinal::api {
 std::string story_of_run(lua_State* L, const Run& run) {
     if (run.is_part) return motion::summary(run.trajectory) + ". Its events tell what happened, and when.";
     lua::CallState call(L);  // a spring, a belt and a base may be a user's functions
-    std::string text = run.origin ? analysis::explain(run.trajectory, run.origin->system, run.origin->excitation,
+    std::string text = run.origin ? analysis::explain(run.trajectory, run.origin->system,
+                                                      run.terms ? *run.terms : run.origin->excitation,
                                                       run.origin->integrator, run.origin->extras)
                                   : analysis::explain_rows(run.trajectory, run.units);
     if (call.failed()) {

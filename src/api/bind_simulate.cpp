@@ -82,8 +82,11 @@ source::Task asked_task(lua_State* L, const lua::Options& options, const RunOpti
                       .rows = asked.dt ? motion::Grid::every(*asked.dt) : motion::Grid::at(asked.times),
                       .integrator = {},
                       .extras = read_extras(L, options)};
-    task.integrator =
-        integrator != nullptr ? *integrator : motion::integrator_for(system, task.excitation, task.extras);
+    const auto terms =
+        integrator == nullptr ? terms_alone(L, system, task.excitation, asked.t_start, task.extras) : std::nullopt;
+    task.integrator = integrator != nullptr
+                          ? *integrator
+                          : motion::integrator_for(system, terms ? *terms : task.excitation, task.extras);
     lua_pop(L, 1);
     check_relays(options, task);
     if (!asked.t_end && asked.times.empty()) {
@@ -185,7 +188,7 @@ void note_readings(Run& run) {
                 told = fmt::format("{} is evaluated in Lua ({}).", name, function->last_obstacle());
             } else {
                 told =
-                    fmt::format("{} is read as a formula{}{}.", name,
+                    fmt::format("{} is read as a {}{}{}.", name, run.terms ? "sum of native terms" : "formula",
                                 read->has_conditions() ? ": the times at which its conditions change are events" : "",
                                 read->has_conditions_of_motion()
                                     ? ", except for conditions on theta, velocity or states, which are sampled"
@@ -213,6 +216,10 @@ int run_task(lua_State* L, const lua::Options& options, source::Origin origin, d
     const auto run = std::make_shared<Run>();
     run->origin = std::move(origin);
     const motion::Limits limits = limits_of(dense);
+    const source::Task& asked = *run->origin;
+    if (std::holds_alternative<motion::Exact>(asked.integrator)) {
+        run->terms = terms_alone(L, asked.system, asked.excitation, asked.window.start, asked.extras);
+    }
 
     const Memories memories(L, options, run->origin->excitation, from != run->origin->window.start);
     lua::CallState call(L);
@@ -223,7 +230,9 @@ int run_task(lua_State* L, const lua::Options& options, source::Origin origin, d
         progress.advance(t);
         return !lua::interrupt_requested();
     };
-    run->trajectory = options.value_or_fail(compute(*run->origin, monitor, limits));
+    source::Task played = asked;
+    if (run->terms) played.excitation = *run->terms;
+    run->trajectory = options.value_or_fail(compute(played, monitor, limits));
     if (call.failed() && lua::interrupt_requested()) {
         run->trajectory.outcome = model::Outcome::interrupted;  // M was stopped, it did not fail
     }

@@ -15,12 +15,13 @@ namespace dinal::api {
 
 struct Run {
     motion::Trajectory trajectory;
-    std::optional<source::Origin> origin = {};  ///< none when it was read from a file
-    std::vector<std::string> comments = {};     ///< of the file it was read from
-    std::string readings = {};                  ///< which functions were read as formulas: sentences
-    model::Units units = {};                    ///< that stand in these; of another run those of its system
-    lua::MemoryCharge rows = {};                ///< of the file it was read from
-    bool is_part = false;                       ///< of a run of several bodies, seen from one of them
+    std::optional<source::Origin> origin = {};    ///< none when it was read from a file
+    std::vector<std::string> comments = {};       ///< of the file it was read from
+    std::optional<model::Excitation> terms = {};  ///< M as the native terms that its functions were read as
+    std::string readings = {};                    ///< which functions were read as formulas: sentences
+    model::Units units = {};                      ///< that stand in these; of another run those of its system
+    lua::MemoryCharge rows = {};                  ///< of the file it was read from
+    bool is_part = false;                         ///< of a run of several bodies, seen from one of them
 };
 
 // Shared, because every column that Lua takes out of a run is a view that keeps the whole run alive.

@@ -30,7 +30,8 @@ bool closes(std::span<const double> values) {
 
 /// That of M, where it knows one; else 0.
 double period_of_run(const Run& run) {
-    const auto drive = run.origin ? analysis::drive_of(run.origin->excitation, 0) : std::nullopt;
+    const auto drive =
+        run.origin ? analysis::drive_of(run.terms ? *run.terms : run.origin->excitation, 0) : std::nullopt;
     return drive ? drive->period : 0;
 }
 

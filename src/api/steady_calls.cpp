@@ -121,6 +121,9 @@ int steady_of_system(lua_State* L) {
                                       .periods = asked.periods.value_or(0),
                                       .initial = {asked.theta0, asked.velocity0}};
     lua_pop(L, 1);
+    if (const auto terms = asked.period ? std::nullopt : terms_alone(L, system, question.excitation, 0, {})) {
+        question.excitation = *terms;
+    }
     question.drive = drive_or_fail(L, options, system, question.excitation, asked.period);
     return push_steady(L, options, std::move(question));
 }
@@ -140,7 +143,8 @@ int steady_of_run(lua_State* L) {
     }
     analysis::SteadyQuestion question{
         .system = task.system, .excitation = task.excitation, .drive = {}, .periods = asked.periods.value_or(0)};
-    question.drive = drive_or_fail(L, options, task.system, task.excitation, asked.period);
+    if (run->terms && !asked.period) question.excitation = *run->terms;
+    question.drive = drive_or_fail(L, options, task.system, question.excitation, asked.period);
     asking(L, [&](const motion::Monitor&) { question.initial = state_at_period(run->trajectory, question.drive); });
     return push_steady(L, options, std::move(question));
 }

@@ -338,32 +338,28 @@ private:
             throw Obstacle{"it looks into what is no table"};
         if (!push_outside(L_, values_, values_ + 1, kind, key))
             throw Obstacle{"it looks into a table with a metatable"};
-        outside_.back().value = keep();
-        return known(outside_.back().value);
+        const int value = keep();
+        lua_settop(L_, values_ + 1);
+        outside_.back().value = value;
+        return known(value);
     }
 
 public:
-    /// The value that the holder at the index has; false, and nothing, where a metatable decides.
+    /// The value that the holder at the index has, or the tables that its metatables name; false, and nothing of use,
+    /// where a function decides.
     static bool push_outside(lua_State* L, int values, int holder, OutsideValue::Kind kind, std::int64_t key) {
-        switch (kind) {
-            case OutsideValue::Kind::variable:
-                return lua_getupvalue(L, holder, static_cast<int>(key)) != nullptr;
-            case OutsideValue::Kind::field:
-                lua_rawgeti(L, values, key);
-                lua_rawget(L, holder);
-                break;
-            case OutsideValue::Kind::element:
-                lua_rawgeti(L, holder, key);
-                break;
-            case OutsideValue::Kind::length:
-                lua_pushinteger(L, static_cast<lua_Integer>(lua_rawlen(L, holder)));
-                break;
+        if (kind == OutsideValue::Kind::variable) return lua_getupvalue(L, holder, static_cast<int>(key)) != nullptr;
+        if (kind == OutsideValue::Kind::length) {
+            lua_pushinteger(L, static_cast<lua_Integer>(lua_rawlen(L, holder)));
+            return luaL_getmetafield(L, holder, "__len") == LUA_TNIL;
         }
-        if ((lua_isnil(L, -1) || kind == OutsideValue::Kind::length) && lua_getmetatable(L, holder) != 0) {
-            lua_pop(L, 2);
-            return false;
+        for (int depth = 0; depth < 4 && lua_istable(L, holder); ++depth) {
+            kind == OutsideValue::Kind::field ? lua_rawgeti(L, values, key) : (lua_pushinteger(L, key), 0);
+            if (lua_rawget(L, holder) != LUA_TNIL) return true;
+            if (luaL_getmetafield(L, holder, "__index") == LUA_TNIL) return true;
+            holder = lua_gettop(L);
         }
-        return true;
+        return false;
     }
 
 private:

@@ -380,9 +380,9 @@ double LuaFunction::ask(CallState& call, double t, const model::State& state, st
     return fail(call, status, t);
 }
 
-const std::string& LuaFunction::obstacle() {
-    if (current != nullptr && !current->failed_) formula(*current, Need::breaks);
-    return reading_->obstacle;
+std::string LuaFunction::obstacle() {
+    const bool is_read = current != nullptr && !current->failed_ && formula(*current, Need::breaks) != nullptr;
+    return is_read || !reading_->obstacle.empty() ? reading_->obstacle : "a debug hook is set";
 }
 
 double LuaFunction::next_break(double t) {

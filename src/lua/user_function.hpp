@@ -96,7 +96,7 @@ public:
     [[nodiscard]] bool feedback() const { return feedback_; }
     [[nodiscard]] const FunctionRole& role() const { return role_; }
     /// Reads it, if that was not done in this call; why it could not be read, empty when it could.
-    const std::string& obstacle();
+    std::string obstacle();
     /// The same as it was found last.
     [[nodiscard]] const std::string& last_obstacle() const { return reading_->obstacle; }
     /// Its formula, when it is read.

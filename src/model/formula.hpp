@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "model/oscillator.hpp"
+#include "model/terms.hpp"
 
 namespace dinal::model {
 
@@ -101,6 +102,9 @@ public:
         if (span != span_) knows_greatest_ = false, greatest_ = 0;
         span_ = span, gave_up_ = false, unfinished_ = 0;
     }
+
+    /// Native terms whose sum it is, to rounding, from a time on; none where it is no such sum.
+    [[nodiscard]] std::vector<Term> terms(double from) const;
 
     /// It compares, rounds or folds at all.
     [[nodiscard]] bool has_conditions() const { return has_conditions_; }

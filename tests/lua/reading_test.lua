@@ -156,6 +156,65 @@ test("what a formula holds for constant is looked at again when anything may hav
     equal(f:values(many)[50], 50.0)
 end)
 
+test("tables that inherit from tables are read, and what they inherit is looked at again", function()
+    local base = { gain = 2 }
+    local own = setmetatable({}, { __index = setmetatable({}, { __index = base }) })
+    local e, many = excitation.scripted(function(t) return own.gain * t + (own.none and 1 or 0) end), {}
+    for i = 1, 50 do many[i] = i end
+    equal(e:obstacle(), nil)
+    equal(e:values(many)[50], 100.0)
+    base.gain = 3
+    equal(e:values(many)[50], 150.0)
+    own.gain = 4
+    equal(e:values(many)[50], 200.0)
+    getmetatable(own).__index = function() return 1 end
+    equal(e:values(many)[50], 201.0)
+    assert(e:obstacle():find "metatable")
+end)
+
+test("a sum of native terms runs by exact, knows its period, and has the values of the function to rounding", function()
+    local sys = system { I = 1, k = 5, Rd = 0.3, Re = 0.35 }
+    local a, w = 2, 3
+    local cases = {
+        { function(t) return a * math.sin(w * t) end, 2 * math.pi / 3 },
+        { function(t) return 1 + 2 * math.sin(3 * t + 0.3) - math.cos(2 * t) / 2 + math.sin(2 * (t - 1)) end, 2 * math.pi },
+        { function(t) return math.cos(-w * t + 1) * 2 - (t - t) + 0.25 ^ 2 end, 2 * math.pi / 3 },
+        { function(t) return 3 * math.exp(-t / 2) + 0.1 * t - 0.01 * t ^ 2 + (1 - t) * (2 + t) / 50 end },
+        { function() return 3 end },
+    }
+    for i, case in ipairs(cases) do
+        local f, period = case[1], case[2]
+        local function run(M, integrator)
+            return sys:simulate { M = M, t_start = -1, t_end = 20, dt = 0.1, theta0 = 0.5, integrator = integrator }
+        end
+        local found, sampled = run(f), run(function(t) return ({ f(t) })[1] end)
+        equal(tostring(found.integrator), "integrator.exact{}")
+        equal(tostring(sampled.integrator), "integrator.spectral{}")
+        equal(#found.events, #sampled.events)
+        near((found.theta - sampled.theta):abs():max(), 0, 1e-12)
+        near((found.M - sampled.M):abs():max(), 0, 1e-12)
+        assert(found.gap == nil and found:explain():find "sum of native terms")
+        equal(tostring(run(f, integrator.spectral {}).integrator), "integrator.spectral{}")
+        equal(run(f, integrator.exact {}).theta, found.theta)
+        local later = found:continue { t_end = 25 }
+        near((later:at(25)), (run(f):continue { t_end = 25 }:at(25)), 0)
+        if period then
+            local s = sys:steady { M = f }
+            near(s.period, period, 1e-14)
+            near(s.amplitude, sys:steady { M = f, period = s.period }.amplitude, 1e-9)
+        end
+    end
+    for _, f in ipairs { function(t) return t * math.sin(t) end, function(t) return math.sin(t * t) end,
+        function(t, theta) return math.sin(t) - theta end, function(t) return math.max(0, math.sin(t)) end } do
+        equal(tostring(sys:simulate { M = f, t_end = 1, dt = 1 }.integrator), "integrator.spectral{}")
+    end
+    -- what else runs in Lua may change what M depends on
+    local run = sys:simulate { M = cases[1][1], t_end = 1, dt = 1, events = { { when = function(t) return t - 0.5 end } } }
+    equal(tostring(run.integrator), "integrator.spectral{}")
+    support.raises_here(function() sys:simulate { M = math.sin, t_end = 1, dt = 1, integrator = integrator.exact {} } end,
+        "integrator.exact{} takes an M of native terms")
+end)
+
 test("a variable that an event changes in the middle of a run is seen at once", function()
     local function final(extra)
         local gain = 1

@@ -81,8 +81,9 @@ end)
 
 test("the default integrator is exact where that takes M, else spectral", function()
     equal(tostring(nd:simulate { t_end = 1, dt = 1 }.integrator), "integrator.exact{}")
-    local slow = function(t) return 0 * t end
-    equal(tostring(nd:simulate { M = slow, t_end = 1, dt = 1 }.integrator), "integrator.spectral{}")
+    equal(tostring(nd:simulate { M = function(t) return 0 * t end, t_end = 1, dt = 1 }.integrator), "integrator.exact{}")
+    local sampled = function(t) return #{} * t end
+    equal(tostring(nd:simulate { M = sampled, t_end = 1, dt = 1 }.integrator), "integrator.spectral{}")
     local chirp = excitation.chirp { from = 0, to = 1, duration = 1 }
     equal(tostring(nd:simulate { M = chirp, t_end = 1, dt = 1 }.integrator), "integrator.spectral{}")
     raises_here(function() nd:simulate { M = chirp, t_end = 1, dt = 1, integrator = integrator.exact {} } end,
