@@ -222,14 +222,16 @@ double Formula::value(double t, const State& state, std::span<const double> stat
 
 // ---- conditions of t
 
-/// The values that a register may have while t goes through an interval. NaN at the lower end: any value, or none.
+/// The values that a register may have while t goes through an interval.
 struct Formula::Range {
     double lo = 0, hi = 0;
-    bool of_motion = false;  ///< it hangs on theta, velocity or a state
+    bool is_anything = false;  ///< any value, or none
+    bool of_motion = false;    ///< it hangs on theta, velocity or a state
+    bool folds = false;        ///< it has a step or a kink within
+    std::uint64_t piece = 0;   ///< stands for the pieces, between folds, that it is made of
 
-    [[nodiscard]] bool is_one() const { return !of_motion && bits(lo) == bits(hi); }
-    [[nodiscard]] bool is_anything() const { return std::isnan(lo); }
-    static Range anything() { return {std::numeric_limits<double>::quiet_NaN(), 0}; }
+    [[nodiscard]] bool is_one() const { return !of_motion && !is_anything && bits(lo) == bits(hi); }
+    static Range anything() { return {.is_anything = true}; }
 };
 
 /// One look at the program for all t of an interval: which way it goes, if that is the same way for all of them.
@@ -260,7 +262,8 @@ public:
     [[nodiscard]] bool of_motion() const { return of_motion_; }
 
 private:
-    void note(std::uint64_t what) { seen_ = (seen_ ^ what) * 0x100000001b3U; }
+    static constexpr std::uint64_t prime = 0x100000001b3U;
+    void note(std::uint64_t what) { seen_ = (seen_ ^ what) * prime; }
 
     bool follow(std::size_t at, std::vector<Range>& r) {
         for (;;) {
@@ -276,11 +279,7 @@ private:
                     continue;
                 }
                 const auto found = decide(s.op, a, b);
-                if (!found) {
-                    const double least = a.lo - b.hi, part = -least / (a.hi - b.lo - least);
-                    part_ = a.is_one() ? 1 - part : part;
-                    return false;
-                }
+                if (!found) return false;
                 note(at + at + (*found ? 1 : 0));
                 at = *found ? s.yes : s.no;
                 continue;
@@ -289,51 +288,61 @@ private:
                 at = s.yes;
             } else if (s.op >= Op::give) {
                 note(at);
-                return true;
+                if (s.op != Op::fail) note(a.piece);
+                return s.op == Op::fail || !a.folds;
             } else {
-                const auto result = of(s.op, a, b);
-                if (!result) return false;
-                if (fails_) return note(at), fails_ = false, true;
-                r[s.to] = *result;
+                fails_ = false;
+                Range result = of(s.op, a, b);
+                if (fails_) return note(at), true;
+                result.of_motion = a.of_motion || b.of_motion;
+                result.folds = result.folds || a.folds || b.folds;
+                for (const std::uint64_t piece : {a.piece, s.a == s.b ? 0 : b.piece}) {
+                    if (piece != 0) result.piece = (result.piece ^ piece) * prime;
+                }
+                r[s.to] = result;
                 ++at;
             }
         }
     }
 
-    static std::optional<bool> decide(Op op, Range a, Range b) {
+    /// Of whole numbers the same as floats.
+    static Range as_floats(Range r) {
+        r.lo = static_cast<double>(to_whole(r.lo)), r.hi = static_cast<double>(to_whole(r.hi));
+        return r;
+    }
+    std::optional<bool> decide(Op op, Range a, Range b) {
         if (a.is_one() && b.is_one()) return holds(op, a.lo, b.lo);
-        if (a.is_anything() || b.is_anything() || op >= Op::less_whole) return std::nullopt;
-        switch (op) {
-            case Op::less:
-                if (a.hi < b.lo) return true;
-                if (a.lo >= b.hi) return false;
-                break;
-            case Op::less_equal:
-                if (a.hi <= b.lo) return true;
-                if (a.lo > b.hi) return false;
-                break;
-            default:
-                if (a.hi < b.lo || a.lo > b.hi) return false;
+        if (a.is_anything || b.is_anything) return std::nullopt;
+        if (op >= Op::less_whole) {
+            a = as_floats(a), b = as_floats(b);
+            op = op == Op::less_whole ? Op::less : op == Op::less_equal_whole ? Op::less_equal : Op::equal;
+        }
+        if (op == Op::equal ? a.hi < b.lo || a.lo > b.hi : op == Op::less ? a.lo >= b.hi : a.lo > b.hi) return false;
+        if (op == Op::less ? a.hi < b.lo : op == Op::less_equal && a.hi <= b.lo) return true;
+        if (!a.folds && !b.folds) {
+            const double least = a.lo - b.hi, part = -least / (a.hi - b.lo - least);
+            part_ = a.is_one() ? 1 - part : part;
         }
         return std::nullopt;
     }
 
-    /// None when a fold lies within. Rounding keeps the order, so what the ends give holds what lies between.
-    std::optional<Range> of(Op op, Range a, Range b) {
+    /// Rounding keeps the order, so what the ends give holds what lies between.
+    Range of(Op op, Range a, Range b) {
         if (a.of_motion || b.of_motion) {
             of_motion_ = of_motion_ || is_fold(op);
-            return Range{.of_motion = true};
+            return {};
         }
         if (a.is_one() && b.is_one()) {
             Range one;
             fails_ = !operate(op, a.lo, b.lo, one.lo);
             one.hi = one.lo;
-            if (is_fold(op)) note(fold_of(op, a.lo, b.lo, one.lo));
+            if (is_fold(op)) one.piece = fold_of(op, a.lo, b.lo, one.lo) + 1;
             return one;
         }
-        if (op == Op::move) return a;
+        if (op == Op::move) return {.lo = a.lo, .hi = a.hi, .is_anything = a.is_anything};
+        if (a.is_anything || b.is_anything) return {.is_anything = true, .folds = is_fold(op)};
         if (is_fold(op)) return fold(op, a, b);
-        if (a.is_anything() || b.is_anything()) return Range::anything();
+        if (op >= Op::add_whole && op <= Op::to_float) return of_whole(op, as_floats(a), as_floats(b));
         switch (op) {
             case Op::add:
                 return checked({a.lo + b.lo, a.hi + b.hi});
@@ -396,20 +405,58 @@ private:
                 return std::floor(a) + 1;
         }
     }
-    std::optional<Range> fold(Op op, Range a, Range b) {
+    Range fold(Op op, Range a, Range b) {
         const bool alone = op == Op::abs || op == Op::floor || op == Op::ceil;
-        if (a.is_anything() || !(alone || b.is_one())) return std::nullopt;
-        if (op == Op::fmod && (a.lo < 0) != (a.hi < 0)) return std::nullopt;
-        Range ends;
-        if (!operate(op, a.lo, b.lo, ends.lo) || !operate(op, a.hi, b.lo, ends.hi)) return std::nullopt;
-        const std::uint64_t piece = fold_of(op, a.lo, b.lo, ends.lo);
-        if (piece != fold_of(op, a.hi, b.lo, ends.hi)) {
-            part_ = (next_fold(op, a.lo, b.lo, ends.lo) - a.lo) / (a.hi - a.lo);
-            return std::nullopt;
+        Range r;
+        if (!(alone || b.is_one()) || !operate(op, a.lo, b.lo, r.lo) || !operate(op, a.hi, b.lo, r.hi)) {
+            return {.is_anything = true, .folds = true};
         }
-        note(piece);
-        if (op == Op::abs && a.lo < 0) std::swap(ends.lo, ends.hi);
-        return ends;
+        const std::uint64_t piece = fold_of(op, a.lo, b.lo, r.lo);
+        const bool whole = piece == fold_of(op, a.hi, b.lo, r.hi) && !(op == Op::fmod && (a.lo < 0) != (a.hi < 0));
+        if (whole) {
+            r.piece = piece + 1;
+        } else {
+            part_ = (next_fold(op, a.lo, b.lo, r.lo) - a.lo) / (a.hi - a.lo);
+            r.folds = true;
+            const double size = std::fabs(b.lo);
+            if (op == Op::modulo) r.lo = std::min(b.lo, 0.0), r.hi = std::max(b.lo, 0.0);
+            if (op == Op::fmod) r.lo = a.lo < 0 ? -size : 0, r.hi = size;
+            if (op == Op::abs) r.hi = std::max(r.lo, r.hi), r.lo = 0;
+        }
+        if ((op == Op::abs || op == Op::floor_divide) && r.lo > r.hi) std::swap(r.lo, r.hi);
+        return r;
+    }
+    /// Of whole numbers that differ within the interval, as floats. They come from steps, so a crude answer will do.
+    static Range of_whole(Op op, Range a, Range b) {
+        constexpr double exact = 0x1p53;
+        Range r;
+        switch (op) {
+            case Op::to_float:
+                return {a.lo, a.hi};
+            case Op::add_whole:
+                r = {a.lo + b.lo, a.hi + b.hi};
+                break;
+            case Op::subtract_whole:
+                r = {a.lo - b.hi, a.hi - b.lo};
+                break;
+            case Op::negate_whole:
+                r = {-a.hi, -a.lo};
+                break;
+            case Op::multiply_whole:
+                r = corners(Op::multiply, a, b);
+                break;
+            case Op::modulo_whole:
+                r = {std::min(b.lo, 0.0), std::max(b.hi, 0.0)};
+                if (b.lo == b.hi && std::floor(a.lo / b.lo) == std::floor(a.hi / b.lo)) {
+                    r = {float_modulo(a.lo, b.lo), float_modulo(a.hi, b.lo)};
+                }
+                break;
+            default:
+                return Range::anything();
+        }
+        if (r.is_anything || !(std::max(std::fabs(r.lo), std::fabs(r.hi)) < exact)) return Range::anything();
+        r.lo = from_whole(static_cast<std::int64_t>(r.lo)), r.hi = from_whole(static_cast<std::int64_t>(r.hi));
+        return r;
     }
     /// Beyond what floats hold anything may be.
     static Range checked(Range r) { return std::isfinite(r.lo) && std::isfinite(r.hi) ? r : Range::anything(); }
@@ -435,7 +482,7 @@ private:
     static Range wider(Range r) {
         constexpr double part = 1e-15;
         r = checked(r);
-        if (r.is_anything()) return r;
+        if (r.is_anything) return r;
         if (r.lo != 0) r.lo -= std::min(part * std::fabs(r.lo), r.lo > 0 ? r.lo : never);
         if (r.hi != 0) r.hi += std::min(part * std::fabs(r.hi), r.hi < 0 ? -r.hi : never);
         return r;
@@ -444,7 +491,7 @@ private:
         const bool whole = b.is_one() && b.lo == std::floor(b.lo);
         if (!(a.lo > 0 || whole) || (b.lo < 0 && a.lo <= 0 && a.hi >= 0)) return Range::anything();
         Range r = corners(Op::power, a, b);
-        if (a.lo < 0 && a.hi > 0 && !r.is_anything()) r.lo = std::min(r.lo, 0.0), r.hi = std::max(r.hi, 0.0);
+        if (a.lo < 0 && a.hi > 0 && !r.is_anything) r.lo = std::min(r.lo, 0.0), r.hi = std::max(r.hi, 0.0);
         return wider(r);
     }
     /// Of a sine whose greatest and least values lie at half turns, from `shift` of one.

@@ -299,6 +299,11 @@ test("breaks are the very times at which Lua sees the change", function()
         { function(t) return t // third end, 33 },
         { function(t) return math.exp(-t) * t > 0.3 and 2 or 3 end, 2 },
         { function(t) return t ^ 3 > 20 and 2 or t * t < 3 and 4 or 3 end, 2 },
+        { function(t) local x = math.floor(t) local y = x x = 0 return y + x end, 9 },
+        { function(t) return math.floor((t - 3) * 1e6) == 0 and 5 or 0 end, 2, 2 },
+        { function(t) return math.abs(t - 3) < 1e-6 and 5 or 0 end, 2, 2 },
+        { function(t) return math.floor(t * 1e3) % 1000 < 500 and 5 or 0 end, 19, 19 },
+        { function(t) return t % 1 + 0.5 > 2 and 5 or 0 end, 0, 0 },
         { function(t) return math.atan(t) > 1 and 2 or math.log(t + 1) > 2 and 3 or math.sqrt(t) < 1 and 4 or 5 end, 2 },
     }
     for i, case in ipairs(cases) do
@@ -309,6 +314,7 @@ test("breaks are the very times at which Lua sees the change", function()
             if f(b) ~= f(before(b)) then changes = changes + 1 end
         end
         equal(changes, count, "function " .. i)
+        if case[3] then equal(#list, case[3], "breaks of function " .. i) end
     end
 end)
 
