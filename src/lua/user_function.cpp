@@ -300,6 +300,8 @@ int LuaFunction::arguments_in(const CallState& call, std::size_t states) const {
 /// hook looks on, or is to stop what runs.
 model::Formula* LuaFunction::formula(const CallState& call, Need need) {
     if (lua_gethook(call.L_) != nullptr) return nullptr;
+    if (role_.of_speed || (feedback_ && !call.bodies_.empty()))
+        return nullptr;  // other arguments than the reader knows
     const bool is_read = formula() != nullptr;
     if (is_read && seen_ == world) return &*reading_->formula;
     if (!is_read && tried_in_ == call.number_) return nullptr;
@@ -369,7 +371,7 @@ double LuaFunction::ask(CallState& call, double t, const model::State& state, st
         ++arguments;
     }
     lua_pushnumber(L, t);
-    if (feedback_) arguments += call->push_motion(state, states);
+    if (feedback_) arguments += call.push_motion(state, states);
     const int status = lua_pcall(L, arguments, 1, handler);
     double M = 0;
     if (status == LUA_OK && is_good(L, M)) {
@@ -382,7 +384,8 @@ double LuaFunction::ask(CallState& call, double t, const model::State& state, st
 
 std::string LuaFunction::obstacle() {
     const bool is_read = current != nullptr && !current->failed_ && formula(*current, Need::breaks) != nullptr;
-    return is_read || !reading_->obstacle.empty() ? reading_->obstacle : "a debug hook is set";
+    return is_read || !reading_->obstacle.empty() ? reading_->obstacle
+                                                  : "a debug hook is set, or theta and velocity are tables";
 }
 
 double LuaFunction::next_break(double t) {
