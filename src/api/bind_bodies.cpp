@@ -550,6 +550,7 @@ int run_bodies(lua_State* L, const lua::Options& options, std::shared_ptr<Bodies
     }
     lua::CallState call(L);
     name_functions(call, *run->system, run->drive);
+    call.set_span(window.end - window.start);
     terminal::Progress progress = terminal::Progress::of_time(window.start, window.end);
     const motion::Monitor monitor = [&progress](double t) {
         progress.advance(t);

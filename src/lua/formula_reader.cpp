@@ -167,11 +167,19 @@ struct Function {
     }
 };
 
+/// A loop with `for` that is being run through.
+struct Loop {
+    int control;             ///< the first of its four registers
+    std::size_t start, end;  ///< the instruction behind its preparation, and the one that leads back
+    std::size_t round = 0;
+};
+
 struct Frame {
     int closure;
     std::shared_ptr<const Function> function;
     std::size_t at = 0;
-    int rounds = 0;  ///< jumps back so far
+    std::size_t jumps_back = 0;  ///< of other loops
+    std::vector<Loop> loops = {};
     int base = 0, results = 1;
 };
 
@@ -183,22 +191,27 @@ struct Way {
     int arguments = -1;  ///< those left of a call of math.max that is half done
 
     Known& operator[](int i) { return registers[static_cast<std::size_t>(i)]; }
+    /// Numbers that grow on each way, whichever that is: within a loop round by round, in a call before behind it.
+    [[nodiscard]] std::vector<std::pair<std::size_t, std::size_t>> place() const {
+        std::vector<std::pair<std::size_t, std::size_t>> numbers;
+        for (const Frame& frame : frames) {
+            numbers.emplace_back(0, frame.jumps_back);
+            for (const Loop& loop : frame.loops) numbers.emplace_back(loop.start, loop.round);
+            numbers.emplace_back(frame.at, 0);
+        }
+        return numbers;
+    }
+    [[nodiscard]] bool is_before(const Way& other) const {
+        const auto own = place(), others = other.place();
+        const auto [a, b] = std::mismatch(own.begin(), own.end(), others.begin(), others.end());
+        return a == own.end() || b == others.end() ? own.size() > others.size() : *a < *b;
+    }
     [[nodiscard]] bool same_place(const Way& other) const {
-        return top == other.top && arguments == other.arguments &&
+        return top == other.top && arguments == other.arguments && place() == other.place() &&
                std::equal(frames.begin(), frames.end(), other.frames.begin(), other.frames.end(),
                           [](const Frame& a, const Frame& b) {
-                              return std::tie(a.closure, a.at, a.rounds, a.base, a.results) ==
-                                     std::tie(b.closure, b.at, b.rounds, b.base, b.results);
+                              return std::tie(a.closure, a.base, a.results) == std::tie(b.closure, b.base, b.results);
                           });
-    }
-    /// In the order in which all ways go: within a call before behind it.
-    [[nodiscard]] bool is_before(const Way& other) const {
-        for (std::size_t i = 0; i < std::min(frames.size(), other.frames.size()); ++i) {
-            const auto a = std::tie(frames[i].rounds, frames[i].at);
-            const auto b = std::tie(other.frames[i].rounds, other.frames[i].at);
-            if (a != b) return a < b;
-        }
-        return frames.size() > other.frames.size();
     }
     [[nodiscard]] bool same_types(const Way& other) const {
         return std::equal(registers.begin(), registers.end(), other.registers.begin(), other.registers.end(),
@@ -425,11 +438,11 @@ private:
     static void need_number(const Known& known) {
         if (!known.is_number()) throw Obstacle{"it calculates with what is no number"};
     }
-    int float_register(const Known& known, int place, int help) {
+    int float_register(const Known& known, int place, int help, Op conversion = Op::to_float) {
         need_number(known);
         if (known.kind == Known::Kind::number) return register_of(known, place);
         if (known.constant) return constant_register(static_cast<double>(model::to_whole(known.value)));
-        emit(Op::to_float, first_help + help, place, place);
+        emit(conversion, first_help + help, place, place);
         return first_help + help;
     }
     /// Puts the result of the operation into the register; constants are worked out here.
@@ -492,7 +505,7 @@ private:
                                  std::fabs(static_cast<double>(model::to_whole(known.value))) > 0x1p53;
                 if (far) throw Obstacle{"it compares a whole number beyond 2^53"};
             }
-            a = float_register(x.known, x.place, 0), b = float_register(y.known, y.place, 1);
+            a = float_register(x.known, x.place, 0, Op::exact), b = float_register(y.known, y.place, 1, Op::exact);
         }
         if (x.known.constant && y.known.constant) {
             double unused = 0;
@@ -515,7 +528,7 @@ private:
         Frame& frame = way.frames.back();
         const Instruction next{frame.function->code.instruction(frame.at)};
         const int distance = next.jump();
-        if (distance < 0) ++frame.rounds;
+        if (distance < 0) ++frame.jumps_back;
         frame.at += 1 + static_cast<std::size_t>(distance);
     }
     void take(Way& way, bool jumps) { jumps ? jump(way) : static_cast<void>(++way.frames.back().at); }
@@ -535,6 +548,7 @@ private:
     }
     void wait(Way way, std::vector<Loose> loose) {
         if (waiting_.size() >= most_waiting) throw Obstacle{"it has too many cases"};
+        leave_loops(way);
         waiting_.push_back({std::move(way), std::move(loose)});
     }
 
@@ -876,6 +890,7 @@ private:
         return true;
     }
     static bool loops(Way& way, int a) {
+        if (!way[a].constant || !way[a + 1].constant) throw Obstacle{"its loop has no constant bounds"};
         const auto left = static_cast<std::uint64_t>(model::to_whole(way[a + 1].value));
         if (left == 0) return false;
         way[a + 1] = constant_whole(static_cast<std::int64_t>(left - 1));
@@ -892,6 +907,7 @@ private:
         for (bool first = true;; first = false) {
             if (++followed_ > most_followed) throw Obstacle{"it is too long"};
             const Frame& frame = way.frames.back();
+            leave_loops(way);
             if (frame.at >= frame.function->code.size()) throw Obstacle{"its code is of another Lua"};
             if (!first && !waiting_.empty() && (frame.function->is_target[frame.at] || has_returned_)) {
                 has_returned_ = false;
@@ -900,6 +916,15 @@ private:
             has_returned_ = false;
             place_ = {frame.function, frame.at};
             if (!step(way)) return;
+        }
+    }
+
+    /// Behind a loop its registers hold nothing any more.
+    static void leave_loops(Way& way) {
+        Frame& frame = way.frames.back();
+        while (!frame.loops.empty() && frame.at > frame.loops.back().end) {
+            for (int i = 0; i < 4; ++i) way[frame.loops.back().control + i] = {};
+            frame.loops.pop_back();
         }
     }
 
@@ -1077,11 +1102,17 @@ private:
                 return leaves(way, a, 0);
             case return1:
                 return leaves(way, a, 1);
-            case forprep:
-                if (!prepare(way, a)) at += static_cast<std::size_t>(i.bx()) + 1;
+            case forprep: {
+                const std::size_t start = at, end = at + static_cast<std::size_t>(i.bx());
+                if (prepare(way, a)) {
+                    way.frames.back().loops.push_back({a, start, end});
+                } else {
+                    at = end + 1;
+                }
                 return true;
+            }
             case forloop:
-                if (loops(way, a)) at -= static_cast<std::size_t>(i.bx()), ++way.frames.back().rounds;
+                if (loops(way, a)) at -= static_cast<std::size_t>(i.bx()), ++way.frames.back().loops.back().round;
                 return true;
             default:
                 refuse(code);

@@ -298,15 +298,15 @@ int LuaFunction::arguments_in(const CallState& call, std::size_t states) const {
 
 /// What it was read as, when all that this holds for constant is as it was; null where Lua must be asked: also when a
 /// hook looks on, or is to stop what runs.
-model::Formula* LuaFunction::formula(const CallState& call, Need need) {
+model::Formula* LuaFunction::formula(const CallState& call, std::size_t values) {
     if (lua_gethook(call.L_) != nullptr) return nullptr;
     if (role_.of_speed || (feedback_ && !call.bodies_.empty()))
         return nullptr;  // other arguments than the reader knows
     const bool is_read = formula() != nullptr;
     if (is_read && seen_ == world) return &*reading_->formula;
     if (!is_read && tried_in_ == call.number_) return nullptr;
-    if (need == Need::a_value && patience_ > 0) {
-        --patience_;
+    if (patience_ > values) {
+        patience_ -= values;
         return nullptr;
     }
     look_again(call);
@@ -315,11 +315,11 @@ model::Formula* LuaFunction::formula(const CallState& call, Need need) {
 
 void LuaFunction::look_again(const CallState& call) {
     constexpr std::uint64_t few = 8;
-    constexpr int longest_pause = 1024;
+    constexpr std::uint64_t longest_pause = 1024;
     const int arguments = arguments_in(call, call.names_.size());
     const bool new_call = tried_in_ != call.number_;
     pause_ = values_ < few ? std::min(2 * pause_, longest_pause) : 1;
-    patience_ = pause_ - 1;
+    patience_ = pause_;
     values_ = 0;
     seen_ = world;
     tried_in_ = call.number_;
@@ -348,7 +348,7 @@ double LuaFunction::value_with(double t, const model::State& state, std::span<co
     CallState* call = current;
     if (call == nullptr || call->failed_) return failure;
     const int arguments = arguments_in(*call, states.size());
-    if (model::Formula* read = formula(*call, Need::a_value); read != nullptr && arguments == reading_->arguments) {
+    if (model::Formula* read = formula(*call, 1); read != nullptr && arguments == reading_->arguments) {
         const std::span<const double> given = arguments == 4 ? states : std::span<const double>();
         const double M = read->value(t, state, given);
         if (is_allowed(M) && agrees(M, *call, t, state, states)) return M;
@@ -383,14 +383,14 @@ double LuaFunction::ask(CallState& call, double t, const model::State& state, st
 }
 
 std::string LuaFunction::obstacle() {
-    const bool is_read = current != nullptr && !current->failed_ && formula(*current, Need::breaks) != nullptr;
+    const bool is_read = current != nullptr && !current->failed_ && formula(*current, many) != nullptr;
     return is_read || !reading_->obstacle.empty() ? reading_->obstacle
                                                   : "a debug hook is set, or theta and velocity are tables";
 }
 
 double LuaFunction::next_break(double t) {
     if (current == nullptr || current->failed_) return model::never;
-    model::Formula* read = formula(*current, Need::breaks);
+    model::Formula* read = formula(*current, many);
     if (read == nullptr) return model::never;
     const double found = read->next_break(t);
     if (read->gave_up()) reading_->obstacle = "its conditions change at too many times to find them";
@@ -436,7 +436,7 @@ std::size_t LuaFunction::fill(std::span<const double> times, std::span<double> o
     CallState* call = current;
     if (call == nullptr || call->failed_ || feedback_) return model::UserFunction::fill(times, out);
     std::size_t filled = 0;
-    if (model::Formula* read = formula(*call, Need::a_value)) {
+    if (model::Formula* read = formula(*call, times.size())) {
         for (; filled < times.size(); ++filled) {
             out[filled] = read->value(times[filled], {}, {});
             if (!is_allowed(out[filled]) || !agrees(out[filled], *call, times[filled], {}, {})) break;

@@ -106,8 +106,9 @@ public:
 
 private:
     static int fill_protected(lua_State* L);
-    enum class Need { a_value, breaks };
-    model::Formula* formula(const CallState& call, Need need);
+    /// For so many values, or for breaks.
+    model::Formula* formula(const CallState& call, std::size_t values);
+    static constexpr std::size_t many = std::size_t{1} << 20U;
     void look_again(const CallState& call);
     bool agrees(double read, CallState& call, double t, const model::State& state, std::span<const double> states);
     [[nodiscard]] int arguments_in(const CallState& call, std::size_t states) const;
@@ -125,11 +126,11 @@ private:
     // How it was read, and whether that still holds. Reading pays after some values only, so the first ones are asked
     // for, and so is each value as long as other functions run between all of them.
     std::shared_ptr<Reading> reading_ = std::make_shared<Reading>();
-    std::uint64_t seen_ = 0;      // what had run when the reading was compared with all that it holds for constant
-    std::uint64_t tried_in_ = 0;  // the call in which that was done last
-    std::uint64_t values_ = 0;    // that were read since then
-    int patience_ = 12;           // values that are asked for before it is done again
-    int pause_ = 4;               // what that was last; longer and longer while few values come between
+    std::uint64_t seen_ = 0;       // what had run when the reading was compared with all that it holds for constant
+    std::uint64_t tried_in_ = 0;   // the call in which that was done last
+    std::uint64_t values_ = 0;     // that were read since then
+    std::uint64_t patience_ = 12;  // values that are asked for before it is done again
+    std::uint64_t pause_ = 4;      // what that was last; longer and longer while few values come between
 };
 
 /// What a user does at one of his events: a Lua function of t, theta, velocity, states that returns theta, velocity, or

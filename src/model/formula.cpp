@@ -19,7 +19,7 @@ double from_bits(std::uint64_t x) {
 /// As Lua defines them: the sign is that of the divisor, and a quotient rounds down.
 double float_modulo(double a, double b) {
     const double rest = std::fmod(a, b);
-    return (rest > 0 ? b < 0 : (rest < 0 && b != rest)) ? rest + b : rest;
+    return (rest > 0 ? b < 0 : rest < 0 && b > 0) ? rest + b : rest;
 }
 std::int64_t whole_modulo(std::int64_t a, std::int64_t b) {
     if (b == -1) return 0;
@@ -133,6 +133,9 @@ bool rounded(double x, double& to) {
         case Op::to_float:
             to = static_cast<double>(to_whole(a));
             return true;
+        case Op::exact:
+            to = static_cast<double>(to_whole(a));
+            return std::fabs(to) < 0x1p53;
         case Op::floor:
             return rounded(std::floor(a), to);
         case Op::ceil:
@@ -342,7 +345,7 @@ private:
         if (op == Op::move) return {.lo = a.lo, .hi = a.hi, .is_anything = a.is_anything};
         if (a.is_anything || b.is_anything) return {.is_anything = true, .folds = is_fold(op)};
         if (is_fold(op)) return fold(op, a, b);
-        if (op >= Op::add_whole && op <= Op::to_float) return of_whole(op, as_floats(a), as_floats(b));
+        if (op >= Op::add_whole && op <= Op::exact) return of_whole(op, as_floats(a), as_floats(b));
         switch (op) {
             case Op::add:
                 return checked({a.lo + b.lo, a.hi + b.hi});
@@ -433,6 +436,8 @@ private:
         switch (op) {
             case Op::to_float:
                 return {a.lo, a.hi};
+            case Op::exact:
+                return std::max(std::fabs(a.lo), std::fabs(a.hi)) < exact ? Range{a.lo, a.hi} : Range::anything();
             case Op::add_whole:
                 r = {a.lo + b.lo, a.hi + b.hi};
                 break;

@@ -50,8 +50,9 @@ enum class Op : std::uint16_t {
     divide_whole,
     negate_whole,
     abs_whole,
-    // from whole to float, and back: these two fail beyond 64 bits
+    // from whole to float, and back; `exact` is the former but fails beyond 2^53, the latter two fail beyond 64 bits
     to_float,
+    exact,
     floor,
     ceil,
     // conditions: go on at `yes` or `no`
