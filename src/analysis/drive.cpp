@@ -5,8 +5,11 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <string>
+#include <utility>
 #include <vector>
 
+#include "model/controller.hpp"
 #include "model/forcing.hpp"
 
 namespace dinal::analysis {
@@ -95,6 +98,135 @@ std::optional<Drive> drive_of(const model::Excitation& excitation, double otherw
     }
     if (excitation.constant_from() <= from) return Drive{from, otherwise};
     if (const double period = model::period_from(excitation, from); period > 0) return Drive{from, period};
+    return {};
+}
+
+namespace {
+
+std::vector<double> starts_of(const model::Extras& extras) {
+    std::vector<double> starts;
+    for (const model::OwnState& state : extras.states) starts.push_back(state.start);
+    return starts;
+}
+
+/// The function that a term asks at any time; none of one that samples, which is asked at its instants.
+std::shared_ptr<model::UserFunction> function_of(const model::Scripted& script) {
+    if (const auto* controller = dynamic_cast<const model::Controller*>(script.function.get())) {
+        const bool samples = dynamic_cast<const model::SampledController*>(controller) != nullptr;
+        return samples ? nullptr : controller->function;
+    }
+    return script.function;
+}
+
+bool same_value(double a, double b) {
+    return a == b || (std::isnan(a) && std::isnan(b));
+}
+
+/// The same values, to the last bit, at times that have nothing in common.
+bool is_timeless(model::UserFunction& function, const model::State& initial, const std::vector<double>& states) {
+    constexpr int probes = 40;
+    double now = 0.1234567;
+    for (int i = 0; i < probes; ++i, now = 1.27 * now + 0.0137) {
+        const model::State y{initial.theta + 1e-3 * (i % 5 - 2), initial.velocity + 1e-3 * (i % 3 - 1)};
+        std::vector<double> z = states;
+        for (double& value : z) value += 1e-3 * (i % 7 - 3);
+        if (!same_value(function.value_with(0, y, z), function.value_with(now, y, z))) return false;
+    }
+    return true;
+}
+
+/// From when on this component does not depend on the time itself.
+double timeless_from(const model::Component& c, const model::State& initial, const std::vector<double>& states) {
+    const auto* script = std::get_if<model::Scripted>(&c.term);
+    if (script == nullptr) return model::constant_from(c);
+    if (!script->breaks.empty()) return model::never;
+    const auto function = function_of(*script);
+    if (function != nullptr && !is_timeless(*function, initial, states)) return model::never;
+    if (std::isfinite(c.to)) return c.to;
+    return std::isfinite(c.from) ? c.from : 0;
+}
+
+/// The component alone.
+model::Excitation alone(const model::Component& c) {
+    auto made = model::Excitation::make(c.term);
+    if (!made) return {};
+    const bool whole = !std::isfinite(c.from) && !std::isfinite(c.to);
+    return (whole ? made.value() : made.value().windowed(c.from, c.to)).scaled(c.gain);
+}
+
+/// The value of what has states, but for controllers.
+double value_of(const model::Excitation& excitation, double t, const model::State& y, const std::vector<double>& z) {
+    double sum = 0;
+    for (const model::Component& c : excitation.components()) {
+        const auto* script = std::get_if<model::Scripted>(&c.term);
+        if (script == nullptr) {
+            sum += alone(c).value(t);
+        } else if (model::controller_of(c) == nullptr && t >= c.from && t < c.to) {
+            sum += c.gain * script->function->value_with(t - script->delay, y, z);
+        }
+    }
+    return sum;
+}
+
+}  // namespace
+
+std::optional<Drive> drive_of(const model::Excitation& excitation, const model::Extras& extras,
+                              const model::State& initial) {
+    const std::vector<double> states = starts_of(extras);
+    double start = 0;
+    model::Excitation driven;
+    for (const model::Excitation* of : {&excitation, &extras.belt, &extras.base}) {
+        for (const model::Component& c : of->components()) {
+            const double from = timeless_from(c, initial, states);
+            from < model::never ? void(start = std::max(start, from)) : void(driven = driven + alone(c));
+        }
+    }
+    if (!driven.components().empty()) {
+        const auto drive = drive_of(driven, 0);
+        if (drive) return Drive{std::max(start, drive->start), drive->period};
+        return {};
+    }
+    for (const model::OwnState& state : extras.states) {
+        if (!is_timeless(*state.rate, initial, states)) return {};
+    }
+    for (const model::WantedEvent& event : extras.events) {
+        if (event.act != nullptr && !is_timeless(*event.when, initial, states)) return {};
+    }
+    return Drive{start, 0};
+}
+
+std::optional<text::Error> not_periodic(const model::Excitation& excitation, const model::Extras& extras,
+                                        const Drive& drive) {
+    const std::vector<double> states = starts_of(extras);
+    const auto differs = [&](const std::string& name, auto&& value) -> std::optional<text::Error> {
+        constexpr int probes = 50;
+        double most = 0, worst = 0, at = 0;
+        for (int i = 0; i < probes; ++i) {
+            const double t = probe(drive, i);
+            const model::State y{0.1 * (i % 5), 0.1 * (i % 3)};
+            const double now = value(t, y), later = value(t + drive.period, y);
+            if (!std::isfinite(now) || !std::isfinite(later)) return {};  // the runs will tell
+            most = std::max({most, std::fabs(now), std::fabs(later)});
+            if (std::fabs(now - later) > worst) worst = std::fabs(now - later), at = t;
+        }
+        if (!(worst > 1e-9 * most)) return {};
+        return text::Error{
+            .sentence = fmt::format("{} does not repeat itself after period = {:.10g}: it differs at t = "
+                                    "{:.6g} and {:.6g}",
+                                    name, drive.period, at, at + drive.period),
+            .option = "period"};
+    };
+    for (const auto& [name, of] :
+         {std::pair{"M", &excitation}, std::pair{"belt", &extras.belt}, {"base", &extras.base}}) {
+        const auto wrong = differs(name, [&](double t, const model::State& y) { return value_of(*of, t, y, states); });
+        if (wrong) return wrong;
+    }
+    for (const model::OwnState& state : extras.states) {
+        const auto wrong = differs("states." + state.name + ".rate", [&](double t, const model::State& y) {
+            return state.rate->value_with(t, y, states);
+        });
+        if (wrong) return wrong;
+    }
     return {};
 }
 

@@ -304,6 +304,12 @@ SteadyMotion steady_motion(const SteadyQuestion& question, const motion::Monitor
     const bool remembers = model::has_memory(question.excitation);
     if (model::has_memory<model::DelayedController>(question.excitation))
         return settling::settled_motion(question, monitor);
+    const bool samples = model::has_memory<model::SampledController>(question.excitation);
+    if (question.is_timeless() || question.extras.any()) {
+        // A relay in a motion that returns through a section is a part of the section's state.
+        const bool settles = samples || (remembers && !question.is_timeless());
+        return settles ? settling::settled_motion(question, monitor) : returning_motion(question, monitor);
+    }
     SteadySearch search(question, monitor);
     SteadyMotion motion = search.judged(search.found());
     if (remembers && !settling::goes_on(question, motion, monitor) && motion.outcome != model::Outcome::interrupted) {
@@ -313,7 +319,8 @@ SteadyMotion steady_motion(const SteadyQuestion& question, const motion::Monitor
 }
 
 SteadyMotion steady_motion_near(const SteadyQuestion& question, const motion::Monitor& monitor) {
-    if (model::has_memory(question.excitation)) return steady_motion(question, monitor);
+    const bool plain = !question.is_timeless() && !question.extras.any();
+    if (!plain || model::has_memory(question.excitation)) return steady_motion(question, monitor);
     SteadySearch search(question, monitor);
     return search.judged(search.found_near());
 }
@@ -321,11 +328,13 @@ SteadyMotion steady_motion_near(const SteadyQuestion& question, const motion::Mo
 std::optional<SteadyMotion> another_motion(const SteadyQuestion& question, const SteadyMotion& known,
                                            const motion::Monitor& monitor) {
     if (known.unique.value_or(false)) return {};
-    const double omega = question.system.stiffness() > 0 ? question.system.natural_frequency()
-                                                         : 2 * std::numbers::pi / question.drive.period;
+    const double period = known.period > 0 ? known.period : 2 * std::numbers::pi;
+    const double omega =
+        question.system.stiffness() > 0 ? question.system.natural_frequency() : 2 * std::numbers::pi / period;
     const double size = std::max({std::fabs(known.low), std::fabs(known.high), 1e-300});
     // A motion at resonance may be far larger than the one found, and the mass may adhere where M alone would hold it.
-    const auto M = question.excitation.has_feedback() ? DriveRange{} : extremes(question.excitation, question.drive);
+    const bool asks = question.excitation.has_feedback() || question.is_timeless();
+    const auto M = asks ? DriveRange{} : extremes(question.excitation, question.drive);
     const double stiff = question.system.inertia() * omega * omega;
     const double soft = std::max(question.system.damping() * omega, 0.01 * stiff);
     const double widest = std::max(2.5 * size, (M.high - M.low) / 2 / soft);

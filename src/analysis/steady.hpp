@@ -8,24 +8,29 @@
 #include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "analysis/drive.hpp"
 #include "analysis/period_map.hpp"
+#include "model/extras.hpp"
 
 namespace dinal::analysis {
 
-enum class SteadyStatus { steady, adheres, grows, none };
+enum class SteadyStatus { steady, adheres, rest, grows, none };
 constexpr std::string_view name(SteadyStatus status) {
-    constexpr std::array<std::string_view, 4> names{"steady", "adheres", "grows", "none"};
+    constexpr std::array<std::string_view, 5> names{"steady", "adheres", "rest", "grows", "none"};
     return names[static_cast<std::size_t>(status)];
 }
 
 struct SteadyQuestion {
     model::Oscillator system;
     model::Excitation excitation;
-    Drive drive;
+    Drive drive;      ///< period 0: nothing depends on the time, and the period of a cycle is to be found
     int periods = 0;  ///< of M in one of the motion; 0: as many as it takes
     model::State initial = {};
+    model::Extras extras = {};
+
+    [[nodiscard]] bool is_timeless() const { return drive.period == 0; }
 };
 
 struct SteadyMotion {
@@ -36,7 +41,7 @@ struct SteadyMotion {
     double amplitude = 0, low = 0, high = 0, t_high = 0;
     std::size_t stops = 0;
     double stuck = 0;  ///< part of a period
-    std::array<std::complex<double>, 2> multipliers{};
+    std::vector<std::complex<double>> multipliers = {};
     bool differentiable = false;  ///< else there are no multipliers
     bool stable = false, symmetric = false;
     std::optional<bool> unique;                              ///< none: other starts must tell
@@ -47,6 +52,7 @@ struct SteadyMotion {
     model::Outcome outcome = model::Outcome::reached_end;    ///< of the last run
     std::optional<model::Contradiction> contradiction = {};  ///< of Outcome::not_a_function
     std::shared_ptr<const motion::Trajectory> settled = {};  ///< one period, of a motion that has more than a state
+    std::shared_ptr<const SteadyQuestion> asked = {};        ///< whose run `settled` is; none: the last part of a run
 };
 
 /// Where the motion from `initial` leads.

@@ -25,7 +25,7 @@ bool acts_evenly(const model::Friction& law, const model::Lowered& system) {
 /// After a stop what is left of a disturbance is a product of cosines, or so, which has no error to speak of.
 constexpr double kept_within = 1e-12;
 
-std::array<std::complex<double>, 2> eigenvalues(const Eigen::Matrix2d& D) {
+std::vector<std::complex<double>> eigenvalues(const Eigen::Matrix2d& D) {
     const double mean = (D(0, 0) + D(1, 1)) / 2, half = (D(0, 0) - D(1, 1)) / 2;
     const double square = half * half + D(0, 1) * D(1, 0);
     if (square < 0) {
@@ -76,7 +76,11 @@ std::pair<double, double> rest_without_walls(const SteadyQuestion& question, dou
     const double k = system.stiffness();
     const bool own_spring = !question.system.spring().none();
     if (question.excitation.has_feedback() || (!(k > 0) && !own_spring)) return {here, here};
-    const DriveRange M = extremes(question.excitation, question.drive);
+    const model::Excitation& base = question.extras.base;
+    const model::Excitation loads =
+        base.components().empty() ? question.excitation : question.excitation + base.scaled(-question.system.inertia());
+    const double now = loads.value(question.drive.start);
+    const DriveRange M = question.is_timeless() ? DriveRange{now, now} : extremes(loads, question.drive);
     if (own_spring) return {edge_of_rest(system, here, -1, M), edge_of_rest(system, here, 1, M)};
     const double low = (M.high - system.holding(Motion::forward)) / k;
     const double high = (M.low + system.holding(Motion::backward)) / k;

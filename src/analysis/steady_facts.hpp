@@ -30,4 +30,10 @@ std::pair<double, double> rest_of(const SteadyQuestion& question, double here);
 SteadyMotion facts_of(const SteadyQuestion& question, const PeriodMap& map, const FixedPointSearch::Try& found,
                       int periods, bool half);
 
+/// The facts that one period as a run tells: its extremes and stops, and whether anything moves.
+void tell_of_run(const SteadyQuestion& question, const motion::Trajectory& run, SteadyMotion& motion);
+
+/// The motion of a run with more in it, or a limit cycle, that a run from `initial` leads to; in returns.cpp.
+SteadyMotion returning_motion(const SteadyQuestion& question, const motion::Monitor& monitor);
+
 }  // namespace dinal::analysis

@@ -49,9 +49,8 @@ double in_one_turn(double degrees) {
 namespace {
 
 /// The mean and the fundamental from the motion itself.
-std::optional<Fundamental> by_motion(const SteadyQuestion& question, const SteadyMotion& motion, const PeriodMap& map,
-                                     double length) {
-    const Drive& drive = question.drive;
+std::optional<Fundamental> by_motion(const SteadyQuestion& question, const Drive& drive, const SteadyMotion& motion,
+                                     const PeriodMap& map, double length) {
     const motion::Trajectory run =
         motion.settled ? *motion.settled
                        : map.run({motion.start.theta, motion.start.velocity / map.omega()}, length, true);
@@ -59,19 +58,19 @@ std::optional<Fundamental> by_motion(const SteadyQuestion& question, const Stead
     const double omega = 2 * std::numbers::pi / drive.period;
     const double middle = motion.symmetric ? 0 : (motion.low + motion.high) / 2;
     const double own = question.system.stiffness() > 0 ? question.system.natural_period() : drive.period;
+    const model::Excitation breaking = question.excitation + question.extras.belt + question.extras.base;
     Moments sum;
     for (const Stretch& s : stretches(run)) {
         if (!(s.lasts() > 0)) continue;
         const auto moments_at = [&](double t) {
             double off = s.begin.theta - middle;
-            if (!s.stuck) {
+            if (!s.stuck || run.on_belt) {
                 const auto state = run.at(std::clamp(t, s.from, s.to));
                 off = state ? state->theta - middle : 0;
             }
             return Moments{off, off * std::polar(1.0, -omega * (t - drive.start))};
         };
-        sum = sum +
-              integral(question.excitation, s.from, s.to, std::min({own, drive.period, s.lasts()}) / 12, moments_at);
+        sum = sum + integral(breaking, s.from, s.to, std::min({own, drive.period, s.lasts()}) / 12, moments_at);
     }
     return Fundamental{motion.symmetric ? 0 : middle + sum.theta / length, sum.wave * (2 / length)};
 }
@@ -82,23 +81,23 @@ SteadyShape shape_of(const SteadyQuestion& question, const SteadyMotion& motion,
     SteadyShape shape;
     shape.mean = motion.start.theta;
     if (motion.status != SteadyStatus::steady) return shape;
-    const Drive& drive = question.drive;
+    const Drive drive = question.is_timeless() ? Drive{question.drive.start, motion.period} : question.drive;
     // Half a period of a symmetric motion tells all of it.
     const double length = motion.symmetric && !motion.settled ? motion.period / 2 : motion.period;
     const PeriodMap map(question.system, question.excitation, drive.start, length, monitor);
-    const bool feedback = question.excitation.has_feedback();
+    const bool feedback = question.excitation.has_feedback() || question.is_timeless();
     const std::complex<double> M_wave = feedback ? 0 : harmonic_of(question.excitation, drive, 1);
     const bool drives = !feedback && is_more_than_rounding(question, M_wave);
     std::optional<Fundamental> found;
-    if (const auto slides = drives ? sine::ShortSlides::of(question) : std::nullopt) {
+    if (const auto slides = drives && !motion.settled ? sine::ShortSlides::of(question) : std::nullopt) {
         found = Fundamental{0, slides->fundamental()};
-    } else if (drives && is_linear_but_for_friction(question)) {
+    } else if (drives && !motion.settled && is_linear_but_for_friction(question)) {
         const motion::Trajectory run =
             map.run({motion.start.theta, motion.start.velocity / map.omega()}, length, false);
         if (!model::is_whole(run.outcome)) return shape;
         found = by_friction(question, motion, run, M_wave);
     }
-    if (!found) found = by_motion(question, motion, map, length);
+    if (!found) found = by_motion(question, drive, motion, map, length);
     if (!found) return shape;
     shape.mean = found->mean;
     shape.fundamental = std::abs(found->wave);
@@ -130,12 +129,27 @@ public:
                     "anywhere from theta = {} to {}.",
                     number(motion_.rest.first), number(motion_.rest.second));
                 break;
+            case SteadyStatus::rest:
+                say("The motion dies out: the mass comes to rest at theta = {}.", number(motion_.low));
+                if (motion_.rest.first < motion_.rest.second) {
+                    say("Friction can hold it anywhere from theta = {} to {}.", number(motion_.rest.first),
+                        number(motion_.rest.second));
+                }
+                break;
             case SteadyStatus::grows:
+                if (question_.is_timeless()) {
+                    say("There is no steady motion: the amplitude grows without bound.");
+                    break;
+                }
                 say("There is no steady motion: M feeds more than the frictions take, and the amplitude grows by {} in "
                     "each period of M ({:.5g}).",
                     number(motion_.growth), question_.drive.period);
                 break;
             case SteadyStatus::none:
+                if (question_.is_timeless()) {
+                    tell_no_cycle();
+                    break;
+                }
                 say("Nothing periodic was found in {} periods of M, up to 32 of them in one: the motion is irregular, "
                     "or it settles very slowly.",
                     motion_.maps);
@@ -158,9 +172,18 @@ private:
     [[nodiscard]] std::string number(double x) const {
         return text::number_text(x, std::max({std::fabs(motion_.low), std::fabs(motion_.high), std::fabs(x)}));
     }
+    void tell_no_cycle() {
+        say("No limit cycle was found: the motion is irregular, or it settles very slowly.");
+        if (!model::has_memory<model::SampledController>(question_.excitation)) return;
+        say("A sampled controller has a cycle only if a whole number of sampling intervals is a period of the motion.");
+    }
     void tell_motion() {
-        say("The motion repeats itself every {:.6g}, {} of M.", motion_.period,
-            motion_.periods == 1 ? "the period" : fmt::format("{} periods", motion_.periods));
+        if (question_.is_timeless()) {
+            say("The motion is a limit cycle of period {:.6g}.", motion_.period);
+        } else {
+            say("The motion repeats itself every {:.6g}, {} of M.", motion_.period,
+                motion_.periods == 1 ? "the period" : fmt::format("{} periods", motion_.periods));
+        }
         say("Its amplitude is {}, from theta = {} to {}.", number(motion_.amplitude), number(motion_.low),
             number(motion_.high));
         if (shape_.lag) say("Its fundamental lags {:.5g} degrees behind that of M.", *shape_.lag);
@@ -173,13 +196,16 @@ private:
         if (motion_.symmetric) say("Each half period is the opposite of the other.");
     }
     void tell_stability() {
-        if (motion_.settled) {
+        if (motion_.settled && !motion_.asked && question_.is_timeless()) {
+            say("A run came to it; it has no multipliers, because what M remembers is a part of the state.");
+        } else if (motion_.settled && !motion_.asked) {
             say("A run of {} periods of M came to it; it has no multipliers, because what M remembers is a part of the "
                 "state.",
                 motion_.maps);
         }
         if (!motion_.differentiable) return;
-        const double largest = std::max(std::abs(motion_.multipliers[0]), std::abs(motion_.multipliers[1]));
+        double largest = 0;
+        for (const std::complex<double>& value : motion_.multipliers) largest = std::max(largest, std::abs(value));
         if (!motion_.stable) {
             say("It is unstable: a disturbance grows {:.6g} times in a period, so that no run stays with it.", largest);
         } else if (largest > 1 - 1e-6) {
@@ -193,9 +219,14 @@ private:
     void tell_others(const std::optional<SteadyMotion>& other) {
         if (motion_.status != SteadyStatus::steady && motion_.status != SteadyStatus::adheres) return;
         if (other && other->status == SteadyStatus::steady) {
+            if (question_.is_timeless()) {
+                say("Another motion was seen from another start: amplitude {}, period {:.6g}.",
+                    number(other->amplitude), other->period);
+                return;
+            }
             say("Another motion was seen from another start: amplitude {}, {} of M long.", number(other->amplitude),
                 text::counted(static_cast<std::size_t>(other->periods), "period"));
-        } else if (other && other->status == SteadyStatus::adheres) {
+        } else if (other && (other->status == SteadyStatus::adheres || other->status == SteadyStatus::rest)) {
             say("From another start the mass comes to rest for good.");
         } else if (other && other->status == SteadyStatus::grows) {
             say("From another start the motion grows.");

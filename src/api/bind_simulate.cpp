@@ -28,31 +28,6 @@ std::size_t bytes_of_rows(const source::Task& task) {
     return grid ? std::min<std::size_t>(grid->count(), 1ULL << 50U) * motion::column_count * sizeof(double) : 0;
 }
 
-std::vector<std::string> names_of(const model::Extras& extras) {
-    std::vector<std::string> names;
-    for (const model::OwnState& state : extras.states) {
-        names.push_back(state.name);
-    }
-    return names;
-}
-
-/// A relay may look at a state of the run, which must be there.
-void check_relays(const lua::Options& options, const source::Task& task) {
-    if (!task.excitation.has_script()) return;
-    const std::vector<std::string> names = names_of(task.extras);
-    for (const model::Component& c : task.excitation.components()) {
-        const auto* relay = model::controller_of<model::RelayController>(c);
-        if (relay == nullptr || relay->of != model::RelayController::Of::state ||
-            std::find(names.begin(), names.end(), relay->state) != names.end()) {
-            continue;
-        }
-        options.fail({.sentence = fmt::format("M has a relay of '{}', which is no state of this run; its states are "
-                                              "{{ {} }}",
-                                              relay->state, fmt::join(names, ", ")),
-                      .option = "states"});
-    }
-}
-
 /// The bytes of the machine, asked once: the answer takes as long as a tenth of a short run.
 std::optional<std::size_t> memory_of_machine() {
     static const std::optional<std::size_t> bytes = []() -> std::optional<std::size_t> {
@@ -88,7 +63,7 @@ source::Task asked_task(lua_State* L, const lua::Options& options, const RunOpti
                           ? *integrator
                           : motion::integrator_for(system, terms ? *terms : task.excitation, task.extras);
     lua_pop(L, 1);
-    check_relays(options, task);
+    check_relays(options, task.excitation, task.extras);
     if (!asked.t_end && asked.times.empty()) {
         options.missing("t_end");
     }

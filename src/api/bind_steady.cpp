@@ -27,7 +27,7 @@ bool is_moving(const Steady& s) {
 
 const analysis::SteadyShape& steady_shape(lua_State* L, const SteadyHandle& s) {
     if (!s->shape) {
-        asking(L,
+        asking(L, s->question.extras,
                [&](const motion::Monitor& monitor) { s->shape = analysis::shape_of(s->question, s->motion, monitor); });
     }
     return *s->shape;
@@ -35,7 +35,7 @@ const analysis::SteadyShape& steady_shape(lua_State* L, const SteadyHandle& s) {
 
 void look_around_steady(lua_State* L, const SteadyHandle& s) {
     if (s->looked_around || s->motion.unique.has_value() || !is_found(*s)) return;
-    asking(L, [&](const motion::Monitor& monitor) {
+    asking(L, s->question.extras, [&](const motion::Monitor& monitor) {
         s->other = analysis::another_motion(s->question, s->motion, monitor);
     });
     s->looked_around = true;
@@ -62,7 +62,9 @@ int steady_found_number(lua_State* L) {
 
 int steady_period(lua_State* L) {
     const Steady& s = *steady_self(L, "s.period");
-    return push_or_nil(L, s.motion.status == SteadyStatus::none ? std::nullopt : std::optional(s.motion.period));
+    return push_or_nil(L, s.motion.status == SteadyStatus::none || s.motion.period == 0
+                              ? std::nullopt
+                              : std::optional(s.motion.period));
 }
 
 int steady_peak(lua_State* L) {
@@ -101,7 +103,7 @@ int steady_growth(lua_State* L) {
 
 int steady_rest(lua_State* L) {
     const Steady& s = *steady_self(L, "s.rest");
-    if (s.motion.status != SteadyStatus::adheres) {
+    if (s.motion.status != SteadyStatus::adheres && s.motion.status != SteadyStatus::rest) {
         lua_pushnil(L);
         return 1;
     }
@@ -185,11 +187,15 @@ std::string steady_summary(const Steady& s) {
         case SteadyStatus::adheres:
             return fmt::format("adheres: rests anywhere from theta = {:.6g} to {}", m.rest.first,
                                number(m.rest.second, in.theta));
+        case SteadyStatus::rest:
+            return fmt::format("rest: the motion ends at theta = {}", number(m.low, in.theta));
         case SteadyStatus::grows:
+            if (s.question.is_timeless()) return "grows: without bound";
             return fmt::format("grows: by {} in each period of M", number(m.growth, in.theta));
         case SteadyStatus::none:
             break;
     }
+    if (s.question.is_timeless()) return "none: no limit cycle was found";
     return fmt::format("none: nothing periodic was found in {} periods of M", m.maps);
 }
 
@@ -214,17 +220,19 @@ constexpr lua::Member steady_members[] = {
      lua::guarded<steady_status>,
      lua::Kind::field,
      {"s.status -> string",
-      "\"steady\"; \"adheres\": the mass never moves; \"grows\": M feeds more than the frictions take; \"none\": nothing "
-      "periodic was found. What an answer does not have is nil.",
+      "\"steady\"; \"adheres\": the mass never moves; \"rest\": nothing depends on t, and the motion dies out; \"grows\": "
+      "M feeds more than the frictions take; \"none\": nothing periodic was found. Fields without a value are nil.",
       DINAL_STEADY "print(s.status)  --> steady"}},
     {"period",
      lua::guarded<steady_period>,
      lua::Kind::field,
-     {"s.period -> number", "The period of the motion, time units.", DINAL_STEADY "print(s.period)  --> 2.5"}},
+     {"s.period -> number", "The period of the motion, time units; nil at rest.",
+      DINAL_STEADY "print(s.period)  --> 2.5"}},
     {"periods",
      lua::guarded<steady_periods>,
      lua::Kind::field,
-     {"s.periods -> integer", "The periods of M in one of the motion: 1 unless it is subharmonic.",
+     {"s.periods -> integer",
+      "The periods of M in one of the motion: 1 unless it is subharmonic, and for a limit cycle.",
       DINAL_STEADY "print(s.periods)  --> 1"}},
     {"amplitude",
      lua::guarded<steady_found_number<&analysis::SteadyMotion::amplitude>>,
@@ -268,8 +276,9 @@ constexpr lua::Member steady_members[] = {
      lua::guarded<steady_multipliers>,
      lua::Kind::field,
      {"s.multipliers -> table",
-      "What becomes of a small disturbance in one period: the two multipliers of Floquet, each { re, im, abs }; below 1 "
-      "it dies. nil where the map has no derivative, as under an M with a memory.",
+      "The Floquet multipliers, each { re, im, abs }: the factor of a small disturbance in one period; below 1 it dies "
+      "out. There are two, and one for each state; a limit cycle has one less, without the trivial one. nil for delayed "
+      "and sampled controllers, which have no finite map.",
       "s = system{ I = 1, k = 1, C = 0.5 }:steady{ M = excitation.harmonic{ omega = 1 } }\n"
       "print(string.format(\"%.6f %.6f\", s.multipliers[1].abs, math.exp(-math.pi / 2)))  --> 0.207880 0.207880"}},
     {"stable",
@@ -292,7 +301,7 @@ constexpr lua::Member steady_members[] = {
     {"rest",
      lua::guarded<steady_rest>,
      lua::Kind::field,
-     {"s.rest -> table", "When it adheres: { lower, upper }, between which it may stand; rad.",
+     {"s.rest -> table", "When it adheres or ends at rest: { lower, upper }, between which it may stand; rad.",
       "s = system{ I = 1, k = 2, Rd = 1 }:steady{ M = excitation.harmonic{ amplitude = 0.8, omega = 1 } }\n"
       "print(s.status, string.format(\"%.4f %.4f\", s.rest[1], s.rest[2]))  --> adheres\t-0.1000 0.1000"}},
     {"growth",
@@ -305,7 +314,8 @@ constexpr lua::Member steady_members[] = {
      lua::guarded<run_of_steady>,
      lua::Kind::field,
      {"s.run -> run",
-      "One period of the motion as a run with 401 rows. Under an M with a memory it goes on from the run that came to it.",
+      "One period of the motion as a run with 401 rows; nil at rest. With a delayed or sampled controller it continues the "
+      "run that led to the motion.",
       DINAL_STEADY "print(#s.run, s.run.t_end)  --> 401\t2.5"}},
     {"__tostring",
      lua::guarded<steady_to_string>,
@@ -326,9 +336,9 @@ std::string steady_card(lua_State* L, int index, const terminal::Display& screen
 const lua::Class steady_class = {
     "steady motion",
     {"sys:steady{ ... }, run:steady{ ... } -> s",
-     "The answer to the question what the motion becomes: a periodic motion and what can be "
-     "said about it, or why there is none. It cannot be changed.",
-     "s = nondimensional{}:steady{}\nprint(s.status)  --> steady"},
+     "The answer to the question what the motion becomes: a periodic motion and its properties, rest, or the reason why "
+     "there is no such motion. It cannot be changed.",
+     "s = nondimensional{}:steady{}\nprint(s.status)  --> rest"},
     steady_members,
     nullptr,
     steady_card};

@@ -1,6 +1,6 @@
 #include "api/extras_options.hpp"
 
-#include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <string>
@@ -9,6 +9,7 @@
 #include "api/classes.hpp"
 #include "lua/lua_text.hpp"
 #include "lua/user_function.hpp"
+#include "model/controller.hpp"
 
 namespace dinal::api {
 
@@ -153,4 +154,29 @@ model::Extras read_extras(lua_State* L, const lua::Options& options) {
             .base = read_motion(L, options, "base")};
 }
 
+std::vector<std::string> names_of(const model::Extras& extras) {
+    std::vector<std::string> names;
+    for (const model::OwnState& state : extras.states) {
+        names.push_back(state.name);
+    }
+    return names;
+}
+
+void check_relays(const lua::Options& options, const model::Excitation& excitation, const model::Extras& extras) {
+    if (!excitation.has_script()) return;
+    const std::vector<std::string> names = names_of(extras);
+    for (const model::Component& c : excitation.components()) {
+        const auto* relay = model::controller_of<model::RelayController>(c);
+        if (relay == nullptr || relay->of != model::RelayController::Of::state ||
+            std::find(names.begin(), names.end(), relay->state) != names.end()) {
+            continue;
+        }
+        options.fail({.sentence = fmt::format("M has a relay of '{}', which is no state of this run; its states are "
+                                              "{{ {} }}",
+                                              relay->state, fmt::join(names, ", ")),
+                      .option = "states"});
+    }
+}
+
 }  // namespace dinal::api
+

@@ -1,6 +1,9 @@
 // The options of sys:simulate{...} for runs with more in them: states, events, belt, base.
 #pragma once
 
+#include <string>
+#include <vector>
+
 #include "lua/options.hpp"
 #include "model/extras.hpp"
 
@@ -67,5 +70,10 @@ model::Excitation read_motion(lua_State* L, const lua::Options& options, const c
 
 /// What the options say. Raises what is wrong with them.
 model::Extras read_extras(lua_State* L, const lua::Options& options);
+
+std::vector<std::string> names_of(const model::Extras& extras);
+
+/// Raises when a relay looks at a state that is not among these.
+void check_relays(const lua::Options& options, const model::Excitation& excitation, const model::Extras& extras);
 
 }  // namespace dinal::api

@@ -85,7 +85,7 @@ public:
         const bool asked = std::find(values_.begin(), values_.end(), x) != values_.end();
         // Between the values asked for M is taken for what it is at them.
         if (asked || !known) {
-            question.drive = drive_or_fail(L_, options_, question.system, question.excitation,
+            question.drive = drive_or_fail(L_, options_, question,
                                            known && !question.excitation.has_script() ? std::nullopt : period);
         } else {
             question.drive = {known->start, question.excitation.has_script() && period ? *period : known->period};

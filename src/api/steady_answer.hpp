@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "analysis/steady.hpp"
+#include "api/extras_options.hpp"
 #include "api/system_options.hpp"
 #include "lua/interrupt.hpp"
 #include "lua/options.hpp"
@@ -25,7 +26,8 @@ inline constexpr text::Option period_options[] = {
     {.name = "period",
      .unit = "time units",
      .range = text::positive,
-     .meaning = "after which M repeats itself, where M does not know it: native terms do, a Lua function does not",
+     .meaning = "after which M, belt and base repeat, if one of them is a Lua function of t. Not needed if nothing "
+                "depends on t: the period of the limit cycle is found",
      .filled = text::fills<&SteadyOptions::period>},
     {.name = "periods",
      .range = whole_periods,
@@ -49,7 +51,7 @@ inline constexpr text::Option drive_options[] = {
      .meaning = "the excitation: a number, a Lua function of t or of t, theta, velocity, or an excitation",
      .object = "excitation"},
 };
-inline constexpr auto steady_options = text::joined(drive_options, period_options, start_options);
+inline constexpr auto steady_options = text::joined(drive_options, period_options, start_options, extras_options);
 inline constexpr text::Call steady_call{"sys:steady", "sys:steady{ M = excitation.harmonic{ frequency = 0.4 } }",
                                         steady_options, false, &with_call};
 inline constexpr text::Call steady_run_call{"run:steady", "run:steady{ period = 2.5 }", period_options, true};
@@ -66,21 +68,29 @@ using SteadyHandle = std::shared_ptr<Steady>;
 
 /// Facts about a motion, or a rest, that was found.
 inline bool is_found(const Steady& s) {
-    return s.motion.status == analysis::SteadyStatus::steady || s.motion.status == analysis::SteadyStatus::adheres;
+    using analysis::SteadyStatus;
+    const SteadyStatus status = s.motion.status;
+    return status == SteadyStatus::steady || status == SteadyStatus::adheres || status == SteadyStatus::rest;
 }
 
-/// Runs what may ask M, and raises what came of that.
+/// Calls the work, which may evaluate functions of a run with these extras, and raises their errors.
 template <class Work>
-void asking(lua_State* L, Work work) {
+void asking(lua_State* L, const model::Extras& extras, Work work) {
     lua::CallState call(L);
+    if (!extras.states.empty()) call.name_states(names_of(extras));
     work([](double) { return !lua::interrupt_requested(); });
     if (lua::interrupt_requested()) lua::raise_interrupted(L);
     if (call.failed()) call.raise_error();
 }
+template <class Work>
+void asking(lua_State* L, Work work) {
+    asking(L, model::Extras{}, std::move(work));
+}
 
-/// How M repeats itself, as it knows or as the user says. Raises when nobody knows, or it does not.
-analysis::Drive drive_or_fail(lua_State* L, const lua::Options& options, const model::Oscillator& system,
-                              const model::Excitation& excitation, const std::optional<double>& period);
+/// The drive of the question, with its period as the terms of M have it or as the user gives it; period 0 where nothing
+/// depends on t. Raises when the period is unknown or wrong.
+analysis::Drive drive_or_fail(lua_State* L, const lua::Options& options, const analysis::SteadyQuestion& question,
+                              const std::optional<double>& period);
 
 /// Raises when M was found to be no function of its arguments.
 void check_function(const lua::Options& options, const analysis::SteadyMotion& motion);
@@ -93,16 +103,18 @@ int run_of_steady(lua_State* L);
 
 inline constexpr lua::Doc steady_doc{
     "sys:steady{ OPTIONS } -> steady",
-    "The periodic motion under a periodic M, found without running the transient: a fixed point of the map over one "
-    "period. Where there is none it says why: s.status is \"steady\", \"adheres\" (the mass never moves), \"grows\" or "
-    "\"none\".",
+    "The motion that remains when transients have died out. Under a periodic M, belt or base it is periodic: a fixed "
+    "point of the map over one period. If nothing depends on t, it is a limit cycle, whose period is found, or rest. "
+    "s.status is \"steady\", \"adheres\" (the mass never moves), \"rest\" (a free motion dies out), \"grows\" or \"none\".",
     "sys = nondimensional{ friction_ratio = 0.5 }\n"
     "s = sys:steady{ M = excitation.harmonic{ frequency = 1.35 } }\n"
-    "print(string.format(\"%.9f\", s.amplitude), s.stops)  --> 0.860792180\t0",
+    "print(string.format(\"%.9f\", s.amplitude), s.stops)  --> 0.860792180\t0\n"
+    "squeal = system{ I = 1, k = 4, Rd = 0.3, Re = 0.6 }:steady{ belt = 0.1 }\n"
+    "print(string.format(\"%.6f\", squeal.period), squeal.stops)  --> 3.658799\t1",
     {&steady_call}};
 inline constexpr lua::Doc steady_run_doc{
     "run:steady{ OPTIONS } -> steady",
-    "The periodic motion that this run leads to: sys:steady of its system and its M, from where the run has got to.",
+    "The steady motion that this run leads to: sys:steady with the options of the run, from the end of the run.",
     "sys = nondimensional{ friction_ratio = 0.836 }\n"
     "run = sys:simulate{ M = excitation.harmonic{ frequency = 1 }, theta0 = 1, t_end = 5, dt = 1 }\n"
     "s = run:steady()\n"

@@ -1,6 +1,7 @@
 // sys:steady{ ... } and run:steady{ ... }, and the run of what they found.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "api/bind_excitation.hpp"
@@ -12,7 +13,7 @@ namespace {
 
 int push_steady(lua_State* L, const lua::Options& options, analysis::SteadyQuestion question) {
     const auto steady = std::make_shared<Steady>(Steady{std::move(question), {}});
-    asking(L, [&](const motion::Monitor& monitor) {
+    asking(L, steady->question.extras, [&](const motion::Monitor& monitor) {
         steady->motion = analysis::steady_motion(steady->question, monitor);
     });
     const model::Outcome outcome = steady->motion.outcome;
@@ -50,6 +51,21 @@ int run_of_steady(lua_State* L) {
     }
     if (lua_getiuservalue(L, 1, 1) == LUA_TUSERDATA) return 1;
     constexpr double rows = 400;
+    if (s->motion.settled && s->motion.asked) {
+        const analysis::SteadyQuestion& asked = *s->motion.asked;
+        source::Task task{.system = asked.system,
+                          .excitation = asked.excitation,
+                          .initial = asked.initial,
+                          .window = {.start = s->motion.settled->t_start, .end = s->motion.settled->t_stop},
+                          .rows = motion::Grid::every(s->motion.period / rows),
+                          .integrator = motion::integrator_for(asked.system, asked.excitation, asked.extras),
+                          .extras = asked.extras};
+        Run found{.trajectory = *s->motion.settled, .origin = source::origin_of(L, std::move(task))};
+        push_run(L, std::make_shared<const Run>(std::move(found)));
+        lua_pushvalue(L, -1);
+        lua_setiuservalue(L, 1, 1);
+        return 1;
+    }
     if (s->motion.settled) {
         // What led there is a part of the run that is asked for again, and its rows are those of its last period.
         const motion::Trajectory& last = *s->motion.settled;
@@ -59,11 +75,16 @@ int run_of_steady(lua_State* L) {
                            .initial = s->question.initial,
                            .window = {.start = s->question.drive.start, .end = last.t_stop},
                            .rows = motion::Grid::at({times.begin(), times.end()}),
-                           .integrator = {}};
+                           .integrator = {},
+                           .extras = s->question.extras};
         Run found{.trajectory = last, .origin = source::origin_of(L, whole)};
         push_run(L, std::make_shared<const Run>(std::move(found)));
         lua_pushvalue(L, -1);
         lua_setiuservalue(L, 1, 1);
+        return 1;
+    }
+    if (s->question.is_timeless()) {  // at rest there is no period
+        lua_pushnil(L);
         return 1;
     }
     const double start = s->question.drive.start, length = s->motion.period;
@@ -85,22 +106,28 @@ int run_of_steady(lua_State* L) {
     return 1;
 }
 
-analysis::Drive drive_or_fail(lua_State* L, const lua::Options& options, const model::Oscillator& system,
-                              const model::Excitation& excitation, const std::optional<double>& period) {
-    const double own = system.stiffness() > 0 ? system.natural_period() : 1;
-    auto drive = analysis::drive_of(excitation, period.value_or(own));
+analysis::Drive drive_or_fail(lua_State* L, const lua::Options& options, const analysis::SteadyQuestion& question,
+                              const std::optional<double>& period) {
+    const model::Excitation& excitation = question.excitation;
+    std::optional<analysis::Drive> drive;
+    asking(L, question.extras,
+           [&](const motion::Monitor&) { drive = analysis::drive_of(excitation, question.extras, question.initial); });
+    const bool scripts = excitation.has_script() || question.extras.belt.has_script() ||
+                         question.extras.base.has_script() || !question.extras.states.empty();
     if (!drive && !period) {
-        options.fail(
-            {.sentence = excitation.has_script()
-                             ? "the period of M is not known; give it with period = ..."
-                             : "the terms of M have no period in common, so there is no periodic motion; run it "
-                               "and see run:spectrum",
-             .option = "period"});
+        options.fail({.sentence = scripts
+                                      ? "the period of M is not known; give it with period = ..."
+                                      : "the terms of M have no period in common, so there is no periodic motion; run "
+                                        "it and see run:spectrum",
+                      .option = "period"});
     }
     if (period) drive = analysis::Drive{drive ? drive->start : 0, *period};
-    if (period || excitation.has_script()) {
+    if (period || (excitation.has_script() && drive->period > 0)) {
         std::optional<text::Error> wrong;
-        asking(L, [&](const motion::Monitor&) { wrong = analysis::not_periodic(excitation, *drive); });
+        asking(L, question.extras, [&](const motion::Monitor&) {
+            wrong = question.extras.any() ? analysis::not_periodic(excitation, question.extras, *drive)
+                                          : analysis::not_periodic(excitation, *drive);
+        });
         if (wrong) options.fail(*wrong);
     }
     return *drive;
@@ -119,12 +146,15 @@ int steady_of_system(lua_State* L) {
                                       .excitation = to_excitation(L, -1, "sys:steady: M", "M"),
                                       .drive = {},
                                       .periods = asked.periods.value_or(0),
-                                      .initial = {asked.theta0, asked.velocity0}};
+                                      .initial = {asked.theta0, asked.velocity0},
+                                      .extras = read_extras(L, options)};
     lua_pop(L, 1);
-    if (const auto terms = asked.period ? std::nullopt : terms_alone(L, system, question.excitation, 0, {})) {
+    check_relays(options, question.excitation, question.extras);
+    if (const auto terms =
+            asked.period ? std::nullopt : terms_alone(L, system, question.excitation, 0, question.extras)) {
         question.excitation = *terms;
     }
-    question.drive = drive_or_fail(L, options, system, question.excitation, asked.period);
+    question.drive = drive_or_fail(L, options, question, asked.period);
     return push_steady(L, options, std::move(question));
 }
 
@@ -136,16 +166,21 @@ int steady_of_run(lua_State* L) {
     if (run->is_part) options.fail({"steady motions are found of systems of one body whose Rd and Re are numbers"});
     if (!run->origin) options.fail({"a run that was read from a file does not know its system and its M"});
     const source::Task& task = *run->origin;
-    if (task.extras.any()) {
-        options.fail(
-            {"the steady motion of a system under M alone is found, and this run has states, events, a belt or "
-             "a base besides; run some more periods and see run:poincare"});
-    }
-    analysis::SteadyQuestion question{
-        .system = task.system, .excitation = task.excitation, .drive = {}, .periods = asked.periods.value_or(0)};
+    analysis::SteadyQuestion question{.system = task.system,
+                                      .excitation = task.excitation,
+                                      .drive = {},
+                                      .periods = asked.periods.value_or(0),
+                                      .initial = run->trajectory.state_at_stop,
+                                      .extras = task.extras};
+    const motion::Trajectory& ended = run->trajectory;
+    for (std::size_t i = 0; i < ended.state_count(); ++i) question.extras.states[i].start = ended.carried->states[i];
     if (run->terms && !asked.period) question.excitation = *run->terms;
-    question.drive = drive_or_fail(L, options, task.system, question.excitation, asked.period);
-    asking(L, [&](const motion::Monitor&) { question.initial = state_at_period(run->trajectory, question.drive); });
+    question.drive = drive_or_fail(L, options, question, asked.period);
+    if (question.extras.any()) {
+        question.drive.start = std::max(question.drive.start, ended.t_stop);
+    } else if (!question.is_timeless()) {
+        asking(L, [&](const motion::Monitor&) { question.initial = state_at_period(ended, question.drive); });
+    }
     return push_steady(L, options, std::move(question));
 }
 

@@ -132,7 +132,7 @@ test("an option that belongs to the system, or to the run, is told where it belo
         assert(message:sub(-#sentence) == sentence, message)
     end
     told(function() sys:simulate { walls = {}, t_end = 1 } end, "base and units; 'walls' is an option of sys:with")
-    told(function() sys:steady { M = 1, spring = {} } end, "velocity0; 'spring' is an option of sys:with")
+    told(function() sys:steady { M = 1, spring = {} } end, "belt and base; 'spring' is an option of sys:with")
     told(function() system { I = 1, k = 4, theta0 = 1 } end, "links and units; 'theta0' is an option of sys:simulate")
     told(function() sys:simulate { walls = {}, Rd = 1, t_en = 1 } end,
         "'Rd' and 'walls' are options of sys:with; did you mean 't_end' for 't_en'?")

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <vector>
 
 #include "analysis/fixed_point.hpp"
@@ -21,12 +22,71 @@ double longest_delay(const model::Excitation& excitation) {
     return most;
 }
 
+/// The motion before a part of a run, which nobody needs any more.
+class Forgotten final : public motion::Course {
+public:
+    Forgotten(const model::Oscillator& system, double until) : Course(system), until_(until) {}
+    [[nodiscard]] text::Expected<model::State> at(double /*t*/) const override {
+        return text::Error{"this part of the run was not kept"};
+    }
+    [[nodiscard]] double whole_until() const override { return until_; }
+
+private:
+    double until_;
+};
+
+/// A run goes on from where it ended: the second part alone.
+text::Expected<motion::Trajectory> continued(const SteadyQuestion& question, const motion::Trajectory& so_far,
+                                             double until, const motion::Grid& rows,
+                                             const motion::Integrator& integrator, const motion::Monitor& monitor,
+                                             bool dense) {
+    motion::Limits limits;
+    limits.dense = dense;
+    motion::Trajectory end;
+    end.t_start = end.t_stop = so_far.t_stop;
+    end.initial = end.state_at_stop = so_far.state_at_stop;
+    end.motion_at_stop = so_far.motion_at_stop;
+    end.began_stuck = so_far.motion_at_stop == model::Motion::stuck;
+    end.carried = so_far.carried;
+    if (dense) end.course = std::make_shared<Forgotten>(question.system, so_far.t_stop);
+    return motion::resume(question.system, question.excitation, end, until, rows, integrator, monitor, limits,
+                          question.extras);
+}
+
+/// `periods` of what samples, so that all of them sample in it; 0 when their instants have nothing in common.
+double sampling_period(const model::Excitation& excitation) {
+    std::vector<double> periods;
+    for (const model::Component& c : excitation.components()) {
+        if (const auto* sampled = model::controller_of<model::SampledController>(c)) periods.push_back(sampled->every);
+    }
+    if (periods.empty()) return 0;
+    const double longest = *std::max_element(periods.begin(), periods.end());
+    constexpr int most = 60;
+    for (int n = 1; n <= most; ++n) {
+        const bool fit = std::all_of(periods.begin(), periods.end(), [&](double period) {
+            const double count = n * longest / period;
+            return std::fabs(count - std::round(count)) <= 1e-9 * count;
+        });
+        if (fit) return n * longest;
+    }
+    return 0;
+}
+
 class Settling {
 public:
-    Settling(const SteadyQuestion& question, const motion::Monitor& monitor)
+    /// How often a period is looked at, and how many periods one of the motion may have.
+    struct Fineness {
+        std::size_t looks = 64;  // what differs within it is seen
+        int longest = 32;
+        std::size_t most_periods = 4096;
+    };
+    Settling(const SteadyQuestion& question, const motion::Monitor& monitor, const Fineness& fineness)
         : question_(question),
+          looks(fineness.looks),
+          most_periods(fineness.most_periods),
+          longest(fineness.longest),
           map_(question.system, question.excitation, question.drive.start, question.drive.period, monitor),
-          integrator_(motion::integrator_for(question.system, question.excitation)),
+          integrator_(motion::integrator_for(question.system, question.excitation, question.extras)),
           monitor_(monitor),
           past_(static_cast<std::size_t>(
               std::ceil(std::min(longest_delay(question.excitation) / question.drive.period, 1e6)))) {}
@@ -50,13 +110,10 @@ public:
     }
 
 private:
-    static constexpr std::size_t looks = 64;          // at a period of M: what differs within it is seen
     static constexpr std::size_t least_periods = 16;  // between two looks back
-    static constexpr std::size_t most_periods = 4096;
-    static constexpr int longest = 32;        // periods of M in one of the motion
-    static constexpr double settled = 1e-10;  // sizes that a motion may still be from its limit
-    static constexpr double alike = 1e-7;     // sizes: what is no nearer after all periods is not told as periodic
-    static constexpr double finest = 1e-12;   // sizes: of rounding in runs
+    static constexpr double settled = 1e-10;          // sizes that a motion may still be from its limit
+    static constexpr double alike = 1e-7;    // sizes: what is no nearer after all periods is not told as periodic
+    static constexpr double finest = 1e-12;  // sizes: of rounding in runs
 
     [[nodiscard]] double time_of(std::size_t look) const {
         return question_.drive.start +
@@ -93,10 +150,10 @@ private:
     bool run(double until, const motion::Grid& rows, bool dense) {
         motion::Limits limits;
         limits.dense = dense;
-        auto more = begun_ ? motion::go_on(question_.system, question_.excitation, run_, until, rows, integrator_,
-                                           monitor_, limits)
+        auto more = begun_ ? continued(question_, run_, until, rows, integrator_, monitor_, dense)
                            : motion::simulate(question_.system, question_.excitation, question_.initial,
-                                              {question_.drive.start, until}, rows, integrator_, monitor_, limits);
+                                              {question_.drive.start, until}, rows, integrator_, monitor_, limits,
+                                              question_.extras);
         if (!more) {
             run_.outcome = answer_.outcome = model::Outcome::state_not_finite;
             return false;
@@ -147,23 +204,13 @@ private:
         constexpr double rows = 400;
         const double end = time_of((periods_ + static_cast<std::size_t>(m)) * looks);
         if (!run(end, motion::Grid::every((end - start) / rows), true)) return false;
-        const MapStep step = map_.told(run_, stretches(run_));
-        if (!step.finished) return false;
-        const bool moves = step.high > step.low || run_.motion_at_stop != model::Motion::stuck;
-        answer_.status = moves ? SteadyStatus::steady : SteadyStatus::adheres;
+        tell_of_run(question_, run_, answer_);
         answer_.periods = m;
         answer_.period = length;
-        answer_.start = run_.initial;
-        answer_.low = step.low;
-        answer_.high = step.high;
-        answer_.t_high = step.t_high;
-        answer_.amplitude = (step.high - step.low) / 2 + 0.0;
-        answer_.stops = step.stops;
-        answer_.stuck = moves ? std::min(1.0, step.stuck / length) : 1;
-        answer_.residual = length_of(step.to - seen_.back()) / std::max(sizes_.back(), 1e-300);
+        const Place end_place = place_of(run_.state_at_stop, map_.omega());
+        answer_.residual = length_of(end_place - seen_.back()) / std::max(sizes_.back(), 1e-300);
         answer_.stable = true;  // a run came to it
-        answer_.symmetric = m == 1 && is_the_opposite_half_a_period_later();
-        if (!moves) answer_.rest = rest_of(question_, answer_.start.theta);
+        answer_.symmetric = m == 1 && looks % 2 == 0 && is_the_opposite_half_a_period_later();
         answer_.settled = std::make_shared<const motion::Trajectory>(run_);
         return true;
     }
@@ -177,6 +224,8 @@ private:
     }
 
     const SteadyQuestion& question_;
+    std::size_t looks, most_periods;
+    int longest;
     PeriodMap map_;
     motion::Integrator integrator_;
     const motion::Monitor& monitor_;
@@ -188,10 +237,165 @@ private:
     SteadyMotion answer_;
 };
 
+/// A cycle behind a dead time, of which nothing prescribes the period: the run goes on until its passages through a
+/// section, as many as the dead time reaches back to, repeat themselves.
+class DelayedCycle {
+public:
+    DelayedCycle(const SteadyQuestion& question, const motion::Monitor& monitor)
+        : question_(question),
+          integrator_(motion::integrator_for(question.system, question.excitation, question.extras)),
+          monitor_(monitor),
+          delay_(longest_delay(question.excitation)) {}
+
+    SteadyMotion found() {
+        const model::Oscillator& system = question_.system;
+        const double base = std::max(system.stiffness() > 0 ? system.natural_period() : 1, delay_);
+        double length = 2 * base;
+        constexpr int most_parts = 300;
+        for (int part = 0; part < most_parts; ++part) {
+            if (!runs_on(length)) return answer_;
+            if (rests()) return answer_;
+            if (passages_.size() < 6 && part < 24) length *= 1.3;
+            if (const int m = comes_back(); m > 0 && tells(m)) return answer_;
+        }
+        return answer_;
+    }
+
+private:
+    struct Pass {
+        double t = 0, velocity = 0;
+    };
+
+    bool runs_on(double length) {
+        const double start = begun_ ? run_.t_stop : question_.drive.start;
+        constexpr int looks = 256;
+        const motion::Grid rows = motion::Grid::every(length / looks);
+        auto more = begun_
+                        ? continued(question_, run_, start + length, rows, integrator_, monitor_, true)
+                        : motion::simulate(question_.system, question_.excitation, question_.initial,
+                                           {start, start + length}, rows, integrator_, monitor_, {}, question_.extras);
+        answer_.outcome = more ? more->outcome : model::Outcome::state_not_finite;
+        if (answer_.outcome == model::Outcome::state_not_finite) answer_.status = SteadyStatus::grows;
+        if (!more) return false;
+        answer_.contradiction = more->contradiction;
+        run_ = std::move(more).value();
+        begun_ = true;
+        ++answer_.maps;
+        if (!model::is_whole(run_.outcome)) return false;
+        low_ = run_.rows.col(1).minCoeff(), high_ = run_.rows.col(1).maxCoeff();
+        largest_ = std::max({largest_, std::fabs(low_), std::fabs(high_), high_ - low_});
+        constexpr double beyond = 1e100;
+        if (largest_ > beyond) {
+            answer_.status = SteadyStatus::grows;
+            return false;
+        }
+        const double range = high_ - low_;
+        if (!(section_ > low_ + 0.2 * range && section_ < high_ - 0.2 * range)) {
+            constexpr double place = 0.42;
+            section_ = low_ + place * range;
+            passages_.clear();
+        }
+        for (Eigen::Index i = 0; i + 1 < run_.size(); ++i) {
+            if (run_.rows(i, 1) < section_ && run_.rows(i + 1, 1) >= section_)
+                pass(run_.rows(i, 0), run_.rows(i + 1, 0));
+        }
+        return true;
+    }
+
+    void pass(double below, double above) {
+        model::State there;
+        constexpr int halvings = 60;
+        for (int i = 0; i < halvings; ++i) {
+            const double middle = below + (above - below) / 2;
+            const auto state = run_.at(middle);
+            if (!state) return;
+            there = *state;
+            (there.theta < section_ ? below : above) = middle;
+        }
+        passages_.push_back({above, there.velocity});
+    }
+
+    bool rests() {
+        const bool still = high_ - low_ <= 1e-11 * largest_ && question_.extras.states.empty();
+        if (!still) return false;
+        answer_.status = SteadyStatus::rest;
+        const double theta = run_.state_at_stop.theta;
+        answer_.start = {theta, 0};
+        answer_.low = answer_.high = theta;
+        answer_.rest = {theta, theta};
+        answer_.stuck = run_.motion_at_stop == model::Motion::stuck ? 1 : 0;
+        answer_.stable = true;
+        return true;
+    }
+
+    /// How far the last passages are from those m before them.
+    [[nodiscard]] double off(std::size_t m, std::size_t back) const {
+        const std::size_t last = passages_.size() - 1;
+        if (last < back + 2 * m) return model::never;
+        const std::size_t end = last - back;
+        const double period = passages_[end].t - passages_[end - m].t;
+        double most = 0, speed = 0;
+        for (std::size_t i = end; i >= m && passages_[end].t - passages_[i].t <= delay_ + period; --i) {
+            speed = std::max(speed, std::fabs(passages_[i].velocity));
+            const double apart = std::fabs(passages_[i].velocity - passages_[i - m].velocity);
+            const double late = std::fabs(passages_[i].t - passages_[i - m].t - period);
+            most = std::max({most, apart / speed, late / period});
+            if (i == m && passages_[end].t - passages_[i].t < delay_) return model::never;
+        }
+        return most;
+    }
+
+    [[nodiscard]] int comes_back() const {
+        constexpr std::size_t most = 16;
+        constexpr double alike = 1e-7, settled = 1e-11, finest = 2e-12;
+        for (std::size_t m = 1; m <= most && 6 * m < passages_.size(); ++m) {
+            const double now = off(m, 0), before = off(m, 4 * m);
+            if (!(now <= alike) || before == model::never) continue;
+            const double kept = std::pow(now / before, 0.25), left = kept < 1 ? now / (1 - kept) : model::never;
+            if (now > finest && left > settled) continue;
+            return static_cast<int>(m);
+        }
+        return 0;
+    }
+
+    bool tells(int m) {
+        const Pass& last = passages_.back();
+        const std::size_t before = passages_.size() - 1 - static_cast<std::size_t>(m);
+        const double period = last.t - passages_[before].t, start = run_.t_stop;
+        constexpr double rows = 400;
+        auto more =
+            continued(question_, run_, start + period, motion::Grid::every(period / rows), integrator_, monitor_, true);
+        if (!more || !model::is_whole(more->outcome)) return false;
+        run_ = std::move(more).value();
+        tell_of_run(question_, run_, answer_);
+        answer_.period = period;
+        answer_.residual = off(static_cast<std::size_t>(m), 0);
+        answer_.stable = true;
+        answer_.settled = std::make_shared<const motion::Trajectory>(run_);
+        return true;
+    }
+
+    const SteadyQuestion& question_;
+    motion::Integrator integrator_;
+    const motion::Monitor& monitor_;
+    double delay_, low_ = 0, high_ = 0, largest_ = 0, section_ = model::never;
+    bool begun_ = false;
+    motion::Trajectory run_;
+    std::vector<Pass> passages_;
+    SteadyMotion answer_;
+};
+
 }  // namespace
 
 SteadyMotion settled_motion(const SteadyQuestion& question, const motion::Monitor& monitor) {
-    return Settling(question, monitor).found();
+    if (!question.is_timeless()) return Settling(question, monitor, {}).found();
+    const double sampling = sampling_period(question.excitation);
+    if (!(sampling > 0)) return DelayedCycle(question, monitor).found();
+    SteadyQuestion on_grid = question;
+    on_grid.drive.period = sampling;
+    SteadyMotion motion = Settling(on_grid, monitor, {.looks = 4, .longest = 2048, .most_periods = 20000}).found();
+    motion.periods = 1;
+    return motion;
 }
 
 bool goes_on(const SteadyQuestion& question, const SteadyMotion& motion, const motion::Monitor& monitor) {

@@ -1,0 +1,187 @@
+-- sys:steady of runs with more in them, and of limit cycles, whose period is found. Run by dinal.
+package.path = "tests/lua/?.lua;" .. package.path
+local support = require "support"
+local test, equal, near, raises_here = support.test, support.equal, support.near, support.raises_here
+
+local function extent(theta) return (theta:max() - theta:min()) / 2 end
+
+test("stick-slip on a belt has the stick time, period and amplitude of the closed form", function()
+    for _, case in ipairs{ { 1, 4, 0.3, 0.6, 0.1 }, { 2.5, 9, 0.1, 0.8, 0.05 }, { 0.4, 1, 0, 0.5, 0.2 } } do
+        local I, k, Rd, Re, belt = table.unpack(case)
+        local omega, a = (k / I) ^ 0.5, (Re - Rd) / k
+        local phi = math.atan(belt / omega, a)
+        local slip, stick = (math.pi + 2 * phi) / omega, 2 * a / belt
+        local s = system{ I = I, k = k, Rd = Rd, Re = Re }:steady{ belt = belt, velocity0 = belt }
+        equal(s.status, "steady")
+        near(s.period, slip + stick, 1e-11 * s.period)
+        near(s.amplitude, math.sqrt(a ^ 2 + (belt / omega) ^ 2), 1e-12)
+        near(s.stuck, stick / (slip + stick), 1e-11)
+        near(s.mean, Rd / k, 1e-9) -- the motion is symmetric about it
+        equal(s.stops, 1)
+        equal(#s.multipliers, 1) -- without the one along the motion
+        assert(s.multipliers[1].abs < 1e-8 and s.stable)
+        equal(s.periods, 1)
+        assert(s:explain():find("limit cycle", 1, true), s:explain())
+        equal(tostring(s):match("^steady: period"), "steady: period")
+        near(s.run:at(s.run.t_end), s.run:at(0), 1e-11)
+        local again = system{ I = I, k = k, Rd = Rd, Re = Re }:simulate{ belt = belt, theta0 = s.run.theta[1],
+            velocity0 = s.run.velocity[1], t_end = 40 * s.period, times = { 39 * s.period, 40 * s.period } }
+        near(again.theta[1], s.run.theta[1], 1e-10)
+        near(again.theta[2], s.run.theta[1], 1e-10)
+    end
+end)
+
+test("a free motion ends at rest, and friction says where it may stand", function()
+    local s = system{ I = 1, k = 4, Rd = 1, Re = 1.2 }:steady{ theta0 = 3.1 }
+    equal(s.status, "rest")
+    near(s.rest.lower, -0.3, 1e-12)
+    near(s.rest.upper, 0.3, 1e-12)
+    equal(s.amplitude, 0.0)
+    for _, name in ipairs{ "period", "stops", "multipliers", "run", "growth" } do equal(s[name], nil, name) end
+    assert(s:explain():find("dies out", 1, true), s:explain())
+    equal(tostring(s):match("^rest: the motion ends at theta = "), "rest: the motion ends at theta = ")
+    s = system{ I = 1, k = 4, C = 0.3, Rd = 1 }:steady{ belt = 0.4 } -- slides for good
+    equal(s.status, "rest")
+    near(s.mean, 0.25, 1e-9)
+    equal(s.stuck, 0.0)
+    equal(system{ I = 1, k = 1 }:steady{ M = function(_, _, velocity) return 0.1 * velocity end, theta0 = 1 }.status, "grows")
+    equal(nondimensional{}:steady{}.status, "rest")
+    near(nondimensional{}:steady{ theta0 = 0.5 }.period, 1, 1e-12) -- nothing damps it
+end)
+
+test("van der Pol's cycle has its known period and amplitude, from within and from without", function()
+    for _, theta0 in ipairs{ 0.1, 4 } do
+        local s = system{ I = 1, k = 1 }:steady{
+            M = function(_, theta, velocity) return (1 - theta ^ 2) * velocity end, theta0 = theta0 }
+        near(s.period, 6.6632868593231301897, 1e-11)
+        near(s.amplitude, 2.0086198608748431, 1e-11)
+        near(s.multipliers[1].abs, 8.5979e-4, 1e-7) -- exp of the integral of 1 - theta^2
+        equal(s.stops, 0)
+    end
+end)
+
+test("a relay drives a cycle whose period solves the two equations of half of it", function()
+    local C, width, level = 0.2, 0.2, 0.4
+    local alpha, beta = C / 2, (1 - C ^ 2 / 4) ^ 0.5
+    local function half(v, t) -- from theta = -width/2 at velocity v, pushed by +level
+        local x, e = -width / 2 - level, math.exp(-alpha * t)
+        local b = (v + alpha * x) / beta
+        local s, c = math.sin(beta * t), math.cos(beta * t)
+        return level + e * (x * c + b * s), e * ((b * beta - alpha * x) * c - (x * beta + alpha * b) * s)
+    end
+    local v, t = -0.35, 2
+    for _ = 1, 30 do -- Newton: theta = width/2 at velocity -v
+        local function off(p, q) local x, y = half(p, q) return x - width / 2, y + p end
+        local h, f, g = 1e-6, off(v, t)
+        local fv, gv = off(v + h, t)
+        local fw, gw = off(v - h, t)
+        local ft, gt = off(v, t + h)
+        local fu, gu = off(v, t - h)
+        local a, b, c, d = (fv - fw) / 2 / h, (ft - fu) / 2 / h, (gv - gw) / 2 / h, (gt - gu) / 2 / h
+        local det = a * d - b * c
+        v, t = v - (d * f - b * g) / det, t - (a * g - c * f) / det
+    end
+    local M = excitation.relay{ on = -width / 2, off = width / 2, levels = { level, -level } }
+    local s = system{ I = 1, k = 1, C = C }:steady{ M = M }
+    assert(t > 1)
+    near(s.period, 2 * t, 1e-9)
+    assert(s.stable and s.stops == 0)
+    local run = s.run
+    near(run:at(run.t_end), run.theta[1], 1e-10)
+    equal(#run.events:filter(function(e) return e.kind == "switch" end), 2)
+end)
+
+test("the hunting of a controller with an integral is the one that long runs come to", function()
+    local block = system{ I = 1, k = 0, Rd = 0.3, Re = 0.4 }
+    local function M(_, theta, velocity, z) return 8 * (1 - theta) - 2 * velocity + 3 * z.e end
+    local states = { e = { start = 0, rate = function(_, theta) return 1 - theta end } }
+    local s = block:steady{ M = M, states = states }
+    local run = block:simulate{ M = M, states = states, t_end = 4000, times = { 4000 } }
+    local sticks = run.events:filter(function(e) return e.kind == "stick" end)
+    local n = #sticks
+    near(s.period, sticks[n].t - sticks[n - 2].t, 1e-8)
+    near(s.amplitude, math.abs(sticks[n].theta - sticks[n - 1].theta) / 2, 1e-10)
+    near(s.period, 53.27, 5e-3)
+    equal(s.stops, 2)
+    equal(#s.multipliers, 2)
+    assert(s.multipliers[1].abs < 0.6 and s.multipliers[2].abs < 1e-7)
+    local later = run:steady() -- from where the run has got to
+    near(later.period, s.period, 1e-9)
+    near(later.amplitude, s.amplitude, 1e-10)
+    block = system{ I = 1, k = 0, Rd = 0.3 }
+    equal(block:steady{ M = M, states = states }.status, "rest")
+end)
+
+test("a clock that is kicked at each passage has the amplitude of its balance", function()
+    local C, kick = 0.1, 0.05
+    local damped = (1 - C ^ 2 / 4) ^ 0.5
+    local period = 2 * math.pi / damped
+    local s = system{ I = 1, k = 1, C = C }:steady{ velocity0 = 0.5, events = {
+        { when = function(_, theta) return theta end, direction = "up",
+            act = function(_, theta, velocity) return theta, velocity + kick end } } }
+    near(s.period, period, 1e-10)
+    local speed = kick / (1 - math.exp(-C / 2 * period)) -- after the kick
+    local function at(t) return speed / damped * math.exp(-C / 2 * t) * math.sin(damped * t) end
+    local top = math.atan(damped, C / 2) / damped
+    near(s.amplitude, (at(top) - at(top + period / 2)) / 2, 1e-10)
+    near(s.multipliers[1].abs, math.exp(-C / 2 * period), 1e-7)
+end)
+
+test("dead times and sampled controllers have the cycles that long runs come to", function()
+    local sys = system{ I = 1, k = 4, C = 0.1, Rd = 0.02 }
+    local M = excitation.delayed(function(_, theta) return -3 * math.sin(theta) end, { by = 0.5 })
+    local s = sys:steady{ M = M, theta0 = 0.5 }
+    local run = sys:simulate{ M = M, theta0 = 0.5, t_end = 1500, times = vector.linspace(1500 - 2 * s.period, 1500, 20001) }
+    near(run.theta[20001], run.theta[10001], 1e-8)
+    near(s.amplitude, extent(run.theta), 1e-6)
+    equal(s.multipliers, nil)
+    assert(s.stable)
+    local function sampled() return excitation.sampled(function(_, theta) return theta > 0 and -0.5 or 0.5 end, { every = 0.1 }) end
+    s = sys:steady{ M = sampled(), theta0 = 0.5 }
+    near(s.period / 0.1, math.floor(s.period / 0.1 + 0.5), 1e-9) -- on the grid
+    run = sys:simulate{ M = sampled(), theta0 = 0.5, t_end = 1000, times = vector.linspace(1000 - 2 * s.period, 1000, 2001) }
+    near(run.theta[2001], run.theta[1001], 1e-9)
+end)
+
+test("belt, base, states and acts stand beside a periodic M", function()
+    local sys = system{ I = 1, k = 8, C = 0.6, Rd = 0.15 }
+    local wave = excitation.harmonic{ amplitude = 1.2, omega = 4 }
+    local s = sys:steady{ M = wave, belt = 0.35 }
+    near(s.amplitude, 0.136905, 1e-6)
+    near(s.mean, 0.15 / 8, 0.02)
+    near(s.period, math.pi / 2, 1e-12)
+    local shaken, pushed = sys:steady{ base = wave }, sys:steady{ M = -1 * wave } -- the same but for its sign
+    near(shaken.amplitude, pushed.amplitude, 1e-10)
+    near(shaken.stuck, pushed.stuck, 1e-8)
+    for _, more in ipairs{
+        { M = function(t, _, _, z) return 0.8 * math.sin(t) - z.e end, period = 2 * math.pi,
+            states = { e = { rate = function(_, theta, _, z) return 2 * (theta - z.e) end } } },
+        { belt = function(t) return 0.3 * math.cos(2 * t) end, period = math.pi },
+        { M = excitation.harmonic{ amplitude = 2, omega = 2 }, belt = 0.05, states = {
+            e = { rate = function(_, theta, velocity, z) return velocity - z.e end } } },
+    } do
+        s = sys:steady(more)
+        equal(s.status, "steady")
+        local options = { t_end = 400 * s.period, times = vector.linspace(399 * s.period, 400 * s.period, 4001) }
+        for name, value in pairs(more) do options[name] = value end
+        options.period = nil
+        local run = sys:simulate(options)
+        near(s.amplitude, extent(run.theta), 2e-6 * s.amplitude)
+        near(s.run:at(s.run.t_end), s.run:at(s.run.t_start), 1e-9)
+    end
+end)
+
+test("a function of the time needs a period, and one that does not depend on it needs none", function()
+    local sys = system{ I = 1, k = 4, Rd = 0.1 }
+    raises_here(function() sys:steady{ belt = function(t) return math.sin(t) end } end, "the period of M is not known")
+    raises_here(function() sys:steady{ states = { e = { rate = function(t) return math.sin(t) end } } } end,
+        "the period of M is not known")
+    raises_here(function() sys:steady{ belt = function(t) return math.sin(t) end, period = 3 } end,
+        "belt does not repeat itself after period = 3")
+    raises_here(function() sys:steady{ states = { e = { rate = 3 } } } end, "sys:steady: states.e: rate must be")
+    equal(sys:steady{ belt = function() return 0 end, theta0 = 2 }.status, "rest")
+    raises_here(function() sys:steady{ M = excitation.relay{ on = 1, off = 2, levels = { 1, 2 }, of = "x" } } end,
+        "no state of this run")
+end)
+
+support.finish()
