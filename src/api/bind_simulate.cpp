@@ -54,7 +54,7 @@ source::Task asked_task(lua_State* L, const lua::Options& options, const RunOpti
                       .excitation = to_excitation(L, -1, "sys:simulate: M", "M"),
                       .initial = {.theta = asked.theta0, .velocity = asked.velocity0},
                       .window = {.start = asked.t_start},
-                      .rows = asked.dt ? motion::Grid::every(*asked.dt) : motion::Grid::at(asked.times),
+                      .rows = motion::Grid::at(asked.times),
                       .integrator = {},
                       .extras = read_extras(L, options)};
     const auto terms =
@@ -69,6 +69,10 @@ source::Task asked_task(lua_State* L, const lua::Options& options, const RunOpti
     }
     // The latest time and not the last one: times that do not increase are an error of their own.
     task.window.end = asked.t_end ? *asked.t_end : *std::max_element(asked.times.begin(), asked.times.end());
+    if (!options.has("times") && task.window.end > task.window.start) {
+        constexpr double intervals = 1000;
+        task.rows = motion::Grid::every(asked.dt.value_or((task.window.end - task.window.start) / intervals));
+    }
     return task;
 }
 

@@ -51,7 +51,7 @@ inline constexpr text::Option plain_simulate_options[] = {
     {.name = "t_start", .unit = "time units", .meaning = "when it starts", .filled = text::fills<&RunOptions::t_start>},
     {"t_end", "time units", text::its_own, text::any_finite, "when the run ends; without it, at the last of the times",
      text::fills<&RunOptions::t_end>},
-    {"dt", "time units", text::needed, text::positive, "from row to row; t_end has a row, too",
+    {"dt", "time units", "(t_end - t_start)/1000", text::positive, "from row to row; t_end has a row, too",
      text::fills<&RunOptions::dt>},
     {.name = "times",
      .unit = "time units",

@@ -109,7 +109,7 @@ test("t_start shifts the window, and nothing is recorded as an event there", fun
 end)
 
 test("missing, superfluous and misspelt options are errors that show the way", function()
-    raises_here(function() nd:simulate { t_end = 1 } end, "dt or times is needed", "dt = 0.01")
+    raises_here(function() nd:simulate { dt = 1 } end, "t_end")
     raises_here(function() nd:simulate { dt = 0.1 } end, "sys:simulate needs t_end, for example")
     raises_here(function() nd:simulate { times = {} } end, "needs t_end")
     raises_here(function() nd:simulate { t_end = 1, dt = 0.1, times = { 1 } } end, "exclude each other")
@@ -170,6 +170,17 @@ test("an unstable 1989 run ends with an outcome and rows that are all finite", f
     assert(run.outcome:find("stopped being finite"), run.outcome)
     assert(#run > 0 and #run < 2001)
     assert(run.theta:abs():max() < math.huge)
+end)
+
+test("without dt and times a run has 1001 rows, and goes on with the same distance", function()
+    local run = nd:simulate { theta0 = 1, t_start = 3, t_end = 7 }
+    equal(#run, 1001)
+    near(run.t[2] - run.t[1], 0.004, 1e-15)
+    equal(run.t[1001], 7.0)
+    equal(#run:continue { t_end = 8 }, 1251)
+    equal(#nd:simulate { theta0 = 1, t_end = 7, times = {} }, 0)
+    equal(#nd:simulate { theta0 = 1, times = { 1, 2 } }, 2)
+    equal(nd:simulate { theta0 = 1, t_end = 1 }.theta[501], nd:simulate { theta0 = 1, t_end = 1, dt = 0.001 }.theta[501])
 end)
 
 support.finish()
