@@ -5,7 +5,7 @@ local sys = nondimensional{ friction_ratio = 0.5 }
 -- One question, one answer: no transient is run.
 local s = sys:steady{ M = excitation.harmonic{ frequency = 1.35 } }
 print(s)
-print(string.format("lag of the fundamental %.2f degrees, of the peak %.2f degrees", s.lag, s.peak_lag))
+print(string.format("lag of the fundamental %.2f degrees, of the peak %.2f degrees", math.deg(s.lag), math.deg(s.peak_lag)))
 print(string.format("theory: amplitude %.9f, found %.9f", theory.den_hartog{ r = 1.35, friction_ratio = 0.5 }, s.amplitude))
 
 -- At resonance this friction is too weak, and the answer says by how much.

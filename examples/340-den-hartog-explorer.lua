@@ -3,7 +3,7 @@
 -- Every point of the plane is a steady motion, found without a transient. g = Rd/(k a), r = f/f0.
 local map = sweep{ r = vector.linspace(0.1, 2, 96), g = vector.linspace(0, 1, 51), run = function(p)
     local s = nondimensional{ friction_ratio = p.g }:steady{ M = excitation.harmonic{ frequency = p.r } }
-    return { A = s.amplitude, stops = s.stops, lag = s.lag }
+    return { A = s.amplitude, stops = s.stops, lag = math.deg(s.lag) }
 end }
 print(#map .. " points")
 
@@ -49,7 +49,7 @@ for i, g in ipairs{ 0, 0.2, 0.4, 0.6, 0.7, 0.8 } do
     end
     if g == 0.6 then
         table.insert(amplitudes, { c.linearised.frequency, c.linearised.amplitude, label = "0.6 as viscous", colour = 7, dashes = "dashed" })
-        table.insert(lags, { c.linearised.frequency, c.linearised.lag, label = "0.6 as viscous", colour = 7, dashes = "dashed" })
+        table.insert(lags, { c.linearised.frequency, c.linearised.lag*(180/math.pi), label = "0.6 as viscous", colour = 7, dashes = "dashed" })
     end
 end
 local r = vector.linspace(0.05, 2, 300)

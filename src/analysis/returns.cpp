@@ -645,6 +645,7 @@ private:
         answer_.stable = true;
         answer_.rest = {theta, theta};
         if (stuck && !moves && answer_.status == SteadyStatus::rest) answer_.rest = rest_of(question_, theta);
+        if (answer_.rest.first < answer_.rest.second) answer_.unique = false;
         return true;
     }
 
@@ -684,6 +685,8 @@ private:
         answer_.period = period;
         answer_.multipliers = std::move(multipliers);
         answer_.differentiable = D.has_value();
+        const bool neutral = !answer_.multipliers.empty() && std::abs(answer_.multipliers.front()) > 1 - neutral_within;
+        if (neutral) answer_.unique = false;
         answer_.stable = true;
         answer_.residual = found.residual;
         answer_.asked = std::make_shared<const SteadyQuestion>(runs_.from(moment, map.start()));

@@ -325,34 +325,70 @@ SteadyMotion steady_motion_near(const SteadyQuestion& question, const motion::Mo
     return search.judged(search.found_near());
 }
 
-std::optional<SteadyMotion> another_motion(const SteadyQuestion& question, const SteadyMotion& known,
-                                           const motion::Monitor& monitor) {
-    if (known.unique.value_or(false)) return {};
+namespace {
+
+bool stands(const SteadyMotion& motion) {
+    return motion.status == SteadyStatus::adheres || motion.status == SteadyStatus::rest;
+}
+
+/// The same motion, or its mirror image.
+bool are_alike(const SteadyMotion& a, const SteadyMotion& b, double size) {
+    if (stands(a) && stands(b)) {
+        const double within = 1e-6 * size;
+        return b.start.theta >= a.rest.first - within && b.start.theta <= a.rest.second + within;
+    }
+    if (a.status != b.status) return false;
+    if (a.status != SteadyStatus::steady) return true;
+    const double apart =
+        std::fabs(std::fabs(a.high) - std::fabs(b.high)) + std::fabs(std::fabs(a.low) - std::fabs(b.low));
+    return std::fabs(a.amplitude - b.amplitude) <= 1e-6 * size && apart <= 2e-6 * size;
+}
+
+/// Starts all around the motion, the nearest of them within a hundredth of the farthest.
+std::vector<model::State> starts_around(const SteadyQuestion& question, const SteadyMotion& known, double size) {
     const double period = known.period > 0 ? known.period : 2 * std::numbers::pi;
     const double omega =
         question.system.stiffness() > 0 ? question.system.natural_frequency() : 2 * std::numbers::pi / period;
-    const double size = std::max({std::fabs(known.low), std::fabs(known.high), 1e-300});
     // A motion at resonance may be far larger than the one found, and the mass may adhere where M alone would hold it.
     const bool asks = question.excitation.has_feedback() || question.is_timeless();
     const auto M = asks ? DriveRange{} : extremes(question.excitation, question.drive);
     const double stiff = question.system.inertia() * omega * omega;
     const double soft = std::max(question.system.damping() * omega, 0.01 * stiff);
     const double widest = std::max(2.5 * size, (M.high - M.low) / 2 / soft);
+    std::vector<model::State> starts;
     for (int i = 0; i < other_starts; ++i) {
         const double radius = widest * std::exp2(-0.5 * i);
         const auto spot = i == 0 ? (M.high + M.low) / 2 / stiff : std::polar(radius, (0.3 + i) * std::numbers::pi / 2);
         const Place start = inside(question.system, Place(spot.real(), spot.imag()));
+        starts.push_back({start[0], start[1] * omega});
+    }
+    return starts;
+}
+
+}  // namespace
+
+std::vector<OtherMotion> other_motions(const SteadyQuestion& question, const SteadyMotion& known,
+                                       const motion::Monitor& monitor) {
+    std::vector<OtherMotion> others;
+    const bool family = known.status == SteadyStatus::steady && known.unique.has_value();
+    if (known.unique.value_or(false) || family) return others;
+    double size = std::max({std::fabs(known.low), std::fabs(known.high), std::fabs(known.rest.second), 1e-300});
+    // At rest the initial state is all that says how large motions may be.
+    if (stands(known)) size = std::max({size, std::fabs(question.initial.theta), std::fabs(question.initial.velocity)});
+    for (const model::State& start : starts_around(question, known, size)) {
         SteadyQuestion other = question;
         other.periods = 0;
-        other.initial = {start[0], start[1] * omega};
-        const SteadyMotion found = steady_motion(other, monitor);
-        if (found.status == SteadyStatus::none || found.outcome == model::Outcome::interrupted) continue;
-        const double apart = std::fabs(std::fabs(found.high) - std::fabs(known.high)) +
-                             std::fabs(std::fabs(found.low) - std::fabs(known.low));
-        const bool alike = std::fabs(found.amplitude - known.amplitude) <= 1e-6 * size && apart <= 2e-6 * size;
-        if (found.status != known.status || !alike) return found;
+        other.initial = start;
+        SteadyMotion found = steady_motion(other, monitor);
+        if (found.outcome == model::Outcome::interrupted) break;
+        const auto is_it = [&](const OtherMotion& seen) { return are_alike(seen.motion, found, size); };
+        if (found.status == SteadyStatus::none || are_alike(known, found, size) ||
+            std::any_of(others.begin(), others.end(), is_it)) {
+            continue;
+        }
+        others.push_back({std::move(other), std::move(found)});
     }
-    return {};
+    return others;
 }
 
 }  // namespace dinal::analysis

@@ -61,22 +61,27 @@ SteadyMotion steady_motion(const SteadyQuestion& question, const motion::Monitor
 /// The same from a place near the answer, as when a parameter has changed a little.
 SteadyMotion steady_motion_near(const SteadyQuestion& question, const motion::Monitor& monitor = {});
 
-/// A motion from another start that is not this one; none was seen from `other_starts` of them.
+/// The motions from other starts that are not this one, each once, with the question whose start leads to it. None is
+/// looked for where the motion is known to be the only one, or one of a family.
+struct OtherMotion {
+    SteadyQuestion question;
+    SteadyMotion motion;
+};
 inline constexpr int other_starts = 16;
-std::optional<SteadyMotion> another_motion(const SteadyQuestion& question, const SteadyMotion& known,
-                                           const motion::Monitor& monitor = {});
+std::vector<OtherMotion> other_motions(const SteadyQuestion& question, const SteadyMotion& known,
+                                       const motion::Monitor& monitor = {});
 
 /// What the motion is besides its extremes: integrals over its period, which take a look at all of it.
 struct SteadyShape {
     double mean = 0;                      ///< of theta, by time
-    std::optional<double> lag = {};       ///< of the fundamental behind that of M, degrees in (-180, 180]
+    std::optional<double> lag = {};       ///< of the fundamental behind that of M, rad in (-pi, pi]
     std::optional<double> peak_lag = {};  ///< of the highest theta behind the maximum of the fundamental of M
     double fundamental = 0;               ///< its amplitude
 };
 SteadyShape shape_of(const SteadyQuestion& question, const SteadyMotion& motion, const motion::Monitor& monitor = {});
 
-/// The answer in sentences. `other` was found from another start.
+/// The answer in sentences.
 std::string told(const SteadyQuestion& question, const SteadyMotion& motion, const SteadyShape& shape,
-                 const std::optional<SteadyMotion>& other);
+                 const std::vector<OtherMotion>& others);
 
 }  // namespace dinal::analysis

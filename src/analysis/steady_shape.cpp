@@ -38,9 +38,10 @@ bool is_more_than_rounding(const SteadyQuestion& question, const std::complex<do
     return std::abs(wave) > least_harmonic * (M.high - M.low);
 }
 
-/// An angle in degrees, in (-180, 180].
-double in_one_turn(double degrees) {
-    const double turn = degrees - 360 * std::ceil((degrees - 180) / 360);
+/// An angle in (-pi, pi].
+double in_one_turn(double angle) {
+    constexpr double whole = 2 * std::numbers::pi;
+    const double turn = angle - whole * std::ceil(angle / whole - 0.5);
     return turn == 0 ? 0 : turn;
 }
 
@@ -103,11 +104,11 @@ SteadyShape shape_of(const SteadyQuestion& question, const SteadyMotion& motion,
     shape.fundamental = std::abs(found->wave);
     if (!drives) return shape;
     if (shape.fundamental > least_harmonic * motion.amplitude) {
-        shape.lag = in_one_turn((std::arg(M_wave) - std::arg(found->wave)) * 180 / std::numbers::pi);
+        shape.lag = in_one_turn(std::arg(M_wave) - std::arg(found->wave));
     }
     // The fundamental |M| cos(omega t + arg) is greatest when omega t = -arg.
     const double omega = 2 * std::numbers::pi / drive.period;
-    shape.peak_lag = in_one_turn((omega * (motion.t_high - drive.start) + std::arg(M_wave)) * 180 / std::numbers::pi);
+    shape.peak_lag = in_one_turn(omega * (motion.t_high - drive.start) + std::arg(M_wave));
     return shape;
 }
 
@@ -118,7 +119,7 @@ public:
     SteadyStory(const SteadyQuestion& question, const SteadyMotion& motion, const SteadyShape& shape)
         : question_(question), motion_(motion), shape_(shape) {}
 
-    std::string told(const std::optional<SteadyMotion>& other) {
+    std::string told(const std::vector<OtherMotion>& others) {
         switch (motion_.status) {
             case SteadyStatus::steady:
                 tell_motion();
@@ -159,7 +160,7 @@ public:
                 }
                 break;
         }
-        tell_others(other);
+        tell_others(others);
         return text_;
     }
 
@@ -186,7 +187,9 @@ private:
         }
         say("Its amplitude is {}, from theta = {} to {}.", number(motion_.amplitude), number(motion_.low),
             number(motion_.high));
-        if (shape_.lag) say("Its fundamental lags {:.5g} degrees behind that of M.", *shape_.lag);
+        if (shape_.lag) {
+            say("Its fundamental lags {:.5g} degrees behind that of M.", *shape_.lag * 180 / std::numbers::pi);
+        }
         if (motion_.stops == 0) {
             say("It never stops.");
         } else {
@@ -216,28 +219,31 @@ private:
             say("It is stable: of a disturbance {} is left after a period.", text::percent(largest));
         }
     }
-    void tell_others(const std::optional<SteadyMotion>& other) {
-        if (motion_.status != SteadyStatus::steady && motion_.status != SteadyStatus::adheres) return;
-        if (other && other->status == SteadyStatus::steady) {
-            if (question_.is_timeless()) {
-                say("Another motion was seen from another start: amplitude {}, period {:.6g}.",
-                    number(other->amplitude), other->period);
-                return;
-            }
-            say("Another motion was seen from another start: amplitude {}, {} of M long.", number(other->amplitude),
-                text::counted(static_cast<std::size_t>(other->periods), "period"));
-        } else if (other && (other->status == SteadyStatus::adheres || other->status == SteadyStatus::rest)) {
+    void tell_other(const SteadyMotion& other) {
+        if (other.status == SteadyStatus::adheres || other.status == SteadyStatus::rest) {
             say("From another start the mass comes to rest for good.");
-        } else if (other && other->status == SteadyStatus::grows) {
+        } else if (other.status == SteadyStatus::grows) {
             say("From another start the motion grows.");
-        } else if (motion_.status == SteadyStatus::steady && motion_.unique.has_value()) {
-            if (*motion_.unique) {
-                say("It is the only one.");
-            } else {
-                say("It is one of a family: others beside it are periodic, too.");
-            }
-        } else if (motion_.status == SteadyStatus::steady) {
+        } else if (question_.is_timeless()) {
+            say("Another motion was seen from another start: amplitude {}, period {:.6g}.", number(other.amplitude),
+                other.period);
+        } else {
+            say("Another motion was seen from another start: amplitude {}, {} of M long.", number(other.amplitude),
+                text::counted(static_cast<std::size_t>(other.periods), "period"));
+        }
+    }
+    void tell_others(const std::vector<OtherMotion>& others) {
+        if (motion_.status == SteadyStatus::none || motion_.status == SteadyStatus::grows) return;
+        constexpr std::size_t most = 3;
+        for (std::size_t i = 0; i < std::min(most, others.size()); ++i) tell_other(others[i].motion);
+        if (others.size() > most) say("There are {} more (s.others).", others.size() - most);
+        if (!others.empty() || motion_.status != SteadyStatus::steady) return;
+        if (!motion_.unique.has_value()) {
             say("No other motion was seen from {} other starts, which is no proof.", other_starts);
+        } else if (*motion_.unique) {
+            say("It is the only one.");
+        } else {
+            say("It is one of a family: others beside it are periodic, too.");
         }
     }
 
@@ -250,8 +256,8 @@ private:
 }  // namespace
 
 std::string told(const SteadyQuestion& question, const SteadyMotion& motion, const SteadyShape& shape,
-                 const std::optional<SteadyMotion>& other) {
-    return SteadyStory(question, motion, shape).told(other);
+                 const std::vector<OtherMotion>& others) {
+    return SteadyStory(question, motion, shape).told(others);
 }
 
 }  // namespace dinal::analysis

@@ -133,6 +133,33 @@ int outcome(lua_State* L) {
     return lua::push_text(L, run.origin || run.is_part ? motion::outcome_text(run.trajectory) : "read from a file");
 }
 
+/// One word for each way to end.
+std::string_view status_word(model::Outcome outcome) {
+    switch (outcome) {
+        case model::Outcome::reached_end:
+            return "end";
+        case model::Outcome::at_rest:
+            return "rest";
+        case model::Outcome::stuck_at_end:
+            return "stuck";
+        case model::Outcome::stopped:
+            return "event";
+        case model::Outcome::interrupted:
+            return "interrupted";
+        default:
+            return "failed";
+    }
+}
+
+int status(lua_State* L) {
+    const Run& run = *run_self(L, "run.status");
+    if (!run.origin) {
+        lua_pushnil(L);
+        return 1;
+    }
+    return lua::push_text(L, status_word(run.trajectory.outcome));
+}
+
 int gap_of_run(lua_State* L) {
     const double gap = run_self(L, "run.gap")->trajectory.gap;
     gap > 0 ? lua_pushnumber(L, gap) : lua_pushnil(L);
@@ -260,6 +287,11 @@ constexpr lua::Member run_members[] = {
     {lua::a_field<time_field<&motion::Trajectory::t_stop>>,
      {"run.t_end -> number", "The time at which the run ended: the t_end it was given, or earlier when it was stopped.",
       DINAL_RUN "print(run.t_end)  --> 2.0"}},
+    {lua::a_field<status>,
+     {"run.status -> string or nil",
+      "How it ended, in one word: \"end\" (in motion), \"rest\", \"stuck\", \"event\" (one with stop = true), "
+      "\"interrupted\" or \"failed\"; run.outcome is the sentence. nil of a run that was read from a file.",
+      DINAL_RUN "print(run.status)  --> end"}},
     {lua::a_field<outcome>,
      {"run.outcome -> string",
       "How it ended: \"reached the end\" in motion; \"at rest\" when nothing can move it any more, because M is constant "

@@ -33,12 +33,16 @@ const analysis::SteadyShape& steady_shape(lua_State* L, const SteadyHandle& s) {
     return *s->shape;
 }
 
-void look_around_steady(lua_State* L, const SteadyHandle& s) {
-    if (s->looked_around || s->motion.unique.has_value() || !is_found(*s)) return;
-    asking(L, s->question.extras, [&](const motion::Monitor& monitor) {
-        s->other = analysis::another_motion(s->question, s->motion, monitor);
-    });
-    s->looked_around = true;
+const std::vector<analysis::OtherMotion>& others_of(lua_State* L, const SteadyHandle& s) {
+    if (!s->others && !is_found(*s)) s->others.emplace();
+    if (!s->others) {
+        std::vector<analysis::OtherMotion> others;
+        asking(L, s->question.extras, [&](const motion::Monitor& monitor) {
+            others = analysis::other_motions(s->question, s->motion, monitor);
+        });
+        s->others = std::move(others);
+    }
+    return *s->others;
 }
 
 int push_or_nil(lua_State* L, const std::optional<double>& x) {
@@ -152,18 +156,36 @@ int steady_unique(lua_State* L) {
         lua_pushnil(L);
         return 1;
     }
-    look_around_steady(L, s);
-    if (!s->motion.unique && !s->other) {
+    if (s->motion.unique.value_or(false)) {
+        lua_pushliteral(L, "proven");
+    } else if (!s->motion.unique && others_of(L, s).empty()) {
         lua_pushliteral(L, "not seen");
     } else {
-        lua_pushboolean(L, s->motion.unique.value_or(false) ? 1 : 0);
+        lua_pushboolean(L, 0);
     }
     return 1;
 }
 
+/// Kept, so that s.others is the same table each time.
+int steady_others(lua_State* L) {
+    const SteadyHandle s = steady_self(L, "s.others");
+    if (!is_found(*s)) {
+        lua_pushnil(L);
+        return 1;
+    }
+    if (push_kept(L, "others")) return 1;
+    lua_newtable(L);
+    lua_Integer n = 0;
+    for (const analysis::OtherMotion& other : others_of(L, s)) {
+        lua::push<SteadyHandle>(L, std::make_shared<Steady>(Steady{other.question, other.motion}));
+        lua_rawseti(L, -2, ++n);
+    }
+    keep(L, "others");
+    return 1;
+}
+
 std::string steady_story(lua_State* L, const SteadyHandle& s) {
-    look_around_steady(L, s);
-    return analysis::told(s->question, s->motion, steady_shape(L, s), s->other);
+    return analysis::told(s->question, s->motion, steady_shape(L, s), others_of(L, s));
 }
 
 int steady_explain(lua_State* L) {
@@ -252,16 +274,16 @@ constexpr lua::Member steady_members[] = {
      lua::guarded<steady_shape_angle<&analysis::SteadyShape::lag>>,
      lua::Kind::field,
      {"s.lag -> number",
-      "By how much the fundamental of theta (at the period of M) lags behind that of M, degrees in (-180, 180]; nil "
+      "By how much the fundamental of theta (at the period of M) lags behind that of M, rad in (-pi, pi]; nil "
       "when one of them has none or M depends on the motion.",
       "s = system{ I = 1, k = 1, C = 0.5 }:steady{ M = excitation.harmonic{ omega = 1 } }\n"
-      "print(string.format(\"%.6f\", s.lag))  --> 90.000000"}},
+      "print(string.format(\"%.6f\", s.lag))  --> 1.570796"}},
     {"peak_lag",
      lua::guarded<steady_shape_angle<&analysis::SteadyShape::peak_lag>>,
      lua::Kind::field,
-     {"s.peak_lag -> number", "By how much the highest theta lags behind the crest of the fundamental of M, degrees.",
+     {"s.peak_lag -> number", "By how much the highest theta lags behind the crest of the fundamental of M, rad.",
       "s = system{ I = 1, k = 1, C = 0.5 }:steady{ M = excitation.harmonic{ omega = 1 } }\n"
-      "print(string.format(\"%.6f\", s.peak_lag))  --> 90.000000"}},
+      "print(string.format(\"%.6f\", s.peak_lag))  --> 1.570796"}},
     {"stops",
      lua::guarded<steady_stops>,
      lua::Kind::field,
@@ -289,10 +311,19 @@ constexpr lua::Member steady_members[] = {
     {"unique",
      lua::guarded<steady_unique>,
      lua::Kind::field,
-     {"s.unique -> boolean or string",
-      "true: no other periodic motion exists; this is proven for a linear spring with Re = Rd, no walls and an M of time "
-      "alone. false: another one exists. \"not seen\": none was seen from sixteen other starts, which is no proof.",
-      DINAL_STEADY "print(s.unique)  --> true"}},
+     {"s.unique -> string or false",
+      "\"proven\": no other periodic motion exists; this is proven for a linear spring with Re = Rd, no walls and an M of "
+      "time alone. \"not seen\": none was seen from sixteen other starts, which is no proof. false: others exist, in "
+      "s.others or as a family beside it.",
+      DINAL_STEADY "print(s.unique)  --> proven"}},
+    {"others",
+     lua::guarded<steady_others>,
+     lua::Kind::field,
+     {"s.others -> table",
+      "A list of the other motions found from sixteen other starts, each a steady motion of its own. Empty if the motion "
+      "is unique, or one of a family.",
+      "s = system{ I = 1, k = 4, C = 0.1, Rd = 0.3, Re = 0.6 }:steady{ belt = 0.1 }\n"
+      "print(s.status, #s.others, s.others[1].status)  --> steady\t1\trest"}},
     {"symmetric",
      lua::guarded<steady_found_flag<&analysis::SteadyMotion::symmetric>>,
      lua::Kind::field,

@@ -207,15 +207,12 @@ struct ResponseColumns {
     }
     Data data(const VariedColumn& of) && {
         Data data;
-        data.columns = {column_of(of.name, std::move(varied), of.unit),
-                        column_of("amplitude", std::move(amplitude), of.theta),
-                        column_of("lag", std::move(lag)),
-                        column_of("peak", std::move(peak), of.theta),
-                        column_of("stops", std::move(stops)),
-                        column_of("stuck", std::move(stuck)),
-                        column_of("stable", std::move(stable)),
-                        column_of("branch", std::move(branch)),
-                        column_of("status", std::move(status))};
+        data.columns = {
+            column_of(of.name, std::move(varied), of.unit), column_of("amplitude", std::move(amplitude), of.theta),
+            column_of("lag", std::move(lag), "rad"),        column_of("peak", std::move(peak), of.theta),
+            column_of("stops", std::move(stops)),           column_of("stuck", std::move(stuck)),
+            column_of("stable", std::move(stable)),         column_of("branch", std::move(branch)),
+            column_of("status", std::move(status))};
         data.pieces_of = "branch";
         data.dotted_of = "stable";
         return data;

@@ -57,7 +57,7 @@ int response_of_system(lua_State* L);
 inline constexpr lua::Doc response_doc{
     "sys:response{ OPTIONS } -> data",
     "The steady motion over the frequency of M, its amplitude, or a parameter of a function. Columns: frequency (or what "
-    "is varied), amplitude, lag (degrees), peak, stops, stuck, stable (1 or 0), branch and status. Where the motion grows "
+    "is varied), amplitude, lag (rad), peak, stops, stuck, stable (1 or 0), branch and status. Where the motion grows "
     "the amplitude is infinite, where none was found nan; between { from, to } a row is added at a resonance where it "
     "grows. Where there can be several motions at once, with a spring of its own, feedback, walls, or Re > Rd, whole "
     "branches are followed, round their folds and along their unstable sides, which c:plot() draws dotted, so there are "

@@ -40,11 +40,11 @@ Data closed_curve(const HarmonicSweep& sweep, ClosedCurve curve) {
         const auto motion = M0 > 0 ? curve(r, system.damping_ratio(), Rd / M0, Re / M0) : std::nullopt;
         varied.push_back(x);
         amplitude.push_back(motion ? motion->amplitude * M0 / system.stiffness() : no_number);
-        lag.push_back(motion ? motion->lag * 180 / std::numbers::pi : no_number);
+        lag.push_back(motion ? motion->lag : no_number);
     }
     return {.columns = {column_of(sweep.column.name, std::move(varied), sweep.column.unit),
                         column_of("amplitude", std::move(amplitude), sweep.column.theta),
-                        column_of("lag", std::move(lag))}};
+                        column_of("lag", std::move(lag), "rad")}};
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 
 #include <memory>
 #include <optional>
+#include <vector>
 
 #include "analysis/steady.hpp"
 #include "api/extras_options.hpp"
@@ -59,9 +60,8 @@ inline constexpr text::Call steady_run_call{"run:steady", "run:steady{ period = 
 struct Steady {
     analysis::SteadyQuestion question;
     analysis::SteadyMotion motion;
-    std::optional<analysis::SteadyShape> shape = {};  ///< made when it is first asked for
-    bool looked_around = false;
-    std::optional<analysis::SteadyMotion> other = {};  ///< of another start, once it was looked for
+    std::optional<analysis::SteadyShape> shape = {};                ///< made when it is first asked for
+    std::optional<std::vector<analysis::OtherMotion>> others = {};  ///< from other starts, once they were looked for
 };
 // Shared: a user's function may drop the last reference meanwhile.
 using SteadyHandle = std::shared_ptr<Steady>;
@@ -94,6 +94,12 @@ analysis::Drive drive_or_fail(lua_State* L, const lua::Options& options, const a
 
 /// Raises when M was found to be no function of its arguments.
 void check_function(const lua::Options& options, const analysis::SteadyMotion& motion);
+
+/// What the steady motion at index 1 keeps under this name, so that a field has the same value each time: pushes it,
+/// and false when there is none yet.
+bool push_kept(lua_State* L, const char* name);
+/// Keeps the value on the top.
+void keep(lua_State* L, const char* name);
 
 /// sys:steady{ ... } and run:steady{ ... }
 int steady_of_system(lua_State* L);

@@ -38,6 +38,30 @@ model::State state_at_period(const motion::Trajectory& trajectory, const analysi
 
 }  // namespace
 
+bool push_kept(lua_State* L, const char* name) {
+    if (lua_getiuservalue(L, 1, 1) != LUA_TTABLE) {
+        lua_pop(L, 1);
+        return false;
+    }
+    lua_getfield(L, -1, name);
+    lua_remove(L, -2);
+    if (!lua_isnil(L, -1)) return true;
+    lua_pop(L, 1);
+    return false;
+}
+
+void keep(lua_State* L, const char* name) {
+    if (lua_getiuservalue(L, 1, 1) != LUA_TTABLE) {
+        lua_pop(L, 1);
+        lua_newtable(L);
+        lua_pushvalue(L, -1);
+        lua_setiuservalue(L, 1, 1);
+    }
+    lua_pushvalue(L, -2);
+    lua_setfield(L, -2, name);
+    lua_pop(L, 1);
+}
+
 void check_function(const lua::Options& options, const analysis::SteadyMotion& motion) {
     if (motion.contradiction) options.fail({model::sentence_with_cure(*motion.contradiction)});
 }
@@ -49,7 +73,7 @@ int run_of_steady(lua_State* L) {
         lua_pushnil(L);
         return 1;
     }
-    if (lua_getiuservalue(L, 1, 1) == LUA_TUSERDATA) return 1;
+    if (push_kept(L, "run")) return 1;
     constexpr double rows = 400;
     if (s->motion.settled && s->motion.asked) {
         const analysis::SteadyQuestion& asked = *s->motion.asked;
@@ -62,8 +86,7 @@ int run_of_steady(lua_State* L) {
                           .extras = asked.extras};
         Run found{.trajectory = *s->motion.settled, .origin = source::origin_of(L, std::move(task))};
         push_run(L, std::make_shared<const Run>(std::move(found)));
-        lua_pushvalue(L, -1);
-        lua_setiuservalue(L, 1, 1);
+        keep(L, "run");
         return 1;
     }
     if (s->motion.settled) {
@@ -79,8 +102,7 @@ int run_of_steady(lua_State* L) {
                            .extras = s->question.extras};
         Run found{.trajectory = last, .origin = source::origin_of(L, whole)};
         push_run(L, std::make_shared<const Run>(std::move(found)));
-        lua_pushvalue(L, -1);
-        lua_setiuservalue(L, 1, 1);
+        keep(L, "run");
         return 1;
     }
     if (s->question.is_timeless()) {  // at rest there is no period
@@ -101,8 +123,7 @@ int run_of_steady(lua_State* L) {
         if (result) made.trajectory = std::move(result).value();
     });
     push_run(L, std::make_shared<const Run>(std::move(made)));
-    lua_pushvalue(L, -1);
-    lua_setiuservalue(L, 1, 1);
+    keep(L, "run");
     return 1;
 }
 

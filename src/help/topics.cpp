@@ -20,8 +20,8 @@ constexpr std::array<Topic, 12> topics = {{
     {"degrees degree deg radians radian angle angles",
      "Angles are in radians: theta, theta0, velocity per time unit. math.rad(90)\n"
      "makes radians of 90 degrees, math.deg(x) degrees of radians, and of a whole\n"
-     "column 180/math.pi*run.theta. Only s.lag and s.peak_lag of a steady motion\n"
-     "are in degrees.\n"},
+     "column 180/math.pi*run.theta. Lags are in radians, too; explain() tells them\n"
+     "in degrees.\n"},
     {"tutorial tour start lesson course",
      "help() is a tour of two minutes. docs/tutorial.md takes half an hour, the\n"
      "sheets in docs/lab are a course of six afternoons, and the programs in\n"

@@ -14,7 +14,7 @@ walk.sheet("3-resonance", function(session)
   local error = 100*(linear/A - 1)
   walk.right("3b", linear)
   walk.right("3c", error)
-  walk.right("3d", s.lag)
+  walk.right("3d", math.deg(s.lag))
 
   -- the last two extremes on the same side
   local events = session.grows.events
@@ -46,10 +46,10 @@ walk.sheet("3-resonance", function(session)
     { "3c", error/100, "percent are asked for" },
     { "3c", -error, "a positive error" },
     { "3c", 100*(V/A - 1), "with no friction at all" },
-    { "3d", s.peak_lag, "how much the greatest angle lags" },
-    { "3d", 180 - s.lag, "180 degrees less this" },
-    { "3d", math.rad(s.lag), "that is in radians" },
-    { "3d", -s.lag, "theta comes after M" },
+    { "3d", math.deg(s.peak_lag), "how much the greatest angle lags" },
+    { "3d", 180 - math.deg(s.lag), "180 degrees less this" },
+    { "3d", s.lag, "that is in radians" },
+    { "3d", -math.deg(s.lag), "theta comes after M" },
     { "3e", growth/2, "in each half cycle" },
     { "3e", math.pi, "without friction" },
     { "3e", math.pi - given.small_ratio, "4 Rd/k in each period" },

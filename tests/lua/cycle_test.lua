@@ -171,6 +171,26 @@ test("belt, base, states and acts stand beside a periodic M", function()
     end
 end)
 
+test("a cycle and the rest beside it are each other's only others", function()
+    local sys = system{ I = 1, k = 4, C = 0.1, Rd = 0.3, Re = 0.6 }
+    local squeal, slides = sys:steady{ belt = 0.2, theta0 = 0.15, velocity0 = 0.2 }, sys:steady{ belt = 0.2 }
+    equal(squeal.status, "steady")
+    equal(slides.status, "rest")
+    for _, pair in ipairs{ { squeal, slides }, { slides, squeal } } do
+        local one, other = table.unpack(pair)
+        equal(one.unique, false)
+        equal(#one.others, 1)
+        equal(one.others, one.others)
+        equal(one.others[1].status, other.status)
+        near(one.others[1].amplitude, other.amplitude, 1e-9)
+    end
+    near(squeal.others[1].mean, 0.075, 1e-9)
+    near(slides.others[1].period, squeal.period, 1e-9)
+    assert(squeal:explain():gsub("%s+", " "):find("From another start the mass comes to rest for good.", 1, true))
+    assert(slides:explain():gsub("%s+", " "):find("Another motion was seen from another start: amplitude", 1, true))
+    equal(system{ I = 1, k = 1 }:steady{ theta0 = 1 }.unique, false) -- one of a family
+end)
+
 test("a function of the time needs a period, and one that does not depend on it needs none", function()
     local sys = system{ I = 1, k = 4, Rd = 0.1 }
     raises_here(function() sys:steady{ belt = function(t) return math.sin(t) end } end, "the period of M is not known")
