@@ -12,7 +12,7 @@ print(string.format("theory: amplitude %.9f, found %.9f", theory.den_hartog{ r =
 print(sys:steady{ M = excitation.harmonic{ frequency = 1 } })
 
 -- A response curve is data: columns to sort, filter, plot and save.
-local c = sys:response{ frequency = { 0.2, 0.9 }, points = 8 }
+local c = sys:response{ over = { frequency = vector.linspace(0.2, 0.9, 8) } }
 print("   r   amplitude   stops")
 for _, row in ipairs(c) do print(string.format("%.2f %11.6f %7d", row.frequency, row.amplitude, row.stops)) end
 

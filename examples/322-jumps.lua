@@ -7,7 +7,7 @@ local function resonance(Rd) return system{ I = 1, k = 1, C = 0.05, Rd = Rd, spr
 -- Friction shortens the overhang: it takes 4 Rd X a cycle, the damper pi C w X^2.
 print "Rd     jumps down at      from    to   | jumps up at        from    to"
 for _, Rd in ipairs{ 0.02, 0.1, 0.2 } do
-    local c = resonance(Rd):response{ amplitude = M0, frequency = { 0.14, 0.5 }, points = 80 }
+    local c = resonance(Rd):response{ amplitude = M0, over = { frequency = vector.linspace(0.14, 0.5, 80) }, between = true }
     local text = string.format("%.2f", Rd)
     for _, sweep in ipairs{ "up", "down" } do
         for _, jump in ipairs(c.jumps) do
@@ -42,7 +42,7 @@ for _, way in ipairs{ { "up", 0.20, 0.40, 0.005 }, { "down", 0.40, 0.20, -0.005 
     end
 end
 
-local c = sys:response{ amplitude = M0, frequency = { 0.14, 0.4 }, points = 80 }
+local c = sys:response{ amplitude = M0, over = { frequency = vector.linspace(0.14, 0.4, 80) }, between = true }
 c:plot{ overlay = "jumps", title = "Rd = 0.1", width = 72, height = 18, ascii = true }
 c:plot{ overlay = "jumps", title = "Rd = 0.1", ylabel = "amplitude", file = "figjumps.svg" }
 print("figjumps.svg shows it")

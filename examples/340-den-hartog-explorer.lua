@@ -35,7 +35,7 @@ local none = 0/0
 local amplitudes = { xlabel = "r", ylabel = "amplitude", ylim = { 0, 3 }, file = "fig5a.svg" }
 local lags = { xlabel = "r", ylabel = "lag, degrees", ylim = { 0, 180 }, yticks = 45, file = "fig5b.svg" }
 for i, g in ipairs{ 0, 0.2, 0.4, 0.6, 0.7, 0.8 } do
-    local c = nondimensional{ friction_ratio = g }:response{ frequency = { 0.05, 2 }, points = 118 }
+    local c = nondimensional{ friction_ratio = g }:response{ over = { frequency = vector.linspace(0.05, 2, 118) }, between = true }
     for _, figure in ipairs{ { amplitudes, c.amplitude }, { lags, c.lag:abs() } } do
         local moving, stopping = {}, {}
         for j = 1, #c do

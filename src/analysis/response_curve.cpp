@@ -39,7 +39,8 @@ private:
 
     SteadyMotion motion_at(double p, const model::State& start, bool near) {
         SteadyQuestion question = question_.family(p);
-        question.initial = start;
+        // A cycle begins anywhere on its way, which says little of another one: each search starts where it is told to.
+        if (!question.is_timeless()) question.initial = start;
         SteadyMotion motion = near ? steady_motion_near(question, monitor_) : steady_motion(question, monitor_);
         if (motion.contradiction) curve_.contradiction = motion.contradiction;
         stopped_ = stopped_ || motion.contradiction || motion.outcome == model::Outcome::interrupted ||
@@ -49,7 +50,8 @@ private:
 
     /// Of more than one motion, by theta and velocity alone.
     [[nodiscard]] static bool has_map(const SteadyQuestion& question) {
-        return !contracts(question) && !model::has_memory(question.excitation);
+        const bool plain = !question.is_timeless() && !question.extras.any();
+        return plain && !contracts(question) && !model::has_memory(question.excitation);
     }
 
     void sweep() {

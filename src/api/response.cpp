@@ -13,6 +13,7 @@
 #include "api/data.hpp"
 #include "api/response_companions.hpp"
 #include "api/steady_answer.hpp"
+#include "lua/vector.hpp"
 #include "text/sentences.hpp"
 
 namespace dinal::api {
@@ -20,80 +21,139 @@ namespace {
 
 constexpr double nan_number = std::numeric_limits<double>::quiet_NaN();
 
-/// What a call of sys:response asks: one of the three is varied.
+inline constexpr text::Option system_at_option[] = {
+    {.name = "system", .meaning = "the system at this point", .object = "system", .wanted = "a system"},
+};
+inline constexpr auto at_options =
+    text::joined(drive_options, period_options, start_options, extras_options, system_at_option);
+inline constexpr text::Call at_call{"sys:response: at", "at = function(p) return { belt = p.speed } end", at_options};
+
+constexpr const char* new_form = "over = { frequency = vector.linspace(0.05, 3, 200) }";
+
+/// Names the new form of what a call said once.
+void refuse_old_forms(lua_State* L) {
+    if (!lua_istable(L, 2)) return;
+    const auto type_of = [L](const char* name) {
+        const int type = lua_getfield(L, 2, name);
+        lua_pop(L, 1);
+        return type;
+    };
+    const auto fail = [L](const char* name, std::string sentence) {
+        lua::raise(L, {.sentence = fmt::format("sys:response: {}", sentence), .call = "sys:response", .option = name});
+    };
+    if (type_of("M") != LUA_TNIL) {
+        fail(
+            "M",
+            "instead of M = function(x) ... give over = { NAME = values } and at = function(p) return { M = ... } end");
+    }
+    for (const char* name : {"points", "name"}) {
+        if (type_of(name) != LUA_TNIL)
+            fail(name, fmt::format("there is no {}; a list of values has a name: {}", name, new_form));
+    }
+    for (const char* name : {"frequency", "amplitude"}) {
+        const int type = type_of(name);
+        if (type != LUA_TTABLE && type != LUA_TUSERDATA) continue;
+        fail(name, fmt::format("{0} = values is now over = {{ {0} = values }}, with every value in the list: "
+                               "vector.linspace(from, to, count) makes one",
+                               name));
+    }
+}
+
+/// What a call of sys:response asks.
 class ResponseCall {
 public:
     ResponseCall(lua_State* L, const model::Oscillator& system, const lua::Options& options)
         : L_(L), system_(system), options_(options) {
         options.fill(asked_);
-        function_ = options.has("M");
         choose();
-        options.push("M");
+        options.push("at");
         place_ = lua_gettop(L);
-        if (function_ && !lua::is_callable(L, place_)) {
-            options.wrong("M", fmt::format("a function of the {} that returns an excitation", varied_));
-        }
-        if (!function_ && varied_ == "over") options.fail("over", "over needs M, a function of what it varies");
-        if (!function_ && over_frequency() && !list_) add_resonance();
+        function_ = !lua_isnil(L, -1);
+        if (function_ && !lua::is_callable(L, place_)) options.wrong("at", options.row("at").wanted);
+        if (!function_) check_harmonic();
+        extras_ = question(values_.front()).extras;
+        if (over_frequency() && !function_ && asked_.between) add_resonance();
     }
 
     [[nodiscard]] const std::vector<double>& values() const { return values_; }
-    /// A list has rows for its values only.
-    [[nodiscard]] bool is_list() const { return list_; }
+    [[nodiscard]] const model::Extras& extras() const { return extras_; }
+    /// Rows for the values only.
+    [[nodiscard]] bool is_list() const { return !asked_.between; }
     [[nodiscard]] model::State start() const { return {asked_.theta0, asked_.velocity0}; }
-    [[nodiscard]] bool harmonic() const { return !function_; }
+    /// There are closed forms beside it.
+    [[nodiscard]] bool harmonic() const { return !function_ && (over_frequency() || varied_ == "amplitude"); }
     [[nodiscard]] bool over_frequency() const { return varied_ == "frequency"; }
-    [[nodiscard]] double frequency_at(double x) const { return over_frequency() ? x : frequency_.value_or(0); }
-    [[nodiscard]] double amplitude_at(double x) const { return varied_ == "amplitude" ? x : amplitude_; }
+    [[nodiscard]] double frequency_at(double x) const {
+        if (varied_ == "frequency") return x;
+        if (varied_ == "omega") return x / (2 * std::numbers::pi);
+        if (varied_ == "period") return 1 / x;
+        return asked_.frequency ? *asked_.frequency
+               : asked_.omega   ? *asked_.omega / (2 * std::numbers::pi)
+                                : 1 / asked_.period.value_or(1);
+    }
+    [[nodiscard]] double amplitude_at(double x) const { return varied_ == "amplitude" ? x : asked_.amplitude; }
     [[nodiscard]] VariedColumn column() const {
         const ColumnUnits in(system_.units());
-        return {.name = asked_.name.value_or(over_frequency()         ? "frequency"
-                                             : varied_ == "amplitude" ? "M0"
-                                                                      : "parameter"),
-                .unit = over_frequency()         ? in.frequency
+        if (function_) return {.name = varied_, .unit = "", .theta = in.theta};
+        return {.name = varied_ == "amplitude" ? "M0" : varied_,
+                .unit = varied_ == "frequency"   ? in.frequency
                         : varied_ == "amplitude" ? in.M
+                        : varied_ == "period"    ? in.t
                                                  : "",
                 .theta = in.theta};
     }
 
     [[nodiscard]] analysis::SteadyQuestion question(double x) const {
         analysis::SteadyQuestion question{.system = system_, .excitation = {}, .drive = {}, .initial = start()};
-        const std::optional<double> period = over_frequency() ? std::optional(1 / x)
-                                             : frequency_     ? std::optional(1 / *frequency_)
-                                                              : std::nullopt;
         if (!function_) {
+            const double frequency = frequency_at(x);
             question.excitation = options_.value_or_fail(model::Excitation::make(
-                model::Harmonic{.amplitude = amplitude_at(x), .omega = 2 * std::numbers::pi * frequency_at(x)}));
-            question.drive = {0, *period};
+                model::Harmonic{.amplitude = amplitude_at(x), .omega = 2 * std::numbers::pi * frequency}));
+            question.drive = {0, 1 / frequency};
             return question;
         }
         lua_pushvalue(L_, place_);
+        lua_newtable(L_);
         lua_pushnumber(L_, x);
-        lua_call(L_, 1, 2);
-        if (lua_isnil(L_, -2)) {
-            options_.fail("M", fmt::format("M({:.6g}) returned nil; it must return an excitation", x));
+        lua_setfield(L_, -2, varied_.c_str());
+        lua_call(L_, 1, 1);
+        if (!lua_istable(L_, -1)) {
+            options_.fail("at", fmt::format("at returned {} for {} = {:.6g}; it must return a table of options of "
+                                            "sys:steady, such as {{ belt = p.speed }}",
+                                            lua::describe(L_, -1), varied_, x));
         }
-        question.excitation = to_excitation(L_, -2, fmt::format("sys:response: M({:.6g})", x), "M");
-        if (const auto* own = lua::test<model::Oscillator>(L_, -1)) {
-            question.system = *own;
-        } else if (!lua_isnil(L_, -1)) {
-            options_.fail("M", fmt::format("M({:.6g}) returned {} after the excitation, where a system may stand", x,
-                                           lua::describe(L_, -1)));
-        }
-        lua_pop(L_, 2);
-        const auto known = analysis::drive_of(question.excitation, period.value_or(1));
-        const bool asked = std::find(values_.begin(), values_.end(), x) != values_.end();
-        // Between the values asked for M is taken for what it is at them.
-        if (asked || !known) {
-            question.drive = drive_or_fail(L_, options_, question,
-                                           known && !question.excitation.has_script() ? std::nullopt : period);
+        const lua::Options own(L_, lua_gettop(L_), at_call);
+        SteadyOptions asked{.theta0 = asked_.theta0, .velocity0 = asked_.velocity0};
+        own.fill(asked);
+        if (const auto* system = own.object<model::Oscillator>("system")) question.system = *system;
+        own.push("M");
+        question.excitation = to_excitation(L_, -1, "sys:response: at: M", "M");
+        lua_pop(L_, 1);
+        question.initial = {asked.theta0, asked.velocity0};
+        question.periods = asked.periods.value_or(0);
+        question.extras = read_extras(L_, own);
+        check_relays(own, question.excitation, question.extras);
+        const bool is_value = std::find(values_.begin(), values_.end(), x) != values_.end();
+        // Between the values M is taken for what it is at them.
+        const auto known = is_value ? std::nullopt : drive_between(question);
+        if (known) {
+            question.drive = {known->start, asked.period.value_or(known->period)};
         } else {
-            question.drive = {known->start, question.excitation.has_script() && period ? *period : known->period};
+            question.drive = drive_or_fail(L_, own, question, asked.period);
         }
+        lua_pop(L_, 1);
         return question;
     }
 
 private:
+    [[nodiscard]] std::optional<analysis::Drive> drive_between(const analysis::SteadyQuestion& question) const {
+        std::optional<analysis::Drive> drive;
+        asking(L_, question.extras, [&](const motion::Monitor&) {
+            drive = analysis::drive_of(question.excitation, question.extras, question.initial);
+        });
+        return drive;
+    }
+
     /// Adds the resonance where the motion grows: a curve past it would show a finite peak.
     void add_resonance() {
         if (!system_.has_linear_spring()) return;
@@ -106,83 +166,68 @@ private:
         if (contracts(there) && steady_motion(there).status == analysis::SteadyStatus::grows) values_.insert(next, f);
     }
 
-    /// The numbers under an option; none when it is no list.
-    [[nodiscard]] std::vector<double> list_of(const char* option) const {
-        options_.push(option);
-        const bool single = lua_type(L_, -1) == LUA_TNUMBER || lua_isnil(L_, -1);
-        lua_pop(L_, 1);
-        return single ? std::vector<double>() : options_.numbers(option);
-    }
-
+    /// The name under `over`, and its values.
     void choose() {
-        for (const char* option : {"over", "frequency", "amplitude"}) {
-            const std::vector<double> given = list_of(option);
-            if (given.empty()) continue;
-            if (!values_.empty()) {
-                options_.fail(option, fmt::format("{} and {} are both lists; one of them is varied", varied_, option));
+        options_.push("over");
+        if (lua_isnil(L_, -1)) options_.missing("over");
+        if (!lua_istable(L_, -1) || lua_rawlen(L_, -1) > 0) options_.wrong("over", options_.row("over").wanted);
+        const int over = lua_gettop(L_);
+        for (lua_pushnil(L_); lua_next(L_, over) != 0; lua_pop(L_, 1)) {
+            if (lua_type(L_, -2) != LUA_TSTRING) options_.wrong("over", options_.row("over").wanted);
+            if (!varied_.empty()) {
+                options_.fail("over", "over has more than one name: a response varies one, and sweep varies several");
             }
-            varied_ = option;
-            spread(given);
-        }
-        if (options_.has("over") && varied_ != "over") {
-            options_.wrong("over", "{ from, to } or a list of numbers");
-        }
-        if (options_.has("frequency") && !over_frequency()) {
-            frequency_ = options_.number("frequency");
-            check_frequency(*frequency_);
-        }
-        if (options_.has("amplitude") && varied_ != "amplitude") amplitude_ = options_.number("amplitude");
-        if (values_.empty()) {
-            if (options_.has("frequency")) {
-                options_.fail(
-                    {"frequency must be { from, to }, or a list of frequencies, unless amplitude or over is"});
+            varied_ = lua_tostring(L_, -2);
+            if (!lua_istable(L_, -1) && lua::test<lua::Vector>(L_, -1) == nullptr) {
+                options_.fail("over", fmt::format("over.{} must be a vector or a table of numbers, got {}", varied_,
+                                                  lua::describe(L_, -1)));
             }
-            options_.missing("frequency");
+            values_ = lua::numbers_at(L_, -1, "sys:response", "over." + varied_);
         }
-        if (function_ && options_.has("amplitude")) {
-            options_.fail("amplitude", "amplitude is that of the harmonic M: with a function M use over");
+        lua_pop(L_, 1);
+        if (varied_.empty()) options_.wrong("over", options_.row("over").wanted);
+        if (values_.empty()) options_.fail("over", fmt::format("over.{} has no values", varied_));
+        check_name();
+    }
+
+    void check_name() const {
+        for (const char* column : {"lag", "peak", "stops", "stuck", "stable", "branch", "status"}) {
+            if (varied_ != column) continue;
+            options_.fail("over",
+                          fmt::format("'{}' is a column of the result: give the parameter another name", column));
         }
-        if (!function_ && varied_ == "amplitude" && !frequency_) {
-            options_.fail("frequency", "frequency must be given where the amplitude is varied");
+        if (varied_ == "amplitude" && options_.has("at")) {
+            options_.fail("over", "'amplitude' is a column of the result: give the parameter another name");
         }
     }
 
-    void check_frequency(double f) const {
-        if (f > 0) return;
-        options_.fail({.sentence = fmt::format("frequency = {} must be positive", f), .option = "frequency"});
-    }
-
-    void spread(const std::vector<double>& given) {
-        if (given.size() < 2) {
-            options_.fail({.sentence = fmt::format("{} must be {{ from, to }}, or a list", varied_),
-                           .option = std::string(varied_)});
+    /// Of a harmonic M one of the two is varied, and the other given or 1.
+    void check_harmonic() const {
+        const int given = (asked_.frequency ? 1 : 0) + (asked_.omega ? 1 : 0) + (asked_.period ? 1 : 0);
+        const bool in_time = varied_ == "frequency" || varied_ == "omega" || varied_ == "period";
+        if (!in_time && varied_ != "amplitude") {
+            options_.fail("at", fmt::format("over.{} needs at, a function such as {}", varied_, at_call.example));
         }
-        if (over_frequency()) std::for_each(given.begin(), given.end(), [this](double f) { check_frequency(f); });
-        list_ = given.size() > 2;
-        if (!list_ && given[0] == given[1]) {
-            options_.fail(
-                {.sentence = fmt::format("{} goes from {} to {}, which is no range", varied_, given[0], given[1]),
-                 .option = std::string(varied_)});
+        if (in_time && given > 0)
+            options_.fail("over", fmt::format("{} is varied, and cannot be given as well", varied_));
+        if (!in_time && given != 1) {
+            options_.fail("frequency", "if the amplitude is varied give one of frequency, omega and period");
         }
-        values_ = given;
-        if (list_) return;
-        const auto n = static_cast<std::size_t>(asked_.points);
-        values_.resize(n);
-        for (std::size_t i = 0; i < n; ++i) {
-            values_[i] = given[0] + (given[1] - given[0]) * (static_cast<double>(i) / static_cast<double>(n - 1));
+        if (!in_time) return;
+        for (const double x : values_) {
+            if (x > 0) continue;
+            options_.fail({.sentence = fmt::format("{} = {} must be positive", varied_, x), .option = varied_});
         }
-        values_.back() = given[1];
     }
 
     lua_State* L_;
     const model::Oscillator& system_;
     const lua::Options& options_;
     ResponseOptions asked_;
-    std::string_view varied_ = "frequency";
+    std::string varied_;
     std::vector<double> values_;
-    std::optional<double> frequency_;
-    double amplitude_ = 1;
-    bool list_ = false, function_ = false;
+    model::Extras extras_;
+    bool function_ = false;
     int place_ = 0;
 };
 
@@ -191,15 +236,16 @@ struct ResponseColumns {
     std::vector<std::string> status;
 
     void add(double x, std::size_t piece, const analysis::SteadyMotion& motion, const std::optional<double>& angle) {
-        const bool found =
-            motion.status == analysis::SteadyStatus::steady || motion.status == analysis::SteadyStatus::adheres;
+        using analysis::SteadyStatus;
+        const bool found = motion.status == SteadyStatus::steady || motion.status == SteadyStatus::adheres ||
+                           motion.status == SteadyStatus::rest;
         const bool grows = motion.status == analysis::SteadyStatus::grows;
         const double otherwise = grows ? std::numeric_limits<double>::infinity() : nan_number;
         varied.push_back(x);
         amplitude.push_back(found ? motion.amplitude : otherwise);
         lag.push_back(angle.value_or(nan_number));
         peak.push_back(found ? std::max(std::fabs(motion.low), std::fabs(motion.high)) : otherwise);
-        stops.push_back(found && motion.stuck < 1 ? static_cast<double>(motion.stops) : nan_number);
+        stops.push_back(motion.status == SteadyStatus::steady ? static_cast<double>(motion.stops) : nan_number);
         stuck.push_back(found ? motion.stuck : nan_number);
         stable.push_back(found && motion.stable ? 1 : 0);
         branch.push_back(static_cast<double>(piece));
@@ -223,13 +269,14 @@ struct ResponseColumns {
 
 int response_of_system(lua_State* L) {
     const model::Oscillator system = lua::self<model::Oscillator>(L, 1, response_call.example);
+    refuse_old_forms(L);
     const lua::Options options(L, 2, response_call);
     const ResponseCall call(L, system, options);
     const analysis::CurveQuestion question{
         .family = [&call](double x) { return call.question(x); }, .values = call.values(), .start = call.start()};
     analysis::ResponseCurve curve;
     ResponseColumns columns;
-    asking(L, [&](const motion::Monitor& monitor) {
+    asking(L, call.extras(), [&](const motion::Monitor& monitor) {
         curve = analysis::response_curve(question, monitor);
         std::size_t piece = 0;
         for (const auto& branch : curve.branches) {
@@ -251,7 +298,7 @@ int response_of_system(lua_State* L) {
             .column = call.column(),
             .low = *low,
             .high = *high,
-            .frequency = call.over_frequency() ? std::nullopt : std::optional(call.frequency_at(0)),
+            .frequency = call.over_frequency() ? std::nullopt : std::optional(call.frequency_at(1)),
             .amplitude = call.amplitude_at(1)};
         for (DataCompanion& companion : closed_curves(sweep)) data.companions.push_back(std::move(companion));
     }

@@ -83,7 +83,7 @@ local function whole(d)
     end
 end
 return function(workers) whole(sweep{ r = r, g = g, workers = workers, run = point }) end,
-       function() return nondimensional{ friction_ratio = 0.5 }:response{ frequency = { 0.1, 3 }, points = 300 } end,
+       function() return nondimensional{ friction_ratio = 0.5 }:response{ over = { frequency = vector.linspace(0.1, 3, 300) }, between = true } end,
        function() return sweep{ x = nothing, workers = 1, run = function(p) return { y = p.x } end } end
 )";
 

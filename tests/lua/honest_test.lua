@@ -228,7 +228,7 @@ test("steady states and responses say so, too", function()
         return function(t) calls = calls + 1 return math.sin(2 * math.pi * t) + 1e-13 * calls end
     end
     raises(function() sys:steady { M = drifting(), period = 1 } end, "M is no function of its arguments: at t = ")
-    raises(function() sys:response { M = function() return drifting() end, frequency = { 1, 2 }, points = 3 } end, "M is no function of its arguments: at t = ")
+    raises(function() sys:response { over = { f = { 1, 2 } }, at = function(p) return { M = drifting(), period = 1 / p.f } end } end, "M is no function of its arguments: at t = ")
     local on = true
     raises(function()
         sys:steady { period = 1, theta0 = 1, M = function(t, theta)

@@ -4,7 +4,7 @@ local support = require "support"
 local test, equal, near, raises_here = support.test, support.equal, support.near, support.raises_here
 
 test("the response is Den Hartog's where it does not stop, and goes on where it does", function()
-    local c = nondimensional{ friction_ratio = 0.5 }:response{ frequency = { 0.3, 2.1 }, points = 46 }
+    local c = nondimensional{ friction_ratio = 0.5 }:response{ over = { frequency = vector.linspace(0.3, 2.1, 46) }, between = true }
     equal(#c, 47) -- and the resonance
     equal(c.frequency[1], 0.3)
     equal(c.frequency[47], 2.1)
@@ -27,9 +27,12 @@ end)
 
 test("M may be a function of the frequency, and the amplitude another one", function()
     local sys = system{ I = 2, k = 50, C = 1.5 }
-    local c = sys:response{ amplitude = 3, frequency = { 0.5, 0.8, 1.1 } }
-    local d = sys:response{ M = function(f) return excitation.harmonic{ amplitude = 3, frequency = f } end, frequency = { 0.5, 0.8, 1.1 } }
-    local e = sys:response{ M = function(f) return function(t) return 3*math.sin(2*math.pi*f*t) end end, frequency = { 0.5, 0.8, 1.1 } }
+    local c = sys:response{ amplitude = 3, over = { frequency = { 0.5, 0.8, 1.1 } } }
+    local d = sys:response{ over = { frequency = { 0.5, 0.8, 1.1 } },
+        at = function(p) return { M = excitation.harmonic{ amplitude = 3, frequency = p.frequency } } end }
+    local e = sys:response{ over = { f = { 0.5, 0.8, 1.1 } }, at = function(p)
+        return { M = function(t) return 3*math.sin(2*math.pi*p.f*t) end, period = 1 / p.f }
+    end }
     for i, f in ipairs{ 0.5, 0.8, 1.1 } do
         local w = 2*math.pi*f
         near(c.amplitude[i], 3 / math.sqrt((50 - 2*w^2)^2 + (1.5*w)^2), 1e-12)
@@ -37,25 +40,36 @@ test("M may be a function of the frequency, and the amplitude another one", func
         near(d.amplitude[i], c.amplitude[i], 1e-13)
         near(e.amplitude[i], c.amplitude[i], 1e-11)
     end
-    raises_here(function() sys:response{ frequency = { 1, 1 } } end, "no range")
-    raises_here(function() sys:response{ frequency = { 1 } } end, "{ from, to }")
-    raises_here(function() sys:response{} end, "needs frequency")
-    raises_here(function() sys:response{ frequency = 1 } end, "unless amplitude or over is")
-    raises_here(function() sys:response{ amplitude = { 1, 2 } } end, "frequency must be given")
-    raises_here(function() sys:response{ amplitude = { 1, 2 }, frequency = { 1, 2 } } end, "both lists")
-    raises_here(function() sys:response{ amplitude = { 1, 2 }, frequency = -1 } end, "frequency = -1 must be positive")
-    raises_here(function() sys:response{ over = { 1, 2 }, frequency = 1 } end, "over needs M")
-    raises_here(function() sys:response{ over = 3, frequency = 1 } end, "over must be { from, to }")
-    raises_here(function() sys:response{ M = function() return 1, 2 end, frequency = { 1, 2 } } end, "returned 2 after the excitation")
-    raises_here(function() sys:response{ frequency = { 1, -1 } } end, "must be positive")
-    raises_here(function() sys:response{ frequency = { 1, 2 }, points = 1 } end, "points = 1 must be a whole number")
-    raises_here(function() sys:response{ M = 3, frequency = { 1, 2 } } end, "a function of the frequency")
-    raises_here(function() sys:response{ M = function() return "x" end, frequency = { 1, 2 } } end, "M(1)")
+    local one = { amplitude = { 1, 2 } }
+    local function empty() return {} end
+    raises_here(function() sys:response{} end, "needs over")
+    raises_here(function() sys:response{ over = 3 } end, "over must be a name and its values")
+    raises_here(function() sys:response{ over = { 1, 2 } } end, "over must be a name and its values")
+    raises_here(function() sys:response{ over = { frequency = {} } } end, "over.frequency has no values")
+    raises_here(function() sys:response{ over = { frequency = 3 } } end, "over.frequency must be a vector or a table")
+    raises_here(function() sys:response{ over = { frequency = { 1, -1 } } } end, "frequency = -1 must be positive")
+    raises_here(function() sys:response{ over = { a = { 1 }, b = { 1 } } } end, "sweep varies several")
+    raises_here(function() sys:response{ over = { a = { 1 } } } end, "over.a needs at")
+    raises_here(function() sys:response{ over = { lag = { 1 } }, at = empty } end, "'lag' is a column of the result")
+    raises_here(function() sys:response{ over = one } end, "give one of frequency, omega and period")
+    raises_here(function() sys:response{ over = one, frequency = 1, period = 1 } end, "give one of frequency")
+    raises_here(function() sys:response{ over = one, frequency = -1 } end, "frequency = -1 must be positive")
+    raises_here(function() sys:response{ over = { omega = { 1 } }, frequency = 1 } end, "omega is varied")
+    raises_here(function() sys:response{ over = { a = { 1 } }, at = 3 } end, "at must be a function of a point")
+    raises_here(function() sys:response{ over = { a = { 1 } }, at = function() return 3 end } end, "at returned 3 for a = 1")
+    raises_here(function() sys:response{ over = { a = { 1 } }, at = function() return { m = 3 } end } end, "no option 'm'")
+    raises_here(function() sys:response{ over = { a = { 1 } }, at = function() return { M = "x" } end } end, "at: M")
+    -- The forms of before name the new ones.
+    raises_here(function() sys:response{ frequency = { 1, 2 } } end, "over = { frequency = values }", "vector.linspace")
+    raises_here(function() sys:response{ amplitude = { 1, 2, 3 }, frequency = 1 } end, "over = { amplitude = values }")
+    raises_here(function() sys:response{ M = math.sin, over = { 1, 2 } } end, "at = function(p) return { M = ... } end")
+    raises_here(function() sys:response{ over = { frequency = { 1 } }, points = 4 } end, "there is no points", "vector.linspace")
+    raises_here(function() sys:response{ over = { frequency = { 1 } }, name = "f" } end, "there is no name")
 end)
 
 test("folds, jumps and unstable sides are rows, and a picture of pieces", function()
     local sys = system{ I = 1, k = 1, C = 0.05, Rd = 0.02, spring = spring.polynomial{ [3] = 0.5 } }
-    local c = sys:response{ amplitude = 0.5, frequency = { 0.2, 0.3, 0.42 } }
+    local c = sys:response{ amplitude = 0.5, over = { frequency = { 0.2, 0.3, 0.42 } } }
     equal(#c, 5)   -- 0.3 lies between the jumps: three motions
     local at = c:filter(function(row) return row.frequency == 0.3 end)
     equal(#at, 3)
@@ -72,19 +86,19 @@ end)
 
 test("the response over the amplitude, and over any parameter, which may make the system", function()
     local sys = system{ I = 1, k = 4, C = 0.3 }
-    local c = sys:response{ frequency = 0.2, amplitude = { 1, 2, 3 } }
+    local c = sys:response{ frequency = 0.2, over = { amplitude = { 1, 2, 3 } } }
     local w = 2*math.pi*0.2
     for i = 1, 3 do near(c.amplitude[i], i / math.sqrt((4 - w^2)^2 + (0.3*w)^2), 1e-12) end
     equal(c.names[1], "M0")
     local M = excitation.harmonic{ frequency = 0.2 }
-    local d = sys:response{ over = { 0.1, 0.5, 0.9 }, name = "C", M = function(C) return M, sys:with{ C = C } end }
+    local d = sys:response{ over = { C = { 0.1, 0.5, 0.9 } }, at = function(p) return { M = M, system = sys:with{ C = p.C } } end }
     for i, C in ipairs{ 0.1, 0.5, 0.9 } do near(d.amplitude[i], 1 / math.sqrt((4 - w^2)^2 + (C*w)^2), 1e-12) end
     equal(d.C[2], 0.5)
 end)
 
 test("the curves of theory beside a response are Den Hartog's and that of equivalent damping", function()
     local sys = system{ I = 1, k = 4, C = 0.1, Rd = 0.3 }
-    local c = sys:response{ amplitude = 2, frequency = { 0.2, 0.5 }, points = 20 }
+    local c = sys:response{ amplitude = 2, over = { frequency = vector.linspace(0.2, 0.5, 20) }, between = true }
     local exact, about = c.den_hartog, c.linearised
     equal(#exact, 400)
     local r = exact.frequency[200] * sys.T0
@@ -153,13 +167,13 @@ test("a motion looked at once a period", function()
 end)
 
 test("a branch that ends at resonance jumps nowhere", function()
-    local c = system{ I = 1 / (4 * math.pi ^ 2), k = 1, Rd = 0.4, Re = 0.6 }:response{ frequency = { 0.05, 3 }, points = 100 }
+    local c = system{ I = 1 / (4 * math.pi ^ 2), k = 1, Rd = 0.4, Re = 0.6 }:response{ over = { frequency = vector.linspace(0.05, 3, 100) }, between = true }
     for i = 1, #c.jumps do assert(c.jumps.from[i] < 1e6, c.jumps) end
 end)
 
 test("a mass that a softening spring lets go is told to grow, and the response has its rows on both sides", function()
     local sys = system{ I = 1 / (4 * math.pi^2), k = 1, C = 0.1 / math.pi, Rd = 0.2, spring = spring.polynomial{ [3] = -0.1 } }
-    local c = sys:response{ frequency = { 0.3, 2.2 }, points = 30 }
+    local c = sys:response{ over = { frequency = vector.linspace(0.3, 2.2, 30) }, between = true }
     near(c.frequency:max(), 2.2, 1e-12)
     for _, row in ipairs{ 1, #c } do -- the motion is that of a long run, by other steps
         local f = c.frequency[row]
@@ -175,21 +189,57 @@ test("a mass that a softening spring lets go is told to grow, and the response h
 end)
 
 test("a mass that adheres makes no stops: nan, and not 0", function()
-    local c = nondimensional{ friction_ratio = 0.5 }:response{ amplitude = { 0.2, 0.3, 2 }, frequency = 0.5 }
+    local c = nondimensional{ friction_ratio = 0.5 }:response{ over = { amplitude = { 0.2, 0.3, 2 } }, frequency = 0.5 }
     assert(c.status[1] == "adheres" and c.stops[1] ~= c.stops[1] and c.stuck[1] == 1)
     assert(c.status[3] == "steady" and c.stops[3] == 0)
 end)
 
 test("a resonance without enough friction is no finite peak, whatever the points are", function()
     for _, range in ipairs{ { 0.5, 1.5 }, { 1.5, 0.5 } } do
-        local c = nondimensional{ friction_ratio = 0.3 }:response{ frequency = range, points = 40 }
+        local c = nondimensional{ friction_ratio = 0.3 }:response{ over = { frequency = vector.linspace(range[1], range[2], 40) }, between = true }
         equal(#c, 41)
         for i, status in ipairs(c.status) do equal(status == "grows", c.frequency[i] == 1) end
         equal(c.amplitude:max(), math.huge)
     end
-    equal(#nondimensional{ friction_ratio = 0.8 }:response{ frequency = { 0.5, 1.5 }, points = 40 }, 40)
-    equal(#nondimensional{ friction_ratio = 0.3 }:response{ frequency = { 1.1, 1.5 }, points = 40 }, 40)
-    equal(#nondimensional{ friction_ratio = 0.3 }:response{ frequency = { 0.5, 1.5 }, points = 41 }, 41)
+    equal(#nondimensional{ friction_ratio = 0.8 }:response{ over = { frequency = vector.linspace(0.5, 1.5, 40) }, between = true }, 40)
+    equal(#nondimensional{ friction_ratio = 0.3 }:response{ over = { frequency = vector.linspace(1.1, 1.5, 40) }, between = true }, 40)
+    equal(#nondimensional{ friction_ratio = 0.3 }:response{ over = { frequency = vector.linspace(0.5, 1.5, 41) }, between = true }, 41)
+end)
+
+test("a list is the list of rows, in frequency, omega or period", function()
+    local sys = nondimensional{ friction_ratio = 0.3, breakaway_ratio = 0.5 }
+    local f = sys:response{ over = { frequency = { 0.5, 0.7, 1.3, 1.6 } } }
+    for _, frequency in ipairs(f.frequency:table()) do -- none for what is computed between them
+        assert(frequency == 0.5 or frequency == 0.7 or frequency == 1.3 or frequency == 1.6, frequency)
+    end
+    local w = sys:response{ over = { omega = vector{ 0.5, 0.7, 1.3, 1.6 } * (2 * math.pi) } }
+    local T = sys:response{ over = { period = { 1 / 0.5, 1 / 0.7, 1 / 1.3, 1 / 1.6 } } }
+    for i = 1, #f do
+        near(w.amplitude[i], f.amplitude[i], 1e-9)
+        near(T.amplitude[i], f.amplitude[i], 1e-9)
+        near(w.omega[i], 2 * math.pi * f.frequency[i], 1e-12)
+    end
+    near(sys:response{ over = { amplitude = { 1 } }, omega = math.pi }.amplitude[1], f.amplitude[1], 1e-9)
+    near(sys:response{ over = { amplitude = { 1 } }, period = 2 }.amplitude[1], f.amplitude[1], 1e-9)
+end)
+
+test("a response over the speed of a belt has the closed form of stick-slip, and steady's rows", function()
+    local I, k, Rd, Re = 1, 4, 0.3, 0.6
+    local c = system{ I = I, k = k, Rd = Rd, Re = Re }:response{ over = { speed = vector.linspace(0.02, 0.3, 15) },
+        at = function(p) return { belt = p.speed, velocity0 = p.speed } end }
+    equal(#c, 15)
+    for i, speed in ipairs(c.speed:table()) do
+        near(c.amplitude[i], math.sqrt(((Re - Rd) / k) ^ 2 + speed ^ 2 * I / k), 1e-9)
+        equal(c.status[i], "steady")
+    end
+    local block = system{ I = 1, k = 0, Rd = 0.3, Re = 0.4 }
+    local d = block:response{ over = { Re = { 0.4, 0.5 } }, at = function(p)
+        return { system = block:with{ Re = p.Re }, M = function(_, theta, velocity, z) return 8*(1 - theta) - 2*velocity + 3*z.e end,
+            states = { e = { rate = function(_, theta) return 1 - theta end } } }
+    end }
+    near(d.amplitude[1], 0.0086, 1e-4)
+    near(d.amplitude[2], 0.0173, 1e-4)
+    equal(tostring(d):match("Re, amplitude"), "Re, amplitude")
 end)
 
 support.finish()

@@ -63,7 +63,7 @@ test("a run with a spring of its own goes on, with states, to a steady motion", 
     local s = sys:steady { M = M }
     equal(s.status, "steady")
     near(s.run.theta[#s.run], s.run.theta[1], 1e-8)
-    near(sys:response { frequency = { 0.1, 0.2 }, points = 2 }.amplitude[1], s.amplitude, 1e-7)
+    near(sys:response { over = { frequency = vector.linspace(0.1, 0.2, 2) }, between = true }.amplitude[1], s.amplitude, 1e-7)
 end)
 
 test("a spring goes into the workers of a sweep", function()

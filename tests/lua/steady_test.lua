@@ -217,7 +217,8 @@ test("with a dead time, friction and stops it is the end of a long run, also in 
     end
     near(s.amplitude, (high - low) / 2, 1e-9)
     equal(s.stops, stops)
-    local c = dry:response{ M = function(f) return M(2 * math.pi * f) end, frequency = { 0.5 / (2 * math.pi), 0.1, 0.15 } }
+    local c = dry:response{ over = { f = { 0.5 / (2 * math.pi), 0.1, 0.15 } },
+        at = function(p) return { M = M(2 * math.pi * p.f), period = 1 / p.f } end }
     near(c.amplitude[1], s.amplitude, 1e-9)
     equal(c.stops[1], stops)
 

@@ -104,11 +104,11 @@ test("columns of tables have them, and keep them when rows are picked; their nam
 end)
 
 test("a response has them at its axes and in its jumps", function()
-    local curve = block:response{ amplitude = 2, frequency = { 0.2, 0.5 }, points = 5 }
+    local curve = block:response{ amplitude = 2, over = { frequency = vector.linspace(0.2, 0.5, 5) }, between = true }
     has(tostring(curve), "frequency, 1/s", "amplitude, m")
     has(tostring(curve:plot{ y = "amplitude", width = 60, ascii = true, show = false }), "frequency, 1/s", "amplitude, m")
     has(tostring(curve.linearised), "amplitude, m")
-    has(tostring(block:response{ frequency = 0.3, amplitude = { 1, 2 }, points = 3 }), "M0, N")
+    has(tostring(block:response{ frequency = 0.3, over = { amplitude = vector.linspace(1, 2, 3) }, between = true }), "M0, N")
 end)
 
 test("a fit has those of its record, and none of a torque that the record does not tell", function()

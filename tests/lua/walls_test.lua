@@ -80,7 +80,7 @@ test("a steady motion between walls, and a response", function()
     equal(s.status, "steady")
     equal(s.amplitude, 0.5)
     near(s.run.theta[#s.run], s.run.theta[1], 1e-7)
-    local c = sys:response { frequency = { 0.15, 0.2 }, points = 2, amplitude = 0.6 } -- more rows where branches turn back
+    local c = sys:response { over = { frequency = vector.linspace(0.15, 0.2, 2) }, between = true, amplitude = 0.6 } -- more rows where branches turn back
     assert(#c >= 2 and c.frequency:min() == 0.15 and c.frequency:max() == 0.2, c)
 end)
 
