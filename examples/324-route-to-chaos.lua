@@ -9,8 +9,8 @@ local function well(Rd)
 end
 local function load(M0) return excitation.harmonic{ amplitude = M0, omega = w, phase = math.pi/2 } end
 local function diagram(Rd, M0, skip)
-    return bifurcation{ M0 = M0, period = period, skip = skip, keep = keep, run = function(p)
-        return well(Rd), load(p.M0), { theta0 = 1 }
+    return bifurcation{ over = { M0 = M0 }, period = period, skip = skip, keep = keep, at = function(p)
+        return { system = well(Rd), M = load(p.M0), theta0 = 1 }
     end }
 end
 

@@ -1,7 +1,7 @@
 -- 340 Den Hartog's plane: amplitude and stops per cycle over frequency and friction, on all cores, and response curves.
 
 -- Every point of the plane is a steady motion, found without a transient. g = Rd/(k a), r = f/f0.
-local map = sweep{ r = vector.linspace(0.1, 2, 96), g = vector.linspace(0, 1, 51), run = function(p)
+local map = sweep{ over = { r = vector.linspace(0.1, 2, 96), g = vector.linspace(0, 1, 51) }, run = function(p)
     local s = nondimensional{ friction_ratio = p.g }:steady{ M = excitation.harmonic{ frequency = p.r } }
     return { A = s.amplitude, stops = s.stops, lag = math.deg(s.lag) }
 end }

@@ -3,8 +3,7 @@
 --     mpirun -n 4 dinal 350-sweep-under-mpirun.lua        srun, a job array, GNU parallel: docs/many-machines.md
 
 -- How long friction takes to stop a mass that was let go, for every start: 1200 runs, in chunks of five.
-local map = sweep{ theta0 = vector.linspace(0.1, 4, 40), velocity0 = vector.linspace(0, 6, 30), file = "rest.csv",
-    run = function(p)
+local map = sweep{ over = { theta0 = vector.linspace(0.1, 4, 40), velocity0 = vector.linspace(0, 6, 30) }, file = "rest.csv", run = function(p)
         local run = nondimensional{ friction_ratio = 0.05 }:simulate{
             theta0 = p.theta0, velocity0 = 2*math.pi*p.velocity0, t_end = 100, times = {} }
         local last = run.events[#run.events]

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <limits>
+#include <numbers>
+#include <string_view>
 
 #include "api/classes.hpp"
 #include "api/run.hpp"
@@ -21,29 +23,39 @@ std::string look_name(const char* column, std::size_t look) {
     return fmt::format("{} {}", column, look + 1);
 }
 
-/// Takes the period out of the further options of the run at the index, if it is there.
+double period_of(double period, double frequency, double omega) {
+    return period > 0 ? period : frequency > 0 ? 1 / frequency : omega > 0 ? 2 * std::numbers::pi / omega : 0;
+}
+
+/// The period among the options at the index, as period, frequency or omega, which are taken out.
 double period_of_point(lua_State* L, int more, double otherwise) {
-    if (lua_istable(L, more)) {
-        lua_getfield(L, more, "period");
-        const bool given = !lua_isnil(L, -1);
-        const double period = lua_tonumber(L, -1);
-        if (given && !(lua_type(L, -1) == LUA_TNUMBER && period > 0 && period < 1e300)) {
-            lua::raise(L,
-                       fmt::format("run returned period = {}, which must be a positive number", lua::describe(L, -1)));
+    double found = 0;
+    for (const char* name : {"period", "frequency", "omega"}) {
+        lua_getfield(L, more, name);
+        if (!lua_isnil(L, -1)) {
+            const double x = lua_tonumber(L, -1);
+            if (!(lua_type(L, -1) == LUA_TNUMBER && x > 0 && x < 1e300)) {
+                lua::raise(
+                    L, fmt::format("at returned {} = {}, which must be a positive number", name, lua::describe(L, -1)));
+            }
+            const std::string_view which = name;
+            found = period_of(which == "period" ? x : 0, which == "frequency" ? x : 0, which == "omega" ? x : 0);
         }
         lua_pop(L, 1);
-        if (given) return period;
+        lua_pushnil(L);
+        lua_setfield(L, more, name);
     }
-    if (!(otherwise > 0)) lua::raise(L, "bifurcation needs period, a number, or run must return { period = ... }");
+    if (found > 0) return found;
+    if (!(otherwise > 0)) lua::raise(L, "bifurcation needs period, a number, or at must return { period = ... }");
     return otherwise;
 }
 
 /// What the bifurcation itself says to sys:simulate.
 void refuse_own_options(lua_State* L, int more) {
-    for (const char* name : {"t_end", "dt", "times", "M", "dense"}) {
+    for (const char* name : {"t_end", "dt", "times", "dense"}) {
         const bool given = lua_istable(L, more) && lua_getfield(L, more, name) != LUA_TNIL;
         if (given) {
-            lua::raise(L, fmt::format("run returned {} among the options, which bifurcation itself gives to "
+            lua::raise(L, fmt::format("at returned {} among the options, which bifurcation itself gives to "
                                       "sys:simulate: period, skip and keep say when it looks",
                                       name));
         }
@@ -87,15 +99,25 @@ int looks_of_point(lua_State* L) {
     lua_settop(L, 1);
     lua_pushvalue(L, lua_upvalueindex(1));
     lua_insert(L, 1);
-    lua_call(L, 1, 3);  // now at 1 to 3
-    lua_insert(L, 1);   // the further options to the front
-    lua_pushvalue(L, 1);
-    // 1: further options, 2: system, 3: M, 4: further options again
-    if (lua::test<model::Oscillator>(L, 2) == nullptr) {
-        lua::raise(L, fmt::format("run must return a system and its M, got {}", lua::describe(L, 2)));
+    lua_call(L, 1, 1);
+    if (!lua_istable(L, 1)) {
+        lua::raise(
+            L, fmt::format("at must return a table such as {{ system = sys, M = M }}, got {}", lua::describe(L, 1)));
     }
-    if (!lua_isnoneornil(L, 4) && !lua_istable(L, 4)) {
-        lua::raise(L, fmt::format("what run returns after M must be a table of options, got {}", lua::describe(L, 4)));
+    lua_getfield(L, 1, "system");
+    lua_getfield(L, 1, "M");
+    if (lua::test<model::Oscillator>(L, 2) == nullptr) {
+        lua::raise(L, fmt::format("at must return a table with system = ..., got {} there", lua::describe(L, 2)));
+    }
+    lua_newtable(L);  // 4: the other options
+    for (lua_pushnil(L); lua_next(L, 1) != 0;) {
+        lua_pushvalue(L, -2);
+        lua_insert(L, -2);
+        lua_rawset(L, 4);
+    }
+    for (const char* taken : {"system", "M"}) {
+        lua_pushnil(L);
+        lua_setfield(L, 4, taken);
     }
     const double period = period_of_point(L, 4, lua_tonumber(L, lua_upvalueindex(2)));
     const auto skip = static_cast<std::size_t>(lua_tointeger(L, lua_upvalueindex(3)));
@@ -181,13 +203,18 @@ bool take_looks(const SweepGrid& grid, const std::vector<files::ReadColumn>& col
 }  // namespace
 
 int bifurcation(lua_State* L) {
+    if (lua_istable(L, 1)) {
+        const bool old = lua_getfield(L, 1, "run") != LUA_TNIL;
+        lua_pop(L, 1);
+        if (old) lua::raise(L, "bifurcation: instead of run give at = function(p) return { system = sys, M = M } end");
+    }
     std::vector<DataColumn> parameters = take_parameters(L, bifurcation_call);
     const lua::Options options(L, 1, bifurcation_call);
     BifurcationOptions asked;
     SweepOptions of_workers;
     options.fill(asked);
     options.fill(of_workers);
-    const int function = push_run_function(L, options);
+    const int function = push_function(L, options, "at");
     check_parameters(L, bifurcation_call, parameters);
     for (const DataColumn& parameter : parameters) {
         if (parameter.name == "theta" || parameter.name == "velocity") {
@@ -198,7 +225,7 @@ int bifurcation(lua_State* L) {
     }
     check_file_of_sweep(options, of_workers);
     const SweepGrid grid(std::move(parameters));
-    const double period = asked.period.value_or(0);
+    const double period = period_of(asked.period.value_or(0), asked.frequency.value_or(0), asked.omega.value_or(0));
     const auto adapt = [&](lua_State* worker) {
         lua_pushnumber(worker, period);
         lua_pushinteger(worker, static_cast<lua_Integer>(asked.skip));

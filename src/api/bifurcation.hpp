@@ -12,19 +12,31 @@ namespace dinal::api {
 struct BifurcationOptions {
     double skip = 200;
     double keep = 100;
-    std::optional<double> period = {};
+    std::optional<double> period = {}, frequency = {}, omega = {};
 };
 inline constexpr text::Option bifurcation_only_options[] = {
-    {.name = "run",
+    {.name = "at",
      .otherwise = text::needed,
-     .meaning = "a function of a point, a table such as { a = 0.5 }, that returns a system, its M, and if need be a "
-                "table of more options for sys:simulate, or another period",
-     .wanted = "a function of a point that returns a system and an M"},
+     .meaning =
+         "a function of a point, a table such as { a = 0.5 }, that returns options of sys:simulate, with system = "
+         "... and, if need be, another period",
+     .wanted = "a function of a point that returns { system = ..., M = ... }"},
     {.name = "period",
      .unit = "time units",
      .range = text::positive,
-     .meaning = "from one look at the motion to the next; needed unless run returns { period = ... }",
+     .meaning =
+         "from one look at the motion to the next; needed unless `at` returns { period = ... }; or frequency, or omega, instead",
      .filled = text::fills<&BifurcationOptions::period>},
+    {.name = "frequency",
+     .unit = "cycles per time unit",
+     .range = text::positive,
+     .meaning = "1/period",
+     .filled = text::fills<&BifurcationOptions::frequency>},
+    {.name = "omega",
+     .unit = "rad per time unit",
+     .range = text::positive,
+     .meaning = "2 pi/period",
+     .filled = text::fills<&BifurcationOptions::omega>},
     {.name = "skip",
      .range = {"be a whole number from 0 to 1e6", [](double x) { return text::is_whole(x, 0, 1e6); }},
      .meaning = "periods that are run first, for the motion to settle",
@@ -34,22 +46,24 @@ inline constexpr text::Option bifurcation_only_options[] = {
      .meaning = "periods after that, each of which gives a row",
      .filled = text::fills<&BifurcationOptions::keep>},
 };
-inline constexpr text::Option options_of_workers[] = {sweep_options[1], sweep_options[3], sweep_options[4]};
-inline constexpr auto bifurcation_options = text::joined(bifurcation_only_options, options_of_workers);
+inline constexpr text::Option options_of_workers[] = {run_options[1], run_options[3], run_options[4]};
+inline constexpr auto bifurcation_options = text::joined(over_option, bifurcation_only_options, options_of_workers);
 inline constexpr text::Call bifurcation_call{
     "bifurcation",
-    "bifurcation{ a = vector.linspace(0.2, 1.2, 400), period = 1.25, run = function(p) return sys, M end }",
+    "bifurcation{ over = { a = vector.linspace(0.2, 1.2, 400) }, period = 1.25, at = function(p) return { system = sys, M "
+    "= M } end }",
     bifurcation_options};
 
 int bifurcation(lua_State* L);
 
 inline constexpr lua::Doc bifurcation_doc{
-    "bifurcation{ NAME = values, ..., OPTIONS } -> data",
+    "bifurcation{ OPTIONS } -> data",
     "Runs a system for each value of a parameter, on all cores at once, and notes theta and velocity once a period: a "
     "motion of one period is a point, one of two periods two points, chaos many. The result has the columns of the "
     "parameters, theta, velocity and error; its plot shows points. As to what the function may use, and a file, see sweep.",
-    "b = bifurcation{ a = { 0.5, 1 }, period = 1, skip = 50, keep = 2, run = function(p)\n"
-    "    return nondimensional{ zeta = 0.1 }, excitation.harmonic{ amplitude = p.a, frequency = 1 }\n"
+    "sys = nondimensional{ zeta = 0.1 }\n"
+    "b = bifurcation{ over = { a = { 0.5, 1 } }, period = 1, skip = 50, keep = 2, at = function(p)\n"
+    "    return { system = sys, M = excitation.harmonic{ amplitude = p.a, frequency = 1 } }\n"
     "end }\n"
     "print(b:select(\"a\", \"theta\"))\n"
     "--> data: 4 rows of a, theta\n"

@@ -20,7 +20,7 @@ int sweep(lua_State* L) {
     const lua::Options options(L, 1, sweep_call);
     SweepOptions asked;
     options.fill(asked);
-    const int function = push_run_function(L, options);
+    const int function = push_function(L, options, "run");
     check_parameters(L, sweep_call, parameters);
     check_file_of_sweep(options, asked);
     const SweepGrid grid(std::move(parameters));
@@ -46,7 +46,7 @@ constexpr lua::Member sweep_members[] = {
 const lua::Class sweep_functions = {
     "sweep",
     {"sweep{ ... } -> data", "Many points at once.",
-     "print(#sweep{ x = { 1, 2, 3 }, run = function(p) return { y = p.x^2 } end })  --> 3"},
+     "print(#sweep{ over = { x = { 1, 2, 3 } }, run = function(p) return { y = p.x^2 } end })  --> 3"},
     sweep_members};
 
 void register_sweep(lua_State* L) {

@@ -19,7 +19,15 @@ inline constexpr text::Range workers_range{"be a whole number from 1 to 1000",
                                            [](double x) { return text::is_whole(x, 1, 1000); }};
 inline constexpr text::Range seed_range{"be a whole number from 0 to 1e15",
                                         [](double x) { return text::is_whole(x, 0, 1e15); }};
-inline constexpr text::Option sweep_options[] = {
+inline constexpr text::Option over_option[] = {
+    {.name = "over",
+     .otherwise = text::needed,
+     .meaning =
+         "the parameters and their values, { NAME = values, ... }, or { { \"r\", values }, { \"g\", values } } in an "
+         "order of your own",
+     .wanted = "names and their values, such as { r = vector.linspace(0.1, 2, 20) }"},
+};
+inline constexpr text::Option run_options[] = {
     {.name = "run",
      .otherwise = text::needed,
      .meaning = "a function of a point, a table such as { r = 0.5, g = 1 }, that returns a table of named numbers",
@@ -46,20 +54,22 @@ inline constexpr text::Option sweep_options[] = {
          "of Lua's own libraries (a search for a pattern, os.execute) cannot be broken off, and ends first",
      .filled = text::fills<&SweepOptions::max_time>},
 };
+inline constexpr auto sweep_options = text::joined(over_option, run_options);
 inline constexpr text::Call sweep_call{
-    "sweep", "sweep{ r = vector.linspace(0.1, 2, 20), run = function(p) return { A = p.r^2 } end }", sweep_options};
+    "sweep", "sweep{ over = { r = vector.linspace(0.1, 2, 20) }, run = function(p) return { A = p.r^2 } end }",
+    sweep_options};
 
 inline constexpr lua::Doc sweep_doc{
-    "sweep{ NAME = values, ..., OPTIONS } -> data",
+    "sweep{ OPTIONS } -> data",
     "Asks a function at every combination of the values of some parameters, on all cores at once. Values are vectors, "
     "or tables of numbers or of strings. The result has a row for each point, in the order of the names of the "
-    "parameters, the last one changing fastest ({ \"r\", values }, { \"g\", values } instead of names gives another "
+    "parameters, the last one changing fastest (over = { { \"r\", values }, { \"g\", values } } gives another "
     "order), and a column for each parameter and for each name that the function returns; true and false count as 1 "
     "and 0, and what a point does not return is nan. Where the function fails the column `error` has the message.\n"
     "Each thread has a copy of the function with all that it uses: local variables, globals, tables, vectors, systems, "
     "excitations. So it cannot change anything outside, and should not remember other points. Runs, coroutines and "
     "open files cannot be copied. Ctrl-C keeps what is done in dinal.partial, and the same call goes on from there.",
-    "map = sweep{ r = { 0.4, 1.5 }, g = vector.linspace(0.2, 0.6, 3), run = function(p)\n"
+    "map = sweep{ over = { r = { 0.4, 1.5 }, g = vector.linspace(0.2, 0.6, 3) }, run = function(p)\n"
     "    s = nondimensional{ friction_ratio = p.g }:steady{ M = excitation.harmonic{ frequency = p.r } }\n"
     "    return { A = s.amplitude, stops = s.stops }\n"
     "end }\n"

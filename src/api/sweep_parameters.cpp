@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <set>
 
+#include "api/sweep_options.hpp"
 #include "lua/lua_text.hpp"
 #include "lua/user_function.hpp"
 
@@ -49,15 +50,11 @@ DataColumn parameter_on_top(lua_State* L, const text::Call& call, const std::str
         return column_of(name, std::move(words));
     }
     if (!lua_istable(L, -1) && lua::test<lua::Vector>(L, -1) == nullptr) {
-        std::vector<std::string_view> options;
-        for (const text::Option& option : call.options) options.emplace_back(option.name);
-        lua::raise(L, {.sentence = fmt::format("{} has no option '{}' among {}, and a parameter must be a vector or a "
-                                               "table of values, got {}",
-                                               call.name, name, fmt::join(options, ", "), lua::describe(L, -1)),
-                       .call = call.name,
-                       .option = name,
-                       .culprit = name,
-                       .cure = text::did_you_mean(name, options)});
+        fail_sweep(L, call,
+                   {.sentence = fmt::format("over.{} must be a vector or a table of values, got {}", name,
+                                            lua::describe(L, -1)),
+                    .option = "over",
+                    .culprit = name});
     }
     std::vector<double> numbers = lua::numbers_at(L, -1, call.name, name);
     if (numbers.empty()) {
@@ -71,7 +68,7 @@ DataColumn parameter_on_top(lua_State* L, const text::Call& call, const std::str
 DataColumn listed_parameter(lua_State* L, const text::Call& call, lua_Integer place) {
     if (!lua_istable(L, -1) || lua_rawgeti(L, -1, 1) != LUA_TSTRING) {
         fail_sweep(L, call,
-                   {fmt::format("item {} must be a name and its values, {{ \"r\", v }}; or name them, r = v", place)});
+                   {fmt::format("over[{}] must be a name and its values, {{ \"r\", v }}; or name them, r = v", place)});
     }
     const std::string name(lua::text_at(L, -1));
     lua_pop(L, 1);
@@ -81,6 +78,19 @@ DataColumn listed_parameter(lua_State* L, const text::Call& call, lua_Integer pl
     return parameter;
 }
 
+/// Names the new form of a call that has its parameters among its options.
+void refuse_old_form(lua_State* L, const text::Call& call) {
+    for (lua_pushnil(L); lua_next(L, 1) != 0; lua_pop(L, 1)) {
+        const bool named = lua_type(L, -2) == LUA_TSTRING;
+        const bool values = lua_istable(L, -1) || lua::test<lua::Vector>(L, -1) != nullptr;
+        if (!values || (named && is_option(call, lua_tostring(L, -2)))) continue;
+        const std::string name = named ? lua_tostring(L, -2) : "NAME";
+        fail_sweep(L, call,
+                   {.sentence = fmt::format("parameters and their values stand in over = {{ {} = values }}", name),
+                    .option = "over"});
+    }
+}
+
 }  // namespace
 
 std::vector<DataColumn> take_parameters(lua_State* L, const text::Call& call) {
@@ -88,34 +98,36 @@ std::vector<DataColumn> take_parameters(lua_State* L, const text::Call& call) {
         lua::raise(L, {.sentence = fmt::format("{} takes one table, for example {}", call.name, call.example),
                        .call = call.name});
     }
+    refuse_old_form(L, call);
     std::vector<DataColumn> parameters;
-    const auto listed = static_cast<lua_Integer>(lua_rawlen(L, 1));
+    lua_getfield(L, 1, "over");
+    if (!lua_isnoneornil(L, -1) && !lua_istable(L, -1)) {
+        fail_sweep(L, call,
+                   {.sentence = fmt::format("over must be {}, got {}", over_option[0].wanted, lua::describe(L, -1)),
+                    .option = "over",
+                    .culprit = lua::written(L, -1)});
+    }
+    if (!lua_istable(L, -1)) {
+        lua_pop(L, 1);
+        return parameters;
+    }
+    const auto listed = static_cast<lua_Integer>(lua_rawlen(L, 2));
     for (lua_Integer i = 1; i <= listed; ++i) {
-        lua_rawgeti(L, 1, i);
+        lua_rawgeti(L, 2, i);
         parameters.push_back(listed_parameter(L, call, i));
         lua_pop(L, 1);
     }
     std::set<std::string> names;
-    lua_newtable(L);
-    lua_pushnil(L);
-    while (lua_next(L, 1) != 0) {
-        const bool named = lua_type(L, -2) == LUA_TSTRING;
-        if (named && is_option(call, lua_tostring(L, -2))) {
-            lua_pushvalue(L, -2);
-            lua_insert(L, -2);
-            lua_rawset(L, 2);
-            continue;
-        }
-        if (named) names.emplace(lua::text_at(L, -2));
-        lua_pop(L, 1);
+    for (lua_pushnil(L); lua_next(L, 2) != 0; lua_pop(L, 1)) {
+        if (lua_type(L, -2) == LUA_TSTRING) names.emplace(lua::text_at(L, -2));
     }
     for (const std::string& name : names) {  // lua_next has no order
         lua::push_text(L, name);
-        lua_rawget(L, 1);
+        lua_rawget(L, 2);
         parameters.push_back(parameter_on_top(L, call, name));
         lua_pop(L, 1);
     }
-    lua_remove(L, 1);
+    lua_pop(L, 1);
     return parameters;
 }
 
@@ -142,10 +154,10 @@ void check_parameters(lua_State* L, const text::Call& call, const std::vector<Da
     }
 }
 
-int push_run_function(lua_State* L, const lua::Options& options) {
-    options.push("run");
-    if (lua_isnil(L, -1)) options.missing("run");
-    if (!lua::is_callable(L, -1)) options.wrong("run", options.row("run").wanted);
+int push_function(lua_State* L, const lua::Options& options, const char* name) {
+    options.push(name);
+    if (lua_isnil(L, -1)) options.missing(name);
+    if (!lua::is_callable(L, -1)) options.wrong(name, options.row(name).wanted);
     return lua_gettop(L);
 }
 

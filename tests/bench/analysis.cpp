@@ -82,9 +82,9 @@ local function whole(d)
         if errors[i] ~= "" then error(errors[i], 0) end
     end
 end
-return function(workers) whole(sweep{ r = r, g = g, workers = workers, run = point }) end,
+return function(workers) whole(sweep{ over = { r = r, g = g }, workers = workers, run = point }) end,
        function() return nondimensional{ friction_ratio = 0.5 }:response{ over = { frequency = vector.linspace(0.1, 3, 300) }, between = true } end,
-       function() return sweep{ x = nothing, workers = 1, run = function(p) return { y = p.x } end } end
+       function() return sweep{ over = { x = nothing }, workers = 1, run = function(p) return { y = p.x } end } end
 )";
 
 void ask(LuaState& lua, benchmark::State& state, int function, int workers) {

@@ -90,7 +90,7 @@ do
     assert(e.samples{ t = t, M = M, period = 4 }(3.5) == -0.5)
     assert(e.samples{ t = { 0, 1, 2, 3, 4 }, M = { 0, 1, 0, -1, 0 }, interpolation = "cubic", period = 4 }(0.5) == 0.6875)
     -- A sweep carries it; a run writes it into its file, and the period is known to sys:steady.
-    local map = sweep{ x = { 0.5, 4.5 }, run = function(p) return { y = s(p.x) } end }
+    local map = sweep{ over = { x = { 0.5, 4.5 } }, run = function(p) return { y = s(p.x) } end }
     assert(map.y[1] == 0.6875 and map.y[2] == 0.6875)
     local sys = nondimensional{ zeta = 0.1 }
     assert(sys:steady{ M = s }.period == 4 and tostring(sys:simulate{ M = s, t_end = 3, dt = 1 }.integrator):find("exact"))

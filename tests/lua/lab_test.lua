@@ -23,7 +23,7 @@ test("a sweep judges no answers: each of its workers would begin with all tries"
     ["lab.number"] = "lab.number(4711)", ["check"] = "check('1a', p.n)", ["lab.given"] = "lab.given(1)",
     ["lab.experiment"] = "lab.experiment(1)", ["lab.marks"] = "lab.marks()",
   } do
-    local said = output("lab.number(4711) sweep{ n = { 1, 2 }, run = function(p) " .. code .. " return { n2 = p.n } end }")
+    local said = output("lab.number(4711) sweep{ over = { n = { 1, 2 } }, run = function(p) " .. code .. " return { n2 = p.n } end }")
     assert(said:find(call .. " is not possible within the function of a sweep", 1, true), said)
   end
 end)

@@ -3,7 +3,7 @@ package.path = arg[0]:match("^(.*)/") .. "/?.lua;" .. package.path
 local support = require "support"
 local test, equal, near, raises_here = support.test, support.equal, support.near, support.raises_here
 
-local map = sweep { x = vector.linspace(0, 1, 11), y = vector.linspace(0, 2, 9), run = function(p)
+local map = sweep { over = { x = vector.linspace(0, 1, 11), y = vector.linspace(0, 2, 9) }, run = function(p)
     return { steps = math.floor(p.x + p.y), slope = p.x + p.y }
 end }
 
@@ -29,7 +29,7 @@ test("points over two parameters are a map, or a curve for each value of the fir
     equal(text{}, text{ x = "x", y = "y", z = result })
     equal(text{ z = "steps" }, text{ x = "x", y = "y", z = "steps" })
     -- A line from the end of one curve to the beginning of the next would cross the corner below the diagonal of the last.
-    local family = sweep{ a = { 1, 2 }, b = vector.linspace(0, 1, 30), run = function(p) return { v = p.a * 10 + p.b * 0 } end }
+    local family = sweep{ over = { a = { 1, 2 }, b = vector.linspace(0, 1, 30) }, run = function(p) return { v = p.a * 10 + p.b * 0 } end }
     local lines, rows = tostring(family:plot{ y = "v", show = false, ascii = true }), 0
     for line in lines:gmatch("[^\n]+") do
         if line:find("|.*[^%s|+-]") or line:find("%+.*[^%s|+%d-]") then rows = rows + 1 end
@@ -38,7 +38,7 @@ test("points over two parameters are a map, or a curve for each value of the fir
     -- Of one value of a parameter it is a curve over the other.
     local one = family:filter(function(p) return p.a == 2 end)
     equal(tostring(one:plot{ show = false }), tostring(data{ b = one.b, v = one.v }:plot{ x = "b", y = "v", show = false }))
-    local three = sweep{ a = { 1, 2 }, b = { 1, 2 }, c = { 1, 2 }, run = function(p) return { v = p.a } end }
+    local three = sweep{ over = { a = { 1, 2 }, b = { 1, 2 }, c = { 1, 2 } }, run = function(p) return { v = p.a } end }
     raises_here(function() three:plot{ show = false } end, "points over a, b, c are no map")
     assert(tostring(three:filter(function(p) return p.a == 1 end):plot{ show = false }):find("v:", 1, true))
 end)
@@ -54,7 +54,7 @@ test("contours lie over the shades and have names", function()
 end)
 
 test("on logarithmic axes a map leaves out what has no place there", function()
-    local with = sweep { x = { -1, 0, 1, 10 }, y = { 0, 1, 2 }, run = function(p) return { z = p.x + p.y } end }
+    local with = sweep { over = { x = { -1, 0, 1, 10 }, y = { 0, 1, 2 } }, run = function(p) return { z = p.x + p.y } end }
     local without = with:filter(function(p) return p.x > 0 and p.y > 0 end)
     local function text(d) return tostring(d:plot { z = "z", xlog = true, ylog = true, show = false }) end
     equal(text(with), text(without))
@@ -63,7 +63,7 @@ test("on logarithmic axes a map leaves out what has no place there", function()
 end)
 
 test("a map goes into files with a legend, and an SVG of a fine one stays small", function()
-    local fine = sweep { x = vector.linspace(0.1, 2, 150), y = vector.linspace(0, 1, 120), run = function(p)
+    local fine = sweep { over = { x = vector.linspace(0.1, 2, 150), y = vector.linspace(0, 1, 120) }, run = function(p)
         return { z = math.sin(9 * p.x) * math.cos(7 * p.y) }
     end }
     local file = os.tmpname() .. ".svg"
@@ -103,8 +103,8 @@ end)
 
 test("a linear oscillator settles to one point a period, of the size that theory says", function()
     local zeta, f = 0.2, 1.3
-    local b = bifurcation { a = { 0.5, 1, 2 }, period = 1 / f, skip = 60, keep = 5, run = function(p)
-        return nondimensional { zeta = zeta }, excitation.harmonic { amplitude = p.a, frequency = f }
+    local b = bifurcation { over = { a = { 0.5, 1, 2 } }, period = 1 / f, skip = 60, keep = 5, at = function(p)
+        return { system = nondimensional { zeta = zeta }, M = excitation.harmonic { amplitude = p.a, frequency = f } }
     end }
     equal(table.concat(b.names, " "), "a theta velocity error")
     equal(#b, 15)
@@ -122,8 +122,8 @@ test("a linear oscillator settles to one point a period, of the size that theory
 end)
 
 test("run may return more options for the run, its own period among them", function()
-    local b = bifurcation { f = { 1.2, 1.4 }, skip = 0, keep = 2, run = function(p)
-        return nondimensional {}, nil, { period = 0.25, theta0 = p.f }
+    local b = bifurcation { over = { f = { 1.2, 1.4 } }, skip = 0, keep = 2, at = function(p)
+        return { system = nondimensional {}, period = 0.25, theta0 = p.f }
     end }
     near(b.theta[1], 0, 1e-9) -- a quarter of a period of cos(2 pi t)
     near(b.theta[2], -1.2, 1e-9)
@@ -131,8 +131,8 @@ test("run may return more options for the run, its own period among them", funct
 end)
 
 test("its plot shows points", function()
-    local b = bifurcation { a = vector.linspace(1, 2, 30), period = 1, skip = 2, keep = 3, run = function(p)
-        return nondimensional { zeta = 0.1 }, excitation.harmonic { amplitude = p.a, frequency = 1.3 }
+    local b = bifurcation { over = { a = vector.linspace(1, 2, 30) }, period = 1, skip = 2, keep = 3, at = function(p)
+        return { system = nondimensional { zeta = 0.1 }, M = excitation.harmonic { amplitude = p.a, frequency = 1.3 } }
     end }
     local text = tostring(b:plot { show = false, ascii = true })
     assert(text:find("theta", 1, true) and text:find("a", 1, true))
@@ -155,10 +155,10 @@ end)
 
 test("the same for any number of workers, and points that fail have a row", function()
     local function run(workers)
-        return bifurcation { a = { 1, 2, 3, 4 }, period = 1, skip = 3, keep = 2, workers = workers, run = function(p)
+        return bifurcation { over = { a = { 1, 2, 3, 4 } }, period = 1, skip = 3, keep = 2, workers = workers, at = function(p)
             if p.a == 2 then error("not this one", 0) end
-            if p.a == 3 then return nondimensional {}, "x" end
-            return nondimensional { friction_ratio = 0.1 }, excitation.harmonic { amplitude = p.a, frequency = 1.3 }
+            if p.a == 3 then return { system = nondimensional {}, M = "x" } end
+            return { system = nondimensional { friction_ratio = 0.1 }, M = excitation.harmonic { amplitude = p.a, frequency = 1.3 } }
         end }
     end
     local one, two = run(1), run(2)
@@ -178,9 +178,9 @@ test("a bifurcation in a file is the same rows, and the same call reads them", f
     os.remove(file)
     file = file .. ".csv"
     local function diagram(keep)
-        return bifurcation { a = { 1, 2, 3 }, period = 1, skip = 3, keep = keep, file = file, workers = 1, run = function(p)
+        return bifurcation { over = { a = { 1, 2, 3 } }, period = 1, skip = 3, keep = keep, file = file, workers = 1, at = function(p)
             if p.a == 2 then error("no two") end
-            return nondimensional { zeta = 0.2 }, excitation.harmonic { amplitude = p.a, frequency = 1 }
+            return { system = nondimensional { zeta = 0.2 }, M = excitation.harmonic { amplitude = p.a, frequency = 1 } }
         end }
     end
     local b = diagram(2)
@@ -192,28 +192,38 @@ test("a bifurcation in a file is the same rows, and the same call reads them", f
     equal(tostring(again), tostring(b))
     support.raises(function() diagram(3) end, "is not the result of this sweep")
     os.remove(file)
-    raises_here(function() bifurcation { a = { 1 }, period = 1, file = "b.txt", run = print } end, "must end in .csv")
+    raises_here(function() bifurcation { over = { a = { 1 } }, period = 1, file = "b.txt", at = print } end, "must end in .csv")
 end)
 
 test("what is wrong with a bifurcation is told", function()
-    local function run() return nondimensional {}, 1 end
-    raises_here(function() bifurcation { a = { 1 }, run = run } end, "bifurcation needs period")
-    raises_here(function() bifurcation { a = { 1 }, period = 0, run = run } end, "period = 0 must be positive")
-    raises_here(function() bifurcation { a = { 1 }, period = 1, keep = 0, run = run } end, "keep = 0 must be")
-    raises_here(function() bifurcation { period = 1, run = run } end, "bifurcation: there is no parameter")
-    raises_here(function() bifurcation { theta = { 1 }, period = 1, run = run } end, "is a column of the result")
-    raises_here(function() bifurcation { a = { 1 }, period = 1, run = function() return 1 end } end,
-        "run must return a system and its M, got 1")
-    raises_here(function() bifurcation { a = { 1 }, period = 1, run = function() return nondimensional {}, 1, 2 end } end,
-        "what run returns after M must be a table of options")
+    local function at() return { system = nondimensional {}, M = 1 } end
+    raises_here(function() bifurcation { over = { a = { 1 } }, at = at } end, "bifurcation needs period")
+    raises_here(function() bifurcation { over = { a = { 1 } }, period = 0, at = at } end, "period = 0 must be positive")
+    raises_here(function() bifurcation { over = { a = { 1 } }, period = 1, keep = 0, at = at } end, "keep = 0 must be")
+    raises_here(function() bifurcation { period = 1, at = at } end, "bifurcation: there is no parameter")
+    raises_here(function() bifurcation { over = { theta = { 1 } }, period = 1, at = at } end, "is a column of the result")
+    raises_here(function() bifurcation { over = { a = { 1 } }, period = 1, at = function() return 1 end } end,
+        "at must return a table such as { system = sys, M = M }, got 1")
+    raises_here(function() bifurcation { over = { a = { 1 } }, period = 1, at = function() return { M = 1 } end } end,
+        "at must return a table with system = ..., got nil there")
+    raises_here(function() bifurcation { over = { a = { 1 } }, period = 1, run = at } end, "instead of run give at = function(p)")
+    raises_here(function() bifurcation { a = { 1 }, period = 1, at = at } end, "over = { a = values }")
+    raises_here(function() bifurcation { over = { a = { 1 } }, at = function() return { system = nondimensional {}, omega = -1 } end } end,
+        "at returned omega = -1")
+    for _, given in ipairs { { period = 0.5 }, { frequency = 2 }, { omega = 4 * math.pi } } do
+        local b = bifurcation { over = { a = { 1 } }, skip = 0, keep = 1, at = function(p)
+            return { system = nondimensional {}, theta0 = p.a, period = given.period, frequency = given.frequency, omega = given.omega }
+        end }
+        near(b.theta[1], -1, 1e-9)
+    end
     for name, value in pairs { t_end = 5, dt = 0.1, times = { 1 } } do
         raises_here(function()
-            bifurcation { a = { 1 }, period = 1, run = function() return nondimensional {}, 0, { [name] = value } end }
-        end, "run returned " .. name .. " among the options, which bifurcation itself gives")
+            bifurcation { over = { a = { 1 } }, period = 1, at = function() return { system = nondimensional {}, [name] = value } end }
+        end, "at returned " .. name .. " among the options, which bifurcation itself gives")
     end
     raises_here(function()
-        bifurcation { a = { 1 }, period = 1, skip = 1, keep = 2, run = function()
-            return nondimensional {}, 0, { events = { { when = function(t) return t - 1.5 end, stop = true } } }
+        bifurcation { over = { a = { 1 } }, period = 1, skip = 1, keep = 2, at = function()
+            return { system = nondimensional {}, events = { { when = function(t) return t - 1.5 end, stop = true } } }
         end }
     end, "a = 1 failed: the run ended before the last look at it: stopped at")
 end)

@@ -153,7 +153,7 @@ test("a sweep with controllers gives the same with any number of workers", funct
     local shared = summing(1)
     local seen
     for workers = 1, 3 do
-        local function swept(run) return sweep { gain = { 1, 2, 3, 4 }, workers = workers, run = run } end
+        local function swept(run) return sweep { over = { gain = { 1, 2, 3, 4 } }, workers = workers, run = run } end
         raises(function()
             swept(function(p) return { x = spring:simulate { M = p.gain * shared, t_end = 5, dt = 1 }:at(5) } end)
         end, "all 4 points failed", another)

@@ -70,7 +70,7 @@ test("a spring goes into the workers of a sweep", function()
     local c = 0.5
     local sys = system { I = 1, k = 1, Rd = 0.1, spring = function(theta) return c * theta ^ 3 end }
     local native = sys:with { spring = duffing }
-    local map = sweep { theta0 = { 1, 2 }, workers = 2, run = function(p)
+    local map = sweep { over = { theta0 = { 1, 2 } }, workers = 2, run = function(p)
         return { own = sys:simulate { theta0 = p.theta0, t_end = 5, times = {} }:at(5),
             native = native:simulate { theta0 = p.theta0, t_end = 5, times = {} }:at(5) }
     end }

@@ -18,30 +18,29 @@ end
 
 --- What the function gives at one point.
 local function at_one_point(run)
-    return sweep { x = { 7 }, run = run }.y[1]
+    return sweep { over = { x = { 7 } }, run = run }.y[1]
 end
 
 test("a sweep has a row for each point, the last parameter changing fastest", function()
-    local d = sweep { b = { 1, 2 }, a = vector { 10, 20, 30 }, run = function(p) return { s = p.a + p.b } end }
+    local d = sweep { over = { b = { 1, 2 }, a = vector { 10, 20, 30 } }, run = function(p) return { s = p.a + p.b } end }
     equal(table.concat(d.names, " "), "a b s error")
     equal(tostring(d.a), "vector{ 10, 10, 20, 20, 30, 30 }")
     equal(tostring(d.b), "vector{ 1, 2, 1, 2, 1, 2 }")
     equal(tostring(d.s), "vector{ 11, 12, 21, 22, 31, 32 }")
-    local e = sweep { { "b", { 1, 2 } }, { "a", { 10, 20 } }, run = function(p) return { s = p.a + p.b } end }
+    local e = sweep { over = { { "b", { 1, 2 } }, { "a", { 10, 20 } } }, run = function(p) return { s = p.a + p.b } end }
     equal(table.concat(e.names, " "), "b a s error")
     equal(tostring(e.s), "vector{ 11, 21, 12, 22 }")
 end)
 
 test("words are parameters, too", function()
-    local d = sweep { word = { "a", "bcd" }, run = function(p) return { n = #p.word } end }
+    local d = sweep { over = { word = { "a", "bcd" } }, run = function(p) return { n = #p.word } end }
     equal(table.concat(d.word, " "), "a bcd")
     equal(tostring(d.n), "vector{ 1, 3 }")
 end)
 
 test("the result is the same to the last bit for any number of workers", function()
     local function map(workers)
-        return bits(sweep { r = vector.linspace(0.3, 1.5, 13), g = vector.linspace(0, 0.9, 10), workers = workers,
-                            run = function(p)
+        return bits(sweep { over = { r = vector.linspace(0.3, 1.5, 13), g = vector.linspace(0, 0.9, 10) }, workers = workers, run = function(p)
             if p.r > 1.4 and p.g > 0.8 then error("far away") end
             local s = nondimensional { friction_ratio = p.g }:steady { M = excitation.harmonic { frequency = p.r } }
             return { A = s.amplitude, stops = s.stops, chance = math.random(), found = s.amplitude ~= nil }
@@ -53,7 +52,7 @@ end)
 
 test("math.random differs from point to point and from seed to seed, and is the same each time", function()
     local function draws(seed)
-        return sweep { x = vector.linspace(1, 100, 100), seed = seed, run = function() return { u = math.random() } end }.u
+        return sweep { over = { x = vector.linspace(1, 100, 100) }, seed = seed, run = function() return { u = math.random() } end }.u
     end
     local u, seen = draws(), {}
     for i = 1, #u do seen[u[i]] = true end
@@ -65,7 +64,7 @@ test("math.random differs from point to point and from seed to seed, and is the 
 end)
 
 test("what a point does not return is nan, true and false are 1 and 0", function()
-    local d = sweep { x = { 1, 2, 3 }, run = function(p) return { y = p.x > 1 and p.x or nil, big = p.x > 2 } end }
+    local d = sweep { over = { x = { 1, 2, 3 } }, run = function(p) return { y = p.x > 1 and p.x or nil, big = p.x > 2 } end }
     assert(d.y[1] ~= d.y[1])
     equal(d.y[3], 3.0)
     equal(tostring(d.big), "vector{ 0, 0, 1 }")
@@ -191,8 +190,8 @@ test("a method that was taken out of its object is carried", function()
 end)
 
 test("a sweep within a sweep works", function()
-    local d = sweep { n = { 2, 3 }, run = function(p)
-        return { total = sweep { i = vector.linspace(1, p.n, p.n), run = function(q) return { y = q.i } end }.y:sum() }
+    local d = sweep { over = { n = { 2, 3 } }, run = function(p)
+        return { total = sweep { over = { i = vector.linspace(1, p.n, p.n) }, run = function(q) return { y = q.i } end }.y:sum() }
     end }
     equal(tostring(d.total), "vector{ 3, 6 }")
 end)
@@ -201,19 +200,19 @@ test("what cannot be carried is refused with the way to it", function()
     local run = nondimensional {}:simulate { theta0 = 1, t_end = 1, dt = 0.5 }
     local settings = { last = { run } }
     local function helper() return settings end
-    raises_here(function() sweep { x = { 1 }, run = function() return { y = #helper() } end } end,
+    raises_here(function() sweep { over = { x = { 1 } }, run = function() return { y = #helper() } end } end,
         "sweep: run uses helper > settings.last[1], a run, which cannot be in another thread", "run.theta")
     local thread = coroutine.create(print)
-    raises(function() sweep { x = { 1 }, run = function() return thread end } end, "run uses thread, a coroutine")
+    raises(function() sweep { over = { x = { 1 } }, run = function() return thread end } end, "run uses thread, a coroutine")
     local match = ("a b"):gmatch("%a")
-    raises(function() sweep { x = { 1 }, run = function() return match() end } end,
+    raises(function() sweep { over = { x = { 1 } }, run = function() return match() end } end,
         "run uses match, a function that is written in C")
-    raises(function() sweep { x = { 1 }, run = match } end, "run is a function that is written in C")
+    raises(function() sweep { over = { x = { 1 } }, run = match } end, "run is a function that is written in C")
     local file = io.tmpfile()
-    raises(function() sweep { x = { 1 }, run = function() return file end } end, "run uses file, a userdata")
+    raises(function() sweep { over = { x = { 1 } }, run = function() return file end } end, "run uses file, a userdata")
     file:close()
     local steady = nondimensional { zeta = 0.1 }:steady { M = excitation.harmonic { frequency = 1 } }
-    raises(function() sweep { x = { 1 }, run = function() return steady end } end, "run uses steady, a steady motion")
+    raises(function() sweep { over = { x = { 1 } }, run = function() return steady end } end, "run uses steady, a steady motion")
 end)
 
 test("what is nested without end is refused in a short sentence", function()
@@ -224,7 +223,7 @@ test("what is nested without end is refused in a short sentence", function()
         chain = function() return inner() end
     end
     for what, run in pairs { nested = function() return nested end, chain = function() return chain end } do
-        local fine, message = pcall(sweep, { x = { 1 }, run = run })
+        local fine, message = pcall(sweep, { over = { x = { 1 } }, run = run })
         assert(not fine and #message < 400, #message)
         assert(message:find("run uses " .. what .. ".*%.%.%..*within 5000 others"), message)
     end
@@ -233,7 +232,7 @@ end)
 -- ---- what goes wrong
 
 test("a point that fails keeps its message, the others go on, and the map says so", function()
-    local d = sweep { x = { 1, 2, 3, 4, 5 }, run = function(p)
+    local d = sweep { over = { x = { 1, 2, 3, 4, 5 } }, run = function(p)
         if p.x == 2 then error("two is bad", 0) end
         if p.x == 3 then return p.x end
         if p.x == 4 then return { y = "four" } end
@@ -250,15 +249,15 @@ test("a point that fails keeps its message, the others go on, and the map says s
 end)
 
 test("when all points fail that is an error, with the message of the first", function()
-    raises_here(function() sweep { x = { 1, 2 }, run = function() return syst {} end } end,
+    raises_here(function() sweep { over = { x = { 1, 2 } }, run = function() return syst {} end } end,
         "sweep: all 2 points failed; the first one, x = 1: ", "attempt to call a nil value (global 'syst')")
-    raises(function() sweep { x = { 1 }, run = function() return {}, 1 end }; error("fine") end, "fine")
-    raises(function() sweep { x = { 1 }, run = function() end } end, "the point x = 1 failed: run must return a table")
-    raises(function() sweep { x = { 1 }, run = function() return { 3 } end } end, "run must return named numbers")
-    raises(function() sweep { x = { 1 }, run = function() return { x = 3 } end } end, "is the name of a parameter")
-    raises(function() sweep { x = { 1 }, run = function() return { error = 3 } end } end, "the column of messages")
-    raises(function() sweep { x = { 1 }, run = function() coroutine.yield() end } end, "yield")
-    raises(function() sweep { x = { 1 }, run = function()
+    raises(function() sweep { over = { x = { 1 } }, run = function() return {}, 1 end }; error("fine") end, "fine")
+    raises(function() sweep { over = { x = { 1 } }, run = function() end } end, "the point x = 1 failed: run must return a table")
+    raises(function() sweep { over = { x = { 1 } }, run = function() return { 3 } end } end, "run must return named numbers")
+    raises(function() sweep { over = { x = { 1 } }, run = function() return { x = 3 } end } end, "is the name of a parameter")
+    raises(function() sweep { over = { x = { 1 } }, run = function() return { error = 3 } end } end, "the column of messages")
+    raises(function() sweep { over = { x = { 1 } }, run = function() coroutine.yield() end } end, "yield")
+    raises(function() sweep { over = { x = { 1 } }, run = function()
         local names = {}
         for i = 1, 20001 do names["n" .. i] = i end
         return names
@@ -267,7 +266,7 @@ end)
 
 test("workers do not draw, save, show progress or end the program", function()
     local function refused(body, call)
-        raises(function() sweep { x = { 1 }, run = function() body() return {} end } end,
+        raises(function() sweep { over = { x = { 1 } }, run = function() body() return {} end } end,
             call .. " is not possible within ")
     end
     local v = vector { 1, 2 }
@@ -283,30 +282,33 @@ end)
 
 test("what is wrong with the call is told at the user's line", function()
     local function run() return {} end
-    raises_here(function() sweep { x = {}, run = run } end, "sweep: x has no values")
-    raises_here(function() sweep { x = vector {}, run = run } end, "sweep: x has no values")
-    raises_here(function() sweep { x = { 0 / 0 }, run = run } end, "sweep: x[1] = nan must be finite")
-    raises_here(function() sweep { x = { 1, y = 2 }, run = run } end, "sweep: x must be a list", "it has y")
-    raises_here(function() sweep { x = { "a", y = 2 }, run = run } end, "sweep: x must be a list", "it has y")
-    raises_here(function() sweep { x = { 1, "a" }, run = run } end, "sweep: x[2] must be a finite number")
-    raises_here(function() sweep { x = { "a", 1 }, run = run } end, "sweep: x[2] must be a string")
-    raises_here(function() sweep { x = { 1 } } end, "sweep needs run")
-    raises_here(function() sweep { x = { 1 }, run = 3 } end, "run must be a function of a point")
+    raises_here(function() sweep { over = { x = {} }, run = run } end, "sweep: x has no values")
+    raises_here(function() sweep { over = { x = vector {} }, run = run } end, "sweep: x has no values")
+    raises_here(function() sweep { over = { x = { 0 / 0 } }, run = run } end, "sweep: x[1] = nan must be finite")
+    raises_here(function() sweep { over = { x = { 1, y = 2 } }, run = run } end, "sweep: x must be a list", "it has y")
+    raises_here(function() sweep { over = { x = { "a", y = 2 } }, run = run } end, "sweep: x must be a list", "it has y")
+    raises_here(function() sweep { over = { x = { 1, "a" } }, run = run } end, "sweep: x[2] must be a finite number")
+    raises_here(function() sweep { over = { x = { "a", 1 } }, run = run } end, "sweep: x[2] must be a string")
+    raises_here(function() sweep { over = { x = { 1 } } } end, "sweep needs run")
+    raises_here(function() sweep { over = { x = { 1 } }, run = 3 } end, "run must be a function of a point")
     raises_here(function() sweep { run = run } end, "there is no parameter")
-    raises_here(function() sweep { x = { 1 }, run = run, workers = 0 } end, "workers = 0 must be a whole number")
-    raises_here(function() sweep { x = { 1 }, run = run, workers = 1.5 } end, "workers = 1.5 must be a whole number")
-    raises_here(function() sweep { x = { 1 }, run = run, worker = 2 } end, "sweep has no option 'worker' among run, workers, seed,",
-        "a parameter must be a vector or a table of values", "did you mean 'workers'?")
-    raises_here(function() sweep { 1, run = run } end, "item 1 must be a name and its values")
-    raises_here(function() sweep { { "x", { 1 } }, x = { 2 }, run = run } end, "two parameters 'x'")
-    raises_here(function() sweep { error = { 1 }, run = run } end, "the column of messages")
-    raises_here(function() sweep { x = vector.linspace(0, 1, 1e5), y = vector.linspace(0, 1, 1e5), run = run } end,
+    raises_here(function() sweep { over = { x = 3 }, run = run } end, "over.x must be a vector or a table of values, got 3")
+    raises_here(function() sweep { x = { 1 }, run = run } end, "parameters and their values stand in over = { x = values }")
+    equal(#sweep { over = { seed = { 1, 2 }, file = { "a", "b" } }, run = function(p) return { y = p.seed } end }, 4) -- any name
+    raises_here(function() sweep { over = { x = { 1 } }, run = run, workers = 0 } end, "workers = 0 must be a whole number")
+    raises_here(function() sweep { over = { x = { 1 } }, run = run, workers = 1.5 } end, "workers = 1.5 must be a whole number")
+    raises_here(function() sweep { over = { x = { 1 } }, run = run, worker = 2 } end, "sweep has no option 'worker' among over, run, workers, seed,",
+        "did you mean 'workers'?")
+    raises_here(function() sweep { over = { 1 }, run = run } end, "over[1] must be a name and its values")
+    raises_here(function() sweep { over = { { "x", { 1 } }, x = { 2 } }, run = run } end, "two parameters 'x'")
+    raises_here(function() sweep { over = { error = { 1 } }, run = run } end, "the column of messages")
+    raises_here(function() sweep { over = { x = vector.linspace(0, 1, 1e5), y = vector.linspace(0, 1, 1e5) }, run = run } end,
         "1e+10 points are more")
     raises_here(function() sweep(3) end, "sweep takes one table")
 end)
 
 test("a point that takes longer than max_time is given up, in Lua or in a run, and the others go on", function()
-    local d = sweep { x = { 1, 2, 3, 4 }, workers = 2, max_time = 0.15, run = function(p)
+    local d = sweep { over = { x = { 1, 2, 3, 4 } }, workers = 2, max_time = 0.15, run = function(p)
         if p.x == 2 then while true do pcall(function() while true do end end) end end
         if p.x == 3 then nondimensional {}:simulate { M = function(t) return math.sin(t) end, t_end = 1e9, times = {} } end
         return { y = p.x }
@@ -316,13 +318,13 @@ test("a point that takes longer than max_time is given up, in Lua or in a run, a
         equal(d.error[i], "it ran longer than the 0.15 s that max_time allows")
         assert(d.y[i] ~= d.y[i])
     end
-    raises_here(function() sweep { x = { 1 }, max_time = 0, run = print } end, "max_time = 0 must be positive")
+    raises_here(function() sweep { over = { x = { 1 } }, max_time = 0, run = print } end, "max_time = 0 must be positive")
 end)
 
 test("sweeps within a sweep open their states on several threads at once", function()
     -- Each thread writes what all of them share; the thread sanitizer found it, here only the answer is seen.
-    local m = sweep { x = vector.linspace(1, 12, 12), workers = 4, run = function(p)
-        return { sum = sweep { y = { 1, 2, 3 }, workers = 2, run = function(q)
+    local m = sweep { over = { x = vector.linspace(1, 12, 12) }, workers = 4, run = function(p)
+        return { sum = sweep { over = { y = { 1, 2, 3 } }, workers = 2, run = function(q)
             return { z = q.y * p.x + coroutine.wrap(function(a) return a end)(1) }
         end }.z:sum() }
     end }

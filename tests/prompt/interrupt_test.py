@@ -53,10 +53,10 @@ LONG = {
     "values of an excitation": "local v, e = vector.linspace(0, 1, 3e6), excitation.harmonic{ frequency = 1 } go() while true do pcall(e.values, e, v) end",
     "the energy of a long run": "local run = nondimensional{ zeta = 0.01 }:simulate{ M = excitation.harmonic{ frequency = 0.7 }, t_end = 2e4, "
                                 "times = {} } go() while true do run:energy() end",
-    "points of a sweep that never end": "sweep{ x = { 1, 2, 3 }, run = function(p) while true do pcall(function() while true do end "
+    "points of a sweep that never end": "sweep{ over = { x = { 1, 2, 3 } }, run = function(p) while true do pcall(function() while true do end "
                                         "end) end end }",
-    "runs within a sweep": "sweep{ x = { 1, 2, 3 }, workers = 2, run = function(p) " + SIMULATE.format("math.sin") + " end }",
-    "a sweep within a sweep": "sweep{ x = { 1, 2 }, workers = 2, run = function() return { n = #sweep{ y = { 1, 2 }, run = "
+    "runs within a sweep": "sweep{ over = { x = { 1, 2, 3 } }, workers = 2, run = function(p) " + SIMULATE.format("math.sin") + " end }",
+    "a sweep within a sweep": "sweep{ over = { x = { 1, 2 } }, workers = 2, run = function() return { n = #sweep{ over = { y = { 1, 2 } }, run = "
                               "function() while true do end end } } end }",
     "plots": "local run = nondimensional{}:simulate{ theta0 = 1, t_end = 1000, dt = 1e-3 } go() while true do run:plot{ show = false } end",
     "__close": "local x <close> = setmetatable({}, { __close = function() while true do end end })",

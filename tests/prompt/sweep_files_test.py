@@ -19,7 +19,7 @@ MOST_SECONDS = 120
 PROGRAM = ""
 POINTS = 600  # in chunks of three
 SCRIPT = """
-local map = sweep{{ r = vector.linspace(0.1, 2, 30), g = vector.linspace(0, 1, 20), file = "map.csv", workers = {workers},
+local map = sweep{{ over = {{ r = vector.linspace(0.1, 2, 30), g = vector.linspace(0, 1, 20) }}, file = "map.csv", workers = {workers},
     run = function(p)
         local t, wait = os.clock(), tonumber(os.getenv("WAIT")) or 0 -- in a process that is to be killed in the middle
         while os.clock() - t < wait do end

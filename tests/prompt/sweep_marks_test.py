@@ -76,7 +76,7 @@ class SweepMarks(unittest.TestCase):
 
     def swept(self, before, y):
         """The mark in the file, and what was said when it is not this sweep's."""
-        script = f'{before}\nsweep{{ a = {{ 1, 2 }}, file = "map.csv", run = function(p) return {{ y = {y} }} end }}\n'
+        script = f'{before}\nsweep{{ over = {{ a = {{ 1, 2 }} }}, file = "map.csv", run = function(p) return {{ y = {y} }} end }}\n'
         (self.home / "map.lua").write_text(script)
         clean = {name: value for name, value in os.environ.items() if not name.startswith(LAUNCHERS)}
         done = subprocess.run([PROGRAM, "map.lua"], capture_output=True, timeout=PATIENCE, cwd=self.home, env=clean,

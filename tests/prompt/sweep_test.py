@@ -15,7 +15,7 @@ PROGRAM = ""
 # Each point notes itself and takes 5 ms of processor time.
 POINT = ("function point(p) local file <close> = io.open('points', 'a') file:write(p.x, '\\n') local t = os.clock() "
          "while os.clock() - t < 0.005 do end return { y = 2*p.x } end")
-SWEEP = "map = sweep{ x = vector.linspace(1, 1000, 1000), workers = 2, run = point }"
+SWEEP = "map = sweep{ over = { x = vector.linspace(1, 1000, 1000) }, workers = 2, run = point }"
 
 
 class Sweeps(unittest.TestCase):
@@ -61,7 +61,7 @@ class Sweeps(unittest.TestCase):
         self.session.enter("factor = 1")
         self.interrupt_after(5)
         (self.home / "points").unlink()
-        self.session.enter("sweep{ x = { 1, 2, 3 }, workers = 2, run = point }")
+        self.session.enter("sweep{ over = { x = { 1, 2, 3 } }, workers = 2, run = point }")
         self.assertEqual(len(self.points()), 3)
 
 
