@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "analysis/explain.hpp"
+#include "analysis/recurrence.hpp"
 #include "api/animate.hpp"
 #include "api/bind_simulate.hpp"
 #include "api/cards.hpp"
@@ -19,6 +20,7 @@
 #include "lua/memory_limit.hpp"
 #include "lua/user_function.hpp"
 #include "lua/vector.hpp"
+#include "motion/stillness.hpp"
 #include "text/fixed_text.hpp"
 
 namespace dinal::api {
@@ -160,6 +162,39 @@ int status(lua_State* L) {
     return lua::push_text(L, status_word(run.trajectory.outcome));
 }
 
+int cycle_of_run(lua_State* L) {
+    const RunHandle run = run_self(L, "run:cycle()");
+    const motion::Trajectory& trajectory = run->trajectory;
+    lua::CallState call(L);
+    std::vector<model::Event> events(trajectory.events.begin(), trajectory.events.end());
+    if (trajectory.on_belt) {  // no event tells the extremes of theta there
+        const std::vector<model::Event> turns = motion::turns_on_belt(trajectory);
+        const auto told = static_cast<std::ptrdiff_t>(events.size());
+        events.insert(events.end(), turns.begin(), turns.end());
+        std::inplace_merge(events.begin(), events.begin() + told, events.end(),
+                           [](const model::Event& a, const model::Event& b) { return a.t < b.t; });
+    }
+    if (call.failed()) call.raise_error();
+    const auto found = analysis::recurrence(events);
+    if (!found) {
+        lua_pushnil(L);
+        return 1;
+    }
+    lua_createtable(L, 0, 9);
+    const std::pair<const char*, double> numbers[] = {
+        {"period", found->period}, {"amplitude", found->amplitude}, {"middle", found->centre}, {"stuck", found->stuck},
+        {"drift", found->drift},   {"change", found->change},       {"since", found->since}};
+    for (const auto& [name, x] : numbers) {
+        lua_pushnumber(L, x);
+        lua_setfield(L, -2, name);
+    }
+    lua_pushinteger(L, static_cast<lua_Integer>(found->stops));
+    lua_setfield(L, -2, "stops");
+    lua_pushboolean(L, found->steady ? 1 : 0);
+    lua_setfield(L, -2, "steady");
+    return 1;
+}
+
 int gap_of_run(lua_State* L) {
     const double gap = run_self(L, "run.gap")->trajectory.gap;
     gap > 0 ? lua_pushnumber(L, gap) : lua_pushnil(L);
@@ -282,6 +317,20 @@ constexpr lua::Member run_members[] = {
       "for _, e in ipairs(run.events) do print(e.kind, string.format(\"%.4f %.4f\", e.t, e.theta)) end\n"
       "--> turn\t0.5000 -1.0000\n"
       "--> turn\t1.0000 1.0000"}},
+    {lua::a_field<run_acceleration>,
+     {"run.acceleration -> vector or nil",
+      "The angular acceleration at the rows, rad per time unit^2, from the equation of motion: relative to the base, like "
+      "theta. 0 while it sticks to a surface at constant speed. Of a run that was read from a file: its column of this name, or nil.",
+      "run = system{ I = 2, k = 3 }:simulate{ theta0 = 1, t_end = 1 }\nprint(run.acceleration[1])  --> -1.5"}},
+    {lua::a_method<cycle_of_run>,
+     {"run:cycle() -> table or nil",
+      "The periodic motion at the end of the run, measured from its events: period, amplitude, middle (of the extremes), "
+      "stops, stuck (part of a period), drift (how far theta gets in a period), change (from the period before, in "
+      "amplitudes), since (when it had settled to a thousandth), steady (false while it still settles). nil if nothing "
+      "repeats. run:steady() computes the limit.",
+      "run = system{ I = 1, k = 4, Rd = 0.3, Re = 0.6 }:simulate{ belt = 0.1, t_end = 60 }\n"
+      "c = run:cycle()\n"
+      "print(string.format(\"%.6f %d\", c.period, c.stops), c.steady)  --> 3.658799 1\ttrue"}},
     {lua::a_field<time_field<&motion::Trajectory::t_start>>,
      {"run.t_start -> number", "The time at which the run began.", DINAL_RUN "print(run.t_start)  --> 0.0"}},
     {lua::a_field<time_field<&motion::Trajectory::t_stop>>,

@@ -39,6 +39,7 @@ int sweep(lua_State* L) {
 constexpr lua::Member sweep_members[] = {
     {lua::a_function<sweep>, sweep_doc},
     {lua::a_function<bifurcation>, bifurcation_doc},
+    {lua::a_function<minimise>, minimise_doc},
 };
 
 }  // namespace

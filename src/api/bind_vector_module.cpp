@@ -49,6 +49,26 @@ int vector_linspace(lua_State* L) {
     return 1;
 }
 
+int vector_range(lua_State* L) {
+    const std::string call = "vector.range(from, to [, step])";
+    const double from = lua::finite_argument(L, 1, call + ": from"), to = lua::finite_argument(L, 2, call + ": to");
+    const double step = lua_isnoneornil(L, 3) ? 1 : lua::finite_argument(L, 3, call + ": step");
+    if (step == 0 || (to - from) * step < 0) {
+        lua::raise(
+            L, text::in_call(call, {fmt::format("step = {:.6g} does not lead from {:.6g} to {:.6g}", step, from, to)}));
+    }
+    const double ratio = (to - from) / step;
+    if (ratio >= most_numbers) {
+        lua::raise(L, text::in_call(call, {fmt::format("{:.3g} numbers are more than {}", ratio, most_numbers)}));
+    }
+    constexpr double rounding = 1e-9;  // of a step: 0 to 0.3 by 0.1 has its end
+    const auto count = static_cast<std::size_t>(std::floor(ratio + rounding)) + 1;
+    std::vector<double> values = lua::new_numbers(L, count);
+    for (std::size_t i = 0; i < count; ++i) values[i] = from + static_cast<double>(i) * step;
+    lua::push_vector(L, std::move(values));
+    return 1;
+}
+
 int vector_logspace(lua_State* L) {
     const std::string call = "vector.logspace(from, to, n)";
     const double from = lua::finite_argument(L, 1, call + ": from");
@@ -138,6 +158,10 @@ int vector_normal(lua_State* L) {
 constexpr lua::Member vector_module_members[] = {
     {lua::a_metamethod<vector_make>("__call"),
      {"vector{ ... } -> vector", "A vector of these finite numbers.", "print(#vector{ 1, 2, 3 })  --> 3"}},
+    {lua::a_function<vector_range>,
+     {"vector.range(from, to [, step]) -> vector",
+      "from, from + step, ... up to to, as Lua's for counts; step is 1 unless given. Whole numbers stay whole.",
+      "print(vector.range(1, 4), vector.range(0, 1, 0.25))  --> vector{ 1, 2, 3, 4 }\tvector{ 0, 0.25, 0.5, 0.75, 1 }"}},
     {lua::a_function<vector_linspace>,
      {"vector.linspace(from, to, n) -> vector", "n >= 2 numbers with even gaps; the ends are exact.",
       "print(vector.linspace(0, 1, 5))  --> vector{ 0, 0.25, 0.5, 0.75, 1 }"}},

@@ -50,8 +50,9 @@ int save_run(lua_State* L);
 int continue_run(lua_State* L);
 /// run:energy(), in bind_energy.cpp.
 int energy_of_run(lua_State* L);
-/// run:at(t) and run.states, in run_states.cpp.
+/// run:at(t), run.states and run.acceleration, in run_states.cpp.
 int run_at(lua_State* L);
+int run_acceleration(lua_State* L);
 int run_states(lua_State* L);
 
 }  // namespace dinal::api

@@ -10,6 +10,7 @@
 #include "lua/lua_text.hpp"
 #include "lua/user_function.hpp"
 #include "lua/vector.hpp"
+#include "model/lowered.hpp"
 #include "text/suggest.hpp"
 
 namespace dinal::api {
@@ -59,6 +60,39 @@ int run_at(lua_State* L) {
         lua_setfield(L, -2, trajectory.names()[motion::column_count + i].c_str());
     }
     return 3;
+}
+
+/// From the equation of motion at the rows.
+int run_acceleration(lua_State* L) {
+    const RunHandle run = lua::self<RunHandle>(L, 1, "run.acceleration");
+    const motion::Trajectory& trajectory = run->trajectory;
+    if (!run->origin) {
+        if (const auto own = trajectory.find("acceleration")) {
+            const auto values = trajectory.rows.col(*own);
+            lua::push(L, lua::Vector(run, values.data(), static_cast<std::size_t>(values.size())));
+        } else {
+            lua_pushnil(L);
+        }
+        return 1;
+    }
+    const source::Task& task = *run->origin;
+    const model::Lowered system(task.system);
+    const auto& walls = task.system.walls();
+    using motion::Column;
+    const auto t = trajectory.column(Column::t), theta = trajectory.column(Column::theta),
+               velocity = trajectory.column(Column::velocity), M = trajectory.column(Column::M),
+               friction = trajectory.column(Column::friction), damping = trajectory.column(Column::damping);
+    std::vector<double> values = lua::new_numbers(L, static_cast<std::size_t>(trajectory.size()));
+    lua::CallState call(L);  // the spring and the base may be functions
+    for (Eigen::Index i = 0; i < trajectory.size(); ++i) {
+        const bool leans = walls && velocity[i] == 0 && (theta[i] <= walls->lower || theta[i] >= walls->upper);
+        const double torque = M[i] - system.pull_back(theta[i]) + friction[i] + damping[i];
+        const double base = task.extras.base.components().empty() ? 0 : task.extras.base.value(t[i]);
+        values[static_cast<std::size_t>(i)] = leans ? 0 : torque / task.system.inertia() - base + 0.0;
+        if (call.failed()) call.raise_error();
+    }
+    lua::push_vector(L, std::move(values));
+    return 1;
 }
 
 int run_states(lua_State* L) {

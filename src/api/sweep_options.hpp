@@ -59,6 +59,34 @@ inline constexpr text::Call sweep_call{
     "sweep", "sweep{ over = { r = vector.linspace(0.1, 2, 20) }, run = function(p) return { A = p.r^2 } end }",
     sweep_options};
 
+int minimise(lua_State* L);
+
+inline constexpr text::Option minimise_options[] = {
+    {.name = "over",
+     .otherwise = text::needed,
+     .meaning = "one or two parameters and the limits of each: { Re = { 0.1, 2 } }",
+     .wanted = "names and their limits, such as { Re = { 0.1, 2 } }"},
+    {.name = "run",
+     .otherwise = text::needed,
+     .meaning = "a function of a point, a table such as { Re = 0.5 }, that returns a number",
+     .wanted = "a function of a point that returns a number"},
+};
+inline constexpr text::Call minimise_call{
+    "minimise", "minimise{ over = { Re = { 0.1, 2 } }, run = function(p) return (p.Re - 1)^2 end }", minimise_options};
+
+inline constexpr lua::Doc minimise_doc{
+    "minimise{ OPTIONS } -> table",
+    "Returns the point at which a function is least, its value, and the number of calls: best.NAME, best.value, "
+    "best.calls. A coarse grid of the range (17 values of one parameter, 9 x 9 of two) finds the valley, then Brent's "
+    "method or that of Nelder and Mead follows it, to about 1e-8 of the range. A narrower valley beside it may be missed. "
+    "For the greatest value return the negative one.",
+    "sys = nondimensional{ zeta = 0.1 }\n"
+    "best = minimise{ over = { r = { 0.2, 2 } }, run = function(p)\n"
+    "    return -sys:steady{ M = excitation.harmonic{ frequency = p.r } }.amplitude\n"
+    "end }\n"
+    "print(string.format(\"%.6f %.6f\", best.r, math.sqrt(1 - 2*0.1^2)))  --> 0.989949 0.989949",
+    {&minimise_call}};
+
 inline constexpr lua::Doc sweep_doc{
     "sweep{ OPTIONS } -> data",
     "Asks a function at every combination of the values of some parameters, on all cores at once. Values are vectors, "

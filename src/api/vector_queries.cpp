@@ -95,6 +95,27 @@ int find(lua_State* L) {
     return 1;
 }
 
+int quantile(lua_State* L) {
+    const lua::Vector& v = own(L, "v:quantile(p)");
+    const double p = lua::finite_argument(L, 2, "v:quantile(p): p");
+    if (!(p >= 0 && p <= 1)) {
+        lua::raise(L, text::in_call("v:quantile(p)", {fmt::format("p = {:.6g} must lie between 0 and 1", p)}));
+    }
+    if (v.size() == 0) lua::raise(L, text::in_call("v:quantile(p)", {"the vector is empty"}));
+    std::vector<double> values(v.begin(), v.end());
+    if (std::any_of(values.begin(), values.end(), [](double x) { return std::isnan(x); })) {
+        lua_pushnumber(L, std::nan(""));
+        return 1;
+    }
+    const double place = p * static_cast<double>(values.size() - 1), below = std::floor(place);
+    const auto nth = values.begin() + static_cast<std::ptrdiff_t>(below);
+    std::nth_element(values.begin(), nth, values.end());
+    double value = *nth;
+    if (place > below) value += (place - below) * (*std::min_element(nth + 1, values.end()) - value);
+    lua_pushnumber(L, value);
+    return 1;
+}
+
 int deviation(lua_State* L) {
     const lua::Vector& v = own(L, "v:std()");
     if (v.size() < 2) {

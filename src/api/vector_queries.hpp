@@ -19,6 +19,7 @@ int pick(lua_State* L);  ///< v[w]
 int dot(lua_State* L);
 int arctangent(lua_State* L);
 int sorted(lua_State* L);
+int quantile(lua_State* L);
 
 }  // namespace dinal::api::vector_functions
 
@@ -34,6 +35,11 @@ inline constexpr lua::Member vector_query_members[] = {
     {lua::a_method<vector_functions::deviation>,
      {"v:std() -> number", "The standard deviation: the root of the sum of squares about the mean over #v - 1.",
       "print(vector{ 1, 2, 3 }:std())  --> 1.0"}},
+    {lua::a_method<vector_functions::quantile>,
+     {"v:quantile(p) -> number",
+      "The value below which the part p of the elements lies, p from 0 to 1: 0.5 is the median. Linear between the sorted "
+      "elements, of which the first is at p = 0 and the last at p = 1.",
+      "print(vector{ 4, 1, 3, 2 }:quantile(0.5), vector{ 1, 2, 6 }:quantile(1))  --> 2.5\t6.0"}},
     {lua::a_method<vector_functions::place_of_maximum>,
      {"v:argmax() -> integer", "The place, from 1, of the greatest element, the first of equal ones.",
       "print(vector{ 1, 3, 2 }:argmax())  --> 2"}},

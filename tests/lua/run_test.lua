@@ -212,4 +212,37 @@ test("the status of a run is one word for each way to end", function()
     equal(trajectory.load(name).status, nil)
 end)
 
+test("the acceleration is the derivative of the velocity, and 0 at rest", function()
+    local sys = system{ I = 2, k = 3, C = 0.4, Rd = 0.3, Re = 0.5, spring = spring.polynomial{ [3] = 0.7 } }
+    for _, options in ipairs{ { M = math.sin, theta0 = 1 }, { belt = 0.1, theta0 = 1 }, { base = function(t) return math.cos(t) end, theta0 = 1.5 } } do
+        options.t_end, options.dt = 3, 1e-4
+        local r = sys:simulate(options)
+        local a = r.acceleration
+        equal(#a, #r)
+        local off = {}
+        for i = 2, #r - 1, 50 do off[#off + 1] = math.abs(a[i] - (r.velocity[i + 1] - r.velocity[i - 1]) / 2e-4) end
+        assert(vector(off):quantile(0.95) < 1e-6, vector(off):quantile(0.95)) -- where friction jumps no difference tells
+    end
+    local stuck = system{ I = 1, k = 4, Rd = 1 }:simulate{ M = 0.5, t_end = 1 }
+    equal(stuck.acceleration:max(), 0.0)
+    local walled = system{ I = 1, k = 1, walls = { upper = 0.5 } }:simulate{ M = 3, theta0 = 0.5, t_end = 1 }
+    equal(walled.acceleration:max(), 0.0)
+end)
+
+test("a run tells its cycle as data", function()
+    local sys = system{ I = 1, k = 4, Rd = 0.3, Re = 0.6 }
+    local s, c = sys:steady{ belt = 0.1 }, sys:simulate{ belt = 0.1, t_end = 60 }:cycle()
+    near(c.period, s.period, 1e-9)
+    near(c.amplitude, s.amplitude, 1e-9)
+    near(c.stuck, s.stuck, 1e-9)
+    near(c.middle, 0.075, 1e-9)
+    equal(c.stops, 1)
+    equal(c.drift, 0.0)
+    assert(c.steady and c.since < 20 and c.change < 1e-9)
+    c = nondimensional{ friction_ratio = 0.4 }:simulate{ M = excitation.harmonic{ frequency = 0.4 }, t_end = 60 }:cycle()
+    near(c.period, 2.5, 1e-9)
+    equal(c.stops, 2)
+    equal(sys:simulate{ theta0 = 2, t_end = 20 }:cycle(), nil)
+end)
+
 support.finish()

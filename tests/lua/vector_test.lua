@@ -167,3 +167,24 @@ fails(function() nondimensional{}:simulate{ theta0 = 1, times = { 1, from = 2 } 
 fails(function() vector{ 1, 2, -(0/0) } end, "vector[3] = nan must be finite")
 fails(function() vector{ 1, 2, 0/0 } end, "vector[3] = nan must be finite")
 assert(#vector{} == 0)
+
+-- Quantiles lie between the sorted elements, and ranges have their ends.
+do
+    local near = require("support").near
+    local v = vector{ 5, 1, 4, 2, 3 }
+    near(v:quantile(0), 1, 0)
+    near(v:quantile(1), 5, 0)
+    near(v:quantile(0.5), 3, 0)
+    near(v:quantile(0.9), 4.6, 1e-14)
+    near(vector{ 7 }:quantile(0.3), 7, 0)
+    fails(function() v:quantile(1.5) end, "p = 1.5 must lie between 0 and 1")
+    fails(function() v:quantile("x") end, "v:quantile(p): p")
+    fails(function() vector{}:quantile(0.5) end, "the vector is empty")
+    for i, x in ipairs(vector.range(1, 1000):table()) do assert(x == i) end
+    assert(#vector.range(0, 0.3, 0.1) == 4)
+    assert(tostring(vector.range(3, 1, -1)) == "vector{ 3, 2, 1 }")
+    assert(#vector.range(2, 2) == 1)
+    fails(function() vector.range(1, 2, -1) end, "step = -1 does not lead from 1 to 2")
+    fails(function() vector.range(1, 2, 0) end, "step = 0 does not lead")
+    fails(function() vector.range(0, 1e12) end, "numbers are more than")
+end

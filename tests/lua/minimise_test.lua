@@ -1,0 +1,51 @@
+-- minimise{ over, run }: places that are known, and what is refused. Run by dinal.
+package.path = "tests/lua/?.lua;" .. package.path
+local support = require "support"
+local test, equal, near, raises_here = support.test, support.equal, support.near, support.raises_here
+
+test("the least value of one parameter is found, within and at the ends", function()
+    local best = minimise{ over = { x = { -1, 3 } }, run = function(p) return (p.x - 0.7) ^ 2 + 2 end }
+    near(best.x, 0.7, 1e-7)
+    near(best.value, 2, 1e-14)
+    assert(best.calls < 60, best.calls)
+    near(minimise{ over = { x = { 1, 3 } }, run = function(p) return p.x end }.x, 1, 1e-7)
+    near(minimise{ over = { x = { 1, 3 } }, run = function(p) return -p.x end }.x, 3, 1e-7)
+    near(minimise{ over = { x = { -1, 3 } }, run = function(p) return math.abs(p.x - 0.3) end }.x, 0.3, 1e-7)
+    near(minimise{ over = { x = { 0, 1e-6 } }, run = function(p) return (p.x * 1e6 - 0.2) ^ 4 end }.x, 0.2e-6, 1e-9)
+    -- The lower one of two valleys, and a wall of infinities.
+    near(minimise{ over = { x = { 0, 10 } }, run = function(p) return math.cos(p.x) + 0.1 * p.x end }.x, math.pi - math.asin(0.1), 1e-6)
+    near(minimise{ over = { x = { 0, 1 } }, run = function(p) return p.x < 0.4 and math.huge or p.x end }.x, 0.4, 1e-6)
+end)
+
+test("the least value of two parameters is found, in a valley that turns, too", function()
+    local best = minimise{ over = { x = { -2, 2 }, y = { -1, 3 } }, run = function(p) return (1 - p.x) ^ 2 + 100 * (p.y - p.x ^ 2) ^ 2 end }
+    near(best.x, 1, 1e-5)
+    near(best.y, 1, 1e-5)
+    best = minimise{ over = { a = { 0, 1 }, b = { 0, 5 } }, run = function(p) return p.a + (p.b - 2) ^ 2 end }
+    near(best.a, 0, 1e-7)
+    near(best.b, 2, 1e-6)
+end)
+
+test("the resonance of a damped oscillator, and the damper that is best for it", function()
+    local sys = nondimensional{ zeta = 0.1 }
+    local best = minimise{ over = { r = { 0.2, 2 } }, run = function(p)
+        return -sys:steady{ M = excitation.harmonic{ frequency = p.r } }.amplitude
+    end }
+    near(best.r, math.sqrt(1 - 2 * 0.1 ^ 2), 1e-6)
+    near(-best.value, 1 / (0.2 * math.sqrt(1 - 0.1 ^ 2)), 1e-9)
+end)
+
+test("what is wrong with the call is told", function()
+    local function run() return 1 end
+    raises_here(function() minimise{ run = run } end, "minimise needs over")
+    raises_here(function() minimise{ over = { x = { 1, 2 } } } end, "minimise needs run")
+    raises_here(function() minimise{ over = { x = { 1 } }, run = run } end, "over.x must be two numbers")
+    raises_here(function() minimise{ over = { x = { 2, 1 } }, run = run } end, "over.x must be two numbers")
+    raises_here(function() minimise{ over = { a = { 1, 2 }, b = { 1, 2 }, c = { 1, 2 } }, run = run } end, "more than two parameters")
+    raises_here(function() minimise{ over = { value = { 1, 2 } }, run = run } end, "'value' is a field of the result")
+    raises_here(function() minimise{ over = { x = { 1, 2 } }, run = function() end } end, "run returned nil at x = 1")
+    raises_here(function() minimise{ over = { x = { 1, 2 } }, run = function() return 0 / 0 end } end, "run returned")
+    equal(pcall(minimise, { over = { x = { 1, 2 } }, run = function() error("mine") end }), false)
+end)
+
+support.finish()
