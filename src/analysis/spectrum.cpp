@@ -80,6 +80,35 @@ std::size_t evenly_spaced(std::span<const double> times) {
     return n;
 }
 
+Spectrum density_of(std::span<const double> values, double dt, SpectrumWindow window, std::size_t length) {
+    Spectrum result;
+    const std::size_t step = std::max<std::size_t>(1, length / 2);
+    std::vector<double> weights(length), weighted(length);
+    double squares = 0;
+    for (std::size_t i = 0; i < length; ++i) {
+        weights[i] = weight(window, static_cast<double>(i) / static_cast<double>(length));
+        squares += weights[i] * weights[i];
+    }
+    result.frequency.resize(length / 2 + 1);
+    result.amplitude.resize(length / 2 + 1);
+    std::size_t segments = 0;
+    for (std::size_t first = 0; first + length <= values.size(); first += step, ++segments) {
+        double mean = 0;
+        for (std::size_t i = 0; i < length; ++i) mean += values[first + i] / static_cast<double>(length);
+        for (std::size_t i = 0; i < length; ++i) weighted[i] = weights[i] * (values[first + i] - mean);
+        const std::vector<Wave> waves = transform(weighted);
+        for (std::size_t i = 0; i <= length / 2; ++i) {
+            const double sides = i == 0 || 2 * i == length ? 1 : 2;
+            result.amplitude[i] += sides * std::norm(waves[i]) * dt / squares;
+        }
+    }
+    for (std::size_t i = 0; i <= length / 2; ++i) {
+        result.frequency[i] = static_cast<double>(i) / (static_cast<double>(length) * dt);
+        result.amplitude[i] /= static_cast<double>(segments);
+    }
+    return result;
+}
+
 Spectrum spectrum_of(std::span<const double> values, double dt, SpectrumWindow window) {
     const std::size_t n = values.size();
     std::vector<double> weighted(n);

@@ -17,6 +17,11 @@ struct Spectrum {
 /// frequency, whatever the window.
 Spectrum spectrum_of(std::span<const double> values, double dt, SpectrumWindow window);
 
+/// Welch's power density (1967): the mean over segments of this length that overlap by half, the mean of each taken
+/// away. In place of amplitudes: the square of the unit per frequency; the sum times the step of frequency is the
+/// variance.
+Spectrum density_of(std::span<const double> values, double dt, SpectrumWindow window, std::size_t length);
+
 /// How many of the times, from the first one, are evenly spaced.
 std::size_t evenly_spaced(std::span<const double> times);
 

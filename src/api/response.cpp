@@ -125,6 +125,7 @@ public:
         const lua::Options own(L_, lua_gettop(L_), at_call);
         SteadyOptions asked{.theta0 = asked_.theta0, .velocity0 = asked_.velocity0};
         own.fill(asked);
+        asked.period = period_or_fail(own, asked.period, asked.frequency, asked.omega);
         if (const auto* system = own.object<model::Oscillator>("system")) question.system = *system;
         own.push("M");
         question.excitation = to_excitation(L_, -1, "sys:response: at: M", "M");

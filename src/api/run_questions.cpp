@@ -8,10 +8,12 @@
 #include "analysis/drive.hpp"
 #include "api/data.hpp"
 #include "api/run.hpp"
+#include "api/steady_answer.hpp"
 #include "api/units_option.hpp"
 #include "files/table.hpp"
 #include "lua/options.hpp"
 #include "lua/user_function.hpp"
+#include "text/sentences.hpp"
 
 namespace dinal::api {
 namespace {
@@ -40,8 +42,8 @@ double period_of_run(const Run& run) {
 int spectrum_of_run(lua_State* L) {
     const RunHandle run = lua::self<RunHandle>(L, 1, spectrum_call.example);
     const motion::Trajectory& trajectory = run->trajectory;
-    if (lua_gettop(L) == 1) lua_pushliteral(L, "theta");
-    if (lua_type(L, 2) != LUA_TSTRING) {
+    const bool positional = lua_gettop(L) > 1 && !lua_istable(L, 2);
+    if (positional && lua_type(L, 2) != LUA_TSTRING) {
         lua::raise(L,
                    {.sentence = fmt::format("run:spectrum: the name of a column must be a string, got {}; for example "
                                             "{}",
@@ -49,10 +51,10 @@ int spectrum_of_run(lua_State* L) {
                     .call = "run:spectrum",
                     .culprit = lua::written(L, 2)});
     }
-    const std::string name = lua_tostring(L, 2);
-    const lua::Options options(L, 3, spectrum_call);
+    const lua::Options options(L, positional ? 3 : 2, spectrum_call);
     SpectrumOptions asked;
     options.fill(asked);
+    const std::string name = positional ? std::string(lua_tostring(L, 2)) : asked.of;
     const auto column = files::find_column(trajectory.names(), std::string_view(name));
     if (!column) options.fail(column.error());
     const auto time = trajectory.find("t");
@@ -71,12 +73,29 @@ int spectrum_of_run(lua_State* L) {
                                         first + even + 1)});
     }
     const bool twice = closes(values.first(even));
-    analysis::Spectrum found = analysis::spectrum_of(
-        values.first(twice ? even - 1 : even), (t[even - 1] - t[0]) / static_cast<double>(even - 1), asked.window);
-    Data data;
-    data.heading = fmt::format("spectrum of {}: {} rows, {} window", name, twice ? even - 1 : even,
-                               window_names[static_cast<std::size_t>(asked.window)]);
+    const std::size_t rows = twice ? even - 1 : even;
+    const double dt = (t[even - 1] - t[0]) / static_cast<double>(even - 1);
     const ColumnUnits in(units_of(*run));
+    Data data;
+    const char* window = window_names[static_cast<std::size_t>(asked.window)];
+    if (asked.method == SpectrumMethod::welch) {
+        const auto segments = static_cast<std::size_t>(asked.segments);
+        const std::size_t length = 2 * rows / (segments + 1);
+        if (length < least) {
+            options.fail({.sentence = fmt::format("{} rows are too few for {} segments of at least {} rows", rows,
+                                                  segments, least),
+                          .option = "segments"});
+        }
+        analysis::Spectrum found = analysis::density_of(values.first(rows), dt, asked.window, length);
+        data.heading = fmt::format("power density of {}: {} rows, {} of {}, {} window", name, rows,
+                                   text::counted(segments, "segment"), length, window);
+        data.columns = {column_of("frequency", std::move(found.frequency), in.frequency),
+                        column_of("density", std::move(found.amplitude))};
+        push_data(L, std::move(data));
+        return 1;
+    }
+    analysis::Spectrum found = analysis::spectrum_of(values.first(rows), dt, asked.window);
+    data.heading = fmt::format("spectrum of {}: {} rows, {} window", name, rows, window);
     data.columns = {column_of("frequency", std::move(found.frequency), in.frequency),
                     column_of("amplitude", std::move(found.amplitude), in.of(name))};
     push_data(L, std::move(data));
@@ -89,7 +108,8 @@ int poincare_of_run(lua_State* L) {
     PoincareOptions asked;
     options.fill(asked);
     const motion::Trajectory& trajectory = run->trajectory;
-    const double period = asked.period.value_or(period_of_run(*run));
+    const double period =
+        period_or_fail(options, asked.period, asked.frequency, asked.omega).value_or(period_of_run(*run));
     if (!(period > 0)) {
         options.fail(
             {.sentence = "period must be given, because the M of this run does not know one", .option = "period"});

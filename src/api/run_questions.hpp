@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <string>
 
 #include "analysis/spectrum.hpp"
 #include "lua/bind.hpp"
@@ -9,12 +10,26 @@
 
 namespace dinal::api {
 
+enum class SpectrumMethod { amplitude, welch };
+inline constexpr const char* method_names[] = {"amplitude", "welch"};
 struct SpectrumOptions {
+    std::string of = "theta";
+    SpectrumMethod method = SpectrumMethod::amplitude;
+    double segments = 8;
     analysis::SpectrumWindow window = analysis::SpectrumWindow::hann;
     std::optional<double> from = {};
 };
 inline constexpr const char* window_names[] = {"hann", "rectangle", "flat top"};
 inline constexpr text::Option spectrum_options[] = {
+    {.name = "of", .meaning = "the column", .filled = text::fills<&SpectrumOptions::of>},
+    {.name = "method",
+     .meaning = "amplitude of the whole record, or welch: power density, the mean over segments that overlap by half",
+     .filled = text::fills<&SpectrumOptions::method>,
+     .choices = method_names},
+    {.name = "segments",
+     .range = {"be a whole number from 1 to 10000", [](double x) { return text::is_whole(x, 1, 1e4); }},
+     .meaning = "of method welch: more of them are smoother and coarser in frequency",
+     .filled = text::fills<&SpectrumOptions::segments>},
     {.name = "window",
      .meaning =
          "the weights of the rows: hann for what is unknown, rectangle for whole periods, flat top for amplitudes",
@@ -26,11 +41,11 @@ inline constexpr text::Option spectrum_options[] = {
      .meaning = "the time before which rows are left out: the transient",
      .filled = text::fills<&SpectrumOptions::from>},
 };
-inline constexpr text::Call spectrum_call{"run:spectrum", "run:spectrum(\"theta\", { window = \"hann\" })",
+inline constexpr text::Call spectrum_call{"run:spectrum", "run:spectrum{ of = \"theta\", window = \"hann\" }",
                                           spectrum_options, true};
 
 struct PoincareOptions {
-    std::optional<double> period = {};
+    std::optional<double> period = {}, frequency = {}, omega = {};
     std::optional<double> from = {};
 };
 inline constexpr text::Option poincare_options[] = {
@@ -40,6 +55,16 @@ inline constexpr text::Option poincare_options[] = {
      .range = text::positive,
      .meaning = "from look to look; needed where M does not know its own: native terms do, a Lua function does not",
      .filled = text::fills<&PoincareOptions::period>},
+    {.name = "frequency",
+     .unit = "cycles per time unit",
+     .range = text::positive,
+     .meaning = "1/period, instead of it",
+     .filled = text::fills<&PoincareOptions::frequency>},
+    {.name = "omega",
+     .unit = "rad per time unit",
+     .range = text::positive,
+     .meaning = "2 pi/period, instead of it",
+     .filled = text::fills<&PoincareOptions::omega>},
     {.name = "from",
      .unit = "time units",
      .otherwise = "the beginning",
@@ -52,14 +77,16 @@ int spectrum_of_run(lua_State* L);
 int poincare_of_run(lua_State* L);
 
 inline constexpr lua::Doc spectrum_doc{
-    "run:spectrum(column = \"theta\", { OPTIONS }) -> data",
+    "run:spectrum{ OPTIONS } -> data",
     "The one-sided amplitude spectrum of a column: frequency (cycles per time unit, up to half a cycle per dt) and "
     "amplitude (of a sine, in the unit of the column), from rows with one dt; a shorter last row is left out, and so is "
     "one with which whole periods begin again, as it has the value of the first. A sine of whole periods has its amplitude in any window; one "
     "that falls midway between two frequencies has 64 % of it in rectangle, 85 % in hann and 99.9 % in flat top. The mean "
-    "(with the weights of the window) stands at frequency 0.",
+    "(with the weights of the window) stands at frequency 0. With method = \"welch\" the second column is density, in "
+    "the square of the unit per cycle per time unit: its sum times the step of frequency is the variance. "
+    "run:spectrum(\"theta\", { OPTIONS }) is the same with of = \"theta\".",
     "run = nondimensional{}:simulate{ theta0 = 1, t_end = 16, dt = 0.125 }\n"
-    "s = run:spectrum(\"theta\", { window = \"rectangle\" })\n"
+    "s = run:spectrum{ of = \"theta\", window = \"rectangle\" }\n"
     "i = s.amplitude:argmax()\n"
     "print(string.format(\"%.2f %.2f\", s.frequency[i], s.amplitude[i]))  --> 1.00 1.00",
     {&spectrum_call}};

@@ -16,7 +16,7 @@ namespace dinal::api {
 
 /// What is asked besides M.
 struct SteadyOptions {
-    std::optional<double> period = {};
+    std::optional<double> period = {}, frequency = {}, omega = {};
     std::optional<int> periods = {};
     double theta0 = 0;
     double velocity0 = 0;
@@ -30,6 +30,16 @@ inline constexpr text::Option period_options[] = {
      .meaning = "after which M, belt and base repeat, if one of them is a Lua function of t. Not needed if nothing "
                 "depends on t: the period of the limit cycle is found",
      .filled = text::fills<&SteadyOptions::period>},
+    {.name = "frequency",
+     .unit = "cycles per time unit",
+     .range = text::positive,
+     .meaning = "1/period, instead of it",
+     .filled = text::fills<&SteadyOptions::frequency>},
+    {.name = "omega",
+     .unit = "rad per time unit",
+     .range = text::positive,
+     .meaning = "2 pi/period, instead of it",
+     .filled = text::fills<&SteadyOptions::omega>},
     {.name = "periods",
      .range = whole_periods,
      .meaning = "of M in one of the motion, for a subharmonic one; without it as many as are found, up to 32",
@@ -91,6 +101,10 @@ void asking(lua_State* L, Work work) {
 /// depends on t. Raises when the period is unknown or wrong.
 analysis::Drive drive_or_fail(lua_State* L, const lua::Options& options, const analysis::SteadyQuestion& question,
                               const std::optional<double>& period);
+
+/// The period as given by one of three options. Raises when there are more of them.
+std::optional<double> period_or_fail(const lua::Options& options, const std::optional<double>& period,
+                                     const std::optional<double>& frequency, const std::optional<double>& omega);
 
 /// Raises when M was found to be no function of its arguments.
 void check_function(const lua::Options& options, const analysis::SteadyMotion& motion);

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "api/bind_excitation.hpp"
 #include "api/run.hpp"
@@ -154,11 +155,23 @@ analysis::Drive drive_or_fail(lua_State* L, const lua::Options& options, const a
     return *drive;
 }
 
+std::optional<double> period_or_fail(const lua::Options& options, const std::optional<double>& period,
+                                     const std::optional<double>& frequency, const std::optional<double>& omega) {
+    if ((period ? 1 : 0) + (frequency ? 1 : 0) + (omega ? 1 : 0) > 1) {
+        options.fail(
+            {.sentence = "period, frequency and omega exclude each other; give one of them", .option = "period"});
+    }
+    if (frequency) return 1 / *frequency;
+    if (omega) return 2 * std::numbers::pi / *omega;
+    return period;
+}
+
 int steady_of_system(lua_State* L) {
     const model::Oscillator system = lua::self<model::Oscillator>(L, 1, steady_call.example);
     const lua::Options options(L, 2, steady_call);
     SteadyOptions asked;
     options.fill(asked);
+    asked.period = period_or_fail(options, asked.period, asked.frequency, asked.omega);
     if (const auto& walls = system.walls()) {
         if (const auto beyond = walls->crossed_by(asked.theta0)) options.fail(*beyond);
     }
@@ -185,6 +198,7 @@ int steady_of_run(lua_State* L) {
     SteadyOptions asked;
     options.fill(asked);
     if (run->is_part) options.fail({"steady motions are found of systems of one body whose Rd and Re are numbers"});
+    asked.period = period_or_fail(options, asked.period, asked.frequency, asked.omega);
     if (!run->origin) options.fail({"a run that was read from a file does not know its system and its M"});
     const source::Task& task = *run->origin;
     analysis::SteadyQuestion question{.system = task.system,

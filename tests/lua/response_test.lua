@@ -242,4 +242,39 @@ test("a response over the speed of a belt has the closed form of stick-slip, and
     equal(tostring(d):match("Re, amplitude"), "Re, amplitude")
 end)
 
+test("Welch's density has the variance of noise, flat, and the power of a sine", function()
+    local n = 2^14
+    local noise, t = vector.normal{ n = n, seed = 3, std = 0.5 }, vector.range(0, n - 1) * 0.01
+    local run = system{ I = 1, k = 0 }:simulate{ M = excitation.samples{ t = t, M = noise }, times = t }
+    local d = run:spectrum{ of = "M", method = "welch", segments = 31 }
+    equal(table.concat(d.names, " "), "frequency density")
+    equal(#d, n / 16 / 2 + 1 - (n / 16 % 2))
+    local step = d.frequency[2]
+    near(d.density:sum() * step, 0.25, 0.01)
+    local middle = d.density[d.frequency:find(function(f) return f > 10 and f < 40 end)]
+    near(middle:mean(), 0.25 / 50, 3e-4) -- the variance over all frequencies up to 50
+    assert(middle:std() < 0.35 * middle:mean()) -- of one segment it would be 1
+    local sine = system{ I = 1, k = 1 }:simulate{ M = excitation.harmonic{ amplitude = 3, frequency = 5 }, t_end = 40, dt = 0.01 }
+    local s = sine:spectrum{ of = "M", method = "welch" }
+    near(s.density:sum() * s.frequency[2], 4.5, 1e-2)
+    near(s.frequency[s.density:argmax()], 5, s.frequency[2])
+    equal(tostring(sine:spectrum("M")), tostring(sine:spectrum{ of = "M" }))
+    raises_here(function() sine:spectrum{ method = "welch", segments = 3000 } end, "rows are too few for 3000 segments")
+    raises_here(function() sine:spectrum{ method = "multitaper" } end, "method")
+end)
+
+test("a period is given as period, frequency or omega wherever one is asked", function()
+    local sys = nondimensional{ friction_ratio = 0.4 }
+    local function M(t) return math.sin(0.8 * math.pi * t) end
+    local s = sys:steady{ M = M, period = 2.5 }
+    near(sys:steady{ M = M, frequency = 0.4 }.amplitude, s.amplitude, 1e-12)
+    near(sys:steady{ M = M, omega = 0.8 * math.pi }.amplitude, s.amplitude, 1e-12)
+    raises_here(function() sys:steady{ M = M, omega = 1, period = 1 } end, "exclude each other")
+    raises_here(function() sys:steady{ M = M, frequency = -1 } end, "frequency = -1 must be positive")
+    local run = sys:simulate{ M = M, t_end = 60 }
+    near(run:steady{ frequency = 0.4 }.amplitude, s.amplitude, 1e-9)
+    equal(#run:poincare{ frequency = 0.4, from = 50 }, #run:poincare{ period = 2.5, from = 50 })
+    equal(#run:poincare{ omega = 0.8 * math.pi, from = 50 }, 5)
+end)
+
 support.finish()
