@@ -179,4 +179,3 @@ void check_relays(const lua::Options& options, const model::Excitation& excitati
 }
 
 }  // namespace dinal::api
-
