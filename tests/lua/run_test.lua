@@ -203,7 +203,7 @@ test("the status of a run is one word for each way to end", function()
     local sys = system{ I = 1, k = 4, Rd = 1 }
     equal(system{ I = 1, k = 4 }:simulate{ theta0 = 1, t_end = 1 }.status, "end")
     equal(sys:simulate{ theta0 = 2, t_end = 50 }.status, "rest")
-    equal(sys:simulate{ M = function() return 0.5 end, t_end = 5 }.status, "stuck")
+    equal(sys:simulate{ M = excitation.harmonic{ amplitude = 3, omega = 0.01 }, t_end = 5 }.status, "stuck")
     equal(sys:simulate{ theta0 = 2, t_end = 5, events = { { when = function(_, theta) return theta end, stop = true } } }.status, "event")
     pcall(sys.simulate, sys, { M = function(t) return t < 1 and 2 or error("mine") end, t_end = 5 })
     equal(dinal.partial.status, "failed")
