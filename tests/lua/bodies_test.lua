@@ -213,7 +213,7 @@ end)
 test("a sweep takes a rig along, its functions too", function()
     local limit = 0.3
     local rig = system { bodies = { a = { I = 1, k = 1, Rd = function(t) return limit end } } }
-    local found = sweep { x = { 1, 2, 3 }, workers = 2, run = function(p)
+    local found = sweep { over = { x = { 1, 2, 3 } }, workers = 2, run = function(p)
         return { rest = (rig:simulate { theta0 = { a = p.x }, t_end = 30 }.a:at(30)) }
     end }
     for i, x in ipairs { 1, 2, 3 } do
