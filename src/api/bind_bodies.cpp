@@ -548,6 +548,9 @@ int run_bodies(lua_State* L, const lua::Options& options, std::shared_ptr<Bodies
         static_cast<double>(limits.memory)) {
         options.fail("dt", fmt::format("{} rows are more than there is memory for: take a larger dt", grid.count()));
     }
+    model::Excitation all;
+    for (const model::Excitation& load : run->drive.loads) all = all + load;
+    const auto note = watched_memories(L, options, all, before != nullptr);
     lua::CallState call(L);
     name_functions(call, *run->system, run->drive);
     call.set_span(window.end - window.start);
@@ -561,6 +564,7 @@ int run_bodies(lua_State* L, const lua::Options& options, std::shared_ptr<Bodies
     if (call.failed() && lua::interrupt_requested()) run->run.outcome = model::Outcome::interrupted;
     const bool interrupted = run->run.outcome == model::Outcome::interrupted;
     push_bodies_run(L, run);
+    note(run.get());
     if (call.failed() || interrupted) {
         lua::push_dinal_table(L);
         lua_insert(L, -2);

@@ -188,6 +188,12 @@ void set_partial(lua_State* L) {
 
 }  // namespace
 
+std::function<void(const void*)> watched_memories(lua_State* L, const lua::Options& options, const model::Excitation& M,
+                                                  bool goes_on) {
+    const auto memories = std::make_shared<const Memories>(L, options, M, goes_on);
+    return [memories](const void* run) { memories->note(run); };
+}
+
 int run_task(lua_State* L, const lua::Options& options, source::Origin origin, double from, bool dense,
              const Compute& compute) {
     if (lua::memory_limit() > 0) lua::make_room(L, bytes_of_rows(origin));

@@ -28,6 +28,11 @@ using Compute = std::function<text::Expected<motion::Trajectory>(
 int run_task(lua_State* L, const lua::Options& options, source::Origin origin, double from, bool dense,
              const Compute& compute);
 
+/// Before a run: refuses sampled controllers in M that still remember an earlier run. What is returned is called with
+/// the address of the run after it. `goes_on`: from where another one ended.
+std::function<void(const void*)> watched_memories(lua_State* L, const lua::Options& options, const model::Excitation& M,
+                                                  bool goes_on);
+
 /// What is asked of sys:simulate besides the excitation and the integrator.
 struct RunOptions {
     double theta0 = 0;

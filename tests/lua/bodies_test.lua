@@ -210,6 +210,14 @@ test("closed loops of contacts hold what they can hold together", function()
     near(first(run, "slip", "a").t, 1.5, 1e-9)
 end)
 
+test("a sampled controller with a memory is refused in a second run", function()
+    local sum = 0
+    local M = excitation.sampled(function(t, theta) sum = sum + 1 - theta.a return sum end, { every = 0.1 })
+    local rig = system { bodies = { a = { I = 1, k = 1 } } }
+    rig:simulate { M = { a = M }, t_end = 1 }
+    raises_here(function() rig:simulate { M = { a = M }, t_end = 1 } end, "keeps a memory from one run to the next")
+end)
+
 test("a sweep takes a rig along, its functions too", function()
     local limit = 0.3
     local rig = system { bodies = { a = { I = 1, k = 1, Rd = function(t) return limit end } } }
