@@ -218,7 +218,8 @@ std::optional<text::Error> not_periodic(const model::Excitation& excitation, con
     };
     for (const auto& [name, of] :
          {std::pair{"M", &excitation}, std::pair{"belt", &extras.belt}, {"base", &extras.base}}) {
-        const auto wrong = differs(name, [&](double t, const model::State& y) { return value_of(*of, t, y, states); });
+        const auto wrong =
+            differs(name, [&, own = of](double t, const model::State& y) { return value_of(*own, t, y, states); });
         if (wrong) return wrong;
     }
     for (const model::OwnState& state : extras.states) {

@@ -304,10 +304,10 @@ SteadyMotion steady_motion(const SteadyQuestion& question, const motion::Monitor
     const bool remembers = model::has_memory(question.excitation);
     if (model::has_memory<model::DelayedController>(question.excitation))
         return settling::settled_motion(question, monitor);
-    const bool samples = model::has_memory<model::SampledController>(question.excitation);
+    const bool sampled_control = model::has_memory<model::SampledController>(question.excitation);
     if (question.is_timeless() || question.extras.any()) {
         // A relay in a motion that returns through a section is a part of the section's state.
-        const bool settles = samples || (remembers && !question.is_timeless());
+        const bool settles = sampled_control || (remembers && !question.is_timeless());
         return settles ? settling::settled_motion(question, monitor) : returning_motion(question, monitor);
     }
     SteadySearch search(question, monitor);

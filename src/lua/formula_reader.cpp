@@ -237,7 +237,7 @@ struct Obstacle {
 
 // Registers of the formula: as many as Lua has, and these, which are put behind them in the end.
 constexpr int most_registers = 240, first_state = 0x1000, first_help = 0x2000, first_constant = 0x4000;
-constexpr std::size_t most_steps = 3000, most_versions = 3, most_waiting = 200, deepest = 30;
+constexpr std::size_t most_steps = 3000, most_versions = 3, most_waiting = 200, deepest_calls = 30;
 constexpr int most_followed = 20000;
 
 struct Arithmetic {
@@ -659,7 +659,7 @@ private:
         if (code.frame[1] != 0) throw Obstacle{"it takes any number of arguments (...)"};
         const int parameters = static_cast<std::uint8_t>(code.frame[0]),
                   size = static_cast<std::uint8_t>(code.frame[2]);
-        if (base + size > most_registers || way.frames.size() >= deepest) throw Obstacle{"it calls too deep"};
+        if (base + size > most_registers || way.frames.size() >= deepest_calls) throw Obstacle{"it calls too deep"};
         way.registers.resize(static_cast<std::size_t>(std::max(base + size, base + parameters)));
         used_ = std::max(used_, static_cast<int>(way.registers.size()));
         for (int i = arguments; i < parameters; ++i) way[base + i] = nil;
