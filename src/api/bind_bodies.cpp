@@ -63,7 +63,8 @@ struct BodiesRun {
     engine::Drive drive;
     engine::AssemblyRun run;
     double dt = 0, tolerance = 1e-12;
-    mutable std::vector<RunHandle> parts;  ///< of each joint, made when it is asked for
+    // Of each joint, made when it is asked for. Not kept: they keep this run.
+    mutable std::vector<std::weak_ptr<const Run>> parts;
 };
 using BodiesRunHandle = std::shared_ptr<const BodiesRun>;
 
@@ -509,17 +510,15 @@ motion::Trajectory trajectory_of(const BodiesRunHandle& whole, std::size_t joint
     return part;
 }
 
-const RunHandle& part_of(const BodiesRunHandle& run, std::size_t joint) {
+RunHandle part_of(const BodiesRunHandle& run, std::size_t joint) {
     run->parts.resize(run->system->joints.size());
-    RunHandle& part = run->parts[joint];
-    if (part == nullptr) {
-        auto made = std::make_shared<Run>();
-        made->trajectory = trajectory_of(run, joint);
-        made->is_part = true;
-        made->units = run->system->units;
-        part = std::move(made);
-    }
-    return part;
+    if (RunHandle known = run->parts[joint].lock()) return known;
+    auto made = std::make_shared<Run>();
+    made->trajectory = trajectory_of(run, joint);
+    made->is_part = true;
+    made->units = run->system->units;
+    run->parts[joint] = made;
+    return made;
 }
 
 int push_bodies_run(lua_State* L, BodiesRunHandle run) {
