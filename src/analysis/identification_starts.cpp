@@ -94,7 +94,7 @@ void Identification::try_let_go(const std::vector<Parameters>& starts) {
     if (is_given(Unknown::velocity0)) return;
     const Eigen::Index place = place_of(Unknown::velocity0);
     for (const Parameters& start : starts) {
-        if (stopped_ || !((question_.M && &start == &starts[0]) || leaves_pattern(suspected))) return;
+        if (stopped_ || !((question_.M && &start == starts.data()) || leaves_pattern(suspected))) return;
         base_ = start;
         at(base_, Unknown::velocity0) = 0;
         const FitScale scale = scale_of(base_);

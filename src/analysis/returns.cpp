@@ -580,7 +580,7 @@ private:
         std::size_t events = 0;
         std::vector<std::pair<double, double>> ranges;  // time, range
         constexpr int most_stretches = 40;
-        for (int i = 0; i < most_stretches; ++i, length *= 1.5) {
+        for (int i = 0; i < most_stretches; ++i) {
             const auto run = stretch(now, start, length);
             if (!run) return;
             const Reach reach = reach_of(*run);
@@ -599,6 +599,7 @@ private:
             constexpr std::size_t many_events = 6000;
             const bool cheap = !(system.stiffness() > 0) && events < 200;
             if (events > many_events || (!cheap && time > 3000 * base)) break;
+            length *= 1.5;
         }
         judge_growth(ranges);
     }

@@ -537,8 +537,9 @@ int push_bodies_run(lua_State* L, BodiesRunHandle run) {
 }
 
 /// Runs what `problem` says, under the limits of the script.
-int run_bodies(lua_State* L, const lua::Options& options, std::shared_ptr<BodiesRun> run, const motion::Window& window,
-               const motion::Grid& rows, bool dense, std::shared_ptr<const engine::Carry> before = {}) {
+int run_bodies(lua_State* L, const lua::Options& options, const std::shared_ptr<BodiesRun>& run,
+               const motion::Window& window, const motion::Grid& rows, bool dense,
+               std::shared_ptr<const engine::Carry> before = {}) {
     const auto grid = options.value_or_fail(rows.within(window));
     const std::size_t columns = 1 + engine::columns_of_body * run->system->joints.size() + run->drive.states.size();
     motion::Limits limits{.dense = dense};
@@ -854,8 +855,10 @@ int continue_bodies(lua_State* L) {
     // The last row of the first run stands in the second one only where the spacing puts it there.
     std::vector<double> times;
     const double start = first->run.t_start;
-    for (double row = std::floor((from - start) / run->dt * (1 - 1e-12)); start + row * run->dt < *asked.t_end; ++row) {
-        if (start + row * run->dt > from * (1 + 1e-15)) times.push_back(start + row * run->dt);
+    const auto time = [&](std::int64_t row) { return start + static_cast<double>(row) * run->dt; };
+    for (auto row = static_cast<std::int64_t>((from - start) / run->dt * (1 - 1e-12)); time(row) < *asked.t_end;
+         ++row) {
+        if (time(row) > from * (1 + 1e-15)) times.push_back(time(row));
     }
     times.push_back(*asked.t_end);
     run_bodies(L, options, run, {from, *asked.t_end}, motion::Grid::at(std::move(times)), true, first->run.carry);

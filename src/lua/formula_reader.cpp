@@ -704,8 +704,8 @@ private:
         way.top = wanted < 0 ? place + count : 0;
         way.registers.resize(static_cast<std::size_t>(std::max(size, place + std::max(count, wanted))));
         for (int i = count; i < wanted; ++i) way[place + i] = nil;
-        for (std::size_t i = static_cast<std::size_t>(place + (wanted < 0 ? count : wanted)); i < way.registers.size();
-             ++i) {
+        const int first_free = place + (wanted < 0 ? count : wanted);
+        for (auto i = static_cast<std::size_t>(first_free); i < way.registers.size(); ++i) {
             way.registers[i] = {};
         }
     }
@@ -1232,7 +1232,7 @@ Shared reading_of(lua_State* L, int index, int arguments, const std::vector<std:
     push_table(L, &readings_key);
     lua_pushvalue(L, index);
     if (lua_rawget(L, readings) == LUA_TUSERDATA) {
-        const Shared known = *static_cast<Shared*>(lua_touserdata(L, made));
+        Shared known = *static_cast<Shared*>(lua_touserdata(L, made));
         lua_getiuservalue(L, made, 1);
         if (known->arguments == arguments && known->states == states && still_holds(L, *known, values)) {
             lua_settop(L, top);

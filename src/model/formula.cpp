@@ -488,8 +488,9 @@ private:
         constexpr double part = 1e-15;
         r = checked(r);
         if (r.is_anything) return r;
-        if (r.lo != 0) r.lo -= std::min(part * std::fabs(r.lo), r.lo > 0 ? r.lo : never);
-        if (r.hi != 0) r.hi += std::min(part * std::fabs(r.hi), r.hi < 0 ? -r.hi : never);
+        const double down = part * std::fabs(r.lo), up = part * std::fabs(r.hi);  // not across zero
+        r.lo -= r.lo > 0 ? std::min(down, r.lo) : down;
+        r.hi += r.hi < 0 ? std::min(up, -r.hi) : up;
         return r;
     }
     static Range power(Range a, Range b) {
@@ -506,9 +507,9 @@ private:
         Range r = ends(op, a);
         if (r.lo > r.hi) std::swap(r.lo, r.hi);
         r = wider(r);
-        const double last = std::floor(a.hi / half_turn + shift + margin);
-        for (double n = std::ceil(a.lo / half_turn + shift - margin); n <= last; ++n) {
-            std::fmod(n, 2) == 0 ? r.hi = 1 : r.lo = -1;
+        const auto last = static_cast<std::int64_t>(std::floor(a.hi / half_turn + shift + margin));
+        for (auto n = static_cast<std::int64_t>(std::ceil(a.lo / half_turn + shift - margin)); n <= last; ++n) {
+            n % 2 == 0 ? r.hi = 1 : r.lo = -1;
         }
         return r;
     }
@@ -560,7 +561,8 @@ double Formula::next_break(double t) {
         if (gave_up_) return never;
         last = next, next = search(next);
     }
-    return gave_up_ ? never : found;
+    if (gave_up_) return never;
+    return found;
 }
 
 /// The next change is next to this one, or next to nothing.

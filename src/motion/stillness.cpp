@@ -111,7 +111,8 @@ std::vector<model::Event> turns_on_belt(const Trajectory& run) {
     };
     for (std::size_t i = 0; i + 1 < times.size(); ++i) {
         const double width = times[i + 1] - times[i], steps = parts * std::ceil(std::max(1.0, width / longest));
-        for (double k = 1; k < steps && width > 0; ++k) look(times[i] + k * width / steps);
+        const auto count = width > 0 ? static_cast<std::size_t>(steps) : 0;
+        for (std::size_t k = 1; k < count; ++k) look(times[i] + static_cast<double>(k) * width / steps);
         look(times[i + 1]);
     }
     return turns;

@@ -263,7 +263,7 @@ void say_notice(const std::string& notice) {
 }
 
 void tell_nil_option(lua_State* L) {
-    static std::set<std::pair<const void*, int>> seen;  // by the main thread: the functions of others are of no file
+    thread_local std::set<std::pair<const void*, int>> seen;  // workers of a sweep come here, too
     lua_Debug frame{};
     if (lua_getstack(L, 1, &frame) == 0 || lua_getinfo(L, "Sl", &frame) == 0 || *frame.source != '@') return;
     if (!seen.emplace(frame.source, frame.currentline).second) return;

@@ -104,7 +104,7 @@ private:
         bool of_motion = false;
     };
     [[nodiscard]] double sum(const Moment& at, bool of_motion) const;
-    [[nodiscard]] double value_of(std::size_t part, const Moment& at) const;
+    [[nodiscard]] double value_of(std::size_t i, const Moment& at) const;
 
     model::Excitation excitation_;
     const Asking* asking_ = nullptr;
