@@ -594,7 +594,7 @@ int simulate_bodies(lua_State* L) {
     constexpr double rows = 1000;
     run->dt = asked.dt.value_or((window.end - window.start) / rows);
     const motion::Grid grid = options.has("times") ? motion::Grid::at(asked.times) : motion::Grid::every(run->dt);
-    return run_bodies(L, options, std::move(run), window, grid, asked.dense);
+    return run_bodies(L, options, run, window, grid, asked.dense);
 }
 
 // ---- rig
