@@ -1,7 +1,7 @@
 // Steady motions that a map of theta and velocity over a period of M does not tell: of runs with states, events, a belt
 // or a base, and limit cycles, whose period nothing prescribes. They are fixed points of a return map of theta,
 // velocity and the states: from one period to the next, or from one passage of theta through a section to the next.
-// docs/theory.md, section 9.
+// docs/theory.md, section 10.
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
@@ -63,12 +63,7 @@ model::Excitation with_relays(const model::Excitation& excitation, const std::ve
     return excitation.with_functions([&](const std::shared_ptr<model::UserFunction>& function) {
         const auto* relay = dynamic_cast<const model::RelayController*>(function.get());
         if (relay == nullptr) return function;
-        auto own = std::make_shared<model::RelayController>();
-        own->function = relay->function;
-        own->on = relay->on, own->off = relay->off;
-        own->levels = relay->levels;
-        own->of = relay->of;
-        own->state = relay->state;
+        auto own = model::copied(*relay, relay->function);
         own->starts_on = on[next++];
         return std::shared_ptr<model::UserFunction>(std::move(own));
     });

@@ -9,6 +9,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include "model/excitation.hpp"
 
@@ -42,6 +43,15 @@ struct RelayController final : Controller {
     std::string state;  ///< the name, of a state
     bool starts_on = true;
 };
+
+/// The same relay, with this function in the place of its own.
+inline std::shared_ptr<RelayController> copied(const RelayController& relay, std::shared_ptr<terms::UserFunction> own) {
+    auto copy = std::make_shared<RelayController>();
+    copy->function = std::move(own);
+    copy->on = relay.on, copy->off = relay.off, copy->levels = relay.levels;
+    copy->of = relay.of, copy->state = relay.state, copy->starts_on = relay.starts_on;
+    return copy;
+}
 
 /// A function of what was measured `by` ago; before the start that is the initial state.
 struct DelayedController final : Controller {

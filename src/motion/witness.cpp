@@ -136,14 +136,7 @@ std::shared_ptr<model::UserFunction> with_witness_inside(const model::Controller
     }
     const auto* relay = dynamic_cast<const model::RelayController*>(&controller);
     if (relay == nullptr || relay->function == nullptr) return nullptr;
-    auto own = std::make_shared<model::RelayController>();
-    own->on = relay->on, own->off = relay->off;
-    own->levels = relay->levels;
-    own->of = relay->of;
-    own->state = relay->state;
-    own->function = heard(relay->function);
-    own->starts_on = relay->starts_on;
-    return own;
+    return model::copied(*relay, heard(relay->function));
 }
 
 }  // namespace

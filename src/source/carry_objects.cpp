@@ -85,25 +85,20 @@ std::shared_ptr<model::terms::UserFunction> Carrier::user_function(const model::
 }
 
 std::shared_ptr<model::terms::UserFunction> Carrier::controller(const model::terms::UserFunction& function) {
-    const auto copied = [&](const auto& own) -> std::shared_ptr<model::terms::UserFunction> {
-        auto copy = std::make_shared<std::decay_t<decltype(own)>>();
-        if (own.function != nullptr) {
-            copy->function = user_function(*own.function, "its function");
-            if (copy->function == nullptr) return nullptr;
-        }
-        if constexpr (requires { own.by; }) {
-            copy->by = own.by;
-        } else if constexpr (requires { own.every; }) {
-            copy->every = own.every, copy->delay = own.delay, copy->at = own.at, copy->carried = true;
-        } else {
-            copy->on = own.on, copy->off = own.off, copy->levels = own.levels;
-            copy->of = own.of, copy->state = own.state, copy->starts_on = own.starts_on;
-        }
+    const auto& own = dynamic_cast<const model::Controller&>(function);
+    std::shared_ptr<model::terms::UserFunction> carried;
+    if (own.function != nullptr && (carried = user_function(*own.function, "its function")) == nullptr) return nullptr;
+    if (const auto* relay = dynamic_cast<const model::RelayController*>(&own)) return model::copied(*relay, carried);
+    if (const auto* delayed = dynamic_cast<const model::DelayedController*>(&own)) {
+        auto copy = std::make_shared<model::DelayedController>();
+        copy->function = carried, copy->by = delayed->by;
         return copy;
-    };
-    if (const auto* sampled = dynamic_cast<const model::SampledController*>(&function)) return copied(*sampled);
-    if (const auto* delayed = dynamic_cast<const model::DelayedController*>(&function)) return copied(*delayed);
-    return copied(dynamic_cast<const model::RelayController&>(function));
+    }
+    const auto& sampled = dynamic_cast<const model::SampledController&>(own);
+    auto copy = std::make_shared<model::SampledController>();
+    copy->function = carried, copy->carried = true;
+    copy->every = sampled.every, copy->delay = sampled.delay, copy->at = sampled.at;
+    return copy;
 }
 
 /// Pushes the copy.
