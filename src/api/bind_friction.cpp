@@ -35,32 +35,13 @@ int coulomb_law(lua_State* L) {
     return push_law(L, options, torques.law());
 }
 
-int stribeck_law(lua_State* L) {
-    const lua::Options options(L, 1, laws::stribeck_call);
-    laws::Stribeck law;
+/// A law whose options fill all of it.
+template <class Law, const text::Call& call>
+int law_of_options(lua_State* L) {
+    const lua::Options options(L, 1, call);
+    Law law;
     options.fill(law);
-    return push_law(L, options, law);
-}
-
-int tabulated_law(lua_State* L) {
-    const lua::Options options(L, 1, laws::tabulated_call);
-    laws::Tabulated law;
-    options.fill(law);
-    return push_law(L, options, law);
-}
-
-int lugre_law(lua_State* L) {
-    const lua::Options options(L, 1, laws::lugre_call);
-    laws::Bristle law;
-    options.fill(law);
-    return push_law(L, options, law);
-}
-
-int dahl_law(lua_State* L) {
-    const lua::Options options(L, 1, laws::dahl_call);
-    laws::Bristle law;
-    options.fill(law);
-    law.dahl = true;
+    if constexpr (&call == &laws::dahl_call) law.dahl = true;
     return push_law(L, options, law);
 }
 
@@ -140,7 +121,7 @@ constexpr lua::Member friction_module_members[] = {
       "Coulomb's law: Rd while it moves, at whatever speed, and up to Re while it stands. What system{ Rd, Re } has.",
       "print(friction.coulomb{ Rd = 0.3 })  --> friction.coulomb{ Rd = 0.3, Re = 0.3 }",
       {&laws::coulomb_call}}},
-    {lua::a_function<stribeck_law>,
+    {lua::a_function<law_of_options<laws::Stribeck, laws::stribeck_call>>,
      {"friction.stribeck{ OPTIONS } -> law",
       "Friction that falls with the speed, as a lubricant is drawn in: Rd + (Re - Rd) exp(-(|velocity|/speed)^shape).",
       "law = friction.stribeck{ Rd = 0.3, Re = 0.6, speed = 0.1 }\n"
@@ -153,13 +134,13 @@ constexpr lua::Member friction_module_members[] = {
       "law = friction.asymmetric{ forward = { Rd = 0.1 }, backward = { Rd = 0.3, Re = 0.5 } }\n"
       "print(law:torque(1), law:torque(-1))  --> 0.1\t0.3",
       {&laws::asymmetric_call}}},
-    {lua::a_function<tabulated_law>,
+    {lua::a_function<law_of_options<laws::Tabulated, laws::tabulated_call>>,
      {"friction.table{ OPTIONS } -> law",
       "Friction as it was measured: straight lines between torques at some speeds, the same both ways.",
       "law = friction.table{ speed = { 0, 0.1, 1 }, torque = { 0.5, 0.3, 0.35 } }\n"
       "print(law:torque(0.05), law:torque(3), law.Re)  --> 0.4\t0.35\t0.5",
       {&laws::tabulated_call}}},
-    {lua::a_function<lugre_law>,
+    {lua::a_function<law_of_options<laws::Bristle, laws::lugre_call>>,
      {"friction.lugre{ OPTIONS } -> law",
       "Friction as of bristles that bend before they slip (LuGre): torque = stiffness z + damping z' + viscous v, z' = v - "
       "stiffness |v| z/g(v), g(v) = Rd + (Re - Rd) exp(-(v/speed)^2). It neither sticks nor has events: a mass at rest "
@@ -167,7 +148,7 @@ constexpr lua::Member friction_module_members[] = {
       "sys = system{ I = 1, k = 0, friction = friction.lugre{ Rd = 1, stiffness = 1e5, damping = 300 } }\n"
       "run = sys:simulate{ M = 0.5, t_end = 10 }\nprint(string.format(\"%.3g\", (run:at(10))))  --> 8.7e-06",
       {&laws::lugre_call}}},
-    {lua::a_function<dahl_law>,
+    {lua::a_function<law_of_options<laws::Bristle, laws::dahl_call>>,
      {"friction.dahl{ OPTIONS } -> law",
       "Dahl's law, bristles without damping: torque' = stiffness (v - |v| torque/Rd). For system{...} alone.",
       "print(friction.dahl{ Rd = 1, stiffness = 100 })  --> friction.dahl{ Rd = 1, stiffness = 100 }",

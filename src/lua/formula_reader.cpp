@@ -253,7 +253,7 @@ constexpr std::array<Arithmetic, 7> arithmetic_of = {{{Op::add, Op::add_whole},
 
 /// What the libraries brought; those of math without an operation are worked out in `library`.
 struct Standard {
-    const char *library, *name;
+    const char *module, *name;
     Op op = Op::fail;
 };
 constexpr Standard standard[] = {{"math", "sin", Op::sin},
@@ -725,7 +725,7 @@ private:
         const Standard* found = standard_at(called.object);
         if (found == nullptr) throw Obstacle{"it calls a function that is not written in Lua" + name_of(way)};
         const std::string_view name = found->name;
-        if (found->library == nullptr) {
+        if (found->module == nullptr) {
             if (name == "error" || arguments < 1 || way[function + 1].is_false()) {
                 emit(Op::fail, 0, 0, 0);
                 way.frames.clear();
@@ -763,9 +763,9 @@ private:
         for (const Standard& one : standard) {
             if (!is_new || place->second != nullptr) break;
             push_standard_globals(L_);
-            if (one.library != nullptr && lua_istable(L_, -1)) {
+            if (one.module != nullptr && lua_istable(L_, -1)) {
                 push_standard_fields(L_);
-                lua_getfield(L_, -2, one.library);
+                lua_getfield(L_, -2, one.module);
                 lua_rawget(L_, -2);
             }
             if (lua_istable(L_, -1)) {

@@ -38,7 +38,7 @@ inline constexpr MethodText Spectral::about{
     {"integrator.spectral", "integrator.spectral{ tolerance = 1e-12 }", spectral_options},
     "The motion as polynomials on panels between events and breaks of M, with every event in its place: right to "
     "rounding where the samples resolve M. Noise in M limits the accuracy. tolerance is relative, for each panel. A "
-    "pulse of a scripted M that falls between two samples is not seen: run.gap is the longest time between them. "
+    "pulse of a function M that cannot be read, and falls between two samples, is not seen: run.gap is the longest time between them. "
     "Announce it by excitation.scripted(f, { breaks = {...} }), or say by narrowest (time units) how short the "
     "shortest pulse is.",
     "sys = nondimensional{ friction_ratio = 0.167 }\n"
