@@ -73,7 +73,7 @@ Rig random_chain(unsigned seed, bool sticky) {
 engine::AssemblyRun run(const Rig& rig, double tolerance = 1e-12, double longest = never) {
     const Window window{0, 10};
     const Grid grid = Grid::every(0.25).within(window).value();
-    return engine::run({rig.system, rig.drive, window, grid, {}, {}, tolerance, longest});
+    return engine::run({rig.system, rig.drive, window, grid, {}, {}, {}, tolerance, longest});
 }
 
 /// Moreau's time stepping: impulses of friction within their bounds, found by going round, and nothing else. It knows

@@ -10,21 +10,9 @@
 
 #include "motion/clock.hpp"
 #include "motion/engine/mechanics.hpp"
-#include "motion/spectral/chebyshev.hpp"
+#include "motion/engine/nodes.hpp"
 
 namespace dinal::motion::engine {
-
-namespace cheb = spectral::chebyshev;
-using Nodes = cheb::Samples;
-using Series = cheb::Series<cheb::points>;
-inline constexpr std::size_t node_count = cheb::points;
-inline constexpr double rounding = std::numeric_limits<double>::epsilon();
-
-inline double greatest(const Nodes& values) {
-    double most = 0;
-    for (const double x : values) most = std::max(most, std::fabs(x));
-    return most;
-}
 
 /// What a stepper yields, and all else reads: angles, velocities and states over a stretch without a jump.
 struct Segment {
@@ -72,7 +60,7 @@ public:
     /// Where a function of the time breaks in the last one; none when none does.
     [[nodiscard]] std::optional<double> found_break(const Segment& segment) const;
     /// A stretch too short to matter is a straight line.
-    void pass_over(Segment& segment, const Frame& frame) const;
+    void pass_over(Segment& segment) const;
     /// What torques may be off by because the slopes of belts are differences.
     [[nodiscard]] double blurred_by_belts(const Segment& segment) const;
     [[nodiscard]] double fastest_belt(std::size_t joint) const { return fastest_belt_[joint]; }
@@ -105,7 +93,8 @@ private:
     std::size_t n_, m_;
     double bad_time_ = 0, unresolved_ = 0;
     std::vector<double> fastest_belt_, fastest_rate_;
-    std::vector<double> allowed_;                           ///< of each body's acceleration
+    std::vector<double> allowed_;  ///< of each body's acceleration
+    double seen_ = -model::never;  ///< where a load did what its series does not: looked at until it is behind
     std::vector<Nodes> offset_, offset_rate_, offset_way_;  ///< of each body against its group
     std::vector<Nodes> unknown_, found_;                    ///< accelerations of the groups and rates, and new ones
     std::vector<double> point_, torque_, load_, belt_, rate_;

@@ -244,7 +244,7 @@ double Mechanics::sliding(std::size_t joint, const Slipping& how, double slip, c
             const std::size_t from = asking_.named ? 0 : 2;
             with_speed.insert(with_speed.end(), at.y.begin() + static_cast<std::ptrdiff_t>(from), at.y.end());
             const model::State state = asking_.named ? model::State{} : model::State{at.y[0], at.y[1]};
-            return friction.function->value_with(Asking::towards(at.t, at.side), state, with_speed);
+            return friction.function->value_with(towards(at.t, at.side), state, with_speed);
         };
         torque = speed < 0 ? 2 * asked(0) - asked(-speed) : asked(speed);  // with the slope that it has at 0
     } else if (!own.none()) {

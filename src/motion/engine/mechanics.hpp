@@ -137,17 +137,14 @@ public:
     /// The greatest natural frequency of a linear system with these groups, rad per time unit; 0 without springs.
     [[nodiscard]] double fastest(const Frame& frame) const;
 
-    /// Signals of all kinds, for what must be told to each.
+    /// Signals of all kinds, for what must be told to each, or asked of each.
     template <class F>
     void for_each_signal(F f) {
-        for (Signal& s : loads_) f(s);
-        for (Signal& s : belts_) f(s);
-        for (Contact& c : contacts_) {
-            for (Signal& s : c.sliding) f(s);
-            for (Signal& s : c.holding) f(s);
-            f(c.normal);
-        }
-        f(base_);
+        each_signal(*this, f);
+    }
+    template <class F>
+    void for_each_signal(F f) const {
+        each_signal(*this, f);
     }
     [[nodiscard]] std::vector<Signal>& loads() { return loads_; }
     [[nodiscard]] const std::vector<Signal>& loads() const { return loads_; }
@@ -158,9 +155,16 @@ private:
         Signal normal;
         bool varies = false;
     };
-    template <class F>
-    void for_each_signal(F f) const {
-        const_cast<Mechanics*>(this)->for_each_signal([&](const Signal& s) { f(s); });
+    template <class Self, class F>
+    static void each_signal(Self& self, F& f) {
+        for (auto& s : self.loads_) f(s);
+        for (auto& s : self.belts_) f(s);
+        for (auto& c : self.contacts_) {
+            for (auto& s : c.sliding) f(s);
+            for (auto& s : c.holding) f(s);
+            f(c.normal);
+        }
+        f(self.base_);
     }
 
     const model::Assembly& system_;

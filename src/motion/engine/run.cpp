@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <numbers>
 
 #include "model/slide.hpp"
 #include "model/springs/user_spring.hpp"
@@ -35,11 +36,6 @@ constexpr double most_blunt = 1e-9;  // of the torques: what passes its limit by
 constexpr int most_echoes = 8;
 constexpr std::size_t most_found_breaks = 50;
 constexpr double longest_in_periods = 0.6, part_of_run = 1.0 / 16;
-
-double rung(double h, double longest) {
-    constexpr double rungs = 4;  // to a factor of two
-    return h >= longest ? longest : longest * std::exp2(std::floor(rungs * std::log2(h / longest)) / rungs);
-}
 
 /// What is kept of a stretch.
 struct Kept {
@@ -216,6 +212,7 @@ Engine::Engine(const AssemblyProblem& problem, AssemblyRun& result)
     if (problem.before != nullptr) {
         y_ = problem.before->y;
         mode_ = problem.before->mode;
+        for (std::size_t j = 0; j < joints; ++j) leaned_[j] = mode_.leans[j] != 0 ? 1 : 0;
         for (std::size_t i = 0; i < n(); ++i) mechanics_.loads()[i].remember(problem.before->controllers[i]);
     }
     history_ = std::make_shared<KeptHistory>(y_, now_.hi, problem.before ? problem.before->past : nullptr,
@@ -225,7 +222,7 @@ Engine::Engine(const AssemblyProblem& problem, AssemblyRun& result)
     Mode free = mode_;
     for (std::size_t j = 0; j < joints; ++j) free.friction[j].way = Motion::forward, free.leans[j] = 0;
     const double w = mechanics_.fastest(Frame(problem.system, free));
-    const double period = w > 0 ? 2 * 3.14159265358979323846 / w : model::never;
+    const double period = w > 0 ? 2 * std::numbers::pi / w : model::never;
     pace_ = std::min(period, run);
     longest_all_ = std::min(problem.longest, w > 0 ? longest_in_periods * period : part_of_run * run);
     longest_ = longest_all_;
@@ -248,7 +245,7 @@ const Frame& Engine::frame() {
         Frame made(problem_.system, mode_);
         const double w = mechanics_.fastest(made);
         const double longest =
-            w > 0 ? std::min(problem_.longest, longest_in_periods * 2 * 3.14159265358979323846 / w) : longest_all_;
+            w > 0 ? std::min(problem_.longest, longest_in_periods * 2 * std::numbers::pi / w) : longest_all_;
         found = frames_.emplace(std::move(key), std::pair(std::move(made), longest)).first;
     }
     longest_ = found->second.second;
@@ -751,7 +748,7 @@ bool Engine::advance() {
     if (attempt == Collocation::Attempt::shorten &&
         2 * segment_.h <= std::max(shortest * pace_, 16 * rounding * late)) {
         if (++too_short_ > most_short) return fail(Outcome::chattering);
-        solver_->pass_over(segment_, present);
+        solver_->pass_over(segment_);
         h_ = 64 * segment_.h;
     } else if (attempt != Collocation::Attempt::resolved) {
         again(attempt);
@@ -1421,9 +1418,8 @@ AssemblyRun run(const AssemblyProblem& problem) {
         event.when = witnesses.heard(event.when, event.name.empty() ? "an event" : "the event " + event.name);
     }
     AssemblyRun result;
-    const AssemblyProblem heard{system,          drive,          problem.window,    problem.rows,
-                                problem.monitor, problem.limits, problem.tolerance, problem.longest,
-                                problem.before};
+    const AssemblyProblem heard{system,         drive,          problem.window,    problem.rows,   problem.monitor,
+                                problem.limits, problem.before, problem.tolerance, problem.longest};
     {
         Engine engine(heard, result);
         engine.run();

@@ -67,9 +67,9 @@ struct AssemblyProblem {
     const Grid& rows;
     const Monitor& monitor;
     const Limits& limits;
+    std::shared_ptr<const Carry> before = {};
     double tolerance = 1e-12;
     double longest = model::never;  ///< stretch, time units
-    std::shared_ptr<const Carry> before = {};
 };
 
 /// The run, all functions of which are asked again now and then what they were asked before.

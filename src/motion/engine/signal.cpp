@@ -25,14 +25,14 @@ Signal::Signal(const model::Excitation& excitation, const Asking* asking)
 double Signal::value_of(std::size_t i, const Moment& at) const {
     const Part& part = parts_[i];
     if (part.function != nullptr) {
-        const double t = Asking::towards(at.t - part.function->delay, at.side);
+        const double t = towards(at.t - part.function->delay, at.side);
         return asking_->ask_at(*part.function->function, t, at.y);
     }
     if (part.relay != nullptr) return part.relay->levels[memory_[i].on ? 0 : 1];
     if (part.sampled != nullptr) return memory_[i].output;
     if (part.delayed != nullptr) {
         // A jump comes back at a time that is rounded: on its sides the past is asked beside it.
-        const double t = Asking::towards(at.t, at.side);
+        const double t = towards(at.t, at.side);
         return asking_->ask_at(*part.delayed->function, t, asking_->past(t - part.delayed->by, at.side));
     }
     const double t = at.side == Side::before ? std::nextafter(at.t, -model::never) : at.t;

@@ -16,11 +16,9 @@
 
 #include "model/assembly.hpp"
 #include "model/controller.hpp"
+#include "motion/engine/nodes.hpp"
 
 namespace dinal::motion::engine {
-
-/// Of a break: the limits from the left and from the right differ there.
-enum class Side { before, at, after };
 
 /// One moment of a run: y is all angles, all velocities, and then the states of the user's.
 struct Moment {
@@ -36,12 +34,6 @@ struct Asking {
     /// The motion at an earlier time, for what acts with a delay.
     std::function<std::vector<double>(double t, Side side)> past = {};
 
-    /// A step to the side that a user's arithmetic cannot swallow.
-    static double towards(double t, Side side) {
-        constexpr double few_ulps = 4 * std::numeric_limits<double>::epsilon();
-        const double hair = std::max(1e-300, few_ulps * std::fabs(t));
-        return side == Side::before ? t - hair : side == Side::after ? t + hair : t;
-    }
     [[nodiscard]] double ask(model::UserFunction& function, const Moment& at) const {
         return ask_at(function, towards(at.t, at.side), at.y);
     }

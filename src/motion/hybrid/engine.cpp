@@ -22,13 +22,6 @@ Problem on_belt(const Problem& problem, double belt) {
             problem.limits, problem.before,     problem.course_bytes};
 }
 
-/// Pieces have one of a few lengths, for which the solver keeps what it has prepared: this half length or a little
-/// less.
-double rung(double h, double longest) {
-    constexpr double rungs = 4;  // to a factor of two
-    return h >= longest ? longest : longest * std::exp2(std::floor(rungs * std::log2(h / longest)) / rungs);
-}
-
 bool breaks_at(const Field& field, double t) {
     return field.next_break(std::nextafter(t, -model::never)) == t;
 }

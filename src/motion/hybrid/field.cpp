@@ -11,16 +11,6 @@ namespace dinal::motion::hybrid {
 
 namespace {
 
-/// A step to the side that a user's arithmetic cannot swallow (see model/excitation.cpp).
-double hair_of(double t) {
-    constexpr double few_ulps = 4 * std::numeric_limits<double>::epsilon();
-    return std::max(1e-300, few_ulps * std::fabs(t));
-}
-
-double towards(double t, Side side) {
-    return side == Side::before ? t - hair_of(t) : side == Side::after ? t + hair_of(t) : t;
-}
-
 double value_on(const model::Excitation& excitation, double t, Side side) {
     return side == Side::before  ? excitation.value_before(t)
            : side == Side::after ? excitation.value_after(t)

@@ -16,12 +16,12 @@
 #include "model/extras.hpp"
 #include "model/lowered.hpp"
 #include "motion/belt_slope.hpp"
+#include "motion/engine/nodes.hpp"
 #include "motion/simulate.hpp"
 
 namespace dinal::motion::hybrid {
 
-/// Of a break: the limits from the left and from the right differ there.
-enum class Side { before, at, after };
+using engine::rung, engine::Side, engine::towards;
 
 /// Where the mass was, for what acts with a delay.
 class Past {

@@ -173,9 +173,7 @@ void Solver::judge(const Solved& piece) {
     // Times far from t = 0 are rounded, and with them what is asked at them. A jump is no slope.
     const double late = std::max(std::fabs(piece.start.hi), std::fabs(piece.end));
     const auto lost_in_time = [&](const Series& series, double most) {
-        double slope = 0;
-        for (std::size_t k = 1; k < node_count; ++k) slope += static_cast<double>(k * k) * std::fabs(series[k]);
-        return std::min(4 * rounding * late / h * slope, 1e-6 * most);
+        return engine::lost_in_time(series, late, h, most);
     };
     const double lost = lost_in_time(load, torques);
     if (moves(piece)) {

@@ -18,18 +18,8 @@
 
 namespace dinal::motion::hybrid {
 
-using Nodes = spectral::chebyshev::Samples;
-using Series = spectral::chebyshev::Series<spectral::chebyshev::points>;
-inline constexpr std::size_t node_count = spectral::chebyshev::points;
-
 namespace cheb = spectral::chebyshev;
-inline constexpr double rounding = std::numeric_limits<double>::epsilon();
-
-inline double greatest(const Nodes& values) {
-    double most = 0;
-    for (const double x : values) most = std::max(most, std::fabs(x));
-    return most;
-}
+using engine::greatest, engine::node_count, engine::Nodes, engine::rounding, engine::Series;
 
 /// How a run is cut into pieces: by what resolves it, or evenly (h > 0).
 struct Cut {

@@ -1,0 +1,47 @@
+// What a stretch of a motion is sampled at, and how a user's functions are asked beside a jump.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "motion/spectral/chebyshev.hpp"
+
+namespace dinal::motion::engine {
+
+namespace cheb = spectral::chebyshev;
+using Nodes = cheb::Samples;
+using Series = cheb::Series<cheb::points>;
+inline constexpr std::size_t node_count = cheb::points;
+inline constexpr double rounding = std::numeric_limits<double>::epsilon();
+
+inline double greatest(const Nodes& values) {
+    double most = 0;
+    for (const double x : values) most = std::max(most, std::fabs(x));
+    return most;
+}
+
+/// Of a break: the limits from the left and from the right differ there.
+enum class Side { before, at, after };
+
+/// A step to the side that a user's arithmetic cannot swallow (see model/excitation.cpp).
+inline double towards(double t, Side side) {
+    constexpr double few_ulps = 4 * std::numeric_limits<double>::epsilon();
+    const double hair = std::max(1e-300, few_ulps * std::fabs(t));
+    return side == Side::before ? t - hair : side == Side::after ? t + hair : t;
+}
+
+/// Stretches have one of a few lengths, for which what is prepared is kept: this half length or a little less.
+inline double rung(double h, double longest) {
+    constexpr double rungs = 4;  // to a factor of two
+    return h >= longest ? longest : longest * std::exp2(std::floor(rungs * std::log2(h / longest)) / rungs);
+}
+
+/// What a series may be off by because times far from t = 0 are rounded. A jump is no slope.
+inline double lost_in_time(const Series& series, double late, double h, double most) {
+    double slope = 0;
+    for (std::size_t k = 1; k < node_count; ++k) slope += static_cast<double>(k * k) * std::fabs(series[k]);
+    return std::min(4 * rounding * late / h * slope, 1e-6 * most);
+}
+
+}  // namespace dinal::motion::engine
