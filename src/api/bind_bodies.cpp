@@ -44,16 +44,8 @@ constexpr text::Option joint_options[] = {
      text::fills<&BodyNumbers::stiffness>},
     {"C", "torque time per rad", text::its_own, text::not_negative, "viscous damping",
      text::fills<&BodyNumbers::damping>},
-    {.name = "spring",
-     .unit = "torque",
-     .meaning = "a restoring torque besides k theta: a Lua function of theta, or spring.polynomial{ [3] = 0.5 }",
-     .object = "spring",
-     .wanted = "a function of theta, or a spring such as spring.polynomial{ [3] = 0.5 }"},
-    {.name = "walls",
-     .unit = "rad",
-     .meaning = "end stops: { lower, upper, restitution }; of a link, between its bodies: a backlash",
-     .wanted = "a table such as { lower = -0.8, upper = 0.8, restitution = 0.7 }",
-     .fields = {&model::walls_call}},
+    model::mechanical_options[6],
+    model::mechanical_options[7],
 };
 constexpr auto body_options = text::joined(inertia_option, joint_options, friction_options);
 constexpr auto link_options = text::joined(joint_options, friction_options);
@@ -62,7 +54,7 @@ struct BodiesRun {
     AssemblyHandle system;
     engine::Drive drive;
     engine::AssemblyRun run;
-    double dt = 0, tolerance = 1e-12;
+    double dt = 0;
     // Of each joint, made when it is asked for. Not kept: they keep this run.
     mutable std::vector<std::weak_ptr<const Run>> parts;
 };
@@ -216,6 +208,11 @@ model::ContactFriction asked_friction(lua_State* L, const lua::Options& options,
         options.push(name);
         model::Excitation value = to_excitation(L, -1, fmt::format("{}: {}", call, name), name);
         lua_pop(L, 1);
+        // Only controllers in M are asked at their instants.
+        if (model::has_memory(value)) {
+            options.fail(name,
+                         fmt::format("{} must be {}; a controller with a memory acts in M", name, varying_wanted));
+        }
         return value;
     };
     const auto number = [&](const char* name) -> std::optional<double> {
@@ -270,13 +267,6 @@ namespace {
 
 // ---- simulate
 
-struct BodiesRunOptions {
-    double t_start = 0;
-    std::optional<double> t_end = {}, dt = {};
-    std::vector<double> times = {};
-    bool dense = true;
-    double tolerance = 1e-12;
-};
 constexpr const char* by_body_wanted = "a table by body, such as { load = 1 }";
 constexpr text::Option bodies_simulate_rows[] = {
     {.name = "M",
@@ -304,12 +294,7 @@ constexpr text::Option bodies_simulate_rows[] = {
          "velocities of what the friction of a body or a link acts against, by their names: numbers, functions of t "
          "or excitations",
      .wanted = by_body_wanted},
-    {.name = "base",
-     .unit = "rad per time unit^2",
-     .otherwise = "0",
-     .meaning =
-         "acceleration of the support, to which all angles are relative: a number, a function of t, or an excitation",
-     .object = "excitation"},
+    extras_options[3],
     {.name = "states",
      .meaning = "variables that go along with the motion: { NAME = { start = 0, rate = function(t, theta, velocity, z) "
                 "... end } }",
@@ -321,26 +306,10 @@ constexpr text::Option bodies_simulate_rows[] = {
                 "theta.NAME, velocity.NAME and z.NAME",
      .wanted = "a list such as { { when = function(t, theta) return theta.load - 1 end, name = \"limit\" } }",
      .fields = {&event_call, text::Fields::Place::listed}},
-    {.name = "t_start",
-     .unit = "time units",
-     .meaning = "when it starts",
-     .filled = text::fills<&BodiesRunOptions::t_start>},
-    {"t_end", "time units", text::its_own, text::any_finite, "when the run ends; without it, at the last of the times",
-     text::fills<&BodiesRunOptions::t_end>},
-    {"dt", "time units", "(t_end - t_start)/1000", text::positive, "from row to row; t_end has a row, too",
-     text::fills<&BodiesRunOptions::dt>},
-    {.name = "times",
-     .unit = "time units",
-     .meaning = "where rows are kept: a table or a vector, increasing; {} keeps none",
-     .filled = text::fills<&BodiesRunOptions::times>},
-    {.name = "dense",
-     .meaning = "false keeps nothing between the rows, which saves memory in very long runs and costs run.load:at(t)",
-     .filled = text::fills<&BodiesRunOptions::dense>},
-    {"tolerance", "", text::its_own, text::between_0_and_1, "relative, of the motion on each stretch of time",
-     text::fills<&BodiesRunOptions::tolerance>},
 };
+constexpr auto bodies_simulate_options = text::joined(bodies_simulate_rows, window_options, dense_option);
 constexpr text::Call bodies_simulate_call{"rig:simulate", "rig:simulate{ M = { load = 2 }, t_end = 20 }",
-                                          bodies_simulate_rows};
+                                          bodies_simulate_options};
 
 /// Calls f with each name of the table of this option, the value on the top of the stack; names are those of `known`.
 template <class F>
@@ -559,8 +528,7 @@ int run_bodies(lua_State* L, const lua::Options& options, const std::shared_ptr<
         progress.advance(t);
         return !lua::interrupt_requested();
     };
-    run->run = engine::run(
-        {*run->system, run->drive, window, grid, monitor, limits, run->tolerance, model::never, std::move(before)});
+    run->run = engine::run({*run->system, run->drive, window, grid, monitor, limits, std::move(before)});
     if (call.failed() && lua::interrupt_requested()) run->run.outcome = model::Outcome::interrupted;
     const bool interrupted = run->run.outcome == model::Outcome::interrupted;
     push_bodies_run(L, run);
@@ -578,14 +546,12 @@ int run_bodies(lua_State* L, const lua::Options& options, const std::shared_ptr<
 int simulate_bodies(lua_State* L) {
     const AssemblyHandle system = lua::self<AssemblyHandle>(L, 1, bodies_simulate_call.example);
     const lua::Options options(L, 2, bodies_simulate_call);
-    BodiesRunOptions asked;
+    RunOptions asked;
     options.fill(asked);
     if (!asked.t_end && asked.times.empty()) options.missing("t_end");
-    if (asked.dt && options.has("times")) options.fail("times", "dt and times exclude each other; give one of them");
     auto run = std::make_shared<BodiesRun>();
     run->system = system;
     run->drive = asked_drive(L, options, *system);
-    run->tolerance = asked.tolerance;
     const motion::Window window{asked.t_start,
                                 asked.t_end ? *asked.t_end : *std::max_element(asked.times.begin(), asked.times.end())};
     if (!std::isfinite(window.end) || !std::isfinite(window.start) || !(window.end > window.start)) {
@@ -834,24 +800,22 @@ int text_of_run(lua_State* L) {
                        text::counted(slips, "slip"), model::sentence(run.run.outcome)));
 }
 
-constexpr text::Option bodies_continue_rows[] = {
-    {"t_end", "time units", text::needed, text::any_finite, "how far the run goes on",
-     text::fills<&BodiesRunOptions::t_end>},
-};
+constexpr text::Option bodies_continue_rows[] = {continue_options[0]};
 constexpr text::Call bodies_continue_call{"rig_run:continue", "rig_run:continue{ t_end = 40 }", bodies_continue_rows};
 
 /// The first run, and how it goes on.
 int continue_bodies(lua_State* L) {
     const BodiesRunHandle first = bodies_run_self(L, bodies_continue_call.example);
     const lua::Options options(L, 2, bodies_continue_call);
-    BodiesRunOptions asked;
+    MoreTime asked;
     options.fill(asked);
+    if (!asked.t_end) options.missing("t_end");
     const double from = first->run.t_stop;
     if (!(*asked.t_end > from)) {
         options.fail("t_end", fmt::format("t_end = {} must be after t = {}, where the run ended", *asked.t_end, from));
     }
     auto run = std::make_shared<BodiesRun>();
-    run->system = first->system, run->drive = first->drive, run->dt = first->dt, run->tolerance = first->tolerance;
+    run->system = first->system, run->drive = first->drive, run->dt = first->dt;
     // The last row of the first run stands in the second one only where the spacing puts it there.
     std::vector<double> times;
     const double start = first->run.t_start;

@@ -44,7 +44,7 @@ struct RunOptions {
     bool dense = true;
 };
 inline constexpr text::FixedText<96> integrator_meaning{"the method; without one ", motion::default_integrator.c_str()};
-inline constexpr text::Option plain_simulate_options[] = {
+inline constexpr text::Option run_start_options[] = {
     {.name = "M",
      .unit = "torque",
      .otherwise = "0",
@@ -53,6 +53,8 @@ inline constexpr text::Option plain_simulate_options[] = {
     {.name = "theta0", .unit = "rad", .meaning = "where the mass starts", .filled = text::fills<&RunOptions::theta0>},
     {"velocity0", "rad per time unit", text::its_own, text::any_finite, "how fast it starts",
      text::fills<&RunOptions::velocity0>},
+};
+inline constexpr text::Option window_options[] = {
     {.name = "t_start", .unit = "time units", .meaning = "when it starts", .filled = text::fills<&RunOptions::t_start>},
     {"t_end", "time units", text::its_own, text::any_finite, "when the run ends; without it, at the last of the times",
      text::fills<&RunOptions::t_end>},
@@ -63,16 +65,21 @@ inline constexpr text::Option plain_simulate_options[] = {
      .meaning = "where rows are kept: a table or a vector, increasing; {} keeps none",
      .filled = text::fills<&RunOptions::times>,
      .instead_of_previous = true},
+};
+inline constexpr text::Option integrator_option[] = {
     {.name = "integrator",
      .otherwise = "exact or spectral",
      .meaning = integrator_meaning.c_str(),
      .object = "integrator",
      .wanted = "an integrator such as integrator.rk4{ h = 0.001 }"},
+};
+inline constexpr text::Option dense_option[] = {
     {.name = "dense",
      .meaning = "false keeps nothing between the rows, which saves memory in very long runs and costs run:at(t)",
      .filled = text::fills<&RunOptions::dense>},
 };
-inline constexpr auto simulate_options = text::joined(plain_simulate_options, extras_options, model::units_option);
+inline constexpr auto simulate_options = text::joined(run_start_options, window_options, integrator_option,
+                                                      dense_option, extras_options, model::units_option);
 inline constexpr text::Call simulate_call{"sys:simulate", "sys:simulate{ M = M, theta0 = 1, t_end = 20, dt = 0.01 }",
                                           simulate_options, false, &with_call};
 

@@ -210,6 +210,33 @@ test("closed loops of contacts hold what they can hold together", function()
     near(first(run, "slip", "a").t, 1.5, 1e-9)
 end)
 
+test("a controller as Rd, Re or normal is refused: it would never be asked at its instants", function()
+    for _, name in ipairs { "Rd", "Re", "normal" } do
+        raises_here(function()
+            system { I = 1, k = 1, [name] = excitation.relay { on = -1, off = 1, levels = { 1, 2 }, of = "theta" } }
+        end, name .. " must be a number, an excitation or a function", "a controller with a memory acts in M")
+    end
+end)
+
+test("a pulse between the nodes is seen while all bodies stand, with a state beside", function()
+    for _, states in ipairs { {}, { e = { rate = function() return 0 end } } } do
+        local text = "pulse"
+        local M = function(t) return math.abs(t - 2.069) < 0.1 and select("#", text, 1) or 0 end  -- not read: select
+        local run = system { bodies = { a = { I = 1, k = 1, Rd = 1 } } }:simulate { M = { a = M }, t_end = 10, states = states }
+        near(first(run, "slip", "a").t, 1.969, 1e-9)
+    end
+end)
+
+test("a mass that leans on a wall where a run ends is told to leave it by the run that goes on", function()
+    local rig = system { bodies = { a = { I = 1, k = 0, walls = { upper = 1, restitution = 0 } } } }
+    local options = { M = { a = function(t) return 2 - t end }, t_end = 1.8 }
+    local run = rig:simulate(options):continue { t_end = 4 }
+    options.t_end = 4
+    local whole = rig:simulate(options)
+    equal(table.concat(run.events.kind, " "), table.concat(whole.events.kind, " "))
+    near(first(run, "slip", "a").t, 2, 1e-12)
+end)
+
 test("a sampled controller with a memory is refused in a second run", function()
     local sum = 0
     local M = excitation.sampled(function(t, theta) sum = sum + 1 - theta.a return sum end, { every = 0.1 })
