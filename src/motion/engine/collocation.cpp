@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "motion/hybrid/integration.hpp"
+#include "motion/interpolation.hpp"
 #include "motion/spectral/break_search.hpp"
 
 namespace dinal::motion::engine {
@@ -45,7 +46,7 @@ Collocation::Collocation(const Mechanics& mechanics, double tolerance, double lo
 bool Collocation::sample(Segment& s, const Mode& mode, const Frame& frame, const std::vector<double>& begin) {
     const std::size_t joints = mechanics_.joints();
     s.y.resize(2 * n_ + m_), s.f.resize(2 * n_ + m_), s.series.resize(2 * n_ + m_);
-    s.moved.assign(n_, {}), s.loads.resize(n_), s.torques.resize(n_);
+    s.moved.assign(n_, {}), s.loads.resize(n_), s.driven.resize(n_), s.torques.resize(n_);
     s.belts.resize(joints), s.belt_rates.resize(joints), s.holding.resize(joints);
     for (std::size_t j = 0; j + 1 < node_count; ++j) s.times[j] = s.time(cheb::nodes[j]);
     s.times[node_count - 1] = s.end;
@@ -78,7 +79,7 @@ bool Collocation::sample(Segment& s, const Mode& mode, const Frame& frame, const
         constexpr double too_short_for_slopes = 1e-7, stretch = 1e-4;
         if (2 * s.h < too_short_for_slopes * longest_) {
             const double within = std::min(stretch * longest_, (mechanics_.next_break(s.start.hi) - s.start.hi) / 2);
-            s.belt_rates[joint].fill(mechanics_.belt_rate(joint, s.start.hi, s.side(0), within));
+            s.belt_rates[joint].fill(mechanics_.belt_slope(joint, s.start.hi, within).rate);
             continue;
         }
         const auto slope = cheb::derivative(cheb::fit(s.belts[joint]));
@@ -110,7 +111,7 @@ bool Collocation::evaluate(Segment& s, const Mode& mode, const Frame& frame, std
     for (std::size_t g = 0; g < frame.groups(); ++g) found_[g][node] = 0;
     bool good = true;
     for (std::size_t i = 0; i < n_; ++i) {
-        s.torques[i][node] = torque_[i];
+        s.torques[i][node] = torque_[i], s.driven[i][node] = load_[i];
         good = good && std::isfinite(torque_[i]);
         if (frame.group[i] < 0) continue;
         const double own = offset_rate_[i][node];
@@ -467,6 +468,30 @@ double Collocation::blurred_by_belts(const Segment& s) const {
     return inertia * 256 * rounding * fastest / s.h;
 }
 
+/// Right before a body turns, where it is farthest: a spring or a law of friction may act there for a short while.
+void Collocation::add_turns(const Segment& s, std::vector<double>& places) const {
+    constexpr double before = 1e-9;
+    for (const model::Joint& joint : mechanics_.system().joints) {
+        if (joint.spring.none() && joint.friction.function == nullptr) continue;
+        const Nodes& a = s.y[n_ + index(joint.first)];
+        Nodes velocity = a;
+        for (std::size_t j = 0; joint.second >= 0 && j < node_count; ++j) {
+            velocity[j] -= s.y[n_ + index(joint.second)][j];
+        }
+        const Series series = cheb::fit(velocity);
+        for (std::size_t j = 0; j + 1 < node_count; ++j) {
+            if (!(velocity[j] * velocity[j + 1] < 0)) continue;
+            const double sign = velocity[j + 1] > 0 ? 1 : -1;
+            const auto rising = [&](double x) { return sign * cheb::value(series, x); };
+            places.push_back(first_positive(rising, cheb::nodes[j], sign * velocity[j], cheb::nodes[j + 1],
+                                            sign * velocity[j + 1], before / 4)
+                                 .first -
+                             before);
+            if (!joint.friction.none()) break;  // beyond a stop there is another motion
+        }
+    }
+}
+
 /// Asks between the nodes. A pulse of a function may be there that no node has met, or a bend of a law.
 bool Collocation::agrees_between(const Segment& s, const Mode& mode, const Frame& frame) {
     constexpr double clearly = 64, too_short = 1e-6;
@@ -480,6 +505,7 @@ bool Collocation::agrees_between(const Segment& s, const Mode& mode, const Frame
     std::vector<double> places;
     if (s.start.until(seen_) > 0 && seen_ < s.end) places.push_back(s.start.until(seen_) / s.h - 1);
     for (const std::size_t j : {0U, 7U, 8U, 9U, 15U}) places.push_back((cheb::nodes[j] + cheb::nodes[j + 1]) / 2);
+    add_turns(s, places);
     for (const double x : places) {
         const double t = s.time(x);
         mechanics_.loads_of_time(t, Side::at, load_);
@@ -540,6 +566,14 @@ std::optional<double> Collocation::found_break(const Segment& s) const {
     return first;
 }
 
+bool Collocation::belt_jumps(const Segment& s, std::size_t joint, double t) const {
+    if (!mechanics_.has_belt(joint)) return false;
+    constexpr double clearly = 1e-6;
+    const double before = mechanics_.belt(joint, towards(t, Side::before), Side::at);
+    const double jump = std::fabs(mechanics_.belt(joint, towards(t, Side::after), Side::at) - before);
+    return jump > clearly * std::max(fastest_belt_[joint], greatest(s.belts[joint]));
+}
+
 /// Nothing that happens here can be seen: all goes on as it begins.
 void Collocation::pass_over(Segment& s) const {
     for (std::size_t k = 0; k < s.y.size(); ++k) {
@@ -553,7 +587,7 @@ void Collocation::pass_over(Segment& s) const {
         if (k < n_) s.moved[k] = change;
         s.f[k].fill(s.f[k][0]);
     }
-    for (std::size_t i = 0; i < n_; ++i) s.torques[i].fill(s.torques[i][0]);
+    for (std::size_t i = 0; i < n_; ++i) s.torques[i].fill(s.torques[i][0]), s.driven[i].fill(s.driven[i][0]);
     for (Nodes& held : s.holding) held.fill(held[0]);
 }
 

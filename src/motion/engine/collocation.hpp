@@ -27,6 +27,7 @@ struct Segment {
     std::vector<Nodes> moved{};                ///< angles less their first, which have digits that these have not
     std::vector<Series> series{};              ///< of y, each less its first
     std::vector<Nodes> loads{};                ///< of each body: what depends on the time alone
+    std::vector<Nodes> driven{};               ///< of each body: all of its load, and the push of the base
     std::vector<Nodes> torques{};              ///< of each body: all but those of what holds
     std::vector<Nodes> belts{}, belt_rates{};  ///< of each joint
     std::vector<Nodes> holding{};              ///< of each joint that holds: the torque on its first body
@@ -59,6 +60,8 @@ public:
     [[nodiscard]] double unresolved() const { return unresolved_; }
     /// Where a function of the time breaks in the last one; none when none does.
     [[nodiscard]] std::optional<double> found_break(const Segment& segment) const;
+    /// The belt of a joint has clearly different velocities before and at this time.
+    [[nodiscard]] bool belt_jumps(const Segment& segment, std::size_t joint, double t) const;
     /// A stretch too short to matter is a straight line.
     void pass_over(Segment& segment) const;
     /// What torques may be off by because the slopes of belts are differences.
@@ -85,6 +88,7 @@ private:
     const Factors& newton_matrix(double h, const Frame& frame);
     Attempt iterate(Segment& segment, const Mode& mode, const Frame& frame, const std::vector<double>& departing);
     void judge(const Segment& segment, const Mode& mode, const Frame& frame);
+    void add_turns(const Segment& segment, std::vector<double>& places) const;
     bool agrees_between(const Segment& segment, const Mode& mode, const Frame& frame);
     void find_sizes(const Segment& segment);
 

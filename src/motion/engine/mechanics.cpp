@@ -200,17 +200,9 @@ Mechanics::Mechanics(const model::Assembly& system, const Drive& drive, const As
 /// mass would slide on a belt that has its velocity.
 double Mechanics::belt(std::size_t joint, double t, Side side) const {
     if (belts_[joint].none()) return 0;
-    const bool breaks = side != Side::at && belts_[joint].next_break(std::nextafter(t, -model::never)) == t;
+    const bool breaks = side != Side::at && (belts_[joint].next_break(std::nextafter(t, -model::never)) == t ||
+                                             std::binary_search(jumps_.begin(), jumps_.end(), t));
     return belts_[joint].value({t, breaks ? side : Side::at, {}});
-}
-
-/// By differences to one side, of a function whose jumps and corners are announced or stand still for so long.
-double Mechanics::belt_rate(std::size_t joint, double t, Side side, double within) const {
-    if (belts_[joint].none()) return 0;
-    const double h = side == Side::before ? -within : within;
-    const auto at = [&](double part) { return belt(joint, t + part * h, part == 0 ? side : Side::at); };
-    // Through five values: right for what a parabola of the fourth degree follows.
-    return (-25 * at(0) + 48 * at(0.25) - 36 * at(0.5) + 16 * at(0.75) - 3 * at(1)) / (3 * h);
 }
 
 void Mechanics::loads_of_time(double t, Side side, std::vector<double>& loads) const {
@@ -280,20 +272,21 @@ std::size_t Mechanics::range_of(std::size_t joint, double speed) const {
     return law.ranges() > 0 ? law.range_of(speed) : 0;
 }
 
+double Mechanics::friction(std::size_t joint, const Moment& at, const Mode& mode, double belt) const {
+    if (system_.joints[joint].friction.bristle() != nullptr) return -bristle_torque(joint, at, belt);
+    const Slipping& how = mode.friction[joint];
+    if (how.riding) return -model::sign_of(how.way) * holding(joint, how.way, at);
+    if (how.way == Motion::stuck || !rubs(joint)) return 0;
+    Slipping present = how;
+    // Along a wall nobody watches for the speeds at which a law changes its formula.
+    if (mode.leans[joint] != 0) present.range = range_of(joint, std::fabs(belt));
+    return -model::sign_of(how.way) * sliding(joint, present, velocity(joint, at.y) - belt, at);
+}
+
 double Mechanics::joint_torque(std::size_t joint, const Moment& at, const Mode& mode, double belt) const {
     const Joint& own = system_.joints[joint];
     const double q = angle(joint, at.y), s = velocity(joint, at.y);
-    double torque = 0;
-    const Slipping& how = mode.friction[joint];
-    if (how.riding) {
-        torque += model::sign_of(how.way) * holding(joint, how.way, at);
-    } else if (how.way != Motion::stuck && rubs(joint)) {
-        Slipping present = how;
-        // Along a wall nobody watches for the speeds at which a law changes its formula.
-        if (mode.leans[joint] != 0) present.range = range_of(joint, std::fabs(belt));
-        torque += model::sign_of(how.way) * sliding(joint, present, s - belt, at);
-    }
-    if (own.friction.bristle() != nullptr) torque += bristle_torque(joint, at, belt);
+    double torque = -friction(joint, at, mode, belt);
     if (own.damping != 0) torque += own.damping * s;
     if (own.stiffness != 0) torque += own.stiffness * q;
     if (!own.spring.none()) torque += own.spring.torque(q);
@@ -301,11 +294,11 @@ double Mechanics::joint_torque(std::size_t joint, const Moment& at, const Mode& 
 }
 
 void Mechanics::torques(const Moment& at, const Mode& mode, const std::vector<double>& belts,
-                        const std::vector<double>& loads, std::vector<double>& of_bodies) const {
-    of_bodies = loads;
+                        std::vector<double>& loads, std::vector<double>& of_bodies) const {
     for (std::size_t i = 0; i < bodies(); ++i) {
-        if (loads_[i].asks_the_motion()) of_bodies[i] += loads_[i].of_motion(at);
+        if (loads_[i].asks_the_motion()) loads[i] += loads_[i].of_motion(at);
     }
+    of_bodies = loads;
     for (std::size_t j = 0; j < joints(); ++j) {
         const double torque = joint_torque(j, at, mode, belts[j]);
         if (torque == 0) continue;

@@ -2,11 +2,13 @@
 #pragma once
 
 #include <Eigen/Dense>
+#include <algorithm>
 #include <array>
 #include <string>
 #include <vector>
 
 #include "model/assembly.hpp"
+#include "motion/belt_slope.hpp"
 #include "motion/engine/signal.hpp"
 #include "motion/simulate.hpp"
 
@@ -101,16 +103,27 @@ public:
     [[nodiscard]] bool has_belts() const { return has_belts_; }
     [[nodiscard]] bool has_belt(std::size_t joint) const { return !belts_[joint].none(); }
     [[nodiscard]] double belt(std::size_t joint, double t, Side side) const;
-    [[nodiscard]] double belt_rate(std::size_t joint, double t, Side side, double within) const;
+    /// How fast that changes, from the right; it is differentiated within this part of time.
+    [[nodiscard]] BeltSlope belt_slope(std::size_t joint, double t, double stretch) const {
+        return belts_[joint].none() ? BeltSlope{0, 0} : motion::belt_slope(drive_.belts[joint], t, stretch);
+    }
     [[nodiscard]] double base(double t, Side side) const { return base_.value({t, side, {}}); }
+    [[nodiscard]] bool has_base() const { return !base_.none(); }
+    /// What friction does to its first body where it does not hold.
+    [[nodiscard]] double friction(std::size_t joint, const Moment& at, const Mode& mode, double belt) const;
+    /// At this time somebody found a jump that nobody announced.
+    void jumps_at(double t) { jumps_.insert(std::upper_bound(jumps_.begin(), jumps_.end(), t), t); }
+    /// Jumps before this time are behind.
+    void forget_jumps(double t) { jumps_.erase(jumps_.begin(), std::lower_bound(jumps_.begin(), jumps_.end(), t)); }
     [[nodiscard]] const model::Excitation& belt_of(std::size_t joint) const { return drive_.belts[joint]; }
 
     /// The loads that depend on the time alone, the push of the base among them, on each body.
     void loads_of_time(double t, Side side, std::vector<double>& loads) const;
     /// M of each body.
     [[nodiscard]] double load(std::size_t body, const Moment& at) const { return loads_[body].value(at); }
-    /// All torques on each body but those of what holds; `belts` are the velocities of each joint's.
-    void torques(const Moment& at, const Mode& mode, const std::vector<double>& belts, const std::vector<double>& loads,
+    /// All torques on each body but those of what holds; `belts` are the velocities of each joint's. What of the loads
+    /// depends on the motion is added to them.
+    void torques(const Moment& at, const Mode& mode, const std::vector<double>& belts, std::vector<double>& loads,
                  std::vector<double>& of_bodies) const;
     void rates(const Moment& at, double* out) const;
     /// Of each joint, without what holds.
@@ -175,6 +188,7 @@ private:
     std::vector<Contact> contacts_;
     std::vector<char> rubs_;
     std::vector<std::size_t> bristles_;
+    std::vector<double> jumps_;  ///< found, of belts
     bool nonlinear_ = false, has_belts_ = false;
 };
 

@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <map>
 #include <numbers>
@@ -11,6 +13,7 @@
 #include "model/slide.hpp"
 #include "model/springs/user_spring.hpp"
 #include "motion/engine/collocation.hpp"
+#include "motion/engine/history.hpp"
 #include "motion/hybrid/crossing.hpp"
 #include "motion/spectral/first_below.hpp"
 #include "motion/witness.hpp"
@@ -35,54 +38,35 @@ constexpr double last_bounces = 1e-7, shortest_bounce = 1e-10;
 constexpr double most_blunt = 1e-9;  // of the torques: what passes its limit by more is no rounding
 constexpr int most_echoes = 8;
 constexpr std::size_t most_found_breaks = 50;
+constexpr double short_look = 1e-3, as_rough = 0.1;  // a short stretch; what is as rough on two of them is no jump
+constexpr std::size_t most_passages = 200;
+constexpr double one_instant = 64 * rounding;  // passages of user events that are so near to each other are one
+constexpr double beside_standstill = 1e-12;    // one that is so near to a standstill, or a release, is told after it
+constexpr double at_zero = 1e-12;              // this part of what it was on the stretch stands at zero
 constexpr double longest_in_periods = 0.6, part_of_run = 1.0 / 16;
 
-/// What is kept of a stretch.
-struct Kept {
-    Clock start;
-    double h = 0, length = 0;
-    std::vector<double> begin;
-    std::vector<Series> series;
+/// Of three short stretches: how great the last coefficients are at most, and on two of them, and the values.
+struct Roughness {
+    double most = 0, usual = 0, size = 0;
 };
 
-class KeptHistory final : public History {
-public:
-    KeptHistory(std::vector<double> initial, double t_start, std::shared_ptr<const History> before, std::size_t most)
-        : initial_(std::move(initial)), t_start_(t_start), before_(std::move(before)), most_(most) {}
-    void add(Kept kept) {
-        const std::size_t bytes = sizeof(Kept) + kept.begin.size() * (sizeof(double) + sizeof(Series));
-        if (bytes_ + bytes > most_) whole_until_ = std::min(whole_until_, kept.start.hi);
-        if (whole_until_ < model::never) return;
-        bytes_ += bytes;
-        list_.push_back(std::move(kept));
+Roughness roughness(const std::function<double(double)>& source, double from, double length) {
+    Roughness look;
+    std::array<double, 3> tails{};
+    std::size_t stretch = 0;
+    for (const double begin : {0.0, 2.0, 5.0}) {
+        Nodes values{};
+        for (std::size_t j = 0; j < node_count; ++j) {
+            values[j] = source(from + length * (begin + (1 + cheb::nodes[j]) / 2));
+            if (!std::isfinite(values[j])) return {};
+        }
+        tails.at(stretch++) = cheb::tail(cheb::fit(values));
+        look.size = std::max(look.size, greatest(values));
     }
-    void close(double t, const std::vector<double>& y) {
-        list_.push_back({{t, 0}, 1, 0, y, std::vector<Series>(y.size())});
-    }
-    [[nodiscard]] std::vector<double> at(double t) const override { return at(t, Side::at); }
-    [[nodiscard]] std::vector<double> at(double t, Side side) const {
-        const auto after = std::partition_point(list_.begin(), list_.end(), [t, side](const Kept& kept) {
-            return side == Side::before ? kept.start.hi < t : kept.start.hi <= t;
-        });
-        if (after == list_.begin()) return before_ != nullptr && t < t_start_ ? before_->at(t) : initial_;
-        const Kept& kept = *(after - 1);
-        const double x = std::min(kept.start.until(t), kept.length) / kept.h - 1;
-        std::vector<double> y = kept.begin;
-        if (x <= -1) return y;
-        for (std::size_t k = 0; k < y.size(); ++k) y[k] += cheb::value(kept.series[k], std::min(x, 1.0));
-        return y;
-    }
-    [[nodiscard]] std::size_t bytes() const override { return bytes_; }
-    [[nodiscard]] double whole_until() const override { return whole_until_; }
-
-private:
-    std::vector<double> initial_;
-    double t_start_;
-    std::shared_ptr<const History> before_;
-    std::size_t most_, bytes_ = 0;
-    double whole_until_ = model::never;
-    std::vector<Kept> list_;
-};
+    std::sort(tails.begin(), tails.end());
+    look.usual = tails[1], look.most = tails[2];
+    return look;
+}
 
 class Engine {
 public:
@@ -94,12 +78,14 @@ private:
     struct Ending {
         double x = 1;
         By by = By::nobody;
-        std::size_t which = 0;  ///< the joint, or the body of a relay, or the event of the user
-        int side = 0;           ///< of a wall or corner, or the way of a release; or which relay
+        std::size_t which = 0;                ///< the joint, or the body of a relay
+        int side = 0;                         ///< of a wall or corner, or the way of a release; or which relay
+        std::vector<std::size_t> users = {};  ///< events of the user at this instant, in the order written
     };
     /// What an exact look at a moment tells.
     struct Look {
         std::vector<double> torques, accelerations, holding;
+        double blurred = 0;  ///< what torques may be off by because the slopes of belts are differences
     };
 
     // The loop.
@@ -107,16 +93,23 @@ private:
     bool advance();
     void choose();
     double longest_under_friction();
+    double until_wall();
     void again(Collocation::Attempt attempt);
+    bool get_nowhere(Outcome outcome);
     bool end_at(double x);
+    void go_to(double x);
+    [[nodiscard]] double gap(std::size_t joint, double place) const;
+    void keep(double length);
+    std::vector<Kept::Acting> acting();
+    [[nodiscard]] double energy(const std::vector<double>& y) const;
     bool handle(const Ending& ending);
     const Frame& frame();
 
     // Decisions.
     bool decide(bool told, std::optional<Ending> released = {});
     bool share_loops(const std::optional<Ending>& released);
-    void project();
-    bool look(const Moment& at, const Mode& mode, const Frame& frame, Look& result);
+    void project(Side when);
+    bool look(const Moment& at, const Mode& mode, const Frame& frame, Look& result, std::optional<double> x = {});
     [[nodiscard]] std::vector<double> departing() const;
     [[nodiscard]] double slip(std::size_t joint) const {
         return mechanics_.velocity(joint, y_) - mechanics_.belt(joint, now_.hi, side());
@@ -124,13 +117,18 @@ private:
     [[nodiscard]] double excess(std::size_t joint, const Look& look, const Mode& mode, const Moment& at,
                                 Motion& towards) const;
     void slide(std::size_t joint, Motion way, bool leaving);
+    /// The part of a pull that is right whatever states of the user's are wrong by.
+    [[nodiscard]] double known() const { return mechanics_.states_of_user() > 0 ? 1 - 3e-12 : 1; }
+    [[nodiscard]] double belt_heading(std::size_t joint) const;
+    [[nodiscard]] BeltSlope belt_slope(std::size_t joint) const { return slopes_[joint]; }
+    void find_belt_slopes(std::optional<double> x);
     enum class Because { impact, act, belt };
     bool restart_contacts(Because why, std::size_t at = 0);
 
     // Guards.
     void watch(Ending& ending);
     void watch_slip(std::size_t joint, Ending& ending);
-    void take_back_slip(std::size_t joint);
+    bool take_back_slip(std::size_t joint);
     void watch_release(std::size_t joint, Ending& ending);
     void watch_walls(std::size_t joint, Ending& ending) const;
     void watch_corner(std::size_t joint, Ending& ending) const;
@@ -141,8 +139,21 @@ private:
     void record_turns(double until);
     [[nodiscard]] bool rubs_somewhere(std::size_t body) const;
 
+    struct Bounces {
+        double once = model::never, all = model::never;
+    };
+    [[nodiscard]] std::optional<Bounces> next_bounces(std::size_t joint, int wall, double speed);
     bool hit(std::size_t joint, int wall);
-    bool act(std::size_t event);
+    bool act_all(const std::vector<std::size_t>& told);
+    bool act(std::size_t event, const std::vector<std::size_t>& told);
+    void touch_walls();
+    void keep_within_walls(std::vector<double>& y) const;
+    void see_flight();
+    [[nodiscard]] double watched(std::size_t event, const Moment& at) const;
+    [[nodiscard]] double rounding_of(std::size_t event) const;
+    [[nodiscard]] bool passes_on(std::size_t event);
+    void stand_where_put(const std::vector<double>& before, const std::vector<std::size_t>& told);
+    void come_again(std::size_t event);
     void tell(EventKind kind, int where, int user = -1);
     bool too_often();
     void echo(double t, int generation);
@@ -153,6 +164,8 @@ private:
         return false;
     }
     [[nodiscard]] Side side() const { return after_break_ ? Side::after : Side::at; }
+    /// Nothing that contacts do is an event at the start.
+    [[nodiscard]] bool begun() const { return now_.hi > problem_.window.start || problem_.before != nullptr; }
     [[nodiscard]] Moment here() const { return {now_.hi, side(), y_}; }
     [[nodiscard]] std::size_t n() const { return mechanics_.bodies(); }
     [[nodiscard]] double torque_size(std::size_t joint) const;
@@ -161,14 +174,16 @@ private:
     AssemblyRun& result_;
     Asking asking_;
     Mechanics mechanics_;
-    std::shared_ptr<KeptHistory> history_;
-    double pace_ = 1, longest_all_ = 1, longest_ = 1;
+    std::shared_ptr<History> history_;
+    double inertia_ = 0;  ///< of all bodies
+    double period_ = model::never, pace_ = 1, longest_all_ = 1, longest_ = 1;
     std::optional<Collocation> solver_;
     std::map<std::pair<std::vector<char>, std::vector<int>>, std::pair<Frame, double>> frames_;
     const Frame* frame_ = nullptr;
 
     Clock now_;
-    std::vector<double> y_;
+    std::vector<double> y_, low_;         ///< what the angles have rounded off
+    std::vector<double> origin_, reach_;  ///< of each joint: the wall that it hit last, and how far it went from there
     Mode mode_;
     std::vector<Motion> arrived_;   ///< of each joint: which way it slid until now; stuck: it did not
     std::vector<int> edge_;         ///< of each joint: the corner that its speed is at, 1 the upper one of its range
@@ -176,13 +191,17 @@ private:
     std::vector<char> leaned_;      ///< of each joint: it came to stand at a wall, which was told
     std::vector<int> normal_half_;  ///< of each joint: the sign of its normal load
     std::vector<Motion> heading_;   ///< of each body without dry friction
-    std::vector<hybrid::Half> halves_;
-    bool after_break_ = false;
+    std::vector<Watch> watches_;    ///< of the events of the user
+    std::vector<hybrid::Half> came_from_;  ///< the events of the user that were told last
+    std::vector<BeltSlope> slopes_;        ///< of the belts, now
+    bool after_break_ = false, has_walls_ = false;
     Segment segment_;
     std::vector<double> breaks_;                  ///< found, and still ahead
     std::vector<std::pair<double, int>> echoes_;  ///< breaks that delays bring back
     double h_ = 1, bad_time_ = model::never, searched_from_ = model::never, searched_h_ = 0;
-    double attempts_since_ = 0, last_event_ = -model::never;
+    double attempts_since_ = 0, last_event_ = -model::never, born_ = 0;
+    double shortest_delay_ = model::never, longest_delay_ = 0;
+    std::pair<std::size_t, int> last_hit_{0, 0};  ///< the joint and its wall
     int attempts_ = 0, too_short_ = 0, at_once_in_a_row_ = 0;
     std::size_t next_row_ = 0;
     Outcome outcome_ = Outcome::reached_end;
@@ -204,27 +223,42 @@ Engine::Engine(const AssemblyProblem& problem, AssemblyRun& result)
     for (const model::OwnState& state : problem.drive.states) y_.push_back(state.start);
     y_.resize(y_.size() + mechanics_.bristles().size(), 0);
     mode_.friction.resize(joints), mode_.leans.assign(joints, 0);
+    low_.assign(n(), 0), origin_.assign(joints, 0), reach_.assign(joints, 0);
     mode_.rubs = mechanics_.rubbing();
     arrived_.assign(joints, Motion::stuck);
     edge_.assign(joints, 0), at_wall_.assign(joints, 0), leaned_.assign(joints, 0), normal_half_.assign(joints, 0);
     heading_.assign(n(), Motion::stuck);
-    halves_.assign(problem.drive.events.size(), 0);
+    watches_.resize(problem.drive.events.size());
     if (problem.before != nullptr) {
         y_ = problem.before->y;
         mode_ = problem.before->mode;
         for (std::size_t j = 0; j < joints; ++j) leaned_[j] = mode_.leans[j] != 0 ? 1 : 0;
         for (std::size_t i = 0; i < n(); ++i) mechanics_.loads()[i].remember(problem.before->controllers[i]);
+        watches_ = problem.before->watches, echoes_ = problem.before->echoes;
+        heading_ = problem.before->heading;
     }
-    history_ = std::make_shared<KeptHistory>(y_, now_.hi, problem.before ? problem.before->past : nullptr,
-                                             problem.limits.dense ? problem.limits.memory / 4 : 0);
+    std::vector<Between> between;
+    for (const Joint& joint : problem.system.joints) {
+        between.push_back({joint.first, joint.second, joint.damping});
+        has_walls_ |= joint.walls.has_value();
+    }
+    history_ = std::make_shared<History>(std::move(between), y_, now_.hi,
+                                         problem.before ? problem.before->past : nullptr, problem.history_bytes);
+    mechanics_.for_each_signal([&](const Signal& s) {
+        for (const double by : s.delays()) {
+            shortest_delay_ = std::min(shortest_delay_, by), longest_delay_ = std::max(longest_delay_, by);
+        }
+    });
+    for (const model::Body& body : problem.system.bodies) inertia_ += body.inertia;
+    born_ = problem.before ? problem.before->born : now_.hi;
     asking_.past = [this](double t, Side side) { return history_->at(t, side); };
     const double run = problem.window.end - problem.window.start;
     Mode free = mode_;
     for (std::size_t j = 0; j < joints; ++j) free.friction[j].way = Motion::forward, free.leans[j] = 0;
     const double w = mechanics_.fastest(Frame(problem.system, free));
-    const double period = w > 0 ? 2 * std::numbers::pi / w : model::never;
-    pace_ = std::min(period, run);
-    longest_all_ = std::min(problem.longest, w > 0 ? longest_in_periods * period : part_of_run * run);
+    period_ = w > 0 ? 2 * std::numbers::pi / w : model::never;
+    pace_ = std::min(period_, run);
+    longest_all_ = std::min(problem.longest, w > 0 ? longest_in_periods * period_ : part_of_run * run);
     longest_ = longest_all_;
     h_ = longest_ / 2;
     attempts_since_ = now_.hi;
@@ -284,13 +318,22 @@ std::vector<double> Engine::departing() const {
     return y;
 }
 
-/// Torques, accelerations and what holds, at a moment. False when something is not finite.
-bool Engine::look(const Moment& at, const Mode& mode, const Frame& frame, Look& result) {
+/// Torques, accelerations and what holds, at a moment, which may be at x of the stretch. False when something is not
+/// finite.
+bool Engine::look(const Moment& at, const Mode& mode, const Frame& frame, Look& result, std::optional<double> x) {
     const std::size_t joints = mechanics_.joints();
     std::vector<double> belts(joints), rates(joints), loads, offsets;
+    result.blurred = x && mechanics_.has_belts() ? solver_->blurred_by_belts(segment_) : 0;
     for (std::size_t j = 0; j < joints; ++j) {
         belts[j] = mechanics_.belt(j, at.t, at.side);
-        rates[j] = mechanics_.has_belt(j) ? mechanics_.belt_rate(j, at.t, at.side, 1e-4 * pace_) : 0;
+        if (!mechanics_.has_belt(j)) continue;
+        if (x) {
+            rates[j] = cheb::value(cheb::fit(segment_.belt_rates[j]), *x);
+        } else {
+            const BeltSlope slope = belt_slope(j);
+            rates[j] = slope.rate;
+            result.blurred = std::max(result.blurred, inertia_ * slope.doubt);
+        }
     }
     mechanics_.loads_of_time(at.t, at.side, loads);
     mechanics_.torques(at, mode, belts, loads, result.torques);
@@ -315,14 +358,33 @@ bool Engine::look(const Moment& at, const Mode& mode, const Frame& frame, Look& 
 
 /// How far what holds a joint is beyond what it can hold, and which way it would go.
 double Engine::excess(std::size_t joint, const Look& look, const Mode& mode, const Moment& at, Motion& towards) const {
-    const double pull = -look.holding[joint];
+    const double pull = -look.holding[joint] * known();  // what only touches a limit holds
     if (const int wall = mode.leans[joint]; wall != 0) {
         towards = wall > 0 ? Motion::backward : Motion::forward;
         const bool sticks = mechanics_.rubs(joint) && mode.friction[joint].way == Motion::stuck;
         return -wall * pull - (sticks ? mechanics_.holding(joint, towards, at) : 0) - mode.friction[joint].blunt;
     }
     towards = pull > 0 ? Motion::forward : Motion::backward;
-    return std::fabs(pull) - mechanics_.holding(joint, towards, at) - mode.friction[joint].blunt;
+    return std::fabs(pull) - look.blurred - mechanics_.holding(joint, towards, at) - mode.friction[joint].blunt;
+}
+
+/// The velocity of the belt; where it passes zero, a hair of velocity that way on which it goes.
+double Engine::belt_heading(std::size_t joint) const {
+    const double v = mechanics_.belt(joint, now_.hi, side());
+    if (v != 0 || !mechanics_.has_belt(joint)) return v;
+    const double rate = belt_slope(joint).sure();
+    return rate == 0 ? 0 : std::copysign(std::numeric_limits<double>::min(), rate);
+}
+
+/// At x of the last stretch; at a break from the right, where nothing tells them but the belts.
+void Engine::find_belt_slopes(std::optional<double> x) {
+    slopes_.assign(mechanics_.joints(), {0, 0});
+    for (std::size_t j = 0; mechanics_.has_belts() && j < slopes_.size(); ++j) {
+        if (!mechanics_.has_belt(j)) continue;
+        slopes_[j] = x ? BeltSlope{cheb::value(cheb::fit(segment_.belt_rates[j]), *x),
+                                   solver_->blurred_by_belts(segment_) / inertia_}
+                       : mechanics_.belt_slope(j, now_.hi, belt_stretch * pace_);
+    }
 }
 
 void Engine::slide(std::size_t joint, Motion way, bool leaving) {
@@ -341,6 +403,7 @@ void Engine::slide(std::size_t joint, Motion way, bool leaving) {
 /// limit goes, and the others are asked again; what would not go the way on which it was let go holds after all. What
 /// was seen to come to its limit is `released` first.
 bool Engine::decide(bool told, std::optional<Ending> released) {
+    told = told && begun();
     const std::size_t joints = mechanics_.joints();
     std::vector<char> asked(joints, 0), taken_back(joints, 0);
     std::vector<Motion> before(joints, Motion::stuck);  // which way it slid; stuck: it did not
@@ -350,8 +413,8 @@ bool Engine::decide(bool told, std::optional<Ending> released) {
         if (!mechanics_.rubs(j)) continue;
         Slipping& how = mode_.friction[j];
         if (mode_.leans[j] != 0 && how.leaving) continue;
-        if (mode_.leans[j] != 0 && mechanics_.belt(j, now_.hi, side()) != 0) {
-            const Motion way = model::motion_of(-mechanics_.belt(j, now_.hi, side()));
+        if (const double heading = belt_heading(j); mode_.leans[j] != 0 && heading != 0) {
+            const Motion way = model::motion_of(-heading);
             if (how.way != way) slide(j, way, false);
             continue;
         }
@@ -367,7 +430,7 @@ bool Engine::decide(bool told, std::optional<Ending> released) {
         asked[j] = 1;
         how.way = Motion::stuck, how.riding = how.leaving = false;
     }
-    project();
+    project(side());
     if (!frame().closing.empty() && !share_loops(released)) return false;
     Look found;
     const int most = 8 * static_cast<int>(joints) + 16;
@@ -387,7 +450,7 @@ bool Engine::decide(bool told, std::optional<Ending> released) {
             how.way = Motion::stuck;
         }
         if (grown) {
-            project();
+            project(side());
             continue;
         }
         const std::vector<double> y = departing();
@@ -402,7 +465,7 @@ bool Engine::decide(bool told, std::optional<Ending> released) {
             const double beyond = excess(j, found, mode_, here(), towards);
             if (std::isnan(beyond)) return fail(Outcome::excitation_not_finite);
             const double size = n() > 1 ? 8 * rounding * torque_size(j) : 0;
-            if (released && released->which == j && std::fabs(beyond) <= nearly * torque_size(j)) {
+            if (released && released->which == j && std::fabs(beyond) <= nearly * torque_size(j) + 2 * found.blurred) {
                 worst = j, most_beyond = model::never, way = static_cast<Motion>(released->side);
                 continue;
             }
@@ -415,8 +478,11 @@ bool Engine::decide(bool told, std::optional<Ending> released) {
             if (mode_.leans[worst] != 0) {
                 mode_.leans[worst] = 0, at_wall_[worst] = 1;
                 const Motion slides = mode_.friction[worst].way;
-                if (mechanics_.rubs(worst))
-                    slide(worst, slides == Motion::stuck ? way : slides, slides == Motion::stuck);
+                if (mechanics_.rubs(worst) && slides == Motion::stuck) {
+                    slide(worst, way, true);
+                } else if (mechanics_.rubs(worst) && mechanics_.belt(worst, now_.hi, side()) == 0) {
+                    mode_.friction[worst].way = Motion::stuck;  // it may go with the belt, which sets off
+                }
             } else {
                 slide(worst, way, true);
                 // In a loop others may hold on, while this one gives all that it can.
@@ -433,7 +499,7 @@ bool Engine::decide(bool told, std::optional<Ending> released) {
             const Joint& joint = problem_.system.joints[j];
             double rate = found.accelerations[index(joint.first)] -
                           (joint.second < 0 ? 0 : found.accelerations[index(joint.second)]);
-            if (mechanics_.has_belt(j)) rate -= mechanics_.belt_rate(j, now_.hi, side(), 1e-4 * pace_);
+            if (mechanics_.has_belt(j)) rate -= belt_slope(j).rate;
             const double I = problem_.system.bodies[index(joint.first)].inertia;
             if (model::sign_of(how.way) * rate * I >= -64 * rounding * torque_size(j)) continue;
             taken_back[j] = 1;
@@ -442,7 +508,7 @@ bool Engine::decide(bool told, std::optional<Ending> released) {
         }
         if (!changed) break;
     }
-    project();
+    project(side());
     for (std::size_t j = 0; j < joints; ++j) {
         if (leant[j] != 0 || mode_.leans[j] != 0) {
             if (told && leaned_[j] != 0 && mode_.leans[j] == 0) tell(EventKind::slip, static_cast<int>(j));
@@ -461,8 +527,8 @@ bool Engine::decide(bool told, std::optional<Ending> released) {
             }
         } else if (told && was_held[j] != 0 && slides) {
             tell(EventKind::slip, static_cast<int>(j));
-        } else if (told && was_held[j] == 0 && !slides) {
-            take_back_slip(j);
+        } else if (told && was_held[j] == 0 && !slides && !take_back_slip(j)) {
+            tell(EventKind::stick, static_cast<int>(j));
         }
         arrived_[j] = Motion::stuck;
     }
@@ -492,7 +558,7 @@ bool Engine::share_loops(const std::optional<Ending>& released) {
         constexpr double wall = 1e30;
         if (mode_.leans[j] > 0) low(c) = -wall;
         if (mode_.leans[j] < 0) high(c) = wall;
-        slope(c) = mode_.leans[j] == 0 ? -mechanics_.belt_rate(j, now_.hi, side(), 1e-4 * pace_) : 0;
+        slope(c) = mode_.leans[j] == 0 ? -belt_slope(j).rate : 0;
     }
     Eigen::VectorXd lightness(static_cast<Eigen::Index>(n())), torques(static_cast<Eigen::Index>(n()));
     for (std::size_t i = 0; i < n(); ++i) {
@@ -517,10 +583,10 @@ bool Engine::share_loops(const std::optional<Ending>& released) {
 }
 
 /// What is held together has one velocity, to the letter; what leans is at its wall.
-void Engine::project() {
+void Engine::project(Side when) {
     const Frame& present = frame();
     std::vector<double> belts(mechanics_.joints()), offsets;
-    for (std::size_t j = 0; j < belts.size(); ++j) belts[j] = mechanics_.belt(j, now_.hi, side());
+    for (std::size_t j = 0; j < belts.size(); ++j) belts[j] = mechanics_.belt(j, now_.hi, when);
     present.offsets(belts, mode_, offsets);
     std::vector<double> momentum(present.groups(), 0), first(present.groups(), 0);
     std::vector<char> seen(present.groups(), 0), alike(present.groups(), 1);
@@ -545,6 +611,7 @@ void Engine::project() {
         if (wall == 0) continue;
         const double at = problem_.system.joints[edge.joint].walls->at(wall);
         const double base = edge.parent < 0 ? 0 : y_[index(edge.parent)];
+        low_[index(edge.child)] = edge.parent < 0 ? 0 : low_[index(edge.parent)];
         y_[index(edge.child)] = edge.parent < 0 ? at : base + edge.sign * at;
     }
 }
@@ -555,16 +622,27 @@ bool Engine::restart_contacts(Because why, std::size_t at) {
         if (!mechanics_.rubs(j) || mode_.leans[j] != 0) continue;
         Slipping& how = mode_.friction[j];
         const double s = slip(j);
-        const double fastest = std::fabs(mechanics_.velocity(j, y_)) + std::fabs(mechanics_.belt(j, now_.hi, side()));
-        if (std::fabs(s) <= 4 * rounding * fastest) {
-            if (how.way != Motion::stuck && !how.riding) arrived_[j] = how.way;
+        const double belt = mechanics_.belt(j, now_.hi, side());
+        double corner = 4 * rounding * (std::fabs(mechanics_.velocity(j, y_)) + std::fabs(belt));
+        if (why == Because::belt && mechanics_.has_belt(j)) {
+            // Where it only turns a corner its values differ by rounding, and by what it does in a hair of time.
+            const double rate =
+                std::max(std::fabs(segment_.belt_rates[j][node_count - 1]), std::fabs(belt_slope(j).rate));
+            corner = 16 * corner + rate * 64 * rounding * std::fabs(now_.hi);
+        }
+        if (std::fabs(s) <= corner) {
+            if (how.way == Motion::stuck || how.riding) continue;
+            if (why == Because::act) {
+                how.leaving = true;  // what a user stopped did not come to a standstill of its own
+            } else {
+                arrived_[j] = how.way;
+            }
             continue;
         }
         const Motion way = model::motion_of(s);
         const bool held = how.way == Motion::stuck || how.riding;
         if (!held && how.way == way) continue;
-        const bool told =
-            now_.hi > problem_.window.start && (why == Because::belt || (why == Because::impact && j != at));
+        const bool told = begun() && (why == Because::belt || (why == Because::impact && j != at));
         if (held && told) tell(EventKind::slip, static_cast<int>(j));
         if (!held && why == Because::belt) tell(EventKind::turn, static_cast<int>(j));
         slide(j, way, false);
@@ -576,6 +654,7 @@ bool Engine::restart_contacts(Because why, std::size_t at) {
 
 void Engine::begin() {
     after_break_ = mechanics_.next_break(std::nextafter(now_.hi, -model::never)) == now_.hi;
+    find_belt_slopes({});
     std::vector<std::string> names;
     if (problem_.system.named) {
         for (const char* kind : {"theta.", "velocity."}) {
@@ -592,26 +671,20 @@ void Engine::begin() {
         if (!good) fail(Outcome::excitation_not_finite);
         echo(now_.hi, 1);
         for (std::size_t j = 0; j < mechanics_.joints(); ++j) {
-            const Joint& joint = problem_.system.joints[j];
-            if (mechanics_.rubs(j)) {
-                const double s = slip(j);
-                if (s != 0) {
-                    slide(j, model::motion_of(s), false);
-                } else {
-                    mode_.friction[j].way = Motion::stuck;
-                }
-            }
-            if (!joint.walls) continue;
-            for (const int wall : {1, -1}) {
-                if (mechanics_.angle(j, y_) != joint.walls->at(wall)) continue;
-                const double v = wall * mechanics_.velocity(j, y_);
-                at_wall_[j] = 1;
-                if (v == 0) mode_.leans[j] = wall;
+            if (!mechanics_.rubs(j)) continue;
+            const double s = slip(j);
+            if (s != 0) {
+                slide(j, model::motion_of(s), false);
+            } else {
+                mode_.friction[j].way = Motion::stuck;
             }
         }
+        touch_walls();
         if (outcome_ == Outcome::reached_end) decide(false);
         for (std::size_t j = 0; j < mechanics_.joints(); ++j) leaned_[j] = mode_.leans[j] != 0 ? 1 : 0;
     }
+    result_.began_stuck = mode_.holds(0);
+    for (std::size_t j = 0; j < mechanics_.joints(); ++j) reach_[j] = std::fabs(mechanics_.angle(j, y_));
 }
 
 void Engine::run() {
@@ -632,8 +705,10 @@ void Engine::run() {
     }
     if (outcome_ == Outcome::reached_end) {
         const Frame& present = frame();
-        bool still = true, for_good = !mechanics_.asks_functions();
-        for (std::size_t i = 0; i < n(); ++i) still = still && present.group[i] < 0 && y_[n() + i] == 0;
+        bool still = true, for_good = !mechanics_.asks_functions() && !problem_.joined_elsewhere;
+        for (std::size_t i = 0; i < n(); ++i) {
+            still = still && present.group[i] < 0 && (y_[n() + i] == 0 || problem_.joined_elsewhere);
+        }
         mechanics_.for_each_signal([&](const Signal& s) { for_good = for_good && s.constant_from() <= now_.hi; });
         for_good = for_good && mechanics_.states() == 0;
         for (const model::WantedEvent& event : problem_.drive.events) for_good = for_good && event.act == nullptr;
@@ -647,14 +722,19 @@ void Engine::run() {
             if (last != result_.events.rend()) last->kind = EventKind::rest;
         }
     }
+    if (mode_.friction[0].way != Motion::stuck && !mode_.holds(0)) result_.motion_at_stop = mode_.friction[0].way;
+    if (!mechanics_.rubs(0) && mode_.leans[0] == 0) result_.motion_at_stop = heading_[0];
     result_.outcome = outcome_;
+    keep_within_walls(y_);  // beside a wall its distance has digits that theta has not
     result_.t_start = problem_.window.start;
     result_.t_stop = now_.hi;
     if (next_row_ < problem_.rows.count()) result_.table = result_.table.first(next_row_);
-    history_->close(now_.hi, y_);
+    history_->close(now_, y_);
     result_.history = history_;
     auto carry = std::make_shared<Carry>();
-    carry->y = y_, carry->mode = mode_, carry->past = history_;
+    carry->y = y_, carry->mode = mode_, carry->watches = watches_, carry->echoes = echoes_, carry->heading = heading_,
+    carry->born = born_;
+    if (longest_delay_ > 0 || !problem_.joined_elsewhere) carry->past = history_;
     for (const Signal& load : mechanics_.loads()) carry->controllers.push_back(load.memory());
     result_.carry = std::move(carry);
 }
@@ -664,14 +744,12 @@ void Engine::choose() {
     double breaks = std::min(mechanics_.next_break(now_.hi), echoes_.empty() ? model::never : echoes_.front().first);
     if (!breaks_.empty()) breaks = std::min(breaks, breaks_.front());
     const double limit = std::min(problem_.window.end, breaks);
-    double delay = model::never;
-    mechanics_.for_each_signal([&](const Signal& s) {
-        for (const double by : s.delays()) delay = std::min(delay, by);
-    });
-    double h =
-        std::min({rung(h_, longest_ / 2), mechanics_.view(now_.hi, cheb::widest_gap) / 2, delay / 2 * (1 - 1e-12)});
+    double h = std::min(
+        {rung(h_, longest_ / 2), mechanics_.view(now_.hi, cheb::widest_gap) / 2, shortest_delay_ / 2 * (1 - 1e-12)});
     if (bad_time_ < model::never) h = std::min(h, now_.until(bad_time_) / 4);
     h = std::min(h, longest_under_friction() / 2);
+    // As long as it takes to a wall, or back to it, and a little more: a small bounce is to be seen.
+    if (has_walls_) h = std::min(h, std::max(0.6 * until_wall(), 1e-9 * pace_));
     const double remaining = now_.until(limit);
     const bool to_limit = remaining <= 2 * h * (1 + 1e-9);
     segment_.start = now_;
@@ -680,6 +758,28 @@ void Engine::choose() {
     segment_.from_break = after_break_;
     segment_.to_break = to_limit && limit == breaks;
     segment_.to_the_end = to_limit;
+}
+
+/// How long it takes to the next wall, if all accelerations stay as they are.
+double Engine::until_wall() {
+    double first = model::never;
+    if (!look({now_.hi, side(), departing()}, mode_, *frame_, look_)) return first;
+    for (std::size_t j = 0; j < mechanics_.joints(); ++j) {
+        const Joint& joint = problem_.system.joints[j];
+        if (!joint.walls || mode_.holds(j)) continue;
+        const double second = joint.second < 0 ? 0 : look_.accelerations[index(joint.second)];
+        for (const int wall : {1, -1}) {
+            const double apart = std::max(0.0, wall * gap(j, joint.walls->at(wall)));
+            const double v = wall * mechanics_.velocity(j, y_);
+            const double a = wall * (look_.accelerations[index(joint.first)] - second), root = v * v + 2 * a * apart;
+            if (!(root >= 0) || !(apart < model::never)) continue;
+            const double t = v > 0   ? 2 * apart / (v + std::sqrt(root))
+                             : a > 0 ? (std::sqrt(root) - v) / a
+                                     : model::never;
+            if (t > 0) first = std::min(first, t);
+        }
+    }
+    return first;
 }
 
 /// How long a stretch may be under laws of friction that bend with the speed.
@@ -711,7 +811,7 @@ double Engine::longest_under_friction() {
 void Engine::again(Collocation::Attempt attempt) {
     if (++attempts_ >= most_attempts) {
         if (now_.hi - attempts_since_ < 1e-7 * most_attempts * pace_) {
-            fail(Outcome::unresolved);
+            get_nowhere(Outcome::unresolved);
             return;
         }
         attempts_ = 0, attempts_since_ = now_.hi;
@@ -730,6 +830,9 @@ void Engine::again(Collocation::Attempt attempt) {
             const auto place = std::lower_bound(breaks_.begin(), breaks_.end(), *found);
             if (place == breaks_.end() || *place != *found) {
                 breaks_.insert(place, *found);
+                for (std::size_t j = 0; j < mechanics_.joints(); ++j) {
+                    if (solver_->belt_jumps(segment_, j, *found)) return mechanics_.jumps_at(*found);
+                }
                 return;
             }
         }
@@ -737,6 +840,49 @@ void Engine::again(Collocation::Attempt attempt) {
     const double unresolved = solver_->unresolved();
     const double factor = unresolved < model::never ? 0.9 * std::pow(unresolved, -1.0 / 16) : 0;
     h_ = segment_.h * std::clamp(factor, 0.5, 0.9);
+}
+
+/// Ends the run, which got nowhere: if something that acts in it is rough on every scale, that is why.
+bool Engine::get_nowhere(Outcome outcome) {
+    const double most = std::min({pace_, problem_.window.end - now_.hi, shortest_delay_});
+    const double from = now_.hi, length = std::min(short_look * pace_, most / 8);
+    struct Source {
+        std::string name;
+        std::function<double(double)> value;
+        double beside;  ///< how great is what it is added to
+    };
+    std::vector<Source> sources;
+    const auto of = [&](const char* what, const std::string& who) {
+        return problem_.system.named ? fmt::format("{} of {}", what, who) : std::string(what);
+    };
+    for (std::size_t i = 0; i < n(); ++i) {
+        const auto load = [this, i](double t) { return mechanics_.load(i, {t, Side::at, y_}); };
+        sources.push_back({of("M", problem_.system.bodies[i].name), load, mechanics_.size_of(i, here())});
+    }
+    sources.push_back({"the base", [&](double t) { return mechanics_.base(t, Side::at); }, 0});
+    for (std::size_t j = 0; j < mechanics_.joints(); ++j) {
+        if (!mechanics_.has_belt(j)) continue;
+        const auto belt = [this, j](double t) { return mechanics_.belt(j, t, Side::at); };
+        sources.push_back({of("the belt", problem_.system.joints[j].name), belt, 0});
+    }
+    std::vector<double> rates(mechanics_.states());
+    for (std::size_t k = 0; k < mechanics_.states_of_user(); ++k) {
+        const auto rate = [this, k, &rates](double t) {
+            mechanics_.rates({t, Side::at, y_}, rates.data());
+            return rates[k];
+        };
+        sources.push_back({"the rate of " + problem_.drive.states[k].name, rate, 0});
+    }
+    double worst = 64 * rounding;
+    for (const Source& source : sources) {
+        const Roughness look = roughness(source.value, from, length);
+        const double part = look.most / (look.size + source.beside);
+        if (!(look.usual > as_rough * look.most) || !(part > worst)) continue;
+        worst = part;
+        result_.rough = Rough{source.name, look.most, part};
+        outcome = Outcome::unresolved;
+    }
+    return fail(outcome);
 }
 
 bool Engine::advance() {
@@ -747,7 +893,7 @@ bool Engine::advance() {
     const double late = std::max(std::fabs(now_.hi), std::fabs(segment_.end));
     if (attempt == Collocation::Attempt::shorten &&
         2 * segment_.h <= std::max(shortest * pace_, 16 * rounding * late)) {
-        if (++too_short_ > most_short) return fail(Outcome::chattering);
+        if (++too_short_ > most_short) return get_nowhere(Outcome::chattering);
         solver_->pass_over(segment_);
         h_ = 64 * segment_.h;
     } else if (attempt != Collocation::Attempt::resolved) {
@@ -774,11 +920,13 @@ bool Engine::end_at(double x) {
     if (!rows_until(whole ? segment_.end : segment_.start.later(length).hi, whole)) {
         return fail(Outcome::excitation_not_finite);
     }
-    if (length > 0) history_->add({segment_.start, segment_.h, length, y_, segment_.series});
-    result_.gap = std::max(result_.gap, std::min(length, 2 * cheb::widest_gap * segment_.h));
-    if (x > -1) segment_.state(x, y_);
+    keep(length);
+    if (mechanics_.asks_functions())
+        result_.gap = std::max(result_.gap, std::min(length, 2 * cheb::widest_gap * segment_.h));
+    if (x > -1) go_to(x);
     now_ = whole && segment_.to_the_end ? Clock{segment_.end, 0} : segment_.start.later(length);
     after_break_ = whole && segment_.to_break;
+    mechanics_.forget_jumps(now_.hi);
     if (bad_time_ <= now_.hi) bad_time_ = model::never;
     while (!breaks_.empty() && breaks_.front() <= now_.hi) breaks_.erase(breaks_.begin());
     if (length > 0) {
@@ -796,7 +944,8 @@ bool Engine::end_at(double x) {
     }
     if (generation > 0) echo(now_.hi, generation + 1);
     if (!whole || (after_break_ && generation == 0)) echo(now_.hi, 1);
-    project();
+    find_belt_slopes(after_break_ ? std::nullopt : std::optional(x));
+    project(after_break_ ? Side::before : Side::at);
     bool good = true;
     mechanics_.for_each_signal([&](Signal& s) { good = good && s.arrive(here()); });
     if (!good) return fail(Outcome::excitation_not_finite);
@@ -806,6 +955,84 @@ bool Engine::end_at(double x) {
         if (mechanics_.has_belt(j)) return restart_contacts(Because::belt);
     }
     return decide(true);
+}
+
+/// The present is at x of the stretch. What is rounded off the angles is kept: beside a wall it is seen.
+void Engine::go_to(double x) {
+    const std::vector<double> begin = y_;
+    segment_.state(x, y_);
+    for (std::size_t i = 0; has_walls_ && i < n(); ++i) {
+        const double moved =
+            (x >= 1 ? segment_.moved[i][node_count - 1] : cheb::value(segment_.series[i], x)) + low_[i];
+        y_[i] = begin[i] + moved;
+        const double added = y_[i] - begin[i];
+        low_[i] = (begin[i] - (y_[i] - added)) + (moved - added);
+    }
+    for (std::size_t j = 0; has_walls_ && j < mechanics_.joints(); ++j) {
+        if (problem_.system.joints[j].walls) reach_[j] = std::max(reach_[j], std::fabs(gap(j, origin_[j])));
+    }
+}
+
+/// From the angle of a joint to a place.
+double Engine::gap(std::size_t joint, double place) const {
+    const Joint& own = problem_.system.joints[joint];
+    const double low = own.second < 0 ? low_[index(own.first)] : low_[index(own.first)] - low_[index(own.second)];
+    return (place - mechanics_.angle(joint, y_)) - low;
+}
+
+void Engine::keep(double length) {
+    if (!(length > 0) || (!problem_.limits.dense && longest_delay_ == 0)) return;
+    Kept kept{.start = segment_.start, .h = segment_.h, .length = length, .begin = y_, .series = segment_.series};
+    if (problem_.limits.dense) kept.acting = acting();
+    history_->add(std::move(kept));
+    if (!problem_.limits.dense) history_->forget(now_.hi - 2 * longest_delay_);
+}
+
+/// What acts at each joint on the stretch.
+std::vector<Kept::Acting> Engine::acting() {
+    std::vector<Kept::Acting> all(mechanics_.joints());
+    Nodes values{};
+    for (std::size_t j = 0; j < all.size(); ++j) {
+        if (j < n()) {
+            values = segment_.driven[j];
+            if (mechanics_.has_base()) {
+                Nodes push{};
+                for (std::size_t node = 0; node < node_count; ++node) {
+                    push[node] =
+                        -problem_.system.bodies[j].inertia * mechanics_.base(segment_.times[node], segment_.side(node));
+                    values[node] -= push[node];
+                }
+                all[j].push = cheb::fit(push);
+            }
+            all[j].M = cheb::fit(values);
+        }
+        all[j].holds = mechanics_.rubs(j) && mode_.leans[j] == 0 && mode_.friction[j].way == Motion::stuck;
+        if (mechanics_.has_belt(j)) all[j].belt = cheb::fit(segment_.belts[j]);
+        if (all[j].holds) {
+            all[j].friction = cheb::fit(segment_.holding[j]);
+        } else if (mechanics_.rubs(j) || problem_.system.joints[j].friction.bristle() != nullptr) {
+            for (std::size_t node = 0; node < node_count; ++node) {
+                point_.resize(y_.size());
+                for (std::size_t k = 0; k < y_.size(); ++k) point_[k] = segment_.y[k][node];
+                const Moment at{segment_.times[node], segment_.side(node), point_};
+                values[node] = mechanics_.friction(j, at, mode_, segment_.belts[j][node]);
+            }
+            all[j].friction = cheb::fit(values);
+        }
+    }
+    return all;
+}
+
+/// Of the motion and of springs.
+double Engine::energy(const std::vector<double>& y) const {
+    double all = 0;
+    for (std::size_t i = 0; i < n(); ++i) all += problem_.system.bodies[i].inertia * y[n() + i] * y[n() + i] / 2;
+    for (std::size_t j = 0; j < mechanics_.joints(); ++j) {
+        const Joint& joint = problem_.system.joints[j];
+        const double q = mechanics_.angle(j, y);
+        all += joint.stiffness * q * q / 2 + joint.spring.energy(q);
+    }
+    return all;
 }
 
 bool Engine::handle(const Ending& ending) {
@@ -818,6 +1045,11 @@ bool Engine::handle(const Ending& ending) {
             return decide(true);
         case By::slip: {
             const double fastest = std::fabs(mechanics_.belt(j, now_.hi, side())) + greatest(segment_.y[n()]);
+            // What passed zero because the belt jumped has not come to a standstill.
+            constexpr double clearly = 1e-6;
+            if (mechanics_.has_belt(j) && std::fabs(slip(j)) > clearly * fastest && mode_.leans[j] == 0) {
+                return restart_contacts(Because::belt) && (!too_often() || fail(Outcome::chattering));
+            }
             for (std::size_t i = 0; i < mechanics_.joints(); ++i) {
                 const Slipping& how = mode_.friction[i];
                 if (!mechanics_.rubs(i) || how.way == Motion::stuck || how.riding || mode_.leans[i] != 0) continue;
@@ -864,7 +1096,7 @@ bool Engine::handle(const Ending& ending) {
             if (!decide(true)) return false;
             return !too_often() || fail(Outcome::chattering);
         case By::user:
-            return act(j);
+            return act_all(ending.users);
     }
     return true;
 }
@@ -951,12 +1183,14 @@ void Engine::watch_slip(std::size_t joint, Ending& ending) {
     if (too_often() || stays.blunt > most_blunt * torques) fail(Outcome::chattering);
 }
 
-/// What was told to slip right now, and did not.
-void Engine::take_back_slip(std::size_t joint) {
+/// What was told to slip right now, and did not. Whether there was such an event.
+bool Engine::take_back_slip(std::size_t joint) {
     auto told = std::find_if(result_.events.rbegin(), result_.events.rend(), [&](const JointEvent& e) {
         return e.where == static_cast<int>(joint) && e.kind == EventKind::slip && e.t == now_.hi;
     });
-    if (told != result_.events.rend()) result_.events.erase(std::next(told).base());
+    if (told == result_.events.rend()) return false;
+    result_.events.erase(std::next(told).base());
+    return true;
 }
 
 /// Where what holds a joint passes what it can hold.
@@ -990,14 +1224,14 @@ void Engine::watch_release(std::size_t joint, Ending& ending) {
         cheb::Bounded<node_count> curve(1, left, cheb::derivative(left), values);
         const double doubt = 8 * (rounding * (greatest(limit) + largest) + cheb::tail(series) +
                                   (mechanics_.varies(joint) ? cheb::tail(cheb::fit(limit)) : 0)) +
-                             solver_->blurred_by_belts(segment_);
+                             solver_->blurred_by_belts(segment_) + (1 - known()) * greatest(pull);
         curve.raise_floor(doubt);
         const auto lets_go = [&](double x) {
             std::vector<double> y;
             segment_.state(x, y);
             const Moment at{segment_.time(x), x <= -1 ? segment_.side(0) : Side::at, y};
             Look found;
-            if (!look(at, mode_, *frame_, found)) return false;
+            if (!look(at, mode_, *frame_, found, x)) return false;
             Motion towards = Motion::stuck;
             return excess(joint, found, mode_, at, towards) > 0 && towards == side;
         };
@@ -1009,7 +1243,9 @@ void Engine::watch_release(std::size_t joint, Ending& ending) {
             }
             return touch.has_value();
         };
-        auto x = cheb::first_below(curve, -1, cheb::LeftEnd::anywhere, touches);
+        // A jump that was passed over may have taken it far beyond.
+        auto x =
+            values[0] < -doubt ? std::optional(-1.0) : cheb::first_below(curve, -1, cheb::LeftEnd::anywhere, touches);
         if (x && touch) x = hybrid::first_true(lets_go, *touch);
         if (!x || !(*x < ending.x) || !(segment_.time(*x) < segment_.end)) continue;
         ending = {*x, By::release, joint, static_cast<int>(side)};
@@ -1019,13 +1255,10 @@ void Engine::watch_release(std::size_t joint, Ending& ending) {
 void Engine::watch_walls(std::size_t joint, Ending& ending) const {
     const Joint& own = problem_.system.joints[joint];
     const auto no = [](double) { return false; };
-    const Nodes none{};
-    const Nodes& a = segment_.y[index(own.first)];
-    const Nodes& b = own.second < 0 ? none : segment_.y[index(own.second)];
     for (const int wall : {1, -1}) {
         const double place = own.walls->at(wall);
         if (!std::isfinite(place)) continue;
-        const double begin = wall * (place - mechanics_.angle(joint, y_));
+        const double begin = wall * gap(joint, place);
         Nodes change{};
         for (std::size_t j = 0; j < node_count; ++j) {
             const double second = own.second < 0 ? 0 : segment_.moved[index(own.second)][j];
@@ -1033,10 +1266,10 @@ void Engine::watch_walls(std::size_t joint, Ending& ending) const {
         }
         // What begins at the wall is known as well as its way from there.
         const bool leaving = at_wall_[joint] != 0 && std::fabs(begin) <= 4 * rounding * std::fabs(place);
-        const double far = leaving ? greatest(change) : std::max({greatest(a), greatest(b), std::fabs(place)});
-        Series gap = cheb::fit(change);
-        if (!leaving) gap[0] += begin;
-        cheb::Bounded<node_count> curve(1, gap, cheb::derivative(gap));
+        const double far = leaving ? greatest(change) : std::max(reach_[joint], std::fabs(place - origin_[joint]));
+        Series left = cheb::fit(change);
+        if (!leaving) left[0] += begin;
+        cheb::Bounded<node_count> curve(1, left, cheb::derivative(left));
         curve.raise_floor(64 * rounding * far);
         const auto x = cheb::first_below(curve, -1, leaving ? cheb::LeftEnd::leaving : cheb::LeftEnd::anywhere, no);
         if (x && *x < ending.x) ending = {*x, By::wall, joint, wall};
@@ -1140,39 +1373,70 @@ void Engine::watch_relays(Ending& ending) {
     }
 }
 
+double Engine::watched(std::size_t event, const Moment& at) const {
+    return asking_.ask(*problem_.drive.events[event].when, at);
+}
+
+/// Events of the user, if one of them comes before the end that is known so far.
 void Engine::watch_users(Ending& ending) {
+    const bool at_standstill = ending.by == By::slip || ending.by == By::release || ending.by == By::stays;
+    const double before = ending.x - (at_standstill ? beside_standstill : 0);
+    std::vector<std::pair<std::size_t, double>> wanted_ones, unwanted;  // passages; the others only change the half
     std::vector<double> y;
-    for (std::size_t e = 0; e < problem_.drive.events.size(); ++e) {
+    for (std::size_t e = 0; e < watches_.size(); ++e) {
         const model::WantedEvent& wanted = problem_.drive.events[e];
+        Watch& watch = watches_[e];
         Nodes values{};
         for (std::size_t j = 0; j < node_count; ++j) {
             point_.resize(y_.size());
             for (std::size_t k = 0; k < y_.size(); ++k) point_[k] = segment_.y[k][j];
-            values[j] = asking_.ask(*wanted.when, {segment_.times[j], segment_.side(j), point_});
+            values[j] = watched(e, {segment_.times[j], segment_.side(j), point_});
             if (std::isfinite(values[j])) continue;
             fail(Outcome::excitation_not_finite);
             return;
         }
         const auto exact = [&](double x) {
             segment_.state(x, y);
-            return asking_.ask(*wanted.when, {segment_.time(x), Side::at, y});
+            return watched(e, {segment_.time(x), Side::at, y});
         };
-        const Watched watched(values, exact);
+        const Watched curve(values, exact, watch.rounded);
         double from = -1;
-        constexpr int most_passages = 200;
-        for (int i = 0; i < most_passages; ++i) {
-            const auto x = watched.leaves(halves_[e], from);
-            if (!x || !(*x < ending.x)) break;
-            const bool counts = wanted.direction == model::Crossing::both ||
-                                (halves_[e] < 0) == (wanted.direction == model::Crossing::up);
-            if (counts) {
-                ending = {*x, By::user, e};
+        hybrid::Half half = watch.half;
+        while (const auto x = curve.leaves(half, from)) {
+            if (!(*x < before)) break;
+            if (watch.sent_back && !curve.is_clearly(half, *x)) return come_again(e);
+            if (wanted.direction == model::Crossing::both || (half < 0) == (wanted.direction == model::Crossing::up)) {
+                wanted_ones.emplace_back(e, *x);
                 break;
             }
-            halves_[e] = -halves_[e];
+            if (unwanted.size() > most_passages) break;
+            if (watch.half == 0) watch.half = half;
+            unwanted.emplace_back(e, *x);
+            half = -half;
             from = *x;
         }
+        if (watch.half == 0) watch.half = half;
+        if (watch.sent_back) watch.sent_back = !curve.is_clearly(watch.half, 1);
     }
+    if (!wanted_ones.empty()) {
+        double first = 1;
+        for (const auto& [event, x] : wanted_ones) first = std::min(first, x);
+        ending = {first, By::user};
+        for (const auto& [event, x] : wanted_ones) {
+            if (x <= first + one_instant) ending.users.push_back(event);
+        }
+    }
+    for (const auto& [event, x] : unwanted) {
+        if (x <= ending.x) watches_[event].half = -watches_[event].half;
+    }
+}
+
+/// What an act threw back, or stopped, is through zero without having been beyond rounding on the side that it came
+/// from: it would be thrown back again at once, and again.
+void Engine::come_again(std::size_t event) {
+    const bool told = !result_.events.empty() && result_.events.back().user >= 0 && result_.events.back().t == now_.hi;
+    if (!told) tell(EventKind::user, -1, static_cast<int>(event));
+    fail(Outcome::chattering);
 }
 
 bool Engine::rubs_somewhere(std::size_t body) const {
@@ -1202,7 +1466,7 @@ void Engine::record_turns(double until) {
             const auto x = watched.leaves(half, from);
             if (!x || *x >= until - 1e-12) break;
             const double t = segment_.time(*x);
-            if (t > problem_.window.start) {
+            if (t > problem_.window.start || problem_.before != nullptr) {
                 std::vector<double> y;
                 segment_.state(*x, y);
                 result_.events.push_back(
@@ -1219,13 +1483,44 @@ void Engine::record_turns(double until) {
 
 // ---- impacts, acts, rows
 
+/// How long the next bounces take that begin with this speed, under torques that stay as they are. None when one of
+/// these is no number.
+std::optional<Engine::Bounces> Engine::next_bounces(std::size_t joint, int wall, double speed) {
+    const Joint& own = problem_.system.joints[joint];
+    const auto back_in = [&](bool out) {
+        Mode thrown = mode_;
+        for (std::size_t j = 0; j < mechanics_.joints(); ++j) {
+            if (!mechanics_.rubs(j)) continue;
+            if (slip(j) != 0) thrown.friction[j].way = model::motion_of(slip(j));
+            // Friction acts against the sliding: out and back again, or, on a belt, the same way all the time.
+            const bool turns = j == joint && mechanics_.belt(j, now_.hi, side()) == 0;
+            if (turns) thrown.friction[j].way = (wall > 0) == out ? Motion::backward : Motion::forward;
+        }
+        Look found;
+        if (!look(here(), thrown, Frame(problem_.system, thrown), found)) return -model::never;
+        const double second = own.second < 0 ? 0 : found.accelerations[index(own.second)];
+        return wall * (found.accelerations[index(own.first)] - second);
+    };
+    const double out = back_in(true), back = back_in(false);
+    if (out == -model::never || back == -model::never) return {};
+    if (!(out > 0)) return Bounces{};
+    if (!(back > 0)) return Bounces{speed / out, speed / out};  // friction holds it at the top of the bounce
+    const double slower = std::sqrt(back / out), once = speed * (1 / out + slower / back);
+    const double kept = own.walls->restitution * slower;
+    return Bounces{once, kept < 1 ? once / (1 - kept) : model::never};
+}
+
 bool Engine::hit(std::size_t joint, int wall) {
     const Joint& own = problem_.system.joints[joint];
     const auto a = index(own.first);
     const double place = own.walls->at(wall), e = own.walls->restitution;
     const bool stayed = at_wall_[joint] != 0;
     y_[a] = own.second < 0 ? place : y_[index(own.second)] + place;
+    low_[a] = own.second < 0 ? 0 : low_[index(own.second)];
+    origin_[joint] = place, reach_[joint] = 0;
     const double before = std::max(0.0, wall * mechanics_.velocity(joint, y_));
+    double lightness = 1 / problem_.system.bodies[a].inertia;
+    if (own.second >= 0) lightness += 1 / problem_.system.bodies[index(own.second)].inertia;
     at_wall_[joint] = 1;
     const auto stands = [&] {
         if (mode_.leans[joint] != wall || leaned_[joint] != 0) return;
@@ -1251,25 +1546,19 @@ bool Engine::hit(std::size_t joint, int wall) {
         y_[n() + a] = middle + Ib / (Ia + Ib) * relative;
         y_[n() + b] = middle - Ia / (Ia + Ib) * relative;
     };
-    // How long the next bounces take, under torques that stay as they are.
     velocity(-wall * e * before);
     bool rests = e * before == 0;
     double rest = 0;
     if (!rests) {
-        Look found;
-        Mode thrown = mode_;
-        for (std::size_t j = 0; j < mechanics_.joints(); ++j) {
-            if (mechanics_.rubs(j) && slip(j) != 0) thrown.friction[j].way = model::motion_of(slip(j));
-        }
-        const Frame loose(problem_.system, thrown);
-        if (!look(here(), thrown, loose, found)) return fail(Outcome::excitation_not_finite);
-        const double rate = found.accelerations[a] - (own.second < 0 ? 0 : found.accelerations[index(own.second)]);
-        const double into = wall * rate;
-        const double once = into > 0 ? 2 * e * before / into : model::never;
-        const double all = e < 1 ? once / (1 - e) : model::never;
-        rests = all <= last_bounces * pace_ || once <= shortest_bounce * pace_;
-        rest = all < model::never ? all : 0;
+        const auto bounces = next_bounces(joint, wall, e * before);
+        if (!bounces) return fail(Outcome::excitation_not_finite);
+        // Without a spring the run so far tells what is short: not its end, so that one may stop anywhere and go on.
+        const double pace = std::min(period_, now_.hi - born_);
+        rests = bounces->all <= last_bounces * pace || bounces->once <= shortest_bounce * pace;
+        rest = bounces->all < model::never ? bounces->all : bounces->once;
     }
+    const double after = rests ? 0 : e * before;
+    history_->add_jump(now_.hi, joint, {.impacts = (before - after) * (before + after) / lightness / 2});
     echo(now_.hi, 1);
     for (const int body : {own.first, own.second}) {
         if (body >= 0) heading_[index(body)] = model::motion_of(rests ? 0 : y_[n() + index(body)]);
@@ -1291,37 +1580,143 @@ bool Engine::hit(std::size_t joint, int wall) {
     }
     if (!restart_contacts(Because::impact, joint)) return false;
     if (rests) stands();
-    return !too_often() || fail(Outcome::chattering);
+    // Bounces at one wall die out; to and fro between others they need not.
+    const bool other = last_hit_ != std::pair(joint, wall);
+    last_hit_ = {joint, wall};
+    return !other || !too_often() || fail(Outcome::chattering);
 }
 
-bool Engine::act(std::size_t event) {
+bool Engine::act_all(const std::vector<std::size_t>& told) {
+    came_from_.clear();
+    for (const Watch& watch : watches_) came_from_.push_back(watch.half);
+    for (const std::size_t event : told) watches_[event].half = -watches_[event].half;
+    if (!std::all_of(told.begin(), told.end(), [&](std::size_t event) { return act(event, told); })) return false;
+    // What comes at the same instant is told before one of them stops the run: it would not be told when that goes on.
+    const bool stops =
+        std::any_of(told.begin(), told.end(), [&](std::size_t event) { return problem_.drive.events[event].stop; });
+    return !stops || fail(Outcome::stopped);
+}
+
+bool Engine::act(std::size_t event, const std::vector<std::size_t>& told) {
     const model::WantedEvent& wanted = problem_.drive.events[event];
-    halves_[event] = -halves_[event];
     tell(EventKind::user, -1, static_cast<int>(event));
     if (wanted.act != nullptr) {
         const std::vector<double> before = y_;
+        std::vector<double> values;
+        for (std::size_t e = 0; e < watches_.size(); ++e) values.push_back(watched(e, here()));
         model::State state{y_[0], y_[n()]};
         const bool named = problem_.system.named;
         const std::span<double> all(y_);
-        const std::span<double> told = all.first(asking_.told);
-        if (!wanted.act->act(now_.hi, state, named ? told : told.subspan(2 * n()))) {
+        const std::span<double> given = all.first(asking_.told);
+        if (!wanted.act->act(now_.hi, state, named ? given : given.subspan(2 * n()))) {
             return fail(Outcome::excitation_not_finite);
         }
         if (!named) y_[0] = state.theta, y_[1] = state.velocity;
-        if (y_ != before) {
-            for (std::size_t e = 0; e < halves_.size(); ++e) {
-                const auto value = [&](const std::vector<double>& y) {
-                    return asking_.ask(*problem_.drive.events[e].when, {now_.hi, side(), y});
-                };
-                if (value(y_) != value(before)) halves_[e] = 0;
-            }
-            for (int& lean : mode_.leans) lean = 0;
-            echo(now_.hi, 1);
+        keep_within_walls(y_);
+        for (std::size_t i = 0; i < n(); ++i) {
+            if (y_[i] != before[i]) low_[i] = 0;
+        }
+        history_->add_jump(now_.hi, 0, {.acts = energy(y_) - energy(before)});
+        echo(now_.hi, 1);
+        const bool moved = !std::equal(y_.begin(), y_.begin() + static_cast<std::ptrdiff_t>(2 * n()), before.begin());
+        if (moved) {
+            std::fill(mode_.leans.begin(), mode_.leans.end(), 0);
+            for (std::size_t i = 0; i < n(); ++i) heading_[i] = model::motion_of(y_[n() + i]);
+            touch_walls();
             if (!restart_contacts(Because::act)) return false;
+            see_flight();
+        }
+        stand_where_put(values, y_ != before ? told : std::vector<std::size_t>());
+        if (moved && watches_[event].fading.after(now_.hi) && !wanted.stop) return fail(Outcome::chattering);
+    }
+    return wanted.stop || !too_often() || fail(Outcome::chattering);
+}
+
+void Engine::keep_within_walls(std::vector<double>& y) const {
+    for (std::size_t i = 0; i < n(); ++i) {
+        if (const auto& walls = problem_.system.joints[i].walls) y[i] = std::clamp(y[i], walls->lower, walls->upper);
+    }
+}
+
+/// What stands at a wall, and does not move away from it, leans there.
+void Engine::touch_walls() {
+    for (std::size_t j = 0; j < mechanics_.joints(); ++j) {
+        const Joint& joint = problem_.system.joints[j];
+        if (!joint.walls) continue;
+        for (const int wall : {1, -1}) {
+            if (mechanics_.angle(j, y_) != joint.walls->at(wall)) continue;
+            at_wall_[j] = 1;
+            if (mechanics_.velocity(j, y_) == 0) mode_.leans[j] = wall;
         }
     }
-    if (wanted.stop) return fail(Outcome::stopped);
-    return !too_often() || fail(Outcome::chattering);
+}
+
+/// A body that was thrown, and is soon back, is to be seen on its way.
+void Engine::see_flight() {
+    if (!look({now_.hi, side(), departing()}, mode_, frame(), look_)) return;
+    for (std::size_t i = 0; i < n(); ++i) {
+        const double v = y_[n() + i], a = look_.accelerations[i];
+        if (!(v * a < 0) || !(std::fabs(v) < std::fabs(a) * longest_)) continue;
+        h_ = std::min(h_, std::max(1.2 * std::fabs(v / a), 1e-9 * pace_));
+    }
+}
+
+/// How far a watched value goes when what it is made of changes by some ulps.
+double Engine::rounding_of(std::size_t event) const {
+    constexpr double ulps = 1 + 4 * rounding;
+    std::vector<double> y = y_;
+    const double own = watched(event, {now_.hi, side(), y});
+    double most = 0;
+    for (std::size_t k = 0; k < 2 * n(); ++k) {
+        y[k] = y_[k] * ulps;
+        most = std::max(most, std::fabs(watched(event, {now_.hi, side(), y}) - own));
+        y[k] = y_[k];
+    }
+    return most;
+}
+
+/// Whether a value at zero goes on to the side to which it has come, now that the user has acted, as it does at once;
+/// else he threw it back, or stopped it.
+bool Engine::passes_on(std::size_t event) {
+    constexpr double soon = 1e-4;
+    const double step = soon * h_;
+    if (!look({now_.hi, side(), departing()}, mode_, frame(), look_)) return true;
+    std::vector<double> rates(mechanics_.states()), y = y_;
+    mechanics_.rates(here(), rates.data());
+    const auto value = [&](double after) {
+        for (std::size_t i = 0; i < n(); ++i) {
+            y[i] = y_[i] + after * y_[n() + i];
+            y[n() + i] = y_[n() + i] + after * look_.accelerations[i];
+        }
+        for (std::size_t k = 0; k < rates.size(); ++k) y[2 * n() + k] = y_[2 * n() + k] + after * rates[k];
+        return watched(event, {now_.hi + after, Side::at, y});
+    };
+    return came_from_[event] * (value(step) - value(-step)) < -watches_[event].rounded;
+}
+
+/// What the user did may have put watched values on the other side of zero, which is no passing. A value that was told
+/// stands at zero still when he changed something else, as a bounce does: its half is the one that it came from, or,
+/// when it goes on, what it comes to next.
+void Engine::stand_where_put(const std::vector<double>& before, const std::vector<std::size_t>& told) {
+    std::vector<double> first, last;
+    segment_.state(-1, first), segment_.state(1, last);
+    for (std::size_t e = 0; e < watches_.size(); ++e) {
+        Watch& watch = watches_[e];
+        const double now = watched(e, here());
+        const double size = std::max({std::fabs(watched(e, {segment_.time(-1), Side::at, first})),
+                                      std::fabs(watched(e, {segment_.end, Side::at, last})), std::fabs(now)});
+        if (now == before[e]) {
+            // One that an impact took past zero does not stand there.
+            const bool stands = std::fabs(now) <= at_zero * size + 2 * rounding_of(e) + watch.rounded;
+            if (!stands || std::find(told.begin(), told.end(), e) == told.end()) continue;
+            watch.rounded = 2 * std::fabs(now) + rounding_of(e);
+            watch.sent_back = !passes_on(e);
+            watch.half = watch.sent_back ? came_from_[e] : 0;
+            continue;
+        }
+        watch.half = std::fabs(now) <= at_zero * size ? 0 : now > 0 ? 1 : -1;
+        watch.sent_back = false;
+    }
 }
 
 bool Engine::rows_until(double end, bool to_the_end) {
@@ -1338,8 +1733,9 @@ bool Engine::rows_until(double end, bool to_the_end) {
 bool Engine::put_row(double t, double x) {
     std::vector<double> y = y_;
     if (x > -1) segment_.state(x, y);
+    keep_within_walls(y);
     const Moment at{t, x <= -1 ? side() : Side::at, y};
-    if (!look(at, mode_, frame(), look_)) return false;
+    if (!look(at, mode_, frame(), look_, x > -1 ? std::optional(x) : std::nullopt)) return false;
     double* cell = result_.table.writable() + next_row_;
     const std::size_t stride = problem_.rows.count();
     const auto put = [&](double value) {
@@ -1348,18 +1744,11 @@ bool Engine::put_row(double t, double x) {
         return std::isfinite(value);
     };
     const auto friction = [&](std::size_t j) {
-        if (!mechanics_.rubs(j)) return -mechanics_.bristle_torque(j, at, mechanics_.belt(j, t, at.side));
-        const Slipping& how = mode_.friction[j];
-        if (mode_.leans[j] != 0 && how.way == Motion::stuck) {
-            const double held = look_.holding[j];
-            return mode_.leans[j] * held > 0 ? held : 0.0;
-        }
-        if (how.way == Motion::stuck) return look_.holding[j];
-        if (how.riding) return -model::sign_of(how.way) * mechanics_.holding(j, how.way, at);
-        const double slips = mechanics_.velocity(j, y) - mechanics_.belt(j, t, at.side);
-        Slipping present = how;
-        if (mode_.leans[j] != 0) present.range = mechanics_.range_of(j, std::fabs(slips));
-        return -model::sign_of(how.way) * mechanics_.sliding(j, present, slips, at);
+        // The wall carries what presses against it, friction what pulls away from it.
+        const double held = look_.holding[j];
+        const bool sticks = mechanics_.rubs(j) && mode_.friction[j].way == Motion::stuck;
+        if (sticks) return mode_.leans[j] != 0 && mode_.leans[j] * held <= 0 ? 0.0 : held;
+        return mechanics_.friction(j, at, mode_, mechanics_.belt(j, t, at.side));
     };
     bool good = put(t);
     for (std::size_t i = 0; i < n(); ++i) {
@@ -1384,6 +1773,13 @@ bool Engine::put_row(double t, double x) {
 }
 
 }  // namespace
+
+AssemblyRun run_plain(const AssemblyProblem& problem) {
+    AssemblyRun result;
+    Engine engine(problem, result);
+    engine.run();
+    return result;
+}
 
 AssemblyRun run(const AssemblyProblem& problem) {
     const std::size_t own = problem.drive.states.size();
@@ -1417,13 +1813,9 @@ AssemblyRun run(const AssemblyProblem& problem) {
     for (model::WantedEvent& event : drive.events) {
         event.when = witnesses.heard(event.when, event.name.empty() ? "an event" : "the event " + event.name);
     }
-    AssemblyRun result;
     const AssemblyProblem heard{system,         drive,          problem.window,    problem.rows,   problem.monitor,
                                 problem.limits, problem.before, problem.tolerance, problem.longest};
-    {
-        Engine engine(heard, result);
-        engine.run();
-    }
+    AssemblyRun result = run_plain(heard);
     const bool whole = model::is_whole(result.outcome) || result.outcome == Outcome::stopped;
     result.contradiction = witnesses.verdict(whole);
     if (result.contradiction) result.outcome = Outcome::not_a_function;

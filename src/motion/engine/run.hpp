@@ -9,8 +9,10 @@
 #include "model/contradiction.hpp"
 #include "model/event.hpp"
 #include "model/outcome.hpp"
+#include "motion/engine/history.hpp"
 #include "motion/engine/mechanics.hpp"
 #include "motion/growing.hpp"
+#include "motion/hybrid/crossing.hpp"
 #include "motion/simulate.hpp"
 
 namespace dinal::motion::engine {
@@ -25,18 +27,24 @@ struct JointEvent {
     double M = 0;                    ///< on its first body
 };
 
-/// The motion between the rows.
-class History {
-public:
-    History() = default;
-    History(const History&) = delete;
-    History& operator=(const History&) = delete;
-    virtual ~History() = default;
-    /// All angles, velocities and states at a time of the run.
-    [[nodiscard]] virtual std::vector<double> at(double t) const = 0;
-    [[nodiscard]] virtual std::size_t bytes() const = 0;
-    /// It was kept up to this time.
-    [[nodiscard]] virtual double whole_until() const = 0;
+/// What a user throws back each time sooner than before, until that is next to nothing: it has no end.
+struct Fading {
+    double last = -model::never, gap = model::never, first = 0;
+    bool after(double t) {
+        constexpr double next_to_nothing = 1e-5;
+        const double now = t - last;
+        if (!(now < gap) || gap == model::never) first = now;
+        last = t, gap = now;
+        return now < first && now <= next_to_nothing * first;
+    }
+};
+
+/// An event of the user's, from one act to the next.
+struct Watch {
+    hybrid::Half half = 0;
+    Fading fading = {};
+    double rounded = 0;      ///< what is zero of its values, since an act
+    bool sent_back = false;  ///< by an act, and not clearly there yet
 };
 
 /// Where a run may be taken up again.
@@ -44,7 +52,11 @@ struct Carry {
     std::vector<double> y;
     Mode mode;
     std::vector<std::vector<Signal::Memory>> controllers;  ///< of the loads of each body
+    std::vector<Watch> watches;                            ///< of the events of the user
+    std::vector<std::pair<double, int>> echoes;            ///< breaks that delays bring back
+    std::vector<model::Motion> heading;                    ///< of bodies without dry friction
     std::shared_ptr<const History> past;
+    double born = 0;  ///< when the first of these runs began
 };
 
 struct AssemblyRun {
@@ -54,6 +66,9 @@ struct AssemblyRun {
     model::Outcome outcome = model::Outcome::reached_end;
     double t_start = 0, t_stop = 0;
     double gap = 0;  ///< the longest between two looks at a user's function of the time
+    model::Motion motion_at_stop = model::Motion::stuck;  ///< of the first body
+    bool began_stuck = false;                             ///< the first body
+    std::optional<Rough> rough = {};                      ///< of Outcome::unresolved, where it is known
     std::shared_ptr<const History> history;
     std::shared_ptr<const Carry> carry;
     std::optional<model::Contradiction> contradiction = {};  ///< of Outcome::not_a_function
@@ -70,7 +85,12 @@ struct AssemblyProblem {
     std::shared_ptr<const Carry> before = {};
     double tolerance = 1e-12;
     double longest = model::never;  ///< stretch, time units
+    std::size_t history_bytes = limits.memory / 4;
+    bool joined_elsewhere = false;  ///< who asked joins runs that go on, and says what is at rest for good
 };
+
+/// The run, whose functions somebody has heard already.
+AssemblyRun run_plain(const AssemblyProblem& problem);
 
 /// The run, all functions of which are asked again now and then what they were asked before.
 AssemblyRun run(const AssemblyProblem& problem);

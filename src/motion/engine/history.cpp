@@ -1,0 +1,134 @@
+#include "motion/engine/history.hpp"
+
+#include <algorithm>
+#include <optional>
+
+namespace dinal::motion::engine {
+
+namespace {
+
+/// Integrals of products of series are exact.
+class StretchLeg final : public JointLeg {
+public:
+    StretchLeg(const std::vector<Between>& joints, const Kept& kept)
+        : joints_(joints), kept_(kept), works_(joints.size()) {}
+    [[nodiscard]] double length() const override { return kept_.length; }
+    [[nodiscard]] double since_start(double t) const override { return kept_.start.until(t); }
+    [[nodiscard]] Work work(std::size_t joint, double since_start) const override {
+        if (!(since_start > 0)) return {};
+        if (!works_[joint]) works_[joint] = integrals(joint);
+        const Integrals& own = *works_[joint];
+        const double x = std::min(std::min(since_start, kept_.length) / kept_.h - 1, 1.0);
+        return {cheb::value(own.input, x), cheb::value(own.viscous, x), cheb::value(own.dry, x),
+                cheb::value(own.belt, x), cheb::value(own.base, x)};
+    }
+
+private:
+    using Integral = cheb::Series<2 * node_count>;
+    struct Integrals {
+        Integral input{}, viscous{}, dry{}, belt{}, base{};
+    };
+    [[nodiscard]] Series whole(std::size_t k) const {
+        Series series = kept_.series[k];
+        series[0] += kept_.begin[k];
+        return series;
+    }
+    [[nodiscard]] Integrals integrals(std::size_t joint) const {
+        std::size_t bodies = 0;
+        while (bodies < joints_.size() && joints_[bodies].second < 0 &&
+               joints_[bodies].first == static_cast<int>(bodies)) {
+            ++bodies;
+        }
+        const Between& own = joints_[joint];
+        const Kept::Acting& acts = kept_.acting[joint];
+        Series v = whole(bodies + static_cast<std::size_t>(own.first));
+        Integrals sums;
+        const auto work = [&](const Series& torque, const Series& speed) {
+            Integral sum = cheb::integral(cheb::product(torque, speed), 0);
+            for (double& c : sum) c *= kept_.h;
+            return sum;
+        };
+        if (joint < bodies) sums.input = work(acts.M, v), sums.base = work(acts.push, v);
+        if (own.second >= 0) {
+            const Series second = whole(bodies + static_cast<std::size_t>(own.second));
+            for (std::size_t k = 0; k < v.size(); ++k) v[k] -= second[k];
+        }
+        Series damping = v;
+        for (double& c : damping) c *= own.damping;
+        sums.viscous = work(damping, v);
+        sums.belt = work(acts.friction, acts.belt);
+        if (acts.holds) return sums;
+        Series against = acts.belt;
+        for (std::size_t k = 0; k < v.size(); ++k) against[k] -= v[k];
+        sums.dry = work(acts.friction, against);
+        return sums;
+    }
+
+    const std::vector<Between>& joints_;
+    const Kept& kept_;
+    mutable std::vector<std::optional<Integrals>> works_;
+};
+
+/// No time, but energy.
+class JumpLeg final : public JointLeg {
+public:
+    JumpLeg(double t, std::size_t joint, const Work& done) : t_(t), joint_(joint), work_(done) {}
+    [[nodiscard]] double length() const override { return 0; }
+    [[nodiscard]] double since_start(double t) const override { return t - t_; }
+    [[nodiscard]] Work work(std::size_t joint, double since_start) const override {
+        return since_start < 0 || joint != joint_ ? Work{} : work_;
+    }
+
+private:
+    double t_;
+    std::size_t joint_;
+    Work work_;
+};
+
+}  // namespace
+
+void History::add(Kept kept) {
+    const std::size_t bytes = sizeof(Kept) + kept.begin.size() * (sizeof(double) + sizeof(Series)) +
+                              kept.acting.size() * sizeof(Kept::Acting);
+    if (bytes_ + bytes > most_) whole_until_ = std::min(whole_until_, kept.start.hi);
+    if (whole_until_ < std::numeric_limits<double>::infinity()) return;
+    bytes_ += bytes;
+    list_.push_back(std::move(kept));
+}
+
+void History::close(const Clock& end, std::vector<double> y) {
+    std::vector<Series> still(y.size());
+    list_.push_back({.start = end, .h = 1, .begin = std::move(y), .series = std::move(still)});
+}
+
+void History::forget(double t) {
+    const auto old = std::partition_point(list_.begin(), list_.end(),
+                                          [t](const Kept& kept) { return kept.start.after(kept.length) < t; });
+    constexpr std::ptrdiff_t worth_it = 256;
+    if (old - list_.begin() < worth_it) return;
+    list_.erase(list_.begin(), old);
+    bytes_ = 0;
+}
+
+std::vector<double> History::at(double t, Side side) const {
+    // The last stretch that begins at or before t, as far as a double can say it; before it, for a limit from the left.
+    const auto after = std::partition_point(list_.begin(), list_.end(), [t, side](const Kept& kept) {
+        return side == Side::before ? kept.start.hi < t : kept.start.hi <= t;
+    });
+    const bool earlier = t < t_start_ || (t == t_start_ && side == Side::before);
+    if (after == list_.begin() || earlier) return before_ != nullptr ? before_->at(t, side) : initial_;
+    const Kept& kept = *(after - 1);
+    std::vector<double> y = kept.begin;
+    for (std::size_t k = 0; k < y.size(); ++k) y[k] = kept.value(k, kept.x(t));
+    return y;
+}
+
+void History::legs(const std::function<void(const JointLeg&)>& told) const {
+    auto jump = jumps_.begin();
+    for (std::size_t i = 0; i <= list_.size(); ++i) {
+        for (; jump != jumps_.end() && jump->stretch == i; ++jump) told(JumpLeg(jump->t, jump->joint, jump->work));
+        if (i < list_.size() && list_[i].length > 0) told(StretchLeg(joints_, list_[i]));
+    }
+}
+
+}  // namespace dinal::motion::engine

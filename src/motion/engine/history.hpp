@@ -1,0 +1,99 @@
+// The motion of a run between its rows, stretch by stretch: evaluated anywhere, integrated for its energy, and the past
+// of what acts with a delay.
+#pragma once
+
+#include <functional>
+#include <limits>
+#include <memory>
+#include <vector>
+
+#include "motion/clock.hpp"
+#include "motion/course.hpp"
+#include "motion/engine/nodes.hpp"
+
+namespace dinal::motion::engine {
+
+/// What is kept of a stretch, or of its beginning when an event ended it there.
+struct Kept {
+    Clock start;
+    double h = 0;       ///< half of its length
+    double length = 0;  ///< how much of it was used, at most 2 h
+    std::vector<double> begin{};
+    std::vector<Series> series{};  ///< of each angle, velocity and state, less its first
+    /// What acts at a joint. Those of the bodies with the ground have M and the push of the base on their body, too.
+    struct Acting {
+        Series M{}, push{};
+        Series friction{}, belt{};  ///< torque on its first body
+        bool holds = false;         ///< friction does not slip
+    };
+    std::vector<Acting> acting{};
+
+    [[nodiscard]] double value(std::size_t k, double x) const {
+        return x <= -1 ? begin[k] : begin[k] + cheb::value(series[k], std::min(x, 1.0));
+    }
+    [[nodiscard]] double x(double t) const { return start.until(t) / h - 1; }
+};
+
+/// Which bodies a joint is between; the second is -1 for the ground.
+struct Between {
+    int first = 0, second = -1;
+    double damping = 0;
+};
+
+/// A stretch, or what took no time, seen for the energy at its joints.
+class JointLeg {
+public:
+    virtual ~JointLeg() = default;
+    [[nodiscard]] virtual double length() const = 0;
+    [[nodiscard]] virtual double since_start(double t) const = 0;
+    /// The work at a joint until then; of M and of the base, that on its first body, at its joint with the ground.
+    [[nodiscard]] virtual Work work(std::size_t joint, double since_start) const = 0;
+};
+
+class History {
+public:
+    /// `before` is the past of a run that goes on, `most` what may be kept, bytes.
+    History(std::vector<Between> joints, std::vector<double> initial, double t_start,
+            std::shared_ptr<const History> before, std::size_t most)
+        : joints_(std::move(joints)),
+          initial_(std::move(initial)),
+          t_start_(t_start),
+          before_(std::move(before)),
+          most_(most) {}
+
+    void add(Kept kept);
+    /// What took no time: what a user did to the motion, an impact.
+    void add_jump(double t, std::size_t joint, const Work& work) { jumps_.push_back({list_.size(), t, joint, work}); }
+    /// Where the run has ended: what took no time then counts from there on.
+    void close(const Clock& end, std::vector<double> y);
+    /// Keeps only what is later than this time.
+    void forget(double t);
+
+    /// All angles, velocities and states at a time of the run.
+    [[nodiscard]] std::vector<double> at(double t) const { return at(t, Side::at); }
+    [[nodiscard]] std::vector<double> at(double t, Side side) const;
+    [[nodiscard]] std::size_t bytes() const { return bytes_; }
+    /// It was kept up to this time; `never` when that is all of the run.
+    [[nodiscard]] double whole_until() const { return whole_until_; }
+    [[nodiscard]] bool empty() const { return list_.empty(); }
+    /// In order and without gaps.
+    void legs(const std::function<void(const JointLeg&)>& told) const;
+
+private:
+    struct Jump {
+        std::size_t stretch;  // the one that comes after it
+        double t;
+        std::size_t joint;
+        Work work;
+    };
+    std::vector<Between> joints_;
+    std::vector<double> initial_;
+    double t_start_;
+    std::shared_ptr<const History> before_;
+    std::size_t most_, bytes_ = 0;
+    double whole_until_ = std::numeric_limits<double>::infinity();
+    std::vector<Kept> list_;
+    std::vector<Jump> jumps_;
+};
+
+}  // namespace dinal::motion::engine

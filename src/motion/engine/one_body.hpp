@@ -1,0 +1,17 @@
+// Runs the system of one body with the engine for several: the smallest assembly.
+#pragma once
+
+#include "motion/simulate.hpp"
+
+namespace dinal::motion::engine {
+
+/// How a run is cut into stretches.
+struct Cut {
+    double tolerance = 1e-12;
+    double longest = model::never;  ///< stretch, time units
+};
+
+/// Runs the problem, which has extras. The columns of its states stand behind the others.
+Trajectory run(const Problem& problem, const Cut& cut);
+
+}  // namespace dinal::motion::engine
