@@ -9,6 +9,7 @@
 #include "model/laws/stribeck.hpp"
 #include "model/laws/user_law.hpp"
 #include "model/springs/user_spring.hpp"
+#include "motion/engine/one_body.hpp"
 #include "support/kinds.hpp"
 #include "support/measure.hpp"
 #include "support/mixed_truth.hpp"
@@ -279,6 +280,16 @@ std::string kinds_of_all(const Events& events) {
     return text;
 }
 
+/// One body in the engine for several, which is to take the place of the other.
+struct OfSeveral : motion::Spectral {
+    [[nodiscard]] motion::Trajectory run_more(const motion::Problem& problem) const {
+        return motion::engine::run(problem, {.tolerance = tolerance, .longest = longest(problem)});
+    }
+};
+
+std::string fault_in(const MixedCase& c, const text::Expected<motion::Trajectory>& run, const std::string& expected,
+                     const MixedTruth& truth, const MixedTruth& beside, double accuracy);
+
 /// Empty when it is right; "?" when that is not to be decided.
 std::string fault_of(const MixedCase& c, double accuracy) {
     MixedSystem pushed = c.truth;
@@ -287,8 +298,18 @@ std::string fault_of(const MixedCase& c, double accuracy) {
     const MixedTruth truth(c.truth, start, c.t_end, c.times), beside(pushed, start, c.t_end, c.times);
     const std::string expected = kinds_of_all(truth.events);
     if (truth.doubtful || beside.doubtful || expected != kinds_of_all(beside.events)) return "?";
-    const auto run = motion::simulate(system_of(c.parameters), c.M, c.initial, {0, c.t_end}, motion::Grid::at(c.times),
-                                      motion::Spectral{}, {}, {}, c.extras);
+    const auto run_by = [&](motion::MethodView method) {
+        return motion::simulate(system_of(c.parameters), c.M, c.initial, {0, c.t_end}, motion::Grid::at(c.times),
+                                method, {}, {}, c.extras);
+    };
+    const std::string fault = fault_in(c, run_by(motion::Spectral{}), expected, truth, beside, accuracy);
+    if (!fault.empty()) return fault;
+    const std::string other = fault_in(c, run_by(OfSeveral{}), expected, truth, beside, accuracy);
+    return other.empty() ? "" : "by the engine for several bodies: " + other;
+}
+
+std::string fault_in(const MixedCase& c, const text::Expected<motion::Trajectory>& run, const std::string& expected,
+                     const MixedTruth& truth, const MixedTruth& beside, double accuracy) {
     if (!run) return run.error().sentence;
     if (!model::is_whole(run->outcome)) return std::string(model::sentence(run->outcome));
     std::string found;

@@ -983,7 +983,7 @@ double Engine::gap(std::size_t joint, double place) const {
 void Engine::keep(double length) {
     if (!(length > 0) || (!problem_.limits.dense && longest_delay_ == 0)) return;
     Kept kept{.start = segment_.start, .h = segment_.h, .length = length, .begin = y_, .series = segment_.series};
-    if (problem_.limits.dense) kept.acting = acting();
+    if (problem_.limits.dense && problem_.joined_elsewhere) kept.acting = acting();  // for the legs of its course
     history_->add(std::move(kept));
     if (!problem_.limits.dense) history_->forget(now_.hi - 2 * longest_delay_);
 }
