@@ -8,8 +8,6 @@ import re
 import sys
 import types
 
-import numpy
-
 from . import _dinal
 
 
@@ -60,6 +58,7 @@ class Object(_dinal.Reference):
                 raise IndexError(f"there is no row {key} among {len(self)}")
             return _dinal.operated("element", self, place + 1)
         value = _dinal.operated("element", self, key)
+        import numpy  # late, here and below: the types for editors are written where there may be none
         is_words = isinstance(value, list) and value and all(isinstance(word, str) for word in value)
         return numpy.array(value) if is_words else value
 
@@ -146,6 +145,7 @@ def plain(value):
     if hasattr(kind, "keys") and hasattr(kind, "__getitem__") and getattr(value, "ndim", 2) != 1:
         return {key: value[key] for key in value.keys()}
     if hasattr(kind, "__array__") or isinstance(value, (memoryview, bytearray)) or kind.__module__ == "array":
+        import numpy
         array = numpy.asarray(value)
         return array.astype(float) if array.ndim == 1 and array.dtype.kind in "biuf" else array.tolist()
     if hasattr(kind, "__float__"):
