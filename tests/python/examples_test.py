@@ -1,8 +1,10 @@
-"""The examples in Python print what the comment at their end says; the notebook runs, and its pictures are there.
+"""The examples in Python print what the comment at their end says, docs/python.md shows what Python does, and the
+notebook runs, and its pictures are there.
 
     python3 examples_test.py SOURCE, with PYTHONPATH set to the module's folder
 """
 
+import doctest
 import json
 import os
 import pathlib
@@ -45,5 +47,8 @@ for script in scripts:
     run(script)
 for notebook in notebooks:
     run_notebook(notebook)
+shown = doctest.testfile(str(SOURCE / "docs/python.md"), module_relative=False, encoding="utf-8")
+if shown.failed:
+    failures.append("docs/python.md shows something else than Python")
 print("\n".join(failures) or f"{len(scripts)} examples and {len(notebooks)} notebooks")
 sys.exit(1 if failures else 0)
