@@ -175,7 +175,7 @@ void warn_of_one_thread(lua_State* L, const char* call) {
     const std::string words = std::string(call) +
                               ": the function is one of Python, so one thread does all points; a Lua function, "
                               "dinal.lua(\"function(p) ... end\"), is run by all cores";
-    if (PyErr_WarnEx(PyExc_RuntimeWarning, words.c_str(), 1) != 0) raise_exception(L, py::error_already_set());
+    if (PyErr_WarnEx(PyExc_RuntimeWarning, words.c_str(), 3) != 0) raise_exception(L, py::error_already_set());
 }
 
 void function_to_lua(lua_State* L, py::handle function) {

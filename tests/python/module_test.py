@@ -169,6 +169,13 @@ class Callables(unittest.TestCase):
         for M in (lambda t: math.sin(t), math.sin, np.sin, lambda t: np.sin(t), lambda t, A=1: A * math.sin(t)):
             self.assertLess(np.abs(sys.simulate(M=M, t_end=20).theta - same.theta).max(), 1e-9)
 
+    def test_what_is_written_of_a_function(self):
+        with tempfile.TemporaryDirectory() as folder:
+            dinal.system(I=1, k=4).simulate(M=lambda t: 1., t_end=1).save(folder + "/run.csv")
+            text = pathlib.Path(folder, "run.csv").read_text()
+        self.assertIn("a function written in Python could not be written down", text)
+        self.assertIn("written in Python", str(dinal.excitation.scripted(lambda t: 1.)))
+
     def test_feedback_and_states(self):
         sys = dinal.system(I=1, k=4)
         lua = sys.simulate(M=dinal.lua("function(t, theta, velocity, z) return -velocity + z.e end"),
@@ -224,6 +231,7 @@ class Callables(unittest.TestCase):
         lua = dinal.sweep(over={"r": np.arange(3.)}, run=dinal.lua("function(p) return { A = k*p.r } end", k=2))
         self.assertEqual(lua.A.tolist(), [0, 2, 4])
         self.assertIn("A", pandas.DataFrame(dict(lua)).columns)
+        self.assertEqual(told[0].filename, __file__)
         with self.assertRaisesRegex(dinal.Error, "max_time needs a Lua function"):
             dinal.sweep(over={"r": [1]}, run=point, max_time=1)
         with tempfile.TemporaryDirectory() as folder, self.assertRaisesRegex(dinal.Error, "file needs a Lua function"):
@@ -499,7 +507,7 @@ print(shell.object_inspect_text("sys_.simulate"))
     def test_stubs(self):
         stub = pathlib.Path(dinal.__file__).with_name("__init__.pyi").read_text()
         compile(stub, "__init__.pyi", "exec")
-        self.assertRegex(stub, r"def simulate\(self, .*t_end: Any = ..., .*-> Run: ...")
+        self.assertRegex(stub, r"def simulate\(self, .*t_end=..., .*-> Run: ...")
         self.assertIn("def theta(self) -> numpy.ndarray", stub)
         printed = subprocess.run([sys.executable, "-m", "dinal.stubs"], capture_output=True, text=True)
         self.assertEqual(printed.stdout, stub)

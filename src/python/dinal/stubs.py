@@ -23,7 +23,7 @@ class Object:
 class Record(dict[str, Any]):
     def __getattr__(self, name: str) -> Any: ...
 class Function(Object):
-    def __call__(self, *arguments: Any, **options: Any) -> Any: ...
+    def __call__(self, *arguments, **options) -> Any: ...
 def lua(text: str, **variables: Any) -> Any: ...
 '''
 TYPES = {"number": "float", "string": "str", "vector": "numpy.ndarray", "boolean": "bool"}
@@ -37,14 +37,7 @@ def result_of(documentation):
 
 
 def function(name, value, indent=""):
-    words = []
-    for p in inspect.signature(value).parameters.values():
-        if p.kind is p.KEYWORD_ONLY and not any("*" in word for word in words):
-            words.append("*")
-        star = {p.VAR_POSITIONAL: "*", p.VAR_KEYWORD: "**"}.get(p.kind, "")
-        default = "" if star or p.default is p.empty else " = ..."
-        words.append(star + p.name + (": Any" + default if p.name != "self" else ""))
-    return f"{indent}def {name}({', '.join(words)}) -> {result_of(value.__doc__ or '')}: ...\n"
+    return f"{indent}def {name}{inspect.signature(value)} -> {result_of(value.__doc__ or '')}: ...\n"
 
 
 def body(members, is_class):
@@ -59,6 +52,7 @@ def body(members, is_class):
 
 
 def stubs():
+    dinal._objects.Default.__repr__ = lambda self: "..."  # the words of the documentation are no Python
     text = HEAD
     for name, value in dinal._members.items():
         if isinstance(value, type):
