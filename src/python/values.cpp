@@ -270,8 +270,9 @@ void table_to_lua(lua_State* L, const py::tuple& list, const py::dict& fields, i
         lua_rawseti(L, -2, ++place);
     }
     for (const auto& [key, value] : fields) {
-        to_lua(L, key, depth + 1);
-        to_lua(L, value, depth + 1);
+        const auto kept = py::reinterpret_borrow<py::object>(value);  // user's code that runs may change the dictionary
+        to_lua(L, py::reinterpret_borrow<py::object>(key), depth + 1);
+        to_lua(L, kept, depth + 1);
         lua_settable(L, -3);  // raises when None or nan is the key
     }
 }
