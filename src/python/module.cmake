@@ -10,7 +10,7 @@ else()
 endif()
 # Debian's, which has NumPy: another one may come first in the PATH.
 find_program(Python_EXECUTABLE python3 PATHS /usr/bin NO_DEFAULT_PATH)
-find_package(Python 3.9 COMPONENTS Interpreter Development.Module ${how})
+find_package(Python 3.10 COMPONENTS Interpreter Development.Module ${how})
 if(Python_FOUND)
   find_package(pybind11 2.10 ${how})
 endif()

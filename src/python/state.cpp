@@ -59,13 +59,13 @@ public:
         while (owner != 0 && owner != self) wait();
         owner = self;
         if (++depth > 1) return;
-        *last_exception = py::object();
         if (self == main_thread) watch_interrupts();
         main_is_in_lua = self == main_thread;
         scope_.emplace(running);
     }
     ~Turn() {
         if (--depth > 0) return;
+        const py::object dropped = std::move(*last_exception);  // and the frames that it keeps
         static_cast<void>(std::fflush(stdout));
         scope_.reset();
         main_is_in_lua = false;
@@ -139,8 +139,9 @@ int take_exception(lua_State* L) {
     lua_settop(L, 1);
     const lua::Remarks* remarks = lua::remembered_remarks(L, 1);
     const std::string during = remarks != nullptr ? remarks->during : "";
-    if (const auto* own = lua::test<py::object>(L, 1); own != nullptr && PyExceptionInstance_Check(own->ptr()) != 0) {
+    if (auto* own = lua::test<py::object>(L, 1); own != nullptr && PyExceptionInstance_Check(own->ptr()) != 0) {
         exception = hooks().attr("noted")(*own, during);
+        *own = py::none();  // Lua may keep the error for long, and the exception keeps all variables of its frames
         return 0;
     }
     luaL_tolstring(L, 1, nullptr);

@@ -19,6 +19,7 @@ import time
 import traceback
 import unittest
 import warnings
+import weakref
 
 import numpy as np
 import pandas
@@ -295,6 +296,26 @@ class Errors(unittest.TestCase):
             warnings.simplefilter("ignore")
             dinal.sweep(over={"r": [1]}, run=lambda p: inner())
         self.assertIsInstance(caught.exception.__cause__, KeyError)
+
+    def test_nothing_keeps_an_exception(self):
+        class Big:
+            pass
+
+        def fail():
+            big = Big()
+            seen.append(weakref.ref(big))
+            def M(t):
+                raise ValueError(big)
+            try:
+                dinal.lua("f(1)", f=M)
+            except ValueError:
+                pass
+        seen = []
+        fail()
+        dinal.lua("collectgarbage()")
+        dinal.lua("collectgarbage()")
+        gc.collect()
+        self.assertIsNone(seen[0]())
 
     def test_wrong_results(self):
         for wrong in (None, "1", float("nan"), [], object(), 1j):
