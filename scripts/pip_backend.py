@@ -44,21 +44,37 @@ def built(build):
     return pathlib.Path(build, "python", "dinal")
 
 
+def tag():
+    python = f"cp{sys.version_info.major}{sys.version_info.minor}"
+    return f"{python}-{python}-{sysconfig.get_platform().replace('-', '_').replace('.', '_')}"
+
+
+def metadata():
+    """The files about the package, by their names in the wheel."""
+    about = f"dinal-{version()}.dist-info"
+    return {f"{about}/METADATA": METADATA.format(version()).encode(), f"{about}/WHEEL": WHEEL.format(tag()).encode(),
+            f"{about}/LICENSE": (ROOT / "LICENSE").read_bytes()}
+
+
+def prepare_metadata_for_build_wheel(metadata_directory, config_settings=None):
+    for name, content in metadata().items():
+        path = pathlib.Path(metadata_directory, name)
+        path.parent.mkdir(exist_ok=True)
+        path.write_bytes(content)
+    return path.parent.name
+
+
 def build_wheel(wheel_directory, config_settings=None, metadata_directory=None):
     folder = built((config_settings or {}).get("build"))
-    python = f"cp{sys.version_info.major}{sys.version_info.minor}"
-    tag = f"{python}-{python}-{sysconfig.get_platform().replace('-', '_').replace('.', '_')}"
-    about = f"dinal-{version()}.dist-info"
     files = {f"dinal/{file.name}": file.read_bytes() for file in sorted(folder.iterdir()) if file.is_file()}
-    files[f"{about}/METADATA"] = METADATA.format(version()).encode()
-    files[f"{about}/WHEEL"] = WHEEL.format(tag).encode()
-    files[f"{about}/LICENSE"] = (ROOT / "LICENSE").read_bytes()
+    files.update(metadata())
     record = ""
     for name, content in files.items():
         digest = base64.urlsafe_b64encode(hashlib.sha256(content).digest()).rstrip(b"=").decode()
         record += f"{name},sha256={digest},{len(content)}\n"
+    about = f"dinal-{version()}.dist-info"
     files[f"{about}/RECORD"] = f"{record}{about}/RECORD,,\n".encode()
-    wheel = f"dinal-{version()}-{tag}.whl"
+    wheel = f"dinal-{version()}-{tag()}.whl"
     with zipfile.ZipFile(os.path.join(wheel_directory, wheel), "w", zipfile.ZIP_DEFLATED) as archive:
         for name, content in files.items():
             archive.writestr(name, content)
