@@ -1,5 +1,6 @@
 #include "python/state.hpp"
 
+#include <stdio_ext.h>
 #include <csignal>
 
 #include <atomic>
@@ -66,7 +67,7 @@ public:
     ~Turn() {
         if (--depth > 0) return;
         const py::object dropped = std::move(*last_exception);  // and the frames that it keeps
-        static_cast<void>(std::fflush(stdout));
+        flush_output();
         scope_.reset();
         main_is_in_lua = false;
         owner = 0;
@@ -76,6 +77,16 @@ public:
     Turn& operator=(const Turn&) = delete;
 
 private:
+    /// What Lua has printed comes after what Python has.
+    static void flush_output() {
+        if (__fpending(stdout) == 0) return;
+        try {
+            py::module_::import("sys").attr("stdout").attr("flush")();
+        } catch (py::error_already_set& raised) {
+            raised.discard_as_unraisable("dinal, before it prints");
+        }
+        static_cast<void>(std::fflush(stdout));
+    }
     static void wait() {
         if (is_torn) {
             PyErr_SetString(PyExc_RuntimeError,

@@ -119,6 +119,9 @@ class Objects(unittest.TestCase):
         with self.assertRaisesRegex(ValueError, "too deep"):
             dinal.lua("x", x=deep)
 
+    def test_order_of_output(self):
+        self.assertEqual(python("print(1); dinal.lua('print(2)'); print(3); dinal.lua('print(4)')").stdout, "1\n2\n3\n4\n")
+
     def test_pages(self):
         self.assertIn("<table", self.run.events._repr_html_())
         picture = self.run.plot(show=False)
@@ -156,6 +159,7 @@ class Arrays(unittest.TestCase):
                       memoryview(np.array(times)), pandas.Series(times), np.array([9, 0, 1, 9, 2.5])[[1, 2, 4]],
                       np.array([0, 7, 1, 7, 2.5])[::2]):
             self.assertEqual(sys.simulate(times=given, theta0=1).t.tolist(), times)
+        self.assertEqual(dinal.lua("v[2] ~= v[2]", v=np.ma.array([1, 2], mask=[False, True])), True)
         self.assertEqual(sys.simulate(times=range(3), theta0=1).t.tolist(), [0, 1, 2])
         self.assertEqual(dinal.lua("#v[1], v[2][3]", v=np.arange(6.).reshape(2, 3)), (3, 5.0))
         self.assertEqual(dinal.lua("w[2]", w=np.array(["a", "b"])), "b")

@@ -146,7 +146,7 @@ def plain(value):
         return {key: value[key] for key in value.keys()}
     if hasattr(kind, "__array__") or isinstance(value, (memoryview, bytearray)) or kind.__module__ == "array":
         import numpy
-        array = numpy.asarray(value)
+        array = numpy.asarray(value.astype(float).filled(numpy.nan) if hasattr(kind, "filled") else value)
         return array.astype(float) if array.ndim == 1 and array.dtype.kind in "biuf" else array.tolist()
     if hasattr(kind, "__float__"):
         return float(value)
