@@ -158,7 +158,7 @@ py::object run_text(const std::string& text, const py::dict& variables) {
     const auto names = py::str(", ").attr("join")(variables).cast<std::string>();
     const std::string before = names.empty() ? "" : fmt::format("local {} = ...; ", names);
     return in_lua([&](lua_State* L) {
-        for (const std::string& chunk : {before + "return " + text, before + text}) {
+        for (const std::string& chunk : {fmt::format("{}return {}", before, text), before + text}) {
             lua_settop(L, 0);
             if (luaL_loadbufferx(L, chunk.data(), chunk.size(), name, "t") != LUA_OK) continue;
             source::keep_source(L, name, chunk);

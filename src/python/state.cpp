@@ -80,11 +80,10 @@ private:
     /// What Lua has printed comes after what Python has.
     static void flush_output() {
         if (__fpending(stdout) == 0) return;
-        try {
-            py::module_::import("sys").attr("stdout").attr("flush")();
-        } catch (py::error_already_set& raised) {
-            raised.discard_as_unraisable("dinal, before it prints");
-        }
+        PyObject* out = PySys_GetObject("stdout");  // borrowed
+        PyObject* done = out == nullptr || out == Py_None ? nullptr : PyObject_CallMethod(out, "flush", nullptr);
+        if (PyErr_Occurred() != nullptr) PyErr_WriteUnraisable(out);
+        Py_XDECREF(done);
         static_cast<void>(std::fflush(stdout));
     }
     static void wait() {
