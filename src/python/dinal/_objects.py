@@ -139,12 +139,19 @@ def parameters_of(function):
     return sum(p.kind in (p.POSITIONAL_ONLY, p.POSITIONAL_OR_KEYWORD) and p.default is p.empty for p in parameters)
 
 
+def has_buffer(value):
+    try:
+        return bool(memoryview(value).format)
+    except (TypeError, BufferError, ValueError):
+        return False
+
+
 def plain(value):
     """A number, text, a list, a dictionary or an array of floats in place of what is like one; others as they are."""
     kind = type(value)
     if hasattr(kind, "keys") and hasattr(kind, "__getitem__") and getattr(value, "ndim", 2) != 1:
         return {key: value[key] for key in value.keys()}
-    if hasattr(kind, "__array__") or isinstance(value, (memoryview, bytearray)) or kind.__module__ == "array":
+    if hasattr(kind, "__array__") or has_buffer(value):
         import numpy
         array = numpy.asarray(value.astype(float).filled(numpy.nan) if hasattr(kind, "filled") else value)
         return array.astype(float) if array.ndim == 1 and array.dtype.kind in "biuf" else array.tolist()
