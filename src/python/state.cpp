@@ -1,6 +1,7 @@
 #include "python/state.hpp"
 
 #include <stdio_ext.h>
+#include <unistd.h>
 #include <csignal>
 
 #include <atomic>
@@ -92,9 +93,13 @@ private:
                             "dinal cannot be used here: this process was forked while another thread was in a call of "
                             "dinal; fork before that, or use multiprocessing's method \"spawn\"");
         } else {
-            const py::gil_scoped_release others_run;
+            EndsHere guard;
+            PyThreadState* self = PyEval_SaveThread();
             std::unique_lock lock(waiting);
             left.wait_for(lock, std::chrono::milliseconds(20));
+            lock.unlock();
+            PyEval_RestoreThread(self);
+            guard.passed();
         }
         if (is_torn || PyErr_CheckSignals() != 0) throw py::error_already_set();
     }
@@ -114,11 +119,14 @@ int do_job(lua_State* L) {
     lua_settop(L, 0);
     for (const int reference : released) luaL_unref(L, LUA_REGISTRYINDEX, reference);
     released.clear();
+    EndsHere guard;
     try {
         job.result = job.body(L, job.data);
+        guard.passed();
         return 0;
     } catch (const py::error_already_set& raised) {
         job.failure = raised;
+        guard.passed();
         return 0;
     } catch (const py::builtin_exception& raised) {
         raised.set_error();
@@ -126,6 +134,7 @@ int do_job(lua_State* L) {
         PyErr_SetString(PyExc_RuntimeError, raised.what());
     }
     job.failure = py::error_already_set();
+    guard.passed();
     return 0;
 }
 
@@ -227,6 +236,10 @@ py::object call_protected(py::object (*body)(lua_State* L, const void* data), co
     if (interrupted) throw_interrupt();
     if (!taken || !exception) throw std::bad_alloc();
     throw_exception(exception);
+}
+
+EndsHere::~EndsHere() {
+    while (!passed_ && std::uncaught_exceptions() == exceptions_) ::pause();
 }
 
 RunningOn::RunningOn(lua_State* L) : before_(running) {

@@ -3,6 +3,8 @@
 
 #include <pybind11/pybind11.h>
 
+#include <exception>
+
 #include "lua/lua_headers.hpp"
 
 namespace dinal::python {
@@ -28,6 +30,21 @@ py::object in_lua(const Body& body) {
     return call_protected(
         [](lua_State* L, const void* data) -> py::object { return (*static_cast<const Body*>(data))(L); }, &body);
 }
+
+/// Around a call of Python. When the interpreter ends, it ends other threads by pthread_exit, which unwinds the stack,
+/// and Lua's handlers would stop that with an abort. So the thread stays here, and ends with the process.
+class EndsHere {
+public:
+    EndsHere() = default;
+    ~EndsHere();
+    EndsHere(const EndsHere&) = delete;
+    EndsHere& operator=(const EndsHere&) = delete;
+    void passed() { passed_ = true; }
+
+private:
+    int exceptions_ = std::uncaught_exceptions();  // those of C++ may pass; a pthread_exit is none of them
+    bool passed_ = false;
+};
 
 /// While it lives, calls from Python continue on this thread of Lua, perhaps a coroutine.
 class RunningOn {

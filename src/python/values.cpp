@@ -151,9 +151,11 @@ int call_function(lua_State* L, const lua::Foreign& foreign) {
     const int given = lua_gettop(L);
     const int wanted = std::min(foreign.parameters > Arguments::most ? given : foreign.parameters, Arguments::most);
     for (int i = 1; i <= wanted; ++i) arguments.add(to_python(L, i));
+    EndsHere guard;
     const auto result = py::reinterpret_steal<py::object>(
         PyObject_Vectorcall(static_cast<PyObject*>(foreign.function.get()), arguments.places.data() + 1,
                             static_cast<std::size_t>(wanted) | PY_VECTORCALL_ARGUMENTS_OFFSET, nullptr));
+    guard.passed();
     if (!result) throw py::error_already_set();
     for (int i = 1; i <= wanted; ++i) {
         if (lua_istable(L, i)) give_back(L, i, arguments.places.at(static_cast<std::size_t>(i)));

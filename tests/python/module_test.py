@@ -467,6 +467,10 @@ print(dinal.system(I=1, k=4).omega0)
         for code in ("x = dinal.system(I=1, k=4).simulate(t_end=1); y = x.theta; z = dinal.lua('function() end')",
                      "import atexit; r = dinal.system(I=1, k=4); atexit.register(lambda: r.simulate(M=lambda t: 1, t_end=1))",
                      "class C:\n    def __del__(self, d=dinal): d.system(I=1, k=4)\nkeep = C(); dinal.lua('function() return c end', c=keep)",
+                     "s = dinal.system(I=1, k=4); begun = threading.Event()\n"
+                     "def M(t): begun.set(); time.sleep(1e-3); return 0.\n"
+                     "for _ in range(2): threading.Thread(target=lambda: s.simulate(M=M, t_end=1e9, times=[0, 1e9]), daemon=True).start()\n"
+                     "begun.wait()",
                      "sys.exit(dinal.system(I=1, k=4).simulate(M=lambda t: sys.exit(0), t_end=1))"):
             shown = python(code)
             self.assertEqual((shown.returncode, shown.stderr), (0, ""), code)
