@@ -30,8 +30,8 @@ SOURCE, PROGRAM = sys.argv[1:3]
 
 
 def python(code, **more):
-    """What another Python prints; the code has np and dinal."""
-    return subprocess.run([sys.executable, "-c", "import dinal, math, numpy as np, os, signal, sys, threading, time\n" + code],
+    """What another Python prints."""
+    return subprocess.run([sys.executable, "-c", "import dinal, math, os, signal, sys, threading, time\n" + code],
                           capture_output=True, text=True, timeout=30, **more)
 
 
