@@ -1,5 +1,5 @@
-# What `cmake --install` puts where. The component `program` is what scripts/package hands to others; `development` is the
-# mathematics as a library for programs in C++: find_package(dinal), docs/install.md.
+# What `cmake --install` puts where. The components `program` and `python` are what scripts/package hands to others;
+# `development` is the mathematics as a library for programs in C++: find_package(dinal), docs/install.md.
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 
@@ -45,3 +45,13 @@ install(EXPORT dinal NAMESPACE dinal:: FILE dinal-targets.cmake DESTINATION ${pa
 write_basic_package_version_file(${CMAKE_BINARY_DIR}/dinal-config-version.cmake COMPATIBILITY SameMinorVersion)
 install(FILES scripts/dinal-config.cmake ${CMAKE_BINARY_DIR}/dinal-config-version.cmake DESTINATION ${package})
 unset(CMAKE_INSTALL_DEFAULT_COMPONENT_NAME)
+
+# The Python module, for the python3 that it was built for; its libraries may be those of the program.
+if(TARGET dinal_python)
+  set(DINAL_PYTHON_FOLDER lib/python${Python_VERSION_MAJOR}.${Python_VERSION_MINOR}/dist-packages
+      CACHE STRING "where the Python module is installed, below the prefix")
+  set_target_properties(dinal_python PROPERTIES INSTALL_RPATH "$ORIGIN/../../../dinal" BUILD_WITH_INSTALL_RPATH ON)
+  install(TARGETS dinal_python DESTINATION ${DINAL_PYTHON_FOLDER}/dinal COMPONENT python)
+  install(DIRECTORY ${CMAKE_BINARY_DIR}/python/dinal DESTINATION ${DINAL_PYTHON_FOLDER} COMPONENT python
+          FILES_MATCHING PATTERN "*.py" PATTERN "*.pyi" PATTERN "py.typed" PATTERN "__pycache__" EXCLUDE)
+endif()

@@ -10,6 +10,7 @@
 #include "api/classes.hpp"
 #include "api/sweep_workers.hpp"
 #include "files/file.hpp"
+#include "lua/foreign.hpp"
 #include "lua/interrupt.hpp"
 #include "lua/standard_globals.hpp"
 #include "lua/worker_state.hpp"
@@ -141,6 +142,14 @@ private:
 
     void open_files() {
         lua::refuse_in_worker(L_, "a sweep with a file");
+        if (const lua::Foreign* other = lua::foreign(L_, task_.function)) {
+            lua::raise(L_,
+                       {.sentence = fmt::format("{}: file needs a Lua function: whether one of {} has changed since "
+                                                "the file was begun cannot be known; save the result instead",
+                                                task_.call, other->language),
+                        .call = task_.call,
+                        .option = "file"});
+        }
         const auto share = lua::value_or_raise(L_, task_.call, files::share_of_launcher());
         share_ = share.value_or(files::Share{});
         launched_ = share.has_value();

@@ -8,6 +8,7 @@
 #include <memory>
 #include <system_error>
 
+#include "lua/foreign.hpp"
 #include "lua/lua_text.hpp"
 #include "lua/standard_globals.hpp"
 #include "source/carry.hpp"
@@ -70,6 +71,7 @@ struct PointLoop {
             for (std::size_t i = first; i < last; ++i) {
                 if (lua::interrupt_requested() || work.ends || !point(work.points[i])) return;
                 work.finished.fetch_add(1, std::memory_order_relaxed);
+                if (work.after_point) work.after_point();
             }
         }
     }
@@ -192,6 +194,18 @@ int work_on_points(lua_State* L) {
 }  // namespace
 
 SweepWorkers::SweepWorkers(lua_State* L, int index, SweepWork& work) : work_(work) {
+    if (const lua::Foreign* other = lua::foreign(L, index)) {
+        if (work.max_time > 0) {
+            lua::raise(L, {.sentence = fmt::format("{}: max_time needs a Lua function, and this one is of {}",
+                                                   work.call, other->language),
+                           .call = work.call,
+                           .option = "max_time"});
+        }
+        other->runs_alone(L, work.call);
+        function_ = lua_absindex(L, index);
+        work.workers = 1;
+        return;
+    }
     for (std::size_t i = 0; i < work.workers; ++i) {
         states_.push_back(lua::new_state_like(L));
         lua_State* worker = states_.back().get();
@@ -202,6 +216,18 @@ SweepWorkers::SweepWorkers(lua_State* L, int index, SweepWork& work) : work_(wor
         if (carrying.error) lua::raise(L, text::in_call(work.call, *carrying.error));
         if (!carried) lua::raise(L, std::string(work.call) + ": not enough memory for another worker");
     }
+}
+
+void SweepWorkers::run_here(lua_State* L) {
+    terminal::Progress progress = terminal::Progress::of_steps(work_.call, static_cast<double>(work_.points.size()));
+    lua::WorkerWatch watch;
+    work_.after_point = [&] { progress.advance(static_cast<double>(work_.finished.load(std::memory_order_relaxed))); };
+    lua_pushcfunction(L, lua::guarded<work_on_points>);
+    lua_pushvalue(L, function_);
+    if (work_.adapt) work_.adapt(L);
+    lua_pushlightuserdata(L, &work_);
+    lua_pushlightuserdata(L, &watch);
+    lua_call(L, 3, 0);
 }
 
 void SweepWorkers::run_one(lua_State* worker, lua::WorkerWatch& watch) {
@@ -257,6 +283,7 @@ void SweepWorkers::watch(std::vector<std::thread>& threads) {
 void SweepWorkers::run(lua_State* L) {
     using std::chrono::milliseconds;
     constexpr milliseconds look_again{20};
+    if (function_ != 0) return run_here(L);
     terminal::Progress progress = terminal::Progress::of_steps(work_.call, static_cast<double>(work_.points.size()));
     std::vector<std::thread> threads;
     threads.reserve(states_.size());

@@ -29,6 +29,7 @@ struct SweepWork {
     const std::function<void(lua_State* worker)>& adapt;
     /// Asked 50 times a second on the thread that waits, and at the end: false ends it all.
     std::function<bool()> look = {};
+    std::function<void()> after_point = {};  ///< where one thread does all
     std::atomic<std::size_t> next = 0;
     std::atomic<std::size_t> finished = 0;
     std::atomic<bool> ends = false;
@@ -37,13 +38,15 @@ struct SweepWork {
 
 class SweepWorkers {
 public:
-    /// Carries the function at `index` to a new state for each worker. Raises when that is not possible.
+    /// Carries the function at `index` to a new state for each worker. Raises when that is not possible. A function of
+    /// another language stays where it is, and the thread of the call does all points.
     SweepWorkers(lua_State* L, int index, SweepWork& work);
 
     /// Does all points, or what can be done until a stop is requested. Raises when memory is lacking.
     void run(lua_State* L);
 
 private:
+    void run_here(lua_State* L);
     void start(std::vector<std::thread>& threads);
     void run_one(lua_State* worker, lua::WorkerWatch& watch);
     /// Gives up what has taken too long.
@@ -56,6 +59,7 @@ private:
     std::condition_variable ended_;
     std::size_t running_ = 0;
     std::string trouble_;
+    int function_ = 0;  // on the stack, of another language; 0: it is in the states
 };
 
 }  // namespace dinal::api

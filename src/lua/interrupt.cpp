@@ -104,6 +104,10 @@ void set_handler(int signal, void (*handler)(int)) {
 
 void install_interrupt_handler() {
     set_handler(SIGINT, on_signal);
+    install_stop_handlers();
+}
+
+void install_stop_handlers() {
     set_handler(SIGURG, on_nudge);
     files::set_stop_question(interrupt_requested);
 }

@@ -22,6 +22,8 @@ enum class Stop { none, interrupted, time, memory };
 /// Installs the SIGINT handler. A second Ctrl-C, when the chunk has had a moment and has still not stopped, ends the
 /// process with exit code 130.
 void install_interrupt_handler();
+/// The rest of it: what a stop that is requested otherwise needs to reach workers and the reading of files.
+void install_stop_handlers();
 
 /// What the process does at a signal, also while it waits in a system call.
 void set_handler(int signal, void (*handler)(int));

@@ -3,11 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <atomic>
 #include <bit>
 #include <cmath>
 #include <string>
 
 #include "lua/error_memory.hpp"
+#include "lua/foreign.hpp"
 #include "lua/formula_reader.hpp"
 #include "lua/interrupt.hpp"
 #include "lua/lua_message.hpp"
@@ -21,9 +23,15 @@ namespace {
 // thread finds none and gives NaN.
 thread_local CallState* current = nullptr;
 
+/// Where the counters of a thread begin: no two threads that use one Lua state in turn have the same numbers.
+std::uint64_t counters_of_thread() {
+    static std::atomic<std::uint64_t> threads = 0;
+    return (threads++ << 40U) + 1;
+}
+
 // Counts what has run in Lua, or may have, on this thread: as long as it stands still, no variable changes.
-thread_local std::uint64_t world = 1;
-thread_local std::uint64_t calls = 0;
+thread_local std::uint64_t world = counters_of_thread();
+thread_local std::uint64_t calls = world;
 
 constexpr double failure = std::numeric_limits<double>::quiet_NaN();
 
@@ -34,11 +42,12 @@ lua_State* main_thread(lua_State* L) {
     return main;
 }
 
-/// How many parameters the Lua function at `index` names; many for `...`, one for a C function.
+/// How many parameters the function at `index` names; many for `...`, one for a C function.
 int parameter_count(lua_State* L, int index) {
     constexpr int many = 256;
     if (lua_iscfunction(L, index) != 0) {
-        return 1;
+        const Foreign* other = foreign(L, index);
+        return other != nullptr ? other->parameters : 1;
     }
     lua_Debug about{};
     lua_pushvalue(L, index);

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "lua/foreign.hpp"
 #include "lua/user_function.hpp"
 #include "model/controller.hpp"
 #include "source/describe.hpp"
@@ -95,7 +96,8 @@ std::string function_text(lua_State* L, const model::UserFunction& user_function
     } else if (lua_type(L, -1) != LUA_TFUNCTION) {
         text = fmt::format("--[[ {} with __call ]]", lua::describe(L, -1));
     } else if (lua_iscfunction(L, -1) != 0) {
-        text = "--[[ a function written in C ]]";
+        const lua::Foreign* other = lua::foreign(L, -1);
+        text = fmt::format("--[[ a function written in {} ]]", other != nullptr ? other->language : "C");
     } else {
         lua_Debug about{};
         lua_pushvalue(L, -1);

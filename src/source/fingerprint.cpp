@@ -9,6 +9,7 @@
 #include <tuple>
 
 #include "lua/bind.hpp"
+#include "lua/foreign.hpp"
 #include "lua/lua_text.hpp"
 #include "lua/prototype.hpp"
 #include "lua/standard_globals.hpp"
@@ -225,6 +226,7 @@ void Fingerprint::table(int index) {
 
 void Fingerprint::function(int index) {
     if (lua_iscfunction(L_, index) != 0) {  // a method that was taken out of its object; others cannot be carried
+        if (const lua::Foreign* other = lua::foreign(L_, index)) return join(other->number);  // nobody knows its text
         const lua::Documented found = lua::documented(L_, index);
         if (found.member != nullptr) add(found.member->doc.signature);
         return;

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "lua/bind.hpp"
+#include "lua/foreign.hpp"
 #include "lua/standard_globals.hpp"
 #include "lua/vector.hpp"
 #include "source/function_source.hpp"
@@ -149,7 +150,9 @@ std::string ValueText::function(int index) {
     }
     const auto source = known_source(L_, index);
     if (!source) {
-        return nothing("a function whose text is not at hand");
+        const lua::Foreign* other = lua::foreign(L_, index);
+        return nothing(other != nullptr ? fmt::format("a function written in {}", other->language)
+                                        : "a function whose text is not at hand");
     }
     if (lua_iscfunction(L_, index) != 0) {
         return *source;

@@ -34,6 +34,20 @@ done
     for _, e in ipairs(run.events) do print(string.format("%s at t = %.6g, theta = %.6g", e.kind, e.t, e.theta)) end
     print(string.format("theta(1.2345) = %.6g\n\n%s", run:at(1.2345), run:explain()))' | diff - "$prefix/out"
 
+# The Python module, from where it is installed, and from a wheel that pip makes of it without a network.
+module=$(dirname "$(find "$prefix/usr/lib" -path '*/dist-packages/dinal/__init__.py')")
+folder=$(dirname "$module")
+if [ -d "$module" ]; then
+    readelf -d "$module"/_dinal.*.so >"$prefix/out"
+    grep -q 'PATH).*\[$ORIGIN/../../../dinal\]$' "$prefix/out" || { echo "the module looks for libraries elsewhere"; cat "$prefix/out"; exit 1; }
+    (cd "$prefix" && PYTHONPATH=$folder /usr/bin/python3 -c 'import dinal; print(dinal.system(I=1, k=4).omega0)') | grep -qx 2.0
+    for file in __init__.pyi py.typed stubs.py; do [ -e "$module/$file" ] || { echo "$file was not installed"; exit 1; }; done
+    /usr/bin/python3 -m pip install --quiet --no-cache-dir --no-index --no-deps --target "$prefix/pip" \
+        --config-settings=build="$build" "$source" >"$prefix/log" 2>&1 || { cat "$prefix/log"; exit 1; }
+    (cd "$prefix" && PYTHONPATH=$prefix/pip /usr/bin/python3 -c 'import dinal; print(dinal.__version__)') >"$prefix/out"
+    "$prefix/usr/bin/dinal" -e 'print(dinal.version)' | cmp - "$prefix/out"
+fi
+
 # What is handed to others. Quickly, not small.
 if command -v dpkg-shlibdeps >/dev/null; then
     PACKAGE_LEVEL=1 "$source/scripts/package" "$build" "$prefix/made" >"$prefix/log"
@@ -51,11 +65,18 @@ if command -v dpkg-shlibdeps >/dev/null; then
     for kernel in dinal dinal-safe; do
         grep -q '"DINAL": "/usr/bin/dinal"' "$prefix/package/usr/share/jupyter/kernels/$kernel/kernel.json"
     done
+    if [ -d "$module" ]; then
+        dpkg-deb -x "$prefix"/made/python3-dinal_"$version"_*.deb "$prefix/package"
+        PYTHONPATH=$prefix/package/usr/lib/python3/dist-packages /usr/bin/python3 -c 'import dinal; print(dinal.system(I=1, k=4).omega0)' | grep -qx 2.0
+        [ "$(ldd "$prefix"/package/usr/lib/python3/dist-packages/dinal/_dinal.*.so | grep -c "/package/usr/lib/python3")" -ge 3 ]
+        rm -rf "$prefix"/package/usr/lib/python3/dist-packages/dinal/__pycache__
+    fi
     # The licences of all that is compiled in or carried; no example that needs the library for C++.
     for words in Eigen MPL-2.0 nlohmann-json; do
         grep -q "$words" "$prefix/package/usr/share/doc/dinal/copyright" || { echo "the copyright is silent on $words"; exit 1; }
     done
     for tree in "$prefix"/anywhere/dinal-"$version"-* "$prefix/package/usr"; do
+        [ "$tree" != "$prefix/package/usr" ] || [ ! -d "$module" ] || [ -s "$tree/share/doc/python3-dinal/licences/pybind11-dev" ]
         for text in libeigen3-dev nlohmann-json3-dev MPL-2.0 GPL-3; do
             [ -s "$tree/share/doc/dinal/licences/$text" ] || { echo "the text of $text is missing in $tree"; exit 1; }
         done

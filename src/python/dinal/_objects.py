@@ -1,0 +1,315 @@
+"""The classes and functions of Python, made of the tables that describe those of Lua."""
+
+import base64
+import difflib
+import inspect
+import keyword
+import re
+import sys
+import types
+
+from . import _dinal
+
+
+class Error(Exception):
+    """What is wrong, where the limit is and what to do, in one sentence; and facts: call, option, culprit."""
+
+    call = option = culprit = ""
+
+
+class Record(dict):
+    """A table with named fields: p["r"] and p.r are the same."""
+
+    def __getattr__(self, name):
+        if name in self:
+            return self[name]
+        raise AttributeError(f"there is no {name!r} among {', '.join(map(str, self))}")
+
+    __setattr__ = dict.__setitem__
+
+    def __dir__(self):
+        return [*super().__dir__(), *map(str, self)]
+
+
+class Object(_dinal.Reference):
+    """A value of Lua. Its class says what it has."""
+
+    __slots__ = ()
+    __array_ufunc__ = None  # 2 * e is a matter of e, also when the 2 is NumPy's
+
+    def __getattr__(self, name):
+        if name.startswith("_"):  # Python and IPython look for many such names, and Lua has none of them
+            raise AttributeError(f"{type(self).__name__} has no {name!r}")
+        try:
+            return self[name]
+        except Error as error:
+            raise AttributeError(str(error)) from None
+
+    def __setattr__(self, name, value):
+        raise AttributeError(f"{type(self).__name__} objects cannot be changed; make a new one")
+
+    def __getitem__(self, key):
+        """A column by its name, or a row by its number: the first is 0."""
+        if isinstance(key, slice):
+            return [self[i] for i in range(*key.indices(len(self)))]
+        if hasattr(key, "__index__"):
+            place = key.__index__() + (len(self) if key < 0 else 0)
+            if not 0 <= place < len(self):
+                raise IndexError(f"there is no row {key} among {len(self)}")
+            return _dinal.operated("element", self, place + 1)
+        value = _dinal.operated("element", self, key)
+        import numpy  # late, here and below: the types for editors are written where there may be none
+        is_words = isinstance(value, list) and value and all(isinstance(word, str) for word in value)
+        return numpy.array(value) if is_words else value
+
+    def __repr__(self):
+        return _dinal.operated("card", self, None)
+
+    def __str__(self):
+        return _dinal.operated("text", self, None)
+
+    def __dir__(self):
+        return [*super().__dir__(), *(self.names if hasattr(type(self), "names") else ())]
+
+    def _repr_svg_(self):
+        return _dinal.drawn(self.plot(show=False)) if hasattr(type(self), "plot") else None
+
+    def _repr_mimebundle_(self, include=None, exclude=None):
+        """The SVG as an image of HTML, too: Debian 12's nbconvert takes the lines out of an SVG in the page."""
+        svg = self._repr_svg_()
+        image = svg and "data:image/svg+xml;base64," + base64.b64encode(svg.encode()).decode()
+        return {"image/svg+xml": svg, "text/html": f'<img style="max-width: 100%" src="{image}">'} if svg else {}
+
+
+class Function(Object):
+    """A function of Lua."""
+
+    __slots__ = ()
+
+    def __call__(self, *arguments, **options):
+        return _dinal.call_value(self, *arguments, **options)
+
+
+class Module(types.ModuleType):
+    """A module of Lua; some can be called."""
+
+    def __call__(self, *arguments, **options):
+        return self._call(*arguments, **options)
+
+
+class Default:
+    """What an option is when it is not given, in the words of its documentation."""
+
+    def __init__(self, text):
+        self.text = text
+
+    def __repr__(self):
+        return self.text
+
+
+# ---- for the C++ side
+
+def error_of(cause, message, *facts):
+    error = Error(message.decode(errors="replace"))
+    error.call, error.option, error.culprit = (fact.decode(errors="replace") for fact in facts)
+    error.__cause__ = cause
+    return error
+
+
+def noted(exception, during):
+    if during and hasattr(exception, "add_note"):
+        exception.add_note(during.strip())
+    return exception
+
+
+def type_for(name):
+    return CLASSES.get(name, Object)
+
+
+def parameters_of(function):
+    """How many arguments a callable must have; many for *arguments."""
+    try:
+        if type(function) is types.FunctionType and not function.__code__.co_flags & inspect.CO_VARARGS:
+            return function.__code__.co_argcount - len(function.__defaults__ or ())
+        parameters = inspect.signature(function).parameters.values()
+    except (TypeError, ValueError):
+        return 1
+    if any(p.kind is p.VAR_POSITIONAL for p in parameters):
+        return 256
+    return sum(p.kind in (p.POSITIONAL_ONLY, p.POSITIONAL_OR_KEYWORD) and p.default is p.empty for p in parameters)
+
+
+def has_buffer(value):
+    try:
+        return bool(memoryview(value).format)
+    except (TypeError, BufferError, ValueError):
+        return False
+
+
+def plain(value):
+    """A number, text, a list, a dictionary or an array of floats in place of what is like one; others as they are."""
+    kind = type(value)
+    if hasattr(kind, "keys") and hasattr(kind, "__getitem__") and getattr(value, "ndim", 2) != 1:
+        return {key: value[key] for key in value.keys()}
+    if hasattr(kind, "__array__") or has_buffer(value):
+        import numpy
+        array = numpy.asarray(value.astype(float).filled(numpy.nan) if hasattr(kind, "filled") else value)
+        return array.astype(float) if array.ndim == 1 and array.dtype.kind in "biuf" else array.tolist()
+    if hasattr(kind, "__float__"):
+        return float(value)
+    if hasattr(kind, "__fspath__"):
+        return value.__fspath__()
+    return list(value) if hasattr(kind, "__len__") and hasattr(kind, "__iter__") and not callable(value) else value
+
+
+def in_notebook():
+    shell = sys.modules["IPython"].get_ipython() if "IPython" in sys.modules else None
+    return hasattr(shell, "kernel")
+
+
+def show_picture(picture):
+    sys.modules["IPython"].display.display(picture) if in_notebook() else print(picture)
+
+
+def show_animation(svg):
+    sys.modules["IPython"].display.display(sys.modules["IPython"].display.SVG(svg))
+
+
+# ---- members
+
+def python_name(name):
+    return name + "_" if keyword.iskeyword(name) else name
+
+
+def class_name(name):
+    return "".join(word.capitalize() for word in name.split())
+
+
+def meant(name, known):
+    likely = difflib.get_close_matches(name, known, 1)
+    return f"; did you mean {likely[0]!r}?" if likely else ""
+
+
+def takes_one_table(member):
+    """f{ ... }, not f(...)"""
+    bracket = re.search("[({]", member["signature"].partition(" ->")[0])
+    return bracket is not None and bracket[0] == "{"
+
+
+def in_python(signature):
+    """sys:simulate{ M } -> run as sys.simulate(M) -> run."""
+    head, arrow, result = signature.partition(" ->")
+    head = re.sub(r"^(\w+):(\w)", r"\1.\2", head)
+    return re.sub(r"^([\w.]+)\{ ?(.*?) ?\}$", r"\1(\2)", head) + arrow + result
+
+
+def documentation(member):
+    options = "".join(f"    {name}: {meaning}\n" for _, name, meaning, _ in member["options"])
+    example = "In Lua:\n\n    " + member["example"].replace("\n", "\n    ")
+    return f"{in_python(member['signature'])}\n\n{member['summary']}\n\n{options}\n{example}"
+
+
+def positional_names(member):
+    """The names in the brackets of the call, where they are names: t of e:value(t, theta)."""
+    inner = re.match(r"[\w.:]+\(([^{}\[\]]*?)[,\[ ]*(\[?, )?(\{.*)?\)", member["signature"])
+    names = [part.partition("=")[0].strip() for part in inner[1].split(",")] if inner and inner[1].strip() else []
+    return [python_name(name) for name in names] if all(name.isidentifier() for name in names) else []
+
+
+def signature_of(member, has_self):
+    """What editors and help() show; what is right is for Lua to say."""
+    P = inspect.Parameter
+    shown = {"self": P("self", P.POSITIONAL_ONLY)} if has_self else {}
+    for name in positional_names(member):
+        shown[name] = P(name, P.POSITIONAL_ONLY, default=Default("..."))
+    if len(shown) == has_self:
+        shown["arguments"] = P("arguments", P.VAR_POSITIONAL)
+    for name, words, _, needed in member["options"]:
+        default = P.empty if needed else Default(words.partition(" = ")[2] or "...")
+        shown.setdefault(python_name(name), P(python_name(name), P.KEYWORD_ONLY, default=default))
+    return inspect.Signature(list(shown.values()))
+
+
+def callable_of(member, has_self, owner):
+    """The function for a member. Named arguments of one that takes no options are put in their places."""
+    number, one_table, call = member["number"], takes_one_table(member), _dinal.call
+    names = positional_names(member) if not member["options"] else []
+    renamed = {python_name(name): name for name, *_ in member["options"] if python_name(name) != name}
+
+    def called(self, arguments, options):
+        while len(arguments) < len(names) and names[len(arguments)] in options:
+            arguments += (options.pop(names[len(arguments)]),)
+        if renamed:
+            options = {renamed.get(name, name): value for name, value in options.items()}
+        return call(number, self, arguments, options, one_table)
+
+    if has_self:
+        def function(self, *arguments, **options):
+            return called(self, arguments, options)
+    else:
+        def function(*arguments, **options):
+            return called(None, arguments, options)
+    function.__name__ = python_name(member["name"])
+    function.__qualname__ = f"{owner}.{function.__name__}" if owner else function.__name__
+    function.__module__ = "dinal"
+    function.__doc__ = documentation(member)
+    function.__signature__ = signature_of(member, has_self)
+    return function
+
+
+def operators(name):
+    """The methods of Python for a metamethod of Lua. The numbers are those of lua_arith."""
+    number, word = {"__add": (0, "add"), "__sub": (1, "sub"), "__mul": (2, "mul"), "__div": (5, "truediv"),
+                    "__unm": (12, "neg")}.get(name, (None, name))
+    if name == "__unm":
+        return {"__neg__": lambda self: _dinal.operated(number, self, None)}
+    if number is not None:
+        return {f"__{word}__": lambda self, other: _dinal.operated(number, self, other),
+                f"__r{word}__": lambda self, other: _dinal.operated(number, other, self)}
+    if name == "__len":
+        return {"__len__": lambda self: _dinal.operated("length", self, None),
+                "__iter__": lambda self: (self[i] for i in range(len(self)))}
+    return {"__call__": Function.__call__} if name == "__call" else {}
+
+
+def field_of(member):
+    number = member["number"]
+    return property(lambda self: _dinal.call(number, self, (), {}, False), doc=documentation(member))
+
+
+def class_of(title, name, signature, summary, members):
+    own = {"__slots__": (), "__doc__": f"{title}: {in_python(signature)}\n\n{summary}", "__module__": "dinal"}
+    for member in members:
+        if member["kind"] == "metamethod":
+            own.update(operators(member["name"]))
+        else:
+            own[python_name(member["name"])] = (
+                callable_of(member, True, class_name(name)) if member["kind"] == "method" else field_of(member))
+    if "names" in own:
+        own["keys"] = lambda self: list(self.names)
+    if name == "data":
+        own.update(_repr_html_=lambda self: _dinal.drawn(self), _repr_svg_=lambda self: None)
+    if name == "picture":
+        own["_repr_svg_"] = lambda self: _dinal.drawn(self)
+    return type(class_name(name), (Object,), own)
+
+
+def build():
+    """All that Lua has, by its names here. Vectors are arrays, and loops of Python show no progress."""
+    made = {}
+    for title, name, signature, summary, example, prefix, members in _dinal.sections:
+        is_module = bool(prefix) and any(m["kind"] == "function" for m in members)
+        functions = {python_name(m["name"]): callable_of(m, False, name if is_module else "") for m in members
+                     if m["kind"] == "function"}
+        if is_module:
+            made[name] = sys.modules[f"dinal.{name}"] = Module(f"dinal.{name}", f"{summary}\n\nIn Lua:\n\n    {example}")
+            functions.update((m["name"][1:], callable_of(m, False, name)) for m in members if m["name"] == "__call")
+            vars(made[name]).update(functions)
+        elif functions:
+            made.update((key, function) for key, function in functions.items() if key != "progress")
+        elif name not in ("dinal", "vector"):
+            CLASSES[name] = made[class_name(name)] = class_of(title, name, signature, summary, members)
+    return made
+
+
+CLASSES = {"function": Function}

@@ -1,0 +1,217 @@
+// The module dinal._dinal: a Lua state with all of dinal in it, and the tables that describe its members. The package
+// in dinal/ makes classes and functions of Python out of these.
+#include <fmt/format.h>
+#include <pybind11/pybind11.h>
+
+#include <string>
+#include <vector>
+
+#include "api/animate.hpp"
+#include "api/data.hpp"
+#include "api/picture.hpp"
+#include "help/library.hpp"
+#include "help/signature.hpp"
+#include "lua/lua_text.hpp"
+#include "lua/standard_globals.hpp"
+#include "python/values.hpp"
+#include "source/function_source.hpp"
+#include "terminal/display.hpp"
+#include "text/version.hpp"
+
+namespace dinal::python {
+namespace {
+
+/// What Python is told of a member. `number` is its place in all_members().
+py::dict description_of(const lua::Member& member, std::size_t number) {
+    constexpr const char* kinds[] = {"function", "method", "field", "metamethod"};
+    const help::Section* result = help::result_class(member.doc.signature);
+    py::list options;
+    for (const text::Call* call : help::calls_of(member.doc)) {
+        const auto lines = help::option_lines(call->options);
+        for (std::size_t i = 0; i < lines.size(); ++i) {
+            const bool needed = call->options[i].otherwise == text::needed;
+            options.append(py::make_tuple(lines[i].option, lines[i].name, lines[i].meaning, needed));
+        }
+    }
+    py::dict told;
+    told["number"] = number;
+    told["name"] = std::string(member.name);
+    told["kind"] = kinds[static_cast<std::size_t>(member.kind)];
+    told["signature"] = help::signature(member.doc);
+    told["summary"] = member.doc.summary;
+    told["example"] = member.doc.example;
+    told["result"] = result == nullptr ? "" : result->description->name;
+    told["options"] = options;
+    return told;
+}
+
+struct Numbered {
+    const lua::Class* owner;
+    const lua::Member* member;
+};
+std::vector<Numbered>& all_members() {
+    static auto* all = new std::vector<Numbered>();
+    return *all;
+}
+
+/// A list of (title, name, signature, summary, example, what stands before a member, members).
+py::list sections() {
+    py::list all;
+    for (const help::Section& section : help::sections()) {
+        const lua::Class& owner = *section.description;
+        py::list members;
+        for (const lua::Member& member : owner.members) {
+            members.append(description_of(member, all_members().size()));
+            all_members().push_back({&owner, &member});
+        }
+        all.append(py::make_tuple(section.title, owner.name, owner.doc.signature, owner.doc.summary, owner.doc.example,
+                                  section.prefix, members));
+    }
+    return all;
+}
+
+/// Calls what stands at `first` on the stack, with what stands after it, with these arguments, and with the options as
+/// a table; or with one table that has all of them, where one list or dictionary is the table itself.
+py::object call_at(lua_State* L, int first, const py::tuple& arguments, const py::dict& options, bool one_table) {
+    luaL_checkstack(L, static_cast<int>(arguments.size()) + LUA_MINSTACK, "too many arguments");
+    const bool one = arguments.size() == 1;
+    if (one_table && !(one && options.empty() && !PyObject_TypeCheck(arguments[0].ptr(), reference_type()))) {
+        const bool is_list = one && (py::isinstance<py::list>(arguments[0]) || py::isinstance<py::tuple>(arguments[0]));
+        table_to_lua(L, is_list ? py::tuple(arguments[0]) : arguments, options);
+    } else {
+        for (const py::handle argument : arguments) to_lua(L, argument);
+        if (!options.empty()) table_to_lua(L, py::tuple(), options);
+    }
+    lua_call(L, lua_gettop(L) - first, LUA_MULTRET);
+    const int count = lua_gettop(L) - first + 1;
+    if (count <= 1) return count == 1 ? to_python(L, first) : py::none();
+    py::tuple several(static_cast<std::size_t>(count));
+    for (int i = 0; i < count; ++i) several[static_cast<std::size_t>(i)] = to_python(L, first + i);
+    return several;
+}
+
+/// A member of a class, with an object of it; or of a module, where `self` is None.
+py::object call(std::size_t number, py::handle self, const py::tuple& arguments, const py::dict& options,
+                bool one_table) {
+    const Numbered called = all_members().at(number);
+    return in_lua([&](lua_State* L) {
+        lua_pushcfunction(L, called.member->call);
+        if (!self.is_none()) {
+            to_lua(L, self);
+        } else if (called.member->kind == lua::Kind::metamethod) {
+            lua::push_dinal_table(L);  // of the table of the module
+            lua_getfield(L, -1, called.owner->name);
+            lua_remove(L, -2);
+        }
+        return call_at(L, 1, arguments, options, one_table);
+    });
+}
+
+py::object call_value(py::handle self, const py::args& arguments, const py::kwargs& options) {
+    return in_lua([&](lua_State* L) {
+        to_lua(L, self);
+        return call_at(L, 1, arguments, options, false);
+    });
+}
+
+/// What Lua's operators give, by Lua's number or a word.
+py::object operated(py::handle operation, py::handle left, py::handle right) {
+    return in_lua([&](lua_State* L) -> py::object {
+        to_lua(L, left);
+        if (py::isinstance<py::int_>(operation)) {
+            const auto number = operation.cast<int>();
+            if (number != LUA_OPUNM) to_lua(L, right);
+            lua_arith(L, number);
+        } else if (const auto word = operation.cast<std::string>(); word == "element") {
+            to_lua(L, right);
+            lua_gettable(L, 1);
+        } else if (word == "length") {
+            return py::int_(luaL_len(L, 1));
+        } else if (word == "global") {
+            lua::push_dinal_table(L);
+            lua_getfield(L, -1, lua_tostring(L, 1));
+        } else {
+            const lua::Class* owner = word == "card" ? lua::documented(L, 1).owner : nullptr;
+            const bool has_card = owner != nullptr && owner->card != nullptr;
+            has_card ? lua::push_text(L, owner->card(L, 1, {})) : (luaL_tolstring(L, 1, nullptr), 1);
+        }
+        return to_python(L, -1);
+    });
+}
+
+/// For a page: of a picture an <svg>, of data a table; None where there is none, or no gnuplot.
+py::object drawn(py::handle self) {
+    constexpr std::size_t rows_shown = 50;
+    return in_lua([&](lua_State* L) -> py::object {
+        to_lua(L, self);
+        if (const auto* data = lua::test<api::DataHandle>(L, 1)) return py::str(api::html_of(**data, rows_shown));
+        const auto* picture = lua::test<api::Picture>(L, 1);
+        if (picture == nullptr) return py::none();
+        const auto svg = api::svg_of(*picture);
+        return svg ? py::object(py::str(svg.value())) : py::none();
+    });
+}
+
+/// The values of a piece of Lua, an expression if it is one; the names are local variables in it.
+py::object run_text(const std::string& text, const py::dict& variables) {
+    constexpr const char* name = "=dinal.lua";
+    const auto names = py::str(", ").attr("join")(variables).cast<std::string>();
+    const std::string before = names.empty() ? "" : fmt::format("local {} = ...; ", names);
+    return in_lua([&](lua_State* L) {
+        for (const std::string& chunk : {fmt::format("{}return {}", before, text), before + text}) {
+            lua_settop(L, 0);
+            if (luaL_loadbufferx(L, chunk.data(), chunk.size(), name, "t") != LUA_OK) continue;
+            source::keep_source(L, name, chunk);
+            return call_at(L, 1, py::tuple(variables.attr("values")()), py::dict(), false);
+        }
+        lua_error(L);
+        return py::object();
+    });
+}
+
+/// What is shown goes to a function of Python; what goes wrong there is told on standard error.
+template <class Show>
+void show(const Show& by_python) {
+    try {
+        in_lua(by_python);
+    } catch (py::error_already_set& raised) {
+        raised.discard_as_unraisable("dinal, which shows a picture");
+    }
+}
+
+void show_picture(const api::Picture& picture, api::Shown where) {
+    if (where == api::Shown::in_file) return;
+    show([&](lua_State* L) {
+        lua::push<api::Picture>(L, picture);
+        return hooks().attr("show_picture")(to_python(L, -1));
+    });
+}
+
+void show_animation(const api::Animation& animation, api::Shown where) {
+    if (where == api::Shown::in_file) return;
+    show([&](lua_State*) { return hooks().attr("show_animation")(animation.svg); });
+}
+
+void set_up(const py::object& objects, bool in_notebook) {
+    hooks() = objects;
+    api::show_pictures_by(show_picture);
+    if (in_notebook) api::show_animations_by(show_animation);
+}
+
+}  // namespace
+
+PYBIND11_MODULE(_dinal, module) {
+    open_state();
+    module.attr("__version__") = DINAL_VERSION;
+    module.attr("Reference") = py::reinterpret_borrow<py::object>(reinterpret_cast<PyObject*>(reference_type()));
+    module.attr("sections") = sections();
+    module.def("call", call);
+    module.def("call_value", call_value);
+    module.def("operated", operated);
+    module.def("drawn", drawn);
+    module.def("run_text", run_text);
+    module.def("set_up", set_up);
+    module.def("after_fork", after_fork);
+}
+
+}  // namespace dinal::python

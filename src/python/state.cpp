@@ -1,0 +1,266 @@
+#include "python/state.hpp"
+
+#include <stdio_ext.h>
+#include <unistd.h>
+#include <csignal>
+
+#include <atomic>
+#include <chrono>
+#include <condition_variable>
+#include <exception>
+#include <mutex>
+#include <new>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "help/library.hpp"
+#include "lua/bind.hpp"
+#include "lua/error_memory.hpp"
+#include "lua/interrupt.hpp"
+#include "lua/lua_text.hpp"
+
+namespace dinal::python {
+namespace {
+
+// Whoever has Python's lock (the GIL) may use what follows, apart from the signal handler.
+lua_State* running = nullptr;
+std::vector<int> released;
+unsigned long owner = 0;  // the thread whose call Lua is in; 0: none
+int depth = 0;            // of its calls within each other
+bool is_torn = false;     // this process was forked while another thread was in a call
+unsigned long main_thread = 0;
+auto* const last_exception = new py::object();  // that a function raised during the present call
+std::mutex waiting;
+std::condition_variable left;
+
+std::atomic<bool> main_is_in_lua = false;
+std::atomic<void (*)(int)> handler_of_python = nullptr;
+
+extern "C" void on_interrupt(int signal) {
+    if (main_is_in_lua) lua::request_stop(lua::Stop::interrupted);
+    if (auto* next = handler_of_python.load()) next(signal);
+}
+
+/// Puts our handler before Python's, which only notes the signal. At each call, because signal.signal() replaces it.
+void watch_interrupts() {
+    struct sigaction now {};
+    sigaction(SIGINT, nullptr, &now);
+    const bool special = (now.sa_flags & SA_SIGINFO) != 0;
+    if (special || now.sa_handler == SIG_DFL || now.sa_handler == SIG_IGN || now.sa_handler == on_interrupt) return;
+    handler_of_python = now.sa_handler;
+    now.sa_handler = on_interrupt;
+    sigaction(SIGINT, &now, nullptr);
+}
+
+/// Lets one thread at a time into Lua: a Python function that Lua calls may let other threads of Python run.
+class Turn {
+public:
+    Turn() {
+        const unsigned long self = PyThread_get_thread_ident();
+        while (owner != 0 && owner != self) wait();
+        owner = self;
+        if (++depth > 1) return;
+        if (self == main_thread) watch_interrupts();
+        main_is_in_lua = self == main_thread;
+        scope_.emplace(running);
+    }
+    ~Turn() {
+        if (--depth > 0) return;
+        const py::object dropped = std::move(*last_exception);  // and the frames that it keeps
+        flush_output();
+        scope_.reset();
+        main_is_in_lua = false;
+        owner = 0;
+        left.notify_one();
+    }
+    Turn(const Turn&) = delete;
+    Turn& operator=(const Turn&) = delete;
+
+private:
+    /// What Lua has printed comes after what Python has.
+    static void flush_output() {
+        if (__fpending(stdout) == 0) return;
+        PyObject* out = PySys_GetObject("stdout");  // borrowed
+        PyObject* done = out == nullptr || out == Py_None ? nullptr : PyObject_CallMethod(out, "flush", nullptr);
+        if (PyErr_Occurred() != nullptr) PyErr_WriteUnraisable(out);
+        Py_XDECREF(done);
+        static_cast<void>(std::fflush(stdout));
+    }
+    static void wait() {
+        if (is_torn) {
+            PyErr_SetString(PyExc_RuntimeError,
+                            "dinal cannot be used here: this process was forked while another thread was in a call of "
+                            "dinal; fork before that, or use multiprocessing's method \"spawn\"");
+        } else {
+            EndsHere guard;
+            PyThreadState* self = PyEval_SaveThread();
+            std::unique_lock lock(waiting);
+            left.wait_for(lock, std::chrono::milliseconds(20));
+            lock.unlock();
+            PyEval_RestoreThread(self);
+            guard.passed();
+        }
+        if (is_torn || PyErr_CheckSignals() != 0) throw py::error_already_set();
+    }
+
+    std::optional<lua::InterruptScope> scope_;
+};
+
+struct Job {
+    py::object (*body)(lua_State* L, const void* data);
+    const void* data;
+    py::object result = {};
+    std::optional<py::error_already_set> failure = {};
+};
+
+int do_job(lua_State* L) {
+    auto& job = *static_cast<Job*>(lua_touserdata(L, 1));
+    lua_settop(L, 0);
+    for (const int reference : released) luaL_unref(L, LUA_REGISTRYINDEX, reference);
+    released.clear();
+    EndsHere guard;
+    try {
+        job.result = job.body(L, job.data);
+        guard.passed();
+        return 0;
+    } catch (const py::error_already_set& raised) {
+        job.failure = raised;
+        guard.passed();
+        return 0;
+    } catch (const py::builtin_exception& raised) {
+        raised.set_error();
+    } catch (const std::exception& raised) {
+        PyErr_SetString(PyExc_RuntimeError, raised.what());
+    }
+    job.failure = py::error_already_set();
+    guard.passed();
+    return 0;
+}
+
+[[noreturn]] void throw_exception(const py::object& exception) {
+    PyErr_Restore(py::type::of(exception).inc_ref().ptr(), exception.inc_ref().ptr(),
+                  PyException_GetTraceback(exception.ptr()));
+    throw py::error_already_set();
+}
+
+[[noreturn]] void throw_interrupt() {
+    if (PyErr_CheckSignals() != 0) throw py::error_already_set();
+    if (*last_exception && py::isinstance(*last_exception, py::handle(PyExc_KeyboardInterrupt)))
+        throw_exception(*last_exception);
+    PyErr_SetNone(PyExc_KeyboardInterrupt);
+    throw py::error_already_set();
+}
+
+/// Called with an error value and a py::object, which becomes the exception that Python raises.
+int take_exception(lua_State* L) {
+    auto& exception = *static_cast<py::object*>(lua_touserdata(L, 2));
+    lua_settop(L, 1);
+    const lua::Remarks* remarks = lua::remembered_remarks(L, 1);
+    const std::string during = remarks != nullptr ? remarks->during : "";
+    if (auto* own = lua::test<py::object>(L, 1); own != nullptr && PyExceptionInstance_Check(own->ptr()) != 0) {
+        exception = hooks().attr("noted")(*own, during);
+        *own = py::none();  // Lua may keep the error for long, and the exception keeps all variables of its frames
+        return 0;
+    }
+    luaL_tolstring(L, 1, nullptr);
+    const std::string message(lua::text_at(L, -1));
+    const text::Error* facts = lua::facts_of(L, message);
+    const text::Error known = facts != nullptr ? *facts : text::Error{};
+    const py::object cause = *last_exception ? *last_exception : py::none();
+    exception = hooks().attr("error_of")(cause, py::bytes(message + during), py::bytes(known.call),
+                                         py::bytes(known.option), py::bytes(known.culprit));
+    return 0;
+}
+
+int object_text(lua_State* L) {
+    const auto* own = lua::test<py::object>(L, 1);
+    return lua::push_text(L, own == nullptr ? "?" : py::repr(*own).cast<std::string>());
+}
+
+constexpr lua::Member object_members[] = {{lua::a_metamethod<object_text>("__tostring"), {"", "", ""}}};
+const lua::Class object_class = {"Python object", {"", "", ""}, object_members};
+
+int refuse_exit(lua_State* L) {
+    lua::raise(L, "os.exit is not possible within Python: use sys.exit");
+}
+
+int open(lua_State* L) {
+    luaL_openlibs(L);
+    lua_getglobal(L, LUA_OSLIBNAME);
+    lua_pushcfunction(L, lua::guarded<refuse_exit>);
+    lua_setfield(L, -2, "exit");
+    help::open_library(L);
+    lua::add_class<py::object>(L, object_class);
+    lua_gc(L, LUA_GCGEN, 0, 0);
+    return 0;
+}
+
+}  // namespace
+
+/// It is never closed: what Python keeps of it may live until the process ends.
+void open_state() {
+    running = luaL_newstate();
+    if (running == nullptr) throw std::bad_alloc();
+    lua_pushcfunction(running, open);
+    if (lua_pcall(running, 0, 0, 0) != LUA_OK) throw std::runtime_error(std::string(lua::text_at(running, -1)));
+    lua_settop(running, 0);
+    lua::install_stop_handlers();
+    main_thread = py::module_::import("threading").attr("main_thread")().attr("ident").cast<unsigned long>();
+}
+
+void after_fork() {
+    is_torn = owner != 0 && owner != PyThread_get_thread_ident();
+    new (&waiting) std::mutex;  // whoever held them is not in this process
+    new (&left) std::condition_variable;
+}
+
+py::object call_protected(py::object (*body)(lua_State* L, const void* data), const void* data) {
+    const Turn turn;
+    lua_State* L = running;
+    if (lua_checkstack(L, LUA_MINSTACK) == 0) throw std::bad_alloc();
+    Job job{body, data};
+    lua_pushcfunction(L, do_job);
+    lua_pushlightuserdata(L, &job);
+    if (lua_pcall(L, 1, 0, 0) == LUA_OK) {
+        if (job.failure) throw py::error_already_set(*job.failure);
+        return std::move(job.result);
+    }
+    py::object exception;
+    lua_pushcfunction(L, lua::guarded<take_exception>);
+    lua_insert(L, -2);
+    lua_pushlightuserdata(L, &exception);
+    const bool interrupted = lua::stop_requested() == lua::Stop::interrupted;
+    const bool taken = !interrupted && lua_pcall(L, 2, 0, 0) == LUA_OK;
+    if (!taken) lua_pop(L, interrupted ? 3 : 1);
+    if (interrupted) throw_interrupt();
+    if (!taken || !exception) throw std::bad_alloc();
+    throw_exception(exception);
+}
+
+EndsHere::~EndsHere() {
+    while (!passed_ && std::uncaught_exceptions() == exceptions_) ::pause();
+}
+
+RunningOn::RunningOn(lua_State* L) : before_(running) {
+    running = L;
+}
+
+RunningOn::~RunningOn() {
+    running = before_;
+}
+
+void raise_exception(lua_State* L, const py::error_already_set& raised) {
+    *last_exception = raised.value();
+    if (raised.trace()) PyException_SetTraceback(last_exception->ptr(), raised.trace().ptr());
+    luaL_checkstack(L, 3, "for an exception");
+    lua::push<py::object>(L, *last_exception);
+    lua_error(L);
+    std::terminate();  // not reached
+}
+
+void release(int reference) {
+    released.push_back(reference);
+}
+
+}  // namespace dinal::python

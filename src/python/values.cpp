@@ -1,0 +1,282 @@
+#include "python/values.hpp"
+
+#include <pybind11/numpy.h>
+
+#include <algorithm>
+#include <array>
+#include <string>
+#include <string_view>
+#include <unordered_map>
+#include <vector>
+
+#include "lua/foreign.hpp"
+#include "lua/lua_text.hpp"
+#include "lua/vector.hpp"
+
+namespace dinal::python {
+namespace {
+
+struct Reference {
+    PyObject_HEAD   // a macro with its own semicolon
+        int place;  // in the registry
+};
+
+void forget_reference(PyObject* self) {
+    PyTypeObject* type = Py_TYPE(self);
+    release(reinterpret_cast<Reference*>(self)->place);
+    type->tp_free(self);
+    Py_DECREF(type);
+}
+
+py::object reference_to(lua_State* L, int index) {
+    const lua::Class* owner = lua::documented(L, index).owner;
+    const char* name = lua_isfunction(L, index) ? "function" : owner != nullptr ? owner->name : "";
+    auto* type = reinterpret_cast<PyTypeObject*>(hooks().attr("type_for")(name).ptr());
+    auto made = py::reinterpret_steal<py::object>(type->tp_alloc(type, 0));
+    if (!made) throw py::error_already_set();
+    luaL_checkstack(L, 2, "too many values");
+    lua_pushvalue(L, index);
+    reinterpret_cast<Reference*>(made.ptr())->place = luaL_ref(L, LUA_REGISTRYINDEX);
+    return made;
+}
+
+// ---- from Lua
+
+py::object array_of(const lua::Vector& vector) {
+    const py::capsule keeps(new lua::Vector(vector), [](void* kept) { delete static_cast<lua::Vector*>(kept); });
+    py::array_t<double> array(static_cast<py::ssize_t>(vector.size()), vector.begin(), keeps);
+    array.attr("flags").attr("writeable") = false;
+    return array;
+}
+
+using Seen = std::unordered_map<const void*, py::object>;  // tables that may lead to themselves
+py::object value_to_python(lua_State* L, int index, Seen& seen);
+
+/// A list if it has nothing else, otherwise a Record.
+py::object table_to_python(lua_State* L, int index, Seen& seen) {
+    luaL_checkstack(L, LUA_MINSTACK, "too many tables in tables");
+    const void* identity = lua_topointer(L, index);
+    if (const auto found = seen.find(identity); found != seen.end()) return found->second;
+    index = lua_absindex(L, index);
+    const auto length = static_cast<py::ssize_t>(lua_rawlen(L, index));
+    py::ssize_t count = 0;
+    for (lua_pushnil(L); lua_next(L, index) != 0; lua_pop(L, 1)) ++count;
+    if (count == length && count > 0) {
+        py::list list;
+        seen[identity] = list;
+        for (py::ssize_t i = 1; i <= length; ++i, lua_pop(L, 1)) {
+            lua_rawgeti(L, index, i);
+            list.append(value_to_python(L, -1, seen));
+        }
+        return list;
+    }
+    py::object record = seen[identity] = hooks().attr("Record")();
+    for (lua_pushnil(L); lua_next(L, index) != 0; lua_pop(L, 1)) {
+        record[value_to_python(L, -2, seen)] = value_to_python(L, -1, seen);
+    }
+    return record;
+}
+
+py::object value_to_python(lua_State* L, int index, Seen& seen) {
+    switch (lua_type(L, index)) {
+        case LUA_TNONE:
+        case LUA_TNIL:
+            return py::none();
+        case LUA_TBOOLEAN:
+            return py::bool_(lua_toboolean(L, index) != 0);
+        case LUA_TNUMBER:
+            if (lua_isinteger(L, index) != 0) return py::int_(lua_tointeger(L, index));
+            return py::float_(lua_tonumber(L, index));
+        case LUA_TSTRING: {
+            const std::string_view text = lua::text_at(L, index);
+            return py::reinterpret_steal<py::object>(
+                PyUnicode_DecodeUTF8(text.data(), static_cast<py::ssize_t>(text.size()), "surrogateescape"));
+        }
+        case LUA_TTABLE:
+            return table_to_python(L, index, seen);
+        default:
+            break;
+    }
+    if (const lua::Foreign* own = lua::foreign(L, index)) {
+        return py::reinterpret_borrow<py::object>(static_cast<PyObject*>(own->function.get()));
+    }
+    if (const auto* vector = lua::test<lua::Vector>(L, index)) return array_of(*vector);
+    const auto* own = lua::test<py::object>(L, index);
+    return own != nullptr ? *own : reference_to(L, index);
+}
+
+// ---- functions of Python in Lua
+
+/// The arguments of a call, with a place before them that Python may use meanwhile.
+struct Arguments {
+    static constexpr int most = 16;
+    std::array<PyObject*, most + 1> places;  // not filled in advance: a call of M must be quick
+    int count = 0;
+
+    Arguments() { places[0] = nullptr; }  // NOLINT(cppcoreguidelines-pro-type-member-init)
+    ~Arguments() {
+        while (count > 0) Py_DECREF(places[static_cast<std::size_t>(count--)]);
+    }
+    Arguments(const Arguments&) = delete;
+    Arguments& operator=(const Arguments&) = delete;
+    void add(py::object value) { places[static_cast<std::size_t>(++count)] = value.release().ptr(); }
+};
+
+/// Writes into the table at `index` what the function has made of its copy: an act sets states.
+void give_back(lua_State* L, int index, py::handle copy) {
+    lua_Integer place = 0;
+    for (const py::handle key_or_item : copy) {
+        const bool is_list = PyList_Check(copy.ptr()) != 0;
+        is_list ? lua_pushinteger(L, ++place) : to_lua(L, key_or_item);
+        to_lua(L, is_list ? py::reinterpret_borrow<py::object>(key_or_item) : copy[key_or_item]);
+        lua_settable(L, index);
+    }
+}
+
+int push_results(lua_State* L, const py::object& result) {
+    if (result.is_none()) return 0;
+    if (PyTuple_Check(result.ptr()) == 0) {
+        to_lua(L, result);
+        return 1;
+    }
+    const auto several = py::reinterpret_borrow<py::tuple>(result);
+    luaL_checkstack(L, static_cast<int>(several.size()) + LUA_MINSTACK, "too many results");
+    for (const py::handle one : several) to_lua(L, one);
+    return static_cast<int>(several.size());
+}
+
+/// As many arguments as it must have: Lua's own functions ignore what is too much, and get nil for what is missing.
+int call_function(lua_State* L, const lua::Foreign& foreign) {
+    Arguments arguments;
+    const int given = lua_gettop(L);
+    const int wanted = std::min(foreign.parameters > Arguments::most ? given : foreign.parameters, Arguments::most);
+    for (int i = 1; i <= wanted; ++i) arguments.add(to_python(L, i));
+    EndsHere guard;
+    const auto result = py::reinterpret_steal<py::object>(
+        PyObject_Vectorcall(static_cast<PyObject*>(foreign.function.get()), arguments.places.data() + 1,
+                            static_cast<std::size_t>(wanted) | PY_VECTORCALL_ARGUMENTS_OFFSET, nullptr));
+    guard.passed();
+    if (!result) throw py::error_already_set();
+    for (int i = 1; i <= wanted; ++i) {
+        if (lua_istable(L, i)) give_back(L, i, arguments.places.at(static_cast<std::size_t>(i)));
+    }
+    return push_results(L, result);
+}
+
+/// No exception of Python leaves it: the C++ code of Lua below would take it for an error of unknown kind.
+int call_from_lua(lua_State* L) {
+    const RunningOn note(L);
+    try {
+        return call_function(L, lua::foreign_here(L));
+    } catch (const py::error_already_set& raised) {
+        raise_exception(L, raised);
+    }
+}
+
+void warn_of_one_thread(lua_State* L, const char* call) {
+    const std::string words = std::string(call) +
+                              ": the function is one of Python, so one thread does all points; a Lua function, "
+                              "dinal.lua(\"function(p) ... end\"), is run by all cores";
+    if (PyErr_WarnEx(PyExc_RuntimeWarning, words.c_str(), 3) != 0) raise_exception(L, py::error_already_set());
+}
+
+void function_to_lua(lua_State* L, py::handle function) {
+    const auto parameters = hooks().attr("parameters_of")(function).cast<int>();
+    const std::shared_ptr<void> kept(function.inc_ref().ptr(),
+                                     [](void* own) { Py_DECREF(static_cast<PyObject*>(own)); });
+    lua::push_foreign(L, {kept, parameters, "Python", 0, warn_of_one_thread}, lua::guarded<call_from_lua>);
+}
+
+// ---- to Lua
+
+void integer_to_lua(lua_State* L, PyObject* value) {
+    int too_large = 0;
+    const long long number = PyLong_AsLongLongAndOverflow(value, &too_large);
+    if (too_large == 0) return lua_pushinteger(L, number);
+    const double real = PyLong_AsDouble(value);
+    if (PyErr_Occurred() != nullptr) throw py::error_already_set();
+    lua_pushnumber(L, real);
+}
+
+void text_to_lua(lua_State* L, PyObject* value) {
+    Py_ssize_t size = 0;
+    const char* text = PyUnicode_AsUTF8AndSize(value, &size);
+    if (text != nullptr) return static_cast<void>(lua_pushlstring(L, text, static_cast<std::size_t>(size)));
+    PyErr_Clear();  // not all of it is Unicode
+    const auto bytes = py::reinterpret_steal<py::object>(PyUnicode_AsEncodedString(value, "utf-8", "surrogateescape"));
+    if (!bytes) throw py::error_already_set();
+    to_lua(L, bytes);
+}
+
+/// Whatever is no type of Python itself for numbers, text, lists and dictionaries.
+void other_to_lua(lua_State* L, py::handle value, int depth) {
+    if (py::isinstance<py::array_t<double>>(value) && py::reinterpret_borrow<py::array>(value).ndim() == 1) {
+        const auto array = py::array_t<double, py::array::c_style | py::array::forcecast>::ensure(value);
+        if (!array) throw py::error_already_set();
+        std::vector<double> numbers = lua::new_numbers(L, static_cast<std::size_t>(array.size()));
+        std::copy_n(array.data(), array.size(), numbers.begin());
+        return lua::push_vector(L, std::move(numbers));
+    }
+    const py::object plain = hooks().attr("plain")(value);
+    if (!plain.is(value)) return to_lua(L, plain, depth + 1);
+    if (PyCallable_Check(value.ptr()) != 0) return function_to_lua(L, value);
+    lua::push<py::object>(L, plain);
+}
+
+}  // namespace
+
+PyTypeObject* reference_type() {
+    static PyTypeObject* const type = [] {
+        static PyType_Slot slots[] = {{Py_tp_dealloc, reinterpret_cast<void*>(forget_reference)}, {0, nullptr}};
+        static PyType_Spec spec = {"dinal._dinal.Reference", sizeof(Reference), 0,
+                                   Py_TPFLAGS_DEFAULT | Py_TPFLAGS_BASETYPE | Py_TPFLAGS_DISALLOW_INSTANTIATION, slots};
+        return reinterpret_cast<PyTypeObject*>(PyType_FromSpec(&spec));
+    }();
+    return type;
+}
+
+py::object to_python(lua_State* L, int index) {
+    if (lua_type(L, index) == LUA_TNUMBER && lua_isinteger(L, index) == 0) return py::float_(lua_tonumber(L, index));
+    Seen seen;
+    return value_to_python(L, index, seen);
+}
+
+void to_lua(lua_State* L, py::handle value, int depth) {
+    constexpr int deepest = 100;
+    if (depth > deepest) throw py::value_error("a value within more than 100 others is too deep for dinal");
+    luaL_checkstack(L, LUA_MINSTACK, "too many values");
+    PyObject* own = value.ptr();
+    if (own == Py_None) return lua_pushnil(L);
+    if (PyFloat_Check(own)) return lua_pushnumber(L, PyFloat_AS_DOUBLE(own));
+    if (PyBool_Check(own)) return lua_pushboolean(L, own == Py_True ? 1 : 0);
+    if (PyLong_Check(own)) return integer_to_lua(L, own);
+    if (PyUnicode_Check(own)) return text_to_lua(L, own);
+    if (PyBytes_Check(own)) {
+        lua_pushlstring(L, PyBytes_AS_STRING(own), static_cast<std::size_t>(PyBytes_GET_SIZE(own)));
+    } else if (PyObject_TypeCheck(own, reference_type())) {
+        lua_rawgeti(L, LUA_REGISTRYINDEX, reinterpret_cast<Reference*>(own)->place);
+    } else if (PyDict_Check(own)) {
+        table_to_lua(L, py::tuple(), py::reinterpret_borrow<py::dict>(value), depth + 1);
+    } else if (PyList_Check(own) || PyTuple_Check(own)) {
+        table_to_lua(L, py::tuple(py::reinterpret_borrow<py::object>(value)), py::dict(), depth + 1);
+    } else {
+        PyFunction_Check(own) ? function_to_lua(L, value) : other_to_lua(L, value, depth);
+    }
+}
+
+void table_to_lua(lua_State* L, const py::tuple& list, const py::dict& fields, int depth) {
+    lua_createtable(L, static_cast<int>(list.size()), static_cast<int>(fields.size()));
+    lua_Integer place = 0;
+    for (const py::handle item : list) {
+        to_lua(L, item, depth + 1);
+        lua_rawseti(L, -2, ++place);
+    }
+    for (const auto& [key, value] : fields) {
+        const auto kept = py::reinterpret_borrow<py::object>(value);  // user's code that runs may change the dictionary
+        to_lua(L, py::reinterpret_borrow<py::object>(key), depth + 1);
+        to_lua(L, kept, depth + 1);
+        lua_settable(L, -3);  // raises when None or nan is the key
+    }
+}
+
+}  // namespace dinal::python

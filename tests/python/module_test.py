@@ -1,0 +1,601 @@
+"""The Python module: objects, arrays, callables, errors, signals, threads.
+
+Run by ctest with PYTHONPATH set to the module's folder: python3 module_test.py SOURCE PROGRAM.
+"""
+
+import gc
+import inspect
+import math
+import multiprocessing
+import os
+import pathlib
+import random
+import signal
+import subprocess
+import sys
+import tempfile
+import threading
+import time
+import traceback
+import unittest
+import warnings
+import weakref
+
+import numpy as np
+import pandas
+
+import dinal
+
+SOURCE, PROGRAM = sys.argv[1:3]
+
+
+def python(code, **more):
+    """What another Python prints."""
+    return subprocess.run([sys.executable, "-c", "import dinal, math, os, signal, sys, threading, time\n" + code],
+                          capture_output=True, text=True, timeout=30, **more)
+
+
+class Objects(unittest.TestCase):
+    def setUp(self):
+        self.sys = dinal.system(I=1, k=4, Rd=.3, Re=.4)
+        self.run = self.sys.simulate(theta0=1, t_end=20)
+
+    def test_members(self):
+        self.assertEqual(self.sys.omega0, 2)
+        self.assertEqual(self.sys.with_(Rd=0).Rd, 0)
+        self.assertEqual(self.sys.with_(k=9).omega0, 3)
+        theta, velocity = self.run.at(1.25)
+        self.assertIsInstance(theta, float)
+        self.assertEqual(self.run.status, "rest")
+        self.assertEqual(self.run.system.k, 4)
+        self.assertIsInstance(self.run, dinal.Run)
+        self.assertEqual(dinal.nondimensional().I, dinal.nondimensional(zeta=0).I)
+
+    def test_what_is_shown(self):
+        lua = subprocess.run([PROGRAM, "-e", "print(system{ I = 1, k = 4, Rd = .3, Re = .4 }:simulate{ theta0 = 1, t_end = 20 })"],
+                             capture_output=True, text=True)
+        self.assertEqual(str(self.run), lua.stdout.rstrip("\n"))
+        self.assertIn("rows", repr(self.run))
+        self.assertIn("simulate", dir(self.sys))
+        self.assertIn("kind", dir(self.run.events))
+
+    def test_events_and_data(self):
+        events = self.run.events
+        self.assertEqual(events.kind[-1], "rest")
+        self.assertEqual(events[0]["kind"], "turn")
+        self.assertEqual(events[-1].t, events.t[-1])
+        self.assertEqual(len(list(events)), len(events))
+        self.assertEqual(len(events[1:3]), 2)
+        self.assertEqual(np.count_nonzero(events.kind == "rest"), 1)
+        with self.assertRaises(IndexError):
+            events[len(events)]
+
+    def test_frames(self):
+        self.assertEqual(list(pandas.DataFrame(dict(self.run)).columns), self.run.names)
+        frame = pandas.DataFrame(dict(self.run.events))
+        self.assertEqual(frame.kind.iloc[-1], "rest")
+        data = dinal.data(r=[1, 2], word=["a", "b"])
+        self.assertEqual(pandas.DataFrame(dict(data)).word.tolist(), ["a", "b"])
+        again = dinal.data(pandas.DataFrame({"r": [1., 2.], "A": [3., 4.]}))
+        self.assertEqual(again.A.tolist(), [3, 4])
+
+    def test_excitations(self):
+        e = dinal.excitation.harmonic(amplitude=2, frequency=1)
+        self.assertEqual((2 * e - e / np.float64(2))(.25), 3)
+        self.assertEqual((-e)(.25), -2)
+        self.assertEqual((np.float64(3) * e)(.25), 6)
+        with self.assertRaises(TypeError):
+            self.run + 1
+
+    def test_keywords_in_their_places(self):
+        e = dinal.excitation.harmonic(frequency=1)
+        self.assertEqual(e.value(t=.25), e.value(.25))
+
+    def test_unknown_names(self):
+        with self.assertRaisesRegex(AttributeError, "did you mean 'theta'"):
+            self.run.tetha
+        with self.assertRaisesRegex(AttributeError, "did you mean 'system'"):
+            dinal.sistem
+        with self.assertRaisesRegex(AttributeError, "make a new one"):
+            self.sys.I = 2
+        with self.assertRaisesRegex(TypeError, "cannot create"):
+            dinal.Run()
+
+    def test_tables(self):
+        self.assertEqual(dinal.lua("{ 1, 2, { a = true } }"), [1, 2, {"a": True}])
+        self.assertEqual(dinal.lua("{ x = 1 }").x, 1)
+        self.assertEqual(dinal.lua("1, 'two'"), (1, "two"))
+        self.assertEqual(dinal.lua("#t, t.a[2]", t={"a": (1, 2), 1: 5}), (1, 2))
+        self.assertEqual(dinal.lua("'\\xff'").encode("utf-8", "surrogateescape"), b"\xff")
+        circle = dinal.lua("(function() local t = {} t.t = t return t end)()")
+        self.assertIs(circle.t, circle)
+        self.assertEqual(dinal.lua("n", n=2**70), 2.**70)
+        self.assertEqual(dinal.lua("name", name=pathlib.Path("a")), "a")
+        word = object()
+        self.assertIs(dinal.lua("x", x=word), word)
+        self.assertIs(dinal.lua("f", f=math.sin), math.sin)
+        deep = []
+        deep.append(deep)
+        with self.assertRaisesRegex(ValueError, "too deep"):
+            dinal.lua("x", x=deep)
+
+    def test_order_of_output(self):
+        self.assertEqual(python("print(1); dinal.lua('print(2)'); print(3); dinal.lua('print(4)')").stdout, "1\n2\n3\n4\n")
+
+    def test_pages(self):
+        self.assertIn("<table", self.run.events._repr_html_())
+        picture = self.run.plot(show=False)
+        self.assertIsInstance(picture, dinal.Picture)
+        if subprocess.run(["which", "gnuplot"], capture_output=True).returncode == 0:
+            self.assertIn("<svg", self.run._repr_svg_())
+            self.assertEqual(set(picture._repr_mimebundle_()), {"image/svg+xml", "text/html"})
+        self.assertIn("stuck", python("dinal.system(I=1, k=4, Rd=1).simulate(theta0=1, t_end=9).plot()").stdout)
+
+
+class Arrays(unittest.TestCase):
+    def test_no_copy(self):
+        run = dinal.system(I=1, k=4).simulate(theta0=1, t_end=20)
+        address = run.theta.__array_interface__["data"][0]
+        self.assertEqual(run.theta.__array_interface__["data"][0], address)
+        theta = run.theta
+        self.assertFalse(theta.flags.writeable)
+        with self.assertRaises(ValueError):
+            theta[0] = 1
+        with self.assertRaises(ValueError):
+            theta.flags.writeable = True
+        sum_before = theta.sum()
+        del run
+        for _ in range(20):
+            dinal.system(I=1, k=4).simulate(theta0=1, t_end=2000, dt=.01)
+        gc.collect()
+        dinal.lua("collectgarbage()")
+        self.assertEqual(theta.sum(), sum_before)
+
+    def test_all_that_holds_numbers(self):
+        import array
+        import ctypes
+        times = [0, 1, 2.5]
+        sys = dinal.system(I=1, k=4)
+        for given in (times, tuple(times), np.array(times), np.array(times, dtype="f4"), array.array("d", times),
+                      memoryview(np.array(times)), (ctypes.c_double * 3)(*times), pandas.Series(times), np.array([9, 0, 1, 9, 2.5])[[1, 2, 4]],
+                      np.array([0, 7, 1, 7, 2.5])[::2]):
+            self.assertEqual(sys.simulate(times=given, theta0=1).t.tolist(), times)
+        self.assertEqual(dinal.lua("v[2] ~= v[2]", v=np.ma.array([1, 2], mask=[False, True])), True)
+        self.assertEqual(sys.simulate(times=range(3), theta0=1).t.tolist(), [0, 1, 2])
+        self.assertEqual(dinal.lua("#v[1], v[2][3]", v=np.arange(6.).reshape(2, 3)), (3, 5.0))
+        self.assertEqual(dinal.lua("w[2]", w=np.array(["a", "b"])), "b")
+        self.assertEqual([dinal.lua("math.type(x)", x=x) for x in (np.int64(1), np.float32(1), np.array(1), True)],
+                         ["integer", "float", "integer", None])
+
+
+class Callables(unittest.TestCase):
+    def test_M(self):
+        sys = dinal.system(I=1, k=4, Rd=.3, Re=.4)
+        same = sys.simulate(M=dinal.lua("function(t) return math.sin(t) end"), t_end=20)
+        for M in (lambda t: math.sin(t), math.sin, np.sin, lambda t: np.sin(t), lambda t, A=1: A * math.sin(t)):
+            self.assertLess(np.abs(sys.simulate(M=M, t_end=20).theta - same.theta).max(), 1e-9)
+
+    def test_what_is_written_of_a_function(self):
+        with tempfile.TemporaryDirectory() as folder:
+            dinal.system(I=1, k=4).simulate(M=lambda t: 1., t_end=1).save(folder + "/run.csv")
+            text = pathlib.Path(folder, "run.csv").read_text()
+        self.assertIn("a function written in Python could not be written down", text)
+        self.assertIn("written in Python", str(dinal.excitation.scripted(lambda t: 1.)))
+
+    def test_feedback_and_states(self):
+        sys = dinal.system(I=1, k=4)
+        lua = sys.simulate(M=dinal.lua("function(t, theta, velocity, z) return -velocity + z.e end"),
+                           states={"e": {"rate": dinal.lua("function(t, theta) return -theta end")}}, theta0=1, t_end=5)
+        run = sys.simulate(M=lambda t, theta, velocity, z: -velocity + z.e,
+                           states={"e": {"rate": lambda t, theta: -theta}}, theta0=1, t_end=5)
+        self.assertLess(np.abs(run.theta - lua.theta).max(), 1e-9)
+        self.assertEqual(list(run.states), ["e"])
+
+    def test_events_with_acts(self):
+        def bounce(t, theta, velocity, z):
+            z.hits += 1
+            return theta, -velocity
+        run = dinal.system(I=1, k=4).simulate(
+            theta0=1, t_end=5, states={"hits": {"rate": lambda t: 0}},
+            events=[{"name": "floor", "when": lambda t, theta: theta + .5, "act": bounce, "direction": "down"}])
+        self.assertGreater(run.states.hits[-1], 1)
+        self.assertGreater(run.theta.min(), -.5 - 1e-6)
+        self.assertIn("floor", run.events.name)
+
+    def test_laws_and_springs(self):
+        law = dinal.friction.law(lambda speed: .3 + .1 * speed, Re=.5)
+        self.assertAlmostEqual(law.torque(2), .5)
+        sys = dinal.system(I=1, k=4, friction=law)
+        self.assertEqual(sys.simulate(theta0=1, t_end=20).status, "rest")
+
+    def test_controllers(self):
+        M = dinal.excitation.sampled(lambda t, theta, velocity: -theta, every=.1)
+        run = dinal.system(I=1, k=4).simulate(M=M, theta0=1, t_end=1)
+        self.assertAlmostEqual(run.M[150], -run.at(.1)[0])
+
+    def test_tables_are_lent(self):
+        """What a function changes in a table that Lua gives it is changed in Lua."""
+        def change(record, numbers):
+            record.x += 1
+            record["list"].append("b")
+            numbers[0] = 7
+            numbers.append(9)
+        self.assertEqual(dinal.lua("(function() local t, n = { x = 1, list = { 'a' } }, { 1, 2 } f(t, n) return t, n end)()",
+                                   f=change), ({"x": 2, "list": ["a", "b"]}, [7, 2, 9]))
+
+    def test_sweep(self):
+        def point(p):
+            return {"A": p["r"]**2, "same": p.r == p["r"]}
+        with warnings.catch_warnings(record=True) as told:
+            warnings.simplefilter("default")
+            for _ in range(2):
+                m = dinal.sweep(over={"r": [1, 2, 3]}, run=point)
+        self.assertEqual(m.A.tolist(), [1, 4, 9])
+        self.assertEqual(m.same.tolist(), [1, 1, 1])
+        self.assertEqual(len(told), 1)
+        self.assertIn("one thread does all points", str(told[0].message))
+        lua = dinal.sweep(over={"r": np.arange(3.)}, run=dinal.lua("function(p) return { A = k*p.r } end", k=2))
+        self.assertEqual(lua.A.tolist(), [0, 2, 4])
+        self.assertIn("A", pandas.DataFrame(dict(lua)).columns)
+        self.assertEqual(told[0].filename, __file__)
+        with self.assertRaisesRegex(dinal.Error, "max_time needs a Lua function"):
+            dinal.sweep(over={"r": [1]}, run=point, max_time=1)
+        with tempfile.TemporaryDirectory() as folder, self.assertRaisesRegex(dinal.Error, "file needs a Lua function"):
+            dinal.sweep(over={"r": [1]}, run=point, file=folder + "/m.csv")
+        best = dinal.minimise(over={"x": [0, 3]}, run=lambda p: (p.x - 1.25)**2)
+        self.assertAlmostEqual(best.x, 1.25, 6)
+
+    def test_two_sweeps_are_two(self):
+        """The second is not taken for the first one, which Ctrl-C has broken off."""
+        shown = python("""
+import warnings; warnings.simplefilter("ignore")
+def first(p):
+    if p.r == 3: os.kill(os.getpid(), signal.SIGINT)
+    return {"A": 1}
+try: dinal.sweep(over={"r": [1, 2, 3, 4]}, run=first)
+except KeyboardInterrupt: print(len(dinal.partial))
+print(dinal.sweep(over={"r": [1, 2, 3, 4]}, run=lambda p: {"A": 2}).A.tolist())
+""")
+        self.assertEqual(shown.stdout, "2\n[2.0, 2.0, 2.0, 2.0]\n", shown.stderr)
+
+
+class Errors(unittest.TestCase):
+    def test_sentence_and_facts(self):
+        with self.assertRaises(dinal.Error) as caught:
+            dinal.system(I=1, k=4).simulate(tend=20)
+        self.assertIn("has no option 'tend'", str(caught.exception))
+        self.assertIn("did you mean 't_end'", str(caught.exception))
+        self.assertEqual(caught.exception.call, "sys:simulate")
+        self.assertEqual(caught.exception.culprit, "tend")
+
+    def test_exceptions_travel(self):
+        class Own(Exception):
+            pass
+        thrown = Own("here")
+
+        def M(t):
+            if t > .5:
+                raise thrown
+            return 1.
+        try:
+            dinal.system(I=1, k=4).simulate(M=M, t_end=2)
+        except Own as caught:
+            self.assertIs(caught, thrown)
+            self.assertIn("raise thrown", "".join(traceback.format_tb(caught.__traceback__)))
+        self.assertGreater(len(dinal.partial), 100)
+        self.assertLess(abs(dinal.partial.t_end - .5), 1e-6)
+        if sys.version_info >= (3, 11):
+            self.assertIn("in M at t = 0.5", "".join(thrown.__notes__))
+
+    def test_exceptions_travel_far(self):
+        """Through Lua, a pcall, a coroutine, and a run within a run."""
+        def inner():
+            raise KeyError("x")
+        with self.assertRaises(KeyError):
+            dinal.lua("coroutine.wrap(function() f() end)()", f=inner)
+        self.assertEqual(dinal.lua("pcall(f)", f=inner)[0], False)
+        with self.assertRaises(KeyError):
+            dinal.system(I=1, k=1).simulate(
+                M=lambda t: dinal.system(I=1, k=1).simulate(M=lambda t: inner(), t_end=1).t_end, t_end=1)
+        with self.assertRaises(dinal.Error) as caught, warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            dinal.sweep(over={"r": [1]}, run=lambda p: inner())
+        self.assertIsInstance(caught.exception.__cause__, KeyError)
+
+    def test_nothing_keeps_an_exception(self):
+        class Big:
+            pass
+
+        def fail():
+            big = Big()
+            seen.append(weakref.ref(big))
+            def M(t):
+                raise ValueError(big)
+            try:
+                dinal.lua("f(1)", f=M)
+            except ValueError:
+                pass
+        seen = []
+        fail()
+        dinal.lua("collectgarbage()")
+        dinal.lua("collectgarbage()")
+        gc.collect()
+        self.assertIsNone(seen[0]())
+
+    def test_wrong_results(self):
+        for wrong in (None, "1", float("nan"), [], object(), 1j):
+            with self.assertRaisesRegex(dinal.Error, "must return a finite number"):
+                dinal.system(I=1, k=4).simulate(M=lambda t: wrong, t_end=2)
+
+    def test_wrong_calls_do_not_crash(self):
+        chance = random.Random(1)
+        sys_ = dinal.system(I=1, k=4, Rd=.1)
+        run = sys_.simulate(theta0=1, t_end=1)
+        objects = [sys_, run, run.events, dinal.excitation.harmonic(omega=1), dinal.integrator.exact(), run.plot(show=False),
+                   dinal.friction.coulomb(Rd=1), run.energy()]
+        values = [None, 0, -1, 2.5, float("nan"), float("inf"), 2**80, "t", "", "\udcff", b"x", [], {}, (1, 2), [[]], {"t": 1},
+                  np.arange(3.), np.array("x"), np.array([1j]), np.zeros((2, 2)), object(), len, lambda *a: a[0], lambda: 1,
+                  lambda t: 1 / 0, int, Ellipsis, {1: 2}, {None: 1}, {float("nan"): 1}, {(1, 2): 3}, set(), range(3), 1j,
+                  *objects]
+        never = {"animate", "exit", "help", "save", "lua", "report", "experiment", "marks", "bifurcation"}
+        functions = [f for m in vars(dinal).values() if inspect.ismodule(m) and m.__name__.startswith("dinal.")
+                     for f in vars(m).values() if callable(f) and getattr(f, "__module__", "") == "dinal"]
+        functions += [f for f in vars(dinal).values() if inspect.isfunction(f) and f.__module__ == "dinal"]
+        functions += [getattr(o, name) for o in objects for name in dir(type(o)) if not name.startswith("_")]
+        functions = [f for f in functions if callable(f) and getattr(f, '__name__', '') not in never]
+        self.assertGreater(len(functions), 80)
+        options = ["M", "t_end", "dt", "theta0", "times", "I", "k", "over", "run", "data", "states", "events", "nonsense"]
+        done = 0
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            for _ in range(2000):
+                function = chance.choice(functions)
+                arguments = [chance.choice(values) for _ in range(chance.choice((0, 0, 1, 2, 3)))]
+                named = {chance.choice(options): chance.choice(values) for _ in range(chance.choice((0, 1, 2, 3)))}
+                if getattr(function, '__name__', '') in ("plot", "phase_plot"):
+                    named["show"] = False
+                try:
+                    function(*arguments, **named)
+                    done += 1
+                except (dinal.Error, TypeError, ValueError, KeyError, ZeroDivisionError, AttributeError, OverflowError):
+                    pass
+        self.assertGreater(done, 20)
+
+    def test_dead_and_foreign_objects(self):
+        with self.assertRaisesRegex(dinal.Error, "use a colon"):
+            dinal.System.simulate(42, t_end=1)
+        with self.assertRaises(dinal.Error):
+            dinal.System.omega0.fget(dinal.excitation.harmonic(omega=1))
+        with self.assertRaises(TypeError):
+            dinal.Object.__new__(dinal.Run)
+        with self.assertRaisesRegex(dinal.Error, "not possible within Python"):
+            dinal.lua("os.exit()")
+        with self.assertRaisesRegex(dinal.Error, "table: 0x"):
+            dinal.lua("error({})")
+        with self.assertRaisesRegex(dinal.Error, "unexpected symbol|syntax error|expected"):
+            dinal.lua("function(")
+
+
+class Signals(unittest.TestCase):
+    """Each in a Python of its own, which gets SIGINT when it has said that it begins."""
+
+    def interrupted(self, code):
+        code = f"print('begins', flush=True)\ntry:\n    {code}\nexcept KeyboardInterrupt:\n    " \
+               "print('interrupted', type(dinal.partial).__name__)\n"
+        process = subprocess.Popen([sys.executable, "-c", "import dinal, math\n" + code], stdout=subprocess.PIPE, text=True)
+        self.assertEqual(process.stdout.readline(), "begins\n")
+        time.sleep(.2)
+        process.send_signal(signal.SIGINT)
+        shown = process.communicate(timeout=30)[0]
+        self.assertEqual(process.returncode, 0)
+        return shown
+
+    def test_run(self):
+        long = "t_end=1e9, times=[0, 1e9])"
+        self.assertEqual(self.interrupted("dinal.system(I=1, k=4).simulate(M=dinal.lua('function(t) return math.sin(t^2) end'), "
+                                          + long), "interrupted Run\n")
+        self.assertEqual(self.interrupted("dinal.system(I=1, k=4).simulate(M=lambda t: math.sin(t), " + long),
+                         "interrupted Run\n")
+
+    def test_lua(self):
+        self.assertEqual(self.interrupted("dinal.lua('while true do pcall(function() end) end')"),
+                         "interrupted NoneType\n")
+
+    def test_sweep(self):
+        self.assertEqual(self.interrupted("dinal.sweep(over={'r': [1, 2, 3]}, run=dinal.lua('function(p) while p.r > 1 do end "
+                                          "return { A = 1 } end'))"), "interrupted Data\n")
+
+    def test_handlers_of_others(self):
+        shown = python("""
+signal.signal(signal.SIGINT, lambda *a: print("mine"))
+dinal.system(I=1, k=4)
+os.kill(os.getpid(), signal.SIGINT)
+signal.signal(signal.SIGINT, signal.SIG_IGN)
+dinal.system(I=1, k=4)
+os.kill(os.getpid(), signal.SIGINT)
+print("alive")
+""")
+        self.assertEqual(shown.stdout, "mine\nalive\n", shown.stderr)
+
+
+class Processes(unittest.TestCase):
+    def test_threads(self):
+        """Calls from several threads wait for each other, also where a Python function lets others run."""
+        sys_ = dinal.system(I=1, k=4, Rd=.1)
+        ends, errors = [], []
+
+        def work():
+            try:
+                for _ in range(3):
+                    ends.append(sys_.simulate(M=lambda t: (time.sleep(0), math.sin(t))[1], t_end=10).theta[-1])
+            except BaseException as error:
+                errors.append(error)
+        threads = [threading.Thread(target=work) for _ in range(4)]
+        for thread in threads:
+            thread.start()
+        for thread in threads:
+            thread.join()
+        self.assertEqual((errors, len(ends), len(set(ends))), ([], 12, 1))
+
+    def test_fork(self):
+        with multiprocessing.get_context("fork").Pool(2) as pool:
+            self.assertEqual(pool.map(damped, [1, 2, 3]), [damped(1), damped(2), damped(3)])
+
+    def test_fork_within_a_call_of_another_thread(self):
+        shown = python("""
+inside, go = threading.Event(), threading.Event()
+def M(t):
+    inside.set()
+    go.wait()
+    return 1.
+thread = threading.Thread(target=lambda: dinal.system(I=1, k=4).simulate(M=M, t_end=1))
+thread.start()
+inside.wait()
+child = os.fork()
+if child == 0:
+    try: dinal.system(I=1, k=4)
+    except RuntimeError as error: print("forked while" in str(error), flush=True)
+    os._exit(0)
+os.waitpid(child, 0)
+go.set()
+thread.join()
+print(dinal.system(I=1, k=4).omega0)
+""")
+        self.assertEqual(shown.stdout, "True\n2.0\n", shown.stderr)
+
+    def test_exit(self):
+        for code in ("x = dinal.system(I=1, k=4).simulate(t_end=1); y = x.theta; z = dinal.lua('function() end')",
+                     "import atexit; r = dinal.system(I=1, k=4); atexit.register(lambda: r.simulate(M=lambda t: 1, t_end=1))",
+                     "class C:\n    def __del__(self, d=dinal): d.system(I=1, k=4)\nkeep = C(); dinal.lua('function() return c end', c=keep)",
+                     "s = dinal.system(I=1, k=4); begun = threading.Event()\n"
+                     "def M(t): begun.set(); time.sleep(1e-3); return 0.\n"
+                     "for _ in range(2): threading.Thread(target=lambda: s.simulate(M=M, t_end=1e9, times=[0, 1e9]), daemon=True).start()\n"
+                     "begun.wait()",
+                     "sys.exit(dinal.system(I=1, k=4).simulate(M=lambda t: sys.exit(0), t_end=1))"):
+            shown = python(code)
+            self.assertEqual((shown.returncode, shown.stderr), (0, ""), code)
+
+    def test_memory_is_given_back(self):
+        sys_ = dinal.system(I=1, k=4)
+
+        def resident():
+            with open("/proc/self/statm") as file:
+                return int(file.read().split()[1]) * os.sysconf("SC_PAGE_SIZE")
+        for _ in range(5):
+            sys_.simulate(theta0=1, t_end=1000, dt=.01)
+        before = resident()
+        for _ in range(100):  # 5 MB each
+            sys_.simulate(theta0=1, t_end=1000, dt=.01).theta
+        self.assertLess(resident() - before, 400e6)
+
+
+def damped(Rd):
+    return dinal.system(I=1, k=4, Rd=Rd / 10).simulate(M=lambda t: math.sin(t), t_end=10).theta[-1]
+
+
+class Help(unittest.TestCase):
+    def test_documentation(self):
+        text = dinal.system.__doc__
+        self.assertIn("system(I, k, C = 0", text)
+        self.assertIn("moment of inertia", text)
+        simulate = dinal.system(I=1, k=4).simulate
+        self.assertIn("sys.simulate(", simulate.__doc__)
+        names = list(inspect.signature(simulate).parameters)
+        self.assertTrue({"M", "theta0", "t_end"} <= set(names))
+        self.assertIn("T0", dinal.System.T0.__doc__)
+        self.assertEqual(str(inspect.signature(dinal.excitation.harmonic).parameters["amplitude"].default), "1")
+        import pydoc
+        self.assertIn("moment of inertia", pydoc.render_doc(dinal.system))
+        self.assertIn("harmonic", pydoc.render_doc(dinal.excitation))
+        self.assertIn("simulate", pydoc.render_doc(dinal.System))
+
+    def test_every_member_is_there(self):
+        manual = pathlib.Path(SOURCE, "docs/manual.md").read_text()
+        import re
+        for name in re.findall(r"^### (?:excitation|theory|friction|integrator)[.](\w+)$", manual, re.M):
+            self.assertTrue(any(hasattr(getattr(dinal, m), name) or hasattr(getattr(dinal, m.capitalize(), None), name)
+                                for m in ("excitation", "theory", "friction", "integrator")), name)
+        for name in re.findall(r"^### run[.:](\w+)$", manual, re.M):
+            self.assertTrue(hasattr(dinal.Run, name) or hasattr(dinal.Run, name + "_"), name)
+
+    def test_completion(self):
+        shown = python("""
+from IPython.core.completer import provisionalcompleter
+from IPython.core.interactiveshell import InteractiveShell
+shell = InteractiveShell.instance()
+shell.user_ns.update(dinal=dinal, sys_=dinal.system(I=1, k=4))
+with provisionalcompleter():
+    for text in ("sys_.sim", "sys_.simulate(th", "dinal.excitation.harm"):
+        print([c.text for c in shell.Completer.completions(text, len(text))])
+print(shell.object_inspect_text("sys_.simulate"))
+""", env={**os.environ, "IPYTHONDIR": tempfile.gettempdir() + "/dinal-ipython"}).stdout
+        for word in ("simulate", "theta0=", "harmonic", "Runs the system"):
+            self.assertIn(word, shown)
+
+    def test_stubs(self):
+        stub = pathlib.Path(dinal.__file__).with_name("__init__.pyi").read_text()
+        compile(stub, "__init__.pyi", "exec")
+        self.assertRegex(stub, r"def simulate\(self, .*t_end=..., .*-> Run: ...")
+        self.assertIn("def theta(self) -> numpy.ndarray", stub)
+        printed = subprocess.run([sys.executable, "-m", "dinal.stubs"], capture_output=True, text=True)
+        self.assertEqual(printed.stdout, stub)
+
+    def test_version(self):
+        shown = subprocess.run([PROGRAM, "--version"], capture_output=True, text=True).stdout
+        self.assertTrue(shown.startswith(f"dinal {dinal.__version__} "))
+
+
+class Truth(unittest.TestCase):
+    """The numbers of the reference cases."""
+
+    def test_newsgroup(self):
+        e = dinal.system(I=1, k=1, Rd=10).simulate(velocity0=5, t_end=2).events[0]
+        self.assertAlmostEqual(e.t, math.atan(.5), 12)
+        self.assertAlmostEqual(e.theta, math.sqrt(125) - 10, 12)
+
+    def test_block_pulled_by_a_spring(self):
+        run = dinal.system(I=10, k=4000, Rd=19.62, Re=29.43).simulate(M=lambda t: 40 * t, t_end=1)
+        slip, stick = run.events[:2]
+        self.assertAlmostEqual(slip.t, .73575, 8)
+        self.assertAlmostEqual(stick.t - slip.t, .177191371, 7)
+        self.assertAlmostEqual(stick.theta - slip.theta, 6.676913711e-3, 9)
+
+    def test_den_hartog(self):
+        for r, g, A in ((.75, .5, 1.972601445), (1.35, .5, .860792180), (2, .5, .220479276)):
+            s = dinal.nondimensional(friction_ratio=g).steady(M=dinal.excitation.harmonic(frequency=r))
+            self.assertAlmostEqual(s.amplitude, A, 8)
+
+    def test_figure_22(self):
+        run = dinal.nondimensional(friction_ratio=.167).simulate(velocity0=2 * math.pi, t_end=3)
+        self.assertAlmostEqual(run.events[0].theta, .846848608, 8)
+        self.assertAlmostEqual(run.events[-1].theta, .155151392, 8)
+        self.assertAlmostEqual(run.events[-1].t, 1.723664157, 8)
+
+    def test_sheet_1_of_the_lab(self):
+        """Done as tests/lab/sheet1_test.lua does it: every answer is right."""
+        for number in (4711, 20260017):
+            dinal.lab.number(number)
+            given = dinal.lab.given(1)
+            T0 = 2 * math.pi * math.sqrt(given.viscous.I / given.viscous.k)
+            viscous, dry = dinal.system(**given.viscous), dinal.system(**given.dry)
+            run = viscous.simulate(theta0=given.theta0, t_end=10 * T0, dt=T0 / 100)
+            decrement = math.log(given.theta0 / run.events[1].theta)
+            run = dry.simulate(theta0=given.theta0, t_end=10 * T0, dt=T0 / 100)
+            last = run.events[-1]
+            record = dinal.lab.experiment(1)
+            X0, X1, X2 = record.theta[0], -record.theta[1], record.theta[2]
+            q = (X1 - X2) / (X0 - X1)
+            z = -math.log(q) / math.pi
+            answers = {"1a": T0, "1b": decrement, "1c": decrement / math.sqrt(4 * math.pi**2 + decrement**2),
+                       "1d": given.theta0 + run.events[0].theta, "1e": last.theta, "1f": last.t,
+                       "1g": z / math.sqrt(1 + z**2), "1h": (q * X0 - X1) / (1 + q)}
+            for question, value in answers.items():
+                dinal.check(question, value)
+            marks = dinal.lab.marks()
+            said = dict(zip(marks.question, marks.said))
+            for question in answers:
+                self.assertTrue(said[question].startswith(f"{question}: right"), said[question])
+
+
+if __name__ == "__main__":
+    unittest.main(argv=sys.argv[:1] + sys.argv[3:])
