@@ -480,15 +480,16 @@ bool Engine::share_loops(const std::optional<Ending>& released) {
     const auto count = static_cast<Eigen::Index>(held.size());
     Eigen::MatrixXd D = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(n()), count);
     Eigen::VectorXd low(count), high(count), slope(count);
+    Eigen::Index full = -1;  // the joint that came to its limit
     for (Eigen::Index c = 0; c < count; ++c) {
         const std::size_t j = held[static_cast<std::size_t>(c)];
         const Joint& joint = problem_.system.joints[j];
         D(joint.first, c) = 1;
         if (joint.second >= 0) D(joint.second, c) = -1;
-        const double near = released && released->which == j ? 64 * rounding * torque_size(j) : 0;
+        if (released && released->which == j) full = c;
         const bool sticks = mechanics_.rubs(j) && mode_.friction[j].way == Motion::stuck;
-        low(c) = sticks ? -mechanics_.holding(j, Motion::forward, here()) + near : 0;
-        high(c) = sticks ? mechanics_.holding(j, Motion::backward, here()) - near : 0;
+        low(c) = sticks ? -mechanics_.holding(j, Motion::forward, here()) : 0;
+        high(c) = sticks ? mechanics_.holding(j, Motion::backward, here()) : 0;
         constexpr double wall = 1e30;
         if (mode_.leans[j] > 0) low(c) = -wall;
         if (mode_.leans[j] < 0) high(c) = wall;
@@ -503,7 +504,23 @@ bool Engine::share_loops(const std::optional<Ending>& released) {
     constexpr double little = 1e-10;  // what makes the smallest torques the solution
     G.diagonal() += little * G.diagonal();
     slope += D.transpose() * lightness.cwiseProduct(torques);
-    const Eigen::VectorXd torque = least_in_box(G, slope, low, high);
+    const double size = full < 0 ? 0 : torque_size(held[static_cast<std::size_t>(full)]);
+    Eigen::VectorXd torque;
+    bool still = false;
+    const auto share = [&](double part) {
+        Eigen::VectorXd lower = low, higher = high;
+        if (full >= 0) lower(full) += part * size, higher(full) -= part * size;
+        torque = least_in_box(G, slope, lower, higher);
+        constexpr double nothing = 1e-9;
+        still = full >= 0 && (G * torque + slope).cwiseAbs().maxCoeff() <= nothing * G(full, full) * size;
+        if (full >= 0 && torque(full) <= lower(full)) torque(full) = low(full);
+        if (full >= 0 && torque(full) >= higher(full)) torque(full) = high(full);
+    };
+    // What comes to its limit rides from now on, and the others take the rest. Others may stand at a limit just now and
+    // leave it next: when they have room for a little more than the rest, nothing moves, and that little tells which.
+    constexpr double little_more = 1e-7;
+    share(little_more);
+    if (!still) share(64 * rounding);
     for (Eigen::Index c = 0; c < count; ++c) {
         const std::size_t j = held[static_cast<std::size_t>(c)];
         const bool at_low = torque(c) <= low(c), at_high = torque(c) >= high(c);
