@@ -75,6 +75,11 @@ int run_of_steady(lua_State* L) {
         return 1;
     }
     if (push_kept(L, "run")) return 1;
+    if (s->rig) {
+        run_of_rig(L, *s);
+        keep(L, "run");
+        return 1;
+    }
     constexpr double rows = 400;
     if (s->motion.settled && s->motion.asked) {
         const analysis::SteadyQuestion& asked = *s->motion.asked;

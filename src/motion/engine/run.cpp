@@ -628,6 +628,8 @@ void Engine::begin() {
         }
         if (outcome_ == Outcome::reached_end) decide(false);
         for (std::size_t j = 0; j < mechanics_.joints(); ++j) leaned_[j] = mode_.leans[j] != 0 ? 1 : 0;
+    } else {
+        project();
     }
 }
 
