@@ -215,8 +215,10 @@ Engine::Engine(const AssemblyProblem& problem, AssemblyRun& result)
         for (std::size_t j = 0; j < joints; ++j) leaned_[j] = mode_.leans[j] != 0 ? 1 : 0;
         for (std::size_t i = 0; i < n(); ++i) mechanics_.loads()[i].remember(problem.before->controllers[i]);
     }
+    bool looks_back = false;
+    mechanics_.for_each_signal([&](const Signal& s) { looks_back = looks_back || !s.delays().empty(); });
     history_ = std::make_shared<KeptHistory>(y_, now_.hi, problem.before ? problem.before->past : nullptr,
-                                             problem.limits.dense ? problem.limits.memory / 4 : 0);
+                                             problem.limits.dense || looks_back ? problem.limits.memory / 4 : 0);
     asking_.past = [this](double t, Side side) { return history_->at(t, side); };
     const double run = problem.window.end - problem.window.start;
     Mode free = mode_;
