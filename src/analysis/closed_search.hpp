@@ -70,11 +70,26 @@ private:
             if (off > near) continue;
             ++tries;
             auto found = newton(seen_[last], static_cast<int>(m));
-            if (found && approaches(found->x, m)) return found;
+            if (found && approaches(found->x, m)) return shortest(*found);
             if (found || off > to_rounding) continue;
             return itself(seen_[last], static_cast<int>(m));
         }
         return {};
+    }
+
+    /// It may have come back before: what dies out slowly is nearer to itself after more returns.
+    Found shortest(Found found) {
+        for (int m = 1; m < found.returns; ++m) {
+            if (found.returns % m != 0) continue;
+            const Return back = map_(found.x, found.mode, m);
+            maps_ += m;
+            constexpr double there = 1e-10;
+            const double off = back.finished ? size_of_step(back.to - found.x) : 1;
+            if (!back.finished || back.mode != found.mode || off > std::max(there, 10 * found.residual)) continue;
+            found.returns = m, found.period = back.time, found.residual = off;
+            break;
+        }
+        return found;
     }
 
     /// The run comes nearer to it all the time, and is there soon.

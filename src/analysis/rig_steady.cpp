@@ -605,7 +605,9 @@ private:
         answer_.rest.assign(moment.y.data(), moment.y.data() + n());
         const Eigen::VectorXd after = RigRuns::at_stop(answer_.run).y;
         for (Eigen::Index i = 0; i < n(); ++i) {
-            answer_.turned.push_back(chart_.goes_round(i) ? after[i] - moment.y[i] : 0);
+            const double fastest = std::max(std::fabs(reach.low[n() + i]), std::fabs(reach.high[n() + i]));
+            const double turned = chart_.goes_round(i) ? after[i] - moment.y[i] : 0;
+            answer_.turned.push_back(std::fabs(turned) > 1e-6 * period * fastest ? turned : 0);
         }
         return true;
     }

@@ -74,6 +74,13 @@ SteadyHandle seen_from(const std::shared_ptr<RigSteady>& rig, std::size_t joint)
         tell_of_run(part->question, run->trajectory, facts);
         facts.settled = std::shared_ptr<const motion::Trajectory>(run, &run->trajectory);
         part->part = run;
+        double size = 0;
+        for (std::size_t i = 0; i < whole.low.size(); ++i) size = std::max(size, whole.high[i] - whole.low[i]);
+        // The difference of two angles that are held together is their rounding.
+        if (system.is_link(joint) && facts.high - facts.low <= 1e-13 * size) {
+            facts.status = analysis::SteadyStatus::adheres;
+            facts.amplitude = 0, facts.stuck = 1;
+        }
         facts.rest = {facts.low, facts.low};
     } else if (is_found(*part)) {
         const model::Joint& own = system.joints[joint];

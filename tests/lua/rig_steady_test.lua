@@ -119,6 +119,21 @@ test("one body whose friction depends on more: as the same with numbers", functi
     near(varying.multipliers[1].abs, s.multipliers[1].abs, 1e-7)
 end)
 
+test("a damper that is only rubbed along: its period is that of M, glued it does not slip", function()
+    local function steady(Rd)
+        return system { bodies = { machine = { I = 1, k = 1, C = 0.02 }, damper = { I = 0.28 } }, links = { joint = { "machine", "damper", Rd = Rd } } }
+            :steady { M = { machine = sine(0.9, 0.07) } }
+    end
+    local glued, loose = steady(1), steady(0.05)
+    equal(glued.periods, 1)
+    equal(glued.joint.status, "adheres")
+    equal(glued.joint.amplitude, 0.0)
+    near(glued.machine.amplitude, 0.07 / math.sqrt((1 - 1.28 * 0.81) ^ 2 + (0.02 * 0.9) ^ 2), 1e-10)
+    equal(loose.periods, 1)
+    assert(loose.joint.amplitude > 0 and loose.joint.stuck < 1)
+    assert(not loose:explain():find("goes round", 1, true))
+end)
+
 test("rest, and what is refused", function()
     local rig = system { bodies = { a = { I = 1, k = 1, Rd = 0.1 }, b = { I = 1, k = 2, C = 0.1 } }, links = { rod = { "a", "b", k = 1 } } }
     local s = rig:steady { theta0 = { a = 1 } }
