@@ -11,6 +11,8 @@
 #include "api/classes.hpp"
 #include "api/data.hpp"
 #include "api/extras_options.hpp"
+#include "api/picture.hpp"
+#include "api/plot_options.hpp"
 #include "api/run.hpp"
 #include "api/steady_answer.hpp"
 #include "api/system_options.hpp"
@@ -22,6 +24,7 @@
 #include "lua/vector.hpp"
 #include "model/laws/coulomb.hpp"
 #include "motion/engine/run.hpp"
+#include "plots/run_figure.hpp"
 #include "source/describe.hpp"
 #include "terminal/progress.hpp"
 #include "text/characters.hpp"
@@ -453,7 +456,7 @@ RunHandle part_of(const BodiesRunHandle& run, std::size_t joint) {
     if (RunHandle known = run->parts[joint].lock()) return known;
     auto made = std::make_shared<Run>();
     made->trajectory = trajectory_of(run, joint);
-    made->is_part = true;
+    made->whole = run;
     made->units = run->system->units;
     run->parts[joint] = made;
     return made;
@@ -481,7 +484,7 @@ int push_bodies_run(lua_State* L, BodiesRunHandle run) {
     if (!run->system->named) {
         auto whole = std::make_shared<Run>();
         whole->trajectory = trajectory_of(run, 0);
-        whole->is_part = true;
+        whole->whole = run;
         whole->units = run->system->units;
         push_run(L, std::move(whole));
         return 1;
@@ -740,6 +743,45 @@ int at_of_bodies(lua_State* L) {
     return 3;
 }
 
+int save_bodies(lua_State* L) {
+    rows_of_bodies(L);
+    lua_replace(L, 1);
+    return data_functions::save(L);
+}
+
+int explain_bodies(lua_State* L) {
+    return lua::push_text(L, story_of_bodies(L, bodies_run_self(L, "run:explain()")));
+}
+
+int energy_bodies(lua_State* L) {
+    return energy_of_bodies(L, bodies_run_self(L, "run:energy()"));
+}
+
+int status_of_bodies(lua_State* L) {
+    return lua::push_text(L, status_word(bodies_run_self(L, "run.status")->run.outcome));
+}
+
+constexpr text::Call bodies_plot_call{"rig_run:plot", "rig_run:plot{ file = \"run.svg\" }", plot_options, true};
+
+/// The angles of all bodies, one below the other, and of the links that rub; with bars where they stick.
+int plot_bodies(lua_State* L) {
+    const BodiesRunHandle run = bodies_run_self(L, "run:plot()");
+    const lua::Options options(L, 2, bodies_plot_call);
+    std::vector<plots::Figure> figures;
+    for (std::size_t j = 0; j < run->system->joints.size(); ++j) {
+        const model::Joint& joint = run->system->joints[j];
+        if (run->system->is_link(j) && joint.friction.none()) continue;
+        const RunHandle part = part_of(run, j);
+        const plots::RunData data{part, &part->trajectory, nullptr, run->system->units};
+        std::vector<plots::Figure> own = options.value_or_fail(plots::column_figures(data, {.ys = {"theta"}}));
+        own.front().y.label = joint.name + " " + own.front().y.label;
+        own.front().below = !figures.empty();
+        figures.push_back(std::move(own.front()));
+    }
+    apply_options(L, options, figures);
+    return deliver(L, options, std::move(figures));
+}
+
 int outcome_of_bodies(lua_State* L) {
     return lua::push_text(L, motion::outcome_text(part_of(bodies_run_self(L, "run.outcome"), 0)->trajectory));
 }
@@ -866,6 +908,27 @@ constexpr lua::Member bodies_run_members[] = {
      {"rig_run:data() -> data",
       "All columns under their names: \"load.theta\", \"clutch.torque\"; they can be plotted and saved.",
       DINAL_RIG_RUN "print(run:data()[\"motor.velocity\"][1])  --> 3.0"}},
+    {lua::a_method<explain_bodies>,
+     {"rig_run:explain() -> string",
+      "The run in sentences: what each body and each link did, when they stuck, where the energy went, how it ended.",
+      DINAL_RIG_RUN "print((run:explain():match(\"clutch links[^.]*\")))  --> clutch links motor and load"}},
+    {lua::a_method<energy_bodies>,
+     {"rig_run:energy() -> energy",
+      "Where the energy went: what M of each body put in, what each damping, friction, belt and impact took. The run is "
+      "repeated for it.",
+      DINAL_RIG_RUN "print(string.format(\"%.6f\", run:energy().clutch.dry))  --> 3.461538"}},
+    {lua::a_method<plot_bodies>,
+     {"rig_run:plot{ OPTIONS }",
+      "Draws the angles of all bodies, and of the links that rub, over time, with bars where they stick.",
+      DINAL_RIG_RUN "picture = run:plot{ show = false }",
+      {&bodies_plot_call}}},
+    {lua::a_method<save_bodies>,
+     {"rig_run:save(file)", "Writes rig_run:data() as CSV, with the names of bodies and links in those of the columns.",
+      DINAL_RIG_RUN "file = os.tmpname() .. \".csv\"\nrun:save(file)\n"
+                    "print(data.load(file)[\"motor.velocity\"][1])  --> 3.0\nos.remove(file)"}},
+    {lua::a_field<status_of_bodies>,
+     {"rig_run.status -> string", "How it ended in one word, as of a run of one body.",
+      DINAL_RIG_RUN "print(run.status)  --> end"}},
     {lua::a_method<continue_bodies>,
      {"rig_run:continue{ OPTIONS } -> rig_run",
       "A new run: this one, and how it goes on from where it ended.",

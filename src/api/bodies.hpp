@@ -100,10 +100,15 @@ struct BodiesRun {
     double dt = 0;
     // Of each joint, made when it is asked for. Not kept: they keep this run.
     mutable std::vector<std::weak_ptr<const Run>> parts = {};
+    mutable std::shared_ptr<const motion::engine::Works> works = {};  ///< made when they are asked for
 };
 using BodiesRunHandle = std::shared_ptr<const BodiesRun>;
 /// The run as seen from the body or link of this joint.
 RunHandle part_of(const BodiesRunHandle& run, std::size_t joint);
+/// What was put in and taken, torque times rad; in rig_energy.cpp. Raises when a function of the run does.
+const motion::engine::Works& works_of(lua_State* L, const BodiesRunHandle& run);
+int energy_of_bodies(lua_State* L, const BodiesRunHandle& run);
+std::string story_of_bodies(lua_State* L, const BodiesRunHandle& run);
 /// Pushes it; of one body without a name as a run of one body.
 int push_bodies_run(lua_State* L, BodiesRunHandle run);
 /// The joint whose name stands at `index`; raises that `what`, which has these members, has none of that name.

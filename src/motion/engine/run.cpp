@@ -147,6 +147,9 @@ private:
     bool too_often();
     void echo(double t, int generation);
     bool put_row(double t, double x);
+    [[nodiscard]] double friction(std::size_t joint, const Moment& at, const Look& look) const;
+    void add_works(double until);
+    [[nodiscard]] double stored() const;
     bool rows_until(double end, bool to_the_end);
     bool fail(Outcome outcome) {
         outcome_ = outcome;
@@ -234,6 +237,11 @@ Engine::Engine(const AssemblyProblem& problem, AssemblyRun& result)
     const std::size_t columns =
         1 + columns_of_body * n() + columns_of_link * (joints - n()) + mechanics_.states_of_user();
     result_.table = Growing<double>(problem.rows.count(), columns);
+    if (!problem.works) return;
+    for (auto of : {&Works::input, &Works::base, &Works::kinetic}) (result_.works.*of).assign(n(), 0);
+    for (auto of : {&Works::viscous, &Works::dry, &Works::belt, &Works::impacts, &Works::spring}) {
+        (result_.works.*of).assign(joints, 0);
+    }
 }
 
 const Frame& Engine::frame() {
@@ -636,6 +644,7 @@ void Engine::begin() {
 }
 
 void Engine::run() {
+    const std::vector<double> first = y_;
     begin();
     unsigned pieces = 0;
     constexpr unsigned between_questions = 16;
@@ -672,6 +681,18 @@ void Engine::run() {
     result_.t_start = problem_.window.start;
     result_.t_stop = now_.hi;
     if (next_row_ < problem_.rows.count()) result_.table = result_.table.first(next_row_);
+    if (problem_.works) {
+        for (std::size_t i = 0; i < n(); ++i) {
+            const double v = first[n() + i], w = y_[n() + i];
+            result_.works.kinetic[i] = problem_.system.bodies[i].inertia * ((w - v) * (w + v)) / 2;
+        }
+        for (std::size_t j = 0; j < mechanics_.joints(); ++j) {
+            const double p = mechanics_.angle(j, first), q = mechanics_.angle(j, y_);
+            const Joint& joint = problem_.system.joints[j];
+            result_.works.spring[j] =
+                joint.stiffness * ((q - p) * (q + p)) / 2 + (joint.spring.energy(q) - joint.spring.energy(p));
+        }
+    }
     history_->close(now_.hi, y_);
     result_.history = history_;
     auto carry = std::make_shared<Carry>();
@@ -796,6 +817,7 @@ bool Engine::end_at(double x) {
         return fail(Outcome::excitation_not_finite);
     }
     if (length > 0) history_->add({segment_.start, segment_.h, length, y_, segment_.series});
+    if (problem_.works && length > 0) add_works(x);
     result_.gap = std::max(result_.gap, std::min(length, 2 * cheb::widest_gap * segment_.h));
     if (x > -1) segment_.state(x, y_);
     now_ = whole && segment_.to_the_end ? Clock{segment_.end, 0} : segment_.start.later(length);
@@ -871,8 +893,12 @@ bool Engine::handle(const Ending& ending) {
             }
             return !too_often() || fail(Outcome::chattering);
         }
-        case By::wall:
-            return hit(j, ending.side);
+        case By::wall: {
+            const double before = stored();
+            const bool goes_on = hit(j, ending.side);
+            if (problem_.works) result_.works.impacts[j] += before - stored();
+            return goes_on;
+        }
         case By::corner: {
             Slipping& how = mode_.friction[j];
             how.range = ending.side > 0 ? how.range + 1 : how.range - 1;
@@ -884,8 +910,12 @@ bool Engine::handle(const Ending& ending) {
             tell(EventKind::switched, static_cast<int>(j));
             if (!decide(true)) return false;
             return !too_often() || fail(Outcome::chattering);
-        case By::user:
-            return act(j);
+        case By::user: {
+            const double before = stored();
+            const bool goes_on = act(j);
+            result_.works.acts += stored() - before;
+            return goes_on;
+        }
     }
     return true;
 }
@@ -1368,26 +1398,12 @@ bool Engine::put_row(double t, double x) {
         cell += stride;
         return std::isfinite(value);
     };
-    const auto friction = [&](std::size_t j) {
-        if (!mechanics_.rubs(j)) return -mechanics_.bristle_torque(j, at, mechanics_.belt(j, t, at.side));
-        const Slipping& how = mode_.friction[j];
-        if (mode_.leans[j] != 0 && how.way == Motion::stuck) {
-            const double held = look_.holding[j];
-            return mode_.leans[j] * held > 0 ? held : 0.0;
-        }
-        if (how.way == Motion::stuck) return look_.holding[j];
-        if (how.riding) return -model::sign_of(how.way) * mechanics_.holding(j, how.way, at);
-        const double slips = mechanics_.velocity(j, y) - mechanics_.belt(j, t, at.side);
-        Slipping present = how;
-        if (mode_.leans[j] != 0) present.range = mechanics_.range_of(j, std::fabs(slips));
-        return -model::sign_of(how.way) * mechanics_.sliding(j, present, slips, at);
-    };
     bool good = put(t);
     for (std::size_t i = 0; i < n(); ++i) {
         good = put(y[i]) && good;
         good = put(y[n() + i]) && good;
         good = put(mechanics_.load(i, at)) && good;
-        good = put(friction(i)) && good;
+        good = put(friction(i, at, look_)) && good;
         good = put(-problem_.system.joints[i].damping * y[n() + i]) && good;
     }
     for (std::size_t j = n(); j < mechanics_.joints(); ++j) {
@@ -1397,11 +1413,101 @@ bool Engine::put_row(double t, double x) {
         good = put(mechanics_.angle(j, y)) && good;
         good = put(mechanics_.velocity(j, y)) && good;
         good = put(torque) && good;
-        good = put(friction(j)) && good;
+        good = put(friction(j, at, look_)) && good;
     }
     for (std::size_t k = 0; k < mechanics_.states_of_user(); ++k) good = put(y[2 * n() + k]) && good;
     if (good) ++next_row_;
     return good;
+}
+
+/// The torque of a joint's friction on its first body.
+double Engine::friction(std::size_t joint, const Moment& at, const Look& look) const {
+    const double belt = mechanics_.belt(joint, at.t, at.side);
+    if (!mechanics_.rubs(joint)) return -mechanics_.bristle_torque(joint, at, belt);
+    const Slipping& how = mode_.friction[joint];
+    if (mode_.leans[joint] != 0 && how.way == Motion::stuck) {
+        const double held = look.holding[joint];
+        return mode_.leans[joint] * held > 0 ? held : 0.0;
+    }
+    if (how.way == Motion::stuck) return look.holding[joint];
+    if (how.riding) return -model::sign_of(how.way) * mechanics_.holding(joint, how.way, at);
+    const double slips = mechanics_.velocity(joint, at.y) - belt;
+    Slipping present = how;
+    if (mode_.leans[joint] != 0) present.range = mechanics_.range_of(joint, std::fabs(slips));
+    return -model::sign_of(how.way) * mechanics_.sliding(joint, present, slips, at);
+}
+
+// ---- energy
+
+/// What moves and bends has stored.
+double Engine::stored() const {
+    double sum = 0;
+    for (std::size_t i = 0; i < n(); ++i) sum += problem_.system.bodies[i].inertia * y_[n() + i] * y_[n() + i] / 2;
+    for (std::size_t j = 0; j < mechanics_.joints(); ++j) {
+        const double q = mechanics_.angle(j, y_);
+        const Joint& joint = problem_.system.joints[j];
+        sum += joint.stiffness * q * q / 2 + joint.spring.energy(q);
+    }
+    return sum;
+}
+
+/// Of Gauss and Legendre, for -1 to 1.
+template <std::size_t points>
+struct GaussRule {
+    std::array<double, points> places{}, weights{};
+    GaussRule() {
+        for (std::size_t i = 0; i < points; ++i) {
+            double x = std::cos(std::numbers::pi * (static_cast<double>(i) + 0.75) / (points + 0.5)), slope = 1;
+            for (int step = 0; step < 8; ++step) {
+                double p = 1, before = 0;
+                for (std::size_t k = 0; k < points; ++k) {
+                    const auto degree = static_cast<double>(k);
+                    const double next = ((2 * degree + 1) * x * p - degree * before) / (degree + 1);
+                    before = p, p = next;
+                }
+                slope = points * (x * p - before) / (x * x - 1);
+                x -= p / slope;
+            }
+            places[i] = x, weights[i] = 2 / ((1 - x * x) * slope * slope);
+        }
+    }
+};
+
+/// The works from the beginning of the stretch to x, by Gauss' formula: all of it is smooth in between.
+void Engine::add_works(double until) {
+    constexpr std::size_t points = 24;
+    static const GaussRule<points> rule;
+    Works& works = result_.works;
+    const Works before = works;
+    std::vector<double> y;
+    for (std::size_t g = 0; g < points; ++g) {
+        const double x = -1 + (until + 1) / 2 * (1 + rule.places[g]);
+        const double part = rule.weights[g] * segment_.h * (until + 1) / 2;
+        segment_.state(x, y);
+        const Moment at{segment_.time(x), Side::at, y};
+        look(at, mode_, *frame_, look_);
+        const double push = mechanics_.base(at.t, at.side);
+        for (std::size_t i = 0; i < n(); ++i) {
+            works.input[i] += part * mechanics_.load(i, at) * y[n() + i];
+            works.base[i] -= part * problem_.system.bodies[i].inertia * push * y[n() + i];
+        }
+        for (std::size_t j = 0; j < mechanics_.joints(); ++j) {
+            const double v = mechanics_.velocity(j, y), belt = mechanics_.belt(j, at.t, at.side);
+            const double torque = friction(j, at, look_);
+            const bool slides = !mode_.holds(j) && !mode_.friction[j].riding;
+            works.viscous[j] += part * problem_.system.joints[j].damping * v * v;
+            if (slides || mode_.leans[j] != 0) works.dry[j] -= part * torque * (v - belt);
+            works.belt[j] += part * torque * belt;
+        }
+    }
+    const auto given = [&works](const std::vector<double>& now, const std::vector<double>& was) {
+        for (std::size_t k = 0; k < now.size(); ++k) works.flow += std::max(0.0, now[k] - was[k]);
+    };
+    given(works.input, before.input), given(works.base, before.base), given(works.belt, before.belt);
+    for (std::size_t i = 0; i < n(); ++i) {
+        const double v = y_[n() + i], w = segment_.at(n() + i, until);
+        works.flow += std::max(0.0, problem_.system.bodies[i].inertia * (v - w) * (v + w) / 2);
+    }
 }
 
 }  // namespace
@@ -1439,8 +1545,8 @@ AssemblyRun run(const AssemblyProblem& problem) {
         event.when = witnesses.heard(event.when, event.name.empty() ? "an event" : "the event " + event.name);
     }
     AssemblyRun result;
-    const AssemblyProblem heard{system,         drive,          problem.window,    problem.rows,   problem.monitor,
-                                problem.limits, problem.before, problem.tolerance, problem.longest};
+    const AssemblyProblem heard{system,         drive,          problem.window,    problem.rows,    problem.monitor,
+                                problem.limits, problem.before, problem.tolerance, problem.longest, problem.works};
     {
         Engine engine(heard, result);
         engine.run();
