@@ -9,6 +9,7 @@
 #include <numbers>
 #include <vector>
 
+#include "analysis/closed_search.hpp"
 #include "analysis/steady_facts.hpp"
 #include "model/controller.hpp"
 #include "motion/stillness.hpp"
@@ -333,121 +334,6 @@ private:
     Vector scale_;
 };
 
-double size_of_step(const Vector& step) {
-    return step.size() == 0 ? 0 : step.cwiseAbs().maxCoeff();
-}
-
-/// A motion that comes back after some returns.
-struct Closed {
-    Vector x;
-    Mode mode;
-    int returns = 1;
-    double period = 0, residual = 0;
-};
-
-class ClosedSearch {
-public:
-    ClosedSearch(ReturnMap& map, int& maps, int longest) : map_(map), maps_(maps), longest_(longest) {}
-
-    /// What one return after the other leads to.
-    std::optional<Closed> follow(ReturnMap::Return first, const std::vector<int>& counts) {
-        seen_ = {std::move(first)};
-        for (const int until : counts) {
-            while (static_cast<int>(seen_.size()) <= until) {
-                ReturnMap::Return next = map_(seen_.back().to, seen_.back().mode);
-                ++maps_;
-                if (!next.finished) {
-                    failed_ = next.outcome;
-                    return {};
-                }
-                seen_.push_back(std::move(next));
-            }
-            for (const double near : {1e-5, 5e-2}) {
-                if (auto found = closes(near)) return found;
-            }
-        }
-        return {};
-    }
-
-    [[nodiscard]] const std::vector<ReturnMap::Return>& seen() const { return seen_; }
-    [[nodiscard]] std::optional<model::Outcome> failed() const { return failed_; }
-
-private:
-    static constexpr double to_rounding = 1e-11;
-
-    std::optional<Closed> closes(double near) {
-        const std::size_t last = seen_.size() - 1;
-        int tries = 0;  // chaos comes near to itself again and again
-        for (std::size_t m = 1; tries < 4 && m <= static_cast<std::size_t>(longest_) && 2 * m <= last; ++m) {
-            if (seen_[last].mode != seen_[last - m].mode) continue;
-            const double off = size_of_step(seen_[last].to - seen_[last - m].to);
-            if (off > near) continue;
-            ++tries;
-            auto found = newton(seen_[last], static_cast<int>(m));
-            if (found && approaches(found->x, m)) return found;
-            if (found || off > to_rounding) continue;
-            return itself(seen_[last], static_cast<int>(m));
-        }
-        return {};
-    }
-
-    /// The run comes nearer to it all the time, and is there soon.
-    [[nodiscard]] bool approaches(const Vector& x, std::size_t m) const {
-        const std::size_t last = seen_.size() - 1;
-        const double now = size_of_step(seen_[last].to - x), before = size_of_step(seen_[last - m].to - x);
-        constexpr double there = 1e-7, close = 0.3;
-        return now <= there || (now <= close && now < 0.98 * before);
-    }
-
-    /// It has come back to rounding, and differences do not tell more.
-    std::optional<Closed> itself(const ReturnMap::Return& from, int m) {
-        const ReturnMap::Return back = map_(from.to, from.mode, m);
-        maps_ += m;
-        if (!back.finished) return {};
-        return Closed{from.to, from.mode, m, back.time, size_of_step(back.to - from.to)};
-    }
-
-    std::optional<Closed> newton(const ReturnMap::Return& from, int m) {
-        Vector x = from.to;
-        std::optional<Closed> best;
-        std::optional<Eigen::MatrixXd> D;
-        constexpr int most = 14;
-        for (int i = 0; i < most; ++i) {
-            const ReturnMap::Return there = map_(x, from.mode, m);
-            maps_ += m;
-            if (!there.finished || there.mode != from.mode) return good(best);
-            const Vector off = there.to - x;
-            const double residual = size_of_step(off);
-            const bool slower = best && residual > 0.1 * best->residual;
-            if (best && residual >= best->residual && best->residual <= to_rounding) return best;
-            if (!best || residual < best->residual) best = Closed{x, from.mode, m, there.time, residual};
-            if (residual <= 4 * std::numeric_limits<double>::epsilon()) return best;
-            if (!D || slower) {
-                D = map_.derivative(x, from.mode, m, 2);
-                maps_ += 2 * m * static_cast<int>(x.size());
-                if (!D) return good(best);
-            }
-            const Eigen::MatrixXd left = Eigen::MatrixXd::Identity(x.size(), x.size()) - *D;
-            const Vector step = left.completeOrthogonalDecomposition().solve(off);
-            if (!step.allFinite()) return good(best);
-            constexpr double farthest = 1;
-            x += step * std::min(1.0, farthest / std::max(size_of_step(step), 1e-300));
-        }
-        return good(best);
-    }
-
-    static std::optional<Closed> good(const std::optional<Closed>& best) {
-        constexpr double enough = 1e-9;
-        return best && best->residual <= enough ? best : std::nullopt;
-    }
-
-    ReturnMap& map_;
-    int& maps_;
-    int longest_;
-    std::vector<ReturnMap::Return> seen_;
-    std::optional<model::Outcome> failed_;
-};
-
 class ReturnSearch {
 public:
     ReturnSearch(const SteadyQuestion& question, const motion::Monitor& monitor)
@@ -544,7 +430,7 @@ private:
         const int longest = question_.periods > 0 ? question_.periods : 32;
         for (const auto& counts : {std::vector<int>{3, 8, 24}, std::vector<int>{40, 120, 320}}) {
             ReturnMap map = ReturnMap::of_period(runs_, start, units_of(reach, now));
-            ClosedSearch search(map, answer_.maps, longest);
+            ClosedSearch<ReturnMap> search(map, answer_.maps, longest);
             const auto found = search.follow({.to = map.place(now), .finished = true, .mode = mode_of(now)}, counts);
             if (found && tells(map, *found)) return;
             if (search.failed()) {
@@ -606,7 +492,7 @@ private:
         ReturnMap map = ReturnMap::of_section(runs_, section, 3 * length, std::move(units));
         const ReturnMap::Return first = map.arrival(now);
         if (!first.finished) return false;
-        ClosedSearch search(map, answer_.maps, 16);
+        ClosedSearch<ReturnMap> search(map, answer_.maps, 16);
         const std::vector<int> counts = i < 4 ? std::vector<int>{3, 6} : std::vector<int>{3, 8, 24, 60};
         const auto found = search.follow(first, counts);
         return found && tells(map, *found);
@@ -658,7 +544,7 @@ private:
     }
 
     /// The facts about a motion that closes; false when no run stays with it.
-    bool tells(ReturnMap& map, const Closed& found) {
+    bool tells(ReturnMap& map, const Closed<Mode>& found) {
         const auto D = map.derivative(found.x, found.mode, found.returns, 4);
         answer_.maps += 4 * found.returns * static_cast<int>(found.x.size());
         std::vector<std::complex<double>> multipliers;

@@ -13,6 +13,7 @@
 #include "api/sweep_run.hpp"
 #include "lua/lua_text.hpp"
 #include "lua/vector.hpp"
+#include "model/assembly.hpp"
 #include "model/oscillator.hpp"
 
 namespace dinal::api {
@@ -94,6 +95,18 @@ void run_point(lua_State* L, double period, std::size_t skip, std::size_t keep) 
     lua_call(L, 2, 1);
 }
 
+/// The body of several that is looked at: of = "load" among what `at` returned, at 1; "" of one body.
+std::string body_of_point(lua_State* L, bool rig) {
+    lua_getfield(L, 1, "of");
+    const bool given = lua_type(L, -1) == LUA_TSTRING;
+    std::string of = given ? lua_tostring(L, -1) : "";
+    lua_pop(L, 1);
+    const auto* system = rig ? lua::test<model::AssemblyHandle>(L, 2) : nullptr;
+    const bool several = system != nullptr && (*system)->named;
+    if (several && !given) lua::raise(L, "at must return the body that is looked at, such as of = \"load\"");
+    return several ? of : "";
+}
+
 /// The function that the workers ask, with a point; upvalues: the user's function, period, skip, keep.
 int looks_of_point(lua_State* L) {
     lua_settop(L, 1);
@@ -106,7 +119,8 @@ int looks_of_point(lua_State* L) {
     }
     lua_getfield(L, 1, "system");
     lua_getfield(L, 1, "M");
-    if (lua::test<model::Oscillator>(L, 2) == nullptr) {
+    const bool rig = lua::test<model::AssemblyHandle>(L, 2) != nullptr;
+    if (!rig && lua::test<model::Oscillator>(L, 2) == nullptr) {
         lua::raise(L, fmt::format("at must return a table with system = ..., got {} there", lua::describe(L, 2)));
     }
     lua_newtable(L);  // 4: the other options
@@ -115,7 +129,8 @@ int looks_of_point(lua_State* L) {
         lua_insert(L, -2);
         lua_rawset(L, 4);
     }
-    for (const char* taken : {"system", "M"}) {
+    const std::string of = body_of_point(L, rig);
+    for (const char* taken : {"system", "M", "of"}) {
         lua_pushnil(L);
         lua_setfield(L, 4, taken);
     }
@@ -124,6 +139,10 @@ int looks_of_point(lua_State* L) {
     const auto keep = static_cast<std::size_t>(lua_tointeger(L, lua_upvalueindex(4)));
     refuse_own_options(L, 4);
     run_point(L, period, skip, keep);
+    if (!of.empty()) {
+        lua_getfield(L, -1, of.c_str());
+        lua_replace(L, -2);
+    }
     const int run = lua_gettop(L);
     if (const auto* own = lua::test<RunHandle>(L, run); own != nullptr && !is_whole((*own)->trajectory.outcome)) {
         lua::raise(

@@ -19,7 +19,7 @@ inline constexpr text::Option bifurcation_only_options[] = {
      .otherwise = text::needed,
      .meaning =
          "a function of a point, a table such as { a = 0.5 }, that returns options of sys:simulate, with system = "
-         "... and, if need be, another period",
+         "... and, if need be, another period; of several bodies also of = \"load\", the body that is looked at",
      .wanted = "a function of a point that returns { system = ..., M = ... }"},
     {.name = "period",
      .unit = "time units",

@@ -11,7 +11,10 @@
 #include "api/classes.hpp"
 #include "api/data.hpp"
 #include "api/extras_options.hpp"
+#include "api/picture.hpp"
+#include "api/plot_options.hpp"
 #include "api/run.hpp"
+#include "api/steady_answer.hpp"
 #include "api/system_options.hpp"
 #include "api/units_option.hpp"
 #include "lua/interrupt.hpp"
@@ -21,6 +24,7 @@
 #include "lua/vector.hpp"
 #include "model/laws/coulomb.hpp"
 #include "motion/engine/run.hpp"
+#include "plots/run_figure.hpp"
 #include "source/describe.hpp"
 #include "terminal/progress.hpp"
 #include "text/characters.hpp"
@@ -49,16 +53,6 @@ constexpr text::Option joint_options[] = {
 };
 constexpr auto body_options = text::joined(inertia_option, joint_options, friction_options);
 constexpr auto link_options = text::joined(joint_options, friction_options);
-
-struct BodiesRun {
-    AssemblyHandle system;
-    engine::Drive drive;
-    engine::AssemblyRun run;
-    double dt = 0;
-    // Of each joint, made when it is asked for. Not kept: they keep this run.
-    mutable std::vector<std::weak_ptr<const Run>> parts;
-};
-using BodiesRunHandle = std::shared_ptr<const BodiesRun>;
 
 std::string name_of_joint(const model::Assembly& system, std::size_t joint) {
     return system.joints[joint].name;
@@ -267,47 +261,7 @@ namespace {
 
 // ---- simulate
 
-constexpr const char* by_body_wanted = "a table by body, such as { load = 1 }";
-constexpr text::Option bodies_simulate_rows[] = {
-    {.name = "M",
-     .unit = "torque",
-     .otherwise = "0",
-     .meaning =
-         "the excitations by body: { load = M }, each a number, an excitation or a function of t, or of t, theta, "
-         "velocity, z, where theta.load and velocity.load are those of a body",
-     .object = "excitation",
-     .wanted = by_body_wanted},
-    {.name = "theta0",
-     .unit = "rad",
-     .otherwise = "0",
-     .meaning = "where the bodies start: { load = 0.1 }",
-     .wanted = by_body_wanted},
-    {.name = "velocity0",
-     .unit = "rad per time unit",
-     .otherwise = "0",
-     .meaning = "how fast they start",
-     .wanted = by_body_wanted},
-    {.name = "belt",
-     .unit = "rad per time unit",
-     .otherwise = "0",
-     .meaning =
-         "velocities of what the friction of a body or a link acts against, by their names: numbers, functions of t "
-         "or excitations",
-     .wanted = by_body_wanted},
-    extras_options[3],
-    {.name = "states",
-     .meaning = "variables that go along with the motion: { NAME = { start = 0, rate = function(t, theta, velocity, z) "
-                "... end } }",
-     .wanted =
-         "a table such as { e = { start = 0, rate = function(t, theta, velocity, z) return 1 - theta.load end } }",
-     .fields = {&state_call, text::Fields::Place::by_name}},
-    {.name = "events",
-     .meaning = "what is to be located: a list of { when = function(t, theta, velocity, z), ... }; act may assign to "
-                "theta.NAME, velocity.NAME and z.NAME",
-     .wanted = "a list such as { { when = function(t, theta) return theta.load - 1 end, name = \"limit\" } }",
-     .fields = {&event_call, text::Fields::Place::listed}},
-};
-constexpr auto bodies_simulate_options = text::joined(bodies_simulate_rows, window_options, dense_option);
+constexpr auto bodies_simulate_options = text::joined(bodies_drive_rows, window_options, dense_option);
 constexpr text::Call bodies_simulate_call{"rig:simulate", "rig:simulate{ M = { load = 2 }, t_end = 20 }",
                                           bodies_simulate_options};
 
@@ -343,14 +297,18 @@ void for_each_named(lua_State* L, const lua::Options& options, const char* optio
     lua_pop(L, 1);
 }
 
+}  // namespace
+
 engine::Drive asked_drive(lua_State* L, const lua::Options& options, const model::Assembly& system) {
     engine::Drive drive;
     const std::size_t n = system.bodies.size();
     drive.loads.resize(n), drive.belts.resize(system.joints.size());
     drive.theta0.assign(n, 0), drive.velocity0.assign(n, 0);
+    const auto part = [&](const char* option, std::size_t joint) {
+        return system.named ? fmt::format("{}.{}", option, system.joints[joint].name) : std::string(option);
+    };
     const auto named = [&](const char* option, std::size_t joint) {
-        return system.named ? fmt::format("rig:simulate: {}.{}", option, system.joints[joint].name)
-                            : fmt::format("sys:simulate: {}", option);
+        return fmt::format("{}: {}", options.call(), part(option, joint));
     };
     for_each_named(L, options, "M", system, false,
                    [&](std::size_t i) { drive.loads[i] = to_excitation(L, -1, named("M", i), "M"); });
@@ -364,8 +322,8 @@ engine::Drive asked_drive(lua_State* L, const lua::Options& options, const model
          {std::pair("theta0", &drive.theta0), std::pair("velocity0", &drive.velocity0)}) {
         for_each_named(L, options, option, system, false, [&, name = option, to = values](std::size_t i) {
             if (lua_type(L, -1) != LUA_TNUMBER || !std::isfinite(lua_tonumber(L, -1))) {
-                options.fail(name, fmt::format("{} must be a finite number, got {}", named(name, i).substr(14),
-                                               lua::describe(L, -1)));
+                options.fail(name,
+                             fmt::format("{} must be a finite number, got {}", part(name, i), lua::describe(L, -1)));
             }
             (*to)[i] = lua_tonumber(L, -1);
         });
@@ -389,6 +347,8 @@ void name_functions(lua::CallState& call, const model::Assembly& system, const e
     for (const model::OwnState& state : drive.states) names.push_back(state.name);
     if (!names.empty()) call.name_states(names);
 }
+
+namespace {
 
 /// A course through the motion of one body or link.
 class PartCourse final : public motion::Course {
@@ -467,7 +427,17 @@ motion::Trajectory trajectory_of(const BodiesRunHandle& whole, std::size_t joint
     part.initial = {run.drive.theta0[first], run.drive.velocity0[first]};
     const auto& carry = *run.run.carry;
     part.state_at_stop = {carry.y[first], carry.y[system.bodies.size() + first]};
-    part.motion_at_stop = carry.mode.friction[joint].way;
+    if (link) {
+        const auto second = static_cast<std::size_t>(system.joints[joint].second);
+        part.initial.theta -= run.drive.theta0[second], part.initial.velocity -= run.drive.velocity0[second];
+        part.state_at_stop.theta -= carry.y[second];
+        part.state_at_stop.velocity -= carry.y[system.bodies.size() + second];
+    }
+    part.motion_at_stop = carry.mode.rubs[joint] != 0 ? carry.mode.friction[joint].way : model::Motion::forward;
+    part.began_stuck = part.events.size() == 0 ? part.motion_at_stop == model::Motion::stuck
+                                               : part.events[0].kind == model::EventKind::slip;
+    part.on_belt = system.named || !run.drive.belts[joint].components().empty();
+    if (system.joints[joint].walls) part.restitution = system.joints[joint].walls->restitution;
     if (run.run.history != nullptr && run.run.history->bytes() > 0) {
         model::OscillatorParameters parameters;
         parameters.inertia = system.bodies[first].inertia;
@@ -479,22 +449,42 @@ motion::Trajectory trajectory_of(const BodiesRunHandle& whole, std::size_t joint
     return part;
 }
 
+}  // namespace
+
 RunHandle part_of(const BodiesRunHandle& run, std::size_t joint) {
     run->parts.resize(run->system->joints.size());
     if (RunHandle known = run->parts[joint].lock()) return known;
     auto made = std::make_shared<Run>();
     made->trajectory = trajectory_of(run, joint);
-    made->is_part = true;
+    made->whole = run;
     made->units = run->system->units;
     run->parts[joint] = made;
     return made;
+}
+
+std::size_t joint_named(lua_State* L, int index, const model::Assembly& system, const char* what,
+                        std::span<const lua::Member> members) {
+    const std::string name = lua_tostring(L, index);
+    std::vector<std::string> own;
+    for (std::size_t j = 0; j < system.joints.size(); ++j) {
+        if (system.joints[j].name == name) return j;
+        own.push_back(system.joints[j].name);
+    }
+    std::vector<std::string_view> names(own.begin(), own.end());
+    for (const lua::Member& member : members) {
+        if (member.kind != lua::Kind::metamethod) names.push_back(member.name);
+    }
+    lua::raise(
+        L, {.sentence = fmt::format("{} has no '{}'; its bodies and links are {}", what, name, fmt::join(own, ", ")),
+            .culprit = name,
+            .cure = text::did_you_mean(name, names)});
 }
 
 int push_bodies_run(lua_State* L, BodiesRunHandle run) {
     if (!run->system->named) {
         auto whole = std::make_shared<Run>();
         whole->trajectory = trajectory_of(run, 0);
-        whole->is_part = true;
+        whole->whole = run;
         whole->units = run->system->units;
         push_run(L, std::move(whole));
         return 1;
@@ -504,6 +494,8 @@ int push_bodies_run(lua_State* L, BodiesRunHandle run) {
     lua::note_external_memory(L, bytes);
     return 1;
 }
+
+namespace {
 
 /// Runs what `problem` says, under the limits of the script.
 int run_bodies(lua_State* L, const lua::Options& options, const std::shared_ptr<BodiesRun>& run,
@@ -649,23 +641,8 @@ const BodiesRunHandle& bodies_run_self(lua_State* L, const char* call) {
 int part_by_name(lua_State* L) {
     if (lua_type(L, 2) != LUA_TSTRING) return 0;
     const BodiesRunHandle run = bodies_run_self(L, "run.load");
-    const std::string name = lua_tostring(L, 2);
-    for (std::size_t j = 0; j < run->system->joints.size(); ++j) {
-        if (run->system->joints[j].name != name) continue;
-        push_run(L, part_of(run, j));
-        return 1;
-    }
-    std::vector<std::string_view> names;
-    std::vector<std::string> own;
-    for (const model::Joint& joint : run->system->joints) own.push_back(joint.name);
-    names.assign(own.begin(), own.end());
-    for (const lua::Member& member : bodies_run_class.members) {
-        if (member.kind != lua::Kind::metamethod) names.push_back(member.name);
-    }
-    lua::raise(
-        L, {.sentence = fmt::format("this run has no '{}'; its bodies and links are {}", name, fmt::join(own, ", ")),
-            .culprit = name,
-            .cure = text::did_you_mean(name, names)});
+    push_run(L, part_of(run, joint_named(L, 2, *run->system, "this run", bodies_run_class.members)));
+    return 1;
 }
 
 int run_times(lua_State* L) {
@@ -766,6 +743,45 @@ int at_of_bodies(lua_State* L) {
     return 3;
 }
 
+int save_bodies(lua_State* L) {
+    rows_of_bodies(L);
+    lua_replace(L, 1);
+    return data_functions::save(L);
+}
+
+int explain_bodies(lua_State* L) {
+    return lua::push_text(L, story_of_bodies(L, bodies_run_self(L, "run:explain()")));
+}
+
+int energy_bodies(lua_State* L) {
+    return energy_of_bodies(L, bodies_run_self(L, "run:energy()"));
+}
+
+int status_of_bodies(lua_State* L) {
+    return lua::push_text(L, status_word(bodies_run_self(L, "run.status")->run.outcome));
+}
+
+constexpr text::Call bodies_plot_call{"rig_run:plot", "rig_run:plot{ file = \"run.svg\" }", plot_options, true};
+
+/// The angles of all bodies, one below the other, and of the links that rub; with bars where they stick.
+int plot_bodies(lua_State* L) {
+    const BodiesRunHandle run = bodies_run_self(L, "run:plot()");
+    const lua::Options options(L, 2, bodies_plot_call);
+    std::vector<plots::Figure> figures;
+    for (std::size_t j = 0; j < run->system->joints.size(); ++j) {
+        const model::Joint& joint = run->system->joints[j];
+        if (run->system->is_link(j) && joint.friction.none()) continue;
+        const RunHandle part = part_of(run, j);
+        const plots::RunData data{part, &part->trajectory, nullptr, run->system->units};
+        std::vector<plots::Figure> own = options.value_or_fail(plots::column_figures(data, {.ys = {"theta"}}));
+        own.front().y.label = joint.name + " " + own.front().y.label;
+        own.front().below = !figures.empty();
+        figures.push_back(std::move(own.front()));
+    }
+    apply_options(L, options, figures);
+    return deliver(L, options, std::move(figures));
+}
+
 int outcome_of_bodies(lua_State* L) {
     return lua::push_text(L, motion::outcome_text(part_of(bodies_run_self(L, "run.outcome"), 0)->trajectory));
 }
@@ -849,6 +865,27 @@ constexpr lua::Member rig_members[] = {
                 "print(string.format(\"%.6f\", run.events[1].t), run.events[1].kind, run.events[1].where)  --> "
                 "1.153846\tstick\tclutch",
       {&bodies_simulate_call}}},
+    {lua::a_method<steady_of_rig>,
+     {"rig:steady{ OPTIONS } -> steady",
+      "The motion that remains when transients have died out, as sys:steady finds it: periodic under a periodic M, belt or "
+      "base, and a limit cycle or rest if nothing depends on t. s.load is the motion as seen from the body `load`: "
+      "amplitude, mean, lag, stops, run. Angles of bodies that go round are measured from each other.",
+      "rig = system{ bodies = { a = { I = 1, k = 4, Rd = 0.3, Re = 0.6 }, b = { I = 0.5, C = 0.05 } },\n"
+      "    links = { rod = { \"a\", \"b\", k = 2, C = 0.1 } } }\n"
+      "s = rig:steady{ belt = { a = 0.1 }, theta0 = { a = 0.3 } }\n"
+      "print(s.status, string.format(\"%.6f %.6f\", s.period, s.b.amplitude))  --> steady\t4.627741 0.114468",
+      {&rig_steady_call}}},
+    {lua::a_method<response_of_rig>,
+     {"rig:response{ OPTIONS } -> data",
+      "The steady motion over a list of values, each searched from the one before. Columns: the name of what is varied; of "
+      "each body and link amplitude, peak, lag, stops and stuck, as in \"load.amplitude\"; stable and status.",
+      "rig = system{ bodies = { a = { I = 1, k = 1, C = 0.1 }, b = { I = 1, k = 1 } }, links = { rod = { \"a\", \"b\", k = 4 "
+      "} } }\n"
+      "c = rig:response{ over = { omega = { 0.5, 2 } }, at = function(p)\n"
+      "    return { M = { a = excitation.harmonic{ omega = p.omega } } }\n"
+      "end }\n"
+      "print(c[\"b.amplitude\"])  --> vector{ 0.609125, 0.266643 }",
+      {&rig_response_call}}},
     {lua::a_field<rig_bodies>,
      {"rig.bodies -> table", "The names of the bodies, in alphabetical order.",
       DINAL_RIG "print(table.concat(rig.bodies, \" \"))  --> load motor"}},
@@ -871,6 +908,27 @@ constexpr lua::Member bodies_run_members[] = {
      {"rig_run:data() -> data",
       "All columns under their names: \"load.theta\", \"clutch.torque\"; they can be plotted and saved.",
       DINAL_RIG_RUN "print(run:data()[\"motor.velocity\"][1])  --> 3.0"}},
+    {lua::a_method<explain_bodies>,
+     {"rig_run:explain() -> string",
+      "The run in sentences: what each body and each link did, when they stuck, where the energy went, how it ended.",
+      DINAL_RIG_RUN "print((run:explain():match(\"clutch links[^.]*\")))  --> clutch links motor and load"}},
+    {lua::a_method<energy_bodies>,
+     {"rig_run:energy() -> energy",
+      "Where the energy went: what M of each body put in, what each damping, friction, belt and impact took. The run is "
+      "repeated for it.",
+      DINAL_RIG_RUN "print(string.format(\"%.6f\", run:energy().clutch.dry))  --> 3.461538"}},
+    {lua::a_method<plot_bodies>,
+     {"rig_run:plot{ OPTIONS }",
+      "Draws the angles of all bodies, and of the links that rub, over time, with bars where they stick.",
+      DINAL_RIG_RUN "picture = run:plot{ show = false }",
+      {&bodies_plot_call}}},
+    {lua::a_method<save_bodies>,
+     {"rig_run:save(file)", "Writes rig_run:data() as CSV, with the names of bodies and links in those of the columns.",
+      DINAL_RIG_RUN "file = os.tmpname() .. \".csv\"\nrun:save(file)\n"
+                    "print(data.load(file)[\"motor.velocity\"][1])  --> 3.0\nos.remove(file)"}},
+    {lua::a_field<status_of_bodies>,
+     {"rig_run.status -> string", "How it ended in one word, as of a run of one body.",
+      DINAL_RIG_RUN "print(run.status)  --> end"}},
     {lua::a_method<continue_bodies>,
      {"rig_run:continue{ OPTIONS } -> rig_run",
       "A new run: this one, and how it goes on from where it ended.",

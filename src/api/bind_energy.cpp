@@ -2,6 +2,7 @@
 #include <algorithm>
 
 #include "analysis/energy.hpp"
+#include "api/bodies.hpp"
 #include "api/cards.hpp"
 #include "api/classes.hpp"
 #include "api/run.hpp"
@@ -217,6 +218,10 @@ std::string energy_card(lua_State* L, int index, const terminal::Display& screen
 
 int energy_of_run(lua_State* L) {
     const RunHandle& run = lua::self<RunHandle>(L, 1, "run:energy()");
+    if (run->whole && run->whole->system->named) {
+        lua::raise(L, "run:energy(): ask the run of all bodies: energy = run:energy(), and energy.load of that");
+    }
+    if (run->whole) return energy_of_bodies(L, run->whole);
     lua::CallState call(L);
     auto energy = analysis::energy_of(run->trajectory);
     if (call.failed()) {

@@ -247,7 +247,7 @@ constexpr lua::Member check_members[] = {
 const lua::Class lab_module = {
     "lab",
     {"lab.NAME(...)",
-     "The lab course: six sheets of two hours each, in docs/lab, with systems that differ by student number and answers "
+     "The lab course: seven sheets of two hours each, in docs/lab, with systems that differ by student number and answers "
      "that check(question, value) judges.",
      "lab.number(4711)\nprint(lab.given(1).theta0 > 0)  --> true"},
     lab_module_members};

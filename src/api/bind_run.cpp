@@ -8,6 +8,7 @@
 #include "analysis/recurrence.hpp"
 #include "api/animate.hpp"
 #include "api/bind_simulate.hpp"
+#include "api/bodies.hpp"
 #include "api/cards.hpp"
 #include "api/classes.hpp"
 #include "api/data.hpp"
@@ -26,7 +27,8 @@
 namespace dinal::api {
 
 std::string story_of_run(lua_State* L, const Run& run) {
-    if (run.is_part) return motion::summary(run.trajectory) + ". Its events tell what happened, and when.";
+    if (run.whole && !run.whole->system->named) return story_of_bodies(L, run.whole);
+    if (run.whole) return motion::summary(run.trajectory) + ". The run of all bodies tells more: run:explain().";
     lua::CallState call(L);  // a spring, a belt and a base may be a user's functions
     std::string text = run.origin ? analysis::explain(run.trajectory, run.origin->system,
                                                       run.terms ? *run.terms : run.origin->excitation,
@@ -132,10 +134,12 @@ int events(lua_State* L) {
 
 int outcome(lua_State* L) {
     const Run& run = *run_self(L, "run.outcome");
-    return lua::push_text(L, run.origin || run.is_part ? motion::outcome_text(run.trajectory) : "read from a file");
+    return lua::push_text(L, run.origin || run.whole ? motion::outcome_text(run.trajectory) : "read from a file");
 }
 
 /// One word for each way to end.
+}  // namespace
+
 std::string_view status_word(model::Outcome outcome) {
     switch (outcome) {
         case model::Outcome::reached_end:
@@ -153,9 +157,11 @@ std::string_view status_word(model::Outcome outcome) {
     }
 }
 
+namespace {
+
 int status(lua_State* L) {
     const Run& run = *run_self(L, "run.status");
-    if (!run.origin) {
+    if (!run.origin && !run.whole) {
         lua_pushnil(L);
         return 1;
     }

@@ -25,7 +25,15 @@ bool is_moving(const Steady& s) {
     return s.motion.status == SteadyStatus::steady;
 }
 
+/// Raises where a motion of several bodies is asked for what only one of them has.
+const Steady& of_one(lua_State* L, const Steady& s) {
+    if (s.rig == nullptr || s.of_body) return s;
+    lua::raise(L, fmt::format("this is a motion of several bodies; ask one of them, such as s.{}.amplitude",
+                              s.rig->question.system->bodies.front().name));
+}
+
 const analysis::SteadyShape& steady_shape(lua_State* L, const SteadyHandle& s) {
+    of_one(L, *s);
     if (!s->shape) {
         asking(L, s->question.extras,
                [&](const motion::Monitor& monitor) { s->shape = analysis::shape_of(s->question, s->motion, monitor); });
@@ -46,7 +54,7 @@ const std::vector<analysis::OtherMotion>& others_of(lua_State* L, const SteadyHa
 }
 
 int push_or_nil(lua_State* L, const std::optional<double>& x) {
-    x ? lua_pushnumber(L, *x) : lua_pushnil(L);
+    x && !std::isnan(*x) ? lua_pushnumber(L, *x) : lua_pushnil(L);  // NaN: of a body that goes round
     return 1;
 }
 
@@ -60,7 +68,7 @@ int steady_status(lua_State* L) {
 
 template <auto fact>
 int steady_found_number(lua_State* L) {
-    const Steady& s = *steady_self(L, "s.amplitude");
+    const Steady& s = of_one(L, *steady_self(L, "s.amplitude"));
     return push_or_nil(L, is_found(s) ? std::optional<double>(static_cast<double>(s.motion.*fact)) : std::nullopt);
 }
 
@@ -72,7 +80,7 @@ int steady_period(lua_State* L) {
 }
 
 int steady_peak(lua_State* L) {
-    const Steady& s = *steady_self(L, "s.peak");
+    const Steady& s = of_one(L, *steady_self(L, "s.peak"));
     const double most = std::max(std::fabs(s.motion.low), std::fabs(s.motion.high));
     return push_or_nil(L, is_found(s) ? std::optional(most) : std::nullopt);
 }
@@ -89,7 +97,7 @@ int steady_shape_angle(lua_State* L) {
 }
 
 int steady_stops(lua_State* L) {
-    const Steady& s = *steady_self(L, "s.stops");
+    const Steady& s = of_one(L, *steady_self(L, "s.stops"));
     is_moving(s) ? lua_pushinteger(L, static_cast<lua_Integer>(s.motion.stops)) : lua_pushnil(L);
     return 1;
 }
@@ -106,7 +114,7 @@ int steady_growth(lua_State* L) {
 }
 
 int steady_rest(lua_State* L) {
-    const Steady& s = *steady_self(L, "s.rest");
+    const Steady& s = of_one(L, *steady_self(L, "s.rest"));
     if (s.motion.status != SteadyStatus::adheres && s.motion.status != SteadyStatus::rest) {
         lua_pushnil(L);
         return 1;
@@ -158,7 +166,7 @@ int steady_unique(lua_State* L) {
     }
     if (s->motion.unique.value_or(false)) {
         lua_pushliteral(L, "proven");
-    } else if (!s->motion.unique && others_of(L, s).empty()) {
+    } else if (!s->motion.unique && (s->rig ? others_of_rig(L, *s->rig).empty() : others_of(L, s).empty())) {
         lua_pushliteral(L, "not seen");
     } else {
         lua_pushboolean(L, 0);
@@ -176,6 +184,14 @@ int steady_others(lua_State* L) {
     if (push_kept(L, "others")) return 1;
     lua_newtable(L);
     lua_Integer n = 0;
+    if (s->rig) {
+        for (const SteadyHandle& other : others_of_rig(L, *s->rig)) {
+            lua::push<SteadyHandle>(L, other);
+            lua_rawseti(L, -2, ++n);
+        }
+        keep(L, "others");
+        return 1;
+    }
     for (const analysis::OtherMotion& other : others_of(L, s)) {
         lua::push<SteadyHandle>(L, std::make_shared<Steady>(Steady{other.question, other.motion}));
         lua_rawseti(L, -2, ++n);
@@ -185,6 +201,7 @@ int steady_others(lua_State* L) {
 }
 
 std::string steady_story(lua_State* L, const SteadyHandle& s) {
+    if (s->rig) return story_of_rig(L, *s);
     return analysis::told(s->question, s->motion, steady_shape(L, s), others_of(L, s));
 }
 
@@ -201,6 +218,13 @@ std::string steady_summary(const Steady& s) {
     const auto number = [](double x, const std::string& unit) {
         return model::with_unit(fmt::format("{:.6g}", x), unit);
     };
+    if (s.rig && !s.of_body && is_found(s)) {
+        if (m.status == SteadyStatus::adheres) return "adheres: nothing moves";
+        if (m.status == SteadyStatus::rest) return "rest: the motion ends";
+        return m.period == 0 ? "steady: all bodies go round evenly"
+                             : fmt::format("steady: period {}, {} bodies", number(m.period, in.t),
+                                           s.rig->question.system->bodies.size());
+    }
     switch (m.status) {
         case SteadyStatus::steady:
             return fmt::format("steady: period {}, amplitude {}, {} a period{}", number(m.period, in.t),
@@ -345,7 +369,7 @@ constexpr lua::Member steady_members[] = {
      lua::guarded<run_of_steady>,
      lua::Kind::field,
      {"s.run -> run",
-      "One period of the motion as a run with 401 rows; nil at rest. With a delayed or sampled controller it continues the "
+      "One period of the motion as a run with 401 rows, of several bodies a rig_run; nil at rest. With a delayed or sampled controller it continues the "
       "run that led to the motion.",
       DINAL_STEADY "print(#s.run, s.run.t_end)  --> 401\t2.5"}},
     {"__tostring",
@@ -368,10 +392,10 @@ const lua::Class steady_class = {
     "steady motion",
     {"sys:steady{ ... }, run:steady{ ... } -> s",
      "The answer to the question what the motion becomes: a periodic motion and its properties, rest, or the reason why "
-     "there is no such motion. It cannot be changed.",
+     "there is no such motion. Of several bodies s.load is the motion as seen from the body `load`. It cannot be changed.",
      "s = nondimensional{}:steady{}\nprint(s.status)  --> rest"},
     steady_members,
-    nullptr,
+    body_of_steady,
     steady_card};
 
 void register_steady(lua_State* L) {

@@ -1,8 +1,15 @@
 // Systems of several bodies, and of one whose friction depends on more than its speed, as Lua sees them.
 #pragma once
 
+#include <memory>
+#include <vector>
+
+#include "api/extras_options.hpp"
+#include "api/run.hpp"
 #include "lua/options.hpp"
+#include "lua/user_function.hpp"
 #include "model/assembly.hpp"
+#include "motion/engine/run.hpp"
 
 namespace dinal::api {
 
@@ -38,6 +45,75 @@ inline constexpr text::Option friction_options[] = {
 
 /// What the options Rd, Re, friction and normal say.
 model::ContactFriction asked_friction(lua_State* L, const lua::Options& options, const std::string& call);
+
+inline constexpr const char* by_body_wanted = "a table by body, such as { load = 1 }";
+/// What drives a run, and from where it starts.
+inline constexpr text::Option bodies_drive_rows[] = {
+    {.name = "M",
+     .unit = "torque",
+     .otherwise = "0",
+     .meaning =
+         "the excitations by body: { load = M }, each a number, an excitation or a function of t, or of t, theta, "
+         "velocity, z, where theta.load and velocity.load are those of a body",
+     .object = "excitation",
+     .wanted = by_body_wanted},
+    {.name = "theta0",
+     .unit = "rad",
+     .otherwise = "0",
+     .meaning = "where the bodies start: { load = 0.1 }",
+     .wanted = by_body_wanted},
+    {.name = "velocity0",
+     .unit = "rad per time unit",
+     .otherwise = "0",
+     .meaning = "how fast they start",
+     .wanted = by_body_wanted},
+    {.name = "belt",
+     .unit = "rad per time unit",
+     .otherwise = "0",
+     .meaning =
+         "velocities of what the friction of a body or a link acts against, by their names: numbers, functions of t "
+         "or excitations",
+     .wanted = by_body_wanted},
+    extras_options[3],
+    {.name = "states",
+     .meaning = "variables that go along with the motion: { NAME = { start = 0, rate = function(t, theta, velocity, z) "
+                "... end } }",
+     .wanted =
+         "a table such as { e = { start = 0, rate = function(t, theta, velocity, z) return 1 - theta.load end } }",
+     .fields = {&state_call, text::Fields::Place::by_name}},
+    {.name = "events",
+     .meaning = "what is to be located: a list of { when = function(t, theta, velocity, z), ... }; act may assign to "
+                "theta.NAME, velocity.NAME and z.NAME",
+     .wanted = "a list such as { { when = function(t, theta) return theta.load - 1 end, name = \"limit\" } }",
+     .fields = {&event_call, text::Fields::Place::listed}},
+};
+/// Those of the call, by the names of the bodies.
+motion::engine::Drive asked_drive(lua_State* L, const lua::Options& options, const model::Assembly& system);
+/// What users' functions get as theta, velocity and z.
+void name_functions(lua::CallState& call, const model::Assembly& system, const motion::engine::Drive& drive);
+
+/// A run of several bodies.
+struct BodiesRun {
+    AssemblyHandle system;
+    motion::engine::Drive drive;
+    motion::engine::AssemblyRun run;
+    double dt = 0;
+    // Of each joint, made when it is asked for. Not kept: they keep this run.
+    mutable std::vector<std::weak_ptr<const Run>> parts = {};
+    mutable std::shared_ptr<const motion::engine::Works> works = {};  ///< made when they are asked for
+};
+using BodiesRunHandle = std::shared_ptr<const BodiesRun>;
+/// The run as seen from the body or link of this joint.
+RunHandle part_of(const BodiesRunHandle& run, std::size_t joint);
+/// What was put in and taken, torque times rad; in rig_energy.cpp. Raises when a function of the run does.
+const motion::engine::Works& works_of(lua_State* L, const BodiesRunHandle& run);
+int energy_of_bodies(lua_State* L, const BodiesRunHandle& run);
+std::string story_of_bodies(lua_State* L, const BodiesRunHandle& run);
+/// Pushes it; of one body without a name as a run of one body.
+int push_bodies_run(lua_State* L, BodiesRunHandle run);
+/// The joint whose name stands at `index`; raises that `what`, which has these members, has none of that name.
+std::size_t joint_named(lua_State* L, int index, const model::Assembly& system, const char* what,
+                        std::span<const lua::Member> members);
 
 /// Pushes the system of the options `bodies` and `links`.
 int push_bodies(lua_State* L, const lua::Options& options);

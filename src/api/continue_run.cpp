@@ -53,7 +53,7 @@ int continue_run(lua_State* L) {
     MoreTime asked;
     options.fill(asked);
     const motion::Trajectory& so_far = run->trajectory;
-    if (run->is_part) {
+    if (run->whole) {
         options.fail(
             {"this run cannot go on by itself: continue the run of all bodies, or simulate again with a later t_end"});
     }

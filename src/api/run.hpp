@@ -13,6 +13,8 @@
 
 namespace dinal::api {
 
+struct BodiesRun;
+
 struct Run {
     motion::Trajectory trajectory;
     std::optional<source::Origin> origin = {};    ///< none when it was read from a file
@@ -21,7 +23,7 @@ struct Run {
     std::string readings = {};                    ///< which functions were read as formulas: sentences
     model::Units units = {};                      ///< that stand in these; of another run those of its system
     lua::MemoryCharge rows = {};                  ///< of the file it was read from
-    bool is_part = false;                         ///< of a run of several bodies, seen from one of them
+    std::shared_ptr<const BodiesRun> whole = {};  ///< of a run of several bodies, seen from one of them
 };
 
 // Shared, because every column that Lua takes out of a run is a view that keeps the whole run alive.
@@ -33,6 +35,9 @@ void push_run(lua_State* L, RunHandle run);
 /// The column whose name or number stands at `index`; an error names it `what`.
 text::Expected<Eigen::Index> column_at(lua_State* L, int index, std::span<const std::string> names,
                                        std::string_view what);
+
+/// How a run ended, in one word.
+std::string_view status_word(model::Outcome outcome);
 
 /// What run:explain() says; raises what a user's spring does.
 std::string story_of_run(lua_State* L, const Run& run);

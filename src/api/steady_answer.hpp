@@ -5,7 +5,9 @@
 #include <optional>
 #include <vector>
 
+#include "analysis/rig_steady.hpp"
 #include "analysis/steady.hpp"
+#include "api/bodies.hpp"
 #include "api/extras_options.hpp"
 #include "api/system_options.hpp"
 #include "lua/interrupt.hpp"
@@ -67,14 +69,48 @@ inline constexpr text::Call steady_call{"sys:steady", "sys:steady{ M = excitatio
                                         steady_options, false, &with_call};
 inline constexpr text::Call steady_run_call{"run:steady", "run:steady{ period = 2.5 }", period_options, true};
 
+/// rig:steady{ ... }, in rig_steady.cpp.
+inline constexpr auto rig_steady_options = text::joined(bodies_drive_rows, period_options);
+inline constexpr text::Call rig_steady_call{"rig:steady", "rig:steady{ belt = { load = 0.2 } }", rig_steady_options};
+
+/// rig:response{ ... }, in rig_response.cpp.
+inline constexpr text::Option rig_response_options[] = {
+    {.name = "over",
+     .otherwise = text::needed,
+     .meaning = "what is varied, and its values in their order: { NAME = values }",
+     .wanted = "a name and its values, such as { speed = vector.linspace(0.05, 3, 200) }"},
+    {.name = "at",
+     .otherwise = text::needed,
+     .meaning = "a function of a point, a table such as { speed = 0.5 }, that returns the options of rig:steady there, "
+                "and system = ... if the system changes, too",
+     .wanted = "a function of a point that returns options of rig:steady"},
+};
+inline constexpr text::Call rig_response_call{
+    "rig:response",
+    "rig:response{ over = { speed = { 0.1, 0.2 } }, at = function(p) return { belt = { load = p.speed } } end }",
+    rig_response_options};
+int response_of_rig(lua_State* L);
+
+struct RigSteady;
+
 struct Steady {
     analysis::SteadyQuestion question;
     analysis::SteadyMotion motion;
     std::optional<analysis::SteadyShape> shape = {};                ///< made when it is first asked for
     std::optional<std::vector<analysis::OtherMotion>> others = {};  ///< from other starts, once they were looked for
+    std::shared_ptr<RigSteady> rig = {};  ///< of several bodies, seen from one of them or, without a body, from none
+    bool of_body = false;
+    RunHandle part = {};  ///< one period, of a body
 };
 // Shared: a user's function may drop the last reference meanwhile.
 using SteadyHandle = std::shared_ptr<Steady>;
+
+struct RigSteady {
+    analysis::RigQuestion question;
+    analysis::RigMotion motion;
+    BodiesRunHandle run = {};                              ///< one period; none at rest
+    std::optional<std::vector<SteadyHandle>> others = {};  ///< from other starts, once they were looked for
+};
 
 /// Facts about a motion, or a rest, that was found.
 inline bool is_found(const Steady& s) {
@@ -120,6 +156,14 @@ int steady_of_system(lua_State* L);
 int steady_of_run(lua_State* L);
 /// s.run
 int run_of_steady(lua_State* L);
+
+// Of several bodies, in rig_steady.cpp.
+int steady_of_rig(lua_State* L);
+int run_of_rig(lua_State* L, const Steady& s);
+const std::vector<SteadyHandle>& others_of_rig(lua_State* L, RigSteady& rig);
+std::string story_of_rig(lua_State* L, const Steady& s);
+/// s.load
+int body_of_steady(lua_State* L);
 
 inline constexpr lua::Doc steady_doc{
     "sys:steady{ OPTIONS } -> steady",

@@ -75,6 +75,11 @@ int run_of_steady(lua_State* L) {
         return 1;
     }
     if (push_kept(L, "run")) return 1;
+    if (s->rig) {
+        run_of_rig(L, *s);
+        keep(L, "run");
+        return 1;
+    }
     constexpr double rows = 400;
     if (s->motion.settled && s->motion.asked) {
         const analysis::SteadyQuestion& asked = *s->motion.asked;
@@ -197,7 +202,7 @@ int steady_of_run(lua_State* L) {
     const lua::Options options(L, 2, steady_run_call);
     SteadyOptions asked;
     options.fill(asked);
-    if (run->is_part) options.fail({"steady motions are found of systems of one body whose Rd and Re are numbers"});
+    if (run->whole) options.fail({"steady motions are found of systems of one body whose Rd and Re are numbers"});
     asked.period = period_or_fail(options, asked.period, asked.frequency, asked.omega);
     if (!run->origin) options.fail({"a run that was read from a file does not know its system and its M"});
     const source::Task& task = *run->origin;

@@ -20,7 +20,8 @@ constexpr void (*register_functions[])(lua_State*) = {
     api::register_excitation, api::register_run,    api::register_energy,   api::register_trajectory,
     api::register_theory,     api::register_vector, api::register_data,     api::register_progress,
     api::register_plot,       api::register_steady, api::register_identify, api::register_sweep,
-    api::register_integrator, api::register_lab,    api::register_report,   register_help,
+    api::register_integrator, api::register_lab,    api::register_report,   api::register_rig_energy,
+    register_help,
 };
 
 // Plain fields of the table: documented here, set by open_library() and sys:simulate.
@@ -56,6 +57,7 @@ const Section all_sections[] = {
     {"A system", "sys", &api::system_class},
     {"A system of several bodies", "rig", &api::rig_class},
     {"A run of several bodies", "rig_run", &api::bodies_run_class},
+    {"Its energy", "energy", &api::rig_energy_class},
     {"Laws of friction", "friction", &api::friction_module},
     {"A law of friction", "law", &api::friction_class},
     {"Springs", "spring", &api::spring_module},

@@ -67,7 +67,7 @@ test("the instructor's file is made as the handbook says, and all that --lab-sol
     local _, answers = ("\n" .. talk):gsub("\n  %d%. ", "")
     equal(answers, questions, "answers to the open questions of sheet " .. sheet)
   end
-  equal(sheet, 6)
+  equal(sheet, 7)
   for _, wrong in ipairs { "", "x", "0", "-1", "1.5", "1000000000" } do
     local refused = shell(("dinal --lab-solutions '%s'; echo $?"):format(wrong))
     assert(refused:find("needs a student number after it", 1, true), refused)

@@ -276,4 +276,13 @@ test("what is wrong is one sentence with the name of the body, the link and the 
     assert(run.outcome:find("asked again", 1, true), run.outcome)
 end)
 
+test("an M with a delay is the same without the motion between the rows", function()
+    local rig = system { bodies = { a = { I = 1, k = 4, C = 0.1 }, b = { I = 1, k = 1 } }, links = { rod = { "a", "b", k = 1 } } }
+    local function last(dense)
+        local M = { a = excitation.delayed(function(t, theta, velocity) return 1 - 0.3 * velocity.b end, { by = 0.2 }) }
+        return rig:simulate { M = M, t_end = 10, dense = dense }.a.theta[1001]
+    end
+    equal(last(false), last(true))
+end)
+
 support.finish()

@@ -82,17 +82,22 @@ Frame::Frame(const model::Assembly& system, const Mode& mode) : group(system.bod
         grow();
     }
     if (closing.empty()) return;
-    // In loops torques are shared as evenly as can be: the least sum of squares.
+    // In loops torques are shared as Engine::share_loops shares them: the least sum of squares, of each by how much it
+    // accelerates its two bodies.
     sharing_of = tree;
     sharing_of.insert(sharing_of.end(), closing.begin(), closing.end());
     Eigen::MatrixXd on_bodies =
         Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(n), static_cast<Eigen::Index>(sharing_of.size()));
-    for (std::size_t c = 0; c < sharing_of.size(); ++c) {
-        const Joint& joint = system.joints[sharing_of[c]];
-        on_bodies(joint.first, static_cast<Eigen::Index>(c)) = 1;
-        if (joint.second >= 0) on_bodies(joint.second, static_cast<Eigen::Index>(c)) = -1;
+    Eigen::VectorXd weakness(on_bodies.cols());
+    for (Eigen::Index c = 0; c < on_bodies.cols(); ++c) {
+        const Joint& joint = system.joints[sharing_of[static_cast<std::size_t>(c)]];
+        double lightness = 1 / system.bodies[index(joint.first)].inertia;
+        if (joint.second >= 0) lightness += 1 / system.bodies[index(joint.second)].inertia;
+        weakness(c) = 1 / std::sqrt(lightness);
+        on_bodies(joint.first, c) = weakness(c);
+        if (joint.second >= 0) on_bodies(joint.second, c) = -weakness(c);
     }
-    sharing = on_bodies.completeOrthogonalDecomposition().pseudoInverse();
+    sharing = weakness.asDiagonal() * on_bodies.completeOrthogonalDecomposition().pseudoInverse();
 }
 
 void Frame::offsets(const std::vector<double>& of_joints, const Mode& mode, std::vector<double>& of_bodies) const {

@@ -158,6 +158,8 @@ private:
     bool too_often();
     void echo(double t, int generation);
     bool put_row(double t, double x);
+    [[nodiscard]] double friction(std::size_t joint, const Moment& at, const Look& look) const;
+    void add_works(double until);
     bool rows_until(double end, bool to_the_end);
     bool fail(Outcome outcome) {
         outcome_ = outcome;
@@ -266,6 +268,11 @@ Engine::Engine(const AssemblyProblem& problem, AssemblyRun& result)
     const std::size_t columns =
         1 + columns_of_body * n() + columns_of_link * (joints - n()) + mechanics_.states_of_user();
     result_.table = Growing<double>(problem.rows.count(), columns);
+    if (!problem.works) return;
+    for (auto of : {&Works::input, &Works::base, &Works::kinetic}) (result_.works.*of).assign(n(), 0);
+    for (auto of : {&Works::viscous, &Works::dry, &Works::belt, &Works::impacts, &Works::spring}) {
+        (result_.works.*of).assign(joints, 0);
+    }
 }
 
 const Frame& Engine::frame() {
@@ -546,15 +553,16 @@ bool Engine::share_loops(const std::optional<Ending>& released) {
     const auto count = static_cast<Eigen::Index>(held.size());
     Eigen::MatrixXd D = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(n()), count);
     Eigen::VectorXd low(count), high(count), slope(count);
+    Eigen::Index full = -1;  // the joint that came to its limit
     for (Eigen::Index c = 0; c < count; ++c) {
         const std::size_t j = held[static_cast<std::size_t>(c)];
         const Joint& joint = problem_.system.joints[j];
         D(joint.first, c) = 1;
         if (joint.second >= 0) D(joint.second, c) = -1;
-        const double near = released && released->which == j ? 64 * rounding * torque_size(j) : 0;
+        if (released && released->which == j) full = c;
         const bool sticks = mechanics_.rubs(j) && mode_.friction[j].way == Motion::stuck;
-        low(c) = sticks ? -mechanics_.holding(j, Motion::forward, here()) + near : 0;
-        high(c) = sticks ? mechanics_.holding(j, Motion::backward, here()) - near : 0;
+        low(c) = sticks ? -mechanics_.holding(j, Motion::forward, here()) : 0;
+        high(c) = sticks ? mechanics_.holding(j, Motion::backward, here()) : 0;
         constexpr double wall = 1e30;
         if (mode_.leans[j] > 0) low(c) = -wall;
         if (mode_.leans[j] < 0) high(c) = wall;
@@ -569,7 +577,23 @@ bool Engine::share_loops(const std::optional<Ending>& released) {
     constexpr double little = 1e-10;  // what makes the smallest torques the solution
     G.diagonal() += little * G.diagonal();
     slope += D.transpose() * lightness.cwiseProduct(torques);
-    const Eigen::VectorXd torque = least_in_box(G, slope, low, high);
+    const double size = full < 0 ? 0 : torque_size(held[static_cast<std::size_t>(full)]);
+    Eigen::VectorXd torque;
+    bool still = false;
+    const auto share = [&](double part) {
+        Eigen::VectorXd lower = low, higher = high;
+        if (full >= 0) lower(full) += part * size, higher(full) -= part * size;
+        torque = least_in_box(G, slope, lower, higher);
+        constexpr double nothing = 1e-9;
+        still = full >= 0 && (G * torque + slope).cwiseAbs().maxCoeff() <= nothing * G(full, full) * size;
+        if (full >= 0 && torque(full) <= lower(full)) torque(full) = low(full);
+        if (full >= 0 && torque(full) >= higher(full)) torque(full) = high(full);
+    };
+    // What comes to its limit rides from now on, and the others take the rest. Others may stand at a limit just now and
+    // leave it next: when they have room for a little more than the rest, nothing moves, and that little tells which.
+    constexpr double little_more = 1e-7;
+    share(little_more);
+    if (!still) share(64 * rounding);
     for (Eigen::Index c = 0; c < count; ++c) {
         const std::size_t j = held[static_cast<std::size_t>(c)];
         const bool at_low = torque(c) <= low(c), at_high = torque(c) >= high(c);
@@ -682,12 +706,15 @@ void Engine::begin() {
         touch_walls();
         if (outcome_ == Outcome::reached_end) decide(false);
         for (std::size_t j = 0; j < mechanics_.joints(); ++j) leaned_[j] = mode_.leans[j] != 0 ? 1 : 0;
+    } else {
+        project(side());
     }
     result_.began_stuck = mode_.holds(0);
     for (std::size_t j = 0; j < mechanics_.joints(); ++j) reach_[j] = std::fabs(mechanics_.angle(j, y_));
 }
 
 void Engine::run() {
+    const std::vector<double> first = y_;
     begin();
     unsigned pieces = 0;
     constexpr unsigned between_questions = 16;
@@ -729,6 +756,18 @@ void Engine::run() {
     result_.t_start = problem_.window.start;
     result_.t_stop = now_.hi;
     if (next_row_ < problem_.rows.count()) result_.table = result_.table.first(next_row_);
+    if (problem_.works) {
+        for (std::size_t i = 0; i < n(); ++i) {
+            const double v = first[n() + i], w = y_[n() + i];
+            result_.works.kinetic[i] = problem_.system.bodies[i].inertia * ((w - v) * (w + v)) / 2;
+        }
+        for (std::size_t j = 0; j < mechanics_.joints(); ++j) {
+            const double p = mechanics_.angle(j, first), q = mechanics_.angle(j, y_);
+            const Joint& joint = problem_.system.joints[j];
+            result_.works.spring[j] =
+                joint.stiffness * ((q - p) * (q + p)) / 2 + (joint.spring.energy(q) - joint.spring.energy(p));
+        }
+    }
     history_->close(now_, y_);
     result_.history = history_;
     auto carry = std::make_shared<Carry>();
@@ -923,6 +962,7 @@ bool Engine::end_at(double x) {
     keep(length);
     if (mechanics_.asks_functions())
         result_.gap = std::max(result_.gap, std::min(length, 2 * cheb::widest_gap * segment_.h));
+    if (problem_.works && length > 0) add_works(x);
     if (x > -1) go_to(x);
     now_ = whole && segment_.to_the_end ? Clock{segment_.end, 0} : segment_.start.later(length);
     after_break_ = whole && segment_.to_break;
@@ -1082,8 +1122,12 @@ bool Engine::handle(const Ending& ending) {
             }
             return !too_often() || fail(Outcome::chattering);
         }
-        case By::wall:
-            return hit(j, ending.side);
+        case By::wall: {
+            const double before = energy(y_);
+            const bool goes_on = hit(j, ending.side);
+            if (problem_.works) result_.works.impacts[j] += before - energy(y_);
+            return goes_on;
+        }
         case By::corner: {
             Slipping& how = mode_.friction[j];
             how.range = ending.side > 0 ? how.range + 1 : how.range - 1;
@@ -1095,8 +1139,12 @@ bool Engine::handle(const Ending& ending) {
             tell(EventKind::switched, static_cast<int>(j));
             if (!decide(true)) return false;
             return !too_often() || fail(Outcome::chattering);
-        case By::user:
-            return act_all(ending.users);
+        case By::user: {
+            const double before = energy(y_);
+            const bool goes_on = act_all(ending.users);
+            result_.works.acts += energy(y_) - before;
+            return goes_on;
+        }
     }
     return true;
 }
@@ -1743,19 +1791,12 @@ bool Engine::put_row(double t, double x) {
         cell += stride;
         return std::isfinite(value);
     };
-    const auto friction = [&](std::size_t j) {
-        // The wall carries what presses against it, friction what pulls away from it.
-        const double held = look_.holding[j];
-        const bool sticks = mechanics_.rubs(j) && mode_.friction[j].way == Motion::stuck;
-        if (sticks) return mode_.leans[j] != 0 && mode_.leans[j] * held <= 0 ? 0.0 : held;
-        return mechanics_.friction(j, at, mode_, mechanics_.belt(j, t, at.side));
-    };
     bool good = put(t);
     for (std::size_t i = 0; i < n(); ++i) {
         good = put(y[i]) && good;
         good = put(y[n() + i]) && good;
         good = put(mechanics_.load(i, at)) && good;
-        good = put(friction(i)) && good;
+        good = put(friction(i, at, look_)) && good;
         good = put(-problem_.system.joints[i].damping * y[n() + i]) && good;
     }
     for (std::size_t j = n(); j < mechanics_.joints(); ++j) {
@@ -1765,11 +1806,81 @@ bool Engine::put_row(double t, double x) {
         good = put(mechanics_.angle(j, y)) && good;
         good = put(mechanics_.velocity(j, y)) && good;
         good = put(torque) && good;
-        good = put(friction(j)) && good;
+        good = put(friction(j, at, look_)) && good;
     }
     for (std::size_t k = 0; k < mechanics_.states_of_user(); ++k) good = put(y[2 * n() + k]) && good;
     if (good) ++next_row_;
     return good;
+}
+
+/// The torque of a joint's friction on its first body.
+double Engine::friction(std::size_t joint, const Moment& at, const Look& look) const {
+    // The wall carries what presses against it, friction what pulls away from it.
+    const double held = look.holding[joint];
+    const bool sticks = mechanics_.rubs(joint) && mode_.friction[joint].way == Motion::stuck;
+    if (sticks) return mode_.leans[joint] != 0 && mode_.leans[joint] * held <= 0 ? 0.0 : held;
+    return mechanics_.friction(joint, at, mode_, mechanics_.belt(joint, at.t, at.side));
+}
+
+// ---- energy
+
+/// Of Gauss and Legendre, for -1 to 1.
+template <std::size_t points>
+struct GaussRule {
+    std::array<double, points> places{}, weights{};
+    GaussRule() {
+        for (std::size_t i = 0; i < points; ++i) {
+            double x = std::cos(std::numbers::pi * (static_cast<double>(i) + 0.75) / (points + 0.5)), slope = 1;
+            for (int step = 0; step < 8; ++step) {
+                double p = 1, before = 0;
+                for (std::size_t k = 0; k < points; ++k) {
+                    const auto degree = static_cast<double>(k);
+                    const double next = ((2 * degree + 1) * x * p - degree * before) / (degree + 1);
+                    before = p, p = next;
+                }
+                slope = points * (x * p - before) / (x * x - 1);
+                x -= p / slope;
+            }
+            places[i] = x, weights[i] = 2 / ((1 - x * x) * slope * slope);
+        }
+    }
+};
+
+/// The works from the beginning of the stretch to x, by Gauss' formula: all of it is smooth in between.
+void Engine::add_works(double until) {
+    constexpr std::size_t points = 24;
+    static const GaussRule<points> rule;
+    Works& works = result_.works;
+    const Works before = works;
+    std::vector<double> y;
+    for (std::size_t g = 0; g < points; ++g) {
+        const double x = -1 + (until + 1) / 2 * (1 + rule.places[g]);
+        const double part = rule.weights[g] * segment_.h * (until + 1) / 2;
+        segment_.state(x, y);
+        const Moment at{segment_.time(x), Side::at, y};
+        look(at, mode_, *frame_, look_, x);
+        const double push = mechanics_.base(at.t, at.side);
+        for (std::size_t i = 0; i < n(); ++i) {
+            works.input[i] += part * mechanics_.load(i, at) * y[n() + i];
+            works.base[i] -= part * problem_.system.bodies[i].inertia * push * y[n() + i];
+        }
+        for (std::size_t j = 0; j < mechanics_.joints(); ++j) {
+            const double v = mechanics_.velocity(j, y), belt = mechanics_.belt(j, at.t, at.side);
+            const double torque = friction(j, at, look_);
+            const bool slides = !mode_.holds(j) && !mode_.friction[j].riding;
+            works.viscous[j] += part * problem_.system.joints[j].damping * v * v;
+            if (slides || mode_.leans[j] != 0) works.dry[j] -= part * torque * (v - belt);
+            works.belt[j] += part * torque * belt;
+        }
+    }
+    const auto given = [&works](const std::vector<double>& now, const std::vector<double>& was) {
+        for (std::size_t k = 0; k < now.size(); ++k) works.flow += std::max(0.0, now[k] - was[k]);
+    };
+    given(works.input, before.input), given(works.base, before.base), given(works.belt, before.belt);
+    for (std::size_t i = 0; i < n(); ++i) {
+        const double v = y_[n() + i], w = segment_.at(n() + i, until);
+        works.flow += std::max(0.0, problem_.system.bodies[i].inertia * (v - w) * (v + w) / 2);
+    }
 }
 
 }  // namespace
@@ -1813,8 +1924,16 @@ AssemblyRun run(const AssemblyProblem& problem) {
     for (model::WantedEvent& event : drive.events) {
         event.when = witnesses.heard(event.when, event.name.empty() ? "an event" : "the event " + event.name);
     }
-    const AssemblyProblem heard{system,         drive,          problem.window,    problem.rows,   problem.monitor,
-                                problem.limits, problem.before, problem.tolerance, problem.longest};
+    const AssemblyProblem heard{.system = system,
+                                .drive = drive,
+                                .window = problem.window,
+                                .rows = problem.rows,
+                                .monitor = problem.monitor,
+                                .limits = problem.limits,
+                                .before = problem.before,
+                                .tolerance = problem.tolerance,
+                                .longest = problem.longest,
+                                .works = problem.works};
     AssemblyRun result = run_plain(heard);
     const bool whole = model::is_whole(result.outcome) || result.outcome == Outcome::stopped;
     result.contradiction = witnesses.verdict(whole);

@@ -1,0 +1,42 @@
+-- Sheet 7: the friction damper: two bodies, the best slip torque.
+package.path = "tests/lab/?.lua;" .. package.path
+local walk = require "walk"
+local support = require "support"
+
+walk.sheet("7-friction-damper", function(session)
+  local given, steady, omega = session.given, session.steady, session.omega
+  local alone = steady(0, 1).machine.amplitude
+  walk.right("7a", alone)
+  walk.right("7a", given.M0/given.C)
+  local glued = 1/math.sqrt(1 + given.mu)
+  walk.right("7b", glued)
+
+  support.near(given.M0/(1 - omega^2), given.M0/((1 + given.mu)*omega^2 - 1), 1e-9)
+  walk.right("7c", omega)
+  local limit = given.mu*omega^2*steady(100, omega).machine.amplitude
+  walk.right("7d", limit)
+  support.equal(steady(1.01*limit, omega).joint.status, "adheres")
+  assert(steady(0.97*limit, omega).joint.stuck < 1)
+
+  local best = minimise{ over = { Rd = { 0.05*given.M0, 1.5*given.M0 } }, run = function(p) return steady(p.Rd, omega).machine.amplitude end }
+  walk.right("7e", best.Rd)
+  walk.right("7f", best.value)
+  local undamped = given.M0*(2 + given.mu)/given.mu
+  assert(best.value < undamped)
+  local energy = steady(best.Rd, omega).run:energy()
+  assert(energy.joint.dry > energy.machine.viscous)
+  support.near(energy.joint.dry + energy.machine.viscous, energy.machine.input, 1e-9*energy.total.flow)
+
+  walk.mistakes{
+    { "7a", given.M0, "at rest" },
+    { "7a", given.C/given.M0, "upside down" },
+    { "7b", 1/(1 + given.mu), "the root" },
+    { "7b", math.sqrt(1 + given.mu), "slower" },
+    { "7c", omega^2, "that is omega^2" },
+    { "7d", limit/given.mu, "the inertia mu" },
+    { "7e", limit, "glues them" },
+    { "7e", 1.5*best.Rd, "too tight" },
+    { "7e", 0.5*best.Rd, "too loose" },
+    { "7f", undamped, "without any damping" },
+  }
+end)

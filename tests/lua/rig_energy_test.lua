@@ -1,0 +1,96 @@
+package.path = "tests/lua/?.lua;" .. package.path
+local support = require "support"
+local test, near, equal, raises_here = support.test, support.near, support.equal, support.raises_here
+
+local function closes(run, what, within)
+    local total = run:energy().total
+    assert(total.closure < (within or 1e-11), string.format("%s: closure %.3g of %.6g", what, total.closure, total.flow))
+    return run:energy()
+end
+
+test("the heat of a clutch that locks is the energy of the relative motion", function()
+    local I, J, speed = 1, 3, 3
+    local rig = system { bodies = { motor = { I = I }, load = { I = J } }, links = { clutch = { "motor", "load", Rd = 2 } } }
+    local e = closes(rig:simulate { velocity0 = { motor = speed }, t_end = 4 }, "clutch")
+    near(e.clutch.dry, I * J / (I + J) * speed ^ 2 / 2, 1e-12)
+    near(e.total.dry, e.clutch.dry, 0)
+    near(e.motor.kinetic + e.load.kinetic, -e.clutch.dry, 1e-12)
+    equal(e.total.input, 0.0)
+    -- under constant torques until it locks: the motor gives M times its way
+    local run = rig:simulate { velocity0 = { motor = speed }, M = { motor = 1 }, t_end = 4 }
+    e = closes(run, "driven clutch")
+    near(e.motor.input, run.motor.theta[1001], 1e-12)
+    near(e.clutch.dry, 2 * (run.clutch.theta[1001]), 1e-11)
+    raises_here(function() return e.brake end, "this energy has no 'brake'; its bodies and links are load, motor, clutch")
+    raises_here(function() run.motor:energy() end, "ask the run of all bodies")
+end)
+
+test("energy closes with everything that a rig may have", function()
+    local rig = system {
+        bodies = {
+            a = { I = 1, k = 4, C = 0.1, Rd = 0.3, Re = 0.4 },
+            b = { I = 0.5, C = 0.05, spring = spring.polynomial { [3] = 2 } },
+            c = { I = 2, k = 1, walls = { lower = -0.6, upper = 0.6, restitution = 0.6 } },
+        },
+        links = {
+            rod = { "a", "b", k = 2, C = 0.1 },
+            pad = { "b", "c", friction = friction.stribeck { Rd = 0.2, Re = 0.4, speed = 0.1 } },
+            gap = { "a", "c", walls = { lower = -0.9, upper = 0.9, restitution = 0.3 } },
+        },
+    }
+    local run = rig:simulate {
+        M = { a = excitation.harmonic { amplitude = 2, omega = 1.3 }, c = function(t, theta, velocity) return 3 * math.sin(0.7 * t) - 0.2 * velocity.b end },
+        belt = { a = 0.2 }, base = function(t) return 0.5 * math.cos(2 * t) end,
+        velocity0 = { b = 1 }, t_end = 40,
+        events = { { when = function(t, theta) return t - 11.3 end, act = function(t, theta, velocity, z) velocity.b = velocity.b + 0.5 end } },
+    }
+    local e = closes(run, "all")
+    assert(e.c.impacts > 0 and e.gap.impacts > 0 and e.pad.dry > 0 and e.a.belt ~= 0 and e.total.base ~= 0 and e.total.acts ~= 0)
+    local story = run:explain():gsub("%s+", " ")
+    for _, part in ipairs { "3 bodies and 3 links", "a swung between", "gap links a and c", "impact", "Energy came from", "the friction of pad" } do
+        assert(story:find(part, 1, true), part .. " is missing in\n" .. story)
+    end
+end)
+
+test("energy of one body whose friction varies, with bristles, and of a locked pair on a belt", function()
+    local one = system { I = 1, k = 4, Rd = 0.3, Re = 0.4 }:simulate { theta0 = 1.03, t_end = 20 }:energy()
+    local run = system { I = 1, k = 4, Rd = 0.3, Re = 0.4, normal = function(t) return 1 end }:simulate { theta0 = 1.03, t_end = 20 }
+    near(run:energy().total.dry, one.total.dry, 1e-12)
+    closes(run, "varying")
+    assert(run:explain():find("The body swung between", 1, true))
+    closes(system { I = 1, k = 2, friction = friction.lugre { Rd = 1, Re = 1.5, speed = 0.1, stiffness = 100, damping = 1 } }
+        :simulate { M = function(t) return 3 * math.sin(t) end, t_end = 5 }, "bristles", 1e-10)
+    local pair = system { bodies = { a = { I = 1, k = 1, Rd = 5 }, b = { I = 1 } }, links = { glue = { "a", "b", Rd = 5 } } }
+        :simulate { belt = { a = 0.3 }, velocity0 = { a = 0.3, b = 0.3 }, t_end = 3 }
+    local e = closes(pair, "carried")
+    equal(e.total.dry, 0.0)
+    near(e.a.belt, 0.9 ^ 2 / 2, 1e-12)
+end)
+
+test("a run is told in sentences", function()
+    local rig = system { bodies = { motor = { I = 1 }, load = { I = 3, Rd = 0.1 } }, links = { clutch = { "motor", "load", Rd = 2 } } }
+    local story = rig:simulate { velocity0 = { motor = 3 }, t_end = 40 }:explain():gsub("%s+", " ")
+    for _, part in ipairs { "There is no M: the motion is free", "clutch links motor and load", "since t =", "until the end", "Outcome" } do
+        assert(story:find(part, 1, true), part .. " is missing in\n" .. story)
+    end
+    story = rig:simulate { M = { motor = 0.05 }, t_end = 4 }:explain():gsub("%s+", " ")
+    assert(story:find("load never moved", 1, true), story)
+    assert(story:find("stuck together all the time", 1, true), story)
+end)
+
+test("what a run of several bodies can do besides: save, load, status, plot, go on", function()
+    local rig = system { bodies = { a = { I = 1, k = 1, Rd = 0.2 }, b = { I = 1 } }, links = { pad = { "a", "b", Rd = 0.1 } } }
+    local run = rig:simulate { theta0 = { a = 1 }, t_end = 5, dt = 0.5 }
+    local file = os.tmpname() .. ".csv"
+    run:save(file)
+    local back = data.load(file)
+    os.remove(file)
+    equal(back["pad.torque"][3], run.pad.torque[3])
+    equal(#back, 11)
+    equal(run.status, "end")
+    equal(run.a.status, "end")
+    local picture = tostring(run:plot { width = 60, height = 30, ascii = true, show = false })
+    for _, axis in ipairs { "a theta", "b theta", "pad theta" } do assert(picture:find(axis, 1, true), picture) end
+end)
+
+support.finish()

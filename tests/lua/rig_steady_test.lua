@@ -1,0 +1,184 @@
+package.path = "tests/lua/?.lua;" .. package.path
+local support = require "support"
+local test, near, equal, raises_here = support.test, support.near, support.equal, support.raises_here
+
+local function sine(omega, amplitude)
+    return excitation.harmonic { amplitude = amplitude or 1, omega = omega }
+end
+
+local function chain(friction)
+    local a, rod = { I = 1, k = 1, C = 0.1 }, { "a", "b", k = 3 }
+    if friction then a.Rd, a.Re, rod.Rd = 0.2, friction, 0.1 end
+    return system { bodies = { a = a, b = { I = 2, k = 1, C = friction and 0.1 or nil } }, links = { rod = rod } }
+end
+
+-- amplitudes of both bodies without friction under sin(omega t) on a
+local function amplitudes(omega)
+    local re, im, second = 4 - omega ^ 2, 0.1 * omega, 4 - 2 * omega ^ 2
+    local determinant = math.sqrt((re * second - 9) ^ 2 + (im * second) ^ 2)
+    return math.abs(second) / determinant, 3 / determinant
+end
+
+test("a chain without friction under a sine: its closed form", function()
+    local s = chain():steady { M = { a = sine(1.3) } }
+    local a, b = amplitudes(1.3)
+    equal(s.status, "steady")
+    near(s.a.amplitude, a, 1e-12)
+    near(s.b.amplitude, b, 1e-12)
+    near(s.period, 2 * math.pi / 1.3, 1e-15)
+    equal(#s.multipliers, 4)
+    equal(s.stable, true)
+    equal(s.unique, "not seen")
+    near(s.a.mean, 0, 1e-12)
+    -- the determinant of a multiplier matrix is exp(-C/I T)
+    local product = 1
+    for _, m in ipairs(s.multipliers) do product = product * m.abs end
+    near(product, math.exp(-0.1 * s.period), 1e-8)
+    assert(s:explain():find("b swings between", 1, true))
+    raises_here(function() return s.amplitude end, "ask one of them, such as s.a.amplitude")
+    raises_here(function() return s.c end, "this steady motion has no 'c'; its bodies and links are a, b, rod")
+end)
+
+test("a chain that rubs: the motion of a long run, with all that sticks", function()
+    local rig, M = chain(0.3), { a = sine(1.3) }
+    local s = rig:steady { M = M }
+    local T, periods = 2 * math.pi / 1.3, 300
+    local long = rig:simulate { M = M, theta0 = { a = 0.3, b = -0.5 }, t_end = periods * T }
+    local shift = (periods - 2 * s.periods) * T
+    for i = 0, 20 do
+        local t = i / 20 * s.period
+        near(s.run.a:at(t), long.a:at(shift + t), 1e-9)
+        near(s.run.b:at(t), long.b:at(shift + t), 1e-9)
+    end
+    assert(s.a.stops > 0 and s.a.stuck > 0 and s.a.stuck < 1)
+    assert(s.multipliers[1].abs < 1)
+end)
+
+test("squeal of a mass that drags another one along: the cycle of a long run", function()
+    local rig = system { bodies = { a = { I = 1, k = 4, C = 0.02, Rd = 0.3, Re = 0.6 }, b = { I = 0.5, C = 0.05 } },
+        links = { rod = { "a", "b", k = 2, C = 0.1 } } }
+    local s = rig:steady { belt = { a = 0.1 }, theta0 = { a = 0.3 } }
+    equal(s.status, "steady")
+    local long = rig:simulate { belt = { a = 0.1 }, theta0 = { a = 0.3 }, t_end = 400 }
+    local sticks = {}
+    for _, e in ipairs(long.events) do if e.kind == "stick" then sticks[#sticks + 1] = e.t end end
+    near(s.period, sticks[#sticks] - sticks[#sticks - 1], 1e-9)
+    local low, high = 1e9, -1e9
+    for i = 0, 20000 do
+        local theta = long.b:at(400 - s.period * i / 20000)
+        low, high = math.min(low, theta), math.max(high, theta)
+    end
+    near(s.b.amplitude, (high - low) / 2, 1e-7)
+    equal(s.a.stops, 1)
+    equal(#s.multipliers, 3)
+end)
+
+test("a drill string sticks and slips while it goes round", function()
+    local rig = system { bodies = { top = { I = 2 }, bit = { I = 0.1, friction = friction.stribeck { Rd = 0.5, Re = 1, speed = 0.5 } } },
+        links = { pipe = { "top", "bit", k = 1, C = 0.02 } } }
+    local M = { top = function(t, theta, velocity) return 20 * (1 - velocity.top) end }
+    local s = rig:steady { M = M }
+    local long = rig:simulate { M = M, t_end = 100 }
+    local sticks = {}
+    for _, e in ipairs(long.events) do if e.kind == "stick" then sticks[#sticks + 1] = e.t end end
+    near(s.period, sticks[#sticks] - sticks[#sticks - 1], 1e-9)
+    equal(s.bit.amplitude, nil)
+    equal(s.bit.mean, nil)
+    equal(s.bit.stops, 1)
+    assert(s.pipe.amplitude > 0.5)
+    assert(s:explain():find("bit goes round by", 1, true))
+    local even = system { bodies = { a = { I = 1, C = 1 }, b = { I = 1 } }, links = { rod = { "a", "b", k = 1, C = 0.5 } } }
+        :steady { M = { a = 1 } }
+    equal(even.status, "steady")
+    equal(even.period, nil)
+    equal(even.a.amplitude, nil)
+    equal(even.rod.amplitude, 0.0)
+    near(even.rod.mean, 0, 1e-9)
+end)
+
+test("a relay that looks at another body hunts", function()
+    local rig = system { bodies = { a = { I = 1, C = 0.3 }, b = { I = 0.5, k = 1, C = 0.1, Rd = 0.05 } }, links = { rod = { "a", "b", k = 4, C = 0.2 } } }
+    local M = { a = excitation.relay { on = -0.2, off = 0.2, levels = { 1, -1 }, of = "theta.b" } }
+    local s = rig:steady { M = M }
+    equal(s.status, "steady")
+    local long = rig:simulate { M = M, t_end = 400 }
+    local switches = {}
+    for _, e in ipairs(long.events) do if e.kind == "switch" then switches[#switches + 1] = e.t end end
+    near(s.period, switches[#switches] - switches[#switches - 2], 1e-9)
+end)
+
+test("one body whose friction depends on more: as the same with numbers", function()
+    local own = { I = 1, k = 4, C = 0.1, Rd = 0.3, Re = 0.4 }
+    local s = system(own):steady { M = sine(1.3, 2) }
+    own.normal = function(t) return 1 end
+    local varying = system(own):steady { M = sine(1.3, 2) }
+    near(varying.amplitude, s.amplitude, 1e-9)
+    near(varying.lag, s.lag, 1e-8)
+    equal(varying.stops, s.stops)
+    equal(#varying.run, 401)
+    near(varying.multipliers[1].abs, s.multipliers[1].abs, 1e-7)
+end)
+
+test("a damper that is only rubbed along: its period is that of M, glued it does not slip", function()
+    local function steady(Rd)
+        return system { bodies = { machine = { I = 1, k = 1, C = 0.02 }, damper = { I = 0.28 } }, links = { joint = { "machine", "damper", Rd = Rd } } }
+            :steady { M = { machine = sine(0.9, 0.07) } }
+    end
+    local glued, loose = steady(1), steady(0.05)
+    equal(glued.periods, 1)
+    equal(glued.joint.status, "adheres")
+    equal(glued.joint.amplitude, 0.0)
+    near(glued.machine.amplitude, 0.07 / math.sqrt((1 - 1.28 * 0.81) ^ 2 + (0.02 * 0.9) ^ 2), 1e-10)
+    equal(loose.periods, 1)
+    assert(loose.joint.amplitude > 0 and loose.joint.stuck < 1)
+    assert(not loose:explain():find("goes round", 1, true))
+end)
+
+test("rest, and what is refused", function()
+    local rig = system { bodies = { a = { I = 1, k = 1, Rd = 0.1 }, b = { I = 1, k = 2, C = 0.1 } }, links = { rod = { "a", "b", k = 1 } } }
+    local s = rig:steady { theta0 = { a = 1 } }
+    equal(s.status, "rest")
+    equal(s.run, nil)
+    local run = rig:simulate { theta0 = { a = 1 }, t_end = 300 }
+    near(s.a.mean, run.a.theta[1001], 1e-9)
+    equal(s.period, nil)
+    equal(rig:steady { M = { a = sine(1, 0.05) } }.a.status, "adheres")
+    raises_here(function() rig:steady { M = { a = function(t) return math.sin(t) end } } end,
+        "the period of what drives the bodies is not known; give it with period = ...")
+    raises_here(function() rig:steady { M = { a = function(t) return math.sin(t) end }, period = 3 } end, "does not repeat itself")
+    raises_here(function() rig:steady { M = { a = excitation.sampled(function(t) return 0 end, { every = 0.1 }) } } end,
+        "run it for long")
+    near(rig:steady { M = { a = function(t) return math.sin(t) end }, omega = 1 }.b.amplitude,
+        rig:steady { M = { a = sine(1) } }.b.amplitude, 1e-9)
+end)
+
+test("the response of a chain has the columns of its bodies, and follows at", function()
+    local c = chain():response { over = { omega = vector { 0.5, 1, 1.5 } }, at = function(p) return { M = { a = sine(p.omega) } } end }
+    for i, omega in ipairs(c.omega) do
+        local a, b = amplitudes(omega)
+        near(c["a.amplitude"][i], a, 1e-10)
+        near(c["b.amplitude"][i], b, 1e-10)
+    end
+    equal(c.status[2], "steady")
+    c = chain():response { over = { C = { 0.1, 0.2 } }, at = function(p)
+        return { system = system { bodies = { a = { I = 1, k = 1, C = p.C }, b = { I = 2, k = 1 } }, links = { rod = { "a", "b", k = 3 } } }, M = { a = sine(1.3) } }
+    end }
+    near(c["a.amplitude"][1], amplitudes(1.3), 1e-10)
+    assert(c["a.amplitude"][2] ~= c["a.amplitude"][1])
+    raises_here(function() chain():response { over = { x = { 1 } } } end, "needs at")
+    raises_here(function() chain():response { over = { x = { 1 } }, at = function(p) return p.x end } end, "at returned 1")
+end)
+
+test("bifurcation looks at one of the bodies", function()
+    local rig = chain(0.3)
+    local b = bifurcation { over = { a = { 0.5, 1 } }, period = 2 * math.pi / 1.3, skip = 150, keep = 2, workers = 1,
+        at = function(p) return { system = rig, of = "b", M = { a = sine(1.3, p.a) } } end }
+    equal(#b, 4)
+    local s = rig:steady { M = { a = sine(1.3, 1) } }
+    near(b.theta[3], s.run.b.theta[1], 1e-6)
+    raises_here(function()
+        bifurcation { over = { a = { 1 } }, period = 1, skip = 1, keep = 1, workers = 1, at = function(p) return { system = rig, M = {} } end }
+    end, "of = \"load\"")
+end)
+
+support.finish()
