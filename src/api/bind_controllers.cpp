@@ -14,7 +14,7 @@ namespace dinal::api {
 
 namespace {
 
-std::shared_ptr<model::UserFunction> controller_function(lua_State* L, const text::Call& call, const char* role) {
+std::shared_ptr<lua::LuaFunction> controller_function(lua_State* L, const text::Call& call, const char* role) {
     if (!lua::is_callable(L, 1)) {
         lua::raise(L, {.sentence = fmt::format("{} takes a function of t, theta, velocity, z, got {}, for example {}",
                                                call.name, lua::describe(L, 1), call.example),
@@ -33,8 +33,17 @@ int push_controller(lua_State* L, std::shared_ptr<model::Controller> controller)
 
 int sampled_controller(lua_State* L) {
     auto controller = std::make_shared<model::SampledController>();
-    controller->function = controller_function(L, sampled_call, "the sampled function");
-    lua::Options(L, 2, sampled_call).fill(*controller);
+    const auto function = controller_function(L, sampled_call, "the sampled function");
+    controller->function = function;
+    const lua::Options options(L, 2, sampled_call);
+    options.fill(*controller);
+    options.push("start");
+    if (lua::is_callable(L, -1)) {
+        function->remember_from(L, -1);
+    } else if (!lua_isnil(L, -1)) {
+        options.wrong("start", options.row("start").wanted);
+    }
+    lua_pop(L, 1);
     return push_controller(L, std::move(controller));
 }
 

@@ -25,6 +25,9 @@ inline constexpr text::Option sampled_options[] = {
      .unit = "time units",
      .meaning = "the first instant; those before the start of a run are left out",
      .filled = text::fills<&model::SampledController::at>},
+    {.name = "start",
+     .meaning = "returns the memory of a run, a table, which f gets as its fifth argument and may change",
+     .wanted = "a function that returns a table, such as function() return { e = 0 } end"},
 };
 inline constexpr text::Call sampled_call{
     "excitation.sampled", "excitation.sampled(function(t, theta, velocity) return -theta end, { every = 0.01 })",
@@ -83,13 +86,16 @@ int delayed_controller(lua_State* L);
 inline constexpr lua::Member controller_functions[] = {
     {lua::a_function<sampled_controller>,
      {"excitation.sampled(f, { OPTIONS }) -> excitation",
-      "A controller that samples: f(t, theta, velocity, z) is called once at each instant, in order, so it may keep a "
-      "memory in variables of its own. Such a controller serves one run and its run:continue: make it and these "
-      "variables anew for each run, in a function that returns it. What f returns is held until the next instant; "
-      "before the first one M is 0. It has values in a run only.",
-      "M = excitation.sampled(function(t, theta, velocity) return -3*velocity end, { every = 0.1 })\n"
-      "run = nondimensional{}:simulate{ M = M, theta0 = 1, t_end = 1, dt = 0.25 }\n"
-      "print(run.M[1], run.M[2] == run.M[3])  --> 0.0\tfalse",
+      "A controller that samples: f(t, theta, velocity, z, memory) is called once at each instant, in order. What it "
+      "returns is held until the next instant; before the first one M is 0. A memory is a table that start returns: "
+      "each run gets a new one, and a run that is continued goes on with its own, so that runs can be repeated, "
+      "continued and swept. z is nil without states. It has values in a run only.",
+      "M = excitation.sampled(function(t, theta, velocity, z, memory)\n"
+      "  memory.e = memory.e + 0.1*(1 - theta)\n"
+      "  return 5*memory.e - 3*velocity\n"
+      "end, { every = 0.1, start = function() return { e = 0 } end })\n"
+      "run = nondimensional{}:simulate{ M = M, t_end = 1, dt = 0.25 }\n"
+      "print(run.M[1], run.M[2] == run.M[3])  --> 0.5\tfalse",
       {&sampled_call}}},
     {lua::a_function<relay_controller>,
      {"excitation.relay{ OPTIONS } -> excitation",

@@ -43,12 +43,40 @@ std::string text_of(const Context& context, const model::Polyline& line) {
                        between.empty() ? "" : " " + between.substr(2));
 }
 
+/// Of the function on the top of the stack, which is popped.
+std::string popped_text(lua_State* L, ValueText* whole) {
+    std::string text;
+    if (whole != nullptr) {
+        text = whole->expression(-1);
+    } else if (const auto source = function_source(L, -1)) {
+        text = *source;
+    } else if (lua_type(L, -1) != LUA_TFUNCTION) {
+        text = fmt::format("--[[ {} with __call ]]", lua::describe(L, -1));
+    } else if (lua_iscfunction(L, -1) != 0) {
+        text = "--[[ a function written in C ]]";
+    } else {
+        lua_Debug about{};
+        lua_pushvalue(L, -1);
+        lua_getinfo(L, ">S", &about);
+        text = fmt::format("--[[ the function at {}:{} ]]", about.short_src, about.linedefined);
+    }
+    lua_pop(L, 1);
+    return text;
+}
+
+/// ", start = function ... end" of a controller that has one.
+std::string start_text(const Context& context, const model::UserFunction& function) {
+    const auto* own = dynamic_cast<const lua::LuaFunction*>(&function);
+    if (own == nullptr || !own->push_start(context.L)) return "";
+    return ", start = " + popped_text(context.L, context.whole);
+}
+
 /// A controller with a memory.
 std::string text_of(const Context& context, const model::Controller& controller) {
     const auto function = [&](const auto& own) { return function_text(context.L, *own.function, context.whole); };
     if (const auto* sampled = dynamic_cast<const model::SampledController*>(&controller)) {
-        return fmt::format("excitation.sampled({}, {{ every = {}, delay = {}, at = {} }})", function(*sampled),
-                           sampled->every, sampled->delay, sampled->at);
+        return fmt::format("excitation.sampled({}, {{ every = {}, delay = {}, at = {}{} }})", function(*sampled),
+                           sampled->every, sampled->delay, sampled->at, start_text(context, *sampled->function));
     }
     if (const auto* delayed = dynamic_cast<const model::DelayedController*>(&controller)) {
         return fmt::format("excitation.delayed({}, {{ by = {} }})", function(*delayed), delayed->by);
@@ -87,23 +115,7 @@ std::string function_text(lua_State* L, const model::UserFunction& user_function
     }
     luaL_checkstack(L, LUA_MINSTACK, "for the text of a function");
     function->push(L);
-    std::string text;
-    if (whole != nullptr) {
-        text = whole->expression(-1);
-    } else if (const auto source = function_source(L, -1)) {
-        text = *source;
-    } else if (lua_type(L, -1) != LUA_TFUNCTION) {
-        text = fmt::format("--[[ {} with __call ]]", lua::describe(L, -1));
-    } else if (lua_iscfunction(L, -1) != 0) {
-        text = "--[[ a function written in C ]]";
-    } else {
-        lua_Debug about{};
-        lua_pushvalue(L, -1);
-        lua_getinfo(L, ">S", &about);
-        text = fmt::format("--[[ the function at {}:{} ]]", about.short_src, about.linedefined);
-    }
-    lua_pop(L, 1);
-    return text;
+    return popped_text(L, whole);
 }
 
 std::string describe(lua_State* L, const model::Excitation& excitation, ValueText* whole) {
