@@ -52,9 +52,9 @@ It stopped at t = 19.9502 at theta = -0.12917 because
 |M - k theta| = 0.17877 <= Re = 0.836, and was still stuck when the run ended
 at t = 20.
 From t = 9.4502 on the motion is steady: it repeats itself every 1 (the period
-of M). The amplitude is 0.12917 about theta = 0. Theta lags behind M by 114.7
-degrees (their fundamentals). It stops twice in each period and is stuck for
-35 % of the time.
+of M). The amplitude is 0.12917 about theta = 0. Theta lags behind M by 2.002
+rad (their fundamentals). It stops twice in each period and is stuck for 35 %
+of the time.
 
 0.2	It stops twice in each period and is stuck for 27
 0.4	It stops 4 times in each period and is stuck for 43

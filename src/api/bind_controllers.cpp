@@ -61,17 +61,22 @@ int relay_controller(lua_State* L) {
     options.fill(asked);
     if (asked.on == asked.off) {
         options.fail(
-            {.sentence = fmt::format("on = {:.6g} and off = {:.6g} must differ: between them it keeps its level",
+            {.sentence = fmt::format("on = {:.6g} and off = {:.6g} must differ: between them it stays as it is",
                                      asked.on, asked.off),
              .option = "off"});
     }
-    if (asked.levels.size() != 2) {
-        options.fail(
-            {.sentence = fmt::format("levels must be two numbers, for on and for off, got {}", asked.levels.size()),
-             .option = "levels"});
+    options.push("amplitude");
+    const bool one = lua_type(L, -1) == LUA_TNUMBER;
+    lua_pop(L, 1);
+    const double alone = one ? options.number("amplitude") : 0;
+    const std::vector<double> torques = one ? std::vector{alone, -alone} : options.numbers("amplitude");
+    if (!options.has("amplitude")) options.missing("amplitude");
+    if (torques.size() != 2) {
+        options.fail("amplitude", fmt::format("amplitude must be {}, got {} number{}", options.row("amplitude").wanted,
+                                              torques.size(), torques.size() == 1 ? "" : "s"));
     }
     controller->on = asked.on, controller->off = asked.off;
-    controller->levels = {asked.levels[0], asked.levels[1]};
+    controller->levels = {torques[0], torques[1]};
     controller->starts_on = asked.start == RelayOptions::Start::on;
     using Of = model::RelayController::Of;
     options.push("of");

@@ -129,7 +129,7 @@ int fit_value(lua_State* L) {
 }
 
 int fit_error(lua_State* L) {
-    const FitHandle& fit = fit_self(L, "fit.error");
+    const FitHandle& fit = fit_self(L, "fit.std_error");
     lua_createtable(L, 0, static_cast<int>(fit->errors.size()));
     for (const auto& [name, error] : fit->errors) {
         lua_pushnumber(L, error);
@@ -275,10 +275,10 @@ constexpr lua::Member fit_members[] = {
      {"fit.names -> table", "The names of the values that it has.",
       DINAL_FIT "print(fit.names[1], fit[fit.names[1]] == fit.omega0)  --> omega0\ttrue"}},
     {lua::a_field<fit_error>,
-     {"fit.error -> table",
+     {"fit.std_error -> table",
       "The standard errors, under the names of the values: the truth lies within two of them in 19 of 20 records. What "
       "was given has 0.",
-      DINAL_FIT "print(math.abs(fit.omega0 - sys.omega0) < 3 * fit.error.omega0)  --> true"}},
+      DINAL_FIT "print(math.abs(fit.omega0 - sys.omega0) < 3 * fit.std_error.omega0)  --> true"}},
     {lua::a_field<fit_silent>,
      {"fit.silent -> table",
       "The names of what the record does not tell: Re of a free decay, which never slips, or of a motion that never "

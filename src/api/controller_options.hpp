@@ -30,8 +30,12 @@ inline constexpr text::Option sampled_options[] = {
      .wanted = "a function that returns a table, such as function() return { e = 0 } end"},
 };
 inline constexpr text::Call sampled_call{
-    "excitation.sampled", "excitation.sampled(function(t, theta, velocity) return -theta end, { every = 0.01 })",
-    sampled_options};
+    "excitation.sampled",
+    "excitation.sampled(function(t, theta, velocity) return -theta end, { every = 0.01 })",
+    sampled_options,
+    false,
+    nullptr,
+    "every"};
 
 inline constexpr text::Option delayed_options[] = {
     {.name = "by",
@@ -42,30 +46,33 @@ inline constexpr text::Option delayed_options[] = {
      .filled = text::fills<&model::DelayedController::by>},
 };
 inline constexpr text::Call delayed_call{
-    "excitation.delayed", "excitation.delayed(function(t, theta, velocity) return -theta end, { by = 0.02 })",
-    delayed_options};
+    "excitation.delayed",
+    "excitation.delayed(function(t, theta, velocity) return -theta end, { by = 0.02 })",
+    delayed_options,
+    false,
+    nullptr,
+    "by"};
 
 struct RelayOptions {
     enum class Start { on, off };
     double on = 0, off = 0;
-    std::vector<double> levels;
     Start start = Start::on;
 };
 inline constexpr const char* relay_starts[] = {"on", "off"};
 inline constexpr text::Option relay_options[] = {
     {.name = "on",
      .otherwise = text::needed,
-     .meaning = "where it takes the first level, coming from the side of off",
+     .meaning = "where it switches on",
      .filled = text::fills<&RelayOptions::on>},
     {.name = "off",
      .otherwise = text::needed,
-     .meaning = "where it takes the second level, coming from the side of on",
+     .meaning = "where it switches off",
      .filled = text::fills<&RelayOptions::off>},
-    {.name = "levels",
+    {.name = "amplitude",
      .unit = "torque",
      .otherwise = text::needed,
-     .meaning = "two torques: switched on, switched off",
-     .filled = text::fills<&RelayOptions::levels>},
+     .meaning = "the torque while it is on, and its opposite while it is off; or the two torques { on, off }",
+     .wanted = "a number, or two: { on, off }"},
     {.name = "of",
      .otherwise = "\"theta\"",
      .meaning =
@@ -76,8 +83,8 @@ inline constexpr text::Option relay_options[] = {
      .filled = text::fills<&RelayOptions::start>,
      .choices = relay_starts},
 };
-inline constexpr text::Call relay_call{
-    "excitation.relay", "excitation.relay{ on = 0.25, off = 0.35, levels = { 0.2, -0.2 } }", relay_options};
+inline constexpr text::Call relay_call{"excitation.relay", "excitation.relay{ on = 0.25, off = 0.35, amplitude = 0.2 }",
+                                       relay_options};
 
 int sampled_controller(lua_State* L);
 int relay_controller(lua_State* L);
@@ -99,9 +106,9 @@ inline constexpr lua::Member controller_functions[] = {
       {&sampled_call}}},
     {lua::a_function<relay_controller>,
      {"excitation.relay{ OPTIONS } -> excitation",
-      "Two levels with hysteresis: passing off from the side of on gives the second level, passing on from the side of "
-      "off the first. Each switch is located, and an event of the kind \"switch\". It has values in a run only.",
-      "M = excitation.relay{ on = -0.1, off = 0.1, levels = { 1, -1 } }\n"
+      "A switch with hysteresis: it gives amplitude from where it passes on, coming from the side of off, and -amplitude "
+      "from where it passes off, coming from the side of on. Each switch is located, and an event of the kind \"switch\". It has values in a run only.",
+      "M = excitation.relay{ on = -0.1, off = 0.1, amplitude = 1 }\n"
       "run = nondimensional{ zeta = 0.1 }:simulate{ M = M, t_end = 1, dt = 0.5 }\n"
       "print(run.events[1].kind, string.format(\"%.6f\", run.events[1].theta))  --> switch\t0.100000",
       {&relay_call}}},

@@ -51,7 +51,7 @@ RecordColumns record_columns(lua_State* L, const lua::Options& options) {
         options.missing("data");
     } else {
         options.wrong("data", lua_type(L, place) == LUA_TSTRING
-                                  ? "what data.load gives for that file (or a run, or a table of columns)"
+                                  ? "what load gives for that file (or a run, or a table of columns)"
                                   : "data, a run, or a table of columns");
     }
     lua_pop(L, 1);

@@ -87,7 +87,7 @@ std::string text_of(const Context& context, const model::Controller& controller)
                            : relay.of == Of::velocity ? "\"velocity\""
                            : relay.of == Of::state    ? "\"" + relay.state + "\""
                                                       : function(relay);
-    return fmt::format("excitation.relay{{ on = {}, off = {}, levels = {{ {}, {} }}, of = {}, start = \"{}\" }}",
+    return fmt::format("excitation.relay{{ on = {}, off = {}, amplitude = {{ {}, {} }}, of = {}, start = \"{}\" }}",
                        relay.on, relay.off, relay.levels[0], relay.levels[1], of, relay.starts_on ? "on" : "off");
 }
 
@@ -136,7 +136,7 @@ std::string describe(lua_State* L, const model::Excitation& excitation, ValueTex
             text += fmt::format(":window({}, {})", text::number_literal(c.from), text::number_literal(c.to));
         }
     }
-    return text.empty() ? "excitation.constant{ level = 0 }" : text;
+    return text.empty() ? "excitation.constant{ amplitude = 0 }" : text;
 }
 
 }  // namespace dinal::source
