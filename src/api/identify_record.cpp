@@ -93,6 +93,11 @@ const std::vector<double>& record_column(const lua::Options& options, const Reco
 
 }  // namespace
 
+std::vector<double> record_numbers(lua_State* L, const lua::Options& options, const std::string& name,
+                                   const char* option) {
+    return record_column(options, record_columns(L, options), name, {}, 0, option);
+}
+
 model::Units units_of_record(lua_State* L, const lua::Options& options) {
     model::Units units;
     options.push("data");
