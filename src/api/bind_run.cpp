@@ -293,7 +293,8 @@ constexpr lua::Member run_members[] = {
       DINAL_RUN "print(run:sort(\"theta\").theta[1])  --> 1.0"}},
     {lua::a_method<as_data<data_functions::markdown>>,
      {"run:markdown() -> string", "All rows as a table in Markdown.",
-      DINAL_RUN "print(run:markdown():match(\"[^\\n]*\"))  --> | t | theta | velocity | M | friction | damping |"}},
+      DINAL_RUN
+      "print(run:markdown():match(\"[^\\n]*\"))  --> | t, T0 | theta, Mc/k | velocity, Mc/k/T0 | M, Mc | friction, Mc | damping, Mc |"}},
     {lua::a_method<continue_run>,
      {"run:continue{ OPTIONS } -> run",
       "A new run: this one, and how it goes on from where it ended (reached its end, or stopped by Ctrl-C or an error "
@@ -413,7 +414,7 @@ constexpr lua::Member run_members[] = {
      {"run.units -> table",
       "What theta, t and M are measured in, as its system, the run or the file it was read from says; what has no unit "
       "is nil.",
-      DINAL_RUN "print(run.units.theta, run.units.t)  --> rad\tnil"}},
+      DINAL_RUN "print(run.units.theta, run.units.t)  --> Mc/k\tT0"}},
     {lua::a_field<origin_field<&source::Origin::excitation>>,
      {"run.excitation -> excitation or nil", "The excitation M of the run; nil in a run that was read from a file.",
       DINAL_RUN "print(run.excitation)  --> excitation.constant{ amplitude = 3 }"}},

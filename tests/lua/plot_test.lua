@@ -3,7 +3,7 @@ package.path = "tests/lua/?.lua;" .. package.path
 local support = require "support"
 local test, equal, raises_here = support.test, support.equal, support.raises_here
 
-local nd = nondimensional { friction_ratio = 0.1, breakaway_ratio = 0.12 }
+local nd = nondimensional { friction_ratio = 0.1, breakaway_ratio = 0.12, units = { theta = "rad" } }
 local run = nd:simulate { M = excitation.harmonic { frequency = 0.7 }, theta0 = 1, t_end = 5, dt = 0.01 }
 local free = nd:simulate { theta0 = 1, t_end = 5, dt = 0.01 }
 local line = { { 0, 1, 2 }, { 0, 1, 4 } }

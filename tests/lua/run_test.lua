@@ -53,7 +53,7 @@ test("a run is data with more, and events always have a velocity", function()
         equal(row.theta, run.theta[i])
     end
     equal(rows, #run)
-    assert(run:markdown():find("| t | theta |", 1, true) == 1)
+    assert(run:markdown():find("| t, T0 | theta, Mc/k |", 1, true) == 1)
     equal(run.events.velocity, 0 * run.events.t)
     equal(run:spectrum("velocity").amplitude, run:spectrum{ of = "velocity" }.amplitude)
 end)

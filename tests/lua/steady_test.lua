@@ -27,7 +27,7 @@ test("all that is known about a steady motion", function()
     near((s.run.theta:max() - s.run.theta:min()) / 2, s.amplitude, 1e-4)
     equal(s.run, s.run)
     assert(s:explain():find("It is the%s+only one%."), s:explain())
-    equal(tostring(s), "steady: period 0.740741, amplitude 0.860792, 0 stops a period")
+    equal(tostring(s), "steady: period 0.740741 T0, amplitude 0.860792 Mc/k, 0 stops a period")
 end)
 
 test("where there is no motion, or too much of it, the answer says so", function()

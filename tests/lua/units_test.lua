@@ -154,6 +154,12 @@ test("what a stranger's file says of units is taken when it is a word", function
     end
 end)
 
+test("a nondimensional system has the units of its numbers, unless others are given", function()
+    local units = nondimensional {}.units
+    equal(units.theta .. " " .. units.t .. " " .. units.M, "Mc/k T0 Mc")
+    equal(nondimensional { units = { theta = "rad" } }.units.t, nil)
+end)
+
 test("wrong units are said", function()
     raises_here(function() system{ I = 1, k = 4, units = "m" } end, 'units must be a table such as { theta = "m"')
     raises_here(function() system{ I = 1, k = 4, units = { theta = 1 } } end, "theta must be a string")
