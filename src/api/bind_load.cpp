@@ -8,6 +8,7 @@
 #include "files/csv_columns.hpp"
 #include "files/record1989.hpp"
 #include "lua/interrupt.hpp"
+#include "lua/lua_text.hpp"
 #include "text/words.hpp"
 
 namespace dinal::api {

@@ -13,6 +13,7 @@
 #include "api/identify_options.hpp"
 #include "api/run.hpp"
 #include "lua/interrupt.hpp"
+#include "lua/lua_text.hpp"
 #include "lua/user_function.hpp"
 #include "lua/vector.hpp"
 #include "model/controller.hpp"
@@ -192,7 +193,7 @@ private:
         options_.push("system");
         if (const auto* plain = lua::test<model::Oscillator>(L_, -1)) {
             guess_.plain = plain->parameters();
-        } else if (const auto* rig = lua::test<AssemblyHandle>(L_, -1); rig != nullptr && !(*rig)->named) {
+        } else if (const auto* rig = lua::test<model::AssemblyHandle>(L_, -1); rig != nullptr && !(*rig)->named) {
             guess_.rig = **rig;
         } else {
             options_.wrong("system", options_.row("system").wanted);
@@ -449,7 +450,7 @@ private:
             lua::push(L_, std::move(made).value());
         } else {
             if (auto wrong = guess.rig->joints[0].friction.law.complaint()) return failure_ = wrong->sentence, false;
-            lua::push<AssemblyHandle>(L_, std::make_shared<const model::Assembly>(*guess.rig));
+            lua::push<model::AssemblyHandle>(L_, std::make_shared<const model::Assembly>(*guess.rig));
         }
         return true;
     }
