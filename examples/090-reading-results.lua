@@ -30,7 +30,7 @@ run:save(name .. "-two.csv", { columns = { "t", "theta" } })
 -- friction/k, damping/k).
 run:save(name .. ".csv")
 run:save(name .. ".dat")
-local csv, dat = trajectory.load(name .. ".csv"), trajectory.load(name .. ".dat")
+local csv, dat = load(name .. ".csv"), load(name .. ".dat")
 print("the .csv comes back the same: " .. tostring((csv.theta - run.theta):abs():max() == 0))
 print("the .dat has velocity_over_omega0: " .. tostring(dat.velocity_over_omega0[51] == run.velocity[51] / sys.omega0))
 for _, ending in ipairs{ "", "-two.csv", ".csv", ".dat" } do

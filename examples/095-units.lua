@@ -21,7 +21,7 @@ run:save(file)
 for line in io.lines(file) do
   if line:find "units:" then print(line) end
 end
-print("read back, M is in " .. trajectory.load(file).units.M)
+print("read back, M is in " .. load(file).units.M)
 os.remove(file)
 
 -- The same block in millimetres; here the run says so.
@@ -31,10 +31,10 @@ print(same.events:select("t", "theta"))
 
 --[[ prints
 3 events: 2 turns, 1 rest
-  i      t, s  kind   theta, m  M, N
-  1   0.15708  turn  -0.035285     0
-  2  0.314159  turn    0.02057     0
-  3  0.471239  rest  -0.005855     0
+  i      t, s  kind   theta, m  M, N  velocity, m/s
+  1   0.15708  turn  -0.035285     0              0
+  2  0.314159  turn    0.02057     0              0
+  3  0.471239  rest  -0.005855     0              0
 
 theta, m
  0.05 +'.

@@ -40,24 +40,24 @@ else
 end
 
 --[[ prints
-   rad   a theta   b M/k
-  1.0 +a
-      |a   a
+  Mc/k   a theta   b M/k
+    1 +a
+      |a   aa
       |aa  aa
       | a  aa
-  0.5 + a aaa
-      | ababaa         aaaaaa         aaaaa         aaaaa
-      | aba ba        bab bbaa      baa bbaa       aa  baa
-  0.0 +ba-a- ab- - - ba- - -ba - - baa - -baa- - -ba - -baa-
-      | a a  aaaaa  baa      aa   bba      ba   bba      ba
-      | aaa  aa baaaaa        aaaaaaa       aaaaaaa       aaaab
-      |  aa
- -0.5 +  a
+      | a aaa
+      | ababaa         aaaaaaa       aaaaaaa       aaaaaaa
+      |ba a  ab      baa   bba      aa   bba      ba   bbaa
+    0 +ba-a- abaaa -bba- - -baa- -bba- - - aa- - baa - - ba-
+      | aaa  aaabaaaaa       baaaaaaa       aaaaaaa       aaaa
+      |  aa      bb            bb             bb            bb
+      |  a
       ++---------------------+---------------------+---------
 stuck          ==  ==   =====  ====   =====  =====  =====  ==
-       0                     5                    10         t
+       0                     5                    10
+                                t, T0
               free motion
-theta'/omega0, rad   o start   @ end   = dead zone
+theta'/omega0, Mc/k   o start   @ end   = dead zone
      | .    *******        .
  0.5 +    ***    .****
      |  **       .   **      .
@@ -71,7 +71,7 @@ theta'/omega0, rad   o start   @ end   = dead zone
      |       .  *******
      +-----------+------------+--
                  0            1
-              theta, rad
+              theta, Mc/k
 magnification   a zeta = 0.15   b zeta = 0.3   c zeta = 0.7
 4 +
   |

@@ -3,7 +3,7 @@
 local sys = system{ I = 1, k = 1, C = 0.2, Rd = 0.02, Re = 0.03 }
 print "hysteresis   period   amplitude"
 for _, width in ipairs{ 0.05, 0.2, 0.5 } do
-  local M = excitation.relay{ on = -width/2, off = width/2, levels = { 0.4, -0.4 } }
+  local M = excitation.relay{ on = -width/2, off = width/2, amplitude = 0.4 }
   local s = sys:steady{ M = M }
   print(string.format("%10.2f %8.4f %11.4f", width, s.period, s.amplitude))
 end

@@ -28,7 +28,7 @@ trap = simulate(function(t, theta)
   if theta > 0.1 then on = false elseif theta < -0.1 then on = true end
   return on and 0.4 or -0.4
 end)
-cure = simulate(excitation.relay{ on = -0.1, off = 0.1, levels = { 0.4, -0.4 } })
+cure = simulate(excitation.relay{ on = -0.1, off = 0.1, amplitude = 0.4 })
 show(trap, cure)
 
 print "A value that is held: excitation.sampled, which is asked in order and may remember what it likes."

@@ -17,10 +17,10 @@ print("   r   amplitude   stops")
 for _, row in ipairs(c) do print(string.format("%.2f %11.6f %7d", row.frequency, row.amplitude, row.stops)) end
 
 --[[ prints
-steady: period 0.740741, amplitude 0.860792, 0 stops a period
+steady: period 0.740741 T0, amplitude 0.860792 Mc/k, 0 stops a period
 lag of the fundamental 140.69 degrees, of the peak 135.07 degrees
 theory: amplitude 0.860792180, found 0.860792180
-grows: by 1.14159 in each period of M
+grows: by 1.14159 Mc/k in each period of M
    r   amplitude   stops
 0.20    0.554175       2
 0.30    0.825616       2

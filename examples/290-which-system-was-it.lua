@@ -7,9 +7,9 @@ local record = data{ t = run.t, theta = run.theta + vector.normal{ n = #run, see
 
 local fit = identify{ data = record, velocity0 = 0 }
 print("             found   error     true")
-print(string.format("%-9s %8.3f %7.3f %8.3f", "omega0", fit.omega0, fit.error.omega0, sys.omega0))
-print(string.format("%-9s %8.3f %7.3f %8.3f", "Rd/k", fit.Rd_over_k, fit.error.Rd_over_k, sys.Rd / sys.k))
-print(string.format("%-9s %8.3f %7.3f %8.3f", "offset", fit.offset, fit.error.offset, -2))
+print(string.format("%-9s %8.3f %7.3f %8.3f", "omega0", fit.omega0, fit.std_error.omega0, sys.omega0))
+print(string.format("%-9s %8.3f %7.3f %8.3f", "Rd/k", fit.Rd_over_k, fit.std_error.Rd_over_k, sys.Rd / sys.k))
+print(string.format("%-9s %8.3f %7.3f %8.3f", "offset", fit.offset, fit.std_error.offset, -2))
 print("the record says nothing about " .. table.concat(fit.silent, ", "))
 
 --[[ prints

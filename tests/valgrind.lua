@@ -18,7 +18,7 @@ for _, ending in ipairs{ ".csv", ".dat" } do
   local name = os.tmpname()
   os.remove(name)
   museum:save(name .. ending)
-  local again = trajectory.load(name .. ending)
+  local again = dinal.load(name .. ending)
   os.remove(name .. ending)
   assert(again.theta[#again] == museum.theta[#museum])
 end

@@ -52,8 +52,8 @@ std::optional<double> phase_lag(const motion::Trajectory& trajectory, const mode
         theta_size += std::fabs(theta), M_size += std::fabs(M);
     }
     if (!(std::abs(theta_sum) > least_share * theta_size) || !(std::abs(M_sum) > least_share * M_size)) return {};
-    const double lag = (std::arg(M_sum) - std::arg(theta_sum)) * 180 / pi;
-    return lag - 360 * std::floor((lag + 90) / 360);
+    const double lag = std::arg(M_sum) - std::arg(theta_sum), turn = 2 * pi;
+    return lag - turn * std::floor((lag + pi / 2) / turn);
 }
 
 }  // namespace dinal::analysis

@@ -188,7 +188,7 @@ private:
         say("Its amplitude is {}, from theta = {} to {}.", number(motion_.amplitude), number(motion_.low),
             number(motion_.high));
         if (shape_.lag) {
-            say("Its fundamental lags {:.5g} degrees behind that of M.", *shape_.lag * 180 / std::numbers::pi);
+            say("Its fundamental lags {:.5g} rad behind that of M.", *shape_.lag);
         }
         if (motion_.stops == 0) {
             say("It never stops.");

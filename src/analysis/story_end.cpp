@@ -59,8 +59,7 @@ void Story::tell_recurrence(const Recurrence& motion) {
     const double known = model::period_from(excitation_, motion.since), period = known > 0 ? known : motion.period;
     if (std::fabs(motion.period / period - 1) <= 1e-3 && motion.drift == 0 && constant_from_ > motion.since) {
         if (const auto lag = phase_lag(run_, excitation_, period, motion.until)) {
-            say("Theta {} M by {:.1f} degrees (their fundamentals).", *lag < 0 ? "leads" : "lags behind",
-                std::fabs(*lag));
+            say("Theta {} M by {:.3f} rad (their fundamentals).", *lag < 0 ? "leads" : "lags behind", std::fabs(*lag));
         }
     }
     if (motion.stops == 0) {

@@ -14,7 +14,7 @@ namespace dinal::api {
 
 namespace {
 
-std::shared_ptr<model::UserFunction> controller_function(lua_State* L, const text::Call& call, const char* role) {
+std::shared_ptr<lua::LuaFunction> controller_function(lua_State* L, const text::Call& call, const char* role) {
     if (!lua::is_callable(L, 1)) {
         lua::raise(L, {.sentence = fmt::format("{} takes a function of t, theta, velocity, z, got {}, for example {}",
                                                call.name, lua::describe(L, 1), call.example),
@@ -33,8 +33,17 @@ int push_controller(lua_State* L, std::shared_ptr<model::Controller> controller)
 
 int sampled_controller(lua_State* L) {
     auto controller = std::make_shared<model::SampledController>();
-    controller->function = controller_function(L, sampled_call, "the sampled function");
-    lua::Options(L, 2, sampled_call).fill(*controller);
+    const auto function = controller_function(L, sampled_call, "the sampled function");
+    controller->function = function;
+    const lua::Options options(L, 2, sampled_call);
+    options.fill(*controller);
+    options.push("start");
+    if (lua::is_callable(L, -1)) {
+        function->remember_from(L, -1);
+    } else if (!lua_isnil(L, -1)) {
+        options.wrong("start", options.row("start").wanted);
+    }
+    lua_pop(L, 1);
     return push_controller(L, std::move(controller));
 }
 
@@ -52,17 +61,22 @@ int relay_controller(lua_State* L) {
     options.fill(asked);
     if (asked.on == asked.off) {
         options.fail(
-            {.sentence = fmt::format("on = {:.6g} and off = {:.6g} must differ: between them it keeps its level",
+            {.sentence = fmt::format("on = {:.6g} and off = {:.6g} must differ: between them it stays as it is",
                                      asked.on, asked.off),
              .option = "off"});
     }
-    if (asked.levels.size() != 2) {
-        options.fail(
-            {.sentence = fmt::format("levels must be two numbers, for on and for off, got {}", asked.levels.size()),
-             .option = "levels"});
+    options.push("amplitude");
+    const bool one = lua_type(L, -1) == LUA_TNUMBER;
+    lua_pop(L, 1);
+    const double alone = one ? options.number("amplitude") : 0;
+    const std::vector<double> torques = one ? std::vector{alone, -alone} : options.numbers("amplitude");
+    if (!options.has("amplitude")) options.missing("amplitude");
+    if (torques.size() != 2) {
+        options.fail("amplitude", fmt::format("amplitude must be {}, got {} number{}", options.row("amplitude").wanted,
+                                              torques.size(), torques.size() == 1 ? "" : "s"));
     }
     controller->on = asked.on, controller->off = asked.off;
-    controller->levels = {asked.levels[0], asked.levels[1]};
+    controller->levels = {torques[0], torques[1]};
     controller->starts_on = asked.start == RelayOptions::Start::on;
     using Of = model::RelayController::Of;
     options.push("of");

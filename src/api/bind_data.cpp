@@ -1,4 +1,4 @@
-// data{ ... }, data.load(file), and the class of what they return: columns, rows by number, methods of
+// data{ ... }, load(file), and the class of what they return: columns, rows by number, methods of
 // data_methods.cpp.
 #include "api/classes.hpp"
 #include "api/data.hpp"
@@ -88,14 +88,6 @@ int data_other_key(lua_State* L) {
     }
     push_row(L, 1, *data, static_cast<std::size_t>(i - 1));
     return 1;
-}
-
-int data_column(lua_State* L) {
-    const DataHandle& data = data_functions::self(L, "d:column(\"r\")");
-    if (lua_type(L, 2) != LUA_TSTRING) {
-        lua::raise_got(L, 2, "d:column", "d:column takes the name of a column");
-    }
-    return push_column(L, data_functions::column_or_fail(L, *data, "d:column", lua_tostring(L, 2)));
 }
 
 int data_names(lua_State* L) {
@@ -234,7 +226,7 @@ int data_make(lua_State* L) {
 }
 
 constexpr lua::Member data_members[] = {
-    {lua::a_method<data_column>, column_doc},
+    {lua::a_method<data_functions::column>, column_doc},
     {lua::a_method<data_functions::filter>, filter_doc},
     {lua::a_method<data_functions::markdown>, markdown_doc},
     {lua::a_method<data_functions::plot>, plot_data_doc},
@@ -254,6 +246,14 @@ constexpr lua::Member data_module_members[] = {
 
 }  // namespace
 
+int data_functions::column(lua_State* L) {
+    const DataHandle& data = self(L, "d:column(\"r\")");
+    if (lua_type(L, 2) != LUA_TSTRING) {
+        lua::raise_got(L, 2, "d:column", "d:column takes the name of a column");
+    }
+    return push_column(L, column_or_fail(L, *data, "d:column", lua_tostring(L, 2)));
+}
+
 void push_row(lua_State* L, int index, const Data& data, std::size_t row) {
     lua_createtable(L, 0, static_cast<int>(data.columns.size()));
     for (const DataColumn& each : data.columns) {
@@ -271,7 +271,7 @@ void push_row(lua_State* L, int index, const Data& data, std::size_t row) {
 
 const lua::Class data_class = {
     "data",
-    {"data{ ... }, data.load(file), run.events -> d",
+    {"data{ ... }, load(file), run.events -> d",
      "Named columns of one length: d.r is a vector (of words a table of strings), d[1] the "
      "first row. It cannot be changed.",
      "d = data{ r = { 0.5, 1 }, A = { 1.3, 4 } }\nprint(d.r, d[2].A)  --> vector{ 0.5, 1 }\t4.0"},

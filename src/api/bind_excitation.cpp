@@ -100,8 +100,11 @@ void refuse_memory(lua_State* L, const model::Excitation& excitation, const char
     }
 }
 
+int values(lua_State* L);
+
 int value(lua_State* L) {
     const model::Excitation& excitation = self_excitation(L, "e:value(t)");
+    if (lua_istable(L, 2) || lua::test<lua::Vector>(L, 2) != nullptr) return values(L);
     const double t = lua::finite_argument(L, 2, "e:value(t): t");
     const model::State state = state_arguments(L, 3);
     refuse_memory(L, excitation, "e:value(t)");
@@ -278,8 +281,9 @@ constexpr lua::Member excitation_members[] = {
      {"e:window(from, to) -> excitation", "The same for from <= t < to, and 0 outside. The ends may be infinite.",
       "M = excitation.ramp{}:window(1, 3)\nprint(M(0.5), M(2), M(3))  --> 0.0\t2.0\t0.0"}},
     {lua::a_metamethod<value>("__call"),
-     {"e(t, theta = 0, velocity = 0) -> number", "The torque M at the time t.",
-      "print(excitation.step{ level = 4 }(1))  --> 4.0"}},
+     {"e(t, theta = 0, velocity = 0) -> number or vector",
+      "The torque M at the time t, or at all times of a table or a vector.",
+      "e = excitation.ramp{ slope = 3 }\nprint(e(2), e{ 0, 1, 2 })  --> 6.0\tvector{ 0, 3, 6 }"}},
     {lua::a_metamethod<add>("__add"),
      {"e + f -> excitation", "The sum. A function or a number may stand on one side.",
       "M = excitation.step{} + 2 + function(t) return 10 * t end\nprint(M(1))  --> 13.0"}},
@@ -297,7 +301,7 @@ constexpr lua::Member excitation_members[] = {
      {"tostring(e) -> string",
       "Lua text that makes it again, where that is possible: a function by its source text, without the values of its "
       "upvalues; a long table not at all.",
-      "print(0.5 * excitation.step{ at = 2 })  --> 0.5 * excitation.step{ level = 1, at = 2 }"}},
+      "print(0.5 * excitation.step{ at = 2 })  --> 0.5 * excitation.step{ amplitude = 1, at = 2 }"}},
 };
 
 }  // namespace

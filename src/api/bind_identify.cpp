@@ -27,7 +27,10 @@ struct FitAnswer {
     std::vector<std::pair<std::string, double>> values, errors;
     std::vector<std::string> silent;
     std::optional<model::Oscillator> system;
-    model::Units units;  ///< of the record; without one for M where only ratios to I are found
+    model::AssemblyHandle rig = {};
+    std::string remark = {};
+    bool from_guess = false;  ///< a system was given
+    model::Units units;       ///< of the record; without one for M where only ratios to I are found
 };
 using FitHandle = std::shared_ptr<const FitAnswer>;
 
@@ -77,6 +80,23 @@ int identify_record(lua_State* L) {
     IdentifyOptions asked;
     options.fill(asked);
     auto fit = std::make_shared<FitAnswer>();
+    if (options.has("system")) {
+        FittedParts parts = fit_any(L, options, asked);
+        fit->units = units_of_record(L, options);
+        fit->question.t = std::move(parts.t), fit->question.theta = std::move(parts.measured);
+        fit->found.predicted = std::move(parts.predicted), fit->found.noise = parts.noise;
+        fit->values = std::move(parts.values), fit->errors = std::move(parts.errors);
+        fit->silent = std::move(parts.silent), fit->remark = std::move(parts.remark);
+        fit->system = std::move(parts.system), fit->rig = std::move(parts.rig), fit->from_guess = true;
+        lua::push<FitHandle>(L, std::move(fit));
+        return 1;
+    }
+    for (const char* name : {"measured", "belt", "base", "states"}) {
+        if (!options.has(name)) continue;
+        options.push(name);
+        options.fail(name, fmt::format("{} ({}) needs a guess beside it: system = system{{ ... }} and free", name,
+                                       lua::describe(L, -1)));
+    }
     take_record(L, options, asked, fit->question);
     fit->units = units_of_record(L, options);
     if (options.has("M")) {
@@ -112,8 +132,8 @@ int fit_value(lua_State* L) {
             return 1;
         }
     }
-    if (std::find(analysis::unknown_names.begin(), analysis::unknown_names.end(), name) !=
-        analysis::unknown_names.end()) {
+    if (!fit->from_guess && std::find(analysis::unknown_names.begin(), analysis::unknown_names.end(), name) !=
+                                analysis::unknown_names.end()) {
         lua::raise(
             L, {.sentence = fmt::format("a free decay tells ratios, so there is no {}: give I or k to identify", name),
                 .culprit = std::string(name)});
@@ -129,7 +149,7 @@ int fit_value(lua_State* L) {
 }
 
 int fit_error(lua_State* L) {
-    const FitHandle& fit = fit_self(L, "fit.error");
+    const FitHandle& fit = fit_self(L, "fit.std_error");
     lua_createtable(L, 0, static_cast<int>(fit->errors.size()));
     for (const auto& [name, error] : fit->errors) {
         lua_pushnumber(L, error);
@@ -161,6 +181,7 @@ int fit_silent(lua_State* L) {
 int fit_system(lua_State* L) {
     const FitHandle& fit = fit_self(L, "fit.system");
     fit->system ? static_cast<void>(lua::push(L, *fit->system)) : lua_pushnil(L);
+    if (fit->rig != nullptr) lua::push<model::AssemblyHandle>(L, fit->rig);
     return 1;
 }
 
@@ -221,10 +242,12 @@ std::string unit_of_value(const model::Units& units, std::string_view name) {
 
 std::string fit_summary(const FitAnswer& fit) {
     std::string text = fmt::format("fit of {} samples, {:.3g} of noise:", fit.question.t.size(), fit.found.noise);
+    std::size_t width = 10;
+    for (const auto& value : fit.values) width = std::max(width, value.first.size());
     for (std::size_t i = 0; i < fit.values.size(); ++i) {
         const auto& [name, value] = fit.values[i];
         const double error = fit.errors[i].second;
-        text += fmt::format("\n  {:<10} {:<12.6g}", name, value);
+        text += fmt::format("\n  {:<{}} {:<12.6g}", name, width, value);
         text += error > 0 ? fmt::format(" +- {:.2g}", error) : "";
         text.erase(text.find_last_not_of(' ') + 1);
         text = model::with_unit(std::move(text), unit_of_value(fit.units, name));
@@ -250,6 +273,7 @@ std::string fit_summary(const FitAnswer& fit) {
                                 fit.question.t[*wild]);
         }
     }
+    if (!fit.remark.empty()) text += "\n  " + fit.remark;
     if (fit.found.M_is_noisy) text += "\n  M has noise, which the errors leave out: they may be far too small";
     if (fit.question.given.back() == 0.0) text += "\n  offset is held at 0";
     if (const std::size_t cut = fit.found.cut_low + fit.found.cut_high; cut > 0) {
@@ -275,10 +299,10 @@ constexpr lua::Member fit_members[] = {
      {"fit.names -> table", "The names of the values that it has.",
       DINAL_FIT "print(fit.names[1], fit[fit.names[1]] == fit.omega0)  --> omega0\ttrue"}},
     {lua::a_field<fit_error>,
-     {"fit.error -> table",
+     {"fit.std_error -> table",
       "The standard errors, under the names of the values: the truth lies within two of them in 19 of 20 records. What "
       "was given has 0.",
-      DINAL_FIT "print(math.abs(fit.omega0 - sys.omega0) < 3 * fit.error.omega0)  --> true"}},
+      DINAL_FIT "print(math.abs(fit.omega0 - sys.omega0) < 3 * fit.std_error.omega0)  --> true"}},
     {lua::a_field<fit_silent>,
      {"fit.silent -> table",
       "The names of what the record does not tell: Re of a free decay, which never slips, or of a motion that never "
@@ -316,7 +340,10 @@ constexpr lua::Member identify_members[] = {
      {"identify{ OPTIONS } -> fit",
       "Which system made this record. A free decay (no M) needs no guess and tells omega0, zeta, Rd_over_k and the "
       "start; with I or k also the others. With a known M it tells I, k, C, Rd, Re and the start. What is given is not "
-      "fitted.",
+      "fitted.\n"
+      "With system, a guess, and free it fits any numbers of any system of one mass, and of tables that M uses, to "
+      "measured angles, velocities or accelerations, also on a belt, on a shaking base or with states: "
+      "fit[\"friction.speed\"]. Residuals that are alike from sample to sample widen the errors, and the fit says so.",
       "run = system{ I = 1, k = 40, C = 0.3, Rd = 0.8 }:simulate{ theta0 = 1, t_end = 8, dt = 0.02 }\n"
       "fit = identify{ data = run, I = 1 }\n"
       "print(string.format(\"%.4f %.4f %.4f\", fit.k, fit.C, fit.Rd))  --> 40.0000 0.3000 0.8000",

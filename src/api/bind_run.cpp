@@ -83,7 +83,39 @@ int column_field(lua_State* L) {
     return column_by_name(L, motion::column_names()[static_cast<std::size_t>(column)].c_str());
 }
 
+/// Pushes the rows of the run as data, which keep the run.
+void push_as_data(lua_State* L, const RunHandle& run) {
+    const ColumnUnits in(units_of(*run));
+    Data data;
+    const auto& names = run->trajectory.names();
+    for (std::size_t i = 0; i < names.size(); ++i) {
+        const auto numbers = run->trajectory.rows.col(static_cast<Eigen::Index>(i));
+        const auto size = static_cast<std::size_t>(numbers.size());
+        data.columns.push_back({names[i], lua::Vector(run, numbers.data(), size), in.of(names[i])});
+    }
+    push_data(L, std::move(data));
+}
+
+/// A method of data, of the rows of the run.
+template <lua_CFunction method>
+int as_data(lua_State* L) {
+    push_as_data(L, run_self(L, "run:select(\"t\")"));
+    lua_replace(L, 1);
+    return method(L);
+}
+
 int other_column(lua_State* L) {
+    if (lua_isinteger(L, 2) != 0) {
+        const RunHandle& run = run_self(L, "run[1]");
+        const lua_Integer i = lua_tointeger(L, 2);
+        if (i < 1 || i > run->trajectory.size()) {
+            lua_pushnil(L);
+            return 1;
+        }
+        push_as_data(L, run);
+        push_row(L, lua_gettop(L), **lua::test<DataHandle>(L, -1), static_cast<std::size_t>(i) - 1);
+        return 1;
+    }
     if (lua_type(L, 2) != LUA_TSTRING) {
         return 0;
     }
@@ -253,11 +285,28 @@ constexpr lua::Member run_members[] = {
      {"run:columns(name, ...) -> vector, ...",
       "The columns of these names or numbers (t is 1); without arguments all of them. READDIN of 1989 did this.",
       DINAL_RUN "t, M = run:columns(\"t\", \"M\")\nprint(t, M[5])  --> vector{ 0, 0.5, 1, 1.5, 2 }\t3.0"}},
+    {lua::a_method<as_data<data_functions::column>>,
+     {"run:column(name) -> vector", "The column of this name; run.NAME is the same unless the run has such a member.",
+      DINAL_RUN "print(run:column(\"theta\") == run.theta)  --> true"}},
+    {lua::a_method<as_data<data_functions::filter>>,
+     {"run:filter(f) -> data", "The rows for which f(row) is true, as d:filter does.",
+      DINAL_RUN "print(#run:filter(function(row) return row.theta > 2 end))  --> 2"}},
+    {lua::a_method<as_data<data_functions::select>>,
+     {"run:select(name, ...) -> data", "These columns, in this order.",
+      DINAL_RUN "print(#run:select(\"t\", \"theta\").names, run[2].t)  --> 2\t0.5"}},
+    {lua::a_method<as_data<data_functions::sort>>,
+     {"run:sort(name, { descending = false }) -> data", "The rows in the order of a column, as d:sort does.",
+      DINAL_RUN "print(run:sort(\"theta\").theta[1])  --> 1.0"}},
+    {lua::a_method<as_data<data_functions::markdown>>,
+     {"run:markdown() -> string", "All rows as a table in Markdown.",
+      DINAL_RUN
+      "print(run:markdown():match(\"[^\\n]*\"))  --> | t, T0 | theta, Mc/k | velocity, Mc/k/T0 | M, Mc | friction, Mc | damping, Mc |"}},
     {lua::a_method<continue_run>,
      {"run:continue{ OPTIONS } -> run",
       "A new run: this one, and how it goes on from where it ended (reached its end, or stopped by Ctrl-C or an error "
-      "in M), with the same rows as if it had never ended. A run with dt keeps its dt.",
-      DINAL_RUN "longer = run:continue{ t_end = 3 }\n"
+      "in M), with the same rows as if it had never ended. A run with dt keeps its dt. run:continue(40) is "
+      "run:continue{ t_end = 40 }.",
+      DINAL_RUN "longer = run:continue(3)\n"
                 "print(#longer, longer.t_end, string.format(\"%.6f\", longer:at(3)))  --> 7\t3.0\t1.000000",
       {&continue_call}}},
     {lua::a_method<energy_of_run>,
@@ -276,10 +325,10 @@ constexpr lua::Member run_members[] = {
      {"run:save(file, { OPTIONS })",
       "Writes the rows: file.csv gets a comment block with the Lua text that repeats the run, a line of names and the "
       "rows; file.dat gets the record of 1989 (NPUNT, then t, theta, velocity/omega0, M/k, friction/k, damping/k). "
-      "Both read back exactly with trajectory.load.",
+      "Both read back exactly with load.",
       DINAL_RUN "file = os.tmpname() .. \".csv\"\n"
                 "run:save(file, { columns = { \"t\", \"theta\" } })\n"
-                "print(#trajectory.load(file))  --> 5\n"
+                "print(#load(file))  --> 5\n"
                 "os.remove(file)",
       {&save_call}}},
     {lua::a_method<spectrum_of_run>, spectrum_doc},
@@ -313,11 +362,11 @@ constexpr lua::Member run_members[] = {
       "print(string.format(\"%.6f\", run.states.way[5]))  --> 4.000000"}},
     {lua::a_field<events>,
      {"run.events -> data",
-      "What happened at velocity zero, in order of time: the columns t, kind, theta and M (run.events.theta is a "
-      "vector), and by number { t, kind, theta, M }. kind is \"turn\" (goes on "
+      "What happened, in order of time: the columns t, kind, theta, M and velocity (run.events.theta is a "
+      "vector), and by number { t, kind, theta, M, velocity }. kind is \"turn\" (goes on "
       "the other way), \"stick\" (stays), \"slip\" (breaks away) or \"rest\" (stays, and nothing can move it any more); "
-      "\"impact\" is at a wall, \"switch\" of a relay, and \"user\" of the option `events`: then there is a column name, "
-      "too, and, where it is not 0 at all of them, velocity, of an impact that with which the mass came. Nothing is "
+      "\"impact\" is at a wall, \"switch\" of a relay, and \"user\" of the option `events`: with it there is a column "
+      "name. The velocity of an impact is that before it. run:at(t) has the states. Nothing is "
       "recorded at t_start but an impact. Empty in a run that was read from a file.",
       "run = nondimensional{}:simulate{ theta0 = 1, t_end = 1.2, dt = 0.1 }\n"
       "for _, e in ipairs(run.events) do print(e.kind, string.format(\"%.4f %.4f\", e.t, e.theta)) end\n"
@@ -371,15 +420,16 @@ constexpr lua::Member run_members[] = {
      {"run.units -> table",
       "What theta, t and M are measured in, as its system, the run or the file it was read from says; what has no unit "
       "is nil.",
-      DINAL_RUN "print(run.units.theta, run.units.t)  --> rad\tnil"}},
+      DINAL_RUN "print(run.units.theta, run.units.t)  --> Mc/k\tT0"}},
     {lua::a_field<origin_field<&source::Origin::excitation>>,
      {"run.excitation -> excitation or nil", "The excitation M of the run; nil in a run that was read from a file.",
-      DINAL_RUN "print(run.excitation)  --> excitation.constant{ level = 3 }"}},
+      DINAL_RUN "print(run.excitation)  --> excitation.constant{ amplitude = 3 }"}},
     {lua::a_field<origin_field<&source::Origin::integrator>>,
      {"run.integrator -> integrator or nil",
       "The integrator that was used, also when none was asked for; nil in a run that was read from a file.",
       integrator_example.c_str()}},
-    {lua::a_metamethod<run_length>("__len"), {"#run -> number", "The number of rows.", DINAL_RUN "print(#run)  --> 5"}},
+    {lua::a_metamethod<run_length>("__len"),
+     {"#run -> number", "The number of rows; run[1] is the first one.", DINAL_RUN "print(#run)  --> 5"}},
     {lua::a_metamethod<run_text>("__tostring"),
      {"tostring(run) -> string", "A summary in one line.",
       "print(nondimensional{}:simulate{ theta0 = 1, t_end = 1.2, dt = 0.1 })\n"
@@ -390,7 +440,7 @@ constexpr lua::Member run_members[] = {
 
 const lua::Class run_class = {
     "run",
-    {"sys:simulate{ ... } or trajectory.load(file) -> run",
+    {"sys:simulate{ ... } or load(file) -> run",
      "What a simulation leaves behind: columns that are vectors, events, the outcome, and the motion between the rows. "
      "It cannot be changed. A trajectory that was read from a file has the columns of its file as fields.",
      DINAL_RUN "print(run.theta:max() < 5.001)  --> true"},

@@ -107,7 +107,7 @@ public:
             if (sampled == nullptr) continue;
             sampled->latest = run;
             if (changed) sampled->first = sampled->first.value_or(before_);
-            if (changed && sampled->carried) fail();
+            if (changed && (sampled->carried || run == nullptr)) fail();
         }
         const bool shared = is_used(last_, last_before_) && memory_of(L_, last_) != last_before_;
         if (shared && !goes_on_) fail();
@@ -126,8 +126,10 @@ private:
         });
     }
     [[noreturn]] void fail() const {
-        options_.fail({.sentence = "the function of excitation.sampled keeps a memory from one run to the next: make "
-                                   "the controller and its variables anew for each run, in a function that returns it",
+        options_.fail({.sentence =
+                           "the function of excitation.sampled keeps a memory from one run to the next: keep it "
+                           "in the table that start = function() return { e = 0 } end makes for each run, its "
+                           "fifth argument",
                        .option = "M"});
     }
 

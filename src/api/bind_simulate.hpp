@@ -95,8 +95,8 @@ inline constexpr text::Option continue_options[] = {
     {"times", "time units", text::its_own, text::any_finite, "more rows of a run that had times",
      text::fills<&MoreTime::times>},
 };
-inline constexpr text::Call continue_call{"run:continue", "run:continue{ t_end = 40 }", continue_options, true,
-                                          &simulate_call};
+inline constexpr text::Call continue_call{
+    "run:continue", "run:continue{ t_end = 40 }", continue_options, true, &simulate_call, "t_end"};
 
 inline constexpr text::FixedText<600> simulate_summary{
     "Runs the system, by ", motion::default_integrator.c_str(),

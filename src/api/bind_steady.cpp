@@ -376,7 +376,7 @@ constexpr lua::Member steady_members[] = {
      lua::guarded<steady_to_string>,
      lua::Kind::metamethod,
      {"tostring(s) -> string", "The answer in one line.",
-      DINAL_STEADY "print(s)  --> steady: period 2.5, amplitude 1.11113, 2 stops a period"}},
+      DINAL_STEADY "print(s)  --> steady: period 2.5 T0, amplitude 1.11113 Mc/k, 2 stops a period"}},
 };
 
 #undef DINAL_STEADY

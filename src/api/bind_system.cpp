@@ -110,7 +110,7 @@ int nondimensional(lua_State* L) {
     parameters.kinetic_friction = ratios.friction;
     parameters.breakaway = breakaway_ratio;
     parameters.friction = asked_law(L, options, {"friction_ratio", "breakaway_ratio"});
-    parameters.units = asked_units(L, options).value_or(model::Units());
+    parameters.units = asked_units(L, options).value_or(model::Units{.theta = "Mc/k", .t = "T0", .M = "Mc"});
     return push_system(L, options, parameters);
 }
 
@@ -227,8 +227,7 @@ constexpr lua::Member system_module_members[] = {
     {lua::a_function<nondimensional>,
      {"nondimensional{ OPTIONS } -> system",
       "The system with k = 1 and I = 1/(4 pi^2): its period T0 is 1 and torques are in units of the characteristic "
-      "torque Mc, so that M is M* of the report. Cards and axes say rad unless you give units = { theta = \"Mc/k\", "
-      "t = \"T0\", M = \"Mc\" }.",
+      "torque Mc, so that M is M* of the report. Angles are in Mc/k, as its units say unless you give others.",
       "sys = nondimensional{ zeta = 0.119, friction_ratio = 0.418 }\n"
       "print(sys.k, sys.Rd, string.format(\"%.3f\", sys.zeta))  --> 1.0\t0.418\t0.119",
       {&nondimensional_call}}},

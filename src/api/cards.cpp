@@ -53,7 +53,13 @@ std::string system_card(lua_State* L, int index, const terminal::Display& screen
         text += "\n  walls      " + system.walls()->lua_text();
     }
     if (!units.usual()) {
-        text += "\n  units      " + units.in_words();
+        std::string words = units.in_words();
+        constexpr std::string_view place = "\n             ";
+        const bool fits = place.size() + words.size() <= screen.width;
+        for (std::size_t at = words.find(", "); !fits && at != std::string::npos; at = words.find(", ", at + 1)) {
+            words.replace(at + 1, 1, place);
+        }
+        text += "\n  units      " + words;
     }
     if (!system.has_spring()) {
         return text;

@@ -15,7 +15,7 @@ void register_excitation(lua_State* L);
 void register_integrator(lua_State* L);
 void register_run(lua_State* L);
 void register_energy(lua_State* L);
-void register_trajectory(lua_State* L);
+void register_load(lua_State* L);
 void register_theory(lua_State* L);
 void register_vector(lua_State* L);
 void register_data(lua_State* L);
@@ -43,7 +43,8 @@ extern const lua::Class integrator_module;   // integrator.rk4 ...
 extern const lua::Class integrator_class;    // what they return
 extern const lua::Class run_class;           // run
 extern const lua::Class energy_class;        // what run:energy() returns
-extern const lua::Class trajectory_module;   // trajectory.load
+extern const lua::Class load_functions;      // load
+extern const lua::Class trajectory_module;   // trajectory.load, which is gone
 extern const lua::Class theory_module;       // theory.magnification ...
 extern const lua::Class vector_module;       // vector{...}, vector.linspace
 extern const lua::Class vector_class;        // v
@@ -52,7 +53,7 @@ extern const lua::Class identify_functions;  // identify
 extern const lua::Class fit_class;           // what it returns
 extern const lua::Class report_functions;    // report
 extern const lua::Class report_class;        // r
-extern const lua::Class data_module;         // data{ ... }, data.load
+extern const lua::Class data_module;         // data{ ... }
 extern const lua::Class data_class;          // d
 extern const lua::Class sweep_functions;     // sweep
 extern const lua::Class plot_functions;      // plot

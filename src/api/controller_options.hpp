@@ -25,10 +25,17 @@ inline constexpr text::Option sampled_options[] = {
      .unit = "time units",
      .meaning = "the first instant; those before the start of a run are left out",
      .filled = text::fills<&model::SampledController::at>},
+    {.name = "start",
+     .meaning = "returns the memory of a run, a table, which f gets as its fifth argument and may change",
+     .wanted = "a function that returns a table, such as function() return { e = 0 } end"},
 };
 inline constexpr text::Call sampled_call{
-    "excitation.sampled", "excitation.sampled(function(t, theta, velocity) return -theta end, { every = 0.01 })",
-    sampled_options};
+    "excitation.sampled",
+    "excitation.sampled(function(t, theta, velocity) return -theta end, { every = 0.01 })",
+    sampled_options,
+    false,
+    nullptr,
+    "every"};
 
 inline constexpr text::Option delayed_options[] = {
     {.name = "by",
@@ -39,30 +46,33 @@ inline constexpr text::Option delayed_options[] = {
      .filled = text::fills<&model::DelayedController::by>},
 };
 inline constexpr text::Call delayed_call{
-    "excitation.delayed", "excitation.delayed(function(t, theta, velocity) return -theta end, { by = 0.02 })",
-    delayed_options};
+    "excitation.delayed",
+    "excitation.delayed(function(t, theta, velocity) return -theta end, { by = 0.02 })",
+    delayed_options,
+    false,
+    nullptr,
+    "by"};
 
 struct RelayOptions {
     enum class Start { on, off };
     double on = 0, off = 0;
-    std::vector<double> levels;
     Start start = Start::on;
 };
 inline constexpr const char* relay_starts[] = {"on", "off"};
 inline constexpr text::Option relay_options[] = {
     {.name = "on",
      .otherwise = text::needed,
-     .meaning = "where it takes the first level, coming from the side of off",
+     .meaning = "where it switches on",
      .filled = text::fills<&RelayOptions::on>},
     {.name = "off",
      .otherwise = text::needed,
-     .meaning = "where it takes the second level, coming from the side of on",
+     .meaning = "where it switches off",
      .filled = text::fills<&RelayOptions::off>},
-    {.name = "levels",
+    {.name = "amplitude",
      .unit = "torque",
      .otherwise = text::needed,
-     .meaning = "two torques: switched on, switched off",
-     .filled = text::fills<&RelayOptions::levels>},
+     .meaning = "the torque while it is on, and its opposite while it is off; or the two torques { on, off }",
+     .wanted = "a number, or two: { on, off }"},
     {.name = "of",
      .otherwise = "\"theta\"",
      .meaning =
@@ -73,8 +83,8 @@ inline constexpr text::Option relay_options[] = {
      .filled = text::fills<&RelayOptions::start>,
      .choices = relay_starts},
 };
-inline constexpr text::Call relay_call{
-    "excitation.relay", "excitation.relay{ on = 0.25, off = 0.35, levels = { 0.2, -0.2 } }", relay_options};
+inline constexpr text::Call relay_call{"excitation.relay", "excitation.relay{ on = 0.25, off = 0.35, amplitude = 0.2 }",
+                                       relay_options};
 
 int sampled_controller(lua_State* L);
 int relay_controller(lua_State* L);
@@ -83,19 +93,22 @@ int delayed_controller(lua_State* L);
 inline constexpr lua::Member controller_functions[] = {
     {lua::a_function<sampled_controller>,
      {"excitation.sampled(f, { OPTIONS }) -> excitation",
-      "A controller that samples: f(t, theta, velocity, z) is called once at each instant, in order, so it may keep a "
-      "memory in variables of its own. Such a controller serves one run and its run:continue: make it and these "
-      "variables anew for each run, in a function that returns it. What f returns is held until the next instant; "
-      "before the first one M is 0. It has values in a run only.",
-      "M = excitation.sampled(function(t, theta, velocity) return -3*velocity end, { every = 0.1 })\n"
-      "run = nondimensional{}:simulate{ M = M, theta0 = 1, t_end = 1, dt = 0.25 }\n"
-      "print(run.M[1], run.M[2] == run.M[3])  --> 0.0\tfalse",
+      "A controller that samples: f(t, theta, velocity, z, memory) is called once at each instant, in order. What it "
+      "returns is held until the next instant; before the first one M is 0. A memory is a table that start returns: "
+      "each run gets a new one, and a run that is continued goes on with its own, so that runs can be repeated, "
+      "continued and swept. z is nil without states. It has values in a run only.",
+      "M = excitation.sampled(function(t, theta, velocity, z, memory)\n"
+      "  memory.e = memory.e + 0.1*(1 - theta)\n"
+      "  return 5*memory.e - 3*velocity\n"
+      "end, { every = 0.1, start = function() return { e = 0 } end })\n"
+      "run = nondimensional{}:simulate{ M = M, t_end = 1, dt = 0.25 }\n"
+      "print(run.M[1], run.M[2] == run.M[3])  --> 0.5\tfalse",
       {&sampled_call}}},
     {lua::a_function<relay_controller>,
      {"excitation.relay{ OPTIONS } -> excitation",
-      "Two levels with hysteresis: passing off from the side of on gives the second level, passing on from the side of "
-      "off the first. Each switch is located, and an event of the kind \"switch\". It has values in a run only.",
-      "M = excitation.relay{ on = -0.1, off = 0.1, levels = { 1, -1 } }\n"
+      "A switch with hysteresis: it gives amplitude from where it passes on, coming from the side of off, and -amplitude "
+      "from where it passes off, coming from the side of on. Each switch is located, and an event of the kind \"switch\". It has values in a run only.",
+      "M = excitation.relay{ on = -0.1, off = 0.1, amplitude = 1 }\n"
       "run = nondimensional{ zeta = 0.1 }:simulate{ M = M, t_end = 1, dt = 0.5 }\n"
       "print(run.events[1].kind, string.format(\"%.6f\", run.events[1].theta))  --> switch\t0.100000",
       {&relay_call}}},

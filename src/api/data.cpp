@@ -151,21 +151,19 @@ void push_events(lua_State* L, std::span<const model::Event> events, std::span<c
                  const model::Units& units) {
     std::vector<double> t(events.size()), theta(events.size()), M(events.size()), velocity(events.size());
     std::vector<std::string> kind(events.size()), name(events.size());
-    bool moves = false;
     for (std::size_t i = 0; i < events.size(); ++i) {
         t[i] = events[i].t;
         kind[i] = model::name(events[i].kind);
         theta[i] = events[i].theta;
         M[i] = events[i].M;
         velocity[i] = events[i].velocity;
-        moves = moves || velocity[i] != 0;
         if (events[i].user >= 0) name[i] = user_names[static_cast<std::size_t>(events[i].user)];
     }
     Data data;
     const ColumnUnits in(units);
     data.columns = {column_of("t", std::move(t), in.t), column_of("kind", std::move(kind)),
-                    column_of("theta", std::move(theta), in.theta), column_of("M", std::move(M), in.M)};
-    if (moves) data.columns.push_back(column_of("velocity", std::move(velocity), in.speed));
+                    column_of("theta", std::move(theta), in.theta), column_of("M", std::move(M), in.M),
+                    column_of("velocity", std::move(velocity), in.speed)};
     if (!user_names.empty()) data.columns.push_back(column_of("name", std::move(name)));
     data.heading = heading_of(events);
     push_data(L, std::move(data));

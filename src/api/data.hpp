@@ -1,4 +1,4 @@
-// Named columns of one length, of numbers or of words, as Lua sees them: data{ ... }, data.load(file), run.events.
+// Named columns of one length, of numbers or of words, as Lua sees them: data{ ... }, load(file), run.events.
 #pragma once
 
 #include <functional>
@@ -74,7 +74,7 @@ void push_data(lua_State* L, Data data);
 /// Pushes a row of the data at `index` as a table that knows how to write itself.
 void push_row(lua_State* L, int index, const Data& data, std::size_t row);
 
-/// What happened: t, kind, theta, M; where there is any, velocity and the names that a user gave.
+/// What happened: t, kind, theta, M, velocity and, where a user gave some, names.
 void push_events(lua_State* L, std::span<const model::Event> events, std::span<const std::string> user_names,
                  const model::Units& units);
 
@@ -95,6 +95,7 @@ int sort(lua_State* L);
 int select(lua_State* L);
 int save(lua_State* L);
 int load(lua_State* L);
+int column(lua_State* L);
 int markdown(lua_State* L);
 /// The data of a call such as d:plot{}.
 const DataHandle& self(lua_State* L, const char* call);

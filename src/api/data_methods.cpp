@@ -1,4 +1,4 @@
-// What one does with data: pick and sort rows, pick columns, draw, save, load, write down.
+// What one does with data: pick and sort rows, pick columns, draw, save, write down.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -8,7 +8,6 @@
 #include "api/data.hpp"
 #include "api/data_docs.hpp"
 #include "files/csv_columns.hpp"
-#include "lua/interrupt.hpp"
 #include "lua/options.hpp"
 #include "lua/worker_state.hpp"
 #include "text/characters.hpp"
@@ -49,7 +48,7 @@ std::string file_argument(lua_State* L, int index, const char* call) {
     std::string file = lua_tostring(L, index);
     if (text::ending_of(file) == ".dat") {
         lua::raise(L, {.sentence = fmt::format("{}: '{}' is a name for the record of 1989; data are CSV files, {}",
-                                               call, file, "trajectory.load reads such a record"),
+                                               call, file, "load reads such a record"),
                        .call = call,
                        .culprit = file});
     }
@@ -163,21 +162,6 @@ int save(lua_State* L) {
     }
     lua::value_or_raise(L, "d:save", files::write_columns(file, columns));
     return 0;
-}
-
-int load(lua_State* L) {
-    const std::string file = file_argument(L, 1, "data.load");
-    auto read = files::read_columns(file);
-    if (lua::interrupt_requested()) lua::raise_interrupted(L);  // what was read is not all
-    files::ReadColumns content = lua::value_or_raise(L, "data.load", std::move(read));
-    Data data;
-    for (files::ReadColumn& column : content.columns) {
-        data.columns.push_back(
-            column.of_words ? column_of(std::move(column.name), std::move(column.words))
-                            : column_of(std::move(column.name), std::move(column.numbers), std::move(column.unit)));
-    }
-    push_data(L, std::move(data));
-    return 1;
 }
 
 int markdown(lua_State* L) {

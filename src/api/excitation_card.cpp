@@ -43,8 +43,6 @@ double* amplitude_of(model::Term& term) {
         [](auto& t) -> double* {
             if constexpr (requires { t.amplitude; }) {
                 return &t.amplitude;
-            } else if constexpr (requires { t.level; }) {
-                return &t.level;
             } else if constexpr (requires { t.slope; }) {
                 return &t.slope;
             } else {

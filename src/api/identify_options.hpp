@@ -5,7 +5,9 @@
 #include <string>
 
 #include "analysis/identification.hpp"
+#include "api/extras_options.hpp"
 #include "lua/options.hpp"
+#include "model/assembly.hpp"
 #include "text/option.hpp"
 
 namespace dinal::api {
@@ -19,7 +21,7 @@ inline constexpr const char* not_fitted = "known, and so not fitted";
 inline constexpr text::Range positive_k{
     "be positive: identify needs a spring; without one give a k so small that the record is far shorter than a swing",
     text::positive.holds};
-inline constexpr text::Option identify_options[] = {
+inline constexpr text::Option own_identify_options[] = {
     {.name = "data",
      .otherwise = text::needed,
      .meaning = "the record: data, a run, or a table with the columns t and theta; rows with a gap (nan) are left out"},
@@ -39,8 +41,22 @@ inline constexpr text::Option identify_options[] = {
      .object = "excitation"},
     {.name = "free",
      .otherwise = "all that are not given",
-     .meaning = "a list of those of I, k, C, Rd, Re and offset that are fitted; the others are 0, and Re is Rd, unless "
-                "they are given. The start is always fitted unless it is given"},
+     .meaning =
+         "a list of those of I, k, C, Rd, Re and offset that are fitted; the others are 0, and Re is Rd, unless "
+         "they are given. With system it may have any number of it, as friction.speed, spring.3 or "
+         "walls.restitution, and of a table that a function of the run uses, as p.Kp; the others stay as they are. "
+         "The start is always fitted unless it is given",
+     .wanted = "a list such as { \"k\", \"Rd\" }"},
+    {.name = "system",
+     .meaning = "a system that may have made it, the guess from which the search begins: any but one of several bodies",
+     .object = "system",
+     .wanted = "a system such as system{ I = 1, k = 4, Rd = 0.3 }"},
+    {.name = "measured",
+     .otherwise = "\"theta\"",
+     .meaning =
+         "with system: \"theta\", \"velocity\" or \"acceleration\", a list of them, or a table with the names of "
+         "their columns, { velocity = \"v\" }; gaps (nan) are left out",
+     .wanted = "\"theta\", \"velocity\" or \"acceleration\", a list of these, or { velocity = \"v\" }"},
     {.name = "I", .range = text::positive, .meaning = not_fitted, .filled = text::fills<&IdentifyOptions::I>},
     {.name = "k", .range = positive_k, .meaning = not_fitted, .filled = text::fills<&IdentifyOptions::k>},
     {.name = "C", .range = text::not_negative, .meaning = not_fitted, .filled = text::fills<&IdentifyOptions::C>},
@@ -56,11 +72,29 @@ inline constexpr text::Option identify_options[] = {
      .meaning = "what the record shows where the spring is relaxed; when it is known",
      .filled = text::fills<&IdentifyOptions::offset>},
 };
+inline constexpr text::Option extras_of_record[] = {extras_options[0], extras_options[2], extras_options[3]};
+inline constexpr auto identify_options = text::joined(own_identify_options, extras_of_record);
 inline constexpr text::Call identify_call{"identify", "identify{ data = run }", identify_options};
 
 /// Fills times and angles of the question, without gaps. Raises when there is no such record.
 void take_record(lua_State* L, const lua::Options& options, const IdentifyOptions& asked,
                  analysis::IdentifyQuestion& question);
+/// The numbers of this column of the record, nan where there is none.
+std::vector<double> record_numbers(lua_State* L, const lua::Options& options, const std::string& name,
+                                   const char* option);
+
+/// What was fitted to the record with a system as the guess.
+struct FittedParts {
+    std::vector<std::pair<std::string, double>> values = {}, errors = {};
+    std::vector<std::string> silent = {};
+    std::vector<double> t = {}, measured = {}, predicted = {};  ///< of the first measured quantity
+    double noise = 0;
+    std::string remark = {};
+    std::optional<model::Oscillator> system = {};
+    model::AssemblyHandle rig = {};
+};
+FittedParts fit_any(lua_State* L, const lua::Options& options, const IdentifyOptions& asked);
+
 /// What the record is measured in, where its run or its columns say it.
 model::Units units_of_record(lua_State* L, const lua::Options& options);
 /// Fills what is given, by value or by not being free. The M of the question must be there already.

@@ -51,7 +51,7 @@ RecordColumns record_columns(lua_State* L, const lua::Options& options) {
         options.missing("data");
     } else {
         options.wrong("data", lua_type(L, place) == LUA_TSTRING
-                                  ? "what data.load gives for that file (or a run, or a table of columns)"
+                                  ? "what load gives for that file (or a run, or a table of columns)"
                                   : "data, a run, or a table of columns");
     }
     lua_pop(L, 1);
@@ -92,6 +92,11 @@ const std::vector<double>& record_column(const lua::Options& options, const Reco
 }
 
 }  // namespace
+
+std::vector<double> record_numbers(lua_State* L, const lua::Options& options, const std::string& name,
+                                   const char* option) {
+    return record_column(options, record_columns(L, options), name, {}, 0, option);
+}
 
 model::Units units_of_record(lua_State* L, const lua::Options& options) {
     model::Units units;

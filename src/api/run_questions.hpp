@@ -41,8 +41,8 @@ inline constexpr text::Option spectrum_options[] = {
      .meaning = "the time before which rows are left out: the transient",
      .filled = text::fills<&SpectrumOptions::from>},
 };
-inline constexpr text::Call spectrum_call{"run:spectrum", "run:spectrum{ of = \"theta\", window = \"hann\" }",
-                                          spectrum_options, true};
+inline constexpr text::Call spectrum_call{
+    "run:spectrum", "run:spectrum{ of = \"theta\", window = \"hann\" }", spectrum_options, true, nullptr, "of"};
 
 struct PoincareOptions {
     std::optional<double> period = {}, frequency = {}, omega = {};
@@ -78,7 +78,7 @@ int poincare_of_run(lua_State* L);
 
 inline constexpr lua::Doc spectrum_doc{
     "run:spectrum{ OPTIONS } -> data",
-    "The one-sided amplitude spectrum of a column: frequency (cycles per time unit, up to half a cycle per dt) and "
+    "The one-sided amplitude spectrum of a column (run:spectrum \"velocity\" will do): frequency (cycles per time unit, up to half a cycle per dt) and "
     "amplitude (of a sine, in the unit of the column), from rows with one dt; a shorter last row is left out, and so is "
     "one with which whole periods begin again, as it has the value of the first. A sine of whole periods has its amplitude in any window; one "
     "that falls midway between two frequencies has 64 % of it in rectangle, 85 % in hann and 99.9 % in flat top. The mean "

@@ -14,6 +14,7 @@ namespace {
 
 int push_steady(lua_State* L, const lua::Options& options, analysis::SteadyQuestion question) {
     const auto steady = std::make_shared<Steady>(Steady{std::move(question), {}});
+    const auto note = watched_memories(L, options, steady->question.excitation, false);
     asking(L, steady->question.extras, [&](const motion::Monitor& monitor) {
         steady->motion = analysis::steady_motion(steady->question, monitor);
     });
@@ -22,6 +23,7 @@ int push_steady(lua_State* L, const lua::Options& options, analysis::SteadyQuest
         outcome == model::Outcome::excitation_not_finite) {
         options.fail({fmt::format("the motion could not be followed: {}", model::sentence(outcome))});
     }
+    note(nullptr);
     check_function(options, steady->motion);
     lua::push<SteadyHandle>(L, steady);
     return 1;

@@ -1,6 +1,7 @@
 #include "api/sweep_files.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <filesystem>
@@ -8,6 +9,7 @@
 
 #include "files/confinement.hpp"
 #include "files/file.hpp"
+#include "text/words.hpp"
 
 namespace dinal::api {
 namespace {
@@ -19,6 +21,11 @@ constexpr const char* point_column = "point of the grid";
 /// Where a read column has something to say at this row; an empty column of words is one of nan.
 std::string word_at(const files::ReadColumn& column, std::size_t row) {
     return column.of_words ? column.words[row] : "";
+}
+
+/// The line above a table that says which of its results are words, so that a damaged number is not taken for one.
+std::string note_of_words(const std::vector<std::string>& names) {
+    return names.empty() ? "" : fmt::format("words in {}", fmt::join(names, ", "));
 }
 
 /// What we write ends with its last line. Files come under their names when they are whole; but a power failure, or a
@@ -144,7 +151,7 @@ std::optional<text::Error> SweepFiles::take_chunks() {
 std::optional<text::Error> SweepFiles::take(const std::string& file, bool is_result) {
     const auto another = [&](std::string_view what) { return refused(file, what); };
     const auto read = files::read_columns(file);
-    const bool has_mark = read && !read->comments.empty() && read->comments.front() == mark_;
+    const bool has_mark = read && !read->comments.empty() && read->comments.front().starts_with(mark_);
     if (is_result && !has_mark) return another("is there, and is not the result of this sweep");
     if (is_result && is_cut_off(file)) return another("is no longer as it was written");
     std::error_code error;
@@ -156,10 +163,14 @@ std::optional<text::Error> SweepFiles::take(const std::string& file, bool is_res
     }
     const std::size_t first = is_result ? grid_.parameters().size() : 1;
     const std::size_t rows = columns.empty() ? 0 : std::max(columns[0].numbers.size(), columns[0].words.size());
+    std::vector<std::string> words;
+    for (std::size_t i = first; i + 1 < columns.size(); ++i) {
+        if (columns[i].of_words) words.push_back(columns[i].name);
+    }
+    const std::string note = read->comments.empty() ? "" : read->comments.front().substr(is_result ? mark_.size() : 0);
     const bool broken = columns.size() <= first || columns.back().name != "error" ||
                         (is_result ? rows != results_.size() : columns[0].of_words) ||
-                        std::any_of(columns.begin() + static_cast<std::ptrdiff_t>(first), columns.end() - 1,
-                                    [](const files::ReadColumn& column) { return column.of_words; });
+                        text::trimmed(note) != note_of_words(words);
     if (broken) return another("is no longer as it was written");
     for (std::size_t row = 0; row < rows; ++row) {
         const double place = is_result ? static_cast<double>(row) : columns[0].numbers[row];
@@ -173,7 +184,8 @@ std::optional<text::Error> SweepFiles::take(const std::string& file, bool is_res
         }
         for (std::size_t i = first; i + 1 < columns.size(); ++i) {
             if (double* numbers = results_.column(columns[i].name)) {
-                numbers[point] = columns[i].numbers[row];
+                const files::ReadColumn& column = columns[i];
+                numbers[point] = column.of_words ? results_.word(column.words[row]) : column.numbers[row];
             }
         }
         results_.finish(point);
@@ -206,16 +218,24 @@ std::optional<text::Error> SweepFiles::write(std::size_t chunk) {
     }
     if (points.empty()) return std::nullopt;
     std::vector<std::vector<double>> numbers;
+    std::vector<std::vector<std::string>> words;
+    std::vector<std::string> names;
     numbers.reserve(piece.columns.size());
+    words.reserve(piece.columns.size());
     std::vector<files::WordsOrNumbers> columns{{.name = point_column, .numbers = places}};
     for (const auto& [name, all] : piece.columns) {
         std::vector<double>& own = numbers.emplace_back(points.size());
         std::transform(points.begin(), points.end(), own.begin(),
                        [values = all](std::size_t point) { return values[point]; });
-        columns.push_back({.name = name, .numbers = own});
+        if (auto own_words = results_.words(own)) {
+            names.push_back(name);
+            columns.push_back({.name = name, .words = words.emplace_back(std::move(*own_words))});
+        } else {
+            columns.push_back({.name = name, .numbers = own});
+        }
     }
     columns.push_back({.name = "error", .words = errors});
-    const auto written = files::write_columns(chunk_file(chunk), columns);
+    const auto written = files::write_columns(chunk_file(chunk), columns, note_of_words(names));
     if (written) return std::nullopt;
     // Somebody with the same share, who was not killed after all, may have done it, and all of it be finished.
     std::error_code error;
@@ -251,15 +271,18 @@ text::Expected<bool> SweepFiles::take_all() {
 
 std::optional<text::Error> SweepFiles::finish(const Data& result) {
     std::vector<files::WordsOrNumbers> columns;
+    std::vector<std::string> names;
     for (const DataColumn& column : result.columns) {
         files::WordsOrNumbers& written = columns.emplace_back(files::WordsOrNumbers{.name = column.name});
         if (const lua::Vector* numbers = column.numbers()) {
             written.numbers = numbers->values();
         } else {
             written.words = *std::get<Words>(column.values);
+            if (columns.size() > grid_.parameters().size() && column.name != "error") names.push_back(column.name);
         }
     }
-    const auto written = files::write_columns(file_, columns, mark_);
+    const auto written =
+        files::write_columns(file_, columns, mark_ + (names.empty() ? "" : " " + note_of_words(names)));
     std::error_code error;
     if (!written) {
         fs::rename(folder_ + ".merging", folder_, error);

@@ -30,7 +30,8 @@ inline constexpr text::Option over_option[] = {
 inline constexpr text::Option run_options[] = {
     {.name = "run",
      .otherwise = text::needed,
-     .meaning = "a function of a point, a table such as { r = 0.5, g = 1 }, that returns a table of named numbers",
+     .meaning =
+         "a function of a point, a table such as { r = 0.5, g = 1 }, that returns a table of named numbers and strings",
      .wanted = "a function of a point that returns named numbers"},
     {.name = "workers",
      .otherwise = "one for each core",
@@ -93,7 +94,7 @@ inline constexpr lua::Doc sweep_doc{
     "or tables of numbers or of strings. The result has a row for each point, in the order of the names of the "
     "parameters, the last one changing fastest (over = { { \"r\", values }, { \"g\", values } } gives another "
     "order), and a column for each parameter and for each name that the function returns; true and false count as 1 "
-    "and 0, and what a point does not return is nan. Where the function fails the column `error` has the message.\n"
+    "and 0, strings are words, and a number that a point does not return is nan. Where the function fails the column `error` has the message.\n"
     "Each thread has a copy of the function with all that it uses: local variables, globals, tables, vectors, systems, "
     "excitations. So it cannot change anything outside, and should not remember other points. Runs, coroutines and "
     "open files cannot be copied. Ctrl-C keeps what is done in dinal.partial, and the same call goes on from there.",

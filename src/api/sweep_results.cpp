@@ -1,6 +1,10 @@
 #include "api/sweep_results.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <bit>
+#include <cmath>
 #include <limits>
 
 namespace dinal::api {
@@ -24,6 +28,36 @@ double* SweepResults::column(std::string_view name) {
         found = columns_.emplace(std::string(name), std::move(numbers)).first;
     }
     return found->second.data();
+}
+
+namespace {
+constexpr std::uint64_t nan_of_words = 0xFFF8'0000'0000'0000U;  ///< and the place of the word
+}
+
+double SweepResults::word(std::string_view text) {
+    const std::lock_guard lock(changing_);
+    auto found = places_.find(text);
+    if (found == places_.end()) {
+        words_.emplace_back(text);
+        found = places_.emplace(words_.back(), words_.size()).first;
+    }
+    return std::bit_cast<double>(nan_of_words | found->second);
+}
+
+std::optional<std::vector<std::string>> SweepResults::words(const std::vector<double>& numbers) const {
+    const std::lock_guard lock(changing_);
+    const auto place = [this](double x) {
+        const std::uint64_t bits = std::bit_cast<std::uint64_t>(x), of_word = bits & ~nan_of_words;
+        return (bits & nan_of_words) == nan_of_words && of_word <= words_.size() ? of_word : 0;
+    };
+    if (std::none_of(numbers.begin(), numbers.end(), place)) return std::nullopt;
+    std::vector<std::string> words;
+    words.reserve(numbers.size());
+    for (const double x : numbers) {
+        const std::uint64_t at = place(x);
+        words.push_back(at > 0 ? words_[at - 1] : std::isnan(x) ? "" : fmt::format("{}", x));
+    }
+    return words;
 }
 
 void SweepResults::fail(std::size_t point, std::string message) {
@@ -60,7 +94,8 @@ Data SweepResults::data(const SweepGrid& grid, const std::vector<std::size_t>& p
         std::vector<double> values(points.size());
         std::transform(points.begin(), points.end(), values.begin(),
                        [&all = numbers](std::size_t point) { return all[point]; });
-        data.columns.push_back(column_of(name, std::move(values)));
+        auto words = this->words(values);
+        data.columns.push_back(words ? column_of(name, std::move(*words)) : column_of(name, std::move(values)));
     }
     std::vector<std::string> errors(points.size());
     for (std::size_t row = 0; row < points.size() && !failures_.empty(); ++row) {

@@ -4,9 +4,11 @@
 #include <algorithm>
 #include <atomic>
 #include <cstddef>
+#include <cstdint>
 #include <map>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -25,6 +27,11 @@ public:
     /// many. It stays where it is.
     double* column(std::string_view name);
     static constexpr std::size_t most_columns = 20'000;
+
+    /// A word as a number that can stand in a column: a nan of its own.
+    double word(std::string_view text);
+    /// These numbers of a column as words, when a word is among them.
+    [[nodiscard]] std::optional<std::vector<std::string>> words(const std::vector<double>& numbers) const;
 
     /// The point has all its numbers, or a message instead. Each point is told once, by one thread.
     void finish(std::size_t point) {
@@ -63,9 +70,11 @@ public:
 
 private:
     std::size_t chunk_size_;
-    std::mutex changing_;  // of the columns and the failures, not of the numbers
+    mutable std::mutex changing_;  // of the columns, the failures and the words, not of the numbers
     std::map<std::string, std::vector<double>, std::less<>> columns_;
     std::map<std::size_t, std::string> failures_;
+    std::vector<std::string> words_;
+    std::map<std::string, std::uint64_t, std::less<>> places_;  // of the words, from 1
     std::vector<unsigned char> done_;
     std::vector<std::atomic<std::size_t>> done_in_chunk_;
 };

@@ -113,8 +113,10 @@ struct PointLoop {
         while (lua_next(L, columns + 1) != 0) {
             lua_pushvalue(L, -2);
             lua_rawget(L, columns);
-            static_cast<double*>(lua_touserdata(L, -1))[number] =
-                lua_isboolean(L, -2) ? lua_toboolean(L, -2) : lua_tonumber(L, -2);
+            static_cast<double*>(lua_touserdata(L, -1))[number] = lua_type(L, -2) == LUA_TSTRING
+                                                                      ? work.results.word(lua::text_at(L, -2))
+                                                                  : lua_isboolean(L, -2) ? lua_toboolean(L, -2)
+                                                                                         : lua_tonumber(L, -2);
             lua_pop(L, 2);
         }
         work.results.finish(number);
@@ -144,8 +146,9 @@ struct PointLoop {
                 return fmt::format("run must return named numbers such as {{ A = s.amplitude }}, but {} has no name",
                                    lua::describe(L, -1));
             }
-            if (lua_type(L, -1) != LUA_TNUMBER && !lua_isboolean(L, -1)) {
-                return fmt::format("run returned {} = {}, which is no number", lua_tostring(L, -2),
+            const int type = lua_type(L, -1);
+            if (type != LUA_TNUMBER && type != LUA_TBOOLEAN && type != LUA_TSTRING) {
+                return fmt::format("run returned {} = {}, which is neither a number nor a string", lua_tostring(L, -2),
                                    lua::describe(L, -1));
             }
             lua_pop(L, 1);

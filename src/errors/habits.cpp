@@ -120,7 +120,7 @@ std::string left_out_in_safe_mode(const lua::LuaMessage& message, std::string_vi
         const std::string_view library = all[i - 2].text;
         if (library == "io") {
             return "; safe mode has no io." + std::string(message.name) +
-                   ": data.load and trajectory.load read files, and save methods write them";
+                   ": load reads files, and save methods write them";
         }
         if (library == "os" || library == "debug" || library == "string" || library == "package") {
             return "; safe mode leaves it out: see docs/safe-mode.md";

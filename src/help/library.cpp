@@ -17,7 +17,7 @@ namespace {
 
 constexpr void (*register_functions[])(lua_State*) = {
     api::register_system,     api::register_bodies, api::register_friction, api::register_spring,
-    api::register_excitation, api::register_run,    api::register_energy,   api::register_trajectory,
+    api::register_excitation, api::register_run,    api::register_energy,   api::register_load,
     api::register_theory,     api::register_vector, api::register_data,     api::register_progress,
     api::register_plot,       api::register_steady, api::register_identify, api::register_sweep,
     api::register_integrator, api::register_lab,    api::register_report,   api::register_rig_energy,
@@ -69,7 +69,8 @@ const Section all_sections[] = {
     {"A run", "run", &api::run_class},
     {"A steady motion", "s", &api::steady_class},
     {"The energy of a run", "energy", &api::energy_class},
-    {"Trajectories from files", "trajectory", &api::trajectory_module},
+    {"Files", "", &api::load_functions},
+    {"Files by their old name", "trajectory", &api::trajectory_module},
     {"Theory", "theory", &api::theory_module},
     {"Vectors", "vector", &api::vector_module},
     {"A vector", "v", &api::vector_class},

@@ -76,11 +76,16 @@ std::vector<OptionLine> option_lines(std::span<const text::Option> options) {
         if (*option.unit != '\0') {
             facts.emplace_back(option.unit);
         }
+        std::string others;
+        for (std::size_t j = i + 1; j < options.size() && options[j].instead_of_previous; ++j) {
+            others += fmt::format(" or {}", options[j].name);
+        }
         if (option.instead_of_previous) {
-            facts.push_back(fmt::format("instead of {}", options[i - 1].name));
+            std::size_t first = i - 1;
+            while (options[first].instead_of_previous) --first;
+            facts.push_back(fmt::format("instead of {}", options[first].name));
         } else if (option.otherwise == text::needed) {
-            const bool pair = i + 1 < options.size() && options[i + 1].instead_of_previous;
-            facts.push_back(pair ? fmt::format("this or {} is needed", options[i + 1].name) : "needed");
+            facts.push_back(others.empty() ? "needed" : fmt::format("this{} is needed", others));
         }
         if (option.range.must != std::string_view(text::any_finite.must)) {
             const std::string_view must = option.range.must;

@@ -32,7 +32,7 @@ constexpr std::array<Topic, 12> topics = {{
      "run:save \"name.dat\" writes its record; docs/report.md reads the report again.\n"},
     {"readdin",
      "READDIN picked two columns out of the record of DINAL, in 1989, for the\n"
-     "plotter. run:columns does that; trajectory.load reads such a record.\n"},
+     "plotter. run:columns does that; load reads such a record.\n"},
     {"draar",
      "DRAAR drew the two columns that READDIN had picked, in 1989, on a plotter.\n"
      "run:plot and plot do that.\n"},
@@ -46,7 +46,7 @@ constexpr std::array<Topic, 12> topics = {{
      "much there was. A noisy M is a table: excitation.samples.\n"},
     {"fit fitting regression estimate calibrate",
      "identify finds the system that made a record, with the errors of what it\n"
-     "finds: identify{ data = trajectory.load \"decay.csv\" }.\n"},
+     "finds: identify{ data = load \"decay.csv\" }.\n"},
     {"matlab octave python numpy scipy simulink modelica",
      "docs/guide.md has a table for those who come from MATLAB or SciPy: indices\n"
      "begin at 1, options stand in braces, a power is x^2, and a vector v has its\n"
@@ -60,7 +60,7 @@ constexpr std::array<Topic, 12> topics = {{
      "and --max-memory limit what it takes: docs/safe-mode.md.\n"},
     {"shell ls pwd terminal",
      "No shell is in here: Ctrl-Z goes back to yours, and fg comes back. Files are\n"
-     "read by data.load, trajectory.load and excitation.samples.\n"},
+     "read by load and excitation.samples.\n"},
 }};
 
 /// Words of other languages, and ours for the same.

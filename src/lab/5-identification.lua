@@ -71,11 +71,11 @@ sheet(5, {
     local viscous -- takes half a second, so only when it is asked for
     local function is_viscous(zeta)
       viscous = viscous or identify{ data = decay, velocity0 = 0, I = given.I, Rd = 0 }
-      return math.abs(zeta - viscous.zeta) <= 4*viscous.error.zeta
+      return math.abs(zeta - viscous.zeta) <= 4*viscous.std_error.zeta
     end
     local x_f = true_system.Rd/true_system.k
     -- Honest work has the error of the fit; four of them are missed by one record in ten thousand.
-    local function bars(name) return 4*fit.error[name] end
+    local function bars(name) return 4*fit.std_error[name] end
     return {
       { name = "a", asks = "omega0", unit = "rad per time unit", answer = true_system.omega0, within = bars "omega0", task = "5.2",
         how = "identify{ data = record, velocity0 = 0 }.omega0",
@@ -103,10 +103,10 @@ sheet(5, {
           { true_system.omega0^2, "that is k/I" },
           { true_system.omega0*given.I, "omega0 is to be squared" },
         } },
-      { name = "f", asks = "standard error of zeta", answer = fit.error.zeta, tolerance = 0.2, task = "5.5", how = "fit.error.zeta",
+      { name = "f", asks = "standard error of zeta", answer = fit.std_error.zeta, tolerance = 0.2, task = "5.5", how = "fit.std_error.zeta",
         mistakes = {
-          { 2*fit.error.zeta, "that is two of them; one is asked for" },
-          { fit.error.zeta/fit.zeta, "that is relative to zeta; as it stands in fit.error, please" },
+          { 2*fit.std_error.zeta, "that is two of them; one is asked for" },
+          { fit.std_error.zeta/fit.zeta, "that is relative to zeta; as it stands in fit.std_error, please" },
         } },
       { name = "g", asks = "Re, from the pull", unit = "torque", answer = true_system.Re, tolerance = 0.03, task = "5.6",
         how = "identify{ data = pull, M = ramp, I, k, C, Rd of the decay, start and offset 0, free = { Re } }",

@@ -70,6 +70,12 @@ void Options::check_table() {
         lua_settop(L_, index_ - 1);
         lua_newtable(L_);
     }
+    if (*call_.bare_value != '\0' && (lua_type(L_, index_) == LUA_TNUMBER || lua_type(L_, index_) == LUA_TSTRING)) {
+        lua_createtable(L_, 0, 1);
+        lua_pushvalue(L_, index_);
+        lua_setfield(L_, -2, call_.bare_value);
+        lua_replace(L_, index_);
+    }
     if (lua_type(L_, index_) != LUA_TTABLE || lua_gettop(L_) > index_) {
         raise(L_, {.sentence =
                        fmt::format("{} takes one table of named options, for example {}", call_.name, call_.example),
@@ -129,26 +135,29 @@ void Options::fill(const void* owner, void* object) const {
         if (option.filled.owner != owner) {
             continue;
         }
-        const bool first_of_pair = i + 1 < call_.options.size() && call_.options[i + 1].instead_of_previous;
-        if (first_of_pair) {
-            check_pair(i);
+        const bool has_others = i + 1 < call_.options.size() && call_.options[i + 1].instead_of_previous;
+        if (has_others && !option.instead_of_previous) {
+            check_alternatives(i);
         }
         if (given_[i]) {
             option.filled.set(object, value(option));
-        } else if (option.otherwise == text::needed && !first_of_pair && !option.instead_of_previous) {
+        } else if (option.otherwise == text::needed && !has_others && !option.instead_of_previous) {
             missing(option.name);
         }
     }
 }
 
-void Options::check_pair(std::size_t row) const {
-    const text::Option &first = call_.options[row], &second = call_.options[row + 1];
-    const bool has_first = given_[row], has_second = given_[row + 1];
-    if (has_first && has_second) {
-        fail(second.name, fmt::format("{} and {} exclude each other; give one of them", first.name, second.name));
+void Options::check_alternatives(std::size_t row) const {
+    Names all, given;
+    for (std::size_t i = row; i == row || (i < call_.options.size() && call_.options[i].instead_of_previous); ++i) {
+        all.emplace_back(call_.options[i].name);
+        if (given_[i]) given.push_back(all.back());
     }
-    if (first.otherwise == text::needed && !has_first && !has_second) {
-        fail(first.name, fmt::format("{} or {} is needed, for example {}", first.name, second.name, call_.example));
+    if (given.size() > 1) {
+        fail(given[1], fmt::format("{} exclude each other; give one of them", joined(given, " and ")));
+    }
+    if (call_.options[row].otherwise == text::needed && given.empty()) {
+        fail(all.front(), fmt::format("{} is needed, for example {}", joined(all, " or "), call_.example));
     }
 }
 

@@ -16,7 +16,8 @@ namespace dinal::lua {
 class Options {
 public:
     /// The table at `index`, which must be the last argument. Raises when it is no table, has positional entries or a
-    /// name that is in no row. When the call may be bare, no argument is an empty table.
+    /// name that is in no row. When the call may be bare, no argument is an empty table; a number or a string is the
+    /// table with the option that it stands for.
     Options(lua_State* L, int index, const text::Call& call);
 
     /// Fills what the rows of a T say. Raises when an option is missing, of another kind, or out of its range.
@@ -79,8 +80,8 @@ private:
     /// Of a row; `most_options` when there is none.
     [[nodiscard]] std::size_t place(std::string_view name) const;
     void fill(const void* owner, void* object) const;
-    /// Of that row and the one after it.
-    void check_pair(std::size_t row) const;
+    /// Of that row and those after it that stand instead of it.
+    void check_alternatives(std::size_t row) const;
     [[nodiscard]] double number_on_top(const text::Option& option) const;
     [[nodiscard]] std::size_t choice_on_top(const text::Option& option) const;
 

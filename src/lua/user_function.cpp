@@ -14,6 +14,7 @@
 #include "lua/interrupt.hpp"
 #include "lua/lua_message.hpp"
 #include "lua/state_table.hpp"
+#include "lua/vector.hpp"
 
 namespace dinal::lua {
 
@@ -271,6 +272,90 @@ bool LuaAction::act(double t, model::State& state, std::span<double> states) {
     return false;
 }
 
+namespace {
+
+/// Replaces the value on the top of the stack by a copy of its own. The table at `seen` leads from tables to their
+/// copies; metatables are shared.
+void copy_value(lua_State* L, int seen, int depth) {
+    constexpr int deepest = 100;
+    const int type = lua_type(L, -1);
+    const bool immutable = type == LUA_TNIL || type == LUA_TBOOLEAN || type == LUA_TNUMBER || type == LUA_TSTRING;
+    if (immutable || test<Vector>(L, -1) != nullptr) return;
+    if (type != LUA_TTABLE || depth > deepest) {
+        const std::string found = type == LUA_TTABLE ? "tables 100 deep" : describe(L, -1);
+        raise(L,
+              {.sentence = fmt::format("the memory of a sampled controller holds numbers, strings, booleans, vectors "
+                                       "and tables of these, got {}",
+                                       found),
+               .option = "start"});
+    }
+    luaL_checkstack(L, LUA_MINSTACK, "for the memory of a controller");
+    lua_pushvalue(L, -1);
+    if (lua_rawget(L, seen) != LUA_TNIL) return lua_remove(L, -2);
+    lua_pop(L, 1);
+    lua_createtable(L, 0, 0);
+    const int table = lua_gettop(L) - 1, copy = table + 1;
+    lua_pushvalue(L, table);
+    lua_pushvalue(L, copy);
+    lua_rawset(L, seen);
+    for (lua_pushnil(L); lua_next(L, table) != 0;) {
+        lua_pushvalue(L, -2);
+        copy_value(L, seen, depth + 1);
+        lua_insert(L, -2);
+        copy_value(L, seen, depth + 1);
+        lua_rawset(L, copy);
+    }
+    if (lua_getmetatable(L, table) != 0) lua_setmetatable(L, copy);
+    lua_remove(L, table);
+}
+
+/// Called with a table, returns its copy; with a function, a copy of the table that this returns.
+int copied_table(lua_State* L) {
+    if (lua_type(L, 1) != LUA_TTABLE) {
+        lua_call(L, 0, 1);
+        if (lua_type(L, 1) != LUA_TTABLE) {
+            raise(L, {.sentence = fmt::format("start of excitation.sampled returned {}; it must return the memory of a "
+                                              "run, a table",
+                                              describe(L, 1)),
+                      .option = "start"});
+        }
+    }
+    lua_createtable(L, 0, 0);
+    lua_insert(L, 1);
+    copy_value(L, 1, 0);
+    return 1;
+}
+
+}  // namespace
+
+std::shared_ptr<model::terms::Memory> LuaMemory::from_top() {
+    lua_State* L = current->L_;
+    const int handler = lua_gettop(L);
+    lua_pushcfunction(L, guarded<witness_error>);
+    lua_pushcfunction(L, guarded<copied_table>);
+    lua_rotate(L, handler, 2);
+    const int status = lua_pcall(L, 1, 1, handler);
+    ++world;
+    std::shared_ptr<LuaMemory> memory;
+    if (status == LUA_OK) {
+        memory = std::make_shared<LuaMemory>(main_thread(L), luaL_ref(L, LUA_REGISTRYINDEX));
+    } else {
+        current->keep_error_on_top();
+    }
+    lua_settop(L, handler - 1);
+    return memory;
+}
+
+LuaMemory::~LuaMemory() {
+    luaL_unref(main_, LUA_REGISTRYINDEX, reference_);
+}
+
+std::shared_ptr<model::terms::Memory> LuaMemory::copy() const {
+    if (current == nullptr || current->failed_) return nullptr;
+    push(current->L_);
+    return from_top();
+}
+
 LuaFunction::LuaFunction(lua_State* L, int index, FunctionRole role)
     : main_(main_thread(L)),
       role_(std::move(role)),
@@ -283,6 +368,23 @@ LuaFunction::LuaFunction(lua_State* L, int index, FunctionRole role)
 // Also right while lua_close runs the finalizers: the registry goes last.
 LuaFunction::~LuaFunction() {
     luaL_unref(main_, LUA_REGISTRYINDEX, reference_);
+    luaL_unref(main_, LUA_REGISTRYINDEX, start_);
+}
+
+void LuaFunction::remember_from(lua_State* L, int index) {
+    lua_pushvalue(L, index);
+    start_ = luaL_ref(L, LUA_REGISTRYINDEX);
+}
+
+bool LuaFunction::push_start(lua_State* L) const {
+    if (start_ == LUA_NOREF) return false;
+    lua_rawgeti(L, LUA_REGISTRYINDEX, start_);
+    return true;
+}
+
+std::shared_ptr<model::terms::Memory> LuaFunction::new_memory() {
+    const bool wanted = current != nullptr && !current->failed_ && push_start(current->L_);
+    return wanted ? LuaMemory::from_top() : nullptr;
 }
 
 void LuaFunction::push(lua_State* L) const {
@@ -308,7 +410,7 @@ int LuaFunction::arguments_in(const CallState& call, std::size_t states) const {
 /// What it was read as, when all that this holds for constant is as it was; null where Lua must be asked: also when a
 /// hook looks on, or is to stop what runs.
 model::Formula* LuaFunction::formula(const CallState& call, std::size_t values) {
-    if (lua_gethook(call.L_) != nullptr) return nullptr;
+    if (lua_gethook(call.L_) != nullptr || start_ != LUA_NOREF) return nullptr;
     if (role_.of_speed || (feedback_ && !call.bodies_.empty()))
         return nullptr;  // other arguments than the reader knows
     const bool is_read = formula() != nullptr;
@@ -381,6 +483,11 @@ double LuaFunction::ask(CallState& call, double t, const model::State& state, st
     }
     lua_pushnumber(L, t);
     if (feedback_) arguments += call.push_motion(state, states);
+    if (const auto* memory = dynamic_cast<const LuaMemory*>(memory_.get())) {
+        lua_settop(L, handler + 5);  // no states are nil
+        memory->push(L);
+        arguments = 5;
+    }
     const int status = lua_pcall(L, arguments, 1, handler);
     double M = 0;
     if (status == LUA_OK && is_good(L, M)) {

@@ -39,6 +39,7 @@ public:
 private:
     friend class LuaFunction;
     friend class LuaAction;
+    friend class LuaMemory;
     void keep_error_on_top();
     /// Pushes theta, velocity and, where there are some, the states; returns how many that are.
     int push_motion(const model::State& state, std::span<const double> states) const;
@@ -80,6 +81,22 @@ struct FunctionRole {
     bool of_speed = false;  ///< it is called with a speed first, which is the first of its states
 };
 
+/// The table to which a sampled controller writes in one run.
+class LuaMemory final : public model::terms::Memory {
+public:
+    LuaMemory(lua_State* main, int reference) : main_(main), reference_(reference) {}
+    ~LuaMemory() override;
+    /// A copy of the table on the top of the stack of the present call, or of the one that the function there returns.
+    /// It is popped. None when that failed.
+    static std::shared_ptr<model::terms::Memory> from_top();
+    [[nodiscard]] std::shared_ptr<model::terms::Memory> copy() const override;
+    void push(lua_State* L) const { lua_rawgeti(L, LUA_REGISTRYINDEX, reference_); }
+
+private:
+    lua_State* main_;
+    int reference_;
+};
+
 class LuaFunction final : public model::UserFunction {
 public:
     /// Of the callable value at `index`, which the registry keeps from now on.
@@ -91,6 +108,13 @@ public:
     std::size_t fill(std::span<const double> times, std::span<double> out) override;
     double next_break(double t) override;
     bool may_go_on() override;
+    std::shared_ptr<model::terms::Memory> new_memory() override;
+    void use(const std::shared_ptr<model::terms::Memory>& memory) override { memory_ = memory; }
+
+    /// From now on each run begins with the table that the function at `index` returns, its fifth argument.
+    void remember_from(lua_State* L, int index);
+    /// Pushes that function; false, and nothing, when there is none.
+    bool push_start(lua_State* L) const;
 
     /// It wants theta and velocity: a Lua function (or __call) of two or more parameters, or with `...`.
     [[nodiscard]] bool feedback() const { return feedback_; }
@@ -120,6 +144,8 @@ private:
 
     lua_State* main_;  // for the destructor, which runs when the collector pleases
     int reference_;
+    int start_ = LUA_NOREF;  // returns a new memory
+    std::shared_ptr<model::terms::Memory> memory_ = {};
     FunctionRole role_;
     bool feedback_;
 

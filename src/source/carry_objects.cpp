@@ -81,6 +81,14 @@ std::shared_ptr<model::terms::UserFunction> Carrier::user_function(const model::
     way_.pop_back();
     auto copy = std::make_shared<lua::LuaFunction>(to_, lua_gettop(to_), own->role());
     lua_pop(to_, 1);
+    if (!own->push_start(from_)) return copy;
+    way_.emplace_back(" > start");
+    const bool starts = value(-1);
+    lua_pop(from_, 1);
+    if (!starts) return nullptr;
+    way_.pop_back();
+    copy->remember_from(to_, -1);
+    lua_pop(to_, 1);
     return copy;
 }
 

@@ -44,12 +44,41 @@ std::string text_of(const Context& context, const model::Polyline& line) {
                        between.empty() ? "" : " " + between.substr(2));
 }
 
+/// Of the function on the top of the stack, which is popped.
+std::string popped_text(lua_State* L, ValueText* whole) {
+    std::string text;
+    if (whole != nullptr) {
+        text = whole->expression(-1);
+    } else if (const auto source = function_source(L, -1)) {
+        text = *source;
+    } else if (lua_type(L, -1) != LUA_TFUNCTION) {
+        text = fmt::format("--[[ {} with __call ]]", lua::describe(L, -1));
+    } else if (lua_iscfunction(L, -1) != 0) {
+        const lua::Foreign* other = lua::foreign(L, -1);
+        text = fmt::format("--[[ a function written in {} ]]", other != nullptr ? other->language : "C");
+    } else {
+        lua_Debug about{};
+        lua_pushvalue(L, -1);
+        lua_getinfo(L, ">S", &about);
+        text = fmt::format("--[[ the function at {}:{} ]]", about.short_src, about.linedefined);
+    }
+    lua_pop(L, 1);
+    return text;
+}
+
+/// ", start = function ... end" of a controller that has one.
+std::string start_text(const Context& context, const model::UserFunction& function) {
+    const auto* own = dynamic_cast<const lua::LuaFunction*>(&function);
+    if (own == nullptr || !own->push_start(context.L)) return "";
+    return ", start = " + popped_text(context.L, context.whole);
+}
+
 /// A controller with a memory.
 std::string text_of(const Context& context, const model::Controller& controller) {
     const auto function = [&](const auto& own) { return function_text(context.L, *own.function, context.whole); };
     if (const auto* sampled = dynamic_cast<const model::SampledController*>(&controller)) {
-        return fmt::format("excitation.sampled({}, {{ every = {}, delay = {}, at = {} }})", function(*sampled),
-                           sampled->every, sampled->delay, sampled->at);
+        return fmt::format("excitation.sampled({}, {{ every = {}, delay = {}, at = {}{} }})", function(*sampled),
+                           sampled->every, sampled->delay, sampled->at, start_text(context, *sampled->function));
     }
     if (const auto* delayed = dynamic_cast<const model::DelayedController*>(&controller)) {
         return fmt::format("excitation.delayed({}, {{ by = {} }})", function(*delayed), delayed->by);
@@ -60,7 +89,7 @@ std::string text_of(const Context& context, const model::Controller& controller)
                            : relay.of == Of::velocity ? "\"velocity\""
                            : relay.of == Of::state    ? "\"" + relay.state + "\""
                                                       : function(relay);
-    return fmt::format("excitation.relay{{ on = {}, off = {}, levels = {{ {}, {} }}, of = {}, start = \"{}\" }}",
+    return fmt::format("excitation.relay{{ on = {}, off = {}, amplitude = {{ {}, {} }}, of = {}, start = \"{}\" }}",
                        relay.on, relay.off, relay.levels[0], relay.levels[1], of, relay.starts_on ? "on" : "off");
 }
 
@@ -88,24 +117,7 @@ std::string function_text(lua_State* L, const model::UserFunction& user_function
     }
     luaL_checkstack(L, LUA_MINSTACK, "for the text of a function");
     function->push(L);
-    std::string text;
-    if (whole != nullptr) {
-        text = whole->expression(-1);
-    } else if (const auto source = function_source(L, -1)) {
-        text = *source;
-    } else if (lua_type(L, -1) != LUA_TFUNCTION) {
-        text = fmt::format("--[[ {} with __call ]]", lua::describe(L, -1));
-    } else if (lua_iscfunction(L, -1) != 0) {
-        const lua::Foreign* other = lua::foreign(L, -1);
-        text = fmt::format("--[[ a function written in {} ]]", other != nullptr ? other->language : "C");
-    } else {
-        lua_Debug about{};
-        lua_pushvalue(L, -1);
-        lua_getinfo(L, ">S", &about);
-        text = fmt::format("--[[ the function at {}:{} ]]", about.short_src, about.linedefined);
-    }
-    lua_pop(L, 1);
-    return text;
+    return popped_text(L, whole);
 }
 
 std::string describe(lua_State* L, const model::Excitation& excitation, ValueText* whole) {
@@ -126,7 +138,7 @@ std::string describe(lua_State* L, const model::Excitation& excitation, ValueTex
             text += fmt::format(":window({}, {})", text::number_literal(c.from), text::number_literal(c.to));
         }
     }
-    return text.empty() ? "excitation.constant{ level = 0 }" : text;
+    return text.empty() ? "excitation.constant{ amplitude = 0 }" : text;
 }
 
 }  // namespace dinal::source

@@ -267,6 +267,10 @@ void Fingerprint::user_function(const model::terms::UserFunction& function) {
         own->push(L_);
         join(reference(-1));
         lua_pop(L_, 1);
+        if (own->push_start(L_)) {
+            join(reference(-1));
+            lua_pop(L_, 1);
+        }
     } else if (const auto* controller = dynamic_cast<const model::Controller*>(&function)) {
         if (controller->function != nullptr) user_function(*controller->function);
     }

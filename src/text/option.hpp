@@ -83,7 +83,7 @@ struct Option {
     const char* meaning = "";  ///< a few words without a full stop
     OptionTarget filled = {};
     std::span<const char* const> choices = {};  ///< Lua strings, in the order of the enumerators
-    bool instead_of_previous = false;           ///< frequency | omega: one of the two is given, never both
+    bool instead_of_previous = false;           ///< frequency | omega | period: one of them is given, never two
     const char* object = "";                    ///< the class of Lua whose constructors Tab offers: "integrator"
     const char* wanted = "";                    ///< of a kind `other`: "a system such as system{ I = 1, k = 39.5 }"
     Fields fields = {};
@@ -96,6 +96,7 @@ struct Call {
     std::span<const Option> options = {};
     bool may_be_bare = false;         ///< run:continue() without a table is as good as with an empty one
     const Call* neighbour = nullptr;  ///< whose options are given to this one by mistake
+    const char* bare_value = "";      ///< the option that a number or a string stands for: run:continue(40)
 };
 
 /// "width = -1 must be positive", "breaks[2] = inf must be finite"; none when the value may stand.

@@ -16,7 +16,7 @@ constexpr int most_slips = 2;
 constexpr int far = 1000;
 
 // What other books and programs call the things here. A word may stand for several: only those that are known count.
-constexpr std::array<std::pair<std::string_view, std::string_view>, 63> synonyms = {{
+constexpr std::array<std::pair<std::string_view, std::string_view>, 68> synonyms = {{
     {"sin", "harmonic"},
     {"sine", "harmonic"},
     {"cos", "harmonic"},
@@ -80,6 +80,11 @@ constexpr std::array<std::pair<std::string_view, std::string_view>, 63> synonyms
     {"export", "save"},
     {"describe", "explain"},
     {"draw", "plot"},
+    {"level", "amplitude"},
+    {"levels", "amplitude"},
+    {"width", "sigma"},
+    {"width", "duration"},
+    {"error", "std_error"},
 }};
 
 bool is_synonym(std::string_view small_word, std::string_view name) {

@@ -46,7 +46,7 @@ return function()
 end, 100)"},
         {"a relay", "switch", 3, Figure::microseconds, R"(
 local sys = system{ I = 1, k = 4*math.pi^2, C = 1, Rd = 1, Re = 1.2 }
-local M = excitation.relay{ on = -0.01, off = 0.01, levels = { 10, -10 } }
+local M = excitation.relay{ on = -0.01, off = 0.01, amplitude = { 10, -10 } }
 local function run() return sys:simulate{ M = M, t_end = 100, times = {} } end
 local switches = 0
 for _, event in ipairs(run().events) do if event.kind == "switch" then switches = switches + 1 end end

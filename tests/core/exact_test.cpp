@@ -194,7 +194,7 @@ TEST_CASE("exact says what it does not take, and what takes it", "[exact]") {
         "integrator.exact{} takes an M of native terms other than chirp and gaussian: use "
         "integrator.spectral{}, which takes every M";
     CHECK(refusal(system, made(Chirp{.from = 0, .to = 1, .duration = 1})) == of_M);
-    CHECK(refusal(system, made(Gaussian{.width = 1})) == of_M);
+    CHECK(refusal(system, made(Gaussian{.sigma = 1})) == of_M);
     CHECK(refusal(system, made(Scripted{.function = std::make_shared<Zero>()})) == of_M);
     const Oscillator slides = system_of({.inertia = 1, .stiffness = 0, .kinetic_friction = 0.1});
     CHECK(refusal(slides, {}) ==
@@ -207,7 +207,7 @@ TEST_CASE("exact says what it does not take, and what takes it", "[exact]") {
     CHECK(refusal(system, made(Constant{1})).empty());
     // The default is decided by the same question.
     CHECK(std::holds_alternative<Exact>(integrator_for(system, made(Constant{1}))));
-    CHECK(std::holds_alternative<Spectral>(integrator_for(system, made(Gaussian{.width = 1}))));
+    CHECK(std::holds_alternative<Spectral>(integrator_for(system, made(Gaussian{.sigma = 1}))));
     CHECK(std::holds_alternative<Spectral>(integrator_for(slides, {})));
 }
 

@@ -318,8 +318,8 @@ TEST_CASE("two sums that go on from the same one do not see each other's terms",
     CHECK((one + other).value(0) == 38);
     CHECK((common + common + common).value(0) == 21);
     CHECK((left + one).components().size() == 8);
-    CHECK(std::get<Constant>((left + one).components()[0].term).level == 32);
-    CHECK(std::get<Constant>((left + one).components()[7].term).level == 8);
+    CHECK(std::get<Constant>((left + one).components()[0].term).amplitude == 32);
+    CHECK(std::get<Constant>((left + one).components()[7].term).amplitude == 8);
     CHECK((Excitation() + one).value(0) == 15);
     CHECK((one + Excitation()).value(0) == 15);
 }

@@ -79,7 +79,7 @@ TEST_CASE("a panel carries the motion under M, spring and the friction of its wa
 
 TEST_CASE("a panel ends at an announced break, with M from the left there", "[panel]") {
     const auto past = [](double t, const State& y) { return t < 0.5 ? 0.3 - y.velocity / 8 : 5; };
-    for (const Excitation& M : {made(Step{.level = 5, .at = 0.5}), feedback(past, {0.5})}) {
+    for (const Excitation& M : {made(Step{.amplitude = 5, .at = 0.5}), feedback(past, {0.5})}) {
         Bench b(M);
         REQUIRE(b.move({1, 0}, Motion::backward) == Attempt::resolved);
         CHECK(b.panel().ends == End::at_break);

@@ -188,7 +188,7 @@ TEST_CASE("a jump of M exactly at a turn: the mass goes on from there under the 
         const double at = 0.5 + ulps * 0x1p-53;
         CAPTURE(ulps);
         // To 0.5: on towards 0.3 +- 0.9, turn at t = 1, theta = 1.2.
-        const Trajectory onward = run_of(system, native(Step{.level = 0.5, .at = at}), {1, 0}, 1.2, integrator);
+        const Trajectory onward = run_of(system, native(Step{.amplitude = 0.5, .at = at}), {1, 0}, 1.2, integrator);
         REQUIRE(onward.events.size() == 2);
         CHECK(onward.events[0].kind == EventKind::turn);
         CHECK(onward.events[0].theta == within(-0.6, near));
@@ -196,7 +196,7 @@ TEST_CASE("a jump of M exactly at a turn: the mass goes on from there under the 
         CHECK(onward.events[1].t == within(1, near));
         CHECK(onward.events[1].theta == within(1.2, near));
         // To -0.6, which balances the spring: at rest there, whichever comes first by rounding.
-        const Trajectory balanced = run_of(system, native(Step{.level = -0.6, .at = at}), {1, 0}, 3, integrator);
+        const Trajectory balanced = run_of(system, native(Step{.amplitude = -0.6, .at = at}), {1, 0}, 3, integrator);
         CHECK(balanced.outcome == Outcome::at_rest);
         REQUIRE_FALSE(balanced.events.empty());
         CHECK(balanced.events.size() <= 2);
@@ -212,7 +212,7 @@ TEST_CASE("a jump of M on a stuck mass releases it at that very time", "[razor]"
          std::vector<Integrator>{Exact{}, Spectral{}, Rk4{0.01}, Rk4{0.003}, Rk4{0.25}}) {
         for (const double at : {0.5, 0.503, 1.0 / 3}) {
             const Trajectory run =
-                must_run(system, native(Step{.level = 0.5, .at = at}), {0.1, 0}, {0, 2}, Grid::none(), integrator);
+                must_run(system, native(Step{.amplitude = 0.5, .at = at}), {0.1, 0}, {0, 2}, Grid::none(), integrator);
             REQUIRE_FALSE(run.events.empty());
             CHECK(run.events[0].kind == EventKind::slip);
             CHECK(run.events[0].t == at);
@@ -226,7 +226,7 @@ TEST_CASE("a break of M at t_start is the load from the beginning", "[razor]") {
     const Oscillator system = nondimensional(0.1, 0.1);
     for (const Integrator& integrator :
          std::vector<Integrator>{Exact{}, Spectral{}, Rk4{0.001}, Dinal1989{.h = 0.001}}) {
-        const Trajectory step = run_of(system, native(Step{.level = 0.7, .at = 0}), {0.2, 0.3}, 3, integrator);
+        const Trajectory step = run_of(system, native(Step{.amplitude = 0.7, .at = 0}), {0.2, 0.3}, 3, integrator);
         const Trajectory level = run_of(system, native(Constant{0.7}), {0.2, 0.3}, 3, integrator);
         CHECK(step.rows == level.rows);
         CHECK(step.rows(0, 3) == 0.7);
@@ -238,7 +238,7 @@ TEST_CASE("a break of M at t_end does not change the motion before it", "[razor]
     CAPTURE(integrator.index());
     const Oscillator system = nondimensional(0.1, 0.1);
     const Trajectory without = run_of(system, {}, {1, 0.3}, 0.8, integrator);
-    const Trajectory with = run_of(system, native(Step{.level = 5, .at = 0.8}), {1, 0.3}, 0.8, integrator);
+    const Trajectory with = run_of(system, native(Step{.amplitude = 5, .at = 0.8}), {1, 0.3}, 0.8, integrator);
     const Eigen::Index last = with.size() - 1;
     REQUIRE(with.rows(last, 0) == 0.8);
     CHECK(with.rows(last, 1) == Approx(without.rows(last, 1)).epsilon(1e-13));

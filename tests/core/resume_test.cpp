@@ -118,7 +118,7 @@ TEST_CASE("a run goes on from wherever it was stopped, also from the very moment
 
 TEST_CASE("a mass that is stuck and goes on into a load slips as if there had been no break", "[resume]") {
     const Oscillator system = nondimensional(0, 0.2, 0.3);
-    const Excitation late = Excitation::make(Step{.level = 0.9, .at = 5}).value();
+    const Excitation late = Excitation::make(Step{.amplitude = 0.9, .at = 5}).value();
     for (const double split : {4.0, 5.0}) {  // the second at the very time of the jump
         auto first = simulate(system, late, {1, 0}, {0, split}, Grid::every(0.5), Spectral{});
         REQUIRE(first);
@@ -226,7 +226,7 @@ TEST_CASE("n continuations of a run take memory for it once, and leave the runs 
 TEST_CASE("a run can be continued twice, and neither knows of the other", "[resume]") {
     const Oscillator system = nondimensional(0.01, 0.05);
     const Trajectory first = must_run(system, {}, {1, 0}, {0, 1}, Grid::every(0.1), Spectral{});
-    const auto pushed = Excitation::make(Step{.level = 3, .at = 1.2}).value();
+    const auto pushed = Excitation::make(Step{.amplitude = 3, .at = 1.2}).value();
     const auto one = resume(system, {}, first, 2, Grid::every(0.1), Spectral{});
     const auto middle = resume(system, pushed, *one, 3, Grid::every(0.1), Spectral{});
     const auto other = resume(system, pushed, *one, 4, Grid::every(0.1), Spectral{});

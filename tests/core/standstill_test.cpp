@@ -231,7 +231,7 @@ TEST_CASE("a run knows whether it began stuck, whatever came later", "[standstil
             return run.began_stuck;
         };
         CHECK(began_stuck({}, {0.1, 0}, system));
-        CHECK(began_stuck(made(Step{.level = 1, .at = 1}), {0, 0}, system));
+        CHECK(began_stuck(made(Step{.amplitude = 1, .at = 1}), {0, 0}, system));
         CHECK_FALSE(began_stuck({}, {1, 0}, system));
         CHECK_FALSE(began_stuck({}, {0, 1}, system));
         CHECK_FALSE(began_stuck({}, {0, 0}, nondimensional(0.05, 0)));

@@ -107,7 +107,7 @@ TEST_CASE("the peak of a motion is that between the rows", "[outcome]") {
 TEST_CASE("the peak on a belt is where the mass turns against the ground, which is no event", "[outcome]") {
     // Friction from a belt that is always faster is the constant 0.2: it swings by 3 about 0.2.
     Extras extras;
-    extras.belt = native(Constant{.level = 50});
+    extras.belt = native(Constant{.amplitude = 50});
     const Trajectory run =
         simulate(swinging, {}, {0.2, 3}, {0, 10}, Grid::none(), Integrator(Spectral{}), {}, {}, extras).value();
     CHECK(run.events.empty());

@@ -44,7 +44,7 @@ do
   -- NPUNT = nint(3/0.001 + 2) rows: the last one a deltat after tmax, as in 1989
   local text = read("for013.dat")
   assert(tonumber(text:match("^%s*(%d+)%s*\n")) == 3002)
-  local record = trajectory.load(path("for013.dat"))
+  local record = load(path("for013.dat"))
   assert(#record == 3002 and math.abs(record.t[#record] - 3.001) < 1e-12)
   -- the true rest is at 0.155151; one step of 0.001 T0 before a stop at acceleration 4 pi^2 (0.167 + 0.178) is 1e-5
   assert(math.abs(record.theta[#record] - 0.155151392) < 1e-3, record.theta[#record])
@@ -56,7 +56,7 @@ do
   local out, err, code = answer("1.D0, 39.48\n 0 ,6.6\n6.6  1 0\n39.48\n2 1d-2\nSIN(6.28*T)\n")
   assert(code == 0 and err == "", err)
   contains(out, "Mc= 39.480")
-  local record = trajectory.load(path("for013.dat"))
+  local record = load(path("for013.dat"))
   assert(#record == 202)
   assert(math.abs(record.M_over_k[26] - math.sin(6.28 * 0.25)) < 1e-12) -- M = Mc M*, t in time units
   assert(math.abs(record.friction_over_k[3] - 6.6 / 39.48) < 1e-12)     -- falls from 1: friction pushes upwards
@@ -66,7 +66,7 @@ end
 do
   local _, err, code = answer("4 39.4784176 0 0 0 0 0 10\n4 0.01\nt\n")
   assert(code == 0, err)
-  local record = trajectory.load(path("for013.dat"))
+  local record = load(path("for013.dat"))
   assert(math.abs(record.M_over_k[101] - 10 * 1 / 39.4784176) < 1e-12)
 end
 

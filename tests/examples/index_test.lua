@@ -43,7 +43,7 @@ local folder = os.tmpname()
 os.remove(folder)
 assert(os.execute(("mkdir %s && cd %s && %s %s >.out"):format(quoted(folder), quoted(folder), quoted(program),
   quoted(examples .. "/data/make-record.lua"))))
-local made, shipped = trajectory.load(folder .. "/record.csv"), trajectory.load(examples .. "/data/record.csv")
+local made, shipped = load(folder .. "/record.csv"), load(examples .. "/data/record.csv")
 os.execute("rm -r " .. quoted(folder))
 assert(#made == 801 and #shipped == 801)
 assert((made.t - shipped.t):abs():max() == 0)

@@ -68,7 +68,7 @@ test("the axis ends at the extremes of the run, which lie between two steps of t
     support.near(least, -0.87, 1e-12)
     local file = support.temporary ".csv"
     swing:save(file)
-    for _, one in ipairs{ swing, trajectory.load(file) } do
+    for _, one in ipairs{ swing, load(file) } do
         for _, part in ipairs{ { speed = 8/0.32 }, { speed = 8/0.4, from = 0, to = 8 } } do  -- some ten steps
             local svg = animated(one, part)
             assert(svg:find(">-0.87</text>", 1, true), svg:match ">-0[^<]*</text>")
@@ -84,7 +84,7 @@ test("a part of a run, a run from a file, units", function()
     equal(#values(part, 'type="translate')[1], 51)
     local file = support.temporary ".csv"
     sys:simulate{ theta0 = 1, t_end = 10, dt = 0.01 }:save(file)
-    assert(animated(trajectory.load(file), {}):find "</svg>")
+    assert(animated(load(file), {}):find "</svg>")
     assert(animated(run, { units = { theta = "<m>", t = "s" } }):find("θ, &lt;m&gt;", 1, true))
 end)
 

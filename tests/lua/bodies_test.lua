@@ -159,8 +159,8 @@ test("one body under a name moves as a system of one does, with all that a run m
         system { bodies = { a = { I = 1, k = 4, C = 0.2, Rd = 0.3, Re = 0.4, walls = { upper = 0.6, restitution = 0.5 } } } }
     local cases = {
         { { M = function(t) return t % 2 < 1 and 2 or -2 end }, { M = { a = function(t) return t % 2 < 1 and 2 or -2 end } } },
-        { { M = excitation.relay { on = -0.1, off = 0.1, levels = { 1, -1 }, of = "theta" } },
-            { M = { a = excitation.relay { on = -0.1, off = 0.1, levels = { 1, -1 }, of = "theta.a" } } } },
+        { { M = excitation.relay { on = -0.1, off = 0.1, amplitude = { 1, -1 }, of = "theta" } },
+            { M = { a = excitation.relay { on = -0.1, off = 0.1, amplitude = { 1, -1 }, of = "theta.a" } } } },
         { { M = excitation.sampled(function(t, theta, velocity) return 2 - 3 * theta - velocity end, { every = 0.2 }) },
             { M = { a = excitation.sampled(function(t, theta, velocity) return 2 - 3 * theta.a - velocity.a end, { every = 0.2 }) } } },
         { { M = excitation.delayed(function(t, theta) return 1 - theta end, { by = 0.3 }) },
@@ -213,7 +213,7 @@ end)
 test("a controller as Rd, Re or normal is refused: it would never be asked at its instants", function()
     for _, name in ipairs { "Rd", "Re", "normal" } do
         raises_here(function()
-            system { I = 1, k = 1, [name] = excitation.relay { on = -1, off = 1, levels = { 1, 2 }, of = "theta" } }
+            system { I = 1, k = 1, [name] = excitation.relay { on = -1, off = 1, amplitude = { 1, 2 }, of = "theta" } }
         end, name .. " must be a number, an excitation or a function", "a controller with a memory acts in M")
     end
 end)

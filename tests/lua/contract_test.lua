@@ -73,8 +73,8 @@ test("files by ending", function()
     local csv, dat = support.temporary ".csv", support.temporary ".dat"
     run:save(csv)
     run:save(dat)
-    assert(trajectory.load(csv).theta == run.theta)
-    assert(trajectory.load(dat).theta == run.theta)
+    assert(load(csv).theta == run.theta)
+    assert(load(dat).theta == run.theta)
 end)
 
 test("integrators by name", function()

@@ -81,7 +81,7 @@ test("a relay drives a cycle whose period solves the two equations of half of it
         local det = a * d - b * c
         v, t = v - (d * f - b * g) / det, t - (a * g - c * f) / det
     end
-    local M = excitation.relay{ on = -width / 2, off = width / 2, levels = { level, -level } }
+    local M = excitation.relay{ on = -width / 2, off = width / 2, amplitude = { level, -level } }
     local s = system{ I = 1, k = 1, C = C }:steady{ M = M }
     assert(t > 1)
     near(s.period, 2 * t, 1e-9)
@@ -200,7 +200,7 @@ test("a function of the time needs a period, and one that does not depend on it 
         "belt does not repeat itself after period = 3")
     raises_here(function() sys:steady{ states = { e = { rate = 3 } } } end, "sys:steady: states.e: rate must be")
     equal(sys:steady{ belt = function() return 0 end, theta0 = 2 }.status, "rest")
-    raises_here(function() sys:steady{ M = excitation.relay{ on = 1, off = 2, levels = { 1, 2 }, of = "x" } } end,
+    raises_here(function() sys:steady{ M = excitation.relay{ on = 1, off = 2, amplitude = { 1, 2 }, of = "x" } } end,
         "no state of this run")
 end)
 

@@ -3,10 +3,11 @@ package.path = "tests/lua/?.lua;" .. package.path
 local support = require "support"
 local test, equal, raises, raises_here = support.test, support.equal, support.raises, support.raises_here
 
+local read = load
 local function load(text)
     local name = support.temporary ".csv"
     support.write(name, text)
-    return data.load(name), name
+    return read(name), name
 end
 
 test("columns are vectors or tables of words, rows are tables", function()
@@ -44,7 +45,7 @@ test("what is saved reads back to the last bit: gaps, infinities, words that loo
     local d = data{ x = { 1/3, 0/0, -1/0 }, w = { "1.5", "a, \"b\"", "" }, ["a name; #2"] = { 1e-320, -0.0, 1e300 } }
     local name = support.temporary ".csv"
     d:save(name)
-    local back = data.load(name)
+    local back = read(name)
     equal(table.concat(back.names, "|"), table.concat(d.names, "|"))
     equal(back.x[1], 1/3)
     assert(back.x[2] ~= back.x[2] and back.x[3] == -1/0)
@@ -69,9 +70,8 @@ test("files of others: separators, decimal commas, no names, comments, empty fie
     raises(function() load('t,w\n1,"open\n') end, ":2: a double quote is opened and not closed")
     equal(load('t,w\n1,5" pipe\n2,"a ""b"""\n').w[1], '5" pipe')
     raises(function() load("") end, "the file is empty")
-    raises(function() data.load("missing.csv") end, "data.load: ", "missing.csv")
-    raises(function() data.load("run.dat") end, "trajectory.load")
-    raises(function() data.load(3) end, "must be a string")
+    raises(function() read("missing.csv") end, "load: ", "missing.csv")
+    raises(function() read("missing.dat") end, "load: ", "missing.dat")
 end)
 
 test("words between the names and the numbers are units, unless there are other words below", function()

@@ -105,7 +105,7 @@ end)
 test("what has decayed to nothing holds no run up", function()
     local free = system { I = 1, k = 1, Rd = 0.1 }
     local function last(M) return free:simulate { M = M, theta0 = 1, t_end = 10, dt = 10 }.theta[2] end
-    near(last(excitation.exponential { tau = 1e-20 }), last(excitation.constant { level = 0 }), 1e-15)
+    near(last(excitation.exponential { tau = 1e-20 }), last(excitation.constant { amplitude = 0 }), 1e-15)
 end)
 
 test("a mass at rest waits for a slow load as long as that takes", function()

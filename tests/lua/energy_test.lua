@@ -114,7 +114,7 @@ test("runs that have not kept their motion say what to do", function()
     raises_here(function() sparse:energy() end, "without dense = false")
     local name = support.temporary ".csv"
     run:save(name)
-    raises_here(function() trajectory.load(name):energy() end, "read from a file", "simulate the system again")
+    raises_here(function() load(name):energy() end, "read from a file", "simulate the system again")
     raises_here(function() run.energy() end, "use a colon: run:energy()")
 end)
 

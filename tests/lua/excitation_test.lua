@@ -9,15 +9,35 @@ local function near(a, b) assert(math.abs(a - b) <= 1e-14 * math.max(1, math.abs
 local e = excitation
 
 -- Every term, with its options and their defaults.
-assert(e.constant{ level = 3 }(9) == 3)
+assert(e.constant{ amplitude = 3 }(9) == 3)
 near(e.harmonic{ frequency = 2 }(1 / 8), 1)
 near(e.harmonic{ amplitude = 2, omega = 3, phase = 0.5 }(0.1), 2 * math.sin(0.8))
-assert(e.step{}(0) == 1 and e.step{ level = 5, at = 2 }(1.9) == 0 and e.step{ level = 5, at = 2 }(2) == 5)
+-- A periodic term takes frequency, omega or period, one of them.
+for name, wave in pairs{ harmonic = e.harmonic, square = e.square, triangle = e.triangle, sawtooth = e.sawtooth } do
+    for _, t in ipairs{ 0.1, 0.7, 1.9, 5.3 } do
+        near(wave{ period = 2.5 }(t), wave{ frequency = 0.4 }(t))
+        near(wave{ omega = 0.8 * math.pi }(t), wave{ frequency = 0.4 }(t))
+    end
+    fails(function() wave{ period = 1, omega = 2 } end, "excitation." .. name .. ": ", " exclude each other; give one of them")
+    fails(function() wave{ period = 0 } end, "period = 0 must be positive")
+    fails(function() wave{} end, "period", "omega", " is needed")
+end
+-- The values at many times, and a number alone where one option is meant.
+assert(e.ramp{ slope = 2 }{ 0, 1, 4 } == vector{ 0, 2, 8 } and e.ramp{}(vector{ 1, 2 }) == vector{ 1, 2 })
+assert(e.constant(3) { 0, 1 } == vector{ 3, 3 } and tostring(e.constant(3)) == "excitation.constant{ amplitude = 3 }")
+-- The names of before lead to the new ones.
+fails(function() e.step{ level = 1 } end, "did you mean 'amplitude'?")
+fails(function() e.constant{ level = 1 } end, "did you mean 'amplitude'?")
+fails(function() e.gaussian{ at = 1, width = 1 } end, "did you mean 'sigma'?")
+fails(function() e.ramp{ width = 1 } end, "did you mean 'duration'?")
+fails(function() e.relay{ on = 1, off = 2, levels = { 1, 2 } } end, "did you mean 'amplitude'?")
+assert(tostring(e.relay{ on = 1, off = 2, amplitude = 3 }):find("amplitude = { 3, -3 }", 1, true))
+assert(e.step{}(0) == 1 and e.step{ amplitude = 5, at = 2 }(1.9) == 0 and e.step{ amplitude = 5, at = 2 }(2) == 5)
 assert(e.pulse{ width = 1 }(0.5) == 1 and e.pulse{ amplitude = 3, at = 1, width = 1 }(2) == 0)
 assert(e.half_sine{ amplitude = 2, at = 1, width = 2 }(2) == 2)
-assert(e.gaussian{ amplitude = 2, at = 3, width = 0.5 }(3) == 2)
-near(e.gaussian{ at = 1, width = 0.5 }(2), math.exp(-2))
-assert(e.ramp{}(7) == 7 and e.ramp{ slope = 2, at = 1, width = 3 }(9) == 6)
+assert(e.gaussian{ amplitude = 2, at = 3, sigma = 0.5 }(3) == 2)
+near(e.gaussian{ at = 1, sigma = 0.5 }(2), math.exp(-2))
+assert(e.ramp{}(7) == 7 and e.ramp{ slope = 2, at = 1, duration = 3 }(9) == 6)
 assert(e.square{ period = 2 }(1) == -1 and e.square{ frequency = 0.5, duty = 0.75 }(1) == 1)
 assert(e.sawtooth{ period = 2 }(1) == 0 and e.triangle{ frequency = 0.25 }(1) == 1)
 near(e.chirp{ amplitude = 2, from = 1, to = 3, duration = 4, at = 1, phase = 0.1 }(2), 2 * math.sin(0.1 + 2.5 * math.pi))
@@ -72,9 +92,9 @@ fails(function() return e.pulse{ width = -1 } end, "excitation.pulse: width = -1
 fails(function() return e.pulse{ widht = 1 } end, "has no option 'widht'", "did you mean 'width'?")
 fails(function() return e.pulse{ width = "1" } end, 'width must be a finite number, got the string "1"')
 fails(function() return e.pulse(3) end, "one table of named options")
-fails(function() return e.gaussian{ at = 1 } end, "excitation.gaussian needs width, for example excitation.gaussian{")
-fails(function() return e.gaussian{ width = 0 } end, "excitation.gaussian: width = 0 must be positive")
-fails(function() return e.harmonic{} end, "excitation.harmonic: frequency or omega is needed, for example excitation.harmonic{")
+fails(function() return e.gaussian{ at = 1 } end, "excitation.gaussian needs sigma, for example excitation.gaussian{")
+fails(function() return e.gaussian{ sigma = 0 } end, "excitation.gaussian: sigma = 0 must be positive")
+fails(function() return e.harmonic{} end, "excitation.harmonic: frequency, omega or period is needed, for example excitation.harmonic{")
 fails(function() return e.harmonic{ frequency = 1, omega = 2 } end, "frequency and omega exclude each other; give one of them")
 fails(function() return e.harmonic{ frequency = -1 } end, "frequency = -1 must not be negative")
 fails(function() return e.square{ frequency = 0 } end, "frequency = 0 must be positive")
@@ -225,8 +245,8 @@ assert(churn == 2000 + 2000 * 2001 / 2)
 
 -- As text, which makes the same again.
 local function rebuilt(M) return assert(load("return " .. tostring(M)))() end
-local all = e.constant{ level = 2 } - e.harmonic{ omega = 2.1, phase = 0.1 } / 3 + 0.5 * e.step{ at = 0.3 }
-    + e.pulse{ at = 0.1, width = 0.7 } + e.half_sine{ width = 2 } - e.gaussian{ at = 2, width = 0.3 }:delay(0.1) - 2 * e.ramp{} + e.ramp{ width = 3 }:window(1, math.huge)
+local all = e.constant{ amplitude = 2 } - e.harmonic{ omega = 2.1, phase = 0.1 } / 3 + 0.5 * e.step{ at = 0.3 }
+    + e.pulse{ at = 0.1, width = 0.7 } + e.half_sine{ width = 2 } - e.gaussian{ at = 2, sigma = 0.3 }:delay(0.1) - 2 * e.ramp{} + e.ramp{ duration = 3 }:window(1, math.huge)
     + e.square{ period = 0.3 }:delay(0.1) + e.sawtooth{ frequency = 3 }:window(0, 1) + e.triangle{ period = 0.7 }
     + e.chirp{ from = 0.1, to = 2, duration = 3 } + e.exponential{ tau = 0.7 } - e.polynomial{ coefficients = { 1, 0.1 } }
     + e.samples{ t = { 0, 0.1, 3 }, M = { 1, -1, 2 } } + function(t) return t * t end
@@ -235,11 +255,11 @@ local again = rebuilt(all)
 local times = vector.linspace(-1, 5, 601)
 assert(again:values(times) == all:values(times))
 for _, at in ipairs{ -1, 0, 0.3, 0.8, 1, 2.5 } do assert(again:next_break(at) == all:next_break(at)) end
-assert(tostring(0.5 * e.step{ at = 2 }) == "0.5 * excitation.step{ level = 1, at = 2 }")
+assert(tostring(0.5 * e.step{ at = 2 }) == "0.5 * excitation.step{ amplitude = 1, at = 2 }")
 assert(tostring(-e.step{} - e.step{} * 2) ==
-       "-excitation.step{ level = 1, at = 0 } - 2 * excitation.step{ level = 1, at = 0 }")
+       "-excitation.step{ amplitude = 1, at = 0 } - 2 * excitation.step{ amplitude = 1, at = 0 }")
 assert(tostring(e.scripted(math.sin)) == "excitation.scripted(math.sin)")
-assert(tostring(e.step{}:window(0, math.huge)) == "excitation.step{ level = 1, at = 0 }:window(0, math.huge)")
+assert(tostring(e.step{}:window(0, math.huge)) == "excitation.step{ amplitude = 1, at = 0 }:window(0, math.huge)")
 local many = {}
 for i = 1, 20 do many[i] = i end
 assert(tostring(e.samples{ t = many, M = many }) == "excitation.samples{ --[[ 20 points, t 1 ... 20 ]] }")
@@ -263,9 +283,9 @@ assert(cost(8000) < 24 * cost(1000))
 
 -- A step that is too long for a bump is refused where spectral sees it.
 local swing = system{ I = 1, k = 40 }
-fails(function() return swing:simulate{ M = e.gaussian{ at = 2, width = 0.01 }, t_end = 4, dt = 1, integrator = integrator.rk4{ h = 0.01 } } end,
+fails(function() return swing:simulate{ M = e.gaussian{ at = 2, sigma = 0.01 }, t_end = 4, dt = 1, integrator = integrator.rk4{ h = 0.01 } } end,
       "h = 0.01 is too long for the narrow bump of M between t = 1.9 and 2.1: use h <= 0.004995, or integrator.spectral{}")
-local seen = swing:simulate{ M = e.gaussian{ amplitude = 100, at = 2, width = 0.01 }, t_end = 4, dt = 0.01 }
+local seen = swing:simulate{ M = e.gaussian{ amplitude = 100, at = 2, sigma = 0.01 }, t_end = 4, dt = 0.01 }
 assert(seen.theta:max() > 0.3, "100 * 0.01 * sqrt(2 pi) / sqrt(40) = 0.396")
 
 -- The text of a function is found in its file: behind strings and comments, whatever is named `function` there.

@@ -101,7 +101,7 @@ end
 
 test("help knows functions, methods, modules, objects and names", function()
     local harmonic = output "help(excitation.harmonic)"
-    assert(harmonic:find("excitation.harmonic{ amplitude = 1, frequency | omega, phase = 0 } ->", 1, true), harmonic)
+    assert(harmonic:find("excitation.harmonic{ amplitude = 1, frequency | omega | period, phase = 0 } ->", 1, true), harmonic)
     for _, same in ipairs { 'help "excitation.harmonic"', 'help "harmonic"' } do
         equal(output(same), harmonic)
     end

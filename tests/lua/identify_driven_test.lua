@@ -16,7 +16,7 @@ test("a first velocity is found although the mass would stand at every small one
             local fit = identify{ data = { t = run.t, theta = noisy(run, seed, 0.02) }, M = sweeping, I = 0.5, C = 0.5, Rd = 1.5,
                 Re = 2.2, offset = 0, theta0 = -0.4 }
             equal(#fit.silent, 0)
-            near(fit.velocity0, velocity, 4 * fit.error.velocity0)
+            near(fit.velocity0, velocity, 4 * fit.std_error.velocity0)
             assert(fit.noise < 0.02 * (1 + 3 / (2 * #run)^0.5), fit.noise)
         end
     end
@@ -61,8 +61,8 @@ test("driven records of all kinds, whatever is given: no number is far beyond it
             local fit = identify(asked)
             assert(fit.residual:dot(fit.residual) < 1.02 * noise:dot(noise), tostring(s))
             for name, value in pairs(truth) do
-                local told = fit.error[name] > 0
-                assert(not told or math.abs(fit[name] - value) < 6 * fit.error[name], name .. " of " .. tostring(s))
+                local told = fit.std_error[name] > 0
+                assert(not told or math.abs(fit[name] - value) < 6 * fit.std_error[name], name .. " of " .. tostring(s))
             end
             part, ratio = judged(fit, truth)
         end
@@ -88,8 +88,8 @@ test("a fit in a valley beside the right one is looked at again: viscous frictio
         local fit = identify{ data = { t = run.t, theta = run.theta + noise + shift }, M = M }
         assert(fit.residual:dot(fit.residual) < 1.02 * noise:dot(noise), seed .. " " .. tostring(fit))
         for _, name in ipairs{ "k", "C", "Rd" } do
-            local told = fit.error[name] > 0
-            assert(not told or math.abs(fit[name] - truth[name]) < 5 * fit.error[name], seed .. name)
+            local told = fit.std_error[name] > 0
+            assert(not told or math.abs(fit[name] - truth[name]) < 5 * fit.std_error[name], seed .. name)
         end
     end
 end)
@@ -110,7 +110,7 @@ test("a mass that M never moves tells nothing, and no error", function()
         local fit = identify{ data = { t = run.t, theta = noisy(run, seed, 0.01) }, M = M }
         if tostring(fit):find("no more of the record than it would of noise", 1, true) then
             alone = alone + 1
-            for _, name in ipairs(fit.names) do equal(fit.error[name], 0.0) end
+            for _, name in ipairs(fit.names) do equal(fit.std_error[name], 0.0) end
             equal(#fit.silent, #fit.names)
         end
     end
@@ -124,8 +124,8 @@ test("a driven record that is cut off is fitted as one, too, and one that stands
     for _, ends in ipairs{ 0.5, 0.4, 0.3 } do
         local seen = noisy(run, 1, 0.002):map(function(x) return math.max(-ends, math.min(ends, x)) end)
         local fit = identify{ data = { t = run.t, theta = seen }, M = two }
-        near(fit.k, 40, 4 * fit.error.k)
-        near(fit.Rd, 1.2, 4 * fit.error.Rd)
+        near(fit.k, 40, 4 * fit.std_error.k)
+        near(fit.Rd, 1.2, 4 * fit.std_error.Rd)
         assert(tostring(fit):find "samples stand at the ends of the record", ends)
     end
     local exact = identify{ data = run, M = two }
@@ -138,7 +138,7 @@ test("no search flies away: swings that no sample shows are none", function()
     local run = s:simulate{ theta0 = 0.709, t_end = 15.4, dt = 0.02 }
     for seed = 1, 8 do  -- every third one ended overdamped, with I of 1e-6
         local fit = identify{ data = { t = run.t, theta = noisy(run, seed, 0.014) + 0.09 }, k = 4.74, velocity0 = 0 }
-        near(fit.I, 0.4, 4 * fit.error.I)
+        near(fit.I, 0.4, 4 * fit.std_error.I)
         assert(fit.noise < 0.016, fit.noise)
     end
     local two = excitation.harmonic{ amplitude = 10, frequency = 0.45 } + excitation.harmonic{ amplitude = 5, frequency = 1.3 }
@@ -160,9 +160,9 @@ test("a record in other units is the same record", function()
     local fit = fitted(1)
     for _, unit in ipairs{ 2 ^ 40, 2 ^ -40 } do
         local same = fitted(unit)
-        near(same.Rd / unit, fit.Rd, 1e-4 * fit.error.Rd)
-        near(same.velocity0 / unit, fit.velocity0, 1e-4 * fit.error.velocity0)
-        near(same.error.velocity0 / unit, fit.error.velocity0, 1e-3 * fit.error.velocity0)
+        near(same.Rd / unit, fit.Rd, 1e-4 * fit.std_error.Rd)
+        near(same.velocity0 / unit, fit.velocity0, 1e-4 * fit.std_error.velocity0)
+        near(same.std_error.velocity0 / unit, fit.std_error.velocity0, 1e-3 * fit.std_error.velocity0)
     end
 end)
 
@@ -172,8 +172,8 @@ test("units of time, angle and torque that are powers of two of others change no
         local s = system{ I = 1.2 * torque / angle * time ^ 2, k = 33 * torque / angle, C = 0.8 * torque / angle * time, Rd = 0.6 * torque, Re = 0.8 * torque }
         local run = s:simulate{ M = M, t_end = 12 * time, dt = time / 32 }
         local fit = identify{ data = { t = run.t, theta = run.theta + vector.normal{ n = #run, seed = 4, std = 0.002 } * angle }, M = M }
-        return { fit.C / torque * angle / time, fit.Rd / torque, fit.error.C / torque * angle / time, fit.error.Rd / torque,
-            fit.error.I / torque * angle / time ^ 2, fit.error.theta0 / angle, fit.error.Re / torque }
+        return { fit.C / torque * angle / time, fit.Rd / torque, fit.std_error.C / torque * angle / time, fit.std_error.Rd / torque,
+            fit.std_error.I / torque * angle / time ^ 2, fit.std_error.theta0 / angle, fit.std_error.Re / torque }
     end
     local here = fitted(1, 1, 1)
     for _, units in ipairs{ { 1024, 1, 1 }, { 1, 64, 1 }, { 2 ^ -9, 2 ^ -10, 4096 } } do
@@ -203,7 +203,7 @@ test("a record from rest with Re > Rd is explained as well as by the truth", fun
         local noise = vector.normal{ n = #run, seed = case.seed, std = case.std }
         local fit = identify{ data = { t = run.t, theta = run.theta + noise }, M = M }
         assert(fit.residual:dot(fit.residual) < 1.02 * noise:dot(noise), i)
-        near(fit.k, sys.k, 4 * fit.error.k, i)
+        near(fit.k, sys.k, 4 * fit.std_error.k, i)
     end
 end)
 

@@ -73,10 +73,11 @@ end)
 test("a phone camera: 30 samples a second, 2 % of noise, an unknown zero", function()
     local run = system{ I = 1, k = 30, C = 0.1, Rd = 1.2 }:simulate{ theta0 = 1, t_end = 6, dt = 1/30 }
     local fit = identify{ data = { time = run.t, x = noisy(run, 5, 0.02) - 2 }, velocity0 = 0 }
-    near(fit.omega0, 30^0.5, 4 * fit.error.omega0)
-    near(fit.Rd_over_k, 0.04, 4 * fit.error.Rd_over_k)
-    near(fit.offset, -2, 4 * fit.error.offset)
-    equal(fit.error.velocity0, 0.0)
+    near(fit.omega0, 30^0.5, 4 * fit.std_error.omega0)
+    near(fit.Rd_over_k, 0.04, 4 * fit.std_error.Rd_over_k)
+    near(fit.offset, -2, 4 * fit.std_error.offset)
+    equal(fit.std_error.velocity0, 0.0)
+    support.raises(function() return fit.error end, "a fit has no field 'error'; did you mean 'std_error'?")
     equal(fit.velocity0, 0.0)
 end)
 
@@ -85,7 +86,7 @@ test("a record that is cut off is fitted as one, and said to be", function()
     local seen = noisy(run, 5, 0.01):map(function(x) return math.max(-0.4, math.min(0.4, x)) end)
     local fit = identify{ data = { t = run.t, theta = seen } }
     for name, truth in pairs{ omega0 = 30^0.5, zeta = 0.1 / 2 / 30^0.5, Rd_over_k = 0.04, theta0 = 1 } do
-        near(fit[name], truth, 4 * fit.error[name])
+        near(fit[name], truth, 4 * fit.std_error[name])
     end
     assert(fit.noise < 0.011)
     local stand = seen:find(function(x) return math.abs(x) == 0.4 end)
@@ -110,9 +111,9 @@ test("a driven record with a known M tells the parameters that are asked for", f
     local run = s:simulate{ M = M, t_end = 12, dt = 0.02 }
     local fit = identify{ data = { t = run.t, theta = noisy(run, 3, 0.002) }, M = M, I = 0.02, free = { "k", "C", "Rd" },
         theta0 = 0, velocity0 = 0 }
-    near(fit.k, 0.9, 4 * fit.error.k)
-    near(fit.C, 0.01, 4 * fit.error.C)
-    near(fit.Rd, 0.06, 4 * fit.error.Rd)
+    near(fit.k, 0.9, 4 * fit.std_error.k)
+    near(fit.C, 0.01, 4 * fit.std_error.C)
+    near(fit.Rd, 0.06, 4 * fit.std_error.Rd)
     assert(fit.noise < 0.0023, fit.noise)
     equal(fit.I, 0.02)
     equal(#fit.residual, #run)
@@ -122,7 +123,7 @@ end)
 test("what cannot be a record is told in a sentence", function()
     local t = vector.linspace(0, 1, 20)
     raises_here(function() identify{} end, "identify needs data")
-    raises_here(function() identify{ data = "run.csv" } end, "data must be what data.load gives for that file")
+    raises_here(function() identify{ data = "run.csv" } end, "data must be what load gives for that file")
     raises_here(function() identify{ data = 3 } end, "data must be data, a run, or a table of columns")
     raises_here(function() identify{ data = { t = t } } end, "times and angles are needed")
     raises_here(function() identify{ data = { t = t, theta = t:slice(1, 5) } } end, "20 times, but 5 angles")
@@ -191,8 +192,8 @@ test("a driven record without a stop says nothing about Re, and bends nothing to
             Rd = 0.05, offset = 0.1, free = { "Re" } }
         equal(table.concat(fit.silent), "Re")
         equal(fit.Re, 0.05)
-        near(fit.theta0, 0.2, 4 * fit.error.theta0)
-        near(fit.velocity0, -0.5, 4 * fit.error.velocity0)
+        near(fit.theta0, 0.2, 4 * fit.std_error.theta0)
+        near(fit.velocity0, -0.5, 4 * fit.std_error.velocity0)
     end
 end)
 
@@ -230,7 +231,7 @@ test("with everything given nothing is fitted: what is left is told", function()
     local fit = identify(known)
     near((fit.residual - noise):abs():max(), 0, 1e-13)
     near(fit.noise, (noise:dot(noise) / #noise)^0.5, 1e-12)
-    equal(fit.error.zeta, 0.0)
+    equal(fit.std_error.zeta, 0.0)
     local M = excitation.harmonic{ amplitude = 1, omega = 3 }
     local run = sys:simulate{ M = M, t_end = 5, dt = 0.05 }
     known.M, known.theta0, known.offset, known.data = M, 0, 0, run
@@ -286,7 +287,7 @@ test("a decay of half a swing is not taken for one whose velocity is gone before
     local noise = vector.normal{ n = rows, seed = 92, std = 0.013017970259308 }
     local fit = identify{ data = { t = run.t, theta = run.theta + noise - 0.042899731623798 } }
     assert(fit.residual:dot(fit.residual) < 1.02 * noise:dot(noise), fit)
-    near(fit.omega0, w0, 4 * fit.error.omega0)
+    near(fit.omega0, w0, 4 * fit.std_error.omega0)
 end)
 
 test("in a few swings with much noise more viscous and less dry friction may rest a turn later: the errors say so", function()
@@ -294,8 +295,8 @@ test("in a few swings with much noise more viscous and less dry friction may res
     local run = system{ I = 1, k = w * w, C = 2 * zeta * w, Rd = dry * w * w }:simulate{ theta0 = 1, t_end = 2.0547377730242, dt = 2.0547377730242 / 99 }
     local noise = vector.normal{ n = #run, seed = 160, std = 0.064778531849788 }
     local fit = identify{ data = { t = run.t, theta = run.theta + noise + 0.05 } }
-    near(fit.Rd_over_k, dry, 3 * fit.error.Rd_over_k) -- it was 12 errors off
-    near(fit.zeta, zeta, 3 * fit.error.zeta)
+    near(fit.Rd_over_k, dry, 3 * fit.std_error.Rd_over_k) -- it was 12 errors off
+    near(fit.zeta, zeta, 3 * fit.std_error.zeta)
 end)
 
 test("a sample that is none is named", function()
@@ -312,7 +313,7 @@ end)
 test("no error is below what a double can tell, a held offset and a missing spring are told", function()
     local decay = system{ I = 1, k = 40, C = 0.3, Rd = 0.8 }:simulate{ theta0 = 1, t_end = 8, dt = 0.02 }
     local fit = identify{ data = decay, I = 1 }
-    for _, name in ipairs{ "k", "C", "Rd", "omega0", "zeta" } do assert(fit.error[name] >= 2^-52 * fit[name], name) end
+    for _, name in ipairs{ "k", "C", "Rd", "omega0", "zeta" } do assert(fit.std_error[name] >= 2^-52 * fit[name], name) end
     local held = identify{ data = decay, I = 1, free = { "k", "C", "Rd" } }
     assert(tostring(held):find("offset is held at 0", 1, true))
     for _, free in ipairs{ { "k", "offset" }, false } do

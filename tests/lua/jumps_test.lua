@@ -107,7 +107,7 @@ end)
 test("a switch that stops a mass at its turn is followed by a stick", function()
     -- It comes up under -1 and would go back; the relay that looks at its velocity then pulls with 0.3 < Re.
     local run = system { I = 1, k = 0, Rd = 0.5 }:simulate {
-        M = excitation.relay { on = 0, off = 0.25, levels = { 0.3, -1 }, of = "velocity", start = "off" },
+        M = excitation.relay { on = 0, off = 0.25, amplitude = { 0.3, -1 }, of = "velocity", start = "off" },
         velocity0 = 1.5, t_end = 3, dt = 1,
     }
     equal(kinds(run):gsub("rest", "stick"), "turn switch stick")
@@ -146,7 +146,7 @@ test("under rk4 a belt that jumps, and does not say so, leaves the mass on it it
     for _, s in ipairs { sys, block } do
         for _, at in ipairs { 1, 1.2345 } do -- 1 is the end of a step
             for _, belt in ipairs { { 0.5, -0.5 }, { 0.5, 0 }, { 0.5, 0.2 }, { -0.3, 0.3 }, { 0, 0.5 }, { 0.2, -0.5 } } do
-                local task = { velocity0 = 0.1, t_end = 10, dt = 0.5, belt = belt[1] + excitation.step { level = belt[2] - belt[1], at = at } }
+                local task = { velocity0 = 0.1, t_end = 10, dt = 0.5, belt = belt[1] + excitation.step { amplitude = belt[2] - belt[1], at = at } }
                 local told = s:simulate(task)
                 task.belt = function(t) return t < at and belt[1] or belt[2] end
                 for _, h in ipairs { 0.01, 0.001 } do
@@ -169,7 +169,7 @@ local function unannounced(size, period, phase, alternate)
     end
     local told = excitation.harmonic { amplitude = a, omega = 1 } + levels[0]
     for i = 1, 100 do
-        told = told + excitation.step { level = levels[i] - levels[i - 1], at = (i - phase) * period }
+        told = told + excitation.step { amplitude = levels[i] - levels[i - 1], at = (i - phase) * period }
     end
     return told, function(t) return a * math.sin(t) + levels[math.floor(t / period + phase)] end
 end
@@ -242,7 +242,7 @@ test("a mass that comes to a belt whose jumps lie evenly before it knows the bel
     local function f(t) return 0.24764967527153 * math.sin(t) + ((t / period + phase) % 1 < 0.5 and low or high) end
     local told = swing + f(0)
     for m = 2, 118 do
-        told = told + excitation.step { level = m % 2 == 1 and high - low or low - high, at = (m / 2 - phase) * period }
+        told = told + excitation.step { amplitude = m % 2 == 1 and high - low or low - high, at = (m / 2 - phase) * period }
     end
     local task = { M = excitation.harmonic { amplitude = 0.3, omega = 1.5 }, velocity0 = 0.2, t_end = 20, dt = 0.5, belt = told }
     local sys = system { I = 1, k = 1, C = 0.1, Rd = 0.3 }

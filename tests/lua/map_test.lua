@@ -184,7 +184,7 @@ test("a bifurcation in a file is the same rows, and the same call reads them", f
         end }
     end
     local b = diagram(2)
-    local kept = data.load(file)
+    local kept = load(file)
     equal(#b, 5)
     assert(kept.theta[1] == b.theta[1] and kept.velocity[5] == b.velocity[5])
     assert(kept.error[3]:find("no two"))

@@ -28,7 +28,7 @@ test("states are columns: of the run, of its file, of run:at, and of plots", fun
     near(run.M[7], 8 * (1 - run.theta[7]) - 2 * run.velocity[7] + 3 * run.e[7], 1e-12)
     local name = support.temporary ".csv"
     run:save(name)
-    local again = trajectory.load(name)
+    local again = load(name)
     equal(again.e[7], run.e[7])
     equal(again.states.e, run.states.e)
     raises_here(function() return again.states.E end, "run.states has no 'E', only e; did you mean 'e'?")
@@ -42,7 +42,7 @@ test("the header of a file repeats a run with more in it", function()
     local runs = {
         block:simulate(pid { belt = 0.1, events = { { when = function(t, theta) return theta - 0.5 end, name = "half", direction = "up" } } }),
         block:simulate { M = excitation.sampled(function(t, theta) return 1 - gain * theta end, { every = 0.1, delay = 0.05 }), t_end = 2, dt = 0.1 },
-        block:simulate { M = 2 * excitation.relay { on = -0.1, off = 0.1, levels = { 1, -1 } } + 0.1, t_end = 4, dt = 0.1 },
+        block:simulate { M = 2 * excitation.relay { on = -0.1, off = 0.1, amplitude = { 1, -1 } } + 0.1, t_end = 4, dt = 0.1 },
         block:simulate { M = excitation.delayed(function(t, theta) return 1 - theta end, { by = 0.3 }), t_end = 4, dt = 0.1,
             base = excitation.harmonic { amplitude = 0.1, frequency = 1 } },
         block:simulate { velocity0 = 1, t_end = 4, dt = 0.1,
@@ -157,18 +157,18 @@ test("what is wrong is one sentence with the name of the option", function()
     raises_here(function() excitation.sampled(math.sin, { every = 0 }) end, "every = 0 must be positive")
     raises_here(function() excitation.sampled(math.sin, { every = 1, delay = -1 }) end, "delay = -1 must not be negative")
     raises_here(function() excitation.sampled(math.sin, {}) end, "excitation.sampled needs every")
-    raises_here(function() excitation.relay { on = 1, off = 1, levels = { 1, 2 } } end, "on = 1 and off = 1 must differ")
-    raises_here(function() excitation.relay { on = 1, off = 2, levels = { 1 } } end, "levels must be two numbers")
+    raises_here(function() excitation.relay { on = 1, off = 1, amplitude = { 1, 2 } } end, "on = 1 and off = 1 must differ")
+    raises_here(function() excitation.relay { on = 1, off = 2, amplitude = { 1 } } end, "amplitude must be a number, or two: { on, off }, got 1")
     raises_here(function() excitation.delayed(math.sin, { by = 0 }) end, "by = 0 must be positive")
     local sampled = excitation.sampled(math.sin, { every = 1 })
     raises_here(function() return sampled(1) end, "a controller with a memory has values in a run only")
     raises_here(function() return sampled:delay(1) end, "cannot be delayed")
-    wrong({ M = excitation.relay { on = 1, off = 2, levels = { 1, 2 }, of = "heat" } }, "M has a relay of 'heat', which is no state of this run")
+    wrong({ M = excitation.relay { on = 1, off = 2, amplitude = { 1, 2 }, of = "heat" } }, "M has a relay of 'heat', which is no state of this run")
 end)
 
 test("a relay of a state switches where the state is", function()
     local run = system { I = 1, k = 1 }:simulate {
-        M = excitation.relay { on = 1, off = 2, levels = { 1, -1 }, of = "heat" },
+        M = excitation.relay { on = 1, off = 2, amplitude = { 1, -1 }, of = "heat" },
         states = { heat = { start = 0.5, rate = function() return 1 end } }, t_end = 3, dt = 1,
     }
     local switches = run.events:filter(function(e) return e.kind == "switch" end)
@@ -321,7 +321,7 @@ test("a mass that stands is torn off by a base as quick as one likes when I a = 
         equal(#run.events, #loaded.events)
         near((run.theta - loaded.theta):abs():max(), 0, 1e-13)
     end
-    local bump = 3 * excitation.gaussian { at = 2.123, width = 0.1 }
+    local bump = 3 * excitation.gaussian { at = 2.123, sigma = 0.1 }
     -- The flank where 3 exp(-((t - 2.123)/0.1)^2/2) = Re.
     near(sys:simulate { base = bump, t_end = 5, dt = 5 }.events[1].t, 2.123 - 0.1 * math.sqrt(2 * math.log(30)), 1e-12)
 end)

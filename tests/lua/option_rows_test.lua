@@ -30,7 +30,7 @@ world.sys = nondimensional { zeta = 0.1, friction_ratio = 0.1 }
 world.run = world.sys:simulate { theta0 = 1, t_end = 1, dt = 0.25 }
 world.rig = system { bodies = { load = { I = 1 } } }
 world.rig_run = world.rig:simulate { t_end = 1 }
-world.M = excitation.constant { level = 1 }
+world.M = excitation.constant { amplitude = 1 }
 world.t, world.theta = world.run.t, world.run.theta
 world.fit = identify { data = world.sys:simulate { theta0 = 1, t_end = 3, dt = 0.1 } }
 world.r = report { title = "x" }
@@ -42,7 +42,7 @@ assert(io.open(record, "w")):write("t,M\n0,1\n1,2\n"):close()
 --- The example in the sentence that refuses a call without a table.
 local function example_of(heading)
     local wrong_calls = { ["run:save"] = 'run:save("x.csv", 1)', ["r:animate"] = "r:animate(run, 1)", ["excitation.scripted"] = "excitation.scripted(f, 1)",
-        ["excitation.samples 2"] = "excitation.samples{}" }
+        ["excitation.samples 2"] = "excitation.samples{}", ["excitation.constant"] = "excitation.constant{}", ["run:continue"] = "run:continue(true)" }
     local message = support.raises(assert(load(wrong_calls[heading] or heading .. "(1)", "=call", "t", world)))
     return assert(message:match "for example (.+)$", message):gsub("record.csv", record)
 end

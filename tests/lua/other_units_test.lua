@@ -9,10 +9,10 @@ local cases = {
     ["a harmonic load"] = function() end,
     ["terms with breaks"] = function(u, _, run)
         run.M = run.M + excitation.pulse { amplitude = 0.4*u.torque, at = 3*u.t, width = u.t } +
-            excitation.square { amplitude = 0.2*u.torque, frequency = 1/(7*u.t) } + excitation.ramp { slope = 0.05*u.torque/u.t, at = 9*u.t, width = 4*u.t }
+            excitation.square { amplitude = 0.2*u.torque, frequency = 1/(7*u.t) } + excitation.ramp { slope = 0.05*u.torque/u.t, at = 9*u.t, duration = 4*u.t }
     end,
     ["a narrow bump and a chirp"] = function(u, _, run)
-        run.M = excitation.gaussian { amplitude = 2*u.torque, at = 5*u.t, width = 0.1*u.t } +
+        run.M = excitation.gaussian { amplitude = 2*u.torque, at = 5*u.t, sigma = 0.1*u.t } +
             excitation.chirp { amplitude = 0.8*u.torque, from = 0.05/u.t, to = 0.4/u.t, duration = 20*u.t }
     end,
     ["a function of time"] = function(u, _, run) run.M = function(t) return u.torque*math.cos(0.7*t/u.t)*math.sin(0.31*t/u.t) end end,
@@ -24,7 +24,7 @@ local cases = {
             return -0.3*u.k*(theta + 0.05*sum + 0.5*v*u.t)
         end, { every = 0.375*u.t, delay = 0.0625*u.t })
     end,
-    ["a relay"] = function(u, _, run) run.M = run.M + excitation.relay { on = -0.11*u.angle, off = 0.13*u.angle, levels = { 0.4*u.torque, -0.3*u.torque } } end,
+    ["a relay"] = function(u, _, run) run.M = run.M + excitation.relay { on = -0.11*u.angle, off = 0.13*u.angle, amplitude = { 0.4*u.torque, -0.3*u.torque } } end,
     ["a delayed feedback"] = function(u, _, run) run.M = run.M + excitation.delayed(function(_, theta, v) return -0.4*u.k*theta - 0.3*u.k*u.t*v end, { by = 1.3*u.t }) end,
     ["events that act"] = function(u, _, run)
         run.events = { { when = function(_, theta) return theta - 0.2*u.angle end, direction = "up", act = function(_, theta, v) return theta, v/2 end },

@@ -3,7 +3,7 @@ package.path = "tests/lua/?.lua;" .. package.path
 local support = require "support"
 local test, equal, raises_here = support.test, support.equal, support.raises_here
 
-local nd = nondimensional { friction_ratio = 0.1, breakaway_ratio = 0.12 }
+local nd = nondimensional { friction_ratio = 0.1, breakaway_ratio = 0.12, units = { theta = "rad" } }
 local run = nd:simulate { M = excitation.harmonic { frequency = 0.7 }, theta0 = 1, t_end = 5, dt = 0.01 }
 local free = nd:simulate { theta0 = 1, t_end = 5, dt = 0.01 }
 local line = { { 0, 1, 2 }, { 0, 1, 4 } }
@@ -85,13 +85,13 @@ test("a run from a file is drawn, too", function()
     local csv, dat = support.temporary ".csv", support.temporary ".dat"
     run:save(csv)
     run:save(dat)
-    has(text(trajectory.load(csv), "plot"), "theta, rad")
-    has(text(trajectory.load(dat), "plot"), "a theta", "b M/k")
-    has(text(trajectory.load(dat), "phase_plot"), "theta'/omega0, rad")
-    raises_here(function() trajectory.load(csv):phase_plot() end, "needs omega0", "run:plot{ x = \"theta\", y = \"velocity\" }")
+    has(text(load(csv), "plot"), "theta, rad")
+    has(text(load(dat), "plot"), "a theta", "b M/k")
+    has(text(load(dat), "phase_plot"), "theta'/omega0, rad")
+    raises_here(function() load(csv):phase_plot() end, "needs omega0", "run:plot{ x = \"theta\", y = \"velocity\" }")
     local other = support.temporary ".csv"
     support.write(other, "time,acceleration\n0,1\n1,2.5\n")
-    has(text(trajectory.load(other), "plot"), "acceleration", "time")
+    has(text(load(other), "plot"), "acceleration", "time")
 end)
 
 test("a run is a curve among curves: its theta over t", function()
@@ -102,8 +102,8 @@ test("a run is a curve among curves: its theta over t", function()
     raises_here(function() plot { { run, lable = "x" } } end, "plot: curve 1 has no option 'lable'", "label")
     raises_here(function() plot { nd:simulate { theta0 = 1, t_end = 1, times = {} } } end, "plot: curve 1: the run has no rows to draw")
     local file = support.temporary ".csv"
-    support.write(file, "time,acceleration\n0,1\n1,2.5\n")
-    raises_here(function() plot { trajectory.load(file) } end, "the run has no column 't'", "{ run.time, run.acceleration }")
+    run:save(file, { columns = { "theta", "velocity" } })
+    raises_here(function() plot { load(file) } end, "the run has no column 't'", "{ run.theta, run.velocity }")
 end)
 
 test("a run without rows says what to do", function()

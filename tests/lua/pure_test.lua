@@ -163,4 +163,81 @@ test("a sweep with controllers gives the same with any number of workers", funct
     end
 end)
 
+-- The same controller with a memory that it declares.
+local function declared(gain)
+    return excitation.sampled(function(_, theta, _, _, memory)
+        memory.sum = memory.sum + 0.05 * (0.5 - theta)
+        memory.last[1] = theta
+        return gain * memory.sum
+    end, { every = 0.05, start = function() return { sum = 0, last = {} } end })
+end
+local function last_of(run) return run.theta[#run.theta] end
+
+test("a memory that start makes begins anew with each run, and goes on with the run that is continued", function()
+    for _, method in ipairs { integrator.spectral {}, integrator.rk4 { h = 0.005 } } do
+        local function task(t_end, M) return { M = M, t_end = t_end, dt = 1, integrator = method } end
+        local M = declared(6)
+        local whole = spring:simulate(task(10, M))
+        near(last_of(whole), last_of(spring:simulate(task(10, summing(6)))), 0)
+        equal(last_of(spring:simulate(task(10, M))), last_of(whole))
+        local first = spring:simulate(task(5, M))
+        local once = first:continue { t_end = 10 }
+        near(last_of(once), last_of(whole), 1e-12)
+        spring:simulate(task(7, 2 * M + 1)) -- another run of the same controller between
+        for i = 1, 2 do equal(last_of(first:continue { t_end = 10 }), last_of(once)) end
+        near(last_of(first:continue { t_end = 7 }:continue { t_end = 10 }), last_of(whole), 1e-12)
+    end
+end)
+
+test("so it does in a rig and beside friction that is a function", function()
+    for i, sys in ipairs { system { bodies = { a = { I = 1, k = 4, C = 0.1 } } },
+        system { I = 1, k = 4, Rd = function() return 0.05 end, Re = 0.08 } } do
+        local rig = i == 1
+        local M = excitation.sampled(function(_, theta, _, _, memory)
+            memory.sum = memory.sum + 0.05 * (0.5 - (rig and theta.a or theta))
+            return 6 * memory.sum
+        end, { every = 0.05, start = function() return { sum = 0 } end })
+        local function run(t_end) return sys:simulate { M = rig and { a = M } or M, t_end = t_end, dt = 1 } end
+        local function place(r) r = rig and r.a or r return r.theta[#r.theta] end
+        local first, whole = run(5), run(10)
+        equal(place(run(10)), place(whole))
+        for _ = 1, rig and 2 or 0 do near(place(first:continue { t_end = 10 }), place(whole), 1e-9) end
+    end
+end)
+
+test("steady motions, sweeps on any number of workers and CSV headers take a declared memory along", function()
+    local M = declared(1)
+    local s = spring:steady { M = M + excitation.harmonic { frequency = 0.5 }, period = 2 }
+    equal(s.amplitude, spring:steady { M = M + excitation.harmonic { frequency = 0.5 }, period = 2 }.amplitude)
+    local seen
+    for workers = 1, 4 do
+        local x = sweep { over = { gain = { 1, 2, 3, 4, 5, 6 } }, workers = workers, run = function(p)
+            return { x = last_of(spring:simulate { M = p.gain * M, t_end = 5, dt = 1 }) }
+        end }.x
+        seen = seen or x
+        for i = 1, 6 do
+            equal(x[i], seen[i])
+            equal(x[i], last_of(spring:simulate { M = i * M, t_end = 5, dt = 1 }))
+        end
+    end
+    assert(tostring(M):find("start = function() return { sum = 0, last = {} } end", 1, true), tostring(M))
+end)
+
+test("start, the memory and what else is wrong are told", function()
+    local function controller(start, f)
+        return { M = excitation.sampled(f or function(_, _, _, _, memory) return memory.x end, { every = 0.1, start = start }), t_end = 1 }
+    end
+    raises(function() controller { x = 1 } end, "start must be a function that returns a table")
+    raises(function() spring:simulate(controller(function() return 3 end)) end, "start of excitation.sampled returned 3; it must return the memory of a run, a table")
+    raises(function() spring:simulate(controller(function() error "no memory" end)) end, "no memory")
+    raises(function() spring:simulate(controller(function() return { f = print } end)) end, "the memory of a sampled controller holds numbers")
+    raises(function() spring:simulate(controller(function() return {} end)) end, "the sampled function returned nil")
+    local run = spring:simulate(controller(function() return { x = 1 } end, function(_, _, _, _, memory) memory.f = print return 1 end))
+    raises(function() run:continue { t_end = 2 } end, "the memory of a sampled controller holds numbers")
+    local sum = 0
+    local task = controller(function() return {} end, function() sum = sum + 1 return sum end)
+    spring:simulate(task)
+    raises(function() spring:simulate(task) end, another)
+end)
+
 support.finish()

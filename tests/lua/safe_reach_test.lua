@@ -29,7 +29,7 @@ strangers.check({
             print(module .. ": " .. table.concat(own, " "))
         end]],
 }, options, 0, [[
-_G: _G _VERSION arg assert collectgarbage coroutine debug dinal error getmetatable io ipairs load math next os pairs pcall print rawequal rawget rawlen rawset require select setmetatable string table tonumber tostring type utf8 warn xpcall
+_G: _G _VERSION arg assert collectgarbage coroutine debug dinal error getmetatable io ipairs math next os pairs pcall print rawequal rawget rawlen rawset require select setmetatable string table tonumber tostring type utf8 warn xpcall
 coroutine: close create isyieldable resume running status wrap yield
 debug: traceback
 io: read stderr stdout write
@@ -63,7 +63,7 @@ local blocked = {
     ["a file handle is none"] = "print(type(io.stdout) == 'table' and not (io.stdout.seek or io.stdout.close or io.stdout.lines or io.stdout.setvbuf) and not getmetatable(io.stdout) and 'nothing')",
     ["io.write goes to standard output whatever it is given"] = "io.write(1, 2.5, 'x\\n') io.stdout.write({}, 'y\\n') io.stdout:write('z\\n') io.stdout:flush() print(not pcall(io.write, {}) and not pcall(io.stdout.write, 1, 2) and 'nothing')",
     ["io.read gives strings"] = "print(io.read() == nil and io.read 'a' == '' and not pcall(io.read, 'x') and 'nothing')",
-    ["a method called without its object"] = "print(not (pcall(nondimensional{}.simulate, {}) or pcall(vector{ 1 }.max, io.stdout) or pcall(excitation.constant{ level = 1 }.value)) and 'nothing')",
+    ["a method called without its object"] = "print(not (pcall(nondimensional{}.simulate, {}) or pcall(vector{ 1 }.max, io.stdout) or pcall(excitation.constant{ amplitude = 1 }.value)) and 'nothing')",
     ["a wrong object for a method"] = "local v, s = vector{ 1 }, nondimensional{} print(not (pcall(v.max, s) or pcall(s.simulate, v, {})) and 'nothing')",
     ["errors that are nil or tables"] = "print(not (pcall(error) or pcall(error, nil) or pcall(error, {}) or pcall(error, setmetatable({}, { __tostring = error }))) and 'nothing')",
     ["recursion through coroutines ends in an error"] = "local function f() coroutine.wrap(f)() end print(not pcall(f) and 'nothing')",
@@ -87,7 +87,7 @@ local function draws(name)
     return run .. ("local ok, why = pcall(run.plot, run, { file = %q }) print(ok and 'saved' or why)"):format(name)
 end
 local function reads(name)
-    return ("local ok, why = pcall(trajectory.load, %q) local _, other = pcall(excitation.samples, %q) print(ok and 'read' or why) print(other)"):format(
+    return ("local ok, why = pcall(load, %q) local _, other = pcall(excitation.samples, %q) print(ok and why == nil and 'no file' or ok and 'read' or why) print(other)"):format(
         name, name)
 end
 local only = "safe mode allows files in the current folder and below only"
@@ -144,7 +144,7 @@ strangers.check({
     ["a chunk named after a file outside does not show it"] = run .. [[
         local f = load("return function(t) return 0 end", "@../secret.csv")()
         local run = nondimensional{}:simulate{ M = f, theta0 = 1, t_end = 1, dt = 1 }
-        run:save "source.csv" print(trajectory.load "source.csv".names[1])]],
+        run:save "source.csv" print(load "source.csv".names[1])]],
 }, options, 0, "t\n", folder)
 
 support.finish()

@@ -41,7 +41,7 @@ test("M may be a number, a function, an excitation or nothing", function()
     equal(last(nil), 0.0)
     near(last(3), 6, 1e-8) -- t = 1.5: 3 (1 - cos 3 pi)
     near(last(function() return 3 end), 6, 1e-8)
-    near(last(excitation.constant { level = 3 }), 6, 1e-8)
+    near(last(excitation.constant { amplitude = 3 }), 6, 1e-8)
 end)
 
 test("a function of t is called with t alone, one of more parameters with theta and velocity", function()

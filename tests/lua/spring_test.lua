@@ -127,7 +127,7 @@ end)
 
 test("a motion that a softening spring lets go ends with a sentence about itself, not about M", function()
     local sys = system { I = 1, k = 40, C = 1, Rd = 8, spring = spring.polynomial { [3] = -4 } }
-    for _, M in ipairs { 40 * excitation.harmonic { frequency = 0.5 }, excitation.constant { level = 200 } } do
+    for _, M in ipairs { 40 * excitation.harmonic { frequency = 0.5 }, excitation.constant { amplitude = 200 } } do
         for _, with in ipairs { integrator.spectral {}, integrator.rk4 { h = 1e-3 } } do
             local run = sys:simulate { M = M, t_end = 20, dt = 0.1, integrator = with }
             assert(run.outcome:find("the state stopped being finite", 1, true), run.outcome)

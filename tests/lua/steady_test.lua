@@ -27,7 +27,7 @@ test("all that is known about a steady motion", function()
     near((s.run.theta:max() - s.run.theta:min()) / 2, s.amplitude, 1e-4)
     equal(s.run, s.run)
     assert(s:explain():find("It is the%s+only one%."), s:explain())
-    equal(tostring(s), "steady: period 0.740741, amplitude 0.860792, 0 stops a period")
+    equal(tostring(s), "steady: period 0.740741 T0, amplitude 0.860792 Mc/k, 0 stops a period")
 end)
 
 test("where there is no motion, or too much of it, the answer says so", function()
@@ -107,7 +107,7 @@ test("beside resonance a slow beat is no growth, whatever holds the mass that ne
 end)
 
 test("a load that begins late is taken when it is periodic", function()
-    local M = harmonic(0.4) + excitation.step{ level = 0.3, at = 5.2 }
+    local M = harmonic(0.4) + excitation.step{ amplitude = 0.3, at = 5.2 }
     local s = sliding:steady{ M = M }
     equal(s.run.t_start, 5.2)
     near(s.mean, 0.3, 1e-10)
@@ -149,7 +149,7 @@ test("run:steady goes on from where the run has got to", function()
     near(run:steady().amplitude, 0.1291703518, 1e-10)
     local file = support.temporary ".csv"
     run:save(file)
-    raises_here(function() trajectory.load(file):steady() end, "does not know its system")
+    raises_here(function() load(file):steady() end, "does not know its system")
     raises_here(function() run:steady{ theta0 = 1 } end, "no option 'theta0'")
 end)
 

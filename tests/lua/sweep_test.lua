@@ -176,8 +176,8 @@ test("controllers with a memory are carried", function()
     for _, M in ipairs {
         excitation.sampled(function(t, theta) return gain * (1 - theta) end, { every = 0.1, delay = 0.02 }),
         excitation.delayed(function(t, theta) return -gain * theta end, { by = 0.05 }),
-        excitation.relay { on = -0.1, off = 0.1, levels = { 1, -1 } },
-        excitation.relay { on = -0.1, off = 0.1, levels = { 1, -1 }, of = function(t, theta) return theta * gain end },
+        excitation.relay { on = -0.1, off = 0.1, amplitude = { 1, -1 } },
+        excitation.relay { on = -0.1, off = 0.1, amplitude = { 1, -1 }, of = function(t, theta) return theta * gain end },
     } do
         local function run() return nondimensional { zeta = 0.1 }:simulate { M = M, t_end = 2, dt = 0.1 }.theta:sum() end
         equal(at_one_point(function() return { y = run() } end), run())
@@ -229,20 +229,37 @@ test("what is nested without end is refused in a short sentence", function()
     end
 end)
 
+test("results may be strings, in files too", function()
+    local file = support.temporary ".csv"
+    local words = { "rest", "", "1", "a, \"b\"", "rest", "#" }
+    local function swept(workers, name)
+        return sweep { over = { i = vector.range(1, 6) }, workers = workers, file = name, run = function(p)
+            if p.i == 5 then return { n = p.i } end
+            return { n = p.i, word = words[math.tointeger(p.i)], mixed = p.i < 3 and p.i or "more" }
+        end }
+    end
+    words[5] = ""
+    for _, d in ipairs { swept(1), swept(2), swept(2, file), swept(1, file), load(file) } do
+        equal(d.n, vector.range(1, 6))
+        equal(table.concat(d.word, "|"), table.concat(words, "|"))
+        equal(table.concat(d.mixed, " "), "1 2 more more  more")
+    end
+end)
+
 -- ---- what goes wrong
 
 test("a point that fails keeps its message, the others go on, and the map says so", function()
     local d = sweep { over = { x = { 1, 2, 3, 4, 5 } }, run = function(p)
         if p.x == 2 then error("two is bad", 0) end
         if p.x == 3 then return p.x end
-        if p.x == 4 then return { y = "four" } end
+        if p.x == 4 then return { y = { 4 } } end
         if p.x == 5 then error { code = 5 } end
         return { y = p.x }
     end }
     equal(d.error[1], "")
     equal(d.error[2], "two is bad")
     equal(d.error[3], "run must return a table of named numbers such as { A = s.amplitude }, got 3.0")
-    equal(d.error[4], 'run returned y = the string "four", which is no number')
+    equal(d.error[4], "run returned y = a table, which is neither a number nor a string")
     equal(d.error[5], "(error object is a table value)")
     assert(d.y[1] == 1 and d.y[2] ~= d.y[2])
     assert(tostring(d):find("5 points, 4 of them failed; the first one, x = 2: two is bad", 1, true), tostring(d))

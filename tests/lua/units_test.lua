@@ -100,7 +100,7 @@ test("columns of tables have them, and keep them when rows are picked; their nam
     has(tostring(run:poincare{ period = 1 }), "velocity, m/s")
     local file = support.temporary ".csv"
     events:save(file)
-    equal(data.load(file).names[3], "theta")
+    equal(load(file).names[3], "theta")
 end)
 
 test("a response has them at its axes and in its jumps", function()
@@ -136,13 +136,13 @@ test("a file keeps them, for who reads it and for the run that is read from it",
     run:save(file)
     has(support.read(file), "# -- units: theta in m, t in s, M in N\n", 'units = { theta = "m", t = "s", M = "N" }',
         "\nt,theta,velocity,M,")
-    local old = trajectory.load(file)
+    local old = load(file)
     equal(old.units.M, "N")
     has(picture(old, "plot", { y = "velocity" }), "theta', m/s")
     has(old:explain(), "It has theta in m, t in s, M in N.")
     local copy = support.temporary ".csv"
     old:save(copy)
-    equal(trajectory.load(copy).units.theta, "m")
+    equal(load(copy).units.theta, "m")
 end)
 
 test("what a stranger's file says of units is taken when it is a word", function()
@@ -150,8 +150,14 @@ test("what a stranger's file says of units is taken when it is a word", function
     for said, theta in pairs{ ["theta in m\27[31m"] = "rad", ["theta in in"] = "in", ["theta in " .. ("m"):rep(99)] = "rad",
         ["nonsense"] = "", ["t in s"] = "" } do
         support.write(file, "# -- units: " .. said .. "\nt,theta\n0,1\n1,2\n")
-        equal(trajectory.load(file).units.theta or "", theta)
+        equal(load(file).units.theta or "", theta)
     end
+end)
+
+test("a nondimensional system has the units of its numbers, unless others are given", function()
+    local units = nondimensional {}.units
+    equal(units.theta .. " " .. units.t .. " " .. units.M, "Mc/k T0 Mc")
+    equal(nondimensional { units = { theta = "rad" } }.units.t, nil)
 end)
 
 test("wrong units are said", function()

@@ -125,8 +125,8 @@ class Strangers(HardUse):
         (self.home / "evil.csv").write_text(f"t,\"{self.EVIL}\"\n0,1\n1,2\n", encoding="utf-8")
         session = self.session()
         escaped = self.EVIL.encode("unicode_escape").decode()
-        for line in ("trajectory.load 'evil.csv'", "data.load 'evil.csv'", "trajectory.load('evil.csv').nothing",
-                     "trajectory.load('evil.csv').names", f"error('{escaped}')", f"error('{escaped}', 0)",
+        for line in ("load 'evil.csv'", "print(load 'evil.csv')", "load('evil.csv').nothing",
+                     "load('evil.csv').names", f"error('{escaped}')", f"error('{escaped}', 0)",
                      f"error(setmetatable({{}}, {{ __tostring = function() return '{escaped}' end }}))"):
             shown = self.raw(session, line)
             for sequence in ("\x1b]", "\x07", "\x1b[2J", "\x1b[8m", "\x9b"):

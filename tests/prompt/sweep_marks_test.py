@@ -46,7 +46,7 @@ OTHER = {
     "a controller with a dead time":
         ("local c = VALUE local M = excitation.delayed(function(t, x) return c*x end, { by = 0.1 })", RUN),
     "a relay of a function": ("local c = VALUE local M = excitation.relay{ of = function(t, x) return c*x - 0.05 end, "
-                              "on = 0.01, off = -0.01, levels = { 1, -1 } }", RUN),
+                              "on = 0.01, off = -0.01, amplitude = { 1, -1 } }", RUN),
     "a controller in a sum": ("local c = VALUE local M = 2*excitation.sampled(function(t, x) return c*x end, "
                               "{ every = 0.1 }) + excitation.harmonic{ frequency = 1 }", RUN),
 }

@@ -71,7 +71,7 @@ class Completion(Typing):
         terminal.enter("d = data{ radius = { 1 }, ['no name'] = { 2 } }")
         terminal.enter("run = system{ I = 1, k = 40, Rd = 0.8 }:simulate{ theta0 = 1, t_end = 8, dt = 0.02 }")
         terminal.enter("fit = identify{ data = run, velocity0 = 0 }")
-        for typed, whole in [("d.rad", "d.radius"), ("fit.om", "fit.omega0"), ("fit.error.Rd", "fit.error.Rd_over_k"),
+        for typed, whole in [("d.rad", "d.radius"), ("fit.om", "fit.omega0"), ("fit.std_error.Rd", "fit.std_error.Rd_over_k"),
                              ("run.events.ki", "run.events.kind"), ("dinal.part", "dinal.partial"),
                              ('run:plot{ y = "vel', 'run:plot{ y = "velocity"'), ('d:plot{ x = "ra', 'd:plot{ x = "radius"')]:
             self.completes(terminal, typed, whole)
@@ -135,7 +135,7 @@ class Completion(Typing):
     def test_names_of_files_inside_quotes_and_of_entries_after_help(self):
         (self.home / "record.csv").write_text("")
         terminal = self.start(TERM="dumb")
-        self.completes(terminal, "trajectory.load('rec", "trajectory.load('record.csv'")
+        self.completes(terminal, "load('rec", "load('record.csv'")
         self.completes(terminal, 'help "excitation.har', 'help "excitation.harmonic"')
         self.completes(terminal, "?sys.dead", "?sys.dead_zone")
         self.completes(terminal, ":load rec", ":load record.csv")

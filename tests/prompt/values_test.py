@@ -51,7 +51,7 @@ class Values(PromptTest):
             self.assertIn(piece, card)
         terminal.enter("run = block:simulate{ theta0 = 1, t_end = 1, dt = 0.1 }")
         self.assertIn("theta in m, t in s, M in N", terminal.enter("run").replace("\n", " "))
-        self.assertIn("  i      t, s  kind   theta, m  M, N\n  1   0.15719  turn", terminal.enter("run.events"))
+        self.assertIn("  i      t, s  kind   theta, m  M, N  velocity, m/s\n  1   0.15719  turn", terminal.enter("run.events"))
         self.assertIn("steady: period 1 s", terminal.enter("block:steady{ M = excitation.harmonic{ amplitude = 9, frequency = 1 } }"))
 
     def test_an_excitation_is_a_formula_and_its_breaks(self):
@@ -68,8 +68,8 @@ class Values(PromptTest):
         terminal.enter(RUN)
         self.assertRegex(terminal.enter("run"), r"^501 rows, t 0 … 5; \d+ events? \(.*rest\).*; by\s+exact$")
         self.assertRegex(terminal.enter("run.theta"), r"^vector\{ 1, 0\.\d+, .*\.\.\., .* \}  -- 501 numbers$")
-        self.assertRegex(terminal.enter("run.events"), r"^\d+ events: .*1 rest.*\n +i +t +kind +theta +M\n +1 ")
-        self.assertRegex(terminal.enter("run.events[1]"), r'^\{ t = 0\.\d+, kind = "turn", theta = -?0\.\d+, M = 0 \}$')
+        self.assertRegex(terminal.enter("run.events"), r"^\d+ events: .*1 rest.*\n +i +t +kind +theta +M +velocity\n +1 ")
+        self.assertRegex(terminal.enter("run.events[1]"), r'^\{ t = 0\.\d+, kind = "turn", theta = -?0\.\d+, M = 0, velocity = 0 \}$')
         self.assertEqual(terminal.enter("run.integrator"), "integrator.exact{}")
         self.assertRegex(terminal.enter("integrator.spectral{}"), r"(?s)^integrator\.spectral\{ tolerance = 1e-12, .* \}$")
 

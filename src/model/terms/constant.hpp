@@ -8,27 +8,28 @@ namespace dinal::model::terms {
 struct Constant {
     static const TermText about;
 
-    double level = 0;
+    double amplitude = 0;
 
-    [[nodiscard]] double value(double, double = 0) const { return level; }
+    [[nodiscard]] double value(double, double = 0) const { return amplitude; }
     [[nodiscard]] double next_break(double) const { return never; }
     [[nodiscard]] double constant_from() const { return -never; }
-    [[nodiscard]] double most() const { return std::fabs(level); }
+    [[nodiscard]] double most() const { return std::fabs(amplitude); }
     [[nodiscard]] double repeats_after() const { return 0; }
     [[nodiscard]] Detail detail() const { return no_detail; }
     template <class Sum>
     void closed_form(double /*inside*/, Sum& sum) const {
-        sum.add_constant(level);
+        sum.add_constant(amplitude);
     }
     void delay_by(double) {}
-    [[nodiscard]] std::string formula(double gain) const { return number(gain * level); }
+    [[nodiscard]] std::string formula(double gain) const { return number(gain * amplitude); }
 };
 
 inline constexpr text::Option constant_options[] = {
-    {"level", rows::torque, text::needed, text::any_finite, "the torque", text::fills<&Constant::level>},
+    {"amplitude", rows::torque, text::needed, text::any_finite, "the torque", text::fills<&Constant::amplitude>},
 };
-inline constexpr TermText Constant::about{{"excitation.constant", "excitation.constant{ level = 1 }", constant_options},
-                                          "The same torque at all times.",
-                                          "print(excitation.constant{ level = 2 }(10))  --> 2.0"};
+inline constexpr TermText Constant::about{
+    {"excitation.constant", "excitation.constant{ amplitude = 1 }", constant_options, false, nullptr, "amplitude"},
+    "The same torque at all times; excitation.constant(2) will do.",
+    "print(excitation.constant{ amplitude = 2 }(10), excitation.constant(3)(0))  --> 2.0\t3.0"};
 
 }  // namespace dinal::model::terms

@@ -5,43 +5,44 @@
 
 namespace dinal::model::terms {
 
-/// amplitude exp(-((t - at) / width)^2 / 2): `width` is the standard deviation
+/// amplitude exp(-((t - at) / sigma)^2 / 2): `sigma` is the standard deviation
 struct Gaussian {
     static const TermText about;
 
-    double amplitude = 1, at = 0, width = 0;
+    double amplitude = 1, at = 0, sigma = 0;
 
     [[nodiscard]] double value(double t, double rest = 0) const {
-        const double x = ((t - at) + rest) / width;
+        const double x = ((t - at) + rest) / sigma;
         return amplitude * std::exp(-0.5 * x * x);
     }
     [[nodiscard]] double next_break(double) const { return never; }
     [[nodiscard]] double constant_from() const {
         constexpr double vanished = 39;  // exp(-39^2 / 2) is less than the least double
-        return std::nextafter(at + vanished * width, never);
+        return std::nextafter(at + vanished * sigma, never);
     }
     [[nodiscard]] double most() const { return std::fabs(amplitude); }
     [[nodiscard]] double repeats_after() const { return 0; }
     [[nodiscard]] Detail detail() const {
         constexpr double visible = 10;  // exp(-10^2 / 2) is 2e-22: lost in the rounding of what the bump does later
-        return {at - visible * width, at + visible * width, width / 2};
+        return {at - visible * sigma, at + visible * sigma, sigma / 2};
     }
     void delay_by(double d) { at += d; }
     [[nodiscard]] std::string formula(double gain) const {
-        return factor(gain * amplitude) + "exp(-(" + since(at) + "/" + number(width) + ")^2/2)";
+        return factor(gain * amplitude) + "exp(-(" + since(at) + "/" + number(sigma) + ")^2/2)";
     }
 };
 
 inline constexpr text::Option gaussian_options[] = {
     rows::amplitude<Gaussian>(),
     rows::at<Gaussian>("its middle"),
-    rows::width<Gaussian>("its standard deviation: half its breadth at 0.61 of its height"),
+    {"sigma", rows::time, text::needed, text::positive,
+     "its standard deviation: half its breadth at 0.61 of its height", text::fills<&Gaussian::sigma>},
 };
 inline constexpr TermText Gaussian::about{
-    {"excitation.gaussian", "excitation.gaussian{ at = 1, width = 0.2 }", gaussian_options},
-    "A smooth bump, amplitude exp(-((t - at)/width)^2 / 2): width is the standard deviation. The spectral integrator "
-    "sees it however narrow it is; the others want steps of at most half the width.",
-    "M = excitation.gaussian{ amplitude = 2, at = 3, width = 0.5 }\nprint(M(3), M(3.5) / M(3) == math.exp(-0.5))  --> "
+    {"excitation.gaussian", "excitation.gaussian{ at = 1, sigma = 0.2 }", gaussian_options},
+    "A smooth bump, amplitude exp(-((t - at)/sigma)^2 / 2): sigma is the standard deviation. The spectral integrator "
+    "sees it however narrow it is; the others want steps of at most half of it.",
+    "M = excitation.gaussian{ amplitude = 2, at = 3, sigma = 0.5 }\nprint(M(3), M(3.5) / M(3) == math.exp(-0.5))  --> "
     "2.0\ttrue"};
 
 }  // namespace dinal::model::terms

@@ -41,6 +41,10 @@ inline void omega_of_frequency(Harmonic& h, double frequency) {
     h.omega = two_pi * frequency;
 }
 
+inline void omega_of_period(Harmonic& h, double period) {
+    h.omega = two_pi / period;
+}
+
 inline constexpr text::Option harmonic_options[] = {
     rows::amplitude<Harmonic>(),
     {"frequency", rows::cycles, text::needed, text::not_negative, "omega / (2 pi)", text::sets<omega_of_frequency>},
@@ -48,15 +52,22 @@ inline constexpr text::Option harmonic_options[] = {
      .unit = "rad per time unit",
      .otherwise = text::needed,
      .range = text::not_negative,
-     .meaning = "its pace",
+     .meaning = "2 pi frequency",
      .filled = text::fills<&Harmonic::omega>,
+     .instead_of_previous = true},
+    {.name = "period",
+     .unit = rows::time,
+     .otherwise = text::needed,
+     .range = text::positive,
+     .meaning = "1/frequency",
+     .filled = text::sets<omega_of_period>,
      .instead_of_previous = true},
     {.name = "phase", .unit = "rad", .meaning = "at t = 0", .filled = text::fills<&Harmonic::phase>},
 };
 inline constexpr TermText Harmonic::about{
     {"excitation.harmonic", "excitation.harmonic{ amplitude = 1, frequency = 1 }", harmonic_options},
-    "amplitude sin(omega t + phase). Give frequency (cycles per time unit) or "
-    "omega (rad per time unit); phase is in rad.",
+    "amplitude sin(omega t + phase). Give frequency (cycles per time unit), "
+    "omega (rad per time unit) or period; phase is in rad.",
     "print(excitation.harmonic{ amplitude = 3, frequency = 0.25 }(1))  --> 3.0"};
 
 }  // namespace dinal::model::terms

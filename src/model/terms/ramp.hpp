@@ -5,27 +5,27 @@
 
 namespace dinal::model::terms {
 
-/// 0 before `at`, rising by `slope` per time unit for `width`, then constant
+/// 0 before `at`, rising by `slope` per time unit for `duration`, then constant
 struct Ramp {
     static const TermText about;
 
-    double slope = 1, at = 0, width = never;
+    double slope = 1, at = 0, duration = never;
 
     [[nodiscard]] double value(double t, double rest = 0) const {
         if (t < at) {
             return 0;
         }
-        return slope * (t < at + width ? (t - at) + rest : width);
+        return slope * (t < at + duration ? (t - at) + rest : duration);
     }
-    [[nodiscard]] double next_break(double t) const { return first_after(t, {at, at + width}); }
-    [[nodiscard]] double constant_from() const { return at + width; }
-    [[nodiscard]] double most() const { return slope == 0 ? 0 : std::fabs(slope * width); }
+    [[nodiscard]] double next_break(double t) const { return first_after(t, {at, at + duration}); }
+    [[nodiscard]] double constant_from() const { return at + duration; }
+    [[nodiscard]] double most() const { return slope == 0 ? 0 : std::fabs(slope * duration); }
     [[nodiscard]] double repeats_after() const { return 0; }
     [[nodiscard]] Detail detail() const { return no_detail; }
     template <class Sum>
     void closed_form(double inside, Sum& sum) const {
-        if (inside >= at + width) {
-            sum.add_constant(slope * width);
+        if (inside >= at + duration) {
+            sum.add_constant(slope * duration);
         } else if (inside >= at) {
             sum.add_line(at, 0, slope);
         }
@@ -33,19 +33,20 @@ struct Ramp {
     void delay_by(double d) { at += d; }
     [[nodiscard]] std::string formula(double gain) const {
         const std::string rise = factor(gain * slope) + since(at);
-        return width == never ? rise + from_on(at)
-                              : rise + between(at, at + width) + ", then " + number(gain * slope * width);
+        return duration == never ? rise + from_on(at)
+                                 : rise + between(at, at + duration) + ", then " + number(gain * slope * duration);
     }
 };
 
 inline constexpr text::Option ramp_options[] = {
     {"slope", "torque per time unit", text::its_own, text::any_finite, "how fast it rises", text::fills<&Ramp::slope>},
     rows::at<Ramp>(),
-    {"width", rows::time, "math.huge", text::positive_or_infinite, "how long it rises", text::fills<&Ramp::width>},
+    {"duration", rows::time, "math.huge", text::positive_or_infinite, "how long it rises",
+     text::fills<&Ramp::duration>},
 };
 inline constexpr TermText Ramp::about{
     {"excitation.ramp", "excitation.ramp{ slope = 2, at = 1 }", ramp_options},
-    "0 before `at`, then rising by slope per time unit; constant again after width.",
-    "M = excitation.ramp{ slope = 2, at = 1, width = 3 }\nprint(M(0), M(2), M(9))  --> 0.0\t2.0\t6.0"};
+    "0 before `at`, then rising by slope per time unit; constant again after duration.",
+    "M = excitation.ramp{ slope = 2, at = 1, duration = 3 }\nprint(M(0), M(2), M(9))  --> 0.0\t2.0\t6.0"};
 
 }  // namespace dinal::model::terms

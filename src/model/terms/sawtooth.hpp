@@ -41,6 +41,7 @@ inline constexpr text::Option sawtooth_options[] = {
     rows::amplitude<Sawtooth>(),
     rows::period<Sawtooth>(),
     rows::frequency<Sawtooth>(),
+    rows::omega<Sawtooth>(),
     rows::at<Sawtooth>(rows::where_a_period_begins),
 };
 inline constexpr TermText Sawtooth::about{

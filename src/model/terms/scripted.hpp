@@ -10,6 +10,18 @@
 
 namespace dinal::model::terms {
 
+/// What a function remembers from one call to the next in one run.
+class Memory {
+public:
+    Memory() = default;
+    Memory(const Memory&) = delete;
+    Memory& operator=(const Memory&) = delete;
+    virtual ~Memory() = default;
+    /// Another one with the same content, for a run that goes on from here. None when that fails (and its owner knows
+    /// why).
+    [[nodiscard]] virtual std::shared_ptr<Memory> copy() const = 0;
+};
+
 /// A user's function of t or of t, theta, velocity. Virtual because the core must not know who wrote it.
 class UserFunction {
 public:
@@ -38,7 +50,16 @@ public:
     virtual double next_break(double /*t*/) { return never; }
     /// After a failure: whether it may be asked again, at other times. What failed stays known to the owner.
     virtual bool may_go_on() { return true; }
+    /// A new memory for a run; none when it wants none, or when that fails.
+    virtual std::shared_ptr<Memory> new_memory() { return nullptr; }
+    /// The memory of the calls that follow.
+    virtual void use(const std::shared_ptr<Memory>& /*memory*/) {}
 };
+
+/// The same content, shared with nobody; none for none.
+inline std::shared_ptr<Memory> copied(const std::shared_ptr<Memory>& memory) {
+    return memory == nullptr ? nullptr : memory->copy();
+}
 
 /// A user's function, delayed by `delay`, with what he says about it. The excitation itself asks for its value: it may
 /// need the state, and may fail.

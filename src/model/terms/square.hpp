@@ -43,6 +43,7 @@ inline constexpr text::Option square_options[] = {
     rows::amplitude<Square>(),
     rows::period<Square>(),
     rows::frequency<Square>(),
+    rows::omega<Square>(),
     {"duty", "", text::its_own, text::between_0_and_1, "the part of a period at which it is positive",
      text::fills<&Square::duty>},
     rows::at<Square>(rows::where_a_period_begins),

@@ -5,32 +5,36 @@
 
 namespace dinal::model::terms {
 
-/// 0 before `at`, `level` from then on
+/// 0 before `at`, `amplitude` from then on
 struct Step {
     static const TermText about;
 
-    double level = 1, at = 0;
+    double amplitude = 1, at = 0;
 
-    [[nodiscard]] double value(double t, double = 0) const { return t < at ? 0 : level; }
+    [[nodiscard]] double value(double t, double = 0) const { return t < at ? 0 : amplitude; }
     [[nodiscard]] double next_break(double t) const { return first_after(t, {at}); }
     [[nodiscard]] double constant_from() const { return at; }
-    [[nodiscard]] double most() const { return std::fabs(level); }
+    [[nodiscard]] double most() const { return std::fabs(amplitude); }
     [[nodiscard]] double repeats_after() const { return 0; }
     [[nodiscard]] Detail detail() const { return no_detail; }
     template <class Sum>
     void closed_form(double inside, Sum& sum) const {
-        if (inside >= at) sum.add_constant(level);
+        if (inside >= at) sum.add_constant(amplitude);
     }
     void delay_by(double d) { at += d; }
-    [[nodiscard]] std::string formula(double gain) const { return number(gain * level) + from_on(at); }
+    [[nodiscard]] std::string formula(double gain) const { return number(gain * amplitude) + from_on(at); }
 };
 
 inline constexpr text::Option step_options[] = {
-    {.name = "level", .unit = rows::torque, .meaning = "the torque from then on", .filled = text::fills<&Step::level>},
+    {.name = "amplitude",
+     .unit = rows::torque,
+     .meaning = "the torque from then on",
+     .filled = text::fills<&Step::amplitude>},
     rows::at<Step>("the time of the step"),
 };
-inline constexpr TermText Step::about{{"excitation.step", "excitation.step{ level = 1, at = 2 }", step_options},
-                                      "0 before the time `at`, level from then on.",
-                                      "M = excitation.step{ level = 2, at = 1 }\nprint(M(0.9), M(1))  --> 0.0\t2.0"};
+inline constexpr TermText Step::about{
+    {"excitation.step", "excitation.step{ amplitude = 1, at = 2 }", step_options},
+    "0 before the time `at`, amplitude from then on.",
+    "M = excitation.step{ amplitude = 2, at = 1 }\nprint(M(0.9), M(1))  --> 0.0\t2.0"};
 
 }  // namespace dinal::model::terms

@@ -169,6 +169,20 @@ constexpr text::Option frequency() {
             .filled = text::sets<set_frequency<T>>,
             .instead_of_previous = true};
 }
+template <class T>
+void set_omega(T& term, double omega) {
+    term.period = two_pi / omega;
+}
+template <class T>
+constexpr text::Option omega() {
+    return {.name = "omega",
+            .unit = "rad per time unit",
+            .otherwise = text::needed,
+            .range = text::positive,
+            .meaning = "2 pi/period",
+            .filled = text::sets<set_omega<T>>,
+            .instead_of_previous = true};
+}
 
 }  // namespace rows
 

@@ -45,6 +45,7 @@ inline constexpr text::Option triangle_options[] = {
     rows::amplitude<Triangle>(),
     rows::period<Triangle>(),
     rows::frequency<Triangle>(),
+    rows::omega<Triangle>(),
     rows::at<Triangle>(rows::where_a_period_begins),
 };
 inline constexpr TermText Triangle::about{

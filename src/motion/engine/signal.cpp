@@ -77,6 +77,7 @@ void Signal::begin(const Moment& at, const std::vector<std::string>& names) {
             const double n = std::ceil((at.t - sampled->at) / sampled->every - 1e-9);
             memory_[i].instant = static_cast<std::int64_t>(std::max(n, 0.0));
             if (sampled->at + static_cast<double>(memory_[i].instant) * sampled->every < at.t) ++memory_[i].instant;
+            memory_[i].own = sampled->function->new_memory();
         } else if (const auto* relay = parts_[i].relay) {
             using Of = model::RelayController::Of;
             const std::string wanted = relay->of == Of::theta      ? "theta"
@@ -108,6 +109,7 @@ bool Signal::arrive(const Moment& at) {
         const auto instant = [&] { return sampled->at + static_cast<double>(memory.instant) * sampled->every; };
         take();
         while (instant() <= at.t) {
+            sampled->function->use(memory.own);
             const double output = asking_->ask_at(*sampled->function, at.t, at.y);
             if (!std::isfinite(output)) return false;
             memory.pending.emplace_back(instant() + sampled->delay, output);

@@ -80,11 +80,16 @@ public:
         double output = 0;
         std::deque<std::pair<double, double>> pending{};  ///< the time from when on, and the output
         std::int64_t instant = 0;
-        bool on = true;                      ///< of a relay
-        std::optional<std::size_t> place{};  ///< in y, of what a relay looks at
+        bool on = true;                               ///< of a relay
+        std::optional<std::size_t> place{};           ///< in y, of what a relay looks at
+        std::shared_ptr<model::terms::Memory> own{};  ///< of the function of one that samples
     };
     [[nodiscard]] const std::vector<Memory>& memory() const { return memory_; }
-    void remember(const std::vector<Memory>& memory) { memory_ = memory; }
+    /// As a run left it that goes on, and may go on again.
+    void remember(const std::vector<Memory>& memory) {
+        memory_ = memory;
+        for (Memory& each : memory_) each.own = model::terms::copied(each.own);
+    }
 
 private:
     struct Part {

@@ -158,6 +158,7 @@ void Field::begin(const MotionPoint& at) {
             const double n = std::ceil((at.t - sampled->at) / sampled->every - 1e-9);
             memory_[i].instant = static_cast<std::int64_t>(std::max(n, 0.0));
             if (instant(*sampled, memory_[i].instant) < at.t) ++memory_[i].instant;
+            memory_[i].own = sampled->function->new_memory();
         } else if (const auto* relay = kinds_[i].relay) {
             memory_[i].on = relay->starts_on;
             if (until_switch(i, at) < 0) memory_[i].on = !memory_[i].on;
@@ -178,6 +179,7 @@ bool Field::arrive(const MotionPoint& at) {
         };
         take();
         while (instant(*sampled, memory.instant) <= at.t) {
+            sampled->function->use(memory.own);
             const double output = sampled->function->value_with(at.t, at.y, at.states);
             if (!std::isfinite(output)) return false;
             memory.pending.emplace_back(instant(*sampled, memory.instant) + sampled->delay, output);

@@ -41,6 +41,7 @@ struct ControllerMemory {
     std::deque<std::pair<double, double>> pending{};  ///< the time from when on, and the output
     std::int64_t instant = 0;                         ///< the next one
     bool on = true;                                   ///< of a relay
+    std::shared_ptr<model::terms::Memory> own = {};   ///< of the function of one that samples
 };
 
 /// One moment of the motion.
@@ -117,7 +118,11 @@ public:
     void toggle(std::size_t component) { memory_[component].on = !memory_[component].on; }
 
     [[nodiscard]] const std::vector<ControllerMemory>& memory() const { return memory_; }
-    void remember(const std::vector<ControllerMemory>& memory) { memory_ = memory; }
+    /// As a run left it that goes on, and may go on again.
+    void remember(const std::vector<ControllerMemory>& memory) {
+        memory_ = memory;
+        for (ControllerMemory& each : memory_) each.own = model::terms::copied(each.own);
+    }
 
 private:
     /// What a component is, looked up once: at most one of these.

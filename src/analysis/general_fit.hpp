@@ -1,0 +1,34 @@
+// Any parameters of anything that can be run, fitted to any measured columns: from a guess, by least squares.
+#pragma once
+
+#include <Eigen/Core>
+#include <functional>
+#include <optional>
+#include <vector>
+
+#include "analysis/least_squares.hpp"
+
+namespace dinal::analysis {
+
+struct GeneralQuestion {
+    /// The first so many of the predicted numbers for these parameters; none where nothing can be predicted.
+    std::function<std::optional<Eigen::VectorXd>(const Eigen::VectorXd& parameters, Eigen::Index count)> model;
+    Eigen::VectorXd measured;          ///< in order of time, in units of what its column varies by
+    std::vector<int> columns;          ///< of each number
+    std::vector<Eigen::Index> stages;  ///< beginnings of the record that are fitted first
+    Eigen::VectorXd start;
+    FitScale scale;
+    std::vector<bool> may_be_doubled;  ///< parameters from whose half and double a search may begin, too
+};
+
+struct GeneralFit {
+    Eigen::VectorXd value, error, predicted;
+    std::vector<bool> silent;
+    double noise = 0;     ///< standard deviation of the residual
+    double widening = 1;  ///< of the errors, because the residual is alike from sample to sample
+};
+
+/// None when nothing can be predicted from the start.
+std::optional<GeneralFit> general_fit(const GeneralQuestion& question);
+
+}  // namespace dinal::analysis

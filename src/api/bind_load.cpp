@@ -1,0 +1,175 @@
+// load(file): whatever dinal has written, or any CSV file. Of anything else it is Lua's own load.
+#include <algorithm>
+#include <cmath>
+
+#include "api/classes.hpp"
+#include "api/data.hpp"
+#include "api/run.hpp"
+#include "files/csv_columns.hpp"
+#include "files/record1989.hpp"
+#include "lua/interrupt.hpp"
+#include "lua/lua_text.hpp"
+#include "text/words.hpp"
+
+namespace dinal::api {
+
+namespace {
+
+const char original_key = 0;  // in the registry: load as it was
+
+/// The rows of a run, as run:save wrote them.
+int push_loaded_run(lua_State* L, files::Table content, model::Units units) {
+    Run run;
+    run.comments = std::move(content.comments);
+    run.units = std::move(units);
+    motion::Trajectory& trajectory = run.trajectory;
+    trajectory.computed = false;
+    trajectory.own_names = std::move(content.names);
+    run.rows = lua::MemoryCharge(static_cast<std::size_t>(content.values.size()) * sizeof(double));
+    trajectory.rows = motion::Rows(std::move(content.values));
+    if (const auto time = trajectory.find("t"); time && trajectory.size() > 0) {
+        trajectory.t_start = trajectory.rows(0, *time);
+        trajectory.t_stop = trajectory.rows(trajectory.size() - 1, *time);
+    }
+    push_run(L, std::make_shared<const Run>(std::move(run)));
+    return 1;
+}
+
+int push_loaded_data(lua_State* L, files::ReadColumns content) {
+    Data data;
+    for (files::ReadColumn& column : content.columns) {
+        data.columns.push_back(
+            column.of_words ? column_of(std::move(column.name), std::move(column.words))
+                            : column_of(std::move(column.name), std::move(column.numbers), std::move(column.unit)));
+    }
+    push_data(L, std::move(data));
+    return 1;
+}
+
+/// The comments of run:save begin so, or there are times and angles; and the rows have no gaps.
+bool is_run(const files::ReadColumns& content) {
+    const auto finite = [](const files::ReadColumn& column) {
+        return !column.of_words &&
+               std::all_of(column.numbers.begin(), column.numbers.end(), [](double x) { return std::isfinite(x); });
+    };
+    const auto has = [&](std::string_view name) {
+        return std::any_of(content.columns.begin(), content.columns.end(),
+                           [name](const files::ReadColumn& column) { return column.name == name; });
+    };
+    const bool saved = !content.comments.empty() && content.comments.front().starts_with("-- dinal ");
+    return (saved || (has("t") && has("theta"))) && std::all_of(content.columns.begin(), content.columns.end(), finite);
+}
+
+/// Of the line of units, where there is one.
+model::Units units_of(const files::ReadColumns& content) {
+    model::Units units = model::Units::from_file(content.comments);
+    for (const files::ReadColumn& column : content.columns) {
+        for (const auto& [name, unit] : {std::pair{"theta", &units.theta}, {"t", &units.t}, {"M", &units.M}}) {
+            if (column.name == name && !column.unit.empty()) *unit = column.unit;
+        }
+    }
+    return units.complaint() ? model::Units{} : units;
+}
+
+files::Table table_of(files::ReadColumns content) {
+    files::Table table{.names = {}, .values = {}, .comments = std::move(content.comments)};
+    const auto rows = content.columns.empty() ? 0 : static_cast<Eigen::Index>(content.columns[0].numbers.size());
+    table.values.resize(rows, static_cast<Eigen::Index>(content.columns.size()));
+    for (std::size_t i = 0; i < content.columns.size(); ++i) {
+        table.names.push_back(std::move(content.columns[i].name));
+        const std::vector<double>& numbers = content.columns[i].numbers;
+        std::copy(numbers.begin(), numbers.end(), table.values.col(static_cast<Eigen::Index>(i)).data());
+    }
+    return table;
+}
+
+int load_file(lua_State* L, const std::string& file) {
+    if (text::ending_of(file) == ".dat") {
+        auto record = files::read_record1989(file);
+        if (lua::interrupt_requested()) lua::raise_interrupted(L);  // what was read is not all
+        return push_loaded_run(L, lua::value_or_raise(L, "load", std::move(record)), {});
+    }
+    auto read = files::read_columns(file);
+    if (lua::interrupt_requested()) lua::raise_interrupted(L);
+    files::ReadColumns content = lua::value_or_raise(L, "load", std::move(read));
+    if (!is_run(content)) return push_loaded_data(L, std::move(content));
+    model::Units units = units_of(content);
+    return push_loaded_run(L, table_of(std::move(content)), std::move(units));
+}
+
+/// A text with one of these endings, which is no Lua.
+bool is_name_of_file(lua_State* L, std::string_view name) {
+    constexpr std::size_t longest = 4096;
+    const bool one = lua_gettop(L) == 1 && lua_type(L, 1) == LUA_TSTRING && name.size() < longest;
+    const std::string ending = one ? text::ending_of(name) : "";
+    if (ending != ".csv" && ending != ".dat" && ending != ".txt" && ending != ".tsv") return false;
+    const int status = luaL_loadbufferx(L, name.data(), name.size(), "=load", "t");
+    lua_pop(L, 1);
+    return status != LUA_OK;
+}
+
+int load(lua_State* L) {
+    const std::string name(lua_type(L, 1) == LUA_TSTRING ? lua::text_at(L, 1) : "");
+    if (is_name_of_file(L, name)) return load_file(L, name);
+    lua_rawgetp(L, LUA_REGISTRYINDEX, &original_key);
+    const lua_CFunction original = lua_tocfunction(L, -1);
+    lua_pop(L, 1);
+    return original(L);
+}
+
+/// What older scripts call.
+int load_of_old(lua_State* L) {
+    lua::raise(L, {.sentence = "trajectory.load and data.load are load now: load(\"run.csv\")", .call = "load"});
+}
+
+constexpr lua::Member load_members[] = {
+    {lua::a_function<load>,
+     {"load(file) -> run or data",
+      "Reads a file that dinal has written, or any CSV file; the name ends in .csv, .txt, .tsv or .dat (the record of "
+      "1989). What run:save wrote is a run again, the same numbers to the last bit with the columns as fields, and so "
+      "is a table of numbers with the columns t and theta; everything else is data.\n"
+      "Fields are separated by semicolons, commas, tabs or blanks. Names are in the first line (without them they "
+      "are \"1\", \"2\", ...), lines with # are skipped. Numbers may be among the names, t,100,200, if the first is a "
+      "word and has only numbers below it. A column with anything but numbers, nan and empty fields (nan) is one of "
+      "words. A line of words between the names and the numbers has the units of the columns. In a file with "
+      "semicolons 1,5 is a number, and 1.5D+00 is one everywhere. With other arguments it is Lua's own load.",
+      "run = nondimensional{}:simulate{ theta0 = 1, t_end = 1.2, dt = 0.1 }\n"
+      "file = os.tmpname() .. \".csv\"\n"
+      "run:save(file)\n"
+      "print(load(file).theta == run.theta)  --> true\n"
+      "run.events:save(file)\n"
+      "d = load(file)\n"
+      "print(#d, d.kind[1], d.t == run.events.t)  --> 2\tturn\ttrue\n"
+      "os.remove(file)"}},
+};
+
+constexpr lua::Member trajectory_module_members[] = {
+    {lua::a_function<load_of_old>,
+     {"trajectory.load(file)", "Its name is load now.",
+      "print(select(2, pcall(trajectory.load, \"run.csv\")):match(\"load%(.*\"))  --> load(\"run.csv\")"}},
+};
+
+}  // namespace
+
+const lua::Class load_functions = {
+    "load",
+    {"load(file) -> run or data", "Reads files.", "print(select(2, pcall(load, \"missing.csv\")) ~= nil)  --> true"},
+    load_members};
+
+const lua::Class trajectory_module = {
+    "trajectory",
+    {"trajectory.load(file)", "What load(file) was before.", "print((pcall(trajectory.load, \"run.csv\")))  --> false"},
+    trajectory_module_members};
+
+int data_functions::load(lua_State* L) {
+    return load_of_old(L);
+}
+
+void register_load(lua_State* L) {
+    lua_getglobal(L, "load");
+    lua_rawsetp(L, LUA_REGISTRYINDEX, &original_key);
+    lua::add_functions(L, load_functions);
+    lua::add_module(L, trajectory_module);
+}
+
+}  // namespace dinal::api

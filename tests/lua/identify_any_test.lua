@@ -1,0 +1,123 @@
+-- Identification from a guess: any parameter, any measured quantity. Run by dinal.
+package.path = "tests/lua/?.lua;" .. package.path
+local support = require "support"
+local test, near, equal, raises_here = support.test, support.near, support.equal, support.raises_here
+
+local function noise(n, std, seed) return vector.normal { n = n, std = std, seed = seed } end
+
+--- Every fitted value lies within five of its errors, and the errors say something.
+local function found(fit, truth, most)
+    for name, value in pairs(truth) do
+        near(fit[name], value, 5 * fit.std_error[name])
+        assert(fit.std_error[name] > 0 and fit.std_error[name] < (most or 0.1) * math.abs(value), name .. " " .. fit.std_error[name])
+    end
+end
+
+local sys = system { I = 1, k = 4, C = 0.1, Rd = 0.1, Re = 0.15 }
+local M = excitation.harmonic { amplitude = 1.3, omega = 1.1 }
+local run = sys:simulate { M = M, theta0 = 0.3, t_end = 40, dt = 0.05 }
+local guess = system { I = 1.2, k = 3, C = 0.05, Rd = 0.2, Re = 0.2 }
+
+test("velocities alone tell the system, with gaps in them", function()
+    local v = {}
+    for i, x in ipairs(run.velocity + noise(#run, 0.01, 1)) do v[i] = i % 7 == 0 and 0 / 0 or x end
+    local fit = identify { data = { t = run.t, velocity = v }, M = M, system = guess, free = { "I", "k", "C", "Rd" }, measured = "velocity" }
+    found(fit, { I = 1, k = 4, C = 0.1, Rd = 0.1 })
+    near(fit.theta0, 0.3, 5 * fit.std_error.theta0)
+    near(fit.noise, 0.01, 0.001)
+    equal(fit.system.k, fit.k)
+    equal(#fit.residual, 801 - 801 // 7)
+end)
+
+test("angles and accelerations of unequal noise are weighed", function()
+    local d = data { t = run.t, x = run.theta + noise(#run, 0.02, 2), a = run.acceleration + noise(#run, 0.05, 3) }
+    local fit = identify { data = d, M = M, system = guess:with { I = 1 }, free = { "k", "C", "Rd", "offset" }, measured = { theta = "x", acceleration = "a" } }
+    found(fit, { k = 4, C = 0.1, Rd = 0.1 })
+    near(fit.offset, 0, 5 * fit.std_error.offset)
+    local alone = identify { data = d, M = M, system = guess:with { I = 1 }, free = { "k", "C", "Rd", "offset" }, measured = { theta = "x" } }
+    assert(fit.std_error.k < alone.std_error.k)
+end)
+
+test("a coast-down without a spring", function()
+    local fly = system { I = 1, k = 0, C = 0.1, Rd = 0.2 }
+    local r = fly:simulate { velocity0 = 3, t_end = 12, dt = 0.05 }
+    local fit = identify { data = { t = r.t, velocity = r.velocity + noise(#r, 0.01, 4) },
+        system = system { I = 1, k = 0, C = 0.2, Rd = 0.1 }, free = { "C", "Rd" }, measured = "velocity" }
+    found(fit, { C = 0.1, Rd = 0.2, velocity0 = 3 })
+end)
+
+test("laws of friction on a belt: stribeck, asymmetric, and lugre in its sliding", function()
+    local function law(Rd, Re, speed) return system { I = 1, k = 4, C = 0.05, friction = friction.stribeck { Rd = Rd, Re = Re, speed = speed } } end
+    local b = law(0.3, 0.6, 0.2):simulate { belt = 0.15, t_end = 30, dt = 0.05 }
+    local record = { t = b.t, theta = b.theta + noise(#b, 0.003, 5) }
+    local fit = identify { data = record, belt = 0.15, system = law(0.2, 0.5, 0.3), free = { "friction.Rd", "friction.Re", "friction.speed" },
+        theta0 = 0, velocity0 = 0 }
+    found(fit, { ["friction.Rd"] = 0.3, ["friction.Re"] = 0.6, ["friction.speed"] = 0.2 })
+    assert(not tostring(fit):find "alike")
+    -- with another law the residual is no noise, and the errors know that
+    fit = identify { data = record, belt = 0.15, system = sys:with { C = 0.05, Rd = 0.3, Re = 0.6 }, free = { "k", "Rd", "Re" }, theta0 = 0, velocity0 = 0 }
+    assert(tostring(fit):find "alike from sample to sample", tostring(fit))
+    near(fit.k, 4, 4 * fit.std_error.k)
+
+    local function uneven(a, b) return system { I = 1, k = 4, friction = friction.asymmetric { forward = { Rd = a }, backward = { Rd = b } } } end
+    local r = uneven(0.05, 0.15):simulate { M = M, t_end = 30, dt = 0.05 }
+    fit = identify { data = { t = r.t, theta = r.theta + noise(#r, 0.003, 6) }, M = M, system = uneven(0.1, 0.1),
+        free = { "friction.forward.Rd", "friction.backward.Rd", "k" } }
+    found(fit, { ["friction.forward.Rd"] = 0.05, ["friction.backward.Rd"] = 0.15, k = 4 })
+
+    local function bristles(Rd) return system { I = 1, k = 4, friction = friction.lugre { Rd = Rd, Re = 1.5 * Rd, speed = 0.1, stiffness = 50, damping = 1 } } end
+    r = bristles(0.2):simulate { theta0 = 1, t_end = 10, dt = 0.05 }
+    fit = identify { data = { t = r.t, theta = r.theta + noise(#r, 0.003, 7) }, system = bristles(0.3), free = { "friction.Rd" } }
+    found(fit, { ["friction.Rd"] = 0.2 })
+    assert(tostring(fit.system):find("lugre", 1, true))
+end)
+
+test("numbers of a table that M uses, which stays as it was; a spring and a shaking base", function()
+    local p = { Kp = 2, Kd = 0.5 }
+    local function F(t, theta, velocity) return -p.Kp * (theta - 1) - p.Kd * velocity end
+    local plant = system { I = 1, k = 1, Rd = 0.05 }
+    local r = plant:simulate { M = F, t_end = 15, dt = 0.05 }
+    p.Kp, p.Kd = 1, 0.2
+    for _, M in ipairs { F, excitation.scripted(F) } do
+        local fit = identify { data = { t = r.t, theta = r.theta + noise(#r, 0.003, 8) }, M = M, system = plant, free = { "p.Kp", "p.Kd", "Rd" } }
+        found(fit, { ["p.Kp"] = 2, ["p.Kd"] = 0.5, Rd = 0.05 })
+        assert(p.Kp == 1 and p.Kd == 0.2)
+    end
+    local base = excitation.harmonic { amplitude = 2, omega = 1.7 }
+    local function duffing(c) return system { I = 1, k = 2, C = 0.2, spring = spring.polynomial { [3] = c } } end
+    r = duffing(0.8):simulate { base = base, t_end = 25, dt = 0.05 }
+    local fit = identify { data = { t = r.t, theta = r.theta + noise(#r, 0.005, 9) }, base = base, system = duffing(0.5), free = { "spring.3", "C" } }
+    found(fit, { ["spring.3"] = 0.8, C = 0.2 })
+end)
+
+test("exact data give errors of some ulps at least, and many records the coverage that the errors promise", function()
+    local fit = identify { data = run, M = M, system = guess:with { I = 1 }, free = { "k", "C", "Rd" } }
+    for name, value in pairs { k = 4, C = 0.1, Rd = 0.1 } do
+        near(fit[name], value, 1e-6)
+        assert(fit.std_error[name] >= 1e-15 * value)
+    end
+    local one, two, all = 0, 0, 0
+    for seed = 1, 40 do
+        local v = run.velocity + noise(#run, 0.03, seed)
+        local record = identify { data = { t = run.t, velocity = v }, M = M, system = sys, free = { "k", "C", "Rd" }, measured = "velocity" }
+        for name, value in pairs { k = 4, C = 0.1, Rd = 0.1 } do
+            local z = math.abs(record[name] - value) / record.std_error[name]
+            one, two, all = one + (z < 1 and 1 or 0), two + (z < 1.96 and 1 or 0), all + 1
+        end
+    end
+    assert(one / all > 0.55 and one / all < 0.85 and two / all > 0.88, one / all .. " " .. two / all)
+end)
+
+test("what cannot be fitted is told", function()
+    local record = { t = run.t, theta = run.theta }
+    raises_here(function() identify { data = record, measured = "velocity" } end, "measured (the string \"velocity\") needs a guess beside it: system = system{ ... }")
+    raises_here(function() identify { data = record, system = guess, free = { "friction.speed" } } end, "free has 'friction.speed', which is no number of the system")
+    raises_here(function() identify { data = record, system = guess, free = { "q.x" } } end, "free has 'q.x'")
+    raises_here(function() identify { data = record, system = guess } end, "free must be a list")
+    raises_here(function() identify { data = record, system = guess, free = { "k" }, k = 3 } end, "k belongs into system")
+    raises_here(function() identify { data = record, system = guess, free = { "k" }, measured = "speed" } end, "measured must be \"theta\"")
+    raises_here(function() identify { data = record, system = guess, free = { "k" }, measured = "velocity" } end, "the record has no column 'velocity'")
+    raises_here(function() identify { data = record, system = guess, free = { "k" }, M = function() error "broken" end } end, "broken")
+end)
+
+support.finish()
