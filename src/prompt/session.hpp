@@ -17,7 +17,6 @@ struct Session {
     Record record;
     lua_CFunction show_values = print_values;
     bool local_noticed = false;    ///< once is enough
-    bool degrees_noticed = false;  ///< here, too
     bool leaving = false;          ///< :quit
 };
 
