@@ -143,9 +143,8 @@ int animate_run(lua_State* L) {
     if (!asked.file) {
         const bool shown = terminal::display_of(STDOUT_FILENO).terminal;
         if (!shown || !terminal::obeys_escapes()) {
-            options.fail(
-                {fmt::format("an animation is shown in a terminal, and this {}; give file = \"run.svg\"",
-                             shown ? "one cannot do it, as TERM says" : "output is none")});
+            options.fail({fmt::format("an animation is shown in a terminal, and this {}; give file = \"run.svg\"",
+                                      shown ? "one cannot do it, as TERM says" : "output is none")});
         }
         const auto take = asked_take(options, asked, run->trajectory, most_frames);
         play(asked_scene(L, options, run, take, units), asked);

@@ -307,9 +307,9 @@ std::string other_grammar(const Stumble& stumble) {
 std::string syntax_habit(lua_State* L, const lua::SyntaxMessage& message, std::string_view statement) {
     luaL_checkstack(L, LUA_MINSTACK, "for the habits of others");
     const Stumble stumble = stumble_in(message, statement);
-    for (std::string advice : {printed_sign(message, statement), doubled_sign(stumble), name_without_quotes(stumble),
-                               two_words(L, stumble), misspelt_keyword(stumble), missing_star(stumble),
-                               missing_return(stumble), other_grammar(stumble)}) {
+    for (std::string advice :
+         {printed_sign(message, statement), doubled_sign(stumble), name_without_quotes(stumble), two_words(L, stumble),
+          misspelt_keyword(stumble), missing_star(stumble), missing_return(stumble), other_grammar(stumble)}) {
         if (!advice.empty()) {
             return advice;
         }

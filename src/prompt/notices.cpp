@@ -4,9 +4,9 @@
 
 #include <algorithm>
 #include <array>
-#include <string_view>
 #include <set>
 #include <span>
+#include <string_view>
 #include <utility>
 #include <vector>
 

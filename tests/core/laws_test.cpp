@@ -206,35 +206,6 @@ TEST_CASE("a law with the same numbers each way is Coulomb's, bit for bit", "[la
     }
 }
 
-TEST_CASE("what is wrong with a friction law is said with the side it is about", "[laws]") {
-    const auto complaint = [](const Friction& law) {
-        const auto made = Oscillator::make({.inertia = 1, .stiffness = 1, .friction = law});
-        return made ? "" : made.error().sentence;
-    };
-    CHECK(complaint(AsymmetricCoulomb{.forward = {0.2, 0.1}, .backward = {}}) ==
-          "forward.Re = 0.1 must be at least forward.Rd = 0.2: breakaway takes no less than kinetic friction");
-    CHECK(complaint(AsymmetricCoulomb{.forward = {}, .backward = {-1, 0}}) == "backward.Rd = -1 must not be negative");
-    CHECK(complaint(Coulomb{0, NAN}) == "Re = nan must be a finite number");
-}
-
-TEST_CASE("what is wrong with a law that changes with the speed is said with its option", "[laws]") {
-    const auto complaint = [](const Friction& law) { return law.complaint() ? law.complaint()->sentence : ""; };
-    using model::laws::Tabulated;
-    CHECK(complaint(model::laws::Stribeck{0.4, 0.3, 1}) ==
-          "Re = 0.3 must be at least Rd = 0.4: breakaway takes no less than kinetic friction");
-    CHECK(complaint(model::laws::Stribeck{0.1, 0.3, 0}) == "speed = 0 must be positive");
-    CHECK(complaint(Tabulated{{0.1, 1}, {1, 1}}) ==
-          "speed must begin with 0: friction at standstill is the first torque");
-    CHECK(complaint(Tabulated{{0, 1}, {1}}) == "torque has 1 numbers and speed 2: there must be one for each");
-    CHECK(complaint(Tabulated{{0, 1, 1}, {1, 1, 1}}) ==
-          "speed[3] = 1 is not greater than speed[2] = 1: speeds must increase");
-    CHECK(complaint(Tabulated{{0, 1}, {1, -0.5}}) == "torque[2] = -0.5 must not be negative");
-    CHECK(complaint(Tabulated{{0, 1}, {1, 2}, 0.5}) ==
-          "Re = 0.5 must be at least torque[1] = 1, the friction at speed 0");
-    CHECK(complaint(model::laws::UserLaw{.function = nullptr, .at_zero = 1, .breakaway = 0.5}) ==
-          "Re = 0.5 must be at least the friction at speed 0, 1");
-}
-
 TEST_CASE("a block without a spring slides, sticks and keeps its place", "[laws][sliding]") {
     // v = v0 - Rd/I t until it stops after v0^2 I/(2 Rd); a ramp s t then lets it go at Re/s.
     const Oscillator block = system_of({.inertia = 2, .stiffness = 0, .kinetic_friction = 0.3, .breakaway = 0.4});

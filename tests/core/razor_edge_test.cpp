@@ -329,20 +329,4 @@ TEST_CASE("a motion too large for its derivatives ends the run, also without fri
     CHECK(run.rows.matrix().allFinite());
 }
 
-TEST_CASE("linear feedback is the damping that it imitates", "[razor]") {
-    class Damping : public UserFunction {
-    public:
-        double value(double, const State& state) override { return -0.2 / pi * state.velocity; }
-    };
-    const Excitation M = native(Scripted{.function = std::make_shared<Damping>(), .feedback = true});
-    const ReferenceSystem s{"equivalent", nondimensional(0.2, 0.05), {}, {{-1, {}}}, {1, 0}, {0, 4}, 1};
-    const Integrator integrator = either_for_functions(0.002);
-    const Trajectory run = must_run(nondimensional(0, 0.05), M, {1, 0}, {0, 4}, Grid::every(0.0371), integrator);
-    // The iteration of spectral ends at 1e-14 of the motion.
-    const double allowed = tolerance_of(integrator, 4 * 25 * std::pow(2 * pi * 0.002, 4) / 120);
-    CHECK(error_of(run, s.exact(), s.oscillator) <= 5 * allowed);
-    REQUIRE(run.events.size() == s.exact().events().size());
-    CHECK(run.events.back().kind == EventKind::stick);
-}
-
 }  // namespace dinal::razor_edge_test

@@ -175,20 +175,6 @@ TEST_CASE("a spring in a run with more in it moves the mass as without", "[sprin
     CHECK(energy->closure() < 1e-12);
 }
 
-TEST_CASE("a run with a spring of its own goes on as if it had not been interrupted", "[spring][resume]") {
-    const Oscillator system = with_spring(cubic(0.6), 0.5, 0.1, 0.25);
-    const Excitation M = harmonic(0.9, 0.4);
-    for (const auto& [integrator, tolerance] : methods) {
-        const Trajectory whole = must_run(system, M, {1, 0}, {0, 40}, Grid::every(1), integrator);
-        const Trajectory half = must_run(system, M, {1, 0}, {0, 17.3}, Grid::every(1), integrator);
-        const auto both = resume(system, M, half, 40, Grid::every(1), integrator);
-        REQUIRE(both);
-        REQUIRE(both->rows.rows() == whole.rows.rows());
-        for (Eigen::Index i = 0; i < whole.size(); ++i)
-            CHECK(both->rows(i, 1) == within(whole.rows(i, 1), 10 * tolerance));
-    }
-}
-
 TEST_CASE("the steady motion of Duffing's oscillator is the one that a long run comes to", "[spring][steady]") {
     const Oscillator system = with_spring(cubic(1), 1, 0.05, 0.05, 0.2);
     const Excitation M = harmonic(1, 0.8);
@@ -211,17 +197,6 @@ TEST_CASE("the steady motion of Duffing's oscillator is the one that a long run 
 
 TEST_CASE("springs by lot move as an independent integrator says, in spectral and in rk4", "[spring][oracle]") {
     check_random_stops(Lots::springs, 120);
-}
-
-TEST_CASE("what is wrong with a spring, and who knows none", "[spring]") {
-    const auto made = Oscillator::make({.inertia = 1, .stiffness = 1, .spring = cubic(NAN)});
-    REQUIRE_FALSE(made);
-    CHECK(made.error().sentence == "[3] = nan must be a finite number");
-    const auto run = simulate(with_spring(cubic(1), 1), {}, {1, 0}, {0, 1}, Grid::none(), Dinal1989{.h = 0.01});
-    REQUIRE_FALSE(run);
-    CHECK(run.error().sentence ==
-          "integrator.dinal1989 knows the spring k theta only: take integrator.spectral or rk4");
-    CHECK(run.error().option == "integrator");
 }
 
 TEST_CASE("the story of a run names a spring of its own", "[spring][explain]") {

@@ -159,73 +159,9 @@ TEST_CASE("restitution 0: the mass stays where it hits, until it is pulled off",
     }
 }
 
-TEST_CASE("a run with walls goes on as if it had not been interrupted", "[walls][resume]") {
-    const Oscillator ball = walled({0, none, 0.7});
-    const Excitation M = constant(-2) + ramp(1, 8);
-    for (const auto& [integrator, tolerance] : methods_at_walls) {
-        const Trajectory whole = must_run(ball, M, {1, 0}, {0, 12}, Grid::every(0.5), integrator);
-        for (const double stop : {0.5, 1.7, 5.0, 7.0, 10.5}) {
-            CAPTURE(stop);
-            const Trajectory half = must_run(ball, M, {1, 0}, {0, stop}, Grid::every(0.5), integrator);
-            const auto both = resume(ball, M, half, 12, Grid::every(0.5), integrator);
-            REQUIRE(both);
-            // How small the last bounces are that are told depends on how long a run is asked for.
-            for (const EventKind kind : {EventKind::stick, EventKind::slip, EventKind::rest}) {
-                const std::vector<Event> once = of_kind(whole, kind), twice = of_kind(*both, kind);
-                REQUIRE(once.size() == twice.size());
-                for (std::size_t i = 0; i < once.size(); ++i) {
-                    CHECK(twice[i].t == within(once[i].t, 40 * tolerance));
-                }
-            }
-            for (Eigen::Index i = 0; i < whole.size(); ++i) {
-                CHECK(both->rows(i, 1) == within(whole.rows(i, 1), 40 * tolerance));
-            }
-        }
-    }
-}
-
-TEST_CASE("a steady motion between walls is found, and one that leans", "[walls][steady]") {
-    const Oscillator system = system_of({.inertia = 1,
-                                         .stiffness = 1,
-                                         .damping = 0.1,
-                                         .kinetic_friction = 0.05,
-                                         .breakaway = 0.05,
-                                         .walls = Walls{-0.5, 0.5, 0.6}});
-    const Excitation M = harmonic(0.6, 1.2);
-    const double period = 2 * pi / 1.2;
-    const analysis::SteadyMotion steady =
-        analysis::steady_motion({.system = system, .excitation = M, .drive = {0, period}}, {});
-    REQUIRE(steady.status == analysis::SteadyStatus::steady);
-    CHECK(steady.high == 0.5);
-    CHECK(steady.low == -0.5);
-    const Trajectory again = must_run(system, M, steady.start, {0, steady.period}, Grid::none(), Spectral{});
-    CHECK(again.state_at_stop.theta == within(steady.start.theta, 1e-7));
-    CHECK(again.state_at_stop.velocity == within(steady.start.velocity, 1e-7));
-    const analysis::SteadyMotion leans = analysis::steady_motion(
-        {.system = walled({-none, 0.2, 0.5}, 1), .excitation = constant(1) + harmonic(0.1, 1.2), .drive = {0, period}},
-        {});
-    CHECK(leans.status == analysis::SteadyStatus::adheres);
-    CHECK(leans.rest == std::pair{0.2, 0.2});
-}
-
 TEST_CASE("systems with walls by lot move as an independent integrator says, in spectral and in rk4",
           "[walls][oracle]") {
     check_random_stops(Lots::walls, 180);
-}
-
-TEST_CASE("what is wrong with walls is said with the option", "[walls]") {
-    const auto complaint = [](const Walls& walls) { return walls.complaint() ? walls.complaint()->sentence : ""; };
-    CHECK(complaint({1, -1, 0.5}) == "walls: lower = 1 must be less than upper = -1");
-    CHECK(complaint({1, 1, 0.5}) == "walls: lower = 1 must be less than upper = 1");
-    CHECK(complaint({-1, 1, 1.5}) == "walls: restitution = 1.5 must be from 0 to 1");
-    CHECK(complaint({}).starts_with("walls needs lower, upper or both"));
-    const auto run = simulate(walled({-1, 1, 0.5}), {}, {2, 0}, {0, 1}, Grid::none(), Spectral{});
-    REQUIRE_FALSE(run);
-    CHECK(run.error().sentence == "theta0 = 2 is beyond the wall at upper = 1");
-    CHECK(run.error().option == "theta0");
-    const auto museum = simulate(walled({-1, 1, 0.5}, 1), {}, {0, 0}, {0, 1}, Grid::none(), Dinal1989{.h = 0.01});
-    REQUIRE_FALSE(museum);
-    CHECK(museum.error().sentence == "integrator.dinal1989 knows no walls: take integrator.spectral or rk4");
 }
 
 TEST_CASE("the story tells of walls, impacts and rest at a wall", "[walls][explain]") {
