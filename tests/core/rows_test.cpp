@@ -29,8 +29,6 @@ std::string refusal(const Window& window, const Grid& grid, const Limits& limits
     return run ? "" : run.error().sentence;
 }
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
-
 }  // namespace
 
 TEST_CASE("rows lie at t_start + i dt and the last one at t_end, exactly", "[rows]") {
