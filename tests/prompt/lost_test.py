@@ -10,7 +10,7 @@ sys.dont_write_bytecode = True  # no folder __pycache__ in the source tree
 
 import pexpect
 
-from session import CONTINUATION, CTRL_C, ESCAPES, PATIENCE, Session, environment
+from session import CONTINUATION, ESCAPES, PATIENCE, Session, environment
 from screen import Terminal
 
 PROGRAM = ""
@@ -152,15 +152,6 @@ class Typing(Lost):
         terminal.type(RIGHT + "+1\r")
         terminal.enter("")
         self.assertEqual(terminal.enter("answer"), "43")
-
-    def test_a_bracket_shows_its_partner(self):
-        terminal = self.terminal()
-        terminal.type("f(g[1], ')')")
-        terminal.wait(lambda: terminal.row() == "> f(g[1], ')')")
-        y = terminal.screen.cursor.y
-        bold = [x for x in range(20) if terminal.screen.buffer[y][x].bold]
-        self.assertEqual(bold, [3, 13])
-        terminal.type(CTRL_C)
 
     def test_tab_after_an_event_and_after_integrator(self):
         session = self.session()
