@@ -153,48 +153,6 @@ TEST_CASE("the energy adds up under every friction law", "[laws][energy]") {
     }
 }
 
-TEST_CASE("asymmetric friction: each half cycle ends 2 Rd/k of its own way nearer to the middle", "[laws]") {
-    const double forward = 0.04, backward = 0.11;
-    const Oscillator system = with_law(AsymmetricCoulomb{.forward = {forward, 0.2}, .backward = {backward, 0.3}});
-    for (const Integrator& integrator : std::vector<Integrator>{Exact{}, Spectral{}, Rk4{0.001}}) {
-        const double near = std::holds_alternative<Rk4>(integrator) ? 1e-10 : 1e-13;
-        const Trajectory run = must_run(system, {}, {1, 0}, {0, 30}, Grid::every(0.3), integrator);
-        double theta = 1, t = 0;
-        std::size_t n = 0;
-        for (bool back = true;; back = !back) {
-            theta = back ? -(theta - 2 * backward) : -(theta + 2 * forward);
-            t += pi;
-            REQUIRE(n < run.events.size());
-            CHECK(run.events[n].t == within(t, near));
-            CHECK(run.events[n].theta == within(theta, near));
-            ++n;
-            if (theta >= -0.2 && theta <= 0.3) break;  // -k theta pulls forward against 0.2, backward against 0.3
-            CHECK(run.events[n - 1].kind == EventKind::turn);
-        }
-        CHECK(n == 5);
-        REQUIRE(run.events.size() == n);
-        CHECK(run.events.back().kind == EventKind::rest);
-    }
-    CHECK(system.resting_places() == std::pair{-0.2, 0.3});
-}
-
-TEST_CASE("asymmetric friction lets go at the limit of each side", "[laws]") {
-    const Oscillator system = with_law(AsymmetricCoulomb{.forward = {0.1, 0.25}, .backward = {0.2, 0.75}});
-    const auto ramp = [](double slope) { return Excitation::make(Ramp{.slope = slope, .at = 0}).value(); };
-    for (const Integrator& integrator : std::vector<Integrator>{Exact{}, Spectral{}, Rk4{0.01}}) {
-        for (const auto& [slope, when] : {std::pair{0.1, 2.5}, std::pair{-0.1, 7.5}}) {
-            const Trajectory run = must_run(system, ramp(slope), {0, 0}, {0, 9}, Grid::none(), integrator);
-            REQUIRE_FALSE(run.events.empty());
-            CHECK(run.events[0].kind == EventKind::slip);
-            CHECK(run.events[0].t == within(when, 1e-14));
-        }
-        // Between the limits of both sides nothing ever moves it, and the program knows.
-        const Trajectory held = must_run(system, harmonic(0.25, 1), {0, 0}, {0, 100}, Grid::none(), integrator);
-        CHECK(held.events.empty());
-        CHECK(held.outcome == Outcome::at_rest);
-    }
-}
-
 TEST_CASE("a law with the same numbers each way is Coulomb's, bit for bit", "[laws]") {
     const Oscillator plain = system_of({.inertia = 1, .stiffness = 1, .kinetic_friction = 0.1, .breakaway = 0.2});
     const Oscillator twice = with_law(AsymmetricCoulomb{.forward = {0.1, 0.2}, .backward = {0.1, 0.2}});

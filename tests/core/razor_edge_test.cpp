@@ -164,20 +164,6 @@ TEST_CASE("a mass at rest stays exactly where it is, for ever", "[razor]") {
     CHECK(run.at(777.77)->velocity == 0);
 }
 
-TEST_CASE("without dry friction there are turns only", "[razor]") {
-    const Integrator integrator = either();
-    CAPTURE(integrator.index());
-    for (const double zeta : {0.0, 0.1}) {
-        const Trajectory run = run_of(nondimensional(zeta, 0), harmonic(0.7, 4.1), {1, 0}, 30, integrator);
-        CHECK(run.events.size() > 30);
-        for (const Event& event : run.events) CHECK(event.kind == EventKind::turn);
-        CHECK(run.outcome == Outcome::reached_end);
-    }
-    const Trajectory still = run_of(nondimensional(0, 0), {}, {0, 0}, 3, integrator);
-    check_never_moved(still, 0);
-    CHECK(still.outcome == Outcome::reached_end);  // nothing holds it
-}
-
 TEST_CASE("a jump of M exactly at a turn: the mass goes on from there under the new load", "[razor]") {
     const Integrator integrator = either();
     CAPTURE(integrator.index());
