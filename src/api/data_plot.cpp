@@ -5,13 +5,16 @@
 #include <array>
 #include <cmath>
 #include <functional>
+#include <iterator>
 #include <limits>
+#include <optional>
 
 #include "api/data.hpp"
 #include "api/data_docs.hpp"
 #include "api/map_figure.hpp"
 #include "api/picture.hpp"
 #include "lua/options.hpp"
+#include "plots/run_figure.hpp"
 
 namespace dinal::api::data_functions {
 namespace {
@@ -52,7 +55,31 @@ plots::Numbers drawn(lua_State* L, const Data& data, const std::string& name) {
 
 std::string label_of(const Data& data, const std::string& name) {
     const DataColumn* column = data.find(name);
-    return column != nullptr ? column->label() : name;
+    return column != nullptr ? model::of_unit(plots::symbol_for(name), column->unit) : name;
+}
+
+/// What is seen of a curve that says little in its full height: six decades of a spectrum, and of a response no more
+/// than some times what most of it reaches, since near a pole it has no bound.
+std::optional<plots::Interval> telling_limits(const Data& data, const plots::Curve& curve) {
+    std::vector<double> values;
+    std::copy_if(curve.y.values.begin(), curve.y.values.end(), std::back_inserter(values),
+                 [](double y) { return std::isfinite(y); });
+    if (values.empty() || (!data.is_spectrum && data.pieces_of.empty())) return std::nullopt;
+    const auto [least, greatest] = std::minmax_element(values.begin(), values.end());
+    const plots::Interval all{*least, *greatest};
+    if (data.is_spectrum) {
+        constexpr double decades = 1e-6;
+        return all.high > 0 && all.low < decades * all.high
+                   ? std::optional(plots::Interval{decades * all.high, 2 * all.high})
+                   : std::nullopt;
+    }
+    constexpr double most = 0.9, much_higher = 10, shown = 4;
+    const auto place = static_cast<std::ptrdiff_t>(most * static_cast<double>(values.size() - 1));
+    std::nth_element(values.begin(), values.begin() + place, values.end());
+    const double usual = values[static_cast<std::size_t>(place)];
+    return usual > 0 && all.high > much_higher * usual
+               ? std::optional(plots::Interval{std::min(0.0, all.low), shown * usual})
+               : std::nullopt;
 }
 
 /// The line broken where its data are, and a dotted one of what is unstable.
@@ -186,6 +213,8 @@ int plot(lua_State* L) {
         std::vector<plots::Figure> map{
             figure_of_map(options, {x.front(), y.front(), z.front()},
                           {drawn(L, *data, x.front()), drawn(L, *data, y.front()), drawn(L, *data, z.front())})};
+        map.front().x.label = label_of(*data, x.front());
+        map.front().y.label = label_of(*data, y.front());
         apply_options(L, options, map.front());
         return deliver(L, options, std::move(map));
     }
@@ -221,7 +250,10 @@ int plot(lua_State* L) {
         figure.curves.push_back(overlay_curve(options, *data, name, x.front(), y.front()));
         figure.curves.back().dashes = dashes[overlays++ % dashes.size()];
     }
+    figure.y.logarithmic = data->is_spectrum;
+    if (y.size() == 1) figure.y.limits = telling_limits(*data, curve);
     apply_options(L, options, figure);
+    if (!options.has("ylim") && figure.y.logarithmic != data->is_spectrum) figure.y.limits.reset();
     std::vector<plots::Figure> figures{std::move(figure)};
     return deliver(L, options, std::move(figures));
 }

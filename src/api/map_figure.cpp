@@ -88,8 +88,8 @@ plots::Figure figure_of_map(const lua::Options& options, const std::array<std::s
     for (const double level : levels) {
         plots::Curve line = plots::contour(shades, level);
         line.label = fmt::format("{} = {:.6g}", names[2], level);
-        constexpr int black = 5;
-        line.colour = black;
+        constexpr int vermilion = 2;  // is seen on the dark and on the bright end
+        line.colour = vermilion;
         figure.curves.push_back(std::move(line));
     }
     figure.shades = std::make_shared<const plots::Shades>(std::move(shades));

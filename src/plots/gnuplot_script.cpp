@@ -214,6 +214,7 @@ public:
         add_axis('x', panel_.view.x, panel_.x_ticks);
         add_axis('y', panel_.view.y, panel_.y_ticks);
         add_legend();
+        add_colour_bar();
         add_stuck();
         if (figure_.dead_zone) {
             add_dead_zone();
@@ -310,11 +311,6 @@ private:
                 case Sample::stuck:
                     add_bar(at(entry.x, entry.y - bar / 2), at(entry.x + width, entry.y + bar / 2), ink_colour);
                     break;
-                case Sample::shade:
-                    line(fmt::format("set object rectangle from {} to {} fc rgb '{}' fs solid noborder",
-                                     at(entry.x, entry.y - 0.35 * em), at(entry.x + width, entry.y + 0.35 * em),
-                                     shade_colour(entry.curve, paper_bands(*figure_.shades).size())));
-                    break;
                 case Sample::curve:
                     add_sample_of_curve(entry);
                     break;
@@ -322,6 +318,20 @@ private:
                     break;
             }
         }
+    }
+
+    void add_colour_bar() {
+        const ColourBar& colours = panel_.bar;
+        const double cell = (panel_.top - panel_.bottom) / std::max(1.0, static_cast<double>(colours.cells));
+        for (std::size_t i = 0; i < colours.cells; ++i) {
+            const double y = panel_.bottom + static_cast<double>(i) * cell;
+            add_bar(at(colours.left, y), at(colours.right, y + cell), shade_colour(i, colours.cells));
+        }
+        for (const auto& [place, text] : colours.labels) {
+            line(fmt::format("set label {} at {} left textcolor rgb '{}'", quoted_words(text),
+                             at(colours.right + 0.4 * em, panel_.bottom + place * cell), ink_colour));
+        }
+        add_words(panel_.bar_label, " rotate by 90");
     }
 
     void add_sample_of_curve(const LegendEntry& entry) {
