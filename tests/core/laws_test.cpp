@@ -1,6 +1,5 @@
 // Friction laws other than one number each for sliding and holding: every law in every integrator that knows friction.
 #include <cmath>
-#include <numbers>
 
 #include "analysis/energy.hpp"
 #include "analysis/explain.hpp"
@@ -24,8 +23,6 @@ using model::laws::AsymmetricCoulomb;
 using model::laws::Coulomb;
 
 namespace {
-
-constexpr double pi = std::numbers::pi;
 
 /// A law, and what it has beside its constant at standstill, once more and independently: against the motion.
 struct LawCase {

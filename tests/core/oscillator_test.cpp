@@ -13,7 +13,6 @@ using namespace dinal::model;
 namespace {
 
 using Catch::Matchers::Contains;
-constexpr double infinity = std::numeric_limits<double>::infinity();
 
 std::string complaint(const OscillatorParameters& parameters) {
     const auto system = Oscillator::make(parameters);
