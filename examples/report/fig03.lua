@@ -4,7 +4,7 @@ local case = dofile((debug.getinfo(1, "S").source:match("^@(.*/)") or "") .. "ca
 local fig = case.figure("03", "magnification without dry friction", ...)
 local r = vector.linspace(0, 2.5, 501)
 local picture = {
-  xlabel = "ω/ω₀", ylabel = "Φ", ylim = { 0, 5 }, xlim = { 0, 2.5 }, xticks = 0.5, size = { 8.5, 7 },
+  xlabel = "ω/ω₀", ylabel = "Φ", ylim = { 0, 6 }, xlim = { 0, 2.5 }, xticks = 0.5, size = { 8.5, 7 },
 }
 for _, zeta in ipairs{ 0, 0.1, 0.2, 0.3, 0.5, 1 } do
   picture[#picture + 1] = { r, theory.magnification{ r = r, zeta = zeta }, label = string.format("ζ = %g", zeta) }

@@ -15,7 +15,6 @@
 #include "lua/user_function.hpp"
 #include "lua/worker_state.hpp"
 #include "plots/animation/animated_svg.hpp"
-#include "plots/animation/gif_script.hpp"
 #include "plots/animation/text_frame.hpp"
 #include "terminal/display.hpp"
 #include "text/words.hpp"
@@ -26,12 +25,12 @@ namespace {
 namespace animation = plots::animation;
 
 constexpr double usual_seconds = 10;
-constexpr double screen_rate = 25, gif_rate = 12.5;  // frames a second
+constexpr double frames_per_second = 25;
 constexpr double most_frames_in_file = 3000, most_frames = 100'000;
 
 /// Which part, how fast, within what a file or a memory should hold.
 animation::Take asked_take(const lua::Options& options, const AnimateOptions& asked, const motion::Trajectory& run,
-                           double rate, double most) {
+                           double most) {
     animation::Take take{.from = asked.from.value_or(run.t_start), .to = asked.to.value_or(run.t_stop)};
     if (!(take.from < take.to) || take.from < run.t_start || take.to > run.t_stop) {
         options.fail(asked.from ? "from" : "to",
@@ -40,12 +39,12 @@ animation::Take asked_take(const lua::Options& options, const AnimateOptions& as
                                  take.from, take.to, run.t_start, run.t_stop));
     }
     take.seconds = asked.speed ? (take.to - take.from) / *asked.speed : usual_seconds;
-    take.frames_per_second = rate;
+    take.frames_per_second = frames_per_second;
     if (take.count() > most) {
         options.fail("speed",
                      fmt::format("speed = {:.6g} makes an animation of {:.4g} s, {:.0f} s are the most: give a greater "
                                  "speed, or a part of the run by from and to",
-                                 *asked.speed, take.seconds, most / rate));
+                                 *asked.speed, take.seconds, most / frames_per_second));
     }
     return take;
 }
@@ -110,9 +109,8 @@ void play(const animation::Scene& scene, const AnimateOptions& asked) {
     [[maybe_unused]] const ssize_t written = ::write(STDOUT_FILENO, cursor.data(), cursor.size());
 }
 
-/// As SVG, at the rate of a screen.
 Animation animation_of(lua_State* L, const lua::Options& options, const AnimateOptions& asked, const RunHandle& run) {
-    const auto take = asked_take(options, asked, run->trajectory, screen_rate, most_frames_in_file);
+    const auto take = asked_take(options, asked, run->trajectory, most_frames_in_file);
     const animation::Scene scene = asked_scene(L, options, run, take, asked_units(L, options).value_or(units_of(*run)));
     return {animation::animated_svg(scene), animation::title_of(scene)};
 }
@@ -145,36 +143,26 @@ int animate_run(lua_State* L) {
     if (!asked.file) {
         const bool shown = terminal::display_of(STDOUT_FILENO).terminal;
         if (!shown || !terminal::obeys_escapes()) {
-            options.fail(
-                {fmt::format("an animation is shown in a terminal, and this {}; give file = \"run.svg\" or "
-                             "\"run.gif\"",
-                             shown ? "one cannot do it, as TERM says" : "output is none")});
+            options.fail({fmt::format("an animation is shown in a terminal, and this {}; give file = \"run.svg\"",
+                                      shown ? "one cannot do it, as TERM says" : "output is none")});
         }
-        const auto take = asked_take(options, asked, run->trajectory, screen_rate, most_frames);
+        const auto take = asked_take(options, asked, run->trajectory, most_frames);
         play(asked_scene(L, options, run, take, units), asked);
         if (lua::interrupt_requested()) {
             lua::raise_interrupted(L);
         }
         return 0;
     }
-    const std::string ending = text::ending_of(*asked.file);
-    if (ending != ".svg" && ending != ".gif") {
-        options.fail({.sentence = fmt::format("the name '{}' must end in .svg or .gif", *asked.file),
+    if (text::ending_of(*asked.file) != ".svg") {
+        options.fail({.sentence = fmt::format("the name '{}' must end in .svg", *asked.file),
                       .option = "file",
                       .culprit = *asked.file});
     }
-    const bool gif = ending == ".gif";
-    const auto take = asked_take(options, asked, run->trajectory, gif ? gif_rate : screen_rate, most_frames_in_file);
-    const animation::Scene scene = asked_scene(L, options, run, take, units);
     files::OutputFile file = options.value_or_fail(files::OutputFile::create(*asked.file));
-    const auto bytes =
-        gif ? drawn_by_gnuplot(animation::gif_input(scene)) : text::Expected(animation::animated_svg(scene));
-    if (lua::interrupt_requested()) {
-        lua::raise_interrupted(L);
-    }
-    file.write(options.value_or_fail(bytes));
+    const Animation drawn = animation_of(L, options, asked, run);
+    file.write(drawn.svg);
     options.value_or_fail(file.commit());
-    if (animation_viewer != nullptr) animation_viewer(animation_of(L, options, asked, run), Shown::in_file);
+    if (animation_viewer != nullptr) animation_viewer(drawn, Shown::in_file);
     return 0;
 }
 

@@ -18,7 +18,7 @@ struct AnimateOptions {
 };
 inline constexpr text::Option animate_target_options[] = {
     {.name = "file",
-     .meaning = "where it is written instead of shown: .svg, which a browser plays, or .gif (by gnuplot)",
+     .meaning = "where it is written instead of shown: an .svg, which a browser plays",
      .filled = text::fills<&AnimateOptions::file>},
     {.name = "ascii", .meaning = "plain characters", .filled = text::fills<&AnimateOptions::ascii>},
 };

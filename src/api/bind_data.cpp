@@ -3,6 +3,7 @@
 #include "api/classes.hpp"
 #include "api/data.hpp"
 #include "api/data_docs.hpp"
+#include "lua/values.hpp"
 #include "terminal/display.hpp"
 #include "text/characters.hpp"
 
@@ -31,6 +32,12 @@ int data_row_text(lua_State* L) {
     return lua::push_text(L, text + " }");
 }
 
+std::vector<std::string_view> names_of(const Data& data) {
+    std::vector<std::string_view> names;
+    for (const DataColumn& column : data.columns) names.emplace_back(column.name);
+    return names;
+}
+
 /// The metatable of the rows of the data at `index`, kept with it: it knows the order of the names.
 void push_row_metatable(lua_State* L, int index, const Data& data) {
     if (lua_getiuservalue(L, index, 1) == LUA_TTABLE) return;
@@ -40,29 +47,16 @@ void push_row_metatable(lua_State* L, int index, const Data& data) {
     lua_setfield(L, -2, "__tostring");
     lua_pushliteral(L, "row");
     lua_setfield(L, -2, "__name");
-    lua_createtable(L, static_cast<int>(data.columns.size()), 0);
-    for (std::size_t i = 0; i < data.columns.size(); ++i) {
-        lua::push_text(L, data.columns[i].name);
-        lua_rawseti(L, -2, static_cast<lua_Integer>(i) + 1);
-    }
-    lua_setfield(L, -2, "names");
+    lua::set_value(L, "names", names_of(data));
     lua_pushvalue(L, -1);
     lua_setiuservalue(L, index, 1);
-}
-
-void push_words(lua_State* L, const std::vector<std::string>& words) {
-    lua_createtable(L, static_cast<int>(words.size()), 0);
-    for (std::size_t i = 0; i < words.size(); ++i) {
-        lua::push_text(L, words[i]);
-        lua_rawseti(L, -2, static_cast<lua_Integer>(i) + 1);
-    }
 }
 
 int push_column(lua_State* L, const DataColumn& column) {
     if (const lua::Vector* numbers = column.numbers()) {
         lua::push(L, *numbers);
     } else {
-        push_words(L, *std::get<Words>(column.values));
+        lua::push_value(L, *std::get<Words>(column.values));
     }
     return 1;
 }
@@ -87,16 +81,6 @@ int data_other_key(lua_State* L) {
         return 1;
     }
     push_row(L, 1, *data, static_cast<std::size_t>(i - 1));
-    return 1;
-}
-
-int data_names(lua_State* L) {
-    const DataHandle& data = data_functions::self(L, "d.names");
-    lua_createtable(L, static_cast<int>(data->columns.size()), 0);
-    for (std::size_t i = 0; i < data->columns.size(); ++i) {
-        lua::push_text(L, data->columns[i].name);
-        lua_rawseti(L, -2, static_cast<lua_Integer>(i) + 1);
-    }
     return 1;
 }
 
@@ -233,7 +217,7 @@ constexpr lua::Member data_members[] = {
     {lua::a_method<data_functions::save>, save_data_doc},
     {lua::a_method<data_functions::select>, select_doc},
     {lua::a_method<data_functions::sort>, sort_doc},
-    {lua::a_field<data_names>, names_doc},
+    {lua::a_value<DataHandle, names_of>, names_doc},
     {lua::a_metamethod<data_length>("__len"), length_doc},
     {lua::a_metamethod<data_pairs>("__pairs"), pairs_doc},
     {lua::a_metamethod<data_to_string>("__tostring"), to_string_doc},

@@ -9,6 +9,7 @@
 #include "api/units_option.hpp"
 #include "lua/memory_limit.hpp"
 #include "lua/user_function.hpp"
+#include "lua/values.hpp"
 #include "lua/vector.hpp"
 #include "text/characters.hpp"
 
@@ -81,9 +82,7 @@ int total(lua_State* L) {
 template <auto member>
 int stored_field(lua_State* L) {
     const analysis::Energy& energy = energy_self(L, "energy.start")->energy;
-    lua_createtable(L, 0, 2);
-    set_number(L, "kinetic", (energy.*member).kinetic);
-    set_number(L, "spring", (energy.*member).spring);
+    lua::push_numbers(L, {{"kinetic", (energy.*member).kinetic}, {"spring", (energy.*member).spring}});
     return 1;
 }
 
@@ -95,11 +94,10 @@ int half_cycles(lua_State* L) {
     }
     lua_createtable(L, static_cast<int>(list.size()), 0);
     for (std::size_t i = 0; i < list.size(); ++i) {
-        lua_createtable(L, 0, 14);
-        set_number(L, "t_start", list[i].t_start);
-        set_number(L, "t_end", list[i].t_end);
-        set_number(L, "theta_start", list[i].theta_start);
-        set_number(L, "theta_end", list[i].theta_end);
+        lua::push_numbers(L, {{"t_start", list[i].t_start},
+                              {"t_end", list[i].t_end},
+                              {"theta_start", list[i].theta_start},
+                              {"theta_end", list[i].theta_end}});
         set_balance(L, list[i].balance);
         lua_rawseti(L, -2, static_cast<lua_Integer>(i) + 1);
     }

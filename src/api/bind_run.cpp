@@ -20,8 +20,10 @@
 #include "files/table.hpp"
 #include "lua/memory_limit.hpp"
 #include "lua/user_function.hpp"
+#include "lua/values.hpp"
 #include "lua/vector.hpp"
 #include "motion/stillness.hpp"
+#include "text/characters.hpp"
 #include "text/fixed_text.hpp"
 
 namespace dinal::api {
@@ -141,16 +143,6 @@ int columns(lua_State* L) {
     return asked;
 }
 
-int names(lua_State* L) {
-    const auto& names = run_self(L, "run.names")->trajectory.names();
-    lua_createtable(L, static_cast<int>(names.size()), 0);
-    for (std::size_t i = 0; i < names.size(); ++i) {
-        lua::push_text(L, names[i]);
-        lua_rawseti(L, -2, static_cast<lua_Integer>(i) + 1);
-    }
-    return 1;
-}
-
 // Made when first asked for and then kept as the user value of the run, so that a loop over run.events[i] is no trap.
 int events(lua_State* L) {
     run_self(L, "run.events");
@@ -162,11 +154,6 @@ int events(lua_State* L) {
     lua_pushvalue(L, -1);
     lua_setiuservalue(L, 1, 1);
     return 1;
-}
-
-int outcome(lua_State* L) {
-    const Run& run = *run_self(L, "run.outcome");
-    return lua::push_text(L, run.origin || run.whole ? motion::outcome_text(run.trajectory) : "read from a file");
 }
 
 /// One word for each way to end.
@@ -191,15 +178,6 @@ std::string_view status_word(model::Outcome outcome) {
 
 namespace {
 
-int status(lua_State* L) {
-    const Run& run = *run_self(L, "run.status");
-    if (!run.origin && !run.whole) {
-        lua_pushnil(L);
-        return 1;
-    }
-    return lua::push_text(L, status_word(run.trajectory.outcome));
-}
-
 int cycle_of_run(lua_State* L) {
     const RunHandle run = run_self(L, "run:cycle()");
     const motion::Trajectory& trajectory = run->trajectory;
@@ -218,30 +196,15 @@ int cycle_of_run(lua_State* L) {
         lua_pushnil(L);
         return 1;
     }
-    lua_createtable(L, 0, 9);
-    const std::pair<const char*, double> numbers[] = {
-        {"period", found->period}, {"amplitude", found->amplitude}, {"middle", found->centre}, {"stuck", found->stuck},
-        {"drift", found->drift},   {"change", found->change},       {"since", found->since}};
-    for (const auto& [name, x] : numbers) {
-        lua_pushnumber(L, x);
-        lua_setfield(L, -2, name);
-    }
-    lua_pushinteger(L, static_cast<lua_Integer>(found->stops));
-    lua_setfield(L, -2, "stops");
-    lua_pushboolean(L, found->steady ? 1 : 0);
-    lua_setfield(L, -2, "steady");
-    return 1;
-}
-
-int gap_of_run(lua_State* L) {
-    const double gap = run_self(L, "run.gap")->trajectory.gap;
-    gap > 0 ? lua_pushnumber(L, gap) : lua_pushnil(L);
-    return 1;
-}
-
-template <double motion::Trajectory::*time>
-int time_field(lua_State* L) {
-    lua_pushnumber(L, run_self(L, "run.t_end")->trajectory.*time);
+    lua::push_numbers(L, {{"period", found->period},
+                          {"amplitude", found->amplitude},
+                          {"middle", found->centre},
+                          {"stuck", found->stuck},
+                          {"drift", found->drift},
+                          {"change", found->change},
+                          {"since", found->since}});
+    lua::set_value(L, "stops", found->stops);
+    lua::set_value(L, "steady", found->steady);
     return 1;
 }
 
@@ -249,11 +212,11 @@ int units_of_this(lua_State* L) {
     return push_units(L, units_of(*run_self(L, "run.units")));
 }
 
+/// What was simulated, and how; nil where the run was read from a file.
 template <auto member>
-int origin_field(lua_State* L) {
-    const Run& run = *run_self(L, "run.system");
-    run.origin ? static_cast<void>(lua::push(L, (*run.origin).*member)) : lua_pushnil(L);
-    return 1;
+auto origin_of(const Run& run) {
+    using Value = std::remove_cvref_t<decltype((*run.origin).*member)>;
+    return run.origin ? std::optional<Value>((*run.origin).*member) : std::nullopt;
 }
 
 int run_length(lua_State* L) {
@@ -386,34 +349,43 @@ constexpr lua::Member run_members[] = {
       "run = system{ I = 1, k = 4, Rd = 0.3, Re = 0.6 }:simulate{ belt = 0.1, t_end = 60 }\n"
       "c = run:cycle()\n"
       "print(string.format(\"%.6f %d\", c.period, c.stops), c.steady)  --> 3.658799 1\ttrue"}},
-    {lua::a_field<time_field<&motion::Trajectory::t_start>>,
+    {lua::a_value<RunHandle, [](const Run& run) { return run.trajectory.t_start; }>,
      {"run.t_start -> number", "The time at which the run began.", DINAL_RUN "print(run.t_start)  --> 0.0"}},
-    {lua::a_field<time_field<&motion::Trajectory::t_stop>>,
+    {lua::a_value<RunHandle, [](const Run& run) { return run.trajectory.t_stop; }>,
      {"run.t_end -> number", "The time at which the run ended: the t_end it was given, or earlier when it was stopped.",
       DINAL_RUN "print(run.t_end)  --> 2.0"}},
-    {lua::a_field<status>,
+    {lua::a_value<RunHandle,
+                  [](const Run& run) {
+                      return run.origin || run.whole ? std::optional(status_word(run.trajectory.outcome)) : std::nullopt;
+                  }>,
      {"run.status -> string or nil",
       "How it ended, in one word: \"end\" (in motion), \"rest\", \"stuck\", \"event\" (one with stop = true), "
       "\"interrupted\" or \"failed\"; run.outcome is the sentence. nil of a run that was read from a file.",
       DINAL_RUN "print(run.status)  --> end"}},
-    {lua::a_field<outcome>,
+    {lua::a_value<RunHandle,
+                  [](const Run& run) {
+                      return run.origin || run.whole ? motion::outcome_text(run.trajectory) : "read from a file";
+                  }>,
      {"run.outcome -> string",
       "How it ended: \"reached the end\" in motion; \"at rest\" when nothing can move it any more, because M is constant "
       "from then on, never great enough, or went through a whole period; \"stuck at the end\" when M may still move it, "
       "as a function may at any time; \"interrupted\"; or what went wrong. It speaks of what "
       "was seen: a pulse of a function M that is shorter than run.gap may have been missed.",
       DINAL_RUN "print(run.outcome)  --> reached the end"}},
-    {lua::a_field<gap_of_run>,
+    {lua::a_value<RunHandle,
+                  [](const Run& run) {
+                      return (run.trajectory.gap > 0) ? std::optional(run.trajectory.gap) : std::nullopt;
+                  }>,
      {"run.gap -> number or nil",
       "The longest time between two looks at M where that is a Lua function, of which only values are known: a pulse of "
       "this length or more has been seen, a shorter one perhaps not (see breaks of excitation.scripted and narrowest of "
       "integrator.spectral). nil where M tells when it changes.",
       "run = nondimensional{}:simulate{ M = math.sin, t_end = 2, dt = 1, integrator = integrator.rk4{ h = 0.01 } }\n"
       "print(run.gap)  --> 0.005"}},
-    {lua::a_field<names>,
+    {lua::a_value<RunHandle, [](const Run& run) { return run.trajectory.names(); }>,
      {"run.names -> table", "The names of the columns.",
       DINAL_RUN "print(table.concat(run.names, \" \"))  --> t theta velocity M friction damping"}},
-    {lua::a_field<origin_field<&source::Origin::system>>,
+    {lua::a_value<RunHandle, origin_of<&source::Origin::system>>,
      {"run.system -> system or nil", "The system that was simulated; nil in a run that was read from a file.",
       DINAL_RUN "print(run.system.T0)  --> 1.0"}},
     {lua::a_field<units_of_this>,
@@ -421,10 +393,10 @@ constexpr lua::Member run_members[] = {
       "What theta, t and M are measured in, as its system, the run or the file it was read from says; what has no unit "
       "is nil.",
       DINAL_RUN "print(run.units.theta, run.units.t)  --> Mc/k\tT0"}},
-    {lua::a_field<origin_field<&source::Origin::excitation>>,
+    {lua::a_value<RunHandle, origin_of<&source::Origin::excitation>>,
      {"run.excitation -> excitation or nil", "The excitation M of the run; nil in a run that was read from a file.",
       DINAL_RUN "print(run.excitation)  --> excitation.constant{ amplitude = 3 }"}},
-    {lua::a_field<origin_field<&source::Origin::integrator>>,
+    {lua::a_value<RunHandle, origin_of<&source::Origin::integrator>>,
      {"run.integrator -> integrator or nil",
       "The integrator that was used, also when none was asked for; nil in a run that was read from a file.",
       integrator_example.c_str()}},

@@ -13,6 +13,7 @@
 #include "api/system_options.hpp"
 #include "api/units_option.hpp"
 #include "lua/options.hpp"
+#include "lua/values.hpp"
 #include "model/laws/coulomb.hpp"
 #include "source/describe.hpp"
 
@@ -118,30 +119,10 @@ const model::Oscillator& system_self(lua_State* L, const char* call) {
     return lua::self<model::Oscillator>(L, 1, call);
 }
 
-template <double (model::Oscillator::*get)() const>
-int field(lua_State* L) {
-    lua_pushnumber(L, (system_self(L, "sys.omega0").*get)());
-    return 1;
-}
-
-/// nil without a spring.
-template <double (model::Oscillator::*get)() const>
-int field_of_spring(lua_State* L) {
-    const model::Oscillator& system = system_self(L, "sys.omega0");
-    system.has_spring() ? lua_pushnumber(L, (system.*get)()) : lua_pushnil(L);
-    return 1;
-}
-
-int friction_of(lua_State* L) {
-    lua::push<model::Friction>(L, system_self(L, "sys.friction").friction());
-    return 1;
-}
-
-/// nil where there is only k theta.
-int spring_of(lua_State* L) {
-    const model::Spring& spring = system_self(L, "sys.spring").spring();
-    spring.none() ? lua_pushnil(L) : static_cast<void>(lua::push<model::Spring>(L, spring));
-    return 1;
+/// What a spring gives: nil without one.
+template <auto get>
+std::optional<double> with_spring(const model::Oscillator& system) {
+    return system.has_spring() ? std::optional((system.*get)()) : std::nullopt;
 }
 
 /// nil where there are none.
@@ -164,27 +145,6 @@ int walls_of(lua_State* L) {
 
 int units_of_system(lua_State* L) {
     return push_units(L, system_self(L, "sys.units").units());
-}
-
-int dead_zone(lua_State* L) {
-    const model::Oscillator& system = system_self(L, "sys.dead_zone");
-    system.has_linear_spring() ? lua_pushnumber(L, system.dead_zone()) : lua_pushnil(L);
-    return 1;
-}
-
-int omega1(lua_State* L) {
-    const auto frequency = system_self(L, "sys.omega1").damped_frequency();
-    frequency ? lua_pushnumber(L, *frequency) : lua_pushnil(L);
-    return 1;
-}
-
-int regime(lua_State* L) {
-    const model::Oscillator& system = system_self(L, "sys.regime");
-    if (!system.has_spring()) {
-        lua_pushnil(L);
-        return 1;
-    }
-    return lua::push_text(L, model::name(system.regime()));
 }
 
 int friction_ratio(lua_State* L) {
@@ -250,23 +210,27 @@ constexpr lua::Member system_members[] = {
       "The characteristic torque Mc = k sqrt(theta0^2 + (velocity0/omega0)^2) of the free motion that starts at theta0 "
       "(rad) with velocity0 (rad per time unit).",
       "print(system{ I = 1, k = 4 }:characteristic_torque(3, 8))  --> 20.0"}},
-    {lua::a_field<field<&model::Oscillator::inertia>>,
+    {lua::a_value<model::Oscillator, &model::Oscillator::inertia>,
      {"sys.I -> number", "The moment of inertia.", "print(system{ I = 2, k = 4 }.I)  --> 2.0"}},
-    {lua::a_field<field<&model::Oscillator::stiffness>>,
+    {lua::a_value<model::Oscillator, &model::Oscillator::stiffness>,
      {"sys.k -> number", "The stiffness, torque per rad.", "print(system{ I = 2, k = 4 }.k)  --> 4.0"}},
-    {lua::a_field<field<&model::Oscillator::damping>>,
+    {lua::a_value<model::Oscillator, &model::Oscillator::damping>,
      {"sys.C -> number", "The viscous damping constant, torque per rad per time unit.",
       "print(system{ I = 2, k = 4 }.C)  --> 0.0"}},
-    {lua::a_field<field<&model::Oscillator::kinetic_friction>>,
+    {lua::a_value<model::Oscillator, &model::Oscillator::kinetic_friction>,
      {"sys.Rd -> number", "The torque of dry friction while the mass moves.",
       "print(system{ I = 2, k = 4, Rd = 0.5 }.Rd)  --> 0.5"}},
-    {lua::a_field<field<&model::Oscillator::breakaway>>,
+    {lua::a_value<model::Oscillator, &model::Oscillator::breakaway>,
      {"sys.Re -> number", "The breakaway torque: the most that sticking can hold. Rd unless given.",
       "print(system{ I = 2, k = 4, Rd = 0.5 }.Re)  --> 0.5"}},
-    {lua::a_field<friction_of>,
+    {lua::a_value<model::Oscillator, &model::Oscillator::friction>,
      {"sys.friction -> law", "The law of friction.",
       "print(system{ I = 2, k = 4, Rd = 0.5 }.friction)  --> friction.coulomb{ Rd = 0.5, Re = 0.5 }"}},
-    {lua::a_field<spring_of>,
+    {lua::a_value<model::Oscillator,
+                  [](const model::Oscillator& system) {
+                      const model::Spring& spring = system.spring();
+                      return spring.none() ? std::nullopt : std::optional(spring);
+                  }>,
      {"sys.spring -> spring or nil", "The spring besides k theta, where there is one.",
       "print(system{ I = 1, k = 4, spring = spring.polynomial{ [3] = 2 } }.spring:torque(3))  --> 54.0"}},
     {lua::a_field<walls_of>,
@@ -277,25 +241,31 @@ constexpr lua::Member system_members[] = {
       "What theta, t and M are measured in; what has no unit is nil. Words for cards, columns and axes, on which no "
       "number depends.",
       "print(system{ I = 1, k = 4, units = { theta = \"m\", t = \"s\" } }.units.theta)  --> m"}},
-    {lua::a_field<field_of_spring<&model::Oscillator::natural_frequency>>,
+    {lua::a_value<model::Oscillator, with_spring<&model::Oscillator::natural_frequency>>,
      {"sys.omega0 -> number", "The natural frequency sqrt(k/I) of k alone, rad per time unit; nil where k = 0.",
       "print(system{ I = 1, k = 4 }.omega0)  --> 2.0"}},
-    {lua::a_field<field_of_spring<&model::Oscillator::natural_period>>,
+    {lua::a_value<model::Oscillator, with_spring<&model::Oscillator::natural_period>>,
      {"sys.T0 -> number", "The natural period 2 pi/omega0, time units; nil where k = 0.",
       "print(system{ I = 1, k = 4*math.pi^2 }.T0)  --> 1.0"}},
-    {lua::a_field<omega1>,
+    {lua::a_value<model::Oscillator, &model::Oscillator::damped_frequency>,
      {"sys.omega1 -> number or nil",
       "The frequency of the damped swing, omega0 sqrt(1 - zeta^2), rad per time unit; nil unless zeta < 1.",
       "print(system{ I = 1, k = 4 }.omega1, system{ I = 1, k = 4, C = 10 }.omega1)  --> 2.0\tnil"}},
-    {lua::a_field<field_of_spring<&model::Oscillator::damping_ratio>>,
+    {lua::a_value<model::Oscillator, with_spring<&model::Oscillator::damping_ratio>>,
      {"sys.zeta -> number", "The viscous damping ratio C/(2 I omega0); nil where k = 0.",
       "print(system{ I = 1, k = 4, C = 1 }.zeta)  --> 0.25"}},
-    {lua::a_field<regime>,
+    {lua::a_value<model::Oscillator,
+                  [](const model::Oscillator& system) {
+                      return system.has_spring() ? std::optional(model::name(system.regime())) : std::nullopt;
+                  }>,
      {"sys.regime -> string",
       "How the free system without dry friction moves: \"undamped\", \"underdamped\", \"critical\" or \"overdamped\"; "
       "nil where k = 0.",
       "print(system{ I = 1, k = 4, C = 4 }.regime)  --> critical"}},
-    {lua::a_field<dead_zone>,
+    {lua::a_value<model::Oscillator,
+                  [](const model::Oscillator& system) {
+                      return system.has_linear_spring() ? std::optional(system.dead_zone()) : std::nullopt;
+                  }>,
      {"sys.dead_zone -> number",
       "Re/k, rad: without excitation the mass can stay wherever |theta| is at most this; nil where k = 0 or another "
       "spring acts besides k theta.",

@@ -1,15 +1,595 @@
-// theory.NAME{...}: the closed forms, documented. What they do is in theory_free_functions.cpp and
-// theory_forced_functions.cpp.
+// theory.NAME{...}: the closed forms. Each option is a number or a vector, and results have the same shape.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <cstring>
+#include <deque>
+#include <limits>
+#include <optional>
+#include <string_view>
+#include <tuple>
+#include <utility>
+#include <vector>
+
 #include "api/classes.hpp"
-#include "api/theory_arguments.hpp"
-#include "api/theory_functions.hpp"
-#include "api/theory_options.hpp"
+#include "lua/interrupt.hpp"
+#include "lua/options.hpp"
+#include "lua/vector.hpp"
+#include "model/laws/coulomb.hpp"
+#include "model/oscillator.hpp"
+#include "motion/rk4/rk4.hpp"
+#include "text/option.hpp"
+#include "theory/den_hartog.hpp"
 #include "theory/theory_forced.hpp"
 #include "theory/theory_free.hpp"
+#include "theory/theory_steps.hpp"
 
 namespace dinal::api {
 
 namespace {
+
+// ---- the options: a row each, and the calls that take them
+
+namespace theory_options {
+
+using text::Call;
+using text::needed;
+using text::Option;
+using text::Range;
+
+constexpr Range swinging{"be from 0 to less than 1: without a swing there is no next extreme",
+                         [](double x) { return x >= 0 && x < 1; }};
+constexpr Range whole{"be a whole number, 0 or more",
+                      [](double x) { return x >= 0 && x == std::floor(x) && std::isfinite(x); }};
+constexpr Range at_most_ten_million{"be a whole number from 0 to 1e+07",
+                                    [](double x) { return text::is_whole(x, 0, 1e7); }};
+constexpr Range den_hartog_r{"be 0 or from 0.0001 to 1e6", [](double x) {
+                                 return x == 0 || (x >= theory::DenHartog::slowest && x <= theory::DenHartog::fastest);
+                             }};
+constexpr Range at_least_one{"be at least 1: breakaway takes no less than kinetic friction",
+                             [](double x) { return x >= 1; }};
+
+// Of most functions; each is a number or a vector.
+constexpr Option r{.name = "r", .otherwise = needed, .range = text::not_negative, .meaning = "omega/omega0"};
+constexpr Option sliding_r{.name = "r", .otherwise = needed, .range = den_hartog_r, .meaning = "omega/omega0"};
+constexpr Option zeta{"zeta", "", "0", text::not_negative, "viscous damping ratio"};
+constexpr Option friction_ratio{"friction_ratio", "", needed, text::not_negative, "Rd/M0"};
+constexpr Option breakaway_ratio{"breakaway_ratio", "", "friction_ratio", text::not_negative, "Re/M0"};
+constexpr Option Rd{"Rd", "torque", needed, text::not_negative, "dry friction while moving"};
+constexpr Option theta0{"theta0", "rad", "0", text::any_finite, "where the mass starts"};
+constexpr Option velocity0{"velocity0", "rad per time unit", "0", text::any_finite, "how fast it starts"};
+constexpr const char* a_system = "a system such as system{ I = 1, k = 39.5 }";
+constexpr Option system{
+    .name = "system", .otherwise = needed, .meaning = "what moves", .object = "system", .wanted = a_system};
+
+constexpr Option free_response_options[] = {
+    {"t", "time units", needed, text::any_finite, "when; not negative with dry friction"},
+    theta0,
+    velocity0,
+    {.name = "system", .meaning = "what moves", .object = "system", .wanted = a_system},
+    {"omega0", "rad per time unit", text::its_own, text::positive, "with zeta, instead of a system"},
+    zeta};
+constexpr Call free_response{"theory.free_response",
+                             "theory.free_response{ system = sys, theta0 = 1, t = vector.linspace(0, 5, 501) }",
+                             free_response_options};
+
+struct ExtremesOptions {
+    double theta0 = 0;
+    double velocity0 = 0;
+    std::optional<double> count = {};
+};
+constexpr Option extremes_options[] = {
+    system,
+    {"theta0", "rad", "0", text::any_finite, theta0.meaning, text::fills<&ExtremesOptions::theta0>},
+    {"velocity0", velocity0.unit, "0", text::any_finite, velocity0.meaning, text::fills<&ExtremesOptions::velocity0>},
+    {"count", "", text::its_own, at_most_ten_million, "how many at most; needed where a motion never comes to rest",
+     text::fills<&ExtremesOptions::count>}};
+constexpr Call extremes{"theory.extremes", "theory.extremes{ system = sys, theta0 = 1 }", extremes_options};
+
+constexpr Option start_options[] = {system, theta0, velocity0};
+constexpr Call time_to_rest{"theory.time_to_rest", "theory.time_to_rest{ system = sys, theta0 = 1 }", start_options};
+constexpr Call rest_position{"theory.rest_position", "theory.rest_position{ system = sys, theta0 = 1 }", start_options};
+
+constexpr Option half_cycle_options[] = {
+    {"X", "rad", needed, text::any_finite, "an extreme, with its sign"},
+    {"zeta", "", "0", swinging, zeta.meaning},
+    {"x_f", "rad", "0", text::not_negative, "Rd/k"},
+    {"dead_zone", "rad", "x_f", text::not_negative, "Re/k, within which the mass stays where it is"},
+    {.name = "system", .meaning = "instead of zeta, x_f and dead_zone", .object = "system", .wanted = a_system},
+    {"n", "half cycles", "1", whole, "how far after X"}};
+constexpr Call half_cycle{"theory.half_cycle", "theory.half_cycle{ X = 1, zeta = 0.1, x_f = 0.05 }",
+                          half_cycle_options};
+
+constexpr Option logarithmic_decrement_options[] = {{"zeta", "", needed, swinging, zeta.meaning}};
+constexpr Call logarithmic_decrement{"theory.logarithmic_decrement", "theory.logarithmic_decrement{ zeta = 0.1 }",
+                                     logarithmic_decrement_options};
+
+constexpr Option zeta_from_decrement_options[] = {
+    {"decrement", "", needed, text::not_negative, "ln(X0/X2) of extremes a full cycle apart"}};
+constexpr Call zeta_from_decrement{"theory.zeta_from_decrement", "theory.zeta_from_decrement{ decrement = 0.3 }",
+                                   zeta_from_decrement_options};
+
+constexpr Option friction_decrement_options[] = {Rd, {"k", "torque per rad", needed, text::positive, "stiffness"}};
+constexpr Call friction_decrement{"theory.friction_decrement", "theory.friction_decrement{ Rd = 2, k = 40 }",
+                                  friction_decrement_options};
+
+constexpr Option identify_options[] = {{"X0", "rad", needed, text::not_zero, "an extreme"},
+                                       {"X1", "rad", needed, text::any_finite, "the next one"},
+                                       {"X2", "rad", needed, text::any_finite, "the one after that"}};
+constexpr Call identify{"theory.identify", "theory.identify{ X0 = 1, X1 = -0.7, X2 = 0.45 }", identify_options};
+
+constexpr Option r_and_zeta[] = {r, zeta};
+constexpr Call magnification{"theory.magnification", "theory.magnification{ r = 0.5, zeta = 0.1 }", r_and_zeta};
+constexpr Call phase_lag{"theory.phase_lag", "theory.phase_lag{ r = 0.5, zeta = 0.1 }", r_and_zeta};
+constexpr Call transmissibility{"theory.transmissibility", "theory.transmissibility{ r = 0.5, zeta = 0.1 }",
+                                r_and_zeta};
+
+constexpr Option equivalent_damping_options[] = {
+    Rd,
+    {"omega", "rad per time unit", needed, text::positive, "of the motion"},
+    {"amplitude", "rad", needed, text::positive, "of the motion"}};
+constexpr Call equivalent_damping{"theory.equivalent_damping",
+                                  "theory.equivalent_damping{ Rd = 2, omega = 6.28, amplitude = 0.5 }",
+                                  equivalent_damping_options};
+
+constexpr Option equivalent_zeta_options[] = {
+    friction_ratio,
+    {"r", "", needed, text::positive, r.meaning},
+    {"magnification", "", needed, text::positive, "the amplitude in units of M0/k"}};
+constexpr Call equivalent_zeta{"theory.equivalent_zeta",
+                               "theory.equivalent_zeta{ friction_ratio = 0.2, r = 0.5, magnification = 1.3 }",
+                               equivalent_zeta_options};
+
+constexpr Option linearised_options[] = {r, friction_ratio, zeta};
+constexpr Call linearised{"theory.linearised", "theory.linearised{ r = 0.5, friction_ratio = 0.1 }",
+                          linearised_options};
+
+constexpr Option friction_work_options[] = {Rd, {"amplitude", "rad", needed, text::not_negative, "of the motion"}};
+constexpr Call friction_work{"theory.friction_work", "theory.friction_work{ Rd = 2, amplitude = 0.5 }",
+                             friction_work_options};
+
+constexpr Option growth_options[] = {friction_ratio};
+constexpr Call growth_at_resonance{"theory.growth_at_resonance", "theory.growth_at_resonance{ friction_ratio = 0.2 }",
+                                   growth_options};
+
+constexpr Option den_hartog_options[] = {sliding_r, friction_ratio, zeta, breakaway_ratio};
+constexpr Call den_hartog{"theory.den_hartog", "theory.den_hartog{ r = 0.75, friction_ratio = 0.5 }",
+                          den_hartog_options};
+constexpr Call den_hartog_fundamental{"theory.den_hartog_fundamental",
+                                      "theory.den_hartog_fundamental{ r = 0.75, friction_ratio = 0.5 }",
+                                      den_hartog_options};
+
+constexpr Option stop_boundary_options[] = {
+    sliding_r, zeta, {"Re_over_Rd", "", "1", at_least_one, "breakaway over kinetic friction"}};
+constexpr Call stop_boundary{"theory.stop_boundary", "theory.stop_boundary{ r = 0.75, zeta = 0.1 }",
+                             stop_boundary_options};
+
+struct StepRule {
+    enum class Name { rk4, report, corrected };
+    Name rule = Name::rk4;
+};
+constexpr const char* rule_names[] = {"rk4", "report", "corrected"};
+constexpr Option step_limit_options[] = {
+    system,
+    {.name = "rule", .meaning = "which of the three", .filled = text::fills<&StepRule::rule>, .choices = rule_names},
+    theta0,
+    velocity0,
+    {"Mc", "torque", text::its_own, text::not_zero, "characteristic torque, else that of the free motion"}};
+constexpr Call step_limit{"theory.step_limit", "theory.step_limit{ system = sys, rule = \"rk4\" }", step_limit_options};
+
+}  // namespace theory_options
+
+// ---- arguments and results
+
+/// What a closed form returns where it does not hold: nil for numbers, nan in a vector.
+constexpr double no_value = std::numeric_limits<double>::quiet_NaN();
+
+/// A number, or the numbers of a vector.
+class Quantity {
+public:
+    explicit Quantity(double number) : number_(number) {}
+    explicit Quantity(std::span<const double> values) : values_(values.data()) {}
+    double operator[](std::size_t i) const { return values_ != nullptr ? values_[i] : number_; }
+
+private:
+    const double* values_ = nullptr;
+    double number_ = 0;
+};
+
+class TheoryArguments {
+public:
+    TheoryArguments(lua_State* L, const text::Call& call);
+
+    [[nodiscard]] const lua::Options& options() const { return options_; }
+
+    /// A number or a vector in the range of its row. Vectors and tables of numbers must be equally long. A nan in a
+    /// vector passes: its result is nan. What is absent is the default of its row, a number or another option.
+    Quantity quantity(std::string_view name);
+    Quantity quantity(std::string_view name, Quantity otherwise);
+    /// All options of a call that takes nothing else.
+    template <std::size_t n>
+    std::array<Quantity, n> quantities() {
+        return quantities(std::make_index_sequence<n>());
+    }
+    /// The system; nullptr when there is none and none is needed.
+    /// Raises when no closed form is known for it.
+    [[nodiscard]] const model::Oscillator* system() const;
+
+    /// Raises "CALL: NAME[i] = VALUE MUST" for element i from 0 (without [i] when NAME is a number).
+    [[noreturn]] void refuse(std::string_view name, std::size_t i, double value, std::string_view must) const;
+
+    /// Pushes f(i) for each element, i from 0: an array of doubles, one for each result. A number when all options are
+    /// numbers, otherwise a vector.
+    template <class Function>
+    int push_results(Function f) const;
+    /// The same for a function with one result.
+    template <class Function>
+    int push_result(Function f) const {
+        return push_results([&](std::size_t i) { return std::array{static_cast<double>(f(i))}; });
+    }
+
+private:
+    template <std::size_t... i>
+    std::array<Quantity, sizeof...(i)> quantities(std::index_sequence<i...> /*places*/) {
+        return {quantity(call_.options[i].name)...};
+    }
+    Quantity given(std::string_view name);
+    Quantity remembered(const Quantity& quantity);
+    [[nodiscard]] bool has_nan(std::size_t i) const;
+    void check_size(std::string_view name, std::size_t size);
+    void check(std::string_view name, const text::Range& range, std::span<const double> values) const;
+
+    lua_State* L_;
+    const text::Call& call_;
+    lua::Options options_;
+    std::deque<std::vector<double>> tables_;  // numbers of Lua tables; a deque does not move them
+    std::vector<Quantity> quantities_;
+    std::size_t size_ = 1;
+    std::string_view sized_by_;  // the first option that is a vector
+};
+
+template <class Function>
+int TheoryArguments::push_results(Function f) const {
+    constexpr std::size_t count = std::tuple_size_v<decltype(f(0))>;
+    std::array<std::vector<double>, count> columns;
+    for (auto& column : columns) column.resize(size_, no_value);
+    for (std::size_t i = 0; i < size_; ++i) {
+        if (lua::interrupt_requested()) lua::raise_interrupted(L_);
+        if (has_nan(i)) continue;
+        const auto results = f(i);
+        for (std::size_t j = 0; j < count; ++j) columns[j][i] = results[j];
+    }
+    for (auto& column : columns) {
+        if (!sized_by_.empty()) {
+            lua::push_vector(L_, std::move(column));
+        } else if (std::isnan(column[0])) {
+            lua_pushnil(L_);
+        } else {
+            lua_pushnumber(L_, column[0]);
+        }
+    }
+    return static_cast<int>(count);
+}
+
+/// theory.NAME for a function of as many numbers as the call has options, in their order; its result is a number or
+/// an array of them.
+template <const text::Call& call, auto function>
+int closed_form(lua_State* L) {
+    TheoryArguments arguments(L, call);
+    const auto quantities = arguments.quantities<call.options.size()>();
+    return arguments.push_results([&](std::size_t i) {
+        const auto result = std::apply([i](const auto&... quantity) { return function(quantity[i]...); }, quantities);
+        if constexpr (std::is_arithmetic_v<std::decay_t<decltype(result)>>) {
+            return std::array{static_cast<double>(result)};
+        } else {
+            return result;
+        }
+    });
+}
+
+TheoryArguments::TheoryArguments(lua_State* L, const text::Call& call) : L_(L), call_(call), options_(L, 1, call) {
+    luaL_checkstack(L, 10, "too many values");
+}
+
+const model::Oscillator* TheoryArguments::system() const {
+    const auto* system = options_.object<model::Oscillator>("system");
+    if (system == nullptr) {
+        return system;
+    }
+    if (!system->has_spring()) {
+        options_.fail({.sentence = "the closed forms are about a mass on a spring, and this system has k = 0",
+                       .option = "system"});
+    }
+    if (system->walls()) {
+        options_.fail(
+            {.sentence = "the closed forms know no walls, and this system has some; simulate it", .option = "system"});
+    }
+    if (!system->spring().none()) {
+        options_.fail({.sentence =
+                           "the closed forms know the spring k theta only, and this system has another beside it; "
+                           "simulate it",
+                       .option = "system"});
+    }
+    if (!system->friction().none() && system->friction().as<model::laws::Coulomb>() == nullptr) {
+        options_.fail({.sentence = "the closed forms know Coulomb's friction only, with one Rd and one Re for both "
+                                   "ways; simulate this system",
+                       .option = "system"});
+    }
+    return system;
+}
+
+Quantity TheoryArguments::quantity(std::string_view name, Quantity otherwise) {
+    return options_.has(name) ? given(name) : otherwise;
+}
+
+Quantity TheoryArguments::quantity(std::string_view name) {
+    if (options_.has(name)) {
+        return given(name);
+    }
+    const char* otherwise = options_.row(name).otherwise;
+    if (otherwise == text::needed) {
+        options_.missing(name);
+    }
+    double number = 0;
+    const auto read = std::from_chars(otherwise, otherwise + std::strlen(otherwise), number);
+    return read.ptr != otherwise ? Quantity(number) : quantity(otherwise);
+}
+
+Quantity TheoryArguments::given(std::string_view name) {
+    const text::Range& range = options_.row(name).range;
+    options_.push(name);
+    if (const auto* vector = lua::test<lua::Vector>(L_, -1)) {
+        lua_pop(L_, 1);  // the table of options holds it on
+        check_size(name, vector->size());
+        check(name, range, vector->values());
+        return remembered(Quantity(vector->values()));
+    }
+    const bool is_table = lua_type(L_, -1) == LUA_TTABLE;
+    if (!is_table && lua_type(L_, -1) != LUA_TNUMBER && !lua_isnil(L_, -1)) {
+        options_.wrong(name, "a finite number or a vector");
+    }
+    lua_pop(L_, 1);
+    if (is_table) {
+        tables_.push_back(options_.numbers(name));
+        check_size(name, tables_.back().size());
+        check(name, range, tables_.back());
+        return remembered(Quantity(tables_.back()));
+    }
+    return remembered(Quantity(options_.number(name)));
+}
+
+void TheoryArguments::refuse(std::string_view name, std::size_t i, double value, std::string_view must) const {
+    options_.push(name);
+    const bool is_number = lua_type(L_, -1) == LUA_TNUMBER || lua_isnil(L_, -1);
+    const std::string element = is_number ? "" : fmt::format("[{}]", i + 1);
+    options_.fail(name, fmt::format("{}{} = {:.6g} {}", name, element, value, must));
+}
+
+void TheoryArguments::check_size(std::string_view name, std::size_t size) {
+    if (!sized_by_.empty() && size != size_) {
+        options_.fail(name, fmt::format("{} and {} have {} and {} numbers; they must be equally long", sized_by_, name,
+                                        size_, size));
+    }
+    size_ = size;
+    sized_by_ = name;
+}
+
+void TheoryArguments::check(std::string_view name, const text::Range& range, std::span<const double> values) const {
+    const auto bad =
+        std::find_if(values.begin(), values.end(), [&](double x) { return !std::isnan(x) && !range.holds(x); });
+    if (bad != values.end()) {
+        refuse(name, static_cast<std::size_t>(bad - values.begin()), *bad, fmt::format("must {}", range.must));
+    }
+}
+
+Quantity TheoryArguments::remembered(const Quantity& quantity) {
+    quantities_.push_back(quantity);
+    return quantity;
+}
+
+bool TheoryArguments::has_nan(std::size_t i) const {
+    return std::any_of(quantities_.begin(), quantities_.end(), [&](const Quantity& x) { return std::isnan(x[i]); });
+}
+
+// ---- what does more than one formula
+
+namespace theory_functions {
+
+using namespace theory;
+namespace options = theory_options;
+
+/// A system set off at t = 0: what time_to_rest{...} and its relatives take.
+struct Start {
+    const model::Oscillator& system;
+    Quantity theta0;
+    Quantity velocity0;
+
+    explicit Start(TheoryArguments& arguments)
+        : system(*arguments.system()),
+          theta0(arguments.quantity("theta0")),
+          velocity0(arguments.quantity("velocity0")) {}
+    [[nodiscard]] FreeMotion motion(std::size_t i) const { return {system, {theta0[i], velocity0[i]}}; }
+};
+
+int free_response_of_system(TheoryArguments& arguments) {
+    const Start start(arguments);
+    const Quantity t = arguments.quantity("t");
+    if (arguments.options().has("omega0") || arguments.options().has("zeta")) {
+        arguments.options().fail("system", "system excludes omega0 and zeta, which it has of its own");
+    }
+    return arguments.push_results([&](std::size_t i) {
+        if (t[i] < 0 && !start.system.friction().none()) {
+            arguments.refuse("t", i, t[i], "must not be negative: dry friction does not tell where the mass came from");
+        }
+        const model::State y = start.motion(i).at(t[i]);
+        return std::array{y.theta, y.velocity};
+    });
+}
+
+/// How many extremes extremes{...} returns.
+double asked_count(const lua::Options& options, std::optional<double> count, const FreeMotion& motion) {
+    constexpr double most = 1e7;
+    const double all = motion.extremes();
+    if (!count && std::isinf(all)) {
+        options.fail("count", "count is needed, because this motion never comes to rest");
+    }
+    if (!count && all > most) {
+        options.fail("count", fmt::format("count is needed, because there are {:.6g} extremes until rest", all));
+    }
+    return std::min(count.value_or(all), all);
+}
+
+int free_response(lua_State* L) {
+    TheoryArguments arguments(L, options::free_response);
+    if (arguments.system() != nullptr) {
+        return free_response_of_system(arguments);
+    }
+    if (!arguments.options().has("omega0")) {
+        arguments.options().missing("system, or omega0 and zeta");
+    }
+    const Quantity omega0 = arguments.quantity("omega0");
+    const Quantity zeta = arguments.quantity("zeta");
+    const Quantity theta0 = arguments.quantity("theta0");
+    const Quantity velocity0 = arguments.quantity("velocity0");
+    const Quantity t = arguments.quantity("t");
+    return arguments.push_results([&](std::size_t i) {
+        const model::State y = theory::free_response(omega0[i], zeta[i], {theta0[i], velocity0[i]}, t[i]);
+        return std::array{y.theta, y.velocity};
+    });
+}
+
+int extremes(lua_State* L) {
+    const lua::Options table(L, 1, options::extremes);
+    const auto& system = *table.object<model::Oscillator>("system");
+    options::ExtremesOptions asked;
+    table.fill(asked);
+    const FreeMotion motion(system, {asked.theta0, asked.velocity0});
+    const auto n = static_cast<std::size_t>(asked_count(table, asked.count, motion));
+    std::vector<double> times(n), angles(n);
+    for (std::size_t i = 0; i < n; ++i) {
+        const Extreme extreme = motion.extreme(static_cast<double>(i));
+        times[i] = extreme.t;
+        angles[i] = extreme.theta;
+    }
+    lua::push_vector(L, std::move(times));
+    lua::push_vector(L, std::move(angles));
+    return 2;
+}
+
+int time_to_rest(lua_State* L) {
+    TheoryArguments arguments(L, options::time_to_rest);
+    const Start start(arguments);
+    return arguments.push_result([&](std::size_t i) { return start.motion(i).time_to_rest(); });
+}
+
+int rest_position(lua_State* L) {
+    TheoryArguments arguments(L, options::rest_position);
+    const Start start(arguments);
+    return arguments.push_result([&](std::size_t i) { return start.motion(i).rest_position().value_or(no_value); });
+}
+
+int half_cycle(lua_State* L) {
+    TheoryArguments arguments(L, options::half_cycle);
+    const model::Oscillator* system = arguments.system();
+    for (const char* name : {"zeta", "x_f", "dead_zone"}) {
+        if (system != nullptr && arguments.options().has(name)) {
+            arguments.options().fail(name, fmt::format("system excludes {}, which it has of its own", name));
+        }
+    }
+    if (system != nullptr && !system->damped_frequency()) {
+        arguments.options().fail("system",
+                                 fmt::format("the system has zeta = {:.6g}: without a swing there is no next extreme",
+                                             system->damping_ratio()));
+    }
+    const Quantity X = arguments.quantity("X");
+    const Quantity n = arguments.quantity("n");
+    const auto quantity = [&](const char* name, auto of_system) {
+        return system != nullptr ? Quantity(of_system(*system)) : arguments.quantity(name);
+    };
+    const Quantity zeta = quantity("zeta", [](const model::Oscillator& sys) { return sys.damping_ratio(); });
+    const Quantity x_f =
+        quantity("x_f", [](const model::Oscillator& sys) { return sys.kinetic_friction() / sys.stiffness(); });
+    const Quantity dead_zone = quantity("dead_zone", [](const model::Oscillator& sys) { return sys.dead_zone(); });
+    return arguments.push_result([&](std::size_t i) {
+        if (dead_zone[i] < x_f[i]) {
+            arguments.refuse("dead_zone", i, dead_zone[i], fmt::format("must be at least x_f = {}", x_f[i]));
+        }
+        const HalfCycles map(zeta[i], x_f[i]);
+        return map.after(std::min(n[i], map.until_within(dead_zone[i], X[i])), X[i]);
+    });
+}
+
+std::array<double, 2> identify(double X0, double X1, double X2) {
+    const auto found = theory::identify(X0, X1, X2);
+    return found ? std::array{found->zeta, found->friction_shift} : std::array{no_value, no_value};
+}
+
+/// The two results of den_hartog{...} and den_hartog_fundamental{...}.
+template <class Select>
+int sliding_motion(lua_State* L, const text::Call& call, Select select) {
+    TheoryArguments arguments(L, call);
+    const Quantity r = arguments.quantity("r");
+    const Quantity friction_ratio = arguments.quantity("friction_ratio");
+    const Quantity zeta = arguments.quantity("zeta");
+    const Quantity breakaway_ratio = arguments.quantity("breakaway_ratio");
+    return arguments.push_results([&](std::size_t i) {
+        if (breakaway_ratio[i] < friction_ratio[i]) {
+            arguments.refuse("breakaway_ratio", i, breakaway_ratio[i],
+                             fmt::format("must be at least friction_ratio = {}", friction_ratio[i]));
+        }
+        const auto motion = DenHartog(r[i], zeta[i]).motion(friction_ratio[i], breakaway_ratio[i]);
+        return motion ? select(*motion) : std::array{no_value, no_value};
+    });
+}
+
+std::array<double, 2> linearised(double r, double friction_ratio, double zeta) {
+    const auto motion = linearised_friction(r, zeta, friction_ratio);
+    return motion ? std::array{motion->amplitude, motion->lag} : std::array{no_value, no_value};
+}
+
+int den_hartog(lua_State* L) {
+    return sliding_motion(L, options::den_hartog, [](const SlidingMotion& y) {
+        return std::array{y.amplitude, y.lag};
+    });
+}
+
+int den_hartog_fundamental(lua_State* L) {
+    return sliding_motion(L, options::den_hartog_fundamental, [](const SlidingMotion& y) {
+        return std::array{y.fundamental_amplitude, y.fundamental_lag};
+    });
+}
+
+double stop_boundary(double r, double zeta, double factor) {
+    return DenHartog(r, zeta).stop_boundary(factor);
+}
+
+int step_limit(lua_State* L) {
+    TheoryArguments arguments(L, options::step_limit);
+    const model::Oscillator& system = *arguments.system();
+    options::StepRule asked;
+    arguments.options().fill(asked);
+    const Quantity theta0 = arguments.quantity("theta0");
+    const Quantity velocity0 = arguments.quantity("velocity0");
+    const bool own_torque = !arguments.options().has("Mc");
+    const Quantity Mc = arguments.quantity("Mc", Quantity(0));
+    return arguments.push_result([&](std::size_t i) {
+        if (asked.rule == options::StepRule::Name::rk4) return motion::rk4::stability_limit(system);
+        const model::State initial{theta0[i], velocity0[i]};
+        if (system.kinetic_friction() > 0 && initial.theta == 0 && initial.velocity == 0) {
+            arguments.options().fail(
+                "theta0", "theta0 or velocity0 is needed, because this rule divides by the greatest velocity");
+        }
+        if (asked.rule == options::StepRule::Name::corrected) return euler_step_limit(system, initial);
+        return printed_step_limit(system, initial, own_torque ? system.characteristic_torque(initial) : Mc[i]);
+    });
+}
+
+}  // namespace theory_functions
+
+// ---- the members
 
 namespace f = theory_functions;
 namespace o = theory_options;

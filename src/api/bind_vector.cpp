@@ -1,91 +1,400 @@
+// Vectors as Lua sees them: arithmetic, mathematics and questions about their elements. bind_vector_module.cpp makes
+// them.
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <optional>
+#include <span>
 
 #include "api/cards.hpp"
 #include "api/classes.hpp"
-#include "api/vector_arithmetic.hpp"
-#include "api/vector_queries.hpp"
+#include "lua/interrupt.hpp"
+#include "lua/user_function.hpp"
+#include "lua/values.hpp"
 #include "lua/vector.hpp"
 
-namespace dinal::api {
+namespace dinal::api::vectors {
 namespace {
 
-const lua::Vector& self_vector(lua_State* L, std::string_view call) {
-    return lua::self<lua::Vector>(L, 1, call);
+using lua::Vector;
+using Values = std::span<const double>;
+
+/// How a method is called, for its errors: "v:sin()".
+struct CallText {
+    char text[32] = {};
+    template <std::size_t n>
+    constexpr CallText(const char (&words)[n]) {  // NOLINT(google-explicit-constructor)
+        std::copy_n(words, n, text);
+    }
+};
+
+const Vector& own(lua_State* L, std::string_view call) {
+    return lua::self<Vector>(L, 1, call);
 }
 
-// ---- one number from many
+const Vector& other(lua_State* L, int index, std::string_view call, const char* name) {
+    const auto* found = lua::test<Vector>(L, index);
+    if (found == nullptr) {
+        lua::raise(L, {.sentence = fmt::format("{}: {} must be a vector, got {}", call, name, lua::describe(L, index)),
+                       .call = std::string(call),
+                       .culprit = lua::written(L, index)});
+    }
+    return *found;
+}
+
+void check_equal_sizes(lua_State* L, std::string_view call, std::size_t n, std::size_t m) {
+    if (n != m) {
+        lua::raise(L, text::in_call(
+                          call, {fmt::format("the vectors have {} and {} numbers; they must be equally long", n, m)}));
+    }
+}
+
+/// Calls work(i) for all i below n; a stop is noticed in between.
+template <class Work>
+void for_each_index(lua_State* L, std::size_t n, Work work) {
+    constexpr std::size_t block = std::size_t{1} << 16U;
+    for (std::size_t begin = 0; begin < n; begin += block) {
+        if (lua::interrupt_requested()) lua::raise_interrupted(L);
+        const std::size_t end = std::min(n, begin + block);
+        for (std::size_t i = begin; i < end; ++i) work(i);
+    }
+}
+
+// ---- families of methods: f of each element, of all elements, of two vectors
+
+template <CallText call, auto f>
+int of_each(lua_State* L) {
+    const Vector& v = own(L, call.text);
+    std::vector<double> result = lua::new_numbers(L, v.size());
+    for_each_index(L, v.size(), [&](std::size_t i) { result[i] = f(v.begin()[i]); });
+    lua::push_vector(L, std::move(result));
+    return 1;
+}
+
+/// One number from at least so many.
+template <CallText call, auto f, std::size_t least = 1>
+int of_all(lua_State* L) {
+    const Vector& v = own(L, call.text);
+    if (v.size() < least) {
+        lua::raise(L,
+                   text::in_call(call.text, {least == 1 ? "the vector is empty" : "two numbers are needed at least"}));
+    }
+    lua::push_value(L, f(v.values()));
+    return 1;
+}
+
+/// f fills a vector that has as many numbers.
+template <CallText call, auto f>
+int filled(lua_State* L) {
+    const Vector& v = own(L, call.text);
+    std::vector<double> result = lua::new_numbers(L, v.size());
+    f(v.values(), result);
+    lua::push_vector(L, std::move(result));
+    return 1;
+}
+
+/// One side of an operator: a vector, or a number that stands for as many as the other side has.
+struct Operand {
+    const Vector* vector = nullptr;
+    double number = 0;
+    double operator[](std::size_t i) const { return vector != nullptr ? vector->begin()[i] : number; }
+};
+
+struct Operands {
+    Operand a, b;
+    std::size_t size;
+};
+
+Operands operands(lua_State* L, const char* symbol) {
+    const auto at = [&](int index) -> Operand {
+        if (const auto* vector = lua::test<Vector>(L, index)) return {vector};
+        if (lua_type(L, index) != LUA_TNUMBER) {
+            lua::raise(L, fmt::format("a vector {} {} is not possible; the other side must be a number or a vector",
+                                      symbol, lua::describe(L, index)));
+        }
+        return {nullptr, lua_tonumber(L, index)};
+    };
+    const Operand a = at(1), b = at(2);
+    if (a.vector != nullptr && b.vector != nullptr && a.vector->size() != b.vector->size()) {
+        lua::raise(L, fmt::format("the vectors in v {} w have {} and {} numbers; they must be equally long", symbol,
+                                  a.vector->size(), b.vector->size()));
+    }
+    if (a.vector == nullptr && b.vector == nullptr) {  // debug.getmetatable leads here
+        lua::raise(L, fmt::format("x {} y of vectors needs a vector on one side", symbol));
+    }
+    return {a, b, (a.vector != nullptr ? a : b).vector->size()};
+}
+
+template <CallText symbol, auto f>
+int combined(lua_State* L) {
+    const Operands of = operands(L, symbol.text);
+    std::vector<double> result = lua::new_numbers(L, of.size);
+    for_each_index(L, of.size, [&](std::size_t i) { result[i] = f(of.a[i], of.b[i]); });
+    lua::push_vector(L, std::move(result));
+    return 1;
+}
+
+/// True when it holds for every element.
+template <CallText symbol, auto f>
+int holds(lua_State* L) {
+    const Operands of = operands(L, symbol.text);
+    bool all = true;
+    for (std::size_t i = 0; i < of.size && all; ++i) all = f(of.a[i], of.b[i]);
+    lua_pushboolean(L, all ? 1 : 0);
+    return 1;
+}
+
+// ---- sums and extremes
 
 /// Neumaier's sum: the rounding errors are collected and added at the end.
-double sum_of(const lua::Vector& v) {
-    double sum = 0;
-    double lost = 0;
-    for (const double x : v) {
-        const double next = sum + x;
-        lost += std::fabs(sum) >= std::fabs(x) ? (sum - next) + x : (x - next) + sum;
-        sum = next;
+class Sum {
+public:
+    void add(double x) {
+        const double next = sum_ + x;
+        lost_ += std::fabs(sum_) >= std::fabs(x) ? (sum_ - next) + x : (x - next) + sum_;
+        sum_ = next;
     }
-    return std::isfinite(lost) ? sum + lost : sum;
+    [[nodiscard]] double value() const { return std::isfinite(lost_) ? sum_ + lost_ : sum_; }
+
+private:
+    double sum_ = 0, lost_ = 0;
+};
+
+double sum_of(Values v) {
+    Sum sum;
+    for (const double x : v) sum.add(x);
+    return sum.value();
 }
 
-const lua::Vector& not_empty(lua_State* L, std::string_view call) {
-    const lua::Vector& v = self_vector(L, call);
-    if (v.size() == 0) {
-        lua::raise(L, text::in_call(call, {"the vector is empty"}));
-    }
-    return v;
+double mean_of(Values v) {
+    return sum_of(v) / static_cast<double>(v.size());
 }
 
-template <class Better>
-int extreme(lua_State* L, std::string_view call, Better better) {
-    const lua::Vector& v = not_empty(L, call);
-    double best = *v.begin();
+/// The greatest element, or with -1 the least one; nan if there is any.
+template <int sign>
+double extreme(Values v) {
+    double best = v.front();
     for (const double x : v) {
-        if (better(x, best) || std::isnan(x)) {
-            best = x;
+        if (sign * x > sign * best || std::isnan(x)) best = x;
+    }
+    return best;
+}
+
+/// Its place from 1, and nan does not count.
+template <int sign>
+std::size_t place_of_extreme(Values v) {
+    std::size_t best = 0;
+    for (std::size_t i = 1; i < v.size(); ++i) {
+        if (sign * v[i] > sign * v[best] || std::isnan(v[best])) best = i;
+    }
+    return best + 1;
+}
+
+/// By Welford's recurrence: no difference of large sums.
+double deviation(Values v) {
+    double mean = 0, squares = 0, n = 0;
+    for (const double x : v) {
+        const double off = x - mean;
+        mean += off / ++n;
+        squares += off * (x - mean);
+    }
+    return std::sqrt(squares / (n - 1));
+}
+
+void cumulate(Values v, std::vector<double>& sums) {
+    Sum sum;
+    for (std::size_t i = 0; i < v.size(); ++i) {
+        sum.add(v[i]);
+        sums[i] = sum.value();
+    }
+}
+
+void subtract_previous(Values v, std::vector<double>& result) {
+    if (!v.empty()) result.pop_back();
+    for (std::size_t i = 0; i < result.size(); ++i) result[i] = v[i + 1] - v[i];
+}
+
+void sort(Values v, std::vector<double>& result) {
+    std::copy(v.begin(), v.end(), result.begin());
+    std::sort(result.begin(), result.end(), [](double a, double b) { return std::isnan(b) ? !std::isnan(a) : a < b; });
+}
+
+// ---- questions with an argument
+
+void check_function(lua_State* L, const char* call) {
+    if (!lua::is_callable(L, 2)) {
+        lua::raise(L, {.sentence = fmt::format("{} takes a function of an element, got {}", call, lua::describe(L, 2)),
+                       .call = call,
+                       .culprit = lua::written(L, 2)});
+    }
+}
+
+/// Leaves f(x, i) on the top of the stack.
+void ask(lua_State* L, double x, std::size_t i) {
+    lua_pushvalue(L, 2);
+    lua_pushnumber(L, x);
+    lua_pushinteger(L, static_cast<lua_Integer>(i) + 1);
+    lua_call(L, 2, 1);
+}
+
+int map(lua_State* L) {
+    const Vector v = own(L, "v:map(f)");
+    check_function(L, "v:map");
+    std::vector<double> result = lua::new_numbers(L, v.size());
+    for (std::size_t i = 0; i < v.size(); ++i) {
+        ask(L, v.begin()[i], i);
+        if (!lua_isboolean(L, -1) && lua_type(L, -1) != LUA_TNUMBER) {
+            lua::raise(L, {.sentence = fmt::format("v:map: f must return a number, true or false, but f({:.6g}) is {}",
+                                                   v.begin()[i], lua::describe(L, -1)),
+                           .call = "v:map"});
+        }
+        result[i] = lua_isboolean(L, -1) ? static_cast<double>(lua_toboolean(L, -1)) : lua_tonumber(L, -1);
+        lua_pop(L, 1);
+    }
+    lua::push_vector(L, std::move(result));
+    return 1;
+}
+
+int find(lua_State* L) {
+    const Vector v = own(L, "v:find(f)");
+    check_function(L, "v:find");
+    std::vector<double> places;
+    for (std::size_t i = 0; i < v.size(); ++i) {
+        ask(L, v.begin()[i], i);
+        if (lua_toboolean(L, -1) != 0) places.push_back(static_cast<double>(i + 1));
+        lua_pop(L, 1);
+    }
+    lua::push_vector(L, std::move(places));
+    return 1;
+}
+
+int quantile(lua_State* L) {
+    const Vector& v = own(L, "v:quantile(p)");
+    const double p = lua::finite_argument(L, 2, "v:quantile(p): p");
+    if (!(p >= 0 && p <= 1)) {
+        lua::raise(L, text::in_call("v:quantile(p)", {fmt::format("p = {:.6g} must lie between 0 and 1", p)}));
+    }
+    if (v.size() == 0) lua::raise(L, text::in_call("v:quantile(p)", {"the vector is empty"}));
+    std::vector<double> values(v.begin(), v.end());
+    if (std::any_of(values.begin(), values.end(), [](double x) { return std::isnan(x); })) {
+        lua_pushnumber(L, std::nan(""));
+        return 1;
+    }
+    const double place = p * static_cast<double>(values.size() - 1), below = std::floor(place);
+    const auto nth = values.begin() + static_cast<std::ptrdiff_t>(below);
+    std::nth_element(values.begin(), nth, values.end());
+    double value = *nth;
+    if (place > below) value += (place - below) * (*std::min_element(nth + 1, values.end()) - value);
+    lua_pushnumber(L, value);
+    return 1;
+}
+
+int interpolated(lua_State* L) {
+    const char* const call = "v:interp(x, y)";
+    const Vector& v = own(L, call);
+    const Vector& x = other(L, 2, call, "x");
+    const Vector& y = other(L, 3, call, "y");
+    check_equal_sizes(L, call, x.size(), y.size());
+    if (x.size() == 0) lua::raise(L, text::in_call(call, {"there are no points"}));
+    const auto* const step = std::adjacent_find(x.begin(), x.end(), [](double a, double b) { return !(a < b); });
+    if (step != x.end()) {
+        lua::raise(L, text::in_call(call, {fmt::format("x[{}] = {} is not after x[{}] = {}; x must increase",
+                                                       step - x.begin() + 2, step[1], step - x.begin() + 1, *step)}));
+    }
+    std::vector<double> result = lua::new_numbers(L, v.size());
+    std::transform(v.begin(), v.end(), result.begin(), [&](double at) {
+        if (std::isnan(at)) return at;
+        const auto i = static_cast<std::size_t>(std::upper_bound(x.begin(), x.end(), at) - x.begin());
+        if (i == 0) return y.begin()[0];
+        if (i == x.size()) return y.begin()[i - 1];
+        const double* const a = x.begin() + i - 1;
+        const double* const b = y.begin() + i - 1;
+        return b[0] + (b[1] - b[0]) * ((at - a[0]) / (a[1] - a[0]));
+    });
+    lua::push_vector(L, std::move(result));
+    return 1;
+}
+
+int joined(lua_State* L) {
+    std::vector<double> all;
+    for (const int index : {1, 2}) {
+        if (const auto* vector = lua::test<Vector>(L, index)) {
+            lua::make_room(L, (all.size() + vector->size()) * sizeof(double));
+            all.insert(all.end(), vector->begin(), vector->end());
+        } else if (lua_type(L, index) == LUA_TNUMBER) {
+            all.push_back(lua_tonumber(L, index));
+        } else {
+            lua::raise(L, fmt::format("a vector .. {} is not possible; the other side must be a number or a vector{}",
+                                      lua::describe(L, index),
+                                      lua_type(L, index) == LUA_TSTRING ? " (tostring(v) is its text)" : ""));
         }
     }
-    lua_pushnumber(L, best);
+    lua::push_vector(L, std::move(all));
     return 1;
 }
 
-int maximum(lua_State* L) {
-    return extreme(L, "v:max()", [](double x, double best) { return x > best; });
-}
-int minimum(lua_State* L) {
-    return extreme(L, "v:min()", [](double x, double best) { return x < best; });
-}
-int sum(lua_State* L) {
-    lua_pushnumber(L, sum_of(self_vector(L, "v:sum()")));
+int pick(lua_State* L) {
+    const Vector& v = own(L, "v[w]");
+    const Vector& w = other(L, 2, "v[w]", "w");
+    const bool mask =
+        w.size() == v.size() && std::all_of(w.begin(), w.end(), [](double x) { return x == 0 || x == 1; });
+    std::vector<double> picked;
+    for (std::size_t i = 0; i < w.size(); ++i) {
+        const double x = w.begin()[i];
+        if (mask) {
+            if (x == 1) picked.push_back(v.begin()[i]);
+            continue;
+        }
+        if (x != std::floor(x) || !(x >= 1 && x <= static_cast<double>(v.size()))) {
+            lua::raise(L, {.sentence = fmt::format("v[w]: w[{}] = {:.6g} is no place in a vector of {} numbers; a w of "
+                                                   "0 and 1 must be as long as v",
+                                                   i + 1, x, v.size())});
+        }
+        picked.push_back(v.begin()[static_cast<std::size_t>(x) - 1]);
+    }
+    lua::push_vector(L, std::move(picked));
     return 1;
 }
-int mean(lua_State* L) {
-    const lua::Vector& v = not_empty(L, "v:mean()");
-    lua_pushnumber(L, sum_of(v) / static_cast<double>(v.size()));
+
+int dot(lua_State* L) {
+    const Vector& v = own(L, "v:dot(w)");
+    const Vector& w = other(L, 2, "v:dot(w)", "w");
+    check_equal_sizes(L, "v:dot(w)", v.size(), w.size());
+    Sum sum;
+    for (std::size_t i = 0; i < v.size(); ++i) sum.add(v.begin()[i] * w.begin()[i]);
+    lua_pushnumber(L, sum.value());
+    return 1;
+}
+
+int arctangent(lua_State* L) {
+    const Vector& v = own(L, "v:atan(w)");
+    const bool number = lua_isnoneornil(L, 2) || lua_type(L, 2) == LUA_TNUMBER;
+    const double all = lua_isnoneornil(L, 2) ? 1 : lua_tonumber(L, 2);
+    const Vector* w = number ? nullptr : &other(L, 2, "v:atan(w)", "w");
+    if (w != nullptr) check_equal_sizes(L, "v:atan(w)", v.size(), w->size());
+    std::vector<double> result = lua::new_numbers(L, v.size());
+    for (std::size_t i = 0; i < v.size(); ++i) {
+        result[i] = std::atan2(v.begin()[i], w != nullptr ? w->begin()[i] : all);
+    }
+    lua::push_vector(L, std::move(result));
+    return 1;
+}
+
+int equal(lua_State* L) {
+    const auto* a = lua::test<Vector>(L, 1);
+    const auto* b = lua::test<Vector>(L, 2);
+    lua_pushboolean(L, a != nullptr && b != nullptr && std::equal(a->begin(), a->end(), b->begin(), b->end()) ? 1 : 0);
     return 1;
 }
 
 // ---- elements
 
-/// The index from 0 of element i, counted from 1; none when there is no such one.
-std::optional<std::size_t> position(const lua::Vector& v, lua_Integer i) {
-    const auto n = static_cast<lua_Integer>(v.size());
-    if (i < 1 || i > n) {
-        return std::nullopt;
-    }
-    return static_cast<std::size_t>(i - 1);
-}
-
 int element(lua_State* L) {
-    const auto* v = lua::test<lua::Vector>(L, 1);
+    const auto* v = lua::test<Vector>(L, 1);
     int is_integer = 0;
     const lua_Integer i = lua_tointegerx(L, 2, &is_integer);
-    if (v != nullptr && lua::test<lua::Vector>(L, 2) != nullptr) {
-        return vector_functions::pick(L);
+    if (v != nullptr && lua::test<Vector>(L, 2) != nullptr) {
+        return pick(L);
     }
     if (v == nullptr || lua_type(L, 2) != LUA_TNUMBER) {
         return 0;
@@ -94,16 +403,8 @@ int element(lua_State* L) {
         lua::raise(
             L, {.sentence = fmt::format("v[{}]: elements are counted from 1; the last one is v[#v]", i), .call = "v"});
     }
-    if (const auto at = position(*v, i); is_integer != 0 && at) {
-        lua_pushnumber(L, v->begin()[*at]);
-    } else {
-        lua_pushnil(L);
-    }
-    return 1;
-}
-
-int vector_length(lua_State* L) {
-    lua_pushinteger(L, static_cast<lua_Integer>(self_vector(L, "#v").size()));
+    const bool there = is_integer != 0 && i >= 1 && i <= static_cast<lua_Integer>(v->size());
+    there ? lua_pushnumber(L, v->begin()[i - 1]) : lua_pushnil(L);
     return 1;
 }
 
@@ -121,7 +422,7 @@ lua_Integer whole_argument(lua_State* L, int index, std::string_view name, lua_I
 }
 
 int slice(lua_State* L) {
-    const lua::Vector& v = self_vector(L, "v:slice(1, 10)");
+    const Vector& v = own(L, "v:slice(1, 10)");
     const auto n = static_cast<lua_Integer>(v.size());
     const lua_Integer first = whole_argument(L, 2, "first", 1);
     const lua_Integer last = whole_argument(L, 3, "last", n);
@@ -139,106 +440,137 @@ int slice(lua_State* L) {
     return 1;
 }
 
-int table(lua_State* L) {
-    const lua::Vector& v = self_vector(L, "v:table()");
-    lua_createtable(L, static_cast<int>(std::min<std::size_t>(v.size(), 1U << 30U)), 0);
-    lua_Integer i = 0;
-    for (const double x : v) {
-        lua_pushnumber(L, x);
-        lua_rawseti(L, -2, ++i);
-    }
-    return 1;
-}
-
 int vector_text(lua_State* L) {
-    const lua::Vector& v = self_vector(L, "tostring(v)");
+    const Vector& v = own(L, "tostring(v)");
     constexpr std::size_t shown_whole = 10;
     constexpr std::size_t ends = 3;
     const auto list = [](std::span<const double> x) { return fmt::format("{:.6g}", fmt::join(x, ", ")); };
-    std::string result;
-    if (v.size() == 0) {
-        result = "vector{}";
-    } else if (v.size() <= shown_whole) {
-        result = "vector{ " + list(v.values()) + " }";
-    } else {
-        result = fmt::format("vector{{ {}, ..., {} }}  -- {} numbers", list(v.values().first(ends)),
-                             list(v.values().last(ends)), v.size());
-    }
-    return lua::push_text(L, result);
+    const std::size_t n = v.size();
+    return lua::push_text(L, n == 0 ? "vector{}"
+                             : n <= shown_whole
+                                 ? "vector{ " + list(v.values()) + " }"
+                                 : fmt::format("vector{{ {}, ..., {} }}  -- {} numbers", list(v.values().first(ends)),
+                                               list(v.values().last(ends)), n));
 }
 
 // ---- the class
 
 constexpr lua::Member vector_members[] = {
-    {lua::a_method<vector_functions::sine>,
+    {lua::a_method<of_each<"v:sin()", [](double x) { return std::sin(x); }>>,
      {"v:sin() -> vector", "Sine of every element (rad).", "print(vector{ 0, 1 }:sin())  --> vector{ 0, 0.841471 }"}},
-    {lua::a_method<vector_functions::cosine>,
+    {lua::a_method<of_each<"v:cos()", [](double x) { return std::cos(x); }>>,
      {"v:cos() -> vector", "Cosine of every element (rad).", "print(vector{ 0, 1 }:cos())  --> vector{ 1, 0.540302 }"}},
-    {lua::a_method<vector_functions::tangent>,
+    {lua::a_method<of_each<"v:tan()", [](double x) { return std::tan(x); }>>,
      {"v:tan() -> vector", "Tangent of every element (rad).", "print(vector{ 0, 1 }:tan())  --> vector{ 0, 1.55741 }"}},
-    {lua::a_method<vector_functions::absolute>,
+    {lua::a_method<of_each<"v:abs()", [](double x) { return std::fabs(x); }>>,
      {"v:abs() -> vector", "Absolute value of every element.", "print(vector{ -2, 3 }:abs())  --> vector{ 2, 3 }"}},
-    {lua::a_method<vector_functions::square_root>,
+    {lua::a_method<of_each<"v:sqrt()", [](double x) { return std::sqrt(x); }>>,
      {"v:sqrt() -> vector", "Square root of every element; nan for negative ones.",
       "print(vector{ 4, 9 }:sqrt())  --> vector{ 2, 3 }"}},
-    {lua::a_method<vector_functions::exponential>,
+    {lua::a_method<of_each<"v:exp()", [](double x) { return std::exp(x); }>>,
      {"v:exp() -> vector", "e to the power of every element.",
       "print(vector{ 0, 1 }:exp())  --> vector{ 1, 2.71828 }"}},
-    {lua::a_method<vector_functions::logarithm>,
+    {lua::a_method<of_each<"v:log()", [](double x) { return std::log(x); }>>,
      {"v:log() -> vector", "Natural logarithm of every element; nan for negative ones.",
       "print(vector{ 1, 10 }:log())  --> vector{ 0, 2.30259 }"}},
-    {lua::a_method<maximum>, {"v:max() -> number", "The greatest element.", "print(vector{ 1, 3, 2 }:max())  --> 3.0"}},
-    {lua::a_method<minimum>, {"v:min() -> number", "The least element.", "print(vector{ 1, 3, -2 }:min())  --> -2.0"}},
-    {lua::a_method<mean>,
+    {lua::a_method<of_all<"v:max()", extreme<1>>>,
+     {"v:max() -> number", "The greatest element.", "print(vector{ 1, 3, 2 }:max())  --> 3.0"}},
+    {lua::a_method<of_all<"v:min()", extreme<-1>>>,
+     {"v:min() -> number", "The least element.", "print(vector{ 1, 3, -2 }:min())  --> -2.0"}},
+    {lua::a_method<of_all<"v:mean()", mean_of>>,
      {"v:mean() -> number", "The sum divided by the number of elements.", "print(vector{ 1, 2, 6 }:mean())  --> 3.0"}},
-    {lua::a_method<sum>,
+    {lua::a_method<of_all<"v:sum()", sum_of, 0>>,
      {"v:sum() -> number", "The sum of all elements (0 when there are none), accurate however many there are.",
       "print(vector{ 1e100, 1, -1e100 }:sum())  --> 1.0"}},
     {lua::a_method<slice>,
      {"v:slice(first = 1, last = #v, step = 1) -> vector", "The elements from first to last, every step-th of them.",
       "print(vector{ 10, 20, 30, 40, 50 }:slice(2, 5, 2))  --> vector{ 20, 40 }"}},
-    {lua::a_method<table>,
+    {lua::a_method<of_all<"v:table()", [](Values v) { return v; }, 0>>,
      {"v:table() -> table", "An ordinary Lua table with the same numbers.",
       "print(table.concat(vector{ 1, 2 }:table(), \" \"))  --> 1.0 2.0"}},
-    {lua::a_metamethod<vector_length>("__len"),
+    {lua::a_metamethod<of_all<"#v", [](Values v) { return v.size(); }, 0>>("__len"),
      {"#v -> integer", "How many elements there are. v[1] is the first one, v[#v] the last one; beyond them is nil.",
       "print(#vector{ 4, 5, 6 })  --> 3"}},
-    {lua::a_metamethod<vector_functions::add>("__add"),
+    {lua::a_metamethod<combined<"+", [](double a, double b) { return a + b; }>>("__add"),
      {"v + w, v + number -> vector", "Element by element; two vectors must be equally long.",
       "print(vector{ 1, 2 } + vector{ 10, 20 })  --> vector{ 11, 22 }"}},
-    {lua::a_metamethod<vector_functions::subtract>("__sub"),
+    {lua::a_metamethod<combined<"-", [](double a, double b) { return a - b; }>>("__sub"),
      {"v - w, v - number -> vector", "Element by element.", "print(10 - vector{ 1, 2 })  --> vector{ 9, 8 }"}},
-    {lua::a_metamethod<vector_functions::multiply>("__mul"),
+    {lua::a_metamethod<combined<"*", [](double a, double b) { return a * b; }>>("__mul"),
      {"v * w, v * number -> vector", "Element by element.", "print(2 * vector{ 1, 2 })  --> vector{ 2, 4 }"}},
-    {lua::a_metamethod<vector_functions::divide>("__div"),
+    {lua::a_metamethod<combined<"/", [](double a, double b) { return a / b; }>>("__div"),
      {"v / w, v / number -> vector", "Element by element.", "print(vector{ 1, 2 } / 4)  --> vector{ 0.25, 0.5 }"}},
-    {lua::a_metamethod<vector_functions::power>("__pow"),
+    {lua::a_metamethod<combined<"^", [](double a, double b) { return b == 2 ? a * a : std::pow(a, b); }>>("__pow"),
      {"v ^ w, v ^ number -> vector", "Element by element.", "print(vector{ 2, 3 } ^ 2)  --> vector{ 4, 9 }"}},
-    {lua::a_metamethod<vector_functions::negated>("__unm"),
+    {lua::a_metamethod<of_each<"-v", [](double x) { return -x; }>>("__unm"),
      {"-v -> vector", "Every element with the other sign.", "print(-vector{ 1, -2 })  --> vector{ -1, 2 }"}},
-    {lua::a_metamethod<vector_functions::equal>("__eq"),
+    {lua::a_metamethod<equal>("__eq"),
      {"v == w -> boolean", "True when both have the same elements.",
       "print(vector{ 1, 2 } == vector{ 1, 2 })  --> true"}},
-    {lua::a_metamethod<vector_functions::less>("__lt"),
+    {lua::a_metamethod<holds<"<", [](double a, double b) { return a < b; }>>("__lt"),
      {"v < w, v < number -> boolean",
       "True when it holds for every element; so v < 3 and v >= 3 can both be false. Also >.",
       "print(vector{ 1, 2 } < 3, vector{ 1, 5 } < 3)  --> true\tfalse"}},
-    {lua::a_metamethod<vector_functions::less_or_equal>("__le"),
+    {lua::a_metamethod<holds<"<=", [](double a, double b) { return a <= b; }>>("__le"),
      {"v <= w, v <= number -> boolean", "True when it holds for every element. Also >=.",
       "print(vector{ 1, 2 } >= 1)  --> true"}},
     {lua::a_metamethod<vector_text>("__tostring"),
      {"tostring(v) -> string", "The elements to six digits; of a long vector its two ends and its length.",
       "print(vector.linspace(0, 1, 101))  --> vector{ 0, 0.01, 0.02, ..., 0.98, 0.99, 1 }  -- 101 numbers"}},
+    {lua::a_method<map>,
+     {"v:map(f) -> vector", "f(x, i) of every element x, i its place: a number, or true for 1 and false for 0.",
+      "print(vector{ 1, 2, 3 }:map(function(x) return 10 * x end))  --> vector{ 10, 20, 30 }"}},
+    {lua::a_method<find>,
+     {"v:find(f) -> vector", "The places, from 1, of the elements x for which f(x, i) is true; v[v:find(f)] has them.",
+      "print(vector{ 5, 1, 7 }:find(function(x) return x > 3 end))  --> vector{ 1, 3 }"}},
+    {lua::a_method<of_all<"v:std()", deviation, 2>>,
+     {"v:std() -> number", "The standard deviation: the root of the sum of squares about the mean over #v - 1.",
+      "print(vector{ 1, 2, 3 }:std())  --> 1.0"}},
+    {lua::a_method<quantile>,
+     {"v:quantile(p) -> number",
+      "The value below which the part p of the elements lies, p from 0 to 1: 0.5 is the median. Linear between the sorted "
+      "elements, of which the first is at p = 0 and the last at p = 1.",
+      "print(vector{ 4, 1, 3, 2 }:quantile(0.5), vector{ 1, 2, 6 }:quantile(1))  --> 2.5\t6.0"}},
+    {lua::a_method<of_all<"v:argmax()", place_of_extreme<1>>>,
+     {"v:argmax() -> integer", "The place, from 1, of the greatest element, the first of equal ones.",
+      "print(vector{ 1, 3, 2 }:argmax())  --> 2"}},
+    {lua::a_method<of_all<"v:argmin()", place_of_extreme<-1>>>,
+     {"v:argmin() -> integer", "The place, from 1, of the least element, the first of equal ones.",
+      "print(vector{ 1, 3, -2 }:argmin())  --> 3"}},
+    {lua::a_method<filled<"v:cumsum()", cumulate>>,
+     {"v:cumsum() -> vector", "The sums of the first, the first two, ... of all elements.",
+      "print(vector{ 1, 2, 3 }:cumsum())  --> vector{ 1, 3, 6 }"}},
+    {lua::a_method<filled<"v:diff()", subtract_previous>>,
+     {"v:diff() -> vector", "Each element less the one before it: one number fewer.",
+      "print(vector{ 1, 4, 9 }:diff())  --> vector{ 3, 5 }"}},
+    {lua::a_method<interpolated>,
+     {"v:interp(x, y) -> vector",
+      "At each element the value of straight lines through the points x, y; x must increase, and beyond its ends the "
+      "first and the last y hold.",
+      "print(vector{ 0.5, 1.5, 9 }:interp(vector{ 0, 1, 2 }, vector{ 0, 10, 30 }))  --> vector{ 5, 20, 30 }"}},
+    {lua::a_method<dot>,
+     {"v:dot(w) -> number", "The sum of the products of elements in the same place.",
+      "print(vector{ 1, 2 }:dot(vector{ 3, 4 }))  --> 11.0"}},
+    {lua::a_method<arctangent>,
+     {"v:atan(w = 1) -> vector", "The angle of each point (w, v), rad, from -pi to pi; w is a vector or a number.",
+      "print(vector{ 1, 1 }:atan(vector{ 1, -1 }))  --> vector{ 0.785398, 2.35619 }"}},
+    {lua::a_method<filled<"v:sort()", sort>>,
+     {"v:sort() -> vector", "The elements from the least to the greatest, nan last.",
+      "print(vector{ 3, 1, 2 }:sort())  --> vector{ 1, 2, 3 }"}},
+    {lua::a_metamethod<joined>("__concat"),
+     {"v .. w, v .. number -> vector", "The elements of v, then those of w.",
+      "print(vector{ 1, 2 } .. vector{ 3 } .. 4)  --> vector{ 1, 2, 3, 4 }"}},
+    {lua::a_metamethod<pick>("__index"),
+     {"v[w] -> vector",
+      "The elements that a vector w picks: as long as v and of 0 and 1, it says which; else it has their places.",
+      "v = vector{ 5, 1, 7 }\n"
+      "print(v[vector{ 1, 0, 1 }], v[vector{ 3, 1 }])  --> vector{ 5, 7 }\tvector{ 7, 5 }"}},
 };
 
-constexpr auto all_vector_members = [] {
-    std::array<lua::Member, std::size(vector_members) + std::size(vector_query_members)> all{};
-    std::copy(std::begin(vector_query_members), std::end(vector_query_members),
-              std::copy(std::begin(vector_members), std::end(vector_members), all.begin()));
-    return all;
-}();
-
 }  // namespace
+}  // namespace dinal::api::vectors
+
+namespace dinal::api {
 
 const lua::Class vector_class{
     "vector",
@@ -246,8 +578,8 @@ const lua::Class vector_class{
      "Numbers in a row, such as a column of a run. It cannot be changed; "
      "arithmetic and mathematics act on all elements.",
      "v = vector{ 1, 2, 3 }\nprint(v[1], #v, 2 * v)  --> 1.0\t3\tvector{ 2, 4, 6 }"},
-    all_vector_members,
-    lua::guarded<element>,
+    vectors::vector_members,
+    lua::guarded<vectors::element>,
     vector_card,
 };
 

@@ -47,6 +47,7 @@ struct Data {
     std::string points_over = {};  ///< and over this one, else over the first
     std::string pieces_of = {};    ///< a line of d:plot() breaks where this column changes
     std::string dotted_of = {};    ///< and is dotted where this one is 0
+    bool is_spectrum = false;      ///< d:plot() has a logarithmic axis
     std::vector<std::string> parameters = {};  ///< columns over which all is a grid of points, the fastest one last
     std::vector<DataCompanion> companions = {};
 

@@ -5,16 +5,109 @@
 #include <array>
 #include <cmath>
 #include <functional>
+#include <iterator>
 #include <limits>
+#include <memory>
+#include <optional>
+#include <string>
 
 #include "api/data.hpp"
 #include "api/data_docs.hpp"
-#include "api/map_figure.hpp"
 #include "api/picture.hpp"
 #include "lua/options.hpp"
+#include "plots/figure.hpp"
+#include "plots/run_figure.hpp"
+#include "plots/shades.hpp"
 
 namespace dinal::api::data_functions {
 namespace {
+
+// ---- maps: a column in shades over the grid of two others
+
+/// Has a place on the axis.
+bool is_drawn(double value, bool logarithmic) {
+    return std::fabs(value) <= 1e300 && (value > 0 || !logarithmic);
+}
+
+/// The different values, increasing.
+std::vector<double> different_values(std::span<const double> all, bool logarithmic) {
+    std::vector<double> values;
+    std::copy_if(all.begin(), all.end(), std::back_inserter(values),
+                 [logarithmic](double v) { return is_drawn(v, logarithmic); });
+    std::sort(values.begin(), values.end());
+    values.erase(std::unique(values.begin(), values.end()), values.end());
+    return values;
+}
+
+std::size_t place_among(const std::vector<double>& values, double value) {
+    return static_cast<std::size_t>(std::lower_bound(values.begin(), values.end(), value) - values.begin());
+}
+
+plots::Shades shades_of(const lua::Options& options, const std::array<std::string, 3>& names,
+                        const std::array<plots::Numbers, 3>& columns) {
+    const auto [x, y, z] = std::array{columns[0].values, columns[1].values, columns[2].values};
+    const auto is_asked = [&](const char* name) {
+        return options.has(name) && std::get<bool>(options.value(options.row(name)));
+    };
+    const bool xlog = is_asked("xlog"), ylog = is_asked("ylog");
+    plots::Shades shades{.x = different_values(x, xlog), .y = different_values(y, ylog), .z = {}, .label = names[2]};
+    constexpr double sparse = 16;  // places for a row: what is scattered has no neighbours
+    const double places = static_cast<double>(shades.x.size()) * static_cast<double>(shades.y.size());
+    if (shades.x.empty() || shades.y.empty() || places > sparse * static_cast<double>(z.size())) {
+        options.fail({.sentence = fmt::format(
+                          "{} and {} form no grid: {} rows have {} different values of {} and {} of {}", names[0],
+                          names[1], z.size(), shades.x.size(), names[0], shades.y.size(), names[1]),
+                      .option = "z"});
+    }
+    shades.z.assign(shades.x.size() * shades.y.size(), std::numeric_limits<double>::quiet_NaN());
+    std::vector<bool> filled(shades.z.size());
+    for (std::size_t row = 0; row < z.size(); ++row) {
+        if (!is_drawn(x[row], xlog) || !is_drawn(y[row], ylog)) continue;
+        const std::size_t place = place_among(shades.y, y[row]) * shades.x.size() + place_among(shades.x, x[row]);
+        if (filled[place]) {
+            options.fail({.sentence = fmt::format("there are two rows with {} = {:.6g}, {} = {:.6g}: pick one, as with "
+                                                  "d:filter",
+                                                  names[0], x[row], names[1], y[row]),
+                          .option = "z"});
+        }
+        filled[place] = true;
+        shades.z[place] = z[row];
+    }
+    return shades;
+}
+
+/// Of x, y and z, with zlim and contours as the options say. Fails when x and y form no grid.
+plots::Figure figure_of_map(const lua::Options& options, const std::array<std::string, 3>& names,
+                            const std::array<plots::Numbers, 3>& columns) {
+    plots::Shades shades = shades_of(options, names, columns);
+    if (options.has("zlim")) {
+        const std::vector<double> ends = options.numbers("zlim");
+        if (ends.size() != 2 || !(ends[0] < ends[1])) {
+            options.fail("zlim", "zlim must be two increasing numbers such as { 0, 10 }");
+        }
+        shades.limits = plots::Interval{ends[0], ends[1]};
+    }
+    plots::Figure figure;
+    figure.x.label = names[0];
+    figure.y.label = names[1];
+    constexpr std::size_t most_contours = 20;
+    const std::vector<double> levels = options.numbers("contours");
+    if (levels.size() > most_contours) {
+        options.fail("contours",
+                     fmt::format("{} contours are too many, {} can be told apart", levels.size(), most_contours));
+    }
+    for (const double level : levels) {
+        plots::Curve line = plots::contour(shades, level);
+        line.label = fmt::format("{} = {:.6g}", names[2], level);
+        constexpr int vermilion = 2;  // is seen on the dark and on the bright end
+        line.colour = vermilion;
+        figure.curves.push_back(std::move(line));
+    }
+    figure.shades = std::make_shared<const plots::Shades>(std::move(shades));
+    return figure;
+}
+
+// ---- curves
 
 /// The names that stand under `option`: one or a list of them.
 std::vector<std::string> asked_names(lua_State* L, const lua::Options& options, const char* option) {
@@ -52,7 +145,31 @@ plots::Numbers drawn(lua_State* L, const Data& data, const std::string& name) {
 
 std::string label_of(const Data& data, const std::string& name) {
     const DataColumn* column = data.find(name);
-    return column != nullptr ? column->label() : name;
+    return column != nullptr ? model::of_unit(plots::symbol_for(name), column->unit) : name;
+}
+
+/// What is seen of a curve that says little in its full height: six decades of a spectrum, and of a response no more
+/// than some times what most of it reaches, since near a pole it has no bound.
+std::optional<plots::Interval> telling_limits(const Data& data, const plots::Curve& curve) {
+    std::vector<double> values;
+    std::copy_if(curve.y.values.begin(), curve.y.values.end(), std::back_inserter(values),
+                 [](double y) { return std::isfinite(y); });
+    if (values.empty() || (!data.is_spectrum && data.pieces_of.empty())) return std::nullopt;
+    const auto [least, greatest] = std::minmax_element(values.begin(), values.end());
+    const plots::Interval all{*least, *greatest};
+    if (data.is_spectrum) {
+        constexpr double decades = 1e-6;
+        return all.high > 0 && all.low < decades * all.high
+                   ? std::optional(plots::Interval{decades * all.high, 2 * all.high})
+                   : std::nullopt;
+    }
+    constexpr double most = 0.9, much_higher = 10, shown = 4;
+    const auto place = static_cast<std::ptrdiff_t>(most * static_cast<double>(values.size() - 1));
+    std::nth_element(values.begin(), values.begin() + place, values.end());
+    const double usual = values[static_cast<std::size_t>(place)];
+    return usual > 0 && all.high > much_higher * usual
+               ? std::optional(plots::Interval{std::min(0.0, all.low), shown * usual})
+               : std::nullopt;
 }
 
 /// The line broken where its data are, and a dotted one of what is unstable.
@@ -186,6 +303,8 @@ int plot(lua_State* L) {
         std::vector<plots::Figure> map{
             figure_of_map(options, {x.front(), y.front(), z.front()},
                           {drawn(L, *data, x.front()), drawn(L, *data, y.front()), drawn(L, *data, z.front())})};
+        map.front().x.label = label_of(*data, x.front());
+        map.front().y.label = label_of(*data, y.front());
         apply_options(L, options, map.front());
         return deliver(L, options, std::move(map));
     }
@@ -221,7 +340,10 @@ int plot(lua_State* L) {
         figure.curves.push_back(overlay_curve(options, *data, name, x.front(), y.front()));
         figure.curves.back().dashes = dashes[overlays++ % dashes.size()];
     }
+    figure.y.logarithmic = data->is_spectrum;
+    if (y.size() == 1) figure.y.limits = telling_limits(*data, curve);
     apply_options(L, options, figure);
+    if (!options.has("ylim") && figure.y.logarithmic != data->is_spectrum) figure.y.limits.reset();
     std::vector<plots::Figure> figures{std::move(figure)};
     return deliver(L, options, std::move(figures));
 }

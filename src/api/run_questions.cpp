@@ -76,7 +76,7 @@ int spectrum_of_run(lua_State* L) {
     const std::size_t rows = twice ? even - 1 : even;
     const double dt = (t[even - 1] - t[0]) / static_cast<double>(even - 1);
     const ColumnUnits in(units_of(*run));
-    Data data;
+    Data data{.columns = {}, .is_spectrum = true};
     const char* window = window_names[static_cast<std::size_t>(asked.window)];
     if (asked.method == SpectrumMethod::welch) {
         const auto segments = static_cast<std::size_t>(asked.segments);

@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "errors/misspelling.hpp"
-#include "errors/shell_words.hpp"
 #include "lua/safe_mode.hpp"
 #include "lua/standard_globals.hpp"
 #include "lua/tokens.hpp"
@@ -155,23 +154,7 @@ std::string running_habit(lua_State* L, const lua::LuaMessage& message, std::str
     if (message.type == "function" && !message.calculates) {
         return uncalled_function(L, message, statement);
     }
-    if (message.type == "nil" && message.kind == "global") {
-        if (std::string shell = instead_of_shell_line(L, statement); !shell.empty()) {
-            return "; " + shell;
-        }
-        if (is_word_for_degrees(message.name)) {
-            return degrees_of("30");
-        }
-    }
     return file_without_quotes(message.name, statement);
-}
-
-bool is_word_for_degrees(std::string_view name) {
-    return name == "deg" || name == "degree" || name == "degrees";
-}
-
-std::string degrees_of(std::string_view number) {
-    return "; degrees become radians by math.rad(" + std::string(number) + ")";
 }
 
 std::string foreign_name(std::string_view name) {

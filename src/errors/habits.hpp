@@ -18,10 +18,6 @@ std::string syntax_habit(lua_State* L, const lua::SyntaxMessage& message, std::s
 std::string running_habit(const text::Error& error, std::string_view statement);
 std::string running_habit(lua_State* L, const lua::LuaMessage& message, std::string_view statement);
 
-/// "30 deg": what makes radians of that number; whether the name is such a word.
-std::string degrees_of(std::string_view number);
-bool is_word_for_degrees(std::string_view name);
-
 /// What to write instead of a global name that other languages have, "; did you mean 'print'?", or "".
 std::string foreign_name(std::string_view name);
 

@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "errors/habits.hpp"
-#include "errors/shell_words.hpp"
 #include "lua/bind.hpp"
 #include "lua/tokens.hpp"
 #include "text/suggest.hpp"
@@ -127,9 +126,6 @@ Stumble stumble_in(const lua::SyntaxMessage& message, std::string_view statement
 
 std::string printed_sign(const lua::SyntaxMessage& message, std::string_view statement) {
     if (!message.near.starts_with("<\\")) return "";
-    if (message.near == "<\\255>" || message.near == "<\\254>") {  // its first byte, and none of UTF-8
-        return "; this is text in UTF-16: save it as UTF-8";
-    }
     for (const auto& [sign, meant] : printed_signs) {
         if (statement.find(sign) != std::string_view::npos) {
             return "; instead of " + std::string(sign) + " write " + std::string(meant);
@@ -208,23 +204,6 @@ std::string misspelt_keyword(const Stumble& stumble) {
                     return hint;
                 }
             }
-        }
-    }
-    return "";
-}
-
-/// "30 deg", "30deg", "90°"
-std::string degrees(const Stumble& stumble, std::string_view statement) {
-    for (const lua::Token& token : stumble.all) {
-        if (token.kind != lua::TokenKind::number) {
-            continue;
-        }
-        const std::size_t digits = std::min(token.text.find_first_not_of("0123456789."), token.text.size());
-        const std::string_view number = token.text.substr(0, digits);
-        const std::string_view behind = text::trimmed(statement.substr(token.at + digits));
-        const std::string_view word = behind.substr(0, behind.find_first_not_of("degrs"));
-        if (is_word_for_degrees(word) || behind.starts_with("°")) {
-            return degrees_of(number);
         }
     }
     return "";
@@ -328,12 +307,9 @@ std::string other_grammar(const Stumble& stumble) {
 std::string syntax_habit(lua_State* L, const lua::SyntaxMessage& message, std::string_view statement) {
     luaL_checkstack(L, LUA_MINSTACK, "for the habits of others");
     const Stumble stumble = stumble_in(message, statement);
-    if (const std::string shell = instead_of_shell_line(L, statement); !shell.empty()) {
-        return "; " + shell;
-    }
-    for (std::string advice : {degrees(stumble, statement), printed_sign(message, statement), doubled_sign(stumble),
-                               name_without_quotes(stumble), two_words(L, stumble), misspelt_keyword(stumble),
-                               missing_star(stumble), missing_return(stumble), other_grammar(stumble)}) {
+    for (std::string advice :
+         {printed_sign(message, statement), doubled_sign(stumble), name_without_quotes(stumble), two_words(L, stumble),
+          misspelt_keyword(stumble), missing_star(stumble), missing_return(stumble), other_grammar(stumble)}) {
         if (!advice.empty()) {
             return advice;
         }

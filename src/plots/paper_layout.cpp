@@ -45,11 +45,6 @@ std::string with_offset(const std::string& label, const Ticks& ticks) {
 
 std::vector<LegendEntry> legend_of(const Figure& figure) {
     std::vector<LegendEntry> entries;
-    if (figure.shades != nullptr) {
-        if (!figure.shades->label.empty()) entries.push_back({Sample::none, 0, figure.shades->label + ":"});
-        const std::vector<ShadeBand> bands = paper_bands(*figure.shades);
-        for (std::size_t i = 0; i < bands.size(); ++i) entries.push_back({Sample::shade, i, bands[i].text});
-    }
     for (std::size_t i = 0; i < figure.curves.size(); ++i) {
         if (!figure.curves[i].label.empty()) {
             entries.push_back({Sample::curve, i, figure.curves[i].label});
@@ -74,7 +69,7 @@ std::vector<LegendEntry> legend_of(const Figure& figure) {
     return entries;
 }
 
-/// Sets the entries one after the other, in lines of this width, all of them in columns when there are many. Their y
+/// Sets the entries in lines of this width: a few one after the other, many in columns that are read downwards. Their y
 /// counts down from 0 at the top. Returns the number of lines.
 int flow(std::vector<LegendEntry>& entries, double width) {
     double most = 0;
@@ -82,22 +77,28 @@ int flow(std::vector<LegendEntry>& entries, double width) {
         most = std::max(most, sample_width(entry.sample) + after_sample + width_of(entry.text) + between_entries);
     }
     most = std::min(most, width + between_entries);
-    constexpr std::size_t few = 4;
-    const double columns = std::max(1.0, std::floor((width + between_entries) / most));
+    constexpr int few = 4;
+    const int count = static_cast<int>(entries.size());
+    const int columns = std::max(1, static_cast<int>((width + between_entries) / most));
+    const int column_length = count > few ? (count + columns - 1) / columns : 0;
     double x = 0;
     int line = 0;
-    for (LegendEntry& entry : entries) {
+    for (int i = 0; i < count; ++i) {
+        LegendEntry& entry = entries[static_cast<std::size_t>(i)];
         entry.text = cut(entry.text, width - sample_width(entry.sample) - after_sample);
         const double own = sample_width(entry.sample) + after_sample + width_of(entry.text);
-        if (x > 0 && (entries.size() > few ? x >= (columns - 0.5) * most : x + own > width)) {
+        if (column_length > 0) {
+            x = i / column_length * most;
+            line = i % column_length;
+        } else if (x > 0 && x + own > width) {
             x = 0;
             ++line;
         }
         entry.x = x;
         entry.y = -(line + 0.5) * line_height;
-        x += entries.size() > few ? most : own + between_entries;
+        x += own + between_entries;
     }
-    return entries.empty() ? 0 : line + 1;
+    return entries.empty() ? 0 : std::max(column_length, line + 1);
 }
 
 constexpr int most_ticks = 12;  // of an axis: a poster needs no more of them than a page
@@ -129,8 +130,31 @@ void set_x_ticks(PaperPanel& panel, double limit) {
     }
 }
 
+constexpr double bar_gap = 1.0 * em, bar_width = 1.1 * em, bar_ticks = 0.5 * em;
+
+/// Bands of one number have it in their middle, others the number where the next one begins.
+ColourBar bar_of(const Shades& shades) {
+    const std::vector<ShadeBand> bands = paper_bands(shades);
+    ColourBar colours{.cells = bands.size()};
+    for (std::size_t i = 0; i < bands.size(); ++i) {
+        const std::string& text = bands[i].text;
+        const std::size_t to = text.find(" to ");
+        const double place = static_cast<double>(i);
+        if (to == std::string::npos && !text.starts_with('<') && !text.starts_with('>')) {
+            colours.labels.emplace_back(place + 0.5, typeset(text));
+        } else if (!text.starts_with('<')) {
+            colours.labels.emplace_back(place, typeset(text.starts_with('>') ? text.substr(2) : text.substr(0, to)));
+        }
+        if (i + 1 == bands.size() && to != std::string::npos) {
+            colours.labels.emplace_back(place + 1, typeset(text.substr(to + 4)));
+        }
+    }
+    return colours;
+}
+
 /// The margins of a panel, the ticks that fit between them, and the box, which begins `inset` from the left or later.
-void place(PaperPanel& panel, double left, double width, double height, double inset) {
+/// Panels beside it may need more room above and below the box, so that all boxes are as high.
+void place(PaperPanel& panel, double left, double width, double height, double inset, const PaperPanel& beside) {
     const Figure& figure = *panel.figure;
     const auto y_ticks = [&](double high) {
         return ticks_of(figure.y, panel.view.y, std::clamp(static_cast<int>(high / (2.6 * em)), 2, most_ticks));
@@ -141,8 +165,17 @@ void place(PaperPanel& panel, double left, double width, double height, double i
     panel.left = left + 0.4 * em + (figure.axes ? label_room + widest(panel.y_ticks.text) + 0.9 * em : 0);
     panel.left = std::max(panel.left, left + inset);
     panel.right = left + width - (figure.axes ? 1.0 : 0.4) * em;
+    if (figure.shades != nullptr) {
+        panel.bar = bar_of(*figure.shades);
+        double numbers = 0;
+        for (const auto& [place, text] : panel.bar.labels) numbers = std::max(numbers, width_of(text));
+        panel.bar_label.text = figure.shades->label;
+        panel.bar_label.x = panel.right - 0.3 * em;
+        panel.right -= bar_gap + bar_width + bar_ticks + numbers + (panel.bar_label.text.empty() ? 0 : 1.2 * em);
+    }
     const double bars = figure.stuck.empty() ? 0 : 0.6 * em;
     panel.bottom = figure.axes ? 2.1 * em + bars + (figure.x.label.empty() ? 0 : 1.5 * em) : 0.4 * em;
+    panel.bottom = panel.below = std::max(panel.bottom, beside.below);
     panel.right = std::max(panel.right, panel.left + 2 * em);
     panel.legend = legend_of(figure);
     const double title = figure.title.empty() ? 0 : 1.5 * em;
@@ -151,6 +184,8 @@ void place(PaperPanel& panel, double left, double width, double height, double i
         panel.legend.clear();
         above = 0.5 * em + title;
     }
+    const double own_above = above;
+    above = panel.above = std::max(above, beside.above);
     panel.top = std::max(height - above, panel.bottom + 2 * em);
     const double legend_left = panel.left;
     if (figure.equal) {
@@ -159,25 +194,26 @@ void place(PaperPanel& panel, double left, double width, double height, double i
         panel.left += (room.width - box.width) / 2;
         panel.right = panel.left + box.width;
         panel.unused = room.height - box.height;
-        panel.bottom += panel.unused / 2;
         panel.top = panel.bottom + box.height;
     }
     panel.y_ticks = y_ticks(panel.top - panel.bottom);
-    set_x_ticks(panel, left + width - 0.2 * em);
+    set_x_ticks(panel, figure.shades != nullptr ? panel.right + bar_gap : left + width - 0.2 * em);
+    panel.bar.left = panel.right + bar_gap;
+    panel.bar.right = panel.bar.left + bar_width;
     for (LegendEntry& entry : panel.legend) {
         entry.x += std::min(legend_left, panel.left);
-        entry.y += panel.top + above - 0.1 * em - title;
+        entry.y += panel.top + own_above - 0.1 * em - title;
     }
     const double whole_width =
         2 * std::min((panel.left + panel.right) / 2 - left, left + width - (panel.left + panel.right) / 2);
-    panel.title = {cut(figure.title, whole_width), (panel.left + panel.right) / 2, panel.top + above - 0.7 * em};
+    panel.title = {cut(figure.title, whole_width), (panel.left + panel.right) / 2, panel.top + own_above - 0.7 * em};
     panel.x_label.text = cut(with_offset(figure.x.label, panel.x_ticks), whole_width);
     panel.x_label.x = (panel.left + panel.right) / 2;
     panel.x_label.y = panel.bottom - 2.85 * em - bars;
     panel.y_label.text =
         cut(panel.y_label.text, 2 * std::min((panel.bottom + panel.top) / 2, height - (panel.bottom + panel.top) / 2));
     panel.y_label.x = panel.left - widest(panel.y_ticks.text) - 1.7 * em;
-    panel.y_label.y = (panel.bottom + panel.top) / 2;
+    panel.y_label.y = panel.bar_label.y = (panel.bottom + panel.top) / 2;
 }
 
 double share_of(const Figure& figure) {
@@ -223,7 +259,7 @@ PaperSize complete(PaperSize size, const std::vector<Pile>& piles) {
 void raise_panel(PaperPanel& panel, double by) {
     panel.bottom += by;
     panel.top += by;
-    for (Words* words : {&panel.title, &panel.x_label, &panel.y_label}) {
+    for (Words* words : {&panel.title, &panel.x_label, &panel.y_label, &panel.bar_label}) {
         words->y += by;
     }
     for (LegendEntry& entry : panel.legend) {
@@ -232,7 +268,8 @@ void raise_panel(PaperPanel& panel, double by) {
 }
 
 /// One below the other, with their axes below each other, too.
-void place_pile(std::vector<PaperPanel>& panels, const Pile& pile, double left, double width, double whole) {
+void place_pile(std::vector<PaperPanel>& panels, const Pile& pile, double left, double width, double whole,
+                const PaperPanel& beside) {
     const double height = whole / static_cast<double>(pile.size());
     double inset = 0;
     std::vector<PaperPanel> placed;
@@ -240,7 +277,7 @@ void place_pile(std::vector<PaperPanel>& panels, const Pile& pile, double left, 
         placed.clear();
         for (std::size_t i = 0; i < pile.size(); ++i) {
             placed.push_back({.figure = pile[i], .view = view_of(*pile[i])});
-            place(placed.back(), left, width, height, inset);
+            place(placed.back(), left, width, height, inset, beside);
             raise_panel(placed.back(), whole - static_cast<double>(i + 1) * height);
         }
         if (pile.size() == 1) {
@@ -264,11 +301,22 @@ Sheet lay_out(std::span<const Figure> figures, PaperSize size) {
     for (const Pile& pile : piles) {
         shares += share_of(*pile.front());
     }
-    double left = 0;
-    for (const Pile& pile : piles) {
-        const double width = sheet.width * share_of(*pile.front()) / shares;
-        place_pile(sheet.panels, pile, left, width, sheet.height);
-        left += width;
+    // Boxes side by side stand on one line and are as high: with the greatest margins, which are known when all are
+    // placed.
+    PaperPanel beside{.figure = nullptr, .view = view_of(figures.front())};
+    const bool row = piles.size() > 1 && piles.size() == figures.size();
+    for (int attempt = 0; attempt < (row ? 2 : 1); ++attempt) {
+        sheet.panels.clear();
+        double left = 0;
+        for (const Pile& pile : piles) {
+            const double width = sheet.width * share_of(*pile.front()) / shares;
+            place_pile(sheet.panels, pile, left, width, sheet.height, beside);
+            left += width;
+        }
+        for (const PaperPanel& panel : sheet.panels) {
+            beside.above = std::max(beside.above, panel.above);
+            beside.below = std::max(beside.below, panel.below);
+        }
     }
     if (any_height && figures.size() == 1 && sheet.panels.front().unused > 1) {
         return lay_out(figures, {size.width, size.height - sheet.panels.front().unused / pixels_per_cm});

@@ -3,6 +3,7 @@
 
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "plots/figure.hpp"
@@ -15,12 +16,12 @@ inline constexpr double font_size = 8;             // points
 inline constexpr double em = font_size * 96 / 72;  // pixels of 1/96 inch, the unit of this file
 inline constexpr double pixels_per_cm = 96 / 2.54;
 
-enum class Sample { curve, shade, mark, dead_zone, stuck, none };
+enum class Sample { curve, mark, dead_zone, stuck, none };
 
 /// A line of the legend: a sample, and words to its right.
 struct LegendEntry {
     Sample sample;
-    std::size_t curve;  // which, for a curve or a shade
+    std::size_t curve;  // which, for a curve
     std::string text;
     double x = 0, y = 0;  // of the left end of the sample, in the middle of the line
 };
@@ -28,6 +29,13 @@ constexpr double sample_width(Sample sample) {
     return (sample == Sample::none ? 0 : sample == Sample::mark ? 0.8 : 2.2) * em;
 }
 inline constexpr double after_sample = 0.4 * em;
+
+/// What the colours of a map mean: cells one above the other beside its box, of one height, the least below.
+struct ColourBar {
+    double left = 0, right = 0;
+    std::size_t cells = 0;
+    std::vector<std::pair<double, std::string>> labels = {};  ///< places in cells from the bottom
+};
 
 /// Words somewhere on the sheet.
 struct Words {
@@ -42,8 +50,10 @@ struct PaperPanel {
     Ticks x_ticks = {}, y_ticks = {};
     double left = 0, bottom = 0, right = 0, top = 0;  // the box of the curves
     double unused = 0;                                // of the height, because the box may not be higher than that
+    double above = 0, below = 0;                      // room for title and legend, and for what stands under the box
+    ColourBar bar = {};
     std::vector<LegendEntry> legend = {};
-    Words title = {}, x_label = {}, y_label = {};
+    Words title = {}, x_label = {}, y_label = {}, bar_label = {};
 };
 
 struct Sheet {

@@ -19,7 +19,7 @@ struct Symbol {
     Measure measure;
 };
 
-constexpr std::array<Symbol, 12> symbols{{{"t", "t", Measure::time},
+constexpr std::array<Symbol, 13> symbols{{{"t", "t", Measure::time},
                                           {"theta", "θ", Measure::angle},
                                           {"velocity", "θ'", Measure::speed},
                                           {"velocity/omega0", "θ'/ω₀", Measure::angle},
@@ -30,7 +30,8 @@ constexpr std::array<Symbol, 12> symbols{{{"t", "t", Measure::time},
                                           {"damping_over_k", "damping/k", Measure::angle},
                                           {"M", "M", Measure::torque},
                                           {"friction", "friction", Measure::torque},
-                                          {"damping", "damping", Measure::torque}}};
+                                          {"damping", "damping", Measure::torque},
+                                          {"omega", "ω", Measure::unknown}}};
 
 Symbol symbol_of(std::string_view name) {
     const auto* found =
@@ -122,6 +123,10 @@ std::vector<std::string> usual_columns(const RunData& run, std::string_view x) {
 }
 
 }  // namespace
+
+std::string symbol_for(std::string_view column) {
+    return std::string(symbol_of(column).symbol);
+}
 
 std::vector<Interval> stuck_intervals(const motion::Trajectory& trajectory) {
     std::vector<Interval> intervals;

@@ -36,6 +36,9 @@ text::Expected<std::vector<Figure>> column_figures(const RunData& run, const Col
 /// Without k it is theta'.
 text::Expected<Figure> phase_figure(const RunData& run);
 
+/// How the column of this name is written in a picture: "θ'" for velocity.
+std::string symbol_for(std::string_view column);
+
 /// When the mass stuck, from the events.
 std::vector<Interval> stuck_intervals(const motion::Trajectory& trajectory);
 

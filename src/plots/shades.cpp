@@ -136,9 +136,9 @@ std::vector<ShadeBox> boxes_of(const Shades& shades, const std::vector<ShadeBand
 }
 
 std::string shade_colour(std::size_t band, std::size_t count) {
-    // viridis of matplotlib (van der Walt and Smith, 2015), every ninth part, the bright end first: as ink on paper
-    constexpr std::array<std::string_view, 10> colours{"#FDE725", "#B4DE2C", "#6DCD59", "#35B779", "#1F9E89",
-                                                       "#26828E", "#31688E", "#3E4A89", "#482878", "#440154"};
+    // viridis of matplotlib (van der Walt and Smith, 2015), every ninth part
+    constexpr std::array<std::string_view, 10> colours{"#440154", "#482878", "#3E4A89", "#31688E", "#26828E",
+                                                       "#1F9E89", "#35B779", "#6DCD59", "#B4DE2C", "#FDE725"};
     const std::size_t place = count < 2 ? colours.size() / 2 : band * (colours.size() - 1) / (count - 1);
     return std::string(colours[std::min(place, colours.size() - 1)]);
 }

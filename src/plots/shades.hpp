@@ -45,7 +45,7 @@ std::vector<ShadeBox> boxes_of(const Shades& shades, const std::vector<ShadeBand
 /// The line along which z has this value, with nan between its pieces.
 Curve contour(const Shades& shades, double level);
 
-/// "#FDE725" to "#440154": from bright to dark, also for the colour-blind and in grey print.
+/// "#440154" to "#FDE725": from dark to bright, also for the colour-blind and in grey print.
 std::string shade_colour(std::size_t band, std::size_t count);
 /// A character for the band: its digit when all are digits, else a shade.
 std::string_view shade_letter(const std::vector<ShadeBand>& bands, std::size_t band, bool ascii);

@@ -1,18 +1,171 @@
 #include "plots/text_plot.hpp"
 
 #include <algorithm>
+#include <array>
+#include <cstdint>
 #include <limits>
+#include <string>
+#include <vector>
 
 #include "plots/bands.hpp"
 #include "plots/shades.hpp"
-#include "plots/text_block.hpp"
 #include "plots/text_drawing.hpp"
-#include "plots/text_legend.hpp"
 #include "plots/ticks.hpp"
 #include "text/characters.hpp"
 
 namespace dinal::plots {
 namespace {
+
+// ---- lines of text with known widths and colours
+
+/// A colour is 0 for none, 1, 2, ... for the palette of curves.
+class TextLine {
+public:
+    explicit TextLine(bool colours) : colours_(colours) {}
+    void add(std::string_view text, std::uint8_t colour = 0);
+    void append(const TextLine& line);
+    /// Blanks up to this width; nothing when it is wider already.
+    void pad(std::size_t width);
+    [[nodiscard]] std::size_t width() const { return width_; }
+    [[nodiscard]] std::string text() const;
+
+private:
+    bool colours_;
+    std::uint8_t colour_ = 0;
+    std::size_t width_ = 0;
+    std::string text_;
+};
+
+using TextBlock = std::vector<TextLine>;
+
+// The terminal's own colours: it knows its background. The first curve is plain; none of the others needs a good eye
+// for red and green, since letters tell the curves apart, too.
+constexpr std::array<std::string_view, 6> escapes{"\x1b[39m", "\x1b[36m", "\x1b[33m",
+                                                  "\x1b[35m", "\x1b[32m", "\x1b[31m"};
+constexpr std::string_view reset = "\x1b[0m";
+
+std::size_t place(std::uint8_t colour) {
+    return colour == 0 ? 0 : (colour - 1U) % escapes.size();
+}
+
+void TextLine::add(std::string_view text, std::uint8_t colour) {
+    if (text.empty()) {
+        return;
+    }
+    if (colours_ && place(colour) != place(colour_)) {
+        text_ += place(colour) == 0 ? reset : escapes[place(colour)];
+    }
+    colour_ = colour;
+    text_ += text;
+    width_ += text::columns(text);
+}
+
+void TextLine::append(const TextLine& line) {
+    text_ += line.text_;
+    if (colours_ && place(line.colour_) != 0) {
+        text_ += reset;
+    }
+    width_ += line.width();
+}
+
+void TextLine::pad(std::size_t width) {
+    if (width > width_) {
+        add(std::string(width - width_, ' '));
+    }
+}
+
+std::string TextLine::text() const {
+    constexpr std::string_view empty_braille = "\xE2\xA0\x80";
+    std::string_view text = text_;
+    for (;;) {
+        if (text.ends_with(' ')) {
+            text.remove_suffix(1);
+        } else if (text.ends_with(empty_braille)) {
+            text.remove_suffix(empty_braille.size());
+        } else {
+            break;
+        }
+    }
+    return std::string(text) + (colours_ && place(colour_) != 0 ? std::string(reset) : "");
+}
+
+/// Blocks beside each other, two columns between them.
+TextBlock beside(const std::vector<TextBlock>& blocks, bool colours) {
+    std::size_t height = 0;
+    for (const TextBlock& block : blocks) {
+        height = std::max(height, block.size());
+    }
+    TextBlock all;
+    for (std::size_t row = 0; row < height; ++row) {
+        TextLine line(colours);
+        std::size_t start = 0;
+        for (const TextBlock& block : blocks) {
+            std::size_t width = 0;
+            for (const TextLine& each : block) {
+                width = std::max(width, each.width());
+            }
+            line.pad(start);
+            if (row < block.size()) {
+                line.append(block[row]);
+            }
+            start += width + 2;
+        }
+        all.push_back(std::move(line));
+    }
+    return all;
+}
+
+/// All lines, each ended by a newline and without blanks at its end.
+std::string text_of(const TextBlock& block) {
+    std::string text;
+    for (const TextLine& line : block) {
+        text += line.text() + '\n';
+    }
+    return text;
+}
+
+// ---- the legend
+
+/// Words as such a text can show them.
+std::string shown_in(Charset charset, std::string_view words) {
+    const std::string clean = text::displayable(words);
+    return charset == Charset::braille ? clean : text::in_ascii(clean);
+}
+
+/// A line of the legend: what a letter, sign or shade stands for.
+struct TextEntry {
+    std::string text;
+    std::uint8_t ink;  ///< of its curve; 0 for what is none
+};
+
+std::vector<TextEntry> text_legend(const Figure& figure, Charset charset) {
+    std::vector<TextEntry> list;
+    if (figure.shades != nullptr) {
+        if (!figure.shades->label.empty()) list.push_back({shown_in(charset, figure.shades->label + ":"), 0});
+        const std::vector<ShadeBand> bands = bands_of(*figure.shades, most_text_bands);
+        for (std::size_t i = 0; i < bands.size(); ++i) {
+            const std::string_view sign = shade_letter(bands, i, charset == Charset::ascii);
+            list.push_back({sign == bands[i].text ? bands[i].text : std::string(sign) + " " + bands[i].text, 0});
+        }
+    }
+    for (std::size_t i = 0; i < figure.curves.size(); ++i) {
+        if (!figure.curves[i].label.empty()) {
+            const std::string mark = uses_letters(figure) ? std::string{letter(ink_of(i)), ' '} : "";
+            list.push_back({mark + shown_in(charset, figure.curves[i].label), ink_of(i)});
+        }
+    }
+    const Signs sign = signs(charset);
+    for (const MarkKind kind : kinds_of(figure.marks)) {
+        const auto place = static_cast<std::size_t>(kind);
+        list.push_back({std::string(sign.marks[place]) + " " + mark_names[place], 0});
+    }
+    if (figure.dead_zone) {
+        list.push_back({std::string(sign.dead_zone) + " dead zone", 0});
+    }
+    return list;
+}
+
+// ---- the picture
 
 constexpr int narrowest_panel = 38;  // columns; what has less stands under its neighbour
 constexpr int letters_at_end = 3;    // columns to the right of the canvas for the letters of curves
@@ -279,10 +432,6 @@ private:
     int columns_ = 0, rows_ = 0;  // of the canvas
     Box box_{1, 1};               // of the canvas in dots
 };
-
-}  // namespace
-
-namespace {
 
 /// Figures one below the other, their axes, too.
 TextBlock pile_of(std::span<const Figure> figures, TextFormat format) {

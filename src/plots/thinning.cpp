@@ -4,6 +4,8 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <numbers>
+#include <utility>
 
 namespace dinal::plots {
 namespace {
@@ -25,6 +27,154 @@ public:
 private:
     const Curve& curve_;
     const Paper& paper_;
+};
+
+/// Leaves out the points between which the curve is straight to within the tolerance: from a corner, a point can be
+/// reached by straight lines of a certain range of directions, and the range narrows with each point on the way.
+class Corners {
+public:
+    Corners(std::vector<std::size_t>& kept, double tolerance) : kept_(kept), tolerance_(tolerance) {}
+
+    void add(std::size_t i, Point point);
+    void finish();  ///< the piece ends here; the next point begins another one
+
+private:
+    void begin(std::size_t i, Point point);
+
+    std::vector<std::size_t>& kept_;
+    double tolerance_;
+    bool open_ = false;
+    bool has_cone_ = false;
+    Point corner_{}, last_point_{};
+    std::size_t last_ = 0;
+    double middle_ = 0, low_ = 0, high_ = 0, reach_ = 0;
+};
+
+void Corners::add(std::size_t i, Point point) {
+    if (!open_) {
+        begin(i, point);
+        return;
+    }
+    const double dx = point.x - corner_.x;
+    const double dy = point.y - corner_.y;
+    const double distance = std::hypot(dx, dy);
+    if (distance <= tolerance_ && reach_ <= tolerance_) {
+        last_ = i;
+        last_point_ = point;
+        return;
+    }
+    const double direction = std::atan2(dy, dx);
+    const double half = std::asin(std::min(1.0, tolerance_ / distance));
+    const double turn = has_cone_ ? std::remainder(direction - middle_, 2 * std::numbers::pi) : 0;
+    if (has_cone_ && (turn < low_ || turn > high_ || distance < reach_ - tolerance_)) {
+        const std::size_t corner = last_;
+        const Point corner_point = last_point_;
+        begin(corner, corner_point);
+        add(i, point);
+        return;
+    }
+    if (!has_cone_) {
+        has_cone_ = true;
+        middle_ = direction;
+        low_ = -half;
+        high_ = half;
+    } else {
+        low_ = std::max(low_, turn - half);
+        high_ = std::min(high_, turn + half);
+    }
+    reach_ = std::max(reach_, distance);
+    last_ = i;
+    last_point_ = point;
+}
+
+void Corners::finish() {
+    if (open_ && last_ != kept_.back()) {
+        kept_.push_back(last_);
+    }
+    open_ = false;
+}
+
+void Corners::begin(std::size_t i, Point point) {
+    kept_.push_back(i);
+    open_ = true;
+    has_cone_ = false;
+    corner_ = last_point_ = point;
+    last_ = i;
+    reach_ = 0;
+}
+
+/// A grid of square cells over the sheet, and how often each was touched: a million lines above one another are no more
+/// ink than a few.
+class Cells {
+public:
+    Cells(Box pixels, double size)
+        : size_(size),
+          columns_(static_cast<std::size_t>(std::ceil(pixels.width / size)) + 1),
+          rows_(static_cast<std::size_t>(std::ceil(pixels.height / size)) + 1),
+          counts_(columns_ * rows_, 0) {}
+
+    /// Tells whether its cell was blank before.
+    bool dot(Point point) {
+        const double column = std::floor(point.x / size_), row = std::floor(point.y / size_);
+        if (!(column >= 0 && row >= 0 && column < static_cast<double>(columns_) && row < static_cast<double>(rows_))) {
+            return false;
+        }
+        return counts_[static_cast<std::size_t>(row) * columns_ + static_cast<std::size_t>(column)]++ == 0;
+    }
+
+    /// What is outside of the sheet is left out.
+    void line(Line line) {
+        const Box sheet{static_cast<double>(columns_) * size_, static_cast<double>(rows_) * size_};
+        if (!clip(line, sheet, 0)) return;
+        const double dx = line.to.x - line.from.x, dy = line.to.y - line.from.y;
+        const double steps = std::ceil(std::max(std::fabs(dx), std::fabs(dy)) / size_);
+        walked_ += steps;
+        for (double i = 0; i < steps; ++i) dot({line.from.x + i / steps * dx, line.from.y + i / steps * dy});
+        dot(line.to);
+    }
+
+    /// Through how many cells lines have gone, the same one as often as a line went there.
+    [[nodiscard]] double walked() const { return walked_; }
+    [[nodiscard]] double size() const { return size_; }
+
+    /// The same in cells that are twice as wide and high.
+    [[nodiscard]] Cells coarser() const {
+        Cells result({static_cast<double>(columns_) * size_, static_cast<double>(rows_) * size_}, 2 * size_);
+        for (std::size_t i = 0; i < counts_.size(); ++i) {
+            result.counts_[i / columns_ / 2 * result.columns_ + i % columns_ / 2] += counts_[i];
+        }
+        return result;
+    }
+
+    /// How often the part `fraction` of all inked cells was touched, or less often.
+    [[nodiscard]] std::size_t quantile(double fraction) const {
+        std::vector<std::size_t> sorted = counts_;
+        std::erase(sorted, 0);
+        if (sorted.empty()) return 0;
+        std::sort(sorted.begin(), sorted.end());
+        return sorted[static_cast<std::size_t>(fraction * static_cast<double>(sorted.size()))];
+    }
+
+    /// The runs of cells that were touched more than so often.
+    [[nodiscard]] Strokes touched_more_than(std::size_t count) const {
+        Strokes strokes{{}, size_};
+        for (std::size_t i = 0; i < counts_.size(); ++i) {
+            if (counts_[i] <= count) continue;
+            const double from = static_cast<double>(i % columns_) * size_;
+            if (i % columns_ > 0 && counts_[i - 1] > count) {
+                strokes.all.back().to = from + size_;
+            } else {
+                strokes.all.push_back({from, from + size_, (static_cast<double>(i / columns_) + 0.5) * size_});
+            }
+        }
+        return strokes;
+    }
+
+private:
+    double size_;
+    std::size_t columns_, rows_;
+    std::vector<std::size_t> counts_;
+    double walked_ = 0;
 };
 
 /// The points of one column of pixels that are drawn.
@@ -92,7 +242,7 @@ std::vector<std::size_t> by_columns(const Curve& curve, const Paper& paper) {
 }
 
 std::vector<std::size_t> by_corners(const Curve& curve, const Paper& paper) {
-    constexpr double tolerance = 0.1;  // of a pixel; up to twice of that is lost
+    const double tolerance = 0.1 * paper.coarseness;  // of a pixel; up to twice of that is lost
     const Projected project(curve, paper);
     std::vector<std::size_t> corners;
     Corners piece(corners, tolerance);
@@ -111,9 +261,9 @@ std::vector<std::size_t> by_corners(const Curve& curve, const Paper& paper) {
 std::vector<std::size_t> by_pixels(const Curve& curve, const Paper& paper) {
     const Projected project(curve, paper);
     std::vector<std::size_t> kept;
-    Ink ink(paper.pixels, 1);
+    Cells cells(paper.pixels, paper.coarseness);
     for (std::size_t i = 0; i < curve.size(); ++i) {
-        if (project.has(i) && ink.dot(project(i))) {
+        if (project.has(i) && cells.dot(project(i))) {
             kept.push_back(i);
         }
     }
@@ -139,83 +289,39 @@ std::vector<std::size_t> thinned(const Curve& curve, const Paper& paper) {
     return has_columns(curve) ? by_columns(curve, paper) : by_corners(curve, paper);
 }
 
-Strokes inked(const Curve& curve, const Paper& paper, double pen, std::size_t most) {
-    constexpr double finest = 0.25;     // pixels: no printer shows that they are steps
-    constexpr double most_cells = 2e7;  // of a large sheet
+std::vector<Strokes> inked(const Curve& curve, const Paper& paper, std::size_t most) {
+    constexpr double finest = 1.3;      // pixels: half of what a line is wide
+    constexpr double most_cells = 4e6;  // of a large sheet
     // A million lines across the sheet leave it black in the coarsest cells, too, and sooner.
     constexpr double most_walked = 2e7;
-    const double area = paper.pixels.width * paper.pixels.height;
+    constexpr std::size_t crowd = 10'000;                   // of points, whose ink alone would be solid blocks
+    constexpr std::array<double, 3> denser{0.4, 0.7, 0.9};  // than this part of the cells that have points
+    const bool cloud = curve.style == Style::points;
     const Projected project(curve, paper);
-    Ink ink(paper.pixels, std::max(finest, std::sqrt(area / most_cells)));
+    Cells cells(paper.pixels, std::max(finest, std::sqrt(paper.pixels.width * paper.pixels.height / most_cells)));
     bool down = false;
     Point last{};
     for (std::size_t i = 0; i < curve.size(); ++i) {
         if (project.has(i)) {
             const Point point = project(i);
-            if (down && curve.style != Style::points) {
-                ink.line({last, point});
-                if (ink.walked() > most_walked) ink = ink.coarser();
-            } else {
-                ink.dot(point);
-            }
+            down && !cloud ? cells.line({last, point}) : static_cast<void>(cells.dot(point));
+            if (cells.walked() > most_walked) cells = cells.coarser();
             last = point;
         }
         down = project.has(i);
     }
-    Strokes strokes = ink.strokes(pen);
-    while (strokes.all.size() > std::max<std::size_t>(most, 16)) {  // no more than 4 in the coarsest
-        ink = ink.coarser();
-        strokes = ink.strokes(pen);
-    }
-    return strokes;
-}
-
-std::vector<Strokes> crowded(const Curve& curve, const Paper& paper, std::size_t most) {
-    constexpr double finest = 2, coarsest = 16;                   // pixels
-    constexpr std::array<double, 4> within = {0, 0.4, 0.7, 0.9};  // of the cells that have points
-    const Projected project(curve, paper);
-    double cell = finest;
     while (true) {
-        const auto columns = static_cast<std::size_t>(std::ceil(paper.pixels.width / cell));
-        const auto rows = static_cast<std::size_t>(std::ceil(paper.pixels.height / cell));
-        std::vector<std::size_t> counts(columns * rows, 0);
-        for (std::size_t i = 0; i < curve.size(); ++i) {
-            if (!project.has(i)) continue;
-            const Point point = project(i);
-            const double column = std::floor(point.x / cell), row = std::floor(point.y / cell);
-            if (column >= 0 && row >= 0 && column < static_cast<double>(columns) && row < static_cast<double>(rows)) {
-                ++counts[static_cast<std::size_t>(row) * columns + static_cast<std::size_t>(column)];
-            }
+        std::vector<Strokes> layers{cells.touched_more_than(0)};
+        std::size_t strokes = layers.front().all.size(), before = 0;
+        for (const double fraction : denser) {
+            const std::size_t count = cloud && curve.size() > crowd ? cells.quantile(fraction) : 0;
+            if (count == std::exchange(before, count)) continue;
+            layers.push_back(cells.touched_more_than(count));
+            strokes += layers.back().all.size();
+            if (layers.back().all.empty()) layers.pop_back();
         }
-        std::vector<std::size_t> sorted = counts;
-        std::erase(sorted, 0);
-        std::sort(sorted.begin(), sorted.end());
-        std::vector<Strokes> layers;
-        std::size_t strokes = 0, before = 0;
-        for (const double part : within) {
-            const auto rank = static_cast<std::size_t>(part * static_cast<double>(sorted.size()));
-            const std::size_t more_than = part == 0 || sorted.empty() ? 0 : sorted[rank];
-            if (part > 0 && more_than == before) continue;
-            before = more_than;
-            Strokes layer{{}, cell};
-            for (std::size_t place = 0; place < counts.size(); ++place) {
-                if (counts[place] <= more_than) continue;
-                const std::size_t column = place % columns, row = place / columns;
-                const double from = static_cast<double>(column) * cell;
-                const double y = (static_cast<double>(row) + 0.5) * cell;
-                if (column > 0 && counts[place - 1] > more_than) {
-                    layer.all.back().to = from + cell;
-                } else {
-                    layer.all.push_back({from, from + cell, y});
-                }
-            }
-            strokes += layer.all.size();
-            if (!layer.all.empty()) layers.push_back(std::move(layer));
-        }
-        if (strokes <= most || cell > coarsest) {
-            return layers;
-        }
-        cell *= 1.25;
+        if (strokes <= std::max<std::size_t>(most, 16)) return layers;  // no more than 4 in the coarsest
+        cells = cells.coarser();
     }
 }
 

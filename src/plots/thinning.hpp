@@ -5,7 +5,7 @@
 #include <limits>
 #include <vector>
 
-#include "plots/pen_path.hpp"
+#include "plots/line.hpp"
 
 namespace dinal::plots {
 
@@ -28,12 +28,19 @@ bool has_columns(const Curve& curve);
 /// pixel.
 std::vector<std::size_t> thinned(const Curve& curve, const Paper& paper);
 
-/// The same as strokes on the paper, at most so many, for what has no such columns and is so dense that it is mostly
-/// ink. The fewer strokes, the coarser they are.
-Strokes inked(const Curve& curve, const Paper& paper, double pen, std::size_t most);
+/// Inked from here to there along a row of the sheet.
+struct Stroke {
+    double from, to, y;
+};
 
-/// Of a crowd of points: how many of them there are, as up to four layers of strokes, each within the one before it;
-/// the first is where there are any. At most so many strokes in all, in cells as fine as these let them be.
-std::vector<Strokes> crowded(const Curve& curve, const Paper& paper, std::size_t most);
+struct Strokes {
+    std::vector<Stroke> all = {};
+    double height = 0;  ///< of each row
+};
+
+/// A line or a cloud of points so dense that it is mostly ink: the cells of a grid that it touches, as at most so many
+/// strokes, which are the coarser the fewer they may be. Layers lie one upon the other: the first is all of it, later
+/// ones are where there are more points of a cloud.
+std::vector<Strokes> inked(const Curve& curve, const Paper& paper, std::size_t most);
 
 }  // namespace dinal::plots

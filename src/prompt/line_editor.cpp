@@ -36,7 +36,7 @@ constexpr const char* erase_to_end = "\x1b[K";
 // What readline's callbacks need to know: there is one editor, and they get no argument.
 struct Editing {
     lua_State* L = nullptr;
-    bool paints = false;   // colours and hints
+    bool paints = false;   // hints
     bool hinting = false;  // a hint stands behind the line
     bool accepted = false;
     TypedLine line;
@@ -92,7 +92,7 @@ void bind_to_suggestions() {
     }
 }
 
-/// readline draws the line; then it is drawn over in colours, with the hint behind it, where it is one simple row.
+/// readline draws the line; then a hint comes behind it, where it is one simple row.
 void redisplay() {
     if (InterruptNote::interrupted()) {
         return;  // the line is being given up: it stays as it is

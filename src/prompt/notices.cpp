@@ -6,12 +6,12 @@
 #include <array>
 #include <set>
 #include <span>
+#include <string_view>
 #include <utility>
 #include <vector>
 
 #include "errors/meant_method.hpp"
 #include "errors/misspelling.hpp"
-#include "errors/shell_words.hpp"
 #include "errors/source_text.hpp"
 #include "help/help_text.hpp"
 #include "help/signature.hpp"
@@ -25,6 +25,19 @@
 
 namespace dinal::prompt {
 namespace {
+
+/// Commands of shells, notebooks and other languages, and what does the same here.
+constexpr std::array<std::pair<std::string_view, std::string_view>, 9> words_and_cures = {{
+    {"exit quit q bye logout ende beenden salir quitter esci", ":quit or Ctrl-D leaves"},
+    {"clear cls clc", "Ctrl-L clears the screen, :reset forgets your variables"},
+    {"who whos", ":who lists your variables"},
+    {"ls dir pwd cd", "no shell is in here; in a terminal Ctrl-Z leads to it, and fg comes back"},
+    {"man", "help \"name\" explains a name"},
+    {"history", "the up arrow brings earlier lines back, Ctrl-R searches them, and :save writes them into a script"},
+    {"save", ":save writes what was typed into a script, run:save(\"run.csv\") a run into a file"},
+    {"reset", ":reset forgets your variables"},
+    {"hilfe ayuda aide aiuto hallo hello hola", "help() starts a tour, and ?name explains a name"},
+}};
 
 bool opens_block(const lua::Token& token) {
     return token.is("function") || token.is("do") || token.is("if") || token.is("repeat");
@@ -68,9 +81,6 @@ std::string name_notice(lua_State* L, const Chunk& chunk) {
     if (all.size() == 1 && all.front().is("help")) {
         return "help() starts a tour; ?name explains a name";
     }
-    if (all.size() == 2 && all.back().kind == lua::TokenKind::comment) {  // dinal --report lab.lua
-        return errors::instead_of_shell_line(L, chunk.expression);
-    }
     if (all.size() != 1 || all.front().kind != lua::TokenKind::name || all.front().is("ans")) {
         return "";
     }
@@ -78,8 +88,11 @@ std::string name_notice(lua_State* L, const Chunk& chunk) {
     if (is_global(L, name)) {
         return "";
     }
-    if (const std::string_view advice = errors::instead_of_word(name); !advice.empty()) {
-        return fmt::format("there is no such variable; {}", advice);
+    for (const auto& [words, cure] : words_and_cures) {
+        const std::vector<lua::Token> known = lua::tokens(words);
+        if (std::any_of(known.begin(), known.end(), [&](const lua::Token& word) { return word.text == name; })) {
+            return fmt::format("there is no such variable; {}", cure);
+        }
     }
     const std::string hint = errors::similar_global(L, name);
     return hint.empty() ? "" : fmt::format("there is no variable '{}'{}", name, hint);
@@ -136,7 +149,6 @@ std::string colon_notice(lua_State* L, const std::string& text) {
 std::string unfinished_notice(lua_State* L, const std::string& text) {
     if (std::string notice = colon_notice(L, text); !notice.empty()) return notice;
     if (text.find('\n') != std::string::npos) return "";
-    if (std::string notice = errors::instead_of_shell_line(L, text); !notice.empty()) return notice;
     const std::vector<lua::Token> all = lua::tokens(text);
     const bool percent = all.size() > 1 && all.back().is("%") && all[all.size() - 2].kind == lua::TokenKind::number &&
                          all[all.size() - 2].end() == all.back().at;
@@ -215,23 +227,6 @@ std::string overwritten_notice(lua_State* L, const std::string& text) {
         }
         return fmt::format("{} was there before, and is yours now; :reset gives it back, and forgets your variables",
                            whole);
-    }
-    return "";
-}
-
-std::string degrees_notice(const std::string& text) {
-    constexpr std::array<std::string_view, 12> angles = {"5",  "10", "15",  "20",  "30",  "45",
-                                                         "60", "90", "120", "135", "180", "360"};
-    const std::vector<lua::Token> all = lua::tokens(text);
-    for (std::size_t i = 0; i + 2 < all.size(); ++i) {
-        if (!all[i].is("theta0") || !all[i + 1].is("=")) {
-            continue;
-        }
-        const std::size_t at = i + 2 + (all[i + 2].is("-") && i + 3 < all.size() ? 1 : 0);
-        const bool alone = at + 1 == all.size() || all[at + 1].is(",") || all[at + 1].is("}") || all[at + 1].is(";");
-        if (alone && std::find(angles.begin(), angles.end(), all[at].text) != angles.end()) {
-            return fmt::format("theta0 is in radians; {} degrees are math.rad({})", all[at].text, all[at].text);
-        }
     }
     return "";
 }

@@ -15,7 +15,7 @@ std::string name_notice(lua_State* L, const Chunk& chunk);
 std::string element_notice(lua_State* L, const Chunk& chunk);
 
 /// A line that Lua takes for the beginning of a longer one, and hardly is: "run:events" waits for arguments that a
-/// field never gets and a method may have been expected to do without; "cd .."; "5%".
+/// field never gets and a method may have been expected to do without; "5%".
 std::string unfinished_notice(lua_State* L, const std::string& text);
 
 /// A local variable at the top level that nothing after it uses: it is lost.
@@ -29,9 +29,6 @@ std::string comma_notice(const std::string& text);
 
 /// A name that Lua or dinal brings, and that the text has given another value: system = 3, math.pi = 3.
 std::string overwritten_notice(lua_State* L, const std::string& text);
-
-/// theta0 = 90 is hardly meant in radians.
-std::string degrees_notice(const std::string& text);
 
 /// math.max of one vector, which is that vector; the value is at `index`.
 std::string greatest_notice(lua_State* L, int index, const Chunk& chunk);

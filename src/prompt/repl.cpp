@@ -192,10 +192,6 @@ bool run_chunk(Session& session, const Chunk& chunk, const std::string& text) {
     say_notice(nil_notice(session.L, text));
     say_notice(comma_notice(text));
     say_notice(overwritten_notice(session.L, text));
-    if (const std::string notice = session.degrees_noticed ? "" : degrees_notice(text); !notice.empty()) {
-        say_notice(notice);
-        session.degrees_noticed = true;
-    }
     const std::string before = session.record.problem();
     session.record.add(chunk, result);
     if (const std::string& problem = session.record.problem(); !problem.empty() && before.empty()) {

@@ -16,9 +16,8 @@ struct Session {
     LineEditor editor;
     Record record;
     lua_CFunction show_values = print_values;
-    bool local_noticed = false;    ///< once is enough
-    bool degrees_noticed = false;  ///< here, too
-    bool leaving = false;          ///< :quit
+    bool local_noticed = false;  ///< once is enough
+    bool leaving = false;        ///< :quit
 };
 
 /// Compiles and runs a text that is all there is to come, as at the prompt. False after an error, which was told.

@@ -1,4 +1,4 @@
-// While a line is typed: its colours, the grey hint behind it, and completion that no error of Lua can leave.
+// While a line is typed: the grey hint behind it, and completion that no error of Lua can leave.
 #pragma once
 
 #include <string>
@@ -9,7 +9,7 @@
 
 namespace dinal::prompt {
 
-/// What draws a line over in colours, and puts the cursor back.
+/// What draws the hint behind a line, and puts the cursor back.
 struct Painted {
     std::string text;   ///< empty when the line must stay as it is
     bool hint = false;  ///< something stands behind the line now
@@ -28,8 +28,5 @@ Painted paint(lua_State* L, const LineOnScreen& shown);
 
 /// complete(), with an empty answer where memory runs out.
 Completion complete_safely(lua_State* L, const std::string& before);
-
-/// Lua text with escape sequences for its colours.
-std::string in_colours(std::string_view text);
 
 }  // namespace dinal::prompt

@@ -274,14 +274,6 @@ TEST_CASE("a file that is no text is refused with the line of its NUL byte", "[c
     CHECK_THAT(fault("# c\0\nt\n1\n"sv), Contains("x.csv:1: "));
 }
 
-TEST_CASE("every beginning of a file gives a table or a sentence", "[csv]") {
-    const std::string text = "\xEF\xBB\xBF# c\r\n\"a \"\"b\"\"\";t\r\n+1.5e-3;-0\r\n7;8\r\n";
-    for (std::size_t length = 0; length <= text.size(); ++length) {
-        const auto table = parse_csv(std::string_view(text).substr(0, length), "x.csv");
-        CHECK((table || !table.error().sentence.empty()));
-    }
-}
-
 TEST_CASE("a missing file and a folder are refused by name", "[csv]") {
     const TemporaryFolder folder;
     CHECK_THAT(read_csv(folder.file("no.csv")).error().sentence, Contains("no.csv': No such file"));

@@ -124,38 +124,6 @@ TEST_CASE("a steady cycle: M puts in 4 Rd X and what the damper takes", "[energy
     check_books(energy);
 }
 
-TEST_CASE("steady resonance without dry friction: input and viscous loss are pi M0 X a period", "[energy]") {
-    const double zeta = 0.239, X = 1 / (2 * zeta);
-    // Started in the steady motion itself: theta = -X cos w0 t.
-    const Energy energy = energy_of_run(nondimensional(zeta, 0), harmonic(1, 2 * pi), {-X, 0}, {0, 10});
-    CHECK(energy.total.work.input == Approx(10 * pi * X).epsilon(near));
-    CHECK(energy.total.work.viscous == Approx(10 * pi * X).epsilon(near));
-    CHECK(energy.total.work.dry == 0);
-    REQUIRE(energy.half_cycles.size() >= 19);  // the start and the end are turns, to rounding
-    for (std::size_t i = 1; i < 19; ++i) {
-        CHECK(energy.half_cycles[i].balance.work.viscous == Approx(pi * X / 2).epsilon(near));
-    }
-    check_books(energy);
-}
-
-TEST_CASE("nothing is lost without friction: the energy stays, or M brought it", "[energy]") {
-    const Oscillator system = nondimensional(0, 0);
-    const Energy free = energy_of_run(system, {}, {1, 0}, {0, 1000});
-    CHECK(free.total.work.input == 0);
-    CHECK(free.finish.kinetic + free.finish.spring == Approx(0.5).epsilon(1e-11));  // 1000 periods of 1e-12 each
-    CHECK(free.flow == Approx(2000 * 0.5).epsilon(1e-11));  // the spring gives all it has in every half cycle
-    check_books(free);
-    // A constant M: its work is M times the way between the ends.
-    const Energy pushed = energy_of_run(system, excitations::made(Constant{3}), {1, 0}, {0, 7.25});
-    CHECK(pushed.total.work.input == Approx(3 * (3 - 1)).epsilon(near));  // at a quarter period it passes theta = 3
-    check_books(pushed);
-    // Undamped resonance from rest: theta = (sin w0 t - w0 t cos w0 t)/2, and all that M did is in there.
-    const Energy grown = energy_of_run(system, harmonic(1, 2 * pi), {0, 0}, {0, 10});
-    CHECK(grown.start.kinetic + grown.start.spring == 0);
-    CHECK(grown.total.work.input == Approx(std::pow(10 * pi, 2) / 2).epsilon(near));
-    check_books(grown);
-}
-
 TEST_CASE("a motor that acts like a damper takes what the damper would", "[energy]") {
     const double c = 0.119 / pi;
     const Energy motor =
@@ -238,31 +206,6 @@ TEST_CASE("a mass that never moves keeps what its spring holds, and nothing flow
     CHECK(energy.finish.spring == 0.1 * 0.1 / 2);
 }
 
-TEST_CASE("an interrupted run has the energy of what was done", "[energy]") {
-    const Oscillator system = nondimensional(0.05, 0.1);
-    const auto run =
-        simulate(system, harmonic(1, 5), {1, 0}, {0, 100}, Grid::none(), Spectral{}, [](double t) { return t < 10; });
-    REQUIRE(run);
-    REQUIRE(run->outcome == Outcome::interrupted);
-    const auto energy = energy_of(*run);
-    REQUIRE(energy);
-    CHECK(energy->t_end == run->t_stop);
-    check_books(*energy);
-}
-
-TEST_CASE("a run that went on has the energy of all of it", "[energy][resume]") {
-    const ReferenceSystem& s = reference_system("W4: resonance, both frictions (fig 27)");
-    const Trajectory part = must_run(s.oscillator, s.excitation, s.initial, {0, 7.3}, Grid::none(), Spectral{});
-    const auto run = resume(s.oscillator, s.excitation, part, s.window.end, Grid::none(), Spectral{});
-    REQUIRE(run);
-    const Energy energy = energy_of(*run).value();
-    const Energy whole = energy_of_run(s.oscillator, s.excitation, s.initial, s.window);
-    CHECK(energy.start.spring == whole.start.spring);
-    CHECK(energy.half_cycles.size() == whole.half_cycles.size());
-    CHECK(energy.total.work.input == Approx(whole.total.work.input).epsilon(near));
-    check_books(energy);
-}
-
 TEST_CASE("a run that went on after its panels were full says up to when they reach", "[energy][resume]") {
     const Oscillator system = nondimensional(0.05, 0);
     const Excitation M = harmonic(1, 5);
@@ -276,27 +219,6 @@ TEST_CASE("a run that went on after its panels were full says up to when they re
         REQUIRE_FALSE(energy);
         CHECK_THAT(energy.error().sentence, Catch::Contains("kept up to t = 45.6 only"));
     }
-}
-
-TEST_CASE("a run that kept no panels says what to do for its energy", "[energy]") {
-    const Oscillator system = nondimensional(0.05, 0.1);
-    const auto complaint = [](const Trajectory& run) {
-        const auto energy = energy_of(run);
-        return energy ? "" : energy.error().sentence;
-    };
-    const auto rk4 = must_run(system, {}, {1, 0}, {0, 1}, Grid::none(), Rk4{0.01});
-    CHECK(complaint(rk4).find("integrator.spectral") != std::string::npos);
-    const auto sparse = simulate(system, {}, {1, 0}, {0, 1}, Grid::none(), Spectral{}, {}, {.dense = false});
-    REQUIRE(sparse);
-    CHECK(complaint(*sparse).find("dense = false") != std::string::npos);
-    Trajectory loaded;
-    loaded.computed = false;
-    CHECK(complaint(loaded).find("read from a file") != std::string::npos);
-    const auto small =
-        simulate(system, harmonic(1, 5), {1, 0}, {0, 100}, Grid::none(), Spectral{}, {}, {.memory = 10000});
-    REQUIRE(small);
-    CAPTURE(complaint(*small), complaint(rk4));
-    CHECK(complaint(*small).find("for want of memory") != std::string::npos);
 }
 
 }  // namespace dinal::energy_test

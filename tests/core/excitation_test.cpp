@@ -75,73 +75,6 @@ TEST_CASE("a block of a sine never passes its amplitude, not even by rounding", 
     CHECK(above == 0);
 }
 
-TEST_CASE("sines at times about a middle are those of the times, and no more than their amplitude", "[excitation]") {
-    const std::vector<double> places{-1, -0.9, -0.4, 0, 0.4, 0.9, 1};
-    const std::size_t n = places.size(), middle = n / 2;
-    const double ulp = std::numeric_limits<double>::epsilon(), omega = 2 * pi;
-    const Excitation M = made(Harmonic{3, omega, 0.7}) + made(Harmonic{-0.5, 0.3 * omega, 0}) +
-                         made(Constant{0.25}).windowed(-1, 1e7) + made(Harmonic{2, omega, 0}).windowed(0.5, 0.6) +
-                         made(Gaussian{1, 0.1, 0.2});
-    Spread spread{.places = places};
-    double above = 0;
-    for (const double start : {0.0, 1000.0, -0.7}) {
-        // Lengths that come again, and others; of some the first time is not asked, of some not the last.
-        for (const double half : {0.3, 0.3, 0.1, 0.3}) {
-            for (const std::size_t first : {std::size_t{0}, std::size_t{1}}) {
-                for (const std::size_t end : {n, n - 1}) {
-                    std::vector<double> times(n), rests(n);
-                    for (std::size_t j = 0; j < n; ++j) {
-                        const double since = half * (1 + places[j]);
-                        times[j] = start + since, rests[j] = since - (times[j] - start);
-                    }
-                    const std::size_t count = end - first;
-                    std::vector<double> out(count);
-                    spread.first = first, spread.half = half;
-                    spread.middle = times[middle], spread.rest = rests[middle];
-                    spread.rests = {rests.data() + first, count};
-                    REQUIRE(M.fill({times.data() + first, count}, out, &spread) == count);
-                    for (std::size_t i = 0; i < count; ++i) {
-                        const std::size_t j = i + first;
-                        CAPTURE(start, half, j);
-                        // Roundings of omega t, at the middle and here, and a few of the results.
-                        const double rounding = 3 * ulp * (2 * omega * (std::fabs(start) + 1) + 4);
-                        REQUIRE(out[i] == within(M.value(times[j]), rounding));
-                        if (j == 0 || j + 1 == n) REQUIRE(out[i] == within(M.value(times[j]), 4 * ulp));
-                    }
-                }
-            }
-        }
-    }
-    // Between the ends only what is left of the time is rounded, however late it is.
-    for (const double start : {0.3, -54321.1, 1e7}) {
-        const Excitation late = made(Harmonic{3, omega, 0.7});
-        std::vector<double> times(n), rests(n), out(n);
-        for (std::size_t j = 0; j < n; ++j) {
-            const double since = 0.3 * (1 + places[j]);
-            times[j] = start + since, rests[j] = since - (times[j] - start);
-        }
-        spread.first = 0, spread.half = 0.3, spread.middle = times[middle], spread.rest = rests[middle];
-        spread.rests = rests;
-        REQUIRE(late.fill(times, out, &spread) == n);
-        for (std::size_t j = 1; j + 1 < n; ++j) {
-            const long double t = static_cast<long double>(times[j]) + rests[j];
-            const auto exact = static_cast<double>(3 * std::sin(static_cast<long double>(omega) * t + 0.7L));
-            CAPTURE(start, j);
-            // The phase is 0.7 in doubles; then some roundings of the turns and of the sum.
-            REQUIRE(out[j] == within(exact, 3 * 6 * ulp + 3 * std::fabs(static_cast<double>(omega * t)) * 0x1p-63));
-        }
-    }
-    const Excitation alone = made(Harmonic{0.167, omega, 0});
-    for (int i = 0; i < 4000; ++i) {
-        std::vector<double> times(n), rests(n), out(n);
-        spread.half = 0.25 / 0.9, spread.middle = 0.5 * i, spread.rest = 0, spread.first = 0, spread.rests = rests;
-        for (std::size_t j = 0; j < n; ++j) times[j] = spread.middle + spread.half * places[j];
-        REQUIRE(alone.fill(times, out, &spread) == n);
-        for (const double x : out) above = std::max(above, std::fabs(x) - 0.167);
-    }
-    CHECK(above <= 0);
-}
-
 TEST_CASE("gain, sum, delay and window are what they are on paper", "[excitation]") {
     const auto terms = one_of_each();
     for (const Excitation& a : terms) {
@@ -278,32 +211,6 @@ TEST_CASE("a script that failed is the last one that is called", "[excitation]")
     const Excitation M = made(Scripted{.function = bad}) + made(Scripted{.function = good});
     CHECK(std::isnan(M.value(1)));
     CHECK(good->calls == 0);
-}
-
-TEST_CASE("a sum that grows term by term copies each term a few times only, at either end", "[excitation]") {
-    const int n = 4000;
-    for (const bool in_front : {false, true}) {
-        const auto f = probe([](double) { return 1.0; });
-        const Excitation term = made(Scripted{.function = f});
-        const long before = f.use_count();
-        Excitation M = term;
-        std::vector<Excitation> all = {M};
-        for (int i = 1; i < n; ++i) {
-            M = in_front ? made(Step{1, 0.5 * i}) + M : M + made(Step{1, 0.5 * i});
-            all.push_back(M);
-        }
-        // All sums live, and share what they have: the term stands once in every list that was outgrown.
-        // Each list is half again as long as the one before: log(4000) / log(1.5) = 20.5.
-        CHECK(f.use_count() - before <= 22);
-        REQUIRE(M.components().size() == static_cast<std::size_t>(n));
-        CHECK(M.value(1e9) == n);
-        for (const int i : {0, 1, 2, 3, 1000, n - 1}) {
-            const Excitation& sum = all[static_cast<std::size_t>(i)];
-            REQUIRE(sum.components().size() == static_cast<std::size_t>(i) + 1);
-            CHECK(sum.value(1e9) == i + 1);
-            CHECK(sum.value(0.5 * i) == i + 1);
-        }
-    }
 }
 
 TEST_CASE("two sums that go on from the same one do not see each other's terms", "[excitation]") {

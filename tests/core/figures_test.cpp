@@ -5,6 +5,7 @@
 
 #include "plots/bands.hpp"
 #include "plots/paper_layout.hpp"
+#include "plots/shades.hpp"
 #include "support/catch.hpp"
 
 namespace dinal::figures_test {
@@ -60,6 +61,41 @@ TEST_CASE("figures below others have their boxes below theirs, as wide", "[plots
     CHECK(sheet.panels[1].right == sheet.panels[0].right);
     CHECK(sheet.panels[2].left > sheet.panels[0].right);
     CHECK(sheet.panels[2].bottom < sheet.panels[1].top);
+}
+
+TEST_CASE("boxes side by side stand on one line and are as high", "[plots]") {
+    std::vector<Figure> figures{decay(100), decay(100), decay(100)};
+    figures[0].stuck = {{1, 2}};
+    figures[0].x.label = "t";
+    figures[1].title = "a title";
+    figures[2].equal = true;
+    const Sheet sheet = lay_out(figures, {});
+    CHECK(sheet.panels[1].bottom == sheet.panels[0].bottom);
+    CHECK(sheet.panels[1].top == sheet.panels[0].top);
+    CHECK(sheet.panels[2].bottom == sheet.panels[0].bottom);
+}
+
+TEST_CASE("many entries of a legend are read downwards, in columns of one length", "[plots]") {
+    Figure figure = decay(10);
+    figure.curves.assign(10, figure.curves.front());
+    const std::vector<LegendEntry> legend = lay_out({&figure, 1}, {12, 9}).panels[0].legend;
+    REQUIRE(legend.size() == 10);
+    CHECK(legend[1].x == legend[0].x);
+    CHECK(legend[1].y < legend[0].y);
+    CHECK(legend[9].x > legend[0].x);
+}
+
+TEST_CASE("a map has a bar of its colours, with a number between two of them or on each", "[plots]") {
+    const auto labels = [](std::vector<double> z) {
+        Figure figure;
+        figure.shades = std::make_shared<const Shades>(Shades{{0, 1, 2}, {0, 1}, std::move(z), "A"});
+        const ColourBar bar = lay_out({&figure, 1}, {}).panels[0].bar;
+        std::string all;
+        for (const auto& [place, text] : bar.labels) all += text + " at " + std::to_string(place).substr(0, 3) + "; ";
+        return all;
+    };
+    CHECK(labels({0, 1, 2, 0, 1, 2}) == "0 at 0.5; 1 at 1.5; 2 at 2.5; ");
+    CHECK(labels({0, 0.1, 0.2, 0.3, 0.4, 0.5}).starts_with("0.0 at 0.0; 0.1 at 1.0; "));
 }
 
 }  // namespace dinal::figures_test

@@ -15,22 +15,6 @@ namespace {
 
 constexpr std::size_t no_limit = std::numeric_limits<std::size_t>::max();
 
-/// A number that counts how often such numbers are copied.
-struct Counted {
-    int value = 0;
-    static inline std::size_t copies = 0;
-
-    Counted() = default;
-    Counted(int number) : value(number) {}  // NOLINT(google-explicit-constructor)
-    Counted(const Counted& other) : value(other.value) { ++copies; }
-    Counted& operator=(const Counted& other) {
-        value = other.value;
-        ++copies;
-        return *this;
-    }
-    ~Counted() = default;
-};
-
 template <class T>
 std::vector<T> list(const Growing<T>& table) {
     return {table.begin(), table.end()};
@@ -54,18 +38,6 @@ Growing<int> three_columns(int from, int until) {
 }
 
 }  // namespace
-
-TEST_CASE("a table that follows another one has the rows of both, and that one keeps its own", "[growing]") {
-    const Growing<int> first = numbers(0, 5);
-    const Growing<int> second = first.followed_by(5, numbers(5, 8), no_limit);
-    const Growing<int> third = second.followed_by(8, numbers(8, 20), no_limit);
-    CHECK(list(third) == list(numbers(0, 20)));
-    CHECK(list(second) == list(numbers(0, 8)));
-    CHECK(list(first) == list(numbers(0, 5)));
-    CHECK(third.front() == 0);
-    CHECK(third.back() == 19);
-    CHECK(third.size() == 20);
-}
 
 TEST_CASE("a table can be followed in the place of its last row, whoever has seen that", "[growing]") {
     for (const bool seen : {false, true}) {
@@ -106,36 +78,6 @@ TEST_CASE("columns stay contiguous while a table grows", "[growing]") {
         REQUIRE(values[50] == (column == 0 ? 50 : column == 1 ? 500 : 5000));
     }
     CHECK(table.column(1).data() == table.column(0).data() + table.stride());
-}
-
-TEST_CASE("nothing follows nothing, and nothing follows something", "[growing]") {
-    const Growing<int> none;
-    CHECK(list(none).empty());
-    CHECK(list(none.followed_by(0, Growing<int>(), no_limit)).empty());
-    CHECK(list(none.followed_by(0, numbers(0, 2), no_limit)) == std::vector{0, 1});
-    CHECK(list(numbers(0, 2).followed_by(2, none, no_limit)) == std::vector{0, 1});
-    CHECK(list(numbers(0, 3).followed_by(1, none, no_limit)) == std::vector{0});
-}
-
-TEST_CASE("n tables that follow each other copy as much as a few of the last, not n squared", "[growing]") {
-    constexpr std::size_t n = 3000;
-    for (const bool end_replaced : {false, true}) {
-        Growing<Counted> table(std::vector<Counted>(10));
-        Counted::copies = 0;
-        for (std::size_t i = 0; i < n; ++i) {
-            const Growing<Counted> later(std::vector<Counted>(2));
-            table = table.followed_by(table.size() - (end_replaced && i > 0 ? 1 : 0), later, no_limit);
-        }
-        // Each row is copied when its list is made, when it is appended and when the room doubles: 1 + 1/2 + 1/4 ...
-        CHECK(Counted::copies <= 6 * 2 * n);
-    }
-}
-
-TEST_CASE("room to grow is not taken beyond what is allowed", "[growing]") {
-    const Growing<int> first = numbers(0, 1000);
-    CHECK(first.followed_by(1000, numbers(1000, 1100), no_limit).own_bytes() == 2100 * sizeof(int));
-    CHECK(first.followed_by(1000, numbers(1000, 1100), 1200).own_bytes() == 1200 * sizeof(int));
-    CHECK(first.followed_by(1000, numbers(1000, 1100), 500).own_bytes() == 1100 * sizeof(int));  // what must be must be
 }
 
 }  // namespace dinal::growing_test

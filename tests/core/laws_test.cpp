@@ -1,6 +1,5 @@
 // Friction laws other than one number each for sliding and holding: every law in every integrator that knows friction.
 #include <cmath>
-#include <numbers>
 
 #include "analysis/energy.hpp"
 #include "analysis/explain.hpp"
@@ -24,8 +23,6 @@ using model::laws::AsymmetricCoulomb;
 using model::laws::Coulomb;
 
 namespace {
-
-constexpr double pi = std::numbers::pi;
 
 /// A law, and what it has beside its constant at standstill, once more and independently: against the motion.
 struct LawCase {
@@ -153,48 +150,6 @@ TEST_CASE("the energy adds up under every friction law", "[laws][energy]") {
     }
 }
 
-TEST_CASE("asymmetric friction: each half cycle ends 2 Rd/k of its own way nearer to the middle", "[laws]") {
-    const double forward = 0.04, backward = 0.11;
-    const Oscillator system = with_law(AsymmetricCoulomb{.forward = {forward, 0.2}, .backward = {backward, 0.3}});
-    for (const Integrator& integrator : std::vector<Integrator>{Exact{}, Spectral{}, Rk4{0.001}}) {
-        const double near = std::holds_alternative<Rk4>(integrator) ? 1e-10 : 1e-13;
-        const Trajectory run = must_run(system, {}, {1, 0}, {0, 30}, Grid::every(0.3), integrator);
-        double theta = 1, t = 0;
-        std::size_t n = 0;
-        for (bool back = true;; back = !back) {
-            theta = back ? -(theta - 2 * backward) : -(theta + 2 * forward);
-            t += pi;
-            REQUIRE(n < run.events.size());
-            CHECK(run.events[n].t == within(t, near));
-            CHECK(run.events[n].theta == within(theta, near));
-            ++n;
-            if (theta >= -0.2 && theta <= 0.3) break;  // -k theta pulls forward against 0.2, backward against 0.3
-            CHECK(run.events[n - 1].kind == EventKind::turn);
-        }
-        CHECK(n == 5);
-        REQUIRE(run.events.size() == n);
-        CHECK(run.events.back().kind == EventKind::rest);
-    }
-    CHECK(system.resting_places() == std::pair{-0.2, 0.3});
-}
-
-TEST_CASE("asymmetric friction lets go at the limit of each side", "[laws]") {
-    const Oscillator system = with_law(AsymmetricCoulomb{.forward = {0.1, 0.25}, .backward = {0.2, 0.75}});
-    const auto ramp = [](double slope) { return Excitation::make(Ramp{.slope = slope, .at = 0}).value(); };
-    for (const Integrator& integrator : std::vector<Integrator>{Exact{}, Spectral{}, Rk4{0.01}}) {
-        for (const auto& [slope, when] : {std::pair{0.1, 2.5}, std::pair{-0.1, 7.5}}) {
-            const Trajectory run = must_run(system, ramp(slope), {0, 0}, {0, 9}, Grid::none(), integrator);
-            REQUIRE_FALSE(run.events.empty());
-            CHECK(run.events[0].kind == EventKind::slip);
-            CHECK(run.events[0].t == within(when, 1e-14));
-        }
-        // Between the limits of both sides nothing ever moves it, and the program knows.
-        const Trajectory held = must_run(system, harmonic(0.25, 1), {0, 0}, {0, 100}, Grid::none(), integrator);
-        CHECK(held.events.empty());
-        CHECK(held.outcome == Outcome::at_rest);
-    }
-}
-
 TEST_CASE("a law with the same numbers each way is Coulomb's, bit for bit", "[laws]") {
     const Oscillator plain = system_of({.inertia = 1, .stiffness = 1, .kinetic_friction = 0.1, .breakaway = 0.2});
     const Oscillator twice = with_law(AsymmetricCoulomb{.forward = {0.1, 0.2}, .backward = {0.1, 0.2}});
@@ -204,35 +159,6 @@ TEST_CASE("a law with the same numbers each way is Coulomb's, bit for bit", "[la
         };
         CHECK(run(plain) == run(twice));
     }
-}
-
-TEST_CASE("what is wrong with a friction law is said with the side it is about", "[laws]") {
-    const auto complaint = [](const Friction& law) {
-        const auto made = Oscillator::make({.inertia = 1, .stiffness = 1, .friction = law});
-        return made ? "" : made.error().sentence;
-    };
-    CHECK(complaint(AsymmetricCoulomb{.forward = {0.2, 0.1}, .backward = {}}) ==
-          "forward.Re = 0.1 must be at least forward.Rd = 0.2: breakaway takes no less than kinetic friction");
-    CHECK(complaint(AsymmetricCoulomb{.forward = {}, .backward = {-1, 0}}) == "backward.Rd = -1 must not be negative");
-    CHECK(complaint(Coulomb{0, NAN}) == "Re = nan must be a finite number");
-}
-
-TEST_CASE("what is wrong with a law that changes with the speed is said with its option", "[laws]") {
-    const auto complaint = [](const Friction& law) { return law.complaint() ? law.complaint()->sentence : ""; };
-    using model::laws::Tabulated;
-    CHECK(complaint(model::laws::Stribeck{0.4, 0.3, 1}) ==
-          "Re = 0.3 must be at least Rd = 0.4: breakaway takes no less than kinetic friction");
-    CHECK(complaint(model::laws::Stribeck{0.1, 0.3, 0}) == "speed = 0 must be positive");
-    CHECK(complaint(Tabulated{{0.1, 1}, {1, 1}}) ==
-          "speed must begin with 0: friction at standstill is the first torque");
-    CHECK(complaint(Tabulated{{0, 1}, {1}}) == "torque has 1 numbers and speed 2: there must be one for each");
-    CHECK(complaint(Tabulated{{0, 1, 1}, {1, 1, 1}}) ==
-          "speed[3] = 1 is not greater than speed[2] = 1: speeds must increase");
-    CHECK(complaint(Tabulated{{0, 1}, {1, -0.5}}) == "torque[2] = -0.5 must not be negative");
-    CHECK(complaint(Tabulated{{0, 1}, {1, 2}, 0.5}) ==
-          "Re = 0.5 must be at least torque[1] = 1, the friction at speed 0");
-    CHECK(complaint(model::laws::UserLaw{.function = nullptr, .at_zero = 1, .breakaway = 0.5}) ==
-          "Re = 0.5 must be at least the friction at speed 0, 1");
 }
 
 TEST_CASE("a block without a spring slides, sticks and keeps its place", "[laws][sliding]") {

@@ -164,20 +164,6 @@ TEST_CASE("a mass at rest stays exactly where it is, for ever", "[razor]") {
     CHECK(run.at(777.77)->velocity == 0);
 }
 
-TEST_CASE("without dry friction there are turns only", "[razor]") {
-    const Integrator integrator = either();
-    CAPTURE(integrator.index());
-    for (const double zeta : {0.0, 0.1}) {
-        const Trajectory run = run_of(nondimensional(zeta, 0), harmonic(0.7, 4.1), {1, 0}, 30, integrator);
-        CHECK(run.events.size() > 30);
-        for (const Event& event : run.events) CHECK(event.kind == EventKind::turn);
-        CHECK(run.outcome == Outcome::reached_end);
-    }
-    const Trajectory still = run_of(nondimensional(0, 0), {}, {0, 0}, 3, integrator);
-    check_never_moved(still, 0);
-    CHECK(still.outcome == Outcome::reached_end);  // nothing holds it
-}
-
 TEST_CASE("a jump of M exactly at a turn: the mass goes on from there under the new load", "[razor]") {
     const Integrator integrator = either();
     CAPTURE(integrator.index());
@@ -327,22 +313,6 @@ TEST_CASE("a motion too large for its derivatives ends the run, also without fri
     const Trajectory run = run_of(nondimensional(0, dry), {}, {0, speed}, 2.5, either());
     CHECK((std::fabs(speed) > 1e300 || run.outcome == Outcome::reached_end));
     CHECK(run.rows.matrix().allFinite());
-}
-
-TEST_CASE("linear feedback is the damping that it imitates", "[razor]") {
-    class Damping : public UserFunction {
-    public:
-        double value(double, const State& state) override { return -0.2 / pi * state.velocity; }
-    };
-    const Excitation M = native(Scripted{.function = std::make_shared<Damping>(), .feedback = true});
-    const ReferenceSystem s{"equivalent", nondimensional(0.2, 0.05), {}, {{-1, {}}}, {1, 0}, {0, 4}, 1};
-    const Integrator integrator = either_for_functions(0.002);
-    const Trajectory run = must_run(nondimensional(0, 0.05), M, {1, 0}, {0, 4}, Grid::every(0.0371), integrator);
-    // The iteration of spectral ends at 1e-14 of the motion.
-    const double allowed = tolerance_of(integrator, 4 * 25 * std::pow(2 * pi * 0.002, 4) / 120);
-    CHECK(error_of(run, s.exact(), s.oscillator) <= 5 * allowed);
-    REQUIRE(run.events.size() == s.exact().events().size());
-    CHECK(run.events.back().kind == EventKind::stick);
 }
 
 }  // namespace dinal::razor_edge_test

@@ -171,12 +171,4 @@ TEST_CASE("a record that cannot be written leaves the old file", "[record1989]")
     CHECK(folder.count() == 1);
 }
 
-TEST_CASE("every beginning of a record gives a table or a sentence", "[record1989]") {
-    const std::string text = "2\r\n1.5D+00 2*0, 3\n4 5\n1-300 2 3 4 5 6\r\n";
-    for (std::size_t length = 0; length <= text.size(); ++length) {
-        const auto table = parse_record1989(std::string_view(text).substr(0, length), "x.dat");
-        CHECK((table || !table.error().sentence.empty()));
-    }
-}
-
 }  // namespace dinal::record1989_test

@@ -59,22 +59,6 @@ TEST_CASE("a run in three parts is the run in one, for every reference system", 
     }
 }
 
-TEST_CASE("a run that was interrupted goes on with the rows it has not had", "[resume]") {
-    const ReferenceSystem& s = reference_system("W3: one stop per half cycle (fig 24)");
-    const Grid rows = Grid::every(0.01);
-    const Trajectory whole = must_run(s, rows, Spectral{});
-    int asked = 0;
-    auto first = simulate(s.oscillator, s.excitation, s.initial, s.window, rows, Spectral{},
-                          [&](double) { return ++asked < 2; });
-    REQUIRE(first);
-    REQUIRE(first->outcome == Outcome::interrupted);
-    REQUIRE(first->size() > 0);
-    REQUIRE(first->size() < whole.size());
-    auto both = resume(s.oscillator, s.excitation, *first, s.window.end, rows, Spectral{});
-    REQUIRE(both);
-    check_like_whole(*both, whole, s, 1e-13 + 4e-16 * s.radians());
-}
-
 TEST_CASE("a run that is stopped among many rows between two events goes on as if it had not been", "[resume]") {
     const Oscillator system = nondimensional(0.01, 0);
     const Grid rows = Grid::every(1e-5);
@@ -132,15 +116,6 @@ TEST_CASE("a mass that is stuck and goes on into a load slips as if there had be
             CHECK(both->events[i].t == whole.events[i].t);
         }
     }
-}
-
-TEST_CASE("a run cannot go on to a time before its end", "[resume]") {
-    const Oscillator system = nondimensional(0, 0.2);
-    auto first = simulate(system, {}, {1, 0}, {0, 3}, Grid::every(0.5), Spectral{});
-    REQUIRE(first);
-    const auto back = resume(system, {}, *first, 2, Grid::every(0.5), Spectral{});
-    REQUIRE_FALSE(back);
-    CHECK(back.error().sentence == "t_end = 2 must be after t = 3, where the run ended");
 }
 
 TEST_CASE("a run that goes on from the very time of a turn has that turn once", "[resume][spectral]") {
@@ -221,39 +196,6 @@ TEST_CASE("n continuations of a run take memory for it once, and leave the runs 
         part.window.end = end_of(i);
         check_like_whole(runs[run], whole, part, 1e-12);
     }
-}
-
-TEST_CASE("a run can be continued twice, and neither knows of the other", "[resume]") {
-    const Oscillator system = nondimensional(0.01, 0.05);
-    const Trajectory first = must_run(system, {}, {1, 0}, {0, 1}, Grid::every(0.1), Spectral{});
-    const auto pushed = Excitation::make(Step{.amplitude = 3, .at = 1.2}).value();
-    const auto one = resume(system, {}, first, 2, Grid::every(0.1), Spectral{});
-    const auto middle = resume(system, pushed, *one, 3, Grid::every(0.1), Spectral{});
-    const auto other = resume(system, pushed, *one, 4, Grid::every(0.1), Spectral{});
-    REQUIRE(middle);
-    REQUIRE(other);
-    CHECK(middle->size() == 31);
-    CHECK(other->size() == 41);
-    CHECK(one->size() == 21);
-    for (Eigen::Index i = 0; i < 20; ++i) REQUIRE(middle->rows(i, 1) == other->rows(i, 1));
-    for (Eigen::Index i = 0; i < 20; ++i) REQUIRE(one->rows(i, 1) == other->rows(i, 1));
-    CHECK(one->at(1.5)->theta == other->at(1.5)->theta);
-    CHECK_FALSE(one->at(2.5));
-}
-
-TEST_CASE("rows at given times go on with more of them", "[resume]") {
-    const Oscillator system = nondimensional(0.01, 0.05);
-    const Grid first_times = Grid::at({0, 0.5, 1});
-    const Trajectory first = must_run(system, {}, {1, 0}, {0, 1}, first_times, Spectral{});
-    const Grid all_times = first_times.followed_by(3, {1.25, 2});
-    const auto all = resume(system, {}, first, 2, all_times, Spectral{});
-    REQUIRE(all);
-    REQUIRE(all->size() == 5);
-    CHECK(all->rows(3, 0) == 1.25);
-    CHECK(all_times.times().size() == 5);
-    const auto wrong = resume(system, {}, first, 2, first_times.followed_by(3, {1.25, 1.125}), Spectral{});
-    REQUIRE_FALSE(wrong);
-    CHECK(wrong.error().sentence == "times[5] = 1.125 is not after times[4] = 1.25: times must increase");
 }
 
 }  // namespace dinal::resume_test

@@ -24,18 +24,10 @@ std::vector<double> times_of(const Grid& grid, const Window& window) {
     return times;
 }
 
-std::string complaint(const Grid& grid, const Window& window) {
-    const auto checked = grid.within(window);
-    return checked ? "" : checked.error().sentence;
-}
-
 std::string refusal(const Window& window, const Grid& grid, const Limits& limits = {}, const State& initial = {1, 0}) {
     const auto run = simulate(nondimensional(0.1, 0), {}, initial, window, grid, Rk4{0.001}, {}, limits);
     return run ? "" : run.error().sentence;
 }
-
-constexpr double infinity = std::numeric_limits<double>::infinity();
-constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
 
 }  // namespace
 
@@ -77,18 +69,6 @@ TEST_CASE("rows increase and their times do not add up roundings", "[rows]") {
     }
 }
 
-TEST_CASE("a list of times is kept to the last bit", "[rows]") {
-    const std::vector<double> wanted{0, 0.1 + 0.2, 0.7, std::nextafter(0.7, 1.0), 1.9999999999, 2};
-    for (const Integrator& integrator : std::vector<Integrator>{Rk4{0.01}, Dinal1989{.h = 0.01}}) {
-        const Trajectory run =
-            must_run(nondimensional(0.1, 0.1), harmonic(1, 5), {1, 0}, {0, 2}, Grid::at(wanted), integrator);
-        REQUIRE(run.size() == static_cast<Eigen::Index>(wanted.size()));
-        for (std::size_t i = 0; i < wanted.size(); ++i) {
-            CHECK(run.rows(static_cast<Eigen::Index>(i), 0) == wanted[i]);
-        }
-    }
-}
-
 TEST_CASE("every integrator ends its rows at t_end, whatever h and dt", "[rows]") {
     for (const double t_end : {1.0, 0.77, 3.14159}) {
         for (const double dt : {0.01, 0.0123, 0.5, 7.0}) {
@@ -114,83 +94,8 @@ TEST_CASE("the last row of dinal1989 is the state at t_end, not that of the step
     CHECK(coinciding.rows(coinciding.size() - 1, 1) == within(std::cos(2 * std::numbers::pi * 0.1), 1e-4));
 }
 
-TEST_CASE("the first row is the initial state", "[rows]") {
-    for (const Integrator& integrator : std::vector<Integrator>{Rk4{0.01}, Dinal1989{.h = 0.01}}) {
-        const Trajectory run =
-            must_run(nondimensional(0.1, 0.1), harmonic(1, 5), {0.25, -0.5}, {1.5, 2}, Grid::every(0.1), integrator);
-        CHECK(run.rows(0, 0) == 1.5);
-        CHECK(run.rows(0, 1) == 0.25);
-        CHECK(run.rows(0, 2) == Approx(-0.5).epsilon(1e-15));  // dinal1989 keeps T0 theta'
-        CHECK(run.rows(0, 4) == 0.1);
-        CHECK(run.rows(0, 5) == Approx(0.5 * 0.1 / std::numbers::pi));
-    }
-}
-
-TEST_CASE("no rows at all is fine", "[rows]") {
-    CHECK(times_of(Grid::none(), {0, 1}).empty());
-    const Trajectory run = must_run(nondimensional(0, 0.1), {}, {1, 0}, {0, 5}, Grid::none(), Rk4{0.01});
-    CHECK(run.size() == 0);
-    CHECK(run.names() == column_names());
-    CHECK_FALSE(run.events.empty());
-    // Third half cycle: 0.5 cos about 0.1, at its quarter.
-    CHECK(run.at(1.25)->theta == within(0.1, 1e-5));
-}
-
-TEST_CASE("a trajectory has six columns, named", "[rows]") {
-    const Trajectory run = must_run(nondimensional(0, 0.1), {}, {1, 0}, {0, 1}, Grid::every(0.1), Rk4{0.01});
-    CHECK(run.names() == std::vector<std::string>{"t", "theta", "velocity", "M", "friction", "damping"});
-    CHECK(run.rows.cols() == 6);
-    CHECK(*run.find("friction") == 4);
-    CHECK_FALSE(run.find("speed"));
-    CHECK(run.column(Column::theta)[0] == 1);
-}
-
-TEST_CASE("wrong grids get a sentence", "[rows]") {
-    CHECK_THAT(complaint(Grid::every(-0.1), {0, 1}), Contains("dt = -0.1") && Contains("positive"));
-    CHECK_THAT(complaint(Grid::every(infinity), {0, 1}), Contains("dt = inf"));
-    CHECK_THAT(complaint(Grid::every(not_a_number), {0, 1}), Contains("dt = nan"));
-    CHECK_THAT(complaint(Grid::every(0), {0, 1}), Contains("dt = 0"));
-    CHECK_THAT(complaint(Grid::at({0, 0.5, 0.4}), {0, 1}), Contains("times[3] = 0.4") && Contains("increase"));
-    CHECK_THAT(complaint(Grid::at({0, 0.5, 0.5}), {0, 1}), Contains("times[3]"));
-    CHECK_THAT(complaint(Grid::at({-0.1, 0.5}), {0, 1}), Contains("times[1]") && Contains("outside"));
-    CHECK_THAT(complaint(Grid::at({0, 1.5}), {0, 1}), Contains("times[2] = 1.5") && Contains("outside"));
-    CHECK_THAT(complaint(Grid::at({0, not_a_number}), {0, 1}), Contains("times[2]"));
-}
-
-TEST_CASE("wrong windows, states and steps are refused before the first step", "[rows]") {
-    CHECK_THAT(refusal({0, 0}, Grid::every(0.1)), Contains("t_end = 0") && Contains("after"));
-    CHECK_THAT(refusal({0, -1}, Grid::every(0.1)), Contains("t_end = -1"));
-    CHECK_THAT(refusal({0, infinity}, Grid::every(0.1)), Contains("t_end"));
-    CHECK_THAT(refusal({not_a_number, 1}, Grid::every(0.1)), Contains("t_start"));
-    CHECK_THAT(refusal({0, 1}, Grid::every(0.1), {}, {not_a_number, 0}), Contains("theta0"));
-    CHECK_THAT(refusal({0, 1}, Grid::every(0.1), {}, {0, infinity}), Contains("velocity0"));
-    for (const double h : {0.0, -0.1, not_a_number, infinity}) {
-        CHECK_FALSE(simulate(nondimensional(0, 0), {}, {1, 0}, {0, 1}, Grid::none(), Rk4{h}));
-        CHECK_FALSE(simulate(nondimensional(0, 0), {}, {1, 0}, {0, 1}, Grid::none(), Dinal1989{.h = h}));
-    }
-}
-
-TEST_CASE("more rows than memory allows are refused with their size and the way out", "[rows]") {
-    // 48 bytes a row.
-    CHECK_THAT(refusal({0, 1}, Grid::every(0.001), {.memory = 48000}), Contains("1e+03 rows") && Contains("dt"));
-    CHECK(refusal({0, 1}, Grid::every(0.001), {.memory = 48048}).empty());
-    CHECK_THAT(refusal({0, 1e9}, Grid::every(1e-3)), Contains("rows") && Contains("dt >="));
-    // Without rows nothing needs memory.
-    CHECK(refusal({0, 1}, Grid::none(), {.memory = 0}).empty());
-}
-
 TEST_CASE("a spacing that the times themselves cannot show is refused", "[rows]") {
     CHECK_THAT(refusal({1e9, 1e9 + 1e-3}, Grid::every(1e-8)), Contains("dt = 1e-08") && Contains("rounding"));
-}
-
-TEST_CASE("a step above the stability limit of rk4 is refused with the limit; the limit itself is not", "[rows][rk4]") {
-    const Oscillator system = nondimensional(0, 0);
-    CHECK(rk4::stability_limit(system) == Approx(2 * std::numbers::sqrt2 / (2 * std::numbers::pi)).epsilon(1e-12));
-    CHECK(rk4::stability_limit(nondimensional(0.02387, 0)) == within(0.457, 5e-4));
-    const auto run = simulate(system, {}, {1, 0}, {0, 1}, Grid::none(), Rk4{0.5});
-    REQUIRE_FALSE(run);
-    CHECK_THAT(run.error().sentence, Contains("h = 0.5") && Contains("0.450") && Contains("rk4"));
-    CHECK(simulate(system, {}, {1, 0}, {0, 1}, Grid::none(), Rk4{rk4::stability_limit(system)}));
 }
 
 TEST_CASE("a monitor that says no stops the run, which keeps its rows", "[rows]") {

@@ -44,84 +44,6 @@ const std::vector<std::pair<Integrator, double>> methods = {{Spectral{}, 1e-12},
 
 }  // namespace
 
-TEST_CASE("Duffing's free motion is the elliptic cosine, with and without k", "[spring]") {
-    for (const auto& [I, k, c, A] : {std::tuple{1.0, 1.0, 0.5, 2.0}, std::tuple{1.0, 0.0, 1.0, 1.5},
-                                     std::tuple{1.0, 4.0, -0.3, 1.0}, std::tuple{2.5, 1.0, 2.0, 1.5}}) {
-        CAPTURE(I, k, c, A);
-        const long double pull = static_cast<long double>(k) + static_cast<long double>(c) * A * A;
-        const long double m = c * A * A / (2 * pull), w = std::sqrt(pull / I);
-        for (const auto& [integrator, tolerance] : methods) {
-            const Oscillator duffing = system_of({.inertia = I, .stiffness = k, .spring = cubic(c)});
-            const Trajectory run = must_run(duffing, {}, {A, 0}, {0, 20}, Grid::every(0.37), integrator);
-            if (m > 0) {
-                const long double quarter = boost::math::ellint_1(std::sqrt(m)) / w;
-                for (std::size_t i = 0; i < run.events.size(); ++i) {
-                    CHECK(run.events[i].kind == EventKind::turn);
-                    CHECK(run.events[i].t == within(static_cast<double>(2 * (i + 1) * quarter), 20 * tolerance));
-                }
-                REQUIRE(run.events.size() == static_cast<std::size_t>(20 / (2 * quarter)));
-                for (Eigen::Index i = 0; i < run.size(); ++i) {
-                    const long double x = w * static_cast<long double>(run.rows(i, 0));
-                    const long double theta = A * boost::math::jacobi_cn(std::sqrt(m), x);
-                    CHECK(run.rows(i, 1) == within(static_cast<double>(theta), 40 * tolerance));
-                }
-            }
-            const auto potential = [linear = k, cubed = c](double theta) {
-                return linear * theta * theta / 2 + cubed * std::pow(theta, 4) / 4;
-            };
-            for (Eigen::Index i = 0; i < run.size(); ++i) {
-                const double v = run.rows(i, 2);
-                CHECK(I * v * v / 2 + potential(run.rows(i, 1)) == within(potential(A), 20 * tolerance));
-            }
-        }
-    }
-}
-
-TEST_CASE("a cubic spring and dry friction: each extreme follows from the energy that friction takes", "[spring]") {
-    const double k = 0.7, c = 0.4, Rd = 0.05, Re = 0.08;
-    const auto potential = [&](long double x) { return k * x * x / 2 + c * x * x * x * x / 4; };
-    for (const auto& [integrator, tolerance] : methods) {
-        const Trajectory run =
-            must_run(with_spring(cubic(c), k, Rd, Re), {}, {1.7, 0}, {0, 200}, Grid::every(1), integrator);
-        long double x = 1.7L;
-        bool rests = false;
-        for (std::size_t i = 0; !rests; ++i) {
-            REQUIRE(i < run.events.size());
-            const long double given = potential(x) - Rd * x;
-            const long double next = crossing([&](long double y) { return potential(y) + Rd * y - given; }, 0.0L, x);
-            rests = k * next + c * next * next * next <= Re;
-            CHECK(std::fabs(run.events[i].theta) == within(static_cast<double>(next), 20 * tolerance));
-            CHECK(run.events[i].kind == (rests ? EventKind::rest : EventKind::turn));
-            x = next;
-            if (rests) CHECK(run.events.size() == i + 1);
-        }
-        CHECK(run.outcome == Outcome::at_rest);
-        // At rest friction balances the springs.
-        const double theta = run.state_at_stop.theta;
-        CHECK(run.rows(run.size() - 1, 4) == within(k * theta + c * theta * theta * theta, 1e-15));
-    }
-}
-
-TEST_CASE("a double well: the mass is let go at the limit, and rests in either well", "[spring]") {
-    const Spring well = PolynomialSpring{{{1, -1.0}, {3, 1.0}}};
-    const Oscillator system = with_spring(well, 0, 0.05, 0.2);
-    for (const auto& [integrator, tolerance] : methods) {
-        // Pulled back with theta^3 - theta: it sticks where that is at most 0.2 in size, and a ramp lets it go.
-        const Excitation ramp = Excitation::make(Ramp{.slope = 0.01, .at = 0}).value();
-        const Trajectory held = must_run(system, ramp, {0.1, 0}, {0, 20}, Grid::none(), integrator);
-        REQUIRE_FALSE(held.events.empty());
-        CHECK(held.began_stuck);
-        CHECK(held.events[0].kind == EventKind::slip);
-        CHECK(held.events[0].t == within((0.2 + 0.001 - 0.1) / 0.01, 1e-11));
-        for (const double start : {0.5, -0.5}) {
-            const Trajectory run = must_run(system, {}, {start, 0}, {0, 100}, Grid::none(), integrator);
-            CHECK(run.outcome == Outcome::at_rest);
-            CHECK(std::fabs(run.state_at_stop.theta) == within(1, 0.12));
-            CHECK(run.state_at_stop.theta * start > 0);
-        }
-    }
-}
-
 TEST_CASE("the energy of springs adds up, of a user's function as well", "[spring][energy]") {
     const std::vector<std::pair<const char*, Spring>> all = {
         {"cubic", cubic(0.5)},
@@ -175,20 +97,6 @@ TEST_CASE("a spring in a run with more in it moves the mass as without", "[sprin
     CHECK(energy->closure() < 1e-12);
 }
 
-TEST_CASE("a run with a spring of its own goes on as if it had not been interrupted", "[spring][resume]") {
-    const Oscillator system = with_spring(cubic(0.6), 0.5, 0.1, 0.25);
-    const Excitation M = harmonic(0.9, 0.4);
-    for (const auto& [integrator, tolerance] : methods) {
-        const Trajectory whole = must_run(system, M, {1, 0}, {0, 40}, Grid::every(1), integrator);
-        const Trajectory half = must_run(system, M, {1, 0}, {0, 17.3}, Grid::every(1), integrator);
-        const auto both = resume(system, M, half, 40, Grid::every(1), integrator);
-        REQUIRE(both);
-        REQUIRE(both->rows.rows() == whole.rows.rows());
-        for (Eigen::Index i = 0; i < whole.size(); ++i)
-            CHECK(both->rows(i, 1) == within(whole.rows(i, 1), 10 * tolerance));
-    }
-}
-
 TEST_CASE("the steady motion of Duffing's oscillator is the one that a long run comes to", "[spring][steady]") {
     const Oscillator system = with_spring(cubic(1), 1, 0.05, 0.05, 0.2);
     const Excitation M = harmonic(1, 0.8);
@@ -211,17 +119,6 @@ TEST_CASE("the steady motion of Duffing's oscillator is the one that a long run 
 
 TEST_CASE("springs by lot move as an independent integrator says, in spectral and in rk4", "[spring][oracle]") {
     check_random_stops(Lots::springs, 120);
-}
-
-TEST_CASE("what is wrong with a spring, and who knows none", "[spring]") {
-    const auto made = Oscillator::make({.inertia = 1, .stiffness = 1, .spring = cubic(NAN)});
-    REQUIRE_FALSE(made);
-    CHECK(made.error().sentence == "[3] = nan must be a finite number");
-    const auto run = simulate(with_spring(cubic(1), 1), {}, {1, 0}, {0, 1}, Grid::none(), Dinal1989{.h = 0.01});
-    REQUIRE_FALSE(run);
-    CHECK(run.error().sentence ==
-          "integrator.dinal1989 knows the spring k theta only: take integrator.spectral or rk4");
-    CHECK(run.error().option == "integrator");
 }
 
 TEST_CASE("the story of a run names a spring of its own", "[spring][explain]") {

@@ -29,23 +29,4 @@ TEST_CASE("a term with impossible options is refused with a sentence", "[excitat
     CHECK(complaint(Polynomial{}).find("coefficients is empty") != std::string::npos);
 }
 
-TEST_CASE("a record with impossible points is refused and says which", "[excitation]") {
-    CHECK(complaint(table({0, 0.4, 0.3}, {0, 1, 2})) ==
-          "excitation.samples: t[3] = 0.3 is not after t[2] = 0.4; times must increase");
-    CHECK(complaint(table({0, 1}, {0, 1, 2})) ==
-          "excitation.samples: t has 2 values and M has 3; they must be equally long");
-    CHECK(complaint(table({}, {})) == "excitation.samples: there are no points; give at least one time and one value");
-    CHECK(complaint(table({0, 1}, {0, never})) == "excitation.samples: M[2] = inf must be finite");
-}
-
-TEST_CASE("hints that cannot be true of a script are refused", "[excitation]") {
-    const auto f = probe([](double) { return 1.0; });
-    CHECK(complaint(Scripted{.function = f, .breaks = {2, 1}}) ==
-          "excitation.scripted: breaks[2] = 1 is not after breaks[1] = 2; times must increase");
-    CHECK(complaint(Scripted{.function = f, .period = -1}) == "excitation.scripted: period = -1 must not be negative");
-    CHECK(complaint(Scripted{.function = f, .breaks = {0, 4}, .period = 3}) ==
-          "excitation.scripted: breaks from 0 to 4 span more than the period 3; give those of one period");
-    CHECK(complaint(Scripted{}) == "excitation.scripted: there is no function");
-}
-
 }  // namespace dinal::term_check_test

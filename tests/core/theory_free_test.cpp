@@ -132,20 +132,6 @@ TEST_CASE("free motion with dry friction is the exact one, event by event and in
     CHECK(rests > 150);
 }
 
-TEST_CASE("rk4 at a fine step follows the closed form with dry friction", "[theory]") {
-    Chance chance(3);
-    for (int i = 0; i < 10; ++i) {
-        const Oscillator system = nondimensional(chance.between(0, 0.3), chance.between(0.01, 0.1));
-        const State initial{chance.between(-1, 1), chance.between(-6, 6)};
-        const Trajectory run = truth::must_run(system, {}, initial, {0, 10}, Grid::every(0.1), Rk4{0.001});
-        const FreeMotion motion(system, initial);
-        for (Eigen::Index row = 0; row < run.size(); ++row) {
-            // 8.2e-11 a period and unit amplitude is rk4's own error of phase.
-            REQUIRE(std::fabs(run.rows(row, 1) - motion.at(run.rows(row, 0)).theta) <= 1e-9);
-        }
-    }
-}
-
 TEST_CASE("the duration of a free motion is (1 - A)/(4 gamma) with A, the last angle, within gamma", "[theory]") {
     for (const double gamma : {0.3, 0.167, 0.1, 0.03, 0.01, 1e-3, 1e-5}) {
         const FreeMotion motion(nondimensional(0, gamma), {1, 0});

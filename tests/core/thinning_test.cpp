@@ -113,7 +113,7 @@ TEST_CASE("a cycle that repeats a thousand times is no more ink than one", "[thi
         angle = 2 * pi * turns;
         const Curve curve = sampled(
             n, [](double s) { return std::cos(angle * s); }, [](double s) { return std::sin(angle * s); });
-        return inked(curve, paper_for(curve, {500, 500}), 2.6, 5000).all.size();
+        return inked(curve, paper_for(curve, {500, 500}), 5000).front().all.size();
     };
     CHECK(strokes(1'000'000, 1000) < 2 * strokes(1000, 1));
 }
@@ -124,15 +124,13 @@ TEST_CASE("dense curves leave no white and stay inside of themselves", "[thinnin
     const Paper paper = paper_for(curve, {500, 500});
     const double middle_x = paper.view.x(0) * 500, middle_y = paper.view.y(0) * 500;
     const double radius = paper.view.x(1) * 500 - middle_x;
-    constexpr double pen = 2.6;
-    const auto strokes = inked(curve, paper, pen, 1000);
+    const Strokes strokes = inked(curve, paper, 1000).front();
     CHECK(strokes.all.size() <= 1000);
     double area = 0;
     for (const Stroke& stroke : strokes.all) {
         area += (stroke.to - stroke.from) * strokes.height;
         for (const double x : {stroke.from, stroke.to}) {
-            // The rightmost point of a stroke: half a pen and a cell beyond the curve at most.
-            CHECK(std::hypot(x - middle_x, stroke.y - middle_y) < radius + pen / 2 + strokes.height);
+            CHECK(std::hypot(x - middle_x, stroke.y - middle_y) < radius + 1.5 * strokes.height);
         }
     }
     CHECK(area > pi * radius * (paper.view.y(1) * 500 - middle_y));  // an ellipse: there is more air above it
@@ -151,10 +149,10 @@ TEST_CASE("a point that left its cycle once is drawn", "[thinning]") {
     CHECK(std::count(kept.begin(), kept.end(), 654'321U) == 1);
     for (const Style style : {Style::line, Style::points}) {
         curve.style = style;
-        const auto strokes = inked(curve, paper, 2.6, 5000).all;
+        const auto strokes = inked(curve, paper, 5000).front().all;
         CHECK(std::any_of(strokes.begin(), strokes.end(), [&paper](const Stroke& stroke) {
             const double x_there = paper.view.x(3) * 500;
-            return std::fabs(stroke.y - paper.view.y(3) * 500) <= 0.5 && stroke.from <= x_there && x_there <= stroke.to;
+            return std::fabs(stroke.y - paper.view.y(3) * 500) <= 0.7 && stroke.from <= x_there && x_there <= stroke.to;
         }));
     }
 }
@@ -163,12 +161,6 @@ TEST_CASE("of points one is kept in each pixel", "[thinning]") {
     Curve curve{Numbers::own({0, 0, 1, 1, 0, 5}), Numbers::own({0, 0, 1, 1, 0, 5})};
     curve.style = Style::points;
     CHECK(thinned(curve, paper_for(curve, {500, 500})) == std::vector<std::size_t>{0, 2, 5});
-    const Strokes strokes = inked(curve, paper_for(curve, {500, 500}), 2.6, 5000);
-    double area = 0;
-    for (const Stroke& stroke : strokes.all) {
-        area += (stroke.to - stroke.from) * strokes.height;
-    }
-    CHECK(area == Approx(3 * pi * 1.3 * 1.3).epsilon(0.1));  // three discs; their edge is steps of a quarter pixel
 }
 
 TEST_CASE("points are no line: a cloud keeps one of each pixel, in whatever order they come", "[thinning]") {
@@ -208,21 +200,21 @@ TEST_CASE("a crowd of points shows where it is denser", "[plots]") {
     const Curve crowd{.x = Numbers::own(xs), .y = Numbers::own(ys), .style = Style::points};
     const Paper paper = paper_for(crowd, {600, 400});
     constexpr std::size_t most = 4000;
-    const std::vector<Strokes> layers = crowded(crowd, paper, most);
+    const std::vector<Strokes> layers = inked(crowd, paper, most);
     REQUIRE(layers.size() >= 2);
     std::size_t strokes = 0;
     for (const Strokes& layer : layers) strokes += layer.all.size();
     CHECK(strokes <= most);
-    const auto inked = [](const Strokes& layer, double from, double to) {
+    const auto ink = [](const Strokes& layer, double from, double to) {
         double length = 0;
         for (const Stroke& s : layer.all) length += std::max(0.0, std::min(to, s.to) - std::max(from, s.from));
         return length * layer.height;
     };
     const double left = paper.view.x(0.1) * 600;
-    const double right = inked(layers.front(), left, 600), dense = inked(layers.back(), 0, left);
-    CHECK(right > 0.5 * (600 - left) * 400 * 0.8);             // there are points everywhere,
-    CHECK(dense > 10 * inked(layers.back(), left + 20, 600));  // and most of them on the left
-    CHECK(inked(layers.back(), 0, 600) <= inked(layers.front(), 0, 600));
+    const double right = ink(layers.front(), left, 600), dense = ink(layers.back(), 0, left);
+    CHECK(right > 0.5 * (600 - left) * 400 * 0.8);           // there are points everywhere,
+    CHECK(dense > 10 * ink(layers.back(), left + 20, 600));  // and most of them on the left
+    CHECK(ink(layers.back(), 0, 600) <= ink(layers.front(), 0, 600));
 }
 
 TEST_CASE("a crowd that is as dense everywhere has one layer", "[plots]") {
@@ -234,7 +226,7 @@ TEST_CASE("a crowd that is as dense everywhere has one layer", "[plots]") {
         }
     }
     const Curve crowd{.x = Numbers::own(xs), .y = Numbers::own(ys), .style = Style::points};
-    CHECK(crowded(crowd, paper_for(crowd, {600, 600}), 100'000).size() == 1);
+    CHECK(inked(crowd, paper_for(crowd, {600, 600}), 100'000).size() == 1);
 }
 
 }  // namespace dinal::thinning_test

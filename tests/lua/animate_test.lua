@@ -88,20 +88,9 @@ test("a part of a run, a run from a file, units", function()
     assert(animated(run, { units = { theta = "<m>", t = "s" } }):find("θ, &lt;m&gt;", 1, true))
 end)
 
-test("a GIF has a picture for each step", function()
-    if not os.execute "gnuplot --version >/dev/null 2>&1" then return end
-    local file = support.temporary ".gif"
-    run:animate{ file = file, speed = 10 }  -- 1 s
-    local gif = support.read(file)
-    equal(gif:sub(1, 6), "GIF89a")
-    assert(gif:find("NETSCAPE2.0", 1, true))  -- it repeats
-    local pictures = select(2, gif:gsub("\33\249\4", ""))
-    assert(math.abs(pictures - 13) <= 1, pictures)
-end)
-
 test("what cannot be shown is said", function()
     raises_here(function() run:animate() end, "shown in a terminal", 'give file = "run.svg"')
-    raises_here(function() run:animate{ file = "run.mp4" } end, "'run.mp4' must end in .svg or .gif")
+    raises_here(function() run:animate{ file = "run.mp4" } end, "'run.mp4' must end in .svg")
     raises_here(function() run:animate{ file = "x.svg", speed = 0 } end, "speed", "positive")
     raises_here(function() run:animate{ file = "x.svg", speed = 1e-6 } end, "give a greater speed")
     raises_here(function() run:animate{ file = "x.svg", from = 3, to = 2 } end, "from = 3 and to = 2")

@@ -42,4 +42,23 @@ test("wrong units are said", function()
     raises_here(function() run:plot{ units = { time = "s" }, show = false } end, "'time'")
 end)
 
+test("a spectrum is drawn over decades, a response near a pole up to where most of it says something", function()
+    local function drawn(d, options)
+        options = options or {}
+        options.show, options.ascii, options.width = false, true, 60
+        return tostring(d:plot(options))
+    end
+    local sys = nondimensional { zeta = 0.05 }
+    local spectrum = sys:simulate { M = excitation.harmonic { frequency = 0.4 }, theta0 = 1, t_end = 64, dt = 0.05 }:spectrum {}
+    local picture = drawn(spectrum)
+    assert(picture:find "\n1e%-5 %+" and not picture:find "1e%-6 %+", picture)
+    assert(not drawn(spectrum, { ylog = false }):find "1e%-", "a user's word counts")
+    local pole = nondimensional {}:response { over = { frequency = vector.linspace(0.05, 3, 200) } }
+    assert(pole.amplitude:max() > 50)
+    picture = drawn(pole)
+    assert(picture:find "\n10 %+" and not picture:find "20 %+", picture)
+    assert(drawn(pole, { ylog = true }):find "\n100 %+", "all of it")
+    assert(drawn(data { theta = { 1, 2 }, velocity = { 1, 2 } }):find "theta'", "symbols of a run")
+end)
+
 support.finish()

@@ -14,15 +14,6 @@ test("a system that cannot exist is refused with the parameter and its value", f
     raises_here(function() system { I = 1e-300, k = 1e300 } end, "too far apart")
 end)
 
-test("NaN, infinity, strings, booleans and tables are no parameters", function()
-    raises_here(function() system { I = 0 / 0, k = 1 } end, "system: I must be a finite number, got", "nan")
-    raises_here(function() system { I = 1, k = math.huge } end, "k must be a finite number, got inf")
-    raises_here(function() system { I = "1", k = 1 } end, 'I must be a finite number, got the string "1"')
-    raises_here(function() system { I = 1, k = true } end, "k must be a finite number, got true")
-    raises_here(function() system { I = 1, k = {} } end, "k must be a finite number, got a table")
-    raises_here(function() system { I = 1, k = 1, Re = "2" } end, "Re must be a function, a number or an excitation, got the string")
-end)
-
 test("a missing parameter is named, with an example", function()
     raises_here(function() system { I = 1 } end, "system needs k, for example system{ I = 1, k = 39.5")
     raises_here(function() system {} end, "system needs I")

@@ -1,4 +1,4 @@
-"""What is seen while a line is typed: completion, colours, hints, history, paste. Usage: typing_test.py PROGRAM"""
+"""What is seen while a line is typed: completion, hints, history, paste. Usage: typing_test.py PROGRAM"""
 
 import os
 import pathlib
@@ -159,22 +159,7 @@ class Completion(Typing):
         terminal.wait(lambda: terminal.row() == "> 0xpri")
 
 
-class Colours(Typing):
-    def test_words_strings_numbers_and_comments_have_colours(self):
-        terminal = self.start()
-        terminal.type("local x = 12 .. 'text' -- remark")
-        terminal.wait(lambda: "remark" in terminal.row() and terminal.colour("remark") != "default")
-        colours = [terminal.colour(word) for word in ("local", "12", "'text'", "--", "x")]
-        self.assertEqual(len(set(colours)), 5)
-        self.assertEqual(terminal.colour("x"), "default")
-        terminal.type(ENTER)
-        terminal.wait(lambda: terminal.row() == ">")
-
-    def test_a_string_without_its_end_looks_different(self):
-        terminal = self.start()
-        terminal.type("x = 'te")
-        terminal.wait(lambda: terminal.row().endswith("'te") and terminal.colour("'te") == "red")
-
+class Hints(Typing):
     def test_a_hint_names_the_options_that_are_missing_and_goes_away(self):
         terminal = self.start()
         terminal.enter(SYSTEM)

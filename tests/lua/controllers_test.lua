@@ -1,0 +1,97 @@
+-- Controllers that hold what they give: between their instants and switches the motion is a damped oscillation about a place.
+package.path = "tests/lua/?.lua;" .. package.path
+local support = require "support"
+local test, near, equal = support.test, support.near, support.equal
+
+test("between the instants of a sampled controller arcs say what panels say, at every damping", function()
+    local hair = 1e-12
+    for name, p in pairs{
+        dry = {}, undamped = { C = 0 }, late = { every = 0.25, delay = 0.1 }, later = { every = 0.2, delay = 0.31, P = 0.2 },
+        below = { C = 2 - 2*hair, P = 3 }, critical = { C = 2, P = 3 }, above = { C = 2 + 2*hair, P = 3 }, far = { C = 9, P = 3 },
+        block = { k = 0, every = 0.21 }, glider = { k = 0, C = 0 }, even = { Rd = 0.1, Re = 0.1 }, free = { Rd = 0, Re = 0 },
+        slow = { every = 5.3, delay = 1.1 }, beside = { M = excitation.harmonic{ omega = 0.7, amplitude = 0.8 } },
+    } do
+        local P, D, calls, last = p.P or 0.5, 0.2, 0, -1
+        local sys = system{ I = 1, k = p.k or 1, C = p.C or 0.1, Rd = p.Rd or 0.05, Re = p.Re or 0.08 }
+        local function run(states)
+            local M = excitation.sampled(function(t, theta, v) return -P*theta - D*v end, { every = p.every or 0.17, delay = p.delay })
+            return sys:simulate{ M = p.M and p.M + M or M, theta0 = 1, velocity0 = -0.6, t_end = 15, dt = 0.0917, states = states }
+        end
+        local arcs, panels = run(), run{ idle = { rate = function() return 0 end } }
+        equal(arcs.outcome, panels.outcome, name)
+        equal(#arcs.events, #panels.events, name)
+        for i, event in ipairs(arcs.events) do
+            equal(event.kind, panels.events[i].kind, name)
+            near(event.t, panels.events[i].t, 1e-9)
+        end
+        near((arcs.theta - panels.theta):abs():max(), 0, 1e-11)
+    end
+end)
+
+test("a sampled controller is called once an instant, in order, and is late by its delay", function()
+    local asked = {}
+    local M = excitation.sampled(function(t) asked[#asked + 1] = t return t < 3 and 0.2*(1 + t) or -0.9 end, { every = 1, delay = 0.25 })
+    local run = system{ I = 1, k = 0, Rd = 0.1, Re = 0.5 }:simulate{ M = M, t_end = 4.5, dt = 0.5 }
+    equal(table.concat(asked, " "), "0.0 1.0 2.0 3.0 4.0")
+    -- 0.6, which passes Re, comes at t = 2.25; -0.9 at 3.25, when the velocity is 0.5.
+    equal(run.events[1].kind, "slip")
+    near(run.events[1].t, 2.25, 0)
+    equal(run.events[2].kind, "turn")
+    near(run.events[2].t, 3.75, 1e-14)
+    near(run.events[2].theta, 0.375, 1e-14)
+end)
+
+test("a relay makes the limit cycle of circles about its two places", function()
+    -- Without damping and friction the motion under level m is a circle about m in (theta, velocity).
+    local run = system{ I = 1, k = 1 }:simulate{ M = excitation.relay{ on = -0.1, off = 0.1, levels = { 0.4, -0.4 } }, theta0 = -0.05, velocity0 = 0.5,
+        t_end = 40, dt = 0.25 }
+    local t, theta, v, level, switches = 0, -0.05, 0.5, 0.4, 0
+    for _, event in ipairs(run.events) do
+        local radius, phase = math.sqrt((theta - level)^2 + v^2), math.atan(v, theta - level)
+        local limit = level > 0 and 0.1 or -0.1
+        local x = event.kind == "switch" and (limit - level)/radius or (event.theta > level and 1 or -1)
+        local way = math.abs(x) == 1 and x or (level > 0 and 1 or -1)  -- a switch is met on the way up under 0.4
+        t = t + (phase - way*math.acos(x)) % (2*math.pi)
+        near(event.t, t, 1e-12)
+        theta, v = level + radius*x, event.kind == "switch" and way*radius*math.sqrt(1 - x*x) or 0
+        near(event.theta, theta, 1e-13)
+        if event.kind == "switch" then level, switches = -level, switches + 1 end
+    end
+    assert(switches > 10)
+end)
+
+test("a stiff state, the lag of an actuator, costs no accuracy", function()
+    local lag = 6e-4  -- 1e-4 T0
+    local function product(A, B)
+        local C = {}
+        for i = 1, 3 do
+            C[i] = {}
+            for j = 1, 3 do C[i][j] = A[i][1]*B[1][j] + A[i][2]*B[2][j] + A[i][3]*B[3][j] end
+        end
+        return C
+    end
+    -- exp(A/2) of (theta, velocity, u)' = A (theta, velocity, u), by its series for a small part of the time, and squares.
+    local part, E, term = 0.5/2^14, { { 1, 0, 0 }, { 0, 1, 0 }, { 0, 0, 1 } }, { { 1, 0, 0 }, { 0, 1, 0 }, { 0, 0, 1 } }
+    local A = { { 0, part, 0 }, { -part, -0.1*part, part }, { 0, -0.5*part/lag, -part/lag } }
+    for n = 1, 8 do
+        term = product(term, A)
+        for i = 1, 3 do
+            for j = 1, 3 do
+                term[i][j] = term[i][j]/n
+                E[i][j] = E[i][j] + term[i][j]
+            end
+        end
+    end
+    for _ = 1, 14 do E = product(E, E) end
+    local run = system{ I = 1, k = 1, C = 0.1 }:simulate{ M = function(t, theta, velocity, z) return z.u end, theta0 = 1, t_end = 20, dt = 0.5,
+        states = { u = { start = 0, rate = function(t, theta, velocity, z) return (-0.5*velocity - z.u)/lag end } } }
+    local theta, velocity, u = 1, 0, 0
+    for i = 1, #run do
+        near(run.theta[i], theta, 1e-11)
+        near(run.states.u[i], u, 1e-10)
+        theta, velocity, u = E[1][1]*theta + E[1][2]*velocity + E[1][3]*u, E[2][1]*theta + E[2][2]*velocity + E[2][3]*u,
+            E[3][1]*theta + E[3][2]*velocity + E[3][3]*u
+    end
+end)
+
+support.finish()
