@@ -180,6 +180,8 @@ std::string running_script(lua_State* L) {
     return name.empty() || !read ? "" : std::move(read).value();
 }
 
+void (*taker)(const Report& report) = nullptr;  // set by --report, before the script runs
+
 int save_report(lua_State* L) {
     lua::refuse_in_worker(L, "r:save");
     Report report = *report_self(L, "r:save");
@@ -192,6 +194,10 @@ int save_report(lua_State* L) {
                                             name),
                     .call = "r:save",
                     .culprit = name});
+    }
+    if (taker != nullptr) {
+        taker(report);
+        return 0;
     }
     if (std::string script = running_script(L); !script.empty()) {
         report.items.emplace_back(ReportLines{std::move(script), "The script"});
@@ -254,8 +260,9 @@ constexpr lua::Member report_members[] = {
     {lua::a_method<save_report>,
      {"r:save(file)",
       "Writes it: .html is one page that any browser shows and prints on A4, with the pictures in it; .md is Markdown, "
-      "with the pictures as files beside it. The script that makes the report stands at its end; a "
-      "report made at the prompt has none: add what you typed, which :save session.lua keeps, to what you hand in.",
+      "with the pictures as files beside it. The script that makes the report stands at its end. A report made at the "
+      "prompt has no script: hand in the file of :save session.lua with it. Under dinal --report the parts of the "
+      "report go into the page of the script instead.",
       DINAL_REPORT "name = os.tmpname() .. \".html\"\nr:save(name)\n"
                    "print(io.open(name):read(\"l\"))  --> <!DOCTYPE html>"}},
     {lua::a_metamethod<report_text>("__tostring"),
@@ -278,6 +285,10 @@ const lua::Class report_class = {
      "A report: text, values, tables, pictures and, from a script, the script itself, saved as one file.",
      "r = report{ title = \"Free decay\" }\nprint(r)  --> report \"Free decay\" with 0 parts"},
     report_members};
+
+void take_saved_reports_by(void (*take)(const Report& report)) {
+    taker = take;
+}
 
 void register_report(lua_State* L) {
     lua::add_class<ReportHandle>(L, report_class);

@@ -12,33 +12,20 @@
 namespace dinal::prompt {
 namespace {
 
-constexpr std::array<std::string_view, 21> known_options = {"-e",
-                                                            "-l",
-                                                            "-i",
-                                                            "-v",
-                                                            "-W",
-                                                            "-E",
-                                                            "-",
-                                                            "--",
-                                                            "-h",
-                                                            "--help",
-                                                            "--version",
-                                                            "--manual",
-                                                            "--no-init",
-                                                            "--safe",
-                                                            "--max-time",
-                                                            "--max-memory",
-                                                            "--lab-marks",
-                                                            "--lab-solutions",
-                                                            "--report",
-                                                            "--kernel",
-                                                            "--jupyter-install"};
+constexpr std::array<std::string_view, 24> known_options = {
+    "-e",        "-l",           "-i",         "-v",           "-W",          "-E",
+    "-",         "--",           "-h",         "--help",       "--version",   "--manual",
+    "--no-init", "--safe",       "--max-time", "--max-memory", "--lab-marks", "--lab-solutions",
+    "--sheets",  "--test-sheet", "--mark",     "--report",     "--kernel",    "--jupyter-install"};
 
 constexpr std::string_view kernel_option = "--kernel";
 constexpr std::string_view time_option = "--max-time";
 constexpr std::string_view memory_option = "--max-memory";
 constexpr std::string_view marks_option = "--lab-marks";
 constexpr std::string_view solutions_option = "--lab-solutions";
+constexpr std::string_view sheets_option = "--sheets";
+constexpr std::string_view test_option = "--test-sheet";
+constexpr std::string_view mark_option = "--mark";
 constexpr double longest = 1e9;                         // seconds: 30 years
 constexpr std::size_t largest = std::size_t{1} << 40U;  // a terabyte
 constexpr lua::ScriptLimits safe{.memory = std::size_t{256} << 20U, .seconds = 10};
@@ -64,7 +51,8 @@ std::size_t size_of(std::string_view text) {
 /// Which of those with a value a word is, "--max-time" also for "--max-time=10"; empty when it is none.
 std::string_view option_with_value(std::string_view word) {
     const std::string_view name = word.substr(0, word.find('='));
-    for (const std::string_view option : {time_option, memory_option, marks_option, solutions_option}) {
+    for (const std::string_view option :
+         {time_option, memory_option, marks_option, solutions_option, sheets_option, test_option, mark_option}) {
         if (name == option) {
             return option;
         }
@@ -151,8 +139,16 @@ std::optional<text::Error> set_value(Arguments& arguments, std::string_view opti
                                                          "example --lab-marks marks.csv"})
                              : std::nullopt;
     }
-    if (option == solutions_option) {
-        arguments.request = Request::lab_solutions;
+    if (option == sheets_option) {
+        arguments.sheets = value;
+        return value.empty() ? std::optional(text::Error{"option --sheets needs the name of a folder after it, for "
+                                                         "example --sheets sheets"})
+                             : std::nullopt;
+    }
+    if (option == solutions_option || option == test_option || option == mark_option) {
+        arguments.request = option == solutions_option ? Request::lab_solutions
+                            : option == test_option    ? Request::test_sheet
+                                                       : Request::mark;
         arguments.student = value;
         return std::nullopt;
     }
@@ -171,6 +167,9 @@ std::optional<text::Error> read_value(Arguments& arguments, std::string_view opt
 
 /// What is not possible together; what safe mode brings with it.
 std::optional<text::Error> settle(Arguments& arguments) {
+    if (arguments.report) {
+        arguments.safe = true;  // a page to hand in comes about under the rules that it is marked by
+    }
     if (!arguments.safe) {
         return std::nullopt;
     }
@@ -265,8 +264,12 @@ without a script: a prompt on a terminal, else standard input is run as a script
   --max-time SECONDS end a script that runs longer; at the prompt, an input
   --lab-marks FILE   note at the end of FILE what became of each answer in the lab
   --lab-solutions NUMBER  the answers of a student number, for instructors
-  --report   run the script, and make a page to hand in of what it prints and
-             draws, also into files: lab.html of lab.lua, in the current folder
+  --mark FOLDER      run all hand-ins of a folder in safe mode: a table, a summary,
+                     and a page of each in FOLDER-marked
+  --sheets FOLDER    add the lab sheets of a folder (or DINAL_SHEETS=FOLDER)
+  --test-sheet FILE  test a lab sheet of your own, and show it as a student sees it
+  --report   run the script in safe mode, and make a page to hand in: lab.html of
+             lab.lua, with what it prints and draws, and the verdicts on its answers
   --jupyter-install  make dinal a kernel of Jupyter notebooks, for this user, also a safe one
   --kernel=N         what such a kernel runs: requests on standard input, answers
                      on the descriptor N, as lines of JSON

@@ -301,7 +301,7 @@ TypedLine read_edited(const std::string& prompt, const std::string& pending, con
 LineEditor::LineEditor(lua_State* L) : edits_(isatty(STDIN_FILENO) != 0 && isatty(STDOUT_FILENO) != 0) {
     if (edits_) {
         editing.L = L;
-        history_file_ = history_file();
+        history_file_ = state_file("history");
         start_readline(history_file_);
     }
 }

@@ -31,6 +31,7 @@
 #include "prompt/notices.hpp"
 #include "prompt/output.hpp"
 #include "prompt/repl.hpp"
+#include "prompt/user_files.hpp"
 #include "source/function_source.hpp"
 #include "text/version.hpp"
 
@@ -307,6 +308,8 @@ int run(const Arguments& arguments, Kernel kernel) {
             complain(wrong->sentence);
             return exit_code::script_error;
         }
+    } else {
+        api::keep_lab_tries([] { return state_file("lab-tries"); });
     }
     const std::unique_ptr<lua_State, void (*)(lua_State*)> state(luaL_newstate(), close_state);
     lua_State* L = state.get();
