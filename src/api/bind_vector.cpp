@@ -87,6 +87,9 @@ int element(lua_State* L) {
     if (v != nullptr && lua::test<lua::Vector>(L, 2) != nullptr) {
         return vector_functions::pick(L);
     }
+    if (v != nullptr && lua_isboolean(L, 2)) {
+        return vector_functions::masked(L);
+    }
     if (v == nullptr || lua_type(L, 2) != LUA_TNUMBER) {
         return 0;
     }

@@ -4,8 +4,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
+#include <vector>
 
+#include "errors/source_text.hpp"
 #include "lua/interrupt.hpp"
+#include "lua/memory_limit.hpp"
+#include "lua/tokens.hpp"
 #include "lua/vector.hpp"
 
 namespace dinal::api::vector_functions {
@@ -75,16 +80,92 @@ int combined(lua_State* L, const char* symbol, Function f) {
     return 1;
 }
 
+// Lua turns the result of v > 0 into true or false. So that v[v > 0] can work, the comparison is remembered here, with
+// the line of the script that made it; v[true] in that line means it.
+struct Comparison {
+    const void* function = nullptr;
+    int line = 0;
+    int count = 0;  // how many comparisons this line has made since the last v[...]
+    bool all = false;
+    std::vector<bool> mask = {};
+};
+thread_local Comparison last_comparison;
+const char comparing_function = 0;  // registry key: the function lives as long as its address is compared with
+
+/// The function that runs, and its line.
+std::pair<const void*, int> running_line(lua_State* L) {
+    lua_Debug caller{};
+    if (lua_getstack(L, 1, &caller) == 0 || lua_getinfo(L, "lf", &caller) == 0) return {nullptr, 0};
+    const void* function = lua_topointer(L, -1);
+    lua_rawsetp(L, LUA_REGISTRYINDEX, &comparing_function);
+    return {function, caller.currentline};
+}
+
+/// Whether the function has a variable of that name from outside of it.
+bool is_upvalue(lua_State* L, lua_Debug& caller, std::string_view wanted) {
+    lua_getinfo(L, "f", &caller);
+    bool found = false;
+    for (int i = 1; const char* name = lua_getupvalue(L, -1, i); ++i) {
+        found = found || name == wanted;
+        lua_pop(L, 1);
+    }
+    lua_pop(L, 1);
+    return found;
+}
+
+/// Why v[v > 0] cannot be trusted in this statement; "" if it can. With `and` and `or` Lua leaves out the second
+/// comparison, so the mask would be that of the first. Lua before 5.4.7 compiles v[v > 0] wrongly if v is a variable of
+/// an outer function: it indexes another register.
+std::string fault_of_mask(lua_State* L, lua_Debug& caller, std::string_view statement) {
+    const std::vector<lua::Token> all = lua::tokens(statement);
+    int depth = 0;
+    bool compares = false, joins = false;
+    std::string_view owner;
+    for (std::size_t i = 0; i < all.size(); ++i) {
+        depth += all[i].is("[") ? 1 : all[i].is("]") ? -1 : 0;
+        if (all[i].is("[") && depth == 1) {
+            compares = joins = false;
+            const bool alone = i > 0 && (i < 2 || !(all[i - 2].is(".") || all[i - 2].is(":")));
+            owner = alone ? all[i - 1].text : std::string_view();
+        }
+        if (depth == 0) continue;
+        compares = compares || all[i].is("<") || all[i].is(">") || all[i].is("<=") || all[i].is(">=");
+        joins = joins || all[i].is("and") || all[i].is("or");
+        if (compares && joins) return "and or or is not possible there";
+        if (compares && is_upvalue(L, caller, owner)) {
+            return fmt::format("{0} belongs to an outer function: write local own = {0} before, and own[...]", owner);
+        }
+    }
+    return "";
+}
+
+/// The same for the line that runs. A line is read once as long as no other one asks.
+std::string fault_of_mask_here(lua_State* L, const void* function) {
+    thread_local std::pair<const void*, int> known;
+    thread_local std::string fault;
+    lua_Debug caller{};
+    if (lua_getstack(L, 1, &caller) == 0 || lua_getinfo(L, "Sl", &caller) == 0) return "";
+    if (known != std::pair(function, caller.currentline)) {
+        const auto source = errors::source_of_frame(L, caller);
+        fault = source ? fault_of_mask(L, caller, source->statement(caller.currentline)) : "";
+        known = {function, caller.currentline};
+    }
+    return fault;
+}
+
 /// True when it holds for every element.
 template <class Function>
 int holds(lua_State* L, const char* symbol, Function f) {
     const Operand a = operand(L, 1, symbol);
     const Operand b = operand(L, 2, symbol);
     const std::size_t n = common_size(L, a, b, symbol);
-    bool all = true;
-    for (std::size_t i = 0; i < n && all; ++i) {
-        all = f(a[i], b[i]);
-    }
+    lua::make_room(L, n / 8 + 1);
+    std::vector<bool> mask(n);
+    for (std::size_t i = 0; i < n; ++i) mask[i] = f(a[i], b[i]);
+    const bool all = std::find(mask.begin(), mask.end(), false) == mask.end();
+    const auto [function, line] = running_line(L);
+    const bool again = function == last_comparison.function && line == last_comparison.line;
+    last_comparison = {function, line, again ? last_comparison.count + 1 : 1, all, std::move(mask)};
     lua_pushboolean(L, all ? 1 : 0);
     return 1;
 }
@@ -130,6 +211,31 @@ int divide(lua_State* L) {
 }
 int power(lua_State* L) {
     return combined(L, "^", [](double a, double b) { return b == 2 ? a * a : std::pow(a, b); });
+}
+
+int masked(lua_State* L) {
+    const lua::Vector& v = *lua::test<lua::Vector>(L, 1);
+    const auto [function, line] = running_line(L);
+    const bool known =
+        last_comparison.function == function && last_comparison.line == line && last_comparison.count == 1;
+    last_comparison.count = 0;
+    if (const std::string fault = fault_of_mask_here(L, function); !fault.empty()) {
+        lua::raise(L, {.sentence = "v[v > 0]: " + fault, .call = "v"});
+    }
+    if (!known || last_comparison.mask.size() != v.size()) {
+        lua::raise(L,
+                   {.sentence = "v[v > 0] takes one comparison (< <= > >=) with as many elements as v, written in the "
+                                "brackets; for more use v[v:find(function(x) return x > 0 and x < 1 end)]",
+                    .call = "v"});
+    }
+    const bool wanted = (lua_toboolean(L, 2) != 0) == last_comparison.all;  // v[not (v > 0)]
+    lua::make_room(L, v.size() * sizeof(double));
+    std::vector<double> result;
+    for (std::size_t i = 0; i < v.size(); ++i) {
+        if (last_comparison.mask[i] == wanted) result.push_back(v.begin()[i]);
+    }
+    lua::push_vector(L, std::move(result));
+    return 1;
 }
 
 int less(lua_State* L) {

@@ -15,7 +15,8 @@ int cumulated(lua_State* L);
 int differences(lua_State* L);
 int interpolated(lua_State* L);
 int joined(lua_State* L);
-int pick(lua_State* L);  ///< v[w]
+int pick(lua_State* L);    ///< v[w]
+int masked(lua_State* L);  ///< v[v > 0]
 int dot(lua_State* L);
 int arctangent(lua_State* L);
 int sorted(lua_State* L);
@@ -70,10 +71,11 @@ inline constexpr lua::Member vector_query_members[] = {
      {"v .. w, v .. number -> vector", "The elements of v, then those of w.",
       "print(vector{ 1, 2 } .. vector{ 3 } .. 4)  --> vector{ 1, 2, 3, 4 }"}},
     {lua::a_metamethod<vector_functions::pick>("__index"),
-     {"v[w] -> vector",
-      "The elements that a vector w picks: as long as v and of 0 and 1, it says which; else it has their places.",
-      "v = vector{ 5, 1, 7 }\n"
-      "print(v[vector{ 1, 0, 1 }], v[vector{ 3, 1 }])  --> vector{ 5, 7 }\tvector{ 7, 5 }"}},
+     {"v[w], v[v > 0] -> vector",
+      "Some of the elements. A comparison (< <= > >=) in the brackets picks those for which it holds, also of another "
+      "vector of the same length: run.t[run.theta > 0.5]. A vector w of 0 and 1 as long as v picks those with 1; any "
+      "other w has their places, such as v:find(function(x) return x > 0 and x < 1 end).",
+      "v = vector{ 5, -1, 7 }\nprint(v[v > 0], v[vector{ 3, 1 }])  --> vector{ 5, 7 }\tvector{ 7, 5 }"}},
 };
 
 }  // namespace dinal::api

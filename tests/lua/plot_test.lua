@@ -174,7 +174,7 @@ test("wrong curves are told by their number", function()
     raises_here(function() plot() end, "plot takes one table of curves", "for example plot{")
     raises_here(function() plot {} end, "plot needs a curve")
     raises_here(function() plot { xlabel = "x" } end, "plot needs a curve")
-    raises_here(function() plot(run.t, run.theta) end, "plot takes one table")
+    raises_here(function() plot(run.t, 3) end, "plot takes one table")
     raises_here(function() plot { run.t, run.theta } end, "item 1 must be a curve { x, y }, a run or a picture, got a vector")
     raises_here(function() plot { { 0, 1 }, { 0, 1 } } end, "item 1 must be a curve { x, y }")
     raises_here(function() plot { line, { { 1, 2 } } } end, "plot: curve 2: y must be a vector or a table of numbers, got nil")
@@ -244,6 +244,17 @@ test("labels are only words, whatever is in them", function()
         assert(not io.open(victim), attack)
         assert(not text(run, "plot", { title = words, xlabel = words }):find "[\0-\9\11-\31\127]")
     end
+end)
+
+support.test("plot(x, y) is plot{ { x, y } }", function()
+  local x = vector.linspace(0, 1, 11)
+  local options = { width = 40, height = 8, title = "square", show = false }
+  local long = plot{ { x, x^2 }, width = 40, height = 8, title = "square", show = false }
+  support.equal(tostring(plot(x, x^2, options)), tostring(long))
+  support.equal(tostring(plot(x:table(), (x^2):table(), options)), tostring(long))
+  support.raises(function() plot(x, x, { colour = 1 }) end, "plot has no option 'colour'")
+  support.raises(function() plot(x, 3) end, "plot takes one table of curves")
+  support.equal(options.show, false)
 end)
 
 support.finish()
