@@ -34,9 +34,9 @@ constexpr std::array<Symptom, 20> symptoms = {{
     {"", "&", "; in Lua that is the word and"},
     {"", "|", "; in Lua that is the word or"},
     {"", "?", "; in Lua that is: condition and this or that"},
-    {"", "#", "; a remark begins with --"},
-    {"unexpected symbol", "/", "; a remark begins with --"},
-    {"unexpected symbol", "//", "; a remark begins with --"},
+    {"", "#", "; a comment begins with --"},
+    {"unexpected symbol", "/", "; a comment begins with --"},
+    {"unexpected symbol", "//", "; a comment begins with --"},
     {"unexpected symbol", ">", "; in Lua 'not equal' is ~="},
     {"unexpected symbol", "[", "; a list is { 1, 2, 3 }"},
     {"'then' expected", "=", "; comparing is =="},
@@ -331,9 +331,10 @@ std::string syntax_habit(lua_State* L, const lua::SyntaxMessage& message, std::s
     if (const std::string shell = instead_of_shell_line(L, statement); !shell.empty()) {
         return "; " + shell;
     }
-    for (std::string advice : {degrees(stumble, statement), printed_sign(message, statement), doubled_sign(stumble),
-                               name_without_quotes(stumble), two_words(L, stumble), misspelt_keyword(stumble),
-                               missing_star(stumble), missing_return(stumble), other_grammar(stumble)}) {
+    for (std::string advice :
+         {foreign_tokens(statement, false), degrees(stumble, statement), printed_sign(message, statement),
+          doubled_sign(stumble), name_without_quotes(stumble), two_words(L, stumble), misspelt_keyword(stumble),
+          missing_star(stumble), missing_return(stumble), other_grammar(stumble)}) {
         if (!advice.empty()) {
             return advice;
         }
