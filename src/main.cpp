@@ -45,7 +45,8 @@ int carry_out(const dinal::prompt::Arguments& arguments) {
         case dinal::prompt::Request::version:
             return print(dinal::prompt::version_text());
         case dinal::prompt::Request::manual:
-            return print(dinal::help::manual());
+            return print(
+                dinal::help::manual(arguments.whole_manual ? dinal::help::Extent::all : dinal::help::Extent::page));
         case dinal::prompt::Request::lab_solutions:
             return print(dinal::prompt::solutions_of(arguments.student));
         case dinal::prompt::Request::test_sheet:

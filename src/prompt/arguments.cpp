@@ -12,7 +12,7 @@
 namespace dinal::prompt {
 namespace {
 
-constexpr std::array<std::string_view, 24> known_options = {
+constexpr std::array<std::string_view, 25> known_options = {
     "-e",        "-l",           "-i",         "-v",           "-W",          "-E",
     "-",         "--",           "-h",         "--help",       "--version",   "--manual",
     "--no-init", "--safe",       "--max-time", "--max-memory", "--lab-marks", "--lab-solutions",
@@ -108,7 +108,7 @@ Request request_of(std::string_view option) {
     if (option == "--jupyter-install") {
         return Request::jupyter_install;
     }
-    return option == "--manual" ? Request::manual : Request::run;
+    return option == "--manual" || option == "--manual=all" ? Request::manual : Request::run;
 }
 
 /// A flag of one letter; false when `lua` does not have it.
@@ -168,7 +168,7 @@ std::optional<text::Error> read_value(Arguments& arguments, std::string_view opt
 /// What is not possible together; what safe mode brings with it.
 std::optional<text::Error> settle(Arguments& arguments) {
     if (arguments.report) {
-        arguments.safe = true;  // a page to hand in comes about under the rules that it is marked by
+        arguments.safe = arguments.strict = true;  // a page to hand in comes about under the rules that it is marked by
     }
     if (!arguments.safe) {
         return std::nullopt;
@@ -204,12 +204,15 @@ text::Expected<Arguments> parse_arguments(int count, const char* const* words) {
         }
         if (const Request request = request_of(word); request != Request::run) {
             arguments.request = request;
+            arguments.whole_manual = word == "--manual=all";
             return arguments;
         }
         if (word == "--report") {
             arguments.report = true;
         } else if (word == "--safe") {
             arguments.safe = true;
+        } else if (word == "--strict") {
+            arguments.strict = true;
         } else if (word.starts_with(kernel_option)) {
             arguments.kernel = descriptor_of(word.substr(kernel_option.size()));
         } else if (const std::string_view option = option_with_value(word); !option.empty()) {
@@ -257,6 +260,8 @@ without a script: a prompt on a terminal, else standard input is run as a script
   --         no more options: what follows is the script
   -          no more options: run standard input as the script
   --no-init  a prompt without the file ~/.config/dinal/init.lua
+  --strict   make an undefined variable an error, and an option whose value is
+             nil by a misspelt name
   --safe     for scripts of strangers: no files outside the current folder, no
              processes except gnuplot, no modules, and limits:
              --max-memory 256M --max-time 10

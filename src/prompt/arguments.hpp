@@ -20,6 +20,7 @@ struct StartStep {
 
 struct Arguments {
     Request request = Request::run;
+    bool whole_manual = false;        ///< --manual=all
     bool interactive = false;         ///< -i
     bool show_version = false;        ///< -v or -i
     bool executes = false;            ///< -e
@@ -27,6 +28,7 @@ struct Arguments {
     bool no_init = false;             ///< --no-init
     bool safe = false;                ///< --safe
     bool report = false;              ///< --report
+    bool strict = false;              ///< --strict
     std::optional<int> kernel;        ///< --kernel: the descriptor for its answers
     lua::ScriptLimits limits;         ///< --max-memory, --max-time; in safe mode there are always some
     std::string lab_marks;            ///< --lab-marks: where answers in the lab are noted; empty: nowhere

@@ -235,6 +235,7 @@ void open(lua_State* L, const Arguments& arguments) {
     help::open_library(L);
     lua::look_at_options = tell_nil_option;
     set_arg(L, arguments);
+    if (arguments.strict) be_strict(L);
     lua_gc(L, LUA_GCGEN, 0, 0);  // as lua does
     lua::set_limits(L, arguments.limits);
 }
