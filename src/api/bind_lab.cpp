@@ -74,10 +74,10 @@ int ask_course(lua_State* L, LabDesk& desk, const char* call, const char* functi
 /// Who types a decimal comma gives one argument too many, and would not see that it is not looked at.
 void refuse_more(lua_State* L, const char* call, const char* wanted, int most) {
     if (lua_gettop(L) > most) {
-        lua::raise(L, {.sentence = fmt::format("{}: {}, please; behind that stands {}", call, wanted,
-                                               lua::written(L, most + 1)),
-                       .call = call,
-                       .culprit = lua::written(L, most + 1)});
+        lua::raise(
+            L, {.sentence = fmt::format("{}: expects {}; after that comes {}", call, wanted, lua::written(L, most + 1)),
+                .call = call,
+                .culprit = lua::written(L, most + 1)});
     }
 }
 
@@ -236,43 +236,42 @@ int lab_marks(lua_State* L) {
 constexpr lua::Member lab_module_members[] = {
     {lua::a_function<lab_number>,
      {"lab.number(n) -> number",
-      "Says whose lab it is: a student number, a whole number from 1 to 999999999. The systems of the sheets and what is "
-      "right depend on it. lab.number() is the one that was said, nil when none was.",
+      "Sets the student number, a whole number from 1 to 999999999. The systems of the sheets "
+      "and the right answers depend on it. lab.number() returns it, nil if none was set.",
       "lab.number(4711)\nprint(lab.number())  --> 4711"}},
     {lua::a_function<lab_given>,
      {"lab.given(sheet) -> table",
-      "What the sheet of that number gives to this student: the options of his systems, and other numbers; the sheet "
-      "says what they are.",
+      "The data of that sheet for this student: options of systems, and other numbers; the sheet "
+      "explains them.",
       "lab.number(4711)\nprint(system(lab.given(1).viscous).Rd)  --> 0.0"}},
     {lua::a_function<lab_experiment>,
      {"lab.experiment(sheet, x) -> data",
-      "Does the experiment of the sheet and returns its record. x, a number, is what can be set on the bench; the sheet "
-      "says what it is, and whether there is an x.",
+      "Performs the experiment of the sheet and returns its record. x, a number, is the setting "
+      "of the bench; the sheet explains it, if there is one.",
       "lab.number(4711)\nprint(table.concat(lab.experiment(1).names, \" \"))  --> t theta"}},
     {lua::a_function<lab_marks>,
-     {"lab.marks() -> data",
-      "Where you stand: the questions that were tried, what became of them, after how many tries, and what was said last.",
+     {"lab.marks() -> data", "Your answers so far: question, verdict, number of tries, and the last message.",
       "lab.number(4711)\ncheck(\"0\", 42)\nprint(lab.marks().verdict[1])  --> right"}},
 };
 
 constexpr lua::Member check_members[] = {
     {lua::a_function<check_answer>,
      {"check(question, value)",
-      "Prints whether an answer in the lab is right, or else what has probably gone wrong; never the answer. How near is "
-      "near enough fits the method. After twelve different wrong values a question is no longer judged; they are kept "
-      "from session to session. Question \"0\" is for trying it out: six times seven.",
+      "Prints whether an answer in the lab is right, or the probable mistake; never the answer. "
+      "The tolerance depends on the method. After twelve different wrong values a question is no "
+      "longer judged; they are kept from session to session. Question \"0\" is for trying it "
+      "out: six times seven.",
       "lab.number(4711)\ncheck(\"0\", 42)"}},
 };
 
 }  // namespace
 
-const lua::Class lab_module = {
-    "lab",
-    {"lab.NAME(...)",
-     "The lab course: six sheets of two hours each, in docs/lab, with systems that differ by student number and answers "
-     "that check(question, value) judges.",
-     "lab.number(4711)\nprint(lab.given(1).theta0 > 0)  --> true"},
-    lab_module_members};
+const lua::Class lab_module = {"lab",
+                               {"lab.NAME(...)",
+                                "The lab course: six sheets of two hours each, in docs/lab. Systems differ by student "
+                                "number, and check(question, value) judges answers.",
+                                "lab.number(4711)\nprint(lab.given(1).theta0 > 0)  --> true"},
+                               lab_module_members};
 
 const lua::Class check_functions = {
     "check",

@@ -168,7 +168,7 @@ int plot_vectors(lua_State* L) {
     const lua::Options options(L, 1, pictures_call);
     if (!items.curves.empty()) {
         options.fail(
-            {"curves and pictures cannot stand together: put the curves into a picture of their own, "
+            {"curves and pictures cannot be combined: put the curves into a picture of their own, "
              "plot{ ..., show = false }"});
     }
     constexpr std::size_t most = 6;

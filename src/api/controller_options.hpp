@@ -19,7 +19,7 @@ inline constexpr text::Option sampled_options[] = {
     {.name = "delay",
      .unit = "time units",
      .range = text::not_negative,
-     .meaning = "how long after an instant its output begins to act",
+     .meaning = "delay from an instant to the effect of its output",
      .filled = text::fills<&model::SampledController::delay>},
     {.name = "at",
      .unit = "time units",
@@ -35,7 +35,7 @@ inline constexpr text::Option delayed_options[] = {
      .unit = "time units",
      .otherwise = text::needed,
      .range = text::positive,
-     .meaning = "how long ago theta and velocity were measured",
+     .meaning = "age of theta and velocity",
      .filled = text::fills<&model::DelayedController::by>},
 };
 inline constexpr text::Call delayed_call{
@@ -52,11 +52,11 @@ inline constexpr const char* relay_starts[] = {"on", "off"};
 inline constexpr text::Option relay_options[] = {
     {.name = "on",
      .otherwise = text::needed,
-     .meaning = "where it takes the first level, coming from the side of off",
+     .meaning = "threshold at which it takes the first level",
      .filled = text::fills<&RelayOptions::on>},
     {.name = "off",
      .otherwise = text::needed,
-     .meaning = "where it takes the second level, coming from the side of on",
+     .meaning = "threshold at which it takes the second level",
      .filled = text::fills<&RelayOptions::off>},
     {.name = "levels",
      .unit = "torque",
@@ -65,11 +65,11 @@ inline constexpr text::Option relay_options[] = {
      .filled = text::fills<&RelayOptions::levels>},
     {.name = "of",
      .otherwise = "\"theta\"",
-     .meaning =
-         "what it looks at: \"theta\", \"velocity\", the name of a state, or a function of t, theta, velocity, z",
+     .meaning = "the quantity that it watches: \"theta\", \"velocity\", the name of a state, or a function "
+                "of t, theta, velocity, z",
      .wanted = "\"theta\", \"velocity\", the name of a state or a function"},
     {.name = "start",
-     .meaning = "how it begins, unless it stands beyond that already",
+     .meaning = "initial state, if the start is between the thresholds",
      .filled = text::fills<&RelayOptions::start>,
      .choices = relay_starts},
 };

@@ -206,7 +206,7 @@ text::Expected<std::string> lab_solutions(std::string_view number) {
         return text::Error{
             fmt::format("option --lab-solutions needs a student number after it, a whole one from 1 to {}, for example "
                         "--lab-solutions 4711{}",
-                        greatest_student_number, number.empty() ? "" : fmt::format("; '{}' is none", number))};
+                        greatest_student_number, number.empty() ? "" : fmt::format("; '{}' is not one", number))};
     }
     return text_of_course("solutions", value);
 }

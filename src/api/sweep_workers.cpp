@@ -143,7 +143,7 @@ struct PointLoop {
                                    lua::describe(L, -1));
             }
             if (lua_type(L, -1) != LUA_TNUMBER && !lua_isboolean(L, -1)) {
-                return fmt::format("run returned {} = {}, which is no number", lua_tostring(L, -2),
+                return fmt::format("run returned {} = {}, which is not a number", lua_tostring(L, -2),
                                    lua::describe(L, -1));
             }
             lua_pop(L, 1);

@@ -33,8 +33,8 @@ inline constexpr Option zeta{"zeta", "", "0", text::not_negative, "viscous dampi
 inline constexpr Option friction_ratio{"friction_ratio", "", needed, text::not_negative, "Rd/M0"};
 inline constexpr Option breakaway_ratio{"breakaway_ratio", "", "friction_ratio", text::not_negative, "Re/M0"};
 inline constexpr Option Rd{"Rd", "torque", needed, text::not_negative, "dry friction while moving"};
-inline constexpr Option theta0{"theta0", "rad", "0", text::any_finite, "where the mass starts"};
-inline constexpr Option velocity0{"velocity0", "rad per time unit", "0", text::any_finite, "how fast it starts"};
+inline constexpr Option theta0{"theta0", "rad", "0", text::any_finite, "initial angle"};
+inline constexpr Option velocity0{"velocity0", "rad per time unit", "0", text::any_finite, "initial velocity"};
 inline constexpr const char* a_system = "a system such as system{ I = 1, k = 39.5 }";
 inline constexpr Option system{
     .name = "system", .otherwise = needed, .meaning = "what moves", .object = "system", .wanted = a_system};
@@ -59,8 +59,8 @@ inline constexpr Option extremes_options[] = {
     system,
     {"theta0", "rad", "0", text::any_finite, theta0.meaning, text::fills<&ExtremesOptions::theta0>},
     {"velocity0", velocity0.unit, "0", text::any_finite, velocity0.meaning, text::fills<&ExtremesOptions::velocity0>},
-    {"count", "", text::its_own, at_most_ten_million, "how many at most; needed where a motion never comes to rest",
-     text::fills<&ExtremesOptions::count>}};
+    {"count", "", text::its_own, at_most_ten_million,
+     "greatest number of extremes; needed if the motion never comes to rest", text::fills<&ExtremesOptions::count>}};
 inline constexpr Call extremes{"theory.extremes", "theory.extremes{ system = sys, theta0 = 1 }", extremes_options};
 
 inline constexpr Option start_options[] = {system, theta0, velocity0};
@@ -73,9 +73,9 @@ inline constexpr Option half_cycle_options[] = {
     {"X", "rad", needed, text::any_finite, "an extreme, with its sign"},
     {"zeta", "", "0", swinging, zeta.meaning},
     {"x_f", "rad", "0", text::not_negative, "Rd/k"},
-    {"dead_zone", "rad", "x_f", text::not_negative, "Re/k, within which the mass stays where it is"},
+    {"dead_zone", "rad", "x_f", text::not_negative, "Re/k, within which the mass stays"},
     {.name = "system", .meaning = "instead of zeta, x_f and dead_zone", .object = "system", .wanted = a_system},
-    {"n", "half cycles", "1", whole, "how far after X"}};
+    {"n", "half cycles", "1", whole, "number of half cycles after X"}};
 inline constexpr Call half_cycle{"theory.half_cycle", "theory.half_cycle{ X = 1, zeta = 0.1, x_f = 0.05 }",
                                  half_cycle_options};
 
@@ -155,7 +155,7 @@ inline constexpr Option step_limit_options[] = {
     {.name = "rule", .meaning = "which of the three", .filled = text::fills<&StepRule::rule>, .choices = rule_names},
     theta0,
     velocity0,
-    {"Mc", "torque", text::its_own, text::not_zero, "characteristic torque, else that of the free motion"}};
+    {"Mc", "torque", text::its_own, text::not_zero, "characteristic torque; by default that of the free motion"}};
 inline constexpr Call step_limit{"theory.step_limit", "theory.step_limit{ system = sys, rule = \"rk4\" }",
                                  step_limit_options};
 

@@ -121,7 +121,7 @@ std::string file_without_quotes(std::string_view name, std::string_view statemen
         const bool ending = std::find(file_endings.begin(), file_endings.end(), all[i].text) != file_endings.end();
         if (ending && all[i - 1].is(".") && all[i - 2].kind == lua::TokenKind::name &&
             (all[i].text == name || all[i - 2].text == name)) {
-            return "; the name of a file stands in quotes: \"" + std::string(all[i - 2].text) + "." +
+            return "; write the name of a file in quotes: \"" + std::string(all[i - 2].text) + "." +
                    std::string(all[i].text) + "\"";
         }
     }
@@ -133,7 +133,7 @@ std::string called_value(lua_State* L, const lua::LuaMessage& message) {
     if (message.kind == "global" && lua::is_overwritten(L, message.name) && lua::is_of_dinal(L, message.name)) {
         const std::string name(message.name);
         return "; " + name + " was a name of dinal, and has got another value: " + name + " = dinal." + name +
-               " gives it back";
+               " restores it";
     }
     if (message.kind == "for iterator") {
         return message.type == "number" ? "; counting is: for i = 1, 10 do"
@@ -157,7 +157,7 @@ std::string uncalled_function(lua_State* L, const lua::LuaMessage& message, std:
             name.insert(0, std::string(all[i - 2].text) + (lua_isuserdata(L, -1) != 0 ? ":" : "."));
             lua_pop(L, 1);
         }
-        return "; " + name + " is to be called first";
+        return "; " + name + " is a function: call it first";
     }
     return "";
 }

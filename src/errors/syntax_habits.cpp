@@ -43,7 +43,7 @@ constexpr std::array<Symptom, 20> symptoms = {{
     {"'do' expected", "=", "; comparing is =="},
     {"'do' expected", "", "; a loop is: for i = 1, 10 do ... end, or: while x < 3 do ... end"},
     {"',' expected", ":", "; a loop is: for i = 1, 10 do ... end"},
-    {"')' expected", "=", "; named options stand in braces: system{ I = 1, k = 4 }"},
+    {"')' expected", "=", "; write named options in braces: system{ I = 1, k = 4 }"},
     {"unfinished string", "", "; its closing quote is missing"},
     {"'}' expected", "", "; is a comma missing there?"},
 }};
@@ -157,7 +157,7 @@ std::string called_as(lua_State* L, std::string_view name) {
     const std::string_view signature = doc != nullptr ? std::string_view(doc->signature) : std::string_view();
     const std::size_t bracket = signature.find_first_of("({");
     const bool braces = bracket != std::string_view::npos && signature[bracket] == '{';
-    return braces ? "; its options stand in braces: " + std::string(name) + "{ ... }"
+    return braces ? "; write its options in braces: " + std::string(name) + "{ ... }"
                   : "; a call needs parentheses: " + std::string(name) + "(...)";
 }
 
@@ -232,7 +232,7 @@ std::string degrees(const Stumble& stumble, std::string_view statement) {
 
 /// check(1a, 3): functions that are called with a name that looks like a number.
 std::string name_without_quotes(const Stumble& stumble) {
-    constexpr std::array<Cure, 1> called = {{{"check", "; the name of a question stands in quotes: check(\""}}};
+    constexpr std::array<Cure, 1> called = {{{"check", "; write the name of a question in quotes: check(\""}}};
     for (std::size_t i = 1; i < stumble.all.size(); ++i) {
         const lua::Token& token = stumble.all[i];
         const lua::Token& function = stumble.all[i - (i > 1 && stumble.all[i - 1].is("(") ? 2 : 1)];

@@ -92,8 +92,9 @@ int help(lua_State* L) {
 constexpr lua::Member functions[] = {
     {lua::a_function<help>,
      {"help(x) or help \"words\"",
-      "Prints what x is and how it is used: a function, a method, a module, an object, or a name in quotes; words that "
-      "are no name are searched for in all names and descriptions. help() alone shows where to begin.",
+      "Prints what x is and how to use it: a function, method, module, object, or a name in "
+      "quotes. Other words are searched for in all names and descriptions. help() alone starts a "
+      "tour.",
       "help(excitation.step)\nhelp \"dead zone\""}},
 };
 

@@ -70,7 +70,7 @@ std::optional<text::Error> set_limit(lua::ScriptLimits& limits, std::string_view
     }
     return text::Error{fmt::format("option {} needs {} after it, for example {}{}", option,
                                    time ? "a time in seconds" : "a size", time ? "--max-time 10" : "--max-memory 256M",
-                                   value.empty() ? "" : fmt::format("; '{}' is none", value))};
+                                   value.empty() ? "" : fmt::format("; '{}' is not one", value))};
 }
 
 /// What safe mode allows where the user has not said otherwise.

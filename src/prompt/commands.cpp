@@ -264,7 +264,7 @@ void run_command(Session& session, const std::string& line) {
     if (command->argument == Argument::needed && argument.empty()) {
         say_error(fmt::format("write {}", command->usage));
     } else if (command->argument == Argument::none && !argument.empty()) {
-        say_error(fmt::format(":{} stands alone", command->name));
+        say_error(fmt::format(":{} takes no argument", command->name));
     } else {
         command->run(session, argument);
     }

@@ -373,7 +373,7 @@ TypedLine LineEditor::read(const std::string& prompt, const std::string&, const 
 void LineEditor::remember(const std::string&) {}
 
 const char* LineEditor::about() {
-    return "Built without GNU Readline: this program is under the MIT licence, too.";
+    return "Built without GNU Readline: this program is under the MIT licence as well.";
 }
 
 #endif

@@ -217,9 +217,9 @@ std::string overwritten_notice(lua_State* L, const std::string& text) {
         }
         const std::string whole = field ? fmt::format("{}.{}", all[i].text, key) : std::string(all[i].text);
         if (!field && lua::is_of_dinal(L, all[i].text)) {
-            return fmt::format("{0} was a name of dinal, and is yours now; {0} = dinal.{0} gives it back", whole);
+            return fmt::format("{0} was a name of dinal and is now your variable; {0} = dinal.{0} restores it", whole);
         }
-        return fmt::format("{} was there before, and is yours now; :reset gives it back, and forgets your variables",
+        return fmt::format("{} existed before and is now your variable; :reset restores it and deletes your variables",
                            whole);
     }
     return "";

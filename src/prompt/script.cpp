@@ -54,8 +54,8 @@ void hand_over_partial(lua_State* L) {
         }
     } else {
         if (!lua_isnil(L, -1)) {
-            complain(
-                fmt::format("dinal.on_interrupt is no function but a {}, so it is not called", luaL_typename(L, -1)));
+            complain(fmt::format("dinal.on_interrupt must be a function; it is a {}, so it is not called",
+                                 luaL_typename(L, -1)));
         }
         lua_pop(L, 1);
     }
@@ -346,7 +346,7 @@ std::string version_line() {
 }
 
 std::string version_text() {
-    return fmt::format("{}\nThe source of dinal is under the MIT licence; Lua is, too, {}.\n{}\n", version_line(),
+    return fmt::format("{}\nThe source of dinal is under the MIT licence; Lua is as well, {}.\n{}\n", version_line(),
                        std::string_view(LUA_COPYRIGHT).substr(std::string_view(LUA_RELEASE).size() + 2),
                        LineEditor::about());
 }

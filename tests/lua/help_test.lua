@@ -27,8 +27,8 @@ end)
 test("the page has what takes no options as a row, and options of several calls once", function()
     assert(page:find("\n| `sys.I -> number` | The moment of inertia. |\n", 1, true))
     assert(not page:find("\n### sys.I\n", 1, true))
-    equal(select(2, page:gsub("\n%- `units`: what theta, t and M are measured in", "")), 1)
-    assert(page:find("- [shared](#options-of-several-calls): `M`, `theta0`", 1, true))
+    equal(select(2, page:gsub("\n%- `units`: names of the units of theta, t and M", "")), 1)
+    assert(page:find("- [shared](#options-of-several-calls): `M`, `velocity0`", 1, true))
     for _, entry in ipairs(entries) do assert(page:find("`" .. entry.signature .. "`", 1, true), entry.heading) end
 end)
 

@@ -71,8 +71,8 @@ test("an unknown question, sheet or value is refused in a sentence", function()
   for _, wrong in ipairs { 0/0, math.huge } do
     support.raises_here(function() check("1a", wrong) end, "check: the answer must be a finite number")
   end
-  support.raises_here(function() check("1a", 1,43) end, "check: a question and one value, please; behind that stands 43")
-  support.raises_here(function() check("1a", 3, "s") end, "behind that stands")
+  support.raises_here(function() check("1a", 1,43) end, "check: expects a question and one value; after that comes 43")
+  support.raises_here(function() check("1a", 3, "s") end, "after that comes")
   support.raises_here(function() lab.given(17) end, "lab.given: the sheets are 1, 2, 3, 4, 5, 6")
   support.raises_here(function() lab.given("1") end, "lab.given: the first argument is the number of a sheet, got the string")
   support.raises_here(function() lab.given() end, "got nil; for example lab.given(1)")

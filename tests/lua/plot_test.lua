@@ -155,7 +155,7 @@ test("show = false returns a picture, that can be printed and set beside another
     assert(both:match "^[^\n]*left[^\n]*right", both)
     local narrow = tostring(plot { left, right, width = 60, height = 20, show = false })
     assert(narrow:match "left.-\n.*right" and not narrow:match "^[^\n]*left[^\n]*right", narrow)
-    raises_here(function() plot { left, line } end, "curves and pictures cannot stand together")
+    raises_here(function() plot { left, line } end, "curves and pictures cannot be combined")
     raises_here(function() plot { left, title = "both" } end, "plot has no option 'title'")
     raises_here(function() return left.titel end, "a picture has no field 'titel'")
 end)

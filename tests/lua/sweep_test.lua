@@ -242,7 +242,7 @@ test("a point that fails keeps its message, the others go on, and the map says s
     equal(d.error[1], "")
     equal(d.error[2], "two is bad")
     equal(d.error[3], "run must return a table of named numbers such as { A = s.amplitude }, got 3.0")
-    equal(d.error[4], 'run returned y = the string "four", which is no number')
+    equal(d.error[4], 'run returned y = the string "four", which is not a number')
     equal(d.error[5], "(error object is a table value)")
     assert(d.y[1] == 1 and d.y[2] ~= d.y[2])
     assert(tostring(d):find("5 points, 4 of them failed; the first one, x = 2: two is bad", 1, true), tostring(d))
