@@ -60,19 +60,19 @@ print(simulate(function(t) calls = calls + 1 return math.sin(t) end).outcome, ca
 
 --[[ prints
 An integral in an upvalue: a state of the run.
-M is no function of its arguments: at t = ... it gave ... and, asked again, ...;
-  a memory belongs into states, excitation.sampled, excitation.relay or excitation.delayed, random numbers into a table
+M depends on more than its arguments: at t = ... it returned ... and, evaluated again, ...;
+  put a memory into states, excitation.sampled, excitation.relay or excitation.delayed, random numbers into a table
   instead: stuck at the end, theta = 0.996894 at the end
 A switch that remembers its side: excitation.relay.
-M is no function of its arguments: at t = ... it gave ... and, asked again, ...;
-  a memory belongs into states, excitation.sampled, excitation.relay or excitation.delayed, random numbers into a table
+M depends on more than its arguments: at t = ... it returned ... and, evaluated again, ...;
+  put a memory into states, excitation.sampled, excitation.relay or excitation.delayed, random numbers into a table
   instead: reached the end, theta = -0.008145 at the end
 A value that is held: excitation.sampled, which is asked in order and may remember what it likes.
-M is no function of its arguments: at t = ... it gave ... and, asked again, ...;
-  a memory belongs into states, excitation.sampled, excitation.relay or excitation.delayed, random numbers into a table
+M depends on more than its arguments: at t = ... it returned ... and, evaluated again, ...;
+  put a memory into states, excitation.sampled, excitation.relay or excitation.delayed, random numbers into a table
   instead: stuck at the end, theta = 0.659459 at the end
 Random numbers: a table of them, made before the run.
-M is no function of its arguments: ...
+M depends on more than its arguments: ...
   instead: reached the end, theta = 0.492826 at the end
 reached the end	true
 ]]

@@ -1,11 +1,14 @@
 // dinal: arguments in, a script or the prompt, an exit code out.
 #include <clocale>
 #include <cstdio>
+#include <cstdlib>
+#include <optional>
 
 #include "help/manual.hpp"
 #include "notebook/kernel.hpp"
 #include "prompt/arguments.hpp"
 #include "prompt/lab_solutions.hpp"
+#include "prompt/marking.hpp"
 #include "prompt/output.hpp"
 #include "prompt/script.hpp"
 
@@ -24,16 +27,32 @@ int print(const dinal::text::Expected<std::string>& text) {
     return print(text.value());
 }
 
+/// --sheets, or DINAL_SHEETS.
+std::optional<dinal::text::Error> add_sheets(const dinal::prompt::Arguments& arguments) {
+    const char* variable = arguments.ignore_environment ? nullptr : std::getenv("DINAL_SHEETS");
+    const std::string folder = arguments.sheets.empty() && variable != nullptr ? variable : arguments.sheets;
+    return folder.empty() ? std::nullopt : dinal::prompt::add_sheets(folder);
+}
+
 int carry_out(const dinal::prompt::Arguments& arguments) {
+    if (const auto wrong = add_sheets(arguments)) {
+        dinal::prompt::complain(wrong->message());
+        return dinal::prompt::exit_code::usage;
+    }
     switch (arguments.request) {
         case dinal::prompt::Request::help:
             return print(dinal::prompt::help_text());
         case dinal::prompt::Request::version:
             return print(dinal::prompt::version_text());
         case dinal::prompt::Request::manual:
-            return print(dinal::help::manual());
+            return print(
+                dinal::help::manual(arguments.whole_manual ? dinal::help::Extent::all : dinal::help::Extent::page));
         case dinal::prompt::Request::lab_solutions:
             return print(dinal::prompt::solutions_of(arguments.student));
+        case dinal::prompt::Request::test_sheet:
+            return print(dinal::prompt::test_sheet(arguments.student));
+        case dinal::prompt::Request::mark:
+            return dinal::prompt::mark(arguments);
         case dinal::prompt::Request::jupyter_install:
             return print(dinal::notebook::install_kernel());
         case dinal::prompt::Request::run:

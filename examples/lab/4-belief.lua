@@ -1,5 +1,7 @@
--- Lab 4: which number can you believe (docs/lab/4-belief.md). Take a copy and fill it in.
+-- Lab 4: which number can you believe (docs/lab/4-belief.md). Copy it to 4-NUMBER.lua (NUMBER is yours) and fill it in.
+-- dinal --report 4-NUMBER.lua makes the page to hand in.
 lab.number(4711) -- your own number
+local page = report{ title = "Which number can you believe?", author = "your name" }
 
 local given = lab.given(4)
 
@@ -26,6 +28,7 @@ end
 local u, v = 1, 0
 for _ = 1, 5 do u, v = step(u, v, 0.1, 0) end
 print(string.format("after half a swing: %.6f; factor a step: %.6f", u, factor(0.1, 0)))
+page:add("after half a swing", u)
 -- check("4c", )
 -- check("4d", )
 
@@ -39,4 +42,18 @@ print(string.format("after half a swing: %.6f; factor a step: %.6f", u, factor(0
 -- 4.6 6.28
 -- check("4h", )
 
+-- Questions: write your answers here; an empty line begins a paragraph
+page:heading "Questions"
+page:text [[
+1.
+
+2.
+
+3.
+
+4.
+
+5.
+]]
+page:save "answers.html"
 print(lab.marks())

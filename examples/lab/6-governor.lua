@@ -1,5 +1,7 @@
--- Lab 6: the governor, friction in a loop, hunting (docs/lab/6-governor.md). Take a copy and fill it in.
+-- Lab 6: the governor, friction in a loop, hunting (docs/lab/6-governor.md). Copy it to 6-NUMBER.lua (NUMBER is yours) and fill it in.
+-- dinal --report 6-NUMBER.lua makes the page to hand in.
 lab.number(4711) -- your own number
+local page = report{ title = "The governor", author = "your name" }
 
 local given = lab.given(6)
 
@@ -14,7 +16,7 @@ local function turbine(o)
 end
 
 -- 6.2 No friction
-print(turbine{ t_end = 60 })
+page:plot(turbine{ t_end = 60 }:plot{ show = false })
 -- check("6a", )
 
 -- 6.3 Stability
@@ -28,4 +30,18 @@ print(turbine{ t_end = 60 })
 -- 6.5 What makes it hunt
 -- check("6f", )
 
+-- Questions: write your answers here; an empty line begins a paragraph
+page:heading "Questions"
+page:text [[
+1.
+
+2.
+
+3.
+
+4.
+
+5.
+]]
+page:save "answers.html"
 print(lab.marks())

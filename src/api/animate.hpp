@@ -23,11 +23,11 @@ inline constexpr text::Option animate_target_options[] = {
     {.name = "ascii", .meaning = "plain characters", .filled = text::fills<&AnimateOptions::ascii>},
 };
 inline constexpr text::Option animate_take_options[] = {
-    {"speed", "time units per second", text::its_own, text::positive, "how fast, else all of it in ten seconds",
-     text::fills<&AnimateOptions::speed>},
-    {"from", "time units", text::its_own, text::any_finite, "where it begins, else with the run",
+    {"speed", "time units per second", text::its_own, text::positive,
+     "time units shown per second; by default the whole run in ten seconds", text::fills<&AnimateOptions::speed>},
+    {"from", "time units", text::its_own, text::any_finite, "start time; by default that of the run",
      text::fills<&AnimateOptions::from>},
-    {"to", "time units", text::its_own, text::any_finite, "where it ends, else with the run",
+    {"to", "time units", text::its_own, text::any_finite, "end time; by default that of the run",
      text::fills<&AnimateOptions::to>},
 };
 inline constexpr auto all_animate_options =
@@ -52,8 +52,9 @@ void show_animations_by(AnimationViewer viewer);
 
 inline constexpr lua::Doc animate_doc{
     "run:animate{ OPTIONS }",
-    "Shows the mass in motion, with its spring, its walls, the surface (a belt moves) and where it sticks: in the terminal, "
-    "until Ctrl-C, in a notebook, on the page of --report, or in a file. It is drawn at equal steps of time, between the rows, too.",
+    "Shows the mass in motion, with spring, walls, surface and sticking: in the terminal until "
+    "Ctrl-C, in a notebook, on the page of --report, or in a file. Pictures are drawn at equal "
+    "steps of time, also between rows.",
     "run = system{ I = 1, k = 4, Rd = 0.3, Re = 0.5 }:simulate{ theta0 = 1, t_end = 6, dt = 1 }\n"
     "file = os.tmpname() .. \".svg\"\n"
     "run:animate{ file = file, speed = 2 }\n"

@@ -84,7 +84,7 @@ void check_name(const lua::Options& options, const char* option, const std::stri
     const auto refuse = [&](std::string_view why) {
         options.fail({.sentence = fmt::format("{}: {}", option, why), .option = option, .culprit = name});
     };
-    if (!lua::is_name(name)) refuse(fmt::format("'{}' is no name; take letters, digits and _", name));
+    if (!lua::is_name(name)) refuse(fmt::format("'{}' is not a name; use letters, digits and _", name));
     for (const lua::Member& member : bodies_run_class.members) {
         if (name == member.name) refuse(fmt::format("'{}' is a name that a run has already; take another", name));
     }

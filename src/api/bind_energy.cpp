@@ -193,7 +193,8 @@ constexpr lua::Member energy_members[] = {
 const lua::Class energy_class = {
     "energy",
     {"run:energy() -> energy",
-     "The energy balance of a run: total, half_cycles, and columns beside run.t. It cannot be changed.",
+     "The energy balance of a run: total, half_cycles, and columns as long as run.t. It cannot "
+     "be changed.",
      DINAL_ENERGY "print(#energy.half_cycles)  --> 4"},
     energy_members,
     nullptr,

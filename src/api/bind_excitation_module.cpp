@@ -181,8 +181,9 @@ constexpr auto excitation_module_members = joined_members(functions_of(model::Te
 const lua::Class excitation_module{
     "excitation",
     {"excitation.NAME{ ... } -> excitation",
-     "The torque M(t) on the mass, made of terms that add and scale. All know the times at which they jump or kink. A "
-     "Lua function or a number can stand wherever an excitation is expected.",
+     "The torque M(t) on the mass, made of terms that add and scale. Each term knows the times "
+     "at which it jumps or kinks. A Lua function or a number is accepted wherever an excitation "
+     "is expected.",
      "M = excitation.harmonic{ frequency = 1 } + 0.5 * excitation.pulse{ at = 1.5, width = 0.2 }\n"
      "print(M:next_break(0))  --> 1.5"},
     excitation_module_members,

@@ -155,8 +155,8 @@ constexpr lua::Member friction_module_members[] = {
       {&laws::dahl_call}}},
     {lua::a_function<law_of_function>,
      {"friction.law(function(speed), { OPTIONS }) -> law",
-      "Friction as a Lua function of the speed (>= 0, rad per time unit), the same both ways. It may be lower at speed "
-      "0 than Re, and must not be negative.",
+      "Friction as a Lua function of the speed (>= 0, rad per time unit), equal in both "
+      "directions. It must not be negative; at speed 0 it may be lower than Re.",
       "law = friction.law(function(speed) return 0.3 + 0.1*speed end, { Re = 0.5 })\n"
       "print(law:torque(2), law.Re)  --> 0.5\t0.5",
       {&laws::user_law_call}}},

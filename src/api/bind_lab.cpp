@@ -13,14 +13,16 @@
 namespace dinal::api {
 namespace {
 
-constexpr int most_tries = 12;  // so that no loop finds by trying what nobody has worked out
+constexpr std::size_t most_wrong = 12;  // so that no loop finds an answer that nobody has worked out
 
-/// What became of a question so far.
+/// The answers to one question so far.
 struct LabAnswer {
+    lua_Integer number;  ///< of the student
     std::string question;
     bool right = false;
     int tries = 0;
     std::string said = {};
+    std::vector<double> wrong = {};  ///< different values, those of earlier sessions among them
 };
 
 /// The place of a student: one for each Lua state, in its registry.
@@ -72,10 +74,10 @@ int ask_course(lua_State* L, LabDesk& desk, const char* call, const char* functi
 /// Who types a decimal comma gives one argument too many, and would not see that it is not looked at.
 void refuse_more(lua_State* L, const char* call, const char* wanted, int most) {
     if (lua_gettop(L) > most) {
-        lua::raise(L, {.sentence = fmt::format("{}: {}, please; behind that stands {}", call, wanted,
-                                               lua::written(L, most + 1)),
-                       .call = call,
-                       .culprit = lua::written(L, most + 1)});
+        lua::raise(
+            L, {.sentence = fmt::format("{}: expects {}; after that comes {}", call, wanted, lua::written(L, most + 1)),
+                .call = call,
+                .culprit = lua::written(L, most + 1)});
     }
 }
 
@@ -126,10 +128,21 @@ int lab_experiment(lua_State* L) {
     return of_sheet(L, "lab.experiment", "experiment", 2);
 }
 
+/// Adds a value to those that were wrong. False if it is already among them: trying it again tells nothing new.
+bool add_wrong(LabAnswer& answer, double value) {
+    if (std::find(answer.wrong.begin(), answer.wrong.end(), value) != answer.wrong.end()) return false;
+    answer.wrong.push_back(value);
+    return true;
+}
+
 LabAnswer& answer_of(LabDesk& desk, const std::string& question) {
-    const auto found = std::find_if(desk.answers.begin(), desk.answers.end(),
-                                    [&](const LabAnswer& answer) { return answer.question == question; });
-    return found != desk.answers.end() ? *found : desk.answers.emplace_back(LabAnswer{.question = question});
+    const auto found = std::find_if(desk.answers.begin(), desk.answers.end(), [&](const LabAnswer& answer) {
+        return answer.number == desk.number && answer.question == question;
+    });
+    if (found != desk.answers.end()) return *found;
+    LabAnswer& answer = desk.answers.emplace_back(LabAnswer{.number = desk.number, .question = question});
+    for (const double value : earlier_wrong_values(desk.number, question)) add_wrong(answer, value);
+    return answer;
 }
 
 /// The name of the question at 1 as the course writes it. Raises when there is none.
@@ -154,12 +167,18 @@ double value_at_2(lua_State* L) {
     return lua::finite_argument(L, 2, "check: the answer");
 }
 
-/// Lets the course judge, notes what became of it, and returns what is to be said.
+bool is_judged(const LabAnswer& answer, double value) {
+    return answer.right || answer.wrong.size() < most_wrong ||
+           std::find(answer.wrong.begin(), answer.wrong.end(), value) != answer.wrong.end();
+}
+
+/// Lets the course judge, notes the verdict, and returns what to print.
 std::string judged(lua_State* L, LabDesk& desk, const std::string& question, double value) {
-    if (LabAnswer& before = answer_of(desk, question); !before.right && before.tries >= most_tries) {
+    if (!is_judged(answer_of(desk, question), value)) {
         return fmt::format(
-            "{}: {} values were wrong, and no more are judged in this session; do the task again, or ask", question,
-            most_tries);
+            "{}: not judged, because {} different values were wrong for number {}. Do the task again, or ask your "
+            "instructor",
+            question, most_wrong, desk.number);
     }
     lua_pushinteger(L, desk.number);
     lua::push_text(L, question);
@@ -168,12 +187,14 @@ std::string judged(lua_State* L, LabDesk& desk, const std::string& question, dou
     const bool right = lua_toboolean(L, -2) != 0;
     LabAnswer& answer = answer_of(desk, question);
     answer.said = lua_tostring(L, -1);
-    if (!answer.right) {
-        answer.right = right;
+    if (answer.right) {
+        if (!right) answer.said += " (an earlier answer was right, and counts)";
+        return answer.said;
+    }
+    answer.right = right;
+    if (right || add_wrong(answer, value) || answer.tries == 0) {
         ++answer.tries;
-        note_lab_mark({desk.number, question, right ? "right" : "wrong", answer.tries, value});
-    } else if (!right) {
-        answer.said += " (an earlier answer was right, and counts)";
+        note_lab_mark({desk.number, question, right ? "right" : "wrong", answer.tries, value, answer.said});
     }
     return answer.said;
 }
@@ -192,7 +213,7 @@ int check_answer(lua_State* L) {
 int lab_marks(lua_State* L) {
     LabDesk& desk = desk_with_number(L, "lab.marks");
     std::vector<LabAnswer> answers = desk.answers;
-    std::erase_if(answers, [](const LabAnswer& answer) { return answer.tries == 0; });
+    std::erase_if(answers, [&](const LabAnswer& a) { return a.tries == 0 || a.number != desk.number; });
     std::sort(answers.begin(), answers.end(),
               [](const LabAnswer& a, const LabAnswer& b) { return a.question < b.question; });
     std::vector<std::string> questions, verdicts, said;
@@ -215,42 +236,42 @@ int lab_marks(lua_State* L) {
 constexpr lua::Member lab_module_members[] = {
     {lua::a_function<lab_number>,
      {"lab.number(n) -> number",
-      "Says whose lab it is: a student number, a whole number from 1 to 999999999. The systems of the sheets and what is "
-      "right depend on it. lab.number() is the one that was said, nil when none was.",
+      "Sets the student number, a whole number from 1 to 999999999. The systems of the sheets "
+      "and the right answers depend on it. lab.number() returns it, nil if none was set.",
       "lab.number(4711)\nprint(lab.number())  --> 4711"}},
     {lua::a_function<lab_given>,
      {"lab.given(sheet) -> table",
-      "What the sheet of that number gives to this student: the options of his systems, and other numbers; the sheet "
-      "says what they are.",
+      "The data of that sheet for this student: options of systems, and other numbers; the sheet "
+      "explains them.",
       "lab.number(4711)\nprint(system(lab.given(1).viscous).Rd)  --> 0.0"}},
     {lua::a_function<lab_experiment>,
      {"lab.experiment(sheet, x) -> data",
-      "Does the experiment of the sheet and returns its record. x, a number, is what can be set on the bench; the sheet "
-      "says what it is, and whether there is an x.",
+      "Performs the experiment of the sheet and returns its record. x, a number, is the setting "
+      "of the bench; the sheet explains it, if there is one.",
       "lab.number(4711)\nprint(table.concat(lab.experiment(1).names, \" \"))  --> t theta"}},
     {lua::a_function<lab_marks>,
-     {"lab.marks() -> data",
-      "Where you stand: the questions that were tried, what became of them, after how many tries, and what was said last.",
+     {"lab.marks() -> data", "Your answers so far: question, verdict, number of tries, and the last message.",
       "lab.number(4711)\ncheck(\"0\", 42)\nprint(lab.marks().verdict[1])  --> right"}},
 };
 
 constexpr lua::Member check_members[] = {
     {lua::a_function<check_answer>,
      {"check(question, value)",
-      "Prints whether an answer in the lab is right, or else what has probably gone wrong; never the answer. How near is "
-      "near enough fits the method. After twelve wrong values a question is not judged any more. Question \"0\" is for trying it out: six times seven.",
+      "Prints whether an answer in the lab is right, or the probable mistake; never the answer. "
+      "The tolerance depends on the method. After twelve different wrong values a question is no "
+      "longer judged; they are kept from session to session. Question \"0\" is for trying it "
+      "out: six times seven.",
       "lab.number(4711)\ncheck(\"0\", 42)"}},
 };
 
 }  // namespace
 
-const lua::Class lab_module = {
-    "lab",
-    {"lab.NAME(...)",
-     "The lab course: seven sheets of two hours each, in docs/lab, with systems that differ by student number and answers "
-     "that check(question, value) judges.",
-     "lab.number(4711)\nprint(lab.given(1).theta0 > 0)  --> true"},
-    lab_module_members};
+const lua::Class lab_module = {"lab",
+                               {"lab.NAME(...)",
+                                "The lab course: seven sheets of two hours each, in docs/lab. Systems differ by student "
+                                "number, and check(question, value) judges answers.",
+                                "lab.number(4711)\nprint(lab.given(1).theta0 > 0)  --> true"},
+                               lab_module_members};
 
 const lua::Class check_functions = {
     "check",

@@ -258,7 +258,43 @@ constexpr lua::Member picture_members[] = {
 
 }  // namespace
 
+namespace {
+
+bool is_column(lua_State* L, int index) {
+    if (lua::test<lua::Vector>(L, index) != nullptr) return true;
+    const bool number = lua_istable(L, index) && lua_rawgeti(L, index, 1) == LUA_TNUMBER;
+    if (lua_istable(L, index)) lua_pop(L, 1);
+    return number;
+}
+
+/// plot(x, y) and plot(x, y, { options }) become plot{ { x, y }, options }.
+void join_columns(lua_State* L) {
+    const int given = lua_gettop(L);
+    if (given < 2 || given > 3 || !is_column(L, 1) || !is_column(L, 2) || (given == 3 && !lua_istable(L, 3))) return;
+    lua_settop(L, 3);
+    lua_newtable(L);
+    if (lua_istable(L, 3)) {
+        lua_pushnil(L);
+        while (lua_next(L, 3) != 0) {
+            lua_pushvalue(L, -2);
+            lua_insert(L, -2);
+            lua_rawset(L, 4);
+        }
+    }
+    lua_createtable(L, 2, 0);
+    for (const int i : {1, 2}) {
+        lua_pushvalue(L, i);
+        lua_rawseti(L, -2, i);
+    }
+    lua_rawseti(L, 4, 1);
+    lua_replace(L, 1);
+    lua_settop(L, 1);
+}
+
+}  // namespace
+
 int plot_vectors(lua_State* L) {
+    join_columns(L);
     if (lua_gettop(L) != 1 || !lua_istable(L, 1)) {
         lua::raise(L, {.sentence = fmt::format("plot takes one table of curves and named options, for example {}",
                                                plot_call.example),
@@ -296,7 +332,7 @@ int plot_vectors(lua_State* L) {
     const lua::Options options(L, 1, pictures_call);
     if (!items.curves.empty()) {
         options.fail(
-            {"curves and pictures cannot stand together: put the curves into a picture of their own, "
+            {"curves and pictures cannot be combined: put the curves into a picture of their own, "
              "plot{ ..., show = false }"});
     }
     constexpr std::size_t most = 6;

@@ -105,10 +105,11 @@ const lua::Class loop_class = {"progress", {example, "The state of a loop that s
 constexpr lua::Member progress_module_members[] = {
     {lua::a_function<progress>,
      {"for i in progress(n, label) do, for i, x in progress(list, label) do",
-      "A loop of n steps, or through a list (a table or a vector), that shows how far it is: after half a second one "
-      "line on standard error with the label, the fraction, the rate and the time that is left, if that is a terminal; "
-      "the line goes when the loop ends. Runs and loops within a step count as parts of it. n may be math.huge; leave "
-      "such a loop with break. A run by itself shows the same.",
+      "A loop of n steps, or through a list (a table or a vector), that shows its progress: "
+      "after half a second a line on standard error, if that is a terminal, with the label, the "
+      "fraction, the rate and the remaining time; the line is removed when the loop ends. Runs "
+      "and loops within a step count as parts of it. n may be math.huge; leave such a loop with "
+      "break. A run by itself shows the same.",
       "peaks = {}\n"
       "for i, f in progress({ 0.5, 1, 2 }, \"sweep\") do\n"
       "    M = excitation.harmonic{ frequency = f }\n"
@@ -121,7 +122,7 @@ constexpr lua::Member progress_module_members[] = {
 
 const lua::Class progress_functions = {
     "progress",
-    {"for i in progress(n, label) do", "Loops that show how far they are.", "for i in progress(3, \"sweep\") do end"},
+    {"for i in progress(n, label) do", "Loops that show their progress.", "for i in progress(3, \"sweep\") do end"},
     progress_module_members};
 
 void register_progress(lua_State* L) {

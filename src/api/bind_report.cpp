@@ -24,11 +24,8 @@ struct ReportOptions {
     std::string title, author;
 };
 constexpr text::Option report_options[] = {
-    {.name = "title",
-     .otherwise = text::needed,
-     .meaning = "what stands above",
-     .filled = text::fills<&ReportOptions::title>},
-    {.name = "author", .meaning = "who hands it in", .filled = text::fills<&ReportOptions::author>},
+    {.name = "title", .otherwise = text::needed, .meaning = "title", .filled = text::fills<&ReportOptions::title>},
+    {.name = "author", .meaning = "author", .filled = text::fills<&ReportOptions::author>},
 };
 constexpr text::Call report_call{"report", "report{ title = \"Free decay\", author = \"A. Student\" }", report_options};
 
@@ -180,6 +177,8 @@ std::string running_script(lua_State* L) {
     return name.empty() || !read ? "" : std::move(read).value();
 }
 
+void (*taker)(const Report& report) = nullptr;  // set by --report, before the script runs
+
 int save_report(lua_State* L) {
     lua::refuse_in_worker(L, "r:save");
     Report report = *report_self(L, "r:save");
@@ -192,6 +191,10 @@ int save_report(lua_State* L) {
                                             name),
                     .call = "r:save",
                     .culprit = name});
+    }
+    if (taker != nullptr) {
+        taker(report);
+        return 0;
     }
     if (std::string script = running_script(L); !script.empty()) {
         report.items.emplace_back(ReportLines{std::move(script), "The script"});
@@ -233,8 +236,8 @@ constexpr lua::Member report_members[] = {
       DINAL_REPORT "r:text(\"The crests lie on a straight line.\")\nprint(r)  --> report \"Free decay\" with 1 part"}},
     {lua::a_method<add_value>,
      {"r:add(value), r:add(name, value)",
-      "Adds a value as it prints, under a name or alone, a table with what is in it. A run comes with its story and how "
-      "to repeat it, data come as a table, a picture as a picture.",
+      "Adds a value as print shows it, alone or with a name. A run is added with its description "
+      "and the lines that repeat it, data as a table, a picture as a picture.",
       DINAL_REPORT "run = nondimensional{ friction_ratio = 0.1 }:simulate{ theta0 = 1, t_end = 3, dt = 0.01 }\n"
                    "r:add(run)\nr:add(\"turns\", #run.events)\nprint(r)  --> report \"Free decay\" with 4 parts"}},
     {lua::a_method<add_table>,
@@ -253,9 +256,11 @@ constexpr lua::Member report_members[] = {
       {&report_animate_call}}},
     {lua::a_method<save_report>,
      {"r:save(file)",
-      "Writes it: .html is one page that any browser shows and prints on A4, with the pictures in it; .md is Markdown, "
-      "with the pictures as files beside it. The script that makes the report stands at its end; a "
-      "report made at the prompt has none: add what you typed, which :save session.lua keeps, to what you hand in.",
+      "Writes the report: .html is one page with its pictures, which any browser shows and "
+      "prints on A4; .md is Markdown with the pictures as separate files. The script is "
+      "appended. A report made at the prompt has no script: hand in the file of :save "
+      "session.lua with it. Under dinal --report the parts of the report go into the page of the "
+      "script instead.",
       DINAL_REPORT "name = os.tmpname() .. \".html\"\nr:save(name)\n"
                    "print(io.open(name):read(\"l\"))  --> <!DOCTYPE html>"}},
     {lua::a_metamethod<report_text>("__tostring"),
@@ -269,7 +274,7 @@ constexpr lua::Member report_members[] = {
 
 const lua::Class report_functions = {
     "report",
-    {"report{ ... } -> r", "Collects what is handed in.", "print(report ~= nil)  --> true"},
+    {"report{ ... } -> r", "Collects a report to hand in.", "print(report ~= nil)  --> true"},
     report_functions_members};
 
 const lua::Class report_class = {
@@ -278,6 +283,10 @@ const lua::Class report_class = {
      "A report: text, values, tables, pictures and, from a script, the script itself, saved as one file.",
      "r = report{ title = \"Free decay\" }\nprint(r)  --> report \"Free decay\" with 0 parts"},
     report_members};
+
+void take_saved_reports_by(void (*take)(const Report& report)) {
+    taker = take;
+}
 
 void register_report(lua_State* L) {
     lua::add_class<ReportHandle>(L, report_class);

@@ -241,12 +241,14 @@ constexpr text::FixedText<160> integrator_example{DINAL_RUN "print(run.integrato
 constexpr lua::Member run_members[] = {
     {lua::a_method<run_at>,
      {"run:at(t) -> theta, velocity, z",
-      "Angle (rad) and velocity (rad per time unit) at any time of the run, between rows at the accuracy of the "
-      "integrator; in a run with states, too, the table z of these. In a run that was read from a file: by cubic interpolation.",
+      "Angle (rad) and velocity (rad per time unit) at any time of the run, between rows at the "
+      "accuracy of the integrator; in a run with states also the table z. A run that was read "
+      "from a file is interpolated by cubics.",
       DINAL_RUN "print(string.format(\"%.6f %.6f\", run:at(0.75)))  --> 3.000000 -12.566371"}},
     {lua::a_method<columns>,
      {"run:columns(name, ...) -> vector, ...",
-      "The columns of these names or numbers (t is 1); without arguments all of them. READDIN of 1989 did this.",
+      "The columns with these names or numbers (t is 1); all of them without arguments. READDIN "
+      "did this in 1989.",
       DINAL_RUN "t, M = run:columns(\"t\", \"M\")\nprint(t, M[5])  --> vector{ 0, 0.5, 1, 1.5, 2 }\t3.0"}},
     {lua::a_method<as_data<data_functions::column>>,
      {"run:column(name) -> vector", "The column of this name; run.NAME is the same unless the run has such a member.",
@@ -266,23 +268,24 @@ constexpr lua::Member run_members[] = {
       "print(run:markdown():match(\"[^\\n]*\"))  --> | t, T0 | theta, Mc/k | velocity, Mc/k/T0 | M, Mc | friction, Mc | damping, Mc |"}},
     {lua::a_method<continue_run>,
      {"run:continue{ OPTIONS } -> run",
-      "A new run: this one, and how it goes on from where it ended (reached its end, or stopped by Ctrl-C or an error "
-      "in M), with the same rows as if it had never ended. A run with dt keeps its dt. run:continue(40) is "
+      "A new run that continues this one from its end (reached, or stopped by Ctrl-C or an error "
+      "in M), with the same rows as if it had never stopped. A run with dt keeps its dt. run:continue(40) is "
       "run:continue{ t_end = 40 }.",
       DINAL_RUN "longer = run:continue(3)\n"
                 "print(#longer, longer.t_end, string.format(\"%.6f\", longer:at(3)))  --> 7\t3.0\t1.000000",
       {&continue_call}}},
     {lua::a_method<energy_of_run>,
      {"run:energy() -> energy",
-      "Where the energy went: the work of M, what is stored in the mass and the spring, what the two frictions took; "
-      "in total, for each half cycle and at the rows. "
-      "Integrated over the motion that integrator.exact and integrator.spectral keep, so only for their runs.",
+      "The energy balance: work of M, energy stored in mass and spring, losses by the two "
+      "frictions; in total, for each half cycle and at the rows. Only for runs by "
+      "integrator.exact and integrator.spectral, which keep the motion between rows.",
       "run = system{ I = 1, k = 1, Rd = 0.12 }:simulate{ theta0 = 1, t_end = 20, dt = 5 }\n"
       "print(string.format(\"%.6f\", run:energy().total.dry))  --> 0.499200"}},
     {lua::a_method<explain>,
      {"run:explain() -> string",
-      "The run told in sentences: its half cycles, where, when and why it stopped and slipped (|M - k theta| against "
-      "Re), and what became of it: at rest, or in steady motion with which period, amplitude, lag and stops.",
+      "Describes the run in sentences: half cycles, where, when and why the mass stopped and "
+      "slipped (|M - k theta| against Re), and the end: rest, or a steady motion with its "
+      "period, amplitude, lag and stops.",
       DINAL_RUN "print(run:explain():match(\"It made[^.]*\"))  --> It made 4 half cycles with 3 turns and 0 stops"}},
     {lua::a_method<save_run>,
      {"run:save(file, { OPTIONS })",
@@ -359,8 +362,9 @@ constexpr lua::Member run_members[] = {
                       return run.origin || run.whole ? std::optional(status_word(run.trajectory.outcome)) : std::nullopt;
                   }>,
      {"run.status -> string or nil",
-      "How it ended, in one word: \"end\" (in motion), \"rest\", \"stuck\", \"event\" (one with stop = true), "
-      "\"interrupted\" or \"failed\"; run.outcome is the sentence. nil of a run that was read from a file.",
+      "How the run ended, in one word: \"end\" (in motion), \"rest\", \"stuck\", \"event\" (one "
+      "with stop = true), \"interrupted\" or \"failed\"; run.outcome is the sentence. nil of a "
+      "run that was read from a file.",
       DINAL_RUN "print(run.status)  --> end"}},
     {lua::a_value<RunHandle,
                   [](const Run& run) {
@@ -398,7 +402,7 @@ constexpr lua::Member run_members[] = {
       DINAL_RUN "print(run.excitation)  --> excitation.constant{ amplitude = 3 }"}},
     {lua::a_value<RunHandle, origin_of<&source::Origin::integrator>>,
      {"run.integrator -> integrator or nil",
-      "The integrator that was used, also when none was asked for; nil in a run that was read from a file.",
+      "The integrator of the run, also if none was given; nil in a run that was read from a file.",
       integrator_example.c_str()}},
     {lua::a_metamethod<run_length>("__len"),
      {"#run -> number", "The number of rows; run[1] is the first one.", DINAL_RUN "print(#run)  --> 5"}},

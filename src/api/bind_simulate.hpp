@@ -50,19 +50,19 @@ inline constexpr text::Option run_start_options[] = {
      .otherwise = "0",
      .meaning = "the excitation: a number, a Lua function of t or of t, theta, velocity, or an excitation",
      .object = "excitation"},
-    {.name = "theta0", .unit = "rad", .meaning = "where the mass starts", .filled = text::fills<&RunOptions::theta0>},
-    {"velocity0", "rad per time unit", text::its_own, text::any_finite, "how fast it starts",
+    {.name = "theta0", .unit = "rad", .meaning = "initial angle", .filled = text::fills<&RunOptions::theta0>},
+    {"velocity0", "rad per time unit", text::its_own, text::any_finite, "initial velocity",
      text::fills<&RunOptions::velocity0>},
 };
 inline constexpr text::Option window_options[] = {
-    {.name = "t_start", .unit = "time units", .meaning = "when it starts", .filled = text::fills<&RunOptions::t_start>},
-    {"t_end", "time units", text::its_own, text::any_finite, "when the run ends; without it, at the last of the times",
+    {.name = "t_start", .unit = "time units", .meaning = "initial time", .filled = text::fills<&RunOptions::t_start>},
+    {"t_end", "time units", text::its_own, text::any_finite, "end of the run; by default the last of the times",
      text::fills<&RunOptions::t_end>},
-    {"dt", "time units", "(t_end - t_start)/1000", text::positive, "from row to row; t_end has a row, too",
+    {"dt", "time units", "(t_end - t_start)/1000", text::positive, "time between rows; t_end has a row as well",
      text::fills<&RunOptions::dt>},
     {.name = "times",
      .unit = "time units",
-     .meaning = "where rows are kept: a table or a vector, increasing; {} keeps none",
+     .meaning = "times of the rows: a table or a vector, increasing; {} keeps no rows",
      .filled = text::fills<&RunOptions::times>,
      .instead_of_previous = true},
 };
@@ -75,7 +75,8 @@ inline constexpr text::Option integrator_option[] = {
 };
 inline constexpr text::Option dense_option[] = {
     {.name = "dense",
-     .meaning = "false keeps nothing between the rows, which saves memory in very long runs and costs run:at(t)",
+     .meaning = "false keeps nothing between the rows: saves memory in very long runs, but run:at(t) does "
+                "not work",
      .filled = text::fills<&RunOptions::dense>},
 };
 inline constexpr auto simulate_options = text::joined(run_start_options, window_options, integrator_option,
@@ -90,7 +91,8 @@ struct MoreTime {
 };
 inline constexpr text::Option continue_options[] = {
     {"t_end", "time units", text::its_own, text::any_finite,
-     "how far the run goes on; without it, to the last of the times, or where it should have ended",
+     "new end time; by default the last of the times, or the end that the run should have "
+     "reached",
      text::fills<&MoreTime::t_end>},
     {"times", "time units", text::its_own, text::any_finite, "more rows of a run that had times",
      text::fills<&MoreTime::times>},
@@ -100,10 +102,11 @@ inline constexpr text::Call continue_call{
 
 inline constexpr text::FixedText<600> simulate_summary{
     "Runs the system, by ", motion::default_integrator.c_str(),
-    ", unless told otherwise. With states, M is called with (t, theta, velocity, z), and their columns are "
-    "run.states.NAME. M must depend on its arguments only, because it is asked out of order, ahead and again, else the run "
-    "ends and says so: a memory belongs into states or into excitation.sampled, relay or delayed, random numbers into a "
-    "table. When M fails or Ctrl-C is pressed, what was done so far is in dinal.partial."};
+    ", unless told otherwise. With states, M is called with (t, theta, velocity, z), and their "
+    "columns are run.states.NAME. M must depend only on its arguments, because it is evaluated "
+    "out of order and repeatedly; a run that detects a memory ends with a message. Put memory "
+    "into states or excitation.sampled, relay or delayed, random numbers into a table. If M "
+    "fails or Ctrl-C is pressed, dinal.partial has the run so far."};
 inline constexpr lua::Doc simulate_doc = {
     "sys:simulate{ OPTIONS } -> run",
     simulate_summary.c_str(),

@@ -88,8 +88,9 @@ int spring_text(lua_State* L) {
 constexpr lua::Member spring_module_members[] = {
     {lua::a_function<polynomial_spring>,
      {"spring.polynomial{ [POWER] = COEFFICIENT, ... } -> spring",
-      "A spring whose restoring torque is a sum of powers of theta, besides k theta: c theta^n for each [n] = c, torque "
-      "per rad^n. Powers are whole numbers from 1 to 31; { [3] = c } is Duffing's spring.",
+      "A spring whose restoring torque is a sum of powers of theta, in addition to k theta: c "
+      "theta^n for each [n] = c, torque per rad^n. Powers are whole numbers from 1 to 31; { [3] "
+      "= c } is Duffing's spring.",
       "duffing = spring.polynomial{ [3] = 0.5 }\n"
       "print(duffing:torque(2), duffing:energy(2))  --> 4.0\t2.0"}},
 };
@@ -136,7 +137,8 @@ std::optional<model::Spring> asked_spring(lua_State* L, const lua::Options& opti
 const lua::Class spring_module = {
     "spring",
     {"spring.NAME{ ... } -> spring",
-     "Springs besides k theta, for `spring =` of system{...}, where a Lua function of theta may stand, too.",
+     "Springs in addition to k theta, for `spring =` of system{...}. A Lua function of theta is "
+     "also possible there.",
      "sys = system{ I = 1, k = 1, spring = spring.polynomial{ [3] = 0.5 } }\n"
      "print(sys.spring)  --> spring.polynomial{ [3] = 0.5 }"},
     spring_module_members};

@@ -22,7 +22,7 @@ namespace dinal::api {
 namespace {
 
 constexpr text::Option body_numbers[] = {
-    {"I", "torque time^2 per rad", text::its_own, text::positive, "moment of inertia; it is needed but with bodies",
+    {"I", "torque time^2 per rad", text::its_own, text::positive, "moment of inertia; needed unless bodies is given",
      text::fills<&model::OscillatorParameters::inertia>},
     model::mechanical_options[1],
     model::mechanical_options[2],
@@ -31,13 +31,13 @@ constexpr text::Option other_system_options[] = {
     model::mechanical_options[6],
     model::mechanical_options[7],
     {.name = "bodies",
-     .meaning = "several bodies by name: { load = { I = 0.3, Rd = 0.4 }, ... }, each with what a system of one takes, "
-                "against the ground",
+     .meaning = "several bodies by name: { load = { I = 0.3, Rd = 0.4 }, ... }, each with the options of a "
+                "system of one body, against the ground",
      .wanted = "a table of bodies by name, such as { motor = { I = 0.02 }, load = { I = 0.3, Rd = 0.4 } }"},
     {.name = "links",
-     .meaning =
-         "what acts between two bodies: { shaft = { \"motor\", \"load\", k = 90 }, ... }, with what a body takes "
-         "but I; its angle is that of the first less that of the second",
+     .meaning = "connections between two bodies: { shaft = { \"motor\", \"load\", k = 90 }, ... }, with "
+                "the options of a body except I; the angle of a link is that of the first body minus that "
+                "of the second",
      .wanted = "a table of links by name, such as { shaft = { \"motor\", \"load\", k = 90, C = 0.01 } }"},
 };
 constexpr auto system_options = text::joined(body_numbers, friction_options, other_system_options, model::units_option);
@@ -186,8 +186,8 @@ constexpr lua::Member system_module_members[] = {
       {&system_call}}},
     {lua::a_function<nondimensional>,
      {"nondimensional{ OPTIONS } -> system",
-      "The system with k = 1 and I = 1/(4 pi^2): its period T0 is 1 and torques are in units of the characteristic "
-      "torque Mc, so that M is M* of the report. Angles are in Mc/k, as its units say unless you give others.",
+      "The system with k = 1 and I = 1/(4 pi^2): T0 is 1, and torques are in units of the "
+      "characteristic torque Mc, so M is M* of the report. Angles are in Mc/k, as its units say unless you give others.",
       "sys = nondimensional{ zeta = 0.119, friction_ratio = 0.418 }\n"
       "print(sys.k, sys.Rd, string.format(\"%.3f\", sys.zeta))  --> 1.0\t0.418\t0.119",
       {&nondimensional_call}}},
@@ -199,7 +199,7 @@ constexpr lua::Member system_members[] = {
     {lua::a_method<simulate_system>, simulate_doc},
     {lua::a_method<system_with>,
      {"sys:with{ OPTIONS } -> system",
-      "The same system but for what is given.",
+      "A copy of the system with some parameters changed.",
       "sys = system{ I = 1, k = 4, Rd = 0.5 }\nprint(sys:with{ Rd = 1 })  --> system{ I = 1, k = 4, Rd = 1, Re = 1 }",
       {&with_call}}},
     {lua::a_method<friction_ratio>,
@@ -231,15 +231,15 @@ constexpr lua::Member system_members[] = {
                       const model::Spring& spring = system.spring();
                       return spring.none() ? std::nullopt : std::optional(spring);
                   }>,
-     {"sys.spring -> spring or nil", "The spring besides k theta, where there is one.",
+     {"sys.spring -> spring or nil", "The spring in addition to k theta; nil if there is none.",
       "print(system{ I = 1, k = 4, spring = spring.polynomial{ [3] = 2 } }.spring:torque(3))  --> 54.0"}},
     {lua::a_field<walls_of>,
-     {"sys.walls -> table or nil", "The end stops { lower, upper, restitution }, rad, where there are some.",
+     {"sys.walls -> table or nil", "The end stops { lower, upper, restitution }, rad; nil if there are none.",
       "print(system{ I = 1, k = 4, walls = { upper = 0.5, restitution = 0.7 } }.walls.upper)  --> 0.5"}},
     {lua::a_field<units_of_system>,
      {"sys.units -> table",
-      "What theta, t and M are measured in; what has no unit is nil. Words for cards, columns and axes, on which no "
-      "number depends.",
+      "The names of the units of theta, t and M; nil without one. They appear on cards, columns "
+      "and axes; no number depends on them.",
       "print(system{ I = 1, k = 4, units = { theta = \"m\", t = \"s\" } }.units.theta)  --> m"}},
     {lua::a_value<model::Oscillator, with_spring<&model::Oscillator::natural_frequency>>,
      {"sys.omega0 -> number", "The natural frequency sqrt(k/I) of k alone, rad per time unit; nil where k = 0.",
@@ -267,8 +267,8 @@ constexpr lua::Member system_members[] = {
                       return system.has_linear_spring() ? std::optional(system.dead_zone()) : std::nullopt;
                   }>,
      {"sys.dead_zone -> number",
-      "Re/k, rad: without excitation the mass can stay wherever |theta| is at most this; nil where k = 0 or another "
-      "spring acts besides k theta.",
+      "Re/k, rad: without excitation the mass can rest wherever |theta| is at most this; nil if "
+      "k = 0 or with another spring.",
       "print(system{ I = 1, k = 4, Rd = 1, Re = 2 }.dead_zone)  --> 0.5"}},
     {lua::a_metamethod<system_text>("__tostring"),
      {"tostring(sys) -> string", "The Lua text that makes the same system again.",

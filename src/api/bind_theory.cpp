@@ -606,9 +606,10 @@ constexpr lua::Member theory_module_members[] = {
       {&o::free_response}}},
     {lua::a_function<f::extremes>,
      {"theory.extremes{ OPTIONS } -> t, theta",
-      "When and where the velocity of a free motion is zero, by the half-cycle map: two vectors, the last place being "
-      "where it rests. A motion that begins with velocity 0 has its start as the first one. count limits how many; "
-      "a motion that never comes to rest needs it.",
+      "When and where the velocity of a free motion is zero, by the half-cycle map: two vectors; "
+      "the last place is the place of rest. If the motion starts with velocity 0, the start is "
+      "the first one. count is the greatest number of them; it is needed if the motion never "
+      "comes to rest.",
       "sys = nondimensional{ friction_ratio = 0.1 }\n"
       "print(theory.extremes{ system = sys, theta0 = 0.55 })  --> vector{ 0, 0.5, 1, 1.5 }\t"
       "vector{ 0.55, -0.35, 0.15, 0.05 }",
@@ -622,15 +623,17 @@ constexpr lua::Member theory_module_members[] = {
       {&o::time_to_rest}}},
     {lua::a_function<f::rest_position>,
      {"theory.rest_position{ OPTIONS } -> number or nil, or vector",
-      "Where a free motion stops, or what it tends to (rad); nil, or nan in a vector, when it swings for ever.",
+      "The place of rest of a free motion, or its limit (rad); nil, or nan in a vector, if it "
+      "swings for ever.",
       "sys = nondimensional{ friction_ratio = 0.1 }\n"
       "print(theory.rest_position{ system = sys, theta0 = { 0.05, 0.15, 1.05 } })  --> vector{ 0.05, 0.05, -0.05 }",
       {&o::rest_position}}},
     {lua::a_function<f::half_cycle>,
      {"theory.half_cycle{ OPTIONS } -> number or vector",
-      "The extreme of a free motion that is n half cycles after the extreme X (rad, with its sign): X' = s x_f - (X - "
-      "s x_f) e^(-pi zeta/sqrt(1 - zeta^2)), s = sgn X, x_f = Rd/k. Within dead_zone = Re/k the mass stays where it "
-      "is. Instead of zeta, x_f and dead_zone a system can be given. zeta < 1.",
+      "The extreme of a free motion that is n half cycles after the extreme X (rad, with its "
+      "sign): X' = s x_f - (X - s x_f) e^(-pi zeta/sqrt(1 - zeta^2)), s = sgn X, x_f = Rd/k. "
+      "Within dead_zone = Re/k the mass stays. Instead of zeta, x_f and dead_zone a system can "
+      "be given. zeta < 1.",
       "print(theory.half_cycle{ X = 1, x_f = 0.2 }, theory.half_cycle{ X = 1, x_f = 0.2, n = 9 })  --> -0.6\t0.2",
       {&o::half_cycle}}},
     {lua::a_function<closed_form<o::logarithmic_decrement, theory::logarithmic_decrement>>,
@@ -701,8 +704,8 @@ constexpr lua::Member theory_module_members[] = {
       {&o::friction_work}}},
     {lua::a_function<closed_form<o::growth_at_resonance, theory::growth_at_resonance>>,
      {"theory.growth_at_resonance{ OPTIONS } -> number or vector",
-      "What the amplitude gains in each period at r = 1 without viscous damping, in units of M0/k: pi - 4 gamma, gamma "
-      "= Rd/M0; 0 from gamma = pi/4 on, where it does not grow.",
+      "The growth of the amplitude in each period at r = 1 without viscous damping, in M0/k: pi "
+      "- 4 gamma, gamma = Rd/M0; 0 from gamma = pi/4 on.",
       "print(string.format(\"%.6f\", theory.growth_at_resonance{ friction_ratio = 0.167 }))  --> 2.473593",
       {&o::growth_at_resonance}}},
     {lua::a_function<f::den_hartog>,
@@ -720,8 +723,8 @@ constexpr lua::Member theory_module_members[] = {
     {lua::a_function<f::den_hartog_fundamental>,
      {"theory.den_hartog_fundamental{ OPTIONS } -> "
       "amplitude, lag",
-      "The harmonic part of that motion that has the frequency of the load: its amplitude in units of M0/k and its lag "
-      "in rad. That is what a linear theory can hope to meet.",
+      "The harmonic part of that motion that has the frequency of the load: its amplitude in "
+      "units of M0/k and its lag in rad. A linear theory can at best predict this part.",
       "amplitude, lag = theory.den_hartog_fundamental{ r = 1.35, friction_ratio = 0.5 }\n"
       "print(string.format(\"%.4f, %.2f degrees\", amplitude, math.deg(lag)))  --> 0.8649, 140.69 degrees",
       {&o::den_hartog_fundamental}}},

@@ -5,10 +5,15 @@
 #include <algorithm>
 #include <cmath>
 #include <span>
+#include <utility>
+#include <vector>
 
 #include "api/cards.hpp"
 #include "api/classes.hpp"
+#include "errors/source_text.hpp"
 #include "lua/interrupt.hpp"
+#include "lua/memory_limit.hpp"
+#include "lua/tokens.hpp"
 #include "lua/user_function.hpp"
 #include "lua/values.hpp"
 #include "lua/vector.hpp"
@@ -134,12 +139,115 @@ int combined(lua_State* L) {
     return 1;
 }
 
+// Lua turns the result of v > 0 into true or false. So that v[v > 0] can work, the comparison is remembered here, with
+// the line of the script that made it; v[true] in that line means it.
+struct Comparison {
+    const void* function = nullptr;
+    int line = 0;
+    int count = 0;  // how many comparisons this line has made since the last v[...]
+    bool all = false;
+    std::vector<bool> mask = {};
+};
+thread_local Comparison last_comparison;
+const char comparing_function = 0;  // registry key: the function lives as long as its address is compared with
+
+/// The function that runs, and its line.
+std::pair<const void*, int> running_line(lua_State* L) {
+    lua_Debug caller{};
+    if (lua_getstack(L, 1, &caller) == 0 || lua_getinfo(L, "lf", &caller) == 0) return {nullptr, 0};
+    const void* function = lua_topointer(L, -1);
+    lua_rawsetp(L, LUA_REGISTRYINDEX, &comparing_function);
+    return {function, caller.currentline};
+}
+
+/// Whether the function has a variable of that name from outside of it.
+bool is_upvalue(lua_State* L, lua_Debug& caller, std::string_view wanted) {
+    lua_getinfo(L, "f", &caller);
+    bool found = false;
+    for (int i = 1; const char* name = lua_getupvalue(L, -1, i); ++i) {
+        found = found || name == wanted;
+        lua_pop(L, 1);
+    }
+    lua_pop(L, 1);
+    return found;
+}
+
+/// Why v[v > 0] cannot be trusted in this statement; "" if it can. With `and` and `or` Lua leaves out the second
+/// comparison, so the mask would be that of the first. Lua before 5.4.7 compiles v[v > 0] wrongly if v is a variable of
+/// an outer function: it indexes another register.
+std::string fault_of_mask(lua_State* L, lua_Debug& caller, std::string_view statement) {
+    const std::vector<lua::Token> all = lua::tokens(statement);
+    int depth = 0;
+    bool compares = false, joins = false;
+    std::string_view owner;
+    for (std::size_t i = 0; i < all.size(); ++i) {
+        depth += all[i].is("[") ? 1 : all[i].is("]") ? -1 : 0;
+        if (all[i].is("[") && depth == 1) {
+            compares = joins = false;
+            const bool alone = i > 0 && (i < 2 || !(all[i - 2].is(".") || all[i - 2].is(":")));
+            owner = alone ? all[i - 1].text : std::string_view();
+        }
+        if (depth == 0) continue;
+        compares = compares || all[i].is("<") || all[i].is(">") || all[i].is("<=") || all[i].is(">=");
+        joins = joins || all[i].is("and") || all[i].is("or");
+        if (compares && joins) return "and or or is not possible there";
+        if (compares && is_upvalue(L, caller, owner)) {
+            return fmt::format("{0} belongs to an outer function: write local own = {0} before, and own[...]", owner);
+        }
+    }
+    return "";
+}
+
+/// The same for the line that runs. A line is read once as long as no other one asks.
+std::string fault_of_mask_here(lua_State* L, const void* function) {
+    thread_local std::pair<const void*, int> known;
+    thread_local std::string fault;
+    lua_Debug caller{};
+    if (lua_getstack(L, 1, &caller) == 0 || lua_getinfo(L, "Sl", &caller) == 0) return "";
+    if (known != std::pair(function, caller.currentline)) {
+        const auto source = errors::source_of_frame(L, caller);
+        fault = source ? fault_of_mask(L, caller, source->statement(caller.currentline)) : "";
+        known = {function, caller.currentline};
+    }
+    return fault;
+}
+
+int masked(lua_State* L) {
+    const lua::Vector& v = *lua::test<lua::Vector>(L, 1);
+    const auto [function, line] = running_line(L);
+    const bool known =
+        last_comparison.function == function && last_comparison.line == line && last_comparison.count == 1;
+    last_comparison.count = 0;
+    if (const std::string fault = fault_of_mask_here(L, function); !fault.empty()) {
+        lua::raise(L, {.sentence = "v[v > 0]: " + fault, .call = "v"});
+    }
+    if (!known || last_comparison.mask.size() != v.size()) {
+        lua::raise(L,
+                   {.sentence = "v[v > 0] takes one comparison (< <= > >=) with as many elements as v, written in the "
+                                "brackets; for more use v[v:find(function(x) return x > 0 and x < 1 end)]",
+                    .call = "v"});
+    }
+    const bool wanted = (lua_toboolean(L, 2) != 0) == last_comparison.all;  // v[not (v > 0)]
+    lua::make_room(L, v.size() * sizeof(double));
+    std::vector<double> result;
+    for (std::size_t i = 0; i < v.size(); ++i) {
+        if (last_comparison.mask[i] == wanted) result.push_back(v.begin()[i]);
+    }
+    lua::push_vector(L, std::move(result));
+    return 1;
+}
+
 /// True when it holds for every element.
 template <CallText symbol, auto f>
 int holds(lua_State* L) {
     const Operands of = operands(L, symbol.text);
-    bool all = true;
-    for (std::size_t i = 0; i < of.size && all; ++i) all = f(of.a[i], of.b[i]);
+    lua::make_room(L, of.size / 8 + 1);
+    std::vector<bool> mask(of.size);
+    for (std::size_t i = 0; i < of.size; ++i) mask[i] = f(of.a[i], of.b[i]);
+    const bool all = std::find(mask.begin(), mask.end(), false) == mask.end();
+    const auto [function, line] = running_line(L);
+    const bool again = function == last_comparison.function && line == last_comparison.line;
+    last_comparison = {function, line, again ? last_comparison.count + 1 : 1, all, std::move(mask)};
     lua_pushboolean(L, all ? 1 : 0);
     return 1;
 }
@@ -396,6 +504,9 @@ int element(lua_State* L) {
     if (v != nullptr && lua::test<Vector>(L, 2) != nullptr) {
         return pick(L);
     }
+    if (v != nullptr && lua_isboolean(L, 2)) {
+        return masked(L);
+    }
     if (v == nullptr || lua_type(L, 2) != LUA_TNUMBER) {
         return 0;
     }
@@ -561,10 +672,11 @@ constexpr lua::Member vector_members[] = {
      {"v .. w, v .. number -> vector", "The elements of v, then those of w.",
       "print(vector{ 1, 2 } .. vector{ 3 } .. 4)  --> vector{ 1, 2, 3, 4 }"}},
     {lua::a_metamethod<pick>("__index"),
-     {"v[w] -> vector",
-      "The elements that a vector w picks: as long as v and of 0 and 1, it says which; else it has their places.",
-      "v = vector{ 5, 1, 7 }\n"
-      "print(v[vector{ 1, 0, 1 }], v[vector{ 3, 1 }])  --> vector{ 5, 7 }\tvector{ 7, 5 }"}},
+     {"v[w], v[v > 0] -> vector",
+      "Some of the elements. A comparison (< <= > >=) in the brackets picks those for which it holds, also of another "
+      "vector of the same length: run.t[run.theta > 0.5]. A vector w of 0 and 1 as long as v picks those with 1; any "
+      "other w has their places, such as v:find(function(x) return x > 0 and x < 1 end).",
+      "v = vector{ 5, -1, 7 }\nprint(v[v > 0], v[vector{ 3, 1 }])  --> vector{ 5, 7 }\tvector{ 7, 5 }"}},
 };
 
 }  // namespace

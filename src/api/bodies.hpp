@@ -37,8 +37,8 @@ inline constexpr text::Option friction_options[] = {
                "velocity, z"},
     {.name = "normal",
      .otherwise = "1",
-     .meaning = "what multiplies the torques of friction: a number, an excitation or a function of t, theta, velocity, "
-                "z; where it is negative there is no friction",
+     .meaning = "normal load, a factor of the torques of friction: a number, an excitation or a function "
+                "of t, theta, velocity, z; a negative one counts as 0",
      .object = "excitation",
      .wanted = varying_wanted},
 };

@@ -19,7 +19,7 @@ inline constexpr text::Option sampled_options[] = {
     {.name = "delay",
      .unit = "time units",
      .range = text::not_negative,
-     .meaning = "how long after an instant its output begins to act",
+     .meaning = "delay from an instant to the effect of its output",
      .filled = text::fills<&model::SampledController::delay>},
     {.name = "at",
      .unit = "time units",
@@ -42,7 +42,7 @@ inline constexpr text::Option delayed_options[] = {
      .unit = "time units",
      .otherwise = text::needed,
      .range = text::positive,
-     .meaning = "how long ago theta and velocity were measured",
+     .meaning = "age of theta and velocity",
      .filled = text::fills<&model::DelayedController::by>},
 };
 inline constexpr text::Call delayed_call{
@@ -62,11 +62,11 @@ inline constexpr const char* relay_starts[] = {"on", "off"};
 inline constexpr text::Option relay_options[] = {
     {.name = "on",
      .otherwise = text::needed,
-     .meaning = "where it switches on",
+     .meaning = "threshold at which it switches on",
      .filled = text::fills<&RelayOptions::on>},
     {.name = "off",
      .otherwise = text::needed,
-     .meaning = "where it switches off",
+     .meaning = "threshold at which it switches off",
      .filled = text::fills<&RelayOptions::off>},
     {.name = "amplitude",
      .unit = "torque",
@@ -75,11 +75,11 @@ inline constexpr text::Option relay_options[] = {
      .wanted = "a number, or two: { on, off }"},
     {.name = "of",
      .otherwise = "\"theta\"",
-     .meaning =
-         "what it looks at: \"theta\", \"velocity\", the name of a state, or a function of t, theta, velocity, z",
+     .meaning = "the quantity that it watches: \"theta\", \"velocity\", the name of a state, or a function "
+                "of t, theta, velocity, z",
      .wanted = "\"theta\", \"velocity\", the name of a state or a function"},
     {.name = "start",
-     .meaning = "how it begins, unless it stands beyond that already",
+     .meaning = "initial state, if the start is between the thresholds",
      .filled = text::fills<&RelayOptions::start>,
      .choices = relay_starts},
 };

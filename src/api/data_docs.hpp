@@ -12,13 +12,12 @@ inline constexpr text::Option data_plot_options[] = {
     {.name = "y", .otherwise = "the second column", .meaning = "name of a column, or a list of them"},
     {.name = "z", .meaning = "name of a column that is drawn as a map over x and y, which form a grid"},
     {.name = "overlay",
-     .meaning =
-         "name of what is drawn besides, or a list: the data of a response bring \"jumps\" along and, where there "
-         "is such a curve, \"linearised\" and \"den_hartog\""},
+     .meaning = "name of an additional curve, or a list: the data of a response have \"jumps\" and, if it "
+                "exists, \"linearised\" and \"den_hartog\""},
     {.name = "zlim", .meaning = "{ from, to }: values beyond have the first and the last shade of the map"},
     {.name = "contours", .meaning = "a list of values of z whose lines are drawn on the map"},
     {.name = "style",
-     .meaning = "how the curves are drawn; what is not finite is a gap",
+     .meaning = "style of the curves; numbers that are not finite are gaps",
      .filled = text::fills<&plots::Curve::style>,
      .choices = plots::style_names},
 };
@@ -69,7 +68,7 @@ inline constexpr lua::Doc save_data_doc{
 inline constexpr lua::Doc select_doc{"d:select(name, ...) -> data", "These columns, in this order.",
                                      DINAL_DATA "print(table.concat(d:select(\"r\", \"A\").names, \" \"))  --> r A"};
 inline constexpr lua::Doc sort_doc{"d:sort(name, { OPTIONS }) -> data",
-                                   "The rows in the order of a column; equal ones stay in their order, nan comes last.",
+                                   "The rows sorted by a column; equal rows keep their order, nan comes last.",
                                    DINAL_DATA "print(d:sort(\"A\").r)  --> vector{ 2, 0.5, 1 }",
                                    {&sort_call}};
 inline constexpr lua::Doc names_doc{"d.names -> table",

@@ -284,8 +284,9 @@ int plot(lua_State* L) {
     const bool curves = !y.empty() || options.has("style") || options.has("overlay");
     const bool is_map = over.size() > 1 && (!z.empty() || (x.empty() && !curves));
     if (is_map && z.empty() && over.size() > 2) {
-        options.fail({fmt::format("points over {} are no map: pick those of one {} with d:filter, or name x, y and z",
-                                  fmt::join(over, ", "), over.front())});
+        options.fail(
+            {fmt::format("points over {} are not a map: pick those of one {} with d:filter, or name x, y and z",
+                         fmt::join(over, ", "), over.front())});
     }
     if (x.empty() && !over.empty()) x = {over.size() == 2 && !is_map ? over[1] : over[0]};
     if (x.empty()) x.push_back(data->points_over.empty() ? data->columns.front().name : data->points_over);

@@ -38,7 +38,7 @@ void check_state_name(const lua::Options& options, const std::string& name) {
         options.fail({.sentence = fmt::format("states: {}", why), .option = "states", .culprit = name});
     };
     if (!lua::is_name(name)) {
-        refuse(fmt::format("'{}' is no name; take letters, digits and _", name));
+        refuse(fmt::format("'{}' is not a name; use letters, digits and _", name));
     }
     for (const lua::Member& member : run_class.members) {
         if (name == member.name) {
@@ -171,7 +171,7 @@ void check_relays(const lua::Options& options, const model::Excitation& excitati
             std::find(names.begin(), names.end(), relay->state) != names.end()) {
             continue;
         }
-        options.fail({.sentence = fmt::format("M has a relay of '{}', which is no state of this run; its states are "
+        options.fail({.sentence = fmt::format("M has a relay of '{}', which is not a state of this run; its states are "
                                               "{{ {} }}",
                                               relay->state, fmt::join(names, ", ")),
                       .option = "states"});

@@ -40,21 +40,23 @@ inline constexpr text::Call event_call{
 
 inline constexpr text::Option extras_options[] = {
     {.name = "states",
-     .meaning = "variables that go along with the motion: { NAME = { start = 0, rate = function(t, theta, velocity, z) "
-                "... end } }; z.NAME has their values, the fourth argument of M, rates and events",
+     .meaning = "variables that are integrated with the motion: { NAME = { start = 0, rate = function(t, "
+                "theta, velocity, z) ... end } }; z.NAME has their values, the fourth argument of M, rates "
+                "and events",
      .wanted = "a table such as { e = { start = 0, rate = function(t, theta, velocity, z) return 1 - theta end } }",
      .fields = {&state_call, text::Fields::Place::by_name}},
     {.name = "events",
-     .meaning =
-         "what is to be located: a list of { when = function(t, theta, velocity, z), direction = \"up\" or "
-         "\"down\", stop = true, name = \"...\", act = function(t, theta, velocity, z) return theta, velocity end "
-         "}, told where `when` passes zero; act may also set a state: z.NAME = 0",
+     .meaning = "events to locate: a list of { when = function(t, theta, velocity, z), direction = \"up\" "
+                "or \"down\", stop = true, name = \"...\", act = function(t, theta, velocity, z) return "
+                "theta, velocity end }, reported where `when` passes zero; act may also set a state: "
+                "z.NAME = 0",
      .wanted = "a list such as { { when = function(t, theta) return theta - 1 end, name = \"limit\" } }",
      .fields = {&event_call, text::Fields::Place::listed}},
     {.name = "belt",
      .unit = "rad per time unit",
      .otherwise = "0",
-     .meaning = "velocity of the surface that dry friction acts against: a number, a function of t, or an excitation",
+     .meaning = "velocity of the surface under the mass, against which dry friction acts: a number, a "
+                "function of t, or an excitation",
      .object = "excitation"},
     {.name = "base",
      .unit = "rad per time unit^2",

@@ -43,13 +43,22 @@ void open_course_libraries(lua_State* course) {
     lua_pop(course, 2);
 }
 
-int open_course(lua_State* course) {
-    open_course_libraries(course);
-    const std::string text = lab_course_text();
-    if (luaL_loadbufferx(course, text.data(), text.size(), "=course", "t") != LUA_OK) {
-        return lua_error(course);
+std::vector<LabSheet> added_sheets;  // set once, before any script runs
+
+void run_in(lua_State* course, const std::string& text, const std::string& name) {
+    if (luaL_loadbufferx(course, text.data(), text.size(), name.c_str(), "t") != LUA_OK) {
+        lua_error(course);
     }
     lua_call(course, 0, 0);
+}
+
+int open_course(lua_State* course) {
+    open_course_libraries(course);
+    run_in(course, lab_course_text(), "=course");
+    run_in(course, "course.added = {}", "=course");
+    for (const LabSheet& sheet : added_sheets) {
+        run_in(course, sheet.text, "=" + sheet.name);
+    }
     return 0;
 }
 
@@ -115,6 +124,23 @@ std::string take_message(lua_State* course) {
     return message;
 }
 
+/// course.FUNCTION(argument) in a course of its own, which returns text.
+text::Expected<std::string> text_of_course(const char* function, std::int64_t argument = 0) {
+    const std::unique_ptr<lua_State, void (*)(lua_State*)> state(new_state(), lua_close);
+    lua_State* course = state.get();
+    lua_pushcfunction(course, open_course);
+    const bool opened = lua_pcall(course, 0, 0, 0) == LUA_OK;
+    if (opened) {
+        lua_getglobal(course, "course");
+        lua_getfield(course, -1, function);
+        lua_pushinteger(course, argument);
+    }
+    if (!opened || lua_pcall(course, 1, 1, 0) != LUA_OK) {
+        return text::Error{take_message(course)};
+    }
+    return std::string(lua_tostring(course, -1));
+}
+
 }  // namespace
 
 std::string lab_course_text() {
@@ -135,7 +161,7 @@ LabCourse::LabCourse(lua_State* L) : state_(new_state(), lua_close) {
     const lua::RunningThread note(L, course);
     lua_pushcfunction(course, open_course);
     if (lua_pcall(course, 0, 0, 0) != LUA_OK) {
-        lua::raise(L, "the lab course does not open: " + take_message(course));
+        lua::raise(L, "the lab course cannot be loaded: " + take_message(course));
     }
     charge_ = lua::MemoryCharge(static_cast<std::size_t>(lua_gc(course, LUA_GCCOUNT)) << 10U);
 }
@@ -170,6 +196,10 @@ text::Expected<int> LabCourse::call(lua_State* L, const char* function, int argu
     return results;
 }
 
+void add_lab_sheets(std::vector<LabSheet> sheets) {
+    added_sheets = std::move(sheets);
+}
+
 text::Expected<std::string> lab_solutions(std::string_view number) {
     std::int64_t value = 0;
     const auto parsed = std::from_chars(number.data(), number.data() + number.size(), value);
@@ -177,21 +207,17 @@ text::Expected<std::string> lab_solutions(std::string_view number) {
         return text::Error{
             fmt::format("option --lab-solutions needs a student number after it, a whole one from 1 to {}, for example "
                         "--lab-solutions 4711{}",
-                        greatest_student_number, number.empty() ? "" : fmt::format("; '{}' is none", number))};
+                        greatest_student_number, number.empty() ? "" : fmt::format("; '{}' is not one", number))};
     }
-    const std::unique_ptr<lua_State, void (*)(lua_State*)> state(new_state(), lua_close);
-    lua_State* course = state.get();
-    lua_pushcfunction(course, open_course);
-    const bool opened = lua_pcall(course, 0, 0, 0) == LUA_OK;
-    if (opened) {
-        lua_getglobal(course, "course");
-        lua_getfield(course, -1, "solutions");
-        lua_pushinteger(course, value);
-    }
-    if (!opened || lua_pcall(course, 1, 1, 0) != LUA_OK) {
-        return text::Error{"the lab course fails: " + take_message(course)};
-    }
-    return std::string(lua_tostring(course, -1));
+    return text_of_course("solutions", value);
+}
+
+text::Expected<std::string> lab_sheet_test() {
+    return text_of_course("test_last");
+}
+
+text::Expected<std::string> lab_question_names() {
+    return text_of_course("question_names");
 }
 
 }  // namespace dinal::api

@@ -9,6 +9,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "lua/bind.hpp"
 #include "lua/memory_limit.hpp"
@@ -37,24 +38,49 @@ constexpr std::int64_t greatest_student_number = 999'999'999;
 /// The text of the course as it was built into the program.
 std::string lab_course_text();
 
-/// All answers of a number, for instructors. Fails when there is no such number.
+/// A sheet that is not built in: the file's name and its text.
+struct LabSheet {
+    std::string name, text;
+};
+/// Every course that is opened from now on has these sheets as well.
+void add_lab_sheets(std::vector<LabSheet> sheets);
+
+/// Returns all answers of a number, for instructors. Fails when there is no such number.
 text::Expected<std::string> lab_solutions(std::string_view number);
 
-/// From now on each answer that is judged is noted at the end of that file, for this script; the first line says that
-/// it has begun. Says why that cannot be done, if so.
+/// Works the last sheet that was added with twenty student numbers. Returns what a student sees, or fails with the
+/// first fault.
+text::Expected<std::string> lab_sheet_test();
+
+/// The names of all questions, "1a 1b ...".
+text::Expected<std::string> lab_question_names();
+
+/// Notes each judged answer at the end of that file from now on, for this script; the first line says that it has
+/// begun. Returns the reason if the file cannot be written.
 std::optional<text::Error> note_lab_answers(const std::string& file, const std::string& script);
 
-/// Why an answer could not be noted; nothing when all are.
+/// Keeps wrong values in the file of that name, so that they count in the next session, too. If it cannot be written
+/// they count in this session only.
+void keep_lab_tries(std::string (*file)());
+
+/// The reason why an answer could not be noted; nothing if all are noted.
 std::optional<text::Error> lost_lab_mark();
 
-/// A line of that file: what became of a question. Nothing without note_lab_answers.
+/// The verdict on one answer.
 struct LabMark {
     std::int64_t number = 0;
-    std::string_view question = {};
-    std::string_view verdict = {};  ///< "right", "wrong", "begun"
+    std::string question = {};
+    std::string verdict = {};  ///< "right", "wrong", "begun"
     int tries = 0;
     double value = 0;
+    std::string said = {};
 };
 void note_lab_mark(const LabMark& mark);
+
+/// The answers of this session in the order in which they were first judged, each with its last verdict.
+const std::vector<LabMark>& lab_answers();
+
+/// The wrong values that earlier sessions kept for this question.
+std::vector<double> earlier_wrong_values(std::int64_t number, const std::string& question);
 
 }  // namespace dinal::api

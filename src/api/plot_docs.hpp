@@ -11,9 +11,9 @@ int plot_run(lua_State* L);
 int phase_plot_run(lua_State* L);
 
 inline constexpr lua::Doc plot_doc{
-    "plot{ { x, y, OPTIONS }, ..., OPTIONS }",
-    "Draws curves, each a table with two vectors (or tables) of numbers; what is not finite is a gap. A run is a curve, "
-    "too, its theta over t: plot{ run, { other, label = \"more friction\" } }. The picture is "
+    "plot(x, y), plot{ { x, y, OPTIONS }, ..., OPTIONS }",
+    "Draws y over x, or several curves, each a table with two vectors (or tables) of numbers; a number that is not "
+    "finite is a gap. A run is a curve as well, theta over t: plot{ run, { other, label = \"more friction\" } }. The picture is "
     "printed, or goes where file or show say; plot{ p, q } draws pictures that were returned side by side.",
     "x = vector.linspace(-2, 2, 9)\n"
     "p = plot{ { x, x^2, style = \"points\" }, width = 40, height = 10, ascii = true, show = false }\n"

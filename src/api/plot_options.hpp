@@ -24,10 +24,10 @@ inline constexpr text::Range tick_distance{"be positive: it is the distance from
 inline constexpr const char* ticks_meaning = "the distance from tick to tick, or a list of ticks";
 
 inline constexpr text::Option figure_options[] = {
-    {.name = "title", .meaning = "what stands above", .filled = text::fills<&FigureOptions::title>},
-    {.name = "xlabel", .meaning = "what stands at the x axis", .filled = text::fills<&FigureOptions::xlabel>},
-    {.name = "ylabel", .meaning = "what stands at the y axis", .filled = text::fills<&FigureOptions::ylabel>},
-    {.name = "xlim", .meaning = "what is seen, { from, to }", .filled = text::fills<&FigureOptions::xlim>},
+    {.name = "title", .meaning = "title", .filled = text::fills<&FigureOptions::title>},
+    {.name = "xlabel", .meaning = "label of the x axis", .filled = text::fills<&FigureOptions::xlabel>},
+    {.name = "ylabel", .meaning = "label of the y axis", .filled = text::fills<&FigureOptions::ylabel>},
+    {.name = "xlim", .meaning = "visible range, { from, to }", .filled = text::fills<&FigureOptions::xlim>},
     {.name = "ylim", .meaning = "the same for y", .filled = text::fills<&FigureOptions::ylim>},
     {.name = "xticks", .range = tick_distance, .meaning = ticks_meaning},
     {.name = "yticks", .range = tick_distance, .meaning = ticks_meaning},
@@ -48,8 +48,8 @@ struct TargetOptions {
 
 inline constexpr text::Option target_options[] = {
     {.name = "file",
-     .meaning = "where it is written instead of printed, by the ending of the name: .svg, .png, .pdf (these need "
-                "gnuplot), .gp (gnuplot commands with the data, to be restyled) or .txt",
+     .meaning = "file to write instead of printing; the ending of the name chooses the format: .svg, .png, "
+                ".pdf (these need gnuplot), .gp (gnuplot commands with the data, to be restyled) or .txt",
      .filled = text::fills<&TargetOptions::file>},
     {.name = "size",
      .unit = "cm",
@@ -58,11 +58,11 @@ inline constexpr text::Option target_options[] = {
     {.name = "width",
      .range = {"be a whole number from 20 to 1000: columns of text",
                [](double x) { return text::is_whole(x, 20, 1000); }},
-     .meaning = "columns of the text, else as the terminal has, or 79",
+     .meaning = "columns of the text; by default those of the terminal, or 79",
      .filled = text::fills<&TargetOptions::width>},
     {.name = "height",
      .range = {"be a whole number from 5 to 500: lines of text", [](double x) { return text::is_whole(x, 5, 500); }},
-     .meaning = "lines of the text, else as the terminal has, or 22",
+     .meaning = "lines of the text; by default those of the terminal, or 22",
      .filled = text::fills<&TargetOptions::height>},
     {.name = "ascii", .meaning = "plain characters", .filled = text::fills<&TargetOptions::ascii>},
     {.name = "show",
@@ -73,12 +73,11 @@ inline constexpr text::Option target_options[] = {
 inline constexpr text::Option column_options[] = {
     {.name = "x", .otherwise = "\"t\"", .meaning = "name or number of a column"},
     {.name = "y",
-     .meaning =
-         "name or number of a column, or a list of them, else theta, and M/k when there is an excitation; M/k, "
-         "friction/k, damping/k and velocity/omega0 are names, too; what has other units gets an axis of its own, "
-         "below"},
+     .meaning = "name or number of a column, or a list of them; by default theta, and M/k if there is an "
+                "excitation; M/k, friction/k, damping/k and velocity/omega0 are names, too; columns with "
+                "other units get an axis of their own, below"},
     {.name = "labels",
-     .meaning = "what these are called in the picture",
+     .meaning = "names of the columns in the picture",
      .wanted = "a list of words such as { \"angle\", \"torque\" }"},
 };
 

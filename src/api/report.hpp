@@ -39,6 +39,10 @@ struct Report {
 };
 using ReportHandle = std::shared_ptr<Report>;
 
+/// Calls this with each report that is saved, which then writes no file: --report puts its parts into the page of the
+/// script.
+void take_saved_reports_by(void (*take)(const Report& report));
+
 /// The picture as a report keeps it.
 ReportPicture drawn(const Picture& picture);
 ReportPicture drawn(const Animation& animation);

@@ -58,7 +58,7 @@ inline constexpr text::Option response_options[] = {
      .filled = text::fills<&ResponseOptions::theta0>},
     {.name = "velocity0",
      .unit = "rad per time unit",
-     .meaning = "how fast it starts",
+     .meaning = "initial velocity",
      .filled = text::fills<&ResponseOptions::velocity0>},
 };
 inline constexpr text::Call response_call{"sys:response",

@@ -28,11 +28,11 @@ inline constexpr text::Option spectrum_options[] = {
      .choices = method_names},
     {.name = "segments",
      .range = {"be a whole number from 1 to 10000", [](double x) { return text::is_whole(x, 1, 1e4); }},
-     .meaning = "of method welch: more of them are smoother and coarser in frequency",
+     .meaning = "for method welch: more segments make the result smoother, and coarser in frequency",
      .filled = text::fills<&SpectrumOptions::segments>},
     {.name = "window",
-     .meaning =
-         "the weights of the rows: hann for what is unknown, rectangle for whole periods, flat top for amplitudes",
+     .meaning = "the weights of the rows: hann in general, rectangle for whole periods, flat top for "
+                "amplitudes",
      .filled = text::fills<&SpectrumOptions::window>,
      .choices = window_names},
     {.name = "from",

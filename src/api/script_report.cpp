@@ -11,6 +11,7 @@
 #include <string_view>
 #include <utility>
 
+#include "api/lab_course.hpp"
 #include "files/file.hpp"
 #include "lua/interrupt.hpp"
 #include "text/words.hpp"
@@ -36,6 +37,27 @@ std::string stem_of(const std::string& script) {
     return ending == ".lua" ? name.substr(0, name.size() - ending.size()) : name;
 }
 
+/// The answers that were judged, as a table; null if there are none.
+DataHandle verdicts_of_session() {
+    const std::vector<LabMark>& answers = lab_answers();
+    if (answers.empty()) return nullptr;
+    std::vector<std::string> questions, verdicts, said;
+    std::vector<double> numbers, tries, values;
+    for (const LabMark& answer : answers) {
+        numbers.push_back(static_cast<double>(answer.number));
+        questions.push_back(answer.question);
+        values.push_back(answer.value);
+        verdicts.push_back(answer.verdict);
+        tries.push_back(answer.tries);
+        said.push_back(answer.said);
+    }
+    Data table;
+    table.columns = {column_of("number", std::move(numbers)), column_of("question", std::move(questions)),
+                     column_of("value", std::move(values)),   column_of("verdict", std::move(verdicts)),
+                     column_of("tries", std::move(tries)),    column_of("said", std::move(said))};
+    return std::make_shared<const Data>(std::move(table));
+}
+
 }  // namespace
 
 ScriptReport::ScriptReport(std::string script, const std::string& errors)
@@ -46,10 +68,16 @@ ScriptReport::ScriptReport(std::string script, const std::string& errors)
     static_cast<void>(std::fflush(stdout));
     ::dup2(printed_, STDOUT_FILENO);
     picture_taker = this;
-    static_cast<void>(std::atexit(save_at_exit));  // or a script that calls os.exit has no page
     show_pictures_by([](const Picture& picture, Shown /*where*/) {
         picture_taker->take_printed();
         picture_taker->report_.items.emplace_back(drawn(picture));
+    });
+    take_saved_reports_by([](const Report& saved) {
+        picture_taker->take_printed();
+        picture_taker->report_.author = saved.author;
+        auto& items = picture_taker->report_.items;
+        items.emplace_back(ReportHeading{saved.title});
+        items.insert(items.end(), saved.items.begin(), saved.items.end());
     });
     show_animations_by([](const Animation& animation, Shown /*where*/) {
         picture_taker->take_printed();
@@ -70,6 +98,7 @@ void ScriptReport::give_back() {
     output_ = -1;
     picture_taker = nullptr;
     show_pictures_by(nullptr);
+    take_saved_reports_by(nullptr);
     show_animations_by(nullptr);
 }
 
@@ -87,21 +116,16 @@ void ScriptReport::take_printed() {
     if (!text.empty()) report_.items.emplace_back(ReportLines{std::move(text)});
 }
 
-void ScriptReport::save_at_exit() {
-    if (picture_taker == nullptr) return;
-    ScriptReport& report = *picture_taker;
-    const auto saved = report.save();
-    static_cast<void>(std::fputs(report.errors_.c_str(), stderr));
-    static_cast<void>(saved ? std::fprintf(stdout, "%s\n", saved.value().c_str())
-                            : std::fprintf(stderr, "dinal: %s\n", saved.error().message().c_str()));
-}
-
 text::Expected<std::string> ScriptReport::save() {
     const InSpiteOfStop going_on;
     take_printed();
     give_back();
     const std::string stem = stem_of(script_);
     report_.title = stem;
+    if (const auto verdicts = verdicts_of_session()) {
+        report_.items.emplace_back(ReportHeading{"Answers"});
+        report_.items.emplace_back(verdicts);
+    }
     if (!errors_.empty()) report_.items.emplace_back(ReportLines{errors_, "It ended with an error"});
     if (auto source = files::read_file(script_)) {
         report_.items.emplace_back(ReportLines{std::move(source).value(), "The script"});

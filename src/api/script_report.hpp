@@ -11,8 +11,7 @@ namespace dinal::api {
 /// While it lives, what is printed on standard output and the pictures that are shown go into a report, in their order.
 class ScriptReport {
 public:
-    /// The script, and what it says on standard error, which is collected elsewhere meanwhile. A script that leaves by
-    /// os.exit gets its page, too.
+    /// The script, and what it says on standard error, which is collected elsewhere meanwhile.
     ScriptReport(std::string script, const std::string& errors);
     ~ScriptReport();
     ScriptReport(const ScriptReport&) = delete;
@@ -23,7 +22,6 @@ public:
     text::Expected<std::string> save();
 
 private:
-    static void save_at_exit();
     void take_printed();
     void give_back();
 

@@ -80,7 +80,7 @@ text::Error SweepFiles::refused(const std::string& path, std::string_view why) c
 
 std::optional<text::Error> SweepFiles::check_mark() {
     const std::string path = folder_ + "/mark";
-    if (is_wrong_kind(path, fs::file_type::regular)) return refused(path, "is no regular file");
+    if (is_wrong_kind(path, fs::file_type::regular)) return refused(path, "is not a regular file");
     if (const auto mark = files::read_file(path)) {
         if (*mark == mark_ + "\n") return std::nullopt;
         if (has_chunks())
@@ -100,7 +100,7 @@ std::optional<text::Error> SweepFiles::open() {
         return text::Error{.sentence = fmt::format("cannot write '{}': {}", file_, *why), .option = "file"};
     }
     for (const std::string& folder : {folder_, folder_ + ".merging"}) {
-        if (is_wrong_kind(folder, fs::file_type::directory)) return refused(folder, "is no folder");
+        if (is_wrong_kind(folder, fs::file_type::directory)) return refused(folder, "is not a folder");
     }
     std::error_code error;
     if (fs::exists(file_, error)) return take_result();
@@ -139,7 +139,7 @@ std::optional<text::Error> SweepFiles::take_chunks() {
         std::error_code error;
         if (results_.is_complete(chunk)) continue;
         if (is_wrong_kind(chunk_file(chunk), fs::file_type::regular))
-            return refused(chunk_file(chunk), "is no regular file");
+            return refused(chunk_file(chunk), "is not a regular file");
         if (!fs::exists(chunk_file(chunk), error)) continue;
         if (is_cut_off(chunk_file(chunk))) continue;  // done anew
         if (auto wrong = take(chunk_file(chunk), false)) return wrong;
@@ -153,13 +153,14 @@ std::optional<text::Error> SweepFiles::take(const std::string& file, bool is_res
     const auto read = files::read_columns(file);
     const bool has_mark = read && !read->comments.empty() && read->comments.front().starts_with(mark_);
     if (is_result && !has_mark) return another("is there, and is not the result of this sweep");
-    if (is_result && is_cut_off(file)) return another("is no longer as it was written");
+    if (is_result && is_cut_off(file)) return another("has been changed since it was written");
     std::error_code error;
     if (!read && !fs::exists(folder_, error)) return std::nullopt;  // another process has found all, and took it away
     if (!read) return read.error();
     const std::vector<files::ReadColumn>& columns = read->columns;
     if (is_result && taken_) {
-        return taken_(columns, results_) ? std::nullopt : std::optional(another("is no longer as it was written"));
+        return taken_(columns, results_) ? std::nullopt
+                                         : std::optional(another("has been changed since it was written"));
     }
     const std::size_t first = is_result ? grid_.parameters().size() : 1;
     const std::size_t rows = columns.empty() ? 0 : std::max(columns[0].numbers.size(), columns[0].words.size());
@@ -171,11 +172,11 @@ std::optional<text::Error> SweepFiles::take(const std::string& file, bool is_res
     const bool broken = columns.size() <= first || columns.back().name != "error" ||
                         (is_result ? rows != results_.size() : columns[0].of_words) ||
                         text::trimmed(note) != note_of_words(words);
-    if (broken) return another("is no longer as it was written");
+    if (broken) return another("has been changed since it was written");
     for (std::size_t row = 0; row < rows; ++row) {
         const double place = is_result ? static_cast<double>(row) : columns[0].numbers[row];
         if (!(place >= 0 && place < static_cast<double>(results_.size())))
-            return another("is no longer as it was written");
+            return another("has been changed since it was written");
         const auto point = static_cast<std::size_t>(place);
         if (results_.is_done(point)) continue;
         if (std::string message = word_at(columns.back(), row); !message.empty()) {

@@ -42,19 +42,19 @@ inline constexpr text::Option number_changes[] = {
     {"C", "torque time per rad", text::its_own, text::not_negative, "viscous damping",
      text::fills<&SystemChanges::damping>},
     {"Rd", "torque", text::its_own, text::not_negative,
-     "dry friction while moving; Re goes with it where they were equal", text::fills<&SystemChanges::kinetic>},
+     "dry friction while moving; Re changes with it if the two were equal", text::fills<&SystemChanges::kinetic>},
     {"Re", "torque", text::its_own, text::not_negative, "what sticking can hold, at least Rd",
      text::fills<&SystemChanges::breakaway>},
 };
 inline constexpr text::Option spring_change[] = {
     {.name = "spring",
      .unit = "torque",
-     .meaning = "another spring besides k theta; spring.polynomial{} is none",
+     .meaning = "another spring in addition to k theta; spring.polynomial{} removes it",
      .object = "spring",
      .wanted = "a function of theta, or a spring such as spring.polynomial{ [3] = 0.5 }"},
     {.name = "walls",
      .unit = "rad",
-     .meaning = "other end stops; {} is none",
+     .meaning = "other end stops; {} removes them",
      .wanted = "a table such as { lower = -0.8, upper = 0.8, restitution = 0.7 }",
      .fields = {&model::walls_call}},
 };

@@ -40,7 +40,7 @@ std::string bare_value(lua_State* L, const SourceText& source, int line, const l
         if (!is_value(L, code)) continue;
         constexpr std::size_t longest = 40;
         const std::string where = number == line ? "a value alone" : fmt::format("line {}, a value alone,", number);
-        return fmt::format("; {} is no statement: print({}) shows it", where, code.size() > longest ? "..." : code);
+        return fmt::format("; {} is not a statement: print({}) shows it", where, code.size() > longest ? "..." : code);
     }
     return "";
 }

@@ -9,7 +9,7 @@
 
 namespace dinal::errors {
 
-/// "; a value alone is no statement: print(6*7) shows it", for the line of the error or the one before it; or "".
+/// "; a value alone is not a statement: print(6*7) shows it", for the line of the error or the one before it; or "".
 std::string bare_value(lua_State* L, const SourceText& source, int line, const lua::SyntaxMessage& message);
 
 }  // namespace dinal::errors

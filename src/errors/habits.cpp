@@ -13,7 +13,7 @@
 namespace dinal::errors {
 namespace {
 
-constexpr std::array<std::pair<std::string_view, std::string_view>, 24> foreign_names = {{
+constexpr std::array<std::pair<std::string_view, std::string_view>, 30> foreign_names = {{
     {"echo", "; did you mean 'print'?"},
     {"disp", "; did you mean 'print'?"},
     {"puts", "; did you mean 'print'?"},
@@ -35,12 +35,70 @@ constexpr std::array<std::pair<std::string_view, std::string_view>, 24> foreign_
     {"log2", "; did you mean 'math.log(x, 2)'?"},
     {"printf", "; a format is filled by string.format: print(string.format(\"%.3f\", x))"},
     {"sprintf", "; did you mean 'string.format'?"},
+    {"round", "; rounding is math.floor(x + 0.5), or string.format(\"%.3f\", x)"},
+    {"abs", "; did you mean 'math.abs', or of a vector v:abs()?"},
+    {"append", "; appending is list[#list + 1] = x"},
+    {"enumerate", "; a loop over a list is: for i, x in ipairs(list) do ... end"},
+    {"np", "; vectors are made by vector.linspace, vector{ ... }; see ?vector"},
+    {"input", "; input is read by io.read()"},
     {"exit", "; os.exit() ends a script, :quit or Ctrl-D a session"},
     {"quit", "; os.exit() ends a script, :quit or Ctrl-D a session"},
     {"bye", "; os.exit() ends a script, :quit or Ctrl-D a session"},
 }};
 
+/// What tokens say in other languages. A word of a pattern is a token; n stands for any name, 1 for any name or number,
+/// s for a string, ^ for the beginning.
+struct ForeignTokens {
+    std::string_view pattern;
+    bool compiles;  // so Lua complains of it only when it runs
+    std::string_view cure;
+};
+constexpr std::string_view slice_cure =
+    "; a part of a vector is v:slice(first, last), of a list table.unpack(list, first, last)";
+constexpr std::string_view lambda_cure = "; a function is written: function(x) return 2*x end";
+constexpr std::string_view format_cure = "; values go into a text by string.format(\"x = %.3f\", x)";
+constexpr std::string_view append_cure = "; appending is list[#list + 1] = x; vectors are joined by v .. w";
+constexpr std::array<ForeignTokens, 14> foreign = {{
+    {"[ 1 :", false, slice_cure},
+    {"[ : ", false, slice_cure},
+    {"[ - 1 :", false, slice_cure},
+    {"lambda n", false, lambda_cure},
+    {"lambda :", false, lambda_cure},
+    {"n =>", false, lambda_cure},
+    {"< >", false, "; in Lua 'not equal' is ~="},
+    {"1 for n in", false,
+     "; a list is filled by a loop: for i = 1, 10 do list[i] = i^2 end; a vector by v:map(function(x) return x^2 end)"},
+    {"^ # n", true, "; a comment begins with --"},
+    {"s %", true, format_cure},
+    {"f s", true, format_cure},
+    {". append", true, append_cure},
+    {": append", true, append_cure},
+    {". shape", true, "; the length of a vector, list or run is #v"},
+}};
+
 constexpr std::array<std::string_view, 8> file_endings = {"csv", "dat", "txt", "svg", "png", "pdf", "gp", "lua"};
+
+bool fits(const lua::Token& token, std::string_view wanted) {
+    const bool name = token.kind == lua::TokenKind::name;
+    if (wanted == "n") return name;
+    if (wanted == "1") return name || token.kind == lua::TokenKind::number;
+    if (wanted == "s") return token.kind == lua::TokenKind::string;
+    return token.is(wanted);
+}
+
+bool fits_at(const std::vector<lua::Token>& all, std::size_t place, std::string_view pattern) {
+    if (pattern.starts_with("^ ")) {
+        if (place > 0) return false;
+        pattern.remove_prefix(2);
+    }
+    while (!pattern.empty()) {
+        const std::string_view word = pattern.substr(0, pattern.find(' '));
+        if (place >= all.size() || !fits(all[place], word)) return false;
+        pattern.remove_prefix(std::min(word.size() + 1, pattern.size()));
+        ++place;
+    }
+    return true;
+}
 
 /// "k = 0,5" in braces is two entries of a table, f(1,43) two arguments.
 std::string decimal_comma(std::string_view statement) {
@@ -62,7 +120,7 @@ std::string file_without_quotes(std::string_view name, std::string_view statemen
         const bool ending = std::find(file_endings.begin(), file_endings.end(), all[i].text) != file_endings.end();
         if (ending && all[i - 1].is(".") && all[i - 2].kind == lua::TokenKind::name &&
             (all[i].text == name || all[i - 2].text == name)) {
-            return "; the name of a file stands in quotes: \"" + std::string(all[i - 2].text) + "." +
+            return "; write the name of a file in quotes: \"" + std::string(all[i - 2].text) + "." +
                    std::string(all[i].text) + "\"";
         }
     }
@@ -74,7 +132,7 @@ std::string called_value(lua_State* L, const lua::LuaMessage& message) {
     if (message.kind == "global" && lua::is_overwritten(L, message.name) && lua::is_of_dinal(L, message.name)) {
         const std::string name(message.name);
         return "; " + name + " was a name of dinal, and has got another value: " + name + " = dinal." + name +
-               " gives it back";
+               " restores it";
     }
     if (message.kind == "for iterator") {
         return message.type == "number" ? "; counting is: for i = 1, 10 do"
@@ -98,7 +156,7 @@ std::string uncalled_function(lua_State* L, const lua::LuaMessage& message, std:
             name.insert(0, std::string(all[i - 2].text) + (lua_isuserdata(L, -1) != 0 ? ":" : "."));
             lua_pop(L, 1);
         }
-        return "; " + name + " is to be called first";
+        return "; " + name + " is a function: call it first";
     }
     return "";
 }
@@ -134,9 +192,22 @@ bool is_number(std::string_view text) {
 
 }  // namespace
 
+std::string foreign_tokens(std::string_view statement, bool compiles) {
+    const std::vector<lua::Token> all = lua::tokens(statement);
+    for (const ForeignTokens& one : foreign) {
+        for (std::size_t i = 0; one.compiles == compiles && i < all.size(); ++i) {
+            if (fits_at(all, i, one.pattern)) return std::string(one.cure);
+        }
+    }
+    return "";
+}
+
 std::string running_habit(const text::Error& error, std::string_view statement) {
     if (error.option.empty() && is_number(error.culprit)) {
         return decimal_comma(statement);
+    }
+    if (error.culprit == "append" || error.culprit == "shape") {
+        return foreign_tokens(statement, true);
     }
     return file_without_quotes(error.culprit, statement);
 }
@@ -144,6 +215,17 @@ std::string running_habit(const text::Error& error, std::string_view statement) 
 std::string running_habit(lua_State* L, const lua::LuaMessage& message, std::string_view statement) {
     if (std::string reason = left_out_in_safe_mode(message, statement); !reason.empty()) {
         return reason;
+    }
+    if (message.words.starts_with("attempt to mod a 'string'")) {
+        return std::string(format_cure);
+    }
+    const bool of_nil_or_text = message.type == "nil" || message.type == "string";
+    if (std::string cure = of_nil_or_text ? foreign_tokens(statement, true) : ""; !cure.empty()) {
+        return cure;
+    }
+    if (message.calculates && message.type == "table") {
+        const std::string name(message.name.empty() ? "list" : message.name);
+        return "; a table has no arithmetic, a vector has: vector(" + name + ")";
     }
     if (message.adds_texts) {
         return "; texts are joined with ..";

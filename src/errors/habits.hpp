@@ -14,6 +14,9 @@ namespace dinal::errors {
 /// parser stumbled.
 std::string syntax_habit(lua_State* L, const lua::SyntaxMessage& message, std::string_view statement);
 
+/// The same for what other languages write in these tokens, whatever Lua complains of: v[1:3], f"{x}", lambda x.
+std::string foreign_tokens(std::string_view statement, bool compiles);
+
 /// The same for an error of a chunk that ran.
 std::string running_habit(const text::Error& error, std::string_view statement);
 std::string running_habit(lua_State* L, const lua::LuaMessage& message, std::string_view statement);

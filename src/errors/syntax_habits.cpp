@@ -33,16 +33,16 @@ constexpr std::array<Symptom, 20> symptoms = {{
     {"", "&", "; in Lua that is the word and"},
     {"", "|", "; in Lua that is the word or"},
     {"", "?", "; in Lua that is: condition and this or that"},
-    {"", "#", "; a remark begins with --"},
-    {"unexpected symbol", "/", "; a remark begins with --"},
-    {"unexpected symbol", "//", "; a remark begins with --"},
+    {"", "#", "; a comment begins with --"},
+    {"unexpected symbol", "/", "; a comment begins with --"},
+    {"unexpected symbol", "//", "; a comment begins with --"},
     {"unexpected symbol", ">", "; in Lua 'not equal' is ~="},
     {"unexpected symbol", "[", "; a list is { 1, 2, 3 }"},
     {"'then' expected", "=", "; comparing is =="},
     {"'do' expected", "=", "; comparing is =="},
     {"'do' expected", "", "; a loop is: for i = 1, 10 do ... end, or: while x < 3 do ... end"},
     {"',' expected", ":", "; a loop is: for i = 1, 10 do ... end"},
-    {"')' expected", "=", "; named options stand in braces: system{ I = 1, k = 4 }"},
+    {"')' expected", "=", "; write named options in braces: system{ I = 1, k = 4 }"},
     {"unfinished string", "", "; its closing quote is missing"},
     {"'}' expected", "", "; is a comma missing there?"},
 }};
@@ -153,7 +153,7 @@ std::string called_as(lua_State* L, std::string_view name) {
     const std::string_view signature = doc != nullptr ? std::string_view(doc->signature) : std::string_view();
     const std::size_t bracket = signature.find_first_of("({");
     const bool braces = bracket != std::string_view::npos && signature[bracket] == '{';
-    return braces ? "; its options stand in braces: " + std::string(name) + "{ ... }"
+    return braces ? "; write its options in braces: " + std::string(name) + "{ ... }"
                   : "; a call needs parentheses: " + std::string(name) + "(...)";
 }
 
@@ -211,7 +211,7 @@ std::string misspelt_keyword(const Stumble& stumble) {
 
 /// check(1a, 3): functions that are called with a name that looks like a number.
 std::string name_without_quotes(const Stumble& stumble) {
-    constexpr std::array<Cure, 1> called = {{{"check", "; the name of a question stands in quotes: check(\""}}};
+    constexpr std::array<Cure, 1> called = {{{"check", "; write the name of a question in quotes: check(\""}}};
     for (std::size_t i = 1; i < stumble.all.size(); ++i) {
         const lua::Token& token = stumble.all[i];
         const lua::Token& function = stumble.all[i - (i > 1 && stumble.all[i - 1].is("(") ? 2 : 1)];
@@ -308,7 +308,7 @@ std::string syntax_habit(lua_State* L, const lua::SyntaxMessage& message, std::s
     luaL_checkstack(L, LUA_MINSTACK, "for the habits of others");
     const Stumble stumble = stumble_in(message, statement);
     for (std::string advice :
-         {printed_sign(message, statement), doubled_sign(stumble), name_without_quotes(stumble), two_words(L, stumble),
+         {foreign_tokens(statement, false), printed_sign(message, statement), doubled_sign(stumble), name_without_quotes(stumble), two_words(L, stumble),
           misspelt_keyword(stumble), missing_star(stumble), missing_return(stumble), other_grammar(stumble)}) {
         if (!advice.empty()) {
             return advice;

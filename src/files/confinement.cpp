@@ -57,7 +57,7 @@ std::optional<std::string> outside(const std::string& path, Access access) {
     }
     const fs::file_status status = fs::status(real, error);
     if (fs::exists(status) && !fs::is_regular_file(status)) {
-        return "it is no regular file, and safe mode allows no others";
+        return "it is not a regular file, and safe mode allows only those";
     }
     return std::nullopt;
 }

@@ -32,7 +32,7 @@ void Descriptor::close() {
 
 text::Expected<std::string> read_file(const std::string& path) {
     if (path.find('\0') != std::string::npos) {
-        return can_not_read(path.substr(0, path.find('\0')), "its name goes on after a NUL byte");
+        return can_not_read(path.substr(0, path.find('\0')), "its name contains a NUL byte");
     }
     if (const auto why = outside(path, Access::read)) {
         return can_not_read(path, *why);

@@ -100,7 +100,7 @@ int create_temporary(const std::string& folder, std::string& name) {
 
 text::Expected<OutputFile> OutputFile::create(const std::string& path) {
     if (has_nul(path)) {
-        return can_not_write(path.substr(0, path.find('\0')), "its name goes on after a NUL byte");
+        return can_not_write(path.substr(0, path.find('\0')), "its name contains a NUL byte");
     }
     if (const auto why = outside(path, Access::write)) {
         return can_not_write(path, *why);

@@ -88,7 +88,7 @@ std::optional<text::Error> binary_fault(std::string_view text, const std::string
     for (Lines lines(text.substr(0, place + 1)); lines.next();) {
         line = lines.number();
     }
-    return error_at(file, line, "there is a NUL byte, so this is no plain text: save it as text in UTF-8");
+    return error_at(file, line, "there is a NUL byte, so this is not plain text: save it as text in UTF-8");
 }
 
 std::optional<double> parse_number(std::string_view field) {

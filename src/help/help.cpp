@@ -3,8 +3,11 @@
 
 #include <unistd.h>
 
+#include <algorithm>
+
 #include "help/help_text.hpp"
 #include "help/library.hpp"
+#include "help/lua_words.hpp"
 #include "help/tour.hpp"
 #include "lua/bind.hpp"
 #include "lua/standard_globals.hpp"
@@ -31,6 +34,25 @@ std::string text_about_page(lua_State* L) {
                                      : "the tour has pages 1 to " + std::to_string(last) + "\n";
 }
 
+/// "math.sin" for that function of Lua, "" for other values.
+std::string name_in_lua(lua_State* L, int index) {
+    for (const std::string_view word : lua_words()) {
+        const int top = lua_gettop(L);
+        const std::size_t dot = word.find('.');
+        lua_pushglobaltable(L);
+        lua_pushlstring(L, word.data(), std::min(dot, word.size()));
+        lua_rawget(L, -2);
+        if (dot != std::string_view::npos && lua_istable(L, -1)) {
+            lua_pushlstring(L, word.data() + dot + 1, word.size() - dot - 1);
+            lua_rawget(L, -2);
+        }
+        const bool same = !lua_isnil(L, -1) && lua_rawequal(L, index, -1) != 0;
+        lua_settop(L, top);
+        if (same) return std::string(word);
+    }
+    return "";
+}
+
 std::string text_about_value(lua_State* L, const terminal::Display& screen) {
     if (lua_isnone(L, 1)) {
         return tour_page(1);
@@ -55,8 +77,10 @@ std::string text_about_value(lua_State* L, const terminal::Display& screen) {
     if (const lua::Documented found = lua::documented(L, 1); found.owner != nullptr) {
         return text_about(found, screen);
     }
-    return lua::describe(L, 1) + " has no help of its own; put the name in quotes: help \"omega0\"" +
-           (lua_isfunction(L, 1) ? ", or see https://www.lua.org/manual/5.4 for Lua's own functions" : "") + "\n";
+    if (const std::string name = name_in_lua(L, 1); !lua_word(name).empty()) {
+        return lua_word(name);
+    }
+    return lua::describe(L, 1) + " has no help of its own; put the name in quotes: help \"omega0\"\n";
 }
 
 int help(lua_State* L) {
@@ -68,8 +92,9 @@ int help(lua_State* L) {
 constexpr lua::Member functions[] = {
     {lua::a_function<help>,
      {"help(x) or help \"words\"",
-      "Prints what x is and how it is used: a function, a method, a module, an object, or a name in quotes; words that "
-      "are no name are searched for in all names and descriptions. help() alone shows where to begin.",
+      "Prints what x is and how to use it: a function, method, module, object, or a name in "
+      "quotes. Other words are searched for in all names and descriptions. help() alone starts a "
+      "tour.",
       "help(excitation.step)\nhelp \"dead zone\""}},
 };
 

@@ -6,6 +6,7 @@
 #include <cctype>
 
 #include "help/help_text.hpp"
+#include "help/lua_words.hpp"
 #include "help/signature.hpp"
 #include "help/topics.hpp"
 #include "lua/tokens.hpp"
@@ -158,9 +159,6 @@ std::string likely(std::string_view word) {
 }
 
 std::string no_help(std::string_view words) {
-    if (std::find(lua::keywords().begin(), lua::keywords().end(), words) != lua::keywords().end()) {
-        return fmt::format("'{}' is a word of Lua: see https://www.lua.org/manual/5.4\n", words);
-    }
     std::string hint = likely(words);
     if (const std::size_t last = words.find_last_of(".:"); hint.empty() && last != std::string_view::npos) {
         hint = likely(words.substr(last + 1));  // run.enrgy
@@ -272,17 +270,10 @@ bool is_question(std::string_view words) {
                        [&](std::string_view head) { return text::lower(words).starts_with(head); });
 }
 
-/// The words of a question: what there is about the first of them that we know something of, and what mentions all.
-std::string about_words(const std::string& words, const terminal::Display& screen) {
+std::string entries_named(std::string_view name, const terminal::Display& screen) {
     std::string text;
-    for (std::size_t begin = 0; begin < words.size() && text.empty();) {
-        const std::size_t end = std::min(words.find(' ', begin), words.size());
-        text = topic(std::string_view(words).substr(begin, end - begin));
-        begin = end + 1;
-    }
-    const std::string found = found_about(words, screen);
-    text.append(text.empty() || found.empty() ? "" : "\n").append(found);
-    return text.empty() ? no_help(words) : text;
+    for (const Hit& hit : named(name)) text += "\n" + hit_text(hit, screen);
+    return text;
 }
 
 }  // namespace
@@ -292,17 +283,25 @@ std::string help_about(std::string_view words, const terminal::Display& screen) 
     if (words == "contents") {
         return contents(screen);
     }
-    if (is_question(words)) {
-        const std::string rest = without_small_words(words);
-        return rest.empty() ? no_help(words) : about_words(rest, screen);
-    }
-    const std::string_view about = topic(words);
-    const std::string found = found_about(words, screen);
-    if (!about.empty() || !found.empty()) {
-        return std::string(about).append(about.empty() || found.empty() ? "" : "\n").append(found);
+    if (std::string word = lua_word(words); !word.empty()) {
+        return word + entries_named(words, screen);
     }
     const std::string rest = without_small_words(words);
-    return rest.empty() || rest == words ? no_help(words) : about_words(rest, screen);
+    std::string about(topic(rest.empty() ? words : rest));
+    if (about.empty()) about = lua_word(rest);
+    std::string found = is_question(words) ? "" : found_about(words, screen);
+    if (found.empty() && !rest.empty()) {
+        found = found_about(rest, screen);
+    }
+    for (std::size_t begin = 0; begin < rest.size() && about.empty() && found.empty();) {
+        const std::size_t end = std::min(rest.find(' ', begin), rest.size());
+        about = lua_word(std::string_view(rest).substr(begin, end - begin));
+        begin = end + 1;
+    }
+    if (about.empty() && found.empty()) {
+        return no_help(rest.empty() ? words : rest);
+    }
+    return about + (about.empty() || found.empty() ? "" : "\n") + found;
 }
 
 }  // namespace dinal::help

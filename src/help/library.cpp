@@ -45,12 +45,13 @@ constexpr lua::Member library_members[] = {
       "print(dinal.version == \"" DINAL_VERSION "\")  --> true"}},
 };
 
-const lua::Class library_class = {"dinal",
-                                  {"dinal.NAME, or NAME alone",
-                                   "The table in which all of this lives. Its members are plain globals, "
-                                   "too, which a user may overwrite; what is below is not.",
-                                   "print(dinal.system == system)  --> true"},
-                                  library_members};
+const lua::Class library_class = {
+    "dinal",
+    {"dinal.NAME, or NAME alone",
+     "The table that holds all of this. Its members are also globals, which you may overwrite; "
+     "the following ones are not.",
+     "print(dinal.system == system)  --> true"},
+    library_members};
 
 const Section all_sections[] = {
     {"Systems", "", &api::system_functions},

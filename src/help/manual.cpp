@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <utility>
+#include <vector>
 
 #include "help/help_text.hpp"
 #include "help/signature.hpp"
@@ -19,38 +21,105 @@ std::string anchor(std::string_view title) {
     return text;
 }
 
-}  // namespace
+std::string listed(const OptionLine& line) {
+    return fmt::format("- `{}`: {}\n", line.name, line.meaning);
+}
 
-std::string manual() {
-    std::string text = fmt::format(
-        "# dinal {}: manual of the Lua API\n\n"
-        "This page is what `dinal --manual` prints; at the prompt `help(x)` prints the same, one entry at a time. "
-        "Everything lives in the table `dinal`, and its members are plain globals, too. "
-        "Options are named; an unknown one is an error. "
-        "In the examples `-->` is followed by what the line prints.\n\n",
-        DINAL_VERSION);
+/// The options that stand with the same words in several calls, in the order in which they come first.
+std::vector<std::string> shared_options() {
+    constexpr std::size_t least = 40;  // what is shorter is read more quickly than looked for
+    std::vector<std::string> once, shared;
     for (const Section& section : sections()) {
-        text += fmt::format("- [{}](#{})\n", section.title, anchor(section.title));
-    }
-    const auto entry = [&text](const lua::Doc& doc) {
-        text += fmt::format("`{}`\n\n{}\n\n", signature(doc), doc.summary);
-        for (const text::Call* call : calls_of(doc)) {
-            for (const OptionLine& line : option_lines(call->options)) {
-                text += fmt::format("- `{}`: {}\n", line.name, line.meaning);
+        for (const lua::Member& member : section.description->members) {
+            for (const text::Call* call : calls_of(member.doc)) {
+                for (const OptionLine& line : option_lines(call->options)) {
+                    const std::string words = listed(line);
+                    const auto has = [&words](const std::vector<std::string>& list) {
+                        return std::find(list.begin(), list.end(), words) != list.end();
+                    };
+                    if (words.size() < least || has(shared)) continue;
+                    (has(once) ? shared : once).push_back(words);
+                }
             }
-            if (!call->options.empty()) text += "\n";
         }
+    }
+    return shared;
+}
+
+/// Writes entries; without `shared` each has all of its options.
+struct Writer {
+    std::string text;
+    std::vector<std::string> shared;
+
+    void options(const text::Call& call) {
+        std::string elsewhere;
+        for (const OptionLine& line : option_lines(call.options)) {
+            if (std::find(shared.begin(), shared.end(), listed(line)) == shared.end()) {
+                text += listed(line);
+            } else {
+                elsewhere += fmt::format("{}`{}`", elsewhere.empty() ? "" : ", ", line.option);
+            }
+        }
+        if (!elsewhere.empty()) text += fmt::format("- [shared](#options-of-several-calls): {}\n", elsewhere);
+        if (!call.options.empty()) text += "\n";
+    }
+    void entry(const lua::Doc& doc) {
+        text += fmt::format("`{}`\n\n{}\n\n", signature(doc), doc.summary);
+        for (const text::Call* call : calls_of(doc)) options(*call);
         text += fmt::format("```lua\n{}\n```\n", doc.example);
-    };
-    for (const Section& section : sections()) {
+    }
+    void row(const lua::Doc& doc) {
+        std::string summary = doc.summary;
+        for (std::size_t at = summary.find_first_of("|\n"); at != std::string::npos;
+             at = summary.find_first_of("|\n", at + 2)) {
+            summary.replace(at, 1, summary[at] == '|' ? "\\|" : " ");
+        }
+        text += fmt::format("| `{}` | {} |\n", signature(doc), summary);
+    }
+    void section(const Section& section) {
         text += fmt::format("\n## {}\n\n", section.title);
         entry(section.description->doc);
+        const auto in_table = [this](const lua::Member& member) {
+            return !shared.empty() && calls_of(member.doc).empty();
+        };
+        bool table = false;
         for (const lua::Member& member : section.description->members) {
+            if (!in_table(member)) continue;
+            if (!table) text += "\n| | |\n|---|---|\n";
+            table = true;
+            row(member.doc);
+        }
+        for (const lua::Member& member : section.description->members) {
+            if (in_table(member)) continue;
             text += fmt::format("\n### {}\n\n", listed_name(section, member));
             entry(member.doc);
         }
     }
-    return text;
+};
+
+}  // namespace
+
+std::string manual(Extent extent) {
+    Writer writer;
+    writer.text = fmt::format(
+        "# dinal {}: manual of the Lua API\n\n"
+        "This page is what `dinal --manual` prints; at the prompt `help(x)` prints the entry of x, with an example. "
+        "Everything is in the table `dinal`, and its members are globals as well. "
+        "Options are named; an unknown one is an error. "
+        "In the examples `-->` is followed by what the line prints.\n\n",
+        DINAL_VERSION);
+    if (extent == Extent::page) {
+        writer.shared = shared_options();
+        writer.text += "- [Options of several calls](#options-of-several-calls)\n";
+    }
+    for (const Section& section : sections()) {
+        writer.text += fmt::format("- [{}](#{})\n", section.title, anchor(section.title));
+    }
+    if (extent == Extent::page) {
+        writer.text += fmt::format("\n## Options of several calls\n\n{}", fmt::join(writer.shared, ""));
+    }
+    for (const Section& section : sections()) writer.section(section);
+    return std::move(writer.text);
 }
 
 }  // namespace dinal::help

@@ -11,12 +11,13 @@ namespace dinal::help {
 namespace {
 
 struct Topic {
-    std::string_view words;  // in lower case
+    std::string_view words;  // in lower case; one of them is enough
     std::string_view text;
+    std::string_view more = {};  // two of them are enough
 };
 
 // No line is longer than 77 columns. A test looks for every name that stands here.
-constexpr std::array<Topic, 12> topics = {{
+constexpr std::array<Topic, 44> topics = {{
     {"degrees degree deg radians radian angle angles",
      "Angles are in radians: theta, theta0, velocity per time unit. math.rad(90)\n"
      "makes radians of 90 degrees, math.deg(x) degrees of radians, and of a whole\n"
@@ -26,7 +27,7 @@ constexpr std::array<Topic, 12> topics = {{
      "help() is a tour of two minutes. docs/tutorial.md takes half an hour, the\n"
      "sheets in docs/lab are a course of six afternoons, and the programs in\n"
      "examples show one idea each.\n"},
-    {"dinal1989 fortran 1989 report",
+    {"dinal1989 fortran 1989",
      "dinal is named after DINAL, the Fortran program of a report of 1989 about a\n"
      "governor with friction. integrator.dinal1989 is its listing, step by step;\n"
      "run:save \"name.dat\" writes its record; docs/report.md reads the report again.\n"},
@@ -55,9 +56,126 @@ constexpr std::array<Topic, 12> topics = {{
     {"kernel jupyter notebook ipython",
      "dinal --jupyter-install, typed to a shell, makes a kernel for Jupyter:\n"
      "docs/notebook.md.\n"},
-    {"safe sandbox limit limits",
+    {"safe sandbox",
      "dinal --safe runs the script of a stranger: it sees one folder, and --max-time\n"
      "and --max-memory limit what it takes: docs/safe-mode.md.\n"},
+    {"fourier fft psd welch periodogram",
+     "run:spectrum() returns frequencies and amplitudes, and\n"
+     "run:spectrum{ of = \"velocity\", method = \"welch\" } a power density;\n"
+     "run:spectrum():plot() draws it.\n",
+     "frequency frequencies content analysis"},
+    {"export excel pandas spreadsheet",
+     "run:save \"run.csv\" writes a run, d:save \"d.csv\" data; run:columns{ \"t\", \"theta\" }\n"
+     "chooses columns. pandas.read_csv(\"run.csv\", comment=\"#\") reads it\n"
+     "(docs/csv-elsewhere.md).\n",
+     "csv save write file disk results columns"},
+    {"import",
+     "data.load \"file.csv\" reads columns, trajectory.load \"run.csv\" a run, and\n"
+     "excitation.samples \"force.csv\" an M.\n",
+     "read load open csv file data record measurement measured"},
+    {"compare comparison overlay superimpose",
+     "Keep both runs in variables, a and b, and plot both:\n"
+     "plot{ { a.t, a.theta, label = \"a\" }, { b.t, b.theta, label = \"b\" } }.\n"
+     "Numbers: a:at(1.5), a.theta:max(), (a.theta - b.theta):abs():max() on equal rows.\n",
+     "two runs both several curves same one plot picture difference"},
+    {"graph figure picture diagram svg png pdf latex",
+     "run:plot() draws a run, plot{ { x, y } } vectors, d:plot() data. With\n"
+     "file = \"a.svg\" (png, pdf, tex, gp) a plot goes into a file; xlabel, ylabel, title,\n"
+     "xlim, ylim shape it.\n",
+     "plot draw save file label axis axes title limits"},
+    {"portrait", "run:phase_plot() draws velocity over theta, with the dead zone.\n", "phase plane space"},
+    {"resonance frf",
+     "sys:response{ over = { frequency = vector.linspace(.1, 2, 50) } } finds the steady\n"
+     "amplitude for each frequency; :plot() draws it. sys:steady finds one.\n",
+     "amplitude frequency response curve harmonic forced"},
+    {"stationary",
+     "sys:steady{ M = excitation.harmonic{ frequency = .4 } } finds the steady motion\n"
+     "directly; run:steady() does from a run. s.amplitude, s.lag, s.stable describe it.\n",
+     "steady state periodic motion amplitude"},
+    {"squeal selfexcited self-excited",
+     "sys:steady{ belt = .2 } finds the limit cycle, with s.period and s.amplitude;\n"
+     "examples/250-belt-squeal.lua shows one.\n",
+     "limit cycle belt stick-slip oscillation"},
+    {"eigenfrequency eigenvalue natural",
+     "sys.omega0 and sys.T0 are the natural frequency and period without damping,\n"
+     "sys.omega1 is the damped frequency.\n",
+     "frequency period own"},
+    {"decrement dashpot",
+     "C of system{} is viscous damping, sys.zeta the damping ratio, Rd dry friction.\n"
+     "theory.logarithmic_decrement and theory.zeta_from_decrement convert.\n",
+     "viscous damping ratio zeta"},
+    {"adhesion static stiction coulomb",
+     "Rd is the torque of friction while the mass slides, Re (>= Rd) the largest torque\n"
+     "that holds it at rest. run.events lists each stick and slip; friction.coulomb,\n"
+     "friction.stribeck and friction.law give other laws.\n",
+     "stick sticking stuck friction dry breakaway coefficient law"},
+    {"accuracy accurate precise precision tolerance exactly",
+     "The default integrator is right to rounding; integrator.spectral{ tolerance = 1e-9 }\n"
+     "changes it. dt only chooses the rows. integrator.rk4{ h = .01 } has a step size.\n",
+     "step size error steps integrator"},
+    {"study studies grid parallel parametric",
+     "sweep{ over = { Re = { .4, .5 } }, run = function(p) return { x = p.Re } end } runs all\n"
+     "combinations, on all cores; docs/many-machines.md is about clusters.\n",
+     "parameter parameters vary variation sweep many runs values loop"},
+    {"optimise optimize optimisation optimization",
+     "minimise{ over = { Re = { .1, 2 } }, run = function(p) return cost end } finds the least\n"
+     "value; identify fits a system to a record.\n",
+     "best minimum minimal least tune"},
+    {"animate animation movie video", "run:animate() shows the motion; file = \"motion.svg\" writes it.\n",
+     "moving motion show"},
+    {"controller pid feedback actuator",
+     "M may depend on the motion: M = function(t, theta, velocity) return -2*theta end.\n"
+     "excitation.sampled has a memory and a sampling time, excitation.relay switches,\n"
+     "excitation.delayed has a dead time; states = { z = ... } integrates equations of your own.\n",
+     "control loop integral memory state states delay relay"},
+    {"hit kick hammer impulse",
+     "excitation.pulse, excitation.half_sine and excitation.gaussian are pulses; an impulse is\n"
+     "a velocity0.\n",
+     "pulse short force shock"},
+    {"bounce collision obstacle",
+     "system{ walls = { lower = -1, upper = 1, restitution = .5 } } bounces at walls; impacts are\n"
+     "events of the run.\n",
+     "wall walls gap impact impacts restitution"},
+    {"multibody coupled clutch gear masses",
+     "system{ bodies = { ... }, links = { ... } } has several bodies: docs/bodies.md.\n",
+     "two several bodies mass chain degrees freedom"},
+    {"measured measurement",
+     "M from a table: excitation.samples{ t = { 0, 1 }, M = { 0, 2 } } or excitation.samples \"force.csv\".\n"
+     "A measured motion: identify{ data = trajectory.load \"decay.csv\" } finds the system.\n",
+     "table samples force file csv record data"},
+    {"dimension dimensions si newton",
+     "Any consistent units: units of a system name them, system{ ..., units = { theta = \"rad\" } }, and\n"
+     "plots and files show them. nondimensional{} counts in T0 and M0/k.\n",
+     "unit units metre kg"},
+    {"abort cancel endless hang hangs interrupt",
+     "Ctrl-C stops a run or a loop; dinal.partial then holds the rows so far.\n", "stop running loop run"},
+    {"slow performance benchmark faster",
+     "A Lua function that is a formula is read and costs nothing extra: run:explain() says\n"
+     "whether M was read. Native terms (excitation.harmonic) are fastest; sweep uses all cores.\n",
+     "fast speed time takes long"},
+    {"homework assignment submit marks grade sheet",
+     "lab.number(4711), lab.given(1) and check(\"1a\", 3.2) are the course; docs/lab has its sheets.\n"
+     "dinal --report 1-4711.lua, in a shell, makes the page to hand in.\n",
+     "lab hand in report page course number answer make"},
+    {"chaos chaotic feigenbaum",
+     "bifurcation{ over = ..., at = ... } draws how the steady motion changes with a parameter;\n"
+     "run:poincare{ period = 1 } cuts a run once a period.\n",
+     "poincare section map bifurcation period doubling"},
+    {"dissipation dissipated work losses",
+     "run:energy() returns where the energy went: its total, and each half cycle.\n", "energy loss lost power"},
+    {"story describe", "run:explain() tells a run in words: turns, sticking, what stopped it.\n",
+     "explain words happened happens why run"},
+    {"seed reproducible", "vector.random(n, { seed = 1 }) and sweep{ ..., seed = 1 } repeat the same numbers.\n",
+     "random same numbers"},
+    {"history undo commands",
+     ":history lists what was typed, :edit changes the last input in an editor, :save lab.lua\n"
+     "writes what ran without error into a script.\n",
+     "session save typed previous line"},
+    {"settings options arguments",
+     "help \"simulate\" lists the options of a call with their defaults; Shift-Tab shows them\n"
+     "while you type.\n",
+     "which list"},
+    {"quit exit leave", "Ctrl-D or :quit leaves dinal; os.exit() ends a script.\n", "close program"},
     {"shell ls pwd terminal",
      "No shell is in here: Ctrl-Z goes back to yours, and fg comes back. Files are\n"
      "read by load and excitation.samples.\n"},
@@ -93,14 +211,24 @@ std::string_view in_english(std::string_view word) {
     return found == foreign.end() ? word : found->second;
 }
 
-std::string_view topic(std::string_view word) {
-    const std::string wanted = text::lower(word);
+std::string_view topic(std::string_view words) {
+    const std::string wanted = text::lower(words);
+    const Topic* best = nullptr;
+    int most = 1;
     for (const Topic& one : topics) {
-        if (has_word(one.words, wanted)) {
-            return one.text;
+        int fits = 0;
+        for (std::size_t begin = 0; begin < wanted.size();) {
+            const std::size_t end = std::min(wanted.find(' ', begin), wanted.size());
+            const std::string_view word = std::string_view(wanted).substr(begin, end - begin);
+            fits += has_word(one.words, word) ? 2 : has_word(one.more, word) ? 1 : 0;
+            begin = end + 1;
+        }
+        if (fits > most) {
+            best = &one;
+            most = fits;
         }
     }
-    return {};
+    return best == nullptr ? std::string_view() : best->text;
 }
 
 }  // namespace dinal::help

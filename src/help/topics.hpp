@@ -5,8 +5,8 @@
 
 namespace dinal::help {
 
-/// A few lines about the word, whose case does not matter; empty when there are none.
-std::string_view topic(std::string_view word);
+/// A few lines about the topic that has most of the words, whose case does not matter; empty if there is none.
+std::string_view topic(std::string_view words);
 
 /// Our word for one of another language, friction for Reibung; else the word itself.
 std::string_view in_english(std::string_view word);

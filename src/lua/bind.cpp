@@ -108,7 +108,7 @@ int index_module(lua_State* L) {
         raise(L, {.sentence = "there is no " + name + "." + alone,
                   .call = name,
                   .culprit = alone,
-                  .cure = "; " + alone + " stands by itself, without " + name + " and the point"});
+                  .cure = "; " + alone + " is written without " + name + " and the point"});
     }
     raise(L,
           {.sentence = "there is no " + name + (lua_type(L, 2) == LUA_TSTRING ? "." + written(L, 2) : key_text(L, 2)),

@@ -348,7 +348,7 @@ private:
         // What follows may change without a value that does: the reading holds for no other run.
         outside_.push_back({kind, holder, key, holder});
         if (kind != OutsideValue::Kind::variable && type != LUA_TTABLE)
-            throw Obstacle{"it looks into what is no table"};
+            throw Obstacle{"it indexes a value that is not a table"};
         if (!push_outside(L_, values_, values_ + 1, kind, key))
             throw Obstacle{"it looks into a table with a metatable"};
         const int value = keep();
@@ -377,7 +377,7 @@ public:
 
 private:
     Known element(const Known& table, const Known& key) {
-        if (table.kind != Known::Kind::object) throw Obstacle{"it looks into what is no table"};
+        if (table.kind != Known::Kind::object) throw Obstacle{"it indexes a value that is not a table"};
         if (key.kind == Known::Kind::object) {
             const bool is_text = push_kept(key.object) == LUA_TSTRING;
             lua_pop(L_, 1);
@@ -436,7 +436,7 @@ private:
     /// Of a number, wherever it is.
     int register_of(const Known& known, int place) { return known.constant ? constant_register(known.value) : place; }
     static void need_number(const Known& known) {
-        if (!known.is_number()) throw Obstacle{"it calculates with what is no number"};
+        if (!known.is_number()) throw Obstacle{"it calculates with a value that is not a number"};
     }
     int float_register(const Known& known, int place, int help, Op conversion = Op::to_float) {
         need_number(known);
@@ -491,7 +491,7 @@ private:
     };
     Condition compare(Op number, Op whole, const Operand& x, const Operand& y) {
         if (!x.known.is_number() || !y.known.is_number()) {
-            if (number != Op::equal) throw Obstacle{"it compares what are no numbers"};
+            if (number != Op::equal) throw Obstacle{"it compares values that are not numbers"};
             return {equal_objects(x.known, y.known)};
         }
         int a = 0, b = 0;
@@ -670,7 +670,8 @@ private:
         lua_pushvalue(L_, index);
         lua_insert(L_, values_ + 1);
         lua_settop(L_, values_ + 1);
-        if (lua_type(L_, -1) != LUA_TFUNCTION || lua_iscfunction(L_, -1) != 0) throw Obstacle{"it is no Lua function"};
+        if (lua_type(L_, -1) != LUA_TFUNCTION || lua_iscfunction(L_, -1) != 0)
+            throw Obstacle{"it is not a Lua function"};
         lua_pushvalue(L_, -1);
         const int closure = keep();
         way.registers.resize(4);
@@ -714,7 +715,7 @@ private:
     bool call(Way& way, int function, int arguments, int results) {
         const Known called = way[function];
         if (called.kind != Known::Kind::object || push_kept(called.object) != LUA_TFUNCTION) {
-            throw Obstacle{"it calls what is no function"};
+            throw Obstacle{"it calls a value that is not a function"};
         }
         const bool of_lua = lua_iscfunction(L_, -1) == 0;
         lua_pop(L_, 1);
@@ -1135,7 +1136,7 @@ private:
         const char* text = lua_tostring(L_, -1);
         const auto found = std::find(states_.begin(), states_.end(), text == nullptr ? "" : text);
         lua_pop(L_, 1);
-        if (found == states_.end()) throw Obstacle{"it asks for a state that is none"};
+        if (found == states_.end()) throw Obstacle{"it reads a state that does not exist"};
         const int state = first_state + static_cast<int>(found - states_.begin());
         emit(Op::move, a, state, state);
         way[a] = {.kind = Known::Kind::number, .constant = false};

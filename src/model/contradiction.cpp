@@ -12,15 +12,15 @@ std::string sentence(const Contradiction& found) {
         first = fmt::format("{}", found.first);
         again = fmt::format("{}", found.again);
     }
-    return fmt::format("{} is no function of its arguments: at {} = {:.6g} it gave {} and, asked again, {}", found.who,
-                       found.argument, found.at, first, again);
+    return fmt::format("{} depends on more than its arguments: at {} = {:.6g} it returned {} and, evaluated again, {}",
+                       found.who, found.argument, found.at, first, again);
 }
 
 std::string sentence_with_cure(const Contradiction& found) {
     constexpr std::string_view memory =
-        "; a memory belongs into states, excitation.sampled, excitation.relay or excitation.delayed, random numbers into "
+        "; put a memory into states, excitation.sampled, excitation.relay or excitation.delayed, random numbers into "
         "a table";
-    constexpr std::string_view state = "; a memory belongs into a state of its own, random numbers into a table";
+    constexpr std::string_view state = "; put a memory into a state of its own, random numbers into a table";
     constexpr std::string_view other = "; it must not remember anything, and random numbers belong into a table";
     return sentence(found) + std::string(found.who == "M" ? memory : found.who.starts_with("states.") ? state : other);
 }

@@ -13,7 +13,7 @@ struct Contradiction {
     double first = 0, again = 0;  ///< what it gave, and what it gave when it was asked again
 };
 
-/// "M is no function of its arguments: at t = 3.25 it gave 0.5 and, asked again, 0.7"
+/// "M depends on more than its arguments: at t = 3.25 it gave 0.5 and, asked again, 0.7"
 std::string sentence(const Contradiction& found);
 /// The same, and what to do about it.
 std::string sentence_with_cure(const Contradiction& found);

@@ -53,7 +53,8 @@ inline constexpr text::Option mechanical_options[] = {
      .wanted = "a law such as friction.stribeck{ Rd = 0.3, Re = 0.6, speed = 0.1 }"},
     {.name = "spring",
      .unit = "torque",
-     .meaning = "a restoring torque besides k theta: a Lua function of theta, or spring.polynomial{ [3] = 0.5 }",
+     .meaning = "a restoring torque in addition to k theta: a Lua function of theta, or spring.polynomial{ "
+                "[3] = 0.5 }",
      .object = "spring",
      .wanted = "a function of theta, or a spring such as spring.polynomial{ [3] = 0.5 }"},
     {.name = "walls",

@@ -57,9 +57,8 @@ inline constexpr text::Option unit_options[] = {
 inline constexpr text::Call units_call{"units", "units = { theta = \"m\", t = \"s\", M = \"N\" }", unit_options};
 inline constexpr text::Option units_option[] = {
     {.name = "units",
-     .meaning =
-         "what theta, t and M are measured in, words for cards, columns and axes: { theta = \"m\", t = \"s\", M = "
-         "\"N\" }",
+     .meaning = "names of the units of theta, t and M, for cards, columns and axes: { theta = \"m\", t = "
+                "\"s\", M = \"N\" }",
      .wanted = "a table such as { theta = \"m\", t = \"s\", M = \"N\" }",
      .fields = {&units_call}},
 };

@@ -14,6 +14,7 @@
 #include <optional>
 #include <string>
 #include <tuple>
+#include <utility>
 
 #include "api/animate.hpp"
 #include "api/data.hpp"
@@ -27,6 +28,8 @@
 #include "prompt/question.hpp"
 #include "prompt/script.hpp"
 #include "prompt/session.hpp"
+#include "prompt/typed_text.hpp"
+#include "prompt/typing.hpp"
 #include "text/words.hpp"
 
 namespace dinal::notebook {
@@ -164,7 +167,11 @@ std::string name_at(std::string_view before, std::string_view after) {
 
 Json explained(lua_State* L, const std::string& before, const std::string& after) {
     const std::string name = name_at(before, after);
-    return {{"text", name.empty() ? prompt::signature_hint(L, before) : prompt::answer_to(L, name)}};
+    if (name.empty() || prompt::TypedText(before).cursor() == prompt::Cursor::option) {
+        return {{"text", prompt::signature_hint(L, before)}};
+    }
+    std::string text = prompt::answer_to(L, name);
+    return {{"text", text.starts_with("nothing about ") ? "" : std::move(text)}};
 }
 
 const char* completeness(lua_State* L, const std::string& code) {

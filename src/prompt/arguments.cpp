@@ -12,33 +12,20 @@
 namespace dinal::prompt {
 namespace {
 
-constexpr std::array<std::string_view, 21> known_options = {"-e",
-                                                            "-l",
-                                                            "-i",
-                                                            "-v",
-                                                            "-W",
-                                                            "-E",
-                                                            "-",
-                                                            "--",
-                                                            "-h",
-                                                            "--help",
-                                                            "--version",
-                                                            "--manual",
-                                                            "--no-init",
-                                                            "--safe",
-                                                            "--max-time",
-                                                            "--max-memory",
-                                                            "--lab-marks",
-                                                            "--lab-solutions",
-                                                            "--report",
-                                                            "--kernel",
-                                                            "--jupyter-install"};
+constexpr std::array<std::string_view, 25> known_options = {
+    "-e",        "-l",           "-i",         "-v",           "-W",          "-E",
+    "-",         "--",           "-h",         "--help",       "--version",   "--manual",
+    "--no-init", "--safe",       "--max-time", "--max-memory", "--lab-marks", "--lab-solutions",
+    "--sheets",  "--test-sheet", "--mark",     "--report",     "--kernel",    "--jupyter-install"};
 
 constexpr std::string_view kernel_option = "--kernel";
 constexpr std::string_view time_option = "--max-time";
 constexpr std::string_view memory_option = "--max-memory";
 constexpr std::string_view marks_option = "--lab-marks";
 constexpr std::string_view solutions_option = "--lab-solutions";
+constexpr std::string_view sheets_option = "--sheets";
+constexpr std::string_view test_option = "--test-sheet";
+constexpr std::string_view mark_option = "--mark";
 constexpr double longest = 1e9;                         // seconds: 30 years
 constexpr std::size_t largest = std::size_t{1} << 40U;  // a terabyte
 constexpr lua::ScriptLimits safe{.memory = std::size_t{256} << 20U, .seconds = 10};
@@ -64,7 +51,8 @@ std::size_t size_of(std::string_view text) {
 /// Which of those with a value a word is, "--max-time" also for "--max-time=10"; empty when it is none.
 std::string_view option_with_value(std::string_view word) {
     const std::string_view name = word.substr(0, word.find('='));
-    for (const std::string_view option : {time_option, memory_option, marks_option, solutions_option}) {
+    for (const std::string_view option :
+         {time_option, memory_option, marks_option, solutions_option, sheets_option, test_option, mark_option}) {
         if (name == option) {
             return option;
         }
@@ -82,7 +70,7 @@ std::optional<text::Error> set_limit(lua::ScriptLimits& limits, std::string_view
     }
     return text::Error{fmt::format("option {} needs {} after it, for example {}{}", option,
                                    time ? "a time in seconds" : "a size", time ? "--max-time 10" : "--max-memory 256M",
-                                   value.empty() ? "" : fmt::format("; '{}' is none", value))};
+                                   value.empty() ? "" : fmt::format("; '{}' is not one", value))};
 }
 
 /// What safe mode allows where the user has not said otherwise.
@@ -120,7 +108,7 @@ Request request_of(std::string_view option) {
     if (option == "--jupyter-install") {
         return Request::jupyter_install;
     }
-    return option == "--manual" ? Request::manual : Request::run;
+    return option == "--manual" || option == "--manual=all" ? Request::manual : Request::run;
 }
 
 /// A flag of one letter; false when `lua` does not have it.
@@ -151,8 +139,16 @@ std::optional<text::Error> set_value(Arguments& arguments, std::string_view opti
                                                          "example --lab-marks marks.csv"})
                              : std::nullopt;
     }
-    if (option == solutions_option) {
-        arguments.request = Request::lab_solutions;
+    if (option == sheets_option) {
+        arguments.sheets = value;
+        return value.empty() ? std::optional(text::Error{"option --sheets needs the name of a folder after it, for "
+                                                         "example --sheets sheets"})
+                             : std::nullopt;
+    }
+    if (option == solutions_option || option == test_option || option == mark_option) {
+        arguments.request = option == solutions_option ? Request::lab_solutions
+                            : option == test_option    ? Request::test_sheet
+                                                       : Request::mark;
         arguments.student = value;
         return std::nullopt;
     }
@@ -171,6 +167,9 @@ std::optional<text::Error> read_value(Arguments& arguments, std::string_view opt
 
 /// What is not possible together; what safe mode brings with it.
 std::optional<text::Error> settle(Arguments& arguments) {
+    if (arguments.report) {
+        arguments.safe = arguments.strict = true;  // a page to hand in comes about under the rules that it is marked by
+    }
     if (!arguments.safe) {
         return std::nullopt;
     }
@@ -205,12 +204,15 @@ text::Expected<Arguments> parse_arguments(int count, const char* const* words) {
         }
         if (const Request request = request_of(word); request != Request::run) {
             arguments.request = request;
+            arguments.whole_manual = word == "--manual=all";
             return arguments;
         }
         if (word == "--report") {
             arguments.report = true;
         } else if (word == "--safe") {
             arguments.safe = true;
+        } else if (word == "--strict") {
+            arguments.strict = true;
         } else if (word.starts_with(kernel_option)) {
             arguments.kernel = descriptor_of(word.substr(kernel_option.size()));
         } else if (const std::string_view option = option_with_value(word); !option.empty()) {
@@ -258,6 +260,8 @@ without a script: a prompt on a terminal, else standard input is run as a script
   --         no more options: what follows is the script
   -          no more options: run standard input as the script
   --no-init  a prompt without the file ~/.config/dinal/init.lua
+  --strict   make an undefined variable an error, and an option whose value is
+             nil by a misspelt name
   --safe     for scripts of strangers: no files outside the current folder, no
              processes except gnuplot, no modules, and limits:
              --max-memory 256M --max-time 10
@@ -265,8 +269,12 @@ without a script: a prompt on a terminal, else standard input is run as a script
   --max-time SECONDS end a script that runs longer; at the prompt, an input
   --lab-marks FILE   note at the end of FILE what became of each answer in the lab
   --lab-solutions NUMBER  the answers of a student number, for instructors
-  --report   run the script, and make a page to hand in of what it prints and
-             draws, also into files: lab.html of lab.lua, in the current folder
+  --mark FOLDER      run all hand-ins of a folder in safe mode: a table, a summary,
+                     and a page of each in FOLDER-marked
+  --sheets FOLDER    add the lab sheets of a folder (or DINAL_SHEETS=FOLDER)
+  --test-sheet FILE  test a lab sheet of your own, and show it as a student sees it
+  --report   run the script in safe mode, and make a page to hand in: lab.html of
+             lab.lua, with what it prints and draws, and the verdicts on its answers
   --jupyter-install  make dinal a kernel of Jupyter notebooks, for this user, also a safe one
   --kernel=N         what such a kernel runs: requests on standard input, answers
                      on the descriptor N, as lines of JSON

@@ -10,7 +10,7 @@
 
 namespace dinal::prompt {
 
-enum class Request { run, help, version, manual, lab_solutions, jupyter_install };
+enum class Request { run, help, version, manual, lab_solutions, test_sheet, mark, jupyter_install };
 
 /// -e, -l or -W: they are carried out in the order in which they stand.
 struct StartStep {
@@ -20,6 +20,7 @@ struct StartStep {
 
 struct Arguments {
     Request request = Request::run;
+    bool whole_manual = false;        ///< --manual=all
     bool interactive = false;         ///< -i
     bool show_version = false;        ///< -v or -i
     bool executes = false;            ///< -e
@@ -27,10 +28,12 @@ struct Arguments {
     bool no_init = false;             ///< --no-init
     bool safe = false;                ///< --safe
     bool report = false;              ///< --report
+    bool strict = false;              ///< --strict
     std::optional<int> kernel;        ///< --kernel: the descriptor for its answers
     lua::ScriptLimits limits;         ///< --max-memory, --max-time; in safe mode there are always some
     std::string lab_marks;            ///< --lab-marks: where answers in the lab are noted; empty: nowhere
-    std::string student;              ///< --lab-solutions: whose
+    std::string sheets;               ///< --sheets: a folder with sheets that are not built in
+    std::string student;              ///< --lab-solutions: whose; --test-sheet: the file; --mark: the folder
     std::vector<StartStep> steps;
     std::vector<const char*> words;  ///< the whole command line
     std::size_t script = 0;          ///< its place among the words; words.size() when there is none

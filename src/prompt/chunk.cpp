@@ -121,7 +121,7 @@ char partner_of(char bracket) {
 /// What the message on the top of the stack, of a chunk that ended too early, says is missing.
 std::string what_is_missing(lua_State* L, std::string_view text) {
     const std::string message(lua::text_at(L, -1));
-    const std::size_t line = message.find(':') + 1, words = message.find(": ") + 2;  // stdin:1: ...
+    const std::size_t line = message.find(':') + 1, words = message.find(": ") + 2;  // input:1: ...
     const std::string number = message.substr(line, words - 2 - line);
     const auto parsed = lua::syntax_message(std::string_view(message).substr(words));
     if (!parsed || parsed->expected.empty() || parsed->expected.front() == '<') {

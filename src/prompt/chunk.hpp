@@ -21,8 +21,8 @@ struct Chunk {
     std::string waits = {};  ///< of an incomplete one: "'for' of line 1 waits for 'end'"
 };
 
-/// The name of every such chunk, in messages "stdin", as in lua.
-inline constexpr const char* prompt_chunk = "=stdin";
+/// The name of every such chunk in messages: "input:1: ...".
+inline constexpr const char* prompt_chunk = "=input";
 
 Chunk compile(lua_State* L, const std::string& text);
 

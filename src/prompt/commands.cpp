@@ -6,12 +6,16 @@
 #include <algorithm>
 #include <array>
 #include <chrono>
+#include <cstdlib>
 #include <vector>
 
+#include "files/file.hpp"
 #include "help/help_text.hpp"
 #include "lua/lua_text.hpp"
+#include "lua/safe_mode.hpp"
 #include "lua/standard_globals.hpp"
 #include "prompt/call.hpp"
+#include "prompt/notices.hpp"
 #include "prompt/output.hpp"
 #include "prompt/printer.hpp"
 #include "prompt/question.hpp"
@@ -69,10 +73,64 @@ void load(Session& session, const std::string& file) {
     lua_settop(L, 0);
     if (load_file(L, file.c_str()) != LUA_OK) {
         say_error(told_error(L, file.c_str()));
-    } else if (evaluate(L, Chunk{Compiled::ready, "", "", true}).fine && !session.record.writes(file)) {
-        session.record.add_statement(fmt::format("dofile({})", text::quoted(file)));
+    } else if (evaluate(L, Chunk{Compiled::ready, "", "", true}).fine) {
+        if (!session.record.writes(file)) {
+            session.record.add_statement(fmt::format("dofile({})", text::quoted(file)));
+        }
+        const auto text = files::read_file(file);
+        say_notice(text ? local_notice(*text) : "");
     }
     lua_settop(L, 0);
+}
+
+void history(Session& session, const std::string& argument) {
+    constexpr std::size_t usual = 20;
+    const std::size_t all = session.inputs.size();
+    const std::size_t wanted = argument.empty() ? usual : std::strtoul(argument.c_str(), nullptr, 10);
+    for (std::size_t i = all - std::min(wanted, all); i < all; ++i) {
+        say_value(fmt::format("{:4}  {}\n", i + 1, text::indented(session.inputs[i], 6)));
+    }
+}
+
+/// The text after the user has changed it in an editor; the reason if that fails.
+text::Expected<std::string> edited(const std::string& text) {
+    const char* editor = std::getenv("VISUAL");                                      // NOLINT(concurrency-mt-unsafe)
+    editor = editor == nullptr || *editor == '\0' ? std::getenv("EDITOR") : editor;  // NOLINT(concurrency-mt-unsafe)
+    std::string name = "/tmp/dinal-XXXXXX.lua";
+    const int file = ::mkstemps(name.data(), 4);
+    if (file < 0) return text::Error{"no file can be made in /tmp"};
+    ::close(file);
+    static_cast<void>(files::write_file(name, text + "\n"));
+    const std::string command = fmt::format("{} {}", editor == nullptr || *editor == '\0' ? "nano" : editor, name);
+    const int status = std::system(command.c_str());  // NOLINT: the user chose the editor
+    auto changed = files::read_file(name);
+    ::unlink(name.c_str());
+    if (status != 0) return text::Error{fmt::format("'{}' failed; the variable EDITOR names an editor", command)};
+    return changed;
+}
+
+void edit(Session& session, const std::string& argument) {
+    if (lua::safe_mode()) {
+        say_error(":edit is not possible in safe mode, which starts no programs");
+        return;
+    }
+    const std::size_t all = session.inputs.size();
+    const std::size_t number = argument.empty() ? all : std::strtoul(argument.c_str(), nullptr, 10);
+    if (number > all || (number == 0 && !argument.empty())) {
+        say_error(fmt::format(":edit needs the number of an input, from 1 to {}; :history lists them", all));
+        return;
+    }
+    const auto text = edited(number == 0 ? "" : session.inputs[number - 1]);
+    if (!text) {
+        say_error(":edit: " + text.error().message());
+        return;
+    }
+    const std::string input(text::trimmed(*text));
+    if (input.empty()) return;
+    say_value(input + "\n");
+    session.editor.remember(input);
+    session.inputs.push_back(input);
+    run_text(session, input);
 }
 
 int print_globals(lua_State* L) {
@@ -117,7 +175,7 @@ struct Command {
     bool file = false;  // the argument is the name of a file
 };
 
-constexpr std::array<Command, 9> commands = {{
+constexpr std::array<Command, 11> commands = {{
     {"help", Argument::optional, ":help [name]", "This list, or what help \"name\" says.", help},
     {"quit", Argument::none, ":quit", "Leaves, as Ctrl-D does.", quit},
     {"time", Argument::needed, ":time code", "Runs code once and says how long it took.", time},
@@ -126,6 +184,9 @@ constexpr std::array<Command, 9> commands = {{
     {"save", Argument::optional, ":save file",
      "Writes what you typed in this session so far, without the errors, into a script.", save, true},
     {"load", Argument::needed, ":load file", "Runs a script; what it leaves in globals stays.", load, true},
+    {"history", Argument::optional, ":history [n]", "Lists the last 20 inputs of this session, or n.", history},
+    {"edit", Argument::optional, ":edit [n]",
+     "Opens the last input, or the n-th of :history, in your editor (EDITOR), and runs it.", edit},
     {"who", Argument::none, ":who", "Lists your own variables.", who},
     {"reset", Argument::none, ":reset", "Forgets all your variables, and what :save would write.", reset},
     {"q", Argument::none, ":q", "The same as :quit.", quit},
@@ -203,7 +264,7 @@ void run_command(Session& session, const std::string& line) {
     if (command->argument == Argument::needed && argument.empty()) {
         say_error(fmt::format("write {}", command->usage));
     } else if (command->argument == Argument::none && !argument.empty()) {
-        say_error(fmt::format(":{} stands alone", command->name));
+        say_error(fmt::format(":{} takes no argument", command->name));
     } else {
         command->run(session, argument);
     }

@@ -1,13 +1,21 @@
-// dinal --lab-solutions NUMBER: the answers of the lab, for those who have the text of the course.
+// What an instructor asks for on the command line: solutions, sheets of his own and their test.
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "text/expected.hpp"
 
 namespace dinal::prompt {
 
-/// Fails with a sentence when this user has no file of the instructor, or that of another version.
+/// Returns all answers of a student number. Fails if this user has no file of the instructor, or that of another
+/// version.
 text::Expected<std::string> solutions_of(const std::string& student);
+
+/// Adds the sheets of that folder, FOLDER/*.lua in the order of their names. Returns the reason if that fails.
+std::optional<text::Error> add_sheets(const std::string& folder);
+
+/// Tests one sheet. Returns what a student sees of it, or fails with its first fault.
+text::Expected<std::string> test_sheet(const std::string& file);
 
 }  // namespace dinal::prompt

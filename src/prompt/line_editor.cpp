@@ -8,6 +8,7 @@
 #include <readline/readline.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <csignal>
 #include <cstdio>
@@ -23,6 +24,7 @@
 #include "prompt/typing.hpp"
 #include "prompt/user_files.hpp"
 #include "terminal/display.hpp"
+#include "terminal/pager.hpp"
 #endif
 
 namespace dinal::prompt {
@@ -80,6 +82,40 @@ int go_right(int count, int key) {
 }
 int go_to_end(int count, int key) {
     return take_rest() ? 0 : rl_end_of_line(count, key);
+}
+
+/// Moves the cursor to the same column of the line above or below within an input of several lines.
+bool move_within_block(int by) {
+    const std::string_view text(rl_line_buffer, static_cast<std::size_t>(rl_end));
+    const auto point = static_cast<std::size_t>(rl_point);
+    const auto begin_of = [text](std::size_t at) { return at == 0 ? 0 : text.rfind('\n', at - 1) + 1; };
+    const std::size_t begin = begin_of(point);
+    std::size_t target = 0;
+    if (by < 0) {
+        if (begin == 0) return false;
+        target = begin_of(begin - 1);
+    } else {
+        const std::size_t end = text.find('\n', point);
+        if (end == std::string_view::npos) return false;
+        target = end + 1;
+    }
+    const std::size_t end = std::min(text.find('\n', target), text.size());
+    rl_point = static_cast<int>(std::min(target + (point - begin), end));
+    return true;
+}
+int go_up(int count, int key) {
+    return move_within_block(-1) ? 0 : rl_get_previous_history(count, key);
+}
+int go_down(int count, int key) {
+    return move_within_block(1) ? 0 : rl_get_next_history(count, key);
+}
+void bind_to_blocks() {
+    for (const char* keys : {"\x1b[A", "\x1bOA"}) {
+        if (rl_function_of_keyseq(keys, nullptr, nullptr) == rl_get_previous_history) rl_bind_keyseq(keys, go_up);
+    }
+    for (const char* keys : {"\x1b[B", "\x1bOB"}) {
+        if (rl_function_of_keyseq(keys, nullptr, nullptr) == rl_get_next_history) rl_bind_keyseq(keys, go_down);
+    }
 }
 
 /// Where the user has not bound them to something else.
@@ -254,6 +290,7 @@ void start_readline(const std::string& history) {
     rl_variable_bind("blink-matching-paren", "off");
     rl_variable_bind("enable-bracketed-paste", terminal::obeys_escapes() ? "on" : "off");
     open_history(history);
+    bind_to_blocks();
     editing.paints = terminal::display_of(STDOUT_FILENO).colour;
     if (editing.paints) {
         rl_redisplay_function = redisplay;
@@ -283,6 +320,10 @@ TypedLine read_edited(const std::string& prompt, const std::string& pending, con
     editing.cue = cue;
     rl_eof_found = 0;  // of an earlier line: readline would end every further one with a blank one
     rl_callback_handler_install(prompt.c_str(), accept);
+    if (const char key = terminal::key_left_over(); key != '\0') {
+        rl_stuff_char(static_cast<unsigned char>(key));
+        rl_callback_read_char();
+    }
     while (!editing.accepted) {
         if (key_arrived()) {
             rl_callback_read_char();
@@ -301,7 +342,7 @@ TypedLine read_edited(const std::string& prompt, const std::string& pending, con
 LineEditor::LineEditor(lua_State* L) : edits_(isatty(STDIN_FILENO) != 0 && isatty(STDOUT_FILENO) != 0) {
     if (edits_) {
         editing.L = L;
-        history_file_ = history_file();
+        history_file_ = state_file("history");
         start_readline(history_file_);
     }
 }
@@ -332,7 +373,7 @@ TypedLine LineEditor::read(const std::string& prompt, const std::string&, const 
 void LineEditor::remember(const std::string&) {}
 
 const char* LineEditor::about() {
-    return "Built without GNU Readline: this program is under the MIT licence, too.";
+    return "Built without GNU Readline: this program is under the MIT licence as well.";
 }
 
 #endif

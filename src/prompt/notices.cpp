@@ -1,6 +1,6 @@
 #include "prompt/notices.hpp"
 
-#include <fmt/core.h>
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
@@ -16,6 +16,7 @@
 #include "help/help_text.hpp"
 #include "help/signature.hpp"
 #include "lua/bind.hpp"
+#include "lua/options.hpp"
 #include "lua/standard_globals.hpp"
 #include "lua/tokens.hpp"
 #include "prompt/meaning.hpp"
@@ -59,10 +60,15 @@ std::vector<std::string_view> declared(const std::vector<lua::Token>& all, std::
     return names;
 }
 
-/// How often a name stands there. Once only: where it is declared.
+/// How often a variable of that name stands there, fields such as lab.given not counted. Once only: where it is
+/// declared.
 std::ptrdiff_t uses(const std::vector<lua::Token>& all, std::string_view name) {
-    return std::count_if(all.begin(), all.end(),
-                         [name](const lua::Token& t) { return t.kind == lua::TokenKind::name && t.text == name; });
+    std::ptrdiff_t count = 0;
+    for (std::size_t i = 0; i < all.size(); ++i) {
+        const bool field = i > 0 && (all[i - 1].is(".") || all[i - 1].is(":"));
+        count += all[i].kind == lua::TokenKind::name && all[i].text == name && !field ? 1 : 0;
+    }
+    return count;
 }
 
 /// Raw: to ask must not run the code of a strict _G.
@@ -158,20 +164,20 @@ std::string unfinished_notice(lua_State* L, const std::string& text) {
 
 std::string local_notice(const std::string& text) {
     const std::vector<lua::Token> all = lua::tokens(text);
+    const bool script = text.find('\n') != std::string::npos;
+    std::vector<std::string_view> names;
     int depth = 0;
     for (std::size_t i = 0; i < all.size(); ++i) {
         if (all[i].is("local") && depth == 0) {
             for (const std::string_view name : declared(all, i)) {
-                if (uses(all, name) == 1) {
-                    return fmt::format(
-                        "a local variable ends with the line: to keep '{}' at the prompt, leave out the word local",
-                        name);
-                }
+                if (script || uses(all, name) == 1) names.push_back(name);  // what is used did its work in this line
             }
         }
         depth += opens_block(all[i]) ? 1 : closes_block(all[i]) ? -1 : 0;
     }
-    return "";
+    if (names.empty()) return "";
+    return fmt::format("local variables end with the input: {} {} gone. To keep {}, leave out the word local",
+                       fmt::join(names, ", "), names.size() == 1 ? "is" : "are", names.size() == 1 ? "it" : "them");
 }
 
 std::string nil_notice(lua_State* L, const std::string& text) {
@@ -223,9 +229,9 @@ std::string overwritten_notice(lua_State* L, const std::string& text) {
         }
         const std::string whole = field ? fmt::format("{}.{}", all[i].text, key) : std::string(all[i].text);
         if (!field && lua::is_of_dinal(L, all[i].text)) {
-            return fmt::format("{0} was a name of dinal, and is yours now; {0} = dinal.{0} gives it back", whole);
+            return fmt::format("{0} was a name of dinal and is now your variable; {0} = dinal.{0} restores it", whole);
         }
-        return fmt::format("{} was there before, and is yours now; :reset gives it back, and forgets your variables",
+        return fmt::format("{} existed before and is now your variable; :reset restores it and deletes your variables",
                            whole);
     }
     return "";
@@ -257,15 +263,50 @@ void say_notice(const std::string& notice) {
     }
 }
 
-void tell_nil_option(lua_State* L) {
+namespace {
+
+/// "'theta_0' is nil, so theta0 is not given" for the call in a file that is running, once for each line; or "".
+std::string nil_option_now(lua_State* L) {
     thread_local std::set<std::pair<const void*, int>> seen;  // workers of a sweep come here, too
     lua_Debug frame{};
-    if (lua_getstack(L, 1, &frame) == 0 || lua_getinfo(L, "Sl", &frame) == 0 || *frame.source != '@') return;
-    if (!seen.emplace(frame.source, frame.currentline).second) return;
+    if (lua_getstack(L, 1, &frame) == 0 || lua_getinfo(L, "Sl", &frame) == 0 || *frame.source != '@') return "";
+    if (!seen.emplace(frame.source, frame.currentline).second) return "";
     const auto source = errors::source_of_frame(L, frame);
-    if (!source) return;
+    if (!source) return "";
     const std::string notice = errors::nil_option(L, &frame, source->statement(frame.currentline));
-    if (!notice.empty()) say_notice(fmt::format("{}:{}: {}", frame.short_src, frame.currentline, notice));
+    return notice.empty() ? "" : fmt::format("{}:{}: {}", frame.short_src, frame.currentline, notice);
+}
+
+/// _G.name for a name that is not there. Names with _ in front, such as _PROMPT, are looked for by Lua itself.
+int refuse_unknown(lua_State* L) {
+    if (lua_type(L, 2) != LUA_TSTRING || *lua_tostring(L, 2) == '_') return 0;
+    const std::string name = lua_tostring(L, 2);
+    const std::string hint = errors::similar_global(L, name);
+    lua::raise(L, {.sentence = fmt::format("there is no variable '{}'", name),
+                   .culprit = name,
+                   .cure = hint.empty() ? "; --strict makes this an error" : hint});
+}
+
+}  // namespace
+
+void tell_nil_option(lua_State* L) {
+    const std::string notice = nil_option_now(L);
+    if (!notice.empty()) say_notice(notice);
+}
+
+void be_strict(lua_State* L) {
+    lua_pushglobaltable(L);
+    lua_createtable(L, 0, 1);
+    lua_pushcfunction(L, lua::guarded<refuse_unknown>);
+    lua_setfield(L, -2, "__index");
+    lua_setmetatable(L, -2);
+    lua_pop(L, 1);
+    lua::look_at_options = [](lua_State* state) {
+        const std::string notice = nil_option_now(state);
+        if (notice.empty()) return;
+        lua_pushstring(state, notice.c_str());
+        lua_error(state);
+    };
 }
 
 }  // namespace dinal::prompt

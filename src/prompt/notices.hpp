@@ -39,4 +39,7 @@ void say_notice(const std::string& notice);
 /// For lua::look_at_options: which option of a call in a file is nil by a misspelt name, once for each line.
 void tell_nil_option(lua_State* L);
 
+/// --strict: reading a global variable that does not exist is an error, and so is such an option.
+void be_strict(lua_State* L);
+
 }  // namespace dinal::prompt

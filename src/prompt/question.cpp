@@ -8,7 +8,9 @@
 #include <vector>
 
 #include "help/help_text.hpp"
+#include "help/lua_words.hpp"
 #include "help/tour.hpp"
+#include "lua/standard_globals.hpp"
 #include "lua/tokens.hpp"
 #include "prompt/call.hpp"
 #include "prompt/meaning.hpp"
@@ -47,6 +49,10 @@ std::string answer_to(lua_State* L, std::string_view line) {
     const std::string_view words = text::trimmed(line, " ?\"'", " ?\"'(){}");
     if (words.empty()) {
         return help::tour_page(1);
+    }
+    const std::vector<std::string> own = lua::users_globals(L);
+    if (!help::lua_word(words).empty() && std::find(own.begin(), own.end(), words) == own.end()) {
+        return help::help_about(words, screen);
     }
     const int top = lua_gettop(L);
     const std::vector<lua::Token> all = lua::tokens(words);

@@ -97,18 +97,23 @@ TypedLine read_rest(Session& session, Chunk& chunk, TypedLine input, bool copied
     return input;
 }
 
+void remember(Session& session, const std::string& input) {
+    session.editor.remember(input);
+    if (!is_command(input)) session.inputs.push_back(input);
+}
+
 /// Does what an input says that is read, up to lines of a chunk that are still to come.
 Reading take(Session& session, TypedLine input, bool copied) {
     lua_State* L = session.L;
     if (is_command(input.text)) {
-        session.editor.remember(input.text);
+        remember(session, input.text);
         run_command(session, input.text);
         return Reading::line;
     }
     Chunk chunk = compile(L, input.text);
     if (const std::string notice = chunk.result == Compiled::incomplete ? unfinished_notice(L, input.text) : "";
         !notice.empty()) {
-        session.editor.remember(input.text);
+        remember(session, input.text);
         say_notice(notice);
         return Reading::line;
     }
@@ -116,7 +121,7 @@ Reading take(Session& session, TypedLine input, bool copied) {
     if (input.reading == Reading::interrupted) {
         return input.reading;
     }
-    session.editor.remember(input.text);
+    remember(session, input.text);
     if (chunk.result == Compiled::ready) {
         run_chunk(session, chunk, input.text);
     } else {
@@ -185,10 +190,7 @@ bool run_chunk(Session& session, const Chunk& chunk, const std::string& text) {
     if (!result.fine) {
         return false;
     }
-    if (const std::string notice = session.local_noticed ? "" : local_notice(text); !notice.empty()) {
-        say_notice(notice);
-        session.local_noticed = true;
-    }
+    say_notice(local_notice(text));
     say_notice(nil_notice(session.L, text));
     say_notice(comma_notice(text));
     say_notice(overwritten_notice(session.L, text));

@@ -31,6 +31,7 @@
 #include "prompt/notices.hpp"
 #include "prompt/output.hpp"
 #include "prompt/repl.hpp"
+#include "prompt/user_files.hpp"
 #include "source/function_source.hpp"
 #include "text/version.hpp"
 
@@ -53,8 +54,8 @@ void hand_over_partial(lua_State* L) {
         }
     } else {
         if (!lua_isnil(L, -1)) {
-            complain(
-                fmt::format("dinal.on_interrupt is no function but a {}, so it is not called", luaL_typename(L, -1)));
+            complain(fmt::format("dinal.on_interrupt must be a function; it is a {}, so it is not called",
+                                 luaL_typename(L, -1)));
         }
         lua_pop(L, 1);
     }
@@ -234,6 +235,7 @@ void open(lua_State* L, const Arguments& arguments) {
     help::open_library(L);
     lua::look_at_options = tell_nil_option;
     set_arg(L, arguments);
+    if (arguments.strict) be_strict(L);
     lua_gc(L, LUA_GCGEN, 0, 0);  // as lua does
     lua::set_limits(L, arguments.limits);
 }
@@ -307,6 +309,8 @@ int run(const Arguments& arguments, Kernel kernel) {
             complain(wrong->sentence);
             return exit_code::script_error;
         }
+    } else {
+        api::keep_lab_tries([] { return state_file("lab-tries"); });
     }
     const std::unique_ptr<lua_State, void (*)(lua_State*)> state(luaL_newstate(), close_state);
     lua_State* L = state.get();
@@ -342,7 +346,7 @@ std::string version_line() {
 }
 
 std::string version_text() {
-    return fmt::format("{}\nThe source of dinal is under the MIT licence; Lua is, too, {}.\n{}\n", version_line(),
+    return fmt::format("{}\nThe source of dinal is under the MIT licence; Lua is as well, {}.\n{}\n", version_line(),
                        std::string_view(LUA_COPYRIGHT).substr(std::string_view(LUA_RELEASE).size() + 2),
                        LineEditor::about());
 }

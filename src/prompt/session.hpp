@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "lua/lua_headers.hpp"
 #include "prompt/line_editor.hpp"
@@ -16,8 +17,8 @@ struct Session {
     LineEditor editor;
     Record record;
     lua_CFunction show_values = print_values;
-    bool local_noticed = false;  ///< once is enough
-    bool leaving = false;        ///< :quit
+    std::vector<std::string> inputs;  ///< what was typed, commands left out: for :history and :edit
+    bool leaving = false;             ///< :quit
 };
 
 /// Compiles and runs a text that is all there is to come, as at the prompt. False after an error, which was told.

@@ -33,13 +33,13 @@ void make_folders(const std::string& path) {
 
 }  // namespace
 
-std::string history_file() {
+std::string state_file(const char* name) {
     const std::string folder = own_folder("XDG_STATE_HOME", "/.local/state");
     if (folder.empty()) {
         return "";
     }
     make_folders(folder);
-    std::string file = folder + "/history";
+    std::string file = folder + "/" + name;
     const int descriptor = ::open(file.c_str(), O_WRONLY | O_APPEND | O_CREAT | O_CLOEXEC, S_IRUSR | S_IWUSR);
     if (descriptor < 0) {
         return "";

@@ -5,9 +5,9 @@
 
 namespace dinal::prompt {
 
-/// ${XDG_STATE_HOME:-~/.local/state}/dinal/history, made (for this user only) with its folders when it is not there;
-/// empty when that is not possible: the prompt works without a history.
-std::string history_file();
+/// ${XDG_STATE_HOME:-~/.local/state}/dinal/NAME, made (for this user only) with its folders if it is missing; empty if
+/// that is not possible. `history` is that of the prompt, `lab-tries` keeps the wrong values of the lab.
+std::string state_file(const char* name);
 
 /// ${XDG_CONFIG_HOME:-~/.config}/dinal/init.lua, run before the first prompt; empty when it is not there.
 std::string init_file();

@@ -9,6 +9,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "terminal/display.hpp"
@@ -74,6 +75,8 @@ std::vector<std::string_view> rows_of(std::string_view text, std::size_t width) 
     return rows;
 }
 
+char left_over = '\0';
+
 enum class Wanted { row, page, nothing };
 
 Wanted ask(std::size_t shown, std::size_t all, std::size_t width) {
@@ -83,7 +86,10 @@ Wanted ask(std::size_t shown, std::size_t all, std::size_t width) {
     const char key = Keys().read();
     write_out("\r\x1b[K");
     if (key == '\r' || key == '\n' || key == 'j') return Wanted::row;
-    return key == ' ' || key == 'f' ? Wanted::page : Wanted::nothing;
+    if (key == ' ' || key == 'f') return Wanted::page;
+    const bool ends_only = key == 'q' || key == 'Q' || static_cast<unsigned char>(key) < ' ';
+    left_over = ends_only ? '\0' : key;
+    return Wanted::nothing;
 }
 
 /// The rows that are not shown yet, cut anew for a terminal that has another width by now.
@@ -95,6 +101,10 @@ void cut_anew(std::vector<std::string_view>& rows, std::size_t shown, std::strin
 }
 
 }  // namespace
+
+char key_left_over() {
+    return std::exchange(left_over, '\0');
+}
 
 void show_in_pages(std::string_view text) {
     static_cast<void>(std::fflush(stdout));

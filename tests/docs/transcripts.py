@@ -3,13 +3,14 @@
 
     transcripts.py PROGRAM SOURCE [--update]
 
-In README.md, docs/*.md, docs/lab/*.md and examples/README.md a block fenced as ```console is run:
+In README.md, docs/*.md, docs/lab/*.md, docs/es/*.md and examples/README.md a block fenced as ```console is run:
   "$ command"   is given to the shell, in a folder of its own for each document, with the project's examples/ and docs/
                 in it; scripts/dinal and dinal are the program under test;
   "> text"      after "$ scripts/dinal" or "$ dinal" alone is typed at the prompt, on a terminal; a block that begins
                 so goes on with the session of the block before;
   other lines   are the output (both channels); a line "..." stands for any lines, and numbers of more than nine digits
                 are compared in nine: the rest depends on how a compiler orders sums. The version of Lua is not compared.
+The blocks fenced as ```lua of a document are one script, which prints what stands behind "-->".
 A block fenced as ```sh is not run: it is for what cannot be run here (git clone, apt); the scripts that it names must be
 there. --update writes the present output into the documents (then read it!).
 """
@@ -106,6 +107,18 @@ def same(expected, got):
     return re.fullmatch(pattern, got) is not None
 
 
+def lua_complaint(text, folder):
+    """What the ```lua blocks of a document print, if it is not what stands behind their -->."""
+    code = "".join(block for language, block in FENCE.findall(text) if language == "lua")
+    expected = "".join(line + "\n" for line in re.findall(r"--> ?(.*)$", code, re.M))
+    if not expected:
+        return []
+    with open(os.path.join(folder, "blocks.lua"), "w", encoding="utf-8") as file:
+        file.write(code)
+    got = run("dinal blocks.lua", folder)
+    return [] if same(expected, got) else [f"--- its Lua blocks print\n{got}--- and not\n{expected}---"]
+
+
 def check(path):
     """The number of commands, the complaints, and the text as --update would write it."""
     with open(path, encoding="utf-8") as file:
@@ -113,6 +126,8 @@ def check(path):
     count, complaints, fresh, done = 0, [], "", 0
     folder, prompt = sandbox(), None
     try:
+        if not path.endswith("manual.md"):  # help_test runs its examples
+            complaints += lua_complaint(text, folder)
         for fence in FENCE.finditer(text):
             language, block = fence.groups()
             if language == "sh":
@@ -151,7 +166,7 @@ def check(path):
 def main():
     documents = ["README.md", "examples/README.md"] + sorted(
         os.path.relpath(path, ROOT) for path in glob.glob(os.path.join(ROOT, "docs", "*.md")) +
-        glob.glob(os.path.join(ROOT, "docs", "lab", "*.md")))
+        glob.glob(os.path.join(ROOT, "docs", "lab", "*.md")) + glob.glob(os.path.join(ROOT, "docs", "es", "*.md")))
     failed, total = False, 0
     for document in documents:
         path = os.path.join(ROOT, document)

@@ -83,7 +83,7 @@ TEST_CASE("habits are seen in the facts, too: a decimal comma, a file without qu
     CHECK_THAT(told({.sentence = "names, please", .call = "make", .culprit = "5"}, "local a = 1\nmake{ k = 0,5 }"),
                Catch::Contains("names, please; a decimal point is a point: 0.5\n"));
     CHECK_THAT(told({.sentence = "no such thing", .culprit = "csv"}, "run = {}\nmake(run.csv)"),
-               Catch::Contains("no such thing; the name of a file stands in quotes: \"run.csv\"\n"));
+               Catch::Contains("no such thing; write the name of a file in quotes: \"run.csv\"\n"));
 }
 
 TEST_CASE("what would cure it ends the sentence, and nothing else is looked for", "[errors]") {

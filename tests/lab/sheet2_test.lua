@@ -32,8 +32,8 @@ walk.sheet("2-sticking", function(session)
     { "2a", 1.1*Re, "pull more slowly" },
     { "2a", 0.95*Re, "take several pulls" },
     { "2a", -Re, "the sign is not" },
-    { "2a", math.deg(Re), "no mistake that is known" }, -- a torque is not in degrees, nor in turns
-    { "2a", Re/(2*math.pi), "no mistake that is known" },
+    { "2a", math.deg(Re), "not one of the usual mistakes" }, -- a torque is not in degrees, nor in turns
+    { "2a", Re/(2*math.pi), "not one of the usual mistakes" },
     { "2a", Re/2, "where does the factor 2 come in" },
     { "2b", 2*Re/k, "its whole width" },
     { "2b", Rd/k, "what holds a resting mass is Re" },

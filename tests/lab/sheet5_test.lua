@@ -25,7 +25,7 @@ walk.sheet("5-identification", function(session)
     { "5b", viscous.zeta, "takes all damping for viscous" },
     { "5b", 100*fit.zeta, "percent" },
     { "5b", fit.zeta/2, "that is half of it" },
-    { "5b", 0.001, "no mistake that is known" }, -- within the error bar of a thousandth of it
+    { "5b", 0.001, "not one of the usual mistakes" }, -- within the error bar of a thousandth of it
     { "5b", fit.zeta/1000, "a thousand times too small" },
     { "5c", 2*fit.Rd_over_k, "2 Rd/k" },
     { "5d", -fit.offset, "the size is right" },

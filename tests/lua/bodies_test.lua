@@ -273,7 +273,7 @@ test("what is wrong is one sentence with the name of the body, the link and the 
     support.raises(function() rig:simulate { M = { load = function() return "x" end }, t_end = 1 } end, "M returned the string")
     local count = 0
     local run = rig:simulate { M = { load = function() count = count + 1 return count % 7 end }, t_end = 1 }
-    assert(run.outcome:find("asked again", 1, true), run.outcome)
+    assert(run.outcome:find("evaluated again", 1, true), run.outcome)
 end)
 
 test("an M with a delay is the same without the motion between the rows", function()

@@ -3,11 +3,11 @@ package.path = "tests/lua/?.lua;" .. package.path
 local support = require "support"
 local test, equal = support.test, support.equal
 
-local manual
-do
-    local pipe <close> = io.popen(('"%s" --manual'):format(support.program()))
-    manual = pipe:read "a"
+local function printed(option)
+    local pipe <close> = io.popen(('"%s" %s'):format(support.program(), option))
+    return pipe:read "a"
 end
+local manual, page = printed "--manual=all", printed "--manual"
 
 --- The entries of the manual: heading, signature, summary, example.
 local entries = {}
@@ -21,7 +21,15 @@ for part in (manual .. "\n## "):gsub("\n###? ", "\n\0"):gmatch "%z([^\0]*)" do
 end
 
 test("docs/manual.md is what the program prints", function()
-    assert(support.read "docs/manual.md" == manual, "docs/manual.md is old: run `dinal --manual > docs/manual.md`")
+    assert(support.read "docs/manual.md" == page, "docs/manual.md is old: run `dinal --manual > docs/manual.md`")
+end)
+
+test("the page has what takes no options as a row, and options of several calls once", function()
+    assert(page:find("\n| `sys.I -> number` | The moment of inertia. |\n", 1, true))
+    assert(not page:find("\n### sys.I\n", 1, true))
+    equal(select(2, page:gsub("\n%- `units`: names of the units of theta, t and M", "")), 1)
+    assert(page:find("- [shared](#options-of-several-calls): `M`, `velocity0`", 1, true))
+    for _, entry in ipairs(entries) do assert(page:find("`" .. entry.signature .. "`", 1, true), entry.heading) end
 end)
 
 test("every entry has a signature, a summary that is a sentence, and an example", function()
@@ -133,10 +141,11 @@ test("help searches words, suggests names, and shows where to begin", function()
     assert(output 'help "contents"':find("excitation.harmonic", 1, true))
     equal(output "help(dinal)", output 'help "contents"')
     assert(output 'help "brakaway"':find("did you mean 'breakaway'?", 1, true))
-    assert(output 'help "elseif"':find("a word of Lua", 1, true))
+    assert(output 'help "elseif"':find("if condition then ... elseif", 1, true))
     assert(output "help(nil)":find("in quotes", 1, true))
     assert(output "help(3.5)":find("in quotes", 1, true))
-    assert(output "help(print)":find("Lua's own", 1, true))
+    equal(output "help(print)", output 'help "print"')
+    equal(output "help(math.cos)", output 'help "math.cos"')
     assert(output "help(function() end)":find("no help", 1, true))
 end)
 
@@ -177,6 +186,31 @@ test("an entry names what to look at next, and help knows these names", function
     for _, name in ipairs(wanted) do
         assert(known[name] and not known[name]:find("nothing about", 1, true), named_by[name] .. " names " .. name)
     end
+end)
+
+test("Lua's words are explained in a line, with an example that runs", function()
+    local words = {}
+    for _, name in ipairs{ "math", "string", "table" } do
+        for key in pairs(_G[name]) do words[#words + 1] = name .. "." .. key end
+    end
+    for word in ([[and break do else elseif end false for function goto if in local nil not or repeat return then true until while
+        print type pairs ipairs tostring tonumber error assert pcall require load dofile select setmetatable ans
+        list dictionary string number comment lambda import range slice mask]]):gmatch "%S+" do
+        words[#words + 1] = word
+    end
+    local code = {}
+    for _, word in ipairs(words) do code[#code + 1] = ("print('\\0') help %q"):format(word) end
+    local pages = output(table.concat(code, " "))
+    local i = 0
+    for page in pages:gmatch "%z\n([^\0]*)" do
+        i = i + 1
+        local example, wanted = page:match "\n\n    ([^\n]-)  %-%-> ([^\n]*)\n"
+        assert(example, words[i] .. " has no example: " .. page)
+        assert(not page:find "nothing about", words[i])
+        local printed = output(example):gsub("\n$", ""):gsub("\n", ", ")
+        equal(printed, wanted, "example of " .. words[i])
+    end
+    equal(i, #words)
 end)
 
 support.finish()

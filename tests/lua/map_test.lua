@@ -39,7 +39,7 @@ test("points over two parameters are a map, or a curve for each value of the fir
     local one = family:filter(function(p) return p.a == 2 end)
     equal(tostring(one:plot{ show = false }), tostring(data{ b = one.b, v = one.v }:plot{ x = "b", y = "v", show = false }))
     local three = sweep{ over = { a = { 1, 2 }, b = { 1, 2 }, c = { 1, 2 } }, run = function(p) return { v = p.a } end }
-    raises_here(function() three:plot{ show = false } end, "points over a, b, c are no map")
+    raises_here(function() three:plot{ show = false } end, "points over a, b, c are not a map")
     assert(tostring(three:filter(function(p) return p.a == 1 end):plot{ show = false }):find("v:", 1, true))
 end)
 

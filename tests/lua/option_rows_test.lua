@@ -6,7 +6,7 @@ local test = support.test
 
 local calls = {} -- heading -> list of { name, meaning }
 do
-    local pipe <close> = io.popen(('"%s" --manual'):format(support.program()))
+    local pipe <close> = io.popen(('"%s" --manual=all'):format(support.program()))
     local heading
     local list -- of calls that take one of two tables: "excitation.samples 2" is the second
     for line in pipe:lines() do

@@ -113,7 +113,7 @@ for name, code in pairs(refused) do
         assert(not result.text:find "excitation.samples *{" and not result.text:find "root:", result.text)
     end)
 end
-for name, pattern in pairs { ["pipe.csv"] = "it is no regular file", ["folder.csv"] = "it is no regular file" } do
+for name, pattern in pairs { ["pipe.csv"] = "it is not a regular file", ["folder.csv"] = "it is not a regular file" } do
     strangers.check({ ["reading " .. name] = reads(name), ["writing " .. name] = saves(name) }, options, 0, ".*" .. pattern .. ".*", folder)
 end
 for _, name in ipairs { "a.csv", "sub/b.csv", "./c.dat", folder .. "/d.csv", "sub/../e.csv", "link.csv", "up/lab/f.csv" } do

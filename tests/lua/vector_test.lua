@@ -188,3 +188,37 @@ do
     fails(function() vector.range(1, 2, 0) end, "step = 0 does not lead")
     fails(function() vector.range(0, 1e12) end, "numbers are more than")
 end
+
+local support = require "support"
+local equal = support.equal
+support.test("v[v > 0] picks the elements for which a comparison holds", function()
+  local v, w = vector{ -1, 2, 3, -7 }, vector{ 4, 5, 6, 7 }
+  local function same(picked, ...) equal(tostring(picked), tostring(vector{ ... })) end
+  same(v[v > 0], 2, 3)
+  same(v[v <= 2], -1, 2, -7)
+  same(w[v > 0], 5, 6)
+  same(w[0 < v], 5, 6)
+  same(w[w >= 4], 4, 5, 6, 7)
+  same(w[not (w >= 5)], 4)
+  same(v[v < w], -1, 2, 3, -7)
+  equal(#w[w > 9], 0)
+  for i = 4, 7 do equal(#w[w > i], 7 - i) end
+  local function refused(code, piece)
+    support.raises(function() load("local v, w = ... return " .. code)(v, w) end, piece)
+  end
+  local message = "takes one comparison (< <= > >=) with as many elements as v, written in the brackets"
+  refused("w[v > 0 and v < 3]", "and or or is not possible there")
+  refused("w[v > 0 or v < -3]", "and or or is not possible there")
+  refused("w[v == 2]", message)
+  refused("w[true]", message)
+  refused("w[vector{ 1 } > 0]", message)
+  support.raises(function()
+    local positive = v > 0
+    return w[positive]
+  end, message)
+  -- Lua 5.4.4 would index another value than w here
+  support.raises(function() return w[v > 0] end, "w belongs to an outer function: write local own = w before")
+  same(load "local w = ... return w[w > 5]" (w), 6, 7)
+end)
+
+support.finish()

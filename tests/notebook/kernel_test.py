@@ -124,6 +124,11 @@ def cells():
     check("completion", reply["matches"] == ["plot{"] and reply["cursor_start"] == 4, reply)
     reply = notebook.client.inspect("sys = nondimensional{}", 10, reply=True, timeout=PATIENCE)["content"]
     check("inspection", reply["found"] and "friction_ratio" in reply["data"]["text/plain"], reply)
+    typed = "excitation.harmonic{ amp"
+    reply = notebook.client.inspect(typed, len(typed), reply=True, timeout=PATIENCE)["content"]
+    check("inspection of an option shows its call", "amplitude = 1, frequency" in str(reply["data"]), reply)
+    reply = notebook.client.inspect("qwertzu", 3, reply=True, timeout=PATIENCE)["content"]
+    check("an unknown name is not found", reply["found"] is False, reply)
     for code, state in (("x = 1", "complete"), ("for i = 1, 2 do", "incomplete"), ("x = = 1", "invalid")):
         asked = notebook.client.is_complete(code)
         reply = notebook.client.get_shell_msg(timeout=PATIENCE)

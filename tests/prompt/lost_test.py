@@ -102,7 +102,7 @@ class Words(Lost):
             self.assertIn(f"did you mean '{method}'?", shown)
             self.assertNotIn("attempt", session.enter(method))
         self.assertIn("greatest element is\nrun.theta:max())", session.enter("math.max(run.theta)"))
-        for line, hint in (("2**3", "a power is x^2"), ("system I = 1", "its options stand in braces: system{ ... }"),
+        for line, hint in (("2**3", "a power is x^2"), ("system I = 1", "write its options in braces: system{ ... }"),
                            ("run.events[10].t", "'run.events' has 2 elements"), ("who", ":who lists your variables"),
                            ("ls", "in a terminal Ctrl-Z leads to it"), ("quit", ":quit or Ctrl-D leaves"),
                            ("5%", "5 percent are 5/100"),
@@ -118,7 +118,7 @@ class Words(Lost):
         self.assertIn("(system was a name of dinal", session.enter("system = 3"))
         session.enter("system = dinal.system")
         self.assertEqual(session.enter("system{ I = 1, k = 1 }.omega0"), "1.0")
-        self.assertIn("(math.pi was there before", session.enter("math.pi = 3"))
+        self.assertIn("(math.pi existed before", session.enter("math.pi = 3"))
         session.enter(":reset")
         self.assertEqual(session.enter("math.pi > 3"), "true")
         self.assertEqual(session.enter("x = { system = 3 }"), "")

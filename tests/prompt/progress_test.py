@@ -187,7 +187,7 @@ class AtThePrompt(TerminalTest):
     def test_ctrl_c_stops_the_run_and_keeps_what_was_done(self):
         terminal, shown = self.interrupted_run()
         self.assertEqual([line for line in shown if "▕" in line], [])
-        self.assertTrue(any("interrupted at stdin:1" in line for line in shown), shown)
+        self.assertTrue(any("interrupted at input:1" in line for line in shown), shown)
         terminal.child.send("print(ans.outcome, #ans > 0, #ans.events > 0, ans == dinal.partial)\r")
         terminal.until(lambda lines: re.fullmatch("interrupted +true +true +true", lines[-2]))
 
@@ -214,7 +214,7 @@ class AtThePrompt(TerminalTest):
         terminal.until(lambda lines: lines[-2:] == ["42", ">"])
         terminal.child.send("while true do end\r")
         shown = terminal.until(lambda lines: lines[-1] == ">" and "max-time" in lines[-2])
-        self.assertIn("stopped at stdin:1: it ran longer than the 0.5 s", shown[-2])
+        self.assertIn("stopped at input:1: it ran longer than the 0.5 s", shown[-2])
         terminal.child.send("7*7\r")
         terminal.until(lambda lines: lines[-2:] == ["49", ">"])
 

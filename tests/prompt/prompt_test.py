@@ -75,7 +75,7 @@ class Values(PromptTest):
 
     def test_an_error_is_told_and_the_session_goes_on(self):
         session = self.start()
-        self.assertEqual(session.enter("error('oh')"), "stdin:1: oh")
+        self.assertEqual(session.enter("error('oh')"), "input:1: oh")
         self.assertIn("syntax error near 'b'", session.enter("a b"))
         self.assertEqual(session.enter("1"), "1")
 
@@ -148,6 +148,15 @@ class History(PromptTest):
         second.press(UP + UP)
         self.assertTrue(second.enter("").endswith("1\n2"))
 
+    def test_the_up_arrow_moves_within_a_block(self):
+        session = self.start()
+        session.enter("do", CONTINUATION)
+        session.enter("  x = 1", CONTINUATION)
+        session.enter("end")
+        session.press(UP + UP + "y")  # the block, and the line above its end: "  xy = 1"
+        session.enter("")
+        self.assertEqual(session.enter("xy"), "1")
+
     def test_the_file_is_for_its_user_only(self):
         session = self.start(XDG_STATE_HOME=str(self.home / "some" / "state"))
         session.enter("1")
@@ -193,7 +202,7 @@ class Interrupts(PromptTest):
                      "while true do pcall(function() busy() while true do end end) end",
                      "return setmetatable({}, { __tostring = function() busy() while true do end end })",
                      "return { 1, { setmetatable({}, { __tostring = function() busy() while true do end end }) } }"]:
-            self.assertRegex(self.interrupted(session, line), r"^\n?interrupted( at stdin:1)?\n")
+            self.assertRegex(self.interrupted(session, line), r"^\n?interrupted( at input:1)?\n")
             self.assertEqual(session.enter("1 + 1"), "2")
 
     def test_a_second_ctrl_c_ends_c_code_that_never_returns(self):
@@ -212,7 +221,7 @@ class Interrupts(PromptTest):
                   "excitation.harmonic{ amplitude = 1, frequency = 0.3 } + "
                   "excitation.scripted(function(t) if t > 9 then busy() end return 0 end)"]:
             shown = self.interrupted(session, f"return nd:simulate{{ M = {M}, t_end = 1e6, dt = 1 }}")
-            self.assertIn("interrupted at stdin:1", shown)
+            self.assertIn("interrupted at input:1", shown)
             self.assertIn("the part of the run that was done is in dinal.partial, and in ans\n(ans:continue() goes on):\n", shown)
             self.assertEqual(session.enter("#ans > 0 and #ans < 1000001 and #ans.theta == #ans"), "true")
 
@@ -253,7 +262,7 @@ class Interrupts(PromptTest):
         session = self.start()
         session.enter("M = function(t) if t > 2 then error('broken') end return 0 end")
         shown = session.enter("nondimensional{}:simulate{ M = M, t_end = 10, dt = 0.1 }")
-        self.assertIn("stdin:1: broken", shown)
+        self.assertIn("input:1: broken", shown)
         self.assertIn("is in dinal.partial, and in ans", shown)
         self.assertEqual(session.enter("ans.t[#ans] > 1.5"), "true")
         self.assertNotIn("ans", session.enter("error('another')"))  # the old run is not announced again
@@ -283,7 +292,7 @@ class PlainLines(SessionTest):
         session.until_prompt("\n>> ")
         session.press(CTRL_D)
         self.assertIn("near <eof>", session.until_prompt())
-        self.assertIn("interrupted at stdin:1", self.interrupted(session, "busy() while true do end"))
+        self.assertIn("interrupted at input:1", self.interrupted(session, "busy() while true do end"))
         self.assertEqual(session.leave(), 0)
 
 

@@ -135,7 +135,7 @@ class SweepFiles(unittest.TestCase):
                     file = (self.home / "map.csv").read_bytes()
                 self.assertEqual((self.home / "map.csv").read_bytes(), file)
         (self.home / "map.csv").write_bytes(file[:-3])
-        self.assertIn("is no longer as it was written", self.run_script()[2])
+        self.assertIn("has been changed since it was written", self.run_script()[2])
 
     def test_a_damaged_number_of_a_chunk_is_refused(self):
         process = self.start(WAIT="0.003")
@@ -146,7 +146,7 @@ class SweepFiles(unittest.TestCase):
         first.write_text(first.read_text().replace("0.", "0x", 1))
         code, _, err = self.run_script()
         self.assertEqual(code, 1)
-        self.assertIn(f"'map.csv.parts/{first.name}' is no longer as it was written; remove it", err)
+        self.assertIn(f"'map.csv.parts/{first.name}' has been changed since it was written; remove it", err)
 
     def test_nothing_is_touched_through_a_link(self):
         other = self.home / "other"

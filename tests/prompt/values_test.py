@@ -129,10 +129,25 @@ class Notices(PromptTest):
                       "t = { [1] = M }", "w = qwertz"]:
             self.assertEqual(terminal.enter(typed), "", typed)
 
-    def test_a_local_variable_that_is_lost_is_noticed_once(self):
+    def test_a_local_variable_that_is_lost_is_noticed_each_time(self):
         terminal = self.start()
-        self.assertIn("to keep 'x' at the prompt, leave out", terminal.enter("local x = 3").replace("\n", " "))
-        self.assertEqual(terminal.enter("local y = 3"), "")
+        notice = "(local variables end with the input: {} gone. To keep {}, leave out the word local)"
+        for typed, words in [("local x = 3", ("x is", "it")), ("local given = lab.given", ("given is", "it")),
+                             ("local a, b = 1, {}", ("a, b are", "them"))]:
+            self.assertEqual(terminal.enter(typed).replace("\n", " "), notice.format(*words), typed)
+        with open(os.path.join(self.home, "script.lua"), "w", encoding="utf-8") as script:
+            script.write("local sys = nondimensional{}\nrun = sys:simulate{ t_end = 1, dt = 1 }\n")
+        self.assertEqual(terminal.enter(":load script.lua").replace("\n", " "), notice.format("sys is", "it"))
+
+    def test_history_and_edit(self):
+        terminal = self.start(EDITOR="sed -i s/1/5/")
+        terminal.enter("x = 1")
+        terminal.enter("y = 2")
+        self.assertEqual(terminal.enter(":history").split(), ["1", "x", "=", "1", "2", "y", "=", "2"])
+        self.assertEqual(terminal.enter(":history 1").split(), ["2", "y", "=", "2"])
+        self.assertEqual(terminal.enter(":edit 1"), "x = 5")
+        self.assertEqual(terminal.enter("x"), "5")
+        self.assertIn("from 1 to", terminal.enter(":edit 17"))
 
     def test_a_local_variable_that_is_used_is_not(self):
         terminal = self.start()
@@ -245,7 +260,7 @@ class Commands(PromptTest):
 
     def test_names_may_be_short_and_wrong_ones_are_told(self):
         terminal = self.start()
-        self.assertIn(":record file", terminal.enter(":h"))
+        self.assertIn(":record file", terminal.enter(":he"))
         self.assertIn("did you mean 'quit'?", terminal.enter(":qiut"))
         self.assertIn(":help lists them", terminal.enter(":re"))
         self.assertIn("write :load file", terminal.enter(":load"))

@@ -39,7 +39,7 @@ inline constexpr text::Option half_sine_options[] = {
 };
 inline constexpr TermText HalfSine::about{
     {"excitation.half_sine", "excitation.half_sine{ at = 1, width = 0.2 }", half_sine_options},
-    "One half wave of a sine from `at` to at + width, else 0: a shock.",
+    "One half wave of a sine from `at` to at + width, 0 elsewhere: a shock.",
     "print(excitation.half_sine{ amplitude = 3, width = 2 }(1))  --> 3.0"};
 
 }  // namespace dinal::model::terms

@@ -144,10 +144,12 @@ private:
 
 inline constexpr TermText Polyline::about{
     {"excitation.samples", "excitation.samples{ t = { 0, 1, 2 }, M = { 0, 3, 0 } }", samples_options},
-    "Straight lines or a cubic spline between points, from two columns of a CSV file or from two tables (or vectors). "
-    "Outside, the first and the last value hold, unless a period is given. time and value name the columns or number "
-    "them; without them they are the columns t (or time) and M, else the first and the second. Each point is a break: a "
-    "line has another slope there, a spline only another third derivative (and where it begins and ends a slope).",
+    "Straight lines or a cubic spline between points, from two columns of a CSV file or from "
+    "two tables (or vectors). Outside of the points the first and the last value hold, unless "
+    "a period is given. time and value name the columns or number them; by default t (or time) "
+    "and M, otherwise the first and the second column. Each point is a break: a line has "
+    "another slope there, a spline only another third derivative (and where it begins and ends "
+    "a slope).",
     "M = excitation.samples{ t = { 0, 1, 3 }, M = { 0, 2, 0 } }\nprint(M(0.5), M(2), M(9))  --> 1.0\t1.0\t0.0\n"
     "M = excitation.samples{ t = { 0, 1, 2, 3 }, M = { 0, 1, 0, -1 }, interpolation = \"cubic\", period = 4 }\n"
     "print(M(0.5), M(4.5))  --> 0.6875\t0.6875"};

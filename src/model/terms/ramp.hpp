@@ -39,9 +39,9 @@ struct Ramp {
 };
 
 inline constexpr text::Option ramp_options[] = {
-    {"slope", "torque per time unit", text::its_own, text::any_finite, "how fast it rises", text::fills<&Ramp::slope>},
+    {"slope", "torque per time unit", text::its_own, text::any_finite, "slope", text::fills<&Ramp::slope>},
     rows::at<Ramp>(),
-    {"duration", rows::time, "math.huge", text::positive_or_infinite, "how long it rises",
+    {"duration", rows::time, "math.huge", text::positive_or_infinite, "duration of the rise",
      text::fills<&Ramp::duration>},
 };
 inline constexpr TermText Ramp::about{

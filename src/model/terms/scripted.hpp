@@ -113,18 +113,20 @@ inline void repeat_after(Scripted& s, double period) {
     s.period = period;
 }
 inline constexpr text::Option scripted_options[] = {
-    {"breaks", "time units", text::its_own, text::any_finite, "where it jumps or kinks",
+    {"breaks", "time units", text::its_own, text::any_finite, "times at which it jumps or kinks",
      text::fills<&Scripted::breaks>},
     {"period", "time units", text::its_own, text::positive, "after which the breaks repeat", text::sets<repeat_after>},
 };
 inline constexpr TermText Scripted::about{
     {"excitation.scripted", "excitation.scripted(f, { breaks = { 0.5, 2 }, period = 3 })", scripted_options, true},
-    "Any Lua function of t, or of t, theta, velocity: with two or more parameters (or ...) it is called with all "
-    "three. breaks are times at which it jumps or kinks, so that integrators do not step across them; with a period, "
-    "they repeat. Where M is expected a function alone will do. A function that is a formula (arithmetic, comparisons, "
-    "if, for with constant bounds, math, numbers that it only reads) is read: it runs without Lua, with the same bits, "
-    "and the times at which its conditions change are breaks; see e:obstacle. A sum of constants, powers of t, sines "
-    "and exponentials runs as native terms do, equal to rounding, where the run names no integrator.",
+    "Any Lua function of t, or of t, theta, velocity: with two or more parameters (or ...) it "
+    "is called with all three. breaks are times at which it jumps or kinks, so integrators do "
+    "not step across them; with a period they repeat. M may also be the function itself. A "
+    "function that is a formula (arithmetic, comparisons, if, for with constant bounds, math, "
+    "numbers that it only reads) is read: it runs without Lua, with the same bits, and the "
+    "times at which its conditions change are breaks; see e:obstacle. A sum of constants, "
+    "powers of t, sines and exponentials runs as native terms do, equal to rounding, where the "
+    "run names no integrator.",
     "M = excitation.scripted(function(t) return t % 3 < 2 and 1 or 0 end, { breaks = { 0, 2 }, period = 3 "
     "})\nprint(M(7), M:next_break(7))  --> 1.0\t8.0"};
 

@@ -139,7 +139,7 @@ inline constexpr const char* cycles = "cycles per time unit";
 inline constexpr const char* where_a_period_begins = "where a period begins";
 
 template <class T>
-constexpr text::Option amplitude(const char* meaning = "its greatest value") {
+constexpr text::Option amplitude(const char* meaning = "greatest value") {
     return {.name = "amplitude", .unit = torque, .meaning = meaning, .filled = text::fills<&T::amplitude>};
 }
 template <class T>

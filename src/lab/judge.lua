@@ -1,15 +1,17 @@
--- The lab course: what belongs to a student number, and what is said about an answer.
--- The files of this folder are put together in the order of their names and run in a Lua state that no script of a
--- student can reach (src/api/lab_course.cpp). So all here may speak plainly. Each further file is a sheet.
+-- The lab course: the systems of a student number, and the verdict on an answer.
+-- This file and the sheets (sheets/*.lua) run in a Lua state that no script of a student can reach (src/api/lab_course.cpp).
 course = { sheets = {} }
 
---- A sheet: title, given(pick), secret(given, pick), experiment(given, secret, x) and questions(given, secret), a list of
---- { name, asks, answer =, unit =, tolerance = (relative) | within = (absolute) | whole = true, task =, how =,
----   mistakes = { { wrong value or function(value), what is said }, ... } }; and, for the instructor alone,
---- discussion(given, secret): what a good page says to each of the questions at the end of the handout.
+--- Adds a sheet; sheets/template.lua explains its fields.
 function course.sheet(number, sheet)
+  if math.type(number) ~= "integer" or number < 1 then error("sheet(number, { ... }): the number must be a whole number from 1", 2) end
+  if course.added and course.added[number] then error(string.format("sheet %d exists twice: give one of them another number", number), 2) end
+  for _, field in ipairs { "given", "questions" } do
+    if type(sheet[field]) ~= "function" then error(string.format("sheet %d needs %s = function(...)", number, field), 2) end
+  end
   sheet.number = number
-  course.sheets[number] = sheet
+  course.sheets[number], course.last = sheet, number
+  if course.added then course.added[number] = true end -- not one of the built-in sheets, which may be replaced
 end
 
 --- A number with at most ten digits, so that what a student sees is what he types.
@@ -29,9 +31,17 @@ local function picker(number, sheet)
   end
 end
 
+--- The numbers of the sheets, in order.
+function course.numbers()
+  local numbers = {}
+  for number in pairs(course.sheets) do numbers[#numbers + 1] = number end
+  table.sort(numbers)
+  return numbers
+end
+
 local function sheet_of(n)
   local sheet = course.sheets[n]
-  if not sheet then error(string.format("there are sheets 1 to %d", #course.sheets), 0) end
+  if not sheet then error("the sheets are " .. table.concat(course.numbers(), ", "), 0) end
   return sheet
 end
 
@@ -58,7 +68,7 @@ function course.given(number, n) return world_of(number, n).given end
 
 function course.experiment(number, n, x)
   local world = world_of(number, n)
-  if not world.sheet.experiment then error(string.format("sheet %d has no experiment: simulate what it asks for", n), 0) end
+  if not world.sheet.experiment then error(string.format("sheet %d has no experiment: simulate its system", n), 0) end
   return world.sheet.experiment(world.given, world.secret, x)
 end
 
@@ -139,7 +149,7 @@ local function hint_for(question, value)
   end
   local tolerance = question.within or not question.whole and question.tolerance*math.abs(question.answer)
   if tolerance and math.abs(value - question.answer) <= 4*tolerance then
-    return string.format("near, but further off than this method need be (%s)", question.within and
+    return string.format("near, but outside the tolerance of this method (%s)", question.within and
       string.format("%.2g", question.within) or string.format("%.2g %%", 100*question.tolerance))
   end
   return nil
@@ -161,8 +171,7 @@ local function unknown(name, number)
                    string.format("; sheet %d asks %s to %s", n, names[1], names[#names])
     error(string.format("there is no question '%s'%s", name, ending), 0)
   end
-  error(string.format("there is no question '%s'; they are named after their sheet, '1a' to '%da' and on", name,
-                      #course.sheets), 0)
+  error(string.format("there is no question '%s'; a name is the number of a sheet and a letter, such as '1a'", name), 0)
 end
 
 --- The question of that name, "1a"; "0" is for trying check out.
@@ -185,7 +194,7 @@ function course.verdict(question, value)
   if near(value, question.answer, question) then
     return true, "right" .. (question.praise and "; " .. question.praise or "")
   end
-  local task = question.task and string.format(", and no mistake that is known here; look at task %s again", question.task)
+  local task = question.task and string.format(", and not one of the usual mistakes: read task %s again", question.task)
   return false, hint_for(question, value) or "not right" .. (task or "")
 end
 
@@ -221,7 +230,7 @@ end
 --- All answers of a number, as text.
 function course.solutions(number)
   local lines = { string.format("The lab of number %d", number) }
-  for n = 1, #course.sheets do
+  for _, n in ipairs(course.numbers()) do
     local world = world_of(number, n)
     lines[#lines + 1] = string.format("\nSheet %d: %s", n, world.sheet.title)
     for _, question in ipairs(questions_of(world)) do
@@ -230,12 +239,81 @@ function course.solutions(number)
         question.unit or "", tolerance_text(question))
       lines[#lines + 1] = "      " .. question.how
     end
-    lines[#lines + 1] = "  The questions at the end:"
-    for i, words in ipairs(world.sheet.discussion(world.given, world.secret)) do
+    local discussion = world.sheet.discussion and world.sheet.discussion(world.given, world.secret) or {}
+    if #discussion > 0 then lines[#lines + 1] = "  The questions at the end:" end
+    for i, words in ipairs(discussion) do
       lines[#lines + 1] = wrapped(string.format("  %d.", i), words)
     end
   end
   return table.concat(lines, "\n") .. "\n"
 end
 
-local sheet, rounded = course.sheet, course.rounded -- for the sheets
+--- The names of all questions: { "1a", "1b", ... }.
+function course.question_names()
+  local names = {}
+  for _, n in ipairs(course.numbers()) do
+    for _, question in ipairs(questions_of(world_of(1, n))) do names[#names + 1] = n .. question.name end
+  end
+  return table.concat(names, " ")
+end
+
+-- ---- testing a sheet
+
+--- Raises unless the question is complete, its answer is right, and each known mistake is wrong and named.
+local function test_question(question, where)
+  local function must(good, ...) if not good then error(where .. ": " .. string.format(...), 0) end end
+  must(type(question.name) == "string" and question.name:match "^%l$", "its name must be one small letter")
+  must(type(question.asks) == "string", "needs asks = \"what is asked for\"")
+  must(type(question.how) == "string", "needs how = \"the way to the answer\", for --lab-solutions")
+  must(type(question.answer) == "number" and math.abs(question.answer) < math.huge, "its answer must be a finite number, got %s", question.answer)
+  must(question.whole or question.within or question.tolerance, "needs tolerance = (relative), within = (absolute) or whole = true")
+  must(question.whole or question.within or question.answer ~= 0, "its answer is 0, so it needs within = (absolute), not a relative tolerance")
+  must(course.verdict(question, question.answer), "its own answer %.9g is not right", question.answer)
+  for _, mistake in ipairs(question.mistakes or {}) do
+    if type(mistake[1]) == "number" then
+      local right, said = course.verdict(question, mistake[1])
+      must(not right, "the mistake %.9g ('%s') is within the tolerance of the answer %.9g", mistake[1], mistake[2], question.answer)
+      must(said:find(mistake[2], 1, true), "the mistake %.9g gets the hint '%s', not '%s'", mistake[1], said, mistake[2])
+    end
+  end
+end
+
+local function shown(value)
+  if type(value) ~= "table" then return type(value) == "string" and string.format("%q", value) or tostring(value) end
+  local parts = {}
+  for name, part in pairs(value) do parts[#parts + 1] = name .. " = " .. shown(part) end
+  table.sort(parts)
+  return "{ " .. table.concat(parts, ", ") .. " }"
+end
+
+--- Works the sheet with student numbers 1 to 20 and returns what the first of them sees.
+function course.test(n)
+  for number = 1, 20 do
+    local world = world_of(number, n)
+    if world.sheet.experiment then course.experiment(number, n, world.sheet.try_with) end
+    if world.sheet.discussion then world.sheet.discussion(world.given, world.secret) end
+    local names = {}
+    for i, question in ipairs(questions_of(world)) do
+      local where = string.format("sheet %d, student number %d, question %s", n, number, question.name or "number " .. i)
+      test_question(question, where)
+      if names[question.name] then error(where .. ": the name is used twice", 0) end
+      names[question.name] = true
+    end
+  end
+  local world = world_of(1, n)
+  local lines = { string.format("Sheet %d: %s, as student number 1 sees it", n, world.sheet.title or "without a title"),
+    string.format("lab.given(%d) --> %s", n, shown(world.given)) }
+  for _, question in ipairs(questions_of(world)) do
+    lines[#lines + 1] = string.format('check("%d%s", ...)  %s%s; task %s', n, question.name, question.asks,
+      question.unit and ", in " .. question.unit or "", question.task or "not given")
+    for _, mistake in ipairs(question.mistakes or {}) do
+      if type(mistake[1]) == "number" then lines[#lines + 1] = string.format("    %-12.6g %s", mistake[1], mistake[2]) end
+    end
+  end
+  lines[#lines + 1] = "All answers are right for student numbers 1 to 20, and no known mistake is."
+  return table.concat(lines, "\n") .. "\n"
+end
+
+function course.test_last() return course.test(course.last) end
+
+sheet, rounded = course.sheet, course.rounded -- for the sheets

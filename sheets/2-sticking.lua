@@ -29,6 +29,7 @@ sheet(2, {
   end,
 
   -- The torque rises by x a time unit until 4 Rd; a sensor of torque with 0.4 % of noise, one of angle that sees 0.0002.
+  try_with = 1,
   experiment = function(given, secret, slope)
     if not slope then error("give it a slope: by how much the torque rises in a time unit, lab.experiment(2, 5)", 0) end
     if slope < 0.1 or slope > 2000 then

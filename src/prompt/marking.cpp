@@ -1,0 +1,440 @@
+#include "prompt/marking.hpp"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/resource.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <charconv>
+#include <chrono>
+#include <csignal>
+#include <cstdlib>
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <set>
+#include <string>
+#include <system_error>
+#include <thread>
+#include <vector>
+
+#include "api/lab_course.hpp"
+#include "files/file.hpp"
+#include "prompt/output.hpp"
+#include "prompt/script.hpp"
+#include "text/characters.hpp"
+#include "text/words.hpp"
+
+namespace dinal::prompt {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr double usual_seconds = 5;          // for one hand-in, unless --max-time says otherwise
+constexpr double grace = 5;                  // seconds that a stopped script has for its page
+constexpr rlim_t largest_file = 10'000'000;  // bytes: no hand-in fills the disk with what it prints
+constexpr std::uintmax_t largest_script = 1'000'000;
+constexpr std::size_t longest_name = 60;
+constexpr int deepest_folder = 3;
+
+struct Answer {
+    bool right = false;
+    int tries = 0;
+    std::string said;  ///< of the first wrong value
+};
+
+struct HandIn {
+    fs::path file;
+    std::string name;                                               ///< as the table shows it
+    std::string text;                                               ///< the script
+    std::map<std::int64_t, std::map<std::string, Answer>> answers;  ///< of each number that it uses
+    std::int64_t number = 0;                                        ///< whose answers count; 0: none
+    std::vector<std::string> remarks;
+};
+
+// ---- running
+
+/// A file name that no shell, terminal or folder can stumble over.
+std::string safe_name(const std::string& name) {
+    std::string plain;
+    for (const char c : name.substr(0, longest_name)) {
+        plain += text::is_name_char(c) || c == '-' || c == '.' ? c : '_';
+    }
+    return plain;
+}
+
+/// All scripts of the folder and those below it, in the order of their names. Links are not followed.
+std::vector<HandIn> hand_ins_of(const fs::path& folder) {
+    std::vector<HandIn> all;
+    std::error_code wrong;
+    fs::recursive_directory_iterator place(folder, fs::directory_options::skip_permission_denied, wrong);
+    for (; !wrong && place != fs::recursive_directory_iterator(); place.increment(wrong)) {
+        if (place.depth() >= deepest_folder) place.disable_recursion_pending();
+        if (text::ending_of(place->path().string()) != ".lua") continue;
+        HandIn& hand_in = all.emplace_back();
+        hand_in.file = place->path();
+        hand_in.name = text::displayable(place->path().lexically_relative(folder).string());
+    }
+    std::sort(all.begin(), all.end(), [](const HandIn& a, const HandIn& b) { return a.file < b.file; });
+    return all;
+}
+
+/// In the child: the limits, the streams and the folder of a hand-in; then the program. Never returns.
+[[noreturn]] void become_hand_in(const std::string& desk, std::vector<std::string>& words) {
+    ::setpgid(0, 0);
+    const rlimit file_size{largest_file, largest_file};
+    ::setrlimit(RLIMIT_FSIZE, &file_size);
+    const int input = ::open("/dev/null", O_RDONLY);
+    const int output = ::chdir(desk.c_str()) == 0 ? ::open("output.txt", O_WRONLY | O_CREAT | O_TRUNC, 0644) : -1;
+    if (input < 0 || output < 0) ::_exit(exit_code::usage);
+    ::dup2(input, STDIN_FILENO);
+    ::dup2(output, STDOUT_FILENO);
+    ::dup2(output, STDERR_FILENO);
+    std::vector<char*> pointers;
+    for (std::string& word : words) pointers.push_back(word.data());
+    pointers.push_back(nullptr);
+    ::execv("/proc/self/exe", pointers.data());
+    ::_exit(exit_code::usage);
+}
+
+/// The status of the child, or nothing if it did not end in time and was killed.
+std::optional<int> wait_for(pid_t child, double seconds) {
+    const auto latest = std::chrono::steady_clock::now() + std::chrono::duration<double>(seconds);
+    int status = 0;
+    std::optional<int> ended;
+    while (!ended && std::chrono::steady_clock::now() < latest) {
+        if (::waitpid(child, &status, WNOHANG) == child) {
+            ended = status;
+        } else {
+            std::this_thread::sleep_for(std::chrono::milliseconds(2));
+        }
+    }
+    ::kill(-child, SIGKILL);  // with all that it has started
+    if (!ended) ::waitpid(child, &status, 0);
+    return ended;
+}
+
+/// The first line that the program has said about an error.
+std::string first_error(const std::string& desk) {
+    const auto output = files::read_file(desk + "/output.txt");
+    const std::string text = output ? *output : "";
+    const std::size_t at = text.rfind("\ndinal: ");
+    const std::string line = at != std::string::npos       ? text.substr(at + 8)
+                             : text.starts_with("dinal: ") ? text.substr(7)
+                                                           : "ended with an error";
+    constexpr std::size_t longest_line = 100;
+    return text::displayable(text::cut_to_columns(line.substr(0, line.find('\n')), longest_line));
+}
+
+std::optional<std::string> fault_of(std::optional<int> status, const std::string& desk) {
+    if (!status) return "did not end and was killed";
+    if (WIFSIGNALED(*status)) return WTERMSIG(*status) == SIGXFSZ ? "wrote more than 10 MB" : "was ended by the system";
+    return WEXITSTATUS(*status) == exit_code::ok ? std::nullopt : std::optional(first_error(desk));
+}
+
+// ---- reading the marks
+
+/// The words of a line of --lab-marks behind the name of the script, which has no quotes here: number, question,
+/// verdict, tries, value, and what was said.
+std::vector<std::string> words_of(const std::string& line) {
+    std::vector<std::string> words;
+    std::size_t at = line.find("\",");
+    at = at == std::string::npos ? line.size() : at + 2;
+    for (int i = 0; i < 5 && at < line.size(); ++i) {
+        const std::size_t end = std::min(line.find(',', at), line.size());
+        words.push_back(line.substr(at, end - at));
+        at = end + 1;
+    }
+    if (at < line.size()) words.emplace_back(text::trimmed(std::string_view(line).substr(at), "\""));
+    return words;
+}
+
+void read_marks(HandIn& hand_in, const std::string& file) {
+    const auto lines = files::read_file(file);
+    const std::string text = lines ? *lines : "";
+    for (std::size_t at = 0; at < text.size();) {
+        const std::size_t end = std::min(text.find('\n', at), text.size());
+        const auto words = words_of(text.substr(at, end - at));
+        at = end + 1;
+        if (words.size() < 6 || words[2] == "begun" || words[1] == "0") continue;
+        Answer& answer = hand_in.answers[std::atoll(words[0].c_str())][words[1]];
+        answer.right = words[2] == "right";
+        answer.tries = std::atoi(words[3].c_str());
+        if (!answer.right && answer.said.empty()) {
+            answer.said = words[5].substr(std::min(words[5].find(": ") + 2, words[5].size()));
+        }
+    }
+}
+
+/// The numbers that stand in a file name, of four digits or more: one of them is probably that of the student.
+std::set<std::int64_t> numbers_in(const std::string& name) {
+    std::set<std::int64_t> numbers;
+    for (std::size_t at = 0; at < name.size();) {
+        std::size_t end = at;
+        while (end < name.size() && text::is_digit(name[end])) ++end;
+        std::int64_t number = 0;
+        if (end - at >= 4 && end - at <= 9) std::from_chars(name.data() + at, name.data() + end, number);
+        if (number > 0) numbers.insert(number);
+        at = end + 1;
+    }
+    return numbers;
+}
+
+/// Decides whose answers count: those of the number in the name of the file, else those of the number with most
+/// answers.
+void choose_number(HandIn& hand_in) {
+    const auto named = numbers_in(hand_in.name);
+    std::size_t most = 0;
+    for (const auto& [number, answers] : hand_in.answers) {
+        const std::size_t weight = answers.size() + (named.contains(number) ? 1000 : 0);
+        if (weight > most) hand_in.number = number;
+        most = std::max(most, weight);
+    }
+    if (hand_in.number == 0) {
+        hand_in.remarks.emplace_back("no answer was checked");
+    } else if (const auto in_name = numbers_in(hand_in.file.filename().string());
+               !in_name.empty() && !named.contains(hand_in.number)) {
+        hand_in.remarks.push_back(
+            fmt::format("uses number {}, but its name says {}", hand_in.number, *in_name.begin()));
+    }
+    for (const auto& [number, answers] : hand_in.answers) {
+        if (number != hand_in.number)
+            hand_in.remarks.push_back(fmt::format("also uses number {}, which is not counted", number));
+    }
+}
+
+std::string sheet_of(const std::string& question) {
+    return question.substr(0, question.find_first_not_of("0123456789"));
+}
+
+std::set<std::string> sheets_of(const HandIn& hand_in) {
+    std::set<std::string> sheets;
+    const auto found = hand_in.answers.find(hand_in.number);
+    if (found != hand_in.answers.end()) {
+        for (const auto& [question, answer] : found->second) sheets.insert(sheet_of(question));
+    }
+    return sheets;
+}
+
+/// Several sheets of one student are welcome; the same sheet twice, or the same text, is pointed out.
+void compare(std::vector<HandIn>& all) {
+    std::map<std::string, const HandIn*> first, texts;
+    for (HandIn& hand_in : all) {
+        if (!hand_in.text.empty()) {
+            const auto [same, is_new] = texts.emplace(hand_in.text, &hand_in);
+            if (!is_new) hand_in.remarks.push_back("the same text as " + same->second->name);
+        }
+        for (const std::string& sheet : sheets_of(hand_in)) {
+            const auto [other, is_new] = first.emplace(fmt::format("{}/{}", hand_in.number, sheet), &hand_in);
+            if (!is_new)
+                hand_in.remarks.push_back(
+                    fmt::format("sheet {} of this number is also in {}", sheet, other->second->name));
+        }
+    }
+}
+
+// ---- the table
+
+using Rows = std::vector<std::vector<std::string>>;
+
+/// "+" right at once, a number right after so many tries, "-" wrong, "." not tried, "" another sheet.
+std::string sign_of(const HandIn& hand_in, const std::string& question) {
+    const auto answers = hand_in.answers.find(hand_in.number);
+    if (answers == hand_in.answers.end()) return "";
+    const auto found = answers->second.find(question);
+    if (found == answers->second.end()) return sheets_of(hand_in).contains(sheet_of(question)) ? "." : "";
+    if (!found->second.right) return "-";
+    return found->second.tries == 1 ? "+" : fmt::format("{}", found->second.tries);
+}
+
+/// The questions of the sheets that anybody has tried.
+std::vector<std::string> questions_of(const std::vector<HandIn>& all, const std::string& names) {
+    std::set<std::string> tried;
+    for (const HandIn& hand_in : all) tried.merge(sheets_of(hand_in));
+    std::vector<std::string> questions;
+    for (std::size_t at = 0; at < names.size();) {
+        const std::size_t end = std::min(names.find(' ', at), names.size());
+        if (const std::string name = names.substr(at, end - at); tried.contains(sheet_of(name)))
+            questions.push_back(name);
+        at = end + 1;
+    }
+    return questions;
+}
+
+Rows table_of(const std::vector<HandIn>& all, const std::vector<std::string>& questions) {
+    Rows rows{{"hand-in", "number"}};
+    rows[0].insert(rows[0].end(), questions.begin(), questions.end());
+    rows[0].insert(rows[0].end(), {"right", "remark"});
+    for (const HandIn& hand_in : all) {
+        std::vector<std::string> row{hand_in.name, hand_in.number == 0 ? "none" : fmt::format("{}", hand_in.number)};
+        int right = 0, asked = 0;
+        for (const std::string& question : questions) {
+            row.push_back(sign_of(hand_in, question));
+            asked += row.back().empty() ? 0 : 1;
+            right += row.back().empty() || row.back() == "." || row.back() == "-" ? 0 : 1;
+        }
+        row.push_back(asked == 0 ? "" : fmt::format("{} of {}", right, asked));
+        row.push_back(fmt::format("{}", fmt::join(hand_in.remarks, "; ")));
+        rows.push_back(std::move(row));
+    }
+    return rows;
+}
+
+/// The rows of the summary: how a question went, and the hint that most students got.
+Rows summary_of(const std::vector<HandIn>& all, const std::vector<std::string>& questions) {
+    Rows rows{{"question", "tried", "right", "at once", "most frequent hint"}};
+    for (const std::string& question : questions) {
+        int tried = 0, right = 0, at_once = 0;
+        std::map<std::string, int> hints;
+        for (const HandIn& hand_in : all) {
+            const auto answers = hand_in.answers.find(hand_in.number);
+            if (answers == hand_in.answers.end() || !answers->second.contains(question)) continue;
+            const Answer& answer = answers->second.at(question);
+            ++tried;
+            right += answer.right ? 1 : 0;
+            at_once += answer.right && answer.tries == 1 ? 1 : 0;
+            if (!answer.said.empty()) ++hints[answer.said];
+        }
+        const auto most = std::max_element(hints.begin(), hints.end(),
+                                           [](const auto& a, const auto& b) { return a.second < b.second; });
+        rows.push_back({question, fmt::format("{}", tried), fmt::format("{}", right), fmt::format("{}", at_once),
+                        most == hints.end() ? "" : fmt::format("{}x {}", most->second, most->first)});
+    }
+    return rows;
+}
+
+/// Columns side by side.
+std::string aligned(const Rows& rows) {
+    std::vector<std::size_t> widths;
+    for (const auto& row : rows) {
+        widths.resize(std::max(widths.size(), row.size()));
+        for (std::size_t i = 0; i < row.size(); ++i) widths[i] = std::max(widths[i], text::columns(row[i]));
+    }
+    std::string text;
+    for (const auto& row : rows) {
+        std::string line;
+        for (std::size_t i = 0; i < row.size(); ++i) {
+            line += row[i];
+            if (i + 1 < row.size()) line += std::string(widths[i] - text::columns(row[i]) + 2, ' ');
+        }
+        text += std::string(text::trimmed(line, "", " ")) + "\n";
+    }
+    return text;
+}
+
+std::string csv_of(const Rows& rows) {
+    std::string text;
+    for (const auto& row : rows) {
+        for (std::size_t i = 0; i < row.size(); ++i) {
+            std::string field = row[i];
+            for (std::size_t at = field.find('"'); at != std::string::npos; at = field.find('"', at + 2))
+                field.insert(at, 1, '"');
+            text += (i == 0 ? "\"" : ",\"") + field + "\"";
+        }
+        text += "\n";
+    }
+    return text;
+}
+
+// ---- all of it
+
+struct Marking {
+    fs::path folder;  ///< of the hand-ins, as an absolute path
+    fs::path marked;  ///< FOLDER-marked
+    fs::path sheets;  ///< --sheets
+    double seconds;   ///< for each
+};
+
+void run_hand_in(const Marking& marking, HandIn& hand_in, std::size_t index) {
+    std::error_code wrong;
+    if (fs::symlink_status(hand_in.file, wrong).type() != fs::file_type::regular ||
+        fs::file_size(hand_in.file, wrong) > largest_script) {
+        hand_in.remarks.emplace_back("not run: it is not a file of at most 1 MB");
+        return;
+    }
+    if (const auto text = files::read_file(hand_in.file.string())) hand_in.text = *text;
+    const std::string stem = safe_name(hand_in.file.stem().string());
+    const fs::path desk = marking.marked / fmt::format("{:03}-{}", index, stem);
+    const std::string marks = (marking.marked / "marks.tmp").string(), script = stem + ".lua";
+    fs::create_directory(desk, wrong);
+    fs::copy_file(hand_in.file, desk / script, wrong);
+    if (wrong) {
+        hand_in.remarks.push_back("not run: " + wrong.message());
+        return;
+    }
+    std::vector<std::string> words{"dinal", "--report", fmt::format("--max-time={}", marking.seconds),
+                                   "--lab-marks=" + marks};
+    if (!marking.sheets.empty()) words.push_back("--sheets=" + marking.sheets.string());
+    words.insert(words.end(), {"--", script});
+    const pid_t child = ::fork();
+    if (child == 0) become_hand_in(desk.string(), words);
+    const auto status = child < 0 ? std::nullopt : wait_for(child, marking.seconds + grace);
+    if (auto fault = fault_of(status, desk.string())) hand_in.remarks.push_back(std::move(*fault));
+    read_marks(hand_in, marks);
+    fs::remove(marks, wrong);
+}
+
+/// An empty FOLDER-marked; the reason if there cannot be one.
+std::optional<std::string> empty_folder(const fs::path& marked) {
+    std::error_code wrong;
+    const bool there = fs::exists(fs::symlink_status(marked, wrong));
+    if (there && !fs::exists(marked / "marks.csv") && !fs::is_empty(marked, wrong)) {
+        return "it exists and is not the result of an earlier marking: move it away";
+    }
+    fs::remove_all(marked, wrong);
+    fs::create_directory(marked, wrong);
+    return wrong ? std::optional(wrong.message()) : std::nullopt;
+}
+
+int fail(const std::string& sentence) {
+    complain("--mark: " + sentence);
+    return exit_code::script_error;
+}
+
+}  // namespace
+
+int mark(const Arguments& arguments) {
+    std::error_code wrong;
+    const std::string shown = text::displayable(arguments.student);
+    if (arguments.student.empty() || !fs::is_directory(arguments.student, wrong)) {
+        return fail(fmt::format("'{}' is not a folder; for example dinal --mark hand-ins", shown));
+    }
+    const auto names = api::lab_question_names();
+    if (!names) return fail(names.error().message());
+    fs::path folder = fs::absolute(arguments.student).lexically_normal();
+    if (!folder.has_filename()) folder = folder.parent_path();
+    const Marking marking{folder, folder.string() + "-marked",
+                          arguments.sheets.empty() ? fs::path() : fs::absolute(arguments.sheets),
+                          arguments.limits.seconds > 0 ? arguments.limits.seconds : usual_seconds};
+    std::vector<HandIn> all = hand_ins_of(folder);
+    if (all.empty()) return fail(fmt::format("there is no .lua file in '{}'", shown));
+    if (const auto reason = empty_folder(marking.marked)) {
+        return fail(fmt::format("cannot use '{}': {}", text::displayable(marking.marked.string()), *reason));
+    }
+    for (std::size_t i = 0; i < all.size(); ++i) {
+        run_hand_in(marking, all[i], i + 1);
+        choose_number(all[i]);
+    }
+    compare(all);
+    const auto questions = questions_of(all, *names);
+    const Rows table = table_of(all, questions);
+    say(aligned(table));
+    std::set<std::int64_t> students;
+    std::size_t remarks = 0;
+    for (const HandIn& hand_in : all) {
+        if (hand_in.number > 0) students.insert(hand_in.number);
+        remarks += hand_in.remarks.empty() ? 0 : 1;
+    }
+    say(fmt::format("\n{} hand-ins of {} students, {} with a remark\n", all.size(), students.size(), remarks));
+    if (!questions.empty()) say("\n" + aligned(summary_of(all, questions)));
+    if (const auto written = files::write_file((marking.marked / "marks.csv").string(), csv_of(table)); !written) {
+        return fail(written.error().message());
+    }
+    say(fmt::format("\nmarks.csv and the pages are in {}\n", text::displayable(marking.marked.string())));
+    return exit_code::ok;
+}
+
+}  // namespace dinal::prompt

@@ -1,0 +1,75 @@
+-- What people ask help(), and a piece of the page that answers first.
+package.path = "tests/lua/?.lua;" .. package.path
+local support = require "support"
+
+local questions = {
+  { "fourier", "run:spectrum()" },
+  { "export csv", 'run:save "run.csv"' },
+  { "how do I export to excel", 'run:save "run.csv"' },
+  { "compare two runs", "plot{ { a.t, a.theta" },
+  { "plot two curves in one picture", "plot{ { a.t, a.theta" },
+  { "save a plot as png", 'file = "a.svg"' },
+  { "phase portrait", "run:phase_plot()" },
+  { "resonance curve", "sys:response{" },
+  { "frequency response", "sys:response{" },
+  { "steady state", "sys:steady{" },
+  { "limit cycle", "sys:steady{ belt" },
+  { "natural frequency", "sys.omega0" },
+  { "damping ratio", "sys.zeta" },
+  { "viscous damping", "C of system{}" },
+  { "static friction", "Re (>= Rd)" },
+  { "coefficient of friction", "Rd is the torque" },
+  { "stiction", "Re (>= Rd)" },
+  { "step size", "dt only chooses the rows" },
+  { "accuracy", "right to rounding" },
+  { "parameter study", "sweep{" },
+  { "how do I vary two parameters", "sweep{" },
+  { "optimise a parameter", "minimise{" },
+  { "animation", "run:animate()" },
+  { "pid controller", "excitation.sampled has a memory" },
+  { "feedback", "M may depend on the motion" },
+  { "impulse", "excitation.pulse" },
+  { "wall impact", "walls = {" },
+  { "two masses", "bodies = {" },
+  { "clutch", "bodies = {" },
+  { "force from a csv file", "excitation.samples" },
+  { "measured data", "excitation.samples" },
+  { "import data", 'data.load "file.csv"' },
+  { "read a csv file", "data.load" },
+  { "si units", "units of a system" },
+  { "stop a run", "Ctrl-C stops" },
+  { "why is it so slow", "run:explain() says" },
+  { "chaos", "bifurcation{" },
+  { "poincare section", "run:poincare" },
+  { "energy loss", "run:energy()" },
+  { "what happened in my run", "run:explain()" },
+  { "same random numbers", "seed = 1" },
+  { "fit a model to data", "identify" },
+  { "degrees", "math.rad(90)" },
+  { "python", "indices" },
+  { "append to a list", "table.insert" },
+  { "hand in my report", "dinal --report" },
+  { "for loop", "for i = 1, 10 do" },
+  { "rounding", "math.floor(x + 0.5)" },
+  { "undo", ":history lists" },
+  { "quit", "Ctrl-D" },
+  { "dead zone", "sys.dead_zone" },
+  { "jupyter", "--jupyter-install" },
+}
+
+local name = support.temporary ".lua"
+local code = {}
+for _, case in ipairs(questions) do code[#code + 1] = ("print('\\0') help %q"):format(case[1]) end
+support.write(name, table.concat(code, "\n"))
+local pipe <close> = io.popen(('"%s" %s 2>&1'):format(support.program(), name))
+local pages, i = pipe:read "a", 0
+assert(#questions >= 50)
+for page in pages:gmatch "%z\n([^\0]*)" do
+  i = i + 1
+  local question, piece = table.unpack(questions[i])
+  support.test(("help %q"):format(question), function()
+    local head = page:match("^" .. ("[^\n]*\n?"):rep(6))
+    assert(head:find(piece, 1, true), "does not begin with " .. piece .. " but:\n" .. head)
+  end)
+end
+support.finish()
