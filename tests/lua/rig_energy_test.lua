@@ -83,7 +83,7 @@ test("what a run of several bodies can do besides: save, load, status, plot, go 
     local run = rig:simulate { theta0 = { a = 1 }, t_end = 5, dt = 0.5 }
     local file = os.tmpname() .. ".csv"
     run:save(file)
-    local back = data.load(file)
+    local back = load(file)
     os.remove(file)
     equal(back["pad.torque"][3], run.pad.torque[3])
     equal(#back, 11)

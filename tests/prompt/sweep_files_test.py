@@ -162,7 +162,7 @@ class SweepFiles(unittest.TestCase):
                     (self.home / name).symlink_to("other")
                     code, _, err = self.run_script()
                     self.assertEqual(code, 1)
-                    self.assertIn(f"sweep: '{name}' is no folder; remove it, or give another file", err)
+                    self.assertIn(f"sweep: '{name}' is not a folder; remove it, or give another file", err)
                     self.assertEqual(sorted(entry.name for entry in other.iterdir()), sorted(kept))
                     (self.home / name).unlink()
                     shutil.rmtree(other)

@@ -236,8 +236,9 @@ Engine::Engine(const AssemblyProblem& problem, AssemblyRun& result)
         mode_ = problem.before->mode;
         for (std::size_t j = 0; j < joints; ++j) leaned_[j] = mode_.leans[j] != 0 ? 1 : 0;
         for (std::size_t i = 0; i < n(); ++i) mechanics_.loads()[i].remember(problem.before->controllers[i]);
-        watches_ = problem.before->watches, echoes_ = problem.before->echoes;
-        heading_ = problem.before->heading;
+        echoes_ = problem.before->echoes;
+        if (!problem.before->watches.empty()) watches_ = problem.before->watches;
+        if (!problem.before->heading.empty()) heading_ = problem.before->heading;
     }
     std::vector<Between> between;
     for (const Joint& joint : problem.system.joints) {

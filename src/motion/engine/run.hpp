@@ -52,9 +52,9 @@ struct Carry {
     std::vector<double> y;
     Mode mode;
     std::vector<std::vector<Signal::Memory>> controllers;  ///< of the loads of each body
-    std::vector<Watch> watches;                            ///< of the events of the user
+    std::vector<Watch> watches;                            ///< of the events of the user; may be left out
     std::vector<std::pair<double, int>> echoes;            ///< breaks that delays bring back
-    std::vector<model::Motion> heading;                    ///< of bodies without dry friction
+    std::vector<model::Motion> heading;                    ///< of bodies without dry friction; may be left out
     std::shared_ptr<const History> past;
     double born = 0;  ///< when the first of these runs began
 };
