@@ -24,7 +24,7 @@ with tempfile.TemporaryDirectory() as folder:
 record["theta"] = np.radians(record.angle)
 fit = dinal.identify(data=record[["time", "theta"]], t="time", I=0.5)
 for value, true in (("k", 40), ("C", 0.15), ("Rd", 0.4)):
-    error = fit.error[value]
+    error = fit.std_error[value]
     print(f"{value:2} = {fit[value]:6.3f}, true {true:5.2f}, within three standard errors: "
           f"{abs(fit[value] - true) < 3 * error}")
 print(f"noise {fit.noise:.4f} rad, {len(fit.residual)} samples")

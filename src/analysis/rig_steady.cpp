@@ -676,18 +676,18 @@ std::vector<RigMotion> other_motions(const RigQuestion& question, const RigMotio
         if (!stands(known)) continue;
         size = std::max({size, std::fabs(question.drive.theta0[i]), std::fabs(question.drive.velocity0[i])});
     }
-    const auto alike = [&](const RigMotion& a, const RigMotion& b) {
+    const auto same_motion = [&](const RigMotion& a, const RigMotion& b) {
         if (stands(a) && stands(b)) return true;
         if (a.facts.status != b.facts.status) return false;
         if (a.facts.status != SteadyStatus::steady) return true;
-        bool same = true;
+        bool equal = true;
         for (std::size_t i = 0; i < n; ++i) {
             const double ways_a = a.high[i] - a.low[i], ways_b = b.high[i] - b.low[i];
             const double ends_a = std::max(std::fabs(a.high[i]), std::fabs(a.low[i]));
             const double ends_b = std::max(std::fabs(b.high[i]), std::fabs(b.low[i]));
-            same = same && std::fabs(ways_a - ways_b) <= 1e-4 * size && std::fabs(ends_a - ends_b) <= 1e-4 * size;
+            equal = equal && std::fabs(ways_a - ways_b) <= 1e-4 * size && std::fabs(ends_a - ends_b) <= 1e-4 * size;
         }
-        return same;
+        return equal;
     };
     const double period = known.facts.period > 0 ? known.facts.period : 2 * std::numbers::pi;
     constexpr int starts = 8;
@@ -716,8 +716,8 @@ std::vector<RigMotion> other_motions(const RigQuestion& question, const RigMotio
         }
         RigMotion found = steady_motion(other, monitor);
         if (found.facts.outcome == model::Outcome::interrupted) break;
-        const auto is_it = [&](const RigMotion& seen) { return alike(seen, found); };
-        if (found.facts.status == SteadyStatus::none || alike(known, found) ||
+        const auto is_it = [&](const RigMotion& seen) { return same_motion(seen, found); };
+        if (found.facts.status == SteadyStatus::none || same_motion(known, found) ||
             std::any_of(others.begin(), others.end(), is_it)) {
             continue;
         }

@@ -925,7 +925,7 @@ constexpr lua::Member bodies_run_members[] = {
     {lua::a_method<save_bodies>,
      {"rig_run:save(file)", "Writes rig_run:data() as CSV, with the names of bodies and links in those of the columns.",
       DINAL_RIG_RUN "file = os.tmpname() .. \".csv\"\nrun:save(file)\n"
-                    "print(data.load(file)[\"motor.velocity\"][1])  --> 3.0\nos.remove(file)"}},
+                    "print(load(file)[\"motor.velocity\"][1])  --> 3.0\nos.remove(file)"}},
     {lua::a_field<status_of_bodies>,
      {"rig_run.status -> string", "How it ended in one word, as of a run of one body.",
       DINAL_RIG_RUN "print(run.status)  --> end"}},

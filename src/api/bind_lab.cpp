@@ -266,12 +266,13 @@ constexpr lua::Member check_members[] = {
 
 }  // namespace
 
-const lua::Class lab_module = {"lab",
-                               {"lab.NAME(...)",
-                                "The lab course: seven sheets of two hours each, in docs/lab. Systems differ by student "
-                                "number, and check(question, value) judges answers.",
-                                "lab.number(4711)\nprint(lab.given(1).theta0 > 0)  --> true"},
-                               lab_module_members};
+const lua::Class lab_module = {
+    "lab",
+    {"lab.NAME(...)",
+     "The lab course: seven sheets of two hours each, in docs/lab. Systems differ by student "
+     "number, and check(question, value) judges answers.",
+     "lab.number(4711)\nprint(lab.given(1).theta0 > 0)  --> true"},
+    lab_module_members};
 
 const lua::Class check_functions = {
     "check",

@@ -359,7 +359,8 @@ constexpr lua::Member run_members[] = {
       DINAL_RUN "print(run.t_end)  --> 2.0"}},
     {lua::a_value<RunHandle,
                   [](const Run& run) {
-                      return run.origin || run.whole ? std::optional(status_word(run.trajectory.outcome)) : std::nullopt;
+                      return run.origin || run.whole ? std::optional(status_word(run.trajectory.outcome))
+                                                     : std::nullopt;
                   }>,
      {"run.status -> string or nil",
       "How the run ended, in one word: \"end\" (in motion), \"rest\", \"stuck\", \"event\" (one "

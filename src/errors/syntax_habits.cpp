@@ -308,8 +308,9 @@ std::string syntax_habit(lua_State* L, const lua::SyntaxMessage& message, std::s
     luaL_checkstack(L, LUA_MINSTACK, "for the habits of others");
     const Stumble stumble = stumble_in(message, statement);
     for (std::string advice :
-         {foreign_tokens(statement, false), printed_sign(message, statement), doubled_sign(stumble), name_without_quotes(stumble), two_words(L, stumble),
-          misspelt_keyword(stumble), missing_star(stumble), missing_return(stumble), other_grammar(stumble)}) {
+         {foreign_tokens(statement, false), printed_sign(message, statement), doubled_sign(stumble),
+          name_without_quotes(stumble), two_words(L, stumble), misspelt_keyword(stumble), missing_star(stumble),
+          missing_return(stumble), other_grammar(stumble)}) {
         if (!advice.empty()) {
             return advice;
         }

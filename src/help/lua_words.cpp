@@ -156,7 +156,7 @@ constexpr std::array<Word, 65> vocabulary = {{
     {"table.unpack unpack table.pack table.move", "table.unpack(list) -> values",
      "The elements of a list as separate values: Python's *list.", "print(math.max(table.unpack{ 1, 5, 3 }))  --> 5"},
     {"io.open io.lines io.read io.write io", "io.open(name), io.lines(name), io.write(...)",
-     "Files as text. For columns of numbers use data.load \"file.csv\".",
+     "Files as text. For columns of numbers use load \"file.csv\".",
      "io.write(\"no newline\") print()  --> no newline"},
     {"os.time os.date os.clock os.exit os.getenv os.tmpname os.remove os.rename os",
      "os.clock(), os.date(), os.exit(code)",

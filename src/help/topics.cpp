@@ -70,7 +70,7 @@ constexpr std::array<Topic, 44> topics = {{
      "(docs/csv-elsewhere.md).\n",
      "csv save write file disk results columns"},
     {"import",
-     "data.load \"file.csv\" reads columns, trajectory.load \"run.csv\" a run, and\n"
+     "load \"file.csv\" reads columns, or a run that run:save wrote, and\n"
      "excitation.samples \"force.csv\" an M.\n",
      "read load open csv file data record measurement measured"},
     {"compare comparison overlay superimpose",
@@ -141,7 +141,7 @@ constexpr std::array<Topic, 44> topics = {{
      "two several bodies mass chain degrees freedom"},
     {"measured measurement",
      "M from a table: excitation.samples{ t = { 0, 1 }, M = { 0, 2 } } or excitation.samples \"force.csv\".\n"
-     "A measured motion: identify{ data = trajectory.load \"decay.csv\" } finds the system.\n",
+     "A measured motion: identify{ data = load \"decay.csv\" } finds the system.\n",
      "table samples force file csv record data"},
     {"dimension dimensions si newton",
      "Any consistent units: units of a system name them, system{ ..., units = { theta = \"rad\" } }, and\n"

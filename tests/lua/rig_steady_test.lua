@@ -98,7 +98,7 @@ end)
 
 test("a relay that looks at another body hunts", function()
     local rig = system { bodies = { a = { I = 1, C = 0.3 }, b = { I = 0.5, k = 1, C = 0.1, Rd = 0.05 } }, links = { rod = { "a", "b", k = 4, C = 0.2 } } }
-    local M = { a = excitation.relay { on = -0.2, off = 0.2, levels = { 1, -1 }, of = "theta.b" } }
+    local M = { a = excitation.relay { on = -0.2, off = 0.2, amplitude = { 1, -1 }, of = "theta.b" } }
     local s = rig:steady { M = M }
     equal(s.status, "steady")
     local long = rig:simulate { M = M, t_end = 400 }

@@ -173,7 +173,7 @@ class SweepFiles(unittest.TestCase):
                 (self.parts / name).symlink_to(self.home / "map.lua")
                 code, _, err = self.run_script()
                 self.assertEqual(code, 1)
-                self.assertIn(f"sweep: 'map.csv.parts/{name}' is no regular file; remove it", err)
+                self.assertIn(f"sweep: 'map.csv.parts/{name}' is not a regular file; remove it", err)
                 shutil.rmtree(self.parts)
 
     def test_ctrl_c_keeps_every_point(self):
