@@ -168,9 +168,9 @@ private:
         const auto of = [this](const char* what, std::size_t j) {
             return system_.named ? fmt::format("{} of {}", what, name(j)) : std::string(what);
         };
-        const auto note = [&](double value, std::string what) {
-            if (value > 0) given.push_back({value, std::move(what)});
-            if (value < 0) taken.push_back({-value, std::move(what)});
+        const auto note = [&](double value, const std::string& what) {
+            if (value > 0) given.push_back({value, what});
+            if (value < 0) taken.push_back({-value, what});
         };
         for (std::size_t i = 0; i < system_.bodies.size(); ++i) {
             note(works.input[i], of("M", i));

@@ -56,7 +56,8 @@ bool with_number_of_law(model::Friction& friction, std::string_view name,
     using namespace model::laws;
     if (const auto* law = friction.as<AsymmetricCoulomb>()) {
         AsymmetricCoulomb changed = *law;
-        for (auto& [way, own] : {std::pair{"forward.", &changed.forward}, std::pair{"backward.", &changed.backward}}) {
+        for (const auto& [way, own] :
+             {std::pair{"forward.", &changed.forward}, std::pair{"backward.", &changed.backward}}) {
             if (name == std::string(way) + "Rd") return change({&own->kinetic}), friction = changed, true;
             if (name == std::string(way) + "Re") return change({&own->breakaway}), friction = changed, true;
         }
@@ -174,10 +175,12 @@ public:
         }
         question.measured = Eigen::Map<const Eigen::VectorXd>(all.data(), static_cast<Eigen::Index>(all.size()));
         constexpr double first = 2.2;
-        for (double length = first * swing_; t_.front() + length < t_.back(); length *= 2) {
+        double length = first * swing_;
+        while (t_.front() + length < t_.back()) {
             const auto rows = std::upper_bound(t_.begin(), t_.end(), t_.front() + length) - t_.begin();
             const Eigen::Index count = known_until_[static_cast<std::size_t>(rows) - 1];
             if (count > n + 4) question.stages.push_back(count);
+            length *= 2;
         }
         question.model = [this](const Eigen::VectorXd& p, Eigen::Index count) { return predicted(p, count); };
         const auto found = analysis::general_fit(question);

@@ -88,7 +88,8 @@ int flow(std::vector<LegendEntry>& entries, double width) {
         entry.text = cut(entry.text, width - sample_width(entry.sample) - after_sample);
         const double own = sample_width(entry.sample) + after_sample + width_of(entry.text);
         if (column_length > 0) {
-            x = i / column_length * most;
+            const auto column = i / column_length;
+            x = column * most;
             line = i % column_length;
         } else if (x > 0 && x + own > width) {
             x = 0;

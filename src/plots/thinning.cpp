@@ -129,7 +129,10 @@ public:
         const double dx = line.to.x - line.from.x, dy = line.to.y - line.from.y;
         const double steps = std::ceil(std::max(std::fabs(dx), std::fabs(dy)) / size_);
         walked_ += steps;
-        for (double i = 0; i < steps; ++i) dot({line.from.x + i / steps * dx, line.from.y + i / steps * dy});
+        for (int i = 0; i < static_cast<int>(steps); ++i) {
+            const double part = i / steps;
+            dot({line.from.x + part * dx, line.from.y + part * dy});
+        }
         dot(line.to);
     }
 
@@ -164,7 +167,8 @@ public:
             if (i % columns_ > 0 && counts_[i - 1] > count) {
                 strokes.all.back().to = from + size_;
             } else {
-                strokes.all.push_back({from, from + size_, (static_cast<double>(i / columns_) + 0.5) * size_});
+                const auto row = i / columns_;
+                strokes.all.push_back({from, from + size_, (static_cast<double>(row) + 0.5) * size_});
             }
         }
         return strokes;

@@ -94,6 +94,7 @@ std::vector<HandIn> hand_ins_of(const fs::path& folder) {
     ::dup2(output, STDOUT_FILENO);
     ::dup2(output, STDERR_FILENO);
     std::vector<char*> pointers;
+    pointers.reserve(words.size() + 1);
     for (std::string& word : words) pointers.push_back(word.data());
     pointers.push_back(nullptr);
     ::execv("/proc/self/exe", pointers.data());
@@ -160,9 +161,9 @@ void read_marks(HandIn& hand_in, const std::string& file) {
         const auto words = words_of(text.substr(at, end - at));
         at = end + 1;
         if (words.size() < 6 || words[2] == "begun" || words[1] == "0") continue;
-        Answer& answer = hand_in.answers[std::atoll(words[0].c_str())][words[1]];
+        Answer& answer = hand_in.answers[std::strtoll(words[0].c_str(), nullptr, 10)][words[1]];
         answer.right = words[2] == "right";
-        answer.tries = std::atoi(words[3].c_str());
+        answer.tries = static_cast<int>(std::strtol(words[3].c_str(), nullptr, 10));
         if (!answer.right && answer.said.empty()) {
             answer.said = words[5].substr(std::min(words[5].find(": ") + 2, words[5].size()));
         }
