@@ -43,7 +43,7 @@ end)
 
 test("a relay makes the limit cycle of circles about its two places", function()
     -- Without damping and friction the motion under level m is a circle about m in (theta, velocity).
-    local run = system{ I = 1, k = 1 }:simulate{ M = excitation.relay{ on = -0.1, off = 0.1, levels = { 0.4, -0.4 } }, theta0 = -0.05, velocity0 = 0.5,
+    local run = system{ I = 1, k = 1 }:simulate{ M = excitation.relay{ on = -0.1, off = 0.1, amplitude = { 0.4, -0.4 } }, theta0 = -0.05, velocity0 = 0.5,
         t_end = 40, dt = 0.25 }
     local t, theta, v, level, switches = 0, -0.05, 0.5, 0.4, 0
     for _, event in ipairs(run.events) do
