@@ -58,7 +58,10 @@ function walk.sheet(name, work)
       function() work(walk.follow(name, number), number) end)
   end
   support.test("the script of sheet " .. name .. " runs as it is given", function()
-    local pipe = io.popen(('"%s" examples/lab/%s.lua 2>&1'):format(support.program(), name))
+    -- It writes its page into the folder in which it runs: one that goes away.
+    local script = ('folder=$(mktemp -d) && cp examples/lab/%s.lua "$folder" && program=$(realpath "%s") && cd "$folder" && '
+      .. '"$program" %s.lua 2>&1; code=$?; rm -r "$folder"; exit $code'):format(name, support.program(), name)
+    local pipe = io.popen(script)
     local text = pipe:read "a"
     assert(pipe:close(), text)
   end)

@@ -15,6 +15,7 @@
 #include "motion/engine/collocation.hpp"
 #include "motion/engine/history.hpp"
 #include "motion/hybrid/crossing.hpp"
+#include "motion/roughness.hpp"
 #include "motion/spectral/first_below.hpp"
 #include "motion/witness.hpp"
 
@@ -22,6 +23,7 @@ namespace dinal::motion::engine {
 
 namespace {
 
+using hybrid::Watch;
 using hybrid::Watched;
 using model::EventKind;
 using model::Joint;
@@ -38,35 +40,11 @@ constexpr double last_bounces = 1e-7, shortest_bounce = 1e-10;
 constexpr double most_blunt = 1e-9;  // of the torques: what passes its limit by more is no rounding
 constexpr int most_echoes = 8;
 constexpr std::size_t most_found_breaks = 50;
-constexpr double short_look = 1e-3, as_rough = 0.1;  // a short stretch; what is as rough on two of them is no jump
 constexpr std::size_t most_passages = 200;
 constexpr double one_instant = 64 * rounding;  // passages of user events that are so near to each other are one
 constexpr double beside_standstill = 1e-12;    // one that is so near to a standstill, or a release, is told after it
 constexpr double at_zero = 1e-12;              // this part of what it was on the stretch stands at zero
 constexpr double longest_in_periods = 0.6, part_of_run = 1.0 / 16;
-
-/// Of three short stretches: how great the last coefficients are at most, and on two of them, and the values.
-struct Roughness {
-    double most = 0, usual = 0, size = 0;
-};
-
-Roughness roughness(const std::function<double(double)>& source, double from, double length) {
-    Roughness look;
-    std::array<double, 3> tails{};
-    std::size_t stretch = 0;
-    for (const double begin : {0.0, 2.0, 5.0}) {
-        Nodes values{};
-        for (std::size_t j = 0; j < node_count; ++j) {
-            values[j] = source(from + length * (begin + (1 + cheb::nodes[j]) / 2));
-            if (!std::isfinite(values[j])) return {};
-        }
-        tails.at(stretch++) = cheb::tail(cheb::fit(values));
-        look.size = std::max(look.size, greatest(values));
-    }
-    std::sort(tails.begin(), tails.end());
-    look.usual = tails[1], look.most = tails[2];
-    return look;
-}
 
 class Engine {
 public:
@@ -885,7 +863,7 @@ void Engine::again(Collocation::Attempt attempt) {
 /// Ends the run, which got nowhere: if something that acts in it is rough on every scale, that is why.
 bool Engine::get_nowhere(Outcome outcome) {
     const double most = std::min({pace_, problem_.window.end - now_.hi, shortest_delay_});
-    const double from = now_.hi, length = std::min(short_look * pace_, most / 8);
+    const double from = now_.hi, length = std::min(rough_stretch * pace_, most / 8);
     struct Source {
         std::string name;
         std::function<double(double)> value;
@@ -917,7 +895,7 @@ bool Engine::get_nowhere(Outcome outcome) {
     for (const Source& source : sources) {
         const Roughness look = roughness(source.value, from, length);
         const double part = look.most / (look.size + source.beside);
-        if (!(look.usual > as_rough * look.most) || !(part > worst)) continue;
+        if (!look.is_noise() || !(part > worst)) continue;
         worst = part;
         result_.rough = Rough{source.name, look.most, part};
         outcome = Outcome::unresolved;

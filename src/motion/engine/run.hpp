@@ -27,32 +27,12 @@ struct JointEvent {
     double M = 0;                    ///< on its first body
 };
 
-/// What a user throws back each time sooner than before, until that is next to nothing: it has no end.
-struct Fading {
-    double last = -model::never, gap = model::never, first = 0;
-    bool after(double t) {
-        constexpr double next_to_nothing = 1e-5;
-        const double now = t - last;
-        if (!(now < gap) || gap == model::never) first = now;
-        last = t, gap = now;
-        return now < first && now <= next_to_nothing * first;
-    }
-};
-
-/// An event of the user's, from one act to the next.
-struct Watch {
-    hybrid::Half half = 0;
-    Fading fading = {};
-    double rounded = 0;      ///< what is zero of its values, since an act
-    bool sent_back = false;  ///< by an act, and not clearly there yet
-};
-
 /// Where a run may be taken up again.
 struct Carry {
     std::vector<double> y;
     Mode mode;
     std::vector<std::vector<Signal::Memory>> controllers;  ///< of the loads of each body
-    std::vector<Watch> watches;                            ///< of the events of the user; may be left out
+    std::vector<hybrid::Watch> watches;                    ///< of the events of the user; may be left out
     std::vector<std::pair<double, int>> echoes;            ///< breaks that delays bring back
     std::vector<model::Motion> heading;                    ///< of bodies without dry friction; may be left out
     std::shared_ptr<const History> past;

@@ -15,6 +15,26 @@ namespace dinal::motion::hybrid {
 /// Which side of zero a watched value was on: 1 above, -1 below, 0 not known, because it stood at zero.
 using Half = int;
 
+/// What a user throws back each time sooner than before, until that is next to nothing: it has no end.
+struct Fading {
+    double last = -model::never, gap = model::never, first = 0;
+    bool after(double t) {
+        constexpr double next_to_nothing = 1e-5;
+        const double now = t - last;
+        if (!(now < gap) || gap == model::never) first = now;
+        last = t, gap = now;
+        return now < first && now <= next_to_nothing * first;
+    }
+};
+
+/// An event of the user's, from one act to the next.
+struct Watch {
+    Half half = 0;
+    Fading fading = {};
+    double rounded = 0;      ///< what is zero of its values, since an act
+    bool sent_back = false;  ///< by an act, and not clearly there yet
+};
+
 /// Where between -1 and x a condition that holds at x begins to hold, if it holds from there on: by halving.
 template <class Condition>
 double first_true(const Condition& holds, double x) {

@@ -1,48 +1,17 @@
 // Why a run with more in it got nowhere: what of all that acts in it is rough on every scale.
 #include <algorithm>
-#include <array>
-#include <cmath>
 #include <functional>
 #include <string>
 #include <utility>
 
 #include "motion/hybrid/engine.hpp"
+#include "motion/roughness.hpp"
 
 namespace dinal::motion::hybrid {
 
-namespace {
-
-/// Of three short stretches: how great the last coefficients are at most, and on two of them, and the values.
-struct Look {
-    double most = 0, usual = 0, size = 0;
-};
-
-/// A stretch is this part of the pace. What is as rough on two of them is no jump.
-constexpr double short_look = 1e-3, alike = 0.1;
-
-Look look_at(const std::function<double(double)>& source, double from, double length) {
-    Look look;
-    std::array<double, 3> tails{};
-    std::size_t stretch = 0;
-    for (const double begin : {0.0, 2.0, 5.0}) {
-        Nodes values{};
-        for (std::size_t j = 0; j < node_count; ++j) {
-            values[j] = source(from + length * (begin + (1 + cheb::nodes[j]) / 2));
-            if (!std::isfinite(values[j])) return {};
-        }
-        tails.at(stretch++) = cheb::tail(cheb::fit(values));
-        look.size = std::max(look.size, greatest(values));
-    }
-    std::sort(tails.begin(), tails.end());
-    look.usual = tails[1], look.most = tails[2];
-    return look;
-}
-
-}  // namespace
-
 bool Engine::get_nowhere(model::Outcome outcome) {
     const double most = std::min({pace_, problem_.window.end - now_.hi, field_.shortest_delay()});
-    const double from = now_.hi, length = std::min(short_look * pace_, most / 8);
+    const double from = now_.hi, length = std::min(rough_stretch * pace_, most / 8);
     const double torques = system_.greatest_holding() + system_.stiffness() * std::fabs(theta());
     Values rates(y_.size());
     const auto now_at = [&](double t) {
@@ -65,9 +34,9 @@ bool Engine::get_nowhere(model::Outcome outcome) {
     }
     double worst = 64 * rounding;
     for (const Source& source : sources) {
-        const Look look = look_at(source.value, from, length);
+        const Roughness look = roughness(source.value, from, length);
         const double part = look.most / (look.size + source.beside);
-        if (!(look.usual > alike * look.most) || !(part > worst)) continue;
+        if (!look.is_noise() || !(part > worst)) continue;
         worst = part;
         const double by = source.name == "the base" ? look.most / system_.inertia() : look.most;
         rough_ = Rough{source.name, by, part};

@@ -1,0 +1,30 @@
+#include "motion/roughness.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "motion/spectral/chebyshev.hpp"
+
+namespace dinal::motion {
+
+Roughness roughness(const std::function<double(double)>& function, double from, double length) {
+    namespace cheb = spectral::chebyshev;
+    Roughness found;
+    std::array<double, 3> tails{};
+    std::size_t stretch = 0;
+    for (const double begin : {0.0, 2.0, 5.0}) {
+        cheb::Samples values{};
+        for (std::size_t j = 0; j < cheb::points; ++j) {
+            values[j] = function(from + length * (begin + (1 + cheb::nodes[j]) / 2));
+            if (!std::isfinite(values[j])) return {};
+            found.size = std::max(found.size, std::fabs(values[j]));
+        }
+        tails.at(stretch++) = cheb::tail(cheb::fit(values));
+    }
+    std::sort(tails.begin(), tails.end());
+    found.usual = tails[1], found.most = tails[2];
+    return found;
+}
+
+}  // namespace dinal::motion

@@ -1,0 +1,25 @@
+// How rough a function is at a time: noise is as rough on every scale, and ends a run that gets nowhere.
+#pragma once
+
+#include <functional>
+
+namespace dinal::motion {
+
+/// Of three short stretches: how great the last coefficients are at most, and on two of them, and the values.
+struct Roughness {
+    double most = 0, usual = 0, size = 0;
+
+    /// What is as rough on two stretches is no jump.
+    [[nodiscard]] bool is_noise() const {
+        constexpr double alike = 0.1;
+        return usual > alike * most;
+    }
+};
+
+/// A stretch is this part of the time scale of a motion.
+inline constexpr double rough_stretch = 1e-3;
+
+/// Nothing where the function has a value that is no number.
+[[nodiscard]] Roughness roughness(const std::function<double(double)>& function, double from, double length);
+
+}  // namespace dinal::motion
