@@ -500,7 +500,9 @@ bool Collocation::agrees_between(const Segment& s, const Mode& mode, const Frame
                                      [](const Signal& load) { return load.has_script(); });
     if (!scripts && !mechanics_.nonlinear()) return true;
     std::vector<Series> loads(n_);
+    std::vector<Series> accelerations(mechanics_.nonlinear() ? n_ : 0);
     for (std::size_t i = 0; i < n_; ++i) loads[i] = cheb::fit(s.loads[i]);
+    for (std::size_t i = 0; i < accelerations.size(); ++i) accelerations[i] = cheb::fit(s.f[n_ + i]);
     std::vector<double> y, belts(mechanics_.joints()), torques;
     std::vector<double> places;
     if (s.start.until(seen_) > 0 && seen_ < s.end) places.push_back(s.start.until(seen_) / s.h - 1);
@@ -527,7 +529,7 @@ bool Collocation::agrees_between(const Segment& s, const Mode& mode, const Frame
                 if (frame.group[i] != static_cast<int>(g)) continue;
                 const double I = mechanics_.system().bodies[i].inertia;
                 torque += torques[i];
-                found += I * cheb::value(cheb::fit(s.f[n_ + i]), x);
+                found += I * cheb::value(accelerations[i], x);
                 allowed += I * allowed_[i];
             }
             if (!(std::fabs(torque - found) <= clearly * allowed)) return false;

@@ -192,8 +192,9 @@ Mechanics::Mechanics(const model::Assembly& system, const Drive& drive, const As
         contact.varies |= !friction.is_constant();
         nonlinear_ |= contact.normal.asks_the_motion() || friction.function != nullptr ||
                       friction.law.depends_on_speed() || !joint.spring.none();
+        contact.bristle = friction.bristle();
+        const bool bends = contact.bristle != nullptr;
         contacts_.push_back(std::move(contact));
-        const bool bends = friction.bristle() != nullptr;
         if (bends) bristles_.push_back(j);
         rubs_.push_back(friction.none() || bends ? 0 : 1);
         belts_.emplace_back(rubs_.back() != 0 || bends ? drive.belts[j] : model::Excitation(), &asking);
@@ -278,7 +279,7 @@ std::size_t Mechanics::range_of(std::size_t joint, double speed) const {
 }
 
 double Mechanics::friction(std::size_t joint, const Moment& at, const Mode& mode, double belt) const {
-    if (system_.joints[joint].friction.bristle() != nullptr) return -bristle_torque(joint, at, belt);
+    if (bristle(joint) != nullptr) return -bristle_torque(joint, at, belt);
     const Slipping& how = mode.friction[joint];
     if (how.riding) return -model::sign_of(how.way) * holding(joint, how.way, at);
     if (how.way == Motion::stuck || !rubs(joint)) return 0;
@@ -317,16 +318,16 @@ void Mechanics::rates(const Moment& at, double* out) const {
     for (std::size_t b = 0; b < bristles_.size(); ++b) {
         const std::size_t joint = bristles_[b], k = drive_.states.size() + b;
         const double slips = velocity(joint, at.y) - belt(joint, at.t, at.side);
-        out[k] = system_.joints[joint].friction.bristle()->bend_rate(slips, at.y[2 * bodies() + k]);
+        out[k] = bristle(joint)->bend_rate(slips, at.y[2 * bodies() + k]);
     }
 }
 
 double Mechanics::bristle_torque(std::size_t joint, const Moment& at, double belt) const {
-    const laws::Bristle* bristle = system_.joints[joint].friction.bristle();
-    if (bristle == nullptr) return 0;
+    const laws::Bristle* own = bristle(joint);
+    if (own == nullptr) return 0;
     const auto place = std::find(bristles_.begin(), bristles_.end(), joint) - bristles_.begin();
     const double z = at.y[2 * bodies() + drive_.states.size() + static_cast<std::size_t>(place)];
-    const double torque = bristle->torque(velocity(joint, at.y) - belt, z);
+    const double torque = own->torque(velocity(joint, at.y) - belt, z);
     const Signal& normal = contacts_[joint].normal;
     return normal.none() ? torque : torque * std::max(0.0, normal.value(at));
 }

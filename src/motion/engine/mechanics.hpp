@@ -91,6 +91,8 @@ public:
     /// Those of the user's, and behind them the bend of each joint's bristles.
     [[nodiscard]] std::size_t states() const { return drive_.states.size() + bristles_.size(); }
     [[nodiscard]] std::size_t states_of_user() const { return drive_.states.size(); }
+    /// The bristles of a joint; null where it has none.
+    [[nodiscard]] const model::laws::Bristle* bristle(std::size_t joint) const { return contacts_[joint].bristle; }
     /// The joints with bristles.
     [[nodiscard]] const std::vector<std::size_t>& bristles() const { return bristles_; }
     /// The torque of its bristles on a joint; 0 where it has none.
@@ -166,6 +168,7 @@ private:
     struct Contact {
         std::array<Signal, 2> sliding, holding;
         Signal normal;
+        const model::laws::Bristle* bristle = nullptr;
         bool varies = false;
     };
     template <class Self, class F>

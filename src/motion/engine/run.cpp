@@ -160,6 +160,7 @@ private:
     std::optional<Collocation> solver_;
     std::map<std::pair<std::vector<char>, std::vector<int>>, std::pair<Frame, double>> frames_;
     const Frame* frame_ = nullptr;
+    std::pair<std::vector<char>, std::vector<int>> frame_of_;  ///< which joints hold, and at which walls
 
     Clock now_;
     std::vector<double> y_, low_;         ///< what the angles have rounded off
@@ -186,6 +187,7 @@ private:
     std::size_t next_row_ = 0;
     Outcome outcome_ = Outcome::reached_end;
     Look look_;
+    std::array<std::vector<double>, 6> scratch_;  ///< of look()
     mutable std::vector<double> point_;
     mutable std::vector<double> sizes_;  ///< of each body: how great the torques on it are, at a time
     mutable double sizes_at_ = -model::never;
@@ -255,10 +257,13 @@ Engine::Engine(const AssemblyProblem& problem, AssemblyRun& result)
 }
 
 const Frame& Engine::frame() {
-    std::vector<char> holding(mechanics_.joints());
-    for (std::size_t j = 0; j < holding.size(); ++j) holding[j] = mode_.holds(j) ? 1 : 0;
-    auto key = std::pair(std::move(holding), mode_.leans);
-    auto found = frames_.find(key);
+    bool same = frame_ != nullptr && frame_of_.second == mode_.leans;
+    for (std::size_t j = 0; same && j < mechanics_.joints(); ++j) same = mode_.holds(j) == (frame_of_.first[j] != 0);
+    if (same) return *frame_;
+    frame_of_.first.resize(mechanics_.joints());
+    for (std::size_t j = 0; j < frame_of_.first.size(); ++j) frame_of_.first[j] = mode_.holds(j) ? 1 : 0;
+    frame_of_.second = mode_.leans;
+    auto found = frames_.find(frame_of_);
     if (found == frames_.end()) {
         constexpr std::size_t most_frames = 512;
         if (frames_.size() >= most_frames) frames_.clear();
@@ -266,7 +271,7 @@ const Frame& Engine::frame() {
         const double w = mechanics_.fastest(made);
         const double longest =
             w > 0 ? std::min(problem_.longest, longest_in_periods * 2 * std::numbers::pi / w) : longest_all_;
-        found = frames_.emplace(std::move(key), std::pair(std::move(made), longest)).first;
+        found = frames_.emplace(frame_of_, std::pair(std::move(made), longest)).first;
     }
     longest_ = found->second.second;
     frame_ = &found->second.first;
@@ -308,7 +313,8 @@ std::vector<double> Engine::departing() const {
 /// finite.
 bool Engine::look(const Moment& at, const Mode& mode, const Frame& frame, Look& result, std::optional<double> x) {
     const std::size_t joints = mechanics_.joints();
-    std::vector<double> belts(joints), rates(joints), loads, offsets;
+    auto& [belts, rates, loads, offsets, of_group, lacking] = scratch_;
+    belts.assign(joints, 0), rates.assign(joints, 0);
     result.blurred = x && mechanics_.has_belts() ? solver_->blurred_by_belts(segment_) : 0;
     for (std::size_t j = 0; j < joints; ++j) {
         belts[j] = mechanics_.belt(j, at.t, at.side);
@@ -324,7 +330,7 @@ bool Engine::look(const Moment& at, const Mode& mode, const Frame& frame, Look& 
     mechanics_.loads_of_time(at.t, at.side, loads);
     mechanics_.torques(at, mode, belts, loads, result.torques);
     frame.offsets(rates, mode, offsets);
-    std::vector<double> of_group(frame.groups(), 0), lacking(n());
+    of_group.assign(frame.groups(), 0), lacking.resize(n());
     for (std::size_t i = 0; i < n(); ++i) {
         const double own = problem_.system.bodies[i].inertia * offsets[i];
         if (frame.group[i] >= 0) of_group[index(frame.group[i])] += result.torques[i] - own;
@@ -1029,7 +1035,7 @@ std::vector<Kept::Acting> Engine::acting() {
         if (mechanics_.has_belt(j)) all[j].belt = cheb::fit(segment_.belts[j]);
         if (all[j].holds) {
             all[j].friction = cheb::fit(segment_.holding[j]);
-        } else if (mechanics_.rubs(j) || problem_.system.joints[j].friction.bristle() != nullptr) {
+        } else if (mechanics_.rubs(j) || mechanics_.bristle(j) != nullptr) {
             for (std::size_t node = 0; node < node_count; ++node) {
                 point_.resize(y_.size());
                 for (std::size_t k = 0; k < y_.size(); ++k) point_[k] = segment_.y[k][node];
@@ -1165,7 +1171,7 @@ void Engine::watch(Ending& ending) {
         }
         if (problem_.system.joints[j].walls && mode_.leans[j] == 0) watch_walls(j, ending);
         if (mechanics_.has_normal(j)) watch_normal(j, ending);
-        if (problem_.system.joints[j].friction.bristle() != nullptr) watch_bristles(j, ending);
+        if (mechanics_.bristle(j) != nullptr) watch_bristles(j, ending);
     }
     watch_relays(ending);
     watch_users(ending);
@@ -1762,7 +1768,9 @@ bool Engine::put_row(double t, double x) {
     if (x > -1) segment_.state(x, y);
     keep_within_walls(y);
     const Moment at{t, x <= -1 ? side() : Side::at, y};
-    if (!look(at, mode_, frame(), look_, x > -1 ? std::optional(x) : std::nullopt)) return false;
+    bool holds = false;
+    for (std::size_t j = 0; j < mechanics_.joints(); ++j) holds = holds || mode_.holds(j);
+    if (holds && !look(at, mode_, frame(), look_, x > -1 ? std::optional(x) : std::nullopt)) return false;
     double* cell = result_.table.writable() + next_row_;
     const std::size_t stride = problem_.rows.count();
     const auto put = [&](double value) {
@@ -1795,9 +1803,10 @@ bool Engine::put_row(double t, double x) {
 /// The torque of a joint's friction on its first body.
 double Engine::friction(std::size_t joint, const Moment& at, const Look& look) const {
     // The wall carries what presses against it, friction what pulls away from it.
-    const double held = look.holding[joint];
-    const bool sticks = mechanics_.rubs(joint) && mode_.friction[joint].way == Motion::stuck;
-    if (sticks) return mode_.leans[joint] != 0 && mode_.leans[joint] * held <= 0 ? 0.0 : held;
+    if (mechanics_.rubs(joint) && mode_.friction[joint].way == Motion::stuck) {
+        const double held = look.holding[joint];
+        return mode_.leans[joint] != 0 && mode_.leans[joint] * held <= 0 ? 0.0 : held;
+    }
     return mechanics_.friction(joint, at, mode_, mechanics_.belt(joint, at.t, at.side));
 }
 
