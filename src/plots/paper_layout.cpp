@@ -72,6 +72,9 @@ std::vector<LegendEntry> legend_of(const Figure& figure) {
 /// Sets the entries in lines of this width: a few one after the other, many in columns that are read downwards. Their y
 /// counts down from 0 at the top. Returns the number of lines.
 int flow(std::vector<LegendEntry>& entries, double width) {
+    if (entries.empty()) {
+        return 0;
+    }
     double most = 0;
     for (const LegendEntry& entry : entries) {
         most = std::max(most, sample_width(entry.sample) + after_sample + width_of(entry.text) + between_entries);
@@ -99,7 +102,7 @@ int flow(std::vector<LegendEntry>& entries, double width) {
         entry.y = -(line + 0.5) * line_height;
         x += own + between_entries;
     }
-    return entries.empty() ? 0 : std::max(column_length, line + 1);
+    return std::max(column_length, line + 1);
 }
 
 constexpr int most_ticks = 12;  // of an axis: a poster needs no more of them than a page
