@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "api/bind_excitation.hpp"
+#include "api/bind_simulate.hpp"
 #include "api/run.hpp"
 #include "api/steady_answer.hpp"
 
