@@ -207,7 +207,7 @@ test("a loop that settles far from zero, without friction, is run to its end", f
     end
 end)
 
--- What hybrid makes of belts and heavy damping, by two integrators that share no step. rk4 at T0/1500 is off by 1e-10.
+-- What the engine makes of belts and heavy damping, by two integrators that share no step. rk4 at T0/1500 is off by 1e-10.
 local function two_ways(sys, options)
     options.integrator = integrator.spectral {}
     local a = sys:simulate(options)

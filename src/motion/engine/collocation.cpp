@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "motion/hybrid/integration.hpp"
 #include "motion/interpolation.hpp"
 #include "motion/spectral/break_search.hpp"
 
@@ -20,19 +19,38 @@ const double smallest = std::numeric_limits<double>::min() / rounding;
 
 using NodeVector = Eigen::Matrix<double, node_count, 1>;
 
+/// Row i: the integral from -1 to node i of the polynomial through values at the nodes.
+using Integration = Eigen::Matrix<double, node_count, node_count>;
+const Integration& integration() {
+    static const Integration weights = [] {
+        Integration rows = Integration::Zero();
+        for (std::size_t j = 0; j < node_count; ++j) {
+            Nodes unit{};
+            unit[j] = 1;
+            const auto F = cheb::integral(cheb::fit(unit), 0.0);
+            for (std::size_t i = 1; i < node_count; ++i) {
+                rows(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) = cheb::value(F, cheb::nodes[i]);
+            }
+        }
+        return rows;
+    }();
+    return weights;
+}
+
 /// The integral from the first node to each, of what has these values.
 void integrate(const Nodes& values, double h, Nodes& sums) {
     const Eigen::Map<const NodeVector> f(values.data());
     Eigen::Map<NodeVector> F(sums.data());
-    F.noalias() = h * (hybrid::integration() * f);
+    F.noalias() = h * (integration() * f);
 }
 
 }  // namespace
 
-Collocation::Collocation(const Mechanics& mechanics, double tolerance, double longest)
+Collocation::Collocation(const Mechanics& mechanics, double tolerance, double longest, double step)
     : mechanics_(mechanics),
       tolerance_(tolerance),
       longest_(longest),
+      step_length_(step),
       n_(mechanics.bodies()),
       m_(mechanics.states()),
       fastest_belt_(mechanics.joints()),
@@ -85,54 +103,101 @@ bool Collocation::sample(Segment& s, const Mode& mode, const Frame& frame, const
         const auto slope = cheb::derivative(cheb::fit(s.belts[joint]));
         for (std::size_t j = 0; j < node_count; ++j) s.belt_rates[joint][j] = cheb::value(slope, cheb::nodes[j]) / s.h;
     }
-    std::vector<double> of_joints(joints), of_bodies;
+    if (frame.edges.empty()) return true;
+    belt_.resize(joints);
     for (std::size_t j = 0; j < node_count; ++j) {
-        for (std::size_t joint = 0; joint < joints; ++joint) of_joints[joint] = s.belts[joint][j];
-        frame.offsets(of_joints, mode, of_bodies);
-        for (std::size_t i = 0; i < n_; ++i) offset_[i][j] = of_bodies[i];
-        for (std::size_t joint = 0; joint < joints; ++joint) of_joints[joint] = s.belt_rates[joint][j];
-        frame.offsets(of_joints, mode, of_bodies);
-        for (std::size_t i = 0; i < n_; ++i) offset_rate_[i][j] = of_bodies[i];
+        for (std::size_t joint = 0; joint < joints; ++joint) belt_[joint] = s.belts[joint][j];
+        frame.offsets(belt_, mode, torque_);
+        for (std::size_t i = 0; i < n_; ++i) offset_[i][j] = torque_[i];
+        for (std::size_t joint = 0; joint < joints; ++joint) belt_[joint] = s.belt_rates[joint][j];
+        frame.offsets(belt_, mode, torque_);
+        for (std::size_t i = 0; i < n_; ++i) offset_rate_[i][j] = torque_[i];
     }
     for (std::size_t i = 0; i < n_; ++i) integrate(offset_[i], s.h, offset_way_[i]);
     return true;
 }
 
-/// Torques and rates at a node, where the state is y; new accelerations of the groups.
-bool Collocation::evaluate(Segment& s, const Mode& mode, const Frame& frame, std::size_t node,
-                           const std::vector<double>& y) {
-    belt_.resize(mechanics_.joints());
-    for (std::size_t joint = 0; joint < belt_.size(); ++joint) belt_[joint] = s.belts[joint][node];
-    load_.resize(n_);
-    for (std::size_t i = 0; i < n_; ++i) load_[i] = s.loads[i][node];
-    const Moment at{s.times[node], s.side(node), y};
-    mechanics_.torques(at, mode, belt_, load_, torque_);
-    mechanics_.rates(at, rate_.data());
-    for (std::size_t g = 0; g < frame.groups(); ++g) found_[g][node] = 0;
+/// Torques and rates from the node `first` to before `end`; new accelerations of the groups. Functions of the motion
+/// are asked at `departing` where that is given, else at the motion of the segment.
+bool Collocation::evaluate(Segment& s, const Mode& mode, const Frame& frame, std::size_t first, std::size_t end,
+                           const std::vector<double>* departing) {
     bool good = true;
+    const auto each_node = [&](auto&& at_node) {
+        for (std::size_t j = first; j < end; ++j) at_node(j, Moment{s.times[j], s.side(j), points_[j]});
+    };
+    if (!mechanics_.all_linear()) {
+        for (std::size_t j = first; j < end; ++j) {
+            points_[j].resize(s.y.size());
+            for (std::size_t k = 0; k < s.y.size(); ++k) points_[j][k] = departing ? (*departing)[k] : s.y[k][j];
+        }
+    }
     for (std::size_t i = 0; i < n_; ++i) {
-        s.torques[i][node] = torque_[i], s.driven[i][node] = load_[i];
-        good = good && std::isfinite(torque_[i]);
+        for (std::size_t j = first; j < end; ++j) s.driven[i][j] = s.loads[i][j];
+        const Signal& load = mechanics_.loads()[i];
+        if (load.asks_the_motion()) {
+            each_node([&](std::size_t j, const Moment& at) { s.driven[i][j] += load.of_motion(at); });
+        }
+        for (std::size_t j = first; j < end; ++j) s.torques[i][j] = s.driven[i][j];
+    }
+    for (std::size_t joint = 0; joint < mechanics_.joints(); ++joint) {
+        const model::Joint& own = mechanics_.system().joints[joint];
+        Nodes torque{};
+        if (mechanics_.is_linear(joint)) {
+            const double friction = mechanics_.constant_friction(joint, mode);
+            const Nodes none{};
+            const Nodes &p = s.y[index(own.first)], &v = s.y[n_ + index(own.first)];
+            const Nodes &q = own.second < 0 ? none : s.y[index(own.second)],
+                        &w = own.second < 0 ? none : s.y[n_ + index(own.second)];
+            for (std::size_t j = first; j < end; ++j) {
+                torque[j] = -friction + own.damping * (v[j] - w[j]) + own.stiffness * (p[j] - q[j]);
+            }
+        } else {
+            each_node([&](std::size_t j, const Moment& at) {
+                torque[j] = mechanics_.joint_torque(joint, at, mode, s.belts[joint][j]);
+            });
+        }
+        for (std::size_t j = first; j < end; ++j) s.torques[index(own.first)][j] -= torque[j];
+        if (own.second < 0) continue;
+        for (std::size_t j = first; j < end; ++j) s.torques[index(own.second)][j] += torque[j];
+    }
+    for (std::size_t g = 0; g < frame.groups(); ++g) {
+        for (std::size_t j = first; j < end; ++j) found_[g][j] = 0;
+    }
+    for (std::size_t i = 0; i < n_; ++i) {
+        double sum = 0;
+        for (std::size_t j = first; j < end; ++j) sum += s.torques[i][j];
+        good = good && std::isfinite(sum);
         if (frame.group[i] < 0) continue;
-        const double own = offset_rate_[i][node];
+        Nodes& found = found_[index(frame.group[i])];
         const double inertia = mechanics_.system().bodies[i].inertia;
-        found_[static_cast<std::size_t>(frame.group[i])][node] += own == 0 ? torque_[i] : torque_[i] - inertia * own;
+        for (std::size_t j = first; j < end; ++j) found[j] += s.torques[i][j] - inertia * offset_rate_[i][j];
     }
-    for (std::size_t g = 0; g < frame.groups(); ++g) found_[g][node] /= frame.inertia[g];
-    for (std::size_t k = 0; k < m_; ++k) {
-        found_[frame.groups() + k][node] = rate_[k];
-        good = good && std::isfinite(rate_[k]);
+    for (std::size_t g = 0; g < frame.groups(); ++g) {
+        for (std::size_t j = first; j < end; ++j) found_[g][j] /= frame.inertia[g];
     }
-    if (!good) bad_time_ = s.times[node];
+    for (std::size_t j = first; j < end && m_ > 0; ++j) {
+        mechanics_.rates({s.times[j], s.side(j), points_[j]}, rate_.data());
+        for (std::size_t k = 0; k < m_; ++k) {
+            found_[frame.groups() + k][j] = rate_[k];
+            good = good && std::isfinite(rate_[k]);
+        }
+    }
+    for (std::size_t j = first; j < end && !good; ++j) {
+        bool here = true;
+        for (std::size_t i = 0; i < n_; ++i) here = here && std::isfinite(s.torques[i][j]);
+        for (std::size_t k = 0; k < m_; ++k) here = here && std::isfinite(found_[frame.groups() + k][j]);
+        bad_time_ = s.times[j];
+        if (!here) break;
+    }
     return good;
 }
 
 /// Velocities and angles from the accelerations of the groups, states from their rates.
-void Collocation::place(Segment& s, const Frame& frame) const {
+void Collocation::place(Segment& s, const Frame& frame) {
     Nodes velocity{}, way{};
-    std::vector<char> placed(n_, 0);
+    placed_.assign(n_, 0);
     for (std::size_t i = 0; i < n_; ++i) {
-        if (placed[i] != 0) continue;
+        if (placed_[i] != 0) continue;
         const int g = frame.group[i];
         if (g >= 0) {
             integrate(unknown_[static_cast<std::size_t>(g)], s.h, velocity);
@@ -144,7 +209,7 @@ void Collocation::place(Segment& s, const Frame& frame) const {
         }
         for (std::size_t b = i; b < n_; ++b) {
             if (frame.group[b] != g) continue;
-            placed[b] = 1;
+            placed_[b] = 1;
             for (std::size_t j = 1; j < node_count; ++j) {
                 s.moved[b][j] = way[j] + offset_way_[b][j];
                 s.y[b][j] = s.y[b][0] + s.moved[b][j];
@@ -235,7 +300,7 @@ const Collocation::Factors& Collocation::newton_matrix(double h, const Frame& fr
         return found->second;
     }
     using Inner = Eigen::Matrix<double, inner, inner>;
-    static const Inner once = hybrid::integration().bottomRightCorner<inner, inner>(), twice = once * once;
+    static const Inner once = integration().bottomRightCorner<inner, inner>(), twice = once * once;
     const auto size = static_cast<Eigen::Index>(inner), rows = slopes_.rows(),
                groups = static_cast<Eigen::Index>(frame.groups());
     const auto block = [&](Eigen::Index r, Eigen::Index c) {
@@ -250,7 +315,7 @@ const Collocation::Factors& Collocation::newton_matrix(double h, const Frame& fr
     };
     if (factors_.size() >= most_factors) factors_.clear();
     Factors& made = factors_[h];
-    constexpr Eigen::Index many = 8;
+    constexpr Eigen::Index few = 3, many = 8;
     if (rows < many) {
         Eigen::MatrixXd A = Eigen::MatrixXd::Zero(size * rows, size * rows);
         for (Eigen::Index r = 0; r < rows; ++r) {
@@ -258,7 +323,11 @@ const Collocation::Factors& Collocation::newton_matrix(double h, const Frame& fr
                 if (!empty(r, c)) A.block<inner, inner>(r * size, c * size) = block(r, c);
             }
         }
-        made.dense.compute(A);
+        if (rows <= few) {
+            made.inverse = A.inverse();
+        } else {
+            made.dense.compute(A);
+        }
         return made;
     }
     std::vector<Eigen::Triplet<double>> entries;
@@ -279,15 +348,17 @@ const Collocation::Factors& Collocation::newton_matrix(double h, const Frame& fr
 }
 
 void Collocation::find_sizes(const Segment& s) {
-    sizes_.assign(n_, 0);
-    std::vector<double> y(s.y.size());
-    for (std::size_t k = 0; k < y.size(); ++k) y[k] = s.y[k][0];
-    for (std::size_t i = 0; i < n_; ++i) sizes_[i] = greatest(s.loads[i]) + greatest(s.torques[i]);
+    for (std::size_t i = 0; i < n_; ++i) sizes_[i] = sizes_at_start_[i] + greatest(s.torques[i]);
+}
+
+void Collocation::find_sizes_at_start(const Segment& s, const std::vector<double>& begin) {
+    sizes_at_start_.resize(n_), sizes_.resize(n_);
+    for (std::size_t i = 0; i < n_; ++i) sizes_at_start_[i] = greatest(s.loads[i]);
     for (std::size_t j = 0; j < mechanics_.joints(); ++j) {
         const model::Joint& joint = mechanics_.system().joints[j];
-        const double size = mechanics_.size_of(j, {s.times[0], s.side(0), y});
-        sizes_[static_cast<std::size_t>(joint.first)] += size;
-        if (joint.second >= 0) sizes_[static_cast<std::size_t>(joint.second)] += size;
+        const double size = mechanics_.size_of(j, {s.times[0], s.side(0), begin});
+        sizes_at_start_[index(joint.first)] += size;
+        if (joint.second >= 0) sizes_at_start_[index(joint.second)] += size;
     }
 }
 
@@ -300,37 +371,25 @@ Collocation::Attempt Collocation::iterate(Segment& s, const Mode& mode, const Fr
     enum class Slopes { known, here, none };
     // Beside a jump of a rate differences tell a slope that is none; where a segment is short it does without any.
     for (const Slopes slopes : {Slopes::known, Slopes::here, Slopes::none}) {
-        if (!evaluate(s, mode, frame, 0, departing)) return Attempt::failed;
+        if (!evaluate(s, mode, frame, 0, 1, &departing)) return Attempt::failed;
         for (std::size_t k = 0; k < count; ++k) unknown_[k].fill(found_[k][0]);
         for (std::size_t i = 0; i < n_; ++i) s.f[n_ + i].fill(0);
         for (std::size_t k = 0; k < m_; ++k) s.f[2 * n_ + k].fill(found_[groups + k][0]);
         place(s, frame);
         double before = std::numeric_limits<double>::infinity();
         for (int i = 0; i < most_iterations; ++i) {
-            point_.resize(s.y.size());
-            for (std::size_t j = 1; j < node_count; ++j) {
-                for (std::size_t k = 0; k < point_.size(); ++k) point_[k] = s.y[k][j];
-                if (!evaluate(s, mode, frame, j, point_)) return Attempt::failed;
-            }
+            if (!evaluate(s, mode, frame, 1, node_count, nullptr)) return Attempt::failed;
             if (count == 0) return Attempt::resolved;
             if (slopes != Slopes::none && !slopes_known_ && !find_slopes(s, mode, frame, node_count / 2)) {
                 slopes_known_ = false;
                 return Attempt::failed;
             }
-            for (std::size_t k = 0; k < count; ++k) {
-                for (std::size_t j = 1; j < node_count; ++j) {
-                    residual_(static_cast<Eigen::Index>(k * inner + j - 1)) = found_[k][j] - unknown_[k][j];
-                }
-            }
-            if (slopes == Slopes::none) {
-                step_ = residual_;
-            } else {
-                step_ = newton_matrix(s.h, frame).solve(residual_);
-            }
-            double change = 0, left = 0;
+            double left = 0;
+            bool exact = i > 0;  // what creeps is slow beside what its torques tell
             find_sizes(s);
+            scales_.resize(count);
             for (std::size_t k = 0; k < count; ++k) {
-                double moves = 0;
+                double moves = 0, most = 0;
                 if (k < groups) {
                     for (std::size_t b = 0; b < n_; ++b) {
                         if (frame.group[b] != static_cast<int>(k)) continue;
@@ -339,13 +398,33 @@ Collocation::Attempt Collocation::iterate(Segment& s, const Mode& mode, const Fr
                 } else {
                     moves = greatest(s.y[2 * n_ + (k - groups)]) + s.h * greatest(unknown_[k]);
                 }
-                const double scale = moves + smallest;
+                scales_[k] = moves + smallest;
                 for (std::size_t j = 1; j < node_count; ++j) {
-                    const auto row = static_cast<Eigen::Index>(k * inner + j - 1);
-                    unknown_[k][j] += step_(row);
-                    change = std::max(change, s.h * std::fabs(step_(row)) / scale);
-                    left = std::max(left, s.h * std::fabs(residual_(row)) / scale);
+                    const double rest = found_[k][j] - unknown_[k][j];
+                    residual_(static_cast<Eigen::Index>(k * inner + j - 1)) = rest;
+                    most = std::max(most, std::fabs(rest));
                 }
+                left = std::max(left, s.h * most / scales_[k]);
+                exact = exact && most <= 4 * rounding * greatest(unknown_[k]);
+            }
+            if (exact) {
+                if (i >= many_iterations) slopes_known_ = false;
+                return Attempt::resolved;
+            }
+            if (slopes == Slopes::none) {
+                step_ = residual_;
+            } else {
+                newton_matrix(s.h, frame).solve(residual_, step_);
+            }
+            double change = 0;
+            for (std::size_t k = 0; k < count; ++k) {
+                double most = 0;
+                for (std::size_t j = 1; j < node_count; ++j) {
+                    const double step = step_(static_cast<Eigen::Index>(k * inner + j - 1));
+                    unknown_[k][j] += step;
+                    most = std::max(most, std::fabs(step));
+                }
+                change = std::max(change, s.h * most / scales_[k]);
             }
             place(s, frame);
             if (!std::isfinite(change + left)) break;
@@ -366,11 +445,76 @@ Collocation::Attempt Collocation::iterate(Segment& s, const Mode& mode, const Fr
     return Attempt::shorten;
 }
 
+/// One step for the groups and states. In between, angles are a polynomial that has the angles, velocities and
+/// accelerations of both ends, and states one that has values and rates.
+Collocation::Attempt Collocation::runge_kutta(Segment& s, const Mode& mode, const Frame& frame,
+                                              const std::vector<double>& departing) {
+    constexpr std::size_t middle = node_count / 2, last = node_count - 1;
+    const double h = 2 * s.h;
+    const std::size_t groups = frame.groups(), size = 2 * groups + m_;
+    unknown_.resize(groups + m_), found_.resize(groups + m_);
+    const std::vector<double> none(size, 0);
+    /// Of groups the way and the change of velocity, of states the change.
+    const auto rates = [&](std::size_t node, const std::vector<double>& change, const std::vector<double>* asked,
+                           std::vector<double>& out) {
+        for (std::size_t i = 0; i < n_; ++i) {
+            const int g = frame.group[i];
+            const double first = s.y[n_ + i][0] - offset_[i][0];
+            s.moved[i][node] = offset_way_[i][node] + (g < 0 ? 0 : change[index(g)]);
+            s.y[i][node] = s.y[i][0] + s.moved[i][node];
+            if (node == 0) continue;
+            s.y[n_ + i][node] = offset_[i][node] + (g < 0 ? 0 : first + change[groups + index(g)]);
+        }
+        for (std::size_t k = 0; k < m_; ++k) s.y[2 * n_ + k][node] = s.y[2 * n_ + k][0] + change[2 * groups + k];
+        if (!evaluate(s, mode, frame, node, node + 1, asked)) return false;
+        out.resize(size);
+        for (std::size_t i = 0; i < n_; ++i) {
+            if (frame.group[i] >= 0) out[index(frame.group[i])] = s.y[n_ + i][node] - offset_[i][node];
+        }
+        for (std::size_t k = 0; k < groups + m_; ++k) out[groups + k] = found_[k][node];
+        return true;
+    };
+    const auto along = [&](double length, const std::vector<double>& slope) {
+        std::vector<double> change(size);
+        for (std::size_t k = 0; k < size; ++k) change[k] = length * slope[k];
+        return change;
+    };
+    std::vector<double> a, b, c, d, e, z(size);
+    if (!rates(0, none, &departing, a) || !rates(middle, along(h / 2, a), nullptr, b) ||
+        !rates(middle, along(h / 2, b), nullptr, c) || !rates(last, along(h, c), nullptr, d)) {
+        return Attempt::failed;
+    }
+    for (std::size_t k = 0; k < size; ++k) z[k] = h / 6 * (a[k] + 2 * b[k] + 2 * c[k] + d[k]);
+    if (!rates(last, z, nullptr, e)) return Attempt::failed;
+    // In a small part of a step the places differ by rounding, of which no velocity can be made.
+    const bool small = h < 1e-3 * step_length_;
+    const auto cubic = [&](std::size_t k, double x) {
+        const double v0 = h * a[k], v1 = h * e[k];
+        return x * (v0 + x * ((3 * z[k] - 2 * v0 - v1) + x * (v0 + v1 - 2 * z[k])));
+    };
+    std::vector<double> change(size);
+    for (std::size_t j = 1; j < last; ++j) {
+        const double x = (1 + cheb::nodes[j]) / 2;
+        for (std::size_t k = 0; k < size; ++k) change[k] = cubic(k, x);
+        for (std::size_t g = 0; g < groups && !small; ++g) {
+            const std::size_t v = groups + g;
+            const StepInterpolant motion(h, {0, a[g]}, a[v], {z[g], e[g]}, e[v]);
+            const model::State between = motion(x * h);
+            change[g] = between.theta, change[v] = between.velocity - a[g];
+        }
+        if (!rates(j, change, nullptr, d)) return Attempt::failed;
+    }
+    unknown_ = found_;
+    return Attempt::resolved;
+}
+
 Collocation::Attempt Collocation::solve(Segment& s, const Mode& mode, const Frame& frame,
                                         const std::vector<double>& begin, const std::vector<double>& departing) {
     unresolved_ = std::numeric_limits<double>::infinity();
     if (!sample(s, mode, frame, begin)) return Attempt::failed;
-    const Attempt attempt = iterate(s, mode, frame, departing);
+    find_sizes_at_start(s, begin);
+    const bool stepping = step_length_ > 0;
+    const Attempt attempt = stepping ? runge_kutta(s, mode, frame, departing) : iterate(s, mode, frame, departing);
     if (attempt != Attempt::resolved) return attempt;
     const std::size_t groups = frame.groups();
     for (std::size_t i = 0; i < n_; ++i) {
@@ -388,13 +532,15 @@ Collocation::Attempt Collocation::solve(Segment& s, const Mode& mode, const Fram
     }
     find_holding(s, mode, frame);
     judge(s, mode, frame);
+    if (stepping) return Attempt::resolved;
     if (unresolved_ <= 1 && !agrees_between(s, mode, frame)) unresolved_ = 2;
     return unresolved_ <= 1 ? Attempt::resolved : Attempt::shorten;
 }
 
 void Collocation::find_holding(Segment& s, const Mode& mode, const Frame& frame) const {
     if (frame.edges.empty()) return;
-    std::vector<double> lacking(n_), held(mechanics_.joints());
+    thread_local std::vector<double> lacking, held;
+    lacking.resize(n_), held.assign(mechanics_.joints(), 0);
     for (std::size_t j = 0; j < node_count; ++j) {
         for (std::size_t i = 0; i < n_; ++i) {
             lacking[i] = mechanics_.system().bodies[i].inertia * s.f[n_ + i][j] - s.torques[i][j];
@@ -497,7 +643,7 @@ bool Collocation::agrees_between(const Segment& s, const Mode& mode, const Frame
     constexpr double clearly = 64, too_short = 1e-6;
     if (2 * s.h <= too_short * longest_) return true;
     const bool scripts = std::any_of(mechanics_.loads().begin(), mechanics_.loads().end(),
-                                     [](const Signal& load) { return load.has_script(); });
+                                     [](const Signal& load) { return load.asks_in_time(); });
     if (!scripts && !mechanics_.nonlinear()) return true;
     std::vector<Series> loads(n_);
     std::vector<Series> accelerations(mechanics_.nonlinear() ? n_ : 0);
@@ -512,7 +658,7 @@ bool Collocation::agrees_between(const Segment& s, const Mode& mode, const Frame
         const double t = s.time(x);
         mechanics_.loads_of_time(t, Side::at, load_);
         for (std::size_t i = 0; i < n_; ++i) {
-            if (!mechanics_.loads()[i].has_script()) continue;
+            if (!mechanics_.loads()[i].asks_in_time()) continue;
             const double allowed =
                 (tolerance_ + 4 * rounding) * sizes_[i] + lost_in_time(loads[i], std::fabs(s.end), s.h, sizes_[i]);
             if (std::fabs(load_[i] - cheb::value(loads[i], x)) <= clearly * allowed) continue;
@@ -574,6 +720,38 @@ bool Collocation::belt_jumps(const Segment& s, std::size_t joint, double t) cons
     const double before = mechanics_.belt(joint, towards(t, Side::before), Side::at);
     const double jump = std::fabs(mechanics_.belt(joint, towards(t, Side::after), Side::at) - before);
     return jump > clearly * std::max(fastest_belt_[joint], greatest(s.belts[joint]));
+}
+
+std::optional<double> Collocation::jump_of_belt(const Segment& s, std::size_t joint) const {
+    if (!mechanics_.has_belt(joint)) return {};
+    constexpr double clearly = 1e-6, near = 1e-3;
+    const Nodes& belts = s.belts[joint];
+    const double seen = clearly * std::max(fastest_belt_[joint], greatest(belts));
+    const auto [least, most] = std::minmax_element(belts.begin(), belts.end());
+    const double change = *most - *least;
+    std::size_t first = 1;  // of the greatest differences
+    const auto difference = [&](std::size_t j) { return std::fabs(belts[j] - belts[j - 1]); };
+    for (std::size_t j = 2; j < node_count; ++j) {
+        if (difference(j) > 2 * difference(first)) first = j;
+    }
+    if (!(change > seen) || !(difference(first) > change / 4)) return {};
+    const auto belt = [&](double t) { return mechanics_.belt(joint, t, Side::at); };
+    const std::size_t from = std::max<std::size_t>(first, 2) - 2;
+    const auto found =
+        spectral::find_break(std::span(s.times).subspan(from, 3), std::span(belts).subspan(from, 3), belt);
+    if (!found || !(*found > s.start.hi)) return {};
+    // Of noise a jump is no more than what lies beside it.
+    const double right_before = std::min(std::nextafter(*found, -model::never), *found - spectral::nearest * s.h);
+    const double before = belt(std::max(right_before, s.start.hi)), after = belt(*found);
+    const double jump = std::fabs(after - before);
+    if (!(jump > seen)) return {};
+    for (const double part : {0.25, 0.5, 1.0}) {
+        const double by = part * near * s.h;
+        const double off_before = std::fabs(belt(std::max(*found - by, s.start.hi)) - before);
+        const double off_after = std::fabs(belt(std::min(*found + by, s.end)) - after);
+        if (!(std::max(off_before, off_after) < jump / 4)) return {};
+    }
+    return found;
 }
 
 /// Nothing that happens here can be seen: all goes on as it begins.

@@ -3,6 +3,7 @@
 
 #include <Eigen/Dense>
 #include <Eigen/Sparse>
+#include <array>
 #include <map>
 #include <memory>
 #include <optional>
@@ -49,7 +50,8 @@ struct Segment {
 class Collocation {
 public:
     enum class Attempt { resolved, shorten, failed };
-    Collocation(const Mechanics& mechanics, double tolerance, double longest);
+    /// `step`: the classical Runge-Kutta method instead, each stretch one step.
+    Collocation(const Mechanics& mechanics, double tolerance, double longest, double step = 0);
 
     /// From `start` to `end`, 2 h later. Functions of the motion are asked at `departing` at its beginning. failed:
     /// something is not finite at bad_time().
@@ -62,6 +64,8 @@ public:
     [[nodiscard]] std::optional<double> found_break(const Segment& segment) const;
     /// The belt of a joint has clearly different velocities before and at this time.
     [[nodiscard]] bool belt_jumps(const Segment& segment, std::size_t joint, double t) const;
+    /// Where the belt of a joint jumps in a stretch, and does not say so; none where that is noise.
+    [[nodiscard]] std::optional<double> jump_of_belt(const Segment& segment, std::size_t joint) const;
     /// A stretch too short to matter is a straight line.
     void pass_over(Segment& segment) const;
     /// What torques may be off by because the slopes of belts are differences.
@@ -73,27 +77,36 @@ public:
 private:
     static constexpr std::size_t inner = node_count - 1;
     bool sample(Segment& segment, const Mode& mode, const Frame& frame, const std::vector<double>& begin);
-    bool evaluate(Segment& segment, const Mode& mode, const Frame& frame, std::size_t node,
-                  const std::vector<double>& y);
-    void place(Segment& segment, const Frame& frame) const;
+    bool evaluate(Segment& segment, const Mode& mode, const Frame& frame, std::size_t first, std::size_t end,
+                  const std::vector<double>* departing);
+    void place(Segment& segment, const Frame& frame);
     bool find_slopes(const Segment& segment, const Mode& mode, const Frame& frame, std::size_t node);
-    /// Newton's matrix for a length, factored: dense of a few groups, sparse of many.
+    /// Newton's matrix for a length: of very few groups inverted, of a few factored, of many sparse.
     struct Factors {
+        Eigen::MatrixXd inverse;
         Eigen::PartialPivLU<Eigen::MatrixXd> dense;
         std::unique_ptr<Eigen::SparseLU<Eigen::SparseMatrix<double>>> sparse;
-        [[nodiscard]] Eigen::VectorXd solve(const Eigen::VectorXd& right) const {
-            return sparse != nullptr ? Eigen::VectorXd(sparse->solve(right)) : Eigen::VectorXd(dense.solve(right));
+        void solve(const Eigen::VectorXd& right, Eigen::VectorXd& left) const {
+            if (inverse.size() > 0) {
+                left.noalias() = inverse * right;
+            } else if (sparse != nullptr) {
+                left = sparse->solve(right);
+            } else {
+                left = dense.solve(right);
+            }
         }
     };
     const Factors& newton_matrix(double h, const Frame& frame);
+    Attempt runge_kutta(Segment& segment, const Mode& mode, const Frame& frame, const std::vector<double>& departing);
     Attempt iterate(Segment& segment, const Mode& mode, const Frame& frame, const std::vector<double>& departing);
     void judge(const Segment& segment, const Mode& mode, const Frame& frame);
     void add_turns(const Segment& segment, std::vector<double>& places) const;
     bool agrees_between(const Segment& segment, const Mode& mode, const Frame& frame);
+    void find_sizes_at_start(const Segment& segment, const std::vector<double>& begin);
     void find_sizes(const Segment& segment);
 
     const Mechanics& mechanics_;
-    double tolerance_, longest_;
+    double tolerance_, longest_, step_length_;
     std::size_t n_, m_;
     double bad_time_ = 0, unresolved_ = 0;
     std::vector<double> fastest_belt_, fastest_rate_;
@@ -101,12 +114,14 @@ private:
     double seen_ = -model::never;  ///< where a load did what its series does not: looked at until it is behind
     std::vector<Nodes> offset_, offset_rate_, offset_way_;  ///< of each body against its group
     std::vector<Nodes> unknown_, found_;                    ///< accelerations of the groups and rates, and new ones
-    std::vector<double> point_, torque_, load_, belt_, rate_;
+    std::array<std::vector<double>, node_count> points_;    ///< all of y at a node
+    std::vector<double> torque_, load_, belt_, rate_, scales_;
+    std::vector<char> placed_;
     Eigen::MatrixXd slopes_;
     std::vector<int> slopes_of_;  ///< the groups that they belong to
     bool slopes_known_ = false;
     std::map<double, Factors> factors_;
-    std::vector<double> sizes_;  ///< of each body: how great the torques on it are
+    std::vector<double> sizes_, sizes_at_start_;  ///< of each body: how great the torques on it are
     Eigen::VectorXd residual_, step_;
 };
 

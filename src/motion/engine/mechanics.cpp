@@ -177,6 +177,7 @@ Mechanics::Mechanics(const model::Assembly& system, const Drive& drive, const As
         nonlinear_ |= loads_.back().asks_the_motion();
     }
     nonlinear_ |= !drive.states.empty();
+    all_linear_ = !nonlinear_;
     bristles_.reserve(joints());
     for (std::size_t j = 0; j < joints(); ++j) {
         const Joint& joint = system.joints[j];
@@ -194,6 +195,8 @@ Mechanics::Mechanics(const model::Assembly& system, const Drive& drive, const As
                       friction.law.depends_on_speed() || !joint.spring.none();
         contact.bristle = friction.bristle();
         const bool bends = contact.bristle != nullptr;
+        contact.linear = friction.is_constant() && !friction.law.depends_on_speed() && joint.spring.none();
+        all_linear_ = all_linear_ && contact.linear;
         contacts_.push_back(std::move(contact));
         if (bends) bristles_.push_back(j);
         rubs_.push_back(friction.none() || bends ? 0 : 1);
@@ -287,6 +290,13 @@ double Mechanics::friction(std::size_t joint, const Moment& at, const Mode& mode
     // Along a wall nobody watches for the speeds at which a law changes its formula.
     if (mode.leans[joint] != 0) present.range = range_of(joint, std::fabs(belt));
     return -model::sign_of(how.way) * sliding(joint, present, velocity(joint, at.y) - belt, at);
+}
+
+double Mechanics::constant_friction(std::size_t joint, const Mode& mode) const {
+    const Slipping& how = mode.friction[joint];
+    if (how.way == Motion::stuck || !rubs(joint)) return 0;
+    const model::Friction& law = system_.joints[joint].friction.law;
+    return -model::sign_of(how.way) * (how.riding ? law.holding(how.way) : law.sliding(how.way, 0));
 }
 
 double Mechanics::joint_torque(std::size_t joint, const Moment& at, const Mode& mode, double belt) const {

@@ -36,6 +36,10 @@ struct Slipping {
     bool riding = false;    ///< at slip 0 because others hold, while this one gives all that it can
     std::size_t range = 0;  ///< of its law, while it slides
     double blunt = 0;       ///< what the pull must pass its limit by, after it was let go and did not leave
+    /// It is slower than rounding, but on its way for ever: friction slides, and balances the pull, which holds as long
+    /// as the pull keeps within `apart` of that. Not stuck, then `way` is.
+    model::Motion creeps = model::Motion::stuck;
+    double apart = 0;
 };
 
 struct Mode {
@@ -100,6 +104,11 @@ public:
     [[nodiscard]] std::size_t size() const { return 2 * bodies() + states(); }
     /// Torques or rates depend on the motion otherwise than by constants.
     [[nodiscard]] bool nonlinear() const { return nonlinear_; }
+    /// The torque of a joint is a sum of terms in its angle and velocity, and a friction that nothing but its way
+    /// changes.
+    [[nodiscard]] bool is_linear(std::size_t joint) const { return contacts_[joint].linear; }
+    /// All joints are, and nothing else asks for the motion.
+    [[nodiscard]] bool all_linear() const { return all_linear_; }
     [[nodiscard]] bool rubs(std::size_t joint) const { return rubs_[joint] != 0; }
     [[nodiscard]] const std::vector<char>& rubbing() const { return rubs_; }
     [[nodiscard]] bool has_belts() const { return has_belts_; }
@@ -113,6 +122,8 @@ public:
     [[nodiscard]] bool has_base() const { return !base_.none(); }
     /// What friction does to its first body where it does not hold.
     [[nodiscard]] double friction(std::size_t joint, const Moment& at, const Mode& mode, double belt) const;
+    /// The same of a linear joint, at any time.
+    [[nodiscard]] double constant_friction(std::size_t joint, const Mode& mode) const;
     /// At this time somebody found a jump that nobody announced.
     void jumps_at(double t) { jumps_.insert(std::upper_bound(jumps_.begin(), jumps_.end(), t), t); }
     /// Jumps before this time are behind.
@@ -169,7 +180,7 @@ private:
         std::array<Signal, 2> sliding, holding;
         Signal normal;
         const model::laws::Bristle* bristle = nullptr;
-        bool varies = false;
+        bool varies = false, linear = false;
     };
     template <class Self, class F>
     static void each_signal(Self& self, F& f) {
@@ -192,7 +203,7 @@ private:
     std::vector<char> rubs_;
     std::vector<std::size_t> bristles_;
     std::vector<double> jumps_;  ///< found, of belts
-    bool nonlinear_ = false, has_belts_ = false;
+    bool nonlinear_ = false, all_linear_ = true, has_belts_ = false;
 };
 
 }  // namespace dinal::motion::engine

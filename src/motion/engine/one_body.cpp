@@ -82,6 +82,7 @@ Trajectory run(const Problem& problem, const Cut& cut) {
                                  .before = left != nullptr ? left->carry : nullptr,
                                  .tolerance = cut.tolerance,
                                  .longest = cut.longest,
+                                 .step = cut.step,
                                  .history_bytes = problem.course_bytes,
                                  .joined_elsewhere = true});
     Trajectory trajectory;

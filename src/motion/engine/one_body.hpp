@@ -9,6 +9,7 @@ namespace dinal::motion::engine {
 struct Cut {
     double tolerance = 1e-12;
     double longest = model::never;  ///< stretch, time units
+    double step = 0;                ///< of the classical Runge-Kutta method; 0: collocation
 };
 
 /// Runs the problem, which has extras. The columns of its states stand behind the others.

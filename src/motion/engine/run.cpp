@@ -13,8 +13,8 @@
 #include "model/slide.hpp"
 #include "model/springs/user_spring.hpp"
 #include "motion/engine/collocation.hpp"
+#include "motion/engine/crossing.hpp"
 #include "motion/engine/history.hpp"
-#include "motion/hybrid/crossing.hpp"
 #include "motion/roughness.hpp"
 #include "motion/spectral/first_below.hpp"
 #include "motion/witness.hpp"
@@ -23,8 +23,6 @@ namespace dinal::motion::engine {
 
 namespace {
 
-using hybrid::Watch;
-using hybrid::Watched;
 using model::EventKind;
 using model::Joint;
 using model::Motion;
@@ -73,6 +71,8 @@ private:
     double longest_under_friction();
     double until_wall();
     void again(Collocation::Attempt attempt);
+    [[nodiscard]] bool a_belt_jumps_at(double t) const;
+    bool belt_jump_found();
     bool get_nowhere(Outcome outcome);
     bool end_at(double x);
     void go_to(double x);
@@ -85,10 +85,12 @@ private:
 
     // Decisions.
     bool decide(bool told, std::optional<Ending> released = {});
+    void creep(std::size_t joint, Motion way, double pull);
+    [[nodiscard]] bool may_creep(std::size_t joint) const;
     bool share_loops(const std::optional<Ending>& released);
     void project(Side when);
     bool look(const Moment& at, const Mode& mode, const Frame& frame, Look& result, std::optional<double> x = {});
-    [[nodiscard]] std::vector<double> departing() const;
+    [[nodiscard]] const std::vector<double>& departing() const;
     [[nodiscard]] double slip(std::size_t joint) const {
         return mechanics_.velocity(joint, y_) - mechanics_.belt(joint, now_.hi, side());
     }
@@ -133,6 +135,7 @@ private:
     void stand_where_put(const std::vector<double>& before, const std::vector<std::size_t>& told);
     void come_again(std::size_t event);
     void tell(EventKind kind, int where, int user = -1);
+    [[nodiscard]] JointEvent event_at(EventKind kind, int where, int user) const;
     bool too_often();
     void echo(double t, int generation);
     bool put_row(double t, double x);
@@ -166,15 +169,17 @@ private:
     std::vector<double> y_, low_;         ///< what the angles have rounded off
     std::vector<double> origin_, reach_;  ///< of each joint: the wall that it hit last, and how far it went from there
     Mode mode_;
-    std::vector<Motion> arrived_;   ///< of each joint: which way it slid until now; stuck: it did not
-    std::vector<int> edge_;         ///< of each joint: the corner that its speed is at, 1 the upper one of its range
-    std::vector<char> at_wall_;     ///< of each joint: it begins at a wall, and leaves it
-    std::vector<char> leaned_;      ///< of each joint: it came to stand at a wall, which was told
-    std::vector<int> normal_half_;  ///< of each joint: the sign of its normal load
-    std::vector<Motion> heading_;   ///< of each body without dry friction
-    std::vector<Watch> watches_;    ///< of the events of the user
-    std::vector<hybrid::Half> came_from_;  ///< the events of the user that were told last
-    std::vector<BeltSlope> slopes_;        ///< of the belts, now
+    std::vector<char> crept_;                         ///< of each joint: it has come down to rounding, and may creep
+    std::map<std::size_t, JointEvent> crept_events_;  ///< the sticking of what creeps, told when nothing moves it
+    std::vector<Motion> arrived_;                     ///< of each joint: which way it slid until now; stuck: it did not
+    std::vector<int> edge_;          ///< of each joint: the corner that its speed is at, 1 the upper one of its range
+    std::vector<char> at_wall_;      ///< of each joint: it begins at a wall, and leaves it
+    std::vector<char> leaned_;       ///< of each joint: it came to stand at a wall, which was told
+    std::vector<int> normal_half_;   ///< of each joint: the sign of its normal load
+    std::vector<Motion> heading_;    ///< of each body without dry friction
+    std::vector<Watch> watches_;     ///< of the events of the user
+    std::vector<Half> came_from_;    ///< the events of the user that were told last
+    std::vector<BeltSlope> slopes_;  ///< of the belts, now
     bool after_break_ = false, has_walls_ = false;
     Segment segment_;
     std::vector<double> breaks_;                  ///< found, and still ahead
@@ -188,7 +193,7 @@ private:
     Outcome outcome_ = Outcome::reached_end;
     Look look_;
     std::array<std::vector<double>, 6> scratch_;  ///< of look()
-    mutable std::vector<double> point_;
+    mutable std::vector<double> point_, departing_;
     mutable std::vector<double> sizes_;  ///< of each body: how great the torques on it are, at a time
     mutable double sizes_at_ = -model::never;
 };
@@ -207,7 +212,7 @@ Engine::Engine(const AssemblyProblem& problem, AssemblyRun& result)
     mode_.friction.resize(joints), mode_.leans.assign(joints, 0);
     low_.assign(n(), 0), origin_.assign(joints, 0), reach_.assign(joints, 0);
     mode_.rubs = mechanics_.rubbing();
-    arrived_.assign(joints, Motion::stuck);
+    arrived_.assign(joints, Motion::stuck), crept_.assign(joints, 0);
     edge_.assign(joints, 0), at_wall_.assign(joints, 0), leaned_.assign(joints, 0), normal_half_.assign(joints, 0);
     heading_.assign(n(), Motion::stuck);
     watches_.resize(problem.drive.events.size());
@@ -245,7 +250,7 @@ Engine::Engine(const AssemblyProblem& problem, AssemblyRun& result)
     longest_ = longest_all_;
     h_ = longest_ / 2;
     attempts_since_ = now_.hi;
-    solver_.emplace(mechanics_, problem.tolerance, longest_all_);
+    solver_.emplace(mechanics_, problem.tolerance, longest_all_, problem.step);
     const std::size_t columns =
         1 + columns_of_body * n() + columns_of_link * (joints - n()) + mechanics_.states_of_user();
     result_.table = Growing<double>(problem.rows.count(), columns);
@@ -298,15 +303,18 @@ double Engine::torque_size(std::size_t joint) const {
 // ---- decisions
 
 /// The state at which functions that jump at slip 0 are asked: a hair of velocity on the way of what leaves.
-std::vector<double> Engine::departing() const {
-    std::vector<double> y = y_;
+const std::vector<double>& Engine::departing() const {
+    const auto leaves = [this](std::size_t j) { return mode_.friction[j].leaving && mode_.leans[j] == 0; };
+    bool any = false;
+    for (std::size_t j = 0; j < mechanics_.joints(); ++j) any = any || leaves(j);
+    if (!any) return y_;
+    departing_ = y_;
     for (std::size_t j = 0; j < mechanics_.joints(); ++j) {
-        const Slipping& how = mode_.friction[j];
-        if (!how.leaving || mode_.leans[j] != 0) continue;
-        double& v = y[n() + index(problem_.system.joints[j].first)];
-        if (v == 0) v = model::sign_of(how.way) * std::numeric_limits<double>::min();
+        if (!leaves(j)) continue;
+        double& v = departing_[n() + index(problem_.system.joints[j].first)];
+        if (v == 0) v = model::sign_of(mode_.friction[j].way) * std::numeric_limits<double>::min();
     }
-    return y;
+    return departing_;
 }
 
 /// Torques, accelerations and what holds, at a moment, which may be at x of the stretch. False when something is not
@@ -356,6 +364,11 @@ double Engine::excess(std::size_t joint, const Look& look, const Mode& mode, con
         const bool sticks = mechanics_.rubs(joint) && mode.friction[joint].way == Motion::stuck;
         return -wall * pull - (sticks ? mechanics_.holding(joint, towards, at) : 0) - mode.friction[joint].blunt;
     }
+    if (const Slipping& how = mode.friction[joint]; how.creeps != Motion::stuck) {
+        const double off = pull - model::sign_of(how.creeps) * mechanics_.sliding(joint, {.way = how.creeps}, 0, at);
+        towards = off > 0 ? Motion::forward : Motion::backward;
+        return std::fabs(off) - how.apart;
+    }
     towards = pull > 0 ? Motion::forward : Motion::backward;
     return std::fabs(pull) - look.blurred - mechanics_.holding(joint, towards, at) - mode.friction[joint].blunt;
 }
@@ -375,13 +388,13 @@ void Engine::find_belt_slopes(std::optional<double> x) {
         if (!mechanics_.has_belt(j)) continue;
         slopes_[j] = x ? BeltSlope{cheb::value(cheb::fit(segment_.belt_rates[j]), *x),
                                    solver_->blurred_by_belts(segment_) / inertia_}
-                       : mechanics_.belt_slope(j, now_.hi, belt_stretch * pace_);
+                       : mechanics_.belt_slope(j, towards(now_.hi, side()), belt_stretch * pace_);
     }
 }
 
 void Engine::slide(std::size_t joint, Motion way, bool leaving) {
     Slipping& how = mode_.friction[joint];
-    how.way = way, how.leaving = leaving, how.riding = false;
+    how.way = way, how.leaving = leaving, how.riding = false, how.creeps = Motion::stuck;
     edge_[joint] = 0;
     const model::Friction& law = problem_.system.joints[joint].friction.law;
     if (law.ranges() > 0) {
@@ -399,7 +412,7 @@ bool Engine::decide(bool told, std::optional<Ending> released) {
     const std::size_t joints = mechanics_.joints();
     std::vector<char> asked(joints, 0), taken_back(joints, 0);
     std::vector<Motion> before(joints, Motion::stuck);  // which way it slid; stuck: it did not
-    std::vector<char> was_held(joints, 0);
+    std::vector<char> was_held(joints, 0), was_creeping(joints, 0);
     const std::vector<int> leant = mode_.leans;
     for (std::size_t j = 0; j < joints; ++j) {
         if (!mechanics_.rubs(j)) continue;
@@ -419,9 +432,12 @@ bool Engine::decide(bool told, std::optional<Ending> released) {
         if (how.way != Motion::stuck && !how.riding && !arrived && !how.leaving) continue;
         before[j] = arrived ? arrived_[j] : Motion::stuck;
         was_held[j] = !arrived && !(how.leaving && !how.riding) ? 1 : 0;
+        was_creeping[j] = how.creeps != Motion::stuck ? 1 : 0;
         asked[j] = 1;
         how.way = Motion::stuck, how.riding = how.leaving = false;
     }
+    const bool free = std::none_of(asked.begin(), asked.end(), [](char one) { return one != 0; });
+    if (free && frame().edges.empty()) return true;
     project(side());
     if (!frame().closing.empty() && !share_loops(released)) return false;
     Look found;
@@ -445,8 +461,10 @@ bool Engine::decide(bool told, std::optional<Ending> released) {
             project(side());
             continue;
         }
-        const std::vector<double> y = departing();
-        if (!look({now_.hi, side(), y}, mode_, present, found)) return fail(Outcome::excitation_not_finite);
+        if (!look({now_.hi, side(), departing()}, mode_, present, found)) return fail(Outcome::excitation_not_finite);
+        for (std::size_t j = 0; j < joints; ++j) {
+            if (crept_[j] != 0 && before[j] != Motion::stuck && mode_.holds(j)) creep(j, before[j], -found.holding[j]);
+        }
         constexpr double nearly = 1e-10;  // of the torques: what differences tell of a belt is known no better
         std::size_t worst = joints;
         double most_beyond = 0;
@@ -467,6 +485,12 @@ bool Engine::decide(bool told, std::optional<Ending> released) {
         }
         if (worst < joints) {
             if (most_beyond == model::never) released.reset();
+            if (Slipping& how = mode_.friction[worst]; how.creeps != Motion::stuck && way != how.creeps) {
+                how.creeps = Motion::stuck;
+                if (told) tell(EventKind::stick, static_cast<int>(worst));
+                continue;
+            }
+            if (mode_.friction[worst].creeps != Motion::stuck) was_held[worst] = 0;
             if (mode_.leans[worst] != 0) {
                 mode_.leans[worst] = 0, at_wall_[worst] = 1;
                 const Motion slides = mode_.friction[worst].way;
@@ -511,6 +535,11 @@ bool Engine::decide(bool told, std::optional<Ending> released) {
         if (asked[j] == 0) continue;
         const Slipping& how = mode_.friction[j];
         const bool slides = how.way != Motion::stuck && !how.riding;
+        crept_[j] = 0;
+        if (how.creeps != Motion::stuck) {
+            arrived_[j] = Motion::stuck;
+            continue;
+        }
         if (told && before[j] != Motion::stuck) {
             if (!slides) {
                 tell(EventKind::stick, static_cast<int>(j));
@@ -519,12 +548,25 @@ bool Engine::decide(bool told, std::optional<Ending> released) {
             }
         } else if (told && was_held[j] != 0 && slides) {
             tell(EventKind::slip, static_cast<int>(j));
-        } else if (told && was_held[j] == 0 && !slides && !take_back_slip(j)) {
+        } else if (told && was_held[j] == 0 && was_creeping[j] == 0 && !slides && !take_back_slip(j)) {
             tell(EventKind::stick, static_cast<int>(j));
         }
         arrived_[j] = Motion::stuck;
     }
     return true;
+}
+
+/// Whether what has come down to rounding is on its way still, because no more than the friction of sliding balances
+/// its pull, and more would hold it.
+void Engine::creep(std::size_t joint, Motion way, double pull) {
+    Slipping& how = mode_.friction[joint];
+    const double level = mechanics_.sliding(joint, {.way = way}, 0, here()), size = torque_size(joint);
+    if (how.creeps != Motion::stuck || !(mechanics_.holding(joint, way, here()) > level)) return;
+    const double off = std::fabs(model::sign_of(way) * pull - level);
+    constexpr double balances = 1024 * rounding;  // of the torques
+    if (!(off <= balances * size)) return;
+    how.creeps = way, how.apart = 2 * off + 64 * rounding * size;
+    crept_events_[joint] = event_at(EventKind::stick, static_cast<int>(joint), -1);
 }
 
 /// Where joints that hold close loops, their torques are not known from the motion. What they can hold together they
@@ -594,6 +636,7 @@ bool Engine::share_loops(const std::optional<Ending>& released) {
 /// What is held together has one velocity, to the letter; what leans is at its wall.
 void Engine::project(Side when) {
     const Frame& present = frame();
+    if (present.edges.empty()) return;
     std::vector<double> belts(mechanics_.joints()), offsets;
     for (std::size_t j = 0; j < belts.size(); ++j) belts[j] = mechanics_.belt(j, now_.hi, when);
     present.offsets(belts, mode_, offsets);
@@ -650,6 +693,7 @@ bool Engine::restart_contacts(Because why, std::size_t at) {
         }
         const Motion way = model::motion_of(s);
         const bool held = how.way == Motion::stuck || how.riding;
+        how.leaving = false;
         if (!held && how.way == way) continue;
         const bool told = begun() && (why == Because::belt || (why == Because::impact && j != at));
         if (held && told) tell(EventKind::slip, static_cast<int>(j));
@@ -715,6 +759,12 @@ void Engine::run() {
         while (next_row_ < problem_.rows.count() && problem_.rows.time(next_row_) <= now_.hi && put_row(now_.hi, -2)) {
         }
     }
+    for (const auto& [joint, event] : crept_events_) {  // nothing came that would have moved it
+        if (outcome_ != Outcome::reached_end || mode_.friction[joint].creeps == Motion::stuck) continue;
+        const auto later = std::upper_bound(result_.events.begin(), result_.events.end(), event,
+                                            [](const JointEvent& a, const JointEvent& b) { return a.t < b.t; });
+        result_.events.insert(later, event);
+    }
     if (outcome_ == Outcome::reached_end) {
         const Frame& present = frame();
         bool still = true, for_good = !mechanics_.asks_functions() && !problem_.joined_elsewhere;
@@ -767,11 +817,18 @@ void Engine::choose() {
     frame();
     double breaks = std::min(mechanics_.next_break(now_.hi), echoes_.empty() ? model::never : echoes_.front().first);
     if (!breaks_.empty()) breaks = std::min(breaks, breaks_.front());
-    const double limit = std::min(problem_.window.end, breaks);
+    double limit = std::min(problem_.window.end, breaks);
+    if (problem_.step > 0) {
+        // A break that rounding puts beside a step's end is that end.
+        const double beside = std::max(1e-9 * problem_.step, 4 * rounding * std::fabs(now_.hi));
+        const double steps = std::floor((now_.hi - problem_.window.start + beside) / problem_.step) + 1;
+        const double step_end = problem_.window.start + steps * problem_.step;
+        if (step_end < limit - beside) limit = step_end;
+    }
     double h = std::min(
         {rung(h_, longest_ / 2), mechanics_.view(now_.hi, cheb::widest_gap) / 2, shortest_delay_ / 2 * (1 - 1e-12)});
     if (bad_time_ < model::never) h = std::min(h, now_.until(bad_time_) / 4);
-    h = std::min(h, longest_under_friction() / 2);
+    if (problem_.step == 0) h = std::min(h, longest_under_friction() / 2);
     // As long as it takes to a wall, or back to it, and a little more: a small bounce is to be seen.
     if (has_walls_) h = std::min(h, std::max(0.6 * until_wall(), 1e-9 * pace_));
     const double remaining = now_.until(limit);
@@ -781,7 +838,7 @@ void Engine::choose() {
     segment_.end = to_limit ? limit : now_.after(2 * segment_.h);
     segment_.from_break = after_break_;
     segment_.to_break = to_limit && limit == breaks;
-    segment_.to_the_end = to_limit;
+    segment_.to_the_end = to_limit && (segment_.to_break || limit == problem_.window.end || problem_.step == 0);
 }
 
 /// How long it takes to the next wall, if all accelerations stay as they are.
@@ -843,7 +900,8 @@ void Engine::again(Collocation::Attempt attempt) {
     if (attempt == Collocation::Attempt::failed) {
         bad_time_ = solver_->bad_time();
         const double near = std::max(near_failure * pace_, 64 * rounding * std::fabs(now_.hi));
-        if (now_.until(bad_time_) <= near || !mechanics_.may_go_on()) fail(Outcome::excitation_not_finite);
+        if (problem_.step > 0 || now_.until(bad_time_) <= near || !mechanics_.may_go_on())
+            fail(Outcome::excitation_not_finite);
         h_ = segment_.h / 2;
         return;
     }
@@ -854,9 +912,7 @@ void Engine::again(Collocation::Attempt attempt) {
             const auto place = std::lower_bound(breaks_.begin(), breaks_.end(), *found);
             if (place == breaks_.end() || *place != *found) {
                 breaks_.insert(place, *found);
-                for (std::size_t j = 0; j < mechanics_.joints(); ++j) {
-                    if (solver_->belt_jumps(segment_, j, *found)) return mechanics_.jumps_at(*found);
-                }
+                if (a_belt_jumps_at(*found)) mechanics_.jumps_at(*found);
                 return;
             }
         }
@@ -864,6 +920,37 @@ void Engine::again(Collocation::Attempt attempt) {
     const double unresolved = solver_->unresolved();
     const double factor = unresolved < model::never ? 0.9 * std::pow(unresolved, -1.0 / 16) : 0;
     h_ = segment_.h * std::clamp(factor, 0.5, 0.9);
+}
+
+bool Engine::a_belt_jumps_at(double t) const {
+    for (std::size_t j = 0; j < mechanics_.joints(); ++j) {
+        if (solver_->belt_jumps(segment_, j, t)) return true;
+    }
+    return false;
+}
+
+/// On a step, of which nobody asks whether it was resolved.
+bool Engine::belt_jump_found() {
+    std::optional<double> first;
+    for (std::size_t j = 0; j < mechanics_.joints(); ++j) {
+        const auto found = solver_->jump_of_belt(segment_, j);
+        if (found && (!first || *found < *first)) first = found;
+    }
+    if (!first) return false;
+    constexpr double right_behind = 1e-6;
+    if (now_.until(*first) < right_behind * segment_.h) {  // it is behind this moment, and was before it
+        if (after_break_) return false;
+        after_break_ = true;
+        mechanics_.jumps_at(now_.hi);
+        find_belt_slopes({});
+        restart_contacts(Because::belt);
+        return true;
+    }
+    const auto place = std::lower_bound(breaks_.begin(), breaks_.end(), *first);
+    if (place != breaks_.end() && *place == *first) return false;
+    breaks_.insert(place, *first);
+    mechanics_.jumps_at(*first);
+    return true;
 }
 
 /// Ends the run, which got nowhere: if something that acts in it is rough on every scale, that is why.
@@ -915,6 +1002,9 @@ bool Engine::advance() {
     const Frame& present = *frame_;
     const auto attempt = solver_->solve(segment_, mode_, present, y_, departing());
     const double late = std::max(std::fabs(now_.hi), std::fabs(segment_.end));
+    if (problem_.step > 0 && attempt == Collocation::Attempt::resolved && mechanics_.has_belts() && belt_jump_found()) {
+        return outcome_ == Outcome::reached_end;
+    }
     if (attempt == Collocation::Attempt::shorten &&
         2 * segment_.h <= std::max(shortest * pace_, 16 * rounding * late)) {
         if (++too_short_ > most_short) return get_nowhere(Outcome::chattering);
@@ -927,7 +1017,7 @@ bool Engine::advance() {
         if (2 * segment_.h > 1e-7 * pace_) too_short_ = 0;
         const double factor = 0.9 * std::pow(std::max(solver_->unresolved(), 1e-16), -1.0 / 16);
         const double least = segment_.h < short_part * longest_ ? 2 : 0;
-        h_ = std::min(longest_ / 2, std::max(h_, segment_.h * std::clamp(factor, least, 8.0)));
+        if (problem_.step == 0) h_ = std::min(longest_ / 2, std::max(h_, segment_.h * std::clamp(factor, least, 8.0)));
     }
     Ending ending;
     watch(ending);
@@ -946,7 +1036,8 @@ bool Engine::end_at(double x) {
     }
     keep(length);
     if (mechanics_.asks_functions())
-        result_.gap = std::max(result_.gap, std::min(length, 2 * cheb::widest_gap * segment_.h));
+        result_.gap =
+            std::max(result_.gap, std::min(length, (problem_.step > 0 ? 1 : 2 * cheb::widest_gap) * segment_.h));
     if (problem_.works && length > 0) add_works(x);
     if (x > -1) go_to(x);
     now_ = whole && segment_.to_the_end ? Clock{segment_.end, 0} : segment_.start.later(length);
@@ -1035,6 +1126,8 @@ std::vector<Kept::Acting> Engine::acting() {
         if (mechanics_.has_belt(j)) all[j].belt = cheb::fit(segment_.belts[j]);
         if (all[j].holds) {
             all[j].friction = cheb::fit(segment_.holding[j]);
+        } else if (mechanics_.is_linear(j)) {
+            all[j].friction[0] = mechanics_.constant_friction(j, mode_);
         } else if (mechanics_.rubs(j) || mechanics_.bristle(j) != nullptr) {
             for (std::size_t node = 0; node < node_count; ++node) {
                 point_.resize(y_.size());
@@ -1097,7 +1190,8 @@ bool Engine::handle(const Ending& ending) {
             bool same = mode_.leans == before.leans;
             for (std::size_t i = 0; i < mechanics_.joints() && same; ++i) {
                 same = mode_.friction[i].way == before.friction[i].way &&
-                       mode_.friction[i].riding == before.friction[i].riding;
+                       mode_.friction[i].riding == before.friction[i].riding &&
+                       mode_.friction[i].creeps == before.friction[i].creeps;
             }
             // What only touched its limit must pass it clearly the next time.
             if (same) {
@@ -1151,18 +1245,23 @@ void Engine::echo(double t, int generation) {
 }
 
 void Engine::tell(EventKind kind, int where, int user) {
+    result_.events.push_back(event_at(kind, where, user));
+}
+
+JointEvent Engine::event_at(EventKind kind, int where, int user) const {
     const std::size_t joint = where < 0 ? 0 : index(where);
     const std::size_t body =
         kind == EventKind::switched || where < 0 ? joint : index(problem_.system.joints[joint].first);
     JointEvent event{now_.hi, kind, where, user, 0, 0, mechanics_.load(body, here())};
     event.theta = kind == EventKind::switched ? y_[body] : mechanics_.angle(joint, y_);
     event.velocity = kind == EventKind::switched ? y_[n() + body] : mechanics_.velocity(joint, y_);
-    result_.events.push_back(event);
+    return event;
 }
 
 // ---- guards
 
 void Engine::watch(Ending& ending) {
+    std::fill(crept_.begin(), crept_.end(), 0);
     for (std::size_t j = 0; j < mechanics_.joints(); ++j) {
         if (mode_.holds(j)) watch_release(j, ending);
         if (mechanics_.rubs(j) && mode_.friction[j].way != Motion::stuck && !mode_.friction[j].riding) {
@@ -1195,13 +1294,21 @@ void Engine::watch_slip(std::size_t joint, Ending& ending) {
     Series series = cheb::fit(change);
     series[0] += first;
     const double fastest = greatest(a) + greatest(b) + greatest(belt);
-    if (!how.leaving && hybrid::stays_above_zero(sign, series, fastest)) return;
+    if (!how.leaving && stays_above_zero(sign, series, fastest)) return;
     cheb::Bounded<node_count> curve(sign, series, cheb::derivative(series));
     if (own.second >= 0 || mechanics_.has_belt(joint)) curve.raise_floor(16 * rounding * fastest);
     double torques = torque_size(joint), inertia = problem_.system.bodies[index(own.first)].inertia;
     if (own.second >= 0) inertia = std::min(inertia, problem_.system.bodies[index(own.second)].inertia);
     curve.raise_slope_floor(segment_.h / inertia * 64 * rounding * torques);
     const auto always = [](double) { return true; };
+    // All that goes on in the stretch is slower than the rounding of its torques could make it.
+    const bool crept =
+        may_creep(joint) && fastest * (own.damping + inertia / (2 * segment_.h)) <= 4 * rounding * torques;
+    if (crept) {
+        crept_[joint] = 1;
+        if (!how.leaving) ending = {1, By::slip, joint};
+        if (!how.leaving) return;
+    }
     auto zero = cheb::first_below(curve, -1, how.leaving ? cheb::LeftEnd::leaving : cheb::LeftEnd::anywhere, always);
     if (!zero && curve(1) <= curve.floor()) zero = 1;
     if (!zero || *zero > ending.x) return;
@@ -1214,6 +1321,11 @@ void Engine::watch_slip(std::size_t joint, Ending& ending) {
     stays.way = Motion::stuck, stays.leaving = false;
     stays.blunt = std::max(2 * stays.blunt, 64 * rounding * torques);
     if (too_often() || stays.blunt > most_blunt * torques) fail(Outcome::chattering);
+}
+
+/// It has no belt, and nothing asks for its motion: what it is under is known as well as the rounding.
+bool Engine::may_creep(std::size_t joint) const {
+    return mechanics_.all_linear() && !mechanics_.has_belt(joint) && mode_.leans[joint] == 0;
 }
 
 /// What was told to slip right now, and did not. Whether there was such an event.
@@ -1250,6 +1362,10 @@ void Engine::watch_release(std::size_t joint, Ending& ending) {
         } else {
             limit.fill(rubs ? mechanics_.holding(joint, side, here()) : 0);
         }
+        if (const Slipping& how = mode_.friction[joint]; how.creeps != Motion::stuck) {
+            const double level = mechanics_.sliding(joint, {.way = how.creeps}, 0, here());
+            limit.fill(side == how.creeps ? how.apart + level : how.apart - level);
+        }
         Nodes values{};
         const double blunt = mode_.friction[joint].blunt;
         for (std::size_t j = 0; j < node_count; ++j) values[j] = limit[j] - sign * pull[j] + blunt;
@@ -1279,7 +1395,7 @@ void Engine::watch_release(std::size_t joint, Ending& ending) {
         // A jump that was passed over may have taken it far beyond.
         auto x =
             values[0] < -doubt ? std::optional(-1.0) : cheb::first_below(curve, -1, cheb::LeftEnd::anywhere, touches);
-        if (x && touch) x = hybrid::first_true(lets_go, *touch);
+        if (x && touch) x = first_true(lets_go, *touch);
         if (!x || !(*x < ending.x) || !(segment_.time(*x) < segment_.end)) continue;
         ending = {*x, By::release, joint, static_cast<int>(side)};
     }
@@ -1352,7 +1468,7 @@ void Engine::watch_bristles(std::size_t joint, Ending& ending) {
         return mechanics_.velocity(joint, y) - mechanics_.belt(joint, segment_.time(x), Side::at);
     };
     const Watched watched(values, exact);
-    hybrid::Half half = normal_half_[joint];
+    Half half = normal_half_[joint];
     const auto x = watched.leaves(half, -1);
     normal_half_[joint] = half;
     if (!x || *x >= ending.x) return;
@@ -1373,7 +1489,7 @@ void Engine::watch_normal(std::size_t joint, Ending& ending) {
         segment_.state(x, y);
         return mechanics_.normal(joint, {segment_.time(x), Side::at, y});
     };
-    hybrid::Half half = normal_half_[joint];
+    Half half = normal_half_[joint];
     const Watched watched(values, exact);
     const auto x = watched.leaves(half, -1);
     if (!x || *x >= ending.x) {
@@ -1399,7 +1515,7 @@ void Engine::watch_relays(Ending& ending) {
                 segment_.state(x, y);
                 return load.until_switch(r, {segment_.time(x), Side::at, y});
             };
-            hybrid::Half half = 1;
+            Half half = 1;
             const auto x = values[0] < 0 ? std::optional(-1.0) : Watched(values, exact).leaves(half, -1);
             if (x && *x < ending.x) ending = {*x, By::relay, i, static_cast<int>(r)};
         }
@@ -1434,7 +1550,7 @@ void Engine::watch_users(Ending& ending) {
         };
         const Watched curve(values, exact, watch.rounded);
         double from = -1;
-        hybrid::Half half = watch.half;
+        Half half = watch.half;
         while (const auto x = curve.leaves(half, from)) {
             if (!(*x < before)) break;
             if (watch.sent_back && !curve.is_clearly(half, *x)) return come_again(e);
@@ -1492,7 +1608,7 @@ void Engine::record_turns(double until) {
         const double torques = torque_size(i);
         const double nothing = 100 * rounding * segment_.h / problem_.system.bodies[i].inertia * torques;
         if (!(moving > nothing)) continue;
-        hybrid::Half half = static_cast<int>(heading_[i]);
+        Half half = static_cast<int>(heading_[i]);
         const Watched watched(v, exact);
         double from = -1;
         for (;;) {
@@ -1921,6 +2037,7 @@ AssemblyRun run(const AssemblyProblem& problem) {
                                 .before = problem.before,
                                 .tolerance = problem.tolerance,
                                 .longest = problem.longest,
+                                .step = problem.step,
                                 .works = problem.works};
     AssemblyRun result = run_plain(heard);
     const bool whole = model::is_whole(result.outcome) || result.outcome == Outcome::stopped;

@@ -9,10 +9,10 @@
 #include "model/contradiction.hpp"
 #include "model/event.hpp"
 #include "model/outcome.hpp"
+#include "motion/engine/crossing.hpp"
 #include "motion/engine/history.hpp"
 #include "motion/engine/mechanics.hpp"
 #include "motion/growing.hpp"
-#include "motion/hybrid/crossing.hpp"
 #include "motion/simulate.hpp"
 
 namespace dinal::motion::engine {
@@ -32,7 +32,7 @@ struct Carry {
     std::vector<double> y;
     Mode mode;
     std::vector<std::vector<Signal::Memory>> controllers;  ///< of the loads of each body
-    std::vector<hybrid::Watch> watches;                    ///< of the events of the user; may be left out
+    std::vector<Watch> watches;                            ///< of the events of the user; may be left out
     std::vector<std::pair<double, int>> echoes;            ///< breaks that delays bring back
     std::vector<model::Motion> heading;                    ///< of bodies without dry friction; may be left out
     std::shared_ptr<const History> past;
@@ -74,6 +74,7 @@ struct AssemblyProblem {
     std::shared_ptr<const Carry> before = {};
     double tolerance = 1e-12;
     double longest = model::never;  ///< stretch, time units
+    double step = 0;                ///< of the classical Runge-Kutta method; 0: collocation
     bool works = false;             ///< integrate them: every function is asked about as often again
     std::size_t history_bytes = limits.memory / 4;
     bool joined_elsewhere = false;  ///< who asked joins runs that go on, and says what is at rest for good

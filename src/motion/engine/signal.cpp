@@ -16,6 +16,7 @@ Signal::Signal(const model::Excitation& excitation, const Asking* asking)
         part.of_motion = part.function != nullptr && part.function->feedback;
         asks_the_motion_ |= part.of_motion;
         asks_functions_ |= part.function != nullptr || part.delayed != nullptr;
+        asks_in_time_ |= (part.function != nullptr && !part.of_motion) || part.delayed != nullptr;
         if (part.relay != nullptr) relays_.push_back(parts_.size());
         if (part.delayed != nullptr) delays_.push_back(part.delayed->by);
         parts_.push_back(part);

@@ -54,6 +54,8 @@ public:
     [[nodiscard]] bool asks_the_motion() const { return asks_the_motion_; }
     /// A function that is known where it was asked only.
     [[nodiscard]] bool asks_functions() const { return asks_functions_; }
+    /// A function that may do anything at any time, be it where nothing of the motion changes.
+    [[nodiscard]] bool asks_in_time() const { return asks_in_time_; }
     [[nodiscard]] bool has_script() const { return excitation_.has_script(); }
     [[nodiscard]] double value(const Moment& at) const { return of_time(at) + of_motion(at); }
     /// What depends on the time alone, controllers that hold a value among it.
@@ -109,7 +111,7 @@ private:
     std::vector<Memory> memory_;
     std::vector<std::size_t> relays_;
     std::vector<double> delays_;
-    bool asks_the_motion_ = false, asks_functions_ = false;
+    bool asks_the_motion_ = false, asks_functions_ = false, asks_in_time_ = false;
 };
 
 }  // namespace dinal::motion::engine

@@ -4,7 +4,7 @@
 
 #include <memory>
 
-#include "motion/hybrid/engine.hpp"
+#include "motion/engine/one_body.hpp"
 #include "motion/rk4/rk4_engine.hpp"
 
 namespace dinal::motion::rk4 {
@@ -80,7 +80,7 @@ Trajectory Rk4::run(const Problem& problem) const {
 }
 
 Trajectory Rk4::run_more(const Problem& problem) const {
-    return hybrid::run(problem, {.longest = h, .h = h});
+    return engine::run(problem, {.longest = h, .step = h});
 }
 
 }  // namespace dinal::motion::rk4

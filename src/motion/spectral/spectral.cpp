@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "motion/hybrid/engine.hpp"
+#include "motion/engine/one_body.hpp"
 #include "motion/spectral/spectral_engine.hpp"
 
 namespace dinal::motion::spectral {
@@ -37,7 +37,7 @@ Trajectory Spectral::run(const Problem& problem) const {
 }
 
 Trajectory Spectral::run_more(const Problem& problem) const {
-    return hybrid::run(problem, {.tolerance = tolerance, .longest = longest(problem)});
+    return engine::run(problem, {.tolerance = tolerance, .longest = longest(problem)});
 }
 
 }  // namespace dinal::motion::spectral

@@ -6,11 +6,12 @@
 #include <limits>
 #include <optional>
 
-#include "motion/hybrid/solver.hpp"
+#include "model/terms/term.hpp"
+#include "motion/engine/nodes.hpp"
 #include "motion/interpolation.hpp"
 #include "motion/spectral/first_below.hpp"
 
-namespace dinal::motion::hybrid {
+namespace dinal::motion::engine {
 
 /// Which side of zero a watched value was on: 1 above, -1 below, 0 not known, because it stood at zero.
 using Half = int;
@@ -58,7 +59,7 @@ double first_true(const Condition& holds, double x) {
 /// the constant one. It may be a difference of values of this size.
 inline bool stays_above_zero(double sign, const Series& series, double of_size = 0) {
     constexpr double few = 64;
-    const double all = spectral::chebyshev::size(series), others = all - std::fabs(series[0]);
+    const double all = cheb::size(series), others = all - std::fabs(series[0]);
     return sign * series[0] - others > few * rounding * std::max(all, of_size);
 }
 
@@ -68,18 +69,18 @@ class Watched {
 public:
     /// What is not beyond `rounded` may be zero.
     Watched(const Nodes& values, const F& exact, double rounded = 0)
-        : values_(values), exact_(exact), rounded_(rounded), series_(spectral::chebyshev::fit(values)) {
+        : values_(values), exact_(exact), rounded_(rounded), series_(cheb::fit(values)) {
         constexpr double few = 64;
-        size_ = spectral::chebyshev::size(series_);
+        size_ = cheb::size(series_);
         floor_ = std::max(few * rounding * size_, rounded);
-        smooth_ = spectral::chebyshev::tail(series_) <= 1e-9 * size_;
+        smooth_ = cheb::tail(series_) <= 1e-9 * size_;
     }
     /// The first x after `from` at which it leaves the half that it is in; that is looked up when it is not known.
     [[nodiscard]] std::optional<double> leaves(Half& half, double from) const {
         const bool at_zero = half == 0 || std::fabs(from == -1 ? values_[0] : exact_(from)) <= floor_;
         if (half == 0) {
             for (std::size_t j = 0; j < node_count && half == 0; ++j) {
-                if (spectral::chebyshev::nodes[j] >= from) half = half_of(values_[j], 0);
+                if (cheb::nodes[j] >= from) half = half_of(values_[j], 0);
             }
             if (half == 0) return {};
         }
@@ -93,7 +94,7 @@ public:
     [[nodiscard]] bool is_clearly(Half half, double x) const {
         if (!(x > -1)) return false;
         for (std::size_t j = 0; j < node_count; ++j) {
-            if (spectral::chebyshev::nodes[j] <= x && half_of(values_[j], 0) == half) return true;
+            if (cheb::nodes[j] <= x && half_of(values_[j], 0) == half) return true;
         }
         return half_of(exact_((x - 1) / 2), 0) == half;
     }
@@ -104,7 +105,7 @@ private:
     }
     /// The series says where to look, and is right to some digits less than the value itself, which says what is there.
     [[nodiscard]] std::optional<double> of_series(Half half, double from, bool at_zero) const {
-        using namespace spectral::chebyshev;
+        using namespace cheb;
         Bounded<points> curve(half, series_, derivative(series_));
         curve.raise_floor(rounded_);
         const auto no = [](double) { return false; };
@@ -133,7 +134,7 @@ private:
         constexpr int parts = 4;
         double a = from;
         for (std::size_t j = 1; j < node_count; ++j) {
-            const double end = spectral::chebyshev::nodes[j];
+            const double end = cheb::nodes[j];
             if (end <= from) continue;
             const double begin = a;
             for (int part = 1; part <= parts; ++part) {
@@ -162,4 +163,4 @@ private:
     bool smooth_ = false;
 };
 
-}  // namespace dinal::motion::hybrid
+}  // namespace dinal::motion::engine
