@@ -28,6 +28,12 @@ std::string note_of_words(const std::vector<std::string>& names) {
     return names.empty() ? "" : fmt::format("words in {}", fmt::join(names, ", "));
 }
 
+text::Expected<files::Written> write_columns(const std::string& file, std::span<const files::NamedColumn> columns,
+                                             const std::string& comment) {
+    const std::span<const std::string> comments(&comment, comment.empty() ? 0 : 1);
+    return files::write_csv(file, columns, comments, files::Gaps::written);
+}
+
 /// What we write ends with its last line. Files come under their names when they are whole; but a power failure, or a
 /// copy to another machine that was broken off, can leave a part of one.
 bool is_cut_off(const std::string& file) {
@@ -223,7 +229,7 @@ std::optional<text::Error> SweepFiles::write(std::size_t chunk) {
     std::vector<std::string> names;
     numbers.reserve(piece.columns.size());
     words.reserve(piece.columns.size());
-    std::vector<files::WordsOrNumbers> columns{{.name = point_column, .numbers = places}};
+    std::vector<files::NamedColumn> columns{{.name = point_column, .values = places}};
     for (const auto& [name, all] : piece.columns) {
         std::vector<double>& own = numbers.emplace_back(points.size());
         std::transform(points.begin(), points.end(), own.begin(),
@@ -232,11 +238,11 @@ std::optional<text::Error> SweepFiles::write(std::size_t chunk) {
             names.push_back(name);
             columns.push_back({.name = name, .words = words.emplace_back(std::move(*own_words))});
         } else {
-            columns.push_back({.name = name, .numbers = own});
+            columns.push_back({.name = name, .values = own});
         }
     }
     columns.push_back({.name = "error", .words = errors});
-    const auto written = files::write_columns(chunk_file(chunk), columns, note_of_words(names));
+    const auto written = write_columns(chunk_file(chunk), columns, note_of_words(names));
     if (written) return std::nullopt;
     // Somebody with the same share, who was not killed after all, may have done it, and all of it be finished.
     std::error_code error;
@@ -271,19 +277,18 @@ text::Expected<bool> SweepFiles::take_all() {
 }
 
 std::optional<text::Error> SweepFiles::finish(const Data& result) {
-    std::vector<files::WordsOrNumbers> columns;
+    std::vector<files::NamedColumn> columns;
     std::vector<std::string> names;
     for (const DataColumn& column : result.columns) {
-        files::WordsOrNumbers& written = columns.emplace_back(files::WordsOrNumbers{.name = column.name});
+        files::NamedColumn& written = columns.emplace_back(files::NamedColumn{.name = column.name});
         if (const lua::Vector* numbers = column.numbers()) {
-            written.numbers = numbers->values();
+            written.values = numbers->values();
         } else {
             written.words = *std::get<Words>(column.values);
             if (columns.size() > grid_.parameters().size() && column.name != "error") names.push_back(column.name);
         }
     }
-    const auto written =
-        files::write_columns(file_, columns, mark_ + (names.empty() ? "" : " " + note_of_words(names)));
+    const auto written = write_columns(file_, columns, mark_ + (names.empty() ? "" : " " + note_of_words(names)));
     std::error_code error;
     if (!written) {
         fs::rename(folder_ + ".merging", folder_, error);

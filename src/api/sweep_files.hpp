@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "api/sweep_results.hpp"
-#include "files/csv_columns.hpp"
+#include "files/csv.hpp"
 #include "files/share.hpp"
 #include "text/expected.hpp"
 
