@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <type_traits>
+
 #include "lua/bind.hpp"
 #include "lua/lua_text.hpp"
 #include "lua/prototype.hpp"
@@ -9,8 +11,7 @@
 #include "lua/user_function.hpp"
 #include "lua/vector.hpp"
 #include "model/controller.hpp"
-#include "model/laws/user_law.hpp"
-#include "model/springs/user_spring.hpp"
+#include "model/functions.hpp"
 #include "motion/integrators.hpp"
 #include "source/bytecode.hpp"
 
@@ -327,33 +328,30 @@ bool Carrier::global(const std::string& name) {
 // Objects of our classes, carried: what is native is shared, a user's functions in them are carried, too.
 
 bool Carrier::object(int index) {
-    if (const auto* vector = lua::test<lua::Vector>(from_, index)) {
-        lua::push(to_, *vector);
-    } else if (const auto* integrator = lua::test<motion::Integrator>(from_, index)) {
-        lua::push(to_, *integrator);
-    } else if (const auto* law = lua::test<model::Friction>(from_, index)) {
-        model::Friction copy;
-        if (!friction(*law, copy)) return false;
-        lua::push(to_, copy);
-    } else if (const auto* spring = lua::test<model::Spring>(from_, index)) {
-        model::Spring copy;
-        if (!own_spring(*spring, copy)) return false;
-        lua::push(to_, copy);
-    } else if (const auto* system = lua::test<model::Oscillator>(from_, index)) {
-        model::Friction copy;
-        model::OscillatorParameters parameters = system->parameters();
-        if (!friction(system->friction(), copy) || !own_spring(system->spring(), parameters.spring)) return false;
-        if (parameters.friction) parameters.friction = copy;
-        lua::push(to_, model::Oscillator::make(parameters).value());
-    } else if (const auto* rig = lua::test<model::AssemblyHandle>(from_, index)) {
-        model::Assembly copy = **rig;
-        for (model::Joint& own : copy.joints) {
-            if (!joint(own)) return false;
+    const auto shared = [this](const auto* own) {
+        if (own != nullptr) lua::push(to_, *own);
+        return own != nullptr;
+    };
+    const auto part = [this](const auto& own) {
+        if constexpr (std::is_same_v<decltype(own), const model::Excitation&>) {
+            return excitation(own);
+        } else {
+            return user_function(own);
         }
-        lua::push<model::AssemblyHandle>(to_, std::make_shared<const model::Assembly>(std::move(copy)));
-    } else if (const auto* own = lua::test<model::Excitation>(from_, index)) {
-        if (!excitation(*own)) return false;
-    } else if (!other_objects_(from_, index, to_)) {
+    };
+    const auto copied = [&](const auto* own) {
+        if (own == nullptr) return false;
+        auto copy = model::with_functions(*own, part);
+        if (!error_) lua::push(to_, std::move(copy));
+        return true;
+    };
+    const bool known =
+        shared(lua::test<lua::Vector>(from_, index)) || shared(lua::test<motion::Integrator>(from_, index)) ||
+        copied(lua::test<model::Friction>(from_, index)) || copied(lua::test<model::Spring>(from_, index)) ||
+        copied(lua::test<model::Oscillator>(from_, index)) || copied(lua::test<model::AssemblyHandle>(from_, index)) ||
+        copied(lua::test<model::Excitation>(from_, index));
+    if (error_) return false;
+    if (!known && !other_objects_(from_, index, to_)) {
         const lua::Documented found = lua::documented(from_, index);
         const bool run = found.owner != nullptr && std::string_view(found.owner->name) == "run";
         return fail(index, run ? "; take what is needed out of it before, such as local theta = run.theta" : "");
@@ -362,37 +360,16 @@ bool Carrier::object(int index) {
     return true;
 }
 
-/// With the functions of the other state in the place of those of this one.
-bool Carrier::joint(model::Joint& own) {
-    const auto varying = [&](std::optional<model::Excitation>& value) {
-        if (!value) return true;
-        if (!excitation(*value)) return false;
-        value = *lua::test<model::Excitation>(to_, -1);
-        lua_pop(to_, 1);
-        return true;
-    };
-    model::ContactFriction& rubs = own.friction;
-    model::Friction law;
-    if (!friction(rubs.law, law) || !own_spring(model::Spring(own.spring), own.spring)) return false;
-    rubs.law = law;
-    if (rubs.function != nullptr) {
-        rubs.function = user_function(*rubs.function, "its friction");
-        if (rubs.function == nullptr) return false;
-    }
-    return varying(rubs.sliding[0]) && varying(rubs.sliding[1]) && varying(rubs.holding[0]) &&
-           varying(rubs.holding[1]) && varying(rubs.normal);
-}
-
-/// nullptr when it fails.
-std::shared_ptr<model::terms::UserFunction> Carrier::user_function(const model::terms::UserFunction& function,
-                                                                   const char* what) {
-    const auto* own = dynamic_cast<const lua::LuaFunction*>(&function);
-    if (own == nullptr) return controller(function);
-    way_.push_back(fmt::format(" > {}", what));
+/// The function as it is in the other state; itself where it, or something before it, cannot be there.
+Carrier::Function Carrier::user_function(const Function& function) {
+    if (error_ || function == nullptr) return function;
+    const auto* own = dynamic_cast<const lua::LuaFunction*>(function.get());
+    if (own == nullptr) return controller(dynamic_cast<const model::Controller&>(*function));
+    way_.emplace_back(" > its function");
     own->push(from_);
     const bool good = value(-1);
     lua_pop(from_, 1);
-    if (!good) return nullptr;
+    if (!good) return function;
     way_.pop_back();
     auto copy = std::make_shared<lua::LuaFunction>(to_, lua_gettop(to_), own->role());
     lua_pop(to_, 1);
@@ -400,17 +377,15 @@ std::shared_ptr<model::terms::UserFunction> Carrier::user_function(const model::
     way_.emplace_back(" > start");
     const bool starts = value(-1);
     lua_pop(from_, 1);
-    if (!starts) return nullptr;
+    if (!starts) return function;
     way_.pop_back();
     copy->remember_from(to_, -1);
     lua_pop(to_, 1);
     return copy;
 }
 
-std::shared_ptr<model::terms::UserFunction> Carrier::controller(const model::terms::UserFunction& function) {
-    const auto& own = dynamic_cast<const model::Controller&>(function);
-    std::shared_ptr<model::terms::UserFunction> carried;
-    if (own.function != nullptr && (carried = user_function(*own.function, "its function")) == nullptr) return nullptr;
+Carrier::Function Carrier::controller(const model::Controller& own) {
+    const Function carried = user_function(own.function);
     if (const auto* relay = dynamic_cast<const model::RelayController*>(&own)) return model::copied(*relay, carried);
     if (const auto* delayed = dynamic_cast<const model::DelayedController*>(&own)) {
         auto copy = std::make_shared<model::DelayedController>();
@@ -424,46 +399,17 @@ std::shared_ptr<model::terms::UserFunction> Carrier::controller(const model::ter
     return copy;
 }
 
-/// Pushes the copy.
-bool Carrier::excitation(const model::Excitation& own) {
-    if (!own.has_script()) {
-        lua::push(to_, own);
-        return true;
-    }
+model::Excitation Carrier::excitation(const model::Excitation& own) {
+    if (!own.has_script()) return own;
     model::Excitation sum;
     for (const model::Component& component : own.components()) {
         model::Term term = component.term;
-        if (auto* script = std::get_if<model::Scripted>(&term)) {
-            script->function = user_function(*script->function, "its function");
-            if (script->function == nullptr) return false;
-        }
+        if (auto* script = std::get_if<model::Scripted>(&term)) script->function = user_function(script->function);
         // As it was made once, so it is right.
         const model::Excitation one = model::Excitation::make(std::move(term)).value();
         sum = sum + one.scaled(component.gain).windowed(component.from, component.to);
     }
-    lua::push(to_, std::move(sum));
-    return true;
-}
-
-bool Carrier::own_spring(const model::Spring& own, model::Spring& copy) {
-    copy = own;
-    if (const auto* written = own.as<model::springs::UserSpring>()) {
-        const auto carried = user_function(*written->function, "its function");
-        if (carried == nullptr) return false;
-        copy = model::springs::UserSpring{carried};
-    }
-    return true;
-}
-
-bool Carrier::friction(const model::Friction& own, model::Friction& copy) {
-    copy = own;
-    if (const auto* law = own.as<model::laws::UserLaw>()) {
-        model::laws::UserLaw carried = *law;
-        carried.function = user_function(*law->function, "its function");
-        if (carried.function == nullptr) return false;
-        copy = carried;
-    }
-    return true;
+    return sum;
 }
 
 }  // namespace dinal::source
