@@ -76,12 +76,6 @@ std::vector<std::string> members(lua_State* L, const TypedText& typed, bool call
     if (owner.kind == Meaning::Kind::member && owner.member->kind == lua::Kind::field) {
         held = help::result_class(owner.member->doc.signature);
     }
-    constexpr std::size_t field_of_variable = 3;
-    if (owner.kind == Meaning::Kind::member && owner.member->kind == lua::Kind::field &&
-        typed.owner().size() == field_of_variable && lua_isuserdata(L, -2) != 0) {
-        lua_pop(L, 1);  // fit.error: the object is below
-        go_to_field(L, owner.member->name);
-    }
     if (held != nullptr) {
         add_members(*held->description, typed.separator(), calls, names);
         if (typed.separator() == '.') {
@@ -499,14 +493,37 @@ const lua::Member* member_of(const lua::Class& description, std::string_view nam
     return found == description.members.end() ? nullptr : &*found;
 }
 
-/// Walks along the expression. What is known so far is `result`; its value is on the top of the stack.
+/// As a function that Lua can call: what is in a field of an object of ours.
+int field_of_object(lua_State* L) {
+    lua_gettable(L, 1);
+    return 1;
+}
+
+/// Replaces the object of ours and the key on the top of it by what is there; nil when that fails. No code of the user
+/// runs.
+void ask_object(lua_State* L) {
+    lua_pushcfunction(L, field_of_object);
+    lua_insert(L, -3);
+    if (lua_pcall(L, 2, 1, 0) != LUA_OK) {
+        lua_pop(L, 1);
+        lua_pushnil(L);
+    }
+}
+
+/// What the value on the top is.
+Meaning meaning_of_top(lua_State* L) {
+    if (lua_isnil(L, -1)) return {};
+    const lua::Documented found = lua::documented(L, -1);
+    if (found.member != nullptr) return {Meaning::Kind::member, section_of(found.owner), found.member};
+    const bool object = found.owner != nullptr && lua_isuserdata(L, -1) != 0;
+    return object ? Meaning{Meaning::Kind::object, section_of(found.owner)} : Meaning{Meaning::Kind::value};
+}
+
+/// Walks along the expression. What is known so far is `result`; its value is on the top of the stack, nil where only
+/// its documentation is known.
 class Walk {
 public:
-    explicit Walk(lua_State* L) : L_(L) {
-        lua_pushnil(L_);
-        owner_ = lua_gettop(L_);
-        lua_pushnil(L_);
-    }
+    explicit Walk(lua_State* L) : L_(L) { lua_pushnil(L_); }
 
     Meaning result;
 
@@ -519,54 +536,40 @@ public:
     }
 
     void go_to_field(std::string_view name) {
-        if (result.kind == Meaning::Kind::value) {
-            const lua::Documented found = lua::documented(L_, -1);
-            if (lua_isuserdata(L_, -1) != 0) {
-                if (found.owner == nullptr) {
-                    forget();
-                    return;
-                }
-                lua_copy(L_, -1, owner_);
-                go_to_member(*found.owner, name);
-                field_ = name;
-            } else {
-                raw_field(name);
-            }
-        } else if (result.kind == Meaning::Kind::object) {
-            go_to_member(*result.section->description, name);
-        } else if (result.kind == Meaning::Kind::member) {
-            const help::Section* held =
-                result.member->kind == lua::Kind::field ? help::result_class(result.member->doc.signature) : nullptr;
-            held != nullptr ? go_to_member(*held->description, name) : forget();
+        const lua::Class* owner = class_here();
+        if (lua_isuserdata(L_, -1) != 0 && owner != nullptr) {
+            lua_pushlstring(L_, name.data(), name.size());
+            ask_object(L_);
+            result = meaning_of_top(L_);
+        } else if (!lua_isnil(L_, -1)) {
+            raw_field(name);
+        } else {
+            result = {};
+        }
+        if (const lua::Member* member = owner == nullptr ? nullptr : member_of(*owner, name)) {
+            result = {Meaning::Kind::member, section_of(owner), member};
         }
     }
 
-    /// list[1], of tables as they are, and of data in an object: run.events[1].
+    /// list[1], of tables as they are, and of our objects: run.events[1].
     void index(lua_Integer number) {
-        if (result.kind == Meaning::Kind::value && lua_istable(L_, -1)) {
+        if (lua_istable(L_, -1)) {
             lua_rawgeti(L_, -1, number);
             lua_remove(L_, -2);
-            return;
+        } else if (lua_isuserdata(L_, -1) != 0 && class_here() != nullptr) {
+            lua_pushinteger(L_, number);
+            ask_object(L_);
+        } else {
+            return forget();
         }
-        const bool data =
-            result.kind == Meaning::Kind::member && result.member->kind == lua::Kind::field && !field_.empty() &&
-            help::result_class(result.member->doc.signature) != nullptr &&
-            help::result_class(result.member->doc.signature)->description->name == std::string_view("data");
-        const std::string field(field_);
-        forget();
-        if (data) {
-            row_of(field, number);
-        }
+        result = meaning_of_top(L_);
     }
 
     void call() {
-        const lua::Doc* doc = nullptr;
-        if (result.kind == Meaning::Kind::member) {
-            doc = &result.member->doc;
-        } else if (result.kind == Meaning::Kind::value) {
-            const lua::Documented found = lua::documented(L_, -1);
-            const bool module = found.owner != nullptr && found.member == nullptr && lua_istable(L_, -1);
-            doc = found.member != nullptr ? &found.member->doc : module ? &found.owner->doc : nullptr;
+        const lua::Doc* doc = result.member != nullptr ? &result.member->doc : nullptr;
+        if (lua_istable(L_, -1)) {
+            const lua::Documented module = lua::documented(L_, -1);
+            doc = module.owner != nullptr ? &module.owner->doc : nullptr;
         }
         const help::Section* object = doc == nullptr ? nullptr : help::result_class(doc->signature);
         forget();
@@ -577,40 +580,28 @@ public:
 
     void forget() {
         result = {};
-        field_ = {};
         lua_pop(L_, 1);
         lua_pushnil(L_);
     }
 
 private:
-    /// Replaces the nil on the top by a row of the data in a field of the owner: what is asked is ours, and no code of
-    /// the user.
-    void row_of(const std::string& field, lua_Integer number) {
-        const auto get = [](lua_State* L) {
-            lua_getfield(L, 1, lua_tostring(L, 2));
-            lua_geti(L, -1, lua_tointeger(L, 3));
-            return 1;
-        };
-        lua_pushcfunction(L_, get);
-        lua_pushvalue(L_, owner_);
-        lua_pushstring(L_, field.c_str());
-        lua_pushinteger(L_, number);
-        if (lua_pcall(L_, 3, 1, 0) != LUA_OK || !lua_istable(L_, -1)) {
-            lua_pop(L_, 1);
-            return;
-        }
-        lua_replace(L_, -2);
-        result = {Meaning::Kind::value, nullptr, nullptr};
+    /// The class of what is here, as its value or its documentation tells; nullptr when it is none of ours.
+    const lua::Class* class_here() {
+        if (lua_isuserdata(L_, -1) != 0) return lua::documented(L_, -1).owner;
+        const bool field = result.kind == Meaning::Kind::member && result.member->kind == lua::Kind::field;
+        const help::Section* section = field ? help::result_class(result.member->doc.signature) : result.section;
+        const bool known = lua_isnil(L_, -1) && (field || result.kind == Meaning::Kind::object);
+        return known && section != nullptr ? section->description : nullptr;
     }
 
-    /// Replaces the table on the top by its field, looked up in the tables of __index, too.
+    /// Replaces the value on the top by its field, looked up in the tables of __index, too.
     void raw_field(std::string_view name) {
         for (int i = 0; i < most_metatables; ++i) {
             if (lua_istable(L_, -1)) {
                 lua_pushlstring(L_, name.data(), name.size());
                 if (lua_rawget(L_, -2) != LUA_TNIL) {
                     lua_replace(L_, -2);
-                    result = {Meaning::Kind::value, nullptr, nullptr};
+                    result = meaning_of_top(L_);
                     return;
                 }
                 lua_pop(L_, 1);
@@ -626,17 +617,7 @@ private:
         forget();
     }
 
-    void go_to_member(const lua::Class& description, std::string_view name) {
-        const lua::Member* member = member_of(description, name);
-        forget();
-        if (member != nullptr) {
-            result = {Meaning::Kind::member, section_of(&description), member};
-        }
-    }
-
     lua_State* L_;
-    int owner_ = 0;           // the object whose field was gone to last
-    std::string_view field_;  // the name of that, empty when something else came after it
 };
 
 }  // namespace
@@ -679,35 +660,7 @@ Meaning meaning(lua_State* L, std::span<const lua::Token> expression) {
             }
         }
     }
-    Meaning result = walk.result;
-    if (result.kind == Meaning::Kind::value) {
-        if (const lua::Documented found = lua::documented(L, -1); found.member != nullptr) {
-            result = {Meaning::Kind::member, section_of(found.owner), found.member};
-        } else if (found.owner != nullptr && lua_isuserdata(L, -1) != 0) {
-            result = {Meaning::Kind::object, section_of(found.owner), nullptr};
-        }
-    }
-    return result;
-}
-
-namespace {
-
-/// As a function that Lua can call: what is in a field of an object of ours.
-int field_of_object(lua_State* L) {
-    lua_gettable(L, 1);
-    return 1;
-}
-
-}  // namespace
-
-void go_to_field(lua_State* L, std::string_view name) {
-    lua_pushcfunction(L, field_of_object);
-    lua_insert(L, -2);
-    lua_pushlstring(L, name.data(), name.size());
-    if (lua_pcall(L, 2, 1, 0) != LUA_OK) {
-        lua_pop(L, 1);
-        lua_pushnil(L);
-    }
+    return walk.result;
 }
 
 void add_own_names(lua_State* L, std::vector<std::string>& names) {
@@ -717,7 +670,8 @@ void add_own_names(lua_State* L, std::vector<std::string>& names) {
     }
     const int object = lua_gettop(L);
     lua_pushvalue(L, object);
-    go_to_field(L, "names");
+    lua_pushliteral(L, "names");
+    ask_object(L);
     for (lua_Integer i = 1; lua_istable(L, -1) && lua_rawgeti(L, -1, i) == LUA_TSTRING; ++i) {
         if (const std::string name = lua_tostring(L, -1); lua::is_name(name)) {
             names.push_back(name);

@@ -74,13 +74,14 @@ private:
     std::optional<OpenCall> call_;
 };
 
-// What an expression that is being typed will be, found without running anything: raw tables, and documentation.
+// What an expression that is being typed is, or will be: values, where no code of the user must run for them, else
+// documentation.
 
 struct Meaning {
     enum class Kind {
         unknown,
-        value,   ///< it is on the top of the stack
-        object,  ///< it will be an object of the class `section`
+        value,   ///< none of ours
+        object,  ///< it is, or will be, an object of the class `section`
         member,  ///< it is the method or field `member` of `section`, or one of our functions
     };
     Kind kind = Kind::unknown;
@@ -88,14 +89,11 @@ struct Meaning {
     const lua::Member* member = nullptr;
 };
 
-/// Pushes exactly one value: that of Kind::value, else nil.
+/// Pushes exactly one value: that of the expression, nil where it cannot be had without running code of the user.
 Meaning meaning(lua_State* L, std::span<const lua::Token> expression);
 
 /// The section that describes a class, nullptr when none does.
 const help::Section* section_of(const lua::Class* description);
-
-/// Replaces the object of ours on the top by what is in its field; nil when that fails. No code of the user runs.
-void go_to_field(lua_State* L, std::string_view name);
 
 /// Adds the names that the object on the top has besides the members of its class: the columns of data, the values of a
 /// fit.
