@@ -7,7 +7,6 @@
 #include "help/manual.hpp"
 #include "notebook/kernel.hpp"
 #include "prompt/arguments.hpp"
-#include "prompt/lab_solutions.hpp"
 #include "prompt/marking.hpp"
 #include "prompt/output.hpp"
 #include "prompt/script.hpp"

@@ -77,11 +77,11 @@ void check_times(const lua::Options& options, const std::string& file, const fil
 int samples_from_file(lua_State* L) {
     const std::string file = lua_tostring(L, 1);
     const lua::Options options(L, 2, file_call);
-    auto read = files::read_csv(file);
+    auto read = files::read_columns(file);
     if (lua::interrupt_requested()) {
         lua::raise_interrupted(L);  // what was read is not all
     }
-    const files::Table table = options.value_or_fail(std::move(read));
+    const files::Table table = options.value_or_fail(files::table_of(options.value_or_fail(std::move(read))));
     if (table.values.rows() == 0) {
         options.fail({fmt::format("{} has names but no rows of numbers", file)});
     }

@@ -13,6 +13,7 @@
 #include "api/plot_options.hpp"
 #include "api/run.hpp"
 #include "api/steady_answer.hpp"
+#include "lua/values.hpp"
 #include "lua/vector.hpp"
 #include "text/suggest.hpp"
 
@@ -148,45 +149,16 @@ int fit_value(lua_State* L) {
                    .cure = text::did_you_mean(name, names)});
 }
 
-int fit_error(lua_State* L) {
-    const FitHandle& fit = fit_self(L, "fit.std_error");
-    lua_createtable(L, 0, static_cast<int>(fit->errors.size()));
-    for (const auto& [name, error] : fit->errors) {
-        lua_pushnumber(L, error);
-        lua_setfield(L, -2, name.c_str());
-    }
-    return 1;
-}
-
-int fit_names(lua_State* L) {
-    const FitHandle& fit = fit_self(L, "fit.names");
-    lua_createtable(L, static_cast<int>(fit->values.size()), 0);
-    for (std::size_t i = 0; i < fit->values.size(); ++i) {
-        lua_pushstring(L, fit->values[i].first.c_str());
-        lua_rawseti(L, -2, static_cast<lua_Integer>(i) + 1);
-    }
-    return 1;
-}
-
-int fit_silent(lua_State* L) {
-    const FitHandle& fit = fit_self(L, "fit.silent");
-    lua_createtable(L, static_cast<int>(fit->silent.size()), 0);
-    for (std::size_t i = 0; i < fit->silent.size(); ++i) {
-        lua_pushstring(L, fit->silent[i].c_str());
-        lua_rawseti(L, -2, static_cast<lua_Integer>(i) + 1);
-    }
-    return 1;
+std::vector<std::string> names_of_fit(const FitAnswer& fit) {
+    std::vector<std::string> names;
+    for (const auto& value : fit.values) names.push_back(value.first);
+    return names;
 }
 
 int fit_system(lua_State* L) {
     const FitHandle& fit = fit_self(L, "fit.system");
     fit->system ? static_cast<void>(lua::push(L, *fit->system)) : lua_pushnil(L);
     if (fit->rig != nullptr) lua::push<model::AssemblyHandle>(L, fit->rig);
-    return 1;
-}
-
-int fit_noise(lua_State* L) {
-    lua_pushnumber(L, fit_self(L, "fit.noise")->found.noise);
     return 1;
 }
 
@@ -295,15 +267,15 @@ int fit_text(lua_State* L) {
     "fit = identify{ data = { t = run.t, theta = run.theta + noise }, velocity0 = 0 }\n"
 
 constexpr lua::Member fit_members[] = {
-    {lua::a_field<fit_names>,
+    {lua::a_value<FitHandle, names_of_fit>,
      {"fit.names -> table", "The names of the values that it has.",
       DINAL_FIT "print(fit.names[1], fit[fit.names[1]] == fit.omega0)  --> omega0\ttrue"}},
-    {lua::a_field<fit_error>,
+    {lua::a_value<FitHandle, &FitAnswer::errors>,
      {"fit.std_error -> table",
       "The standard errors, under the names of the values: the truth lies within two of them in 19 of 20 records. What "
       "was given has 0.",
       DINAL_FIT "print(math.abs(fit.omega0 - sys.omega0) < 3 * fit.std_error.omega0)  --> true"}},
-    {lua::a_field<fit_silent>,
+    {lua::a_value<FitHandle, &FitAnswer::silent>,
      {"fit.silent -> table",
       "The names of what the record does not tell: Re of a free decay, which never slips, or of a motion that never "
       "stands; Rd_over_k, theta0 and offset of a decay in one direction, which tells only their sums. Their values are "
@@ -312,7 +284,7 @@ constexpr lua::Member fit_members[] = {
     {lua::a_field<fit_system>,
      {"fit.system -> system", "The system that was found; after a free decay without I and k that of I = 1.",
       DINAL_FIT "print(fit.system.I, math.abs(fit.system.k - 40) < 0.2)  --> 1.0\ttrue"}},
-    {lua::a_field<fit_noise>,
+    {lua::a_value<FitHandle, [](const FitAnswer& fit) { return fit.found.noise; }>,
      {"fit.noise -> number", "The standard deviation of what is left between record and fit.",
       DINAL_FIT "print(math.abs(fit.noise - 0.01) < 0.001)  --> true"}},
     {lua::a_field<fit_residual>,

@@ -1,11 +1,10 @@
 // load(file): whatever dinal has written, or any CSV file. Of anything else it is Lua's own load.
 #include <algorithm>
-#include <cmath>
 
 #include "api/classes.hpp"
 #include "api/data.hpp"
 #include "api/run.hpp"
-#include "files/csv_columns.hpp"
+#include "files/csv.hpp"
 #include "files/record1989.hpp"
 #include "lua/interrupt.hpp"
 #include "lua/lua_text.hpp"
@@ -48,10 +47,7 @@ int push_loaded_data(lua_State* L, files::ReadColumns content) {
 
 /// The comments of run:save begin so, or there are times and angles; and the rows have no gaps.
 bool is_run(const files::ReadColumns& content) {
-    const auto finite = [](const files::ReadColumn& column) {
-        return !column.of_words &&
-               std::all_of(column.numbers.begin(), column.numbers.end(), [](double x) { return std::isfinite(x); });
-    };
+    const auto finite = [](const files::ReadColumn& column) { return column.fault.empty(); };
     const auto has = [&](std::string_view name) {
         return std::any_of(content.columns.begin(), content.columns.end(),
                            [name](const files::ReadColumn& column) { return column.name == name; });
@@ -71,18 +67,6 @@ model::Units units_of(const files::ReadColumns& content) {
     return units.complaint() ? model::Units{} : units;
 }
 
-files::Table table_of(files::ReadColumns content) {
-    files::Table table{.names = {}, .values = {}, .comments = std::move(content.comments)};
-    const auto rows = content.columns.empty() ? 0 : static_cast<Eigen::Index>(content.columns[0].numbers.size());
-    table.values.resize(rows, static_cast<Eigen::Index>(content.columns.size()));
-    for (std::size_t i = 0; i < content.columns.size(); ++i) {
-        table.names.push_back(std::move(content.columns[i].name));
-        const std::vector<double>& numbers = content.columns[i].numbers;
-        std::copy(numbers.begin(), numbers.end(), table.values.col(static_cast<Eigen::Index>(i)).data());
-    }
-    return table;
-}
-
 int load_file(lua_State* L, const std::string& file) {
     if (text::ending_of(file) == ".dat") {
         auto record = files::read_record1989(file);
@@ -94,7 +78,7 @@ int load_file(lua_State* L, const std::string& file) {
     files::ReadColumns content = lua::value_or_raise(L, "load", std::move(read));
     if (!is_run(content)) return push_loaded_data(L, std::move(content));
     model::Units units = units_of(content);
-    return push_loaded_run(L, table_of(std::move(content)), std::move(units));
+    return push_loaded_run(L, lua::value_or_raise(L, "load", files::table_of(std::move(content))), std::move(units));
 }
 
 /// A text with one of these endings, which is no Lua.

@@ -25,7 +25,6 @@
 #include "theory/den_hartog.hpp"
 #include "theory/theory_forced.hpp"
 #include "theory/theory_free.hpp"
-#include "theory/theory_steps.hpp"
 
 namespace dinal::api {
 

@@ -7,7 +7,7 @@
 
 #include "api/data.hpp"
 #include "api/data_docs.hpp"
-#include "files/csv_columns.hpp"
+#include "files/csv.hpp"
 #include "lua/options.hpp"
 #include "lua/worker_state.hpp"
 #include "text/characters.hpp"
@@ -151,16 +151,16 @@ int save(lua_State* L) {
     lua::refuse_in_worker(L, "d:save");
     const DataHandle data = self(L, "d:save(\"table.csv\")");
     const std::string file = file_argument(L, 2, "d:save");
-    std::vector<files::WordsOrNumbers> columns;
+    std::vector<files::NamedColumn> columns;
     for (const DataColumn& column : data->columns) {
-        files::WordsOrNumbers& written = columns.emplace_back(files::WordsOrNumbers{column.name});
+        files::NamedColumn& written = columns.emplace_back(files::NamedColumn{column.name});
         if (const lua::Vector* numbers = column.numbers()) {
-            written.numbers = numbers->values();
+            written.values = numbers->values();
         } else {
             written.words = *std::get<Words>(column.values);
         }
     }
-    lua::value_or_raise(L, "d:save", files::write_columns(file, columns));
+    lua::value_or_raise(L, "d:save", files::write_csv(file, columns, {}, files::Gaps::written));
     return 0;
 }
 

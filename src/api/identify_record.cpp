@@ -7,7 +7,7 @@
 #include "api/data.hpp"
 #include "api/identify_options.hpp"
 #include "api/units_option.hpp"
-#include "lua/gaps.hpp"
+#include "lua/vector.hpp"
 
 namespace dinal::api {
 namespace {

@@ -2,24 +2,377 @@
 
 #include <fmt/format.h>
 
+#include <fmt/ranges.h>
 #include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <condition_variable>
 #include <cstdio>
 #include <cstdlib>
+#include <deque>
+#include <filesystem>
+#include <functional>
+#include <limits>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <system_error>
 #include <thread>
+#include <vector>
 
 #include "api/classes.hpp"
-#include "api/sweep_workers.hpp"
+#include "api/sweep_results.hpp"
+#include "files/confinement.hpp"
 #include "files/file.hpp"
 #include "lua/foreign.hpp"
 #include "lua/interrupt.hpp"
+#include "lua/lua_text.hpp"
 #include "lua/standard_globals.hpp"
 #include "lua/worker_state.hpp"
+#include "source/carry.hpp"
 #include "source/fingerprint.hpp"
+#include "terminal/progress.hpp"
 #include "text/characters.hpp"
 #include "text/words.hpp"
 
 namespace dinal::api {
 namespace {
+
+// ---- The threads of a sweep, each with a Lua state of its own into which the user's function was carried.
+
+/// What the workers share.
+struct SweepWork {
+    const SweepGrid& grid;
+    SweepResults& results;
+    std::vector<std::size_t> points;  ///< to be done
+    long long seed = 0;               ///< of math.random, with the number of the point
+    const char* call = "sweep";       ///< heads sentences
+    double max_time = 0;              ///< seconds of a point; 0: any
+    /// In the state of a worker: replaces the carried function on the top by the one that is asked.
+    const std::function<void(lua_State* worker)>& adapt;
+    /// Asked 50 times a second on the thread that waits, and at the end: false ends it all.
+    std::function<bool()> look = {};
+    std::function<void()> after_point = {};  ///< where one thread does all
+    std::atomic<std::size_t> next = 0;
+    std::atomic<std::size_t> finished = 0;
+    std::atomic<bool> ends = false;
+    std::size_t workers = 1;
+};
+
+class SweepWorkers {
+public:
+    /// Carries the function at `index` to a new state for each worker. Raises when that is not possible. A function of
+    /// another language stays where it is, and the thread of the call does all points.
+    SweepWorkers(lua_State* L, int index, SweepWork& work);
+
+    /// Does all points, or what can be done until a stop is requested. Raises when memory is lacking.
+    void run(lua_State* L);
+
+private:
+    void run_here(lua_State* L);
+    void start(std::vector<std::thread>& threads);
+    void run_one(lua_State* worker, lua::WorkerWatch& watch);
+    /// Gives up what has taken too long.
+    void watch(std::vector<std::thread>& threads);
+
+    SweepWork& work_;
+    std::vector<lua::OwnedState> states_;
+    std::deque<lua::WorkerWatch> watches_;  // of the threads
+    std::mutex ending_;
+    std::condition_variable ended_;
+    std::size_t running_ = 0;
+    std::string trouble_;
+    int function_ = 0;  // on the stack, of another language; 0: it is in the states
+};
+
+double now_in_seconds() {
+    using std::chrono::duration;
+    return duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+struct Carrying {
+    lua_State* from;
+    int index;
+    const SweepWork& work;
+    std::optional<text::Error> error = {};
+};
+
+bool carry_data(lua_State* from, int index, lua_State* to) {
+    const auto* data = lua::test<DataHandle>(from, index);
+    if (data != nullptr) lua::push<DataHandle>(to, *data);
+    return data != nullptr;
+}
+
+/// Called in the new state with a Carrying; returns the function.
+int carry_function(lua_State* L) {
+    auto& carrying = *static_cast<Carrying*>(lua_touserdata(L, 1));
+    source::Carrier carrier(carrying.from, L, carry_data);
+    carrying.error = carrier.carry(carrying.index, "run");
+    lua::forbid_exit(L);
+    if (carrying.error) return 0;
+    if (carrying.work.adapt) carrying.work.adapt(L);
+    return 1;
+}
+
+/// The same text whichever worker it is: not where a table lies in memory.
+int error_as_text(lua_State* L) {
+    lua_settop(L, 1);
+    if (lua_isstring(L, 1) != 0) return 1;
+    if (luaL_getmetafield(L, 1, "__tostring") == LUA_TNIL) {
+        return lua::push_text(L, fmt::format("(error object is a {} value)", luaL_typename(L, 1)));
+    }
+    luaL_tolstring(L, 1, nullptr);
+    return 1;
+}
+
+/// The loop of one worker: the places of its stack that stay.
+struct PointLoop {
+    static constexpr int handler = 1, function = 2, seed = 3, columns = 4;
+
+    lua_State* L;
+    SweepWork& work;
+    lua::WorkerWatch& watch;
+
+    void run() {
+        std::size_t first = 0, last = 0;
+        while (take(first, last)) {
+            for (std::size_t i = first; i < last; ++i) {
+                if (lua::interrupt_requested() || work.ends || !point(work.points[i])) return;
+                work.finished.fetch_add(1, std::memory_order_relaxed);
+                if (work.after_point) work.after_point();
+            }
+        }
+    }
+
+    /// Many points at once as long as there are many: they may be short, and the last ones must not be waited for.
+    [[nodiscard]] bool take(std::size_t& first, std::size_t& last) const {
+        constexpr std::size_t most = 64;
+        const std::size_t count = work.points.size();
+        const std::size_t left = count - std::min(count, work.next.load(std::memory_order_relaxed));
+        const std::size_t some = std::clamp<std::size_t>(left / (8 * work.workers), 1, most);
+        first = std::min(count, work.next.fetch_add(some));
+        last = std::min(count, first + some);
+        return first < last;
+    }
+
+    /// False when it was stopped.
+    [[nodiscard]] bool point(std::size_t number) const {
+        lua_settop(L, columns);
+        lua_pushvalue(L, seed);
+        lua_pushinteger(L, static_cast<lua_Integer>(number) + 1);
+        lua_pushinteger(L, work.seed);
+        lua_call(L, 2, 0);
+        lua_pushvalue(L, function);
+        lua_createtable(L, 0, static_cast<int>(work.grid.parameters().size()));
+        work.grid.set_fields(L, number);
+        if (work.max_time > 0) {
+            watch.since = now_in_seconds();
+            ++watch.task;
+        }
+        const int status = lua_pcall(L, 1, 1, handler);
+        if (work.max_time > 0 && is_given_up(number)) return true;
+        if (status != LUA_OK && lua::interrupt_requested()) return false;
+        const std::string trouble = status != LUA_OK ? std::string(lua::text_at(L, -1)) : complaint();
+        if (!trouble.empty()) {
+            work.results.fail(number, trouble);
+            return true;
+        }
+        lua_pushnil(L);
+        while (lua_next(L, columns + 1) != 0) {
+            lua_pushvalue(L, -2);
+            lua_rawget(L, columns);
+            static_cast<double*>(lua_touserdata(L, -1))[number] = lua_type(L, -2) == LUA_TSTRING
+                                                                      ? work.results.word(lua::text_at(L, -2))
+                                                                  : lua_isboolean(L, -2) ? lua_toboolean(L, -2)
+                                                                                         : lua_tonumber(L, -2);
+            lua_pop(L, 2);
+        }
+        work.results.finish(number);
+        return true;
+    }
+
+    /// Ends the task; whether it was given up, which is then its result.
+    [[nodiscard]] bool is_given_up(std::size_t number) const {
+        const bool late = watch.has_given_up();
+        ++watch.task;
+        watch.since = std::numeric_limits<double>::infinity();
+        if (!late || lua::interrupt_requested()) return false;
+        lua_sethook(L, nullptr, 0, 0);
+        work.results.fail(number, fmt::format("it ran longer than the {:g} s that max_time allows", work.max_time));
+        return true;
+    }
+
+    /// What is wrong with the result on the top of the stack. Afterwards each name in it has its column.
+    [[nodiscard]] std::string complaint() const {
+        if (!lua_istable(L, -1)) {
+            return fmt::format("run must return a table of named numbers such as {{ A = s.amplitude }}, got {}",
+                               lua::describe(L, -1));
+        }
+        lua_pushnil(L);
+        while (lua_next(L, columns + 1) != 0) {
+            if (lua_type(L, -2) != LUA_TSTRING) {
+                return fmt::format("run must return named numbers such as {{ A = s.amplitude }}, but {} has no name",
+                                   lua::describe(L, -1));
+            }
+            const int type = lua_type(L, -1);
+            if (type != LUA_TNUMBER && type != LUA_TBOOLEAN && type != LUA_TSTRING) {
+                return fmt::format("run returned {} = {}, which is neither a number nor a string", lua_tostring(L, -2),
+                                   lua::describe(L, -1));
+            }
+            lua_pop(L, 1);
+            lua_pushvalue(L, -1);
+            if (lua_rawget(L, columns) == LUA_TNIL) {
+                if (std::string trouble = new_column(lua::text_at(L, -2)); !trouble.empty()) return trouble;
+            }
+            lua_pop(L, 1);
+        }
+        return "";
+    }
+
+    [[nodiscard]] std::string new_column(std::string_view name) const {
+        for (const DataColumn& parameter : work.grid.parameters()) {
+            if (parameter.name == name) {
+                return fmt::format("run returned '{}', which is the name of a parameter: give it another", name);
+            }
+        }
+        if (name == "error") return "run returned 'error', which is the column of messages: give it another name";
+        double* numbers = work.results.column(name);
+        if (numbers == nullptr) return fmt::format("run returned more than {} names", SweepResults::most_columns);
+        lua::push_text(L, name);
+        lua_pushlightuserdata(L, numbers);
+        lua_rawset(L, columns);
+        return "";
+    }
+};
+
+/// Called with the function, the SweepWork and the WorkerWatch.
+int work_on_points(lua_State* L) {
+    auto& work = *static_cast<SweepWork*>(lua_touserdata(L, 2));
+    auto& watch = *static_cast<lua::WorkerWatch*>(lua_touserdata(L, 3));
+    lua_settop(L, 1);
+    lua_pushcfunction(L, lua::guarded<error_as_text>);
+    lua_insert(L, 1);
+    lua::push_standard_globals(L);  // a user may have a `math` of his own
+    lua_getfield(L, -1, LUA_MATHLIBNAME);
+    lua_getfield(L, -1, "randomseed");
+    lua_insert(L, 3);
+    lua_settop(L, 3);
+    lua_newtable(L);
+    PointLoop{L, work, watch}.run();
+    return 0;
+}
+
+SweepWorkers::SweepWorkers(lua_State* L, int index, SweepWork& work) : work_(work) {
+    if (const lua::Foreign* other = lua::foreign(L, index)) {
+        if (work.max_time > 0) {
+            lua::raise(L, {.sentence = fmt::format("{}: max_time needs a Lua function, and this one is of {}",
+                                                   work.call, other->language),
+                           .call = work.call,
+                           .option = "max_time"});
+        }
+        other->runs_alone(L, work.call);
+        function_ = lua_absindex(L, index);
+        work.workers = 1;
+        return;
+    }
+    for (std::size_t i = 0; i < work.workers; ++i) {
+        states_.push_back(lua::new_state_like(L));
+        lua_State* worker = states_.back().get();
+        Carrying carrying{L, lua_absindex(L, index), work};
+        lua_pushcfunction(worker, lua::guarded<carry_function>);
+        lua_pushlightuserdata(worker, &carrying);
+        const bool carried = lua_pcall(worker, 1, 1, 0) == LUA_OK;
+        if (carrying.error) lua::raise(L, text::in_call(work.call, *carrying.error));
+        if (!carried) lua::raise(L, std::string(work.call) + ": not enough memory for another worker");
+    }
+}
+
+void SweepWorkers::run_here(lua_State* L) {
+    terminal::Progress progress = terminal::Progress::of_steps(work_.call, static_cast<double>(work_.points.size()));
+    lua::WorkerWatch watch;
+    work_.after_point = [&] { progress.advance(static_cast<double>(work_.finished.load(std::memory_order_relaxed))); };
+    lua_pushcfunction(L, lua::guarded<work_on_points>);
+    lua_pushvalue(L, function_);
+    if (work_.adapt) work_.adapt(L);
+    lua_pushlightuserdata(L, &work_);
+    lua_pushlightuserdata(L, &watch);
+    lua_call(L, 3, 0);
+}
+
+void SweepWorkers::run_one(lua_State* worker, lua::WorkerWatch& watch) {
+    std::string trouble;
+    {
+        const lua::WorkerScope scope(worker, &watch);
+        lua_pushcfunction(worker, lua::guarded<work_on_points>);
+        lua_insert(worker, -2);
+        lua_pushlightuserdata(worker, &work_);
+        lua_pushlightuserdata(worker, &watch);
+        if (lua_pcall(worker, 3, 0, 0) != LUA_OK && !lua::interrupt_requested()) {
+            trouble = lua_isstring(worker, -1) != 0 ? lua::text_at(worker, -1) : "a worker has failed";
+        }
+    }
+    const std::lock_guard lock(ending_);
+    if (!trouble.empty()) trouble_ = trouble;
+    --running_;
+    ended_.notify_one();
+}
+
+/// As many as the system allows; one does all, too.
+void SweepWorkers::start(std::vector<std::thread>& threads) {
+    const lua::SignalsForOthers blocked;
+    for (const lua::OwnedState& state : states_) {
+        {
+            const std::lock_guard lock(ending_);
+            ++running_;
+        }
+        lua::WorkerWatch& own = watches_.emplace_back();
+        own.since = std::numeric_limits<double>::infinity();
+        own.outer = lua::watch_here();
+        try {
+            threads.emplace_back([this, worker = state.get(), &own] { run_one(worker, own); });
+        } catch (const std::system_error&) {
+            const std::lock_guard lock(ending_);
+            --running_;
+            return;
+        }
+    }
+}
+
+void SweepWorkers::watch(std::vector<std::thread>& threads) {
+    const double now = now_in_seconds();
+    for (std::size_t i = 0; i < threads.size(); ++i) {
+        lua::WorkerWatch& own = watches_[i];
+        const std::uint64_t task = own.task;
+        if (now - own.since <= work_.max_time) continue;
+        own.given_up = task;  // no other one, should it have ended meanwhile
+        lua::nudge(threads[i].native_handle());
+    }
+}
+
+void SweepWorkers::run(lua_State* L) {
+    using std::chrono::milliseconds;
+    constexpr milliseconds look_again{20};
+    if (function_ != 0) return run_here(L);
+    terminal::Progress progress = terminal::Progress::of_steps(work_.call, static_cast<double>(work_.points.size()));
+    std::vector<std::thread> threads;
+    threads.reserve(states_.size());
+    start(threads);
+    if (threads.empty()) lua::raise(L, std::string(work_.call) + ": the system lets no thread be started");
+    std::unique_lock lock(ending_);
+    while (!ended_.wait_for(lock, look_again, [this] { return running_ == 0; })) {
+        progress.advance(static_cast<double>(work_.finished.load(std::memory_order_relaxed)));
+        if (work_.look && !work_.ends && !work_.look()) work_.ends = true;
+        if (work_.max_time > 0) watch(threads);
+        if (lua::interrupt_requested()) {
+            for (std::thread& thread : threads) lua::nudge(thread.native_handle());
+        }
+    }
+    lock.unlock();
+    for (std::thread& thread : threads) thread.join();
+    if (work_.look && !work_.ends) work_.look();
+    if (!trouble_.empty()) lua::raise(L, std::string(work_.call) + ": " + trouble_);
+}
 
 // ---- what Ctrl-C has broken off, for the same call to go on
 
@@ -272,6 +625,311 @@ std::shared_ptr<SweepResults> swept(lua_State* L, const SweepTask& task) {
 
 void register_unfinished_sweep(lua_State* L) {
     lua::add_class<Unfinished>(L, unfinished_class);
+}
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* point_column = "point of the grid";
+
+/// Where a read column has something to say at this row; an empty column of words is one of nan.
+std::string word_at(const files::ReadColumn& column, std::size_t row) {
+    return column.of_words ? column.words[row] : "";
+}
+
+/// The line above a table that says which of its results are words, so that a damaged number is not taken for one.
+std::string note_of_words(const std::vector<std::string>& names) {
+    return names.empty() ? "" : fmt::format("words in {}", fmt::join(names, ", "));
+}
+
+text::Expected<files::Written> write_columns(const std::string& file, std::span<const files::NamedColumn> columns,
+                                             const std::string& comment) {
+    const std::span<const std::string> comments(&comment, comment.empty() ? 0 : 1);
+    return files::write_csv(file, columns, comments, files::Gaps::written);
+}
+
+/// What we write ends with its last line. Files come under their names when they are whole; but a power failure, or a
+/// copy to another machine that was broken off, can leave a part of one.
+bool is_cut_off(const std::string& file) {
+    std::error_code error;
+    if (!fs::is_regular_file(file, error)) return false;
+    const auto text = files::read_file(file);
+    return text && !text->ends_with('\n');
+}
+
+/// Nothing is made, renamed, read or removed through a link, which may lead anywhere.
+bool is_wrong_kind(const std::string& path, fs::file_type wanted) {
+    std::error_code error;
+    const fs::file_type found = fs::symlink_status(path, error).type();
+    return found != wanted && found != fs::file_type::not_found;
+}
+
+}  // namespace
+
+std::size_t chunk_size_for(std::size_t points) {
+    constexpr std::size_t chunks = 256, most = 100'000;
+    return std::clamp<std::size_t>((points + chunks - 1) / chunks, 1, most);
+}
+
+SweepFiles::SweepFiles(std::string file, const std::string& mark, const SweepGrid& grid, SweepResults& results,
+                       TakeColumns taken)
+    : file_(std::move(file)),
+      folder_(file_ + ".parts"),
+      mark_("sweep " + mark),
+      grid_(grid),
+      results_(results),
+      taken_(std::move(taken)),
+      written_(results.chunks()) {}
+
+std::string SweepFiles::chunk_file(std::size_t chunk) const {
+    return fmt::format("{}/{:06}.csv", folder_, chunk);
+}
+
+bool SweepFiles::has_chunks() const {
+    std::error_code error;
+    const fs::directory_iterator all(folder_, error);
+    return std::any_of(begin(all), end(all),
+                       [](const fs::directory_entry& one) { return one.path().extension() == ".csv"; });
+}
+
+text::Error SweepFiles::refused(const std::string& path, std::string_view why) const {
+    return {.sentence = fmt::format("'{}' {}; remove it, or give another file", path, why),
+            .option = "file",
+            .culprit = file_};
+}
+
+std::optional<text::Error> SweepFiles::check_mark() {
+    const std::string path = folder_ + "/mark";
+    if (is_wrong_kind(path, fs::file_type::regular)) return refused(path, "is not a regular file");
+    if (const auto mark = files::read_file(path)) {
+        if (*mark == mark_ + "\n") return std::nullopt;
+        if (has_chunks())
+            return text::Error{
+                .sentence = fmt::format("'{}' holds the chunks of another sweep: its grid or its function was "
+                                        "another; remove it, or give another file",
+                                        folder_),
+                .option = "file",
+                .culprit = file_};
+    }
+    const auto written = files::write_file(path, mark_ + "\n");
+    return written ? std::nullopt : std::optional(written.error());
+}
+
+std::optional<text::Error> SweepFiles::open() {
+    if (const auto why = files::outside(file_, files::Access::write)) {
+        return text::Error{.sentence = fmt::format("cannot write '{}': {}", file_, *why), .option = "file"};
+    }
+    for (const std::string& folder : {folder_, folder_ + ".merging"}) {
+        if (is_wrong_kind(folder, fs::file_type::directory)) return refused(folder, "is not a folder");
+    }
+    std::error_code error;
+    if (fs::exists(file_, error)) return take_result();
+    // Somebody was killed between taking the folder and writing the file.
+    if (!fs::exists(folder_, error) && fs::exists(folder_ + ".merging", error)) {
+        fs::rename(folder_ + ".merging", folder_, error);
+    }
+    fs::create_directory(folder_, error);
+    if (error) {
+        return text::Error{.sentence = fmt::format("cannot make the folder '{}': {}", folder_, error.message()),
+                           .option = "file",
+                           .culprit = file_};
+    }
+    // Somebody may have finished it since we looked: then the folder is ours and empty.
+    if (fs::exists(file_, error)) {
+        fs::remove(folder_, error);
+        return take_result();
+    }
+    if (auto wrong = check_mark()) {
+        // Somebody may have taken the folder away under us, as all of it was done: then there is his result.
+        constexpr int often_enough = 10;
+        return !fs::exists(folder_, error) && ++opened_ < often_enough ? open() : wrong;
+    }
+    return take_chunks();
+}
+
+std::optional<text::Error> SweepFiles::take_result() {
+    auto wrong = take(file_, true);
+    finished_ = !wrong;
+    if (finished_) remove_folder(folder_ + ".merging");  // somebody was killed before the last of his work
+    return wrong;
+}
+
+std::optional<text::Error> SweepFiles::take_chunks() {
+    for (std::size_t chunk = 0; chunk < results_.chunks(); ++chunk) {
+        std::error_code error;
+        if (results_.is_complete(chunk)) continue;
+        if (is_wrong_kind(chunk_file(chunk), fs::file_type::regular))
+            return refused(chunk_file(chunk), "is not a regular file");
+        if (!fs::exists(chunk_file(chunk), error)) continue;
+        if (is_cut_off(chunk_file(chunk))) continue;  // done anew
+        if (auto wrong = take(chunk_file(chunk), false)) return wrong;
+        written_[chunk] = results_.is_complete(chunk);
+    }
+    return std::nullopt;
+}
+
+std::optional<text::Error> SweepFiles::take(const std::string& file, bool is_result) {
+    const auto another = [&](std::string_view what) { return refused(file, what); };
+    const auto read = files::read_columns(file);
+    const bool has_mark = read && !read->comments.empty() && read->comments.front().starts_with(mark_);
+    if (is_result && !has_mark) return another("is there, and is not the result of this sweep");
+    if (is_result && is_cut_off(file)) return another("has been changed since it was written");
+    std::error_code error;
+    if (!read && !fs::exists(folder_, error)) return std::nullopt;  // another process has found all, and took it away
+    if (!read) return read.error();
+    const std::vector<files::ReadColumn>& columns = read->columns;
+    if (is_result && taken_) {
+        return taken_(columns, results_) ? std::nullopt
+                                         : std::optional(another("has been changed since it was written"));
+    }
+    const std::size_t first = is_result ? grid_.parameters().size() : 1;
+    const std::size_t rows = columns.empty() ? 0 : std::max(columns[0].numbers.size(), columns[0].words.size());
+    std::vector<std::string> words;
+    for (std::size_t i = first; i + 1 < columns.size(); ++i) {
+        if (columns[i].of_words) words.push_back(columns[i].name);
+    }
+    const std::string note = read->comments.empty() ? "" : read->comments.front().substr(is_result ? mark_.size() : 0);
+    const bool broken = columns.size() <= first || columns.back().name != "error" ||
+                        (is_result ? rows != results_.size() : columns[0].of_words) ||
+                        text::trimmed(note) != note_of_words(words);
+    if (broken) return another("has been changed since it was written");
+    for (std::size_t row = 0; row < rows; ++row) {
+        const double place = is_result ? static_cast<double>(row) : columns[0].numbers[row];
+        if (!(place >= 0 && place < static_cast<double>(results_.size())))
+            return another("has been changed since it was written");
+        const auto point = static_cast<std::size_t>(place);
+        if (results_.is_done(point)) continue;
+        if (std::string message = word_at(columns.back(), row); !message.empty()) {
+            results_.fail(point, std::move(message));
+            continue;
+        }
+        for (std::size_t i = first; i + 1 < columns.size(); ++i) {
+            if (double* numbers = results_.column(columns[i].name)) {
+                const files::ReadColumn& column = columns[i];
+                numbers[point] = column.of_words ? results_.word(column.words[row]) : column.numbers[row];
+            }
+        }
+        results_.finish(point);
+    }
+    return std::nullopt;
+}
+
+std::vector<std::size_t> SweepFiles::points(const files::Share& share) const {
+    std::vector<std::size_t> points;
+    for (std::size_t point = 0; point < results_.size(); ++point) {
+        const auto chunk = static_cast<long long>(point / results_.chunk_size());
+        if (chunk % share.size == share.rank && !results_.is_done(point)) points.push_back(point);
+    }
+    return points;
+}
+
+std::optional<text::Error> SweepFiles::write(std::size_t chunk) {
+    const std::size_t first = chunk * results_.chunk_size();
+    const std::size_t last = std::min(first + results_.chunk_size(), results_.size());
+    const SweepResults::Piece piece = results_.piece(first, last);
+    std::vector<std::size_t> points;
+    std::vector<double> places;
+    std::vector<std::string> errors;
+    for (std::size_t point = first; point < last; ++point) {
+        if (!results_.is_done(point)) continue;
+        points.push_back(point);
+        places.push_back(static_cast<double>(point));
+        const auto failed = piece.failures.find(point);
+        errors.push_back(failed == piece.failures.end() ? "" : failed->second);
+    }
+    if (points.empty()) return std::nullopt;
+    std::vector<std::vector<double>> numbers;
+    std::vector<std::vector<std::string>> words;
+    std::vector<std::string> names;
+    numbers.reserve(piece.columns.size());
+    words.reserve(piece.columns.size());
+    std::vector<files::NamedColumn> columns{{.name = point_column, .values = places}};
+    for (const auto& [name, all] : piece.columns) {
+        std::vector<double>& own = numbers.emplace_back(points.size());
+        std::transform(points.begin(), points.end(), own.begin(),
+                       [values = all](std::size_t point) { return values[point]; });
+        if (auto own_words = results_.words(own)) {
+            names.push_back(name);
+            columns.push_back({.name = name, .words = words.emplace_back(std::move(*own_words))});
+        } else {
+            columns.push_back({.name = name, .values = own});
+        }
+    }
+    columns.push_back({.name = "error", .words = errors});
+    const auto written = write_columns(chunk_file(chunk), columns, note_of_words(names));
+    if (written) return std::nullopt;
+    // Somebody with the same share, who was not killed after all, may have done it, and all of it be finished.
+    std::error_code error;
+    const bool taken =
+        !fs::exists(folder_, error) && (fs::exists(file_, error) || fs::exists(folder_ + ".merging", error));
+    return taken ? std::nullopt : std::optional(written.error());
+}
+
+std::optional<text::Error> SweepFiles::write_complete() {
+    for (std::size_t chunk = 0; chunk < results_.chunks(); ++chunk) {
+        if (written_[chunk] || !results_.is_complete(chunk)) continue;
+        if (auto wrong = write(chunk)) return wrong;
+        written_[chunk] = true;
+    }
+    return std::nullopt;
+}
+
+std::optional<text::Error> SweepFiles::write_incomplete() {
+    for (std::size_t chunk = 0; chunk < results_.chunks(); ++chunk) {
+        if (written_[chunk]) continue;
+        if (auto wrong = write(chunk)) return wrong;
+    }
+    return std::nullopt;
+}
+
+text::Expected<bool> SweepFiles::take_all() {
+    if (auto wrong = take_chunks()) return *wrong;
+    if (results_.done() < results_.size()) return false;
+    std::error_code error;
+    fs::rename(folder_, folder_ + ".merging", error);
+    return !error;
+}
+
+std::optional<text::Error> SweepFiles::finish(const Data& result) {
+    std::vector<files::NamedColumn> columns;
+    std::vector<std::string> names;
+    for (const DataColumn& column : result.columns) {
+        files::NamedColumn& written = columns.emplace_back(files::NamedColumn{.name = column.name});
+        if (const lua::Vector* numbers = column.numbers()) {
+            written.values = numbers->values();
+        } else {
+            written.words = *std::get<Words>(column.values);
+            if (columns.size() > grid_.parameters().size() && column.name != "error") names.push_back(column.name);
+        }
+    }
+    const auto written = write_columns(file_, columns, mark_ + (names.empty() ? "" : " " + note_of_words(names)));
+    std::error_code error;
+    if (!written) {
+        fs::rename(folder_ + ".merging", folder_, error);
+        return written.error();
+    }
+    remove_folder(folder_ + ".merging");
+    return std::nullopt;
+}
+
+void SweepFiles::discard() {
+    remove_folder(folder_);
+    remove_folder(folder_ + ".merging");
+}
+
+/// With what we have written into it, and nothing else; what a killed process was writing is ours, too.
+void SweepFiles::remove_folder(const std::string& folder) {
+    if (is_wrong_kind(folder, fs::file_type::directory)) return;
+    std::error_code error;
+    for (const fs::directory_entry& entry : fs::directory_iterator(folder, error)) {
+        if (entry.path().filename().string().starts_with(".dinal-")) fs::remove(entry.path(), error);
+    }
+    for (std::size_t chunk = 0; chunk < results_.chunks(); ++chunk) {
+        fs::remove(fmt::format("{}/{:06}.csv", folder, chunk), error);
+    }
+    fs::remove(folder + "/mark", error);
+    fs::remove(folder, error);
 }
 
 }  // namespace dinal::api

@@ -1,4 +1,4 @@
-// Comma separated values: our own files read back exactly, those of others are read when they can be understood.
+// Comma separated values: our own files read back exactly, those of strangers are read when they can be understood.
 #pragma once
 
 #include <span>
@@ -12,17 +12,34 @@
 
 namespace dinal::files {
 
+/// A column is of numbers when every field of it is one, or empty (nan), or "nan", "inf"; else of words.
+struct ReadColumn {
+    std::string name;
+    std::vector<double> numbers;
+    std::vector<std::string> words;
+    bool of_words = false;
+    std::string unit = {};
+    std::string fault = {};  ///< about the first field that is no finite number: "run.csv:3: column 2 is empty"
+};
+struct ReadColumns {
+    std::vector<ReadColumn> columns;  ///< of one length, each name once
+    std::vector<std::string> comments;
+};
+
 /// Lines that begin with # are comments and blank lines are skipped. The separator (semicolon, comma, tab or blanks) is
-/// taken from the first row of numbers. A line of names may stand before the rows; without one the names are "1", "2",
-/// ... Every row must have a finite number in every column. Errors name the file and the line.
-text::Expected<Table> read_csv(const std::string& path);
+/// taken from the second line; with semicolons a decimal comma is one. The first line has the names unless it has a
+/// number: then they are "1", "2", ... Where words stand under the names and numbers only in all lines below them, the
+/// words are the units. Errors name the file and the line.
+text::Expected<ReadColumns> read_columns(const std::string& path);
 
 /// The same of a text in memory; `name` stands for the file in errors.
-text::Expected<Table> parse_csv(std::string_view text, const std::string& name);
+text::Expected<ReadColumns> parse_columns(std::string_view text, const std::string& name);
 
-/// Comments (each line behind "# "), the line of names, the rows. read_csv gives back the same bits.
+/// Fails where a field is no finite number.
+text::Expected<Table> table_of(ReadColumns content);
+
+/// Comments (each line behind "# "), the line of names, the rows. read_columns gives back the same bits.
 text::Expected<Written> write_csv(const std::string& path, std::span<const NamedColumn> columns,
-                                  std::span<const std::string> comments = {});
-text::Expected<Written> write_csv(const std::string& path, const Table& table);
+                                  std::span<const std::string> comments = {}, Gaps gaps = Gaps::refused);
 
 }  // namespace dinal::files

@@ -4,171 +4,295 @@
 #include <charconv>
 #include <cmath>
 #include <optional>
+#include <set>
 #include <system_error>
 #include <utility>
 
-#include "files/csv_fields.hpp"
 #include "files/text_input.hpp"
 #include "text/words.hpp"
 
 namespace dinal::files {
 namespace {
 
-class CsvReader {
-public:
-    CsvReader(std::string_view text, const std::string& file) : lines_(text), file_(file), size_(text.size()) {}
+enum class Separator : char { comma = ',', semicolon = ';', tab = '\t', blanks = ' ' };
 
-    text::Expected<Table> read() {
-        if (!next_line()) {
+/// The end of the field at the front of `line`: the place of the separator, or the length of the line.
+std::size_t field_end(std::string_view line, Separator separator) {
+    bool inside = false;
+    for (std::size_t i = 0; i < line.size(); ++i) {
+        const char c = line[i];
+        if (c == '"') {
+            inside = !inside;
+        } else if (!inside && (c == static_cast<char>(separator) || (separator == Separator::blanks && c == '\t'))) {
+            return i;
+        }
+    }
+    return line.size();
+}
+
+/// The first of these that stands in the line outside of quotes; nothing in a line of one field.
+std::optional<Separator> separator_in(std::string_view line) {
+    std::string bare;
+    bool inside = false;
+    for (const char c : text::trimmed(line)) {
+        inside = inside != (c == '"');
+        if (!inside) {
+            bare += c;
+        }
+    }
+    for (const Separator candidate : {Separator::semicolon, Separator::comma, Separator::tab, Separator::blanks}) {
+        if (bare.find(static_cast<char>(candidate)) != std::string::npos) {
+            return candidate;
+        }
+    }
+    return std::nullopt;
+}
+
+/// The fields of a line, without the blanks around them; quotes stay.
+void split(std::string_view line, Separator separator, std::vector<std::string_view>& fields) {
+    fields.clear();
+    if (separator == Separator::blanks) {
+        line = text::trimmed(line);
+    }
+    for (;;) {
+        const std::size_t end = field_end(line, separator);
+        fields.push_back(text::trimmed(line.substr(0, end)));
+        if (end == line.size()) {
+            return;
+        }
+        line.remove_prefix(end + 1);
+        if (separator == Separator::blanks) {
+            line = text::trimmed(line);  // any number of them is one
+        }
+    }
+}
+
+/// Whether a field of the line begins with a quote that the line does not close. (One within a word is an inch.)
+bool is_left_open(std::string_view line) {
+    const std::size_t last = line.rfind('"');
+    if (last == std::string_view::npos || std::count(line.begin(), line.end(), '"') % 2 == 0) return false;
+    constexpr std::string_view before_fields = ",; \t";
+    return last == 0 || before_fields.find(line[last - 1]) != std::string_view::npos;
+}
+
+/// The word in a field: without its quotes, doubled quotes inside made single. The number of the field when it is
+/// empty.
+std::string name_in(std::string_view field, std::size_t number) {
+    const bool quoted = field.size() >= 2 && field.front() == '"' && field.back() == '"';
+    std::string name;
+    bool pending = false;
+    for (const char c : quoted ? field.substr(1, field.size() - 2) : field) {
+        pending = quoted && c == '"' && !pending;
+        if (!pending) {
+            name += c;
+        }
+    }
+    return name.empty() ? std::to_string(number) : name;
+}
+
+std::string word_in(std::string_view field) {
+    return field.empty() || field == "\"\"" ? std::string() : name_in(field, 0);
+}
+
+class ColumnReader {
+public:
+    ColumnReader(std::string_view text, const std::string& file) : lines_(text), file_(file) {}
+
+    text::Expected<ReadColumns> read() {
+        if (auto fault = collect_rows()) return *fault;
+        if (rows_.empty()) {
             return text::Error{file_ + ": the file is empty, it has neither names nor numbers"};
         }
-        std::optional<text::Error> fault = head();
-        // As many rows as there would be if all were as long as the first.
-        if (!fault && more_) numbers_.reserve((size_ / (lines_.text().size() + 1) + 1) * table_.names.size());
-        while (!fault && more_) {
-            fault = row();
+        const auto separator = separator_in(rows_[rows_.size() > 1 ? 1 : 0].text);
+        separator_ = separator ? *separator : separator_in(rows_.front().text).value_or(Separator::blanks);
+        split(rows_.front().text, separator_, fields_);
+        result_.columns.resize(fields_.size());
+        const bool named =
+            std::none_of(fields_.begin(), fields_.end(), [this](auto field) { return is_number(field); }) ||
+            is_word_above_numbers(fields_.front());
+        std::optional<text::Error> fault = take_names(named);
+        if (named) rows_.erase(rows_.begin());
+        if (named && may_be_units()) {
+            take_units();
+            rows_.erase(rows_.begin());
         }
-        if (fault) {
-            return *fault;
-        }
-        using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-        const auto columns = static_cast<Eigen::Index>(table_.names.size());
-        table_.values =
-            Eigen::Map<const RowMajor>(numbers_.data(), static_cast<Eigen::Index>(numbers_.size()) / columns, columns);
-        return std::move(table_);
+        for (std::size_t i = 0; i < rows_.size() && !fault; ++i) fault = take_numbers(rows_[i]);
+        if (fault) return *fault;
+        take_words();
+        return std::move(result_);
     }
 
 private:
-    /// Goes to the next line that is neither blank nor a comment.
-    bool next_line() {
-        more_ = false;
-        while (!more_ && lines_.next()) {
+    struct Row {
+        std::string_view text;
+        std::size_t number;
+    };
+
+    /// All lines that are neither blank nor a comment.
+    std::optional<text::Error> collect_rows() {
+        while (lines_.next()) {
             const std::string_view line = text::trimmed(lines_.text());
             if (line.starts_with('#')) {
-                keep_comment(lines_.text());
-            } else {
-                more_ = !line.empty();
+                const std::string_view comment = line.substr(1);
+                result_.comments.emplace_back(comment.starts_with(' ') ? comment.substr(1) : comment);
+            } else if (!line.empty()) {
+                if (is_left_open(line)) {
+                    return error_at(file_, lines_.number(),
+                                    "a double quote is opened and not closed: a name or a word must end in its line");
+                }
+                rows_.push_back({lines_.text(), lines_.number()});
             }
-        }
-        return more_;
-    }
-
-    void keep_comment(std::string_view line) {
-        line.remove_prefix(line.find('#') + 1);
-        table_.comments.emplace_back(line.starts_with(' ') ? line.substr(1) : line);
-    }
-
-    /// Takes the line of names when the first line is one; else makes names and leaves the line for row().
-    std::optional<text::Error> head() {
-        const std::string_view first = lines_.text();
-        const std::size_t number = lines_.number();
-        const std::optional<Separator> of_first = separator_in(first);
-        separator_ = of_first.value_or(Separator::blanks);
-        split(first, separator_, fields_);
-        const auto is_number = [](std::string_view field) { return parse_field(field).has_value(); };
-        const auto numeric = std::count_if(fields_.begin(), fields_.end(), is_number);
-        if (numeric == 0) {
-            if (next_line()) {
-                separator_ = separator_in(lines_.text()).value_or(separator_);
-            }
-            split(first, separator_, fields_);
-            width_source_ = "as in the line of names";
-            for (const std::string_view field : fields_) {
-                table_.names.push_back(name_in(field, table_.names.size() + 1));
-            }
-            return std::nullopt;
-        }
-        if (numeric < static_cast<std::ptrdiff_t>(fields_.size())) {
-            const auto bad = std::find_if_not(fields_.begin(), fields_.end(), is_number);
-            return error_at(file_, number,
-                            "column " + std::to_string(bad - fields_.begin() + 1) + " " + number_fault(*bad) +
-                                ", but the line has numbers, too (in a line of names they must be in double quotes)");
-        }
-        width_source_ = "as in the first row";
-        for (std::size_t i = 1; i <= fields_.size(); ++i) {
-            table_.names.push_back(std::to_string(i));
         }
         return std::nullopt;
     }
 
-    /// A row of plain numbers, read where they stand. False when something in it wants a closer look.
-    bool plain_row() {
-        const std::string_view line = lines_.text();
+    [[nodiscard]] bool decimal_comma() const { return separator_ == Separator::semicolon; }
+
+    [[nodiscard]] bool is_number(std::string_view field) const {
+        return !field.empty() && parse_field(field, decimal_comma()).has_value();
+    }
+
+    /// "t,100,200" is a line of names: in all other rows the first column has numbers.
+    [[nodiscard]] bool is_word_above_numbers(std::string_view first) const {
+        if (rows_.size() < 2 || first.empty() || is_number(first)) return false;
+        std::vector<std::string_view> fields;
+        return std::all_of(rows_.begin() + 1, rows_.end(), [&](const Row& row) {
+            split(row.text, separator_, fields);
+            return is_number(fields.front());
+        });
+    }
+
+    std::optional<text::Error> take_names(bool named) {
+        std::set<std::string_view> names;
+        for (std::size_t i = 0; i < fields_.size(); ++i) {
+            std::string& name = result_.columns[i].name;
+            name = named ? name_in(fields_[i], i + 1) : std::to_string(i + 1);
+            if (!names.insert(name).second) {
+                return error_at(file_, rows_.front().number, "the name " + shown(name) + " belongs to two columns");
+            }
+        }
+        return std::nullopt;
+    }
+
+    /// A line of words, and numbers in all lines under it.
+    [[nodiscard]] bool may_be_units() const {
+        if (rows_.size() < 2) return false;
+        std::vector<std::string_view> fields;
+        const auto number = [&](std::string_view field) { return is_number(field); };
+        const auto number_or_gap = [&](std::string_view field) { return field.empty() || is_number(field); };
+        split(rows_.front().text, separator_, fields);
+        if (fields.size() != result_.columns.size() || std::any_of(fields.begin(), fields.end(), number)) return false;
+        if (std::all_of(fields.begin(), fields.end(), [](std::string_view field) { return field.empty(); }))
+            return false;
+        return std::all_of(rows_.begin() + 1, rows_.end(), [&](const Row& row) {
+            split(row.text, separator_, fields);
+            return std::all_of(fields.begin(), fields.end(), number_or_gap);
+        });
+    }
+
+    void take_units() {
+        split(rows_.front().text, separator_, fields_);
+        for (std::size_t i = 0; i < fields_.size(); ++i) {
+            std::string unit = word_in(fields_[i]);
+            const bool in_brackets = unit.size() > 2 && ((unit.front() == '(' && unit.back() == ')') ||
+                                                         (unit.front() == '[' && unit.back() == ']'));
+            result_.columns[i].unit = in_brackets ? unit.substr(1, unit.size() - 2) : unit;
+        }
+    }
+
+    /// Takes a row of plain numbers, read where they stand. False when something in it wants a closer look.
+    bool take_plain(std::string_view line) {
         const char *at = line.data(), *const last = at + line.size();
         const char mark = static_cast<char>(separator_);
         const auto skip_blanks = [&] {
             while (at != last && (*at == ' ' || (*at == '\t' && mark != '\t'))) ++at;
         };
-        const std::size_t before = numbers_.size(), columns = table_.names.size();
-        for (std::size_t i = 0; i < columns; ++i) {
+        plain_.clear();
+        for (std::size_t i = 1; i <= result_.columns.size(); ++i) {
             skip_blanks();
-            double value = 0;
+            double& value = plain_.emplace_back();
             const auto [end, fault] = std::from_chars(at, last, value);
             const char* const after = at = end;
             skip_blanks();
-            const bool ends = i + 1 == columns;
-            const bool parted = ends                              ? at == last
+            const bool parted = i == result_.columns.size()       ? at == last
                                 : separator_ == Separator::blanks ? at != after
-                                                                  : at != last && *at == mark;
-            if (fault != std::errc() || !std::isfinite(value) || !parted) {
-                numbers_.resize(before);
-                return false;
-            }
-            if (!ends && separator_ != Separator::blanks) ++at;
-            numbers_.push_back(value);
+                                                                  : at != last && *at++ == mark;
+            if (fault != std::errc() || !std::isfinite(value) || !parted) return false;
         }
+        for (std::size_t i = 0; i < plain_.size(); ++i) result_.columns[i].numbers.push_back(plain_[i]);
         return true;
     }
 
-    std::optional<text::Error> row() {
-        if (plain_row()) {
-            next_line();
-            return std::nullopt;
-        }
-        split(lines_.text(), separator_, fields_);
-        if (fields_.size() != table_.names.size()) {
-            return error_at(file_, lines_.number(),
+    std::optional<text::Error> take_numbers(const Row& row) {
+        if (take_plain(row.text)) return std::nullopt;
+        split(row.text, separator_, fields_);
+        if (fields_.size() != result_.columns.size()) {
+            return error_at(file_, row.number,
                             "found " + std::to_string(fields_.size()) + (fields_.size() == 1 ? " field" : " fields") +
-                                ", expected " + std::to_string(table_.names.size()) + " " + width_source_);
+                                ", expected " + std::to_string(result_.columns.size()) + " as in the first line");
         }
         for (std::size_t i = 0; i < fields_.size(); ++i) {
-            const std::optional<double> number = parse_field(fields_[i]);
-            if (!number) {
-                std::string column = std::to_string(i + 1);
-                if (table_.names[i] != column) {
-                    column += " (" + table_.names[i] + ")";
-                }
-                return error_at(file_, lines_.number(), "column " + column + " " + number_fault(fields_[i]));
+            ReadColumn& column = result_.columns[i];
+            if (column.of_words) continue;
+            const auto number = parse_field(fields_[i], decimal_comma());
+            if (column.fault.empty() && !(number && std::isfinite(*number))) {
+                std::string name = std::to_string(i + 1);
+                if (column.name != name) name += " (" + column.name + ")";
+                column.fault = error_at(file_, row.number, "column " + name + " " + number_fault(fields_[i])).sentence;
             }
-            numbers_.push_back(*number);
+            column.of_words = !number;
+            column.numbers.push_back(number.value_or(0));
         }
-        next_line();
         return std::nullopt;
+    }
+
+    /// A column is known to be of words when all of it was seen, so these are read again.
+    void take_words() {
+        std::vector<ReadColumn>& columns = result_.columns;
+        if (std::none_of(columns.begin(), columns.end(), [](const ReadColumn& c) { return c.of_words; })) return;
+        for (const Row& row : rows_) {
+            split(row.text, separator_, fields_);
+            for (std::size_t i = 0; i < columns.size(); ++i) {
+                if (columns[i].of_words) columns[i].words.push_back(word_in(fields_[i]));
+            }
+        }
+        for (ReadColumn& column : columns) {
+            if (column.of_words) column.numbers.clear();
+        }
     }
 
     Lines lines_;
     const std::string& file_;
-    std::size_t size_;  // of all the text
-    Table table_;
     Separator separator_ = Separator::blanks;
-    std::string width_source_;
-    bool more_ = false;
+    std::vector<Row> rows_;
     std::vector<std::string_view> fields_;
-    std::vector<double> numbers_;  // row after row
+    std::vector<double> plain_;
+    ReadColumns result_;
 };
 
 }  // namespace
 
-text::Expected<Table> parse_csv(std::string_view text, const std::string& name) {
-    if (std::optional<text::Error> fault = binary_fault(text, name)) {
-        return *fault;
-    }
-    return CsvReader(text, name).read();
+text::Expected<ReadColumns> parse_columns(std::string_view text, const std::string& name) {
+    if (std::optional<text::Error> fault = binary_fault(text, name)) return *fault;
+    return ColumnReader(text, name).read();
 }
 
-text::Expected<Table> read_csv(const std::string& path) {
+text::Expected<ReadColumns> read_columns(const std::string& path) {
     const text::Expected<std::string> text = read_file(path);
-    return text ? parse_csv(*text, path) : text::Expected<Table>(text.error());
+    return text ? parse_columns(*text, path) : text::Expected<ReadColumns>(text.error());
+}
+
+text::Expected<Table> table_of(ReadColumns content) {
+    Table table{.names = {}, .values = {}, .comments = std::move(content.comments)};
+    const auto rows = content.columns.empty() ? 0 : static_cast<Eigen::Index>(content.columns[0].numbers.size());
+    table.values.resize(rows, static_cast<Eigen::Index>(content.columns.size()));
+    for (ReadColumn& column : content.columns) {
+        if (!column.fault.empty()) return text::Error{column.fault};
+        std::copy(column.numbers.begin(), column.numbers.end(),
+                  table.values.col(static_cast<Eigen::Index>(table.names.size())).data());
+        table.names.push_back(std::move(column.name));
+    }
+    return table;
 }
 
 }  // namespace dinal::files

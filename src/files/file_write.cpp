@@ -8,6 +8,7 @@
 #include <cerrno>
 #include <charconv>
 #include <cstdio>
+#include <filesystem>
 #include <optional>
 #include <system_error>
 #include <utility>
@@ -60,21 +61,6 @@ std::optional<int> open_descriptor(std::string_view path) {
     return std::nullopt;
 }
 
-/// Where a symbolic link points, relative targets seen from the link; nothing when the path is no link.
-std::optional<std::string> link_target(const std::string& path) {
-    struct stat status {};
-    if (::lstat(path.c_str(), &status) != 0 || !S_ISLNK(status.st_mode)) {
-        return std::nullopt;
-    }
-    std::string target(4096, '\0');  // PATH_MAX
-    const ssize_t length = ::readlink(path.c_str(), target.data(), target.size());
-    if (length <= 0) {
-        return std::nullopt;
-    }
-    target.resize(static_cast<std::size_t>(length));
-    return target.front() == '/' ? target : folder_of(path) + target;
-}
-
 /// A new file for the text to wait in, in the folder where it will end. NOTE: open() rather than mkstemp(), so that the
 /// umask and the folder's default rights apply as to any new file.
 int create_temporary(const std::string& folder, std::string& name) {
@@ -105,21 +91,23 @@ text::Expected<OutputFile> OutputFile::create(const std::string& path) {
     if (const auto why = outside(path, Access::write)) {
         return can_not_write(path, *why);
     }
-    std::string target = path;
+    namespace fs = std::filesystem;
+    fs::path place = path;
+    std::error_code none;
     for (int link = 0; link < most_links; ++link) {
-        if (const std::optional<int> number = open_descriptor(target)) {
+        if (const std::optional<int> number = open_descriptor(place.native())) {
             // What was printed before shall stand before.
             if (std::fflush(*number == STDERR_FILENO ? stderr : stdout) != 0) {
                 return can_not_write(path, reason(errno));
             }
             return directly(::fcntl(*number, F_DUPFD_CLOEXEC, 3), path);
         }
-        const std::optional<std::string> next = link_target(target);
-        if (!next) {
+        if (!fs::is_symlink(place, none)) {
             break;
         }
-        target = *next;
+        place = place.parent_path() / fs::read_symlink(place, none);  // a relative one is seen from the link
     }
+    const std::string& target = place.native();
     struct stat status {};
     if (::stat(target.c_str(), &status) != 0) {
         return errno == ENOENT ? beside(target, nullptr, path) : can_not_write(path, reason(errno));
@@ -267,6 +255,24 @@ text::Expected<Written> write_file(const std::string& path, std::string_view tex
     OutputFile file = std::move(opened).value();
     file.write(text);
     return file.commit();
+}
+
+text::Expected<Journal> Journal::open(const std::string& path) {
+    constexpr mode_t readable = 0644;
+    const int descriptor = ::open(path.c_str(), O_WRONLY | O_APPEND | O_CREAT | O_CLOEXEC, readable);
+    if (descriptor < 0) {
+        return can_not_write(path, reason(errno));
+    }
+    return Journal(descriptor, path);
+}
+
+std::optional<text::Error> Journal::add(std::string_view line) const {
+    const std::string whole = std::string(line) + "\n";
+    const ssize_t written = ::write(file_->number(), whole.data(), whole.size());
+    if (written == static_cast<ssize_t>(whole.size())) {
+        return std::nullopt;
+    }
+    return can_not_write(path_, reason(written < 0 ? errno : ENOSPC));
 }
 
 }  // namespace dinal::files

@@ -39,12 +39,6 @@ text::Expected<Eigen::Index> find_column(std::span<const std::string> names, std
                            .culprit = std::string(name),
                            .cure = text::did_you_mean(name, known)};
     }
-    const auto again = std::find(found + 1, names.end(), name);
-    if (again != names.end()) {
-        return text::Error{"the name '" + std::string(name) + "' belongs to column " +
-                           std::to_string(found - names.begin() + 1) + " and to column " +
-                           std::to_string(again - names.begin() + 1) + ": use the number"};
-    }
     return static_cast<Eigen::Index>(found - names.begin());
 }
 

@@ -18,11 +18,15 @@ struct Table {
     std::vector<std::string> comments;  ///< lines, without the sign that makes them comments
 };
 
-/// A column to be written; it refers to its name and its numbers.
+/// A column to be written: its words, or else its numbers. It refers to them.
 struct NamedColumn {
     std::string_view name;
-    std::span<const double> values;
+    std::span<const double> values = {};
+    std::span<const std::string> words = {};
 };
+
+/// Whether a nan (an empty field) and an infinity may be written.
+enum class Gaps { refused, written };
 
 /// All columns of a matrix in their order (to write some of them, pick from the result).
 std::vector<NamedColumn> named_columns(const std::vector<std::string>& names,

@@ -5,6 +5,7 @@
 #include <charconv>
 #include <cmath>
 #include <cstdlib>
+#include <limits>
 #include <system_error>
 
 #include "files/file.hpp"
@@ -40,14 +41,11 @@ bool is_too_large(std::string_view field) {
 }
 
 /// 1,5 but not 1,2,3.
-bool has_decimal_comma(std::string_view field) {
+std::optional<double> with_decimal_comma(std::string field) {
     const std::size_t comma = field.find(',');
-    if (comma == std::string_view::npos) {
-        return false;
-    }
-    std::string with_point(field);
-    with_point[comma] = '.';
-    return parse_number(with_point).has_value();
+    if (comma == std::string::npos) return std::nullopt;
+    field[comma] = '.';
+    return parse_number(field);
 }
 
 }  // namespace
@@ -131,11 +129,21 @@ std::optional<double> parse_fortran_number(std::string_view field) {
     return parse_number({text.data(), length});
 }
 
-std::optional<double> parse_field(std::string_view field) {
+std::optional<double> parse_field(std::string_view field, bool decimal_comma) {
     if (const std::optional<double> plain = parse_number(field)) return plain;
     const std::size_t point = field.find('.'), letter = field.find_first_of("dD");
     const bool of_fortran = point != std::string_view::npos && letter != std::string_view::npos && point < letter;
-    return of_fortran ? parse_fortran_number(field) : std::nullopt;
+    if (of_fortran) {
+        if (const std::optional<double> number = parse_fortran_number(field)) return number;
+    }
+    const std::string word = text::lower(field);
+    if (word.empty() || word == "nan" || word == "-nan" || word == "na") {
+        return std::numeric_limits<double>::quiet_NaN();
+    }
+    if (word == "inf" || word == "+inf" || word == "-inf") {
+        return word.front() == '-' ? -std::numeric_limits<double>::infinity() : std::numeric_limits<double>::infinity();
+    }
+    return decimal_comma ? with_decimal_comma(word) : std::nullopt;
 }
 
 std::string shown(std::string_view field) {
@@ -152,7 +160,7 @@ std::string number_fault(std::string_view field) {
     if (is_nan_or_inf(field)) {
         return "is " + shown(field) + ", but only finite numbers can be used";
     }
-    if (has_decimal_comma(field)) {
+    if (with_decimal_comma(std::string(field))) {
         return "is " + shown(field) + ": write a decimal point instead of the comma";
     }
     if (is_too_large(field)) {

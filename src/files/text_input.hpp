@@ -40,8 +40,8 @@ std::optional<double> parse_number(std::string_view field);
 std::optional<double> parse_fortran_number(std::string_view field);
 
 /// What is a number in a table of strangers: as parse_number, or double precision of Fortran with its decimal point and
-/// its D (1.5D+00). 1-2 and 3d are none.
-std::optional<double> parse_field(std::string_view field);
+/// its D (1.5D+00; 1-2 and 3d are none), or empty or "nan" (nan), or "inf"; with `decimal_comma` 1,5 is one, too.
+std::optional<double> parse_field(std::string_view field, bool decimal_comma);
 
 /// A field in quotes as it can stand in a sentence: short and printable.
 std::string shown(std::string_view field);

@@ -6,7 +6,6 @@
 #include "help/help.hpp"
 #include "lua/interrupt.hpp"
 #include "lua/standard_globals.hpp"
-#include "lua/terminal_output.hpp"
 #include "lua/worker_state.hpp"
 #include "source/value_text.hpp"
 #include "text/version.hpp"

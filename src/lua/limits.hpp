@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <string>
+#include <string_view>
 
 #include "lua/interrupt.hpp"
 #include "lua/lua_headers.hpp"
@@ -22,5 +23,13 @@ std::string limit_sentence(Stop reason, const std::string& place);
 
 /// The sentence when a limit has stopped the last chunk, else empty.
 std::string reached_limit();
+
+// What is still said and done when a limit was reached: nobody may be there to read it.
+
+/// Writes on standard error as much as somebody takes in time.
+void write_error_in_time(std::string_view text);
+
+/// The end of the program: the files of the script are written to their ends, standard output if somebody takes it.
+[[noreturn]] void exit_in_time(int code);
 
 }  // namespace dinal::lua

@@ -43,4 +43,10 @@ std::vector<std::string> users_globals(lua_State* L);
 /// Takes away the user's globals and gives the standard ones back.
 void reset_globals(lua_State* L);
 
+// What a script writes to the terminal makes way for no progress line: that one goes first.
+
+/// Replaces print, io.write and file:write, where they are, by functions that erase the progress line and then do the
+/// same.
+void open_terminal_output(lua_State* L);
+
 }  // namespace dinal::lua

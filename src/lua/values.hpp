@@ -12,7 +12,8 @@
 
 namespace dinal::lua {
 
-/// Pushes a number, a flag, a text, a list of such or an object of a class; nil for an optional that is empty.
+/// Pushes a number, a flag, a text, a list of such, a table of such by their names, or an object of a class; nil for an
+/// optional that is empty.
 template <class Value>
 void push_value(lua_State* L, const Value& value) {
     if constexpr (std::is_same_v<Value, bool>) {
@@ -29,11 +30,20 @@ void push_value(lua_State* L, const Value& value) {
                              value.begin();
                              value.size();
                          }) {
-        lua_createtable(L, static_cast<int>(value.size()), 0);
-        lua_Integer i = 0;
+        constexpr bool named = requires {
+            value.begin()->second;
+        };
+        const int size = static_cast<int>(value.size());
+        lua_createtable(L, named ? 0 : size, named ? size : 0);
+        [[maybe_unused]] lua_Integer i = 0;
         for (const auto& element : value) {
-            push_value(L, element);
-            lua_rawseti(L, -2, ++i);
+            if constexpr (named) {
+                push_value(L, element.second);
+                lua_setfield(L, -2, element.first.c_str());
+            } else {
+                push_value(L, element);
+                lua_rawseti(L, -2, ++i);
+            }
         }
     } else {
         push<Value>(L, value);

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "lua/gaps.hpp"
 #include "lua/lua_text.hpp"
 
 namespace dinal::lua {

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "lua/bind.hpp"
+#include "lua/lua_headers.hpp"
 
 namespace dinal::lua {
 
@@ -47,5 +48,10 @@ std::string key_beside_list(lua_State* L, int index);
 /// The finite numbers of a table or a vector at `index`, which is that option of the call, or all that it takes. They
 /// head the sentence when there is something else: "sys:simulate: times".
 std::vector<double> numbers_at(lua_State* L, int index, std::string_view call, std::string_view option = "");
+
+// Numbers with gaps: nan where nothing was measured.
+
+/// The numbers of a table or a vector at `index`, which is that option of the call; nan is one, infinity is not.
+std::vector<double> numbers_with_gaps_at(lua_State* L, int index, std::string_view call, std::string_view option);
 
 }  // namespace dinal::lua

@@ -6,8 +6,7 @@
 #include <limits>
 
 #include "model/controller.hpp"
-#include "model/laws/user_law.hpp"
-#include "model/springs/user_spring.hpp"
+#include "model/functions.hpp"
 
 namespace dinal::motion {
 
@@ -174,14 +173,12 @@ UnderOath::UnderOath(const model::Oscillator& system, const model::Excitation& e
         event.when = witnesses_.heard(event.when, event.name.empty() ? "an event" : "the event " + event.name);
     }
     model::OscillatorParameters parameters = system.parameters();
-    if (const auto* law = system.friction().as<model::laws::UserLaw>()) {
-        model::laws::UserLaw own = *law;
-        own.function = witnesses_.heard(law->function, "friction", "speed");
-        parameters.friction = own;
-    }
-    if (const auto* spring = system.spring().as<model::springs::UserSpring>()) {
-        parameters.spring = model::springs::UserSpring{witnesses_.heard(spring->function, "spring", "theta")};
-    }
+    const auto heard = [this](const char* who, const char* argument) {
+        return [=, this](const auto& function) { return witnesses_.heard(function, who, argument); };
+    };
+    if (parameters.friction)
+        parameters.friction = model::with_functions(*parameters.friction, heard("friction", "speed"));
+    parameters.spring = model::with_functions(parameters.spring, heard("spring", "theta"));
     if (!has_functions(system)) return;
     if (auto made = model::Oscillator::make(parameters)) system_ = *made;
 }

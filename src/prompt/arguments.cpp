@@ -2,30 +2,18 @@
 
 #include <fmt/core.h>
 
-#include <array>
+#include <algorithm>
 #include <charconv>
+#include <iterator>
 #include <optional>
 #include <string_view>
+#include <vector>
 
 #include "text/suggest.hpp"
 
 namespace dinal::prompt {
 namespace {
 
-constexpr std::array<std::string_view, 25> known_options = {
-    "-e",        "-l",           "-i",         "-v",           "-W",          "-E",
-    "-",         "--",           "-h",         "--help",       "--version",   "--manual",
-    "--no-init", "--safe",       "--max-time", "--max-memory", "--lab-marks", "--lab-solutions",
-    "--sheets",  "--test-sheet", "--mark",     "--report",     "--kernel",    "--jupyter-install"};
-
-constexpr std::string_view kernel_option = "--kernel";
-constexpr std::string_view time_option = "--max-time";
-constexpr std::string_view memory_option = "--max-memory";
-constexpr std::string_view marks_option = "--lab-marks";
-constexpr std::string_view solutions_option = "--lab-solutions";
-constexpr std::string_view sheets_option = "--sheets";
-constexpr std::string_view test_option = "--test-sheet";
-constexpr std::string_view mark_option = "--mark";
 constexpr double longest = 1e9;                         // seconds: 30 years
 constexpr std::size_t largest = std::size_t{1} << 40U;  // a terabyte
 constexpr lua::ScriptLimits safe{.memory = std::size_t{256} << 20U, .seconds = 10};
@@ -48,28 +36,110 @@ std::size_t size_of(std::string_view text) {
     return good && size <= largest >> (10 * unit) ? size << (10 * unit) : 0;
 }
 
-/// Which of those with a value a word is, "--max-time" also for "--max-time=10"; empty when it is none.
-std::string_view option_with_value(std::string_view word) {
-    const std::string_view name = word.substr(0, word.find('='));
-    for (const std::string_view option :
-         {time_option, memory_option, marks_option, solutions_option, sheets_option, test_option, mark_option}) {
-        if (name == option) {
-            return option;
-        }
-    }
-    return {};
+// ---- what an option does; false when the value that stands after it will not do
+
+template <auto... flags>
+bool set(Arguments& arguments, std::string_view /*value*/) {
+    ((arguments.*flags = true), ...);
+    return true;
 }
 
-/// Fails with a sentence about a value that is no size or no time.
-std::optional<text::Error> set_limit(lua::ScriptLimits& limits, std::string_view option, std::string_view value) {
-    const bool time = option == time_option;
-    limits.seconds = time ? seconds_of(value) : limits.seconds;
-    limits.memory = time ? limits.memory : size_of(value);
-    if (time ? limits.seconds > 0 : limits.memory > 0) {
-        return std::nullopt;
-    }
-    return text::Error{fmt::format("option {} needs {} after it, for example {}{}", option,
-                                   time ? "a time in seconds" : "a size", time ? "--max-time 10" : "--max-memory 256M",
+template <auto text>
+bool take(Arguments& arguments, std::string_view value) {
+    arguments.*text = value;
+    return !value.empty();
+}
+
+/// What is asked for instead of a run, and of whom or of what.
+template <Request request>
+bool ask(Arguments& arguments, std::string_view value) {
+    arguments.request = request;
+    arguments.student = value;
+    return true;
+}
+
+bool ask_whole_manual(Arguments& arguments, std::string_view value) {
+    arguments.whole_manual = true;
+    return ask<Request::manual>(arguments, value);
+}
+
+bool turn_warnings_on(Arguments& arguments, std::string_view /*value*/) {
+    arguments.steps.push_back({'W', ""});
+    return true;
+}
+
+bool limit_time(Arguments& arguments, std::string_view value) {
+    arguments.limits.seconds = seconds_of(value);
+    return arguments.limits.seconds > 0;
+}
+
+bool limit_memory(Arguments& arguments, std::string_view value) {
+    arguments.limits.memory = size_of(value);
+    return arguments.limits.memory > 0;
+}
+
+bool answer_on(Arguments& arguments, std::string_view value) {
+    int number = -1;
+    std::from_chars(value.data(), value.data() + value.size(), number);
+    arguments.kernel = number;
+    return true;
+}
+
+enum class Takes {
+    nothing,
+    value,  ///< --max-time 10 or --max-time=10
+    all,    ///< nothing, and what follows is not looked at
+};
+
+struct CommandLineOption {
+    std::string_view name;
+    bool (*carry_out)(Arguments& arguments, std::string_view value);
+    Takes takes = Takes::nothing;
+    const char *needs = "", *example = "";  ///< what must stand after it
+};
+
+constexpr CommandLineOption options[] = {
+    {"-i", set<&Arguments::interactive, &Arguments::show_version>},
+    {"-v", set<&Arguments::show_version>},
+    {"-E", set<&Arguments::ignore_environment>},
+    {"-W", turn_warnings_on},
+    {"-h", ask<Request::help>, Takes::all},
+    {"--help", ask<Request::help>, Takes::all},
+    {"--version", ask<Request::version>, Takes::all},
+    {"--manual", ask<Request::manual>, Takes::all},
+    {"--manual=all", ask_whole_manual, Takes::all},
+    {"--jupyter-install", ask<Request::jupyter_install>, Takes::all},
+    {"--no-init", set<&Arguments::no_init>},
+    {"--strict", set<&Arguments::strict>},
+    {"--safe", set<&Arguments::safe>},
+    {"--report", set<&Arguments::report>},
+    {"--max-time", limit_time, Takes::value, "a time in seconds", "10"},
+    {"--max-memory", limit_memory, Takes::value, "a size", "256M"},
+    {"--lab-marks", take<&Arguments::lab_marks>, Takes::value, "the name of a file", "marks.csv"},
+    {"--sheets", take<&Arguments::sheets>, Takes::value, "the name of a folder", "sheets"},
+    {"--lab-solutions", ask<Request::lab_solutions>, Takes::value},
+    {"--test-sheet", ask<Request::test_sheet>, Takes::value},
+    {"--mark", ask<Request::mark>, Takes::value},
+    {"--kernel", answer_on, Takes::value},
+};
+
+/// The option that the word is, "--max-time" also for "--max-time=10"; nullptr when it is none of these.
+const CommandLineOption* option_of(std::string_view word) {
+    const auto* found = std::find_if(std::begin(options), std::end(options), [word](const CommandLineOption& option) {
+        return option.name == (option.takes == Takes::value ? word.substr(0, word.find('=')) : word);
+    });
+    return found == std::end(options) ? nullptr : found;
+}
+
+/// Carries out the option at place i, which goes to its value if that stands in a word of its own.
+std::optional<text::Error> carry_out(const CommandLineOption& option, Arguments& arguments, std::size_t& i) {
+    std::string_view value = arguments.words[i];
+    const bool joined = value.size() > option.name.size();
+    value.remove_prefix(std::min(value.size(), option.name.size() + 1));
+    if (option.takes == Takes::value && !joined && ++i < arguments.words.size()) value = arguments.words[i];
+    if (option.carry_out(arguments, value)) return std::nullopt;
+    return text::Error{fmt::format("option {} needs {} after it, for example {} {}{}", option.name, option.needs,
+                                   option.name, option.example,
                                    value.empty() ? "" : fmt::format("; '{}' is not one", value))};
 }
 
@@ -79,90 +149,15 @@ void complete_safe_limits(lua::ScriptLimits& limits) {
     limits.seconds = limits.seconds > 0 ? limits.seconds : safe.seconds;
 }
 
-text::Error unknown(std::string_view option) {
-    return {fmt::format("unknown option '{}'{}", option, text::did_you_mean(option, known_options))};
+text::Error unknown(std::string_view word) {
+    std::vector<std::string_view> known{"-e", "-l", "-", "--"};
+    for (const CommandLineOption& option : options) known.push_back(option.name);
+    return {fmt::format("unknown option '{}'{}", word, text::did_you_mean(word, known))};
 }
 
 text::Error no_value(char option) {
     return {option == 'e' ? "option -e needs Lua code after it, for example -e 'print(1 + 1)'"
                           : "option -l needs the name of a module after it, for example -l lab"};
-}
-
-/// What stands behind --kernel: "=11". -1, which is none, for all else.
-int descriptor_of(std::string_view text) {
-    int number = -1;
-    if (text.starts_with('=')) {
-        std::from_chars(text.data() + 1, text.data() + text.size(), number);
-    }
-    return number;
-}
-
-/// --help and its like, which `lua` does not have. Request::run when it is none of them.
-Request request_of(std::string_view option) {
-    if (option == "--help" || option == "-h") {
-        return Request::help;
-    }
-    if (option == "--version") {
-        return Request::version;
-    }
-    if (option == "--jupyter-install") {
-        return Request::jupyter_install;
-    }
-    return option == "--manual" || option == "--manual=all" ? Request::manual : Request::run;
-}
-
-/// A flag of one letter; false when `lua` does not have it.
-bool set_flag(Arguments& arguments, char letter) {
-    switch (letter) {
-        case 'i':
-            arguments.interactive = arguments.show_version = true;
-            return true;
-        case 'v':
-            arguments.show_version = true;
-            return true;
-        case 'E':
-            arguments.ignore_environment = true;
-            return true;
-        case 'W':
-            arguments.steps.push_back({'W', ""});
-            return true;
-        default:
-            return false;
-    }
-}
-
-/// Fails with a sentence about a value that will not do.
-std::optional<text::Error> set_value(Arguments& arguments, std::string_view option, std::string_view value) {
-    if (option == marks_option) {
-        arguments.lab_marks = value;
-        return value.empty() ? std::optional(text::Error{"option --lab-marks needs the name of a file after it, for "
-                                                         "example --lab-marks marks.csv"})
-                             : std::nullopt;
-    }
-    if (option == sheets_option) {
-        arguments.sheets = value;
-        return value.empty() ? std::optional(text::Error{"option --sheets needs the name of a folder after it, for "
-                                                         "example --sheets sheets"})
-                             : std::nullopt;
-    }
-    if (option == solutions_option || option == test_option || option == mark_option) {
-        arguments.request = option == solutions_option ? Request::lab_solutions
-                            : option == test_option    ? Request::test_sheet
-                                                       : Request::mark;
-        arguments.student = value;
-        return std::nullopt;
-    }
-    return set_limit(arguments.limits, option, value);
-}
-
-/// --max-time 10 or --max-time=10 at place i, which goes to the value.
-std::optional<text::Error> read_value(Arguments& arguments, std::string_view option, std::size_t& i) {
-    const std::string_view word = arguments.words[i];
-    if (word.size() > option.size()) {
-        return set_value(arguments, option, word.substr(option.size() + 1));
-    }
-    ++i;
-    return set_value(arguments, option, i < arguments.words.size() ? arguments.words[i] : "");
 }
 
 /// What is not possible together; what safe mode brings with it.
@@ -198,26 +193,12 @@ text::Expected<Arguments> parse_arguments(int count, const char* const* words) {
             ++i;
             break;
         }
-        if (word == "--no-init") {
-            arguments.no_init = true;
-            continue;
-        }
-        if (const Request request = request_of(word); request != Request::run) {
-            arguments.request = request;
-            arguments.whole_manual = word == "--manual=all";
-            return arguments;
-        }
-        if (word == "--report") {
-            arguments.report = true;
-        } else if (word == "--safe") {
-            arguments.safe = true;
-        } else if (word == "--strict") {
-            arguments.strict = true;
-        } else if (word.starts_with(kernel_option)) {
-            arguments.kernel = descriptor_of(word.substr(kernel_option.size()));
-        } else if (const std::string_view option = option_with_value(word); !option.empty()) {
-            if (auto wrong = read_value(arguments, option, i)) {
+        if (const CommandLineOption* option = option_of(word)) {
+            if (auto wrong = carry_out(*option, arguments, i)) {
                 return *wrong;
+            }
+            if (option->takes == Takes::all) {
+                return arguments;
             }
         } else if (word[1] == 'e' || word[1] == 'l') {
             const char* value = arguments.words[i] + 2;
@@ -230,7 +211,7 @@ text::Expected<Arguments> parse_arguments(int count, const char* const* words) {
             }
             arguments.steps.push_back({word[1], value});
             arguments.executes = arguments.executes || word[1] == 'e';
-        } else if (word.size() != 2 || !set_flag(arguments, word[1])) {
+        } else {
             return unknown(word);
         }
     }

@@ -1,14 +1,19 @@
 #include "prompt/completion.hpp"
 
+#include <fmt/core.h>
+#include <unistd.h>
 #include <algorithm>
+#include <cstdlib>
+#include <string>
 
 #include "errors/misspelling.hpp"
 #include "help/help_text.hpp"
 #include "help/signature.hpp"
+#include "lua/bind.hpp"
 #include "lua/lua_text.hpp"
 #include "prompt/commands.hpp"
-#include "prompt/meaning.hpp"
-#include "prompt/typed_text.hpp"
+#include "terminal/display.hpp"
+#include "text/characters.hpp"
 
 namespace dinal::prompt {
 namespace {
@@ -70,12 +75,6 @@ std::vector<std::string> members(lua_State* L, const TypedText& typed, bool call
     const help::Section* held = owner.kind == Meaning::Kind::object ? owner.section : nullptr;
     if (owner.kind == Meaning::Kind::member && owner.member->kind == lua::Kind::field) {
         held = help::result_class(owner.member->doc.signature);
-    }
-    constexpr std::size_t field_of_variable = 3;
-    if (owner.kind == Meaning::Kind::member && owner.member->kind == lua::Kind::field &&
-        typed.owner().size() == field_of_variable && lua_isuserdata(L, -2) != 0) {
-        lua_pop(L, 1);  // fit.error: the object is below
-        go_to_field(L, owner.member->name);
     }
     if (held != nullptr) {
         add_members(*held->description, typed.separator(), calls, names);
@@ -323,6 +322,456 @@ std::string signature_hint(lua_State* L, std::string_view before) {
         part.clear();
     }
     return hint;
+}
+
+namespace {
+
+bool opens(const lua::Token& token) {
+    return token.is("(") || token.is("{") || token.is("[");
+}
+bool closes_bracket(const lua::Token& token) {
+    return token.is(")") || token.is("}") || token.is("]");
+}
+bool separates(const lua::Token& token) {
+    return token.is(".") || token.is(":");
+}
+
+}  // namespace
+
+TypedText::TypedText(std::string_view before) : tokens_(lua::tokens(before)) {
+    find_cursor(before);
+    find_call();
+}
+
+void TypedText::find_cursor(std::string_view before) {
+    if (!tokens_.empty() && tokens_.back().end() == before.size()) {
+        const lua::Token& last = tokens_.back();
+        if (last.kind == lua::TokenKind::comment || last.kind == lua::TokenKind::number) {
+            return;
+        }
+        if (last.kind == lua::TokenKind::string) {
+            cursor_ = last.open && last.text.front() != '[' ? Cursor::string : Cursor::nothing;
+            word_ = last.text.substr(1);
+            tokens_.pop_back();
+            return;
+        }
+        if (last.kind != lua::TokenKind::symbol) {
+            word_ = last.text;
+            tokens_.pop_back();
+        }
+    }
+    cursor_ = Cursor::name;
+    if (tokens_.size() > 1 && separates(tokens_.back())) {
+        cursor_ = Cursor::member;
+        separator_ = tokens_.back().text.front();
+        owner_ = expression_before(tokens_.size() - 1);
+    }
+}
+
+/// The expression that ends before token `end`: a name, fields, calls, brackets. Empty when none does.
+std::span<const lua::Token> TypedText::expression_before(std::size_t end) const {
+    std::size_t begin = end;
+    while (begin > 0) {
+        const lua::Token& last = tokens_[begin - 1];
+        if (last.kind == lua::TokenKind::name) {
+            --begin;
+            if (begin < 2 || !separates(tokens_[begin - 1])) {
+                break;
+            }
+            --begin;
+        } else if (closes_bracket(last)) {
+            int depth = 0;
+            do {
+                --begin;
+                depth += closes_bracket(tokens_[begin]) ? 1 : opens(tokens_[begin]) ? -1 : 0;
+            } while (depth > 0 && begin > 0);
+            const bool called =
+                begin > 0 && (tokens_[begin - 1].kind == lua::TokenKind::name || closes_bracket(tokens_[begin - 1]));
+            if (!called) {
+                break;
+            }
+        } else if (last.kind == lua::TokenKind::string && begin > 1 &&
+                   tokens_[begin - 2].kind == lua::TokenKind::name) {
+            --begin;  // f"text"
+        } else {
+            return {};
+        }
+    }
+    return std::span(tokens_).subspan(begin, end - begin);
+}
+
+std::vector<std::size_t> TypedText::open_brackets() const {
+    std::vector<std::size_t> open;
+    for (std::size_t i = 0; i < tokens_.size(); ++i) {
+        if (opens(tokens_[i])) {
+            open.push_back(i);
+        } else if (closes_bracket(tokens_[i]) && !open.empty()) {
+            open.pop_back();
+        }
+    }
+    return open;
+}
+
+/// How the table that begins at one bracket stands in what begins at another: under which name, "" without one. None
+/// when it is part of an expression there.
+std::optional<std::string_view> TypedText::name_of_table(std::size_t bracket, std::size_t outer) const {
+    const auto separates_items = [&](std::size_t i) {
+        return i == outer || tokens_[i].is(",") || (tokens_[i].is(";") && tokens_[outer].is("{"));
+    };
+    if (separates_items(bracket - 1)) {
+        return "";
+    }
+    const bool named = bracket - outer > 2 && tokens_[bracket - 1].is("=") && tokens_[outer].is("{") &&
+                       tokens_[bracket - 2].kind == lua::TokenKind::name && separates_items(bracket - 3);
+    return named ? std::optional(tokens_[bracket - 2].text) : std::nullopt;
+}
+
+void TypedText::find_call() {
+    const std::vector<std::size_t> open = open_brackets();
+    if (cursor_ == Cursor::string && !tokens_.empty() && tokens_.back().kind == lua::TokenKind::name) {
+        call_ = OpenCall{.function = expression_before(tokens_.size())};  // f"...
+        return;
+    }
+    if (open.empty()) {
+        return;
+    }
+    const std::size_t bracket = open.back();
+    OpenCall call{.function = expression_before(bracket)};
+    call.options = tokens_[bracket].is("{");
+    std::size_t around = open.size() - 1;
+    for (; call.function.empty() && around > 0 && tokens_[open[around]].is("{"); --around) {
+        const std::optional<std::string_view> name = name_of_table(open[around], open[around - 1]);
+        if (!name) {
+            return;
+        }
+        call.path.insert(call.path.begin(), *name);
+        call.function = expression_before(open[around - 1]);
+    }
+    if (call.function.empty()) {
+        return;
+    }
+    if (!call.path.empty() && call.path.front().empty()) {
+        call.braces = tokens_[open[around]].is("(") ? help::Braces::in_parentheses : help::Braces::nested;
+        call.path.erase(call.path.begin());
+    }
+    int depth = 0;
+    for (std::size_t i = bracket + 1; i + 1 < tokens_.size(); ++i) {
+        depth += opens(tokens_[i]) ? 1 : closes_bracket(tokens_[i]) ? -1 : 0;
+        if (depth == 0 && tokens_[i].kind == lua::TokenKind::name && tokens_[i + 1].is("=")) {
+            call.given.push_back(tokens_[i].text);
+        }
+    }
+    const lua::Token& last = tokens_.back();
+    if (call.options && cursor_ == Cursor::name && (last.is("{") || last.is(",") || last.is(";"))) {
+        cursor_ = Cursor::option;
+    }
+    if (call.options && last.is("=") && tokens_.size() > bracket + 2) {
+        call.option = tokens_[tokens_.size() - 2].text;
+        cursor_ = cursor_ == Cursor::name ? Cursor::value : cursor_;
+    }
+    call_ = call;
+}
+
+namespace {
+
+constexpr int most_metatables = 10;  // an __index may lead to itself
+
+bool closes(const lua::Token& token) {
+    return token.is(")") || token.is("}") || token.is("]");
+}
+
+/// One that means what stands between its quotes.
+bool is_plain_string(const lua::Token& token) {
+    return token.kind == lua::TokenKind::string && !token.open && token.text.front() != '[' &&
+           token.text.find('\\') == std::string_view::npos;
+}
+
+const lua::Member* member_of(const lua::Class& description, std::string_view name) {
+    const auto found =
+        std::find_if(description.members.begin(), description.members.end(),
+                     [name](const lua::Member& m) { return m.kind != lua::Kind::metamethod && m.name == name; });
+    return found == description.members.end() ? nullptr : &*found;
+}
+
+/// As a function that Lua can call: what is in a field of an object of ours.
+int field_of_object(lua_State* L) {
+    lua_gettable(L, 1);
+    return 1;
+}
+
+/// Replaces the object of ours and the key on the top of it by what is there; nil when that fails. No code of the user
+/// runs.
+void ask_object(lua_State* L) {
+    lua_pushcfunction(L, field_of_object);
+    lua_insert(L, -3);
+    if (lua_pcall(L, 2, 1, 0) != LUA_OK) {
+        lua_pop(L, 1);
+        lua_pushnil(L);
+    }
+}
+
+/// What the value on the top is.
+Meaning meaning_of_top(lua_State* L) {
+    if (lua_isnil(L, -1)) return {};
+    const lua::Documented found = lua::documented(L, -1);
+    if (found.member != nullptr) return {Meaning::Kind::member, section_of(found.owner), found.member};
+    const bool object = found.owner != nullptr && lua_isuserdata(L, -1) != 0;
+    return object ? Meaning{Meaning::Kind::object, section_of(found.owner)} : Meaning{Meaning::Kind::value};
+}
+
+/// Walks along the expression. What is known so far is `result`; its value is on the top of the stack, nil where only
+/// its documentation is known.
+class Walk {
+public:
+    explicit Walk(lua_State* L) : L_(L) { lua_pushnil(L_); }
+
+    Meaning result;
+
+    void begin(const lua::Token& token) {
+        if (token.kind == lua::TokenKind::name) {
+            lua_pop(L_, 1);
+            lua_pushglobaltable(L_);
+            raw_field(token.text);
+        }
+    }
+
+    void go_to_field(std::string_view name) {
+        const lua::Class* owner = class_here();
+        if (lua_isuserdata(L_, -1) != 0 && owner != nullptr) {
+            lua_pushlstring(L_, name.data(), name.size());
+            ask_object(L_);
+            result = meaning_of_top(L_);
+        } else if (!lua_isnil(L_, -1)) {
+            raw_field(name);
+        } else {
+            result = {};
+        }
+        if (const lua::Member* member = owner == nullptr ? nullptr : member_of(*owner, name)) {
+            result = {Meaning::Kind::member, section_of(owner), member};
+        }
+    }
+
+    /// list[1], of tables as they are, and of our objects: run.events[1].
+    void index(lua_Integer number) {
+        if (lua_istable(L_, -1)) {
+            lua_rawgeti(L_, -1, number);
+            lua_remove(L_, -2);
+        } else if (lua_isuserdata(L_, -1) != 0 && class_here() != nullptr) {
+            lua_pushinteger(L_, number);
+            ask_object(L_);
+        } else {
+            return forget();
+        }
+        result = meaning_of_top(L_);
+    }
+
+    void call() {
+        const lua::Doc* doc = result.member != nullptr ? &result.member->doc : nullptr;
+        if (lua_istable(L_, -1)) {
+            const lua::Documented module = lua::documented(L_, -1);
+            doc = module.owner != nullptr ? &module.owner->doc : nullptr;
+        }
+        const help::Section* object = doc == nullptr ? nullptr : help::result_class(doc->signature);
+        forget();
+        if (object != nullptr) {
+            result = {Meaning::Kind::object, object, nullptr};
+        }
+    }
+
+    void forget() {
+        result = {};
+        lua_pop(L_, 1);
+        lua_pushnil(L_);
+    }
+
+private:
+    /// The class of what is here, as its value or its documentation tells; nullptr when it is none of ours.
+    const lua::Class* class_here() {
+        if (lua_isuserdata(L_, -1) != 0) return lua::documented(L_, -1).owner;
+        const bool field = result.kind == Meaning::Kind::member && result.member->kind == lua::Kind::field;
+        const help::Section* section = field ? help::result_class(result.member->doc.signature) : result.section;
+        const bool known = lua_isnil(L_, -1) && (field || result.kind == Meaning::Kind::object);
+        return known && section != nullptr ? section->description : nullptr;
+    }
+
+    /// Replaces the value on the top by its field, looked up in the tables of __index, too.
+    void raw_field(std::string_view name) {
+        for (int i = 0; i < most_metatables; ++i) {
+            if (lua_istable(L_, -1)) {
+                lua_pushlstring(L_, name.data(), name.size());
+                if (lua_rawget(L_, -2) != LUA_TNIL) {
+                    lua_replace(L_, -2);
+                    result = meaning_of_top(L_);
+                    return;
+                }
+                lua_pop(L_, 1);
+            }
+            if (lua_getmetatable(L_, -1) == 0) {
+                break;
+            }
+            lua_pushliteral(L_, "__index");
+            lua_rawget(L_, -2);
+            lua_replace(L_, -3);
+            lua_pop(L_, 1);
+        }
+        forget();
+    }
+
+    lua_State* L_;
+};
+
+}  // namespace
+
+const help::Section* section_of(const lua::Class* description) {
+    const auto all = help::sections();
+    const auto found = std::find_if(all.begin(), all.end(),
+                                    [description](const help::Section& s) { return s.description == description; });
+    return found == all.end() ? nullptr : &*found;
+}
+
+Meaning meaning(lua_State* L, std::span<const lua::Token> expression) {
+    luaL_checkstack(L, LUA_MINSTACK, "for the meaning of what is typed");
+    Walk walk(L);
+    if (expression.empty()) {
+        return {};
+    }
+    walk.begin(expression.front());
+    for (std::size_t i = 1; i < expression.size(); ++i) {
+        const lua::Token& token = expression[i];
+        if (token.kind == lua::TokenKind::name) {
+            walk.go_to_field(token.text);
+        } else if (token.kind == lua::TokenKind::string || token.is("(") || token.is("{") || token.is("[")) {
+            const lua::Token* key =
+                i + 2 < expression.size() && expression[i + 2].is("]") ? &expression[i + 1] : nullptr;
+            if (!token.is("[")) {
+                walk.call();
+            } else if (key != nullptr && key->kind == lua::TokenKind::number) {
+                walk.index(std::strtoll(std::string(key->text).c_str(), nullptr, 10));
+            } else if (key != nullptr && is_plain_string(*key)) {
+                walk.go_to_field(key->text.substr(1, key->text.size() - 2));
+            } else {
+                walk.forget();
+            }
+            int depth = token.kind == lua::TokenKind::string ? 0 : 1;
+            while (depth > 0 && i + 1 < expression.size()) {
+                ++i;
+                const lua::Token& inner = expression[i];
+                depth += inner.is("(") || inner.is("{") || inner.is("[") ? 1 : closes(inner) ? -1 : 0;
+            }
+        }
+    }
+    return walk.result;
+}
+
+void add_own_names(lua_State* L, std::vector<std::string>& names) {
+    const lua::Class* description = lua_isuserdata(L, -1) != 0 ? lua::documented(L, -1).owner : nullptr;
+    if (description == nullptr || description->other_keys == nullptr) {
+        return;
+    }
+    const int object = lua_gettop(L);
+    lua_pushvalue(L, object);
+    lua_pushliteral(L, "names");
+    ask_object(L);
+    for (lua_Integer i = 1; lua_istable(L, -1) && lua_rawgeti(L, -1, i) == LUA_TSTRING; ++i) {
+        if (const std::string name = lua_tostring(L, -1); lua::is_name(name)) {
+            names.push_back(name);
+        }
+        lua_pop(L, 1);
+    }
+    lua_settop(L, object);
+}
+
+std::vector<std::string> columns_of_owner(lua_State* L, std::span<const lua::Token> function) {
+    std::vector<std::string> names;
+    const std::size_t size = function.size();
+    if (size < 3 || !function[size - 2].is(":")) {
+        return names;
+    }
+    const int top = lua_gettop(L);
+    const Meaning owner = meaning(L, function.first(size - 2));
+    add_own_names(L, names);
+    for (const lua::Member& member : owner.kind == Meaning::Kind::object && owner.section != nullptr && names.empty()
+                                         ? owner.section->description->members
+                                         : std::span<const lua::Member>()) {
+        const help::Section* held = help::result_class(member.doc.signature);
+        if (member.kind == lua::Kind::field && held != nullptr &&
+            held->description->name == std::string_view("vector")) {
+            names.emplace_back(member.name);
+        }
+    }
+    lua_settop(L, top);
+    return names;
+}
+
+namespace {
+
+/// Runs `work` with Lua's errors (there is only the lack of memory) kept inside.
+template <class Work>
+void safely(lua_State* L, Work work) {
+    const auto trampoline = [](lua_State* state) {
+        auto& function = *static_cast<Work*>(lua_touserdata(state, 1));
+        lua_settop(state, 0);
+        function(state);
+        return 0;
+    };
+    const int top = lua_gettop(L);
+    lua_pushcfunction(L, trampoline);
+    lua_pushlightuserdata(L, &work);
+    lua_pcall(L, 1, 0, 0);
+    lua_settop(L, top);
+}
+
+bool is_simple(std::string_view text, bool unicode) {
+    return std::all_of(text.begin(), text.end(), [unicode](char c) {
+        const auto byte = static_cast<unsigned char>(c);
+        return byte >= 0x20 && byte != 0x7F && (byte < 0x80 || unicode);
+    });
+}
+
+/// As much of a list as there is room for, whole words of it.
+std::string fitting_list(const std::string& list, std::size_t room, bool unicode) {
+    if (text::columns(list) <= room) {
+        return list;
+    }
+    const std::string_view more = unicode ? ", …" : ", ...";
+    const std::string_view cut = text::cut_to_columns(list, room > 5 ? room - 5 : 0);
+    const std::size_t comma = cut.rfind(',');
+    return comma == std::string_view::npos ? "" : std::string(cut.substr(0, comma)).append(more);
+}
+
+}  // namespace
+
+Painted paint(lua_State* L, const LineOnScreen& shown) {
+    const terminal::Display screen = terminal::display_of(STDOUT_FILENO);
+    const std::size_t before = text::columns(shown.prompt);
+    const std::size_t used = before + text::columns(shown.line);
+    constexpr std::size_t spare = 2;  // a row that is full to its end may have been wrapped already
+    if (used + spare >= screen.width || !is_simple(shown.prompt, screen.unicode) ||
+        !is_simple(shown.line, screen.unicode)) {
+        return {};
+    }
+    const std::size_t room = screen.width - used - spare;
+    constexpr std::size_t gap = 2;
+    std::string hint;
+    if (shown.line.empty()) {
+        hint = text::cut_to_columns(shown.cue, room);
+    } else if (shown.cursor == shown.line.size() && !shown.rest.empty() && is_simple(shown.rest, screen.unicode)) {
+        hint = text::cut_to_columns(shown.rest, room);
+    } else if (shown.cursor == shown.line.size()) {
+        safely(L, [&](lua_State* state) { hint = signature_hint(state, shown.pending + std::string(shown.line)); });
+        hint = fitting_list(hint, room > gap ? room - gap : 0, screen.unicode);
+        hint.insert(0, hint.empty() ? 0 : gap, ' ');
+    }
+    if (hint.empty()) return {};
+    // octal where a digit follows: \x1b7 would be one character
+    const std::string right = used > 0 ? fmt::format("\x1b[{}C", used) : "";
+    return {fmt::format("\0337\r{}\x1b[90m{}\x1b[0m\x1b[K\0338", right, hint), true};
+}
+
+Completion complete_safely(lua_State* L, const std::string& before) {
+    Completion completion;
+    safely(L, [&](lua_State* state) { completion = complete(state, before); });
+    return completion;
 }
 
 }  // namespace dinal::prompt

@@ -21,7 +21,6 @@
 #include "prompt/completion.hpp"
 #include "prompt/history.hpp"
 #include "prompt/output.hpp"
-#include "prompt/typing.hpp"
 #include "prompt/user_files.hpp"
 #include "terminal/display.hpp"
 #include "terminal/pager.hpp"

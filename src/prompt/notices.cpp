@@ -19,9 +19,8 @@
 #include "lua/options.hpp"
 #include "lua/standard_globals.hpp"
 #include "lua/tokens.hpp"
-#include "prompt/meaning.hpp"
+#include "prompt/completion.hpp"
 #include "prompt/output.hpp"
-#include "prompt/typed_text.hpp"
 #include "text/suggest.hpp"
 
 namespace dinal::prompt {

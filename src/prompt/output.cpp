@@ -5,7 +5,6 @@
 #include <cstdio>
 #include <string>
 
-#include "lua/last_words.hpp"
 #include "lua/limits.hpp"
 #include "terminal/display.hpp"
 #include "text/characters.hpp"

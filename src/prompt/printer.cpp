@@ -4,15 +4,223 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <string>
+#include <string_view>
+#include <tuple>
 #include <vector>
 
+#include "help/signature.hpp"
+#include "lua/bind.hpp"
+#include "lua/interrupt.hpp"
+#include "lua/lua_headers.hpp"
 #include "lua/lua_text.hpp"
-#include "prompt/scalar_text.hpp"
-#include "prompt/table_items.hpp"
+#include "source/function_source.hpp"
+#include "terminal/display.hpp"
 #include "text/characters.hpp"
 
 namespace dinal::prompt {
 namespace {
+
+// ---- One value as the prompt shows it, when it is no plain table.
+
+/// Alone on the screen, a value may take several lines; inside a table it gets a short form on one line.
+enum class Place { alone, inside };
+
+constexpr std::size_t longest_string = 1000;
+constexpr std::size_t longest_inner_string = 60;
+constexpr std::size_t longest_text = 4000;  // a text of several lines, as from run:explain(), is shown as it is
+constexpr int most_source_lines = 12;       // of a function
+
+int by_tostring(lua_State* L) {
+    luaL_tolstring(L, 1, nullptr);
+    return 1;
+}
+
+/// What tostring says, or that it failed.
+std::string told(lua_State* L, int index) {
+    lua_pushvalue(L, index);
+    lua_pushcfunction(L, by_tostring);
+    lua_insert(L, -2);
+    const bool fine = lua_pcall(L, 1, 1, 0) == LUA_OK;
+    if (!fine && lua::interrupt_requested()) {
+        lua::raise_interrupted(L);
+    }
+    const std::string text(lua_isstring(L, -1) != 0 ? lua::text_at(L, -1) : luaL_typename(L, -1));
+    lua_pop(L, 1);
+    return fine ? text : fmt::format("<error in __tostring: {}>", text);
+}
+
+/// Several lines of nothing but printable characters, too long to be read in quotes.
+bool is_text(std::string_view text, const terminal::Display& screen) {
+    const bool is_long = text.find('\n') != std::string_view::npos && text.size() > screen.width;
+    return is_long && text.size() <= longest_text && text::is_printable(text);
+}
+
+std::string string_text(lua_State* L, int index, Place place, const terminal::Display& screen) {
+    const std::string_view string = lua::text_at(L, index);
+    if (place == Place::alone && is_text(string, screen)) {
+        return text::wrapped(terminal::spelled(string, screen), screen.width - 1);
+    }
+    const std::size_t limit = place == Place::inside ? longest_inner_string : longest_string;
+    std::string text = text::quoted(string, limit, screen.unicode);
+    return place == Place::alone && string.size() > limit ? fmt::format("{} ({} bytes)", text, string.size()) : text;
+}
+
+/// A function as its source where that is short, else where it is defined; ours as they are called.
+std::string function_text(lua_State* L, int index, const terminal::Display& screen) {
+    if (const lua::Documented found = lua::documented(L, index); found.member != nullptr) {
+        return text::wrapped(fmt::format("function {}", help::signature(found.member->doc)), screen.width - 1);
+    }
+    const auto source = source::function_source(L, index);
+    if (lua_iscfunction(L, index) != 0) {
+        return source ? fmt::format("function {} of Lua", *source) : "function written in C";
+    }
+    lua_Debug about{};
+    lua_pushvalue(L, index);
+    lua_getinfo(L, ">S", &about);
+    if (source && std::count(source->begin(), source->end(), '\n') < most_source_lines) {
+        return *source;
+    }
+    return fmt::format("function at {}:{}", about.short_src, about.linedefined);
+}
+
+std::string in_one_line(const std::string& text) {
+    const std::size_t end = text.find('\n');
+    return end == std::string::npos ? text : text.substr(0, end) + "...";
+}
+
+/// A table without a __tostring of its own: it is shown item by item.
+bool is_plain_table(lua_State* L, int index) {
+    if (!lua_istable(L, index)) {
+        return false;
+    }
+    if (luaL_getmetafield(L, index, "__tostring") == LUA_TNIL) {
+        return true;
+    }
+    lua_pop(L, 1);
+    return false;
+}
+
+/// The text for the value at `index`. Runs __tostring, whose errors become part of the text; Ctrl-C is a Lua error.
+std::string scalar_text(lua_State* L, int index, Place place, const terminal::Display& screen) {
+    switch (lua_type(L, index)) {
+        case LUA_TNUMBER:
+            return std::isnan(lua_tonumber(L, index)) ? "nan" : told(L, index);
+        case LUA_TSTRING:
+            return string_text(L, index, place, screen);
+        case LUA_TFUNCTION:
+            return place == Place::inside ? "function" : function_text(L, index, screen);
+        default:
+            break;
+    }
+    const lua::Documented found = lua::documented(L, index);
+    if (place == Place::inside) {
+        return terminal::spelled(in_one_line(told(L, index)), screen);
+    }
+    if (found.owner != nullptr && found.owner->card != nullptr) {
+        return found.owner->card(L, lua_absindex(L, index), screen);
+    }
+    std::string text = told(L, index);
+    return found.owner != nullptr ? text::wrapped(terminal::spelled(text, screen), screen.width - 1) : text;
+}
+
+// ---- The items of a Lua table in the order in which they are shown.
+
+/// 1, 2, ... n, then other numbers, the time t (events have one), other names, and the rest.
+// NOTE: the keys that are not 1 to n stand in a Lua table that this leaves on the stack. No destructor may take it off:
+// while a Lua error unwinds, its message is what is on the top.
+class TableItems {
+public:
+    TableItems(lua_State* L, int index);
+
+    [[nodiscard]] std::size_t size() const { return listed_ + others_; }
+    /// Of a huge table not all can be shown.
+    [[nodiscard]] std::size_t shown() const { return listed_ + order_.size(); }
+    /// Item i is one of 1, 2, ... n.
+    [[nodiscard]] bool in_list(std::size_t i) const { return i < listed_; }
+
+    /// Pushes the key and the value of item i.
+    void push(std::size_t i) const;
+
+private:
+    using Key = std::tuple<int, double, std::string, lua_Integer>;  // rank, number, name, place in the table of keys
+
+    void collect();
+    void add_key();
+    [[nodiscard]] bool key_is_listed() const;
+
+    lua_State* L_;
+    int table_;
+    int keys_ = 0;
+    std::size_t listed_;
+    std::size_t others_ = 0;
+    std::vector<Key> order_;
+};
+
+constexpr std::size_t most_sorted_keys = 500;  // beyond, the first that Lua finds are shown
+
+/// How many of 1, 2, ... there are. NOTE: not the border of rawlen, which may lie behind holes.
+std::size_t list_length(lua_State* L, int index) {
+    const auto border = static_cast<lua_Integer>(lua_rawlen(L, index));
+    for (lua_Integer n = 0; n < border; ++n) {
+        const bool hole = lua_rawgeti(L, index, n + 1) == LUA_TNIL;
+        lua_pop(L, 1);
+        if (hole) {
+            return static_cast<std::size_t>(n);
+        }
+    }
+    return static_cast<std::size_t>(border);
+}
+
+TableItems::TableItems(lua_State* L, int index) : L_(L), table_(index), listed_(list_length(L, index)) {
+    lua_newtable(L_);
+    keys_ = lua_gettop(L_);
+    collect();
+    std::sort(order_.begin(), order_.end());
+}
+
+void TableItems::push(std::size_t i) const {
+    if (in_list(i)) {
+        lua_pushinteger(L_, static_cast<lua_Integer>(i) + 1);
+    } else {
+        lua_rawgeti(L_, keys_, std::get<lua_Integer>(order_[i - listed_]));
+    }
+    lua_pushvalue(L_, -1);
+    lua_rawget(L_, table_);
+}
+
+bool TableItems::key_is_listed() const {
+    const lua_Integer i = lua_isinteger(L_, -2) != 0 ? lua_tointeger(L_, -2) : 0;
+    return i >= 1 && static_cast<std::size_t>(i) <= listed_;
+}
+
+void TableItems::collect() {
+    lua_pushnil(L_);
+    while (lua_next(L_, table_) != 0) {
+        if (!key_is_listed()) {
+            ++others_;
+            if (others_ <= most_sorted_keys) {
+                add_key();
+            }
+        }
+        lua_pop(L_, 1);
+    }
+}
+
+void TableItems::add_key() {
+    const auto place = static_cast<lua_Integer>(others_);
+    lua_pushvalue(L_, -2);
+    if (lua_type(L_, -1) == LUA_TNUMBER) {
+        order_.emplace_back(0, lua_tonumber(L_, -1), "", place);
+    } else if (lua_type(L_, -1) == LUA_TSTRING) {
+        const std::string_view name = lua::text_at(L_, -1);
+        order_.emplace_back(name == "t" ? 1 : 2, 0, std::string(name), place);
+    } else {
+        order_.emplace_back(3, 0, "", place);
+    }
+    lua_rawseti(L_, keys_, place);
+}
 
 constexpr std::size_t deepest = 3;            // tables within tables; further ones are {...}
 constexpr std::size_t most_lines = 24;        // of one value,

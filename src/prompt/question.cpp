@@ -13,7 +13,7 @@
 #include "lua/standard_globals.hpp"
 #include "lua/tokens.hpp"
 #include "prompt/call.hpp"
-#include "prompt/meaning.hpp"
+#include "prompt/completion.hpp"
 #include "prompt/output.hpp"
 #include "prompt/printer.hpp"
 #include "terminal/display.hpp"

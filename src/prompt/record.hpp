@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "prompt/chunk.hpp"
-#include "prompt/evaluate.hpp"
 #include "text/expected.hpp"
 
 namespace dinal::prompt {

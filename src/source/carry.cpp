@@ -2,10 +2,17 @@
 
 #include <fmt/format.h>
 
+#include <type_traits>
+
 #include "lua/bind.hpp"
 #include "lua/lua_text.hpp"
 #include "lua/prototype.hpp"
 #include "lua/standard_globals.hpp"
+#include "lua/user_function.hpp"
+#include "lua/vector.hpp"
+#include "model/controller.hpp"
+#include "model/functions.hpp"
+#include "motion/integrators.hpp"
 #include "source/bytecode.hpp"
 
 namespace dinal::source {
@@ -316,6 +323,93 @@ bool Carrier::global(const std::string& name) {
     }
     lua_pop(from_, 2);
     return good;
+}
+
+// Objects of our classes, carried: what is native is shared, a user's functions in them are carried, too.
+
+bool Carrier::object(int index) {
+    const auto shared = [this](const auto* own) {
+        if (own != nullptr) lua::push(to_, *own);
+        return own != nullptr;
+    };
+    const auto part = [this](const auto& own) {
+        if constexpr (std::is_same_v<decltype(own), const model::Excitation&>) {
+            return excitation(own);
+        } else {
+            return user_function(own);
+        }
+    };
+    const auto copied = [&](const auto* own) {
+        if (own == nullptr) return false;
+        auto copy = model::with_functions(*own, part);
+        if (!error_) lua::push(to_, std::move(copy));
+        return true;
+    };
+    const bool known =
+        shared(lua::test<lua::Vector>(from_, index)) || shared(lua::test<motion::Integrator>(from_, index)) ||
+        copied(lua::test<model::Friction>(from_, index)) || copied(lua::test<model::Spring>(from_, index)) ||
+        copied(lua::test<model::Oscillator>(from_, index)) || copied(lua::test<model::AssemblyHandle>(from_, index)) ||
+        copied(lua::test<model::Excitation>(from_, index));
+    if (error_) return false;
+    if (!known && !other_objects_(from_, index, to_)) {
+        const lua::Documented found = lua::documented(from_, index);
+        const bool run = found.owner != nullptr && std::string_view(found.owner->name) == "run";
+        return fail(index, run ? "; take what is needed out of it before, such as local theta = run.theta" : "");
+    }
+    remember(lua_topointer(from_, index));
+    return true;
+}
+
+/// The function as it is in the other state; itself where it, or something before it, cannot be there.
+Carrier::Function Carrier::user_function(const Function& function) {
+    if (error_ || function == nullptr) return function;
+    const auto* own = dynamic_cast<const lua::LuaFunction*>(function.get());
+    if (own == nullptr) return controller(dynamic_cast<const model::Controller&>(*function));
+    way_.emplace_back(" > its function");
+    own->push(from_);
+    const bool good = value(-1);
+    lua_pop(from_, 1);
+    if (!good) return function;
+    way_.pop_back();
+    auto copy = std::make_shared<lua::LuaFunction>(to_, lua_gettop(to_), own->role());
+    lua_pop(to_, 1);
+    if (!own->push_start(from_)) return copy;
+    way_.emplace_back(" > start");
+    const bool starts = value(-1);
+    lua_pop(from_, 1);
+    if (!starts) return function;
+    way_.pop_back();
+    copy->remember_from(to_, -1);
+    lua_pop(to_, 1);
+    return copy;
+}
+
+Carrier::Function Carrier::controller(const model::Controller& own) {
+    const Function carried = user_function(own.function);
+    if (const auto* relay = dynamic_cast<const model::RelayController*>(&own)) return model::copied(*relay, carried);
+    if (const auto* delayed = dynamic_cast<const model::DelayedController*>(&own)) {
+        auto copy = std::make_shared<model::DelayedController>();
+        copy->function = carried, copy->by = delayed->by;
+        return copy;
+    }
+    const auto& sampled = dynamic_cast<const model::SampledController&>(own);
+    auto copy = std::make_shared<model::SampledController>();
+    copy->function = carried, copy->carried = true;
+    copy->every = sampled.every, copy->delay = sampled.delay, copy->at = sampled.at;
+    return copy;
+}
+
+model::Excitation Carrier::excitation(const model::Excitation& own) {
+    if (!own.has_script()) return own;
+    model::Excitation sum;
+    for (const model::Component& component : own.components()) {
+        model::Term term = component.term;
+        if (auto* script = std::get_if<model::Scripted>(&term)) script->function = user_function(script->function);
+        // As it was made once, so it is right.
+        const model::Excitation one = model::Excitation::make(std::move(term)).value();
+        sum = sum + one.scaled(component.gain).windowed(component.from, component.to);
+    }
+    return sum;
 }
 
 }  // namespace dinal::source

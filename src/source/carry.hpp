@@ -15,7 +15,7 @@
 #include <vector>
 
 #include "lua/lua_headers.hpp"
-#include "model/assembly.hpp"
+#include "model/controller.hpp"
 #include "model/excitation.hpp"
 #include "text/expected.hpp"
 
@@ -60,13 +60,10 @@ private:
     void remember(const void* identity);
     [[nodiscard]] std::string way() const;
 
-    std::shared_ptr<model::terms::UserFunction> user_function(const model::terms::UserFunction& function,
-                                                              const char* what);
-    bool excitation(const model::Excitation& own);
-    bool friction(const model::Friction& own, model::Friction& copy);
-    bool own_spring(const model::Spring& own, model::Spring& copy);
-    bool joint(model::Joint& own);
-    std::shared_ptr<model::terms::UserFunction> controller(const model::terms::UserFunction& function);
+    using Function = std::shared_ptr<model::terms::UserFunction>;
+    Function user_function(const Function& function);
+    Function controller(const model::Controller& own);
+    model::Excitation excitation(const model::Excitation& own);
 
     lua_State* from_;
     lua_State* to_;

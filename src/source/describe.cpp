@@ -1,10 +1,17 @@
 #include "source/describe.hpp"
 
 #include <fmt/format.h>
+#include <cmath>
 
+#include "lua/foreign.hpp"
+#include "lua/user_function.hpp"
+#include "model/controller.hpp"
 #include "model/laws/coulomb.hpp"
 #include "model/laws/user_law.hpp"
 #include "model/springs/user_spring.hpp"
+#include "source/function_source.hpp"
+#include "source/value_text.hpp"
+#include "text/option.hpp"
 
 namespace dinal::source {
 
@@ -53,6 +60,136 @@ std::string lua_text(lua_State* L, const model::Oscillator& system, ValueText* w
 
 std::string lua_text(motion::MethodView method) {
     return method.lua_text(text::Defaults::left_out);
+}
+
+namespace {
+
+/// `whole` writes functions down with all that they refer to; without it, text is for the eye.
+struct Context {
+    lua_State* L;
+    ValueText* whole;
+};
+
+template <model::terms::NativeTerm T>
+std::string text_of(const Context& /*context*/, const T& term) {
+    return text::lua_text(T::about.call.name, T::about.call.options, term, text::Defaults::written);
+}
+
+std::string delay_text(double delay) {
+    return delay == 0 ? "" : fmt::format(":delay({})", text::number_literal(delay));
+}
+
+std::string text_of(const Context& context, const model::Polyline& line) {
+    const std::size_t most_written_out = context.whole != nullptr ? 10'000 : 8;
+    const model::Samples& s = *line.samples;
+    if (!s.origin.empty()) {
+        return fmt::format("excitation.samples({}){}", s.origin, delay_text(s.delay));
+    }
+    std::string between = s.interpolation == model::Interpolation::cubic ? ", interpolation = \"cubic\"" : "";
+    if (s.period) between += ", period = " + text::number_literal(*s.period);
+    if (s.t.size() <= most_written_out) {
+        return fmt::format("excitation.samples{{ t = {}, M = {}{} }}", text::list_literal(s.t), text::list_literal(s.M),
+                           between);
+    }
+    return fmt::format("excitation.samples{{ --[[ {} points, t {} ... {} ]]{} }}", s.t.size(), s.t.front(), s.t.back(),
+                       between.empty() ? "" : " " + between.substr(2));
+}
+
+/// Of the function on the top of the stack, which is popped.
+std::string popped_text(lua_State* L, ValueText* whole) {
+    std::string text;
+    if (whole != nullptr) {
+        text = whole->expression(-1);
+    } else if (const auto source = function_source(L, -1)) {
+        text = *source;
+    } else if (lua_type(L, -1) != LUA_TFUNCTION) {
+        text = fmt::format("--[[ {} with __call ]]", lua::describe(L, -1));
+    } else if (lua_iscfunction(L, -1) != 0) {
+        const lua::Foreign* other = lua::foreign(L, -1);
+        text = fmt::format("--[[ a function written in {} ]]", other != nullptr ? other->language : "C");
+    } else {
+        lua_Debug about{};
+        lua_pushvalue(L, -1);
+        lua_getinfo(L, ">S", &about);
+        text = fmt::format("--[[ the function at {}:{} ]]", about.short_src, about.linedefined);
+    }
+    lua_pop(L, 1);
+    return text;
+}
+
+/// ", start = function ... end" of a controller that has one.
+std::string start_text(const Context& context, const model::UserFunction& function) {
+    const auto* own = dynamic_cast<const lua::LuaFunction*>(&function);
+    if (own == nullptr || !own->push_start(context.L)) return "";
+    return ", start = " + popped_text(context.L, context.whole);
+}
+
+/// A controller with a memory.
+std::string text_of(const Context& context, const model::Controller& controller) {
+    const auto function = [&](const auto& own) { return function_text(context.L, *own.function, context.whole); };
+    if (const auto* sampled = dynamic_cast<const model::SampledController*>(&controller)) {
+        return fmt::format("excitation.sampled({}, {{ every = {}, delay = {}, at = {}{} }})", function(*sampled),
+                           sampled->every, sampled->delay, sampled->at, start_text(context, *sampled->function));
+    }
+    if (const auto* delayed = dynamic_cast<const model::DelayedController*>(&controller)) {
+        return fmt::format("excitation.delayed({}, {{ by = {} }})", function(*delayed), delayed->by);
+    }
+    const auto& relay = dynamic_cast<const model::RelayController&>(controller);
+    using Of = model::RelayController::Of;
+    const std::string of = relay.of == Of::theta      ? "\"theta\""
+                           : relay.of == Of::velocity ? "\"velocity\""
+                           : relay.of == Of::state    ? "\"" + relay.state + "\""
+                                                      : function(relay);
+    return fmt::format("excitation.relay{{ on = {}, off = {}, amplitude = {{ {}, {} }}, of = {}, start = \"{}\" }}",
+                       relay.on, relay.off, relay.levels[0], relay.levels[1], of, relay.starts_on ? "on" : "off");
+}
+
+std::string text_of(const Context& context, const model::Scripted& s) {
+    if (const auto* controller = dynamic_cast<const model::Controller*>(s.function.get())) {
+        return text_of(context, *controller);
+    }
+    std::string options;
+    if (!s.breaks.empty()) {
+        options += "breaks = " + text::list_literal(s.breaks);
+    }
+    if (s.period > 0) {
+        options += (options.empty() ? "" : ", ") + std::string("period = ") + text::number_literal(s.period);
+    }
+    return fmt::format("excitation.scripted({}{}){}", function_text(context.L, *s.function, context.whole),
+                       options.empty() ? "" : ", { " + options + " }", delay_text(s.delay));
+}
+
+}  // namespace
+
+std::string function_text(lua_State* L, const model::UserFunction& user_function, ValueText* whole) {
+    const auto* function = dynamic_cast<const lua::LuaFunction*>(&user_function);
+    if (function == nullptr) {
+        return "--[[ a function written in C++ ]]";
+    }
+    luaL_checkstack(L, LUA_MINSTACK, "for the text of a function");
+    function->push(L);
+    return popped_text(L, whole);
+}
+
+std::string describe(lua_State* L, const model::Excitation& excitation, ValueText* whole) {
+    const Context context{L, whole};
+    std::string text;
+    for (const model::Component& c : excitation.components()) {
+        const bool negative = std::signbit(c.gain);
+        if (text.empty()) {
+            text += negative ? "-" : "";
+        } else {
+            text += negative ? " - " : " + ";
+        }
+        if (std::fabs(c.gain) != 1) {
+            text += text::number_literal(std::fabs(c.gain)) + " * ";
+        }
+        text += std::visit([&context](const auto& term) { return text_of(context, term); }, c.term);
+        if (c.from > -model::never || c.to < model::never) {
+            text += fmt::format(":window({}, {})", text::number_literal(c.from), text::number_literal(c.to));
+        }
+    }
+    return text.empty() ? "excitation.constant{ amplitude = 0 }" : text;
 }
 
 }  // namespace dinal::source

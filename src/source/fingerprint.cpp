@@ -7,6 +7,7 @@
 #include <bit>
 #include <optional>
 #include <tuple>
+#include <type_traits>
 
 #include "lua/bind.hpp"
 #include "lua/foreign.hpp"
@@ -15,11 +16,8 @@
 #include "lua/standard_globals.hpp"
 #include "lua/user_function.hpp"
 #include "lua/vector.hpp"
-#include "model/assembly.hpp"
 #include "model/controller.hpp"
-#include "model/laws/user_law.hpp"
-#include "model/oscillator.hpp"
-#include "model/springs/user_spring.hpp"
+#include "model/functions.hpp"
 #include "source/bytecode.hpp"
 #include "source/describe.hpp"
 #include "source/value_text.hpp"
@@ -172,9 +170,7 @@ std::uint64_t Fingerprint::sketch(int index, int depth) {
             lua_pop(L_, 1);
         }
     } else if (lua::documented(L_, index).owner != nullptr) {
-        luaL_tolstring(L_, index, nullptr);
-        sum += digest_of(lua::text_at(L_, -1));
-        lua_pop(L_, 1);
+        sum += digest_of(printed(index));
     }
     known[own.object] = sum;
     return sum;
@@ -262,6 +258,14 @@ void Fingerprint::global(const std::string& name) {
     lua_settop(L_, top);
 }
 
+/// As print shows it.
+std::string Fingerprint::printed(int index) {
+    luaL_tolstring(L_, index, nullptr);
+    std::string text(lua::text_at(L_, -1));
+    lua_pop(L_, 1);
+    return text;
+}
+
 void Fingerprint::user_function(const model::terms::UserFunction& function) {
     if (const auto* own = dynamic_cast<const lua::LuaFunction*>(&function)) {
         own->push(L_);
@@ -293,50 +297,37 @@ void Fingerprint::excitation(const model::Excitation& excitation) {
 
 /// By its text, in which the functions are left out, and by these.
 void Fingerprint::object(int index) {
-    ValueText no_functions(L_, 0);
     if (const auto* vector = lua::test<lua::Vector>(L_, index)) {
         join(vector->size());
         for (const double x : *vector) add(x);
         return;
     }
-    if (const auto* own = lua::test<model::Excitation>(L_, index)) {
-        add(describe(L_, *own, &no_functions));
-        return excitation(*own);
-    }
-    if (const auto* rig = lua::test<model::AssemblyHandle>(L_, index)) {
-        luaL_tolstring(L_, index, nullptr);
-        add(lua::text_at(L_, -1));
-        lua_pop(L_, 1);
-        for (const model::Joint& joint : (*rig)->joints) {
-            for (const auto* value : {&joint.friction.sliding[1], &joint.friction.holding[1], &joint.friction.normal}) {
-                if (*value) excitation(**value);
-            }
-            if (joint.friction.function != nullptr) user_function(*joint.friction.function);
-            if (const auto* spring = joint.spring.as<model::springs::UserSpring>()) user_function(*spring->function);
-            if (const auto* law = joint.friction.law.as<model::laws::UserLaw>()) user_function(*law->function);
+    ValueText no_functions(L_, 0);
+    const auto part = [this](const auto& own) {
+        if constexpr (std::is_same_v<decltype(own), const model::Excitation&>) {
+            excitation(own);
+        } else {
+            user_function(*own);
         }
-        return;
+        return own;
+    };
+    const auto written = [&](const std::string& text, const auto& own) {
+        add(text);
+        static_cast<void>(model::with_functions(own, part));
+    };
+    if (const auto* own = lua::test<model::Excitation>(L_, index)) {
+        written(describe(L_, *own, &no_functions), *own);
+    } else if (const auto* rig = lua::test<model::AssemblyHandle>(L_, index)) {
+        written(printed(index), *rig);
+    } else if (const auto* system = lua::test<model::Oscillator>(L_, index)) {
+        written(lua_text(L_, *system, &no_functions), *system);
+    } else if (const auto* law = lua::test<model::Friction>(L_, index)) {
+        written(lua_text(L_, *law, &no_functions), *law);
+    } else if (const auto* spring = lua::test<model::Spring>(L_, index)) {
+        written(lua_text(L_, *spring, &no_functions), *spring);
+    } else if (!other_objects_(L_, index, *this) && lua::documented(L_, index).owner != nullptr) {
+        add(printed(index));
     }
-    if (other_objects_(L_, index, *this)) return;
-    const model::Friction* law = lua::test<model::Friction>(L_, index);
-    const model::Spring* spring = lua::test<model::Spring>(L_, index);
-    if (const auto* system = lua::test<model::Oscillator>(L_, index)) {
-        add(lua_text(L_, *system, &no_functions));
-        law = &system->friction();
-        spring = &system->spring();
-    } else if (law != nullptr) {
-        add(lua_text(L_, *law, &no_functions));
-    } else if (spring != nullptr) {
-        add(lua_text(L_, *spring, &no_functions));
-    } else if (lua::documented(L_, index).owner != nullptr) {
-        luaL_tolstring(L_, index, nullptr);
-        add(lua::text_at(L_, -1));
-        lua_pop(L_, 1);
-    }
-    const auto* written = law == nullptr ? nullptr : law->as<model::laws::UserLaw>();
-    if (written != nullptr) user_function(*written->function);
-    const auto* own = spring == nullptr ? nullptr : spring->as<model::springs::UserSpring>();
-    if (own != nullptr) user_function(*own->function);
 }
 
 }  // namespace dinal::source

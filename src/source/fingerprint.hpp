@@ -47,6 +47,7 @@ private:
     void table(int index);
     void function(int index);
     void object(int index);
+    std::string printed(int index);
     void excitation(const model::Excitation& excitation);
     void user_function(const model::terms::UserFunction& function);
     void global(const std::string& name);

@@ -44,7 +44,7 @@ void csv(benchmark::State& state, const std::filesystem::path& folder, Timed tim
     if (timed == Timed::reading && !good(dinal::files::write_csv(path, columns))) return;
     for ([[maybe_unused]] auto iteration : state) {
         if (!(timed == Timed::writing ? good(dinal::files::write_csv(path, columns))
-                                      : good(dinal::files::read_csv(path)))) {
+                                      : good(dinal::files::read_columns(path)))) {
             break;
         }
     }

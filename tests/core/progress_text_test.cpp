@@ -2,7 +2,7 @@
 #include <string>
 
 #include "support/catch.hpp"
-#include "terminal/progress_text.hpp"
+#include "terminal/progress.hpp"
 
 namespace dinal::progress_text_test {
 

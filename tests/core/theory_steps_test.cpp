@@ -1,5 +1,5 @@
 // Step limits: the printed one, its argument carried through, and the true one of rk4.
-#include "theory/theory_steps.hpp"
+#include "theory/theory_free.hpp"
 
 #include <cmath>
 #include <limits>

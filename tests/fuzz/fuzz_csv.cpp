@@ -1,4 +1,4 @@
-// The reader of comma separated values. What it takes must be finite numbers under distinct names.
+// The reader of comma separated values. What it takes as a table must be finite numbers.
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>
@@ -7,7 +7,11 @@
 #include "files/csv.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-    const auto table = dinal::files::parse_csv({reinterpret_cast<const char*>(data), size}, "fuzz.csv");
+    const auto read = dinal::files::parse_columns({reinterpret_cast<const char*>(data), size}, "fuzz.csv");
+    if (!read) {
+        return read.error().sentence.empty() ? (std::abort(), 1) : 0;
+    }
+    const auto table = dinal::files::table_of(*read);
     if (!table) {
         return table.error().sentence.empty() ? (std::abort(), 1) : 0;
     }

@@ -71,8 +71,10 @@ class Completion(Typing):
         terminal.enter("d = data{ radius = { 1 }, ['no name'] = { 2 } }")
         terminal.enter("run = system{ I = 1, k = 40, Rd = 0.8 }:simulate{ theta0 = 1, t_end = 8, dt = 0.02 }")
         terminal.enter("fit = identify{ data = run, velocity0 = 0 }")
+        terminal.enter("balance = run:energy()")
         for typed, whole in [("d.rad", "d.radius"), ("fit.om", "fit.omega0"), ("fit.std_error.Rd", "fit.std_error.Rd_over_k"),
-                             ("run.events.ki", "run.events.kind"), ("dinal.part", "dinal.partial"),
+                             ("run.events.ki", "run.events.kind"), ("balance.half_cycles[1].vis", "balance.half_cycles[1].viscous"),
+                             ("dinal.part", "dinal.partial"),
                              ('run:plot{ y = "vel', 'run:plot{ y = "velocity"'), ('d:plot{ x = "ra', 'd:plot{ x = "radius"')]:
             self.completes(terminal, typed, whole)
 

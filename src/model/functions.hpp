@@ -1,0 +1,54 @@
+// Everything that a user wrote as a function and that hangs in a value of the model: one walk for all who must meet it.
+#pragma once
+
+#include <memory>
+#include <utility>
+
+#include "model/assembly.hpp"
+#include "model/laws/user_law.hpp"
+#include "model/oscillator.hpp"
+#include "model/springs/user_spring.hpp"
+
+namespace dinal::model {
+
+// The value with what `other` gives in the place of each function, a shared pointer, and of each excitation in it.
+
+Friction with_functions(const Friction& law, auto&& other) {
+    const auto* own = law.as<laws::UserLaw>();
+    if (own == nullptr) return law;
+    laws::UserLaw changed = *own;
+    changed.function = other(own->function);
+    return changed;
+}
+
+Spring with_functions(const Spring& spring, auto&& other) {
+    const auto* own = spring.as<springs::UserSpring>();
+    return own == nullptr ? spring : Spring(springs::UserSpring{other(own->function)});
+}
+
+Excitation with_functions(const Excitation& excitation, auto&& other) {
+    return other(excitation);
+}
+
+Oscillator with_functions(const Oscillator& system, auto&& other) {
+    OscillatorParameters parameters = system.parameters();
+    if (parameters.friction) parameters.friction = with_functions(*parameters.friction, other);
+    parameters.spring = with_functions(parameters.spring, other);
+    return Oscillator::make(parameters).value();  // as it was made once, so it is right
+}
+
+AssemblyHandle with_functions(const AssemblyHandle& rig, auto&& other) {
+    Assembly changed = *rig;
+    for (Joint& joint : changed.joints) {
+        ContactFriction& rubs = joint.friction;
+        rubs.law = with_functions(rubs.law, other);
+        joint.spring = with_functions(joint.spring, other);
+        if (rubs.function != nullptr) rubs.function = other(rubs.function);
+        for (auto* value : {&rubs.sliding[0], &rubs.sliding[1], &rubs.holding[0], &rubs.holding[1], &rubs.normal}) {
+            if (*value) *value = other(**value);
+        }
+    }
+    return std::make_shared<const Assembly>(std::move(changed));
+}
+
+}  // namespace dinal::model
