@@ -400,6 +400,7 @@ bool Engine::decide(bool told, std::optional<Ending> released) {
     std::vector<char> asked(joints, 0), taken_back(joints, 0);
     std::vector<Motion> before(joints, Motion::stuck);  // which way it slid; stuck: it did not
     std::vector<char> was_held(joints, 0);
+    std::vector<Motion> let_go(joints, Motion::stuck);  // the way of what came to its limit at this instant, too
     const std::vector<int> leant = mode_.leans;
     for (std::size_t j = 0; j < joints; ++j) {
         if (!mechanics_.rubs(j)) continue;
@@ -420,6 +421,7 @@ bool Engine::decide(bool told, std::optional<Ending> released) {
         before[j] = arrived ? arrived_[j] : Motion::stuck;
         was_held[j] = !arrived && !(how.leaving && !how.riding) ? 1 : 0;
         asked[j] = 1;
+        if (released && how.leaving && !how.riding && !arrived) let_go[j] = how.way;
         how.way = Motion::stuck, how.riding = how.leaving = false;
     }
     project(side());
@@ -457,8 +459,10 @@ bool Engine::decide(bool told, std::optional<Ending> released) {
             const double beyond = excess(j, found, mode_, here(), towards);
             if (std::isnan(beyond)) return fail(Outcome::excitation_not_finite);
             const double size = n() > 1 ? 8 * rounding * torque_size(j) : 0;
-            if (released && released->which == j && std::fabs(beyond) <= nearly * torque_size(j) + 2 * found.blurred) {
-                worst = j, most_beyond = model::never, way = static_cast<Motion>(released->side);
+            const bool own = released && released->which == j;
+            if ((own || let_go[j] != Motion::stuck) &&
+                std::fabs(beyond) <= nearly * torque_size(j) + 2 * found.blurred) {
+                worst = j, most_beyond = model::never, way = own ? static_cast<Motion>(released->side) : let_go[j];
                 continue;
             }
             if (!(beyond > size)) continue;
@@ -466,7 +470,8 @@ bool Engine::decide(bool told, std::optional<Ending> released) {
             if (worst == joints || part > most_beyond) worst = j, most_beyond = part, way = towards;
         }
         if (worst < joints) {
-            if (most_beyond == model::never) released.reset();
+            if (released && released->which == worst) released.reset();
+            let_go[worst] = Motion::stuck;
             if (mode_.leans[worst] != 0) {
                 mode_.leans[worst] = 0, at_wall_[worst] = 1;
                 const Motion slides = mode_.friction[worst].way;
