@@ -80,6 +80,7 @@ private:
     void keep(double length);
     std::vector<Kept::Acting> acting();
     [[nodiscard]] double energy(const std::vector<double>& y) const;
+    [[nodiscard]] double energy_at(std::size_t joint, const std::vector<double>& y) const;
     bool handle(const Ending& ending);
     const Frame& frame();
 
@@ -246,8 +247,8 @@ Engine::Engine(const AssemblyProblem& problem, AssemblyRun& result)
     h_ = longest_ / 2;
     attempts_since_ = now_.hi;
     solver_.emplace(mechanics_, problem.tolerance, longest_all_);
-    const std::size_t columns =
-        1 + columns_of_body * n() + columns_of_link * (joints - n()) + mechanics_.states_of_user();
+    const std::size_t columns = 1 + columns_of_body * n() + columns_of_link * (joints - n()) +
+                                mechanics_.states_of_user() + (problem.joined_elsewhere ? 0 : n());
     result_.table = Growing<double>(problem.rows.count(), columns);
     if (!problem.works) return;
     for (auto of : {&Works::input, &Works::base, &Works::kinetic}) (result_.works.*of).assign(n(), 0);
@@ -1013,7 +1014,8 @@ double Engine::gap(std::size_t joint, double place) const {
 void Engine::keep(double length) {
     if (!(length > 0) || (!problem_.limits.dense && longest_delay_ == 0)) return;
     Kept kept{.start = segment_.start, .h = segment_.h, .length = length, .begin = y_, .series = segment_.series};
-    if (problem_.limits.dense && problem_.joined_elsewhere) kept.acting = acting();  // for the legs of its course
+    // For the legs of its course.
+    if (problem_.limits.dense && (problem_.joined_elsewhere || problem_.works)) kept.acting = acting();
     history_->add(std::move(kept));
     if (!problem_.limits.dense) history_->forget(now_.hi - 2 * longest_delay_);
 }
@@ -1056,13 +1058,17 @@ std::vector<Kept::Acting> Engine::acting() {
 /// Of the motion and of springs.
 double Engine::energy(const std::vector<double>& y) const {
     double all = 0;
-    for (std::size_t i = 0; i < n(); ++i) all += problem_.system.bodies[i].inertia * y[n() + i] * y[n() + i] / 2;
-    for (std::size_t j = 0; j < mechanics_.joints(); ++j) {
-        const Joint& joint = problem_.system.joints[j];
-        const double q = mechanics_.angle(j, y);
-        all += joint.stiffness * q * q / 2 + joint.spring.energy(q);
-    }
+    for (std::size_t j = 0; j < mechanics_.joints(); ++j) all += energy_at(j, y);
     return all;
+}
+
+/// What a joint stores, with its body's kinetic energy where it is that of a body with the ground.
+double Engine::energy_at(std::size_t joint, const std::vector<double>& y) const {
+    const Joint& own = problem_.system.joints[joint];
+    const double q = mechanics_.angle(joint, y);
+    const double kinetic =
+        joint < n() ? problem_.system.bodies[joint].inertia * y[n() + joint] * y[n() + joint] / 2 : 0;
+    return kinetic + own.stiffness * q * q / 2 + own.spring.energy(q);
 }
 
 bool Engine::handle(const Ending& ending) {
@@ -1654,7 +1660,10 @@ bool Engine::act(std::size_t event, const std::vector<std::size_t>& told) {
         for (std::size_t i = 0; i < n(); ++i) {
             if (y_[i] != before[i]) low_[i] = 0;
         }
-        history_->add_jump(now_.hi, 0, {.acts = energy(y_) - energy(before)});
+        for (std::size_t j = 0; j < mechanics_.joints(); ++j) {
+            const double work = energy_at(j, y_) - energy_at(j, before);
+            if (work != 0 || j == 0) history_->add_jump(now_.hi, j, {.acts = work});
+        }
         echo(now_.hi, 1);
         const bool moved = !std::equal(y_.begin(), y_.begin() + static_cast<std::ptrdiff_t>(2 * n()), before.begin());
         if (moved) {
@@ -1773,9 +1782,9 @@ bool Engine::put_row(double t, double x) {
     if (x > -1) segment_.state(x, y);
     keep_within_walls(y);
     const Moment at{t, x <= -1 ? side() : Side::at, y};
-    bool holds = false;
-    for (std::size_t j = 0; j < mechanics_.joints(); ++j) holds = holds || mode_.holds(j);
-    if (holds && !look(at, mode_, frame(), look_, x > -1 ? std::optional(x) : std::nullopt)) return false;
+    bool needs_look = !problem_.joined_elsewhere;
+    for (std::size_t j = 0; j < mechanics_.joints(); ++j) needs_look = needs_look || mode_.holds(j);
+    if (needs_look && !look(at, mode_, frame(), look_, x > -1 ? std::optional(x) : std::nullopt)) return false;
     double* cell = result_.table.writable() + next_row_;
     const std::size_t stride = problem_.rows.count();
     const auto put = [&](double value) {
@@ -1801,6 +1810,7 @@ bool Engine::put_row(double t, double x) {
         good = put(friction(j, at, look_)) && good;
     }
     for (std::size_t k = 0; k < mechanics_.states_of_user(); ++k) good = put(y[2 * n() + k]) && good;
+    for (std::size_t i = 0; i < n() && !problem_.joined_elsewhere; ++i) good = put(look_.accelerations[i]) && good;
     if (good) ++next_row_;
     return good;
 }
