@@ -388,4 +388,15 @@ test("a clutch whose capacity ramps locks at its closed form: time, speed and he
     near(run:energy().clutch.dry, 3 / 4 * 3 ^ 2 / 2, 1e-12)
 end)
 
+test("a contact between a body that a belt carries and one that stands slips, though both are held", function()
+    local rig = system { bodies = { a = { I = 1, Rd = 1 }, b = { I = 1, Rd = 1 } }, links = { pad = { "a", "b", Rd = 0.2 } } }
+    local run = rig:simulate { belt = { a = 0.3 }, t_end = 5, dt = 1 }
+    near(first(run, "stick", "a").t, 0.3 / 0.8, 1e-13)
+    equal(#run.events, 1)
+    near(run.pad.torque[3], -0.2, 1e-15)
+    near(run.a.friction[3], 0.2, 1e-15)
+    local e = run:energy()
+    near(e.pad.dry, 0.2 * run.a.theta[6], 1e-12)
+end)
+
 support.finish()

@@ -96,6 +96,7 @@ private:
     [[nodiscard]] double excess(std::size_t joint, const Look& look, const Mode& mode, const Moment& at,
                                 Motion& towards) const;
     void slide(std::size_t joint, Motion way, bool leaving);
+    [[nodiscard]] bool moves_as_one(std::size_t joint, const Frame& frame) const;
     /// The part of a pull that is right whatever states of the user's are wrong by.
     [[nodiscard]] double known() const { return mechanics_.states_of_user() > 0 ? 1 - 3e-12 : 1; }
     [[nodiscard]] double belt_heading(std::size_t joint) const;
@@ -380,6 +381,18 @@ void Engine::find_belt_slopes(std::optional<double> x) {
     }
 }
 
+/// Others hold its bodies together, so that it does not slip. Two that are held by belts of different velocities slip.
+bool Engine::moves_as_one(std::size_t joint, const Frame& frame) const {
+    const Joint& own = problem_.system.joints[joint];
+    if (!frame.together(own)) return false;
+    if (!mechanics_.has_belts()) return true;
+    std::vector<double> belts(mechanics_.joints()), offsets;
+    for (std::size_t j = 0; j < belts.size(); ++j) belts[j] = mechanics_.belt(j, now_.hi, side());
+    frame.offsets(belts, mode_, offsets);
+    const double first = offsets[index(own.first)], second = own.second < 0 ? 0 : offsets[index(own.second)];
+    return std::fabs(first - second - belts[joint]) <= 64 * rounding * (std::fabs(first) + std::fabs(second));
+}
+
 void Engine::slide(std::size_t joint, Motion way, bool leaving) {
     Slipping& how = mode_.friction[joint];
     how.way = way, how.leaving = leaving, how.riding = false;
@@ -435,7 +448,7 @@ bool Engine::decide(bool told, std::optional<Ending> released) {
         bool grown = false;
         for (std::size_t j = 0; j < joints; ++j) {
             Slipping& how = mode_.friction[j];
-            const bool together = present.together(problem_.system.joints[j]);
+            const bool together = moves_as_one(j, present);
             if (how.riding && !together) slide(j, how.way, true);
             // What others hold together stands at slip 0 with them.
             const bool slides = mechanics_.rubs(j) && how.way != Motion::stuck && !how.riding && mode_.leans[j] == 0;
@@ -484,7 +497,7 @@ bool Engine::decide(bool told, std::optional<Ending> released) {
             } else {
                 slide(worst, way, true);
                 // In a loop others may hold on, while this one gives all that it can.
-                if (frame().together(problem_.system.joints[worst])) {
+                if (moves_as_one(worst, frame())) {
                     mode_.friction[worst].riding = true, mode_.friction[worst].leaving = false;
                 }
             }
