@@ -52,23 +52,33 @@ Work operator-(const Work& a, const Work& b) {
             a.base - b.base,   a.acts - b.acts,       a.impacts - b.impacts};
 }
 
-Stored stored(const model::Lowered& system, const model::State& y) {
-    return {system.inertia() * y.velocity * y.velocity / 2,
-            system.stiffness() * y.theta * y.theta / 2 + system.spring_energy(y.theta)};
-}
+/// What stores energy: a link has no mass.
+class Store {
+public:
+    Store(const model::Oscillator& oscillator, Whose whose)
+        : system_(oscillator), inertia_(whose == Whose::link ? 0 : system_.inertia()) {}
 
-Stored change(const model::Lowered& system, const model::State& from, const model::State& to) {
-    // As products: the difference of two large energies would keep their rounding.
-    return {system.inertia() * ((to.velocity - from.velocity) * (to.velocity + from.velocity)) / 2,
-            system.stiffness() * ((to.theta - from.theta) * (to.theta + from.theta)) / 2 +
-                (system.spring_energy(to.theta) - system.spring_energy(from.theta))};
-}
+    [[nodiscard]] Stored at(const model::State& y) const {
+        return {inertia_ * y.velocity * y.velocity / 2,
+                system_.stiffness() * y.theta * y.theta / 2 + system_.spring_energy(y.theta)};
+    }
+    [[nodiscard]] Stored change(const model::State& from, const model::State& to) const {
+        // As products: the difference of two large energies would keep their rounding.
+        return {inertia_ * ((to.velocity - from.velocity) * (to.velocity + from.velocity)) / 2,
+                system_.stiffness() * ((to.theta - from.theta) * (to.theta + from.theta)) / 2 +
+                    (system_.spring_energy(to.theta) - system_.spring_energy(from.theta))};
+    }
+
+private:
+    model::Lowered system_;
+    double inertia_;
+};
 
 /// Adds up legs into half cycles as the stretches of the run cut them.
 class Bookkeeper {
 public:
-    Bookkeeper(const model::Lowered& system, const std::vector<Stretch>& stretches)
-        : system_(system), stretch_(stretches.begin()), last_(stretches.end() - 1) {}
+    Bookkeeper(const Store& store, const std::vector<Stretch>& stretches)
+        : store_(store), stretch_(stretches.begin()), last_(stretches.end() - 1) {}
 
     void add(const motion::Leg& leg) {
         Work done;
@@ -85,7 +95,7 @@ public:
         while (stretch_ != last_) close();
         close();
         energy_.total.work = total_.value();
-        energy_.start = stored(system_, initial);
+        energy_.start = store_.at(initial);
         energy_.flow = flow_.value();
         return std::move(energy_);
     }
@@ -104,11 +114,11 @@ private:
             // To the other side of an impact, whose loss is in the work.
             const model::State &begin = stretch_->begin,
                                &end = stretch_ != last_ ? (stretch_ + 1)->begin : stretch_->end;
-            const Balance balance{work, change(system_, begin, end)};
+            const Balance balance{work, store_.change(begin, end)};
             energy_.half_cycles.push_back({stretch_->from, stretch_->to, begin.theta, end.theta, balance});
             // On its way through theta = 0 the spring gives all that it has.
             const bool through = (begin.theta < 0) != (end.theta < 0);
-            const double spring = through ? stored(system_, begin).spring : std::max(-balance.change.spring, 0.0);
+            const double spring = through ? store_.at(begin).spring : std::max(-balance.change.spring, 0.0);
             for (const double given : {work.input, spring, -balance.change.kinetic, work.belt, work.base, work.acts}) {
                 flow_.add(std::max(given, 0.0));
             }
@@ -116,7 +126,7 @@ private:
         ++stretch_;
     }
 
-    const model::Lowered& system_;
+    const Store& store_;
     std::vector<Stretch>::const_iterator stretch_, last_;
     WorkSum present_, total_;
     Sum flow_;
@@ -129,8 +139,8 @@ double Energy::closure() const {
     return flow > 0 ? std::fabs(total.error()) / flow : 0;
 }
 
-text::Expected<Energy> energy_of(const motion::Trajectory& trajectory) {
-    if (!trajectory.computed) {
+text::Expected<Energy> energy_of(const motion::Trajectory& trajectory, Whose whose) {
+    if (!trajectory.computed && whose != Whose::link) {
         return text::Error{
             "a run that was read from a file has no motion to integrate over: simulate the system again"};
     }
@@ -148,15 +158,16 @@ text::Expected<Energy> energy_of(const motion::Trajectory& trajectory) {
     if (!(trajectory.t_stop > trajectory.t_start)) {
         return text::Error{"there is no motion to integrate over: the run ended where it started"};
     }
-    const model::Lowered system(trajectory.course->system());
+    const Store store(trajectory.course->system(), whose);
     const std::vector<Stretch> cut = half_cycles(trajectory);
-    Bookkeeper books(system, cut);
+    Bookkeeper books(store, cut);
     trajectory.course->legs([&books](const motion::Leg& leg) { books.add(leg); });
     Energy energy = books.finish(trajectory.initial);
     energy.t_start = trajectory.t_start;
     energy.t_end = trajectory.t_stop;
-    energy.finish = stored(system, cut.back().end);
-    energy.total.change = change(system, trajectory.initial, cut.back().end);
+    energy.finish = store.at(cut.back().end);
+    energy.total.change = store.change(trajectory.initial, cut.back().end);
+    energy.whose = whose;
     if (!std::isfinite(energy.flow) || !std::isfinite(energy.total.error())) {
         return text::Error{
             "the energies of this run are beyond the range of numbers: choose larger units of torque or angle"};
@@ -164,8 +175,8 @@ text::Expected<Energy> energy_of(const motion::Trajectory& trajectory) {
     return energy;
 }
 
-Eigen::MatrixXd energy_columns(const motion::Trajectory& trajectory) {
-    const model::Lowered system(trajectory.course->system());
+Eigen::MatrixXd energy_columns(const motion::Trajectory& trajectory, Whose whose) {
+    const Store store(trajectory.course->system(), whose);
     const auto t = trajectory.column(motion::Column::t), theta = trajectory.column(motion::Column::theta),
                velocity = trajectory.column(motion::Column::velocity);
     Eigen::MatrixXd columns(trajectory.size(), energy_column_count);
@@ -173,8 +184,8 @@ Eigen::MatrixXd energy_columns(const motion::Trajectory& trajectory) {
     const auto put = [&](WorkSum sum, const Work& last) {
         sum.add(last);
         const model::State y{theta[row], velocity[row]};
-        const Stored s = stored(system, y);
-        const Balance balance{sum.value(), change(system, trajectory.initial, y)};
+        const Stored s = store.at(y);
+        const Balance balance{sum.value(), store.change(trajectory.initial, y)};
         columns.row(row++) << balance.work.input, s.kinetic, s.spring, balance.work.viscous, balance.work.dry,
             balance.error(), balance.work.belt, balance.work.base, balance.work.acts, balance.work.impacts;
     };
@@ -213,6 +224,10 @@ std::string text(const Energy& energy, const model::Units& units) {
     text += fmt::format("  {:<8}{:>13.6g}   lost to dry friction\n", "dry", shown(work.dry));
     if (work.impacts != 0)
         text += fmt::format("  {:<8}{:>13.6g}   lost at the walls\n", "impacts", shown(work.impacts));
+    if (energy.whose != Whose::all) {
+        return text + fmt::format("  {:<8}{:>13.6g}   work of {} on it", "others", shown(-energy.total.error()),
+                                  energy.whose == Whose::link ? "its bodies" : "its links");
+    }
     text += fmt::format("  {:<8}{:>13.2g}   {:.1g} of {:.6g} that flowed in {} half cycle{}", "error",
                         energy.total.error(), energy.closure(), energy.flow, energy.half_cycles.size(),
                         energy.half_cycles.size() == 1 ? "" : "s");

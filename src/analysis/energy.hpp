@@ -43,6 +43,9 @@ struct HalfCycle {
     Balance balance;
 };
 
+/// A link has no mass.
+enum class Whose { all, body, link };
+
 struct Energy {
     double t_start = 0, t_end = 0;
     Stored start, finish;
@@ -50,18 +53,20 @@ struct Energy {
     /// The energy that flowed: what M put in and what the spring and the moving mass gave, half cycle by half cycle.
     double flow = 0;
     std::vector<HalfCycle> half_cycles;
+    /// Whose: of a body or a link among others what does not add up is the work of the others on it.
+    Whose whose = Whose::all;
 
     /// |error| as a part of the energy that flowed; 0 when none did.
     [[nodiscard]] double closure() const;
 };
 
 /// Fails with a sentence when the run has not kept its motion.
-text::Expected<Energy> energy_of(const motion::Trajectory& trajectory);
+text::Expected<Energy> energy_of(const motion::Trajectory& trajectory, Whose whose = Whose::all);
 
 /// The same at the rows: work done since t_start and energy stored at each. Only after energy_of() has succeeded.
 enum class EnergyColumn : int { input, kinetic, spring, viscous, dry, error, belt, base, acts, impacts };
 inline constexpr int energy_column_count = 10;
-Eigen::MatrixXd energy_columns(const motion::Trajectory& trajectory);
+Eigen::MatrixXd energy_columns(const motion::Trajectory& trajectory, Whose whose = Whose::all);
 
 /// The balance as a small table, for people.
 std::string text(const Energy& energy, const model::Units& units = {});

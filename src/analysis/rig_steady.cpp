@@ -5,10 +5,12 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include "analysis/closed_search.hpp"
 #include "analysis/steady_facts.hpp"
+#include "model/controller.hpp"
 #include "text/sentences.hpp"
 
 namespace dinal::analysis {
@@ -97,6 +99,16 @@ public:
         const motion::Window window{start, end};
         engine::AssemblyRun result =
             engine::run({system(), drive, window, rows.within(window).value(), monitor_, limits, before});
+        if (result.contradiction) contradiction_ = result.contradiction;
+        return result;
+    }
+
+    /// From where another run ended, with all that its controllers and delays remember; none: from the start.
+    engine::AssemblyRun go_on(std::shared_ptr<const engine::Carry> before, double start, double end,
+                              const motion::Grid& rows) {
+        const motion::Window window{start, end};
+        engine::AssemblyRun result = engine::run({system(), question_.drive, window, rows.within(window).value(),
+                                                  monitor_, motion::Limits{}, std::move(before)});
         if (result.contradiction) contradiction_ = result.contradiction;
         return result;
     }
@@ -322,7 +334,7 @@ public:
     RigMotion found() {
         SteadyMotion& facts = answer_.facts;
         facts.period = question_.repeats.period;
-        question_.repeats.period > 0 ? forced() : cycle();
+        question_.settles > 0 ? settle() : question_.repeats.period > 0 ? forced() : cycle();
         if (runs_.contradiction()) {
             facts.contradiction = runs_.contradiction();
             facts.outcome = model::Outcome::not_a_function;
@@ -483,6 +495,79 @@ private:
         }
     }
 
+    // ---- with controllers that sample or wait
+
+    /// Angles and velocities as they are measured, states, and what the controllers give. What they remember besides is
+    /// not seen, so a motion must return twice.
+    [[nodiscard]] Eigen::VectorXd seen_at(const engine::Carry& carry) const {
+        std::vector<double> all(carry.y.size());
+        Eigen::Map<Eigen::VectorXd>(all.data(), static_cast<Eigen::Index>(all.size())) = chart_.measured(
+            Eigen::Map<const Eigen::VectorXd>(carry.y.data(), static_cast<Eigen::Index>(carry.y.size())));
+        for (const auto& controllers : carry.controllers) {
+            for (const engine::Signal::Memory& memory : controllers) all.push_back(memory.output);
+        }
+        return Eigen::Map<const Eigen::VectorXd>(all.data(), static_cast<Eigen::Index>(all.size()));
+    }
+
+    /// The run itself goes on until it repeats itself.
+    void settle() {
+        constexpr int most_returns = 3000;
+        constexpr std::size_t most_in_one = 64;
+        constexpr double there = 1e-11, near = 1e-8;
+        const double length = question_.settles, start = question_.repeats.start;
+        SteadyMotion& facts = answer_.facts;
+        std::shared_ptr<const engine::Carry> carry;
+        std::vector<Eigen::VectorXd> seen;
+        Eigen::VectorXd size;
+        for (int k = 0; k < most_returns; ++k) {
+            const double from = start + k * length;
+            const engine::AssemblyRun run = runs_.go_on(carry, from, from + length, motion::Grid::none());
+            ++facts.maps;
+            facts.outcome = run.outcome;
+            if (!model::is_whole(run.outcome)) {
+                if (run.outcome == model::Outcome::state_not_finite) facts.status = SteadyStatus::grows;
+                return;
+            }
+            carry = run.carry;
+            seen.push_back(seen_at(*carry));
+            const RigReach reach = reach_of(run);
+            constexpr double beyond = 1e50;
+            if (!(reach.range().head(2 * n()).maxCoeff() < beyond)) {
+                facts.status = SteadyStatus::grows;
+                return;
+            }
+            const Eigen::VectorXd now = units_of(reach);
+            size = seen.back().cwiseAbs().cwiseMax(std::numeric_limits<double>::min());
+            largest_ = std::max(largest_, reach.range().head(2 * n()).maxCoeff());
+            constexpr double nothing = 1e-12;  // of what it was: it dies out
+            size.head(now.size()) = now.cwiseMax(nothing * largest_);
+            const auto off = [&](std::size_t last, std::size_t m) {
+                return (seen[last] - seen[last - m]).cwiseQuotient(size).cwiseAbs().maxCoeff();
+            };
+            const std::size_t last = seen.size() - 1;
+            const auto shortest = [&](std::size_t of) {  // what alternates comes back after two sooner than after one
+                std::size_t m = 1;
+                while (m < of && (of % m != 0 || off(last, m) > near)) ++m;
+                return m;
+            };
+            for (std::size_t m = 1; m <= most_in_one && 2 * m + 1 <= last; ++m) {
+                const double one = off(last, m), before = off(last - 1, m);
+                // What comes no nearer any more is there as far as rounding lets it.
+                const bool as_near = last > 20 + m && one <= near && one >= 0.5 * off(last - 20, m);
+                if (!(one <= there && before <= there) && !as_near) continue;
+                const double period = static_cast<double>(shortest(m)) * length, t = from + length;
+                constexpr double rows = 400;
+                engine::AssemblyRun settled = runs_.go_on(carry, t, t + period, motion::Grid::every(period / rows));
+                if (!model::is_whole(settled.outcome)) return;
+                facts.residual = one;
+                facts.periods =
+                    question_.repeats.period > 0 ? static_cast<int>(std::round(period / question_.repeats.period)) : 1;
+                tell_period(RigRuns::at_stop(run).y, std::move(settled), period);
+                return;
+            }
+        }
+    }
+
     // ---- without
 
     void cycle() {
@@ -586,36 +671,46 @@ private:
         engine::AssemblyRun run =
             runs_.run(moment, map.start(), map.start() + period, motion::Grid::every(period / rows), true);
         if (!model::is_whole(run.outcome)) return false;
-        const RigReach reach = reach_of(run);
-        const bool moves = reach.range().head(2 * n()).maxCoeff() > 0;
-        facts.outcome = run.outcome;
-        facts.status = moves ? SteadyStatus::steady : SteadyStatus::adheres;
         facts.periods = forced ? found.returns : 1;
-        facts.period = period;
         facts.multipliers = std::move(multipliers);
         facts.differentiable = D.has_value();
         const bool neutral = !facts.multipliers.empty() && std::abs(facts.multipliers.front()) > 1 - neutral_within;
         if (neutral) facts.unique = false;
-        facts.stable = true;
         facts.residual = found.residual;
-        answer_.drive = runs_.from(moment);
+        tell_period(moment.y, std::move(run), period);
+        return true;
+    }
+
+    /// From this state on the run is the motion.
+    void tell_period(const Eigen::VectorXd& from, engine::AssemblyRun run, double period) {
+        SteadyMotion& facts = answer_.facts;
+        const RigReach reach = reach_of(run);
+        constexpr double nothing = 1e-11;
+        const bool moves = reach.range().head(2 * n()).maxCoeff() > nothing * largest_;
+        facts.outcome = run.outcome;
+        facts.status = moves                          ? SteadyStatus::steady
+                       : question_.repeats.period > 0 ? SteadyStatus::adheres
+                                                      : SteadyStatus::rest;
+        facts.period = moves || question_.repeats.period > 0 ? period : 0;
+        facts.stable = true;
+        answer_.drive = runs_.from({from});
         answer_.run = std::move(run);
         answer_.low.assign(reach.low.data(), reach.low.data() + n());
         answer_.high.assign(reach.high.data(), reach.high.data() + n());
-        answer_.rest.assign(moment.y.data(), moment.y.data() + n());
+        answer_.rest.assign(from.data(), from.data() + n());
         const Eigen::VectorXd after = RigRuns::at_stop(answer_.run).y;
         for (Eigen::Index i = 0; i < n(); ++i) {
             const double fastest = std::max(std::fabs(reach.low[n() + i]), std::fabs(reach.high[n() + i]));
-            const double turned = chart_.goes_round(i) ? after[i] - moment.y[i] : 0;
+            const double turned = chart_.goes_round(i) ? after[i] - from[i] : 0;
             answer_.turned.push_back(std::fabs(turned) > 1e-6 * period * fastest ? turned : 0);
         }
-        return true;
     }
 
     const RigQuestion& question_;
     RigRuns runs_;
     Chart chart_;
     RigMotion answer_;
+    double largest_ = 0;  // how far any number went, where a run settles
 };
 
 /// All that drives a run as if it were one excitation, whose functions take y as states.
@@ -651,6 +746,27 @@ std::pair<model::Excitation, model::Extras> together(const RigQuestion& question
 std::optional<Drive> drive_of(const RigQuestion& question) {
     const auto [all, extras] = together(question);
     return drive_of(all, extras, {question.drive.theta0.front(), question.drive.velocity0.front()});
+}
+
+std::optional<double> common_period(const RigQuestion& question) {
+    double common = question.repeats.period;
+    for (const model::Excitation& load : question.drive.loads) {
+        for (const model::Component& component : load.components()) {
+            const auto* sampled = model::controller_of<model::SampledController>(component);
+            if (sampled == nullptr) continue;
+            if (common == 0) common = sampled->every;
+            const auto is_whole = [&](int times) {
+                const double instants = times * common / sampled->every;
+                return std::fabs(instants - std::round(instants)) <= 1e-9 * instants && instants > 0.5;
+            };
+            constexpr int most = 1000;
+            int times = 1;
+            while (times <= most && !is_whole(times)) ++times;
+            if (times > most) return {};
+            common *= times;
+        }
+    }
+    return common > 0 ? std::optional(common) : std::nullopt;
 }
 
 std::optional<text::Error> not_periodic(const RigQuestion& question, const Drive& drive) {

@@ -15,6 +15,7 @@ struct RigQuestion {
     motion::engine::Drive drive;
     Drive repeats = {};  ///< period 0: nothing depends on the time
     int periods = 0;     ///< of M in one of the motion; 0: as many as it takes
+    double settles = 0;  ///< not 0: controllers sample or wait, and all that drives the bodies repeats after this time
 };
 
 struct RigMotion {
@@ -29,6 +30,9 @@ struct RigMotion {
 
 /// When everything that drives the run repeats itself; none where no period is known.
 std::optional<Drive> drive_of(const RigQuestion& question);
+/// Of controllers that sample or wait: after which time they and all that drives the bodies repeat; none where that is
+/// not known, or too long.
+std::optional<double> common_period(const RigQuestion& question);
 /// The sentence about what does not repeat itself after the period.
 std::optional<text::Error> not_periodic(const RigQuestion& question, const Drive& drive);
 

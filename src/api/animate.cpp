@@ -6,9 +6,10 @@
 
 #include <chrono>
 #include <cmath>
+#include <numbers>
 
+#include "api/bodies.hpp"
 #include "api/picture.hpp"
-#include "api/run.hpp"
 #include "files/file.hpp"
 #include "lua/interrupt.hpp"
 #include "lua/options.hpp"
@@ -51,11 +52,23 @@ animation::Take asked_take(const lua::Options& options, const AnimateOptions& as
 
 AnimationViewer animation_viewer = nullptr;
 
+/// The surface that the run slides on, where it moves.
+const model::Excitation* belt_of(const Run& run) {
+    const model::Excitation* belt = run.origin  ? &run.origin->extras.belt
+                                    : run.whole ? &run.whole->drive.belts[run.joint]
+                                                : nullptr;
+    return belt != nullptr && !belt->components().empty() ? belt : nullptr;
+}
+
+const model::Oscillator* system_of(const Run& run) {
+    if (run.origin) return &run.origin->system;
+    return run.whole && run.trajectory.course ? &run.trajectory.course->system() : nullptr;
+}
+
 animation::Scene asked_scene(lua_State* L, const lua::Options& options, const RunHandle& run,
                              const animation::Take& take, const model::Units& units) {
-    const model::Excitation* belt =
-        run->origin && !run->origin->extras.belt.components().empty() ? &run->origin->extras.belt : nullptr;
-    const plots::RunData data{run, &run->trajectory, run->origin ? &run->origin->system : nullptr, units};
+    const model::Excitation* belt = belt_of(*run);
+    const plots::RunData data{run, &run->trajectory, system_of(*run), units};
     lua::CallState call(L);  // between rows the integrator asks the excitation again
     auto scene = animation::scene_of(data, belt, take, [] { return !lua::interrupt_requested(); });
     if (call.failed()) {
@@ -78,8 +91,9 @@ bool show(std::string_view text) {
     return true;
 }
 
-/// In place, by the clock: a frame that comes too late is left out.
-void play(const animation::Scene& scene, const AnimateOptions& asked) {
+/// In place, by the clock: a frame that comes too late is left out. Several scenes stand one below the other.
+void play(const std::vector<animation::Scene>& scenes, const AnimateOptions& asked) {
+    const animation::Scene& scene = scenes.front();
     using Clock = std::chrono::steady_clock;
     static_cast<void>(std::fflush(stdout));
     const auto began = Clock::now();
@@ -96,10 +110,13 @@ void play(const animation::Scene& scene, const AnimateOptions& asked) {
             .charset = asked.ascii.value_or(!seen.draws) ? plots::Charset::ascii : plots::Charset::braille,
             .colours = seen.colour};
         std::string text = above > 0 ? fmt::format("\x1b[{}A", above) : "";
-        const std::vector<std::string> lines =
-            animation::text_frame(scene, scene.frames[static_cast<std::size_t>(place)], format);
-        for (const std::string& line : lines) text += "\r" + line + "\x1b[K\n";
-        above = static_cast<int>(lines.size());
+        above = 0;
+        for (const animation::Scene& each : scenes) {
+            const std::vector<std::string> lines =
+                animation::text_frame(each, each.frames[static_cast<std::size_t>(place)], format);
+            for (const std::string& line : lines) text += "\r" + line + "\x1b[K\n";
+            above += static_cast<int>(lines.size());
+        }
         goes_on = show(text) && !lua::interrupt_requested();
         const double next =
             (place + 1) / count * scene.seconds - std::chrono::duration<double>(Clock::now() - began).count();
@@ -107,6 +124,57 @@ void play(const animation::Scene& scene, const AnimateOptions& asked) {
     }
     constexpr std::string_view cursor = "\x1b[?25h";
     [[maybe_unused]] const ssize_t written = ::write(STDOUT_FILENO, cursor.data(), cursor.size());
+}
+
+/// All bodies, and the links between them.
+animation::RigScene asked_rig(lua_State* L, const lua::Options& options, const BodiesRunHandle& run,
+                              const animation::Take& take, const model::Units& units) {
+    std::vector<animation::Scene> bodies;
+    std::vector<animation::RigScene::Link> links;
+    for (std::size_t j = 0; j < run->system->joints.size(); ++j) {
+        const model::Joint& joint = run->system->joints[j];
+        animation::Scene scene = asked_scene(L, options, part_of(run, j), take, units);
+        scene.name = joint.name;
+        if (run->system->is_link(j)) {
+            links.push_back(
+                {std::move(scene), static_cast<std::size_t>(joint.first), static_cast<std::size_t>(joint.second)});
+        } else {
+            bodies.push_back(std::move(scene));
+        }
+    }
+    return animation::side_by_side(std::move(bodies), std::move(links));
+}
+
+/// For a terminal: what goes round comes back at half a turn.
+std::vector<animation::Scene> one_below_the_other(const animation::RigScene& rig) {
+    std::vector<animation::Scene> scenes = rig.bodies;
+    for (animation::Scene& scene : scenes) {
+        if (!rig.discs) continue;
+        for (animation::Frame& frame : scene.frames) frame.theta = std::remainder(frame.theta, 2 * std::numbers::pi);
+        scene.reach = {-std::numbers::pi, std::numbers::pi};
+    }
+    return scenes;
+}
+
+void refuse_no_terminal(const lua::Options& options) {
+    const bool shown = terminal::display_of(STDOUT_FILENO).terminal;
+    if (shown && terminal::obeys_escapes()) return;
+    options.fail({fmt::format("an animation is shown in a terminal, and this {}; give file = \"run.svg\"",
+                              shown ? "one cannot do it, as TERM says" : "output is none")});
+}
+
+/// Into the file, unless the animation cannot be made.
+template <class Make>
+void write_animation(const lua::Options& options, const std::string& name, const Make& make) {
+    if (text::ending_of(name) != ".svg") {
+        options.fail(
+            {.sentence = fmt::format("the name '{}' must end in .svg", name), .option = "file", .culprit = name});
+    }
+    files::OutputFile file = options.value_or_fail(files::OutputFile::create(name));
+    const Animation drawn = make();
+    file.write(drawn.svg);
+    options.value_or_fail(file.commit());
+    if (animation_viewer != nullptr) animation_viewer(drawn, Shown::in_file);
 }
 
 Animation animation_of(lua_State* L, const lua::Options& options, const AnimateOptions& asked, const RunHandle& run) {
@@ -141,28 +209,41 @@ int animate_run(lua_State* L) {
         return 0;
     }
     if (!asked.file) {
-        const bool shown = terminal::display_of(STDOUT_FILENO).terminal;
-        if (!shown || !terminal::obeys_escapes()) {
-            options.fail({fmt::format("an animation is shown in a terminal, and this {}; give file = \"run.svg\"",
-                                      shown ? "one cannot do it, as TERM says" : "output is none")});
-        }
+        refuse_no_terminal(options);
         const auto take = asked_take(options, asked, run->trajectory, most_frames);
-        play(asked_scene(L, options, run, take, units), asked);
+        play({asked_scene(L, options, run, take, units)}, asked);
         if (lua::interrupt_requested()) {
             lua::raise_interrupted(L);
         }
         return 0;
     }
-    if (text::ending_of(*asked.file) != ".svg") {
-        options.fail({.sentence = fmt::format("the name '{}' must end in .svg", *asked.file),
-                      .option = "file",
-                      .culprit = *asked.file});
+    write_animation(options, *asked.file, [&] { return animation_of(L, options, asked, run); });
+    return 0;
+}
+
+int animate_bodies(lua_State* L) {
+    lua::refuse_in_worker(L, "run:animate");
+    const BodiesRunHandle run = lua::self<BodiesRunHandle>(L, 1, "run:animate()");
+    const lua::Options options(L, 2, animate_call);
+    AnimateOptions asked;
+    options.fill(asked);
+    const model::Units units = asked_units(L, options).value_or(run->system->units);
+    const bool writes = asked.file || animation_viewer != nullptr;
+    if (!writes) refuse_no_terminal(options);
+    const auto take =
+        asked_take(options, asked, part_of(run, 0)->trajectory, writes ? most_frames_in_file : most_frames);
+    const auto made = [&] {
+        const animation::RigScene rig = asked_rig(L, options, run, take, units);
+        return Animation{animation::animated_svg(rig), animation::title_of(rig.bodies.front())};
+    };
+    if (asked.file) {
+        write_animation(options, *asked.file, made);
+    } else if (writes) {
+        animation_viewer(made(), Shown::here);
+    } else {
+        play(one_below_the_other(asked_rig(L, options, run, take, units)), asked);
+        if (lua::interrupt_requested()) lua::raise_interrupted(L);
     }
-    files::OutputFile file = options.value_or_fail(files::OutputFile::create(*asked.file));
-    const Animation drawn = animation_of(L, options, asked, run);
-    file.write(drawn.svg);
-    options.value_or_fail(file.commit());
-    if (animation_viewer != nullptr) animation_viewer(drawn, Shown::in_file);
     return 0;
 }
 

@@ -38,6 +38,8 @@ inline constexpr text::Call report_animate_call{"r:animate", "r:animate(run, { s
                                                 all_report_animate_options, true};
 
 int animate_run(lua_State* L);
+/// Of a run of several bodies.
+int animate_bodies(lua_State* L);
 
 /// A run in motion as SVG that a browser plays, and its title.
 struct Animation {

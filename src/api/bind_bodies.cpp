@@ -5,6 +5,7 @@
 #include <cmath>
 #include <optional>
 
+#include "api/animate.hpp"
 #include "api/bind_excitation.hpp"
 #include "api/bind_simulate.hpp"
 #include "api/bodies.hpp"
@@ -22,6 +23,7 @@
 #include "lua/standard_globals.hpp"
 #include "lua/user_function.hpp"
 #include "lua/vector.hpp"
+#include "model/controller.hpp"
 #include "model/laws/coulomb.hpp"
 #include "motion/engine/run.hpp"
 #include "plots/run_figure.hpp"
@@ -71,8 +73,16 @@ std::vector<std::string> sorted_names(lua_State* L, const lua::Options& options,
     if (lua_type(L, -1) != LUA_TTABLE) options.wrong(option, options.row(option).wanted);
     std::vector<std::string> names;
     for (lua_pushnil(L); lua_next(L, -2) != 0; lua_pop(L, 1)) {
-        if (lua_type(L, -2) != LUA_TSTRING || lua_type(L, -1) != LUA_TTABLE) {
-            options.wrong(option, options.row(option).wanted);
+        if (lua_type(L, -2) != LUA_TSTRING) options.wrong(option, options.row(option).wanted);
+        if (lua_type(L, -1) != LUA_TTABLE) {
+            const std::string name = fmt::format("{}.{}", option, lua_tostring(L, -2));
+            options.fail(
+                {.sentence = fmt::format(
+                     "{} must be a table such as {}, got {}", name,
+                     std::string_view(option) == "links" ? "{ \"motor\", \"load\", k = 90 }" : "{ I = 1, Rd = 0.4 }",
+                     lua::describe(L, -1)),
+                 .option = option,
+                 .culprit = lua::written(L, -1)});
         }
         names.emplace_back(lua_tostring(L, -2));
     }
@@ -143,9 +153,8 @@ int push_bodies(lua_State* L, const lua::Options& options) {
     if (names.empty()) options.wrong("bodies", options.row("bodies").wanted);
     for (const char* alone : {"I", "k", "C", "Rd", "Re", "friction", "normal", "spring", "walls"}) {
         if (!options.has(alone)) continue;
-        options.fail(
-            alone, fmt::format("{} belongs into one of the bodies: bodies = {{ load = {{ I = 1, {} = ... }} }}", alone,
-                               alone));
+        options.fail(alone, fmt::format("{} belongs into one of the bodies: bodies = {{ load = {{ {}{} = ... }} }}",
+                                        alone, std::string_view(alone) == "I" ? "" : "I = 1, ", alone));
     }
     model::Assembly system;
     system.units = asked_units(L, options).value_or(model::Units());
@@ -176,6 +185,10 @@ int push_bodies(lua_State* L, const lua::Options& options) {
             }
             if (ends[0] == ends[1]) {
                 options.fail("links", fmt::format("links.{} must be between two different bodies", name));
+            }
+            if (lua_rawlen(L, -1) > 2) {
+                options.fail("links",
+                             fmt::format("links.{} is between two bodies, and names {}", name, lua_rawlen(L, -1)));
             }
             push_named_fields(L);
             BodyNumbers numbers;
@@ -297,6 +310,33 @@ void for_each_named(lua_State* L, const lua::Options& options, const char* optio
     lua_pop(L, 1);
 }
 
+/// What relays look at must be there.
+void check_relays_of(const lua::Options& options, const model::Assembly& system, const engine::Drive& drive,
+                     std::size_t body) {
+    using Of = model::RelayController::Of;
+    std::vector<std::string> known;
+    if (!system.named) known = {"theta", "velocity"};
+    for (const char* kind : {"theta.", "velocity."}) {
+        for (const model::Body& each : system.bodies) {
+            if (system.named) known.push_back(kind + each.name);
+        }
+    }
+    for (const model::OwnState& state : drive.states) known.push_back(state.name);
+    for (const model::Component& component : drive.loads[body].components()) {
+        const auto* relay = model::controller_of<model::RelayController>(component);
+        if (relay == nullptr || relay->of == Of::function) continue;
+        const std::string of = relay->of == Of::theta ? "theta" : relay->of == Of::velocity ? "velocity" : relay->state;
+        if (std::find(known.begin(), known.end(), of) != known.end()) continue;
+        const std::vector<std::string_view> names(known.begin(), known.end());
+        options.fail(
+            {.sentence = fmt::format("M{}{}: the relay looks at '{}'; in this run it may look at {}",
+                                     system.named ? "." : "", system.bodies[body].name, of, fmt::join(known, ", ")),
+             .option = "M",
+             .culprit = of,
+             .cure = text::did_you_mean(of, names)});
+    }
+}
+
 }  // namespace
 
 engine::Drive asked_drive(lua_State* L, const lua::Options& options, const model::Assembly& system) {
@@ -333,11 +373,21 @@ engine::Drive asked_drive(lua_State* L, const lua::Options& options, const model
         if (!joint.walls) continue;
         const double angle = drive.theta0[static_cast<std::size_t>(joint.first)] -
                              (joint.second < 0 ? 0 : drive.theta0[static_cast<std::size_t>(joint.second)]);
-        if (auto wrong = joint.walls->crossed_by(angle)) options.fail(*wrong);
+        if (auto wrong = joint.walls->crossed_by(angle)) {
+            if (system.is_link(j)) {
+                wrong->sentence =
+                    fmt::format("theta0: the angle {:.6g} of the link {} is beyond its walls from {:.6g} to {:.6g}",
+                                angle, joint.name, joint.walls->lower, joint.walls->upper);
+            } else if (system.named) {
+                wrong->sentence = fmt::format("theta0.{}{}", joint.name, wrong->sentence.substr(sizeof "theta0" - 1));
+            }
+            options.fail(*wrong);
+        }
     }
     drive.base = read_motion(L, options, "base");
     drive.states = read_states(L, options);
     drive.events = read_events(L, options);
+    for (std::size_t i = 0; i < n; ++i) check_relays_of(options, system, drive, i);
     return drive;
 }
 
@@ -349,6 +399,18 @@ void name_functions(lua::CallState& call, const model::Assembly& system, const e
 }
 
 namespace {
+
+class LegOfPart final : public motion::Leg {
+public:
+    LegOfPart(const engine::JointLeg& leg, std::size_t joint) : leg_(leg), joint_(joint) {}
+    [[nodiscard]] double length() const override { return leg_.length(); }
+    [[nodiscard]] double since_start(double t) const override { return leg_.since_start(t); }
+    [[nodiscard]] motion::Work work(double since_start) const override { return leg_.work(joint_, since_start); }
+
+private:
+    const engine::JointLeg& leg_;
+    std::size_t joint_;
+};
 
 /// A course through the motion of one body or link.
 class PartCourse final : public motion::Course {
@@ -373,6 +435,12 @@ public:
     [[nodiscard]] std::vector<double> states_at(double t) const override {
         const std::vector<double> y = run_->run.history->at(t);
         return {y.begin() + static_cast<std::ptrdiff_t>(2 * run_->system->bodies.size()), y.end()};
+    }
+    [[nodiscard]] double whole_until() const override {
+        return run_->legs != nullptr && run_->legs->whole_until() == model::never ? model::never : -model::never;
+    }
+    void legs(const std::function<void(const motion::Leg&)>& told) const override {
+        run_->legs->legs([&](const engine::JointLeg& leg) { told(LegOfPart(leg, joint_)); });
     }
 
 private:
@@ -423,6 +491,8 @@ motion::Trajectory trajectory_of(const BodiesRunHandle& whole, std::size_t joint
     part.contradiction = run.run.contradiction;
     part.t_start = run.run.t_start, part.t_stop = run.run.t_stop;
     part.gap = run.run.gap;
+    part.rough = run.run.rough;
+    if (part.rough) part.rough->other_integrators = false;
     const auto first = static_cast<std::size_t>(system.joints[joint].first);
     part.initial = {run.drive.theta0[first], run.drive.velocity0[first]};
     const auto& carry = *run.run.carry;
@@ -442,7 +512,8 @@ motion::Trajectory trajectory_of(const BodiesRunHandle& whole, std::size_t joint
         model::OscillatorParameters parameters;
         parameters.inertia = system.bodies[first].inertia;
         parameters.stiffness = system.joints[joint].stiffness, parameters.damping = system.joints[joint].damping;
-        parameters.friction = system.joints[joint].friction.law, parameters.units = system.units;
+        parameters.friction = system.joints[joint].friction.law, parameters.spring = system.joints[joint].spring;
+        parameters.walls = system.joints[joint].walls, parameters.units = system.units;
         auto oscillator = model::Oscillator::make(parameters);
         if (oscillator) part.course = std::make_shared<PartCourse>(oscillator.value(), whole, joint);
     }
@@ -456,7 +527,7 @@ RunHandle part_of(const BodiesRunHandle& run, std::size_t joint) {
     if (RunHandle known = run->parts[joint].lock()) return known;
     auto made = std::make_shared<Run>();
     made->trajectory = trajectory_of(run, joint);
-    made->whole = run;
+    made->whole = run, made->joint = joint;
     made->units = run->system->units;
     run->parts[joint] = made;
     return made;
@@ -502,7 +573,8 @@ int run_bodies(lua_State* L, const lua::Options& options, const std::shared_ptr<
                const motion::Window& window, const motion::Grid& rows, bool dense,
                std::shared_ptr<const engine::Carry> before = {}) {
     const auto grid = options.value_or_fail(rows.within(window));
-    const std::size_t columns = 1 + engine::columns_of_body * run->system->joints.size() + run->drive.states.size();
+    const std::size_t columns =
+        1 + (engine::columns_of_body + 1) * run->system->joints.size() + run->drive.states.size();
     motion::Limits limits{.dense = dense};
     limits.memory = std::min(limits.memory, lua::memory_left() / 4 * 3);
     if (static_cast<double>(grid.count()) * static_cast<double>(columns * sizeof(double)) >
@@ -641,6 +713,18 @@ const BodiesRunHandle& bodies_run_self(lua_State* L, const char* call) {
 int part_by_name(lua_State* L) {
     if (lua_type(L, 2) != LUA_TSTRING) return 0;
     const BodiesRunHandle run = bodies_run_self(L, "run.load");
+    const std::string_view name = lua_tostring(L, 2);
+    const auto& joints = run->system->joints;
+    const bool own = std::any_of(joints.begin(), joints.end(), [&](const model::Joint& j) { return j.name == name; });
+    const auto is_it = [&](const lua::Member& member) {
+        return name == member.name && member.kind != lua::Kind::metamethod;
+    };
+    const auto member = std::find_if(run_class.members.begin(), run_class.members.end(), is_it);
+    if (!own && member != run_class.members.end()) {
+        lua::raise(L, {.sentence = fmt::format("{0} is of one body or link: run.{1}{2}{0}", name, joints.front().name,
+                                               member->kind == lua::Kind::field ? "." : ":"),
+                       .culprit = std::string(name)});
+    }
     push_run(L, part_of(run, joint_named(L, 2, *run->system, "this run", bodies_run_class.members)));
     return 1;
 }
@@ -657,7 +741,7 @@ int run_states_table(lua_State* L) {
     const std::size_t count = run->drive.states.size();
     lua_createtable(L, 0, static_cast<int>(count));
     for (std::size_t k = 0; k < count; ++k) {
-        const auto values = run->run.table.column(run->run.table.columns() - count + k);
+        const auto values = run->run.table.column(first_state_column(*run) + k);
         lua::push(L, lua::Vector(run, values.data(), values.size()));
         lua_setfield(L, -2, run->drive.states[k].name.c_str());
     }
@@ -710,10 +794,11 @@ int rows_of_bodies(lua_State* L) {
             if (link && c == engine::columns_of_link) break;
             add(system.joints[j].name + "." + kind, kind, first + c++);
         }
+        if (!link) add(system.joints[j].name + ".acceleration", "acceleration", acceleration_column(*run, j));
     }
     const std::size_t count = run->drive.states.size();
     for (std::size_t k = 0; k < count; ++k) {
-        add(run->drive.states[k].name, "", run->run.table.columns() - count + k);
+        add(run->drive.states[k].name, "", first_state_column(*run) + k);
     }
     push_data(L, std::move(data));
     return 1;
@@ -743,9 +828,27 @@ int at_of_bodies(lua_State* L) {
     return 3;
 }
 
+constexpr text::Call bodies_save_call{
+    "rig_run:save", "rig_run:save(\"run.csv\", { columns = { \"t\", \"load.theta\" } })", save_options, true};
+
+/// The columns asked for, or all.
 int save_bodies(lua_State* L) {
+    const lua::Options options(L, 3, bodies_save_call);
     rows_of_bodies(L);
     lua_replace(L, 1);
+    if (options.has("columns")) {
+        lua_pushcfunction(L, lua::guarded<data_functions::select>);
+        lua_pushvalue(L, 1);
+        options.push("columns");
+        if (!lua_istable(L, -1)) options.wrong("columns", options.row("columns").wanted);
+        const int list = lua_gettop(L), count = static_cast<int>(lua_rawlen(L, list));
+        luaL_checkstack(L, count, "too many columns");
+        for (int i = 1; i <= count; ++i) lua_rawgeti(L, list, i);
+        lua_remove(L, list);
+        lua_call(L, 1 + count, 1);
+        lua_replace(L, 1);
+    }
+    lua_settop(L, 2);
     return data_functions::save(L);
 }
 
@@ -803,7 +906,8 @@ int length_of_run(lua_State* L) {
 }
 
 int text_of_run(lua_State* L) {
-    const BodiesRun& run = *bodies_run_self(L, "tostring(run)");
+    const BodiesRunHandle handle = bodies_run_self(L, "tostring(run)");
+    const BodiesRun& run = *handle;
     std::size_t sticks = 0, slips = 0;
     for (const engine::JointEvent& e : run.run.events) {
         sticks += model::is_stop(e.kind) ? 1 : 0;
@@ -813,18 +917,14 @@ int text_of_run(lua_State* L) {
         L, fmt::format("{} bodies, {} rows, t {:.6g} … {:.6g}; {} ({}, {}); {}", run.system->bodies.size(),
                        run.run.table.size(), run.run.t_start, run.run.t_stop,
                        text::counted(run.run.events.size(), "event"), text::counted(sticks, "stop"),
-                       text::counted(slips, "slip"), model::sentence(run.run.outcome)));
+                       text::counted(slips, "slip"), motion::outcome_text(part_of(handle, 0)->trajectory)));
 }
 
 constexpr text::Option bodies_continue_rows[] = {continue_options[0]};
-constexpr text::Call bodies_continue_call{"rig_run:continue", "rig_run:continue{ t_end = 40 }", bodies_continue_rows};
+constexpr text::Call bodies_continue_call{
+    "rig_run:continue", "rig_run:continue{ t_end = 40 }", bodies_continue_rows, false, nullptr, "t_end"};
 
-/// The first run, and how it goes on.
-int continue_bodies(lua_State* L) {
-    const BodiesRunHandle first = bodies_run_self(L, bodies_continue_call.example);
-    const lua::Options options(L, 2, bodies_continue_call);
-    MoreTime asked;
-    options.fill(asked);
+int continue_this(lua_State* L, const lua::Options& options, const BodiesRunHandle& first, const MoreTime& asked) {
     if (!asked.t_end) options.missing("t_end");
     const double from = first->run.t_stop;
     if (!(*asked.t_end > from)) {
@@ -849,8 +949,28 @@ int continue_bodies(lua_State* L) {
     run->run.table = first->run.table.followed_by(kept, run->run.table, std::size_t{1} << 40U);
     run->run.events.insert(run->run.events.begin(), first->run.events.begin(), first->run.events.end());
     run->run.t_start = start;
-    return 1;
+    if (run->system->named) return 1;
+    lua_pop(L, 1);  // of one body it was made of the second part
+    return push_bodies_run(L, run);
 }
+
+/// The first run, and how it goes on.
+int continue_bodies(lua_State* L) {
+    const BodiesRunHandle first = bodies_run_self(L, bodies_continue_call.example);
+    const lua::Options options(L, 2, bodies_continue_call);
+    MoreTime asked;
+    options.fill(asked);
+    return continue_this(L, options, first, asked);
+}
+
+}  // namespace
+
+int continue_one_body(lua_State* L, const lua::Options& options, const BodiesRunHandle& run, const MoreTime& asked) {
+    if (asked.times) options.fail("times", "this run goes on with a row every dt; times are for other runs");
+    return continue_this(L, options, run, asked);
+}
+
+namespace {
 
 #define DINAL_RIG                                                                 \
     "rig = system{ bodies = { motor = { I = 1 }, load = { I = 3, Rd = 0.2 } },\n" \
@@ -877,7 +997,8 @@ constexpr lua::Member rig_members[] = {
       {&rig_steady_call}}},
     {lua::a_method<response_of_rig>,
      {"rig:response{ OPTIONS } -> data",
-      "The steady motion over a list of values, each searched from the one before. Columns: the name of what is varied; of "
+      "The steady motion over a list of values, each searched from the one before. Folds are not followed: where several "
+      "motions exist, give the values upwards and downwards. Columns: the name of what is varied; of "
       "each body and link amplitude, peak, lag, stops and stuck, as in \"load.amplitude\"; stable and status.",
       "rig = system{ bodies = { a = { I = 1, k = 1, C = 0.1 }, b = { I = 1, k = 1 } }, links = { rod = { \"a\", \"b\", k = 4 "
       "} } }\n"
@@ -922,10 +1043,21 @@ constexpr lua::Member bodies_run_members[] = {
       "Draws the angles of all bodies, and of the links that rub, over time, with bars where they stick.",
       DINAL_RIG_RUN "picture = run:plot{ show = false }",
       {&bodies_plot_call}}},
+    {lua::a_method<animate_bodies>,
+     {"rig_run:animate{ OPTIONS }",
+      "Shows the bodies in motion, side by side with belts, springs and what sticks, or as discs on one axis where one of "
+      "them goes round: in the terminal until Ctrl-C, in a notebook, or in a file.",
+      DINAL_RIG_RUN "file = os.tmpname() .. \".svg\"\n"
+                    "run:animate{ file = file }\n"
+                    "print(io.open(file):read(\"a\"):match(\"<desc>([^;]*)\"))  --> 2 bodies as discs on one axis\n"
+                    "os.remove(file)",
+      {&animate_call}}},
     {lua::a_method<save_bodies>,
-     {"rig_run:save(file)", "Writes rig_run:data() as CSV, with the names of bodies and links in those of the columns.",
+     {"rig_run:save(file, { OPTIONS })",
+      "Writes rig_run:data() as CSV, with the names of bodies and links in those of the columns.",
       DINAL_RIG_RUN "file = os.tmpname() .. \".csv\"\nrun:save(file)\n"
-                    "print(load(file)[\"motor.velocity\"][1])  --> 3.0\nos.remove(file)"}},
+                    "print(load(file)[\"motor.velocity\"][1])  --> 3.0\nos.remove(file)",
+      {&bodies_save_call}}},
     {lua::a_field<status_of_bodies>,
      {"rig_run.status -> string", "How it ended in one word, as of a run of one body.",
       DINAL_RIG_RUN "print(run.status)  --> end"}},
@@ -976,7 +1108,7 @@ const lua::Class bodies_run_class = {
     "run of several bodies",
     {"rig:simulate{ ... } -> rig_run",
      "A run of several bodies. run.load is the run as seen from the body `load`: columns theta, velocity, M, friction, "
-     "damping, its events, at(t), plots; run.shaft that of a link: theta (first less second), velocity, torque (on the "
+     "damping, acceleration, its events, at(t), energy, plots; run.shaft that of a link: theta (first less second), velocity, torque (on the "
      "first) and friction.",
      "rig = system{ bodies = { a = { I = 1, k = 4 }, b = { I = 1 } }, links = { rod = { \"a\", \"b\", k = 2 } } }\n"
      "run = rig:simulate{ theta0 = { a = 1 }, t_end = 3 }\nprint(run.a.theta[1], run.rod.torque[1])  --> 1.0\t-2.0"},

@@ -26,25 +26,47 @@ struct RunEnergy {
 // Shared, because a column that Lua takes out is a view that keeps it alive.
 using EnergyHandle = std::shared_ptr<RunEnergy>;
 
+bool is_part(const RunEnergy& energy) {
+    return energy.energy.whose != analysis::Whose::all;
+}
+
 EnergyHandle& energy_self(lua_State* L, const char* call) {
     return lua::self<EnergyHandle>(L, 1, call);
 }
 
+constexpr auto error_column = static_cast<Eigen::Index>(analysis::EnergyColumn::error);
+
+void make_columns(lua_State* L, RunEnergy& energy) {
+    if (energy.has_columns) return;
+    lua::CallState call(L);  // a law of friction may be a user's function
+    Eigen::MatrixXd columns = analysis::energy_columns(energy.run->trajectory, energy.energy.whose);
+    if (call.failed()) {
+        call.raise_error();
+    }
+    if (is_part(energy)) columns.col(error_column) *= -1;  // then it is the work of the others
+    energy.columns = std::move(columns);
+    energy.has_columns = true;
+    lua::note_external_memory(L, static_cast<std::size_t>(energy.columns.size()) * sizeof(double));
+}
+
+int push_energy_column(lua_State* L, const EnergyHandle& handle, Eigen::Index which) {
+    make_columns(L, *handle);
+    const auto column = handle->columns.col(which);
+    lua::push(L, lua::Vector(handle, column.data(), static_cast<std::size_t>(column.size())));
+    return 1;
+}
+
 template <analysis::EnergyColumn which>
 int column_field(lua_State* L) {
-    const EnergyHandle& handle = energy_self(L, "energy.input");
-    if (!handle->has_columns) {
-        lua::CallState call(L);  // a law of friction may be a user's function
-        Eigen::MatrixXd columns = analysis::energy_columns(handle->run->trajectory);
-        if (call.failed()) {
-            call.raise_error();
-        }
-        handle->columns = std::move(columns);
-        handle->has_columns = true;
-        lua::note_external_memory(L, static_cast<std::size_t>(handle->columns.size()) * sizeof(double));
-    }
-    const auto column = handle->columns.col(static_cast<Eigen::Index>(which));
-    lua::push(L, lua::Vector(handle, column.data(), static_cast<std::size_t>(column.size())));
+    return push_energy_column(L, energy_self(L, "energy.input"), static_cast<Eigen::Index>(which));
+}
+
+/// What does not add up of a whole run, and the work of the others of one of several; nil of the other kind.
+template <bool of_part>
+int rest_field(lua_State* L) {
+    const EnergyHandle& handle = energy_self(L, "energy.error");
+    if (is_part(*handle) == of_part) return push_energy_column(L, handle, error_column);
+    lua_pushnil(L);
     return 1;
 }
 
@@ -57,13 +79,13 @@ int times(lua_State* L) {
 
 using lua::set_number;
 
-void set_balance(lua_State* L, const analysis::Balance& balance) {
+void set_balance(lua_State* L, const analysis::Balance& balance, bool part) {
     set_number(L, "input", balance.work.input);
     set_number(L, "kinetic", balance.change.kinetic);
     set_number(L, "spring", balance.change.spring);
     set_number(L, "viscous", balance.work.viscous);
     set_number(L, "dry", balance.work.dry);
-    set_number(L, "error", balance.error());
+    part ? set_number(L, "others", -balance.error()) : set_number(L, "error", balance.error());
     set_number(L, "belt", balance.work.belt);
     set_number(L, "base", balance.work.base);
     set_number(L, "acts", balance.work.acts);
@@ -71,11 +93,12 @@ void set_balance(lua_State* L, const analysis::Balance& balance) {
 }
 
 int total(lua_State* L) {
-    const analysis::Energy& energy = energy_self(L, "energy.total")->energy;
+    const RunEnergy& own = *energy_self(L, "energy.total");
     lua_createtable(L, 0, 12);
-    set_balance(L, energy.total);
-    set_number(L, "flow", energy.flow);
-    set_number(L, "closure", energy.closure());
+    set_balance(L, own.energy.total, is_part(own));
+    if (is_part(own)) return 1;
+    set_number(L, "flow", own.energy.flow);
+    set_number(L, "closure", own.energy.closure());
     return 1;
 }
 
@@ -88,7 +111,8 @@ int stored_field(lua_State* L) {
 
 // Made when first asked for and then kept, so that a loop over energy.half_cycles[i] is no trap.
 int half_cycles(lua_State* L) {
-    const auto& list = energy_self(L, "energy.half_cycles")->energy.half_cycles;
+    const RunEnergy& own = *energy_self(L, "energy.half_cycles");
+    const auto& list = own.energy.half_cycles;
     if (lua_getiuservalue(L, 1, 1) == LUA_TTABLE) {
         return 1;
     }
@@ -98,7 +122,7 @@ int half_cycles(lua_State* L) {
                               {"t_end", list[i].t_end},
                               {"theta_start", list[i].theta_start},
                               {"theta_end", list[i].theta_end}});
-        set_balance(L, list[i].balance);
+        set_balance(L, list[i].balance, is_part(own));
         lua_rawseti(L, -2, static_cast<lua_Integer>(i) + 1);
     }
     lua_pushvalue(L, -1);
@@ -125,7 +149,7 @@ constexpr lua::Member energy_members[] = {
       "of what is stored) + viscous + dry (what the two frictions took) + error (what does not add up); flow is what "
       "M, the spring and the moving mass gave in all half cycles together, and closure is |error|/flow. What a belt, a "
       "base and the acts of events gave is belt, base and acts, beside the input; what impacts at walls took is impacts, "
-      "beside the frictions.",
+      "beside the frictions. Of a body or link among several: others, the work of the others on it, in place of error.",
       DINAL_ENERGY
       "print(string.format(\"%.6f %.6f\", energy.total.dry, energy.total.spring))  --> 0.499200 -0.499200\n"
       "print(energy.total.closure < 1e-12)  --> true"}},
@@ -165,10 +189,17 @@ constexpr lua::Member energy_members[] = {
     {lua::a_field<column_field<analysis::EnergyColumn::dry>>,
      {"energy.dry -> vector", "What dry friction has taken since the start, at each row.",
       DINAL_ENERGY "print(string.format(\"%.6f\", energy.dry[#run]))  --> 0.499200"}},
-    {lua::a_field<column_field<analysis::EnergyColumn::error>>,
+    {lua::a_field<rest_field<false>>,
      {"energy.error -> vector",
       "What does not add up at each row: input less the changes of kinetic and spring, viscous and dry.",
       DINAL_ENERGY "print(energy.error:abs():max() < 1e-12)  --> true"}},
+    {lua::a_field<rest_field<true>>,
+     {"energy.others -> vector or nil",
+      "Of a body or link among several, in place of error: the work that its links, or its bodies, have done on it since the "
+      "start, at each row. nil of a whole run.",
+      "rig = system{ bodies = { a = { I = 1 }, b = { I = 1 } }, links = { rod = { \"a\", \"b\", C = 1 } } }\n"
+      "run = rig:simulate{ velocity0 = { a = 1 }, t_end = 50 }\n"
+      "print(string.format(\"%.6f\", run.rod:energy().others[#run]))  --> 0.250000"}},
     {lua::a_field<column_field<analysis::EnergyColumn::belt>>,
      {"energy.belt -> vector", "The work that a moving belt has done on the mass since the start, at each row.",
       DINAL_ENERGY "print(energy.belt:max())  --> 0.0"}},
@@ -215,20 +246,37 @@ std::string energy_card(lua_State* L, int index, const terminal::Display& screen
     return text::wrapped(card, screen.width - 1);
 }
 
-int energy_of_run(lua_State* L) {
-    const RunHandle& run = lua::self<RunHandle>(L, 1, "run:energy()");
-    if (run->whole && run->whole->system->named) {
-        lua::raise(L, "run:energy(): ask the run of all bodies: energy = run:energy(), and energy.load of that");
-    }
-    if (run->whole) return energy_of_bodies(L, run->whole);
+namespace {
+
+EnergyHandle push_energy(lua_State* L, const RunHandle& run) {
+    if (run->whole) works_of(L, run->whole);  // with the torques between the rows
+    const analysis::Whose whose = !run->whole || !run->whole->system->named ? analysis::Whose::all
+                                  : run->whole->system->is_link(run->joint) ? analysis::Whose::link
+                                                                            : analysis::Whose::body;
     lua::CallState call(L);
-    auto energy = analysis::energy_of(run->trajectory);
+    auto energy = analysis::energy_of(run->trajectory, whose);
     if (call.failed()) {
         call.raise_error();
     }
-    lua::push<EnergyHandle>(
-        L, std::make_shared<RunEnergy>(RunEnergy{run, lua::value_or_raise(L, "run:energy()", std::move(energy))}));
+    auto handle =
+        std::make_shared<RunEnergy>(RunEnergy{run, lua::value_or_raise(L, "run:energy()", std::move(energy))});
+    lua::push<EnergyHandle>(L, handle);
+    return handle;
+}
+
+}  // namespace
+
+int energy_of_run(lua_State* L) {
+    const RunHandle run = lua::self<RunHandle>(L, 1, "run:energy()");
+    push_energy(L, run);
     return 1;
+}
+
+Eigen::MatrixXd energy_columns_of_run(lua_State* L, const RunHandle& run) {
+    const EnergyHandle energy = push_energy(L, run);
+    make_columns(L, *energy);
+    lua_pop(L, 1);
+    return energy->columns;
 }
 
 void register_energy(lua_State* L) {

@@ -27,7 +27,10 @@ model::Excitation to_excitation(lua_State* L, int index, std::string_view what, 
     if (lua_type(L, index) == LUA_TNUMBER) {
         term = model::Constant{lua_tonumber(L, index)};
     } else if (lua::is_callable(L, index)) {
-        const auto function = std::make_shared<lua::LuaFunction>(L, index);
+        const std::size_t name = what.rfind(": ");  // its errors name it: "M.motor returned nil"
+        lua::FunctionRole role;
+        if (name != std::string_view::npos) role.name = what.substr(name + 2);
+        const auto function = std::make_shared<lua::LuaFunction>(L, index, std::move(role));
         term = model::Scripted{.function = function, .feedback = function->feedback()};
     } else {
         lua::raise(L, {.sentence = fmt::format("{} must be a function, a number or an excitation, got {}", what,

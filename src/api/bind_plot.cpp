@@ -365,6 +365,11 @@ int phase_plot_run(lua_State* L) {
     const RunHandle run = lua::self<RunHandle>(L, 1, "run:phase_plot()");
     const lua::Options options(L, 2, phase_plot_call);
     refuse_empty(options, run);
+    if (run->whole) {
+        options.fail(
+            {"the phase plane is that of a system of one body with constant Rd and Re; use run:plot{ x = \"theta\", "
+             "y = \"velocity\" }"});
+    }
     plots::Figure figure = options.value_or_fail(plots::phase_figure(data_of(L, options, run)));
     apply_options(L, options, figure);
     std::vector<plots::Figure> figures{std::move(figure)};

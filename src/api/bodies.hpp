@@ -4,6 +4,7 @@
 #include <memory>
 #include <vector>
 
+#include "api/bind_simulate.hpp"
 #include "api/extras_options.hpp"
 #include "api/run.hpp"
 #include "lua/options.hpp"
@@ -100,15 +101,27 @@ struct BodiesRun {
     double dt = 0;
     // Of each joint, made when it is asked for. Not kept: they keep this run.
     mutable std::vector<std::weak_ptr<const Run>> parts = {};
-    mutable std::shared_ptr<const motion::engine::Works> works = {};  ///< made when they are asked for
+    mutable std::shared_ptr<const motion::engine::Works> works = {};   ///< made when they are asked for
+    mutable std::shared_ptr<const motion::engine::History> legs = {};  ///< with them: the motion with its torques
 };
 using BodiesRunHandle = std::shared_ptr<const BodiesRun>;
+/// The columns of a run: the first state, and the acceleration of a body.
+inline std::size_t first_state_column(const BodiesRun& run) {
+    return run.run.table.columns() - run.system->bodies.size() - run.drive.states.size();
+}
+inline std::size_t acceleration_column(const BodiesRun& run, std::size_t body) {
+    return run.run.table.columns() - run.system->bodies.size() + body;
+}
 /// The run as seen from the body or link of this joint.
 RunHandle part_of(const BodiesRunHandle& run, std::size_t joint);
 /// What was put in and taken, torque times rad; in rig_energy.cpp. Raises when a function of the run does.
 const motion::engine::Works& works_of(lua_State* L, const BodiesRunHandle& run);
 int energy_of_bodies(lua_State* L, const BodiesRunHandle& run);
+/// Of a run as seen from one of the bodies or links; in bind_energy.cpp.
+Eigen::MatrixXd energy_columns_of_run(lua_State* L, const RunHandle& run);
 std::string story_of_bodies(lua_State* L, const BodiesRunHandle& run);
+/// Pushes the run of one body without a name, continued.
+int continue_one_body(lua_State* L, const lua::Options& options, const BodiesRunHandle& run, const MoreTime& asked);
 /// Pushes it; of one body without a name as a run of one body.
 int push_bodies_run(lua_State* L, BodiesRunHandle run);
 /// The joint whose name stands at `index`; raises that `what`, which has these members, has none of that name.

@@ -3,8 +3,7 @@
 
 #include <algorithm>
 
-#include "api/bind_simulate.hpp"
-#include "api/run.hpp"
+#include "api/bodies.hpp"
 #include "model/controller.hpp"
 
 namespace dinal::api {
@@ -53,9 +52,9 @@ int continue_run(lua_State* L) {
     MoreTime asked;
     options.fill(asked);
     const motion::Trajectory& so_far = run->trajectory;
+    if (run->whole && !run->whole->system->named) return continue_one_body(L, options, run->whole, asked);
     if (run->whole) {
-        options.fail(
-            {"this run cannot go on by itself: continue the run of all bodies, or simulate again with a later t_end"});
+        options.fail({"a body cannot go on by itself: continue the run of all bodies, run:continue{ t_end = 40 }"});
     }
     if (!run->origin) {
         options.fail(

@@ -4,10 +4,13 @@
 #include <cmath>
 #include <numeric>
 
+#include "analysis/energy.hpp"
 #include "analysis/rig_story.hpp"
 #include "api/bodies.hpp"
 #include "api/classes.hpp"
 #include "lua/interrupt.hpp"
+#include "lua/memory_limit.hpp"
+#include "lua/vector.hpp"
 #include "model/controller.hpp"
 
 namespace dinal::api {
@@ -17,8 +20,9 @@ namespace engine = motion::engine;
 
 struct RigEnergy {
     BodiesRunHandle run;
+    Eigen::MatrixXd columns = {};  ///< at the rows; made when first asked for
 };
-using RigEnergyHandle = std::shared_ptr<const RigEnergy>;
+using RigEnergyHandle = std::shared_ptr<RigEnergy>;
 
 double sum_of(const std::vector<double>& values) {
     return std::accumulate(values.begin(), values.end(), 0.0);
@@ -41,6 +45,30 @@ void set_total(lua_State* L, const engine::Works& works) {
 
 const RigEnergy& rig_energy_self(lua_State* L) {
     return *lua::self<RigEnergyHandle>(L, 1, "energy.total");
+}
+
+/// The sum over all bodies and links, at the rows.
+template <analysis::EnergyColumn which>
+int column_of_rig(lua_State* L) {
+    const RigEnergyHandle energy = lua::self<RigEnergyHandle>(L, 1, "energy.dry");
+    const BodiesRunHandle& run = energy->run;
+    if (energy->columns.size() == 0) {
+        Eigen::MatrixXd sum = energy_columns_of_run(L, part_of(run, 0));
+        for (std::size_t j = 1; j < run->system->joints.size(); ++j) sum += energy_columns_of_run(L, part_of(run, j));
+        sum.col(static_cast<Eigen::Index>(analysis::EnergyColumn::error)) *= -1;  // was the work of the others
+        energy->columns = std::move(sum);
+        lua::note_external_memory(L, static_cast<std::size_t>(energy->columns.size()) * sizeof(double));
+    }
+    const auto column = energy->columns.col(static_cast<Eigen::Index>(which));
+    lua::push(L, lua::Vector(energy, column.data(), static_cast<std::size_t>(column.size())));
+    return 1;
+}
+
+int times_of_rig(lua_State* L) {
+    const BodiesRunHandle& run = rig_energy_self(L).run;
+    const auto t = run->run.table.size() == 0 ? std::span<const double>() : run->run.table.column(0);
+    lua::push(L, lua::Vector(run, t.data(), t.size()));
+    return 1;
 }
 
 int total_of_rig(lua_State* L) {
@@ -109,12 +137,34 @@ int rig_energy_text(lua_State* L) {
     "run = rig:simulate{ velocity0 = { motor = 3 }, t_end = 4, dt = 1 }\n" \
     "energy = run:energy()\n"
 
+#define DINAL_RIG_COLUMN(name, meaning, which, last)                                                 \
+    {                                                                                                \
+        lua::a_field<column_of_rig<analysis::EnergyColumn::which>>, {                                \
+            "energy." name " -> vector", meaning ", of all bodies and links together, at each row.", \
+                DINAL_RIG_ENERGY "print(string.format(\"%.6g\", energy." name "[5]))  --> " last     \
+        }                                                                                            \
+    }
+
 constexpr lua::Member rig_energy_members[] = {
     {lua::a_field<total_of_rig>,
      {"energy.total -> table",
       "The balance of the whole run, torque times rad, by the names that it has for one body: input + belt + base + acts = "
       "kinetic + spring + viscous + dry + impacts + error; flow, and closure = |error|/flow.",
       DINAL_RIG_ENERGY "print(energy.total.kinetic, energy.total.closure < 1e-12)  --> -3.375\ttrue"}},
+    {lua::a_field<times_of_rig>,
+     {"energy.t -> vector", "The times of the rows.", DINAL_RIG_ENERGY "print(energy.t[2])  --> 1.0"}},
+    DINAL_RIG_COLUMN("input", "The work that M has done", input, "0"),
+    DINAL_RIG_COLUMN("kinetic", "The kinetic energy", kinetic, "1.125"),
+    DINAL_RIG_COLUMN("spring", "What springs have stored", spring, "0"),
+    DINAL_RIG_COLUMN("viscous", "What viscous damping has taken", viscous, "0"),
+    DINAL_RIG_COLUMN("dry", "What dry friction has taken", dry, "3.375"),
+    DINAL_RIG_COLUMN("belt", "The work of belts", belt, "0"),
+    DINAL_RIG_COLUMN("base", "The work of a shaking base", base, "0"),
+    DINAL_RIG_COLUMN("acts", "What acts of events have brought", acts, "0"),
+    DINAL_RIG_COLUMN("impacts", "What impacts have taken", impacts, "0"),
+    {lua::a_field<column_of_rig<analysis::EnergyColumn::error>>,
+     {"energy.error -> vector", "What does not add up, at each row.",
+      DINAL_RIG_ENERGY "print(energy.error:abs():max() < 1e-12)  --> true"}},
     {lua::a_metamethod<rig_energy_text>("__tostring"),
      {"tostring(energy) -> string", "The balance as a small table.",
       DINAL_RIG_ENERGY "print((tostring(energy):match(\"clutch.*0%s+([%d.]+)\\n\")))  --> 3.375"}},
@@ -125,12 +175,14 @@ constexpr lua::Member rig_energy_members[] = {
 const lua::Class rig_energy_class = {
     "energy of several bodies",
     {"rig_run:energy() -> energy",
-     "The energy of a run of several bodies: energy.total, and for a body or link what it has of input, base, kinetic, "
-     "spring, viscous, dry, belt and impacts: energy.clutch.dry.",
+     "The energy of a run of several bodies: energy.total, columns as long as run.t, and for a body or link what it has of "
+     "input, base, kinetic, spring, viscous, dry, belt and impacts: energy.clutch.dry. The columns and half cycles of one of "
+     "them are in run.clutch:energy().",
      DINAL_RIG_ENERGY "print(energy.clutch.dry)  --> 3.375"},
     rig_energy_members,
     part_of_energy};
 
+#undef DINAL_RIG_COLUMN
 #undef DINAL_RIG_ENERGY
 
 /// By running it again, now with a look at all torques between the events.
@@ -165,13 +217,14 @@ const engine::Works& works_of(lua_State* L, const BodiesRunHandle& run) {
                    "run:energy(): the run came out otherwise when it was repeated for its energy: a controller keeps a "
                    "memory from one run to the next");
     }
+    run->legs = again.history;
     run->works = std::make_shared<const engine::Works>(std::move(again.works));
     return *run->works;
 }
 
 int energy_of_bodies(lua_State* L, const BodiesRunHandle& run) {
     works_of(L, run);
-    lua::push<RigEnergyHandle>(L, std::make_shared<const RigEnergy>(RigEnergy{run}));
+    lua::push<RigEnergyHandle>(L, std::make_shared<RigEnergy>(RigEnergy{run}));
     return 1;
 }
 

@@ -125,14 +125,19 @@ int steady_of_rig(lua_State* L) {
     asked.period = period_or_fail(options, asked.period, asked.frequency, asked.omega);
     question.drive = asked_drive(L, options, *question.system);
     question.periods = asked.periods.value_or(0);
-    for (const model::Excitation& load : question.drive.loads) {
-        if (model::has_memory<model::SampledController>(load) || model::has_memory<model::DelayedController>(load)) {
-            options.fail("M",
-                         "M has a controller that samples, or acts with a delay, whose memory is a part of the "
-                         "state; run it for long and see run.load:cycle()");
-        }
-    }
     question.repeats = repeats_or_fail(L, options, question, asked.period);
+    const auto settles = [](const model::Excitation& load) {
+        return model::has_memory<model::SampledController>(load) || model::has_memory<model::DelayedController>(load);
+    };
+    if (std::any_of(question.drive.loads.begin(), question.drive.loads.end(), settles)) {
+        const auto common = analysis::common_period(question);
+        if (!common) {
+            options.fail("M",
+                         "the controllers of M and what else drives the bodies have no common period of at most 1000 "
+                         "instants or periods; run it for long and see run.load:cycle()");
+        }
+        question.settles = *common;
+    }
     analysis::RigMotion found;
     asking_bodies(L, question,
                   [&](const motion::Monitor& monitor) { found = analysis::steady_motion(question, monitor); });

@@ -24,6 +24,7 @@ struct Run {
     model::Units units = {};                      ///< that stand in these; of another run those of its system
     lua::MemoryCharge rows = {};                  ///< of the file it was read from
     std::shared_ptr<const BodiesRun> whole = {};  ///< of a run of several bodies, seen from one of them
+    std::size_t joint = 0;                        ///< of `whole`: which one
 };
 
 // Shared, because every column that Lua takes out of a run is a view that keeps the whole run alive.

@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "api/run.hpp"
+#include "api/bodies.hpp"
 #include "lua/lua_text.hpp"
 #include "lua/user_function.hpp"
 #include "lua/vector.hpp"
@@ -66,6 +66,13 @@ int run_at(lua_State* L) {
 int run_acceleration(lua_State* L) {
     const RunHandle run = lua::self<RunHandle>(L, 1, "run.acceleration");
     const motion::Trajectory& trajectory = run->trajectory;
+    if (run->whole && !run->whole->system->is_link(run->joint)) {
+        const bool empty = run->whole->run.table.size() == 0;
+        const auto values = empty ? std::span<const double>()
+                                  : run->whole->run.table.column(acceleration_column(*run->whole, run->joint));
+        lua::push(L, lua::Vector(run, values.data(), values.size()));
+        return 1;
+    }
     if (!run->origin) {
         if (const auto own = trajectory.find("acceleration")) {
             const auto values = trajectory.rows.col(*own);

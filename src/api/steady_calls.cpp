@@ -205,7 +205,7 @@ int steady_of_run(lua_State* L) {
     const lua::Options options(L, 2, steady_run_call);
     SteadyOptions asked;
     options.fill(asked);
-    if (run->whole) options.fail({"steady motions are found of systems of one body whose Rd and Re are numbers"});
+    if (run->whole) options.fail({"ask the system for its steady motion: rig:steady{ ... } with the M of this run"});
     asked.period = period_or_fail(options, asked.period, asked.frequency, asked.omega);
     if (!run->origin) options.fail({"a run that was read from a file does not know its system and its M"});
     const source::Task& task = *run->origin;

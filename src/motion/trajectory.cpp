@@ -77,7 +77,7 @@ std::string events_text(std::span<const model::Event> events) {
 }  // namespace
 
 text::Expected<model::State> Trajectory::at(double t) const {
-    if (!computed) return between_rows(*this, t);
+    if (!computed && !course) return between_rows(*this, t);
     if (!(t >= t_start) || !(t <= t_stop)) {
         return text::Error{.sentence = fmt::format("t = {} is outside the run from {} to {}", t, t_start, t_stop),
                            .option = "t"};
@@ -114,6 +114,12 @@ std::string chatter_text(const Trajectory& run) {
 
 /// What is rough, and what would go on over that.
 std::string rough_text(const Rough& rough) {
+    if (!rough.other_integrators) {
+        return fmt::format(
+            "{} is rough on every scale, by {:.2g}: make it smooth, or hold it between instants by "
+            "excitation.sampled",
+            rough.who, rough.by);
+    }
     constexpr double above = 8;  // of two coefficients, what others may be
     const int digits = static_cast<int>(std::ceil(std::log10(above * rough.part)));
     std::string text = fmt::format("{} is rough on every scale, by {:.2g}: try ", rough.who, rough.by);

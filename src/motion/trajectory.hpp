@@ -65,7 +65,8 @@ struct Carried {
 /// What was so rough on every scale that a run got nowhere.
 struct Rough {
     std::string who;
-    double by = 0, part = 0;  ///< in its own units, and as a part of what it is and acts beside
+    double by = 0, part = 0;        ///< in its own units, and as a part of what it is and acts beside
+    bool other_integrators = true;  ///< may take the run
 };
 
 struct Trajectory {

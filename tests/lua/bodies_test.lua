@@ -137,6 +137,24 @@ test("a body of huge inertia is the ground, or a belt", function()
     for i = 1, #run do near(run.a.theta[i], belt.a.theta[i], 1e-10) end
 end)
 
+test("accelerations are those of the equation of motion, and 0 where a body is held", function()
+    local rig = system { bodies = { a = { I = 2, k = 3, C = 0.1 }, b = { I = 1, Rd = 5 } }, links = { rod = { "a", "b", k = 4 } } }
+    local run = rig:simulate { M = { a = math.sin }, theta0 = { a = 0.5 }, velocity0 = { b = 0.2 }, t_end = 4, dt = 0.5 }
+    for i, t in ipairs(run.t) do
+        near(run.a.acceleration[i], (math.sin(t) - 7 * run.a.theta[i] + 4 * run.b.theta[i] + run.a.damping[i]) / 2, 1e-13)
+    end
+    equal(run.b.velocity[9], 0.0)
+    equal(run.b.acceleration[9], 0.0)
+    equal(run:data()["b.acceleration"][1], run.b.acceleration[1])
+    equal(#run:continue { t_end = 6 }.b.acceleration, 13)
+    equal(run.rod.acceleration, nil)
+    -- of one body whose friction varies
+    local one = system { I = 2, k = 3, Rd = function() return 0.3 end }:simulate { theta0 = 1, t_end = 1,
+        states = { e = { rate = function() return 1 end } } }
+    near(one.acceleration[1], -2.7 / 2, 1e-15)
+    near(one.states.e[#one], 1, 1e-13)
+end)
+
 test("a gap between two bodies: momentum is conserved and the difference of speeds is turned back", function()
     local run = system { bodies = { a = { I = 1 }, b = { I = 2 } },
         links = { gap = { "a", "b", walls = { lower = -1, upper = 1, restitution = 0.5 } } } }
@@ -270,7 +288,7 @@ test("what is wrong is one sentence with the name of the body, the link and the 
     raises_here(function() return rig:simulate { t_end = 1 }.laod end, "this run has no 'laod'", "did you mean 'load'?")
     support.raises(function() rig:simulate { M = { load = function(t, theta) return theta.laod end }, t_end = 1 } end,
         "there is no body 'laod'; there is load")
-    support.raises(function() rig:simulate { M = { load = function() return "x" end }, t_end = 1 } end, "M returned the string")
+    support.raises(function() rig:simulate { M = { load = function() return "x" end }, t_end = 1 } end, "M.load returned the string")
     local count = 0
     local run = rig:simulate { M = { load = function() count = count + 1 return count % 7 end }, t_end = 1 }
     assert(run.outcome:find("evaluated again", 1, true), run.outcome)
@@ -283,6 +301,102 @@ test("an M with a delay is the same without the motion between the rows", functi
         return rig:simulate { M = M, t_end = 10, dense = dense }.a.theta[1001]
     end
     equal(last(false), last(true))
+end)
+
+test("mistakes are named with the body or link, and the nearest name", function()
+    local bodies = { motor = { I = 1 }, load = { I = 2 } }
+    local rig = system { bodies = bodies, links = { gap = { "motor", "load", walls = { lower = -1, upper = 1 } } } }
+    local function relay(of)
+        return function() rig:simulate { M = { motor = excitation.relay { on = -0.1, off = 0.1, amplitude = 1, of = of } }, t_end = 1 } end
+    end
+    for _, case in ipairs {
+        { function() system { bodies = { motor = 3 } } end, "bodies.motor must be a table such as { I = 1, Rd = 0.4 }, got 3" },
+        { function() system { bodies = { motor = { I = 0 } } } end, "bodies.motor: I = 0 must be positive" },
+        { function() system { bodies = bodies, links = { x = "motor" } } end, "links.x must be a table such as" },
+        { function() system { bodies = bodies, links = { x = { "motor", "laod" } } } end, "there is no body 'laod'", "did you mean 'load'?" },
+        { function() system { bodies = bodies, links = { x = { "motor", "motor" } } } end, "links.x must be between two different bodies" },
+        { function() system { bodies = bodies, links = { x = { "motor", "load", "motor" } } } end, "links.x is between two bodies, and names 3" },
+        { function() rig:simulate { M = { mottor = 1 }, t_end = 1 } end, "did you mean 'motor'?" },
+        { function() rig:simulate { theta0 = { motor = 3 }, t_end = 1 } end, "the angle 3 of the link gap", "-1", "1" },
+        { function() rig:simulate { M = { motor = function() end }, t_end = 1 } end, "M.motor returned nil" },
+        { relay "theta", "M.motor: the relay looks at 'theta'; in this run it may look at theta.load, theta.motor" },
+        { relay "theta.lod", "did you mean 'theta.load'?" },
+        { function() system { bodies = { a = { I = 1, Rd = 1, normal = function() return 0 / 0 end } } }:simulate { velocity0 = { a = 1 }, t_end = 1 } end,
+            "normal returned" },
+        { function() return rig:simulate { t_end = 1 }.spectrum end, "spectrum is of one body or link: run.load:spectrum" },
+    } do
+        support.raises(table.unpack(case))
+    end
+end)
+
+test("what runs of bodies do besides: go on, save some columns, tell who is rough", function()
+    local one = system { I = 1, k = 4, Rd = function() return 0.3 end }
+    local whole, parts = one:simulate { theta0 = 1, t_end = 4, dt = 0.1 }, one:simulate { theta0 = 1, t_end = 2, dt = 0.1 }:continue(4)
+    equal(#parts, #whole)
+    for i = 1, #whole do near(parts.theta[i], whole.theta[i], 1e-12) end
+    near(parts.acceleration[3], whole.acceleration[3], 1e-12)
+    local rig = clutch { Rd = 2 }
+    local run = rig:simulate { velocity0 = { motor = 3 }, t_end = 1, dt = 0.5 }
+    equal(run:continue(2).t_end, 2.0)
+    local file = os.tmpname() .. ".csv"
+    run:save(file, { columns = { "t", "load.theta" } })
+    equal(table.concat(load(file).names, " "), "t load.theta")
+    os.remove(file)
+    run = rig:simulate { M = { load = function(t) return (math.sin(1e9 * t) * 1e4) % 1 end }, t_end = 1 }
+    assert(run.outcome:find("M of load is rough on every scale", 1, true), run.outcome)
+    assert(run.outcome:find("excitation.sampled", 1, true) and not run.outcome:find("rk4", 1, true), run.outcome)
+end)
+
+test("two equal chains are one, a constant normal load is in Rd, and units that are powers of two change no bit", function()
+    local M = function(t) return 2 * math.sin(1.3 * t) end
+    local function chain(scale, time)
+        scale, time = scale or 1, time or 1
+        local function torque(x) return x * scale end
+        return system { bodies = { a = { I = torque(1) * time ^ 2, k = torque(4), Rd = torque(0.3), Re = torque(0.4) }, b = { I = torque(0.5) * time ^ 2 } },
+            links = { rod = { "a", "b", k = torque(2), C = torque(0.125) * time } } }
+    end
+    local single = chain():simulate { M = { a = M }, t_end = 20, dt = 0.25 }
+    local bodies, links = {}, {}
+    for i = 1, 2 do
+        bodies["a" .. i], bodies["b" .. i] = { I = 1, k = 4, Rd = 0.3, Re = 0.4 }, { I = 0.5 }
+        links["rod" .. i] = { "a" .. i, "b" .. i, k = 2, C = 0.125 }
+    end
+    local twin = system { bodies = bodies, links = links }:simulate { M = { a1 = M, a2 = M }, t_end = 20, dt = 0.25 }
+    local scaled = chain(2 ^ 20, 2 ^ -3):simulate { M = { a = function(t) return 2 ^ 20 * M(8 * t) end }, t_end = 2.5, dt = 0.25 / 8 }
+    equal(#scaled.events, #single.events)
+    for i = 1, #single do
+        for _, name in ipairs { "a", "b" } do
+            near(twin[name .. 1].theta[i], single[name].theta[i], 1e-12)
+            equal(twin[name .. 1].theta[i], twin[name .. 2].theta[i])
+            equal(scaled[name].theta[i], single[name].theta[i])
+        end
+    end
+    local function normal(load, Rd, Re)
+        return system { bodies = { a = { I = 1, k = 4, Rd = Rd, Re = Re, normal = load } } }:simulate { M = { a = M }, t_end = 20, dt = 0.25 }
+    end
+    local plain, loaded = normal(nil, 0.25, 0.5), normal(2, 0.125, 0.25)
+    equal(#plain.events, #loaded.events)
+    for i = 1, #plain do equal(loaded.a.theta[i], plain.a.theta[i]) end
+end)
+
+test("a clutch whose capacity ramps locks at its closed form: time, speed and heat", function()
+    local run = clutch { Rd = 2, normal = function(t) return math.min(t, 1) end }:simulate { velocity0 = { motor = 3 }, t_end = 4 }
+    local lock = 1 + (3 - 4 / 3) / (8 / 3)
+    near(first(run, "stick", "clutch").t, lock, 1e-13)
+    near(run.motor:at(4) - run.load:at(4), run.clutch:at(lock), 1e-12)
+    near(select(2, run.load:at(4)), 0.75, 1e-13)
+    near(run:energy().clutch.dry, 3 / 4 * 3 ^ 2 / 2, 1e-12)
+end)
+
+test("a contact between a body that a belt carries and one that stands slips, though both are held", function()
+    local rig = system { bodies = { a = { I = 1, Rd = 1 }, b = { I = 1, Rd = 1 } }, links = { pad = { "a", "b", Rd = 0.2 } } }
+    local run = rig:simulate { belt = { a = 0.3 }, t_end = 5, dt = 1 }
+    near(first(run, "stick", "a").t, 0.3 / 0.8, 1e-13)
+    equal(#run.events, 1)
+    near(run.pad.torque[3], -0.2, 1e-15)
+    near(run.a.friction[3], 0.2, 1e-15)
+    local e = run:energy()
+    near(e.pad.dry, 0.2 * run.a.theta[6], 1e-12)
 end)
 
 support.finish()

@@ -22,7 +22,6 @@ test("the heat of a clutch that locks is the energy of the relative motion", fun
     near(e.motor.input, run.motor.theta[1001], 1e-12)
     near(e.clutch.dry, 2 * (run.clutch.theta[1001]), 1e-11)
     raises_here(function() return e.brake end, "this energy has no 'brake'; its bodies and links are load, motor, clutch")
-    raises_here(function() run.motor:energy() end, "ask the run of all bodies")
 end)
 
 test("energy closes with everything that a rig may have", function()
@@ -65,6 +64,46 @@ test("energy of one body whose friction varies, with bristles, and of a locked p
     local e = closes(pair, "carried")
     equal(e.total.dry, 0.0)
     near(e.a.belt, 0.9 ^ 2 / 2, 1e-12)
+end)
+
+test("energy over time: of all, and of one body or link as of a system of one body", function()
+    local rig = system {
+        bodies = { a = { I = 1, k = 4, C = 0.1, Rd = 0.3 }, b = { I = 0.5, k = 1, walls = { upper = 0.4, restitution = 0.5 } } },
+        links = { rod = { "a", "b", k = 2, C = 0.1, Rd = 0.05 } },
+    }
+    local run = rig:simulate { M = { a = function(t) return math.sin(1.3 * t) end }, belt = { a = 0.1 }, velocity0 = { b = 1 }, t_end = 20,
+        events = { { when = function(t) return t - 11.3 end, act = function(t, theta, velocity) velocity.b = velocity.b + 0.5 end } } }
+    local e = run:energy()
+    local last = #run
+    assert(e.total.impacts > 0 and e.total.acts ~= 0)
+    for _, name in ipairs { "input", "viscous", "dry", "belt", "impacts", "acts" } do
+        near(e[name][last], e.total[name], 1e-11)
+        equal(e[name][1], 0.0)
+        local sum = 0
+        for _, part in ipairs { "a", "b", "rod" } do
+            local own = run[part]:energy()
+            if e[part][name] then near(own.total[name], e[part][name], 1e-11) end
+            near(own[name][last], own.total[name], 1e-12)
+            sum = sum + own.total[name]
+        end
+        near(sum, e.total[name], 1e-11)
+    end
+    near(e.error:abs():max(), 0, 1e-11)
+    near(e.kinetic[last] + e.spring[last] - e.kinetic[1] - e.spring[1], e.total.kinetic + e.total.spring, 1e-12)
+    local a, rod = run.a:energy(), run.rod:energy()
+    equal(#a.t, last)
+    equal(a.error, nil)
+    equal(e.t[2], run.t[2])
+    near(rod.kinetic:max(), 0, 0)
+    local dry, others = 0, 0
+    for _, half in ipairs(a.half_cycles) do dry, others = dry + half.dry, others + half.others end
+    near(dry, a.total.dry, 1e-11)
+    near(others, a.total.others, 1e-11)
+    assert(#a.half_cycles > 5)
+    assert(tostring(a):find("work of its links on it", 1, true))
+    local varying = system { I = 1, k = 1, Rd = 0.12, normal = function() return 1 end }:simulate { theta0 = 1, t_end = 20 }:energy()
+    near(varying.half_cycles[1].dry, 0.2112, 1e-12)
+    near(varying.dry[1001], 0.4992, 1e-12)
 end)
 
 test("a run is told in sentences", function()

@@ -146,10 +146,40 @@ test("rest, and what is refused", function()
     raises_here(function() rig:steady { M = { a = function(t) return math.sin(t) end } } end,
         "the period of what drives the bodies is not known; give it with period = ...")
     raises_here(function() rig:steady { M = { a = function(t) return math.sin(t) end }, period = 3 } end, "does not repeat itself")
-    raises_here(function() rig:steady { M = { a = excitation.sampled(function(t) return 0 end, { every = 0.1 }) } } end,
-        "run it for long")
+    raises_here(function() rig:steady { M = { a = excitation.sampled(function(t) return 0 end, { every = 0.1 }), b = sine(1) } } end,
+        "no common period", "run it for long")
+    raises_here(function() rig:steady { M = { a = excitation.delayed(function(t, theta) return -theta.a end, { by = 0.1 }) } } end,
+        "no common period")
     near(rig:steady { M = { a = function(t) return math.sin(t) end }, omega = 1 }.b.amplitude,
         rig:steady { M = { a = sine(1) } }.b.amplitude, 1e-9)
+end)
+
+test("controllers that sample or wait: the motion on their grid, as a long run has it", function()
+    local rig, T = chain(0.3), 2
+    local function pi(t, theta, velocity, z, memory)
+        memory.sum = 0.9 * memory.sum + 0.02 * (0.3 * math.sin(math.pi * t) - theta.b)
+        return 0.5 * (0.3 * math.sin(math.pi * t) - theta.b) + memory.sum - 0.5 * velocity.b
+    end
+    for _, M in ipairs {
+        { a = excitation.sampled(pi, { every = 0.125, start = function() return { sum = 0 } end }), b = sine(math.pi) },
+        { a = excitation.delayed(function(t, theta) return -0.5 * theta.b end, { by = 0.15 }), b = sine(math.pi) },
+    } do
+        local s = rig:steady { M = M }
+        equal(s.status, "steady")
+        near(s.period, T, 1e-12)
+        equal(s.stable, true)
+        local long = rig:simulate { M = M, t_end = 200 * T }
+        local low, high = 1e9, -1e9
+        for i = 0, 2000 do
+            local theta = long.b:at(199 * T + i / 2000 * T)
+            low, high = math.min(low, theta), math.max(high, theta)
+        end
+        near(s.b.amplitude, (high - low) / 2, 1e-6)
+        near(s.run.b:at(s.run.t_end), long.b:at(200 * T), 1e-8)
+    end
+    -- nothing else depends on t: it comes to rest at the instants' period
+    local hold = chain(0.3):steady { theta0 = { a = 1 }, M = { a = excitation.sampled(function(t, theta) return -theta.b end, { every = 0.125 }) } }
+    equal(hold.status, "rest")
 end)
 
 test("the response of a chain has the columns of its bodies, and follows at", function()

@@ -80,6 +80,7 @@ private:
     void keep(double length);
     std::vector<Kept::Acting> acting();
     [[nodiscard]] double energy(const std::vector<double>& y) const;
+    [[nodiscard]] double energy_at(std::size_t joint, const std::vector<double>& y) const;
     bool handle(const Ending& ending);
     const Frame& frame();
 
@@ -97,6 +98,7 @@ private:
     [[nodiscard]] double excess(std::size_t joint, const Look& look, const Mode& mode, const Moment& at,
                                 Motion& towards) const;
     void slide(std::size_t joint, Motion way, bool leaving);
+    [[nodiscard]] bool moves_as_one(std::size_t joint, const Frame& frame) const;
     /// The part of a pull that is right whatever states of the user's are wrong by.
     [[nodiscard]] double known() const { return mechanics_.states_of_user() > 0 ? 1 - 3e-12 : 1; }
     [[nodiscard]] double belt_heading(std::size_t joint) const;
@@ -251,8 +253,8 @@ Engine::Engine(const AssemblyProblem& problem, AssemblyRun& result)
     h_ = longest_ / 2;
     attempts_since_ = now_.hi;
     solver_.emplace(mechanics_, problem.tolerance, longest_all_, problem.step);
-    const std::size_t columns =
-        1 + columns_of_body * n() + columns_of_link * (joints - n()) + mechanics_.states_of_user();
+    const std::size_t columns = 1 + columns_of_body * n() + columns_of_link * (joints - n()) +
+                                mechanics_.states_of_user() + (problem.joined_elsewhere ? 0 : n());
     result_.table = Growing<double>(problem.rows.count(), columns);
     if (!problem.works) return;
     for (auto of : {&Works::input, &Works::base, &Works::kinetic}) (result_.works.*of).assign(n(), 0);
@@ -392,6 +394,18 @@ void Engine::find_belt_slopes(std::optional<double> x) {
     }
 }
 
+/// Others hold its bodies together, so that it does not slip. Two that are held by belts of different velocities slip.
+bool Engine::moves_as_one(std::size_t joint, const Frame& frame) const {
+    const Joint& own = problem_.system.joints[joint];
+    if (!frame.together(own)) return false;
+    if (!mechanics_.has_belts()) return true;
+    std::vector<double> belts(mechanics_.joints()), offsets;
+    for (std::size_t j = 0; j < belts.size(); ++j) belts[j] = mechanics_.belt(j, now_.hi, side());
+    frame.offsets(belts, mode_, offsets);
+    const double first = offsets[index(own.first)], second = own.second < 0 ? 0 : offsets[index(own.second)];
+    return std::fabs(first - second - belts[joint]) <= 64 * rounding * (std::fabs(first) + std::fabs(second));
+}
+
 void Engine::slide(std::size_t joint, Motion way, bool leaving) {
     Slipping& how = mode_.friction[joint];
     how.way = way, how.leaving = leaving, how.riding = false, how.creeps = Motion::stuck;
@@ -413,6 +427,7 @@ bool Engine::decide(bool told, std::optional<Ending> released) {
     std::vector<char> asked(joints, 0), taken_back(joints, 0);
     std::vector<Motion> before(joints, Motion::stuck);  // which way it slid; stuck: it did not
     std::vector<char> was_held(joints, 0), was_creeping(joints, 0);
+    std::vector<Motion> let_go(joints, Motion::stuck);  // the way of what came to its limit at this instant, too
     const std::vector<int> leant = mode_.leans;
     for (std::size_t j = 0; j < joints; ++j) {
         if (!mechanics_.rubs(j)) continue;
@@ -434,6 +449,7 @@ bool Engine::decide(bool told, std::optional<Ending> released) {
         was_held[j] = !arrived && !(how.leaving && !how.riding) ? 1 : 0;
         was_creeping[j] = how.creeps != Motion::stuck ? 1 : 0;
         asked[j] = 1;
+        if (released && how.leaving && !how.riding && !arrived) let_go[j] = how.way;
         how.way = Motion::stuck, how.riding = how.leaving = false;
     }
     const bool free = std::none_of(asked.begin(), asked.end(), [](char one) { return one != 0; });
@@ -448,7 +464,7 @@ bool Engine::decide(bool told, std::optional<Ending> released) {
         bool grown = false;
         for (std::size_t j = 0; j < joints; ++j) {
             Slipping& how = mode_.friction[j];
-            const bool together = present.together(problem_.system.joints[j]);
+            const bool together = moves_as_one(j, present);
             if (how.riding && !together) slide(j, how.way, true);
             // What others hold together stands at slip 0 with them.
             const bool slides = mechanics_.rubs(j) && how.way != Motion::stuck && !how.riding && mode_.leans[j] == 0;
@@ -475,8 +491,10 @@ bool Engine::decide(bool told, std::optional<Ending> released) {
             const double beyond = excess(j, found, mode_, here(), towards);
             if (std::isnan(beyond)) return fail(Outcome::excitation_not_finite);
             const double size = n() > 1 ? 8 * rounding * torque_size(j) : 0;
-            if (released && released->which == j && std::fabs(beyond) <= nearly * torque_size(j) + 2 * found.blurred) {
-                worst = j, most_beyond = model::never, way = static_cast<Motion>(released->side);
+            const bool own = released && released->which == j;
+            if ((own || let_go[j] != Motion::stuck) &&
+                std::fabs(beyond) <= nearly * torque_size(j) + 2 * found.blurred) {
+                worst = j, most_beyond = model::never, way = own ? static_cast<Motion>(released->side) : let_go[j];
                 continue;
             }
             if (!(beyond > size)) continue;
@@ -484,7 +502,8 @@ bool Engine::decide(bool told, std::optional<Ending> released) {
             if (worst == joints || part > most_beyond) worst = j, most_beyond = part, way = towards;
         }
         if (worst < joints) {
-            if (most_beyond == model::never) released.reset();
+            if (released && released->which == worst) released.reset();
+            let_go[worst] = Motion::stuck;
             if (Slipping& how = mode_.friction[worst]; how.creeps != Motion::stuck && way != how.creeps) {
                 how.creeps = Motion::stuck;
                 if (told) tell(EventKind::stick, static_cast<int>(worst));
@@ -502,7 +521,7 @@ bool Engine::decide(bool told, std::optional<Ending> released) {
             } else {
                 slide(worst, way, true);
                 // In a loop others may hold on, while this one gives all that it can.
-                if (frame().together(problem_.system.joints[worst])) {
+                if (moves_as_one(worst, frame())) {
                     mode_.friction[worst].riding = true, mode_.friction[worst].leaving = false;
                 }
             }
@@ -1099,7 +1118,8 @@ double Engine::gap(std::size_t joint, double place) const {
 void Engine::keep(double length) {
     if (!(length > 0) || (!problem_.limits.dense && longest_delay_ == 0)) return;
     Kept kept{.start = segment_.start, .h = segment_.h, .length = length, .begin = y_, .series = segment_.series};
-    if (problem_.limits.dense && problem_.joined_elsewhere) kept.acting = acting();  // for the legs of its course
+    // For the legs of its course.
+    if (problem_.limits.dense && (problem_.joined_elsewhere || problem_.works)) kept.acting = acting();
     history_->add(std::move(kept));
     if (!problem_.limits.dense) history_->forget(now_.hi - 2 * longest_delay_);
 }
@@ -1144,13 +1164,17 @@ std::vector<Kept::Acting> Engine::acting() {
 /// Of the motion and of springs.
 double Engine::energy(const std::vector<double>& y) const {
     double all = 0;
-    for (std::size_t i = 0; i < n(); ++i) all += problem_.system.bodies[i].inertia * y[n() + i] * y[n() + i] / 2;
-    for (std::size_t j = 0; j < mechanics_.joints(); ++j) {
-        const Joint& joint = problem_.system.joints[j];
-        const double q = mechanics_.angle(j, y);
-        all += joint.stiffness * q * q / 2 + joint.spring.energy(q);
-    }
+    for (std::size_t j = 0; j < mechanics_.joints(); ++j) all += energy_at(j, y);
     return all;
+}
+
+/// What a joint stores, with its body's kinetic energy where it is that of a body with the ground.
+double Engine::energy_at(std::size_t joint, const std::vector<double>& y) const {
+    const Joint& own = problem_.system.joints[joint];
+    const double q = mechanics_.angle(joint, y);
+    const double kinetic =
+        joint < n() ? problem_.system.bodies[joint].inertia * y[n() + joint] * y[n() + joint] / 2 : 0;
+    return kinetic + own.stiffness * q * q / 2 + own.spring.energy(q);
 }
 
 bool Engine::handle(const Ending& ending) {
@@ -1765,7 +1789,10 @@ bool Engine::act(std::size_t event, const std::vector<std::size_t>& told) {
         for (std::size_t i = 0; i < n(); ++i) {
             if (y_[i] != before[i]) low_[i] = 0;
         }
-        history_->add_jump(now_.hi, 0, {.acts = energy(y_) - energy(before)});
+        for (std::size_t j = 0; j < mechanics_.joints(); ++j) {
+            const double work = energy_at(j, y_) - energy_at(j, before);
+            if (work != 0 || j == 0) history_->add_jump(now_.hi, j, {.acts = work});
+        }
         echo(now_.hi, 1);
         const bool moved = !std::equal(y_.begin(), y_.begin() + static_cast<std::ptrdiff_t>(2 * n()), before.begin());
         if (moved) {
@@ -1884,9 +1911,9 @@ bool Engine::put_row(double t, double x) {
     if (x > -1) segment_.state(x, y);
     keep_within_walls(y);
     const Moment at{t, x <= -1 ? side() : Side::at, y};
-    bool holds = false;
-    for (std::size_t j = 0; j < mechanics_.joints(); ++j) holds = holds || mode_.holds(j);
-    if (holds && !look(at, mode_, frame(), look_, x > -1 ? std::optional(x) : std::nullopt)) return false;
+    bool needs_look = !problem_.joined_elsewhere;
+    for (std::size_t j = 0; j < mechanics_.joints(); ++j) needs_look = needs_look || mode_.holds(j);
+    if (needs_look && !look(at, mode_, frame(), look_, x > -1 ? std::optional(x) : std::nullopt)) return false;
     double* cell = result_.table.writable() + next_row_;
     const std::size_t stride = problem_.rows.count();
     const auto put = [&](double value) {
@@ -1912,6 +1939,7 @@ bool Engine::put_row(double t, double x) {
         good = put(friction(j, at, look_)) && good;
     }
     for (std::size_t k = 0; k < mechanics_.states_of_user(); ++k) good = put(y[2 * n() + k]) && good;
+    for (std::size_t i = 0; i < n() && !problem_.joined_elsewhere; ++i) good = put(look_.accelerations[i]) && good;
     if (good) ++next_row_;
     return good;
 }

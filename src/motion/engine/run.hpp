@@ -48,7 +48,8 @@ struct Works {
 };
 
 struct AssemblyRun {
-    /// t; theta, velocity, M, friction, damping of each body; theta, velocity, torque, friction of each link; states.
+    /// t; theta, velocity, M, friction, damping of each body; theta, velocity, torque, friction of each link; states;
+    /// accelerations of the bodies, unless joined_elsewhere.
     Growing<double> table;
     std::vector<JointEvent> events;
     model::Outcome outcome = model::Outcome::reached_end;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <numbers>
 #include <utility>
 
 #include "text/characters.hpp"
@@ -23,20 +24,96 @@ constexpr const char* grey_ink = "#444444";
 constexpr const char* moving_colour = "#0072B2";
 constexpr const char* stuck_colour = "#D55E00";
 
-class AnimatedSvg {
-public:
-    explicit AnimatedSvg(const Scene& scene)
-        : scene_(scene), first_(scene.spring ? 110 : 40), last_(sheet_width - (scene.walls ? 44 : 32)) {}
+/// A sheet, and what moves on it.
+class Sheet {
+protected:
+    explicit Sheet(const Scene& clock) : clock_(clock) {}
 
-    std::string text() {
-        const std::string title = title_of(scene_);
+    template <class... Arguments>
+    void add(fmt::format_string<Arguments...> format, Arguments&&... arguments) {
+        all_ += fmt::format(format, std::forward<Arguments>(arguments)...);
+    }
+
+    void begin(double width, double height, const std::string& seen) {
+        const std::string title = title_of(clock_);
         add("<svg xmlns=\"http://www.w3.org/2000/svg\" role=\"img\" aria-label=\"{0}\" viewBox=\"0 0 {1} {2}\" "
             "width=\"{1}\" height=\"{2}\" font-family=\"Arial, sans-serif\" font-size=\"11\" fill=\"{3}\">\n<title>{0}</title>\n",
-            title, sheet_width, sheet_height, grey_ink);
-        add("<desc>A mass on {}{}{}; it is orange while it sticks. Below, theta over t.</desc>\n",
-            scene_.belt ? "a moving belt" : "a surface with dry friction", scene_.spring ? ", with a spring" : "",
-            scene_.walls ? ", between walls" : "");
-        add("<rect width=\"{}\" height=\"{}\" fill=\"#ffffff\"/>\n", sheet_width, sheet_height);
+            title, width, height, grey_ink);
+        add("<desc>{}</desc>\n<rect width=\"{}\" height=\"{}\" fill=\"#ffffff\"/>\n", text::html(seen), width, height);
+    }
+
+    template <class Value>
+    [[nodiscard]] static std::string values(const Scene& scene, const Value& value) {
+        std::string list;
+        for (const Frame& frame : scene.frames) {
+            if (!list.empty()) list += ';';
+            list += value(frame);
+        }
+        return list;
+    }
+
+    /// animateTransform of that type over all frames.
+    template <class Value>
+    void add_motion(const char* attribute, const char* type, const Scene& scene, const Value& value) {
+        // What plays no animations, such as a printer, shows the start: the attribute of the element that was begun.
+        const std::string start = value(scene.frames.front());
+        all_.insert(all_.size() - 1, fmt::format(" {}=\"{}({})\"", attribute, type, start));
+        add("<animateTransform attributeName=\"{}\" type=\"{}\" dur=\"{:.3f}s\" repeatCount=\"indefinite\" values=\"{}\"/>",
+            attribute, type, clock_.seconds, values(scene, value));
+    }
+
+    /// Only where it changes.
+    void add_colours(const char* attribute, const Scene& scene, const char* moving) {
+        std::string times, colours;
+        const auto count = static_cast<double>(scene.frames.size() - 1);
+        for (std::size_t i = 0; i < scene.frames.size(); ++i) {
+            const bool stuck = scene.frames[i].stuck;
+            if (i > 0 && stuck == scene.frames[i - 1].stuck) continue;
+            times += fmt::format("{}{:.5g}", i == 0 ? "" : ";", static_cast<double>(i) / count);
+            colours += fmt::format("{}{}", i == 0 ? "" : ";", stuck ? stuck_colour : moving);
+        }
+        add("<animate attributeName=\"{}\" calcMode=\"discrete\" dur=\"{:.3f}s\" repeatCount=\"indefinite\" keyTimes=\"{}\" "
+            "values=\"{}\"/>",
+            attribute, clock_.seconds, times, colours);
+    }
+
+    void words(double at_x, double at_y, const char* anchor, const std::string& text, const char* colour = grey_ink) {
+        add("<text x=\"{}\" y=\"{}\" text-anchor=\"{}\" fill=\"{}\">{}</text>\n", at_x, at_y, anchor, colour,
+            text::html(text::displayable(text)));
+    }
+
+    /// A line of so many corners that is drawn anew for each frame: a stretched one would have stretched strokes.
+    template <class Points>
+    void add_line(const std::string& style, const Scene& scene, const Points& points) {
+        add("<polyline fill=\"none\" {} points=\"{}\">", style, points(scene.frames.front()));
+        add("<animate attributeName=\"points\" dur=\"{:.3f}s\" repeatCount=\"indefinite\" values=\"{}\"/>",
+            clock_.seconds, values(scene, points));
+    }
+    /// From one place to another, at this height.
+    [[nodiscard]] static std::string spring_points(double from, double to, double middle, double half) {
+        std::string list;
+        for (const Point& corner : spring_corners(9)) {
+            fmt::format_to(std::back_inserter(list), "{:.1f},{:.0f} ", from + (to - from) * corner.x,
+                           middle + half * corner.y);
+        }
+        list.pop_back();
+        return list;
+    }
+
+    const Scene& clock_;
+    std::string all_;
+};
+
+class AnimatedSvg : Sheet {
+public:
+    explicit AnimatedSvg(const Scene& scene)
+        : Sheet(scene), scene_(scene), first_(scene.spring ? 110 : 40), last_(sheet_width - (scene.walls ? 44 : 32)) {}
+
+    std::string text() {
+        begin(sheet_width, sheet_height,
+              fmt::format("A mass on {}{}{}; it is orange while it sticks. Below, theta over t.",
+                          scene_.belt ? "a moving belt" : "a surface with dry friction",
+                          scene_.spring ? ", with a spring" : "", scene_.walls ? ", between walls" : ""));
         add_surface();
         add_walls();
         if (scene_.spring) add_spring();
@@ -46,38 +123,13 @@ public:
     }
 
 private:
-    template <class... Arguments>
-    void add(fmt::format_string<Arguments...> format, Arguments&&... arguments) {
-        all_ += fmt::format(format, std::forward<Arguments>(arguments)...);
-    }
-
     [[nodiscard]] double x(double theta) const { return first_ + scene_.at(theta) * (last_ - first_); }
-
-    template <class Value>
-    [[nodiscard]] std::string values(const Value& value) const {
-        std::string list;
-        for (const Frame& frame : scene_.frames) {
-            if (!list.empty()) list += ';';
-            list += value(frame);
-        }
-        return list;
-    }
-
-    /// animateTransform of that type over all frames.
-    template <class Value>
-    void add_motion(const char* attribute, const char* type, const Value& value) {
-        // What plays no animations, such as a printer, shows the start: the attribute of the element that was begun.
-        const std::string start = value(scene_.frames.front());
-        all_.insert(all_.size() - 1, fmt::format(" {}=\"{}({})\"", attribute, type, start));
-        add("<animateTransform attributeName=\"{}\" type=\"{}\" dur=\"{:.3f}s\" repeatCount=\"indefinite\" values=\"{}\"/>",
-            attribute, type, scene_.seconds, values(value));
-    }
 
     void add_surface() {
         add("<defs><pattern id=\"floor\" width=\"{}\" height=\"10\" patternUnits=\"userSpaceOnUse\" y=\"{}\">",
             hatch_width, svg_floor);
         if (scene_.belt) {
-            add_motion("patternTransform", "translate",
+            add_motion("patternTransform", "translate", scene_,
                        [&](const Frame& f) { return fmt::format("{:.1f}", scene_.shift(f) * (last_ - first_)); });
         }
         add("<path d=\"M0,10 L{},0\" stroke=\"{}\" stroke-width=\"0.8\"/>", hatch_width, grey_ink);
@@ -99,48 +151,20 @@ private:
         }
     }
 
-    /// Drawn anew for each frame: a stretched one would have stretched strokes.
     void add_spring() {
-        constexpr double anchor = 8, middle = (mass_top + svg_floor) / 2 - 4, half = 9;
-        const std::vector<Point> corners = spring_corners(9);
-        const auto points = [&](const Frame& frame) {
-            const double length = x(frame.theta) - mass_width / 2 - anchor;
-            std::string list;
-            for (const Point& corner : corners) {
-                fmt::format_to(std::back_inserter(list), "{:.1f},{:.0f} ", anchor + length * corner.x,
-                               middle + half * corner.y);
-            }
-            list.pop_back();
-            return list;
-        };
+        constexpr double anchor = 8, middle = (mass_top + svg_floor) / 2 - 4;
         add("<path d=\"M{},{} V{}\" stroke=\"{}\" stroke-width=\"3\"/>\n", anchor, mass_top - 4, svg_floor, grey_ink);
-        add("<polyline fill=\"none\" stroke=\"{}\" stroke-width=\"1.3\" points=\"{}\">", grey_ink,
-            points(scene_.frames.front()));
-        add("<animate attributeName=\"points\" dur=\"{:.3f}s\" repeatCount=\"indefinite\" values=\"{}\"/></polyline>\n",
-            scene_.seconds, values(points));
+        add_line(fmt::format("stroke=\"{}\" stroke-width=\"1.3\"", grey_ink), scene_,
+                 [&](const Frame& frame) { return spring_points(anchor, x(frame.theta) - mass_width / 2, middle, 9); });
+        all_ += "</polyline>\n";
     }
 
     void add_mass() {
         add("<rect x=\"{:.1f}\" y=\"{}\" width=\"{}\" height=\"{}\" rx=\"3\" fill=\"{}\">", -mass_width / 2, mass_top,
             mass_width, svg_floor - mass_top, moving_colour);
-        add_motion("transform", "translate", [&](const Frame& f) { return fmt::format("{:.1f}", x(f.theta)); });
-        add_colours();
+        add_motion("transform", "translate", scene_, [&](const Frame& f) { return fmt::format("{:.1f}", x(f.theta)); });
+        add_colours("fill", scene_, moving_colour);
         all_ += "</rect>\n";
-    }
-
-    /// Only where it changes.
-    void add_colours() {
-        std::string times, colours;
-        const auto count = static_cast<double>(scene_.frames.size() - 1);
-        for (std::size_t i = 0; i < scene_.frames.size(); ++i) {
-            const bool stuck = scene_.frames[i].stuck;
-            if (i > 0 && stuck == scene_.frames[i - 1].stuck) continue;
-            times += fmt::format("{}{:.5g}", i == 0 ? "" : ";", static_cast<double>(i) / count);
-            colours += fmt::format("{}{}", i == 0 ? "" : ";", stuck ? stuck_colour : moving_colour);
-        }
-        add("<animate attributeName=\"fill\" calcMode=\"discrete\" dur=\"{:.3f}s\" repeatCount=\"indefinite\" keyTimes=\"{}\" "
-            "values=\"{}\"/>",
-            scene_.seconds, times, colours);
     }
 
     void add_graph() {
@@ -156,10 +180,6 @@ private:
         add("<path d=\"M{0},{1} V{2} H{3}\" fill=\"none\" stroke=\"{4}\" stroke-width=\"0.8\"/>\n", graph_left,
             graph_top - 4, graph_bottom + 4, graph_right, grey_ink);
         add("<path d=\"{}\" fill=\"none\" stroke=\"{}\" stroke-width=\"1.2\"/>\n", path, moving_colour);
-        const auto words = [&](double at_x, double at_y, const char* anchor, const std::string& text) {
-            add("<text x=\"{}\" y=\"{}\" text-anchor=\"{}\">{}</text>\n", at_x, at_y, anchor,
-                text::html(text::displayable(text)));
-        };
         words(graph_left - 4, graph_top + 4, "end", fmt::format("{:.3g}", scene_.reach.high));
         words(graph_left - 4, graph_bottom + 4, "end", fmt::format("{:.3g}", scene_.reach.low));
         words(graph_left, sheet_height - 6, "middle", fmt::format("{:.6g}", scene_.frames.front().t));
@@ -168,7 +188,7 @@ private:
               scene_.t_unit.empty() ? "t" : fmt::format("t, {}", scene_.t_unit));
         words(graph_left + 4, graph_top - 8, "start", fmt::format("θ, {}", scene_.theta_unit));
         add("<circle r=\"3.5\" fill=\"{}\">", stuck_colour);
-        add_motion("transform", "translate", [&](const Frame& f) {
+        add_motion("transform", "translate", scene_, [&](const Frame& f) {
             const auto place = static_cast<std::size_t>(&f - scene_.frames.data());
             return fmt::format("{:.1f},{:.1f}", graph_x(place), graph_y(f.theta));
         });
@@ -177,13 +197,167 @@ private:
 
     const Scene& scene_;
     const double first_, last_;  // of the middle of the mass
-    std::string all_;
+};
+
+/// Several bodies, each in a cell of its own.
+class RigSvg : Sheet {
+public:
+    explicit RigSvg(const RigScene& rig)
+        : Sheet(rig.bodies.front()),
+          rig_(rig),
+          cell_(std::max(most_cell / std::sqrt(static_cast<double>(rig.bodies.size())), least_cell)),
+          width_(std::max(sheet_width, cell_ * static_cast<double>(rig.bodies.size()) + 2 * margin)) {}
+
+    std::string text() {
+        begin(
+            width_, tall,
+            fmt::format("{} bodies {}; each is orange while it sticks, and so is what links them. Below, theta over t.",
+                        rig_.bodies.size(), rig_.discs ? "as discs on one axis" : "side by side"));
+        for (std::size_t i = 0; i < rig_.bodies.size() && !rig_.discs; ++i) add_floor(i);
+        for (std::size_t k = 0; k < rig_.links.size(); ++k) add_link(rig_.links[k], k);
+        for (std::size_t i = 0; i < rig_.bodies.size(); ++i) rig_.discs ? add_disc(i) : add_block(i);
+        add_graph();
+        return all_ + "</svg>\n";
+    }
+
+private:
+    static constexpr double margin = 20, tall = 330, least_cell = 76, most_cell = 240;
+    static constexpr double block = 36, top = 74, floor = 106, middle = 86, radius = 30;
+    static constexpr double graph_low = 306, graph_high = 160;
+    static constexpr const char* colours[] = {"#0072B2", "#009E73", "#CC79A7", "#56B4E9", "#E69F00", "#000000"};
+
+    [[nodiscard]] const char* colour(std::size_t i) const { return colours[i % std::size(colours)]; }
+    [[nodiscard]] double centre(std::size_t i) const {
+        const double all = cell_ * static_cast<double>(rig_.bodies.size());
+        return (width_ - all) / 2 + cell_ * (static_cast<double>(i) + 0.5);
+    }
+    /// The springs on the left keep some room.
+    [[nodiscard]] double travel() const { return std::max(cell_ - block - 44, 8.0); }
+    [[nodiscard]] double shift(double theta) const {
+        const Interval& reach = rig_.bodies.front().reach;
+        return (theta - (reach.low + reach.high) / 2) / reach.length() * travel();
+    }
+    [[nodiscard]] double x(std::size_t i, const Frame& frame) const {
+        return rig_.discs ? centre(i) : centre(i) + 12 + shift(frame.theta);
+    }
+
+    void add_floor(std::size_t i) {
+        const Scene& body = rig_.bodies[i];
+        add("<defs><pattern id=\"floor{}\" width=\"{}\" height=\"8\" patternUnits=\"userSpaceOnUse\" y=\"{}\">", i,
+            hatch_width, floor);
+        if (body.belt) {
+            add_motion("patternTransform", "translate", body,
+                       [&](const Frame& f) { return fmt::format("{:.1f}", body.shift(f) * travel()); });
+        }
+        add("<path d=\"M0,8 L{},0\" stroke=\"{}\" stroke-width=\"0.8\"/></pattern></defs>\n", hatch_width, grey_ink);
+        add("<rect x=\"{0:.1f}\" y=\"{1}\" width=\"{2:.1f}\" height=\"8\" fill=\"url(#floor{3})\"/>"
+            "<path d=\"M{0:.1f},{1} h{2:.1f}\" stroke=\"{4}\" stroke-width=\"{5}\"/>\n",
+            centre(i) - cell_ / 2 + 1, floor, cell_ - 2, i, grey_ink, body.belt ? 2.5 : 1);
+        if (!body.spring) return;
+        const double anchor = centre(i) - cell_ / 2 + 3;
+        add("<path d=\"M{:.1f},{} V{}\" stroke=\"{}\" stroke-width=\"2\"/>\n", anchor, floor - 12, floor, grey_ink);
+        add_line(fmt::format("stroke=\"{}\" stroke-width=\"0.9\"", grey_ink), body,
+                 [&](const Frame& f) { return spring_points(anchor, x(i, f) - block / 2, floor - 6, 3); });
+        all_ += "</polyline>\n";
+    }
+
+    void add_block(std::size_t i) {
+        add("<rect x=\"{:.1f}\" y=\"{}\" width=\"{}\" height=\"{}\" rx=\"3\" fill=\"{}\">", -block / 2, top, block,
+            floor - top, colour(i));
+        add_motion("transform", "translate", rig_.bodies[i],
+                   [&](const Frame& f) { return fmt::format("{:.1f}", x(i, f)); });
+        add_colours("fill", rig_.bodies[i], colour(i));
+        all_ += "</rect>\n";
+        words(centre(i), floor + 24, "middle", rig_.bodies[i].name, colour(i));
+    }
+
+    /// Seen from its face, with a mark that goes round.
+    void add_disc(std::size_t i) {
+        add("<circle cx=\"{:.1f}\" cy=\"{}\" r=\"{}\" fill=\"{}\">", centre(i), middle, radius, colour(i));
+        add_colours("fill", rig_.bodies[i], colour(i));
+        all_ += "</circle>\n";
+        const double at = centre(i);
+        add("<path d=\"M{:.1f},{} V{}\" stroke=\"#ffffff\" stroke-width=\"4\">", at, middle, middle + 3 - radius);
+        add_motion("transform", "rotate", rig_.bodies[i], [at](const Frame& f) {
+            return fmt::format("{:.1f},{:.1f},{}", f.theta * 180 / std::numbers::pi, at, middle);
+        });
+        all_ += "</path>\n";
+        words(centre(i), middle + radius + 16, "middle", rig_.bodies[i].name, colour(i));
+    }
+
+    /// Between neighbours straight, past others above them.
+    void add_link(const RigScene::Link& link, std::size_t k) {
+        const std::size_t left = std::min(link.first, link.second), right = std::max(link.first, link.second);
+        const Scene &a = rig_.bodies[left], &b = rig_.bodies[right];
+        const double half = rig_.discs ? radius : block / 2;
+        const double above = 12 + 9 * static_cast<double>(k % 5);
+        const bool direct = right == left + 1 && first_between(left, k);
+        const auto points = [&](const Frame& frame) {
+            const auto at = static_cast<std::size_t>(&frame - link.scene.frames.data());
+            const double from = x(left, a.frames[at]), to = x(right, b.frames[at]);
+            if (direct && link.scene.spring) return spring_points(from + half, to - half, middle, 6);
+            if (direct) return fmt::format("{:.1f},{} {:.1f},{}", from + half, middle, to - half, middle);
+            return fmt::format("{0:.1f},{1} {0:.1f},{2} {3:.1f},{2} {3:.1f},{1}", from, top, above, to);
+        };
+        add_line(fmt::format("stroke=\"{}\" stroke-width=\"{}\"", grey_ink, link.scene.spring ? 1.2 : 3), link.scene,
+                 points);
+        add_colours("stroke", link.scene, grey_ink);
+        all_ += "</polyline>\n";
+        direct ? words((centre(left) + centre(right)) / 2, middle - 14, "middle", link.scene.name)
+               : words((centre(left) + centre(right)) / 2, above - 2, "middle", link.scene.name);
+    }
+    /// Two links between the same bodies would hide each other.
+    [[nodiscard]] bool first_between(std::size_t left, std::size_t k) const {
+        return std::none_of(rig_.links.begin(), rig_.links.begin() + static_cast<std::ptrdiff_t>(k),
+                            [left](const RigScene::Link& other) {
+                                return std::min(other.first, other.second) == left &&
+                                       std::max(other.first, other.second) == left + 1;
+                            });
+    }
+
+    void add_graph() {
+        const double right = width_ - 16;
+        const auto graph_x = [&](std::size_t i) {
+            return graph_left +
+                   (right - graph_left) * static_cast<double>(i) / static_cast<double>(clock_.frames.size() - 1);
+        };
+        add("<path d=\"M{0},{1} V{2} H{3}\" fill=\"none\" stroke=\"{4}\" stroke-width=\"0.8\"/>\n", graph_left,
+            graph_high - 4, graph_low + 4, right, grey_ink);
+        for (std::size_t i = 0; i < rig_.bodies.size(); ++i) {
+            const Scene& body = rig_.bodies[i];
+            std::string path;
+            for (std::size_t k = 0; k < body.frames.size(); ++k) {
+                path += fmt::format("{}{:.1f},{:.1f}", k == 0 ? "M" : " L", graph_x(k),
+                                    graph_low - body.at(body.frames[k].theta) * (graph_low - graph_high));
+            }
+            add("<path d=\"{}\" fill=\"none\" stroke=\"{}\" stroke-width=\"1.2\"/>\n", path, colour(i));
+        }
+        words(graph_left - 4, graph_high + 4, "end", fmt::format("{:.3g}", clock_.reach.high));
+        words(graph_left - 4, graph_low + 4, "end", fmt::format("{:.3g}", clock_.reach.low));
+        words(graph_left, tall - 6, "middle", fmt::format("{:.6g}", clock_.frames.front().t));
+        words(right, tall - 6, "end", fmt::format("{:.6g}", clock_.frames.back().t));
+        words((graph_left + right) / 2, tall - 6, "middle",
+              clock_.t_unit.empty() ? "t" : fmt::format("t, {}", clock_.t_unit));
+        words(graph_left + 4, graph_high - 8, "start", fmt::format("θ, {}", clock_.theta_unit));
+        add("<path d=\"M0,{} V{}\" stroke=\"{}\" stroke-width=\"1.2\">", graph_high - 4, graph_low + 4, stuck_colour);
+        add_motion("transform", "translate", clock_, [&](const Frame& f) {
+            return fmt::format("{:.1f}", graph_x(static_cast<std::size_t>(&f - clock_.frames.data())));
+        });
+        all_ += "</path>\n";
+    }
+
+    const RigScene& rig_;
+    const double cell_, width_;
 };
 
 }  // namespace
 
 std::string title_of(const Scene& scene) {
     return fmt::format("A run in motion, t = {:.6g} to {:.6g}", scene.frames.front().t, scene.frames.back().t);
+}
+
+std::string animated_svg(const RigScene& rig) {
+    return RigSvg(rig).text();
 }
 
 std::string animated_svg(const Scene& scene) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace dinal::plots::animation {
 namespace {
@@ -72,6 +73,48 @@ text::Expected<Scene> scene_of(const RunData& run, const model::Excitation* belt
     }
     scene.reach = reach_of(scene.frames, *run.trajectory, scene.walls);
     return scene;
+}
+
+RigScene side_by_side(std::vector<Scene> bodies, std::vector<RigScene::Link> links) {
+    RigScene rig;
+    std::vector<std::size_t> place(bodies.size(), bodies.size());  // where each body comes to stand
+    const auto is_end = [&](std::size_t i) {
+        return std::count_if(links.begin(), links.end(),
+                             [i](const RigScene::Link& link) { return link.first == i || link.second == i; }) < 2;
+    };
+    const auto put = [&](std::size_t i) {
+        place[i] = rig.bodies.size();
+        rig.bodies.push_back(std::move(bodies[i]));
+    };
+    while (rig.bodies.size() < bodies.size()) {
+        std::size_t next = bodies.size();
+        for (std::size_t i = bodies.size(); i-- > 0;) {
+            if (place[i] == bodies.size() && (next == bodies.size() || is_end(i) || !is_end(next))) next = i;
+        }
+        put(next);
+        for (bool found = true; found;) {
+            found = false;
+            for (const RigScene::Link& link : links) {
+                const std::size_t last = rig.bodies.size() - 1;
+                const bool from_first = place[link.first] == last, from_second = place[link.second] == last;
+                const std::size_t other = from_first ? link.second : link.first;
+                if ((!from_first && !from_second) || place[other] != bodies.size()) continue;
+                put(other);
+                found = true;
+                break;
+            }
+        }
+    }
+    for (RigScene::Link& link : links) link.first = place[link.first], link.second = place[link.second];
+    rig.links = std::move(links);
+    Interval all = rig.bodies.front().reach;
+    for (const Scene& body : rig.bodies) {
+        all = {std::min(all.low, body.reach.low), std::max(all.high, body.reach.high)};
+    }
+    constexpr double turn = 2 * std::numbers::pi;
+    rig.discs = all.length() > turn;
+    for (Scene& body : rig.bodies) body.reach = all;
+    return rig;
 }
 
 std::vector<Point> spring_corners(int windings) {

@@ -28,6 +28,7 @@ struct Scene {
     std::optional<model::Walls> walls = {};
     bool spring = true;
     bool belt = false;
+    std::string name = {};  ///< of one among several bodies
     std::string theta_unit = "rad", t_unit = {};
 
     [[nodiscard]] double at(double theta) const { return (theta - reach.low) / reach.length(); }
@@ -42,6 +43,20 @@ struct Take {
     double frames_per_second = 25;
     [[nodiscard]] double count() const { return seconds * frames_per_second; }
 };
+
+/// Several bodies at the same times: side by side, or discs on one axis where one goes round.
+struct RigScene {
+    struct Link {
+        Scene scene;  ///< of the angle between its bodies
+        std::size_t first = 0, second = 0;
+    };
+    std::vector<Scene> bodies;  ///< with one reach
+    std::vector<Link> links;
+    bool discs = false;
+};
+
+/// Puts neighbours side by side and gives all one reach; discs are turned into one turn.
+RigScene side_by_side(std::vector<Scene> bodies, std::vector<RigScene::Link> links);
 
 /// The motion of the run between its rows, too. `belt` is the velocity of the surface, if it has one. Fails when the
 /// run does not tell where it was, or go_on() says no.

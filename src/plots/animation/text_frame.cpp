@@ -61,8 +61,9 @@ std::string status(const Scene& scene, const Frame& frame, const FrameFormat& fo
     const double step = (scene.frames.back().t - scene.frames.front().t) / static_cast<double>(scene.frames.size() - 1);
     const int digits = std::clamp(static_cast<int>(std::ceil(-std::log10(std::max(step, 1e-12)) - 1e-9)), 0, 9);
     const std::string t_unit = scene.t_unit.empty() ? "" : " " + scene.t_unit;
-    const std::string line = fmt::format("t = {:.{}f}{}  θ = {:+.3g} {}  {}", frame.t, digits, t_unit, frame.theta,
-                                         scene.theta_unit, frame.stuck ? "stuck" : "");
+    const std::string line =
+        fmt::format("{}{}t = {:.{}f}{}  θ = {:+.3g} {}  {}", scene.name, scene.name.empty() ? "" : "  ", frame.t,
+                    digits, t_unit, frame.theta, scene.theta_unit, frame.stuck ? "stuck" : "");
     const std::string clean = text::displayable(line);
     std::string shown = format.charset == Charset::braille ? clean : text::in_ascii(clean);
     if (text::columns(shown) <= static_cast<std::size_t>(format.columns)) return shown;
