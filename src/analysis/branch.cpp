@@ -1,7 +1,6 @@
 #include "analysis/branch.hpp"
 
-#include <Eigen/Geometry>
-#include <Eigen/SVD>
+#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 
@@ -9,7 +8,7 @@ namespace dinal::analysis {
 namespace {
 
 // Lengths along the curve are measured in amplitudes of the motion and in ranges of the parameter.
-constexpr double first_step = 0.01, longest_step = 0.08, shortest_step = 1e-6;
+constexpr double first_step = 0.01, longest_step = 0.08, shortest_step = 1e-9;
 constexpr double closes = 1e-11;  // of the motion: what a point of the branch may miss
 constexpr double nearly_closes = 1e-9;
 constexpr double straight = 0.9;      // the cosine of how far the branch may turn in a step
@@ -17,92 +16,184 @@ constexpr double corner_step = 1e-3;  // so short a step has found a corner, as 
 constexpr double creeping = 1e-4;     // with so short steps for so long it comes to an end
 constexpr int most_creeps = 40;
 constexpr double least_slope = 1e-7;  // of a fold: dp/ds
+constexpr double dying = 1e-2;        // of the greatest motion: one that is smaller is not looked at more closely
+constexpr double vanishes = 1e-3;     // a cycle so small is a rest
+constexpr double boundless = 1e8;     // a motion so many times as large comes to a resonance, where there is none
+
+/// Zero where a multiplier is -1, and where a pair of them is on the unit circle.
+double doubling_test(const Eigen::MatrixXd& D) {
+    return (D + Eigen::MatrixXd::Identity(D.rows(), D.cols())).determinant();
+}
+double pair_test(const Eigen::MatrixXd& D) {
+    if (D.rows() == 2) return D.determinant() - 1;
+    const Eigen::VectorXcd m = D.eigenvalues();
+    std::complex<double> product = 1;
+    for (Eigen::Index i = 0; i < m.size(); ++i) {
+        for (Eigen::Index j = 0; j < i; ++j) product *= m[i] * m[j] - 1.0;
+    }
+    return product.real();
+}
+
+/// The pair whose product is nearest to 1 is complex: two real ones change nothing.
+bool has_complex_pair(const Eigen::MatrixXd& D) {
+    const Eigen::VectorXcd m = D.eigenvalues();
+    double least = 0.1;
+    bool complex = false;
+    for (Eigen::Index i = 0; i < m.size(); ++i) {
+        for (Eigen::Index j = 0; j < i; ++j) {
+            const double off = std::abs(m[i] * m[j] - 1.0);
+            if (off < least) least = off, complex = std::fabs(m[i].imag()) > 1e-6;
+        }
+    }
+    return complex;
+}
+
+/// At such a corner three branches meet, and the one of symmetric motions goes both ways.
+bool becomes_symmetric(const SteadyMotion& from, const SteadyMotion& to) {
+    const auto is_even = [](const SteadyMotion& motion) {
+        return std::fabs(motion.high + motion.low) < 1e-6 * (motion.high - motion.low);
+    };
+    return is_even(to) && !is_even(from);
+}
+
+class PeriodCircuit final : public Circuit {
+public:
+    PeriodCircuit(const Family& family, double p, const SteadyMotion& motion, int periods,
+                  const motion::Monitor& monitor)
+        : family_(family), monitor_(monitor), periods_(periods) {
+        half_ = motion.symmetric && periods == 1;
+        const SteadyQuestion question = family_(p);
+        first_ = place_of(motion.start, map(question).omega());
+    }
+
+    Lap lap(const Eigen::VectorXd& x, double p) override {
+        const SteadyQuestion question = family_(p);
+        const PeriodMap map = this->map(question);
+        Lap lap{.to = {}, .step = map(Place(x))};
+        lap.to = sign() * lap.step.to;
+        lap.finished = lap.step.finished;
+        if (lap.step.differentiable) lap.derivative = sign() * lap.step.derivative;
+        see(lap.step.outcome, map.contradiction());
+        return lap;
+    }
+
+    SteadyMotion motion(const Eigen::VectorXd& x, double p, const Lap& lap,
+                        const Eigen::MatrixXd& derivative) override {
+        const SteadyQuestion question = family_(p);
+        FixedPointSearch::Try found{.x = x, .off = lap.to - x, .step = lap.step, .size = units(x, lap, {})[0]};
+        found.step.derivative = sign() * derivative;
+        found.step.differentiable = true;
+        return facts_of(question, map(question), found, periods_, half_);
+    }
+
+    [[nodiscard]] Eigen::VectorXd units(const Eigen::VectorXd& x, const Lap& lap,
+                                        const SteadyMotion& /*motion*/) const override {
+        const double size = std::max({x.norm(), lap.to.norm(), lap.step.high - lap.step.low, 1e-300});
+        return Eigen::Vector2d(size, size);
+    }
+    [[nodiscard]] double difference() const override { return 1e-6; }
+
+private:
+    [[nodiscard]] double sign() const { return half_ ? -1 : 1; }
+    [[nodiscard]] PeriodMap map(const SteadyQuestion& question) const {
+        const double length = half_ ? question.drive.period / 2 : periods_ * question.drive.period;
+        return {question.system, question.excitation, question.drive.start, length, monitor_};
+    }
+
+    const Family& family_;
+    const motion::Monitor& monitor_;
+    int periods_;
+};
 
 }  // namespace
 
-FixedPointSearch::Try BranchWalk::look(const Place& x, double p, std::optional<SteadyQuestion>* asked) {
-    FixedPointSearch::Try found;
-    found.x = x;
-    SteadyQuestion question = family_(p);
-    const double length = half_ ? question.drive.period / 2 : periods_ * question.drive.period;
-    const PeriodMap map(question.system, question.excitation, question.drive.start, length, monitor_);
-    found.step = map(x);
-    found.off = sign_ * found.step.to - x;
-    found.size = std::max({length_of(x), length_of(found.step.to), found.step.high - found.step.low, 1e-300});
-    if (map.contradiction()) contradiction_ = map.contradiction();
-    const model::Outcome outcome = found.step.outcome;
-    stopped_ = stopped_ || contradiction_ || outcome == model::Outcome::interrupted ||
-               outcome == model::Outcome::excitation_not_finite;
-    if (asked != nullptr) *asked = std::move(question);
-    return found;
+std::unique_ptr<Circuit> circuit_of_periods(const Family& family, double p, const SteadyMotion& motion, int periods,
+                                            const motion::Monitor& monitor) {
+    return std::make_unique<PeriodCircuit>(family, p, motion, periods, monitor);
+}
+
+BranchWalk::Slopes BranchWalk::scaled(const Slopes& slopes) const {
+    Vector columns(units_.size() + 1);
+    columns << units_, range_;
+    return units_.cwiseInverse().asDiagonal() * slopes * columns.asDiagonal();
 }
 
 void BranchWalk::differentiate(Spot& spot) {
-    MapStep& step = spot.found.step;
-    if (!step.differentiable) {
-        const double h = 1e-6 * spot.found.size;
-        step.differentiable = true;
-        for (int i = 0; i < 2; ++i) {
-            const auto ahead = look(spot.x + h * Place::Unit(i), spot.p),
-                       behind = look(spot.x - h * Place::Unit(i), spot.p);
-            step.differentiable = step.differentiable && ahead.step.finished && behind.step.finished;
-            step.derivative.col(i) = (ahead.step.to - behind.step.to) / (2 * h);
+    const Eigen::Index n = spot.x.size();
+    bool good = true;
+    const auto slope = [&](double h, const auto& moved) -> Vector {
+        const auto at = [&](double step) -> Vector {
+            const auto [x, p] = moved(step);
+            const Circuit::Lap lap = circuit_.lap(x, p);
+            good = good && lap.finished;
+            return good ? Vector(lap.to - x) : Vector::Zero(n);
+        };
+        const Vector near = (at(h) - at(-h)) / (2 * h);
+        if (!sharp_) return near;
+        return (4 * near - (at(2 * h) - at(-2 * h)) / (4 * h)) / 3;
+    };
+    spot.slopes.resize(n, n + 1);
+    if (spot.lap.derivative) {
+        spot.slopes.leftCols(n) = *spot.lap.derivative - Slopes::Identity(n, n);
+    } else {
+        const double h = sharp_ ? 3e-4 : std::clamp(reach_ / 4, 1e-8, circuit_.difference());
+        for (Eigen::Index i = 0; i < n; ++i) {
+            spot.slopes.col(i) = slope(h * units_[i], [&](double step) {
+                return std::pair(Vector(spot.x + step * Vector::Unit(n, i)), spot.p);
+            });
         }
     }
-    const double up = std::min(spot.p + 1e-6 * range_, values_.back()),
-                 down = std::max(spot.p - 1e-6 * range_, values_.front());
-    const auto above = look(spot.x, up), below = look(spot.x, down);
-    step.differentiable = step.differentiable && above.step.finished && below.step.finished;
-    spot.slopes.leftCols<2>() = sign_ * step.derivative - Eigen::Matrix2d::Identity();
-    spot.slopes.col(2) = (above.off - below.off) / (up - down);
+    // At an end of the range the question is asked inside only.
+    const double h = std::clamp(reach_ / 4, 1e-8, 1e-6) * range_,
+                 p = std::clamp(spot.p, values_.front() + h, values_.back() - h);
+    const bool sharp = std::exchange(sharp_, false);
+    spot.slopes.col(n) = slope(h, [&](double step) { return std::pair(spot.x, p + step); });
+    sharp_ = sharp;
+    if (!good) spot.slopes.resize(0, 0);
 }
 
-BranchWalk::Vector3 BranchWalk::tangent(const Spot& spot, const Vector3& before) const {
-    const Slopes slopes = scaled(spot.slopes);
-    Vector3 t = Vector3(slopes.row(0)).cross(Vector3(slopes.row(1)));
-    const double most = slopes.row(0).norm() * slopes.row(1).norm();
+BranchWalk::Vector BranchWalk::tangent(const Spot& spot, const Vector& before) const {
+    Slopes slopes = scaled(spot.slopes);
+    for (Eigen::Index i = 0; i < slopes.rows(); ++i) slopes.row(i) /= std::max(slopes.row(i).norm(), 1e-300);
+    const Eigen::ColPivHouseholderQR<Slopes> parts(slopes.transpose());
+    const Eigen::Index n = slopes.rows();
     // Where the mass may rest anywhere there is a surface of fixed points: stay where it is.
-    if (!(t.norm() > 1e-12 * std::max(most, 1e-300))) t = Vector3::UnitZ();
-    return t.normalized() * (t.dot(before) < 0 ? -1 : 1);
+    if (!(std::fabs(parts.matrixR()(n - 1, n - 1)) > 1e-12)) return across() * (before[n] < 0 ? -1 : 1);
+    const Vector t = parts.householderQ() * Vector::Unit(n + 1, n);
+    return t * (t.dot(before) < 0 ? -1 : 1);
 }
 
-std::optional<BranchWalk::Spot> BranchWalk::correct(const Vector3& guess, const Vector3& normal, Slopes slopes) {
+std::optional<BranchWalk::Spot> BranchWalk::correct(const Vector& guess, const Vector& normal, Slopes slopes) {
     constexpr int most_steps = 12;
+    const Eigen::Index n = units_.size();
     slopes = scaled(slopes);
-    Vector3 y = guess;
-    Spot spot;
-    std::optional<SteadyQuestion> question;
-    Vector3 last = Vector3::Zero();
+    Vector y = guess, last;
     bool renewed = false;
     for (int i = 0; i <= most_steps; ++i) {
-        const double p = y[2] * range_;
+        const double p = y[n] * range_;
         if (!y.allFinite() || p < values_.front() - slack_ || p > values_.back() + slack_) return {};
-        spot.x = size_ * y.head<2>();
-        spot.p = value_near(p);
-        spot.found = look(spot.x, spot.p, &question);
-        if (!spot.found.step.finished || stopped_) return {};
-        const Eigen::Vector2d off = spot.found.off / size_;
+        Spot spot{.x = units_.cwiseProduct(y.head(n)), .p = value_near(p)};
+        spot.lap = circuit_.lap(spot.x, spot.p);
+        if (!spot.lap.finished || circuit_.stopped()) return {};
+        const Vector off = (spot.lap.to - spot.x).cwiseQuotient(units_);
         // Broyden's update: the slopes that explain what the last step has left.
         if (i > 0 && !renewed) slopes += off * last.transpose() / std::max(last.squaredNorm(), 1e-300);
         renewed = false;
         if (off.norm() <= closes || (i > 3 && off.norm() <= nearly_closes)) {
             differentiate(spot);
-            if (!spot.found.step.differentiable || stopped_) return {};
-            const double length = half_ ? question->drive.period / 2 : periods_ * question->drive.period;
-            const PeriodMap map(question->system, question->excitation, question->drive.start, length, monitor_);
-            spot.motion = facts_of(*question, map, spot.found, periods_, half_);
-            return spot;
+            return spot.slopes.size() > 0 && !circuit_.stopped() ? std::optional(spot) : std::nullopt;
         }
         if (i == 4) {
             differentiate(spot);
+            if (spot.slopes.size() == 0) return {};
             slopes = scaled(spot.slopes);
             renewed = true;
         }
-        Eigen::Matrix3d all;
+        Slopes all(n + 1, n + 1);
         all << slopes, normal.transpose();
-        Vector3 rest;
+        Vector rest(n + 1);
         rest << -off, normal.dot(guess - y);
-        Eigen::JacobiSVD<Eigen::Matrix3d> parts(all, Eigen::ComputeFullU | Eigen::ComputeFullV);
+        Eigen::JacobiSVD<Slopes> parts(all, Eigen::ComputeFullU | Eigen::ComputeFullV);
         parts.setThreshold(1e-10);
         last = parts.solve(rest);
         y += last;
@@ -113,35 +204,135 @@ std::optional<BranchWalk::Spot> BranchWalk::correct(const Vector3& guess, const 
 
 std::optional<BranchWalk::Spot> BranchWalk::at_value(const Spot& a, const Spot& b, double p) {
     const double part = (p - a.p) / (b.p - a.p);
-    Vector3 guess = (1 - part) * scaled(a) + part * scaled(b);
-    guess[2] = p / range_;
-    return correct(guess, Vector3::UnitZ(), part < 0.5 ? a.slopes : b.slopes);
+    Vector guess = (1 - part) * scaled(a) + part * scaled(b);
+    guess[units_.size()] = p / range_;
+    auto spot = correct(guess, across(), part < 0.5 ? a.slopes : b.slopes);
+    if (spot) tell(*spot);
+    return spot;
 }
 
-std::optional<BranchWalk::Spot> BranchWalk::fold_between(const Spot& a, const Spot& b, const Vector3& from) {
-    const Vector3 begin = scaled(a), way = scaled(b) - begin;
-    double low = 0, high = 1, f_low = tangent(a, from)[2], f_high = tangent(b, way)[2];
+std::optional<BranchWalk::Spot> BranchWalk::zero_between(const Spot& a, const Spot& b, double f_a, double f_b,
+                                                         const Test& f) {
+    const Vector begin = scaled(a), way = scaled(b) - begin;
+    double low = 0, high = 1, f_low = f_a, f_high = f_b;
     std::optional<Spot> best;
     int side = 0;
-    for (int i = 0; i < 30 && high - low > 1e-9; ++i) {
+    for (int i = 0; i < 40 && high - low > 1e-9; ++i) {
         const double at = (low * f_high - high * f_low) / (f_high - f_low);
-        const auto spot = correct(begin + at * way, way.normalized(), at < 0.5 ? a.slopes : b.slopes);
-        if (!spot) return best;
-        best = spot;
-        const double f = tangent(*spot, way)[2];
-        if (std::fabs(f) < least_slope) return best;
+        auto spot = correct(begin + at * way, way.normalized(), at < 0.5 ? a.slopes : b.slopes);
+        if (!spot) break;
+        const double value = f(*spot);
+        best = std::move(spot);
+        if (std::fabs(value) < least_slope * std::max({std::fabs(f_a), std::fabs(f_b), 1e-3})) break;
         // Illinois: an end that stays counts half.
-        if (f * f_high > 0) {
-            high = at, f_high = f;
+        if (value * f_high > 0) {
+            high = at, f_high = value;
             if (side == 1) f_low /= 2;
             side = 1;
         } else {
-            low = at, f_low = f;
+            low = at, f_low = value;
             if (side == -1) f_high /= 2;
             side = -1;
         }
     }
+    if (best) tell(*best);
     return best;
+}
+
+double BranchWalk::orientation(const Slopes& slopes, const Vector& tangent) const {
+    const Eigen::Index n = units_.size();
+    Slopes all(n + 1, n + 1);
+    all << scaled(slopes), tangent.transpose();
+    return all.determinant();
+}
+
+std::optional<BranchWalk::Spot> BranchWalk::spot_at(const Vector& y) {
+    const Eigen::Index n = units_.size();
+    Spot spot{.x = units_.cwiseProduct(y.head(n)), .p = y[n] * range_};
+    if (!(spot.p >= values_.front() && spot.p <= values_.back())) return {};
+    spot.lap = circuit_.lap(spot.x, spot.p);
+    if (spot.lap.finished) differentiate(spot);
+    return spot.slopes.size() > 0 ? std::optional(std::move(spot)) : std::nullopt;
+}
+
+std::optional<BranchWalk::Spot> BranchWalk::beyond_corner(const Spot& now, const Vector& ahead) {
+    constexpr double beyond = 1e-3, near = 1e-5;
+    reach_ = beyond;
+    const auto there = spot_at(scaled(now) + beyond * ahead);
+    if (!there) return {};
+    Vector way = tangent(*there, ahead);
+    if (orientation(there->slopes, way) * orientation_ < 0) way = -way;
+    reach_ = near / 10;
+    auto spot = correct(scaled(now) + near * way, way, there->slopes);
+    const Vector moved = spot ? Vector(scaled(*spot) - scaled(now)) : Vector::Zero(units_.size() + 1);
+    if (!spot || !(moved.dot(way) > straight * moved.norm()) || moved.norm() > 2 * near) return {};
+    return spot;
+}
+
+bool BranchWalk::round_corner(Spot& now, Vector& ahead, double distance) {
+    Spot before = now;
+    reach_ = distance / 10;
+    differentiate(before);
+    if (before.slopes.size() == 0) return false;
+    const Vector here = tangent(before, ahead);
+    auto beyond = beyond_corner(before, here);
+    if (!beyond) return false;
+    tell(*beyond);
+    if (becomes_symmetric(now.motion, beyond->motion)) return false;
+    const Vector beside = tangent(*beyond, scaled(*beyond) - scaled(before));
+    const Eigen::Index n = units_.size();
+    if (beside[n] * here[n] < 0) {
+        if (const auto fold = corner_between(before, here, *beyond, beside)) add(*fold, BranchKind::fold);
+    }
+    add(*beyond, BranchKind::point);
+    anchors_.clear();
+    specials_before(*beyond, beside);
+    now = std::move(*beyond);
+    ahead = beside;
+    return true;
+}
+
+std::optional<BranchWalk::Spot> BranchWalk::corner_between(const Spot& a, const Vector& on_a, const Spot& b,
+                                                           const Vector& on_b) {
+    Slopes ways(units_.size() + 1, 2);
+    ways << on_a, on_b;
+    const Vector parts = ways.colPivHouseholderQr().solve(scaled(b) - scaled(a));
+    auto corner = spot_at(scaled(a) + parts[0] * on_a);
+    if (corner) tell(*corner);
+    return corner;
+}
+
+std::vector<BranchWalk::Special> BranchWalk::specials_before(const Spot& spot, const Vector& ahead) {
+    struct Kind {
+        double (*test)(const Eigen::MatrixXd&);
+        BranchKind kind;
+    };
+    const BranchKind of_minus_one = circuit_.is_half() ? BranchKind::pitchfork : BranchKind::doubling;
+    const BranchKind of_pair = circuit_.stands() ? BranchKind::hopf : BranchKind::torus;
+    const std::array<Kind, 2> kinds{{{doubling_test, of_minus_one}, {pair_test, of_pair}}};
+    anchors_.resize(kinds.size());
+    std::vector<Special> found;
+    for (std::size_t i = 0; i < kinds.size(); ++i) {
+        const Kind kind = kinds[i];
+        const Test f = [kind](const Spot& at) { return kind.test(at.derivative()); };
+        const double value = f(spot);
+        constexpr double rounding = 1e-7;
+        if (!(std::fabs(value) > rounding)) continue;
+        const std::optional<Anchor> from = std::exchange(anchors_[i], Anchor{spot, value});
+        if (!from || from->value * value > 0 || (i == 1 && spot.x.size() < 2)) continue;
+        sharp_ = true;
+        auto zero = zero_between(from->spot, spot, from->value, value, f);
+        sharp_ = false;
+        // At a corner it jumps from one sign to the other.
+        if (!zero || std::fabs(f(*zero)) > 1e-4 * std::max(std::fabs(value), std::fabs(from->value))) continue;
+        if (i == 1 && !has_complex_pair(zero->derivative())) continue;
+        found.push_back({std::move(*zero), kind.kind});
+    }
+    const Vector here = scaled(spot);
+    std::sort(found.begin(), found.end(), [&](const Special& a, const Special& b) {
+        return ahead.dot(scaled(a.spot) - here) < ahead.dot(scaled(b.spot) - here);
+    });
+    return found;
 }
 
 double BranchWalk::next_value(double p, double way) const {
@@ -158,117 +349,194 @@ double BranchWalk::value_near(double p) const {
     return near != values_.end() && *near <= p + slack_ ? *near : p;
 }
 
-void BranchWalk::add(const Spot& spot, bool fold) {
+void BranchWalk::add(const Spot& spot, BranchKind kind) {
     const bool asked = std::binary_search(values_.begin(), values_.end(), spot.p);
     // The points between are for the eye: few do.
     std::vector<BranchPoint>& points = path_.points;
-    const auto is_between = [](const BranchPoint& point) { return !point.asked && !point.fold; };
+    const auto is_between = [](const BranchPoint& point) { return !point.asked && point.kind == BranchKind::point; };
     if (points.size() > 1 && is_between(points.back())) {
         const BranchPoint& before = points[points.size() - 2];
-        const double way =
-            std::hypot((spot.p - before.parameter) / range_, (spot.motion.amplitude - before.motion.amplitude) / size_);
+        const double way = std::hypot((spot.p - before.parameter) / range_,
+                                      (spot.motion.amplitude - before.motion.amplitude) / greatest_.maxCoeff());
         if (way < first_step && spot.motion.stable == before.motion.stable) points.pop_back();
     }
-    points.push_back({spot.p, spot.motion, asked, fold});
+    points.push_back({spot.p, spot.motion, asked, kind});
 }
 
-bool BranchWalk::add_way(const Spot& a, const Spot& b, bool fold) {
+bool BranchWalk::add_way(const Spot& a, const Spot& b, BranchKind kind) {
     const double way = b.p - a.p;
     double p = next_value(a.p, way);
     while ((b.p - p) * way > slack_ * std::fabs(way)) {
         if (std::fabs(p - a.p) <= slack_) break;  // the end of the range
-        if (const auto between = at_value(a, b, p)) add(*between, false);
+        if (const auto between = at_value(a, b, p)) add(*between, BranchKind::point);
         if (p == values_.front() || p == values_.back()) break;
         p = next_value(p, way);
     }
-    add(b, fold);
+    add(b, kind);
     return (way > 0 ? values_.back() - b.p : b.p - values_.front()) > slack_;
 }
 
-BranchPath BranchWalk::walk(double parameter, const SteadyMotion& from, double way) {
+void BranchWalk::rescale(const Spot& spot, Vector& ahead) {
+    Vector units = circuit_.units(spot.x, spot.lap, spot.motion);
+    if (greatest_.size() == 0) greatest_ = units;
+    units = units.cwiseMax(dying * greatest_);
+    greatest_ = greatest_.cwiseMax(units);
+    const auto ratio = units.cwiseQuotient(units_).array();
+    if (ratio.maxCoeff() <= 1.2 && ratio.minCoeff() >= 1 / 1.2) return;
+    const Eigen::Index n = units.size();
+    ahead.head(n) = ahead.head(n).cwiseProduct(units_).cwiseQuotient(units).eval();
+    units_ = units;
+    ahead = tangent(spot, ahead);
+}
+
+std::optional<BranchWalk::Spot> BranchWalk::begun(double parameter) {
     path_ = {};
-    half_ = from.symmetric && from.periods == 1;
-    sign_ = half_ ? -1 : 1;
-    periods_ = from.periods;
-    Spot now;
-    {
-        const SteadyQuestion question = family_(parameter);
-        const double length = half_ ? question.drive.period / 2 : periods_ * question.drive.period;
-        const PeriodMap map(question.system, question.excitation, question.drive.start, length, monitor_);
-        now.x = place_of(from.start, map.omega());
+    anchors_.clear();
+    greatest_ = {};
+    reach_ = 1;
+    Spot spot{.x = circuit_.first(), .p = parameter};
+    spot.lap = circuit_.lap(spot.x, spot.p);
+    if (spot.lap.finished && !circuit_.stopped()) {
+        const Eigen::Index n = spot.x.size();
+        units_ = Vector::Ones(n);
+        spot.motion = circuit_.motion(spot.x, spot.p, spot.lap, Slopes::Zero(n, n));
+        units_ = circuit_.units(spot.x, spot.lap, spot.motion);
+        constexpr double astray = 1e-5;
+        if ((spot.lap.to - spot.x).cwiseQuotient(units_).norm() < astray) differentiate(spot);
     }
-    now.p = parameter;
-    now.found = look(now.x, now.p);
-    size_ = now.found.size;
-    if (now.found.step.finished && !stopped_) differentiate(now);
-    if (!now.found.step.differentiable || stopped_) {
-        path_.end = stopped_ ? WalkEnd::stopped : WalkEnd::lost;
+    if (spot.slopes.size() > 0 && !circuit_.stopped()) {
+        tell(spot);
+        return spot;
+    }
+    path_.end = circuit_.stopped() ? WalkEnd::stopped : WalkEnd::lost;
+    return {};
+}
+
+BranchPath BranchWalk::walk(double parameter, double way) {
+    const auto first = begun(parameter);
+    if (!first) return path_;
+    return followed(*first, tangent(*first, way * across()));
+}
+
+BranchPath BranchWalk::walk_aside(double parameter) {
+    const auto first = begun(parameter);
+    if (!first) return path_;
+    // A disturbance that comes back to itself.
+    const Eigen::Index n = units_.size();
+    const Slopes slopes = scaled(first->slopes).leftCols(n);
+    Vector aside = Vector::Zero(n + 1);
+    aside.head(n) = Eigen::JacobiSVD<Slopes>(slopes, Eigen::ComputeFullV).matrixV().col(n - 1);
+    constexpr double away = 1e-2;
+    const Vector guess = scaled(*first) + away * aside;
+    const auto there = spot_at(guess);  // of the branch itself the slopes say nothing of the other one
+    auto next = there ? correct(guess, aside, there->slopes) : std::nullopt;
+    if (!next) {
+        path_.end = WalkEnd::lost;
         return path_;
     }
+    tell(*next);
+    add(*next, BranchKind::point);
+    return followed(*next, tangent(*next, scaled(*next) - scaled(*first)));
+}
+
+BranchPath BranchWalk::followed(Spot now, Vector ahead) {
     const Spot first = now;
-    Vector3 ahead = way * Vector3::UnitZ();
-    ahead = tangent(now, ahead);
-    const Vector3 first_ahead = ahead;
-    double longest = first_step, greatest = size_;
+    const Vector first_ahead = ahead;
+    double longest = first_step;
+    const double smallest = units_.maxCoeff();
     int creeps = 0;
+    bool recentred = false;
+    orientation_ = orientation(now.slopes, ahead);
+    specials_before(now, ahead);  // anchors
     const std::size_t most_points = 2000 + 20 * values_.size();
     path_.end = WalkEnd::lost;
+    const Eigen::Index n = now.x.size();
     while (path_.points.size() < most_points) {
-        // A motion that dies is not looked at more and more closely.
-        const double size = std::max(now.found.size, 1e-2 * greatest);
-        greatest = std::max(greatest, size);
-        if (size > 1.2 * size_ || size < size_ / 1.2) {
-            const Vector3 unscaled(ahead[0] * size_, ahead[1] * size_, ahead[2]);
-            size_ = size;
-            ahead = tangent(now, Vector3(unscaled[0] / size_, unscaled[1] / size_, unscaled[2]));
+        rescale(now, ahead);
+        if (greatest_.maxCoeff() > boundless * smallest) {
+            path_.end = WalkEnd::vanished;
+            return path_;
         }
-        const double target = next_value(now.p, ahead[2]);
+        const double target = next_value(now.p, ahead[n]);
         const double left = std::fabs(target - now.p) / range_;
         if (left * range_ <= slack_) {
             path_.end = WalkEnd::range;
             return path_;
         }
-        const bool reaches = left <= longest * std::fabs(ahead[2]);
-        const double step = reaches ? left / std::fabs(ahead[2]) : longest;
-        Vector3 guess = scaled(now) + step * ahead;
-        if (reaches) guess[2] = target / range_;
-        const auto spot = correct(guess, reaches ? Vector3::UnitZ() : ahead, now.slopes);
-        if (stopped_) {
+        const bool reaches = left <= longest * std::fabs(ahead[n]);
+        const double step = reaches ? left / std::fabs(ahead[n]) : longest;
+        reach_ = step;
+        Vector guess = scaled(now) + step * ahead;
+        if (reaches) guess[n] = target / range_;
+        auto spot = correct(guess, reaches ? across() : ahead, now.slopes);
+        if (circuit_.stopped()) {
             path_.end = WalkEnd::stopped;
             return path_;
         }
-        const Vector3 moved = spot ? Vector3(scaled(*spot) - scaled(now)) : Vector3::Zero();
-        const Vector3 on = spot ? tangent(*spot, moved) : ahead;
-        const bool good = spot && moved.norm() <= 2 * step && moved.dot(ahead) > straight / 2 * moved.norm() &&
-                          (on.dot(ahead) > straight || step < corner_step);
-        if (!good) {
+        const Vector moved = spot ? Vector(scaled(*spot) - scaled(now)) : Vector::Zero(n + 1);
+        const Vector on = spot ? tangent(*spot, moved) : ahead;
+        const bool close = spot && moved.norm() <= 2 * step && moved.dot(ahead) > straight / 2 * moved.norm();
+        if (!close || on.dot(ahead) <= straight) {
+            const bool corner = close && step < corner_step;
+            const bool stalls = step / 2 <= shortest_step || creeps > most_creeps;
+            if ((corner || stalls) && round_corner(now, ahead, step)) {
+                longest = first_step, creeps = 0;
+                continue;
+            }
+            if (stalls) return path_;
             longest = step / 2;
-            if (longest < shortest_step || creeps > most_creeps) return path_;
-            continue;
+            if (!corner) continue;
         }
+        if (step > corner_step) orientation_ = orientation(spot->slopes, on);
         creeps = step < creeping ? creeps + 1 : 0;
         longest = std::min(longest_step, 1.5 * longest);
-        bool inside = true;
-        if (on[2] * ahead[2] < 0) {
-            if (const auto fold = fold_between(now, *spot, ahead)) {
-                inside = add_way(now, *fold, true) && add_way(*fold, *spot, false);
-            } else {
-                inside = add_way(now, *spot, false);
+        tell(*spot);
+        if (!circuit_.is_half() && becomes_symmetric(now.motion, spot->motion)) return path_;
+        std::vector<Special> specials = specials_before(*spot, ahead);
+        if (on[n] * ahead[n] < 0) {
+            const Test slope = [&](const Spot& at) { return tangent(at, moved)[n]; };
+            if (auto fold = zero_between(now, *spot, ahead[n], on[n], slope)) {
+                const auto after = std::find_if(specials.begin(), specials.end(), [&](const Special& special) {
+                    return ahead.dot(scaled(special.spot) - scaled(*fold)) > 0;
+                });
+                specials.insert(after, {std::move(*fold), BranchKind::fold});
             }
-        } else {
-            inside = add_way(now, *spot, false);
         }
-        if (!inside) {
+        bool inside = true;
+        const Spot* from = &now;
+        for (const Special& special : specials) {
+            inside = inside && add_way(*from, special.spot, special.kind);
+            from = &special.spot;
+        }
+        if (!inside || !add_way(*from, *spot, BranchKind::point)) {
             path_.end = WalkEnd::range;
             return path_;
         }
-        if (path_.points.size() > 10 && (scaled(*spot) - scaled(first)).norm() < step &&
+        if (!recentred && path_.points.size() > 10 && (scaled(*spot) - scaled(first)).norm() < step &&
             on.dot(first_ahead) > straight) {
             path_.end = WalkEnd::closed;
             return path_;
         }
-        now = *spot;
+        if (circuit_.cycles() &&
+            circuit_.units(spot->x, spot->lap, spot->motion).cwiseQuotient(greatest_).maxCoeff() < vanishes) {
+            path_.end = WalkEnd::vanished;
+            return path_;
+        }
         ahead = on;
+        if (const auto places = circuit_.recentred(spot->motion, {{now.x, now.p}, {spot->x, spot->p}})) {
+            recentred = true;
+            anchors_.clear();
+            now.x = places->front();
+            const Vector before = scaled(now);
+            spot->x = places->back();
+            spot->lap = circuit_.lap(spot->x, spot->p);
+            if (!spot->lap.finished) return path_;
+            differentiate(*spot);
+            if (spot->slopes.size() == 0) return path_;
+            ahead = tangent(*spot, scaled(*spot) - before);
+            specials_before(*spot, ahead);
+        }
+        now = std::move(*spot);
     }
     return path_;
 }

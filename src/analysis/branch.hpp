@@ -1,11 +1,13 @@
 // A branch of steady motions over a parameter, walked by pseudo-arclength: along the curve itself, so that it goes
 // round the folds, on the far side of which the motion is unstable (H. B. Keller, 1977).
 //
-// A point of the branch is a fixed point x of the period map (of its half, where everything repeats the other way
-// round) at a parameter p: two equations for three unknowns, and a third one says how far along the curve.
+// A point of the branch is a fixed point x of a map at a parameter p: n equations for n + 1 unknowns, and one more says
+// how far along the curve. Bifurcations are zeros of test functions of the map's derivative, located on the branch.
 #pragma once
 
+#include <Eigen/Core>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <span>
 #include <vector>
@@ -18,16 +20,91 @@ namespace dinal::analysis {
 /// The question at a value of the parameter. Asked only from the least to the greatest of the values asked for.
 using Family = std::function<SteadyQuestion(double parameter)>;
 
+/// The map whose fixed points are the motions of a branch, at any value of the parameter.
+class Circuit {
+public:
+    struct Lap {
+        Eigen::VectorXd to;
+        bool finished = false;
+        std::optional<Eigen::MatrixXd> derivative = {};  ///< by the place; none: differences must tell
+        MapStep step = {};                               ///< of a period map
+        double time = 0;
+    };
+
+    Circuit() = default;
+    Circuit(const Circuit&) = delete;
+    Circuit& operator=(const Circuit&) = delete;
+    virtual ~Circuit() = default;
+
+    virtual Lap lap(const Eigen::VectorXd& x, double p) = 0;
+    /// The facts about the motion through a fixed point; status none if it can not be run.
+    virtual SteadyMotion motion(const Eigen::VectorXd& x, double p, const Lap& lap,
+                                const Eigen::MatrixXd& derivative) = 0;
+    /// How much the motion changes each number of a place.
+    [[nodiscard]] virtual Eigen::VectorXd units(const Eigen::VectorXd& x, const Lap& lap,
+                                                const SteadyMotion& motion) const = 0;
+    /// Of the units: a step for differences.
+    [[nodiscard]] virtual double difference() const { return 1e-5; }
+    /// The motion has moved away from where its places are looked at: looks at it elsewhere, and says what these places
+    /// are there. None if all is well, or if one of them does not lead there.
+    virtual std::optional<std::vector<Eigen::VectorXd>> recentred(
+        const SteadyMotion& /*motion*/, const std::vector<std::pair<Eigen::VectorXd, double>>& /*places*/) {
+        return {};
+    }
+
+    [[nodiscard]] const Eigen::VectorXd& first() const { return first_; }
+    /// The map is that of half a period, whose opposite the motion repeats.
+    [[nodiscard]] bool is_half() const { return half_; }
+    /// A rest in a system without a period, whose multipliers are those of a stretch of time.
+    [[nodiscard]] bool stands() const { return stands_; }
+    /// A limit cycle, which may become a rest.
+    [[nodiscard]] bool cycles() const { return cycles_; }
+    [[nodiscard]] const std::optional<model::Contradiction>& contradiction() const { return contradiction_; }
+    /// No map can be computed any more: Ctrl-C, or M has failed.
+    [[nodiscard]] bool stopped() const { return stopped_; }
+
+protected:
+    void see(model::Outcome outcome, const std::optional<model::Contradiction>& contradiction) {
+        if (contradiction) contradiction_ = contradiction;
+        stopped_ = stopped_ || contradiction_ || outcome == model::Outcome::interrupted ||
+                   outcome == model::Outcome::excitation_not_finite;
+    }
+
+    Eigen::VectorXd first_;
+    bool half_ = false, stands_ = false, cycles_ = false;
+
+private:
+    bool stopped_ = false;
+    std::optional<model::Contradiction> contradiction_;
+};
+
+/// Of theta and velocity over `periods` of M, or of its half where the motion is symmetric.
+std::unique_ptr<Circuit> circuit_of_periods(const Family& family, double p, const SteadyMotion& motion, int periods,
+                                            const motion::Monitor& monitor);
+/// Of theta, velocity and states: from period to period, from passage to passage of a cycle, or of a rest that slides;
+/// in returns.cpp. None where the motion does not say all of its state.
+std::unique_ptr<Circuit> circuit_of_returns(const Family& family, double p, const SteadyMotion& motion, int periods,
+                                            const motion::Monitor& monitor);
+
+/// What happens to the motion at a point of the branch: the branch turns back (fold); a motion of twice the period
+/// begins (doubling), or one that is not symmetric (pitchfork), or one with a second frequency (torus), or of a rest a
+/// limit cycle (hopf).
+enum class BranchKind { point, fold, doubling, pitchfork, torus, hopf };
+constexpr std::string_view name(BranchKind kind) {
+    constexpr std::array<std::string_view, 6> names{"point", "fold", "doubling", "pitchfork", "torus", "hopf"};
+    return names[static_cast<std::size_t>(kind)];
+}
+
 struct BranchPoint {
     double parameter = 0;
     SteadyMotion motion = {};
     bool asked = false;  ///< at one of the values asked for
-    bool fold = false;   ///< here the branch turns back
+    BranchKind kind = BranchKind::point;
 };
 
-/// Why a walk came to its end: at an end of the range, where nothing goes on, where it began, or by Ctrl-C and the
-/// like.
-enum class WalkEnd { range, lost, closed, stopped };
+/// Why a walk came to its end: at an end of the range, where nothing goes on, where it began, where the motion has
+/// become a rest or grows without a bound, or by Ctrl-C and the like.
+enum class WalkEnd { range, lost, closed, vanished, stopped };
 
 struct BranchPath {
     std::vector<BranchPoint> points;  ///< in their order along the branch, the first one left out
@@ -37,71 +114,92 @@ struct BranchPath {
 class BranchWalk {
 public:
     /// `values` of the parameter increase, two at least; all must outlive it.
-    BranchWalk(const Family& family, std::span<const double> values, const motion::Monitor& monitor)
-        : family_(family),
-          values_(values),
-          monitor_(monitor),
-          range_(values.back() - values.front()),
-          slack_(1e-12 * range_) {}
+    BranchWalk(Circuit& circuit, std::span<const double> values)
+        : circuit_(circuit), values_(values), range_(values.back() - values.front()), slack_(1e-12 * range_) {}
 
-    /// From a steady motion at this parameter towards greater ones (way = 1) or smaller ones (-1).
-    BranchPath walk(double parameter, const SteadyMotion& from, double way);
-
-    /// What was found of a function that is none.
-    [[nodiscard]] const std::optional<model::Contradiction>& contradiction() const { return contradiction_; }
-    /// No map can be computed any more: Ctrl-C, or M has failed.
-    [[nodiscard]] bool stopped() const { return stopped_; }
+    /// From the first place of the circuit at this parameter towards greater ones (way = 1) or smaller ones (-1).
+    BranchPath walk(double parameter, double way);
+    /// From there on to the branch that begins beside it, as at a doubling with a circuit of twice the periods.
+    BranchPath walk_aside(double parameter);
 
 private:
-    using Vector3 = Eigen::Vector3d;
-    using Slopes = Eigen::Matrix<double, 2, 3>;  // of what a fixed point misses, by x and p
+    using Vector = Eigen::VectorXd;
+    using Slopes = Eigen::MatrixXd;  // of what a fixed point misses, by x and p
 
     /// A fixed point with the slopes there.
     struct Spot {
-        Place x = Place::Zero();
+        Vector x = {};
         double p = 0;
-        FixedPointSearch::Try found = {};
-        Slopes slopes = Slopes::Zero();
+        Circuit::Lap lap = {};
+        Slopes slopes = {};
         SteadyMotion motion = {};
+        [[nodiscard]] Slopes derivative() const {
+            return slopes.leftCols(x.size()) + Slopes::Identity(x.size(), x.size());
+        }
+    };
+    using Test = std::function<double(const Spot&)>;
+    struct Special {
+        Spot spot;
+        BranchKind kind;
+    };
+    /// The last point at which a test function was more than rounding.
+    struct Anchor {
+        Spot spot;
+        double value = 0;
     };
 
-    [[nodiscard]] Vector3 scaled(const Spot& spot) const {
-        return {spot.x[0] / size_, spot.x[1] / size_, spot.p / range_};
+    [[nodiscard]] Vector scaled(const Spot& spot) const {
+        Vector y(spot.x.size() + 1);
+        y << spot.x.cwiseQuotient(units_), spot.p / range_;
+        return y;
     }
     /// Slopes as the scaled unknowns and the scaled miss have them.
-    [[nodiscard]] Slopes scaled(const Slopes& slopes) const {
-        return slopes * Vector3(size_, size_, range_).asDiagonal() / size_;
-    }
+    [[nodiscard]] Slopes scaled(const Slopes& slopes) const;
     /// The way on along the curve, of length 1, not against `before`.
-    [[nodiscard]] Vector3 tangent(const Spot& spot, const Vector3& before) const;
+    [[nodiscard]] Vector tangent(const Spot& spot, const Vector& before) const;
+    [[nodiscard]] Vector across() const { return Vector::Unit(units_.size() + 1, units_.size()); }
 
-    FixedPointSearch::Try look(const Place& x, double p, std::optional<SteadyQuestion>* asked = nullptr);
+    BranchPath followed(Spot now, Vector ahead);
+    std::optional<Spot> begun(double parameter);
     void differentiate(Spot& spot);
     /// The point of the curve nearest to a guess, in the plane through the guess across `normal`.
-    std::optional<Spot> correct(const Vector3& guess, const Vector3& normal, Slopes slopes);
+    std::optional<Spot> correct(const Vector& guess, const Vector& normal, Slopes slopes);
+    void tell(Spot& spot) { spot.motion = circuit_.motion(spot.x, spot.p, spot.lap, spot.derivative()); }
     std::optional<Spot> at_value(const Spot& a, const Spot& b, double p);
-    /// Between two points with the p of the tangent changing its sign: where that is zero.
-    std::optional<Spot> fold_between(const Spot& a, const Spot& b, const Vector3& from);
+    /// Between two points with a function of other signs: where it is zero.
+    std::optional<Spot> zero_between(const Spot& a, const Spot& b, double f_a, double f_b, const Test& f);
+    /// On which side of the branch a tangent is, which stays the same along it, also round corners.
+    [[nodiscard]] double orientation(const Slopes& slopes, const Vector& tangent) const;
+    /// Near a corner of the branch, as where the motion begins to stop: the point on its other side.
+    std::optional<Spot> beyond_corner(const Spot& now, const Vector& ahead);
+    /// Goes there, from a point that is not much farther away than this.
+    bool round_corner(Spot& now, Vector& ahead, double distance);
+    /// Where the tangents at two points meet, one on either side of a corner.
+    std::optional<Spot> corner_between(const Spot& a, const Vector& on_a, const Spot& b, const Vector& on_b);
+    /// A place that need not be on the branch, with its slopes.
+    std::optional<Spot> spot_at(const Vector& y);
+    /// The zeros of the test functions before this point, in their order.
+    std::vector<Special> specials_before(const Spot& spot, const Vector& ahead);
     /// The next one asked for, or the end of the range.
     [[nodiscard]] double next_value(double p, double way) const;
     /// Adds the points at the values between two points and, unless it lies beyond the range, the second one; whether
     /// the branch goes on inside it.
-    bool add_way(const Spot& a, const Spot& b, bool fold);
-    void add(const Spot& spot, bool fold);
+    bool add_way(const Spot& a, const Spot& b, BranchKind kind);
+    void add(const Spot& spot, BranchKind kind);
+    /// Units follow the motion, but not to where it dies.
+    void rescale(const Spot& spot, Vector& ahead);
     /// The one asked for that this is, but for rounding; else itself.
     [[nodiscard]] double value_near(double p) const;
 
-    const Family& family_;
+    Circuit& circuit_;
     std::span<const double> values_;
-    const motion::Monitor& monitor_;
     double range_, slack_;
-    double size_ = 1;  // of the motion here: the unit of x
-    double sign_ = 1;  // -1 of a half period
-    int periods_ = 1;
-    bool half_ = false;
+    Vector units_, greatest_;
+    bool sharp_ = false;      // differences of a higher order
+    double orientation_ = 0;  // of the walk
+    double reach_ = 1;        // of the present step: differences stay on its side of a corner
+    std::vector<std::optional<Anchor>> anchors_;
     BranchPath path_;
-    bool stopped_ = false;
-    std::optional<model::Contradiction> contradiction_;
 };
 
 }  // namespace dinal::analysis

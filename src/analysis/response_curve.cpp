@@ -18,29 +18,47 @@ public:
         std::sort(sorted_.begin(), sorted_.end());
         range_ = sorted_.back() - sorted_.front();
         const auto& v = question.values;
+        walkable_ = v.size() > 1;
         for (std::size_t i = 1; i < v.size(); ++i) walkable_ = walkable_ && (v[i] - v[i - 1]) * way_ > 0;
-        if (walkable_) walk_.emplace(question_.family, sorted_, monitor_);
     }
 
     ResponseCurve found() {
         sweep();
         for (std::size_t i = 0; i < curve_.jumps.size() && i < most_jumps && !stopped(); ++i) go_on_from(i);
+        follow_doublings();
         if (walked_ && !stopped()) look_from_far_end();
-        if (walk_ && walk_->contradiction()) curve_.contradiction = walk_->contradiction();
+        follow_doublings();
         std::stable_sort(curve_.jumps.begin(), curve_.jumps.end(),
                          [](const MotionJump& a, const MotionJump& b) { return a.parameter < b.parameter; });
         return std::move(curve_);
     }
 
 private:
-    static constexpr std::size_t most_jumps = 12;
+    static constexpr std::size_t most_jumps = 12, most_doubled = 32;
 
-    [[nodiscard]] bool stopped() const { return stopped_ || (walk_ && walk_->stopped()); }
+    [[nodiscard]] bool stopped() const { return stopped_; }
 
     SteadyMotion motion_at(double p, const model::State& start, bool near) {
         SteadyQuestion question = question_.family(p);
         // A cycle begins anywhere on its way, which says little of another one: each search starts where it is told to.
         if (!question.is_timeless()) question.initial = start;
+        return motion_of(question, near);
+    }
+
+    /// Where what moves so at another value leads at this one.
+    SteadyMotion motion_after(double p, const SteadyMotion& before, bool near) {
+        SteadyQuestion question = question_.family(p);
+        question.initial = before.start;
+        if (before.asked) {
+            question.initial.velocity = before.asked->initial.velocity;
+            for (std::size_t i = 0; i < question.extras.states.size(); ++i) {
+                question.extras.states[i].start = before.asked->extras.states[i].start;
+            }
+        }
+        return motion_of(question, near);
+    }
+
+    SteadyMotion motion_of(const SteadyQuestion& question, bool near) {
         SteadyMotion motion = near ? steady_motion_near(question, monitor_) : steady_motion(question, monitor_);
         if (motion.contradiction) curve_.contradiction = motion.contradiction;
         stopped_ = stopped_ || motion.contradiction || motion.outcome == model::Outcome::interrupted ||
@@ -48,10 +66,21 @@ private:
         return motion;
     }
 
-    /// Of more than one motion, by theta and velocity alone.
-    [[nodiscard]] static bool has_map(const SteadyQuestion& question) {
+    /// Of a motion that need not be the only one.
+    [[nodiscard]] std::unique_ptr<Circuit> circuit_of(double p, const SteadyMotion& motion, int periods) const {
+        const bool slides = motion.status == SteadyStatus::rest && motion.asked && motion.stuck == 0;
+        if (!walkable_ || (motion.status != SteadyStatus::steady && !slides)) return {};
+        const SteadyQuestion question = question_.family(p);
         const bool plain = !question.is_timeless() && !question.extras.any();
-        return plain && !contracts(question) && !model::has_memory(question.excitation);
+        if (contracts(question) && question.extras.states.empty() && question.extras.events.empty()) return {};
+        if (!plain) return circuit_of_returns(question_.family, p, motion, periods, monitor_);
+        if (model::has_memory(question.excitation)) return {};
+        return circuit_of_periods(question_.family, p, motion, periods, monitor_);
+    }
+
+    void see(const Circuit& circuit) {
+        if (circuit.contradiction()) curve_.contradiction = circuit.contradiction();
+        stopped_ = stopped_ || circuit.stopped();
     }
 
     void sweep() {
@@ -62,15 +91,15 @@ private:
         for (std::size_t i = 0; i < values.size() && !stopped();) {
             const SteadyMotion motion = motion_at(values[i], start, near);
             const bool moves = motion.status == SteadyStatus::steady;
-            const bool branches = walkable_ && moves && has_map(question_.family(values[i]));
-            if (!branches) {
+            const auto circuit = circuit_of(values[i], motion, motion.periods);
+            if (!circuit) {
                 near = moves;
                 if (moves) start = motion.start;
                 row.push_back({values[i], motion, true});
                 ++i;
                 continue;
             }
-            std::vector<BranchPoint>& added = add_branch(values[i], motion, i > 0);
+            std::vector<BranchPoint>& added = add_branch(*circuit, values[i], motion, i > 0);
             if (!row.empty()) {
                 if (joins(row.back(), added.front(), motion.amplitude)) {
                     added.insert(added.begin(), row.begin(), row.end() - 1);
@@ -93,29 +122,51 @@ private:
         if (!row.empty()) curve_.branches.push_back(std::move(row));
     }
 
+    void follow_doublings() {
+        if (!question_.doubled) return;
+        for (; doubled_ < std::min(curve_.branches.size(), most_doubled); ++doubled_) double_at(doubled_);
+    }
+    /// The branches that begin at doublings of this one.
+    void double_at(std::size_t branch) {
+        const std::vector<BranchPoint> points = curve_.branches[branch];
+        for (const BranchPoint& point : points) {
+            if (point.kind != BranchKind::doubling || stopped()) continue;
+            const auto circuit = circuit_of(point.parameter, point.motion, 2 * point.motion.periods);
+            if (!circuit) continue;
+            BranchPath path = BranchWalk(*circuit, sorted_).walk_aside(point.parameter);
+            see(*circuit);
+            if (path.points.size() < 2) continue;
+            path.points.insert(path.points.begin(), {point.parameter, point.motion});
+            curve_.branches.push_back(std::move(path.points));
+        }
+    }
+
     [[nodiscard]] static bool joins(const BranchPoint& a, const BranchPoint& b, double size) {
         return a.parameter == b.parameter && std::fabs(a.motion.amplitude - b.motion.amplitude) <= 1e-6 * size;
     }
 
     /// The branch through this motion, both ways unless it begins here.
-    std::vector<BranchPoint>& add_branch(double p, const SteadyMotion& motion, bool both) {
+    std::vector<BranchPoint>& add_branch(Circuit& circuit, double p, const SteadyMotion& motion, bool both) {
         walked_ = true;
+        BranchWalk walk(circuit, sorted_);
         std::vector<BranchPoint> branch;
         WalkEnd back_end = WalkEnd::range;
         if (both) {
-            BranchPath back = walk_->walk(p, motion, -way_);
+            BranchPath back = walk.walk(p, -way_);
+            see(circuit);
             back_end = back.end;
             branch.assign(back.points.rbegin(), back.points.rend());
         }
         branch.push_back({p, motion, true});
         if (back_end != WalkEnd::closed && !stopped()) {
-            BranchPath on = walk_->walk(p, motion, way_);
+            BranchPath on = walk.walk(p, way_);
+            see(circuit);
             branch.insert(branch.end(), on.points.begin(), on.points.end());
             if (on.end == WalkEnd::lost) note_end(branch, branch.size() - 1, -1);
         }
         if (back_end == WalkEnd::lost) note_end(branch, 0, 1);
         for (std::size_t i = 1; i + 1 < branch.size() && !stopped(); ++i) {
-            if (!branch[i].fold) continue;
+            if (branch[i].kind != BranchKind::fold) continue;
             if (branch[i - 1].motion.stable == branch[i + 1].motion.stable) continue;
             const BranchPoint& before = branch[branch[i - 1].motion.stable ? i - 1 : i + 1];
             add_jump(branch[i], branch[i].parameter > before.parameter);
@@ -138,9 +189,9 @@ private:
             std::clamp(end.parameter + (rising ? 1e-3 : -1e-3) * range_, sorted_.front(), sorted_.back());
         if (beyond == end.parameter) return;
         MotionJump jump{.parameter = end.parameter, .rising = rising, .from = end.motion.amplitude};
-        jump.landed = motion_at(beyond, end.motion.start, false);
+        jump.landed = motion_after(beyond, end.motion, false);
         if (jump.landed.status == SteadyStatus::steady && !stopped()) {
-            const SteadyMotion here = motion_at(end.parameter, jump.landed.start, true);
+            const SteadyMotion here = motion_after(end.parameter, jump.landed, true);
             const bool alike = std::fabs(here.amplitude - jump.landed.amplitude) < 0.2 * jump.landed.amplitude;
             if (here.status == SteadyStatus::steady && alike) jump.landed = here;
         }
@@ -186,18 +237,20 @@ private:
     /// A jump that lands on a branch not yet seen leads to it.
     void go_on_from(std::size_t i) {
         const MotionJump jump = curve_.jumps[i];
-        if (jump.landed.status != SteadyStatus::steady) return;
         const auto next = std::lower_bound(sorted_.begin(), sorted_.end(), jump.parameter);
         if (jump.rising ? next == sorted_.end() : next == sorted_.begin()) return;
         const double p = jump.rising ? *next : *(next - 1);
-        const SteadyMotion motion = motion_at(p, jump.landed.start, true);
-        if (motion.status == SteadyStatus::steady && !stopped() && !is_known(p, motion)) add_branch(p, motion, true);
+        add_unless_known(p, motion_after(p, jump.landed, true));
+    }
+
+    void add_unless_known(double p, const SteadyMotion& motion) {
+        if (stopped() || is_known(p, motion)) return;
+        if (const auto circuit = circuit_of(p, motion, motion.periods)) add_branch(*circuit, p, motion, true);
     }
 
     void look_from_far_end() {
         const double p = question_.values.back();
-        const SteadyMotion motion = motion_at(p, question_.start, false);
-        if (motion.status == SteadyStatus::steady && !stopped() && !is_known(p, motion)) add_branch(p, motion, true);
+        add_unless_known(p, motion_at(p, question_.start, false));
         for (std::size_t i = 0; i < curve_.jumps.size() && i < most_jumps && !stopped(); ++i) go_on_from(i);
     }
 
@@ -205,8 +258,8 @@ private:
     const motion::Monitor& monitor_;
     std::vector<double> sorted_;
     double way_, range_ = 0;
+    std::size_t doubled_ = 0;  // branches whose doublings were followed
     bool walkable_ = true, walked_ = false, stopped_ = false;
-    std::optional<BranchWalk> walk_;
     ResponseCurve curve_;
 };
 

@@ -9,6 +9,7 @@ struct CurveQuestion {
     Family family;
     std::vector<double> values;  ///< of the parameter, in the order of the sweep
     model::State start = {};     ///< of the first search
+    bool doubled = false;        ///< also follows the motions of twice the period that begin at doublings
 };
 
 /// Where the motion that a sweep follows ends, and what becomes of it.

@@ -9,6 +9,7 @@
 #include <numbers>
 #include <vector>
 
+#include "analysis/branch.hpp"
 #include "analysis/closed_search.hpp"
 #include "analysis/steady_facts.hpp"
 #include "model/controller.hpp"
@@ -38,14 +39,21 @@ Mode mode_of(const Moment& moment) {
     return {moment.relays, moment.stuck ? std::optional(moment.state.velocity) : std::nullopt};
 }
 
-/// Passes zero where theta passes the section.
+/// A value of theta that a cycle passes, upwards (way = 1) or downwards (-1).
+struct Section {
+    double theta = 0, way = 1;
+};
+
+/// Passes zero upwards where theta passes the section.
 class Passage final : public model::UserFunction {
 public:
-    explicit Passage(double theta) : theta_(theta) {}
-    double value(double /*t*/, const model::State& state) override { return state.theta - theta_; }
+    explicit Passage(const Section& section) : section_(section) {}
+    double value(double /*t*/, const model::State& state) override {
+        return section_.way * (state.theta - section_.theta);
+    }
 
 private:
-    double theta_;
+    Section section_;
 };
 
 std::vector<bool> relays_of(const model::Excitation& excitation) {
@@ -105,7 +113,7 @@ public:
     }
 
     [[nodiscard]] Trajectory run(const Moment& from, double start, double end, const motion::Grid& rows, bool dense,
-                                 std::optional<double> section = {}) {
+                                 std::optional<Section> section = {}) {
         const SteadyQuestion asked = this->from(from, start);
         motion::Limits limits;
         limits.dense = dense;
@@ -127,8 +135,8 @@ public:
         bool arrived = false;
         model::Outcome outcome = model::Outcome::reached_end;
     };
-    /// The first passage of theta through the section, upwards and within this time.
-    [[nodiscard]] Arrival passage(const Moment& from, double start, double limit, double section) {
+    /// The first passage of theta through the section within this time.
+    [[nodiscard]] Arrival passage(const Moment& from, double start, double limit, const Section& section) {
         if (plain_) return passage_between_rows(from, start, limit, section);
         const Trajectory run = this->run(from, start, start + limit, motion::Grid::none(), false, section);
         Arrival arrival{.at = {}, .outcome = run.outcome};
@@ -149,7 +157,7 @@ public:
     }
 
 private:
-    static model::Extras section_extras(const SteadyQuestion& question, double section) {
+    static model::Extras section_extras(const SteadyQuestion& question, const Section& section) {
         model::Extras extras = question.extras;
         extras.events.push_back(
             {.name = "", .when = std::make_shared<Passage>(section), .direction = model::Crossing::up, .stop = true});
@@ -157,16 +165,17 @@ private:
     }
 
     /// A run without anything else to watch for takes its own integrator.
-    [[nodiscard]] Arrival passage_between_rows(const Moment& from, double start, double limit, double section) {
+    [[nodiscard]] Arrival passage_between_rows(const Moment& from, double start, double limit, const Section& section) {
         constexpr double looks = 256, longer = 1.05;
         double length = expected_ > 0 ? std::min(longer * expected_, limit) : std::min(limit, longer * limit / 8);
         while (true) {
             const Trajectory run = this->run(from, start, start + length, motion::Grid::every(length / looks), true);
             Arrival arrival{.at = {}, .outcome = run.outcome};
             for (Eigen::Index i = 0; i + 1 < run.size(); ++i) {
-                if (!(run.rows(i, 1) < section && run.rows(i + 1, 1) >= section)) continue;
+                const auto beyond = [&](Eigen::Index row) { return section.way * (run.rows(row, 1) - section.theta); };
+                if (!(beyond(i) < 0 && beyond(i + 1) >= 0)) continue;
                 arrival.t = passed(run, section, run.rows(i, 0), run.rows(i + 1, 0));
-                arrival.at.state = {section, run.at(arrival.t).value().velocity};
+                arrival.at.state = {section.theta, run.at(arrival.t).value().velocity};
                 arrival.arrived = true;
                 expected_ = arrival.t - start;
                 return arrival;
@@ -176,13 +185,13 @@ private:
         }
     }
 
-    static double passed(const Trajectory& run, double section, double below, double above) {
+    static double passed(const Trajectory& run, const Section& section, double below, double above) {
         double t = (below + above) / 2;
         constexpr int most = 80;
         for (int i = 0; i < most; ++i) {
             const model::State there = run.at(t).value();
-            const double off = there.theta - section;
-            (off < 0 ? below : above) = t;
+            const double off = there.theta - section.theta;
+            (section.way * off < 0 ? below : above) = t;
             double next = t - off / there.velocity;
             if (!(next > below && next < above)) next = below + (above - below) / 2;
             if (std::fabs(next - t) <= 2e-16 * std::fabs(t) || off == 0) return next;
@@ -308,7 +317,7 @@ private:
 
     void once_from(const Moment& from, Return& sum) {
         if (section_) {
-            const Runs::Arrival arrival = runs_.passage(from, start_, length_, *section_);
+            const Runs::Arrival arrival = runs_.passage(from, start_, length_, {*section_});
             sum.outcome = arrival.outcome;
             sum.finished = arrival.arrived;
             sum.time += arrival.t - start_;
@@ -333,6 +342,31 @@ private:
     std::optional<double> section_;
     Vector scale_;
 };
+
+constexpr double largest_stable = 1 + 1e-5;  // multiplier
+
+/// The greatest one first.
+std::vector<std::complex<double>> sorted_eigenvalues(const Eigen::MatrixXd& D) {
+    const Eigen::VectorXcd values = D.eigenvalues();
+    std::vector<std::complex<double>> sorted(values.data(), values.data() + values.size());
+    std::sort(sorted.begin(), sorted.end(), [](const auto& a, const auto& b) { return std::abs(a) > std::abs(b); });
+    return sorted;
+}
+
+/// The facts that a run of the motion's period from this moment tells; false when it fails.
+bool tell_period(Runs& runs, const Moment& moment, double start, SteadyMotion& motion) {
+    constexpr double rows = 400;
+    Trajectory run = runs.run(moment, start, start + motion.period, motion::Grid::every(motion.period / rows), true);
+    if (!model::is_whole(run.outcome)) return false;
+    motion.outcome = run.outcome;
+    if (!motion.multipliers.empty() && std::abs(std::abs(motion.multipliers.front()) - 1) < neutral_within) {
+        motion.unique = false;
+    }
+    motion.asked = std::make_shared<const SteadyQuestion>(runs.from(moment, start));
+    tell_of_run(runs.question(), run, motion);
+    motion.settled = std::make_shared<const Trajectory>(std::move(run));
+    return true;
+}
 
 class ReturnSearch {
 public:
@@ -471,10 +505,13 @@ private:
             ranges.emplace_back(time, reach.range());
             if (i == 0) most_changed_ = reach.scale;
             most_changed_ = most_changed_.cwiseMax(reach.scale);
-            if (rests(*run, reach, largest)) return;
             const double M = run->size() > 0 ? run->column(motion::Column::M)[run->size() - 1] : 0;
             const Moment before = now;
             now = runs_.at_stop(*run, before, M);
+            if (rests(*run, reach, largest)) {
+                answer_.asked = std::make_shared<const SteadyQuestion>(runs_.from(now, start));
+                return;
+            }
             constexpr double nothing = 1e-9;
             if (reach.range() > nothing * largest && closes_from(now, reach, length, i)) return;
             constexpr std::size_t many_events = 6000;
@@ -548,33 +585,16 @@ private:
         const auto D = map.derivative(found.x, found.mode, found.returns, 4);
         answer_.maps += 4 * found.returns * static_cast<int>(found.x.size());
         std::vector<std::complex<double>> multipliers;
-        if (D) {
-            const Eigen::VectorXcd values = D->eigenvalues();
-            multipliers.assign(values.data(), values.data() + values.size());
-            std::sort(multipliers.begin(), multipliers.end(),
-                      [](const auto& a, const auto& b) { return std::abs(a) > std::abs(b); });
-        }
-        constexpr double slack = 1e-5;
-        if (D && !multipliers.empty() && std::abs(multipliers.front()) > 1 + slack) return false;
+        if (D) multipliers = sorted_eigenvalues(*D);
+        if (D && !multipliers.empty() && std::abs(multipliers.front()) > largest_stable) return false;
         const bool forced = question_.drive.period > 0;
-        const double period = forced ? found.returns * question_.drive.period : found.period;
-        const Moment moment = map.moment(found.x, found.mode);
-        constexpr double rows = 400;
-        Trajectory run = runs_.run(moment, map.start(), map.start() + period, motion::Grid::every(period / rows), true);
-        if (!model::is_whole(run.outcome)) return false;
-        answer_.outcome = run.outcome;
         answer_.periods = forced ? found.returns : 1;
-        answer_.period = period;
+        answer_.period = forced ? found.returns * question_.drive.period : found.period;
         answer_.multipliers = std::move(multipliers);
         answer_.differentiable = D.has_value();
-        const bool neutral = !answer_.multipliers.empty() && std::abs(answer_.multipliers.front()) > 1 - neutral_within;
-        if (neutral) answer_.unique = false;
         answer_.stable = true;
         answer_.residual = found.residual;
-        answer_.asked = std::make_shared<const SteadyQuestion>(runs_.from(moment, map.start()));
-        tell_of_run(question_, run, answer_);
-        answer_.settled = std::make_shared<const Trajectory>(std::move(run));
-        return true;
+        return tell_period(runs_, map.moment(found.x, found.mode), map.start(), answer_);
     }
 
     const SteadyQuestion& question_;
@@ -583,7 +603,199 @@ private:
     SteadyMotion answer_;
 };
 
+/// The return map of a branch: its places are theta, velocity and the states from period to period, or all but theta
+/// from passage to passage.
+class ReturnCircuit final : public Circuit {
+public:
+    ReturnCircuit(const Family& family, double p, const SteadyMotion& motion, int periods,
+                  const motion::Monitor& monitor)
+        : family_(family), monitor_(monitor), periods_(periods) {
+        Runs& runs = this->runs(p);
+        const SteadyQuestion& question = runs.question();
+        timeless_ = question.is_timeless();
+        stands_ = timeless_ && motion.status == SteadyStatus::rest;
+        cycles_ = timeless_ && !stands_;
+        offset_ = motion.asked->drive.start - question.drive.start;
+        period_ = motion.period;
+        Moment moment{.state = motion.asked->initial, .relays = relays_of(motion.asked->excitation)};
+        for (const model::OwnState& state : motion.asked->extras.states) moment.states.push_back(state.start);
+        relays_ = moment.relays;
+        if (!cycles_) {
+            first_ = place(moment);
+            return;
+        }
+        section_ = section_of(motion);
+        // A passage against the way of the belt slides.
+        const model::Excitation& belt = question.extras.belt;
+        if (!belt.components().empty() && belt.value(question.drive.start) > 0) section_.way = -1;
+        Runs::Arrival arrival = runs.passage(moment, start(runs), 3 * period_, section_);
+        if (!arrival.arrived) return;
+        first_ = place(arrival.at);
+        // It may pass more than once in its period.
+        int passages = 0;
+        for (double left = (1 - 1e-6) * period_; left > 0 && arrival.arrived; ++passages) {
+            arrival = runs.passage(arrival.at, start(runs), 3 * period_, section_);
+            left -= arrival.t - start(runs);
+        }
+        passages_ = passages * periods;
+    }
+
+    Lap lap(const Eigen::VectorXd& x, double p) override {
+        Runs& runs = this->runs(p);
+        const Moment from = moment(x, runs);
+        Lap lap;
+        model::Outcome outcome = model::Outcome::reached_end;
+        if (cycles_) {
+            Moment now = from;
+            lap.finished = true;
+            for (int i = 0; i < passages_ && lap.finished; ++i) {
+                const Runs::Arrival arrival = runs.passage(now, start(runs), 3 * period_, section_);
+                outcome = arrival.outcome;
+                lap.finished = arrival.arrived;
+                lap.time += arrival.t - start(runs);
+                now = arrival.at;
+            }
+            if (lap.finished) lap.to = place(now);
+        } else {
+            lap.time = length(runs);
+            const Trajectory run = runs.run(from, start(runs), start(runs) + lap.time, motion::Grid::none(), false);
+            outcome = run.outcome;
+            lap.finished = model::is_whole(outcome);
+            if (lap.finished) lap.to = place(runs.at_stop(run, {.state = {}}, 0));
+        }
+        lap.finished = lap.finished && lap.to.allFinite();
+        see(outcome, runs.contradiction());
+        return lap;
+    }
+
+    SteadyMotion motion(const Eigen::VectorXd& x, double p, const Lap& lap,
+                        const Eigen::MatrixXd& derivative) override {
+        Runs& runs = this->runs(p);
+        const Moment moment = this->moment(x, runs);
+        SteadyMotion motion;
+        motion.multipliers = sorted_eigenvalues(derivative);
+        motion.differentiable = true;
+        motion.stable = motion.multipliers.empty() || std::abs(motion.multipliers.front()) <= largest_stable;
+        if (stands_) {
+            motion.status = SteadyStatus::rest;
+            motion.start = {moment.state.theta, 0};
+            motion.low = motion.high = moment.state.theta;
+            motion.rest = {moment.state.theta, moment.state.theta};
+            motion.asked = std::make_shared<const SteadyQuestion>(runs.from(moment, start(runs)));
+            return motion;
+        }
+        motion.periods = periods_;
+        motion.period = lap.time;
+        period_ = lap.time;
+        if (!tell_period(runs, moment, start(runs), motion)) motion.status = SteadyStatus::none;
+        return motion;
+    }
+
+    [[nodiscard]] Eigen::VectorXd units(const Eigen::VectorXd& x, const Lap& /*lap*/,
+                                        const SteadyMotion& motion) const override {
+        Eigen::VectorXd units = Eigen::VectorXd::Zero(x.size());
+        if (motion.settled) {
+            const Trajectory& run = *motion.settled;
+            const Eigen::Index first = cycles_ ? 1 : 0;
+            for (Eigen::Index i = 0; i < x.size(); ++i) {
+                const Eigen::Index k = i + first;
+                const Eigen::Index column = k < 2 ? k + 1 : static_cast<Eigen::Index>(motion::column_count) + k - 2;
+                units[i] = run.rows.col(column).maxCoeff() - run.rows.col(column).minCoeff();
+            }
+        }
+        if (stands_) {
+            const model::Oscillator& system = here_->question.system;
+            const double omega = system.stiffness() > 0 ? system.natural_frequency() : 1;
+            const double belt = here_->question.extras.belt.value(start(here_->runs));
+            units[0] = std::max(std::fabs(belt) / omega, std::fabs(x[0]));
+            units[1] = units[0] * omega;
+        }
+        for (Eigen::Index i = 0; i < x.size(); ++i) {
+            if (!(units[i] > 1e-9 * std::fabs(x[i]))) units[i] = x[i] == 0 ? 1 : std::fabs(x[i]);
+        }
+        return units;
+    }
+
+    std::optional<std::vector<Eigen::VectorXd>> recentred(
+        const SteadyMotion& motion, const std::vector<std::pair<Eigen::VectorXd, double>>& places) override {
+        const double at = (section_.theta - motion.low) / (motion.high - motion.low);
+        if (!cycles_ || (at > 0.3 && at < 0.54)) return {};
+        Section next = section_of(motion);
+        next.way = section_.way;
+        std::vector<Eigen::VectorXd> moved;
+        for (const auto& [x, p] : places) {
+            Runs& runs = this->runs(p);
+            const Runs::Arrival arrival = runs.passage(moment(x, runs), start(runs), 3 * period_, next);
+            if (!arrival.arrived) return {};
+            moved.push_back(place(arrival.at));
+        }
+        section_ = next;
+        return moved;
+    }
+
+private:
+    struct Here {
+        double p;
+        SteadyQuestion question;
+        Runs runs;
+        Here(double at, SteadyQuestion asked, const motion::Monitor& monitor)
+            : p(at), question(std::move(asked)), runs(question, monitor) {}
+    };
+
+    [[nodiscard]] static Section section_of(const SteadyMotion& motion) {
+        constexpr double place = 0.42;  // off the middle, where many motions have an end of something
+        return {motion.low + place * (motion.high - motion.low)};
+    }
+    /// Of the question at this parameter.
+    Runs& runs(double p) {
+        if (!here_ || here_->p != p) here_ = std::make_unique<Here>(p, family_(p), monitor_);
+        return here_->runs;
+    }
+    [[nodiscard]] double start(const Runs& runs) const { return runs.question().drive.start + offset_; }
+    [[nodiscard]] double length(const Runs& runs) const {
+        if (!timeless_) return periods_ * runs.question().drive.period;
+        const model::Oscillator& system = runs.question().system;
+        return system.stiffness() > 0 ? system.natural_period() / 4 : 1;
+    }
+    [[nodiscard]] Eigen::VectorXd place(const Moment& moment) const {
+        Eigen::VectorXd x((cycles_ ? 1 : 2) + static_cast<Eigen::Index>(moment.states.size()));
+        Eigen::Index i = 0;
+        if (!cycles_) x[i++] = moment.state.theta;
+        x[i++] = moment.state.velocity;
+        for (const double z : moment.states) x[i++] = z;
+        return x;
+    }
+    [[nodiscard]] Moment moment(const Eigen::VectorXd& x, const Runs& runs) const {
+        Moment moment{.state = {}, .relays = relays_};
+        Eigen::Index i = 0;
+        moment.state.theta = cycles_ ? section_.theta : x[i++];
+        moment.state.velocity = x[i++];
+        for (; i < x.size(); ++i) moment.states.push_back(x[i]);
+        if (const auto& walls = runs.question().system.walls()) {
+            moment.state.theta = std::clamp(moment.state.theta, walls->lower, walls->upper);
+        }
+        return moment;
+    }
+
+    const Family& family_;
+    const motion::Monitor& monitor_;
+    int periods_, passages_ = 1;
+    bool timeless_ = false;
+    double offset_ = 0, period_ = 0;
+    Section section_;
+    std::vector<bool> relays_;
+    std::unique_ptr<Here> here_;
+};
+
 }  // namespace
+
+std::unique_ptr<Circuit> circuit_of_returns(const Family& family, double p, const SteadyMotion& motion, int periods,
+                                            const motion::Monitor& monitor) {
+    if (!motion.asked) return {};
+    auto circuit = std::make_unique<ReturnCircuit>(family, p, motion, periods, monitor);
+    if (circuit->first().size() == 0) return {};
+    return circuit;
+}
 
 void tell_of_run(const SteadyQuestion& question, const Trajectory& run, SteadyMotion& motion) {
     motion.start = run.initial;

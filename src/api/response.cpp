@@ -79,6 +79,7 @@ public:
     [[nodiscard]] const model::Extras& extras() const { return extras_; }
     /// Rows for the values only.
     [[nodiscard]] bool is_list() const { return !asked_.between; }
+    [[nodiscard]] bool doubled() const { return asked_.doubled; }
     [[nodiscard]] model::State start() const { return {asked_.theta0, asked_.velocity0}; }
     /// There are closed forms beside it.
     [[nodiscard]] bool harmonic() const { return !function_ && (over_frequency() || varied_ == "amplitude"); }
@@ -273,8 +274,10 @@ int response_of_system(lua_State* L) {
     refuse_old_forms(L);
     const lua::Options options(L, 2, response_call);
     const ResponseCall call(L, system, options);
-    const analysis::CurveQuestion question{
-        .family = [&call](double x) { return call.question(x); }, .values = call.values(), .start = call.start()};
+    const analysis::CurveQuestion question{.family = [&call](double x) { return call.question(x); },
+                                           .values = call.values(),
+                                           .start = call.start(),
+                                           .doubled = call.doubled()};
     analysis::ResponseCurve curve;
     ResponseColumns columns;
     asking(L, call.extras(), [&](const motion::Monitor& monitor) {
@@ -292,6 +295,7 @@ int response_of_system(lua_State* L) {
     if (curve.contradiction) options.fail({model::sentence_with_cure(*curve.contradiction)});
     Data data = std::move(columns).data(call.column());
     data.companions.push_back(jumps_of(curve, call.column()));
+    data.companions.push_back(points_of(curve, call.column()));
     if (call.harmonic()) {
         const auto [low, high] = std::minmax_element(call.values().begin(), call.values().end());
         const HarmonicSweep sweep{

@@ -14,7 +14,7 @@ struct ResponseOptions {
     double amplitude = 1;
     std::optional<double> frequency = {}, omega = {}, period = {};
     double theta0 = 0, velocity0 = 0;
-    bool between = false;
+    bool between = false, doubled = false;
 };
 inline constexpr text::Option response_options[] = {
     {.name = "over",
@@ -52,6 +52,9 @@ inline constexpr text::Option response_options[] = {
          "true also keeps the rows between the values that are computed round folds and along unstable sides, and "
          "adds one at a resonance where the motion grows",
      .filled = text::fills<&ResponseOptions::between>},
+    {.name = "doubled",
+     .meaning = "true also follows the motions of twice the period that begin at period doublings",
+     .filled = text::fills<&ResponseOptions::doubled>},
     {.name = "theta0",
      .unit = "rad",
      .meaning = "where the first search starts",
@@ -72,9 +75,12 @@ inline constexpr lua::Doc response_doc{
     "The steady motion over a list of values: of the frequency or the amplitude of a harmonic M, or of anything that `at` "
     "makes of a value. Columns: the name of what is varied (M0 for the amplitude), amplitude, lag (rad), peak, stops, "
     "stuck, stable (1 or 0), branch and status. Where the motion grows the amplitude is infinite, where none was found nan. "
-    "If several motions are possible at once, with a spring of its own, feedback, walls, or Re > Rd, whole branches are "
-    "followed, round their folds and along their unstable sides, which c:plot() draws dotted: a value then has a row on "
-    "each branch. What a sweep meets from either end is found, an island beside it only from a start on it. "
+    "If several motions are possible at once, with a spring of its own, feedback, walls, states, or Re > Rd, whole branches "
+    "are followed, round their folds and along their unstable sides, which c:plot() draws dotted: a value then has a row on "
+    "each branch. Limit cycles are followed in the same way, and the sliding rest beside them. c.points lists what happens "
+    "on the way: kind is \"fold\" (the branch turns back), \"doubling\" (a motion of twice the period begins), "
+    "\"pitchfork\" (unsymmetric motions begin), \"torus\" (a second frequency begins) or \"hopf\" (a limit cycle begins at "
+    "a rest, as squeal does), with the place, amplitude, period and branch. What a sweep meets from either end is found, an island beside it only from a start on it. "
     "c.jumps tells where a sweep leaves a branch: the place, sweep (\"up\" or \"down\"), the amplitudes from and to, "
     "and status, what it lands on. For a linear spring under a harmonic M c.linearised and c.den_hartog are the curves of "
     "equivalent viscous damping and of Den Hartog (nan where the motion stops); c:plot{ overlay = \"linearised\" } draws "
@@ -89,7 +95,12 @@ inline constexpr lua::Doc response_doc{
     "--> down at 0.21658: 0.877 to 1.761\n"
     "squeal = system{ I = 1, k = 4, Rd = 0.3, Re = 0.6 }\n"
     "c = squeal:response{ over = { speed = { 0.05, 0.1 } }, at = function(p) return { belt = p.speed } end }\n"
-    "print(c.speed, c.amplitude)  --> vector{ 0.05, 0.1 }\tvector{ 0.0790569, 0.0901388 }",
+    "print(c.speed, c.amplitude)  --> vector{ 0.05, 0.1 }\tvector{ 0.0790569, 0.0901388 }\n"
+    "squeal = system{ I = 1, k = 4, C = 0.15, friction = friction.stribeck{ Rd = 0.3, Re = 0.6, speed = 0.3 } }\n"
+    "c = squeal:response{ over = { speed = vector.linspace(0.4, 1, 13) }, at = function(p) return { belt = p.speed } end }\n"
+    "for i, point in ipairs(c.points) do print(point.kind, string.format(\"%.6f\", point.speed)) end\n"
+    "--> fold\t0.868343\n"
+    "--> hopf\t0.533848",
     {&response_call}};
 
 }  // namespace dinal::api

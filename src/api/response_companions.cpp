@@ -86,4 +86,24 @@ DataCompanion jumps_of(const analysis::ResponseCurve& curve, const VariedColumn&
     return {"jumps", made, drawn};
 }
 
+DataCompanion points_of(const analysis::ResponseCurve& curve, const VariedColumn& column) {
+    std::vector<double> varied, amplitude, period, branch;
+    std::vector<std::string> kind;
+    for (std::size_t i = 0; i < curve.branches.size(); ++i) {
+        for (const analysis::BranchPoint& point : curve.branches[i]) {
+            if (point.kind == analysis::BranchKind::point) continue;
+            varied.push_back(point.parameter);
+            kind.emplace_back(analysis::name(point.kind));
+            amplitude.push_back(point.motion.amplitude);
+            period.push_back(point.motion.period > 0 ? point.motion.period : no_number);
+            branch.push_back(static_cast<double>(i + 1));
+        }
+    }
+    const Data points{.columns = {column_of(column.name, std::move(varied), column.unit),
+                                  column_of("kind", std::move(kind)),
+                                  column_of("amplitude", std::move(amplitude), column.theta),
+                                  column_of("period", std::move(period)), column_of("branch", std::move(branch))}};
+    return {"points", [points] { return points; }};
+}
+
 }  // namespace dinal::api

@@ -18,6 +18,9 @@ struct VariedColumn {
 /// c.jumps, over what is varied.
 DataCompanion jumps_of(const analysis::ResponseCurve& curve, const VariedColumn& column);
 
+/// c.points: where a branch turns back, or another one begins.
+DataCompanion points_of(const analysis::ResponseCurve& curve, const VariedColumn& column);
+
 /// A sweep of the frequency of a harmonic M, or at one frequency of its amplitude.
 struct HarmonicSweep {
     model::Oscillator system;

@@ -67,7 +67,7 @@ Eigen::Vector3d missed(const Eigen::Vector3d& u, long double C) {
 const BranchPoint& fold_of(const ResponseCurve& curve, int which) {
     for (const auto& branch : curve.branches) {
         for (const BranchPoint& point : branch) {
-            if (point.fold && which-- == 0) return point;
+            if (point.kind == BranchKind::fold && which-- == 0) return point;
         }
     }
     FAIL("there are fewer folds");

@@ -242,6 +242,58 @@ test("a response over the speed of a belt has the closed form of stick-slip, and
     equal(tostring(d):match("Re, amplitude"), "Re, amplitude")
 end)
 
+test("squeal begins at a Hopf point and ends at a fold, where the sliding of the cycle grazes the belt", function()
+    local Rd, Re, C, v0 = 0.3, 0.6, 0.15, 0.3
+    local squeal = system{ I = 1, k = 4, C = C, friction = friction.stribeck{ Rd = Rd, Re = Re, speed = v0 } }
+    local c = squeal:response{ over = { speed = vector.linspace(0.4, 1, 13) }, at = function(p) return { belt = p.speed } end }
+    equal(table.concat(c.points.kind, " "), "fold hopf")
+    local fold, hopf = c.points[1], c.points[2]
+    -- The damping of the sliding is C and the slope of friction.
+    near(C, (Re - Rd) * 2 * hopf.speed / v0 ^ 2 * math.exp(-(hopf.speed / v0) ^ 2), 1e-9)
+    near(fold.speed, 0.8683428494994, 1e-8) -- shooting by Runge and Kutta's method from the release, 40,000 steps
+    local rows = {}
+    for i = 1, #c do
+        local key = string.format("%.2f", c.speed[i])
+        rows[key] = rows[key] or {}
+        table.insert(rows[key], { amplitude = c.amplitude[i], stable = c.stable[i], stops = c.stops[i], status = c.status[i] })
+    end
+    equal(#rows["0.50"], 2) -- the cycle and the rest that is left
+    equal(#rows["0.70"], 3)
+    equal(#rows["0.90"], 1)
+    table.sort(rows["0.70"], function(a, b) return a.amplitude < b.amplitude end)
+    local rest, unstable, cycle = table.unpack(rows["0.70"])
+    equal(rest.status .. rest.stable .. unstable.stable .. cycle.stable, "rest1.00.01.0")
+    equal(unstable.stops, 0)
+    -- Beside the unstable cycle a run dies out, or grows into the other one.
+    local theta_rest = -(Rd + (Re - Rd) * math.exp(-(0.7 / v0) ^ 2)) / -4
+    for _, factor in ipairs{ 0.8, 1.25 } do
+        local run = squeal:simulate{ belt = 0.7, theta0 = theta_rest + factor * unstable.amplitude, t_end = 400, dt = 0.1 }
+        local last = run.theta[run.t:find(function(t) return t > 390 end)]
+        near((last:max() - last:min()) / 2, factor < 1 and 0 or cycle.amplitude, 2e-3)
+    end
+end)
+
+test("period doublings are located, and the branches of twice the period followed", function()
+    local sys = system{ I = 1, k = 0, C = 0.3, spring = spring.polynomial{ [1] = -1, [3] = 1 } }
+    local c = sys:response{ over = { amplitude = vector.linspace(0.25, 0.28, 7) }, omega = 1.2, theta0 = 1, doubled = true }
+    equal(table.concat(c.points.kind, " "), "doubling")
+    local M0, T = c.points.M0[1], 2 * math.pi / 1.2
+    for _, off in ipairs{ -2e-5, 2e-5 } do -- a long run has this period, or twice it
+        local run = sys:simulate{ M = excitation.harmonic{ amplitude = M0 + off, omega = 1.2 }, theta0 = 1,
+            times = vector.range(5998, 6000) * T, t_end = 6000 * T }
+        near(run.theta[3], run.theta[1], 1e-5)
+        assert((math.abs(run.theta[3] - run.theta[2]) > 1e-3) == (off > 0))
+    end
+    assert(c.branch:max() >= 2) -- another one may be in the other well
+    local before, after = 0, 0
+    for i = 1, #c do
+        if c.M0[i] > M0 then
+            if c.branch[i] == 1 then before = before + c.stable[i] elseif c.branch[i] == 2 then after = after + c.stable[i] end
+        end
+    end
+    equal(before .. " " .. after, "0.0 3.0")
+end)
+
 test("Welch's density has the variance of noise, flat, and the power of a sine", function()
     local n = 2^14
     local noise, t = vector.normal{ n = n, seed = 3, std = 0.5 }, vector.range(0, n - 1) * 0.01
