@@ -56,9 +56,10 @@ void refuse_own_options(lua_State* L, int more) {
     for (const char* name : {"t_end", "dt", "times", "dense"}) {
         const bool given = lua_istable(L, more) && lua_getfield(L, more, name) != LUA_TNIL;
         if (given) {
-            lua::raise(L, fmt::format("at returned {} among the options, which bifurcation itself gives to "
-                                      "sys:simulate: period, skip and keep say when it looks",
-                                      name));
+            lua::raise(L,
+                       fmt::format(
+                           "at returned {}, which bifurcation sets itself: choose the samples by period, skip and keep",
+                           name));
         }
         if (lua_istable(L, more)) lua_pop(L, 1);
     }
@@ -103,7 +104,7 @@ std::string body_of_point(lua_State* L, bool rig) {
     lua_pop(L, 1);
     const auto* system = rig ? lua::test<model::AssemblyHandle>(L, 2) : nullptr;
     const bool several = system != nullptr && (*system)->named;
-    if (several && !given) lua::raise(L, "at must return the body that is looked at, such as of = \"load\"");
+    if (several && !given) lua::raise(L, "at must return the body to record, such as of = \"load\"");
     return several ? of : "";
 }
 
@@ -145,8 +146,8 @@ int looks_of_point(lua_State* L) {
     }
     const int run = lua_gettop(L);
     if (const auto* own = lua::test<RunHandle>(L, run); own != nullptr && !is_whole((*own)->trajectory.outcome)) {
-        lua::raise(
-            L, fmt::format("the run ended before the last look at it: {}", motion::outcome_text((*own)->trajectory)));
+        lua::raise(L,
+                   fmt::format("the run ended before the last sample: {}", motion::outcome_text((*own)->trajectory)));
     }
     lua_createtable(L, 0, static_cast<int>(2 * keep));
     const int looks = run + 1;

@@ -46,7 +46,7 @@ constexpr lua::Member sweep_members[] = {
 
 const lua::Class sweep_functions = {
     "sweep",
-    {"sweep{ ... } -> data", "Many points at once.",
+    {"sweep{ ... } -> data", "Many points in parallel.",
      "print(#sweep{ over = { x = { 1, 2, 3 } }, run = function(p) return { y = p.x^2 } end })  --> 3"},
     sweep_members};
 

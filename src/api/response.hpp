@@ -20,13 +20,13 @@ inline constexpr text::Option response_options[] = {
     {.name = "over",
      .otherwise = text::needed,
      .meaning =
-         "what is varied, and its values in their order: { frequency = values }, also omega, period or amplitude of "
-         "a harmonic M; with `at`, { NAME = values } for any name",
+         "the varied parameter and its values: { frequency = values }, also omega, period or amplitude of a harmonic "
+         "M; with `at`, { NAME = values } for any name",
      .wanted = "a name and its values, such as { frequency = vector.linspace(0.05, 3, 200) }"},
     {.name = "at",
      .meaning =
          "a function of a point, a table such as { speed = 0.5 }, that returns the options of sys:steady there, and "
-         "system = ... if the system changes, too; without it M is harmonic",
+         "system = ... if the system changes; without `at` M is harmonic",
      .wanted = "a function of a point that returns options of sys:steady"},
     {.name = "amplitude",
      .unit = "torque",
@@ -49,12 +49,12 @@ inline constexpr text::Option response_options[] = {
      .filled = text::fills<&ResponseOptions::period>},
     {.name = "between",
      .meaning =
-         "true also keeps the rows between the values that are computed round folds and along unstable sides, and "
-         "adds one at a resonance where the motion grows",
+         "true keeps also the rows between the values, computed around folds and along unstable branches, and adds "
+         "one at a resonance where the motion grows",
      .filled = text::fills<&ResponseOptions::between>},
     {.name = "theta0",
      .unit = "rad",
-     .meaning = "where the first search starts",
+     .meaning = "start of the first search",
      .filled = text::fills<&ResponseOptions::theta0>},
     {.name = "velocity0",
      .unit = "rad per time unit",
@@ -69,16 +69,15 @@ int response_of_system(lua_State* L);
 
 inline constexpr lua::Doc response_doc{
     "sys:response{ OPTIONS } -> data",
-    "The steady motion over a list of values: of the frequency or the amplitude of a harmonic M, or of anything that `at` "
-    "makes of a value. Columns: the name of what is varied (M0 for the amplitude), amplitude, lag (rad), peak, stops, "
-    "stuck, stable (1 or 0), branch and status. Where the motion grows the amplitude is infinite, where none was found nan. "
-    "If several motions are possible at once, with a spring of its own, feedback, walls, or Re > Rd, whole branches are "
-    "followed, round their folds and along their unstable sides, which c:plot() draws dotted: a value then has a row on "
-    "each branch. What a sweep meets from either end is found, an island beside it only from a start on it. "
-    "c.jumps tells where a sweep leaves a branch: the place, sweep (\"up\" or \"down\"), the amplitudes from and to, "
-    "and status, what it lands on. For a linear spring under a harmonic M c.linearised and c.den_hartog are the curves of "
-    "equivalent viscous damping and of Den Hartog (nan where the motion stops); c:plot{ overlay = \"linearised\" } draws "
-    "them beside c, \"jumps\" as well.",
+    "The steady motion over a list of values: of the frequency or amplitude of a harmonic M, or of any parameter "
+    "that `at` uses. Columns: the varied parameter (M0 for the amplitude), amplitude, lag (rad), peak, stops, "
+    "stuck, stable (1 or 0), branch and status. The amplitude is infinite where the motion grows, nan where none "
+    "was found. If several motions coexist (second spring, feedback, walls, or Re > Rd), whole branches are "
+    "followed around folds, and a value has a row on each; c:plot() draws unstable ones dotted. Isolated "
+    "branches are found only from a start on them. c.jumps lists where a sweep leaves a branch: the value, sweep "
+    "(\"up\" or \"down\"), the amplitudes from and to, and status after it. For a linear spring under a harmonic "
+    "M, c.linearised and c.den_hartog are the curves of equivalent viscous damping and of Den Hartog; c:plot{ "
+    "overlay = \"linearised\" } draws them beside c.",
     "c = nondimensional{ friction_ratio = 0.5 }:response{ over = { frequency = { 0.75, 1.5, 2 } } }\n"
     "print(c.amplitude, c.stops[1])  --> vector{ 1.9726, 0.553775, 0.220479 }\t0.0\n"
     "sys = system{ I = 1, k = 1, C = 0.05, Rd = 0.02, spring = spring.polynomial{ [3] = 0.5 } }\n"

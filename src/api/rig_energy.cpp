@@ -92,7 +92,7 @@ int rig_energy_text(lua_State* L) {
          sum_of(works.dry));
     for (const auto& [name, value] : {std::pair("belt", sum_of(works.belt)), std::pair("base", sum_of(works.base)),
                                       std::pair("acts", works.acts)}) {
-        if (value != 0) text += fmt::format("  {} {:.6g} was put in besides\n", name, shown(value));
+        if (value != 0) text += fmt::format("  {} {:.6g} added by belt, base and acts\n", name, shown(value));
     }
     if (const double lost = sum_of(works.impacts); lost != 0) {
         text += fmt::format("  impacts {:.6g} were lost\n", shown(lost));
@@ -112,8 +112,8 @@ int rig_energy_text(lua_State* L) {
 constexpr lua::Member rig_energy_members[] = {
     {lua::a_field<total_of_rig>,
      {"energy.total -> table",
-      "The balance of the whole run, torque times rad, by the names that it has for one body: input + belt + base + acts = "
-      "kinetic + spring + viscous + dry + impacts + error; flow, and closure = |error|/flow.",
+      "The balance of the whole run, torque times rad: input + belt + base + acts = kinetic + spring + viscous + "
+      "dry + impacts + error; flow, and closure = |error|/flow.",
       DINAL_RIG_ENERGY "print(energy.total.kinetic, energy.total.closure < 1e-12)  --> -3.375\ttrue"}},
     {lua::a_metamethod<rig_energy_text>("__tostring"),
      {"tostring(energy) -> string", "The balance as a small table.",
@@ -125,8 +125,7 @@ constexpr lua::Member rig_energy_members[] = {
 const lua::Class rig_energy_class = {
     "energy of several bodies",
     {"rig_run:energy() -> energy",
-     "The energy of a run of several bodies: energy.total, and for a body or link what it has of input, base, kinetic, "
-     "spring, viscous, dry, belt and impacts: energy.clutch.dry.",
+     "The energy of a run of several bodies: energy.total, and the share of each body or link: energy.clutch.dry.",
      DINAL_RIG_ENERGY "print(energy.clutch.dry)  --> 3.375"},
     rig_energy_members,
     part_of_energy};
@@ -161,9 +160,10 @@ const engine::Works& works_of(lua_State* L, const BodiesRunHandle& run) {
     }
     constexpr double same = 1e-6;
     if (!(off <= same * size)) {
-        lua::raise(L,
-                   "run:energy(): the run came out otherwise when it was repeated for its energy: a controller keeps a "
-                   "memory from one run to the next");
+        lua::raise(
+            L,
+            "run:energy(): repeating the run for its energy gave another motion: a controller keeps a memory from "
+            "one run to the next");
     }
     run->works = std::make_shared<const engine::Works>(std::move(again.works));
     return *run->works;

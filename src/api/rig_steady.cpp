@@ -37,8 +37,8 @@ analysis::Drive repeats_or_fail(lua_State* L, const lua::Options& options, const
     std::optional<analysis::Drive> drive;
     asking_bodies(L, question, [&](const motion::Monitor&) { drive = analysis::drive_of(question); });
     if (!drive && !period) {
-        options.fail({.sentence = "the period of what drives the bodies is not known; give it with period = ...",
-                      .option = "period"});
+        options.fail(
+            {.sentence = "the period of the excitation is not known; give it with period = ...", .option = "period"});
     }
     if (period) drive = analysis::Drive{drive ? drive->start : 0, *period};
     if (drive->period > 0) {
@@ -127,9 +127,10 @@ int steady_of_rig(lua_State* L) {
     question.periods = asked.periods.value_or(0);
     for (const model::Excitation& load : question.drive.loads) {
         if (model::has_memory<model::SampledController>(load) || model::has_memory<model::DelayedController>(load)) {
-            options.fail("M",
-                         "M has a controller that samples, or acts with a delay, whose memory is a part of the "
-                         "state; run it for long and see run.load:cycle()");
+            options.fail(
+                "M",
+                "M has a sampled or delayed controller, whose memory is part of the state; make a long run and use "
+                "run.load:cycle()");
         }
     }
     question.repeats = repeats_or_fail(L, options, question, asked.period);

@@ -111,8 +111,7 @@ int poincare_of_run(lua_State* L) {
     const double period =
         period_or_fail(options, asked.period, asked.frequency, asked.omega).value_or(period_of_run(*run));
     if (!(period > 0)) {
-        options.fail(
-            {.sentence = "period must be given, because the M of this run does not know one", .option = "period"});
+        options.fail({.sentence = "give a period: the M of this run has no known one", .option = "period"});
     }
     const double from = asked.from.value_or(trajectory.t_start);
     if (from < trajectory.t_start || from > trajectory.t_stop) {
@@ -122,7 +121,7 @@ int poincare_of_run(lua_State* L) {
     }
     const double looks = std::floor((trajectory.t_stop - from) / period * (1 + 1e-12)) + 1;
     constexpr double most = 1e7;
-    if (looks > most) options.fail({fmt::format("{:.3g} looks are more than {:.3g}", looks, most)});
+    if (looks > most) options.fail({fmt::format("{:.3g} samples are more than {:.3g}", looks, most)});
     std::vector<double> t, theta, velocity;
     lua::CallState call(L);
     for (std::size_t i = 0; i < static_cast<std::size_t>(looks); ++i) {

@@ -38,7 +38,7 @@ inline constexpr text::Option spectrum_options[] = {
     {.name = "from",
      .unit = "time units",
      .otherwise = "the first row",
-     .meaning = "the time before which rows are left out: the transient",
+     .meaning = "rows before this time (the transient) are left out",
      .filled = text::fills<&SpectrumOptions::from>},
 };
 inline constexpr text::Call spectrum_call{
@@ -53,22 +53,22 @@ inline constexpr text::Option poincare_options[] = {
      .unit = "time units",
      .otherwise = "that of M",
      .range = text::positive,
-     .meaning = "from look to look; needed where M does not know its own: native terms do, a Lua function does not",
+     .meaning = "time between samples; needed if the period of M is not known, as for a Lua function",
      .filled = text::fills<&PoincareOptions::period>},
     {.name = "frequency",
      .unit = "cycles per time unit",
      .range = text::positive,
-     .meaning = "1/period, instead of it",
+     .meaning = "1/period, instead of period",
      .filled = text::fills<&PoincareOptions::frequency>},
     {.name = "omega",
      .unit = "rad per time unit",
      .range = text::positive,
-     .meaning = "2 pi/period, instead of it",
+     .meaning = "2 pi/period, instead of period",
      .filled = text::fills<&PoincareOptions::omega>},
     {.name = "from",
      .unit = "time units",
      .otherwise = "the beginning",
-     .meaning = "the time of the first look, after the transient; it chooses the phase too",
+     .meaning = "the time of the first sample, after the transient; it also chooses the phase",
      .filled = text::fills<&PoincareOptions::from>},
 };
 inline constexpr text::Call poincare_call{"run:poincare", "run:poincare{ period = 1 }", poincare_options};
@@ -78,13 +78,11 @@ int poincare_of_run(lua_State* L);
 
 inline constexpr lua::Doc spectrum_doc{
     "run:spectrum{ OPTIONS } -> data",
-    "The one-sided amplitude spectrum of a column (run:spectrum \"velocity\" will do): frequency (cycles per time unit, up to half a cycle per dt) and "
-    "amplitude (of a sine, in the unit of the column), from rows with one dt; a shorter last row is left out, and so is "
-    "one with which whole periods begin again, as it has the value of the first. A sine of whole periods has its amplitude in any window; one "
-    "that falls midway between two frequencies has 64 % of it in rectangle, 85 % in hann and 99.9 % in flat top. The mean "
-    "(with the weights of the window) stands at frequency 0. With method = \"welch\" the second column is density, in "
-    "the square of the unit per cycle per time unit: its sum times the step of frequency is the variance. "
-    "run:spectrum(\"theta\", { OPTIONS }) is the same with of = \"theta\".",
+    "The one-sided amplitude spectrum of a column, from rows with one dt: frequency (cycles per time unit, up to "
+    "half a cycle per dt) and amplitude (of a sine). A sine of whole periods has its amplitude in any window; "
+    "one midway between two frequencies has 64 % of it in rectangle, 85 % in hann and 99.9 % in flat top. The "
+    "mean is at frequency 0. With method = \"welch\" the second column is density: its sum times the step of "
+    "frequency is the variance. run:spectrum(\"theta\", { OPTIONS }) is the same with of = \"theta\".",
     "run = nondimensional{}:simulate{ theta0 = 1, t_end = 16, dt = 0.125 }\n"
     "s = run:spectrum{ of = \"theta\", window = \"rectangle\" }\n"
     "i = s.amplitude:argmax()\n"
@@ -92,8 +90,8 @@ inline constexpr lua::Doc spectrum_doc{
     {&spectrum_call}};
 inline constexpr lua::Doc poincare_doc{
     "run:poincare{ OPTIONS } -> data",
-    "The motion looked at once a period: t, theta and velocity, at the accuracy of run:at. A periodic motion is one "
-    "point, a subharmonic one several, an irregular one a cloud; its plot shows velocity over theta.",
+    "The motion sampled once a period: t, theta and velocity. A periodic motion gives one point, a subharmonic "
+    "one several, an irregular one a cloud; the plot shows velocity over theta.",
     "run = nondimensional{ zeta = 0.2 }:simulate{ M = excitation.harmonic{ frequency = 0.5 }, t_end = 60, dt = 1 }\n"
     "d = run:poincare{ from = 40 }\n"
     "print(#d, d.theta:max() - d.theta:min() < 1e-9)  --> 11\ttrue",

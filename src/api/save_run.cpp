@@ -44,8 +44,7 @@ text::Expected<files::Written> write_record(const std::string& file, const Run& 
     if (run.trajectory.names() == files::record1989_names()) {
         return files::write_record1989(file, run.trajectory.rows.matrix());
     }
-    return text::Error{
-        "a .dat file needs the system, which a run that was read from a file no longer has; save it as .csv"};
+    return text::Error{"a .dat file needs the system, which a run read from a file does not have; save it as .csv"};
 }
 
 text::Expected<files::Written> write(lua_State* L, const lua::Options& options, const std::string& file,

@@ -291,7 +291,7 @@ void SweepWorkers::run(lua_State* L) {
     std::vector<std::thread> threads;
     threads.reserve(states_.size());
     start(threads);
-    if (threads.empty()) lua::raise(L, std::string(work_.call) + ": the system lets no thread be started");
+    if (threads.empty()) lua::raise(L, std::string(work_.call) + ": the operating system refuses to start a thread");
     std::unique_lock lock(ending_);
     while (!ended_.wait_for(lock, look_again, [this] { return running_ == 0; })) {
         progress.advance(static_cast<double>(work_.finished.load(std::memory_order_relaxed)));

@@ -82,7 +82,7 @@ private:
             const auto bad = std::find_if_not(fields_.begin(), fields_.end(), is_number);
             return error_at(file_, number,
                             "column " + std::to_string(bad - fields_.begin() + 1) + " " + number_fault(*bad) +
-                                ", but the line has numbers, too (in a line of names they must be in double quotes)");
+                                ", but the line also has numbers (in a line of names they must be in double quotes)");
         }
         width_source_ = "as in the first row";
         for (std::size_t i = 1; i <= fields_.size(); ++i) {

@@ -22,7 +22,7 @@ test("the heat of a clutch that locks is the energy of the relative motion", fun
     near(e.motor.input, run.motor.theta[1001], 1e-12)
     near(e.clutch.dry, 2 * (run.clutch.theta[1001]), 1e-11)
     raises_here(function() return e.brake end, "this energy has no 'brake'; its bodies and links are load, motor, clutch")
-    raises_here(function() run.motor:energy() end, "ask the run of all bodies")
+    raises_here(function() run.motor:energy() end, "call it for the run of all bodies")
 end)
 
 test("energy closes with everything that a rig may have", function()

@@ -153,7 +153,7 @@ text::Expected<model::State> Pieces::at(double t) const {
     if (list_.empty()) return text::Error{"the run has no motion to evaluate: it ended where it started"};
     const Piece& last = list_.back();
     if (!complete_ && t > last.start.after(last.length)) {
-        return text::Error{"the motion was kept in part only, for want of memory: take rows, or begin a run there"};
+        return text::Error{"only part of the motion was kept, for lack of memory: ask for rows, or start a run there"};
     }
     return at(t, Side::at);
 }
