@@ -85,8 +85,9 @@ TEST_CASE("steady motion with stops: period, amplitude, lag, stops and the time 
         CHECK_THAT(text, Contains("The amplitude is 0.12917 about theta = 0."));
         CHECK_THAT(text, Contains("It stops twice in each period and is stuck for 35 % of the time."));
         CHECK_THAT(
-            text, Contains("It stopped at t = 19.4502 at theta = 0.12917 because |M - k theta| = 0.17877 <= Re = "
-                           "0.836; it stuck for 0.17476, until this torque exceeded Re and the mass slipped backward."));
+            text,
+            Contains("It stopped at t = 19.4502 at theta = 0.12917 because |M - k theta| = 0.17877 <= Re = "
+                     "0.836; it stuck for 0.17476, until this torque exceeded Re and the mass slipped backward."));
         CHECK_THAT(text, Contains("... 35 more ..."));
         CHECK_THAT(text, Contains("was still stuck when the run ended at t = 20"));
         CHECK_THAT(text, Contains("lags behind that of M by 2.002 rad"));
@@ -122,9 +123,8 @@ TEST_CASE("a motion that grows says how", "[explain]") {
     CHECK_THAT(story(nondimensional(0, 0.167), harmonic(1, 2 * pi), {1, 0}, {0, 10}),
                Contains("The motion grows: amplitudes of") && Contains("periods of M, 2.4736 more each time."));
     const auto pushed = feedback([](double, const State& y) { return 0.1 * y.velocity; });
-    CHECK_THAT(story(nondimensional(0, 0), pushed, {1, 0}, {0, 10}), Contains("M is a feedback") &&
-                                                                         Contains("The motion grows") &&
-                                                                         Contains("times as much each time"));
+    CHECK_THAT(story(nondimensional(0, 0), pushed, {1, 0}, {0, 10}),
+               Contains("M is a feedback") && Contains("The motion grows") && Contains("times as much each time"));
 }
 
 TEST_CASE("a motion that has not become steady is not called so", "[explain]") {
@@ -157,7 +157,8 @@ TEST_CASE("a slip at a jump of M is told as one", "[explain]") {
     CHECK_THAT(text, Contains("M is constant from t = 20.125 on."));
     CHECK_THAT(
         text,
-        Contains("until t = 20, when M jumped so that |M - k theta| = 2.95 > Re = 0.167, and the mass slipped forward."));
+        Contains(
+            "until t = 20, when M jumped so that |M - k theta| = 2.95 > Re = 0.167, and the mass slipped forward."));
     CHECK_THAT(text, Contains("stays at rest"));
 }
 
