@@ -34,5 +34,5 @@ native M is taken by	integrator.exact{}
 a function is taken by	integrator.spectral{}
 80 and 80 events; angles differ by less than 1e-12: true
 all of one kind, in one order; their times differ by less than 1e-12 T0: true
-false	integrator.exact{} takes an M of native terms other than chirp and gaussian: use integrator.spectral{}, which takes every M
+false	integrator.exact{} supports only native terms other than chirp and gaussian: use integrator.spectral{}, which supports every M
 ]]

@@ -147,12 +147,13 @@ text::Expected<Energy> energy_of(const motion::Trajectory& trajectory, Whose who
     const double whole_until = trajectory.course ? trajectory.course->whole_until() : -model::never;
     if (whole_until == -model::never) {
         return text::Error{
-            "the energy is integrated over the motion that integrator.exact and integrator.spectral keep: simulate with "
+            "the energy is integrated over the motion that integrator.exact and integrator.spectral keep: simulate "
+            "with "
             "one of them and without dense = false"};
     }
     if (whole_until < model::never) {
         return text::Error{fmt::format(
-            "the motion was kept up to t = {:.6g} only, for want of memory: simulate in parts, each up to that length",
+            "the motion was kept only up to t = {:.6g}, for lack of memory: simulate in parts of at most that length",
             whole_until)};
     }
     if (!(trajectory.t_stop > trajectory.t_start)) {
@@ -217,7 +218,7 @@ std::string text(const Energy& energy, const model::Units& units) {
     };
     text += given_line("belt", work.belt, "work of the moving surface on the mass");
     text += given_line("base", work.base, "work of the shaking support on the mass");
-    text += given_line("acts", work.acts, "what was done to it at events");
+    text += given_line("acts", work.acts, "work of acts at events");
     text += stored_line("kinetic", change.kinetic, energy.start.kinetic, energy.finish.kinetic);
     text += stored_line("spring", change.spring, energy.start.spring, energy.finish.spring);
     text += fmt::format("  {:<8}{:>13.6g}   lost to viscous damping\n", "viscous", shown(work.viscous));

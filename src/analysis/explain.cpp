@@ -32,10 +32,10 @@ std::string explain_rows(const motion::Trajectory& trajectory, const model::Unit
             if (now != 0) before = now;
             if (now == 0) ++still;
         }
-        text += fmt::format(" The velocity changes its sign {} and is exactly 0 in {}.", text::counted(changes, "time"),
+        text += fmt::format(" The velocity changes sign {} and is exactly 0 in {}.", text::counted(changes, "time"),
                             text::counted(still, "row"));
     }
-    text += " Rows do not tell events and their reasons: simulate again for the story.";
+    text += " The rows do not contain events and their reasons: simulate again to see them.";
     return text::wrapped(text);
 }
 

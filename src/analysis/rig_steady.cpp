@@ -850,7 +850,7 @@ std::string told(const RigQuestion& question, const RigMotion& motion, std::size
     switch (facts.status) {
         case SteadyStatus::steady:
             if (facts.period == 0) {
-                say("All bodies go round evenly.");
+                say("All bodies rotate at constant speed.");
                 return text;
             }
             say(timeless ? fmt::format("The motion is a limit cycle of period {:.6g}.", facts.period)
@@ -859,7 +859,7 @@ std::string told(const RigQuestion& question, const RigMotion& motion, std::size
             for (std::size_t i = 0; i < question.system->bodies.size(); ++i) {
                 const double size = std::max(std::fabs(motion.low[i]), std::fabs(motion.high[i]));
                 if (motion.turned[i] != 0) {
-                    say(fmt::format("{} goes round by {:.5g} in each of them.", question.system->bodies[i].name,
+                    say(fmt::format("{} turns by {:.5g} in each period.", question.system->bodies[i].name,
                                     motion.turned[i]));
                 } else if (question.system->named && motion.high[i] > motion.low[i]) {
                     say(fmt::format("{} swings between {} and {}.", question.system->bodies[i].name,
@@ -868,7 +868,7 @@ std::string told(const RigQuestion& question, const RigMotion& motion, std::size
             }
             break;
         case SteadyStatus::adheres:
-            say("Nothing moves: over a period M never exceeds what the frictions hold.");
+            say("Nothing moves: over a period M never exceeds what friction can hold.");
             break;
         case SteadyStatus::rest:
             say("The motion dies out: all bodies come to rest.");
@@ -877,24 +877,26 @@ std::string told(const RigQuestion& question, const RigMotion& motion, std::size
             say("There is no steady motion: the amplitude grows without bound.");
             return text;
         case SteadyStatus::none:
-            say(timeless ? "No limit cycle was found: the motion is irregular, or it settles very slowly."
-                         : fmt::format("Nothing periodic was found in {} periods of M, up to 32 of them in one: the "
-                                       "motion is irregular, or it settles very slowly.",
-                                       facts.maps));
+            say(timeless
+                    ? "No limit cycle was found: the motion is irregular, or it settles very slowly."
+                    : fmt::format(
+                          "No motion of up to 32 periods of M was found within {} periods: the motion is irregular, "
+                          "or it settles very slowly.",
+                          facts.maps));
             return text;
     }
     if (facts.differentiable) {
         double largest = 0;
         for (const std::complex<double>& value : facts.multipliers) largest = std::max(largest, std::abs(value));
-        say(largest > 1 - 1e-6 ? "It is stable, but a disturbance does not die."
+        say(largest > 1 - 1e-6 ? "It is marginally stable: a disturbance neither grows nor decays."
             : largest < 1e-12
                 ? "It is stable: a disturbance is gone after one period."
-                : fmt::format("It is stable: of a disturbance {} is left after a period.", text::percent(largest)));
+                : fmt::format("It is stable: {} of a disturbance remains after a period.", text::percent(largest)));
     }
     if (others > 0) {
         say(fmt::format("From other starts {} was seen.", text::counted(others, "other motion")));
     } else if (!facts.unique.has_value() && facts.status == SteadyStatus::steady) {
-        say("No other motion was seen from 8 other starts, which is no proof.");
+        say("8 other starts led to no other motion, which is no proof.");
     }
     return text;
 }

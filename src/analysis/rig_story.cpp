@@ -103,7 +103,7 @@ private:
         }
         if (low != high) {
             const double v = part.state_at_stop.velocity;
-            v == 0 ? say("At the end it stood.") : say("At the end its velocity was {:.5g}.", v);
+            v == 0 ? say("It was at rest at the end.") : say("At the end its velocity was {:.5g}.", v);
         }
         const bool belt = !drive_.belts[j].components().empty();
         tell_contact(j, belt ? "to its belt" : "to the ground");

@@ -126,8 +126,8 @@ public:
                 tell_stability();
                 break;
             case SteadyStatus::adheres:
-                say("The mass adheres: over a period M never exceeds what friction can hold, so it stays where it stands, "
-                    "anywhere from theta = {} to {}.",
+                say("The mass adheres: over a period M never exceeds what friction can hold, so it stays where it "
+                    "is, anywhere from theta = {} to {}.",
                     number(motion_.rest.first), number(motion_.rest.second));
                 break;
             case SteadyStatus::rest:
@@ -142,8 +142,8 @@ public:
                     say("There is no steady motion: the amplitude grows without bound.");
                     break;
                 }
-                say("There is no steady motion: M feeds more than the frictions take, and the amplitude grows by {} in "
-                    "each period of M ({:.5g}).",
+                say("There is no steady motion: M supplies more energy than is dissipated, and the amplitude grows "
+                    "by {} in each period of M ({:.5g}).",
                     number(motion_.growth), question_.drive.period);
                 break;
             case SteadyStatus::none:
@@ -151,8 +151,8 @@ public:
                     tell_no_cycle();
                     break;
                 }
-                say("Nothing periodic was found in {} periods of M, up to 32 of them in one: the motion is irregular, "
-                    "or it settles very slowly.",
+                say("No motion of up to 32 periods of M was found within {} periods: the motion is irregular, or it "
+                    "settles very slowly.",
                     motion_.maps);
                 if (model::has_memory<model::SampledController>(question_.excitation)) {
                     say("A controller that samples may have no period in common with M: choose an every that divides "
@@ -196,13 +196,13 @@ private:
             say("It stops {} a period and is stuck for {} of it.",
                 motion_.stops == 1 ? "once" : fmt::format("{} times", motion_.stops), text::percent(motion_.stuck));
         }
-        if (motion_.symmetric) say("Each half period is the opposite of the other.");
+        if (motion_.symmetric) say("The motion is symmetric: theta(t + T/2) = -theta(t).");
     }
     void tell_stability() {
         if (motion_.settled && !motion_.asked && question_.is_timeless()) {
-            say("A run came to it; it has no multipliers, because what M remembers is a part of the state.");
+            say("A run led to it; it has no multipliers, because the memory of M is part of the state.");
         } else if (motion_.settled && !motion_.asked) {
-            say("A run of {} periods of M came to it; it has no multipliers, because what M remembers is a part of the "
+            say("A run of {} periods of M led to it; it has no multipliers, because the memory of M is part of the "
                 "state.",
                 motion_.maps);
         }
@@ -210,25 +210,26 @@ private:
         double largest = 0;
         for (const std::complex<double>& value : motion_.multipliers) largest = std::max(largest, std::abs(value));
         if (!motion_.stable) {
-            say("It is unstable: a disturbance grows {:.6g} times in a period, so that no run stays with it.", largest);
+            say("It is unstable: a disturbance grows by a factor of {:.6g} in a period, so no run stays on it.",
+                largest);
         } else if (largest > 1 - 1e-6) {
-            say("It is stable, but a disturbance does not die.");
+            say("It is marginally stable: a disturbance neither grows nor decays.");
         } else if (largest < 1e-12) {
             say("It is stable: a disturbance is gone after one period.");
         } else {
-            say("It is stable: of a disturbance {} is left after a period.", text::percent(largest));
+            say("It is stable: {} of a disturbance remains after a period.", text::percent(largest));
         }
     }
     void tell_other(const SteadyMotion& other) {
         if (other.status == SteadyStatus::adheres || other.status == SteadyStatus::rest) {
-            say("From another start the mass comes to rest for good.");
+            say("From another start the mass comes to rest.");
         } else if (other.status == SteadyStatus::grows) {
             say("From another start the motion grows.");
         } else if (question_.is_timeless()) {
-            say("Another motion was seen from another start: amplitude {}, period {:.6g}.", number(other.amplitude),
+            say("Another start leads to another motion: amplitude {}, period {:.6g}.", number(other.amplitude),
                 other.period);
         } else {
-            say("Another motion was seen from another start: amplitude {}, {} of M long.", number(other.amplitude),
+            say("Another start leads to another motion: amplitude {}, {} of M long.", number(other.amplitude),
                 text::counted(static_cast<std::size_t>(other.periods), "period"));
         }
     }
@@ -239,11 +240,11 @@ private:
         if (others.size() > most) say("There are {} more (s.others).", others.size() - most);
         if (!others.empty() || motion_.status != SteadyStatus::steady) return;
         if (!motion_.unique.has_value()) {
-            say("No other motion was seen from {} other starts, which is no proof.", other_starts);
+            say("{} other starts led to no other motion, which is no proof.", other_starts);
         } else if (*motion_.unique) {
-            say("It is the only one.");
+            say("No other steady motion exists.");
         } else {
-            say("It is one of a family: others beside it are periodic, too.");
+            say("It is one of a family of periodic motions.");
         }
     }
 

@@ -82,10 +82,10 @@ void Story::tell_setting() {
         say("The system has T0 = {:.5g}, zeta = {:.4g} ({})", T0_, system_.damping_ratio(),
             model::name(system_.regime()));
     } else if (system_.has_spring()) {
-        say("The system has a spring besides k theta, so that T0 = {:.5g} and zeta = {:.4g} are those of k alone,", T0_,
+        say("The system has a second spring besides k theta (T0 = {:.5g} and zeta = {:.4g} are for k alone)", T0_,
             system_.damping_ratio());
     } else {
-        say("The system is a block {}", system_.spring().none() ? "without a spring" : "on a spring of its own");
+        say("The system is a block {}", system_.spring().none() ? "without a spring" : "on a nonlinear spring");
         if (system_.damping() > 0) add(", with viscous damping C = {:.5g}", system_.damping());
     }
     tell_friction();
@@ -94,7 +94,7 @@ void Story::tell_setting() {
     if (excitation_.components().empty()) {
         say("There is no M{}", on_base_ || on_belt_ ? "." : ": the motion is free.");
     } else if (excitation_.has_feedback()) {
-        say("M depends on the motion itself: a feedback.");
+        say("M is a feedback: it depends on the motion.");
     } else if (free()) {
         say("M is constant{}", system_.has_linear_spring() ? ": the motion is free, about theta = M/k." : ".");
     } else if (period > 0) {
@@ -102,19 +102,19 @@ void Story::tell_setting() {
         if (system_.has_spring()) add(" ({:.4g} T0)", period / T0_);
         add(".");
     } else if (constant_from_ < run_.t_stop) {
-        say("M changes until t = {}, then it is constant.", at(constant_from_));
+        say("M is constant from t = {} on.", at(constant_from_));
     }
     tell_surroundings();
     if (run_.gap > 0) {
-        say("Of M only values are known, at times at most {} apart: a shorter pulse would not have been seen.",
+        say("M is a Lua function, sampled at most {} apart: a shorter pulse would have been missed.",
             text::number_text(run_.gap, T0_));
     }
     if (run_.noise > 0) {
-        say("M is rough on every scale, by {:.2g}: the motion is as exact as that allows.", run_.noise);
+        say("M is noisy (about {:.2g}), which limits the accuracy of the motion.", run_.noise);
     }
     if (run_.jumps_often()) {
-        say("M jumps {} times along the motion. Each jump was located, in six values of M at least: without steps so "
-            "fine, as of an encoder, the run takes a few thousand values.",
+        say("M jumps {} times along the motion. Each jump was located, which takes at least six evaluations of M: "
+            "fine steps, as of an encoder, make a run slow.",
             run_.jumps);
     }
     if (own_rule_) say("{}", own_rule_->setting);
@@ -122,13 +122,13 @@ void Story::tell_setting() {
 }
 
 void Story::tell_surroundings() {
-    if (on_base_) say("The support shakes: its acceleration a acts on the mass as -I a, and theta is relative to it.");
+    if (on_base_) say("The support accelerates by a: theta is relative to it, and the torque -I a acts on the mass.");
     if (!on_belt_) return;
     if (steady_belt_) {
-        say("Dry friction acts against a belt that moves with velocity vb = {:.5g}.",
+        say("The mass rubs on a belt that moves with velocity vb = {:.5g}.",
             motion::belt_from(extras_.belt, run_.t_start));
     } else {
-        say("Dry friction acts against a belt of velocity vb.");
+        say("The mass rubs on a belt of velocity vb.");
     }
 }
 
@@ -149,17 +149,17 @@ void Story::tell_friction() {
     if (law.none()) {
         add(" and no dry friction.");
     } else if (Rd(forward) != Rd(backward) || Re(forward) != Re(backward)) {
-        add(" and dry friction: Rd = {:.5g} brakes it on the way forward, {:.5g} backward; up to Re = {:.5g} holds it "
-            "against a pull forward, {:.5g} backward.",
+        add(" and dry friction: Rd = {:.5g} while sliding forward and {:.5g} backward; breakaway takes Re = {:.5g} "
+            "forward and {:.5g} backward.",
             Rd(forward), Rd(backward), Re(forward), Re(backward));
     } else if (Rd(forward) == Re(forward)) {
         add(" and dry friction Rd = Re = {:.5g}.", Rd(forward));
     } else {
-        add(" and dry friction: Rd = {:.5g} brakes it, up to Re = {:.5g} holds it.", Rd(forward), Re(forward));
+        add(" and dry friction: Rd = {:.5g} while sliding, Re = {:.5g} to break away.", Rd(forward), Re(forward));
     }
     if (law.depends_on_speed()) {
-        say("{}", stribeck ? "Friction falls from Re at standstill to Rd at great speeds."
-                           : "That is near standstill: friction changes with the speed.");
+        say("{}", stribeck ? "Friction falls from Re at rest to Rd at high speed."
+                           : "These values hold near speed zero: friction depends on the speed.");
     }
     tell_walls();
 }
@@ -172,16 +172,16 @@ void Story::tell_walls() {
         both ? fmt::format("{:.5g} and {:.5g}", walls->lower, walls->upper)
              : fmt::format("{:.5g}", std::isfinite(walls->lower) ? walls->lower : walls->upper));
     if (walls->restitution == 0) {
-        add(", where the mass stays when it comes there.");
+        add(", where an impact stops the mass.");
     } else {
-        add("; an impact leaves {} of the velocity.", text::percent(walls->restitution));
+        add("; an impact keeps {} of the speed.", text::percent(walls->restitution));
     }
 }
 
 void Story::tell_start() {
     const model::State& y = run_.initial;
     const Stretch& first = stretches_.front();
-    say("It started at t = {} from theta = {:.5g} with velocity {:.5g}", at(run_.t_start), y.theta, y.velocity);
+    say("The mass started at t = {} from theta = {:.5g} with velocity {:.5g}", at(run_.t_start), y.theta, y.velocity);
     const bool known = run_.size() > 0 && run_.column(motion::Column::t)[0] == run_.t_start;
     const bool stands = first.stuck || motion::belt_from(extras_.belt, run_.t_start) == 0;
     const bool told =
@@ -199,7 +199,7 @@ void Story::tell_start() {
         add(".");
     }
     if (first.stuck && !first.ended_by) {
-        say("Nothing {}moved it until the end of the run, t = {}.", run_.gap > 0 ? "that was seen " : "",
+        say("Nothing {}moved it until the end of the run, t = {}.", run_.gap > 0 ? "that was sampled " : "",
             at(run_.t_stop));
         tell_stillness();
     }
@@ -211,7 +211,8 @@ void Story::tell_counts() {
     if (run_.events.empty() && swings_.size() == 1) {
         const model::State &begin = run_.initial, &end = run_.state_at_stop;
         const bool stayed = begin.velocity == 0 && end.velocity == 0 && begin.theta == end.theta;
-        say("{}", stayed ? "It stayed there: M and the spring are in balance." : "It moved one way all the time.");
+        say("{}",
+            stayed ? "It stayed there: M and the spring are in balance." : "It moved in one direction all the time.");
         return;
     }
     const auto turns = static_cast<std::size_t>(std::count_if(swings_.begin(), swings_.end(), [](const Stretch& s) {
@@ -241,7 +242,7 @@ void Story::tell_impacts() {
     say("It hit {} {}, first at t = {}",
         std::isfinite(system_.walls()->lower) && std::isfinite(system_.walls()->upper) ? "the walls" : "the wall",
         text::counted(impacts, "time"), at(first->t));
-    add(", hardest with velocity {:.5g} at t = {}.", hardest->velocity, at(hardest->t));
+    add("; the hardest impact had velocity {:.5g}, at t = {}.", hardest->velocity, at(hardest->t));
 }
 
 void Story::tell_turns() {
@@ -253,7 +254,7 @@ void Story::tell_turns() {
         ++n;
     }
     if (n > 0)
-        say("{} at theta = {}{}", on_belt_ ? "The sliding turned round" : "It turned", places,
+        say("{} at theta = {}{}", on_belt_ ? "The sliding reversed" : "It turned", places,
             n > most_turns ? " ..." : ".");
     tell_decay();
     end_paragraph();
@@ -268,21 +269,21 @@ void Story::tell_decay() {
     const double zeta = system_.damping_ratio(), step = 2 * system_.kinetic_friction() / system_.stiffness();
     const double factor = zeta < 1 ? std::exp(-std::numbers::pi * zeta / std::sqrt(1 - zeta * zeta)) : 0;
     if (zeta >= 1) {
-        say("Damped so much, it turns once at most and then creeps.");
+        say("With zeta >= 1 it turns at most once and then creeps.");
     } else if (zeta == 0 && step == 0) {
-        say("Nothing takes its energy, so every swing is as wide as the first.");
+        say("Without damping and friction every swing is as wide as the first.");
     } else if (zeta == 0) {
-        say("Each half cycle ends 2 Rd/k = {:.5g} nearer to the middle than it began: dry friction takes the same from "
-            "every swing, so the extremes fall on a straight line and the motion ends.",
+        say("Each extreme is 2 Rd/k = {:.5g} smaller than the one before: under dry friction the amplitude falls "
+            "linearly, so the motion ends.",
             step);
     } else if (step == 0) {
-        say("Each extreme is {:.5g} = exp(-pi zeta/sqrt(1 - zeta^2)) of the one before: viscous damping takes a part "
-            "of what is left, {}.",
-            factor, system_.friction().none() ? "so the motion never quite ends" : "until breakaway holds the rest");
+        say("Each extreme is {:.5g} = exp(-pi zeta/sqrt(1 - zeta^2)) times the one before: under viscous damping the "
+            "amplitude falls exponentially, {}.",
+            factor, system_.friction().none() ? "so the motion never quite ends" : "until friction holds the mass");
     } else {
-        say("Half a cycle makes an extreme X into qX - (1 + q)Rd/k with q = exp(-pi zeta/sqrt(1 - zeta^2)) = {:.5g} "
-            "and Rd/k = {:.5g}: viscous damping takes a part, "
-            "dry friction the same each time, and that ends the motion.",
+        say("Half a cycle takes an extreme X to qX - (1 + q)Rd/k with q = exp(-pi zeta/sqrt(1 - zeta^2)) = {:.5g} "
+            "and Rd/k = {:.5g}: viscous damping removes a fraction of the amplitude, dry friction a fixed amount, "
+            "which ends the motion.",
             factor, step / 2);
     }
 }
@@ -308,10 +309,10 @@ void Story::tell_stop(const Stretch& stop) {
             place(*(&stop - 1)), reason(pull(begun)));
     }
     if (stop.ended_by) {
-        add("; stuck for {:.5g}, until {}.", stop.lasts(), slip(*stop.ended_by, !at_wall(begun.theta)));
+        add("; it stuck for {:.5g}, until {}.", stop.lasts(), slip(*stop.ended_by, !at_wall(begun.theta)));
     } else if (constant_from_ <= run_.t_stop) {
         add(".");
-        say("M is constant from {} on, so it rests there for good.",
+        say("M is constant from {} on, so it stays at rest.",
             constant_from_ <= begun.t ? "then" : "t = " + at(constant_from_));
     } else {
         add(", and was still stuck when the run ended at t = {}.", at(run_.t_stop));
@@ -320,30 +321,30 @@ void Story::tell_stop(const Stretch& stop) {
     end_paragraph();
 }
 
-/// Why it slipped and which way; after a sentence about |M - k theta| that is "that".
+/// Why it slipped and which way; after a sentence about |M - k theta| it is "this torque".
 std::string Story::slip(const model::Event& event, bool told) const {
     if (at_wall(event.theta)) return slip_from_wall(event);
     if (on_belt_) {
         const double vb = motion::belt_from(extras_.belt, event.t), slides = event.velocity - vb;
         constexpr double clearly = 1e-6;
         if (std::fabs(slides) > clearly * (std::fabs(vb) + std::fabs(event.velocity))) {
-            return fmt::format("vb jumped to {:.5g} and it slipped {}", vb, slides < 0 ? "backward" : "forward");
+            return fmt::format("vb jumped to {:.5g} and the mass slipped {}", vb, slides < 0 ? "backward" : "forward");
         }
     }
     const double torque = pull(event);
-    std::string why = fmt::format("{} jumped, {},", on_base_ || on_belt_ ? "the pull" : "M", reason(torque));
+    std::string why = fmt::format("{} jumped so that {},", on_base_ || on_belt_ ? "the pull" : "M", reason(torque));
     if (own_rule_) {
         why = fmt::format("{} {}", own_rule_->release, reason(torque));
     } else if (at_limit(torque, event)) {
-        why = fmt::format("{} grew past Re", told ? "that" : fmt::format("|{}|", pull_name()));
+        why = fmt::format("{} exceeded Re", told ? "this torque" : fmt::format("|{}|", pull_name()));
     }
-    return fmt::format("{} and it slipped {}", why, torque < 0 ? "backward" : "forward");
+    return fmt::format("{} and the mass slipped {}", why, torque < 0 ? "backward" : "forward");
 }
 
 std::string Story::slip_from_wall(const model::Event& event) const {
     const char* way = event.theta == system_.walls()->upper ? "backward" : "forward";
-    if (system_.friction().none()) return fmt::format("{} pulled it off {}", pull_name(), way);
-    return fmt::format("{} pulled it off {} with more than Re = {:.5g}", pull_name(), way,
+    if (system_.friction().none()) return fmt::format("{} pulled it off the wall {}", pull_name(), way);
+    return fmt::format("{} pulled it off the wall {} with more than Re = {:.5g}", pull_name(), way,
                        system_.friction().holding(*way == 'b' ? model::Motion::backward : model::Motion::forward));
 }
 

@@ -29,17 +29,15 @@ void Story::tell_stillness() {
     still_ = run_.outcome == model::Outcome::at_rest;
     if (!still_) return;
     if (on_base_ || on_belt_) {
-        say("It rests there for good.");
+        say("It stays at rest.");
         return;
     }
     if (constant_from_ <= run_.t_stop) {
-        say("M is constant{}, so it rests there for good.",
-            free() ? "" : fmt::format(" from t = {} on", at(constant_from_)));
+        say("M is constant{}, so it stays at rest.", free() ? "" : fmt::format(" from t = {} on", at(constant_from_)));
     } else if (std::isfinite(excitation_.most()) && held_at_most()) {
-        say("|M| is never more than {:.5g}, which cannot move it from there: it rests there for good.",
-            excitation_.most());
+        say("|M| never exceeds {:.5g}, which is too little to move it: it stays at rest.", excitation_.most());
     } else {
-        say("M went through a whole period and did not move it, so it never will.");
+        say("A whole period of M did not move it, so it stays at rest.");
     }
 }
 
@@ -50,7 +48,7 @@ bool Story::held_at_most() const {
 void Story::tell_recurrence(const Recurrence& motion) {
     tell_period(motion);
     if (motion.drift != 0) {
-        say("In each period it goes on by {:.5g}: stick-slip.", motion.drift);
+        say("It advances by {:.5g} in each period: stick-slip.", motion.drift);
     } else {
         say("The amplitude is {:.5g} about theta = {}.", motion.amplitude,
             text::number_text(motion.centre, 1e7 * motion.amplitude));
@@ -59,11 +57,12 @@ void Story::tell_recurrence(const Recurrence& motion) {
     const double known = model::period_from(excitation_, motion.since), period = known > 0 ? known : motion.period;
     if (std::fabs(motion.period / period - 1) <= 1e-3 && motion.drift == 0 && constant_from_ > motion.since) {
         if (const auto lag = phase_lag(run_, excitation_, period, motion.until)) {
-            say("Theta {} M by {:.3f} rad (their fundamentals).", *lag < 0 ? "leads" : "lags behind", std::fabs(*lag));
+            say("The fundamental of theta {} that of M by {:.3f} rad.", *lag < 0 ? "leads" : "lags behind",
+                std::fabs(*lag));
         }
     }
     if (motion.stops == 0) {
-        if (!system_.friction().none()) say("It does not stop on its way.");
+        if (!system_.friction().none()) say("It does not stop.");
     } else {
         say("It stops {} in each period and is stuck for {} of the time.",
             motion.stops == 1   ? "once"
@@ -83,8 +82,8 @@ void Story::tell_period(const Recurrence& motion) {
         of = whole == 1 ? "the period of M" : fmt::format("{} periods of M", whole);
     }
     if (!motion.steady) {
-        say("The motion settles: it nearly repeats itself every {} ({}), "
-            "and the last two times differ by {} of the amplitude.",
+        say("The motion is settling: it nearly repeats itself every {} ({}), and the last two periods differ by {} "
+            "of the amplitude.",
             at(motion.period), of, text::percent(motion.change));
         return;
     }
@@ -92,14 +91,14 @@ void Story::tell_period(const Recurrence& motion) {
     say("{} steady: it repeats itself every {} ({}).",
         always ? "The motion is" : fmt::format("From t = {} on the motion is", at(motion.since)), at(motion.period),
         of);
-    if (period == 0 && excitation_.has_feedback()) say("If M depends on the motion alone, this is a limit cycle.");
+    if (period == 0 && excitation_.has_feedback()) say("This is a limit cycle if M depends on the motion alone.");
 }
 
 void Story::tell_trend() {
     const double period = model::period_from(excitation_, stretches_.back().from);
     const Swings last = swings(swings_, period);
     if (last.trend == Trend::unknown) {
-        if (!free() && run_.events.size() > 1) say("That is too short to tell whether it becomes steady.");
+        if (!free() && run_.events.size() > 1) say("The run is too short to tell whether the motion becomes steady.");
         end_paragraph();
         return;
     }
@@ -108,7 +107,7 @@ void Story::tell_trend() {
     const bool grows = last.trend == Trend::growing && !on_base_, shrinks = last.trend == Trend::shrinking;
     say("The motion {}: amplitudes of {:.5g}, {:.5g} and {:.5g} in the last three {}",
         grows     ? "grows"
-        : shrinks ? "gets smaller"
+        : shrinks ? "decays"
                   : "is not periodic so far",
         a, b, c, period > 0 ? "periods of M" : fmt::format("spans of {}", at(last.span)));
     tell_step(last);
@@ -131,9 +130,9 @@ void Story::tell_step(const Swings& last) {
 
 void Story::tell_outcome() {
     if (run_.outcome == model::Outcome::interrupted) {
-        say("The run was interrupted at t = {}: this is the story up to there.", at(run_.t_stop));
+        say("The run was interrupted at t = {}: the text covers the time until then.", at(run_.t_stop));
     } else {
-        say("The run broke off at t = {}: {}.", at(run_.t_stop), motion::outcome_text(run_));
+        say("The run stopped early, at t = {}: {}.", at(run_.t_stop), motion::outcome_text(run_));
     }
 }
 

@@ -18,7 +18,7 @@ struct AnimateOptions {
 };
 inline constexpr text::Option animate_target_options[] = {
     {.name = "file",
-     .meaning = "where it is written instead of shown: an .svg, which a browser plays",
+     .meaning = "the .svg file to write instead of showing the animation; a browser plays it",
      .filled = text::fills<&AnimateOptions::file>},
     {.name = "ascii", .meaning = "plain characters", .filled = text::fills<&AnimateOptions::ascii>},
 };

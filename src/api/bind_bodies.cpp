@@ -420,7 +420,8 @@ public:
     [[nodiscard]] text::Expected<model::State> at(double t) const override {
         const auto& history = *run_->run.history;
         if (t > history.whole_until()) {
-            return text::Error{"the motion was kept in part only, for want of memory: take rows, or begin a run there"};
+            return text::Error{
+                "only part of the motion was kept, for lack of memory: ask for rows, or start a run there"};
         }
         const std::vector<double> y = history.at(t);
         const model::Joint& joint = run_->system->joints[joint_];
@@ -579,7 +580,7 @@ int run_bodies(lua_State* L, const lua::Options& options, const std::shared_ptr<
     limits.memory = std::min(limits.memory, lua::memory_left() / 4 * 3);
     if (static_cast<double>(grid.count()) * static_cast<double>(columns * sizeof(double)) >
         static_cast<double>(limits.memory)) {
-        options.fail("dt", fmt::format("{} rows are more than there is memory for: take a larger dt", grid.count()));
+        options.fail("dt", fmt::format("{} rows need more memory than there is: use a larger dt", grid.count()));
     }
     model::Excitation all;
     for (const model::Excitation& load : run->drive.loads) all = all + load;
@@ -979,17 +980,17 @@ namespace {
 constexpr lua::Member rig_members[] = {
     {lua::a_method<simulate_bodies>,
      {"rig:simulate{ OPTIONS } -> rig_run",
-      "Runs a system of several bodies, or one whose friction depends on more than its speed: by Chebyshev polynomials "
-      "between located events, as integrator.spectral does it. All contacts that stand are decided at once.",
+      "Runs a system of several bodies, or one whose friction depends on more than its speed: by polynomials "
+      "between located events, as integrator.spectral does. All sticking contacts are decided together.",
       DINAL_RIG "run = rig:simulate{ velocity0 = { motor = 3 }, t_end = 10 }\n"
                 "print(string.format(\"%.6f\", run.events[1].t), run.events[1].kind, run.events[1].where)  --> "
                 "1.153846\tstick\tclutch",
       {&bodies_simulate_call}}},
     {lua::a_method<steady_of_rig>,
      {"rig:steady{ OPTIONS } -> steady",
-      "The motion that remains when transients have died out, as sys:steady finds it: periodic under a periodic M, belt or "
-      "base, and a limit cycle or rest if nothing depends on t. s.load is the motion as seen from the body `load`: "
-      "amplitude, mean, lag, stops, run. Angles of bodies that go round are measured from each other.",
+      "The motion that remains when transients have died out, as sys:steady finds it for one body. s.load is the "
+      "motion of the body `load`: amplitude, mean, lag, stops, run. Angles of rotating bodies are measured "
+      "relative to each other.",
       "rig = system{ bodies = { a = { I = 1, k = 4, Rd = 0.3, Re = 0.6 }, b = { I = 0.5, C = 0.05 } },\n"
       "    links = { rod = { \"a\", \"b\", k = 2, C = 0.1 } } }\n"
       "s = rig:steady{ belt = { a = 0.1 }, theta0 = { a = 0.3 } }\n"
@@ -1013,8 +1014,9 @@ constexpr lua::Member rig_members[] = {
     {lua::a_field<rig_links>,
      {"rig.links -> table", "The names of the links, in alphabetical order.", DINAL_RIG "print(#rig.links)  --> 1"}},
     {lua::a_metamethod<rig_text>("__tostring"),
-     {"tostring(rig) -> string", "What the system is made of, as Lua text.",
-      "print(system{ bodies = { a = { I = 1 }, b = { I = 2, k = 4 } } })  --> system{ bodies = { a = { I = 1 }, b = { I "
+     {"tostring(rig) -> string", "The system as Lua text.",
+      "print(system{ bodies = { a = { I = 1 }, b = { I = 2, k = 4 } } })  --> system{ bodies = { a = { I = 1 }, b "
+      "= { I "
       "= 2, k = 4 } } }"}},
 };
 
@@ -1031,16 +1033,16 @@ constexpr lua::Member bodies_run_members[] = {
       DINAL_RIG_RUN "print(run:data()[\"motor.velocity\"][1])  --> 3.0"}},
     {lua::a_method<explain_bodies>,
      {"rig_run:explain() -> string",
-      "The run in sentences: what each body and each link did, when they stuck, where the energy went, how it ended.",
+      "Describes the run: the motion of each body and link, when they stuck, where the energy went, how it ended.",
       DINAL_RIG_RUN "print((run:explain():match(\"clutch links[^.]*\")))  --> clutch links motor and load"}},
     {lua::a_method<energy_bodies>,
      {"rig_run:energy() -> energy",
-      "Where the energy went: what M of each body put in, what each damping, friction, belt and impact took. The run is "
-      "repeated for it.",
+      "The energy balance: the work of M on each body, and the losses by each damping, friction and impact. The "
+      "run is repeated to compute it.",
       DINAL_RIG_RUN "print(string.format(\"%.6f\", run:energy().clutch.dry))  --> 3.461538"}},
     {lua::a_method<plot_bodies>,
      {"rig_run:plot{ OPTIONS }",
-      "Draws the angles of all bodies, and of the links that rub, over time, with bars where they stick.",
+      "Draws the angles of all bodies, and of the links with friction, over time, with bars where they stick.",
       DINAL_RIG_RUN "picture = run:plot{ show = false }",
       {&bodies_plot_call}}},
     {lua::a_method<animate_bodies>,
@@ -1059,24 +1061,24 @@ constexpr lua::Member bodies_run_members[] = {
                     "print(load(file)[\"motor.velocity\"][1])  --> 3.0\nos.remove(file)",
       {&bodies_save_call}}},
     {lua::a_field<status_of_bodies>,
-     {"rig_run.status -> string", "How it ended in one word, as of a run of one body.",
+     {"rig_run.status -> string", "How the run ended, in one word, as for one body.",
       DINAL_RIG_RUN "print(run.status)  --> end"}},
     {lua::a_method<continue_bodies>,
      {"rig_run:continue{ OPTIONS } -> rig_run",
-      "A new run: this one, and how it goes on from where it ended.",
+      "A new run that continues this one from its end.",
       DINAL_RIG_RUN "print(run:continue{ t_end = 12 }.t_end)  --> 12.0",
       {&bodies_continue_call}}},
     {lua::a_field<run_times>, {"rig_run.t -> vector", "The times of the rows.", DINAL_RIG_RUN "print(#run.t)  --> 6"}},
     {lua::a_field<events_of_bodies>,
      {"rig_run.events -> data",
-      "What happened, in order of time: t, kind, where (the body or the link), theta, velocity (of a link between its "
-      "bodies) and M (on its first body); name of the user's events.",
+      "The events in order of time: t, kind, where (the body or link), theta, velocity (relative, for a link) and "
+      "M (on its first body); name for your own events.",
       DINAL_RIG_RUN "print(run.events.kind[1], run.events.where[1])  --> stick\tclutch"}},
     {lua::a_field<run_states_table>,
-     {"rig_run.states -> table", "The columns of the run's own states by their names: vectors.",
+     {"rig_run.states -> table", "The columns of the states by name: vectors.",
       DINAL_RIG_RUN "print(next(run.states))  --> nil"}},
     {lua::a_field<outcome_of_bodies>,
-     {"rig_run.outcome -> string", "How it ended, as of a run of one body.",
+     {"rig_run.outcome -> string", "How the run ended, as a sentence.",
       DINAL_RIG_RUN "print(run.outcome)  --> reached the end"}},
     {lua::a_field<time_of_bodies<&engine::AssemblyRun::t_start>>,
      {"rig_run.t_start -> number", "The time at which the run began.", DINAL_RIG_RUN "print(run.t_start)  --> 0.0"}},

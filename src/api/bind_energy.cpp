@@ -155,9 +155,9 @@ constexpr lua::Member energy_members[] = {
       "print(energy.total.closure < 1e-12)  --> true"}},
     {lua::a_field<half_cycles>,
      {"energy.half_cycles -> table",
-      "A list with the balance of each motion from one velocity zero to the next: { t_start, t_end, theta_start, "
-      "theta_end, input, kinetic, spring, viscous, dry, error }. The first and the last one may be cut off by the ends "
-      "of the run. While the mass sticks no energy flows, so that is no entry.",
+      "The balance of each motion from one zero of the velocity to the next: { t_start, t_end, theta_start, "
+      "theta_end, input, kinetic, spring, viscous, dry, error }. The ends of the run may cut off the first and the "
+      "last. Times of sticking have no entry.",
       DINAL_ENERGY "for _, half in ipairs(energy.half_cycles) do\n"
                    "    print(string.format(\"%.2f %.2f %.4f\", half.theta_start, half.theta_end, half.dry))\n"
                    "end\n"
@@ -166,28 +166,27 @@ constexpr lua::Member energy_members[] = {
                    "--> 0.52 -0.28 0.0960\n"
                    "--> -0.28 0.04 0.0384"}},
     {lua::a_field<stored_field<&analysis::Energy::start>>,
-     {"energy.start -> table", "What was stored at the start: { kinetic, spring }, torque times rad.",
+     {"energy.start -> table", "The energy stored at the start: { kinetic, spring }, torque times rad.",
       DINAL_ENERGY "print(energy.start.spring)  --> 0.5"}},
     {lua::a_field<stored_field<&analysis::Energy::finish>>,
-     {"energy.finish -> table", "What was stored at the end: { kinetic, spring }, torque times rad.",
+     {"energy.finish -> table", "The energy stored at the end: { kinetic, spring }, torque times rad.",
       DINAL_ENERGY "print(energy.finish.kinetic)  --> 0.0"}},
     {lua::a_field<times>,
      {"energy.t -> vector", "The times of the rows, run.t.", DINAL_ENERGY "print(energy.t[2])  --> 5.0"}},
     {lua::a_field<column_field<analysis::EnergyColumn::input>>,
-     {"energy.input -> vector", "The work that M has done since the start, at each row.",
+     {"energy.input -> vector", "The work of M since the start, at each row.",
       DINAL_ENERGY "print(energy.input:max())  --> 0.0"}},
     {lua::a_field<column_field<analysis::EnergyColumn::kinetic>>,
      {"energy.kinetic -> vector", "The kinetic energy I velocity^2/2 at each row.",
       DINAL_ENERGY "print(energy.kinetic[1])  --> 0.0"}},
     {lua::a_field<column_field<analysis::EnergyColumn::spring>>,
-     {"energy.spring -> vector",
-      "The energy k theta^2/2 of the spring at each row, and what another spring besides k theta has stored.",
+     {"energy.spring -> vector", "The energy k theta^2/2 of the spring at each row, plus that of a second spring.",
       DINAL_ENERGY "print(energy.spring[1])  --> 0.5"}},
     {lua::a_field<column_field<analysis::EnergyColumn::viscous>>,
-     {"energy.viscous -> vector", "What viscous damping has taken since the start, at each row.",
+     {"energy.viscous -> vector", "The loss by viscous damping since the start, at each row.",
       DINAL_ENERGY "print(energy.viscous:max())  --> 0.0"}},
     {lua::a_field<column_field<analysis::EnergyColumn::dry>>,
-     {"energy.dry -> vector", "What dry friction has taken since the start, at each row.",
+     {"energy.dry -> vector", "The loss by dry friction since the start, at each row.",
       DINAL_ENERGY "print(string.format(\"%.6f\", energy.dry[#run]))  --> 0.499200"}},
     {lua::a_field<rest_field<false>>,
      {"energy.error -> vector",
@@ -201,17 +200,18 @@ constexpr lua::Member energy_members[] = {
       "run = rig:simulate{ velocity0 = { a = 1 }, t_end = 50 }\n"
       "print(string.format(\"%.6f\", run.rod:energy().others[#run]))  --> 0.250000"}},
     {lua::a_field<column_field<analysis::EnergyColumn::belt>>,
-     {"energy.belt -> vector", "The work that a moving belt has done on the mass since the start, at each row.",
+     {"energy.belt -> vector", "The work of the belt on the mass since the start, at each row.",
       DINAL_ENERGY "print(energy.belt:max())  --> 0.0"}},
     {lua::a_field<column_field<analysis::EnergyColumn::base>>,
-     {"energy.base -> vector", "The work that a shaking base has done on the mass since the start, at each row.",
+     {"energy.base -> vector", "The work of the base on the mass since the start, at each row.",
       DINAL_ENERGY "print(energy.base:max())  --> 0.0"}},
     {lua::a_field<column_field<analysis::EnergyColumn::acts>>,
-     {"energy.acts -> vector", "The energy that acts of events have brought since the start, at each row.",
+     {"energy.acts -> vector", "The energy added by acts of events since the start, at each row.",
       DINAL_ENERGY "print(energy.acts:max())  --> 0.0"}},
     {lua::a_field<column_field<analysis::EnergyColumn::impacts>>,
-     {"energy.impacts -> vector", "What impacts at walls have taken since the start, at each row.",
-      "run = system{ I = 2, k = 0, walls = { upper = 1, restitution = 0.5 } }:simulate{ velocity0 = 2, t_end = 1, dt = 1 }\n"
+     {"energy.impacts -> vector", "The loss by impacts at walls since the start, at each row.",
+      "run = system{ I = 2, k = 0, walls = { upper = 1, restitution = 0.5 } }:simulate{ velocity0 = 2, t_end = 1, "
+      "dt = 1 }\n"
       "print(run:energy().impacts[2])  --> 3.0"}},
     {lua::a_metamethod<energy_text>("__tostring"),
      {"tostring(energy) -> string", "The balance of the whole run as a small table.",

@@ -178,8 +178,9 @@ int delay(lua_State* L) {
     const model::Excitation& excitation = self_excitation(L, "e:delay(1.5)");
     if (model::has_memory(excitation)) {
         lua::raise(L,
-                   {.sentence = "e:delay(d): what has a memory cannot be delayed as a whole; excitation.sampled has a "
-                                "delay of its own, and excitation.delayed looks back",
+                   {.sentence =
+                        "e:delay(d): an excitation with memory cannot be delayed as a whole; excitation.sampled has an "
+                        "option delay, and excitation.delayed uses the past motion",
                     .call = "e:delay(d)"});
     }
     lua::push(L, excitation.delayed(lua::finite_argument(L, 2, "e:delay(d): d")));
@@ -274,8 +275,8 @@ constexpr lua::Member excitation_members[] = {
       "print(excitation.pulse{ at = 1, width = 2 }:next_break(1))  --> 3.0"}},
     {lua::a_method<obstacle>,
      {"e:obstacle() -> string or nil",
-      "Why a function in it cannot be read as a formula: the line and the reason. nil if every "
-      "function is read: then it is evaluated without Lua, and its conditions on t are breaks.",
+      "Why a function in it cannot be read as a formula: the line and the reason. nil if every function is read; "
+      "it is then evaluated without Lua, and its conditions on t are breaks.",
       "print(excitation.scripted(function(t) return t % 2 < 1 and 1 or 0 end):obstacle())  --> nil"}},
     {lua::a_method<delay>,
      {"e:delay(d) -> excitation", "The same, later by d: M(t - d).", "print(excitation.ramp{}:delay(2)(5))  --> 3.0"}},
@@ -301,8 +302,8 @@ constexpr lua::Member excitation_members[] = {
      {"-e -> excitation", "The excitation with the other sign.", "print((-excitation.step{})(1))  --> -1.0"}},
     {lua::a_metamethod<excitation_text>("__tostring"),
      {"tostring(e) -> string",
-      "Lua text that makes it again, where that is possible: a function by its source text, without the values of its "
-      "upvalues; a long table not at all.",
+      "Lua text that recreates it, if possible: functions by their source text, without the values of upvalues; "
+      "long tables are left out.",
       "print(0.5 * excitation.step{ at = 2 })  --> 0.5 * excitation.step{ amplitude = 1, at = 2 }"}},
 };
 

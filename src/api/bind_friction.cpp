@@ -118,39 +118,39 @@ int law_text(lua_State* L) {
 constexpr lua::Member friction_module_members[] = {
     {lua::a_function<coulomb_law>,
      {"friction.coulomb{ OPTIONS } -> law",
-      "Coulomb's law: Rd while it moves, at whatever speed, and up to Re while it stands. What system{ Rd, Re } has.",
+      "Coulomb's law: Rd while sliding at any speed, up to Re at rest. The same as system{ Rd, Re }.",
       "print(friction.coulomb{ Rd = 0.3 })  --> friction.coulomb{ Rd = 0.3, Re = 0.3 }",
       {&laws::coulomb_call}}},
     {lua::a_function<law_of_options<laws::Stribeck, laws::stribeck_call>>,
      {"friction.stribeck{ OPTIONS } -> law",
-      "Friction that falls with the speed, as a lubricant is drawn in: Rd + (Re - Rd) exp(-(|velocity|/speed)^shape).",
+      "Friction that falls with the speed, as with a lubricant: Rd + (Re - Rd) exp(-(|velocity|/speed)^shape).",
       "law = friction.stribeck{ Rd = 0.3, Re = 0.6, speed = 0.1 }\n"
       "print(law:torque(0), string.format(\"%.6f\", law:torque(0.1)))  --> 0.6\t0.410364",
       {&laws::stribeck_call}}},
     {lua::a_function<asymmetric_law>,
      {"friction.asymmetric{ OPTIONS } -> law",
-      "Coulomb's law with other numbers each way, each side a table { Rd, Re }. Re of a side is the most that sticking "
-      "can hold against a pull that way.",
+      "Coulomb's law with different values in each direction. Re of a direction is the breakaway torque for a pull "
+      "that way.",
       "law = friction.asymmetric{ forward = { Rd = 0.1 }, backward = { Rd = 0.3, Re = 0.5 } }\n"
       "print(law:torque(1), law:torque(-1))  --> 0.1\t0.3",
       {&laws::asymmetric_call}}},
     {lua::a_function<law_of_options<laws::Tabulated, laws::tabulated_call>>,
      {"friction.table{ OPTIONS } -> law",
-      "Friction as it was measured: straight lines between torques at some speeds, the same both ways.",
+      "Measured friction: straight lines between torques at some speeds, the same in both directions.",
       "law = friction.table{ speed = { 0, 0.1, 1 }, torque = { 0.5, 0.3, 0.35 } }\n"
       "print(law:torque(0.05), law:torque(3), law.Re)  --> 0.4\t0.35\t0.5",
       {&laws::tabulated_call}}},
     {lua::a_function<law_of_options<laws::Bristle, laws::lugre_call>>,
      {"friction.lugre{ OPTIONS } -> law",
-      "Friction as of bristles that bend before they slip (LuGre): torque = stiffness z + damping z' + viscous v, z' = v - "
-      "stiffness |v| z/g(v), g(v) = Rd + (Re - Rd) exp(-(v/speed)^2). It neither sticks nor has events: a mass at rest "
-      "creeps by as much as its bristles bend. For system{...} alone.",
+      "The LuGre law, bristles that bend before they slip: torque = stiffness z + damping z' + viscous v, z' = v - "
+      "stiffness |v| z/g(v), g(v) = Rd + (Re - Rd) exp(-(v/speed)^2). It has no stick and slip events: a mass at "
+      "rest creeps as far as its bristles bend. Only for system{...}.",
       "sys = system{ I = 1, k = 0, friction = friction.lugre{ Rd = 1, stiffness = 1e5, damping = 300 } }\n"
       "run = sys:simulate{ M = 0.5, t_end = 10 }\nprint(string.format(\"%.3g\", (run:at(10))))  --> 8.7e-06",
       {&laws::lugre_call}}},
     {lua::a_function<law_of_options<laws::Bristle, laws::dahl_call>>,
      {"friction.dahl{ OPTIONS } -> law",
-      "Dahl's law, bristles without damping: torque' = stiffness (v - |v| torque/Rd). For system{...} alone.",
+      "Dahl's law, bristles without damping: torque' = stiffness (v - |v| torque/Rd). Only for system{...}.",
       "print(friction.dahl{ Rd = 1, stiffness = 100 })  --> friction.dahl{ Rd = 1, stiffness = 100 }",
       {&laws::dahl_call}}},
     {lua::a_function<law_of_function>,
@@ -165,13 +165,13 @@ constexpr lua::Member friction_module_members[] = {
 constexpr lua::Member friction_members[] = {
     {lua::a_method<law_torque>,
      {"law:torque(velocity) -> number",
-      "The friction against a motion with this velocity, rad per time unit; at 0 the limit from above.",
+      "The friction torque at this velocity (rad per time unit); at 0 the limit from above.",
       "print(friction.coulomb{ Rd = 0.3, Re = 0.4 }:torque(-2))  --> 0.3"}},
     {lua::a_field<law_holding>,
-     {"law.Re -> number", "The most that sticking can hold; of two sides the greater one.",
+     {"law.Re -> number", "The breakaway torque; the greater one if the directions differ.",
       "print(friction.coulomb{ Rd = 0.3, Re = 0.4 }.Re)  --> 0.4"}},
     {lua::a_metamethod<law_text>("__tostring"),
-     {"tostring(law) -> string", "The Lua text that makes it again.",
+     {"tostring(law) -> string", "The Lua text that recreates it.",
       "print(friction.stribeck{ Rd = 0.3, Re = 0.6, speed = 0.1 })\n"
       "--> friction.stribeck{ Rd = 0.3, Re = 0.6, speed = 0.1 }"}},
 };
@@ -181,8 +181,8 @@ constexpr lua::Member friction_members[] = {
 const lua::Class friction_module = {
     "friction",
     {"friction.NAME{ ... } -> law",
-     "Laws of dry friction, for `friction =` of system{...} and nondimensional{...}: the torque against a motion by its "
-     "speed, and what sticking can hold.",
+     "Laws of dry friction, for `friction =` of system{...} and nondimensional{...}: the torque as a function of "
+     "the speed, and the breakaway torque.",
      "sys = system{ I = 1, k = 4, friction = friction.stribeck{ Rd = 0.3, Re = 0.6, speed = 0.1 } }\n"
      "print(sys.Re)  --> 0.6"},
     friction_module_members};

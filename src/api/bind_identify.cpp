@@ -95,8 +95,8 @@ int identify_record(lua_State* L) {
     for (const char* name : {"measured", "belt", "base", "states"}) {
         if (!options.has(name)) continue;
         options.push(name);
-        options.fail(name, fmt::format("{} ({}) needs a guess beside it: system = system{{ ... }} and free", name,
-                                       lua::describe(L, -1)));
+        options.fail(
+            name, fmt::format("{} ({}) needs a guess: system = system{{ ... }} and free", name, lua::describe(L, -1)));
     }
     take_record(L, options, asked, fit->question);
     fit->units = units_of_record(L, options);
@@ -135,9 +135,9 @@ int fit_value(lua_State* L) {
     }
     if (!fit->from_guess && std::find(analysis::unknown_names.begin(), analysis::unknown_names.end(), name) !=
                                 analysis::unknown_names.end()) {
-        lua::raise(
-            L, {.sentence = fmt::format("a free decay tells ratios, so there is no {}: give I or k to identify", name),
-                .culprit = std::string(name)});
+        lua::raise(L, {.sentence = fmt::format(
+                           "a free decay determines only ratios, so there is no {}: give I or k to identify", name),
+                       .culprit = std::string(name)});
     }
     std::vector<std::string_view> names;
     for (const auto& value : fit->values) names.emplace_back(value.first);
@@ -229,27 +229,27 @@ std::string fit_summary(const FitAnswer& fit) {
     const double Rd = fit.found.value[kinetic], Re = fit.question.given[holding].value_or(Rd);
     if (Re < Rd * (1 - 1e-9) - 3 * fit.found.error[kinetic]) {  // a record without noise leaves rounding
         text += fmt::format(
-            "\n  Re = {:.6g} is given, but the Rd that was found is greater: what holds is never less than what "
-            "slides, so the fit has Re = Rd; leave Re out, or give Rd too if you know it",
+            "\n  Re = {:.6g} is given, but the fitted Rd is greater: Re cannot be less than Rd, so the fit has Re = "
+            "Rd; leave Re out, or give Rd as well",
             Re);
     }
     if (fit.found.is_noise) {
-        text += "\n  it explains no more of the record than it would of noise alone, so there may be no motion in it";
+        text += "\n  it fits the record no better than it would fit noise, so there may be no motion in it";
     } else if (fit.found.is_unexplained) {
         text += fmt::format(
-            "\n  neighbouring samples scatter by {:.3g} only: what is left is no noise, so another system made this "
-            "record, what is given is wrong, or a nearer fit was not found",
+            "\n  neighbouring samples scatter by {:.3g} only, so the residual is not noise: another kind of system "
+            "made this record, a given value is wrong, or the best fit was not found",
             fit.found.scatter);
         if (const auto wild = fit.found.wild) {
-            text += fmt::format("; sample {} at t = {:.6g} makes more than half of it alone: is it one?", *wild + 1,
+            text += fmt::format("; sample {} at t = {:.6g} causes more than half of it: is it an outlier?", *wild + 1,
                                 fit.question.t[*wild]);
         }
     }
     if (!fit.remark.empty()) text += "\n  " + fit.remark;
-    if (fit.found.M_is_noisy) text += "\n  M has noise, which the errors leave out: they may be far too small";
+    if (fit.found.M_is_noisy) text += "\n  the errors ignore the noise of M: they may be far too small";
     if (fit.question.given.back() == 0.0) text += "\n  offset is held at 0";
     if (const std::size_t cut = fit.found.cut_low + fit.found.cut_high; cut > 0) {
-        text += fmt::format("\n  {} samples stand at the ends of the record, as if it were cut off there", cut);
+        text += fmt::format("\n  {} samples have the extreme values of the record, as if it were clipped there", cut);
     }
     return text;
 }
@@ -272,27 +272,26 @@ constexpr lua::Member fit_members[] = {
       DINAL_FIT "print(fit.names[1], fit[fit.names[1]] == fit.omega0)  --> omega0\ttrue"}},
     {lua::a_value<FitHandle, &FitAnswer::errors>,
      {"fit.std_error -> table",
-      "The standard errors, under the names of the values: the truth lies within two of them in 19 of 20 records. What "
-      "was given has 0.",
+      "The standard errors by name: the truth lies within two of them in 19 of 20 records. Given values have 0.",
       DINAL_FIT "print(math.abs(fit.omega0 - sys.omega0) < 3 * fit.std_error.omega0)  --> true"}},
     {lua::a_value<FitHandle, &FitAnswer::silent>,
      {"fit.silent -> table",
-      "The names of what the record does not tell: Re of a free decay, which never slips, or of a motion that never "
-      "stands; Rd_over_k, theta0 and offset of a decay in one direction, which tells only their sums. Their values are "
-      "among those that are possible.",
+      "The names of values that the record does not determine: Re of a free decay or of a motion without stops; "
+      "Rd_over_k, theta0 and offset of a decay in one direction, which determines only their sums. The values "
+      "given are possible ones.",
       DINAL_FIT "print(table.concat(fit.silent, \" \"))  --> Re"}},
     {lua::a_field<fit_system>,
-     {"fit.system -> system", "The system that was found; after a free decay without I and k that of I = 1.",
+     {"fit.system -> system", "The fitted system; for a free decay without I and k, with I = 1.",
       DINAL_FIT "print(fit.system.I, math.abs(fit.system.k - 40) < 0.2)  --> 1.0\ttrue"}},
     {lua::a_value<FitHandle, [](const FitAnswer& fit) { return fit.found.noise; }>,
      {"fit.noise -> number", "The standard deviation of what is left between record and fit.",
       DINAL_FIT "print(math.abs(fit.noise - 0.01) < 0.001)  --> true"}},
     {lua::a_field<fit_residual>,
-     {"fit.residual -> vector", "What is left at each sample: record less fit. It should look like noise.",
+     {"fit.residual -> vector", "Record minus fit at each sample. It should look like noise.",
       DINAL_FIT "print(#fit.residual == #run)  --> true"}},
     {lua::a_method<fit_plot>,
      {"fit:plot{ OPTIONS }",
-      "Draws the record with the fit, and beside it what is left.",
+      "Draws the record with the fit, and the residual beside it.",
       DINAL_FIT "print(#tostring(fit:plot{ show = false }) > 500)  --> true",
       {&fit_plot_call}}},
     {lua::a_metamethod<fit_text>("__tostring"),
@@ -310,12 +309,11 @@ std::string fit_card(lua_State* L, int index, const terminal::Display&) {
 constexpr lua::Member identify_members[] = {
     {lua::a_function<identify_record>,
      {"identify{ OPTIONS } -> fit",
-      "Which system made this record. A free decay (no M) needs no guess and tells omega0, zeta, Rd_over_k and the "
-      "start; with I or k also the others. With a known M it tells I, k, C, Rd, Re and the start. What is given is not "
-      "fitted.\n"
-      "With system, a guess, and free it fits any numbers of any system of one mass, and of tables that M uses, to "
-      "measured angles, velocities or accelerations, also on a belt, on a shaking base or with states: "
-      "fit[\"friction.speed\"]. Residuals that are alike from sample to sample widen the errors, and the fit says so.",
+      "Finds the system that made a record. A free decay (no M) gives omega0, zeta, Rd_over_k and the start; with "
+      "I or k also the others. With a known M it gives I, k, C, Rd, Re and the start. Given values are not "
+      "fitted.\nWith system, a guess, and free it fits any numbers of any system of one mass, and of tables that M "
+      "uses, to measured angles, velocities or accelerations, also on a belt, on a shaking base or with states: "
+      "fit[\"friction.speed\"]. Correlated residuals widen the errors, and the fit reports that.",
       "run = system{ I = 1, k = 40, C = 0.3, Rd = 0.8 }:simulate{ theta0 = 1, t_end = 8, dt = 0.02 }\n"
       "fit = identify{ data = run, I = 1 }\n"
       "print(string.format(\"%.4f %.4f %.4f\", fit.k, fit.C, fit.Rd))  --> 40.0000 0.3000 0.8000",
@@ -332,8 +330,8 @@ const lua::Class identify_functions = {
 const lua::Class fit_class = {
     "fit",
     {"identify{ ... } -> fit",
-     "What identify has found: fit.omega0, fit.zeta, fit.Rd_over_k, fit.theta0, fit.velocity0, fit.offset, and fit.I, "
-     "fit.k, fit.C, fit.Rd, fit.Re where the record tells them.",
+     "The result of identify: fit.omega0, fit.zeta, fit.Rd_over_k, fit.theta0, fit.velocity0, fit.offset, and "
+     "fit.I, fit.k, fit.C, fit.Rd, fit.Re where the record tells them.",
      "run = nondimensional{ friction_ratio = 0.05 }:simulate{ theta0 = 1, t_end = 6, dt = 0.05 }\n"
      "print(string.format(\"%.4f\", identify{ data = run }.Rd_over_k))  --> 0.0500"},
     fit_members,

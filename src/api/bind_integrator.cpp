@@ -172,7 +172,7 @@ std::vector<lua::Member> all_members() {
         {lua::a_field<name>,
          {"integrator.name -> string", "The name of the method.", "print(integrator.rk4{ h = 0.001 }.name)  --> rk4"}},
         {lua::a_metamethod<integrator_text>("__tostring"),
-         {"tostring(integrator) -> string", "The Lua text that makes it again.",
+         {"tostring(integrator) -> string", "The Lua text that recreates it.",
           "print(integrator.dinal1989{ h = 0.01 })  --> integrator.dinal1989{ h = 0.01 }"}},
     };
     for (std::size_t i = 0; i < fields().size(); ++i) members.insert(members.end() - 1, member_of(i));
@@ -181,7 +181,7 @@ std::vector<lua::Member> all_members() {
 
 const std::vector<lua::Member> integrator_members = all_members();
 
-constexpr text::FixedText<160> module_summary{"The methods a run can use. A run that names none takes ",
+constexpr text::FixedText<160> module_summary{"The methods a run can use. The default is ",
                                               motion::default_integrator.c_str(), "."};
 
 }  // namespace
@@ -196,8 +196,7 @@ const lua::Class integrator_module = {
 
 const lua::Class integrator_class = {
     "integrator",
-    {"integrator.rk4{ h = 0.001 } -> integrator",
-     "A method with its options, for `integrator =` in sys:simulate{...}. It cannot be changed.",
+    {"integrator.rk4{ h = 0.001 } -> integrator", "A method with its options, for `integrator =` in sys:simulate{...}.",
      "print(integrator.rk4{ h = 0.001 }.h)  --> 0.001"},
     integrator_members,
     nullptr,

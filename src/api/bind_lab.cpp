@@ -51,10 +51,9 @@ LabDesk& desk_of(lua_State* L, const char* call) {
 LabDesk& desk_with_number(lua_State* L, const char* call) {
     LabDesk& desk = desk_of(L, call);
     if (desk.number == 0) {
-        lua::raise(L, {.sentence = fmt::format("{}: say first whose lab it is: lab.number(4711), with your own student "
-                                               "number",
-                                               call),
-                       .call = call});
+        lua::raise(
+            L, {.sentence = fmt::format("{}: first set your own student number, for example lab.number(4711)", call),
+                .call = call});
     }
     return desk;
 }
@@ -240,9 +239,7 @@ constexpr lua::Member lab_module_members[] = {
       "and the right answers depend on it. lab.number() returns it, nil if none was set.",
       "lab.number(4711)\nprint(lab.number())  --> 4711"}},
     {lua::a_function<lab_given>,
-     {"lab.given(sheet) -> table",
-      "The data of that sheet for this student: options of systems, and other numbers; the sheet "
-      "explains them.",
+     {"lab.given(sheet) -> table", "The data of that sheet for this student; the sheet explains them.",
       "lab.number(4711)\nprint(system(lab.given(1).viscous).Rd)  --> 0.0"}},
     {lua::a_function<lab_experiment>,
      {"lab.experiment(sheet, x) -> data",

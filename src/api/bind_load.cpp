@@ -109,14 +109,14 @@ int load_of_old(lua_State* L) {
 constexpr lua::Member load_members[] = {
     {lua::a_function<load>,
      {"load(file) -> run or data",
-      "Reads a file that dinal has written, or any CSV file; the name ends in .csv, .txt, .tsv or .dat (the record of "
-      "1989). What run:save wrote is a run again, the same numbers to the last bit with the columns as fields, and so "
-      "is a table of numbers with the columns t and theta; everything else is data.\n"
-      "Fields are separated by semicolons, commas, tabs or blanks. Names are in the first line (without them they "
-      "are \"1\", \"2\", ...), lines with # are skipped. Numbers may be among the names, t,100,200, if the first is a "
-      "word and has only numbers below it. A column with anything but numbers, nan and empty fields (nan) is one of "
-      "words. A line of words between the names and the numbers has the units of the columns. In a file with "
-      "semicolons 1,5 is a number, and 1.5D+00 is one everywhere. With other arguments it is Lua's own load.",
+      "Reads a file that dinal has written, or any CSV file; the name ends in .csv, .txt, .tsv or .dat (the record "
+      "of 1989). A file of run:save gives a run with the same bits, as does a table of numbers with the columns t "
+      "and theta; everything else gives data.\nFields are separated by semicolons, commas, tabs or blanks. Names "
+      "are in the first line (without them they are \"1\", \"2\", ...), lines with # are skipped. Numbers may be "
+      "among the names, t,100,200, if the first is a word and has only numbers below it. A column with anything "
+      "but numbers, nan and empty fields (nan) is one of words. A line of words between the names and the numbers "
+      "has the units of the columns. In a file with semicolons 1,5 is a number, and 1.5D+00 is one everywhere. "
+      "With other arguments it is Lua's own load.",
       "run = nondimensional{}:simulate{ theta0 = 1, t_end = 1.2, dt = 0.1 }\n"
       "file = os.tmpname() .. \".csv\"\n"
       "run:save(file)\n"
@@ -140,10 +140,10 @@ const lua::Class load_functions = {
     {"load(file) -> run or data", "Reads files.", "print(select(2, pcall(load, \"missing.csv\")) ~= nil)  --> true"},
     load_members};
 
-const lua::Class trajectory_module = {
-    "trajectory",
-    {"trajectory.load(file)", "What load(file) was before.", "print((pcall(trajectory.load, \"run.csv\")))  --> false"},
-    trajectory_module_members};
+const lua::Class trajectory_module = {"trajectory",
+                                      {"trajectory.load(file)", "The former name of load(file).",
+                                       "print((pcall(trajectory.load, \"run.csv\")))  --> false"},
+                                      trajectory_module_members};
 
 int data_functions::load(lua_State* L) {
     return load_of_old(L);

@@ -137,7 +137,7 @@ plots::Curve curve_on_top(lua_State* L, const std::string& call) {
     if (curve.base) {
         same_length(*curve.base, "base");
         if (curve.style != plots::Style::fill) {
-            lua::raise(L, {.sentence = call + ": base is the other edge of a fill; add style = \"fill\"",
+            lua::raise(L, {.sentence = call + ": base is the second edge of a filled area; add style = \"fill\"",
                            .call = call,
                            .option = "base"});
         }
@@ -385,8 +385,8 @@ const lua::Class plot_functions = {
 const lua::Class picture_class = {
     "picture",
     {"plot{ ..., show = false }, run:plot{ show = false } -> picture",
-     "A picture that was not drawn yet: print(picture) shows it, and plot{ left, right, file = \"both.svg\" } sets "
-     "pictures side by side.",
+     "A picture that is not drawn yet: print(picture) shows it, and plot{ left, right, file = \"both.svg\" } "
+     "draws pictures side by side.",
      "run = nondimensional{}:simulate{ theta0 = 1, t_end = 2, dt = 0.01 }\n"
      "both = plot{ run:plot{ show = false }, run:phase_plot{ show = false }, show = false }\n"
      "print(#tostring(both) > 1000)  --> true"},

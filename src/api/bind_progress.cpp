@@ -73,8 +73,7 @@ int progress(lua_State* L) {
     lua_settop(L, 2);
     const auto steps = steps_of(L);
     if (!steps) {
-        lua::raise_got(L, 1, "progress",
-                       "progress needs how many steps there are, math.huge if nobody knows, or a list to go through",
+        lua::raise_got(L, 1, "progress", "progress needs the number of steps (math.huge if it is unknown) or a list",
                        fmt::format("; for example {}", example));
     }
     if (!lua_isnil(L, 2) && lua_type(L, 2) != LUA_TSTRING) {
@@ -105,11 +104,10 @@ const lua::Class loop_class = {"progress", {example, "The state of a loop that s
 constexpr lua::Member progress_module_members[] = {
     {lua::a_function<progress>,
      {"for i in progress(n, label) do, for i, x in progress(list, label) do",
-      "A loop of n steps, or through a list (a table or a vector), that shows its progress: "
-      "after half a second a line on standard error, if that is a terminal, with the label, the "
-      "fraction, the rate and the remaining time; the line is removed when the loop ends. Runs "
-      "and loops within a step count as parts of it. n may be math.huge; leave such a loop with "
-      "break. A run by itself shows the same.",
+      "A loop of n steps, or over a list (a table or a vector), that shows its progress: after half a second a "
+      "line on standard error, if that is a terminal, with label, fraction, rate and remaining time. Runs and "
+      "loops within a step count as parts of it. n may be math.huge; leave such a loop with break. A single run "
+      "shows the same.",
       "peaks = {}\n"
       "for i, f in progress({ 0.5, 1, 2 }, \"sweep\") do\n"
       "    M = excitation.harmonic{ frequency = f }\n"

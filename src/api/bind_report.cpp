@@ -32,8 +32,7 @@ constexpr text::Call report_call{"report", "report{ title = \"Free decay\", auth
 int new_report(lua_State* L) {
     auto asked = lua::read<ReportOptions>(L, 1, report_call);
     if (text::trimmed(asked.title).empty()) {
-        lua::raise(
-            L, {.sentence = "report: its title is empty: say what it is about", .call = "report", .option = "title"});
+        lua::raise(L, {.sentence = "report: the title is empty", .call = "report", .option = "title"});
     }
     lua::push<ReportHandle>(L, std::make_shared<Report>(Report{std::move(asked.title), std::move(asked.author)}));
     return 1;
@@ -47,8 +46,9 @@ std::string printed(lua_State* L, int index) {
         source::ValueText writer(L);
         std::string text = writer.expression(index);
         if (!writer.remarks().empty()) {
-            lua::raise(L, {.sentence = "r:add: not all that is in this table can be shown: add its parts one by one",
-                           .call = "r:add"});
+            lua::raise(L,
+                       {.sentence = "r:add: this table contains values that cannot be shown: add its parts one by one",
+                        .call = "r:add"});
         }
         return text;
     }
@@ -222,7 +222,7 @@ int report_text(lua_State* L) {
 constexpr lua::Member report_functions_members[] = {
     {lua::a_function<new_report>,
      {"report{ OPTIONS } -> r",
-      "A report to hand in: text, values, tables and pictures in the order in which they are added.",
+      "Starts a report to hand in: text, values, tables and pictures in the order in which you add them.",
       DINAL_REPORT "print(r)  --> report \"Free decay\" with 0 parts",
       {&report_call}}},
 };
@@ -236,8 +236,8 @@ constexpr lua::Member report_members[] = {
       DINAL_REPORT "r:text(\"The crests lie on a straight line.\")\nprint(r)  --> report \"Free decay\" with 1 part"}},
     {lua::a_method<add_value>,
      {"r:add(value), r:add(name, value)",
-      "Adds a value as print shows it, alone or with a name. A run is added with its description "
-      "and the lines that repeat it, data as a table, a picture as a picture.",
+      "Adds a value as print shows it, alone or with a name. A run is added with its description and the lines "
+      "that repeat it.",
       DINAL_REPORT "run = nondimensional{ friction_ratio = 0.1 }:simulate{ theta0 = 1, t_end = 3, dt = 0.01 }\n"
                    "r:add(run)\nr:add(\"turns\", #run.events)\nprint(r)  --> report \"Free decay\" with 4 parts"}},
     {lua::a_method<add_table>,
@@ -256,11 +256,9 @@ constexpr lua::Member report_members[] = {
       {&report_animate_call}}},
     {lua::a_method<save_report>,
      {"r:save(file)",
-      "Writes the report: .html is one page with its pictures, which any browser shows and "
-      "prints on A4; .md is Markdown with the pictures as separate files. The script is "
-      "appended. A report made at the prompt has no script: hand in the file of :save "
-      "session.lua with it. Under dinal --report the parts of the report go into the page of the "
-      "script instead.",
+      "Writes the report, with the script appended: .html is one page with its pictures, .md is Markdown with the "
+      "pictures as separate files. A report made at the prompt has no script: hand in the file of :save "
+      "session.lua with it. Under dinal --report the parts go into the page of the script instead.",
       DINAL_REPORT "name = os.tmpname() .. \".html\"\nr:save(name)\n"
                    "print(io.open(name):read(\"l\"))  --> <!DOCTYPE html>"}},
     {lua::a_metamethod<report_text>("__tostring"),

@@ -86,7 +86,7 @@ constexpr text::Option spectrum_options[] = {
     {.name = "from",
      .unit = "time units",
      .otherwise = "the first row",
-     .meaning = "the time before which rows are left out: the transient",
+     .meaning = "rows before this time (the transient) are left out",
      .filled = text::fills<&SpectrumOptions::from>},
 };
 
@@ -103,22 +103,22 @@ constexpr text::Option poincare_options[] = {
      .unit = "time units",
      .otherwise = "that of M",
      .range = text::positive,
-     .meaning = "from look to look; needed where M does not know its own: native terms do, a Lua function does not",
+     .meaning = "time between samples; needed if the period of M is not known, as for a Lua function",
      .filled = text::fills<&PoincareOptions::period>},
     {.name = "frequency",
      .unit = "cycles per time unit",
      .range = text::positive,
-     .meaning = "1/period, instead of it",
+     .meaning = "1/period, instead of period",
      .filled = text::fills<&PoincareOptions::frequency>},
     {.name = "omega",
      .unit = "rad per time unit",
      .range = text::positive,
-     .meaning = "2 pi/period, instead of it",
+     .meaning = "2 pi/period, instead of period",
      .filled = text::fills<&PoincareOptions::omega>},
     {.name = "from",
      .unit = "time units",
      .otherwise = "the beginning",
-     .meaning = "the time of the first look, after the transient; it chooses the phase too",
+     .meaning = "the time of the first sample, after the transient; it also chooses the phase",
      .filled = text::fills<&PoincareOptions::from>},
 };
 
@@ -126,13 +126,11 @@ constexpr text::Call poincare_call{"run:poincare", "run:poincare{ period = 1 }",
 
 constexpr lua::Doc spectrum_doc{
     "run:spectrum{ OPTIONS } -> data",
-    "The one-sided amplitude spectrum of a column (run:spectrum \"velocity\" will do): frequency (cycles per time unit, up to half a cycle per dt) and "
-    "amplitude (of a sine, in the unit of the column), from rows with one dt; a shorter last row is left out, and so is "
-    "one with which whole periods begin again, as it has the value of the first. A sine of whole periods has its amplitude in any window; one "
-    "that falls midway between two frequencies has 64 % of it in rectangle, 85 % in hann and 99.9 % in flat top. The mean "
-    "(with the weights of the window) stands at frequency 0. With method = \"welch\" the second column is density, in "
-    "the square of the unit per cycle per time unit: its sum times the step of frequency is the variance. "
-    "run:spectrum(\"theta\", { OPTIONS }) is the same with of = \"theta\".",
+    "The one-sided amplitude spectrum of a column, from rows with one dt: frequency (cycles per time unit, up to "
+    "half a cycle per dt) and amplitude (of a sine). A sine of whole periods has its amplitude in any window; "
+    "one midway between two frequencies has 64 % of it in rectangle, 85 % in hann and 99.9 % in flat top. The "
+    "mean is at frequency 0. With method = \"welch\" the second column is density: its sum times the step of "
+    "frequency is the variance. run:spectrum(\"theta\", { OPTIONS }) is the same with of = \"theta\".",
     "run = nondimensional{}:simulate{ theta0 = 1, t_end = 16, dt = 0.125 }\n"
     "s = run:spectrum{ of = \"theta\", window = \"rectangle\" }\n"
     "i = s.amplitude:argmax()\n"
@@ -141,8 +139,8 @@ constexpr lua::Doc spectrum_doc{
 
 constexpr lua::Doc poincare_doc{
     "run:poincare{ OPTIONS } -> data",
-    "The motion looked at once a period: t, theta and velocity, at the accuracy of run:at. A periodic motion is one "
-    "point, a subharmonic one several, an irregular one a cloud; its plot shows velocity over theta.",
+    "The motion sampled once a period: t, theta and velocity. A periodic motion gives one point, a subharmonic "
+    "one several, an irregular one a cloud; the plot shows velocity over theta.",
     "run = nondimensional{ zeta = 0.2 }:simulate{ M = excitation.harmonic{ frequency = 0.5 }, t_end = 60, dt = 1 }\n"
     "d = run:poincare{ from = 40 }\n"
     "print(#d, d.theta:max() - d.theta:min() < 1e-9)  --> 11\ttrue",
@@ -239,8 +237,7 @@ int poincare_of_run(lua_State* L) {
     const double period =
         period_or_fail(options, asked.period, asked.frequency, asked.omega).value_or(period_of_run(*run));
     if (!(period > 0)) {
-        options.fail(
-            {.sentence = "period must be given, because the M of this run does not know one", .option = "period"});
+        options.fail({.sentence = "give a period: the M of this run has no known one", .option = "period"});
     }
     const double from = asked.from.value_or(trajectory.t_start);
     if (from < trajectory.t_start || from > trajectory.t_stop) {
@@ -250,7 +247,7 @@ int poincare_of_run(lua_State* L) {
     }
     const double looks = std::floor((trajectory.t_stop - from) / period * (1 + 1e-12)) + 1;
     constexpr double most = 1e7;
-    if (looks > most) options.fail({fmt::format("{:.3g} looks are more than {:.3g}", looks, most)});
+    if (looks > most) options.fail({fmt::format("{:.3g} samples are more than {:.3g}", looks, most)});
     std::vector<double> t, theta, velocity;
     lua::CallState call(L);
     for (std::size_t i = 0; i < static_cast<std::size_t>(looks); ++i) {
@@ -467,17 +464,15 @@ constexpr text::FixedText<160> integrator_example{DINAL_RUN "print(run.integrato
 constexpr lua::Member run_members[] = {
     {lua::a_method<run_at>,
      {"run:at(t) -> theta, velocity, z",
-      "Angle (rad) and velocity (rad per time unit) at any time of the run, between rows at the "
-      "accuracy of the integrator; in a run with states also the table z. A run that was read "
-      "from a file is interpolated by cubics.",
+      "Angle (rad) and velocity (rad per time unit) at any time of the run, at the accuracy of the integrator; in "
+      "a run with states also the table z. A run read from a file is interpolated by cubics.",
       DINAL_RUN "print(string.format(\"%.6f %.6f\", run:at(0.75)))  --> 3.000000 -12.566371"}},
     {lua::a_method<columns>,
      {"run:columns(name, ...) -> vector, ...",
-      "The columns with these names or numbers (t is 1); all of them without arguments. READDIN "
-      "did this in 1989.",
+      "The columns with these names or numbers (t is 1); all of them without arguments.",
       DINAL_RUN "t, M = run:columns(\"t\", \"M\")\nprint(t, M[5])  --> vector{ 0, 0.5, 1, 1.5, 2 }\t3.0"}},
     {lua::a_method<as_data<data_functions::column>>,
-     {"run:column(name) -> vector", "The column of this name; run.NAME is the same unless the run has such a member.",
+     {"run:column(name) -> vector", "The column of this name, also if the run has a member of that name.",
       DINAL_RUN "print(run:column(\"theta\") == run.theta)  --> true"}},
     {lua::a_method<as_data<data_functions::filter>>,
      {"run:filter(f) -> data", "The rows for which f(row) is true, as d:filter does.",
@@ -491,20 +486,19 @@ constexpr lua::Member run_members[] = {
     {lua::a_method<as_data<data_functions::markdown>>,
      {"run:markdown() -> string", "All rows as a table in Markdown.",
       DINAL_RUN
-      "print(run:markdown():match(\"[^\\n]*\"))  --> | t, T0 | theta, Mc/k | velocity, Mc/k/T0 | M, Mc | friction, Mc | damping, Mc |"}},
+      "print(run:markdown():match(\"[^\\n]*\"))  --> | t, T0 | theta, Mc/k | velocity, Mc/k/T0 | M, Mc | friction, "
+      "Mc | damping, Mc |"}},
     {lua::a_method<continue_run>,
      {"run:continue{ OPTIONS } -> run",
-      "A new run that continues this one from its end (reached, or stopped by Ctrl-C or an error "
-      "in M), with the same rows as if it had never stopped. A run with dt keeps its dt. run:continue(40) is "
-      "run:continue{ t_end = 40 }.",
+      "A new run that continues this one from its end, also after Ctrl-C or an error in M, with the same rows as "
+      "if it had never stopped. A run with dt keeps its dt. run:continue(40) is run:continue{ t_end = 40 }.",
       DINAL_RUN "longer = run:continue(3)\n"
                 "print(#longer, longer.t_end, string.format(\"%.6f\", longer:at(3)))  --> 7\t3.0\t1.000000",
       {&continue_call}}},
     {lua::a_method<energy_of_run>,
      {"run:energy() -> energy",
-      "The energy balance: work of M, energy stored in mass and spring, losses by the two "
-      "frictions; in total, for each half cycle and at the rows. Only for runs by "
-      "integrator.exact and integrator.spectral, which keep the motion between rows.",
+      "The energy balance: work of M, stored energy, losses; in total, for each half cycle and at the rows. Only "
+      "for runs by integrator.exact and integrator.spectral.",
       "run = system{ I = 1, k = 1, Rd = 0.12 }:simulate{ theta0 = 1, t_end = 20, dt = 5 }\n"
       "print(string.format(\"%.6f\", run:energy().total.dry))  --> 0.499200"}},
     {lua::a_method<explain>,
@@ -548,40 +542,39 @@ constexpr lua::Member run_members[] = {
       "run = system{ I = 1, k = 1, C = 3 }:simulate{ velocity0 = 1, t_end = 1, dt = 1 }\n"
       "print(run.damping[1])  --> -3.0"}},
     {lua::a_field<run_states>,
-     {"run.states -> table", "The columns of the run's own states by their names: vectors.",
+     {"run.states -> table", "The columns of the states by name: vectors.",
       "run = nondimensional{}:simulate{ theta0 = 1, t_end = 1, dt = 0.25,\n"
       "    states = { way = { rate = function(t, theta, velocity) return math.abs(velocity) end } } }\n"
       "print(string.format(\"%.6f\", run.states.way[5]))  --> 4.000000"}},
     {lua::a_field<events>,
      {"run.events -> data",
-      "What happened, in order of time: the columns t, kind, theta, M and velocity (run.events.theta is a "
-      "vector), and by number { t, kind, theta, M, velocity }. kind is \"turn\" (goes on "
-      "the other way), \"stick\" (stays), \"slip\" (breaks away) or \"rest\" (stays, and nothing can move it any more); "
-      "\"impact\" is at a wall, \"switch\" of a relay, and \"user\" of the option `events`: with it there is a column "
-      "name. The velocity of an impact is that before it. run:at(t) has the states. Nothing is "
-      "recorded at t_start but an impact. Empty in a run that was read from a file.",
+      "The events in order of time: the columns t, kind, theta, M and velocity, and by number { t, kind, theta, M, "
+      "velocity }. kind is \"turn\" (the motion reverses), \"stick\", \"slip\" (the mass breaks away), \"rest\" "
+      "(nothing can move it any more), \"impact\" (at a wall; velocity is that before it), \"switch\" (of a relay) "
+      "or \"user\" (of the option `events`, which adds a column name). At t_start only an impact is recorded. "
+      "Empty in a run read from a file.",
       "run = nondimensional{}:simulate{ theta0 = 1, t_end = 1.2, dt = 0.1 }\n"
       "for _, e in ipairs(run.events) do print(e.kind, string.format(\"%.4f %.4f\", e.t, e.theta)) end\n"
       "--> turn\t0.5000 -1.0000\n"
       "--> turn\t1.0000 1.0000"}},
     {lua::a_field<run_acceleration>,
      {"run.acceleration -> vector or nil",
-      "The angular acceleration at the rows, rad per time unit^2, from the equation of motion: relative to the base, like "
-      "theta. 0 while it sticks to a surface at constant speed. Of a run that was read from a file: its column of this name, or nil.",
+      "The angular acceleration at the rows, rad per time unit^2, from the equation of motion, relative to the "
+      "base. For a run read from a file: its column of this name, or nil.",
       "run = system{ I = 2, k = 3 }:simulate{ theta0 = 1, t_end = 1 }\nprint(run.acceleration[1])  --> -1.5"}},
     {lua::a_method<cycle_of_run>,
      {"run:cycle() -> table or nil",
-      "The periodic motion at the end of the run, measured from its events: period, amplitude, middle (of the extremes), "
-      "stops, stuck (part of a period), drift (how far theta gets in a period), change (from the period before, in "
-      "amplitudes), since (when it had settled to a thousandth), steady (false while it still settles). nil if nothing "
-      "repeats. run:steady() computes the limit.",
+      "The periodic motion at the end of the run, measured from its events: period, amplitude, middle (of the "
+      "extremes), stops, stuck (fraction of a period), drift (of theta in a period), change (from the period "
+      "before, in amplitudes), since (the time when it had settled to a thousandth), steady (false while it is "
+      "settling). nil if nothing repeats. run:steady() computes the limit.",
       "run = system{ I = 1, k = 4, Rd = 0.3, Re = 0.6 }:simulate{ belt = 0.1, t_end = 60 }\n"
       "c = run:cycle()\n"
       "print(string.format(\"%.6f %d\", c.period, c.stops), c.steady)  --> 3.658799 1\ttrue"}},
     {lua::a_value<RunHandle, [](const Run& run) { return run.trajectory.t_start; }>,
      {"run.t_start -> number", "The time at which the run began.", DINAL_RUN "print(run.t_start)  --> 0.0"}},
     {lua::a_value<RunHandle, [](const Run& run) { return run.trajectory.t_stop; }>,
-     {"run.t_end -> number", "The time at which the run ended: the t_end it was given, or earlier when it was stopped.",
+     {"run.t_end -> number", "The time at which the run ended: the given t_end, or earlier if it was stopped.",
       DINAL_RUN "print(run.t_end)  --> 2.0"}},
     {lua::a_value<RunHandle,
                   [](const Run& run) {
@@ -589,47 +582,42 @@ constexpr lua::Member run_members[] = {
                                                      : std::nullopt;
                   }>,
      {"run.status -> string or nil",
-      "How the run ended, in one word: \"end\" (in motion), \"rest\", \"stuck\", \"event\" (one "
-      "with stop = true), \"interrupted\" or \"failed\"; run.outcome is the sentence. nil of a "
-      "run that was read from a file.",
+      "How the run ended, in one word: \"end\" (moving), \"rest\", \"stuck\", \"event\" (with stop = true), "
+      "\"interrupted\" or \"failed\"; run.outcome is the sentence. nil for a run read from a file.",
       DINAL_RUN "print(run.status)  --> end"}},
     {lua::a_value<RunHandle,
                   [](const Run& run) {
                       return run.origin || run.whole ? motion::outcome_text(run.trajectory) : "read from a file";
                   }>,
      {"run.outcome -> string",
-      "How it ended: \"reached the end\" in motion; \"at rest\" when nothing can move it any more, because M is constant "
-      "from then on, never great enough, or went through a whole period; \"stuck at the end\" when M may still move it, "
-      "as a function may at any time; \"interrupted\"; or what went wrong. It speaks of what "
-      "was seen: a pulse of a function M that is shorter than run.gap may have been missed.",
+      "How the run ended: \"reached the end\" (moving), \"at rest\" (nothing can move it any more), \"stuck at the "
+      "end\" (M may still move it), \"interrupted\", or the error. A pulse of a function M that is shorter than "
+      "run.gap may have been missed.",
       DINAL_RUN "print(run.outcome)  --> reached the end"}},
     {lua::a_value<RunHandle,
                   [](const Run& run) {
                       return (run.trajectory.gap > 0) ? std::optional(run.trajectory.gap) : std::nullopt;
                   }>,
      {"run.gap -> number or nil",
-      "The longest time between two looks at M where that is a Lua function, of which only values are known: a pulse of "
-      "this length or more has been seen, a shorter one perhaps not (see breaks of excitation.scripted and narrowest of "
-      "integrator.spectral). nil where M tells when it changes.",
+      "The longest time between two samples of M, if M is a Lua function that cannot be read: a pulse of this "
+      "length was seen, a shorter one may have been missed (see breaks of excitation.scripted and narrowest of "
+      "integrator.spectral). Otherwise nil.",
       "run = nondimensional{}:simulate{ M = math.sin, t_end = 2, dt = 1, integrator = integrator.rk4{ h = 0.01 } }\n"
       "print(run.gap)  --> 0.005"}},
     {lua::a_value<RunHandle, [](const Run& run) { return run.trajectory.names(); }>,
      {"run.names -> table", "The names of the columns.",
       DINAL_RUN "print(table.concat(run.names, \" \"))  --> t theta velocity M friction damping"}},
     {lua::a_value<RunHandle, origin_of<&source::Origin::system>>,
-     {"run.system -> system or nil", "The system that was simulated; nil in a run that was read from a file.",
+     {"run.system -> system or nil", "The system; nil for a run read from a file.",
       DINAL_RUN "print(run.system.T0)  --> 1.0"}},
     {lua::a_field<units_of_this>,
-     {"run.units -> table",
-      "What theta, t and M are measured in, as its system, the run or the file it was read from says; what has no unit "
-      "is nil.",
+     {"run.units -> table", "The names of the units of theta, t and M; nil for those without one.",
       DINAL_RUN "print(run.units.theta, run.units.t)  --> Mc/k\tT0"}},
     {lua::a_value<RunHandle, origin_of<&source::Origin::excitation>>,
-     {"run.excitation -> excitation or nil", "The excitation M of the run; nil in a run that was read from a file.",
+     {"run.excitation -> excitation or nil", "The excitation M; nil for a run read from a file.",
       DINAL_RUN "print(run.excitation)  --> excitation.constant{ amplitude = 3 }"}},
     {lua::a_value<RunHandle, origin_of<&source::Origin::integrator>>,
-     {"run.integrator -> integrator or nil",
-      "The integrator of the run, also if none was given; nil in a run that was read from a file.",
+     {"run.integrator -> integrator or nil", "The integrator; nil for a run read from a file.",
       integrator_example.c_str()}},
     {lua::a_metamethod<run_length>("__len"),
      {"#run -> number", "The number of rows; run[1] is the first one.", DINAL_RUN "print(#run)  --> 5"}},
@@ -644,8 +632,8 @@ constexpr lua::Member run_members[] = {
 const lua::Class run_class = {
     "run",
     {"sys:simulate{ ... } or load(file) -> run",
-     "What a simulation leaves behind: columns that are vectors, events, the outcome, and the motion between the rows. "
-     "It cannot be changed. A trajectory that was read from a file has the columns of its file as fields.",
+     "The result of a simulation: columns (vectors), events, the outcome, and the motion between the rows. A run "
+     "read from a file has the columns of its file as fields.",
      DINAL_RUN "print(run.theta:max() < 5.001)  --> true"},
     run_members,
     other_column,

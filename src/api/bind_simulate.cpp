@@ -126,11 +126,11 @@ private:
         });
     }
     [[noreturn]] void fail() const {
-        options_.fail({.sentence =
-                           "the function of excitation.sampled keeps a memory from one run to the next: keep it "
-                           "in the table that start = function() return { e = 0 } end makes for each run, its "
-                           "fifth argument",
-                       .option = "M"});
+        options_.fail(
+            {.sentence =
+                 "the function of excitation.sampled keeps a memory from one run to the next: keep it in "
+                 "the table that start = function() return { e = 0 } end makes for each run, its fifth argument",
+             .option = "M"});
     }
 
     lua_State* L_;

@@ -43,12 +43,12 @@ struct RunOptions {
     std::vector<double> times = {};
     bool dense = true;
 };
-inline constexpr text::FixedText<96> integrator_meaning{"the method; without one ", motion::default_integrator.c_str()};
+inline constexpr text::FixedText<96> integrator_meaning{"the method; by default ", motion::default_integrator.c_str()};
 inline constexpr text::Option run_start_options[] = {
     {.name = "M",
      .unit = "torque",
      .otherwise = "0",
-     .meaning = "the excitation: a number, a Lua function of t or of t, theta, velocity, or an excitation",
+     .meaning = "the excitation: a number, a function of t or of t, theta, velocity, or an excitation",
      .object = "excitation"},
     {.name = "theta0", .unit = "rad", .meaning = "initial angle", .filled = text::fills<&RunOptions::theta0>},
     {"velocity0", "rad per time unit", text::its_own, text::any_finite, "initial velocity",
@@ -75,8 +75,7 @@ inline constexpr text::Option integrator_option[] = {
 };
 inline constexpr text::Option dense_option[] = {
     {.name = "dense",
-     .meaning = "false keeps nothing between the rows: saves memory in very long runs, but run:at(t) does "
-                "not work",
+     .meaning = "false keeps only the rows: saves memory, but run:at(t) does not work",
      .filled = text::fills<&RunOptions::dense>},
 };
 inline constexpr auto simulate_options = text::joined(run_start_options, window_options, integrator_option,
@@ -91,22 +90,20 @@ struct MoreTime {
 };
 inline constexpr text::Option continue_options[] = {
     {"t_end", "time units", text::its_own, text::any_finite,
-     "new end time; by default the last of the times, or the end that the run should have "
-     "reached",
+     "new end time; by default the last of the times, or the former t_end if the run was stopped before it",
      text::fills<&MoreTime::t_end>},
-    {"times", "time units", text::its_own, text::any_finite, "more rows of a run that had times",
+    {"times", "time units", text::its_own, text::any_finite, "further times of rows, for a run with times",
      text::fills<&MoreTime::times>},
 };
 inline constexpr text::Call continue_call{
     "run:continue", "run:continue{ t_end = 40 }", continue_options, true, &simulate_call, "t_end"};
 
 inline constexpr text::FixedText<600> simulate_summary{
-    "Runs the system, by ", motion::default_integrator.c_str(),
-    ", unless told otherwise. With states, M is called with (t, theta, velocity, z), and their "
-    "columns are run.states.NAME. M must depend only on its arguments, because it is evaluated "
-    "out of order and repeatedly; a run that detects a memory ends with a message. Put memory "
-    "into states or excitation.sampled, relay or delayed, random numbers into a table. If M "
-    "fails or Ctrl-C is pressed, dinal.partial has the run so far."};
+    "Runs the system. The default integrator is ", motion::default_integrator.c_str(),
+    ". With states, M is called with (t, theta, velocity, z), and their columns are run.states.NAME. M must "
+    "depend only on its arguments, because it is evaluated out of order and repeatedly; a run that detects a "
+    "memory ends with a message. Put memory into states or excitation.sampled, relay or delayed, and random "
+    "numbers into a table. If M fails or Ctrl-C is pressed, dinal.partial has the run so far."};
 inline constexpr lua::Doc simulate_doc = {
     "sys:simulate{ OPTIONS } -> run",
     simulate_summary.c_str(),

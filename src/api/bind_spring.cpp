@@ -28,7 +28,7 @@ constexpr const char* polynomial_example = "spring.polynomial{ [3] = 0.5 }";
 int power_at(lua_State* L, int index) {
     const double n = lua_tonumber(L, index);
     if (lua_type(L, index) == LUA_TNUMBER && n == 0) {
-        refuse_power(L, "the power 0 is a constant torque and no spring; give it as a part of M", index);
+        refuse_power(L, "the power 0 is a constant torque, not a spring; add it to M", index);
     }
     if (lua_type(L, index) != LUA_TNUMBER || !text::is_whole(n, 1, springs::PolynomialSpring::highest_power)) {
         refuse_power(L,
@@ -97,15 +97,14 @@ constexpr lua::Member spring_module_members[] = {
 
 constexpr lua::Member spring_members[] = {
     {lua::a_method<at_theta<&model::Spring::torque>>,
-     {"spring:torque(theta) -> number", "The torque with which it pulls back at theta (rad).",
+     {"spring:torque(theta) -> number", "The restoring torque at theta (rad).",
       "print(spring.polynomial{ [1] = -1, [3] = 1 }:torque(0.5))  --> -0.375"}},
     {lua::a_method<at_theta<&model::Spring::energy>>,
      {"spring:energy(theta) -> number",
-      "What it has stored at theta (rad): the integral of the torque from 0, torque times rad. Of a Lua function, by "
-      "quadrature.",
+      "The stored energy at theta (rad): the integral of the torque from 0, torque times rad.",
       "print(spring.polynomial{ [3] = 0.5 }:energy(1))  --> 0.125"}},
     {lua::a_metamethod<spring_text>("__tostring"),
-     {"tostring(spring) -> string", "The Lua text that makes it again.",
+     {"tostring(spring) -> string", "The Lua text that recreates it.",
       "print(spring.polynomial{ [3] = 0.5 })  --> spring.polynomial{ [3] = 0.5 }"}},
 };
 

@@ -28,7 +28,7 @@ bool is_moving(const Steady& s) {
 /// Raises where a motion of several bodies is asked for what only one of them has.
 const Steady& of_one(lua_State* L, const Steady& s) {
     if (s.rig == nullptr || s.of_body) return s;
-    lua::raise(L, fmt::format("this is a motion of several bodies; ask one of them, such as s.{}.amplitude",
+    lua::raise(L, fmt::format("this motion has several bodies; choose one of them, such as s.{}.amplitude",
                               s.rig->question.system->bodies.front().name));
 }
 
@@ -221,7 +221,7 @@ std::string steady_summary(const Steady& s) {
     if (s.rig && !s.of_body && is_found(s)) {
         if (m.status == SteadyStatus::adheres) return "adheres: nothing moves";
         if (m.status == SteadyStatus::rest) return "rest: the motion ends";
-        return m.period == 0 ? "steady: all bodies go round evenly"
+        return m.period == 0 ? "steady: all bodies rotate at constant speed"
                              : fmt::format("steady: period {}, {} bodies", number(m.period, in.t),
                                            s.rig->question.system->bodies.size());
     }
@@ -260,14 +260,14 @@ constexpr lua::Member steady_members[] = {
      lua::guarded<steady_explain>,
      lua::Kind::method,
      {"s:explain() -> string",
-      "The answer in sentences: the motion, whether it is stable, and whether another one was seen from other starts.",
+      "Describes the motion, whether it is stable, and whether other starts lead to another one.",
       DINAL_STEADY "print(s:explain():match(\"It stops[^.]*\"))  --> It stops 2 times a period and is stuck for 31"}},
     {"status",
      lua::guarded<steady_status>,
      lua::Kind::field,
      {"s.status -> string",
-      "\"steady\"; \"adheres\": the mass never moves; \"rest\": nothing depends on t, and the motion dies out; \"grows\": "
-      "M feeds more than the frictions take; \"none\": nothing periodic was found. Fields without a value are nil.",
+      "\"steady\"; \"adheres\": the mass never moves; \"rest\": the motion dies out; \"grows\": M supplies more "
+      "energy than is dissipated; \"none\": no periodic motion was found. Fields without a value are nil.",
       DINAL_STEADY "print(s.status)  --> steady"}},
     {"period",
      lua::guarded<steady_period>,
@@ -277,13 +277,12 @@ constexpr lua::Member steady_members[] = {
     {"periods",
      lua::guarded<steady_periods>,
      lua::Kind::field,
-     {"s.periods -> integer",
-      "The periods of M in one of the motion: 1 unless it is subharmonic, and for a limit cycle.",
+     {"s.periods -> integer", "The number of periods of M in one period of the motion; 1 unless it is subharmonic.",
       DINAL_STEADY "print(s.periods)  --> 1"}},
     {"amplitude",
      lua::guarded<steady_found_number<&analysis::SteadyMotion::amplitude>>,
      lua::Kind::field,
-     {"s.amplitude -> number", "Half of the way between the extremes of theta, rad.",
+     {"s.amplitude -> number", "Half the distance between the extremes of theta, rad.",
       DINAL_STEADY "print(string.format(\"%.4f\", s.amplitude))  --> 1.1111"}},
     {"peak",
      lua::guarded<steady_peak>,
@@ -298,79 +297,77 @@ constexpr lua::Member steady_members[] = {
      lua::guarded<steady_shape_angle<&analysis::SteadyShape::lag>>,
      lua::Kind::field,
      {"s.lag -> number",
-      "By how much the fundamental of theta (at the period of M) lags behind that of M, rad in (-pi, pi]; nil "
-      "when one of them has none or M depends on the motion.",
+      "The lag of the fundamental of theta behind that of M, rad in (-pi, pi]; nil if one of them has none or M "
+      "depends on the motion.",
       "s = system{ I = 1, k = 1, C = 0.5 }:steady{ M = excitation.harmonic{ omega = 1 } }\n"
       "print(string.format(\"%.6f\", s.lag))  --> 1.570796"}},
     {"peak_lag",
      lua::guarded<steady_shape_angle<&analysis::SteadyShape::peak_lag>>,
      lua::Kind::field,
-     {"s.peak_lag -> number", "By how much the highest theta lags behind the crest of the fundamental of M, rad.",
+     {"s.peak_lag -> number", "The lag of the maximum of theta behind that of the fundamental of M, rad.",
       "s = system{ I = 1, k = 1, C = 0.5 }:steady{ M = excitation.harmonic{ omega = 1 } }\n"
       "print(string.format(\"%.6f\", s.peak_lag))  --> 1.570796"}},
     {"stops",
      lua::guarded<steady_stops>,
      lua::Kind::field,
-     {"s.stops -> integer", "How often it stops in a period; nil when it adheres.",
+     {"s.stops -> integer", "The number of stops in a period; nil if it adheres.",
       DINAL_STEADY "print(s.stops)  --> 2"}},
     {"stuck",
      lua::guarded<steady_found_number<&analysis::SteadyMotion::stuck>>,
      lua::Kind::field,
-     {"s.stuck -> number", "The part of a period for which it stands still, from 0 to 1.",
+     {"s.stuck -> number", "The fraction of a period for which it is stuck.",
       DINAL_STEADY "print(string.format(\"%.4f\", s.stuck))  --> 0.3154"}},
     {"multipliers",
      lua::guarded<steady_multipliers>,
      lua::Kind::field,
      {"s.multipliers -> table",
-      "The Floquet multipliers, each { re, im, abs }: the factor of a small disturbance in one period; below 1 it dies "
-      "out. There are two, and one for each state; a limit cycle has one less, without the trivial one. nil for delayed "
-      "and sampled controllers, which have no finite map.",
+      "The Floquet multipliers, each { re, im, abs }: the factors of small disturbances in one period. There are "
+      "two, and one for each state; a limit cycle has one less, without the trivial one. nil with delayed and "
+      "sampled controllers.",
       "s = system{ I = 1, k = 1, C = 0.5 }:steady{ M = excitation.harmonic{ omega = 1 } }\n"
       "print(string.format(\"%.6f %.6f\", s.multipliers[1].abs, math.exp(-math.pi / 2)))  --> 0.207880 0.207880"}},
     {"stable",
      lua::guarded<steady_found_flag<&analysis::SteadyMotion::stable>>,
      lua::Kind::field,
-     {"s.stable -> boolean", "No disturbance grows; under an M with a memory: a run came to this motion.",
+     {"s.stable -> boolean", "true if no disturbance grows; if M has a memory, true if a run converged to this motion.",
       DINAL_STEADY "print(s.stable)  --> true"}},
     {"unique",
      lua::guarded<steady_unique>,
      lua::Kind::field,
      {"s.unique -> string or false",
-      "\"proven\": no other periodic motion exists; this is proven for a linear spring with Re = Rd, no walls and an M of "
-      "time alone. \"not seen\": none was seen from sixteen other starts, which is no proof. false: others exist, in "
-      "s.others or as a family beside it.",
+      "\"proven\": no other periodic motion exists; this is proven for a linear spring with Re = Rd, no walls and "
+      "an M of time alone. \"not seen\": sixteen other starts led to no other. false: others exist, in s.others or "
+      "as a family.",
       DINAL_STEADY "print(s.unique)  --> proven"}},
     {"others",
      lua::guarded<steady_others>,
      lua::Kind::field,
      {"s.others -> table",
-      "A list of the other motions found from sixteen other starts, each a steady motion of its own. Empty if the motion "
-      "is unique, or one of a family.",
+      "The other motions found from sixteen other starts, a list of steady motions. Empty if the motion is unique, "
+      "or one of a family.",
       "s = system{ I = 1, k = 4, C = 0.1, Rd = 0.3, Re = 0.6 }:steady{ belt = 0.1 }\n"
       "print(s.status, #s.others, s.others[1].status)  --> steady\t1\trest"}},
     {"symmetric",
      lua::guarded<steady_found_flag<&analysis::SteadyMotion::symmetric>>,
      lua::Kind::field,
-     {"s.symmetric -> boolean", "Each half period is the opposite of the other.",
+     {"s.symmetric -> boolean", "The motion is symmetric: theta(t + T/2) = -theta(t).",
       DINAL_STEADY "print(s.symmetric)  --> true"}},
     {"rest",
      lua::guarded<steady_rest>,
      lua::Kind::field,
-     {"s.rest -> table", "When it adheres or ends at rest: { lower, upper }, between which it may stand; rad.",
+     {"s.rest -> table", "If it adheres or comes to rest: { lower, upper }, the range of rest positions, rad.",
       "s = system{ I = 1, k = 2, Rd = 1 }:steady{ M = excitation.harmonic{ amplitude = 0.8, omega = 1 } }\n"
       "print(s.status, string.format(\"%.4f %.4f\", s.rest[1], s.rest[2]))  --> adheres\t-0.1000 0.1000"}},
     {"growth",
      lua::guarded<steady_growth>,
      lua::Kind::field,
-     {"s.growth -> number", "When it grows: by how much the amplitude does in a period of M, rad.",
+     {"s.growth -> number", "If it grows: the growth of the amplitude in a period of M, rad.",
       "s = nondimensional{ friction_ratio = 0.167 }:steady{ M = excitation.harmonic{ frequency = 1 } }\n"
       "print(string.format(\"%.6f\", s.growth))  --> 2.473593"}},
     {"run",
      lua::guarded<run_of_steady>,
      lua::Kind::field,
-     {"s.run -> run",
-      "One period of the motion as a run with 401 rows, of several bodies a rig_run; nil at rest. With a delayed or sampled controller it continues the "
-      "run that led to the motion.",
+     {"s.run -> run", "One period of the motion as a run with 401 rows; nil at rest.",
       DINAL_STEADY "print(#s.run, s.run.t_end)  --> 401\t2.5"}},
     {"__tostring",
      lua::guarded<steady_to_string>,
@@ -391,8 +388,8 @@ std::string steady_card(lua_State* L, int index, const terminal::Display& screen
 const lua::Class steady_class = {
     "steady motion",
     {"sys:steady{ ... }, run:steady{ ... } -> s",
-     "The answer to the question what the motion becomes: a periodic motion and its properties, rest, or the reason why "
-     "there is no such motion. Of several bodies s.load is the motion as seen from the body `load`. It cannot be changed.",
+     "The result of steady: a periodic motion and its properties, rest, or the reason why there is none. With "
+     "several bodies s.load is the motion of the body `load`.",
      "s = nondimensional{}:steady{}\nprint(s.status)  --> rest"},
     steady_members,
     body_of_steady,

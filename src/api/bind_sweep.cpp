@@ -34,13 +34,12 @@ constexpr text::Option bifurcation_only_options[] = {
      .otherwise = text::needed,
      .meaning =
          "a function of a point, a table such as { a = 0.5 }, that returns options of sys:simulate, with system = "
-         "... and, if need be, another period; of several bodies also of = \"load\", the body that is looked at",
+         "... and, if need be, another period; for several bodies also of = \"load\", the body to record",
      .wanted = "a function of a point that returns { system = ..., M = ... }"},
     {.name = "period",
      .unit = "time units",
      .range = text::positive,
-     .meaning =
-         "from one look at the motion to the next; needed unless `at` returns { period = ... }; or frequency, or omega, instead",
+     .meaning = "time between samples; needed unless `at` returns { period = ... }; or frequency, or omega, instead",
      .filled = text::fills<&BifurcationOptions::period>},
     {.name = "frequency",
      .unit = "cycles per time unit",
@@ -54,11 +53,11 @@ constexpr text::Option bifurcation_only_options[] = {
      .filled = text::fills<&BifurcationOptions::omega>},
     {.name = "skip",
      .range = {"be a whole number from 0 to 1e6", [](double x) { return text::is_whole(x, 0, 1e6); }},
-     .meaning = "periods that are run first, for the motion to settle",
+     .meaning = "periods to skip while the motion settles",
      .filled = text::fills<&BifurcationOptions::skip>},
     {.name = "keep",
      .range = {"be a whole number from 1 to 10000", [](double x) { return text::is_whole(x, 1, 1e4); }},
-     .meaning = "periods after that, each of which gives a row",
+     .meaning = "periods to record after that, one row each",
      .filled = text::fills<&BifurcationOptions::keep>},
 };
 
@@ -68,15 +67,16 @@ constexpr auto bifurcation_options = text::joined(over_option, bifurcation_only_
 
 constexpr text::Call bifurcation_call{
     "bifurcation",
-    "bifurcation{ over = { a = vector.linspace(0.2, 1.2, 400) }, period = 1.25, at = function(p) return { system = sys, M "
+    "bifurcation{ over = { a = vector.linspace(0.2, 1.2, 400) }, period = 1.25, at = function(p) return { system "
+    "= sys, M "
     "= M } end }",
     bifurcation_options};
 
 constexpr lua::Doc bifurcation_doc{
     "bifurcation{ OPTIONS } -> data",
-    "Runs a system for each value of a parameter, on all cores at once, and notes theta and velocity once a period: a "
-    "motion of one period is a point, one of two periods two points, chaos many. The result has the columns of the "
-    "parameters, theta, velocity and error; its plot shows points. As to what the function may use, and a file, see sweep.",
+    "Runs a system for each value of a parameter, on all cores, and records theta and velocity once a period: a "
+    "motion of one period gives one point, one of two periods two, chaos many. Columns: the parameters, theta, "
+    "velocity and error. The rules for the function and for file are those of sweep.",
     "sys = nondimensional{ zeta = 0.1 }\n"
     "b = bifurcation{ over = { a = { 0.5, 1 } }, period = 1, skip = 50, keep = 2, at = function(p)\n"
     "    return { system = sys, M = excitation.harmonic{ amplitude = p.a, frequency = 1 } }\n"
@@ -127,9 +127,10 @@ void refuse_own_options(lua_State* L, int more) {
     for (const char* name : {"t_end", "dt", "times", "dense"}) {
         const bool given = lua_istable(L, more) && lua_getfield(L, more, name) != LUA_TNIL;
         if (given) {
-            lua::raise(L, fmt::format("at returned {} among the options, which bifurcation itself gives to "
-                                      "sys:simulate: period, skip and keep say when it looks",
-                                      name));
+            lua::raise(L,
+                       fmt::format(
+                           "at returned {}, which bifurcation sets itself: choose the samples by period, skip and keep",
+                           name));
         }
         if (lua_istable(L, more)) lua_pop(L, 1);
     }
@@ -174,7 +175,7 @@ std::string body_of_point(lua_State* L, bool rig) {
     lua_pop(L, 1);
     const auto* system = rig ? lua::test<model::AssemblyHandle>(L, 2) : nullptr;
     const bool several = system != nullptr && (*system)->named;
-    if (several && !given) lua::raise(L, "at must return the body that is looked at, such as of = \"load\"");
+    if (several && !given) lua::raise(L, "at must return the body to record, such as of = \"load\"");
     return several ? of : "";
 }
 
@@ -216,8 +217,8 @@ int looks_of_point(lua_State* L) {
     }
     const int run = lua_gettop(L);
     if (const auto* own = lua::test<RunHandle>(L, run); own != nullptr && !is_whole((*own)->trajectory.outcome)) {
-        lua::raise(
-            L, fmt::format("the run ended before the last look at it: {}", motion::outcome_text((*own)->trajectory)));
+        lua::raise(L,
+                   fmt::format("the run ended before the last sample: {}", motion::outcome_text((*own)->trajectory)));
     }
     lua_createtable(L, 0, static_cast<int>(2 * keep));
     const int looks = run + 1;
@@ -377,7 +378,7 @@ constexpr lua::Member sweep_members[] = {
 
 const lua::Class sweep_functions = {
     "sweep",
-    {"sweep{ ... } -> data", "Many points at once.",
+    {"sweep{ ... } -> data", "Many points in parallel.",
      "print(#sweep{ over = { x = { 1, 2, 3 } }, run = function(p) return { y = p.x^2 } end })  --> 3"},
     sweep_members};
 

@@ -67,7 +67,7 @@ int system(lua_State* L) {
     if (options.has("links")) {
         options.push("links");
         if (lua_type(L, -1) != LUA_TTABLE) options.wrong("links", options.row("links").wanted);
-        options.fail("links", "links are between bodies: give these, too, as bodies = { ... }");
+        options.fail("links", "links connect bodies: give bodies = { ... } as well");
     }
     if (!options.has("I")) options.missing("I");
     options.fill(parameters);
@@ -187,7 +187,8 @@ constexpr lua::Member system_module_members[] = {
     {lua::a_function<nondimensional>,
      {"nondimensional{ OPTIONS } -> system",
       "The system with k = 1 and I = 1/(4 pi^2): T0 is 1, and torques are in units of the "
-      "characteristic torque Mc, so M is M* of the report. Angles are in Mc/k, as its units say unless you give others.",
+      "characteristic torque Mc, so M is M* of the report. Angles are in Mc/k, as its units say unless you give "
+      "others.",
       "sys = nondimensional{ zeta = 0.119, friction_ratio = 0.418 }\n"
       "print(sys.k, sys.Rd, string.format(\"%.3f\", sys.zeta))  --> 1.0\t0.418\t0.119",
       {&nondimensional_call}}},
@@ -221,7 +222,7 @@ constexpr lua::Member system_members[] = {
      {"sys.Rd -> number", "The torque of dry friction while the mass moves.",
       "print(system{ I = 2, k = 4, Rd = 0.5 }.Rd)  --> 0.5"}},
     {lua::a_value<model::Oscillator, &model::Oscillator::breakaway>,
-     {"sys.Re -> number", "The breakaway torque: the most that sticking can hold. Rd unless given.",
+     {"sys.Re -> number", "The breakaway torque. Rd unless given.",
       "print(system{ I = 2, k = 4, Rd = 0.5 }.Re)  --> 0.5"}},
     {lua::a_value<model::Oscillator, &model::Oscillator::friction>,
      {"sys.friction -> law", "The law of friction.",
@@ -238,8 +239,8 @@ constexpr lua::Member system_members[] = {
       "print(system{ I = 1, k = 4, walls = { upper = 0.5, restitution = 0.7 } }.walls.upper)  --> 0.5"}},
     {lua::a_field<units_of_system>,
      {"sys.units -> table",
-      "The names of the units of theta, t and M; nil without one. They appear on cards, columns "
-      "and axes; no number depends on them.",
+      "The names of the units of theta, t and M; nil without one. Cards, columns and axes show them; no number "
+      "depends on them.",
       "print(system{ I = 1, k = 4, units = { theta = \"m\", t = \"s\" } }.units.theta)  --> m"}},
     {lua::a_value<model::Oscillator, with_spring<&model::Oscillator::natural_frequency>>,
      {"sys.omega0 -> number", "The natural frequency sqrt(k/I) of k alone, rad per time unit; nil where k = 0.",
@@ -271,23 +272,21 @@ constexpr lua::Member system_members[] = {
       "k = 0 or with another spring.",
       "print(system{ I = 1, k = 4, Rd = 1, Re = 2 }.dead_zone)  --> 0.5"}},
     {lua::a_metamethod<system_text>("__tostring"),
-     {"tostring(sys) -> string", "The Lua text that makes the same system again.",
+     {"tostring(sys) -> string", "The Lua text that recreates it.",
       "print(system{ I = 1, k = 4, Rd = 0.5 })  --> system{ I = 1, k = 4, Rd = 0.5, Re = 0.5 }"}},
 };
 
 }  // namespace
 
-const lua::Class system_functions = {
-    "system",
-    {"system{ I, k, ... } or nondimensional{ ... } -> system",
-     "What makes a system: in the units of the user, or in those of the report's nondimensional form.",
-     "print(system{ I = 1, k = 4 }.omega0)  --> 2.0"},
-    system_module_members};
+const lua::Class system_functions = {"system",
+                                     {"system{ I, k, ... } or nondimensional{ ... } -> system",
+                                      "Makes a system, in your own units or in the report's nondimensional form.",
+                                      "print(system{ I = 1, k = 4 }.omega0)  --> 2.0"},
+                                     system_module_members};
 
 const lua::Class system_class = {
     "system",
-    {"system{ I, k, ... } -> system",
-     "A valid oscillator. It cannot be changed; its parameters and what follows from them are fields.",
+    {"system{ I, k, ... } -> system", "A system. Its parameters, and quantities that follow from them, are fields.",
      "sys = system{ I = 1, k = 4, C = 1 }\nprint(sys.omega0, sys.zeta)  --> 2.0\t0.25"},
     system_members,
     nullptr,

@@ -57,15 +57,15 @@ constexpr Option sliding_r{.name = "r", .otherwise = needed, .range = den_hartog
 constexpr Option zeta{"zeta", "", "0", text::not_negative, "viscous damping ratio"};
 constexpr Option friction_ratio{"friction_ratio", "", needed, text::not_negative, "Rd/M0"};
 constexpr Option breakaway_ratio{"breakaway_ratio", "", "friction_ratio", text::not_negative, "Re/M0"};
-constexpr Option Rd{"Rd", "torque", needed, text::not_negative, "dry friction while moving"};
-constexpr Option theta0{"theta0", "rad", "0", text::any_finite, "where the mass starts"};
-constexpr Option velocity0{"velocity0", "rad per time unit", "0", text::any_finite, "how fast it starts"};
+constexpr Option Rd{"Rd", "torque", needed, text::not_negative, "dry friction while sliding"};
+constexpr Option theta0{"theta0", "rad", "0", text::any_finite, "initial angle"};
+constexpr Option velocity0{"velocity0", "rad per time unit", "0", text::any_finite, "initial velocity"};
 constexpr const char* a_system = "a system such as system{ I = 1, k = 39.5 }";
 constexpr Option system{
     .name = "system", .otherwise = needed, .meaning = "what moves", .object = "system", .wanted = a_system};
 
 constexpr Option free_response_options[] = {
-    {"t", "time units", needed, text::any_finite, "when; not negative with dry friction"},
+    {"t", "time units", needed, text::any_finite, "times; not negative with dry friction"},
     theta0,
     velocity0,
     {.name = "system", .meaning = "what moves", .object = "system", .wanted = a_system},
@@ -84,8 +84,8 @@ constexpr Option extremes_options[] = {
     system,
     {"theta0", "rad", "0", text::any_finite, theta0.meaning, text::fills<&ExtremesOptions::theta0>},
     {"velocity0", velocity0.unit, "0", text::any_finite, velocity0.meaning, text::fills<&ExtremesOptions::velocity0>},
-    {"count", "", text::its_own, at_most_ten_million, "how many at most; needed where a motion never comes to rest",
-     text::fills<&ExtremesOptions::count>}};
+    {"count", "", text::its_own, at_most_ten_million,
+     "the largest number of extremes; needed if the motion never comes to rest", text::fills<&ExtremesOptions::count>}};
 constexpr Call extremes{"theory.extremes", "theory.extremes{ system = sys, theta0 = 1 }", extremes_options};
 
 constexpr Option start_options[] = {system, theta0, velocity0};
@@ -96,9 +96,9 @@ constexpr Option half_cycle_options[] = {
     {"X", "rad", needed, text::any_finite, "an extreme, with its sign"},
     {"zeta", "", "0", swinging, zeta.meaning},
     {"x_f", "rad", "0", text::not_negative, "Rd/k"},
-    {"dead_zone", "rad", "x_f", text::not_negative, "Re/k, within which the mass stays where it is"},
+    {"dead_zone", "rad", "x_f", text::not_negative, "Re/k: at rest within it the mass stays"},
     {.name = "system", .meaning = "instead of zeta, x_f and dead_zone", .object = "system", .wanted = a_system},
-    {"n", "half cycles", "1", whole, "how far after X"}};
+    {"n", "half cycles", "1", whole, "number of half cycles after X"}};
 constexpr Call half_cycle{"theory.half_cycle", "theory.half_cycle{ X = 1, zeta = 0.1, x_f = 0.05 }",
                           half_cycle_options};
 
@@ -173,10 +173,13 @@ struct StepRule {
 constexpr const char* rule_names[] = {"rk4", "report", "corrected"};
 constexpr Option step_limit_options[] = {
     system,
-    {.name = "rule", .meaning = "which of the three", .filled = text::fills<&StepRule::rule>, .choices = rule_names},
+    {.name = "rule",
+     .meaning = "one of the three rules",
+     .filled = text::fills<&StepRule::rule>,
+     .choices = rule_names},
     theta0,
     velocity0,
-    {"Mc", "torque", text::its_own, text::not_zero, "characteristic torque, else that of the free motion"}};
+    {"Mc", "torque", text::its_own, text::not_zero, "characteristic torque; by default that of the free motion"}};
 constexpr Call step_limit{"theory.step_limit", "theory.step_limit{ system = sys, rule = \"rk4\" }", step_limit_options};
 
 }  // namespace theory_options
@@ -299,23 +302,21 @@ const model::Oscillator* TheoryArguments::system() const {
         return system;
     }
     if (!system->has_spring()) {
-        options_.fail({.sentence = "the closed forms are about a mass on a spring, and this system has k = 0",
-                       .option = "system"});
+        options_.fail({.sentence = "the closed forms need a spring, and this system has k = 0", .option = "system"});
     }
     if (system->walls()) {
-        options_.fail(
-            {.sentence = "the closed forms know no walls, and this system has some; simulate it", .option = "system"});
+        options_.fail({.sentence = "the closed forms do not include walls; simulate this system", .option = "system"});
     }
     if (!system->spring().none()) {
-        options_.fail({.sentence =
-                           "the closed forms know the spring k theta only, and this system has another beside it; "
-                           "simulate it",
-                       .option = "system"});
+        options_.fail(
+            {.sentence =
+                 "the closed forms include only the spring k theta, and this system has a second spring; simulate it",
+             .option = "system"});
     }
     if (!system->friction().none() && system->friction().as<model::laws::Coulomb>() == nullptr) {
-        options_.fail({.sentence = "the closed forms know Coulomb's friction only, with one Rd and one Re for both "
-                                   "ways; simulate this system",
-                       .option = "system"});
+        options_.fail(
+            {.sentence = "the closed forms include only Coulomb friction with one Rd and one Re; simulate this system",
+             .option = "system"});
     }
     return system;
 }
@@ -417,11 +418,12 @@ int free_response_of_system(TheoryArguments& arguments) {
     const Start start(arguments);
     const Quantity t = arguments.quantity("t");
     if (arguments.options().has("omega0") || arguments.options().has("zeta")) {
-        arguments.options().fail("system", "system excludes omega0 and zeta, which it has of its own");
+        arguments.options().fail("system", "system excludes omega0 and zeta, which it defines");
     }
     return arguments.push_results([&](std::size_t i) {
         if (t[i] < 0 && !start.system.friction().none()) {
-            arguments.refuse("t", i, t[i], "must not be negative: dry friction does not tell where the mass came from");
+            arguments.refuse("t", i, t[i],
+                             "must not be negative: with dry friction the past of a motion is not determined");
         }
         const model::State y = start.motion(i).at(t[i]);
         return std::array{y.theta, y.velocity};
@@ -495,7 +497,7 @@ int half_cycle(lua_State* L) {
     const model::Oscillator* system = arguments.system();
     for (const char* name : {"zeta", "x_f", "dead_zone"}) {
         if (system != nullptr && arguments.options().has(name)) {
-            arguments.options().fail(name, fmt::format("system excludes {}, which it has of its own", name));
+            arguments.options().fail(name, fmt::format("system excludes {}, which it defines", name));
         }
     }
     if (system != nullptr && !system->damped_frequency()) {
@@ -596,27 +598,24 @@ namespace o = theory_options;
 constexpr lua::Member theory_module_members[] = {
     {lua::a_function<f::free_response>,
      {"theory.free_response{ OPTIONS } -> theta, velocity",
-      "The free motion at the times t, from theta0 (rad) and velocity0 (rad per time unit) at t = 0: exact in all "
-      "regimes, and with the dry friction of the system, turns and rest included (t must not be negative then). "
-      "Instead of system, omega0 (rad per time unit) and zeta = 0 give a motion without dry friction.",
+      "The free motion at the times t, from theta0 (rad) and velocity0 (rad per time unit) at t = 0: exact at any "
+      "damping, and with the dry friction of the system. Instead of system, omega0 (rad per time unit) and zeta = "
+      "0 give a motion without dry friction.",
       "sys = nondimensional{ friction_ratio = 0.167 }\n"
       "print(string.format(\"%.9f %.1f\", theory.free_response{ system = sys, velocity0 = 2*math.pi, t = 5 }))\n"
       "--> 0.155151392 0.0",
       {&o::free_response}}},
     {lua::a_function<f::extremes>,
      {"theory.extremes{ OPTIONS } -> t, theta",
-      "When and where the velocity of a free motion is zero, by the half-cycle map: two vectors; "
-      "the last place is the place of rest. If the motion starts with velocity 0, the start is "
-      "the first one. count is the greatest number of them; it is needed if the motion never "
-      "comes to rest.",
+      "The times and angles at which the velocity of a free motion is zero, by the half-cycle map: two vectors; "
+      "the last is the place of rest. If the motion starts with velocity 0, the start is the first.",
       "sys = nondimensional{ friction_ratio = 0.1 }\n"
       "print(theory.extremes{ system = sys, theta0 = 0.55 })  --> vector{ 0, 0.5, 1, 1.5 }\t"
       "vector{ 0.55, -0.35, 0.15, 0.05 }",
       {&o::extremes}}},
     {lua::a_function<f::time_to_rest>,
      {"theory.time_to_rest{ OPTIONS } -> number or vector",
-      "When a free motion stops for good (time units); math.huge when it does so never, as without dry friction, or "
-      "when it only creeps towards its place, as an overdamped one.",
+      "The time when a free motion ends; math.huge if it never stops (no dry friction, or an overdamped creep).",
       "sys = nondimensional{ friction_ratio = 0.167 }\n"
       "print(string.format(\"%.9f\", theory.time_to_rest{ system = sys, velocity0 = 2*math.pi }))  --> 1.723664157",
       {&o::time_to_rest}}},
@@ -647,14 +646,14 @@ constexpr lua::Member theory_module_members[] = {
       {&o::zeta_from_decrement}}},
     {lua::a_function<closed_form<o::friction_decrement, theory::friction_decrement>>,
      {"theory.friction_decrement{ OPTIONS } -> number or vector",
-      "What dry friction alone takes from the amplitude in each full cycle: 4 Rd/k, rad.",
+      "The loss of amplitude in each full cycle by dry friction alone: 4 Rd/k, rad.",
       "print(theory.friction_decrement{ Rd = 2, k = 40 })  --> 0.2",
       {&o::friction_decrement}}},
     {lua::a_function<closed_form<o::identify, f::identify>>,
      {"theory.identify{ OPTIONS } -> zeta, x_f",
-      "Both dampings from three successive extremes of a free motion (signs do not count), rest not among them: q = "
-      "(X1 - X2)/(X0 - X1), zeta/sqrt(1 - zeta^2) = -(ln q)/pi, x_f = Rd/k = (q X0 - X1)/(1 + q). nil unless X0 > X1 > "
-      "X2. A negative result says that the extremes are too inaccurate to tell this damping from none.",
+      "Both dampings from three successive extremes of a free motion (signs do not count), rest not among them: q "
+      "= (X1 - X2)/(X0 - X1), zeta/sqrt(1 - zeta^2) = -(ln q)/pi, x_f = Rd/k = (q X0 - X1)/(1 + q). nil unless X0 "
+      "> X1 > X2. A negative result means that the extremes are too inaccurate to tell this damping from none.",
       "t, X = theory.extremes{ system = nondimensional{ zeta = 0.119, friction_ratio = 0.06 }, theta0 = 1 }\n"
       "print(string.format(\"%.6f %.6f\", theory.identify{ X0 = X[1], X1 = X[2], X2 = X[3] }))"
       "  --> 0.119000 0.060000",
@@ -667,18 +666,18 @@ constexpr lua::Member theory_module_members[] = {
       {&o::magnification}}},
     {lua::a_function<closed_form<o::phase_lag, theory::phase_lag>>,
      {"theory.phase_lag{ OPTIONS } -> number or vector",
-      "How far that motion is behind its load, rad: atan2(2 zeta r, 1 - r^2), from 0 to pi; pi/2 at r = 1.",
+      "The lag of that motion behind its load, rad: atan2(2 zeta r, 1 - r^2), from 0 to pi; pi/2 at r = 1.",
       "print(theory.phase_lag{ r = { 0.5, 1, 2 }, zeta = 0.1 })  --> vector{ 0.132552, 1.5708, 3.00904 }",
       {&o::phase_lag}}},
     {lua::a_function<closed_form<o::transmissibility, theory::transmissibility>>,
      {"theory.transmissibility{ OPTIONS } -> number or vector",
-      "The torque that spring and damper pass on to the support over the torque of the load, and as well the motion of "
-      "the mass over the motion of its support: sqrt(1 + 4 zeta^2 r^2) times the magnification. Without dry friction.",
+      "The torque on the support relative to that of the load, and also the motion of the mass relative to that of "
+      "its support: sqrt(1 + 4 zeta^2 r^2) times the magnification. Without dry friction.",
       "print(string.format(\"%.12f\", theory.transmissibility{ r = math.sqrt(2), zeta = 0.3 }))  --> 1.000000000000",
       {&o::transmissibility}}},
     {lua::a_function<closed_form<o::equivalent_damping, theory::equivalent_damping>>,
      {"theory.equivalent_damping{ OPTIONS } -> number or vector",
-      "The viscous damping constant C that takes from each cycle of this amplitude (rad) as much energy as the dry "
+      "The viscous damping constant C that dissipates as much energy in a cycle of this amplitude (rad) as the dry "
       "friction Rd: 4 Rd/(pi omega amplitude).",
       "print(string.format(\"%.6f\", theory.equivalent_damping{ Rd = 1, omega = 2, amplitude = 0.5 }))  --> 1.273240",
       {&o::equivalent_damping}}},
@@ -698,7 +697,7 @@ constexpr lua::Member theory_module_members[] = {
       {&o::linearised}}},
     {lua::a_function<closed_form<o::friction_work, theory::friction_work>>,
      {"theory.friction_work{ OPTIONS } -> number or vector",
-      "The energy that dry friction takes in each cycle of this amplitude (rad): 4 Rd amplitude.",
+      "The energy dissipated by dry friction in a cycle of this amplitude (rad): 4 Rd amplitude.",
       "print(theory.friction_work{ Rd = 2, amplitude = { 0.5, 1 } })  --> vector{ 4, 8 }",
       {&o::friction_work}}},
     {lua::a_function<closed_form<o::growth_at_resonance, theory::growth_at_resonance>>,
@@ -722,8 +721,7 @@ constexpr lua::Member theory_module_members[] = {
     {lua::a_function<f::den_hartog_fundamental>,
      {"theory.den_hartog_fundamental{ OPTIONS } -> "
       "amplitude, lag",
-      "The harmonic part of that motion that has the frequency of the load: its amplitude in "
-      "units of M0/k and its lag in rad. A linear theory can at best predict this part.",
+      "The fundamental of that motion: amplitude in units of M0/k and lag in rad.",
       "amplitude, lag = theory.den_hartog_fundamental{ r = 1.35, friction_ratio = 0.5 }\n"
       "print(string.format(\"%.4f, %.2f degrees\", amplitude, math.deg(lag)))  --> 0.8649, 140.69 degrees",
       {&o::den_hartog_fundamental}}},
@@ -752,10 +750,10 @@ constexpr lua::Member theory_module_members[] = {
 const lua::Class theory_module = {
     "theory",
     {"theory.NAME{ ... } -> numbers or vectors",
-     "Closed forms to compare a run with. Each option that is a number can be a vector, or a table of numbers, too: "
-     "then the results are vectors (all of them equally long). Where a formula does not hold, the result is nil, and "
-     "nan in a vector. docs/theory.md has the formulas. For a system under M0 sin(omega t): r = omega/sys.omega0, "
-     "zeta = sys.zeta, friction_ratio = sys:friction_ratio(M0).",
+     "Closed forms to compare a run with. Any number may be a vector or a table of numbers; the results are then "
+     "vectors. Where a formula does not hold, the result is nil, or nan in a vector. docs/theory.md has the "
+     "formulas. For a system under M0 sin(omega t): r = omega/sys.omega0, zeta = sys.zeta, friction_ratio = "
+     "sys:friction_ratio(M0).",
      "r = vector.linspace(0.5, 2, 4)\n"
      "print(theory.magnification{ r = r, zeta = 0.1 })  --> vector{ 1.32164, 5, 0.77791, 0.330409 }"},
     theory_module_members};

@@ -454,9 +454,12 @@ int pick(lua_State* L) {
             continue;
         }
         if (x != std::floor(x) || !(x >= 1 && x <= static_cast<double>(v.size()))) {
-            lua::raise(L, {.sentence = fmt::format("v[w]: w[{}] = {:.6g} is no place in a vector of {} numbers; a w of "
-                                                   "0 and 1 must be as long as v",
-                                                   i + 1, x, v.size())});
+            lua::raise(
+                L,
+                {.sentence = fmt::format(
+                     "v[w]: w[{}] = {:.6g} is not an index of a vector of {} numbers; a w of 0 and 1 must be as long "
+                     "as v",
+                     i + 1, x, v.size())});
         }
         picked.push_back(v.begin()[static_cast<std::size_t>(x) - 1]);
     }
@@ -629,35 +632,35 @@ constexpr lua::Member vector_members[] = {
      {"tostring(v) -> string", "The elements to six digits; of a long vector its two ends and its length.",
       "print(vector.linspace(0, 1, 101))  --> vector{ 0, 0.01, 0.02, ..., 0.98, 0.99, 1 }  -- 101 numbers"}},
     {lua::a_method<map>,
-     {"v:map(f) -> vector", "f(x, i) of every element x, i its place: a number, or true for 1 and false for 0.",
+     {"v:map(f) -> vector", "f(x, i) for every element x with index i: a number, or true for 1 and false for 0.",
       "print(vector{ 1, 2, 3 }:map(function(x) return 10 * x end))  --> vector{ 10, 20, 30 }"}},
     {lua::a_method<find>,
-     {"v:find(f) -> vector", "The places, from 1, of the elements x for which f(x, i) is true; v[v:find(f)] has them.",
+     {"v:find(f) -> vector", "The indices of the elements x for which f(x, i) is true; v[v:find(f)] has the elements.",
       "print(vector{ 5, 1, 7 }:find(function(x) return x > 3 end))  --> vector{ 1, 3 }"}},
     {lua::a_method<of_all<"v:std()", deviation, 2>>,
      {"v:std() -> number", "The standard deviation: the root of the sum of squares about the mean over #v - 1.",
       "print(vector{ 1, 2, 3 }:std())  --> 1.0"}},
     {lua::a_method<quantile>,
      {"v:quantile(p) -> number",
-      "The value below which the part p of the elements lies, p from 0 to 1: 0.5 is the median. Linear between the sorted "
-      "elements, of which the first is at p = 0 and the last at p = 1.",
+      "The value below which the fraction p of the elements lies; 0.5 gives the median. Linear between the sorted "
+      "elements.",
       "print(vector{ 4, 1, 3, 2 }:quantile(0.5), vector{ 1, 2, 6 }:quantile(1))  --> 2.5\t6.0"}},
     {lua::a_method<of_all<"v:argmax()", place_of_extreme<1>>>,
-     {"v:argmax() -> integer", "The place, from 1, of the greatest element, the first of equal ones.",
+     {"v:argmax() -> integer", "The index of the greatest element, the first of equal ones.",
       "print(vector{ 1, 3, 2 }:argmax())  --> 2"}},
     {lua::a_method<of_all<"v:argmin()", place_of_extreme<-1>>>,
-     {"v:argmin() -> integer", "The place, from 1, of the least element, the first of equal ones.",
+     {"v:argmin() -> integer", "The index of the least element, the first of equal ones.",
       "print(vector{ 1, 3, -2 }:argmin())  --> 3"}},
     {lua::a_method<filled<"v:cumsum()", cumulate>>,
      {"v:cumsum() -> vector", "The sums of the first, the first two, ... of all elements.",
       "print(vector{ 1, 2, 3 }:cumsum())  --> vector{ 1, 3, 6 }"}},
     {lua::a_method<filled<"v:diff()", subtract_previous>>,
-     {"v:diff() -> vector", "Each element less the one before it: one number fewer.",
+     {"v:diff() -> vector", "Each element minus the one before it: one number fewer.",
       "print(vector{ 1, 4, 9 }:diff())  --> vector{ 3, 5 }"}},
     {lua::a_method<interpolated>,
      {"v:interp(x, y) -> vector",
-      "At each element the value of straight lines through the points x, y; x must increase, and beyond its ends the "
-      "first and the last y hold.",
+      "Linear interpolation at each element through the points x, y; x must increase. Beyond its ends the first "
+      "and the last y hold.",
       "print(vector{ 0.5, 1.5, 9 }:interp(vector{ 0, 1, 2 }, vector{ 0, 10, 30 }))  --> vector{ 5, 20, 30 }"}},
     {lua::a_method<dot>,
      {"v:dot(w) -> number", "The sum of the products of elements in the same place.",
@@ -673,9 +676,9 @@ constexpr lua::Member vector_members[] = {
       "print(vector{ 1, 2 } .. vector{ 3 } .. 4)  --> vector{ 1, 2, 3, 4 }"}},
     {lua::a_metamethod<pick>("__index"),
      {"v[w], v[v > 0] -> vector",
-      "Some of the elements. A comparison (< <= > >=) in the brackets picks those for which it holds, also of another "
-      "vector of the same length: run.t[run.theta > 0.5]. A vector w of 0 and 1 as long as v picks those with 1; any "
-      "other w has their places, such as v:find(function(x) return x > 0 and x < 1 end).",
+      "Some of the elements. A comparison (< <= > >=) in the brackets selects those for which it holds, also of "
+      "another vector of the same length: run.t[run.theta > 0.5]. A vector w of 0 and 1 as long as v selects those "
+      "with 1; any other w contains indices, such as v:find(function(x) return x > 0 and x < 1 end).",
       "v = vector{ 5, -1, 7 }\nprint(v[v > 0], v[vector{ 3, 1 }])  --> vector{ 5, 7 }\tvector{ 7, 5 }"}},
 };
 

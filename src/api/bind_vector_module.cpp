@@ -99,13 +99,13 @@ constexpr text::Range count_range{"be a whole number from 1 to 1e9",
                                   [](double x) { return x == std::floor(x) && x >= 1 && x <= most_numbers; }};
 constexpr text::Range seed_range{"be a whole number from 0 to 2^53",
                                  [](double x) { return x == std::floor(x) && x >= 0 && x <= 9007199254740992.0; }};
-constexpr const char* seed_meaning = "chooses the numbers: the same ones each time, on every machine";
+constexpr const char* seed_meaning = "the same seed gives the same numbers on every machine";
 
 constexpr text::Option uniform_options[] = {
     {"n", "", text::needed, count_range, "how many", text::fills<&UniformNumbers::n>},
     {"seed", "", text::needed, seed_range, seed_meaning, text::fills<&UniformNumbers::seed>},
-    {.name = "from", .meaning = "none is less", .filled = text::fills<&UniformNumbers::from>},
-    {.name = "to", .meaning = "all are less", .filled = text::fills<&UniformNumbers::to>},
+    {.name = "from", .meaning = "lower limit", .filled = text::fills<&UniformNumbers::from>},
+    {.name = "to", .meaning = "upper limit, excluded", .filled = text::fills<&UniformNumbers::to>},
 };
 constexpr text::Call uniform_call{"vector.random", "vector.random{ n = 100, seed = 1 }", uniform_options};
 constexpr text::Option normal_options[] = {
@@ -161,7 +161,8 @@ constexpr lua::Member vector_module_members[] = {
     {lua::a_function<vector_range>,
      {"vector.range(from, to [, step]) -> vector",
       "from, from + step, ... up to to, as Lua's for counts; step is 1 unless given. Whole numbers stay whole.",
-      "print(vector.range(1, 4), vector.range(0, 1, 0.25))  --> vector{ 1, 2, 3, 4 }\tvector{ 0, 0.25, 0.5, 0.75, 1 }"}},
+      "print(vector.range(1, 4), vector.range(0, 1, 0.25))  --> vector{ 1, 2, 3, 4 }\tvector{ 0, 0.25, 0.5, 0.75, "
+      "1 }"}},
     {lua::a_function<vector_linspace>,
      {"vector.linspace(from, to, n) -> vector", "n >= 2 numbers with even gaps; the ends are exact.",
       "print(vector.linspace(0, 1, 5))  --> vector{ 0, 0.25, 0.5, 0.75, 1 }"}},
@@ -177,7 +178,7 @@ constexpr lua::Member vector_module_members[] = {
       {&normal_call}}},
     {lua::a_function<vector_random>,
      {"vector.random{ OPTIONS } -> vector",
-      "Random numbers, each as likely as any other between two limits.",
+      "Random numbers, uniformly distributed between two limits.",
       "v = vector.random{ n = 1000, seed = 1, from = 2, to = 3 }\nprint(v >= 2, v < 3)  --> true\ttrue",
       {&uniform_call}}},
 };

@@ -22,13 +22,13 @@ inline constexpr text::Option friction_options[] = {
     {.name = "Rd",
      .unit = "torque",
      .otherwise = "0",
-     .meaning = "dry friction while moving: a number, an excitation or a function of t, theta, velocity, z",
+     .meaning = "dry friction while sliding: a number, an excitation or a function of t, theta, velocity, z",
      .object = "excitation",
      .wanted = varying_wanted},
     {.name = "Re",
      .unit = "torque",
      .otherwise = "Rd",
-     .meaning = "what sticking can hold: a number, at least Rd, an excitation or a function of t, theta, velocity, z",
+     .meaning = "breakaway torque: a number, at least Rd, an excitation or a function of t, theta, velocity, z",
      .object = "excitation",
      .wanted = varying_wanted},
     {.name = "friction",
@@ -61,30 +61,30 @@ inline constexpr text::Option bodies_drive_rows[] = {
     {.name = "theta0",
      .unit = "rad",
      .otherwise = "0",
-     .meaning = "where the bodies start: { load = 0.1 }",
+     .meaning = "initial angles: { load = 0.1 }",
      .wanted = by_body_wanted},
     {.name = "velocity0",
      .unit = "rad per time unit",
      .otherwise = "0",
-     .meaning = "how fast they start",
+     .meaning = "initial velocities",
      .wanted = by_body_wanted},
     {.name = "belt",
      .unit = "rad per time unit",
      .otherwise = "0",
-     .meaning =
-         "velocities of what the friction of a body or a link acts against, by their names: numbers, functions of t "
-         "or excitations",
+     .meaning = "velocities of the surface under a body or link, by name: numbers, functions of t or excitations",
      .wanted = by_body_wanted},
     extras_options[3],
     {.name = "states",
-     .meaning = "variables that go along with the motion: { NAME = { start = 0, rate = function(t, theta, velocity, z) "
-                "... end } }",
+     .meaning =
+         "variables that are integrated with the motion: { NAME = { start = 0, rate = function(t, theta, velocity, "
+         "z) ... end } }",
      .wanted =
          "a table such as { e = { start = 0, rate = function(t, theta, velocity, z) return 1 - theta.load end } }",
      .fields = {&state_call, text::Fields::Place::by_name}},
     {.name = "events",
-     .meaning = "what is to be located: a list of { when = function(t, theta, velocity, z), ... }; act may assign to "
-                "theta.NAME, velocity.NAME and z.NAME",
+     .meaning =
+         "events to locate: a list of { when = function(t, theta, velocity, z), ... }; act may assign to theta.NAME, "
+         "velocity.NAME and z.NAME",
      .wanted = "a list such as { { when = function(t, theta) return theta.load - 1 end, name = \"limit\" } }",
      .fields = {&event_call, text::Fields::Place::listed}},
 };

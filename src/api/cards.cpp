@@ -41,8 +41,8 @@ std::string system_card(lua_State* L, int index, const terminal::Display& screen
                 screen);
     text += row("k", system.stiffness(), of_unit("stiffness", units.stiffness()), screen);
     text += row("C", system.damping(), of_unit("viscous damping", units.damping()), screen);
-    text += row("Rd", system.kinetic_friction(), of_unit("dry friction while it moves", units.M), screen);
-    text += row("Re", system.breakaway(), of_unit("the most that sticking can hold", units.M), screen);
+    text += row("Rd", system.kinetic_friction(), of_unit("dry friction while sliding", units.M), screen);
+    text += row("Re", system.breakaway(), of_unit("breakaway torque", units.M), screen);
     if (!system.friction().none() && system.friction().as<model::laws::Coulomb>() == nullptr) {
         text += "\n  friction   " + source::lua_text(L, system.friction());
     }
@@ -71,7 +71,7 @@ std::string system_card(lua_State* L, int index, const terminal::Display& screen
     if (!system.spring().none()) {
         return text;
     }
-    const std::string place = terminal::spelled("it can rest wherever |θ| <= this", screen);
+    const std::string place = terminal::spelled("the mass can rest wherever |θ| <= this", screen);
     text += row("dead_zone", system.dead_zone(), units.usual() ? place : of_unit(place, units.theta), screen);
     return text;
 }

@@ -39,9 +39,8 @@ double asked_end(const lua::Options& options, const MoreTime& asked, const motio
     if (so_far.t_stop < task.window.end) {
         return task.window.end;
     }
-    options.fail("t_end",
-                 fmt::format("the run reached its end at t = {:.6g}: say how far it is to go on, for example {}",
-                             so_far.t_stop, continue_call.example));
+    options.fail("t_end", fmt::format("the run reached its end at t = {:.6g}: give a later end, for example {}",
+                                      so_far.t_stop, continue_call.example));
 }
 
 }  // namespace
@@ -58,7 +57,7 @@ int continue_run(lua_State* L) {
     }
     if (!run->origin) {
         options.fail(
-            {"a run that was read from a file cannot go on; start one there with sys:simulate{ theta0, "
+            {"a run read from a file cannot be continued; start one from its end with sys:simulate{ theta0, "
              "velocity0, t_start, ... }"});
     }
     source::Origin origin = *run->origin;
@@ -71,9 +70,9 @@ int continue_run(lua_State* L) {
     }
     const bool spaced = origin.rows.dt() > 0;
     if (spaced && asked.times) {
-        options.fail("times", fmt::format("this run has a row every dt = {:.6g}, and goes on so; times are for runs "
-                                          "that had times",
-                                          origin.rows.dt()));
+        options.fail("times",
+                     fmt::format("this run has a row every dt = {:.6g} and keeps dt; times are for runs with times",
+                                 origin.rows.dt()));
     }
     origin.window.end = asked_end(options, asked, so_far, origin);
     if (!spaced) {

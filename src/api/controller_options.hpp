@@ -14,19 +14,20 @@ inline constexpr text::Option sampled_options[] = {
      .unit = "time units",
      .otherwise = text::needed,
      .range = text::positive,
-     .meaning = "from one instant to the next",
+     .meaning = "sampling interval",
      .filled = text::fills<&model::SampledController::every>},
     {.name = "delay",
      .unit = "time units",
      .range = text::not_negative,
-     .meaning = "delay from an instant to the effect of its output",
+     .meaning = "time from sampling to output",
      .filled = text::fills<&model::SampledController::delay>},
     {.name = "at",
      .unit = "time units",
-     .meaning = "the first instant; those before the start of a run are left out",
+     .meaning = "the first sampling time; those before the start of a run are left out",
      .filled = text::fills<&model::SampledController::at>},
     {.name = "start",
-     .meaning = "returns the memory of a run, a table, which f gets as its fifth argument and may change",
+     .meaning =
+         "a function that returns the memory of a run, a table, which f gets as its fifth argument and may change",
      .wanted = "a function that returns a table, such as function() return { e = 0 } end"},
 };
 inline constexpr text::Call sampled_call{
@@ -71,12 +72,12 @@ inline constexpr text::Option relay_options[] = {
     {.name = "amplitude",
      .unit = "torque",
      .otherwise = text::needed,
-     .meaning = "the torque while it is on, and its opposite while it is off; or the two torques { on, off }",
+     .meaning = "the torque while on, its opposite while off; or both torques { on, off }",
      .wanted = "a number, or two: { on, off }"},
     {.name = "of",
      .otherwise = "\"theta\"",
-     .meaning = "the quantity that it watches: \"theta\", \"velocity\", the name of a state, or a function "
-                "of t, theta, velocity, z",
+     .meaning =
+         "the observed quantity: \"theta\", \"velocity\", the name of a state, or a function of t, theta, velocity, z",
      .wanted = "\"theta\", \"velocity\", the name of a state or a function"},
     {.name = "start",
      .meaning = "initial state, if the start is between the thresholds",
@@ -93,10 +94,10 @@ int delayed_controller(lua_State* L);
 inline constexpr lua::Member controller_functions[] = {
     {lua::a_function<sampled_controller>,
      {"excitation.sampled(f, { OPTIONS }) -> excitation",
-      "A controller that samples: f(t, theta, velocity, z, memory) is called once at each instant, in order. What it "
-      "returns is held until the next instant; before the first one M is 0. A memory is a table that start returns: "
-      "each run gets a new one, and a run that is continued goes on with its own, so that runs can be repeated, "
-      "continued and swept. z is nil without states. It has values in a run only.",
+      "A sampled controller: f(t, theta, velocity, z, memory) is called once at each sampling time, in order. Its "
+      "result is held until the next; before the first one M is 0. Each run gets a new memory, the table that "
+      "start returns, so runs can be repeated, continued and swept. z is nil without states. It has values only in "
+      "a run.",
       "M = excitation.sampled(function(t, theta, velocity, z, memory)\n"
       "  memory.e = memory.e + 0.1*(1 - theta)\n"
       "  return 5*memory.e - 3*velocity\n"
@@ -106,16 +107,16 @@ inline constexpr lua::Member controller_functions[] = {
       {&sampled_call}}},
     {lua::a_function<relay_controller>,
      {"excitation.relay{ OPTIONS } -> excitation",
-      "A switch with hysteresis: it gives amplitude from where it passes on, coming from the side of off, and -amplitude "
-      "from where it passes off, coming from the side of on. Each switch is located, and an event of the kind \"switch\". It has values in a run only.",
+      "A switch with hysteresis: M is amplitude after the quantity has passed `on`, and -amplitude after it has "
+      "passed `off`. Each switch is located, and is an event of kind \"switch\". It has values only in a run.",
       "M = excitation.relay{ on = -0.1, off = 0.1, amplitude = 1 }\n"
       "run = nondimensional{ zeta = 0.1 }:simulate{ M = M, t_end = 1, dt = 0.5 }\n"
       "print(run.events[1].kind, string.format(\"%.6f\", run.events[1].theta))  --> switch\t0.100000",
       {&relay_call}}},
     {lua::a_function<delayed_controller>,
      {"excitation.delayed(f, { OPTIONS }) -> excitation",
-      "A controller with a dead time: f(t, theta, velocity) with the present t, and theta and velocity as they were "
-      "`by` ago; before the start of the run these are the initial ones. It has values in a run only.",
+      "A controller with a dead time: f(t, theta, velocity) gets the present t, and theta and velocity of the time "
+      "t - by; before the start of the run these are the initial ones. It has values only in a run.",
       "M = excitation.delayed(function(t, theta, velocity) return -0.1*velocity end, { by = 0.02 })\n"
       "run = nondimensional{}:simulate{ M = M, velocity0 = 1, t_end = 1, dt = 0.01 }\n"
       "print(run.M[1], run.M[2])  --> -0.1\t-0.1",

@@ -10,11 +10,11 @@ namespace dinal::api {
 inline constexpr text::Option data_plot_options[] = {
     {.name = "x", .otherwise = "the first column", .meaning = "name of a column"},
     {.name = "y", .otherwise = "the second column", .meaning = "name of a column, or a list of them"},
-    {.name = "z", .meaning = "name of a column that is drawn as a map over x and y, which form a grid"},
+    {.name = "z", .meaning = "name of a column to draw as a map over a grid of x and y"},
     {.name = "overlay",
      .meaning = "name of an additional curve, or a list: the data of a response have \"jumps\" and, if it "
                 "exists, \"linearised\" and \"den_hartog\""},
-    {.name = "zlim", .meaning = "{ from, to }: values beyond have the first and the last shade of the map"},
+    {.name = "zlim", .meaning = "{ from, to }: values beyond get the first or last shade of the map"},
     {.name = "contours", .meaning = "a list of values of z whose lines are drawn on the map"},
     {.name = "style",
      .meaning = "style of the curves; numbers that are not finite are gaps",
@@ -40,8 +40,8 @@ inline constexpr lua::Doc column_doc{
     DINAL_DATA "print(d:column(\"A\"))  --> vector{ 1.3, 4, 0.3 }"};
 inline constexpr lua::Doc filter_doc{
     "d:filter(f) -> data",
-    "The rows for which f(row) is true; row is a table such as { r = 0.5, A = 1.3 }. Instead of a function a vector "
-    "with a number for each row may say it, not 0 for those that stay.",
+    "The rows for which f(row) is true; row is a table such as { r = 0.5, A = 1.3 }. A vector with a number for "
+    "each row, not 0 to keep it, works as well.",
     DINAL_DATA "print(d:filter(function(row) return row.A > 1 end).r)  --> vector{ 0.5, 1 }"};
 inline constexpr lua::Doc markdown_doc{"d:markdown() -> string", "All rows as a table in Markdown.",
                                        DINAL_DATA
@@ -53,9 +53,8 @@ inline constexpr lua::Doc markdown_doc{"d:markdown() -> string", "All rows as a 
                                        "--> | 0.3 | 2 |"};
 inline constexpr lua::Doc plot_data_doc{
     "d:plot{ OPTIONS }",
-    "Draws columns over a column; with z a map, as of a sweep: in files colours that the colour-blind tell apart, in the "
-    "terminal shades, or digits where z has a few whole numbers. A sweep over two parameters is drawn as the map of its "
-    "first result, and as a curve for each value of the first one where y names a result.",
+    "Draws columns over a column, or a map if z is given. A sweep over two parameters is drawn as the map of its "
+    "first result; if y names a result, as a curve for each value of the first parameter.",
     DINAL_DATA "print(#tostring(d:plot{ x = \"r\", y = \"A\", show = false }) > 500)  --> true",
     {&plot_data_call}};
 inline constexpr lua::Doc save_data_doc{
@@ -81,8 +80,7 @@ inline constexpr lua::Doc pairs_doc{
     "for i, row in pairs(d)", "The rows one after the other; ipairs does the same.",
     DINAL_DATA "for i, row in pairs(d) do print(i, row.r) end\n--> 1\t0.5\n--> 2\t1.0\n--> 3\t2.0"};
 inline constexpr lua::Doc to_string_doc{
-    "tostring(d) -> string",
-    "How many rows of which columns, and the first rows as a table; columns that do not fit are left out.",
+    "tostring(d) -> string", "The number of rows, and the first rows as a table; columns that do not fit are left out.",
     DINAL_DATA
     "print(d)\n"
     "--> data: 3 rows of A, r\n"

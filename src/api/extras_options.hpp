@@ -10,7 +10,7 @@
 namespace dinal::api {
 
 inline constexpr text::Option state_options[] = {
-    {.name = "start", .meaning = "its value at t_start", .filled = text::fills<&model::OwnState::start>},
+    {.name = "start", .meaning = "value at t_start", .filled = text::fills<&model::OwnState::start>},
     {.name = "rate",
      .otherwise = text::needed,
      .meaning = "a function of t, theta, velocity, z",
@@ -26,11 +26,11 @@ inline constexpr text::Option event_options[] = {
      .meaning = "a function of t, theta, velocity, z: the event is where it passes zero",
      .wanted = "a function of t, theta, velocity, z"},
     {.name = "direction",
-     .meaning = "which way it passes zero",
+     .meaning = "direction of the crossing",
      .filled = text::fills<&model::WantedEvent::direction>,
      .choices = crossing_names},
     {.name = "stop", .meaning = "true ends the run there", .filled = text::fills<&model::WantedEvent::stop>},
-    {.name = "name", .meaning = "what it is called in run.events", .filled = text::fills<&model::WantedEvent::name>},
+    {.name = "name", .meaning = "name in run.events", .filled = text::fills<&model::WantedEvent::name>},
     {.name = "act",
      .meaning = "a function of t, theta, velocity, z that returns the new theta and velocity, and may assign to z",
      .wanted = "a function of t, theta, velocity, z"},

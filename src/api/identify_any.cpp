@@ -204,7 +204,7 @@ private:
         lua_pop(L_, 1);
         for (const char* name : {"I", "k", "C", "Rd", "Re"}) {
             if (options_.has(name))
-                options_.fail(name, fmt::format("{} belongs into system = ..., the first guess", name));
+                options_.fail(name, fmt::format("{} is part of the first guess, system = ...", name));
         }
     }
 
@@ -579,8 +579,8 @@ private:
         const double range = range_[static_cast<std::size_t>(first.quantity)];
         if (found.widening > alike && parts.noise > rounding * range) {
             parts.remark = fmt::format(
-                "what is left is alike from sample to sample, as noise in M, another law of friction or a wrong guess make "
-                "it; the errors are {:.2g} times wider because of that",
+                "the residual is correlated from sample to sample (noise in M, another law of friction or a wrong "
+                "guess); the errors are {:.2g} times wider because of that",
                 found.widening);
         }
         return parts;

@@ -36,19 +36,18 @@ inline constexpr text::Option own_identify_options[] = {
     {.name = "M",
      .unit = "torque",
      .otherwise = "none: a free decay",
-     .meaning = "what drove it, in the time of the record: a Lua function, or an excitation such as "
-                "excitation.samples",
+     .meaning =
+         "the excitation, in the time of the record: a Lua function, or an excitation such as excitation.samples",
      .object = "excitation"},
     {.name = "free",
      .otherwise = "all that are not given",
      .meaning =
-         "a list of those of I, k, C, Rd, Re and offset that are fitted; the others are 0, and Re is Rd, unless "
-         "they are given. With system it may have any number of it, as friction.speed, spring.3 or "
-         "walls.restitution, and of a table that a function of the run uses, as p.Kp; the others stay as they are. "
-         "The start is always fitted unless it is given",
+         "the values to fit, from I, k, C, Rd, Re and offset; the others are 0, and Re is Rd, unless they are given. "
+         "With system: any number of it, such as friction.speed, spring.3 or walls.restitution, or of a table that a "
+         "function of the run uses, such as p.Kp. The start is always fitted unless it is given",
      .wanted = "a list such as { \"k\", \"Rd\" }"},
     {.name = "system",
-     .meaning = "a system that may have made it, the guess from which the search begins: any but one of several bodies",
+     .meaning = "a first guess, a system of one body",
      .object = "system",
      .wanted = "a system such as system{ I = 1, k = 4, Rd = 0.3 }"},
     {.name = "measured",
@@ -69,7 +68,7 @@ inline constexpr text::Option own_identify_options[] = {
      .filled = text::fills<&IdentifyOptions::velocity0>},
     {.name = "offset",
      .unit = "rad",
-     .meaning = "what the record shows where the spring is relaxed; when it is known",
+     .meaning = "the reading where the spring is relaxed, if known",
      .filled = text::fills<&IdentifyOptions::offset>},
 };
 inline constexpr text::Option extras_of_record[] = {extras_options[0], extras_options[2], extras_options[3]};

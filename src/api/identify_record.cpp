@@ -131,9 +131,7 @@ void take_record(lua_State* L, const lua::Options& options, const IdentifyOption
 void take_given(lua_State* L, const lua::Options& options, const IdentifyOptions& asked,
                 analysis::IdentifyQuestion& question) {
     if (asked.Re && asked.Rd && *asked.Re < *asked.Rd) {
-        options.fail(
-            {fmt::format("Re = {:.6g} is less than Rd = {:.6g}: breakaway takes at least the friction of motion",
-                         *asked.Re, *asked.Rd)});
+        options.fail({fmt::format("Re = {:.6g} must be at least Rd = {:.6g}", *asked.Re, *asked.Rd)});
     }
     question.given = {asked.I, asked.k, asked.C, asked.Rd, asked.Re, asked.theta0, asked.velocity0, asked.offset};
     options.push("free");

@@ -138,9 +138,8 @@ std::vector<Range> asked_ranges(lua_State* L, const lua::Options& options) {
     for (const DataColumn& parameter : take_parameters(L, minimise_call)) {
         const lua::Vector* limits = parameter.numbers();
         if (limits == nullptr || limits->size() != 2 || !(limits->begin()[0] < limits->begin()[1])) {
-            options.fail("over", fmt::format("over.{0} must be two numbers between which {0} is looked for, such as "
-                                             "{{ 0.1, 2 }}",
-                                             parameter.name));
+            options.fail("over",
+                         fmt::format("over.{0} must be the two limits of {0}, such as {{ 0.1, 2 }}", parameter.name));
         }
         ranges.push_back({parameter.name, limits->begin()[0], limits->begin()[1]});
     }
@@ -175,7 +174,7 @@ int minimise(lua_State* L) {
         const double value = lua_tonumber(L, -1);
         if (lua_type(L, -1) != LUA_TNUMBER || std::isnan(value)) {
             options.fail("run",
-                         fmt::format("run returned {} at {}; it must return a number, math.huge where there is none",
+                         fmt::format("run returned {} at {}; it must return a number, math.huge if there is none",
                                      lua::describe(L, -1), place));
         }
         lua_pop(L, 1);

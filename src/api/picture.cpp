@@ -206,9 +206,12 @@ void apply_options(lua_State* L, const lua::Options& options, std::vector<plots:
     if (figures.size() > 1) {
         for (const char* of_one : {"ylim", "yticks", "ylog", "equal"}) {
             if (options.has(of_one)) {
-                options.fail(of_one, fmt::format("{} is for one unit, and these columns have {}: give ylabel, too, to "
-                                                 "have them on one axis, or draw them one by one",
-                                                 of_one, figures.size()));
+                options.fail(
+                    of_one,
+                    fmt::format(
+                        "{} is for one unit, and these columns have {}: give ylabel to draw them on one axis, or "
+                        "draw them one by one",
+                        of_one, figures.size()));
             }
         }
     }

@@ -12,9 +12,9 @@ int phase_plot_run(lua_State* L);
 
 inline constexpr lua::Doc plot_doc{
     "plot(x, y), plot{ { x, y, OPTIONS }, ..., OPTIONS }",
-    "Draws y over x, or several curves, each a table with two vectors (or tables) of numbers; a number that is not "
-    "finite is a gap. A run is a curve as well, theta over t: plot{ run, { other, label = \"more friction\" } }. The picture is "
-    "printed, or goes where file or show say; plot{ p, q } draws pictures that were returned side by side.",
+    "Draws y over x, or several curves, each a table with two vectors (or tables) of numbers; numbers that are "
+    "not finite are gaps. A run is drawn as theta over t: plot{ run, { other, label = \"more friction\" } }. "
+    "plot{ p, q } draws pictures side by side.",
     "x = vector.linspace(-2, 2, 9)\n"
     "p = plot{ { x, x^2, style = \"points\" }, width = 40, height = 10, ascii = true, show = false }\n"
     "print(p)\n"
@@ -50,9 +50,8 @@ inline constexpr lua::Doc plot_run_doc{
 
 inline constexpr lua::Doc phase_plot_run_doc{
     "run:phase_plot{ OPTIONS }",
-    "Draws the phase plane, velocity/omega0 over theta, one to one: circles about the origin are lines of equal "
-    "energy, and a mass that comes to rest within the dead zone stays there. With another spring there are no circles; "
-    "without k it is the velocity itself.",
+    "Draws the phase plane, velocity/omega0 over theta, with equal scales: without a second spring, circles "
+    "about the origin are lines of equal energy. Without k the velocity itself is drawn.",
     "run = system{ I = 1, k = 39.5, Rd = 3.95 }:simulate{ theta0 = 1, t_end = 3, dt = 0.01 }\n"
     "print(run:phase_plot{ width = 60, height = 14, ascii = true, show = false })\n"
     "--> theta'/omega0, rad   o start   @ end   = dead zone\n"

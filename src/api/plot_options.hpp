@@ -19,9 +19,9 @@ struct FigureOptions {
     std::optional<bool> xlog = {}, ylog = {}, equal = {}, axes = {};
 };
 
-inline constexpr text::Range tick_distance{"be positive: it is the distance from tick to tick",
+inline constexpr text::Range tick_distance{"be positive: it is the distance between ticks",
                                            [](double x) { return x > 0; }};
-inline constexpr const char* ticks_meaning = "the distance from tick to tick, or a list of ticks";
+inline constexpr const char* ticks_meaning = "distance between ticks, or a list of ticks";
 
 inline constexpr text::Option figure_options[] = {
     {.name = "title", .meaning = "title", .filled = text::fills<&FigureOptions::title>},

@@ -20,13 +20,13 @@ inline constexpr text::Option response_options[] = {
     {.name = "over",
      .otherwise = text::needed,
      .meaning =
-         "what is varied, and its values in their order: { frequency = values }, also omega, period or amplitude of "
-         "a harmonic M; with `at`, { NAME = values } for any name",
+         "the varied parameter and its values: { frequency = values }, also omega, period or amplitude of a harmonic "
+         "M; with `at`, { NAME = values } for any name",
      .wanted = "a name and its values, such as { frequency = vector.linspace(0.05, 3, 200) }"},
     {.name = "at",
      .meaning =
          "a function of a point, a table such as { speed = 0.5 }, that returns the options of sys:steady there, and "
-         "system = ... if the system changes, too; without it M is harmonic",
+         "system = ... if the system changes; without `at` M is harmonic",
      .wanted = "a function of a point that returns options of sys:steady"},
     {.name = "amplitude",
      .unit = "torque",
@@ -49,15 +49,15 @@ inline constexpr text::Option response_options[] = {
      .filled = text::fills<&ResponseOptions::period>},
     {.name = "between",
      .meaning =
-         "true also keeps the rows between the values that are computed round folds and along unstable sides, and "
-         "adds one at a resonance where the motion grows",
+         "true keeps also the rows between the values, computed around folds and along unstable branches, and adds "
+         "one at a resonance where the motion grows",
      .filled = text::fills<&ResponseOptions::between>},
     {.name = "doubled",
      .meaning = "true also follows the motions of twice the period that begin at period doublings",
      .filled = text::fills<&ResponseOptions::doubled>},
     {.name = "theta0",
      .unit = "rad",
-     .meaning = "where the first search starts",
+     .meaning = "start of the first search",
      .filled = text::fills<&ResponseOptions::theta0>},
     {.name = "velocity0",
      .unit = "rad per time unit",

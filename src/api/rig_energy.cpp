@@ -120,7 +120,7 @@ int rig_energy_text(lua_State* L) {
          sum_of(works.dry));
     for (const auto& [name, value] : {std::pair("belt", sum_of(works.belt)), std::pair("base", sum_of(works.base)),
                                       std::pair("acts", works.acts)}) {
-        if (value != 0) text += fmt::format("  {} {:.6g} was put in besides\n", name, shown(value));
+        if (value != 0) text += fmt::format("  {} {:.6g} added by belt, base and acts\n", name, shown(value));
     }
     if (const double lost = sum_of(works.impacts); lost != 0) {
         text += fmt::format("  impacts {:.6g} were lost\n", shown(lost));
@@ -148,8 +148,8 @@ int rig_energy_text(lua_State* L) {
 constexpr lua::Member rig_energy_members[] = {
     {lua::a_field<total_of_rig>,
      {"energy.total -> table",
-      "The balance of the whole run, torque times rad, by the names that it has for one body: input + belt + base + acts = "
-      "kinetic + spring + viscous + dry + impacts + error; flow, and closure = |error|/flow.",
+      "The balance of the whole run, torque times rad: input + belt + base + acts = kinetic + spring + viscous + "
+      "dry + impacts + error; flow, and closure = |error|/flow.",
       DINAL_RIG_ENERGY "print(energy.total.kinetic, energy.total.closure < 1e-12)  --> -3.375\ttrue"}},
     {lua::a_field<times_of_rig>,
      {"energy.t -> vector", "The times of the rows.", DINAL_RIG_ENERGY "print(energy.t[2])  --> 1.0"}},
@@ -213,9 +213,10 @@ const engine::Works& works_of(lua_State* L, const BodiesRunHandle& run) {
     }
     constexpr double same = 1e-6;
     if (!(off <= same * size)) {
-        lua::raise(L,
-                   "run:energy(): the run came out otherwise when it was repeated for its energy: a controller keeps a "
-                   "memory from one run to the next");
+        lua::raise(
+            L,
+            "run:energy(): repeating the run for its energy gave another motion: a controller keeps a memory from "
+            "one run to the next");
     }
     run->legs = again.history;
     run->works = std::make_shared<const engine::Works>(std::move(again.works));

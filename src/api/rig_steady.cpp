@@ -37,8 +37,8 @@ analysis::Drive repeats_or_fail(lua_State* L, const lua::Options& options, const
     std::optional<analysis::Drive> drive;
     asking_bodies(L, question, [&](const motion::Monitor&) { drive = analysis::drive_of(question); });
     if (!drive && !period) {
-        options.fail({.sentence = "the period of what drives the bodies is not known; give it with period = ...",
-                      .option = "period"});
+        options.fail(
+            {.sentence = "the period of the excitation is not known; give it with period = ...", .option = "period"});
     }
     if (period) drive = analysis::Drive{drive ? drive->start : 0, *period};
     if (drive->period > 0) {

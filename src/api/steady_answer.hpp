@@ -29,39 +29,40 @@ inline constexpr text::Option period_options[] = {
     {.name = "period",
      .unit = "time units",
      .range = text::positive,
-     .meaning = "after which M, belt and base repeat, if one of them is a Lua function of t. Not needed if nothing "
-                "depends on t: the period of the limit cycle is found",
+     .meaning =
+         "the period of M, belt and base, needed if one of them is a Lua function of t; the period of a limit cycle "
+         "is found",
      .filled = text::fills<&SteadyOptions::period>},
     {.name = "frequency",
      .unit = "cycles per time unit",
      .range = text::positive,
-     .meaning = "1/period, instead of it",
+     .meaning = "1/period, instead of period",
      .filled = text::fills<&SteadyOptions::frequency>},
     {.name = "omega",
      .unit = "rad per time unit",
      .range = text::positive,
-     .meaning = "2 pi/period, instead of it",
+     .meaning = "2 pi/period, instead of period",
      .filled = text::fills<&SteadyOptions::omega>},
     {.name = "periods",
      .range = whole_periods,
-     .meaning = "of M in one of the motion, for a subharmonic one; without it as many as are found, up to 32",
+     .meaning = "periods of M in one of the motion, for a subharmonic one; by default as many as are found, up to 32",
      .filled = text::fills<&SteadyOptions::periods>},
 };
 inline constexpr text::Option start_options[] = {
     {.name = "theta0",
      .unit = "rad",
-     .meaning = "where the search starts, which says what is found where there are several motions",
+     .meaning = "start of the search, which selects one of several motions",
      .filled = text::fills<&SteadyOptions::theta0>},
     {.name = "velocity0",
      .unit = "rad per time unit",
-     .meaning = "how fast it starts",
+     .meaning = "initial velocity",
      .filled = text::fills<&SteadyOptions::velocity0>},
 };
 inline constexpr text::Option drive_options[] = {
     {.name = "M",
      .unit = "torque",
      .otherwise = "0",
-     .meaning = "the excitation: a number, a Lua function of t or of t, theta, velocity, or an excitation",
+     .meaning = "the excitation: a number, a function of t or of t, theta, velocity, or an excitation",
      .object = "excitation"},
 };
 inline constexpr auto steady_options = text::joined(drive_options, period_options, start_options, extras_options);
@@ -77,12 +78,13 @@ inline constexpr text::Call rig_steady_call{"rig:steady", "rig:steady{ belt = { 
 inline constexpr text::Option rig_response_options[] = {
     {.name = "over",
      .otherwise = text::needed,
-     .meaning = "what is varied, and its values in their order: { NAME = values }",
+     .meaning = "the varied parameter and its values: { NAME = values }",
      .wanted = "a name and its values, such as { speed = vector.linspace(0.05, 3, 200) }"},
     {.name = "at",
      .otherwise = text::needed,
-     .meaning = "a function of a point, a table such as { speed = 0.5 }, that returns the options of rig:steady there, "
-                "and system = ... if the system changes, too",
+     .meaning =
+         "a function of a point, a table such as { speed = 0.5 }, that returns the options of rig:steady there, and "
+         "system = ... if the system changes",
      .wanted = "a function of a point that returns options of rig:steady"},
 };
 inline constexpr text::Call rig_response_call{
@@ -167,9 +169,8 @@ int body_of_steady(lua_State* L);
 
 inline constexpr lua::Doc steady_doc{
     "sys:steady{ OPTIONS } -> steady",
-    "The motion that remains when transients have died out. Under a periodic M, belt or base it is periodic: a fixed "
-    "point of the map over one period. If nothing depends on t, it is a limit cycle, whose period is found, or rest. "
-    "s.status is \"steady\", \"adheres\" (the mass never moves), \"rest\" (a free motion dies out), \"grows\" or \"none\".",
+    "The motion that remains when transients have died out: periodic under a periodic M, belt or base; a limit "
+    "cycle, whose period is found, or rest if nothing depends on t.",
     "sys = nondimensional{ friction_ratio = 0.5 }\n"
     "s = sys:steady{ M = excitation.harmonic{ frequency = 1.35 } }\n"
     "print(string.format(\"%.9f\", s.amplitude), s.stops)  --> 0.860792180\t0\n"
@@ -178,7 +179,7 @@ inline constexpr lua::Doc steady_doc{
     {&steady_call}};
 inline constexpr lua::Doc steady_run_doc{
     "run:steady{ OPTIONS } -> steady",
-    "The steady motion that this run leads to: sys:steady with the options of the run, from the end of the run.",
+    "The steady motion that this run leads to: sys:steady with the options and from the end of the run.",
     "sys = nondimensional{ friction_ratio = 0.836 }\n"
     "run = sys:simulate{ M = excitation.harmonic{ frequency = 1 }, theta0 = 1, t_end = 5, dt = 1 }\n"
     "s = run:steady()\n"

@@ -145,11 +145,11 @@ analysis::Drive drive_or_fail(lua_State* L, const lua::Options& options, const a
     const bool scripts = excitation.has_script() || question.extras.belt.has_script() ||
                          question.extras.base.has_script() || !question.extras.states.empty();
     if (!drive && !period) {
-        options.fail({.sentence = scripts
-                                      ? "the period of M is not known; give it with period = ..."
-                                      : "the terms of M have no period in common, so there is no periodic motion; run "
-                                        "it and see run:spectrum",
-                      .option = "period"});
+        options.fail(
+            {.sentence = scripts ? "the period of M is not known; give it with period = ..."
+                                 : "the terms of M have no common period, so no motion is periodic; make a run and use "
+                                   "run:spectrum",
+             .option = "period"});
     }
     if (period) drive = analysis::Drive{drive ? drive->start : 0, *period};
     if (period || (excitation.has_script() && drive->period > 0)) {
@@ -207,7 +207,7 @@ int steady_of_run(lua_State* L) {
     options.fill(asked);
     if (run->whole) options.fail({"ask the system for its steady motion: rig:steady{ ... } with the M of this run"});
     asked.period = period_or_fail(options, asked.period, asked.frequency, asked.omega);
-    if (!run->origin) options.fail({"a run that was read from a file does not know its system and its M"});
+    if (!run->origin) options.fail({"a run read from a file has no system and no M"});
     const source::Task& task = *run->origin;
     analysis::SteadyQuestion question{.system = task.system,
                                       .excitation = task.excitation,

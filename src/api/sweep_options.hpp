@@ -34,25 +34,25 @@ inline constexpr text::Option run_options[] = {
          "a function of a point, a table such as { r = 0.5, g = 1 }, that returns a table of named numbers and strings",
      .wanted = "a function of a point that returns named numbers"},
     {.name = "workers",
-     .otherwise = "one for each core",
+     .otherwise = "one per core",
      .range = workers_range,
-     .meaning = "how many threads share the points; the result is the same for any number",
+     .meaning = "number of threads; the result does not depend on it",
      .filled = text::fills<&SweepOptions::workers>},
     {.name = "seed",
      .range = seed_range,
-     .meaning = "of math.random: each point has random numbers of its own, the same whenever the sweep is run",
+     .meaning = "seed of math.random: each point has its own random numbers, the same in every run of the sweep",
      .filled = text::fills<&SweepOptions::seed>},
     {.name = "file",
      .meaning =
-         "a .csv file for the result; what is done meanwhile is kept in files beside it, so that the same call goes "
-         "on after whatever has ended the program, and several processes share the points (docs/many-machines.md)",
+         "a .csv file for the result; finished points are kept in files beside it, so the same call continues after "
+         "a crash, and several processes can share the points (docs/many-machines.md)",
      .filled = text::fills<&SweepOptions::file>},
     {.name = "max_time",
      .unit = "s",
      .range = text::positive,
      .meaning =
-         "how long a point may take; a longer one is given up with a message, and the others go on; a single call "
-         "of Lua's own libraries (a search for a pattern, os.execute) cannot be broken off, and ends first",
+         "time limit of a point; a longer one fails with a message, and the others go on; a single call of Lua's own "
+         "libraries (a pattern search, os.execute) ends first",
      .filled = text::fills<&SweepOptions::max_time>},
 };
 inline constexpr auto sweep_options = text::joined(over_option, run_options);
@@ -78,9 +78,9 @@ inline constexpr text::Call minimise_call{
 inline constexpr lua::Doc minimise_doc{
     "minimise{ OPTIONS } -> table",
     "Returns the point at which a function is least, its value, and the number of calls: best.NAME, best.value, "
-    "best.calls. A coarse grid of the range (17 values of one parameter, 9 x 9 of two) finds the valley, then Brent's "
-    "method or that of Nelder and Mead follows it, to about 1e-8 of the range. A narrower valley beside it may be missed. "
-    "For the greatest value return the negative one.",
+    "best.calls. A coarse grid (17 values of one parameter, 9 x 9 of two) finds the valley, then Brent's or "
+    "Nelder and Mead's method refines it to about 1e-8 of the range. A narrower valley may be missed. To "
+    "maximise, return the negative.",
     "sys = nondimensional{ zeta = 0.1 }\n"
     "best = minimise{ over = { r = { 0.2, 2 } }, run = function(p)\n"
     "    return -sys:steady{ M = excitation.harmonic{ frequency = p.r } }.amplitude\n"
@@ -90,14 +90,13 @@ inline constexpr lua::Doc minimise_doc{
 
 inline constexpr lua::Doc sweep_doc{
     "sweep{ OPTIONS } -> data",
-    "Asks a function at every combination of the values of some parameters, on all cores at once. Values are vectors, "
-    "or tables of numbers or of strings. The result has a row for each point, in the order of the names of the "
-    "parameters, the last one changing fastest (over = { { \"r\", values }, { \"g\", values } } gives another "
-    "order), and a column for each parameter and for each name that the function returns; true and false count as 1 "
-    "and 0, strings are words, and a number that a point does not return is nan. Where the function fails the column `error` has the message.\n"
-    "Each thread has a copy of the function with all that it uses: local variables, globals, tables, vectors, systems, "
-    "excitations. So it cannot change anything outside, and should not remember other points. Runs, coroutines and "
-    "open files cannot be copied. Ctrl-C keeps what is done in dinal.partial, and the same call goes on from there.",
+    "Calls a function at every combination of parameter values (numbers or strings), on all cores. The result "
+    "has a row for each point, the parameters in the order of their names, the last one changing fastest, and a "
+    "column for each parameter and each name that the function returns; true and false count as 1 and 0, and "
+    "missing numbers are nan. If the function fails, the column `error` has the message.\nEach thread has a copy "
+    "of the function with all that it uses: local variables, globals, tables, vectors, systems, excitations. So "
+    "it cannot change anything outside. Runs, coroutines and open files cannot be copied. Ctrl-C keeps the "
+    "finished points in dinal.partial, and the same call continues.",
     "map = sweep{ over = { r = { 0.4, 1.5 }, g = vector.linspace(0.2, 0.6, 3) }, run = function(p)\n"
     "    s = nondimensional{ friction_ratio = p.g }:steady{ M = excitation.harmonic{ frequency = p.r } }\n"
     "    return { A = s.amplitude, stops = s.stops }\n"

@@ -58,8 +58,7 @@ DataColumn parameter_on_top(lua_State* L, const text::Call& call, const std::str
     }
     std::vector<double> numbers = lua::numbers_at(L, -1, call.name, name);
     if (numbers.empty()) {
-        fail_sweep(L, call,
-                   {.sentence = fmt::format("{} has no values: there is no point to ask", name), .option = name});
+        fail_sweep(L, call, {.sentence = fmt::format("{} has no values", name), .option = name});
     }
     return column_of(name, std::move(numbers));
 }

@@ -358,7 +358,7 @@ void SweepWorkers::run(lua_State* L) {
     std::vector<std::thread> threads;
     threads.reserve(states_.size());
     start(threads);
-    if (threads.empty()) lua::raise(L, std::string(work_.call) + ": the system lets no thread be started");
+    if (threads.empty()) lua::raise(L, std::string(work_.call) + ": the operating system refuses to start a thread");
     std::unique_lock lock(ending_);
     while (!ended_.wait_for(lock, look_again, [this] { return running_ == 0; })) {
         progress.advance(static_cast<double>(work_.finished.load(std::memory_order_relaxed)));
@@ -497,9 +497,10 @@ private:
         lua::refuse_in_worker(L_, "a sweep with a file");
         if (const lua::Foreign* other = lua::foreign(L_, task_.function)) {
             lua::raise(L_,
-                       {.sentence = fmt::format("{}: file needs a Lua function: whether one of {} has changed since "
-                                                "the file was begun cannot be known; save the result instead",
-                                                task_.call, other->language),
+                       {.sentence = fmt::format(
+                            "{}: file needs a Lua function, because a change in one of {} cannot be detected; save the "
+                            "result instead",
+                            task_.call, other->language),
                         .call = task_.call,
                         .option = "file"});
         }
@@ -545,8 +546,8 @@ private:
 
     [[noreturn]] void fail() {
         set_partial_sweep(L_, task_, *results_);
-        trouble_->sentence += fmt::format("; what is done is kept in '{}' and dinal.partial, and the same call goes on",
-                                          files_->folder());
+        trouble_->sentence += fmt::format(
+            "; finished points are kept in '{}' and dinal.partial, and the same call continues", files_->folder());
         lua::raise(L_, text::in_call(task_.call, *trouble_));
     }
 
@@ -573,11 +574,10 @@ private:
     [[noreturn]] void leave() const {
         const std::string text =
             files_->is_finished()
-                ? fmt::format("dinal: '{}' is there; process 0 of {} goes on with the script\n", task_.file,
-                              share_.size)
+                ? fmt::format("dinal: '{}' is there; process 0 of {} continues the script\n", task_.file, share_.size)
                 : fmt::format(
-                      "dinal: share {} of {} is done, {} of all {} points; who does the last goes on with the "
-                      "script\n",
+                      "dinal: share {} of {} is done, {} of all {} points; the process that does the last share "
+                      "continues the script\n",
                       share_.rank, share_.size, results_->done(), results_->size());
         static_cast<void>(std::fputs(text.c_str(), stderr));
         std::exit(0);  // NOLINT(concurrency-mt-unsafe): the workers have ended

@@ -35,7 +35,7 @@ std::optional<model::Friction> asked_law(lua_State* L, const lua::Options& optio
         }
     }
     if (!may_have_state && law->as<model::laws::Bristle>() != nullptr) {
-        options.fail("friction", "bristles have a state of their own, which only system{ ... } takes");
+        options.fail("friction", "a law of bristles has a state of its own, which only system{ ... } supports");
     }
     return *law;
 }

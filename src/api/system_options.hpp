@@ -42,8 +42,8 @@ inline constexpr text::Option number_changes[] = {
     {"C", "torque time per rad", text::its_own, text::not_negative, "viscous damping",
      text::fills<&SystemChanges::damping>},
     {"Rd", "torque", text::its_own, text::not_negative,
-     "dry friction while moving; Re changes with it if the two were equal", text::fills<&SystemChanges::kinetic>},
-    {"Re", "torque", text::its_own, text::not_negative, "what sticking can hold, at least Rd",
+     "dry friction while sliding; Re changes with it if the two were equal", text::fills<&SystemChanges::kinetic>},
+    {"Re", "torque", text::its_own, text::not_negative, "breakaway torque, at least Rd",
      text::fills<&SystemChanges::breakaway>},
 };
 inline constexpr text::Option spring_change[] = {

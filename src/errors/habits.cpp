@@ -23,7 +23,7 @@ constexpr std::array<std::pair<std::string_view, std::string_view>, 30> foreign_
     {"None", "; did you mean 'nil'?"},
     {"null", "; did you mean 'nil'?"},
     {"NULL", "; did you mean 'nil'?"},
-    {"t", "; what depends on t is a function: function(t) return 2*t end"},
+    {"t", "; a value that depends on t is a function: function(t) return 2*t end"},
     {"range", "; a loop is: for i = 1, 10 do ... end"},
     {"len", "; the length of x is #x"},
     {"length", "; the length of x is #x"},
@@ -131,7 +131,7 @@ std::string file_without_quotes(std::string_view name, std::string_view statemen
 std::string called_value(lua_State* L, const lua::LuaMessage& message) {
     if (message.kind == "global" && lua::is_overwritten(L, message.name) && lua::is_of_dinal(L, message.name)) {
         const std::string name(message.name);
-        return "; " + name + " was a name of dinal, and has got another value: " + name + " = dinal." + name +
+        return "; " + name + " is a name of dinal, but now has another value: " + name + " = dinal." + name +
                " restores it";
     }
     if (message.kind == "for iterator") {

@@ -92,9 +92,8 @@ int help(lua_State* L) {
 constexpr lua::Member functions[] = {
     {lua::a_function<help>,
      {"help(x) or help \"words\"",
-      "Prints what x is and how to use it: a function, method, module, object, or a name in "
-      "quotes. Other words are searched for in all names and descriptions. help() alone starts a "
-      "tour.",
+      "Explains a function, method, module or object, or a name in quotes. Other words are searched for in all "
+      "names and descriptions. help() starts a tour.",
       "help(excitation.step)\nhelp \"dead zone\""}},
 };
 

@@ -28,17 +28,16 @@ constexpr void (*register_functions[])(lua_State*) = {
 constexpr lua::Member library_members[] = {
     {{nullptr, lua::Kind::field},
      {"dinal.partial -> run, data or nil",
-      "What was done of the last run that M broke off with an error, or Ctrl-C: a run like any other. Of a sweep that "
-      "Ctrl-C broke off, the points that are done.",
+      "The finished part of the last run that Ctrl-C or an error in M stopped: a run like any other. Of a sweep "
+      "stopped by Ctrl-C, the finished points.",
       "pcall(function()\n"
       "    nondimensional{}:simulate{ M = function(t) assert(t < 0.5) return 1 end, t_end = 1, dt = 0.1 }\n"
       "end)\n"
       "print(#dinal.partial)  --> 5"}},
     {{nullptr, lua::Kind::field},
      {"dinal.on_interrupt",
-      "A function that you give: when Ctrl-C ends a script it is called with dinal.partial, to save or to print it; nil "
-      "when nothing was under way. A pcall cannot do that, because no pcall survives Ctrl-C. At the prompt and in "
-      "notebooks it is not called.",
+      "A function of yours that is called with dinal.partial (or nil) when Ctrl-C ends a script, to save or print "
+      "it. pcall does not catch Ctrl-C. Not called at the prompt and in notebooks.",
       "dinal.on_interrupt = function(partial) if partial then partial:save(\"partial.csv\") end end"}},
     {{nullptr, lua::Kind::field},
      {"dinal.version -> string", "The version of the program.",
@@ -48,8 +47,8 @@ constexpr lua::Member library_members[] = {
 const lua::Class library_class = {
     "dinal",
     {"dinal.NAME, or NAME alone",
-     "The table that holds all of this. Its members are also globals, which you may overwrite; "
-     "the following ones are not.",
+     "The table of all names of dinal. Its members are also globals, which you may overwrite, except the "
+     "following ones.",
      "print(dinal.system == system)  --> true"},
     library_members};
 

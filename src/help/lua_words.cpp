@@ -20,7 +20,7 @@ constexpr std::array<Word, 65> vocabulary = {{
      "Repeats a block for numbers, or for the elements of a list. A third number is the step: for i "
      "= 10, 1, -1.",
      "for i = 1, 3 do print(i*i) end  --> 1, 4, 9"},
-    {"while", "while condition do ... end", "Repeats a block as long as the condition holds.",
+    {"while", "while condition do ... end", "Repeats a block while the condition holds.",
      "x = 1 while x < 100 do x = 2*x end print(x)  --> 128"},
     {"repeat until", "repeat ... until condition", "Repeats a block until the condition holds; runs it at least once.",
      "x = 1 repeat x = 2*x until x > 100 print(x)  --> 128"},
@@ -45,12 +45,11 @@ constexpr std::array<Word, 65> vocabulary = {{
      "Logic. \"x or 5\" is x, or 5 if x is nil or false; \"a and b or c\" is like Python's b if a else "
      "c.",
      "print(nil or 5, 3 > 2 and \"yes\" or \"no\")  --> 5\tyes"},
-    {"nil", "nil", "The value of what does not exist: an undefined variable, a missing field. Python's None.",
+    {"nil", "nil", "The value of an undefined variable or a missing field. Python's None.",
      "print(undefined_name, ({}).field)  --> nil\tnil"},
     {"true false", "true, false", "The truth values. Comparisons return them.",
      "print(1 < 2, not true)  --> true\tfalse"},
-    {"in", "for i, x in ipairs(list) do ... end",
-     "Stands in loops over a list (ipairs), a table (pairs) or data:rows().",
+    {"in", "for i, x in ipairs(list) do ... end", "Used in loops over a list (ipairs), a table (pairs) or data:rows().",
      "for i, x in ipairs{ \"a\", \"b\" } do print(i, x) end  --> 1\ta, 2\tb"},
     {"table tables list lists dict dictionary array", "list = { 10, 20 }; t = { I = 1, k = 4 }",
      "The one container of Lua: a list, counted from 1, or named fields, or both. #list is the "
@@ -89,7 +88,7 @@ constexpr std::array<Word, 65> vocabulary = {{
      "print(require \"math\" == math)  --> true"},
     {"load", "load(text) -> function", "Makes a function of the text of a program.",
      "print(load \"return 6*7\" ())  --> 42"},
-    {"dofile", "dofile \"file.lua\"", "Runs a script; what it leaves in global variables stays.",
+    {"dofile", "dofile \"file.lua\"", "Runs a script; its global variables stay.",
      "name = os.tmpname() io.open(name, \"w\"):write(\"x = 5\"):close() dofile(name) print(x)  --> 5"},
     {"select", "select(n, ...), select(\"#\", ...)", "The values from the n-th on, or how many there are.",
      "print(select(2, \"a\", \"b\", \"c\"))  --> b\tc"},

@@ -19,14 +19,11 @@ struct Topic {
 // No line is longer than 77 columns. A test looks for every name that stands here.
 constexpr std::array<Topic, 44> topics = {{
     {"degrees degree deg radians radian angle angles",
-     "Angles are in radians: theta, theta0, velocity per time unit. math.rad(90)\n"
-     "makes radians of 90 degrees, math.deg(x) degrees of radians, and of a whole\n"
-     "column 180/math.pi*run.theta. Lags are in radians, too; explain() tells them\n"
-     "in degrees.\n"},
+     "Angles are in radians: theta, theta0, velocity per time unit. math.rad(90)\nmakes radians of 90 degrees, "
+     "math.deg(x) degrees of radians, and of a whole\ncolumn 180/math.pi*run.theta. Lags are in radians as well.\n"},
     {"tutorial tour start lesson course",
-     "help() is a tour of two minutes. docs/tutorial.md takes half an hour, the\n"
-     "sheets in docs/lab are a course of six afternoons, and the programs in\n"
-     "examples show one idea each.\n"},
+     "help() is a tour of two minutes. docs/tutorial.md takes half an hour, the\nsheets in docs/lab are a course "
+     "of seven afternoons, and the programs in\nexamples show one idea each.\n"},
     {"dinal1989 fortran 1989",
      "dinal is named after DINAL, the Fortran program of a report of 1989 about a\n"
      "governor with friction. integrator.dinal1989 is its listing, step by step;\n"
@@ -42,12 +39,11 @@ constexpr std::array<Topic, 44> topics = {{
      "examples/270-governor.lua, or sheet 6 of the course in docs/lab. The rotor is\n"
      "one of the states of a run: help(sys.simulate) has the option states.\n"},
     {"noise noisy random",
-     "vector.normal and vector.random make numbers with a seed, which a record can\n"
-     "be blurred with; identify finds a system in spite of it, and fit.noise is how\n"
-     "much there was. A noisy M is a table: excitation.samples.\n"},
+     "vector.normal and vector.random make random numbers with a seed, to add noise to\na record; identify finds "
+     "a system from a noisy record, and fit.noise is the\nnoise it found. A noisy M is a table: "
+     "excitation.samples.\n"},
     {"fit fitting regression estimate calibrate",
-     "identify finds the system that made a record, with the errors of what it\n"
-     "finds: identify{ data = load \"decay.csv\" }.\n"},
+     "identify finds the system that made a record, with standard errors: identify{ data = load \"decay.csv\" }.\n"},
     {"matlab octave python numpy scipy simulink modelica",
      "docs/guide.md has a table for those who come from MATLAB or SciPy: indices\n"
      "begin at 1, options stand in braces, a power is x^2, and a vector v has its\n"
@@ -110,8 +106,8 @@ constexpr std::array<Topic, 44> topics = {{
      "friction.stribeck and friction.law give other laws.\n",
      "stick sticking stuck friction dry breakaway coefficient law"},
     {"accuracy accurate precise precision tolerance exactly",
-     "The default integrator is right to rounding; integrator.spectral{ tolerance = 1e-9 }\n"
-     "changes it. dt only chooses the rows. integrator.rk4{ h = .01 } has a step size.\n",
+     "The default integrator is accurate to rounding; integrator.spectral{ tolerance = 1e-9 }\nchanges it. dt "
+     "only sets the rows. integrator.rk4{ h = .01 } has a step size.\n",
      "step size error steps integrator"},
     {"study studies grid parallel parametric",
      "sweep{ over = { Re = { .4, .5 } }, run = function(p) return { x = p.Re } end } runs all\n"
@@ -165,7 +161,7 @@ constexpr std::array<Topic, 44> topics = {{
      "run:energy() returns where the energy went: its total, and each half cycle.\n", "energy loss lost power"},
     {"story describe", "run:explain() tells a run in words: turns, sticking, what stopped it.\n",
      "explain words happened happens why run"},
-    {"seed reproducible", "vector.random(n, { seed = 1 }) and sweep{ ..., seed = 1 } repeat the same numbers.\n",
+    {"seed reproducible", "vector.random{ n = 100, seed = 1 } and sweep{ ..., seed = 1 } repeat the same numbers.\n",
      "random same numbers"},
     {"history undo commands",
      ":history lists what was typed, :edit changes the last input in an editor, :save lab.lua\n"
@@ -177,8 +173,8 @@ constexpr std::array<Topic, 44> topics = {{
      "which list"},
     {"quit exit leave", "Ctrl-D or :quit leaves dinal; os.exit() ends a script.\n", "close program"},
     {"shell ls pwd terminal",
-     "No shell is in here: Ctrl-Z goes back to yours, and fg comes back. Files are\n"
-     "read by load and excitation.samples.\n"},
+     "dinal has no shell commands: Ctrl-Z suspends it, and fg brings it back. load and\nexcitation.samples read "
+     "files.\n"},
 }};
 
 /// Words of other languages, and ours for the same.

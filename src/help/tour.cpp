@@ -11,7 +11,7 @@ namespace {
 // No line is longer than 77 columns, no page than 20 lines: they are for a terminal of 80 by 24. A test types them all.
 constexpr std::array<std::string_view, 6> pages = {
     R"(A mass on a spring, with viscous damping C and dry friction: Rd is the
-torque while it slides, Re what sticking can hold.
+torque while it slides, Re breakaway torque.
 
     > sys = system{ I = 1, k = 4*math.pi^2, C = 1.5, Rd = 16.5, Re = 18 }
     > sys
@@ -50,10 +50,10 @@ Mind the colon. A wrong name is answered by the right one; try it:
     > run:plot()
     > run:explain()
 
-turn: it goes on the other way; stick: it stays; slip: it breaks away;
-rest: it stays, and nothing can move it any more.
+turn: the motion reverses; stick: the mass stops and stays; slip: it breaks away;
+rest: it stops, and nothing can move it any more.
 )",
-    R"(Change one number and look again. A ; at the end keeps a value quiet.
+    R"(Change one number and look again. A ; at the end hides the value.
 
     > for _, Re in ipairs{ 17, 20, 25, 29 } do
     >   local s = system{ I = 1, k = sys.k, C = 1.5, Rd = 16.5, Re = Re }

@@ -131,9 +131,10 @@ CallState::CallState(lua_State* L)
     constexpr int deepest = 50;
     if (depth_ > deepest) {
         raise(L,
-              fmt::format("a function of M, friction or a spring asks a run or another M, whose function asks the next "
-                          "one, and so on: {} deep is too much",
-                          deepest));
+              fmt::format(
+                  "functions of M, friction or a spring evaluate runs or other functions of this kind {} levels deep, "
+                  "which is too much",
+                  deepest));
     }
     luaL_checkstack(L, LUA_MINSTACK, "for the call of a user function");  // once, not at each value
     current = this;

@@ -18,10 +18,10 @@ std::string sentence(const Contradiction& found) {
 
 std::string sentence_with_cure(const Contradiction& found) {
     constexpr std::string_view memory =
-        "; put a memory into states, excitation.sampled, excitation.relay or excitation.delayed, random numbers into "
-        "a table";
-    constexpr std::string_view state = "; put a memory into a state of its own, random numbers into a table";
-    constexpr std::string_view other = "; it must not remember anything, and random numbers belong into a table";
+        "; put memory into states, excitation.sampled, excitation.relay or excitation.delayed, and random numbers "
+        "into a table";
+    constexpr std::string_view state = "; put memory into a state of its own, and random numbers into a table";
+    constexpr std::string_view other = "; it must not keep a memory, and random numbers must come from a table";
     return sentence(found) + std::string(found.who == "M" ? memory : found.who.starts_with("states.") ? state : other);
 }
 

@@ -11,11 +11,11 @@ namespace dinal::model {
     X(stuck_at_end, "stuck at the end")                                                                   \
     X(stopped, "stopped at an event")                                                                     \
     X(interrupted, "interrupted")                                                                         \
-    X(state_not_finite, "the state stopped being finite: unstable system, feedback or step")              \
-    X(excitation_not_finite, "M failed or stopped being finite")                                          \
+    X(state_not_finite, "the state became infinite: unstable system, feedback or step")                   \
+    X(excitation_not_finite, "M failed or became infinite")                                               \
     X(not_a_function, "M depends on more than its arguments: evaluated again, it returned another value") \
     X(unresolved, "M never becomes smooth: try a larger tolerance, or rk4")                               \
-    X(chattering, "switched without end in no time: a jump of M or friction chatters; a steep line would not")
+    X(chattering, "switched endlessly at one time: a jump of M or friction chatters; a steep line would not")
 
 enum class Outcome {
 #define DINAL_OUTCOME(id, sentence) id,

@@ -49,16 +49,15 @@ std::string of_unit(std::string name, std::string_view unit);
 inline constexpr text::Option unit_options[] = {
     {.name = "theta",
      .otherwise = "\"rad\"",
-     .meaning = "of the angle, or of the way",
+     .meaning = "unit of angle or displacement",
      .filled = text::fills<&Units::theta>},
-    {.name = "t", .meaning = "of the time, else it has none", .filled = text::fills<&Units::t>},
-    {.name = "M", .meaning = "of the torque, or of the force, else it has none", .filled = text::fills<&Units::M>},
+    {.name = "t", .meaning = "unit of time", .filled = text::fills<&Units::t>},
+    {.name = "M", .meaning = "unit of torque or force", .filled = text::fills<&Units::M>},
 };
 inline constexpr text::Call units_call{"units", "units = { theta = \"m\", t = \"s\", M = \"N\" }", unit_options};
 inline constexpr text::Option units_option[] = {
     {.name = "units",
-     .meaning = "names of the units of theta, t and M, for cards, columns and axes: { theta = \"m\", t = "
-                "\"s\", M = \"N\" }",
+     .meaning = "names of the units, for cards, columns and axes: { theta = \"m\", t = \"s\", M = \"N\" }",
      .wanted = "a table such as { theta = \"m\", t = \"s\", M = \"N\" }",
      .fields = {&units_call}},
 };

@@ -28,12 +28,11 @@ struct Walls {
 
 inline constexpr text::Range from_0_to_1{"be from 0 to 1", [](double x) { return x >= 0 && x <= 1; }};
 inline constexpr text::Option wall_options[] = {
-    {"lower", "rad", text::its_own, text::any_finite, "the wall below; none when it is not given",
-     text::fills<&Walls::lower>},
-    {"upper", "rad", text::its_own, text::any_finite, "the wall above, greater than lower; none when it is not given",
+    {"lower", "rad", text::its_own, text::any_finite, "lower wall; none if not given", text::fills<&Walls::lower>},
+    {"upper", "rad", text::its_own, text::any_finite, "upper wall, greater than lower; none if not given",
      text::fills<&Walls::upper>},
     {"restitution", "", text::its_own, from_0_to_1,
-     "what an impact leaves of the velocity; 0: the mass stays at the wall", text::fills<&Walls::restitution>},
+     "ratio of the speeds after and before an impact; 0: the mass stops at the wall", text::fills<&Walls::restitution>},
 };
 inline constexpr text::Call walls_call{"walls", "walls = { lower = -0.8, upper = 0.8, restitution = 0.7 }",
                                        wall_options};

@@ -27,7 +27,7 @@ Integrator integrator_for(const model::Oscillator& system, const model::Excitati
                           const model::Extras& extras = {});
 /// The same in words, and the Lua text of the first of them.
 inline constexpr text::FixedText<64> usual_integrator{Exact::about.call.name, "{}"};
-inline constexpr text::FixedText<96> default_integrator{usual_integrator.c_str(), " where that takes M, else ",
+inline constexpr text::FixedText<96> default_integrator{usual_integrator.c_str(), " if it supports M, otherwise ",
                                                         Spectral::about.call.name, "{}"};
 
 }  // namespace dinal::motion

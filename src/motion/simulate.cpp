@@ -107,7 +107,8 @@ std::optional<text::Error> lost_sine(const model::Harmonic& sine, const Window& 
     if (omega <= most) return {};
     return text::Error{
         .sentence = fmt::format(
-            "a sine of omega = {:.6g} is lost in the rounding of times near {:.6g}: use at most omega = {:.2g} (frequency "
+            "a sine of omega = {:.6g} is lost in the rounding of times near {:.6g}: use at most omega = {:.2g} "
+            "(frequency "
             "= {:.2g}), or start nearer to t = 0",
             omega, latest_time(window), 0.9 * most, 0.9 * most / (2 * std::numbers::pi)),
         .option = "M"};
@@ -219,10 +220,11 @@ text::Expected<Trajectory> run_from(const Past& past, const model::Oscillator& s
                     course_bytes - std::min(course_bytes, past.course_bytes)};
     const bool more = extras.any() || system.walls() || model::has_memory(excitation);
     if (more && !method.knows_more()) {
-        return text::Error{.sentence = fmt::format("{} knows no states, events, belts, bases and controllers with a "
-                                                   "memory: take integrator.spectral or rk4",
-                                                   method.about().call.name),
-                           .option = "integrator"};
+        return text::Error{
+            .sentence = fmt::format("{} does not support states, events, belts, bases and controllers with memory: use "
+                                    "integrator.spectral or rk4",
+                                    method.about().call.name),
+            .option = "integrator"};
     }
     problem.extras = oath ? &oath->extras() : &extras;
     problem.carried = past.carried;

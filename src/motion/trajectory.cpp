@@ -92,23 +92,24 @@ namespace {
 std::string chatter_text(const Trajectory& run) {
     if (!run.events.empty() && run.events.back().t == run.t_stop) {
         if (run.events.back().kind == model::EventKind::user) {
-            return "events come without end in no time; bounces and stops made by act never come to rest, those of walls = {...} do";
+            return "events follow each other endlessly at one time; bounces made by act never come to rest, those of "
+                   "walls = {...} do";
         }
         if (run.events.back().kind == model::EventKind::switched) {
-            return "a relay switches without end in no time: its on and off are too near to each other";
+            return "a relay switches endlessly at one time: its on and off are too close";
         }
     }
     if (run.course && run.course->system().friction().depends_on_speed() && !run.on_belt) {
         return fmt::format(
-            "switched without end in no time: it chatters at speed {:.6g}, where the law of friction (or M) jumps or is "
-            "too steep; a line over some small range of speeds would not",
+            "switched endlessly at one time: it chatters at speed {:.6g}, where the law of friction (or M) jumps or "
+            "is too steep; a line over some small range of speeds would not",
             std::fabs(run.state_at_stop.velocity));
     }
     if (run.state_count() > 0) {  // what cures a jump of M does not cure that of a rate
-        return "switched without end in no time: a jump of M, of friction or of the rate of a state chatters; a steep "
+        return "switched endlessly at one time: a jump of M, of friction or of the rate of a state chatters; a steep "
                "line or tanh in its place would not";
     }
-    return "switched without end in no time: a jump of M or friction chatters; a steep line or tanh would not, nor "
+    return "switched endlessly at one time: a jump of M or friction chatters; a steep line or tanh would not, nor "
            "excitation.sampled or excitation.relay";
 }
 
@@ -122,7 +123,7 @@ std::string rough_text(const Rough& rough) {
     }
     constexpr double above = 8;  // of two coefficients, what others may be
     const int digits = static_cast<int>(std::ceil(std::log10(above * rough.part)));
-    std::string text = fmt::format("{} is rough on every scale, by {:.2g}: try ", rough.who, rough.by);
+    std::string text = fmt::format("{} is noisy on every scale (about {:.2g}): try ", rough.who, rough.by);
     if (digits < -2) text += fmt::format("integrator.spectral{{ tolerance = 1e{} }}, or ", digits);
     return text + "rk4";
 }
@@ -160,7 +161,7 @@ std::string summary(const Trajectory& trajectory) {
                     : trajectory.rough       ? rough_text(*trajectory.rough)
                                              : std::string(model::sentence(trajectory.outcome));
     }
-    if (trajectory.noise > 0) text += fmt::format("; M is rough by {:.2g}", trajectory.noise);
+    if (trajectory.noise > 0) text += fmt::format("; noise of M {:.2g}", trajectory.noise);
     if (trajectory.jumps_often()) text += fmt::format("; M jumped {} times", trajectory.jumps);
     return text + fmt::format("; peak |theta| {:.3g}", peak(trajectory));
 }

@@ -280,10 +280,10 @@ fs::path jupyter_folder() {
 
 bool run_kernel(lua_State* L, int answers) {
     if (answers <= STDERR_FILENO || ::fcntl(answers, F_SETFD, FD_CLOEXEC) < 0) {
-        prompt::complain(
-            fmt::format("--kernel={} is no open descriptor for its answers: it is for notebooks, and dinal "
-                        "--jupyter-install makes one (docs/notebook.md)",
-                        answers));
+        prompt::complain(fmt::format(
+            "--kernel={} is not an open descriptor; this option is for notebooks: run dinal --jupyter-install "
+            "(docs/notebook.md)",
+            answers));
         return false;
     }
     answers_descriptor = answers;

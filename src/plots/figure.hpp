@@ -52,18 +52,18 @@ inline constexpr const char* dashes_names[] = {"automatic", "solid", "dashed", "
 inline constexpr text::Option curve_options[] = {
     {.name = "label", .meaning = "its name in the picture", .filled = text::fills<&Curve::label>},
     {.name = "style",
-     .meaning = "how it is drawn; a fill goes down to zero, or to base",
+     .meaning = "style of drawing; a fill extends to zero, or to base",
      .filled = text::fills<&Curve::style>,
      .choices = style_names},
     {.name = "dashes",
-     .meaning = "how its line is broken, else another way for each curve",
+     .meaning = "dash pattern of its line; by default a different one for each curve",
      .filled = text::fills<&Curve::dashes>,
      .choices = dashes_names},
     {.name = "colour",
      .range = {"be a whole number from 1 to 7", [](double x) { return text::is_whole(x, 1, 7); }},
-     .meaning = "its colour, else another one for each curve",
+     .meaning = "its colour; by default a different one for each curve",
      .filled = text::fills<&Curve::colour>},
-    {.name = "base", .meaning = "the other edge of a fill: a vector as long as x"},
+    {.name = "base", .meaning = "the second edge of a fill: a vector as long as x"},
 };
 
 struct Axis {

@@ -283,7 +283,7 @@ text::Expected<Figure> phase_figure(const RunData& run) {
     const bool record = run.system == nullptr && has(run, "velocity_over_omega0");
     if (run.system == nullptr && !record) {
         return text::Error{
-            "the phase plane needs omega0, which a run that was read from a .csv file no longer has; use run:plot{ x = "
+            "the phase plane needs omega0, which a run read from a .csv file does not have; use run:plot{ x = "
             "\"theta\", y = \"velocity\" }"};
     }
     const bool scaled = record || run.system->has_spring();  // without k there is no omega0

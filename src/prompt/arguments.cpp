@@ -230,7 +230,7 @@ std::string help_text() {
 
 usage: dinal [options] [script [arguments]]
 
-without a script: a prompt on a terminal, else standard input is run as a script
+without a script: a prompt on a terminal, otherwise standard input is run as a script
   -e code    run a piece of Lua code
   -l mod     require the module 'mod' into the global 'mod'
   -l g=mod   require the module 'mod' into the global 'g'
@@ -248,7 +248,7 @@ without a script: a prompt on a terminal, else standard input is run as a script
              --max-memory 256M --max-time 10
   --max-memory SIZE  end a script that needs more, for example 256M or 2G
   --max-time SECONDS end a script that runs longer; at the prompt, an input
-  --lab-marks FILE   note at the end of FILE what became of each answer in the lab
+  --lab-marks FILE   append the verdict on each answer in the lab to FILE
   --lab-solutions NUMBER  the answers of a student number, for instructors
   --mark FOLDER      run all hand-ins of a folder in safe mode: a table, a summary,
                      and a page of each in FOLDER-marked

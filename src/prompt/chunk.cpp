@@ -216,8 +216,8 @@ void push_partial(lua_State* L) {
 int print_partial(lua_State* L) {
     const lua::Documented kept = lua::documented(L, 1);
     const bool run = kept.owner != nullptr && kept.owner->name == std::string_view("run");
-    say_error((run ? "the part of the run that was done is in dinal.partial, and in ans (ans:continue() goes on):\n"
-                   : "what was done is in dinal.partial, and in ans; the same call again goes on from there:\n") +
+    say_error((run ? "the finished part of the run is in dinal.partial and in ans (ans:continue() continues it):\n"
+                   : "the finished points are in dinal.partial and in ans; the same call continues:\n") +
               show(L, 1, terminal::display_of(STDERR_FILENO)));
     return 0;
 }

@@ -44,7 +44,7 @@ void time(Session& session, const std::string& text) {
 
 void record(Session& session, const std::string& file) {
     if (file.empty()) {
-        say(session.record.file().empty() ? "nothing is recorded; :record lab.lua begins\n"
+        say(session.record.file().empty() ? "nothing is being recorded; :record lab.lua starts a recording\n"
                                           : fmt::format("recorded into {}\n", session.record.file()));
         return;
     }
@@ -52,7 +52,7 @@ void record(Session& session, const std::string& file) {
         say_error(":record: " + begun.error().sentence);
         return;
     }
-    say(fmt::format("what runs without error from now on goes to {}\n", file));
+    say(fmt::format("inputs that run without error are now written to {}\n", file));
 }
 
 void save(Session& session, const std::string& argument) {
@@ -65,7 +65,7 @@ void save(Session& session, const std::string& argument) {
         say_error(":save: " + saved.error().sentence);
         return;
     }
-    say(fmt::format("what was typed so far, without the errors, is in {}\n", file));
+    say(fmt::format("the inputs so far, without the errors, are in {}\n", file));
 }
 
 void load(Session& session, const std::string& file) {
@@ -161,7 +161,7 @@ void who(Session& session, const std::string&) {
 void reset(Session& session, const std::string&) {
     lua::reset_globals(session.L);
     session.record.clear();
-    say("all your variables are gone; what Lua and dinal bring is as it was at the start\n");
+    say("all your variables are deleted; the names of Lua and dinal are restored\n");
 }
 
 enum class Argument { none, optional, needed };
@@ -177,18 +177,18 @@ struct Command {
 
 constexpr std::array<Command, 11> commands = {{
     {"help", Argument::optional, ":help [name]", "This list, or what help \"name\" says.", help},
-    {"quit", Argument::none, ":quit", "Leaves, as Ctrl-D does.", quit},
-    {"time", Argument::needed, ":time code", "Runs code once and says how long it took.", time},
+    {"quit", Argument::none, ":quit", "Leaves dinal, like Ctrl-D.", quit},
+    {"time", Argument::needed, ":time code", "Runs code once and prints the time it took.", time},
     {"record", Argument::optional, ":record file",
-     "Writes what you type from now on, if it runs without error, into a script.", record, true},
+     "Writes your inputs from now on, if they run without error, to a script.", record, true},
     {"save", Argument::optional, ":save file",
-     "Writes what you typed in this session so far, without the errors, into a script.", save, true},
-    {"load", Argument::needed, ":load file", "Runs a script; what it leaves in globals stays.", load, true},
+     "Writes the inputs of this session so far, without the errors, to a script.", save, true},
+    {"load", Argument::needed, ":load file", "Runs a script; its global variables stay.", load, true},
     {"history", Argument::optional, ":history [n]", "Lists the last 20 inputs of this session, or n.", history},
     {"edit", Argument::optional, ":edit [n]",
      "Opens the last input, or the n-th of :history, in your editor (EDITOR), and runs it.", edit},
     {"who", Argument::none, ":who", "Lists your own variables.", who},
-    {"reset", Argument::none, ":reset", "Forgets all your variables, and what :save would write.", reset},
+    {"reset", Argument::none, ":reset", "Deletes all your variables and the record for :save.", reset},
     {"q", Argument::none, ":q", "The same as :quit.", quit},
 }};
 

@@ -31,10 +31,10 @@ constexpr std::array<std::pair<std::string_view, std::string_view>, 9> words_and
     {"exit quit q bye logout ende beenden salir quitter esci", ":quit or Ctrl-D leaves"},
     {"clear cls clc", "Ctrl-L clears the screen, :reset forgets your variables"},
     {"who whos", ":who lists your variables"},
-    {"ls dir pwd cd", "no shell is in here; in a terminal Ctrl-Z leads to it, and fg comes back"},
+    {"ls dir pwd cd", "dinal has no shell commands; Ctrl-Z suspends dinal, and fg brings it back"},
     {"man", "help \"name\" explains a name"},
-    {"history", "the up arrow brings earlier lines back, Ctrl-R searches them, and :save writes them into a script"},
-    {"save", ":save writes what was typed into a script, run:save(\"run.csv\") a run into a file"},
+    {"history", "the up arrow brings earlier lines back, Ctrl-R searches them, and :save writes them to a script"},
+    {"save", ":save lab.lua writes your inputs to a script, run:save(\"run.csv\") writes a run"},
     {"reset", ":reset forgets your variables"},
     {"hilfe ayuda aide aiuto hallo hello hola", "help() starts a tour, and ?name explains a name"},
 }};
@@ -128,7 +128,7 @@ std::string colon_notice(lua_State* L, const std::string& text) {
     const TypedText typed(text);
     if (!typed.tokens_before().empty() && typed.tokens_before().back().is(":") && typed.word().empty() &&
         text.find('\n') == std::string::npos) {
-        return "a colon waits for the name of a method; a loop is: for i = 1, 10 do ... end";
+        return "a colon needs the name of a method after it; a loop is: for i = 1, 10 do ... end";
     }
     if (typed.cursor() != Cursor::member || typed.separator() != ':' || typed.word().empty()) {
         return "";

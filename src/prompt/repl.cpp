@@ -59,7 +59,7 @@ Aside aside(std::string_view line) {
 
 /// Ctrl-C is the way out of a chunk, and whoever is lost in one tries other words.
 void tell_way_out(const Chunk& chunk, Aside found) {
-    say_notice(fmt::format("{}; Ctrl-C gives it up{}", chunk.waits,
+    say_notice(fmt::format("{}; Ctrl-C cancels it{}", chunk.waits,
                            found == Aside::leaving ? ", and :quit then leaves dinal" : ""));
 }
 
@@ -68,7 +68,7 @@ void tell_way_out(const Chunk& chunk, Aside found) {
 TypedLine read_rest(Session& session, Chunk& chunk, TypedLine input, bool copied) {
     lua_State* L = session.L;
     while (chunk.result == Compiled::incomplete) {
-        const std::string cue = chunk.waits + "; Ctrl-C gives it up";
+        const std::string cue = chunk.waits + "; Ctrl-C cancels it";
         TypedLine more = session.editor.read(prompt_text(L, "_PROMPT2", ">> "), input.text, cue);
         if (more.reading == Reading::end) {
             say("\n");

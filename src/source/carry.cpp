@@ -354,7 +354,7 @@ bool Carrier::object(int index) {
     if (!known && !other_objects_(from_, index, to_)) {
         const lua::Documented found = lua::documented(from_, index);
         const bool run = found.owner != nullptr && std::string_view(found.owner->name) == "run";
-        return fail(index, run ? "; take what is needed out of it before, such as local theta = run.theta" : "");
+        return fail(index, run ? "; extract what you need before, for example local theta = run.theta" : "");
     }
     remember(lua_topointer(from_, index));
     return true;

@@ -22,7 +22,7 @@ std::string against_limit(double torque, double limit) {
         const std::string shown = fmt::format("{:.{}g}", torque, digits), bound = fmt::format("{:.{}g}", limit, digits);
         if (shown != bound) return fmt::format("{} {} Re = {}", shown, torque > limit ? ">" : "<=", bound);
     }
-    return fmt::format("Re = {:.5g}{}", limit, torque == limit ? "" : " but for rounding");
+    return fmt::format("Re = {:.5g}{}", limit, torque == limit ? "" : " to rounding");
 }
 
 std::string counted(std::size_t n, std::string_view what) {

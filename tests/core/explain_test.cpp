@@ -34,7 +34,7 @@ std::string told(const Trajectory& run, const Oscillator& system, const Excitati
     std::istringstream lines(text);
     std::size_t count = 0;
     for (std::string line; std::getline(lines, line); ++count) CHECK(line.size() < 80);
-    CHECK(count <= 25);
+    CHECK(count <= 26);
     std::replace(text.begin(), text.end(), '\n', ' ');
     return text;
 }
@@ -58,7 +58,7 @@ TEST_CASE("a free decay: half cycles, the law of the extremes, and why it rests 
         CHECK_THAT(text, Contains("theta = 0.84685 (t = 0.22366), -0.51285 (t = 0.72366), 0.17885 (t = 1.2237)."));
         CHECK_THAT(text, Contains("2 Rd/k = 0.334"));
         CHECK_THAT(text, Contains("It stopped at t = 1.7237 at theta = 0.15515 because |M - k theta| = 0.15515 <= Re = "
-                                  "0.167. M is constant from then on, so it rests there for good."));
+                                  "0.167. M is constant from then on, so it stays at rest."));
         CHECK_THAT(text, !Contains("At the end"));
     }
 }
@@ -69,10 +69,10 @@ TEST_CASE("a free decay names the law that its frictions follow", "[explain]") {
     CHECK(q == Approx(0.68624).margin(5e-6));
     CHECK_THAT(story(nondimensional(0.119, 0.06), {}, {1, 0}, {0, 5}), Contains("q = exp(-pi zeta/sqrt(1 - zeta^2)) = "
                                                                                 "0.68624 and Rd/k = 0.06"));
-    CHECK_THAT(story(nondimensional(0, 0), {}, {1, 0}, {0, 5}), Contains("Nothing takes its energy"));
+    CHECK_THAT(story(nondimensional(0, 0), {}, {1, 0}, {0, 5}), Contains("Without damping and friction"));
     CHECK_THAT(story(nondimensional(0, 0), {}, {1, 0}, {0, 5}), Contains("repeats itself every 1 (1 T0)"));
     CHECK_THAT(story(nondimensional(2.387, 0), {}, {0, 6}, {0, 5}), Contains("then creeps"));
-    CHECK_THAT(story(nondimensional(2.387, 0), {}, {1, 0}, {0, 5}), Contains("moved one way all the time"));
+    CHECK_THAT(story(nondimensional(2.387, 0), {}, {1, 0}, {0, 5}), Contains("moved in one direction"));
     CHECK_THAT(story(nondimensional(0, 0), {}, {0, 0}, {0, 5}), Contains("It stayed there"));
 }
 
@@ -84,12 +84,13 @@ TEST_CASE("steady motion with stops: period, amplitude, lag, stops and the time 
         CHECK_THAT(text, Contains("the motion is steady: it repeats itself every 1 (the period of M)."));
         CHECK_THAT(text, Contains("The amplitude is 0.12917 about theta = 0."));
         CHECK_THAT(text, Contains("It stops twice in each period and is stuck for 35 % of the time."));
-        CHECK_THAT(text,
-                   Contains("It stopped at t = 19.4502 at theta = 0.12917 because |M - k theta| = 0.17877 <= Re = "
-                            "0.836; stuck for 0.17476, until that grew past Re and it slipped backward."));
+        CHECK_THAT(
+            text,
+            Contains("It stopped at t = 19.4502 at theta = 0.12917 because |M - k theta| = 0.17877 <= Re = "
+                     "0.836; it stuck for 0.17476, until this torque exceeded Re and the mass slipped backward."));
         CHECK_THAT(text, Contains("... 35 more ..."));
         CHECK_THAT(text, Contains("was still stuck when the run ended at t = 20"));
-        CHECK_THAT(text, Contains("lags behind M by 2.002 rad"));
+        CHECK_THAT(text, Contains("lags behind that of M by 2.002 rad"));
     }
 }
 
@@ -113,8 +114,8 @@ TEST_CASE("the fundamental of Den Hartog's motion lags by 2.4555 rad", "[explain
     const std::string text =
         story(system, made(Scripted{.function = excitations::probe(sine)}), {1, 0}, {0, 100}, Spectral{}, 0.005);
     CHECK_THAT(text, Contains("every 0.74074 (0.74074 T0)"));
-    CHECK_THAT(text, Contains("lags behind M by 2.455 rad"));
-    CHECK_THAT(text, Contains("It does not stop on its way."));
+    CHECK_THAT(text, Contains("lags behind that of M by 2.455 rad"));
+    CHECK_THAT(text, Contains("It does not stop."));
 }
 
 TEST_CASE("a motion that grows says how", "[explain]") {
@@ -122,9 +123,8 @@ TEST_CASE("a motion that grows says how", "[explain]") {
     CHECK_THAT(story(nondimensional(0, 0.167), harmonic(1, 2 * pi), {1, 0}, {0, 10}),
                Contains("The motion grows: amplitudes of") && Contains("periods of M, 2.4736 more each time."));
     const auto pushed = feedback([](double, const State& y) { return 0.1 * y.velocity; });
-    CHECK_THAT(story(nondimensional(0, 0), pushed, {1, 0}, {0, 10}), Contains("M depends on the motion itself") &&
-                                                                         Contains("The motion grows") &&
-                                                                         Contains("times as much each time"));
+    CHECK_THAT(story(nondimensional(0, 0), pushed, {1, 0}, {0, 10}),
+               Contains("M is a feedback") && Contains("The motion grows") && Contains("times as much each time"));
 }
 
 TEST_CASE("a motion that has not become steady is not called so", "[explain]") {
@@ -134,7 +134,7 @@ TEST_CASE("a motion that has not become steady is not called so", "[explain]") {
     const std::string start = story(nondimensional(0.119, 0.418), harmonic(1, 2 * pi), {1, 0}, {0, 2});
     CHECK_THAT(start, Contains("too short to tell"));
     const std::string settling = story(nondimensional(0.119, 0.418), harmonic(1, 2 * pi), {1, 0}, {0, 7});
-    CHECK_THAT(settling, Contains("settles"));
+    CHECK_THAT(settling, Contains("is settling"));
     // On the way to nothing is no settling.
     CHECK_FALSE(recurrence(must_run(nondimensional(0.001, 0), {}, {1, 0}, {0, 50}, Grid::none(), Spectral{}).events));
     CHECK_FALSE(recurrence(must_run(nondimensional(0, 1e-4), {}, {1, 0}, {0, 50}, Grid::none(), Spectral{}).events));
@@ -143,42 +143,44 @@ TEST_CASE("a motion that has not become steady is not called so", "[explain]") {
 TEST_CASE("stick-slip under a ramp repeats itself while it is drawn along", "[explain]") {
     const ReferenceSystem& s = reference_system("spring-pulled block");
     const std::string text = story(s.oscillator, s.excitation, s.initial, {0, 10});
-    CHECK_THAT(text,
-               Contains("It started at t = 0 from theta = 0 with velocity 0 and stuck there because |M - k theta| = "
-                        "0 <= Re = 29.43, until t = 0.73575, when that grew past Re and it slipped forward."));
-    CHECK_THAT(text, Contains("In each period it goes on by 0.0066769: stick-slip."));
+    CHECK_THAT(
+        text,
+        Contains("The mass started at t = 0 from theta = 0 with velocity 0 and stuck there because |M - k theta| = "
+                 "0 <= Re = 29.43, until t = 0.73575, when this torque exceeded Re and the mass slipped forward."));
+    CHECK_THAT(text, Contains("It advances by 0.0066769 in each period: stick-slip."));
     CHECK_THAT(text, Contains("It stops once in each period"));
 }
 
 TEST_CASE("a slip at a jump of M is told as one", "[explain]") {
     const ReferenceSystem& s = reference_system("pulse on a resting mass at 20 T0");
     const std::string text = story(s.oscillator, s.excitation, s.initial, s.window);
-    CHECK_THAT(text, Contains("M changes until t = 20.125, then it is constant."));
-    CHECK_THAT(text,
-               Contains("until t = 20, when M jumped, |M - k theta| = 2.95 > Re = 0.167, and it slipped forward."));
-    CHECK_THAT(text, Contains("rests there for good"));
+    CHECK_THAT(text, Contains("M is constant from t = 20.125 on."));
+    CHECK_THAT(
+        text,
+        Contains(
+            "until t = 20, when M jumped so that |M - k theta| = 2.95 > Re = 0.167, and the mass slipped forward."));
+    CHECK_THAT(text, Contains("stays at rest"));
 }
 
 TEST_CASE("a mass that never moves, and one that M cannot move any more", "[explain]") {
     const std::string unmoved = story(nondimensional(0, 0.5), harmonic(0.1, 12), {0.1, 0}, {0, 50});
     CHECK_THAT(unmoved, Contains("Nothing moved it until the end of the run, t = 50."));
-    CHECK_THAT(unmoved,
-               Contains("|M| is never more than 0.1, which cannot move it from there: it rests there for good."));
+    CHECK_THAT(unmoved, Contains("|M| never exceeds 0.1, which is too little to move it: it stays at rest."));
     // 0.3 (cos 2x - cos x) is between -0.34 and 0.6: at 0.4 no harm comes of it, though 0.6 the other way were too
     // much.
     const Excitation waves = Excitation::make(Harmonic{.amplitude = -0.3, .omega = 12, .phase = pi / 2}).value() +
                              Excitation::make(Harmonic{.amplitude = 0.3, .omega = 24, .phase = pi / 2}).value();
     const std::string passed = story(nondimensional(0, 0.8), waves, {0.4, 0}, {0, 50});
-    CHECK_THAT(passed, Contains("M went through a whole period and did not move it, so it never will."));
+    CHECK_THAT(passed, Contains("A whole period of M did not move it, so it stays at rest."));
     const std::string stopped = story(nondimensional(0, 0.5), harmonic(0.1, 12), {3, 0}, {0, 50});
-    CHECK_THAT(stopped, Contains("was still stuck when the run ended at t = 50. |M| is never more than 0.1"));
+    CHECK_THAT(stopped, Contains("was still stuck when the run ended at t = 50. |M| never exceeds 0.1"));
     CHECK_THAT(stopped, !Contains("steady"));
 }
 
 TEST_CASE("a limit cycle of a feedback repeats itself", "[explain]") {
     const auto van_der_pol =
         feedback([](double, const State& y) { return 0.1 * (1 - y.theta * y.theta) * y.velocity; });
-    CHECK_THAT(story(nondimensional(0, 0.05), van_der_pol, {0.5, 0}, {0, 60}), Contains("this is a limit cycle"));
+    CHECK_THAT(story(nondimensional(0, 0.05), van_der_pol, {0.5, 0}, {0, 60}), Contains("This is a limit cycle"));
 }
 
 TEST_CASE("a run that broke off says so, and when", "[explain]") {
@@ -190,9 +192,9 @@ TEST_CASE("a run that broke off says so, and when", "[explain]") {
     const auto fails = made(Scripted{.function = excitations::probe([](double t) {
                                          return t < 3 ? std::sin(t) : std::numeric_limits<double>::quiet_NaN();
                                      })});
-    CHECK_THAT(story(system, fails, {1, 0}, {0, 10}), Contains("The run broke off at t = 3: M failed"));
+    CHECK_THAT(story(system, fails, {1, 0}, {0, 10}), Contains("The run stopped early, at t = 3: M failed"));
     const auto chatter = feedback([](double, const State& y) { return y.velocity == 0 ? 0.5 : -5; });
-    CHECK_THAT(story(system, chatter, {0, 0}, {0, 5}), Contains("The run broke off") && Contains("chatters"));
+    CHECK_THAT(story(system, chatter, {0, 0}, {0, 5}), Contains("The run stopped early") && Contains("chatters"));
 }
 
 TEST_CASE("a run that broke off before anything moved the mass says that it was stuck", "[explain]") {
@@ -203,27 +205,27 @@ TEST_CASE("a run that broke off before anything moved the mass says that it was 
     const Excitation M = Excitation::make(Scripted{.function = std::make_shared<Failing>()}).value();
     const std::string text = story(nondimensional(0, 0.3), M, {1, 0}, {0, 10});
     CHECK_THAT(text, Contains("stuck there because |M - k theta| = 0 <= Re = 0.3."));
-    CHECK_THAT(text, Contains("The run broke off at t = 2: M failed"));
+    CHECK_THAT(text, Contains("The run stopped early, at t = 2: M failed"));
     CHECK_THAT(text, !Contains("moved off") && !Contains("in balance"));
 }
 
 TEST_CASE("far from t = 0 a load that grows past Re does not jump", "[explain]") {
     const std::string text = story(nondimensional(0.05, 0.3), harmonic(1, 2 * pi), {1, 0}, {1e9, 1e9 + 2});
-    CHECK_THAT(text, Contains("grew past Re") || Contains("grew past\nRe") || Contains("grew\npast Re"));
+    CHECK_THAT(text, Contains("exceeded Re"));
     CHECK_THAT(text, !Contains("jumped"));
 }
 
 TEST_CASE("viscous damping alone ends a motion that breakaway can hold", "[explain]") {
     const std::string text = story(nondimensional(0.05, 0, 0.3), {}, {1, 0}, {0, 40});
-    CHECK_THAT(text, Contains("until breakaway holds the"));
+    CHECK_THAT(text, Contains("until friction holds the"));
     CHECK_THAT(text, !Contains("never quite ends"));
 }
 
 TEST_CASE("a run of 1989 says that its events are those of its steps", "[explain]") {
     const std::string text =
         story(nondimensional(0, 0.836), harmonic(1, 2 * pi), {1, 0}, {0, 20}, Dinal1989{.h = 0.01});
-    CHECK_THAT(text, Contains("It was integrated as in 1989, in steps of h = 0.01"));
-    CHECK_THAT(text, Contains("until the listing let it go at |M - k theta|"));
+    CHECK_THAT(text, Contains("The run was integrated as in 1989, in steps of h = 0.01"));
+    CHECK_THAT(text, Contains("until the listing released it at |M - k theta|"));
     CHECK_THAT(text, !Contains("M jumped"));
 }
 
@@ -249,7 +251,7 @@ TEST_CASE("rows alone tell what rows can", "[explain]") {
     loaded.own_names = column_names();
     loaded.events = {};
     const std::string text = explain_rows(loaded);
-    CHECK_THAT(text, Contains("read from a file") && Contains("501 rows") && Contains("changes its sign 3 times"));
+    CHECK_THAT(text, Contains("read from a file") && Contains("501 rows") && Contains("changes sign 3 times"));
     loaded.own_names = {"a", "b", "c", "d", "e", "f"};
     CHECK_THAT(explain_rows(loaded), Contains("501 rows of a, b"));
 }
@@ -282,7 +284,7 @@ TEST_CASE("numbers for people have as many digits as say something", "[explain]"
     CHECK(against_limit(0.16699999, 0.167) == "0.16699999 <= Re = 0.167");
     CHECK(against_limit(2.95, 0.167) == "2.95 > Re = 0.167");
     CHECK(against_limit(0.5, 0.5) == "Re = 0.5");
-    CHECK(against_limit(std::nextafter(0.5, 0), 0.5) == "Re = 0.5 but for rounding");
+    CHECK(against_limit(std::nextafter(0.5, 0), 0.5) == "Re = 0.5 to rounding");
     CHECK(against_limit(5.6e-17, 0.1) == "0 <= Re = 0.1");
     CHECK(counted(1, "stop") == "1 stop");
     CHECK(counted(2, "switch") == "2 switches");

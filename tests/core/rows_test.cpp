@@ -38,7 +38,7 @@ TEST_CASE("rows lie at t_start + i dt and the last one at t_end, exactly", "[row
     CHECK(times_of(Grid::every(5), {0, 1}) == std::vector<double>{0, 1});
 }
 
-TEST_CASE("a dt that divides the window but for rounding gives no sliver of a last interval", "[rows]") {
+TEST_CASE("a dt that divides the window to rounding gives no sliver of a last interval", "[rows]") {
     for (const double dt : {0.1, 0.01, 0.001, 0.3, 0.7, 1.0 / 3}) {
         for (const int n : {1, 3, 7, 10, 100, 1000, 12345}) {
             const Window window{0, n * dt};

@@ -48,9 +48,9 @@ TEST_CASE("the story tells of walls, impacts and rest at a wall", "[walls][expla
     const Trajectory run = must_run(ball, M, {1, 0}, {0, 12}, Grid::every(0.5), Spectral{});
     const std::string story = analysis::explain(run, ball, M, Spectral{});
     CAPTURE(story);
-    for (const char* part : {"There is a wall at theta = 0; an impact leaves 50 % of the velocity.", "It hit the wall",
-                             "first at t = 1,", "hardest with velocity -2 at t = 1.",
-                             "It came to rest at the wall, theta = 0, at t = 3;", "pulled it off forward"}) {
+    for (const char* part : {"There is a wall at theta = 0; an impact keeps 50 % of the speed.", "It hit the wall",
+                             "first at t = 1,", "the hardest impact had velocity -2, at t = 1.",
+                             "It came to rest at the wall, theta = 0, at t = 3;", "pulled it off the wall forward"}) {
         std::string flat = story;
         std::replace(flat.begin(), flat.end(), '\n', ' ');
         CHECK_THAT(flat, Catch::Contains(part));

@@ -104,7 +104,7 @@ test("bristles bend before they slip: LuGre and Dahl against Runge-Kutta, and in
     local run = block:simulate { M = function(t) return 1e-3 * math.min(t, 1) end, t_end = 1 }
     near(run.friction[1001], -(1 - math.exp(-1000 * run.theta[1001])), 1e-10)
     equal(#run.events, 0)
-    raises_here(function() system { I = 1, k = 1 }:with { friction = friction.dahl { Rd = 1, stiffness = 10 } } end, "only system{ ... } takes")
+    raises_here(function() system { I = 1, k = 1 }:with { friction = friction.dahl { Rd = 1, stiffness = 10 } } end, "only system{ ... } supports")
     raises_here(function() friction.dahl { Rd = 0, stiffness = 10 } end, "Rd = 0 must be positive")
 end)
 
@@ -278,7 +278,7 @@ test("what is wrong is one sentence with the name of the body, the link and the 
     raises_here(function() system { bodies = { a = { I = 1, q = 3 } } } end, "bodies.a has no option 'q'")
     raises_here(function() system { bodies = { a = { k = 3 } } } end, "bodies.a needs I")
     raises_here(function() system { bodies = { a = { I = 1 } }, links = { x = { "a", "bb" } } } end, "links.x: there is no body 'bb'; there is a")
-    raises_here(function() system { bodies = { a = { I = 1 } }, I = 1 } end, "I belongs into one of the bodies")
+    raises_here(function() system { bodies = { a = { I = 1 } }, I = 1 } end, "I is an option of a body")
     raises_here(function() system { bodies = { a = { I = 1 } }, links = { a = { "a", "a" } } } end, "'a' is the name of a body already")
     raises_here(function() system { bodies = { a = { I = 1 }, b = { I = 1 } }, links = { x = { "a", "a" } } } end, "two different bodies")
     local rig = system { bodies = { load = { I = 1, Rd = 0.1 } } }

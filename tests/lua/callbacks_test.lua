@@ -100,7 +100,7 @@ end)
 
 test("M that calls simulate without end is an error and not a crash", function()
     local function M() return simulate(M) end
-    raises(function() simulate(M) end, "50 deep is too much")
+    raises(function() simulate(M) end, "50 levels deep")
     works_still()
 end)
 

@@ -132,7 +132,7 @@ test("acts that die out do so at the same time wherever the run went on", functi
         }
     end
     local whole = run(9)
-    assert(whole.outcome:find("without end", 1, true))
+    assert(whole.outcome:find("endlessly", 1, true))
     for _, parts in ipairs { { 1 }, { 2, 3 }, { 2.5, 3.5, 3.9, 4 }, { whole.events[1].t }, { whole.events[4].t, whole.events[7].t } } do
         local on = run(parts[1])
         for i = 2, #parts do on = on:continue { t_end = parts[i] } end

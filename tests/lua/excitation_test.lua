@@ -216,7 +216,7 @@ assert(outer:values{ 4, 6, 5 } == vector{ 4, -1, 5 })
 local depth
 depth = e.scripted(function(t) return t <= 0 and 0 or 1 + depth(t - 1) end)
 assert(depth(20) == 20)
-fails(function() return depth(1e6) end, "50 deep is too much")
+fails(function() return depth(1e6) end, "50 levels deep")
 function Replaced(t) Replaced = nil return 3 end
 local replacing = e.scripted(Replaced)
 assert(replacing(1) == 3 and replacing(2) == 3 and Replaced == nil)

@@ -61,10 +61,10 @@ test("what is wrong with a law is one sentence with the name of the option", fun
     raises_here(function() stribeck.Re = 2 end, "a friction cannot be changed")
 end)
 
-test("the museum piece and the closed forms know Coulomb's friction only", function()
+test("the museum piece and the closed forms include only Coulomb friction", function()
     local sys = system { I = 1, k = 1, friction = stribeck }
-    raises_here(function() sys:simulate { t_end = 1, dt = 1, integrator = integrator.dinal1989 { h = 0.1 } } end, "knows Coulomb's friction only")
-    raises_here(function() theory.time_to_rest { system = sys, theta0 = 1 } end, "the closed forms know Coulomb's friction only")
+    raises_here(function() sys:simulate { t_end = 1, dt = 1, integrator = integrator.dinal1989 { h = 0.1 } } end, "supports only Coulomb friction")
+    raises_here(function() theory.time_to_rest { system = sys, theta0 = 1 } end, "the closed forms include only Coulomb friction")
 end)
 
 test("with makes the same system but for what is given", function()
@@ -235,7 +235,7 @@ test("a system with Stribeck's law shows Rd, not the friction at standstill", fu
     equal(sys.Rd, 0.3)
     equal(sys.Re, 0.6)
     local told = sys:simulate { theta0 = 1, t_end = 5, dt = 1 }:explain():gsub("%s+", " ")
-    assert(told:find("Rd = 0.3 brakes it, up to Re = 0.6 holds it. Friction falls from Re at standstill to Rd at great speeds.", 1, true), told)
+    assert(told:find("Rd = 0.3 while sliding, Re = 0.6 to break away. Friction falls from Re at rest to Rd at high speed.", 1, true), told)
 end)
 
 support.finish()

@@ -209,7 +209,7 @@ test("the rows until then are kept, and the story tells it", function()
     end }
     assert(run.outcome:find("M depends on more than its arguments", 1, true), run.outcome)
     assert(#run > 100 and run.t_end > 15, run.t_end)
-    assert(run:explain():gsub("%s+", " "):find("The run broke off at t = [%d.]+.*: M depends on more than its arguments"), run:explain())
+    assert(run:explain():gsub("%s+", " "):find("The run stopped early, at t = [%d.]+.*: M depends on more than its arguments"), run:explain())
     assert(tostring(run):find("evaluated again", 1, true), tostring(run))
 end)
 

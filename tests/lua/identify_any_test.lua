@@ -53,10 +53,10 @@ test("laws of friction on a belt: stribeck, asymmetric, and lugre in its sliding
     local fit = identify { data = record, belt = 0.15, system = law(0.2, 0.5, 0.3), free = { "friction.Rd", "friction.Re", "friction.speed" },
         theta0 = 0, velocity0 = 0 }
     found(fit, { ["friction.Rd"] = 0.3, ["friction.Re"] = 0.6, ["friction.speed"] = 0.2 })
-    assert(not tostring(fit):find "alike")
+    assert(not tostring(fit):find "correlated")
     -- with another law the residual is no noise, and the errors know that
     fit = identify { data = record, belt = 0.15, system = sys:with { C = 0.05, Rd = 0.3, Re = 0.6 }, free = { "k", "Rd", "Re" }, theta0 = 0, velocity0 = 0 }
-    assert(tostring(fit):find "alike from sample to sample", tostring(fit))
+    assert(tostring(fit):find "correlated from sample to sample", tostring(fit))
     near(fit.k, 4, 4 * fit.std_error.k)
 
     local function uneven(a, b) return system { I = 1, k = 4, friction = friction.asymmetric { forward = { Rd = a }, backward = { Rd = b } } } end
@@ -110,11 +110,11 @@ end)
 
 test("what cannot be fitted is told", function()
     local record = { t = run.t, theta = run.theta }
-    raises_here(function() identify { data = record, measured = "velocity" } end, "measured (the string \"velocity\") needs a guess beside it: system = system{ ... }")
+    raises_here(function() identify { data = record, measured = "velocity" } end, "measured (the string \"velocity\") needs a guess: system = system{ ... }")
     raises_here(function() identify { data = record, system = guess, free = { "friction.speed" } } end, "free has 'friction.speed', which is no number of the system")
     raises_here(function() identify { data = record, system = guess, free = { "q.x" } } end, "free has 'q.x'")
     raises_here(function() identify { data = record, system = guess } end, "free must be a list")
-    raises_here(function() identify { data = record, system = guess, free = { "k" }, k = 3 } end, "k belongs into system")
+    raises_here(function() identify { data = record, system = guess, free = { "k" }, k = 3 } end, "k is part of the first guess, system")
     raises_here(function() identify { data = record, system = guess, free = { "k" }, measured = "speed" } end, "measured must be \"theta\"")
     raises_here(function() identify { data = record, system = guess, free = { "k" }, measured = "velocity" } end, "the record has no column 'velocity'")
     raises_here(function() identify { data = record, system = guess, free = { "k" }, M = function() error "broken" end } end, "broken")

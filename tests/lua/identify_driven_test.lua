@@ -96,7 +96,7 @@ end)
 
 test("what a fit leaves that is no noise is told, also where it is little", function()
     local run = system{ I = 1, k = 40, C = 0.5, Rd = 1.5 }:simulate{ theta0 = 1, t_end = 8, dt = 0.02 }
-    local says = function(theta) return tostring(identify{ data = { t = run.t, theta = theta } }):find("what is left is no noise", 1, true) end
+    local says = function(theta) return tostring(identify{ data = { t = run.t, theta = theta } }):find("the residual is not noise", 1, true) end
     assert(not says(noisy(run, 5, 0.01)))
     assert(says(noisy(run, 5, 0.01) + 0.02 * (17 * run.t):sin())) -- a mode of something else
 end)
@@ -108,7 +108,7 @@ test("a mass that M never moves tells nothing, and no error", function()
     local alone = 0
     for seed = 1, 6 do
         local fit = identify{ data = { t = run.t, theta = noisy(run, seed, 0.01) }, M = M }
-        if tostring(fit):find("no more of the record than it would of noise", 1, true) then
+        if tostring(fit):find("the record no better than it would fit noise", 1, true) then
             alone = alone + 1
             for _, name in ipairs(fit.names) do equal(fit.std_error[name], 0.0) end
             equal(#fit.silent, #fit.names)
@@ -126,11 +126,11 @@ test("a driven record that is cut off is fitted as one, too, and one that stands
         local fit = identify{ data = { t = run.t, theta = seen }, M = two }
         near(fit.k, 40, 4 * fit.std_error.k)
         near(fit.Rd, 1.2, 4 * fit.std_error.Rd)
-        assert(tostring(fit):find "samples stand at the ends of the record", ends)
+        assert(tostring(fit):find "samples have the extreme values of the record", ends)
     end
     local exact = identify{ data = run, M = two }
     near(exact.k, 40, 1e-6)
-    assert(not tostring(exact):find "cut off")
+    assert(not tostring(exact):find "clipped")
 end)
 
 test("no search flies away: swings that no sample shows are none", function()
@@ -146,7 +146,7 @@ test("no search flies away: swings that no sample shows are none", function()
         dt = 0.03 }
     near(identify{ data = { t = run.t, theta = noisy(run, 11, 0.006) + 0.1 }, M = two }.k, 40, 0.4)  -- it did not end
     raises_here(function() identify{ data = decay, theta0 = -1e308 } end, "no motion of such a system comes near this record")
-    raises_here(function() identify{ data = decay, I = 1, Rd = 1.2, Re = 0.8 } end, "Re = 0.8 is less than Rd = 1.2")
+    raises_here(function() identify{ data = decay, I = 1, Rd = 1.2, Re = 0.8 } end, "Re = 0.8 must be at least Rd = 1.2")
 end)
 
 test("a record in other units is the same record", function()
@@ -182,7 +182,7 @@ test("units of time, angle and torque that are powers of two of others change no
 end)
 
 test("an Re that is less than the Rd that is found is told", function()
-    local told = "Re = 0.7 is given, but the Rd that was found is greater"
+    local told = "Re = 0.7 is given, but the fitted Rd is greater"
     local fit = identify{ data = decay, I = 1, Re = 0.7 }
     assert(tostring(fit):find(told, 1, true), fit)
     equal(fit.system.Re, fit.system.Rd)
@@ -211,12 +211,12 @@ test("noise alone is no system, and noise in a measured M is told", function()
     local t, M = vector.linspace(0, 10, 150), excitation.harmonic{ amplitude = 1, omega = 3 }
     for seed = 1, 40 do
         local noise = vector.normal{ n = #t, seed = seed, std = 0.03 }
-        assert(tostring(identify{ data = { t = t, theta = noise }, M = M }):find("no more of the record than it would of noise", 1, true), seed)
+        assert(tostring(identify{ data = { t = t, theta = noise }, M = M }):find("the record no better than it would fit noise", 1, true), seed)
     end
     local run = system{ I = 1, k = 40, C = 0.3, Rd = 0.8 }:simulate{ M = 3 * M, t_end = 20, dt = 0.05 }
     local function told(std)
         local measured = excitation.samples{ t = run.t, M = run.M + vector.normal{ n = #run, seed = 4, std = std } }
-        return tostring(identify{ data = run, M = measured, velocity0 = 0, theta0 = 0, offset = 0 }):find("M has noise, which the errors leave out", 1, true)
+        return tostring(identify{ data = run, M = measured, velocity0 = 0, theta0 = 0, offset = 0 }):find("the errors ignore the noise of M", 1, true)
     end
     assert(told(0.05) and not told(0))
 end)

@@ -90,10 +90,10 @@ test("a record that is cut off is fitted as one, and said to be", function()
     end
     assert(fit.noise < 0.011)
     local stand = seen:find(function(x) return math.abs(x) == 0.4 end)
-    local said = tonumber(tostring(fit):match "(%d+) samples stand at the ends of the record, as if it were cut off there")
+    local said = tonumber(tostring(fit):match "(%d+) samples have the extreme values of the record, as if it were clipped there")
     assert(said > 20 and said <= #stand, said)  -- two or three by chance are none
-    assert(not tostring(identify{ data = { t = run.t, theta = noisy(run, 5, 0.01) } }):find "cut off")
-    assert(not tostring(identify{ data = run }):find "cut off", "where it rests is no end of the scale")
+    assert(not tostring(identify{ data = { t = run.t, theta = noisy(run, 5, 0.01) } }):find "clipped")
+    assert(not tostring(identify{ data = run }):find "clipped", "where it rests is no end of the scale")
 end)
 
 test("with I or k given a free decay tells the torques, too", function()
@@ -102,7 +102,7 @@ test("with I or k given a free decay tells the torques, too", function()
     near(fit.Rd, 0.8, 1e-6)
     near(fit.system.C, 0.3, 1e-6)
     near(identify{ data = decay, k = 20 }.I, 0.5, 1e-7)
-    raises_here(function() return identify{ data = decay }.k end, "a free decay tells ratios", "give I or k")
+    raises_here(function() return identify{ data = decay }.k end, "a free decay determines only ratios", "give I or k")
 end)
 
 test("a driven record with a known M tells the parameters that are asked for", function()
@@ -259,8 +259,8 @@ test("a record that the fit does not explain is told, and an honest one never", 
         local question = given or {}
         question.data = { t = t, theta = theta }
         local text = tostring(identify(question))
-        return text:find("no more of the record than it would of noise", 1, true) and "noise"
-            or text:find("what is left is no noise", 1, true) and "unexplained" or "explained"
+        return text:find("the record no better than it would fit noise", 1, true) and "noise"
+            or text:find("the residual is not noise", 1, true) and "unexplained" or "explained"
     end
     for _, rest in ipairs{ 0, 1 } do  -- noise about zero, and a mass that never left
         local alone = 0

@@ -57,7 +57,7 @@ test("a belt with kinks where it is zero is followed in no time", function()
     near(run.theta[#run], 2 * 7 - 0.05 * 49, found)
 end)
 
-test("without dry friction a belt is as none, and no turn is told where the mass starts", function()
+test("without dry friction a belt is as none, and no turn is told initial angle", function()
     local run = system { I = 1, k = 1 }:simulate { belt = 0.5, theta0 = -0.5, t_end = 4, dt = 1 }
     equal(kinds(run), "turn")
     near(run.events[1].t, math.pi, 1e-14)

@@ -12,10 +12,10 @@ end
 
 test("before a number is said, nothing is given and nothing judged", function()
   equal(lab.number(), nil)
-  support.raises_here(function() check("1a", 3) end, "check: say first whose lab it is: lab.number(4711)")
-  support.raises_here(function() lab.given(1) end, "lab.given: say first whose lab it is")
-  support.raises_here(function() lab.experiment(1) end, "lab.experiment: say first whose lab it is")
-  support.raises_here(function() lab.marks() end, "lab.marks: say first whose lab it is")
+  support.raises_here(function() check("1a", 3) end, "check: first set your own student number, for example lab.number(4711)")
+  support.raises_here(function() lab.given(1) end, "lab.given: first set your own student number")
+  support.raises_here(function() lab.experiment(1) end, "lab.experiment: first set your own student number")
+  support.raises_here(function() lab.marks() end, "lab.marks: first set your own student number")
 end)
 
 test("a sweep judges no answers: each of its workers would begin with all tries", function()

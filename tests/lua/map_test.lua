@@ -219,13 +219,13 @@ test("what is wrong with a bifurcation is told", function()
     for name, value in pairs { t_end = 5, dt = 0.1, times = { 1 } } do
         raises_here(function()
             bifurcation { over = { a = { 1 } }, period = 1, at = function() return { system = nondimensional {}, [name] = value } end }
-        end, "at returned " .. name .. " among the options, which bifurcation itself gives")
+        end, "at returned " .. name .. ", which bifurcation sets itself")
     end
     raises_here(function()
         bifurcation { over = { a = { 1 } }, period = 1, skip = 1, keep = 2, at = function()
             return { system = nondimensional {}, events = { { when = function(t) return t - 1.5 end, stop = true } } }
         end }
-    end, "a = 1 failed: the run ended before the last look at it: stopped at")
+    end, "a = 1 failed: the run ended before the last sample: stopped at")
 end)
 
 support.finish()

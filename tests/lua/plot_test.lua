@@ -185,7 +185,7 @@ test("wrong curves are told by their number", function()
     raises_here(function() plot { { { 1 }, { 1 }, style = "dots" } } end, "style must be 'line', 'points' or 'fill'")
     raises_here(function() plot { { { 1 }, { 1 }, dashes = "dahsed" } } end, "did you mean 'dashed'?")
     raises_here(function() plot { { { 1 }, { 1 }, colour = 8 } } end, "colour = 8 must be a whole number from 1 to 7")
-    raises_here(function() plot { { { 1 }, { 1 }, base = { 0 } } } end, "base is the other edge of a fill")
+    raises_here(function() plot { { { 1 }, { 1 }, base = { 0 } } } end, "base is the second edge of a filled area")
     raises_here(function() plot { { { 1 }, { 1 }, base = { 0, 1 }, style = "fill" } } end, "but base has 2")
     raises_here(function() plot { line, [5] = line } end, "named options only")
     local many = {}

@@ -87,7 +87,7 @@ test("names of columns are no markup, bytes that are no letters no letters, and 
     end
     assert(own_markdown:find("# a b?\\]0;c?\n", 1, true), own_markdown)
     assert(markdown:find('{ 1, "two", { three = 3 } }\nlist = { 1, 2 }', 1, true), markdown)
-    raises_here(function() r:add{ io.stdout } end, "r:add: not all that is in this table can be shown")
+    raises_here(function() r:add{ io.stdout } end, "r:add: this table contains values that cannot be shown")
 end)
 
 test("nothing wide pushes the page apart, and what is long may go on over the next sheet", function()
@@ -135,7 +135,7 @@ end)
 test("what cannot be reported is told in a sentence", function()
     raises_here(function() report{} end, "report needs title")
     raises_here(function() report{ title = 3 } end, "title must be")
-    raises_here(function() report{ title = " " } end, "report: its title is empty")
+    raises_here(function() report{ title = " " } end, "report: the title is empty")
     local r = report{ title = "x" }
     raises_here(function() r:text() end, "what is added must be text, got nil")
     raises_here(function() r:table(3) end, "r:table takes data")

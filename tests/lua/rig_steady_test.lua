@@ -35,7 +35,7 @@ test("a chain without friction under a sine: its closed form", function()
     for _, m in ipairs(s.multipliers) do product = product * m.abs end
     near(product, math.exp(-0.1 * s.period), 1e-8)
     assert(s:explain():find("b swings between", 1, true))
-    raises_here(function() return s.amplitude end, "ask one of them, such as s.a.amplitude")
+    raises_here(function() return s.amplitude end, "choose one of them, such as s.a.amplitude")
     raises_here(function() return s.c end, "this steady motion has no 'c'; its bodies and links are a, b, rod")
 end)
 
@@ -86,7 +86,7 @@ test("a drill string sticks and slips while it goes round", function()
     equal(s.bit.mean, nil)
     equal(s.bit.stops, 1)
     assert(s.pipe.amplitude > 0.5)
-    assert(s:explain():find("bit goes round by", 1, true))
+    assert(s:explain():find("bit turns by", 1, true))
     local even = system { bodies = { a = { I = 1, C = 1 }, b = { I = 1 } }, links = { rod = { "a", "b", k = 1, C = 0.5 } } }
         :steady { M = { a = 1 } }
     equal(even.status, "steady")
@@ -144,7 +144,7 @@ test("rest, and what is refused", function()
     equal(s.period, nil)
     equal(rig:steady { M = { a = sine(1, 0.05) } }.a.status, "adheres")
     raises_here(function() rig:steady { M = { a = function(t) return math.sin(t) end } } end,
-        "the period of what drives the bodies is not known; give it with period = ...")
+        "the period of the excitation is not known; give it with period = ...")
     raises_here(function() rig:steady { M = { a = function(t) return math.sin(t) end }, period = 3 } end, "does not repeat itself")
     raises_here(function() rig:steady { M = { a = excitation.sampled(function(t) return 0 end, { every = 0.1 }), b = sine(1) } } end,
         "no common period", "run it for long")

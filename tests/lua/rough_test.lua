@@ -46,8 +46,8 @@ for who, options in pairs(noisy) do
             local tolerance = found.outcome:match("tolerance = (%S+)")
             if tolerance then
                 sentences = sentences + 1
-                assert(found.outcome:find(who .. " is rough on every scale", 1, true) == 1, found.outcome)
-                assert(found:explain():gsub("%s+", " "):find(who .. " is rough", 1, true) and tostring(found):find(who .. " is rough", 1, true))
+                assert(found.outcome:find(who .. " is noisy on every scale", 1, true) == 1, found.outcome)
+                assert(found:explain():gsub("%s+", " "):find(who .. " is noisy", 1, true) and tostring(found):find(who .. " is noisy", 1, true))
                 found = run(size, tonumber(tolerance))
             end
             assert(#found == #clean, ("%g: %s"):format(size, found.outcome))

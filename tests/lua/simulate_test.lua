@@ -75,7 +75,7 @@ test("the default integrator is exact where that takes M, else spectral", functi
     local chirp = excitation.chirp { from = 0, to = 1, duration = 1 }
     equal(tostring(nd:simulate { M = chirp, t_end = 1, dt = 1 }.integrator), "integrator.spectral{}")
     raises_here(function() nd:simulate { M = chirp, t_end = 1, dt = 1, integrator = integrator.exact {} } end,
-      "integrator.exact{} takes an M of native terms other than chirp and gaussian: use integrator.spectral{}")
+      "integrator.exact{} supports only native terms other than chirp and gaussian: use integrator.spectral{}")
 end)
 
 test("dinal1989 with its slip reproduces the printed numbers of chapter 6", function()
@@ -155,7 +155,7 @@ end)
 
 test("an unstable 1989 run ends with an outcome and rows that are all finite", function()
     local run = nondimensional {}:simulate { theta0 = 1, t_end = 2000, dt = 1, integrator = integrator.dinal1989 { h = 0.5 } }
-    assert(run.outcome:find("stopped being finite"), run.outcome)
+    assert(run.outcome:find("became infinite"), run.outcome)
     assert(#run > 0 and #run < 2001)
     assert(run.theta:abs():max() < math.huge)
 end)

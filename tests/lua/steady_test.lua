@@ -26,7 +26,7 @@ test("all that is known about a steady motion", function()
     near(s.run:at(s.run.t_end), s.run.theta[1], 1e-11)
     near((s.run.theta:max() - s.run.theta:min()) / 2, s.amplitude, 1e-4)
     equal(s.run, s.run)
-    assert(s:explain():find("It is the%s+only one%."), s:explain())
+    assert(s:explain():find("No other%s+steady motion exists%."), s:explain())
     equal(tostring(s), "steady: period 0.740741 T0, amplitude 0.860792 Mc/k, 0 stops a period")
 end)
 
@@ -56,7 +56,7 @@ test("a Lua function needs a period, which must be true; native sums know theirs
     near(sliding:steady{ M = f }.period, 1 / 1.35, 1e-15) -- read as a sine
     near(sliding:steady{ M = f }.amplitude, 0.860792180, 1e-9)
     raises_here(function() sliding:steady{ M = function(t) return math.abs(f(t)) end } end, "the period of M is not known")
-    raises_here(function() sliding:steady{ M = harmonic(1) + harmonic(2^0.5) } end, "the terms of M have no period in common")
+    raises_here(function() sliding:steady{ M = harmonic(1) + harmonic(2^0.5) } end, "the terms of M have no common period")
     raises_here(function() sliding:steady{ M = f, period = 0.7 } end, "M does not repeat itself after period = 0.7")
     raises_here(function() sliding:steady{ M = harmonic(1), period = 0.7 } end, "M does not repeat itself")
     raises_here(function() sliding:steady{ M = f, period = 0 } end, "period = 0 must be positive")
@@ -149,7 +149,7 @@ test("run:steady goes on from where the run has got to", function()
     near(run:steady().amplitude, 0.1291703518, 1e-10)
     local file = support.temporary ".csv"
     run:save(file)
-    raises_here(function() load(file):steady() end, "does not know its system")
+    raises_here(function() load(file):steady() end, "has no system")
     raises_here(function() run:steady{ theta0 = 1 } end, "no option 'theta0'")
 end)
 

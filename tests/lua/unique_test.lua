@@ -75,7 +75,7 @@ test("other starts reach motions far larger than the one found, and the adhesion
     local s = held:steady{ M = excitation.harmonic{ omega = 1 }, theta0 = 5 }
     equal(s.status, "steady")
     equal(s.unique, false)
-    assert(s:explain():gsub("%s+", " "):find("From another start the mass comes to rest for good.", 1, true))
+    assert(s:explain():gsub("%s+", " "):find("From another start the mass comes to rest.", 1, true))
 end)
 
 support.finish()

@@ -140,7 +140,7 @@ fails(function() return x:interp(vector{ 0, 1 }, vector{ 1 }) end, "2 and 1 numb
 fails(function() return x:dot(vector{ 1 }) end, "4 and 1 numbers")
 fails(function() return x:dot(3) end, "w must be a vector, got 3")
 fails(function() return x .. "a" end, "tostring(v)")
-fails(function() return x[vector{ 5 }] end, "w[1] = 5 is no place")
+fails(function() return x[vector{ 5 }] end, "w[1] = 5 is not an index")
 fails(function() return vector.logspace(0, 1, 3) end, "must be positive")
 fails(function() return vector.logspace(1, 2, 1) end, "n = 1 must be a whole number")
 

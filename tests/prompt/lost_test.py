@@ -62,17 +62,17 @@ class Blocks(Lost):
     def test_a_block_says_what_it_waits_for_and_how_to_leave_it(self):
         terminal = self.terminal()
         terminal.type("for i = 1, 2 do\r")
-        terminal.wait(lambda: terminal.row() == ">> line 1 waits for end; Ctrl-C gives it up")
+        terminal.wait(lambda: terminal.row() == ">> line 1 waits for end; Ctrl-C cancels it")
         terminal.type("f{ i,\r")
-        terminal.wait(lambda: terminal.row() == ">> { of line 2 waits for }; Ctrl-C gives it up")
+        terminal.wait(lambda: terminal.row() == ">> { of line 2 waits for }; Ctrl-C cancels it")
         terminal.type("i")
         terminal.wait(lambda: terminal.row() == ">> i")
 
     def test_an_empty_line_and_words_for_leaving_are_answered(self):
         session = self.session()
         session.enter("for i = 1, 2 do", CONTINUATION)
-        self.assertIn("(line 1 waits for end; Ctrl-C gives it up)", session.enter("", CONTINUATION))
-        self.assertIn("(for of line 1 waits for end; Ctrl-C gives it up, and :quit then leaves dinal)",
+        self.assertIn("(line 1 waits for end; Ctrl-C cancels it)", session.enter("", CONTINUATION))
+        self.assertIn("(for of line 1 waits for end; Ctrl-C cancels it, and :quit then leaves dinal)",
                       session.enter("quit", CONTINUATION))
         self.assertEqual(session.enter("print(i) end"), "1\n2")
 
@@ -88,7 +88,7 @@ class Blocks(Lost):
         self.assertTrue(session.until_prompt().rstrip().endswith("10\n10\n20\n20"))
 
     def test_a_colon_at_the_end_of_a_line_opens_no_block(self):
-        self.assertIn("a colon waits for the name of a method; a loop is: for i = 1, 10 do ... end",
+        self.assertIn("a colon needs the name of a method after it; a loop is: for i = 1, 10 do ... end",
                       self.session().enter("range(10):"))
 
 

@@ -265,7 +265,7 @@ class SweepFiles(unittest.TestCase):
                 self.assertEqual(self.run_script(**variables(0)), (0, out, ""))
                 code, again, err = self.run_script(**variables(2))
                 self.assertEqual((code, again), (0, ""))
-                self.assertIn("process 0 of 3 goes on", err)
+                self.assertIn("process 0 of 3 continues", err)
                 (self.home / "map.csv").unlink()
 
     def test_processes_at_once_one_killed(self):

@@ -184,7 +184,7 @@ class Hints(Typing):
         terminal.type("system{")
         terminal.shows("system{  I, k")
         terminal.type(ENTER)
-        terminal.wait(lambda: terminal.row() == ">> { of line 1 waits for }; Ctrl-C gives it up")
+        terminal.wait(lambda: terminal.row() == ">> { of line 1 waits for }; Ctrl-C cancels it")
         self.assertNotIn("I, k", terminal.text())
 
     def test_a_hint_goes_away_when_the_line_becomes_another_one(self):

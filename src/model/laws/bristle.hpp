@@ -36,19 +36,19 @@ struct Bristle {
 };
 
 inline constexpr text::Option dahl_options[] = {
-    {"Rd", "torque", text::needed, text::positive, "dry friction of a steady slip", text::fills<&Bristle::kinetic>},
+    {"Rd", "torque", text::needed, text::positive, "dry friction in steady sliding", text::fills<&Bristle::kinetic>},
     {"stiffness", "torque per rad", text::needed, text::positive, "of the bristles", text::fills<&Bristle::stiffness>},
 };
 inline constexpr text::Option lugre_options[] = {
     dahl_options[0],
-    {"Re", "torque", "Rd", text::positive, "friction of a steady slip at small speeds, at least Rd",
+    {"Re", "torque", "Rd", text::positive, "friction in steady sliding at small speeds, at least Rd",
      text::fills<&Bristle::breakaway>},
     {"speed", "rad per time unit", text::its_own, text::positive_or_infinite,
-     "where the difference of both has fallen to 1/e", text::fills<&Bristle::speed>},
+     "speed at which Re - Rd has fallen to 1/e", text::fills<&Bristle::speed>},
     dahl_options[1],
     {"damping", "torque time per rad", text::its_own, text::not_negative, "of the bristles",
      text::fills<&Bristle::damping>},
-    {"viscous", "torque time per rad", text::its_own, text::not_negative, "what grows with the speed of the slip",
+    {"viscous", "torque time per rad", text::its_own, text::not_negative, "viscous friction of the sliding",
      text::fills<&Bristle::viscous>},
 };
 inline constexpr text::Call dahl_call{"friction.dahl", "friction.dahl{ Rd = 0.3, stiffness = 1000 }", dahl_options};

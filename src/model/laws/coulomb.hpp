@@ -24,8 +24,8 @@ struct CoulombTorques {
     [[nodiscard]] Coulomb law() const { return {Rd, Re.value_or(Rd)}; }
 };
 inline constexpr text::Option coulomb_options[] = {
-    {"Rd", "torque", text::needed, text::not_negative, "dry friction while moving", text::fills<&CoulombTorques::Rd>},
-    {"Re", "torque", "Rd", text::not_negative, "what sticking can hold, at least Rd", text::fills<&CoulombTorques::Re>},
+    {"Rd", "torque", text::needed, text::not_negative, "dry friction while sliding", text::fills<&CoulombTorques::Rd>},
+    {"Re", "torque", "Rd", text::not_negative, "breakaway torque, at least Rd", text::fills<&CoulombTorques::Re>},
 };
 inline constexpr text::Call coulomb_call{"friction.coulomb", "friction.coulomb{ Rd = 0.3, Re = 0.4 }", coulomb_options};
 

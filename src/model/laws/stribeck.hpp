@@ -49,10 +49,10 @@ private:
 };
 
 inline constexpr text::Option stribeck_options[] = {
-    {"Rd", "torque", text::needed, text::not_negative, "dry friction at great speeds", text::fills<&Stribeck::kinetic>},
-    {"Re", "torque", text::needed, text::not_negative, "friction at speed 0 and what sticking can hold, at least Rd",
+    {"Rd", "torque", text::needed, text::not_negative, "dry friction at high speed", text::fills<&Stribeck::kinetic>},
+    {"Re", "torque", text::needed, text::not_negative, "friction at speed 0 and breakaway torque, at least Rd",
      text::fills<&Stribeck::breakaway>},
-    {"speed", "rad per time unit", text::needed, text::positive, "where the difference of both has fallen to 1/e",
+    {"speed", "rad per time unit", text::needed, text::positive, "speed at which Re - Rd has fallen to 1/e",
      text::fills<&Stribeck::speed>},
     {"shape", "", text::its_own, text::positive, "the power of the speed in the exponent",
      text::fills<&Stribeck::shape>},

@@ -41,7 +41,7 @@ inline constexpr text::Option tabulated_options[] = {
     {"speed", "rad per time unit", text::needed, text::any_finite, "increasing from 0", text::fills<&Tabulated::speed>},
     {"torque", "torque", text::needed, text::any_finite,
      "the friction at each speed; the last value holds for greater speeds", text::fills<&Tabulated::torque>},
-    {"Re", "torque", "the first torque", text::not_negative, "what sticking can hold, at least the first torque",
+    {"Re", "torque", "the first torque", text::not_negative, "breakaway torque, at least the first torque",
      text::fills<&Tabulated::breakaway>},
 };
 inline constexpr text::Call tabulated_call{

@@ -40,7 +40,7 @@ struct UserLaw {
 
 inline constexpr text::Option user_law_options[] = {
     {"Re", "torque", "the friction at speed 0", text::not_negative,
-     "what sticking can hold, at least the friction at speed 0", text::fills<&UserLaw::breakaway>},
+     "breakaway torque, at least the friction at speed 0", text::fills<&UserLaw::breakaway>},
 };
 inline constexpr text::Call user_law_call{
     "friction.law", "friction.law(function(speed) return 0.3 + 0.1*speed end, { Re = 0.5 })", user_law_options, true};

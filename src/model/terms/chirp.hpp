@@ -47,8 +47,8 @@ inline constexpr text::Option chirp_options[] = {
 };
 inline constexpr TermText Chirp::about{
     {"excitation.chirp", "excitation.chirp{ from = 0.2, to = 2, duration = 20 }", chirp_options},
-    "A sine whose frequency goes evenly from `from` to `to` (cycles per time unit) over `duration`, beginning at `at` "
-    "with sin(phase). It keeps the first frequency before that and the last one after it.",
+    "A sine whose frequency changes linearly from `from` to `to` (cycles per time unit) over `duration`, "
+    "beginning at `at` with sin(phase). It keeps the first frequency before that and the last one after it.",
     "print(excitation.chirp{ from = 0, to = 1, duration = 2 }(1))  --> 1.0"};
 
 }  // namespace dinal::model::terms

@@ -38,8 +38,7 @@ struct Exponential {
 
 inline constexpr text::Option exponential_options[] = {
     rows::amplitude<Exponential>("its first value"),
-    {"tau", rows::time, text::needed, text::not_zero, "in which it falls to 1/e; a negative one grows",
-     text::fills<&Exponential::tau>},
+    {"tau", rows::time, text::needed, text::not_zero, "time in which it falls to 1/e", text::fills<&Exponential::tau>},
     rows::at<Exponential>(),
 };
 inline constexpr TermText Exponential::about{

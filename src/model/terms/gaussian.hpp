@@ -35,13 +35,12 @@ struct Gaussian {
 inline constexpr text::Option gaussian_options[] = {
     rows::amplitude<Gaussian>(),
     rows::at<Gaussian>("its middle"),
-    {"sigma", rows::time, text::needed, text::positive,
-     "its standard deviation: half its breadth at 0.61 of its height", text::fills<&Gaussian::sigma>},
+    {"sigma", rows::time, text::needed, text::positive, "its standard deviation", text::fills<&Gaussian::sigma>},
 };
 inline constexpr TermText Gaussian::about{
     {"excitation.gaussian", "excitation.gaussian{ at = 1, sigma = 0.2 }", gaussian_options},
-    "A smooth bump, amplitude exp(-((t - at)/sigma)^2 / 2): sigma is the standard deviation. The spectral integrator "
-    "sees it however narrow it is; the others want steps of at most half of it.",
+    "A smooth bump, amplitude exp(-((t - at)/sigma)^2 / 2): sigma is the standard deviation. Any width is safe "
+    "with the spectral integrator; others need steps of at most sigma/2.",
     "M = excitation.gaussian{ amplitude = 2, at = 3, sigma = 0.5 }\nprint(M(3), M(3.5) / M(3) == math.exp(-0.5))  --> "
     "2.0\ttrue"};
 

@@ -25,15 +25,13 @@ struct Samples {
 };
 inline constexpr text::Option between_options[] = {
     {.name = "interpolation",
-     .meaning =
-         "what lies between the points: straight lines, or a cubic spline (not-a-knot, or periodic), whose first "
-         "two derivatives go on at the points",
+     .meaning = "interpolation between the points: straight lines, or a cubic spline (not-a-knot, or periodic)",
      .filled = text::fills<&Samples::interpolation>,
      .choices = interpolation_names},
     {.name = "period",
      .unit = "time units",
      .range = text::positive,
-     .meaning = "after which the points come again, for all times; a last point one period after the first repeats it",
+     .meaning = "period of the points; a last point one period after the first repeats it",
      .filled = text::fills<&Samples::period>},
 };
 inline constexpr text::Option points_options[] = {
@@ -144,12 +142,10 @@ private:
 
 inline constexpr TermText Polyline::about{
     {"excitation.samples", "excitation.samples{ t = { 0, 1, 2 }, M = { 0, 3, 0 } }", samples_options},
-    "Straight lines or a cubic spline between points, from two columns of a CSV file or from "
-    "two tables (or vectors). Outside of the points the first and the last value hold, unless "
-    "a period is given. time and value name the columns or number them; by default t (or time) "
-    "and M, otherwise the first and the second column. Each point is a break: a line has "
-    "another slope there, a spline only another third derivative (and where it begins and ends "
-    "a slope).",
+    "Straight lines or a cubic spline between points, from two columns of a CSV file or from two tables (or "
+    "vectors). Outside the points the first and the last value hold, unless a period is given. time and value "
+    "name or number the columns; by default t (or time) and M, otherwise the first and the second column. Each "
+    "point is a break.",
     "M = excitation.samples{ t = { 0, 1, 3 }, M = { 0, 2, 0 } }\nprint(M(0.5), M(2), M(9))  --> 1.0\t1.0\t0.0\n"
     "M = excitation.samples{ t = { 0, 1, 2, 3 }, M = { 0, 1, 0, -1 }, interpolation = \"cubic\", period = 4 }\n"
     "print(M(0.5), M(4.5))  --> 0.6875\t0.6875"};

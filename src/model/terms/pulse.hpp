@@ -32,7 +32,7 @@ inline constexpr text::Option pulse_options[] = {
 };
 inline constexpr TermText Pulse::about{
     {"excitation.pulse", "excitation.pulse{ at = 1, width = 0.2 }", pulse_options},
-    "amplitude for at <= t < at + width, else 0. Pulses add up to a train.",
+    "amplitude for at <= t < at + width, otherwise 0.",
     "M = excitation.pulse{ at = 1, width = 0.5 } + excitation.pulse{ at = 3, width = 0.5 }\nprint(M(1.2), M(2), "
     "M(3.2))  --> 1.0\t0.0\t1.0"};
 

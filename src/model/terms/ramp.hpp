@@ -46,7 +46,7 @@ inline constexpr text::Option ramp_options[] = {
 };
 inline constexpr TermText Ramp::about{
     {"excitation.ramp", "excitation.ramp{ slope = 2, at = 1 }", ramp_options},
-    "0 before `at`, then rising by slope per time unit; constant again after duration.",
+    "0 before `at`, then rising with slope; constant after duration.",
     "M = excitation.ramp{ slope = 2, at = 1, duration = 3 }\nprint(M(0), M(2), M(9))  --> 0.0\t2.0\t6.0"};
 
 }  // namespace dinal::model::terms

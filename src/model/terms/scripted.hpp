@@ -115,7 +115,7 @@ inline void repeat_after(Scripted& s, double period) {
 inline constexpr text::Option scripted_options[] = {
     {"breaks", "time units", text::its_own, text::any_finite, "times at which it jumps or kinks",
      text::fills<&Scripted::breaks>},
-    {"period", "time units", text::its_own, text::positive, "after which the breaks repeat", text::sets<repeat_after>},
+    {"period", "time units", text::its_own, text::positive, "period of the breaks", text::sets<repeat_after>},
 };
 inline constexpr TermText Scripted::about{
     {"excitation.scripted", "excitation.scripted(f, { breaks = { 0.5, 2 }, period = 3 })", scripted_options, true},

@@ -44,13 +44,13 @@ inline constexpr text::Option square_options[] = {
     rows::period<Square>(),
     rows::frequency<Square>(),
     rows::omega<Square>(),
-    {"duty", "", text::its_own, text::between_0_and_1, "the part of a period at which it is positive",
+    {"duty", "", text::its_own, text::between_0_and_1, "the fraction of a period for which it is positive",
      text::fills<&Square::duty>},
     rows::at<Square>(rows::where_a_period_begins),
 };
 inline constexpr TermText Square::about{
     {"excitation.square", "excitation.square{ period = 2 }", square_options},
-    "+amplitude for the first part `duty` of each period, -amplitude for the rest. A period begins at `at`.",
+    "+amplitude for the fraction `duty` of each period, then -amplitude. A period begins at `at`.",
     "M = excitation.square{ period = 4, duty = 0.25 }\nprint(M(0), M(0.9), M(1))  --> 1.0\t1.0\t-1.0"};
 
 }  // namespace dinal::model::terms

@@ -136,23 +136,23 @@ namespace rows {
 inline constexpr const char* torque = "torque";
 inline constexpr const char* time = "time units";
 inline constexpr const char* cycles = "cycles per time unit";
-inline constexpr const char* where_a_period_begins = "where a period begins";
+inline constexpr const char* where_a_period_begins = "start of a period";
 
 template <class T>
 constexpr text::Option amplitude(const char* meaning = "greatest value") {
     return {.name = "amplitude", .unit = torque, .meaning = meaning, .filled = text::fills<&T::amplitude>};
 }
 template <class T>
-constexpr text::Option at(const char* meaning = "where it begins") {
+constexpr text::Option at(const char* meaning = "start") {
     return {.name = "at", .unit = time, .meaning = meaning, .filled = text::fills<&T::at>};
 }
 template <class T>
-constexpr text::Option width(const char* meaning = "how long it lasts") {
+constexpr text::Option width(const char* meaning = "duration") {
     return {"width", time, text::needed, text::positive, meaning, text::fills<&T::width>};
 }
 template <class T>
 constexpr text::Option period() {
-    return {"period", time, text::needed, text::positive, "after which it begins again", text::fills<&T::period>};
+    return {"period", time, text::needed, text::positive, "period of repetition", text::fills<&T::period>};
 }
 template <class T>
 void set_frequency(T& term, double frequency) {

@@ -50,7 +50,7 @@ inline constexpr text::Option triangle_options[] = {
 };
 inline constexpr TermText Triangle::about{
     {"excitation.triangle", "excitation.triangle{ period = 2 }", triangle_options},
-    "The corners of a sine joined by straight lines: 0, amplitude, 0, -amplitude. A period begins at `at`.",
+    "Straight lines through 0, amplitude, 0, -amplitude. A period begins at `at`.",
     "M = excitation.triangle{ period = 4 }\nprint(M(0.5), M(1), M(3))  --> 0.5\t1.0\t-1.0"};
 
 }  // namespace dinal::model::terms

@@ -104,33 +104,32 @@ private:
 }  // namespace
 
 OwnRule Dinal1989::own_rule() const {
-    return {
-        fmt::format("It was integrated as in 1989, in steps of h = {:.5g}: events are noticed at the ends of steps, "
-                    "and a stop is what the stop rule of the listing takes for one.",
-                    h),
-        "the listing let it go at"};
+    return {fmt::format(
+                "The run was integrated as in 1989, in steps of h = {:.5g}: events are detected at the ends of steps, "
+                "and the stop rule of the listing decides what is a stop.",
+                h),
+            "the listing released it at"};
 }
 
 /// The program of 1989 read six numbers: I, k, C, Rd, Re and Mc.
 std::optional<text::Error> Dinal1989::wrong_for(const model::Oscillator& system,
                                                 const model::Excitation& /*excitation*/) const {
     if (!system.has_spring()) {
-        return text::Error{.sentence = "integrator.dinal1989 divides by k: with k = 0 take integrator.spectral or rk4",
+        return text::Error{.sentence = "integrator.dinal1989 divides by k: for k = 0 use integrator.spectral or rk4",
                            .option = "integrator"};
     }
     if (system.walls()) {
-        return text::Error{.sentence = "integrator.dinal1989 knows no walls: take integrator.spectral or rk4",
+        return text::Error{.sentence = "integrator.dinal1989 does not support walls: use integrator.spectral or rk4",
                            .option = "integrator"};
     }
     if (!system.spring().none()) {
         return text::Error{
-            .sentence = "integrator.dinal1989 knows the spring k theta only: take integrator.spectral or rk4",
+            .sentence = "integrator.dinal1989 supports only the spring k theta: use integrator.spectral or rk4",
             .option = "integrator"};
     }
     if (system.friction().none() || system.friction().as<model::laws::Coulomb>() != nullptr) return std::nullopt;
     return text::Error{
-        .sentence =
-            "integrator.dinal1989 knows Coulomb's friction only, with Rd and Re: take integrator.spectral or rk4",
+        .sentence = "integrator.dinal1989 supports only Coulomb friction, Rd and Re: use integrator.spectral or rk4",
         .option = "integrator"};
 }
 

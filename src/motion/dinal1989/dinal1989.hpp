@@ -27,7 +27,7 @@ inline constexpr const char* stop_rules[] = {"listing", "text"};
 inline constexpr text::Option dinal1989_options[] = {
     {"h", "time units", text::needed, text::positive, "the step", text::fills<&Dinal1989::h>},
     {.name = "stop",
-     .meaning = "whose rule stops the mass: that of the listing, or that of the report's text",
+     .meaning = "the stop rule: that of the listing, or that of the report's text",
      .filled = text::fills<&Dinal1989::stop>,
      .choices = stop_rules},
     {.name = "slip",
@@ -37,11 +37,10 @@ inline constexpr text::Option dinal1989_options[] = {
 
 inline constexpr MethodText Dinal1989::about{
     {"integrator.dinal1989", "integrator.dinal1989{ h = 0.01 }", dinal1989_options},
-    "The program DINAL as it was printed in 1989, with step h (time units) and its own rule for stops; a museum piece "
-    "for comparison. stop = \"text\" takes the rule that the report's text states instead; slip = true repeats the "
-    "wrong index with which the report's chapter 6 was computed. As in 1989, M is asked in order of time and, where rows "
-    "fall on steps, once a time if it is a function of t: it is the one method that does not find out an M that keeps a "
-    "memory.",
+    "The program DINAL as it was printed in 1989, with step h (time units) and its own rule for stops, for "
+    "comparison. stop = \"text\" uses the rule of the report's text; slip = true repeats the wrong index of the "
+    "report's chapter 6. As in 1989, M is evaluated in order of time, so this method alone does not detect an M "
+    "with memory.",
     "sys = nondimensional{}\n"
     "run = sys:simulate{ theta0 = 1, t_end = 0.5, dt = 0.5, integrator = integrator.dinal1989{ h = 0.1 } }\n"
     "print(string.format(\"%.6f\", run.theta[2]))  --> -0.997964"};

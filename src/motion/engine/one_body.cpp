@@ -31,7 +31,8 @@ public:
         : Course(system), history_(std::move(history)) {}
     [[nodiscard]] text::Expected<model::State> at(double t) const override {
         if (t > history_->whole_until()) {
-            return text::Error{"the motion was kept in part only, for want of memory: take rows, or begin a run there"};
+            return text::Error{
+                "only part of the motion was kept, for lack of memory: ask for rows, or start a run there"};
         }
         const std::vector<double> y = history_->at(t);
         const auto& walls = system().walls();

@@ -29,31 +29,27 @@ bool Exact::goes_slowly(const model::Oscillator& system, const model::Excitation
 std::optional<text::Error> Exact::wrong_for(const model::Oscillator& system,
                                             const model::Excitation& excitation) const {
     if (system.walls()) {
-        return text::Error{.sentence = "integrator.exact{} knows no walls: use integrator.spectral{} for these",
+        return text::Error{.sentence = "integrator.exact{} does not support walls: use integrator.spectral{}",
                            .option = "integrator"};
     }
     if (!system.spring().none()) {
-        return text::Error{.sentence =
-                               "integrator.exact{} knows no spring but k theta: use integrator.spectral{} for this "
-                               "one",
+        return text::Error{.sentence = "integrator.exact{} supports only the spring k theta: use integrator.spectral{}",
                            .option = "integrator"};
     }
     if (system.friction().depends_on_speed()) {
         return text::Error{.sentence =
-                               "integrator.exact{} takes dry friction that does not depend on speed: use "
-                               "integrator.spectral{} for this law",
+                               "integrator.exact{} supports only dry friction that does not depend on speed: use "
+                               "integrator.spectral{}",
                            .option = "integrator"};
     }
     if (!system.has_spring()) {
-        return text::Error{.sentence =
-                               "integrator.exact{} takes a system with a spring: use integrator.spectral{} for "
-                               "k = 0",
+        return text::Error{.sentence = "integrator.exact{} needs a spring: use integrator.spectral{} for k = 0",
                            .option = "integrator"};
     }
     if (!model::has_closed_form(excitation)) {
         return text::Error{.sentence =
-                               "integrator.exact{} takes an M of native terms other than chirp and gaussian: "
-                               "use integrator.spectral{}, which takes every M",
+                               "integrator.exact{} supports only native terms other than chirp and gaussian: use "
+                               "integrator.spectral{}, which supports every M",
                            .option = "integrator"};
     }
     return std::nullopt;

@@ -19,12 +19,11 @@ struct Exact {
 
 inline constexpr MethodText Exact::about{
     {"integrator.exact", "integrator.exact{}", {}},
-    "The motion between events in closed form: free motion at any damping and the response to "
-    "each term of M, resonance included. Every event is proven to be the first. For an M of "
-    "native terms (all but chirp and gaussian; gains, delays, windows and sums of them), k > "
-    "0, no spring besides and no walls, and dry friction that does not depend on speed; for "
-    "all else there is integrator.spectral{}. A run that names no integrator takes this one "
-    "where it can, but for lines and powers of t under a damping ratio above 200.",
+    "The motion between events in closed form: free motion at any damping and the response to each term of M, "
+    "resonance included. Every event is proven to be the first. It supports an M of native terms (all except "
+    "chirp and gaussian; gains, delays, windows and sums of them), k > 0, no second spring or walls, and dry "
+    "friction that does not depend on speed. It is the default where it applies, except for lines and powers of "
+    "t with a damping ratio above 200.",
     "sys = nondimensional{ friction_ratio = 0.167 }\n"
     "run = sys:simulate{ velocity0 = 2*math.pi, t_end = 3, dt = 0.5, integrator = integrator.exact{} }\n"
     "print(string.format(\"%.9f\", (run:at(3))))  --> 0.155151392"};

@@ -52,13 +52,12 @@ text::Expected<model::State> Replay::at(double t) const {
     engine.run(checkpoints.before(step), last);
     if (trajectory.size() > 0 && rows.next_row() == 0) {
         return text::Error{
-            fmt::format("M failed between the rows near t = {:.6g}: it gives no number there any more", t)};
+            fmt::format("M failed between the rows near t = {:.6g}: it no longer returns a number there", t)};
     }
     if (next != nullptr) {
         const Rk4Checkpoint here = engine.here(last);
         if (here.state.theta != next->state.theta || here.state.velocity != next->state.velocity) {
-            return text::Error{
-                "M is no longer what it was during the run: simulate again before asking between the rows"};
+            return text::Error{"M has changed since the run: simulate again to evaluate it between the rows"};
         }
     }
     return model::State{trajectory.rows(0, 1), trajectory.rows(0, 2)};

@@ -26,9 +26,9 @@ inline constexpr text::Option rk4_options[] = {
 
 inline constexpr MethodText Rk4::about{
     {"integrator.rk4", "integrator.rk4{ h = 0.001 }", rk4_options},
-    "The classical Runge-Kutta method of fourth order with step h (time units), which keeps "
-    "its order through dry friction: a step ends where the velocity becomes zero and where M "
-    "is known to jump. h must not exceed the stability limit, 0.45 T0 without damping.",
+    "The classical Runge-Kutta method of fourth order with step h (time units), which keeps its order with dry "
+    "friction: a step ends where the velocity becomes zero and at known jumps of M. h must not exceed the "
+    "stability limit, 0.45 T0 without damping.",
     "print(integrator.rk4{ h = 0.001 })  --> integrator.rk4{ h = 0.001 }"};
 
 }  // namespace dinal::motion::rk4

@@ -104,7 +104,8 @@ text::Expected<model::State> Panels::at(double t) const {
     if (size_ == 0) return text::Error{"the run has no motion to evaluate: it ended where it started"};
     if (t > end() && !complete_) {
         return text::Error{fmt::format(
-            "the motion was kept up to t = {:.6g} only, for want of memory: take rows, or begin a run there", end())};
+            "the motion was kept only up to t = {:.6g}, for lack of memory: ask for rows, or start a run there",
+            end())};
     }
     // The last panel that begins at or before t.
     std::size_t low = 0, high = size_;

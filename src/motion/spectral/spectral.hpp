@@ -26,21 +26,20 @@ struct Spectral {
 };
 
 inline constexpr text::Option spectral_options[] = {
-    {"tolerance", "", text::its_own, text::between_0_and_1, "relative, of the motion on each panel",
+    {"tolerance", "", text::its_own, text::between_0_and_1, "relative error on each panel",
      text::fills<&Spectral::tolerance>},
     {"max_panel", "time units", "0.6 T0", text::positive_or_infinite, "the longest panel",
      text::fills<&Spectral::max_panel>},
     {"narrowest", "time units", "0.0585 T0", text::positive_or_infinite,
-     "a pulse of a function M that lasts this long is never missed", text::fills<&Spectral::narrowest>},
+     "length of the shortest pulse of a function M, which is then never missed", text::fills<&Spectral::narrowest>},
 };
 
 inline constexpr MethodText Spectral::about{
     {"integrator.spectral", "integrator.spectral{ tolerance = 1e-12 }", spectral_options},
-    "The motion as polynomials on panels between events and breaks of M, with every event in its place: right to "
-    "rounding where the samples resolve M. Noise in M limits the accuracy. tolerance is relative, for each panel. A "
-    "pulse of a function M that cannot be read, and falls between two samples, is not seen: run.gap is the longest time between them. "
-    "Announce it by excitation.scripted(f, { breaks = {...} }), or say by narrowest (time units) how short the "
-    "shortest pulse is.",
+    "The motion as polynomials on panels between events and breaks of M, accurate to rounding if the samples "
+    "resolve M. Events are located. Noise in M limits the accuracy. A pulse of a function M that cannot be read "
+    "may fall between two samples and be missed: run.gap is the longest time between them. Give its times by "
+    "excitation.scripted(f, { breaks = {...} }), or the length of the shortest pulse by narrowest.",
     "sys = nondimensional{ friction_ratio = 0.167 }\n"
     "run = sys:simulate{ velocity0 = 2*math.pi, t_end = 3, dt = 0.5, integrator = integrator.spectral{} }\n"
     "print(string.format(\"%.9f\", (run:at(3))))  --> 0.155151392"};
