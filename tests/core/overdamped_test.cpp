@@ -6,6 +6,7 @@
 #include "support/catch.hpp"
 #include "support/measure.hpp"
 #include "support/reference_systems.hpp"
+#include "support/within.hpp"
 
 namespace dinal::overdamped_test {
 
