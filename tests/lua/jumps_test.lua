@@ -24,26 +24,6 @@ test("a belt that is a function and jumps past the mass turns the sliding round,
     assert(run:energy().total.closure < 1e-11)
 end)
 
-test("a belt that is a function and jumps leaves behind what stood on it", function()
-    local run = system { I = 1, k = 0, Rd = 0.25 }:simulate {
-        belt = function(t) return t < 1 and 0.5 or -0.5 end, velocity0 = 0.5, t_end = 2, dt = 0.5,
-    }
-    equal(kinds(run), "slip")
-    near(run.velocity[#run], 0.25, found)
-    near(run.theta[#run], 0.5 + 0.5 - 0.125, found)
-    assert(run:energy().total.closure < 1e-11)
-end)
-
-test("a jump of a belt that is still ahead lets nothing go", function()
-    local run = system { I = 1, k = 0, Rd = 0.25 }:simulate {
-        belt = function(t) return t < 2.1 and 0.5 or -0.5 end, t_end = 3, dt = 0.5,
-    }
-    equal(kinds(run), "stick slip")
-    near(run.events[1].t, 2, 1e-12)
-    near(run.events[2].t, 2.1, found)
-    near(run.velocity[#run], 0.5 - 0.25 * 0.9, found)
-end)
-
 test("a belt with kinks where it is zero is followed in no time", function()
     local asked = 0
     local run = system { I = 1, k = 0, Rd = 0.1 }:simulate {

@@ -79,15 +79,6 @@ test("a thousand functions of their arguments are believed", function()
     end
 end)
 
-test("a controller that samples may keep a memory", function()
-    for _, method in ipairs(methods) do
-        local sum = 0
-        local run = sys:simulate { theta0 = 1, t_end = 10, dt = 0.1, integrator = method,
-            M = excitation.sampled(function(_, theta) sum = sum + 0.1 * (0.2 - theta) return sum end, { every = 0.1 }) }
-        assert(run.outcome == "stuck at the end" or run.outcome == "reached the end", run.outcome)
-    end
-end)
-
 test("the oath costs at most three calls of a hundred", function()
     for _, method in ipairs { integrator.spectral {}, integrator.rk4 { h = 0.005 } } do
         for _, feedback in ipairs { false, true } do
