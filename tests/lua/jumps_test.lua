@@ -129,7 +129,7 @@ test("under rk4 a belt that jumps, and does not say so, leaves the mass on it it
                 local task = { velocity0 = 0.1, t_end = 10, dt = 0.5, belt = belt[1] + excitation.step { amplitude = belt[2] - belt[1], at = at } }
                 local told = s:simulate(task)
                 task.belt = function(t) return t < at and belt[1] or belt[2] end
-                for _, h in ipairs { 0.01, 0.001 } do
+                for _, h in ipairs(at == 1 and { 0.01, 0.001 } or { 0.01 }) do
                     task.integrator = integrator.rk4 { h = h }
                     local run = s:simulate(task)
                     equal(run.outcome, told.outcome)
@@ -156,7 +156,7 @@ end
 
 test("a belt that jumps, and does not say so, moves the mass as one that does, stuck or sliding", function()
     math.randomseed(5)
-    for trial = 1, 24 do
+    for trial = 1, support.lots(24) do
         local Rd, k, C = 0.3, math.random() < 0.2 and 0 or 1, math.random() < 0.5 and 0 or 0.1
         local sys = system { I = 1, k = k, C = C, Rd = Rd, Re = math.random() < 0.5 and Rd or 0.5 }
         -- The steps of rk4 end at jumps of 0.2, but for an ulp. Some even jumps in a piece cancel in its last coefficients.
@@ -181,7 +181,7 @@ test("what acts and jumps, and does not say so, does what it does when it says s
     local function any(size)
         return unannounced(size, 0.3 + 2 * math.random(), math.random(), math.random() < 0.4)
     end
-    for _ = 1, 50 do
+    for _ = 1, support.lots(50) do
         local Rd, Re = 0.2 + 0.2 * math.random(), 1 + math.random()
         local laws = {
             friction.coulomb { Rd = Rd },

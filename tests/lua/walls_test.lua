@@ -71,7 +71,7 @@ end)
 
 test("between walls nothing grows, and a mass that rests against one is stable", function()
     local at_wall = 0
-    for seed = 1, 25 do
+    for seed = 1, support.lots(25) do
         math.randomseed(seed, 7)
         local function pick(a, b) return a + (b - a) * math.random() end
         local Rd = pick(0.02, 0.4)
@@ -96,7 +96,7 @@ test("between walls nothing grows, and a mass that rests against one is stable",
             end
         end
     end
-    assert(at_wall > 0)
+    assert(at_wall > 0 or support.lots(25) < 25)
     raises_here(function() system { I = 1, k = 1, walls = { upper = 1 } }:steady { theta0 = 2 } end, "theta0 = 2 is beyond the wall at upper = 1")
 end)
 

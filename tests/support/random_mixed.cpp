@@ -442,7 +442,10 @@ void check_random_mixed(int cases) {
         const MixedCase c = mixed_case(static_cast<std::uint64_t>(number));
         const std::string fault = fault_of(c, 1e-10, number % 3 == 0);
         ambiguous += fault == "?" ? 1 : 0;
-        if (!fault.empty() && fault != "?") FAIL_CHECK("case " << number << ": " << fault << "\n" << c.story);
+        if (!fault.empty() && fault != "?")
+            FAIL_CHECK("case " << number << " (DINAL_ORACLE_FIRST=" << number << " DINAL_ORACLE_CASES=1): " << fault
+                               << "\n"
+                               << c.story);
     }
     INFO(ambiguous << " ambiguous");
     CHECK(5 * ambiguous <= cases + 5);
