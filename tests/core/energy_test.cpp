@@ -30,11 +30,6 @@ Energy energy_of_run(const Oscillator& system, const Excitation& M, const State&
     return std::move(energy).value();
 }
 
-Excitation feedback(std::function<double(double, const State&)> f) {
-    return excitations::made(
-        Scripted{.function = std::make_shared<excitations::Probe>(std::move(f)), .feedback = true});
-}
-
 /// All that must hold of any energy: the closure in total and for each half cycle, and the parts make the whole.
 void check_books(const Energy& energy) {
     CAPTURE(energy.closure());
@@ -121,36 +116,6 @@ TEST_CASE("a steady cycle: M puts in 4 Rd X and what the damper takes", "[energy
     CHECK(std::fabs(last.theta_end) == Approx(X).epsilon(1e-10));
     CHECK(last.balance.work.dry == Approx(2 * 0.418 * X).epsilon(1e-10));
     CHECK(last.balance.work.input == Approx(last.balance.work.dry + last.balance.work.viscous).epsilon(near));
-    check_books(energy);
-}
-
-TEST_CASE("a motor that acts like a damper takes what the damper would", "[energy]") {
-    const double c = 0.119 / pi;
-    const Energy motor =
-        energy_of_run(nondimensional(0, 0.06), feedback([c](double, const State& y) { return -c * y.velocity; }),
-                      {0, 2 * pi}, {0, 5});
-    const Energy damper = energy_of_run(nondimensional(0.119, 0.06), {}, {0, 2 * pi}, {0, 5});
-    CHECK(motor.total.work.input == Approx(-damper.total.work.viscous).epsilon(1e-11));
-    CHECK(motor.total.work.dry == Approx(damper.total.work.dry).epsilon(1e-11));
-    check_books(motor);
-    // An unstable one: it feeds the motion, a thousandfold.
-    const Energy fed = energy_of_run(
-        nondimensional(0, 0.01), feedback([](double, const State& y) { return 0.1 * y.velocity; }), {0.2, 0}, {0, 4});
-    CHECK(fed.total.work.input > 100 * fed.start.spring);
-    check_books(fed);
-    // A van der Pol oscillator on its limit cycle: what is nonlinear is iterated, not solved for.
-    check_books(energy_of_run(nondimensional(0, 0.05), feedback([](double, const State& y) {
-                                  return 0.1 * (1 - y.theta * y.theta) * y.velocity;
-                              }),
-                              {0.5, 0}, {0, 30}));
-}
-
-TEST_CASE("a thousand periods with two thousand stops add up as one does", "[energy]") {
-    const Energy energy = energy_of_run(nondimensional(0, 0.836), harmonic(1, 2 * pi), {1, 0}, {0, 1000});
-    REQUIRE(energy.half_cycles.size() > 1990);
-    for (std::size_t i = 100; i + 1 < energy.half_cycles.size(); i += 100) {
-        CHECK(energy.half_cycles[i].balance.work.dry == Approx(2 * 0.836 * 0.1291703518).epsilon(1e-9));
-    }
     check_books(energy);
 }
 

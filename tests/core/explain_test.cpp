@@ -5,7 +5,6 @@
 #include <numbers>
 #include <sstream>
 
-#include "analysis/phase_lag.hpp"
 #include "analysis/recurrence.hpp"
 #include "model/forcing.hpp"
 #include "support/catch.hpp"
@@ -97,18 +96,6 @@ TEST_CASE("steady motion with stops: period, amplitude, lag, stops and the time 
 TEST_CASE("the fundamental of Den Hartog's motion lags by 2.4555 rad", "[explain]") {
     const double r = 1.35;
     const Oscillator system = nondimensional(0, 0.5);
-    const Excitation M = harmonic(1, r * 2 * pi);
-    for (const Integrator& integrator : {Integrator{Spectral{}}, Integrator{Rk4{0.001}}}) {
-        const Trajectory run = must_run(system, M, {1, 0}, {0, 100}, Grid::every(0.005), integrator);
-        const auto motion = recurrence(run.events);
-        REQUIRE(motion);
-        CHECK(motion->steady);
-        CHECK(motion->period == Approx(1 / r).epsilon(1e-6));
-        CHECK(motion->amplitude == Approx(0.860792180).epsilon(1e-4));  // what is left of the start after 100 periods
-        const auto lag = phase_lag(run, M, 1 / r, motion->until);
-        REQUIRE(lag);
-        CHECK(*lag == Approx(2.4555).margin(0.001));
-    }
     // A function tells no period; the motion does.
     const auto sine = [r](double t) { return std::sin(r * 2 * pi * t); };
     const std::string text =

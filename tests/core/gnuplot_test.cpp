@@ -56,15 +56,6 @@ std::string svg(const Figure& figure) {
 
 }  // namespace
 
-TEST_CASE("a user's words stand in single quotes, apostrophes between double ones, on one line", "[gnuplot]") {
-    CHECK(quoted_words("plain θ") == "'plain θ'");
-    CHECK(quoted_words("it's") == R"('it'."'".'s')");
-    CHECK(quoted_words("''") == R"(''."'".''."'".'')");
-    CHECK(quoted_words("a'\nsystem 'x'") == R"('a'."'".' system '."'".'x'."'".'')");
-    CHECK(quoted_words("`date` \"$(date)\" \\") == "'`date` \"$(date)\" \\'");
-    CHECK(quoted_words("\xff") == "'\xEF\xBF\xBD'");
-}
-
 TEST_CASE("no word of a user becomes a command of gnuplot or of a shell", "[gnuplot]") {
     const testing::TemporaryFolder folder;
     const std::string victim = folder.file("victim");
@@ -112,12 +103,6 @@ TEST_CASE("a picture says what it shows to those who do not see it", "[gnuplot]"
     CHECK(picture.find("Gnuplot") == std::string::npos);
     figure.title = "a < b & 'c'";
     CHECK(with_words(svg(figure), {&figure, 1}).find("<title>a &lt; b &amp; ") != std::string::npos);
-}
-
-TEST_CASE("the same figure gives the same bytes", "[gnuplot]") {
-    CHECK(svg(wave()) == svg(wave()));
-    const Figure one = wave(), same = wave();
-    CHECK(gnuplot_file({&one, 1}, {}) == gnuplot_file({&same, 1}, {}));
 }
 
 TEST_CASE("the file to be restyled draws the same picture as the pipe", "[gnuplot]") {
@@ -223,17 +208,6 @@ TEST_CASE("an area between two curves is interrupted where one of them is", "[gn
         ++areas;
     }
     CHECK(areas == 3);
-}
-
-TEST_CASE("svg, png and pdf begin as such files begin", "[gnuplot]") {
-    const Figure figure = spiral(1000);
-    CHECK(svg(figure).find("<svg") < 200);
-    const auto png = run_gnuplot(gnuplot_input({&figure, 1}, Terminal::png, {}));
-    REQUIRE(png);
-    CHECK(png->substr(1, 3) == "PNG");
-    const auto pdf = run_gnuplot(gnuplot_input({&figure, 1}, Terminal::pdf, {}));
-    REQUIRE(pdf);
-    CHECK(pdf->substr(0, 5) == "%PDF-");
 }
 
 TEST_CASE("the size of the sheet is what was asked, in cm", "[gnuplot]") {

@@ -1,4 +1,5 @@
-// Friction laws other than one number each for sliding and holding: every law in every integrator that knows friction.
+// Friction laws other than one number each for sliding and holding; hybrid_test.cpp and corners_test.cpp have their
+// motions against independent integrators.
 #include <cmath>
 
 #include "analysis/energy.hpp"
@@ -10,7 +11,6 @@
 #include "model/sticking.hpp"
 #include "support/catch.hpp"
 #include "support/measure.hpp"
-#include "support/oracle.hpp"
 #include "support/stribeck.hpp"
 #include "support/within.hpp"
 
@@ -24,34 +24,11 @@ using model::laws::Coulomb;
 
 namespace {
 
-/// A law, and what it has beside its constant at standstill, once more and independently: against the motion.
 struct LawCase {
     const char* name;
     Friction law;
-    real (*remainder)(real velocity);
-    double rk4_tolerance = 1e-9;  ///< (w0 h)^4/120 of 60 radians, and as much for the events
 };
 
-real none(real) {
-    return 0;
-}
-real of_stribeck(real v) {
-    const real fall = (0.6L - 0.25L) * (std::exp(-(v / 0.4L) * (v / 0.4L)) - 1);
-    return v < 0 ? -fall : fall;
-}
-
-/// Tustin's curve, which has a corner at speed 0 when it is written with |v|.
-real of_tustin(real v) {
-    const real fall = 0.35L * (std::exp(-std::fabs(v) / 0.4L) - 1);
-    return v < 0 ? -fall : fall;
-}
-real of_table(real v) {
-    const real s = std::fabs(v), fall = s < 0.5L ? -0.5L * s : s < 2 ? -0.25L + 0.1L * (s - 0.5L) : -0.1L;
-    return v < 0 ? -fall : fall;
-}
-real of_function(real v) {
-    return 0.1L * v * std::fabs(v);
-}
 /// 0.25 + 0.1 v^2, as a user would write it.
 class QuadraticLaw final : public UserFunction {
 public:
@@ -63,16 +40,14 @@ public:
 
 const std::vector<LawCase>& law_cases() {
     static const std::vector<LawCase> cases = {
-        {"coulomb", Coulomb{0.25, 0.6}, none},
-        {"asymmetric", AsymmetricCoulomb{.forward = {0.1, 0.3}, .backward = {0.35, 0.5}}, none},
-        {"a stranger's", truth::Stribeck{.kinetic = 0.25, .breakaway = 0.6, .speed = 0.4}, of_stribeck},
-        {"stribeck", model::laws::Stribeck{.kinetic = 0.25, .breakaway = 0.6, .speed = 0.4}, of_stribeck},
-        {"tustin", model::laws::Stribeck{.kinetic = 0.25, .breakaway = 0.6, .speed = 0.4, .shape = 1}, of_tustin},
-        {"table", model::laws::Tabulated{.speed = {0, 0.5, 2}, .torque = {0.45, 0.2, 0.35}, .breakaway = 0.6}, of_table,
-         1e-6},  // each corner of the table costs a step of second order
+        {"coulomb", Coulomb{0.25, 0.6}},
+        {"asymmetric", AsymmetricCoulomb{.forward = {0.1, 0.3}, .backward = {0.35, 0.5}}},
+        {"a stranger's", truth::Stribeck{.kinetic = 0.25, .breakaway = 0.6, .speed = 0.4}},
+        {"stribeck", model::laws::Stribeck{.kinetic = 0.25, .breakaway = 0.6, .speed = 0.4}},
+        {"tustin", model::laws::Stribeck{.kinetic = 0.25, .breakaway = 0.6, .speed = 0.4, .shape = 1}},
+        {"table", model::laws::Tabulated{.speed = {0, 0.5, 2}, .torque = {0.45, 0.2, 0.35}, .breakaway = 0.6}},
         {"function",
-         model::laws::UserLaw{.function = std::make_shared<QuadraticLaw>(), .at_zero = 0.25, .breakaway = 0.6},
-         of_function},
+         model::laws::UserLaw{.function = std::make_shared<QuadraticLaw>(), .at_zero = 0.25, .breakaway = 0.6}},
     };
     return cases;
 }
@@ -81,60 +56,9 @@ Oscillator with_law(const Friction& law, double damping = 0) {
     return system_of({.inertia = 1, .stiffness = 1, .damping = damping, .friction = law});
 }
 
-std::string kinds(std::span<const Event> events) {
-    std::string text;
-    for (const Event& event : events) text.append(name(event.kind)) += ' ';
-    return text;
-}
-
-/// Against the oracle; a position may be off by `tolerance`, an event's time by its root for want of a slope.
-void check_against_oracle(const LawCase& c, const Integrator& integrator, double tolerance) {
-    const Oscillator system = with_law(c.law, 0.02);
-    const Window window{0, 60};
-    const State initial{1.3, 0.2};
-    const Excitation M = harmonic(0.8, 0.3, 0.4);
-    const Trajectory run = must_run(system, M, initial, window, Grid::every(0.83), integrator);
-    Load load{.torque =
-                  [&](real t, real, const truth::Motion& y) {
-                      return 0.8L * std::sin(static_cast<real>(0.3) * t + static_cast<real>(0.4)) -
-                             c.remainder(y.velocity);
-                  },
-              .quickest = 0.3};
-    std::vector<double> times(run.column(Column::t).begin(), run.column(Column::t).end());
-    const Oracle oracle(system, load, initial, window, 2, times);
-    REQUIRE(oracle.narrowest() > 1e-6);  // nothing that a small error would decide otherwise
-    std::string expected;
-    for (const OracleEvent& event : oracle.events()) expected.append(name(event.kind)) += ' ';
-    REQUIRE(kinds(run.events) == expected);
-    CHECK_THAT(expected, Catch::Contains("stick") && Catch::Contains("slip"));
-    for (std::size_t i = 0; i < run.events.size(); ++i) {
-        CAPTURE(i, run.events[i].t);
-        // A time is the error of the velocity over its slope, which falls to a twentieth in these runs.
-        CHECK(run.events[i].t == within(static_cast<double>(oracle.events()[i].t), 40 * tolerance));
-        CHECK(run.events[i].theta == within(static_cast<double>(oracle.events()[i].theta), tolerance));
-    }
-    const Lowered lowered(system);
-    for (Eigen::Index i = 0; i < run.size(); ++i) {
-        const auto& y = oracle.motions()[static_cast<std::size_t>(i)];
-        CAPTURE(i, run.rows(i, 0));
-        CHECK(run.rows(i, 1) == within(static_cast<double>(y.theta), tolerance));
-        CHECK(run.rows(i, 2) == within(static_cast<double>(y.velocity), tolerance));
-        const double v = run.rows(i, 2);
-        if (v != 0) CHECK(run.rows(i, 4) == -sign_of(motion_of(v)) * c.law.sliding(motion_of(v), std::fabs(v)));
-    }
-}
-
 }  // namespace
 
-TEST_CASE("every friction law moves as an independent integrator says, in spectral and in rk4", "[laws]") {
-    for (const LawCase& c : law_cases()) {
-        CAPTURE(c.name);
-        check_against_oracle(c, Spectral{}, 1e-11);  // a hundred panels, each to 1e-13 and some roundings
-        check_against_oracle(c, Rk4{0.002}, c.rk4_tolerance);
-    }
-}
-
-TEST_CASE("the energy adds up under every friction law", "[laws][energy]") {
+TEST_CASE("the energy adds up under every friction law, and rows tell its friction", "[laws][energy]") {
     for (const LawCase& c : law_cases()) {
         CAPTURE(c.name);
         const Trajectory run =
@@ -147,6 +71,10 @@ TEST_CASE("the energy adds up under every friction law", "[laws][energy]") {
         const auto columns = analysis::energy_columns(run);
         CHECK(columns.col(static_cast<Eigen::Index>(analysis::EnergyColumn::error)).cwiseAbs().maxCoeff() <
               1e-12 * energy->flow);
+        for (Eigen::Index i = 0; i < run.size(); ++i) {
+            const double v = run.rows(i, 2);
+            if (v != 0) CHECK(run.rows(i, 4) == -sign_of(motion_of(v)) * c.law.sliding(motion_of(v), std::fabs(v)));
+        }
     }
 }
 

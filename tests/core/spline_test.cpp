@@ -27,16 +27,6 @@ Samples cubic(std::vector<double> t, std::vector<double> M, std::optional<double
 Polyline through(Samples samples) {
     return std::make_shared<const Samples>(std::move(samples));
 }
-/// The closed form on the stretch about t, as (value, slope, bend) at t.
-std::array<double, 3> form_at(const Excitation& M, double inside, double t) {
-    ClosedForm sum;
-    closed_form(M, inside, 0, sum);
-    std::array<double, 4> c{};
-    std::copy(sum.powers().begin(), sum.powers().end(), c.begin());
-    const double d = t - inside;
-    return {c[0] + d * (c[1] + d * (c[2] + d * c[3])), c[1] + d * (2 * c[2] + 3 * d * c[3]), 2 * c[2] + 6 * d * c[3]};
-}
-
 /// The derivatives 0 to 2 (and 3) of the powers of h that are in a cubic, at h.
 Eigen::RowVector4d powers_of(double h, int derivative) {
     switch (derivative) {
@@ -126,25 +116,6 @@ TEST_CASE("a spline through points of a cubic is that cubic, wherever the points
     CHECK(through(cubic({4}, {7})).value(-3) == 7);
 }
 
-TEST_CASE("at the points of a spline value, slope and bend go on, round the end of a period, too", "[spline]") {
-    const std::vector<double> t{0, 0.3, 0.5, 1.1, 1.2}, M{0, 2, -1, 0.5, 3};
-    for (const bool periodic : {false, true}) {
-        const auto made = Excitation::make(through(cubic(t, M, periodic ? std::optional(1.5) : std::nullopt)));
-        REQUIRE(made);
-        const std::vector<double> knots =
-            periodic ? std::vector<double>{1.5, 1.8, 2, 2.6, 2.7, 3} : std::vector<double>{0.3, 0.5, 1.1};
-        for (const double knot : knots) {
-            CHECK(made->next_break(knot - 0.05) == within(knot, 1e-15));
-            const auto left = form_at(*made, knot - 0.05, knot), right = form_at(*made, knot + 0.05, knot);
-            for (std::size_t i = 0; i < 3; ++i) CHECK(left[i] == within(right[i], 1e-11 * (1 + std::fabs(right[i]))));
-        }
-        if (periodic) {
-            for (int i = 0; i < 30; ++i) CHECK(made->value(0.05 * i) == within(made->value(0.05 * i - 7.5), 1e-12));
-            CHECK(made->value(1.5 * 4000) == within(M[0], 1e-9));
-        }
-    }
-}
-
 TEST_CASE("a sine through 16 points a period is one to the fourth power of their distance", "[spline]") {
     const auto worst_of = [](int n, Interpolation way) {
         Samples s{.t = {}, .M = {}, .interpolation = way, .period = 1};
@@ -187,18 +158,6 @@ TEST_CASE("two integrators agree on a motion under a spline, and its steady moti
             CHECK(first[i] == within(sine[i], 1e-4));
         }
     }
-}
-
-TEST_CASE("points that cannot be a period are refused", "[spline]") {
-    const auto complaint = [](const Samples& s) {
-        const auto made = Excitation::make(through(s));
-        return made ? std::string() : made.error().sentence;
-    };
-    CHECK(complaint(cubic({0, 1, 2}, {0, 1, 0.5}, 2)).find("M = 0 at t = 0, but 0.5 one period later") !=
-          std::string::npos);
-    CHECK(complaint(cubic({0, 1, 2}, {0, 1, 0}, 1.5)).find("period = 1.5 is shorter") != std::string::npos);
-    CHECK(complaint(cubic({0, 1, 1}, {0, 1, 0}, 1.5)).find("times must increase") != std::string::npos);
-    CHECK(complaint(cubic({0, 1, 2}, {0, 1, 0}, 2)).empty());
 }
 
 }  // namespace dinal::spline_test

@@ -1,9 +1,4 @@
-// Springs besides k theta: against elliptic functions, the energy of each half cycle, and an integrator that shares
-// nothing with ours.
-#include <fmt/format.h>
-
-#include <boost/math/special_functions/ellint_1.hpp>
-#include <boost/math/special_functions/jacobi_elliptic.hpp>
+// Springs besides k theta: their energy, steady motion and story; hybrid_test.cpp has systems with springs by lot.
 #include <cmath>
 
 #include "analysis/energy.hpp"
@@ -12,9 +7,7 @@
 #include "model/springs/polynomial_spring.hpp"
 #include "model/springs/user_spring.hpp"
 #include "support/catch.hpp"
-#include "support/crossing.hpp"
 #include "support/measure.hpp"
-#include "support/random_stops.hpp"
 #include "support/within.hpp"
 #include "support/written.hpp"
 
@@ -38,9 +31,6 @@ Oscillator with_spring(const Spring& spring, double k, double Rd = 0, double Re 
 Spring of_function(double (*torque)(double)) {
     return UserSpring{written([torque](double theta, const State&, std::span<const double>) { return torque(theta); })};
 }
-
-/// rk4 by (w h)^4/120 over the run.
-const std::vector<std::pair<Integrator, double>> methods = {{Spectral{}, 1e-12}, {Rk4{0.001}, 1e-9}};
 
 }  // namespace
 
@@ -71,32 +61,6 @@ TEST_CASE("the energy of springs adds up, of a user's function as well", "[sprin
     CHECK(PolynomialSpring{{{2, 3.0}, {4, 5.0}}}.energy(-2) == within(-8 - 32, 1e-13));
 }
 
-TEST_CASE("a spring in a run with more in it moves the mass as without", "[spring][hybrid]") {
-    const Oscillator system = with_spring(cubic(0.6), 0.5, 0.1, 0.25, 0.05);
-    const Excitation M = harmonic(0.9, 0.4);
-    Extras extras;
-    extras.states.push_back({"z", 0, written([](double, const State& y, std::span<const double>) { return y.theta; })});
-    const Trajectory plain = must_run(system, M, {1, 0}, {0, 60}, Grid::every(1), Spectral{});
-    for (const auto& [integrator, tolerance] :
-         std::vector<std::pair<Integrator, double>>{{Spectral{}, 1e-11}, {Rk4{0.002}, 1e-7}}) {
-        const auto more = simulate(system, M, {1, 0}, {0, 60}, Grid::every(1), integrator, {}, {}, extras);
-        REQUIRE(more);
-        REQUIRE(more->events.size() == plain.events.size());
-        for (std::size_t i = 0; i < plain.events.size(); ++i) {
-            CHECK(more->events[i].kind == plain.events[i].kind);
-            CHECK(more->events[i].t == within(plain.events[i].t, 40 * tolerance));
-        }
-        for (Eigen::Index i = 0; i < plain.size(); ++i) {
-            CHECK(more->rows(i, 1) == within(plain.rows(i, 1), tolerance));
-            if (plain.rows(i, 2) == 0) CHECK(more->rows(i, 4) == within(plain.rows(i, 4), tolerance));
-        }
-    }
-    const auto run = simulate(system, M, {1, 0}, {0, 60}, Grid::every(1), Spectral{}, {}, {}, extras);
-    const auto energy = analysis::energy_of(*run);
-    REQUIRE(energy);
-    CHECK(energy->closure() < 1e-12);
-}
-
 TEST_CASE("the steady motion of Duffing's oscillator is the one that a long run comes to", "[spring][steady]") {
     const Oscillator system = with_spring(cubic(1), 1, 0.05, 0.05, 0.2);
     const Excitation M = harmonic(1, 0.8);
@@ -115,10 +79,6 @@ TEST_CASE("the steady motion of Duffing's oscillator is the one that a long run 
     REQUIRE(adheres.status == analysis::SteadyStatus::adheres);
     CHECK(adheres.rest.second + std::pow(adheres.rest.second, 3) == within(0.2, 1e-9));
     CHECK(adheres.rest.first == within(-adheres.rest.second, 1e-9));
-}
-
-TEST_CASE("springs by lot move as an independent integrator says, in spectral and in rk4", "[spring][oracle]") {
-    check_random_stops(Lots::springs, 120);
 }
 
 TEST_CASE("the story of a run names a spring of its own", "[spring][explain]") {

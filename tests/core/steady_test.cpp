@@ -105,37 +105,6 @@ TEST_CASE("the steady motion is the one that a long run comes to", "[steady]") {
     }
 }
 
-TEST_CASE("the closed form from stop to stop is where the motion is, at any beginning of the period", "[steady]") {
-    std::mt19937_64 random(7);
-    std::uniform_real_distribution<double> unit(0, 1);
-    int found = 0;
-    for (int i = 0; i < 200; ++i) {
-        const double r = 0.05 * std::pow(60, unit(random)), gamma = 0.99 * unit(random);
-        const double zeta = i % 3 == 0 ? 0 : 0.5 * unit(random);
-        SteadyQuestion question = driven(r, gamma, zeta);
-        const double shift = 2 * pi * unit(random);
-        question.excitation = truth::harmonic(i % 2 == 0 ? 0.7 : -0.7, 2 * pi * r, shift);
-        question.system = truth::nondimensional(zeta, 0.7 * gamma, 0.7 * gamma);
-        const auto own = sine::single_sine(question);
-        REQUIRE(own);
-        const auto start = sine::stopping_start(*own);
-        if (!start) continue;
-        INFO("r = " << r << ", gamma = " << gamma << ", zeta = " << zeta);
-        // Another integrator comes back to it after a period.
-        const auto run = truth::must_run(question.system, question.excitation, *start, {0, 1 / r}, motion::Grid::none(),
-                                         motion::Spectral{});
-        const double size = std::max(std::fabs(start->theta), std::fabs(start->velocity) / (2 * pi));
-        CHECK(run.state_at_stop.theta == within(start->theta, 1e-10 * std::max(size, 0.01)));
-        CHECK(run.state_at_stop.velocity == within(start->velocity, 1e-9 * std::max(size, 0.01)));
-        // One look is enough for the search, and sometimes one more against rounding.
-        const SteadyMotion motion = steady_motion(question);
-        CHECK(motion.maps <= 3);
-        CHECK(motion.stops > 0);
-        ++found;
-    }
-    CHECK(found > 80);
-}
-
 TEST_CASE("a load that hardly exceeds friction moves the mass a little twice a period", "[steady]") {
     struct Truth {
         double r, gamma, zeta, amplitude, lag, stuck, multiplier;
@@ -196,34 +165,6 @@ TEST_CASE("without dry friction the multipliers and the lag are those of linear 
         CHECK(*shape_of(question, found).lag == within(std::atan2(2 * zeta * r, 1 - r * r), 2e-12));
         CHECK(found.amplitude == within(1 / std::hypot(1 - r * r, 2 * zeta * r), 1e-12));
     }
-}
-
-TEST_CASE("the exact derivative of the period map is what differences say, through turns, sticks and slips",
-          "[steady]") {
-    std::mt19937_64 random(3);
-    std::uniform_real_distribution<double> unit(0, 1);
-    int compared = 0;
-    for (int i = 0; i < 60; ++i) {
-        const SteadyQuestion question =
-            driven(0.15 + 1.5 * unit(random), 0.7 * unit(random), 0.3 * unit(random), 1 + 0.5 * (i % 3) * unit(random));
-        const PeriodMap map(question.system, question.excitation, 0, question.drive.period, {});
-        const Place x{2 * unit(random) - 1, 2 * unit(random) - 1};
-        const MapStep step = map(x);
-        REQUIRE(step.differentiable);
-        Eigen::Matrix2d differences;
-        bool smooth = true;
-        for (int j = 0; j < 2; ++j) {
-            constexpr double h = 1e-6;
-            const MapStep ahead = map(x + h * Place::Unit(j)), behind = map(x - h * Place::Unit(j));
-            smooth = smooth && ahead.stops == step.stops && behind.stops == step.stops;
-            differences.col(j) = (ahead.to - behind.to) / (2 * h);
-        }
-        if (!smooth) continue;
-        INFO(i << ": " << step.derivative << "\n" << differences);
-        CHECK((step.derivative - differences).cwiseAbs().maxCoeff() < 1e-6 * std::max(1.0, differences.norm()));
-        ++compared;
-    }
-    CHECK(compared > 50);
 }
 
 TEST_CASE("a load that friction can hold moves nothing, and the places of rest are told", "[steady]") {
@@ -288,19 +229,6 @@ TEST_CASE("at r = 1/2 without viscous damping the motion is one of a family, and
     CHECK_FALSE(*found.unique);
     CHECK(found.amplitude == within(theory::DenHartog(0.5, 0).motion(0.1, 0.1)->amplitude, 1e-10));
     CHECK(*steady_motion(driven(0.45, 0.1)).unique);
-}
-
-TEST_CASE("with Re > Rd a rest and a motion exist side by side, and the start decides", "[steady]") {
-    SteadyQuestion question = driven(0.6, 0.3, 0.05, 4);
-    const SteadyMotion rest = steady_motion(question);
-    REQUIRE(rest.status == SteadyStatus::adheres);
-    const auto others = other_motions(question, rest);
-    question.initial = {3, 0};
-    const SteadyMotion motion = steady_motion(question);
-    if (motion.status == SteadyStatus::steady) {
-        CHECK(motion.amplitude == within(waited_for(question, 80), 1e-8));
-        CHECK(!others.empty());
-    }
 }
 
 TEST_CASE("a square wave whose parts differ by a thousandth of the period is not taken for symmetric", "[steady]") {

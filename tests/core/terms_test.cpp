@@ -9,14 +9,6 @@ namespace dinal::terms_test {
 using namespace dinal::model;
 using namespace dinal::excitations;
 
-TEST_CASE("no excitation is zero, for ever and without breaks", "[excitation]") {
-    const Excitation M;
-    CHECK(M.value(3) == 0);
-    CHECK(M.next_break(-never) == never);
-    CHECK(M.constant_from() == -never);
-    CHECK_FALSE(M.has_script());
-}
-
 TEST_CASE("a constant and a harmonic have the values of their formulas", "[excitation]") {
     CHECK(made(Constant{-2.5}).value(1e9) == -2.5);
     const Excitation M = made(Harmonic{2, 2 * pi, pi / 6});

@@ -92,16 +92,6 @@ TEST_CASE("figure 26: the half-cycle map with both frictions", "[theory]") {
     CHECK(std::fabs(motion.time_to_rest() - 1.733933195) <= printed);
 }
 
-TEST_CASE("a push against Coulomb friction ten times the spring ends at t = atan(1/2), x = sqrt(125) - 10",
-          "[theory]") {
-    const Oscillator system = truth::system_of({.inertia = 1, .stiffness = 1, .kinetic_friction = 10});
-    const FreeMotion motion(system, {0, 5});
-    // x cancels ten of eleven: 1e-15 of 11.
-    CHECK(std::fabs(*motion.rest_position() - (std::sqrt(125.0) - 10)) <= 1.1e-14);
-    CHECK(std::fabs(motion.time_to_rest() - std::atan(0.5)) <= 1e-15);
-    CHECK(motion.at(1).velocity == 0);
-}
-
 TEST_CASE("free motion with dry friction is the exact one, event by event and in between", "[theory]") {
     Chance chance(2);
     int rests = 0;

@@ -70,12 +70,6 @@ TEST_CASE("a million points over time become four to a column of pixels, and no 
     CHECK(low == kept_low);
 }
 
-TEST_CASE("few points are all kept", "[thinning]") {
-    const Curve curve = sampled(
-        50, [](double s) { return s; }, [](double s) { return s * s; });
-    CHECK(thinned(curve, paper_for(curve, {600, 400})).size() == 50);
-}
-
 TEST_CASE("gaps stay gaps", "[thinning]") {
     const double nan = std::numeric_limits<double>::quiet_NaN();
     const Curve line{Numbers::own({0, 1, 2, 3, 4, 5}), Numbers::own({0, 1, nan, nan, 1, 0})};
@@ -155,12 +149,6 @@ TEST_CASE("a point that left its cycle once is drawn", "[thinning]") {
             return std::fabs(stroke.y - paper.view.y(3) * 500) <= 0.7 && stroke.from <= x_there && x_there <= stroke.to;
         }));
     }
-}
-
-TEST_CASE("of points one is kept in each pixel", "[thinning]") {
-    Curve curve{Numbers::own({0, 0, 1, 1, 0, 5}), Numbers::own({0, 0, 1, 1, 0, 5})};
-    curve.style = Style::points;
-    CHECK(thinned(curve, paper_for(curve, {500, 500})) == std::vector<std::size_t>{0, 2, 5});
 }
 
 TEST_CASE("points are no line: a cloud keeps one of each pixel, in whatever order they come", "[thinning]") {

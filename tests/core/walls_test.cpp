@@ -1,18 +1,12 @@
-// End stops: impacts, bounces that die out, rest at a wall and the way off it, against closed forms and an integrator
-// that shares nothing with ours.
+// End stops without bounces, and the story of impacts; hybrid_test.cpp has systems with walls by lot.
 #include <cmath>
 #include <numbers>
 
-#include "analysis/energy.hpp"
 #include "analysis/explain.hpp"
-#include "analysis/steady.hpp"
-#include "model/laws/stribeck.hpp"
 #include "support/catch.hpp"
 #include "support/measure.hpp"
-#include "support/random_stops.hpp"
 #include "support/walled.hpp"
 #include "support/within.hpp"
-#include "support/written.hpp"
 
 namespace dinal::walls_test {
 
@@ -35,11 +29,6 @@ TEST_CASE("restitution 0: the mass stays where it hits, until it is pulled off",
             CHECK(run.rows(3, 2) == 0);
         }
     }
-}
-
-TEST_CASE("systems with walls by lot move as an independent integrator says, in spectral and in rk4",
-          "[walls][oracle]") {
-    check_random_stops(Lots::walls, 180);
 }
 
 TEST_CASE("the story tells of walls, impacts and rest at a wall", "[walls][explain]") {

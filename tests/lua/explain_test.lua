@@ -14,11 +14,6 @@ local function says(run, sentence)
     assert(text:find(sentence, 1, true), ("%q is not in\n%s"):format(sentence, text))
 end
 
-test("explain tells when, where and why the mass stopped", function()
-    says(free, "It stopped at t = 1.7237 at theta = 0.15515 because |M - k theta| = 0.15515 <= Re = 0.167.")
-    says(free, "It made 4 half cycles with 3 turns and 1 stop")
-end)
-
 test("lines fit a terminal and there are not too many, however long the run", function()
     local run = nondimensional { friction_ratio = 0.836 }:simulate {
         M = excitation.harmonic { frequency = 1 }, theta0 = 1, t_end = 1000, dt = 1 }
@@ -59,10 +54,6 @@ test("a run read from a file, one of 1989 and a broken one have a story, too", f
         nd:simulate { M = function(t) assert(t < 3) return math.sin(t) end, theta0 = 1, t_end = 10, dt = 0.1 }
     end)
     says(dinal.partial, "The run stopped early, at t = 3: M failed")
-end)
-
-test("explain is a method", function()
-    raises_here(function() free.explain() end, "use a colon: run:explain()")
 end)
 
 test("the story of a function says how closely it was looked at, and never that nothing moved the mass", function()

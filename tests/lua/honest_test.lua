@@ -15,63 +15,23 @@ local function found_out(make, more)
     end
 end
 
--- ---- what is found out
-
-test("an integral in an upvalue is found out", function()
-    found_out(function()
+local memories = {
+    ["an integral"] = function()
         local last, sum = 0, 0
         return function(t, theta)
-            sum = sum + (0.2 - theta) * (t - last)
-            last = t
-            return 3 * (0.2 - theta) + 5 * sum
-        end
-    end)
-end)
-
-test("a slow integral is found out", function()
-    found_out(function()
-        local last, sum = 0, 0
-        return function(t, theta)
-            sum = sum + 1e-6 * (0.2 - theta) * (t - last)
+            sum = sum + 1e-6 * (0.2 - theta) * (t - last) -- a slow one: what is quick is found sooner
             last = t
             return math.sin(t) + sum
         end
-    end)
-end)
-
-test("the time of the last call is found out", function()
-    found_out(function()
-        local last, before = 0, 1
-        return function(t, theta)
-            local rate = t > last and (theta - before) / (t - last) or 0
-            last, before = t, theta
-            return -0.1 * rate
-        end
-    end)
-end)
-
-test("a relay with hysteresis in a closure is found out", function()
-    found_out(function()
+    end,
+    ["a relay with hysteresis"] = function()
         local on = true
         return function(_, theta)
             if theta > 0.05 then on = false elseif theta < -0.05 then on = true end
             return on and 10 or -10
         end
-    end)
-end)
-
-test("a zero-order hold within M is found out", function()
-    found_out(function()
-        local next_time, held = 0, 0
-        return function(t, theta, velocity)
-            if t >= next_time then
-                held = -2 * theta - velocity
-                next_time = next_time + 0.15
-            end
-            return held
-        end
-    end)
-    found_out(function()  -- of a function of time
+    end,
+    ["a zero-order hold, of a function of time"] = function()
         local next_time, held = 0, 0
         return function(t)
             if t >= next_time then
@@ -80,49 +40,32 @@ test("a zero-order hold within M is found out", function()
             end
             return held
         end
-    end)
-end)
-
-test("a filter is found out", function()
-    found_out(function()
-        local y = 0
-        return function(t)
-            y = y + 0.1 * (math.sin(5 * t) - y)
-            return y
-        end
-    end)
-end)
-
-test("a trip that stays tripped is found out", function()
-    found_out(function()
+    end,
+    ["a trip that stays tripped"] = function()
         local tripped = false
         return function(_, theta)
             tripped = tripped or theta > 2
             return tripped and 1 or 5 - theta
         end
+    end,
+    ["rare random numbers"] = function() return function(t) return math.sin(t) + 1e-12 * math.random() end end,
+    ["a coin"] = function() return function() return math.random(2) - 1.5 end end,
+    ["a generator"] = function()
+        return coroutine.wrap(function()
+            local n = 0
+            while true do
+                n = n + 0.001
+                coroutine.yield(n)
+            end
+        end)
+    end,
+}
+for what, make in pairs(memories) do
+    test(what .. " is found out", function()
+        math.randomseed(42)
+        found_out(make)
     end)
-end)
-
-test("random numbers are found out, also rare ones and coins", function()
-    math.randomseed(42)
-    found_out(function() return function() return math.random() end end)
-    found_out(function() return function(t) return math.sin(t) + 1e-12 * math.random() end end)
-    found_out(function() return function() return math.random(2) - 1.5 end end)
-end)
-
-test("a counter that changes the value is found out", function()
-    found_out(function()
-        local calls = 0
-        return function(t)
-            calls = calls + 1
-            return math.sin(t) + 1e-13 * calls
-        end
-    end)
-end)
-
-test("the time of day is found out", function()
-    found_out(function() return function(t) return math.sin(t) + 1e-3 * os.clock() end end)
-end)
+end
 
 test("a table that something else changes is found out", function()
     found_out(function()
@@ -132,18 +75,6 @@ test("a table that something else changes is found out", function()
         end
     end, { events = { { when = function(t) return t - 5 end, act = function() gain.value = 2 end } } })
     gain = nil
-end)
-
-test("a generator is found out", function()
-    found_out(function()
-        return coroutine.wrap(function()
-            local n = 0
-            while true do
-                n = n + 0.001
-                coroutine.yield(n)
-            end
-        end)
-    end)
 end)
 
 test("one of several terms is found out, also a delayed and a windowed one", function()

@@ -24,26 +24,6 @@ test("a belt that is a function and jumps past the mass turns the sliding round,
     assert(run:energy().total.closure < 1e-11)
 end)
 
-test("a belt that is a function and jumps leaves behind what stood on it", function()
-    local run = system { I = 1, k = 0, Rd = 0.25 }:simulate {
-        belt = function(t) return t < 1 and 0.5 or -0.5 end, velocity0 = 0.5, t_end = 2, dt = 0.5,
-    }
-    equal(kinds(run), "slip")
-    near(run.velocity[#run], 0.25, found)
-    near(run.theta[#run], 0.5 + 0.5 - 0.125, found)
-    assert(run:energy().total.closure < 1e-11)
-end)
-
-test("a jump of a belt that is still ahead lets nothing go", function()
-    local run = system { I = 1, k = 0, Rd = 0.25 }:simulate {
-        belt = function(t) return t < 2.1 and 0.5 or -0.5 end, t_end = 3, dt = 0.5,
-    }
-    equal(kinds(run), "stick slip")
-    near(run.events[1].t, 2, 1e-12)
-    near(run.events[2].t, 2.1, found)
-    near(run.velocity[#run], 0.5 - 0.25 * 0.9, found)
-end)
-
 test("a belt with kinks where it is zero is followed in no time", function()
     local asked = 0
     local run = system { I = 1, k = 0, Rd = 0.1 }:simulate {
@@ -149,7 +129,7 @@ test("under rk4 a belt that jumps, and does not say so, leaves the mass on it it
                 local task = { velocity0 = 0.1, t_end = 10, dt = 0.5, belt = belt[1] + excitation.step { amplitude = belt[2] - belt[1], at = at } }
                 local told = s:simulate(task)
                 task.belt = function(t) return t < at and belt[1] or belt[2] end
-                for _, h in ipairs { 0.01, 0.001 } do
+                for _, h in ipairs(at == 1 and { 0.01, 0.001 } or { 0.01 }) do
                     task.integrator = integrator.rk4 { h = h }
                     local run = s:simulate(task)
                     equal(run.outcome, told.outcome)
@@ -176,7 +156,7 @@ end
 
 test("a belt that jumps, and does not say so, moves the mass as one that does, stuck or sliding", function()
     math.randomseed(5)
-    for trial = 1, 24 do
+    for trial = 1, support.lots(24) do
         local Rd, k, C = 0.3, math.random() < 0.2 and 0 or 1, math.random() < 0.5 and 0 or 0.1
         local sys = system { I = 1, k = k, C = C, Rd = Rd, Re = math.random() < 0.5 and Rd or 0.5 }
         -- The steps of rk4 end at jumps of 0.2, but for an ulp. Some even jumps in a piece cancel in its last coefficients.
@@ -201,7 +181,7 @@ test("what acts and jumps, and does not say so, does what it does when it says s
     local function any(size)
         return unannounced(size, 0.3 + 2 * math.random(), math.random(), math.random() < 0.4)
     end
-    for _ = 1, 50 do
+    for _ = 1, support.lots(50) do
         local Rd, Re = 0.2 + 0.2 * math.random(), 1 + math.random()
         local laws = {
             friction.coulomb { Rd = Rd },

@@ -198,7 +198,6 @@ end)
 test("what is wrong with a bifurcation is told", function()
     local function at() return { system = nondimensional {}, M = 1 } end
     raises_here(function() bifurcation { over = { a = { 1 } }, at = at } end, "bifurcation needs period")
-    raises_here(function() bifurcation { over = { a = { 1 } }, period = 0, at = at } end, "period = 0 must be positive")
     raises_here(function() bifurcation { over = { a = { 1 } }, period = 1, keep = 0, at = at } end, "keep = 0 must be")
     raises_here(function() bifurcation { period = 1, at = at } end, "bifurcation: there is no parameter")
     raises_here(function() bifurcation { over = { theta = { 1 } }, period = 1, at = at } end, "is a column of the result")

@@ -154,26 +154,13 @@ test("what is wrong is one sentence with the name of the option", function()
     wrong({ base = "x" }, "base must be a function, a number or an excitation")
     wrong({ integrator = integrator.dinal1989 { h = 0.1 }, states = false or nil, belt = 1 }, "integrator.dinal1989")
     raises_here(function() excitation.sampled(3, { every = 1 }) end, "excitation.sampled takes a function of t, theta, velocity, z, got 3")
-    raises_here(function() excitation.sampled(math.sin, { every = 0 }) end, "every = 0 must be positive")
-    raises_here(function() excitation.sampled(math.sin, { every = 1, delay = -1 }) end, "delay = -1 must not be negative")
     raises_here(function() excitation.sampled(math.sin, {}) end, "excitation.sampled needs every")
     raises_here(function() excitation.relay { on = 1, off = 1, amplitude = { 1, 2 } } end, "on = 1 and off = 1 must differ")
     raises_here(function() excitation.relay { on = 1, off = 2, amplitude = { 1 } } end, "amplitude must be a number, or two: { on, off }, got 1")
-    raises_here(function() excitation.delayed(math.sin, { by = 0 }) end, "by = 0 must be positive")
     local sampled = excitation.sampled(math.sin, { every = 1 })
     raises_here(function() return sampled(1) end, "a controller with a memory has values in a run only")
     raises_here(function() return sampled:delay(1) end, "cannot be delayed")
     wrong({ M = excitation.relay { on = 1, off = 2, amplitude = { 1, 2 }, of = "heat" } }, "M has a relay of 'heat', which is not a state of this run")
-end)
-
-test("a relay of a state switches where the state is", function()
-    local run = system { I = 1, k = 1 }:simulate {
-        M = excitation.relay { on = 1, off = 2, amplitude = { 1, -1 }, of = "heat" },
-        states = { heat = { start = 0.5, rate = function() return 1 end } }, t_end = 3, dt = 1,
-    }
-    local switches = run.events:filter(function(e) return e.kind == "switch" end)
-    equal(#switches, 1)
-    near(switches[1].t, 1.5, 1e-13)
 end)
 
 test("an error in the function of a belt or a base arrives unchanged, with the rows until then", function()

@@ -50,33 +50,15 @@ local function both(x) return x, -x end
 local function fact(n) return n <= 1 and 1 or n * fact(n - 1) end
 local function triangle(n) return n == 0 and 0 or n + triangle(n - 1) end
 
-test("what a formula can be made of", function()
+test("what a formula can be made of, beside what the random ones below have", function()
     local functions = {
-        function(t) return math.sin(w * t) end,
-        function(t) return deep.a * math.cos(t) + deep.b.c * deep.f(t) end,
-        function() return 3 end,
-        function(t) return 7 // 2 + 7 % -3 + -7 // 2 * t end,
-        function(t) return t // 0.3 + t % 0.7 - t % -0.7 + 2 ^ t - t ^ 2 + (-8) ^ 3 end,
-        function(t) return -t / 3 + 1e300 * t * 1e-10 end,
         function(t) return t < 1 and 5 or t <= 2 and 6 or t == 3 and 7 or t > 4 and 8 or t >= 3.5 and 9 or 10 end,
-        function(t) return 1 < t and 5 or 2 <= t and 4 or 3 end,
-        function(t) return not (t < 1) and 5 or -5 end,
         function(t) local a = 1 if t < 1 then a = 2.5 end if t > 0 then a = a + 1 end return a // 1 * t end,
-        function(t) local s = 0 for i = 1, 9, 2 do s = s + math.sin(i * t) / i end return s end,
         function(t) local s = 0 for i = 5, 1, -1 do if t > i then s = s + 1 else s = s - 0.5 end end return s end,
         function(t) for i = 3, 1 do t = t + i end return t end,
-        function(t) local s = 1.0 for i = 1, #list do s = s + list[i] * t ^ i end return s end,
-        function(t) local s = 0 for i = 1, 4 do for j = i, 4 do s = s * t + i * j end end return s end,
         function(t) local i = 0 while i < 5 do i = i + 1 if t < i then break end end return i end,
         function(t) local i = 0 repeat i = i + 1 until i > 3 return i + t end,
-        function(t) return math.max(0, math.sin(t)) + math.min(t, 1, 2.5) + math.max(t, -1) end,
-        function(t) return -math.max(0, t) end,
-        function(t) return math.max(1, 2) * t + math.min(2, t, 0.5, -1) end,
-        function(t) return math.abs(t) + math.abs(-3) + math.floor(t) + math.ceil(t / 2) end,
-        function(t) return math.floor(t / 0.3) % 2 == 0 and 1 or -1 end,
-        function(t) return math.floor(t) // 3 + math.floor(t) * math.floor(-t) - -math.floor(t) end,
         function(t) return math.floor(t) < 2 and math.floor(t) or math.floor(t) == 3 and 1 or 0.5 end,
-        function(t) return math.floor(t) < t and 1 or 2 end,
         function(t) return math.sqrt(t) + math.log(t) + math.log(t, 2) + math.log(t, 10) + math.log(t, 3) end,
         function(t) return math.exp(-t) + math.tan(t) + math.asin(t) + math.acos(t) + math.atan(t) + math.atan(t, -2) end,
         function(t) return math.fmod(t, 0.7) + math.fmod(-t, 3) + math.rad(t) + math.deg(t) + math.pi end,
@@ -86,16 +68,12 @@ test("what a formula can be made of", function()
         function(t) local a, b = both(t) return a * 2 + b end,
         function(t) return (both(t)) end,
         function(t) return math.max(both(t)) end,
-        function(t) return math.sin(math.abs(math.cos(sq(t)))) end,
-        function(t) return sq(t + 1) end,
         function(t) return fact(6) + triangle(9) * t end,
-        function(t) return flag and t or none end,
         function(t) return none == nil and t or 2 end,
         function(t) local x, y, z = t, 2 x, y = y, x return z == nil and x - y or x end,
         function(t) assert(t < 1e400, "far") return t end,
         function(t) if t < 0 then error("early") end return math.sqrt(t) end,
         function(t) if t > 0 then return t end end,
-        function(t) local on = t < 1 return on and 2 or t end,
         function(t) local on = t < 1 and t > 0 if on == true then return 1 end return 0 end,
         function(t) return ({ 1, 2 })[1] == 1 and t or t end,
     }
@@ -250,12 +228,8 @@ test("theta, velocity and states come in, and a run is the same to the last bit"
 end)
 
 test("an error keeps its line, and a hook sees each call", function()
-    local f = function(t)
-        if t > 3 then error("too late") end
-        return t
-    end
     support.raises_here(function()
-        f = function(t)
+        local f = function(t)
             if t > 3 then error("too late") end
             return t
         end
@@ -290,16 +264,11 @@ test("breaks are the very times at which Lua sees the change", function()
     local third = 0.3
     local cases = {
         { function(t) return t < 1 and 2 or 3 end, 1 },
-        { function(t) return t <= 1 and 2 or 3 end, 1 },
         { function(t) return t * third >= 1 and 2 or 3 end, 1 },
-        { function(t) return 0.1 > t / 7 and 2 or 3 end, 1 },
         { function(t) return math.sin(t) > 0.5 and 2 or 3 end, 4 },
         { function(t) return t % 2 < 1.1 and 2 or 3 end, 9 },
         { function(t) return math.floor(t / third) end, 33 },
-        { function(t) return math.ceil(t / third) % 3 end, 33 },
-        { function(t) return t // third end, 33 },
         { function(t) return math.exp(-t) * t > 0.3 and 2 or 3 end, 2 },
-        { function(t) return t ^ 3 > 20 and 2 or t * t < 3 and 4 or 3 end, 2 },
         { function(t) local x = math.floor(t) local y = x x = 0 return y + x end, 9 },
         { function(t) return math.floor((t - 3) * 1e6) == 0 and 5 or 0 end, 2, 2 },
         { function(t) return math.abs(t - 3) < 1e-6 and 5 or 0 end, 2, 2 },

@@ -33,18 +33,6 @@ test("a spring written as a Lua function moves the mass as the native one", func
     near((native:simulate(task).theta - a.theta):abs():max(), 0, 1e-7)
 end)
 
-test("the header of a file repeats a run with a spring that has variables of its own", function()
-    local c = 0.5
-    local run = system { I = 1, k = 1, Rd = 0.1, spring = function(theta) return c * theta ^ 3 end }:simulate {
-        theta0 = 2, t_end = 5, dt = 0.5 }
-    local name = support.temporary ".csv"
-    run:save(name)
-    local lines = {}
-    for line in io.lines(name) do lines[#lines + 1] = line:match "^# (.*)" end
-    local again = load(table.concat(lines, "\n") .. "\nreturn run")()
-    equal(again.theta[11], run.theta[11])
-end)
-
 test("with changes a spring, or takes it away", function()
     local sys = system { I = 1, k = 1, Rd = 0.1, spring = duffing }
     equal(tostring(sys:with { k = 2 }.spring), tostring(duffing))

@@ -63,6 +63,11 @@ function support.raises_here(body, ...)
     return message
 end
 
+--- How many of n cases by lot are looked at: fewer where a sanitizer makes them slow, or somebody says so.
+function support.lots(n)
+    return math.min(n, tonumber(os.getenv "DINAL_ORACLE_CASES") or n)
+end
+
 --- A name for a new file with this ending; the file is removed when the tests end.
 local files = setmetatable({}, {
     __gc = function(list)

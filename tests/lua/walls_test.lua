@@ -59,21 +59,6 @@ test("a ball comes to rest in finite time; its energy adds up; the file repeats 
     assert(tostring(picture):find "impact", tostring(picture))
 end)
 
-test("walls with a spring, a belt, states and events of the user", function()
-    local sys = system { I = 1, k = 1, Rd = 0.1, Re = 0.2, spring = spring.polynomial { [3] = 0.5 }, walls = walls }
-    local run = sys:simulate {
-        M = function(t, theta, velocity, z) return math.sin(t) - 0.1 * z.e end, belt = 0.1,
-        states = { e = { rate = function(t, theta) return theta end } },
-        events = { { name = "fast", when = function(t, theta, velocity) return velocity - 0.3 end } },
-        velocity0 = 2, t_end = 20, dt = 0.1,
-    }
-    local kinds = {}
-    for _, e in ipairs(run.events) do kinds[e.kind] = (kinds[e.kind] or 0) + 1 end
-    assert(kinds.impact > 3 and kinds.user > 3)
-    assert(run:energy().total.closure < 1e-11)
-    assert(run.theta:max() <= 0.8 and run.theta:min() >= -0.8)
-end)
-
 test("a steady motion between walls, and a response", function()
     local sys = system { I = 1, k = 1, C = 0.1, Rd = 0.05, walls = { lower = -0.5, upper = 0.5, restitution = 0.6 } }
     local s = sys:steady { M = excitation.harmonic { amplitude = 0.6, omega = 1.2 } }
@@ -86,7 +71,7 @@ end)
 
 test("between walls nothing grows, and a mass that rests against one is stable", function()
     local at_wall = 0
-    for seed = 1, 25 do
+    for seed = 1, support.lots(25) do
         math.randomseed(seed, 7)
         local function pick(a, b) return a + (b - a) * math.random() end
         local Rd = pick(0.02, 0.4)
@@ -111,7 +96,7 @@ test("between walls nothing grows, and a mass that rests against one is stable",
             end
         end
     end
-    assert(at_wall > 0)
+    assert(at_wall > 0 or support.lots(25) < 25)
     raises_here(function() system { I = 1, k = 1, walls = { upper = 1 } }:steady { theta0 = 2 } end, "theta0 = 2 is beyond the wall at upper = 1")
 end)
 

@@ -22,8 +22,12 @@ MixedTruth::MixedTruth(MixedSystem system, const MixedPoint& start, real t_end, 
     : s_(std::move(system)), y_(start), start_(start) {
     if (s_.relay_of) on_ = (s_.off > s_.on ? 1 : -1) * (s_.off - s_.relay_of(0, y_)) >= 0;
     if (s_.when) half_ = sign(s_.when(0, y_));
+    for (const real b : s_.breaks) breaks_.insert(b);
     if (s_.delayed) {
-        for (int i = 1; i <= 4; ++i) breaks_.insert(s_.by * i);
+        for (int i = 1; i <= 4; ++i) {
+            breaks_.insert(s_.by * i);
+            for (const real b : s_.breaks) breaks_.insert(b + s_.by * i);
+        }
     }
     take_samples();
     way_ = sign(slip(0, y_));
@@ -63,7 +67,9 @@ MixedTruth::MixedTruth(MixedSystem system, const MixedPoint& start, real t_end, 
         t_ = found ? t_ + h : end;
         y_ = next;
         fresh_ = false;
+        const auto coming = breaks_.upper_bound(t_);
         middle_ = t_ + longest_step / 2;
+        if (coming != breaks_.end()) middle_ = std::min(middle_, (t_ + *coming) / 2);
         if (way_ == 0) y_.velocity = wall_ != 0 ? 0 : belt(t_);
         if (found) {
             if (s_.delayed) {
@@ -101,6 +107,7 @@ MixedPoint MixedTruth::then(real t) const {
 /// All but friction, damping and what the frame does.
 real MixedTruth::torque(real t, const MixedPoint& y) const {
     real M = s_.M(t, y);
+    if (s_.broken) M += s_.broken(t, middle_);
     if (s_.sampled) M += output_;
     if (s_.relay_of) M += s_.levels[on_ ? 0 : 1];
     if (s_.delayed) M += s_.delayed(t, then(t - s_.by));

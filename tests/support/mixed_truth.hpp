@@ -28,6 +28,9 @@ struct MixedSystem {
     std::function<real(int way, real speed)> sliding;
     std::array<real, 2> holding{};  ///< backward, forward
     F<real> M;                      ///< without controllers
+    /// What of M jumps or bends at `breaks`: at t, for a step about `inside`. Empty: nothing.
+    std::function<real(real t, real inside)> broken;
+    std::vector<real> breaks;
     F<real> rate = [](real, const MixedPoint&) -> real { return 0; };
     std::function<real(real)> belt, belt_rate, base;  ///< empty: none
     F<real> sampled;                                  ///< empty: none
