@@ -25,11 +25,10 @@ Units: theta in Mc/k, t in T0, M in Mc. There is no M: the motion is free.
 The mass started at t = 0 from theta = 0 with velocity 6.2832.
 It made 4 half cycles with 3 turns and 1 stop; it was stuck for 3.2763 of 5 T0
 (65.5 %). It turned at theta = 0.84685 (t = 0.22366), -0.51285 (t = 0.72366),
-0.17885 (t = 1.2237). Each half cycle ends 2 Rd/k = 0.334 nearer to the middle
-than it began: dry friction takes the same from every swing, so the extremes
-fall on a straight line and the motion ends.
+0.17885 (t = 1.2237). Each extreme is 2 Rd/k = 0.334 smaller than the one
+before: under dry friction the amplitude falls linearly, so the motion ends.
 It stopped at t = 1.7237 at theta = 0.15515 because
-|M - k theta| = 0.15515 <= Re = 0.167. M is constant from then on, so it rests
+|M - k theta| = 0.15515 <= Re = 0.167. M is constant from then on, so it stays
 at rest.
 
 The system has T0 = 1, zeta = 0 (undamped) and dry friction Rd = Re = 0.836.
@@ -39,22 +38,22 @@ The mass started at t = 0 from theta = 1 with velocity 0 and moved off because
 It made 40 half cycles with 1 turn and 39 stops; it was stuck for 6.0645 of 20
 T0 (30.3 %). It turned at theta = -0.89522 (t = 0.9988).
 It stopped at t = 0.052203 at theta = 0.99708 because
-|M - k theta| = 0.67492 <= Re = 0.836; stuck for 0.42205, until that grew past
-Re and the mass slipped backward.
+|M - k theta| = 0.67492 <= Re = 0.836; it stuck for 0.42205, until this torque
+exceeded Re and the mass slipped backward.
 It stopped at t = 1.5 at theta = 0.79402 because
-|M - k theta| = 0.79376 <= Re = 0.836; stuck for 0.0067246, until that grew
-past Re and the mass slipped backward.
+|M - k theta| = 0.79376 <= Re = 0.836; it stuck for 0.0067246, until this
+torque exceeded Re and the mass slipped backward.
 ... 35 more ...
 It stopped at t = 19.4502 at theta = 0.12917 because
-|M - k theta| = 0.17877 <= Re = 0.836; stuck for 0.17476, until that grew past
-Re and the mass slipped backward.
+|M - k theta| = 0.17877 <= Re = 0.836; it stuck for 0.17476, until this torque
+exceeded Re and the mass slipped backward.
 It stopped at t = 19.9502 at theta = -0.12917 because
 |M - k theta| = 0.17877 <= Re = 0.836, and was still stuck when the run ended
 at t = 20.
 From t = 9.4502 on the motion is steady: it repeats itself every 1 (the period
-of M). The amplitude is 0.12917 about theta = 0. Theta lags behind M by 2.002
-rad (their fundamentals). It stops twice in each period and is stuck for 35 %
-of the time.
+of M). The amplitude is 0.12917 about theta = 0. The fundamental of theta lags
+behind that of M by 2.002 rad. It stops twice in each period and is stuck for
+35 % of the time.
 
 0.2	It stops twice in each period and is stuck for 27
 0.4	It stops 4 times in each period and is stuck for 43

@@ -61,15 +61,15 @@ print(simulate(function(t) calls = calls + 1 return math.sin(t) end).outcome, ca
 --[[ prints
 An integral in an upvalue: a state of the run.
 M depends on more than its arguments: at t = ... it returned ... and, evaluated again, ...;
-  put a memory into states, excitation.sampled, excitation.relay or excitation.delayed, random numbers into a table
+  put memory into states, excitation.sampled, excitation.relay or excitation.delayed, and random numbers into a table
   instead: stuck at the end, theta = 0.996894 at the end
 A switch that remembers its side: excitation.relay.
 M depends on more than its arguments: at t = ... it returned ... and, evaluated again, ...;
-  put a memory into states, excitation.sampled, excitation.relay or excitation.delayed, random numbers into a table
+  put memory into states, excitation.sampled, excitation.relay or excitation.delayed, and random numbers into a table
   instead: reached the end, theta = -0.008145 at the end
 A value that is held: excitation.sampled, which is asked in order and may remember what it likes.
 M depends on more than its arguments: at t = ... it returned ... and, evaluated again, ...;
-  put a memory into states, excitation.sampled, excitation.relay or excitation.delayed, random numbers into a table
+  put memory into states, excitation.sampled, excitation.relay or excitation.delayed, and random numbers into a table
   instead: stuck at the end, theta = 0.659459 at the end
 Random numbers: a table of them, made before the run.
 M depends on more than its arguments: ...

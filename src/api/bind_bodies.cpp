@@ -153,8 +153,8 @@ int push_bodies(lua_State* L, const lua::Options& options) {
     if (names.empty()) options.wrong("bodies", options.row("bodies").wanted);
     for (const char* alone : {"I", "k", "C", "Rd", "Re", "friction", "normal", "spring", "walls"}) {
         if (!options.has(alone)) continue;
-        options.fail(alone, fmt::format("{} belongs into one of the bodies: bodies = {{ load = {{ {}{} = ... }} }}",
-                                        alone, std::string_view(alone) == "I" ? "" : "I = 1, ", alone));
+        options.fail(alone, fmt::format("{} is an option of a body: bodies = {{ load = {{ {}{} = ... }} }}", alone,
+                                        std::string_view(alone) == "I" ? "" : "I = 1, ", alone));
     }
     model::Assembly system;
     system.units = asked_units(L, options).value_or(model::Units());

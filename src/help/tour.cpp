@@ -50,7 +50,7 @@ Mind the colon. A wrong name is answered by the right one; try it:
     > run:plot()
     > run:explain()
 
-turn: the motion reverses; stick: the mass stops and stays; slip: it breaks away;
+turn: the motion reverses; stick: the mass stays; slip: it breaks away;
 rest: it stops, and nothing can move it any more.
 )",
     R"(Change one number and look again. A ; at the end hides the value.

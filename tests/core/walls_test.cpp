@@ -38,7 +38,7 @@ TEST_CASE("the story tells of walls, impacts and rest at a wall", "[walls][expla
     const std::string story = analysis::explain(run, ball, M, Spectral{});
     CAPTURE(story);
     for (const char* part : {"There is a wall at theta = 0; an impact keeps 50 % of the speed.", "It hit the wall",
-                             "first at t = 1,", "the hardest impact had velocity -2, at t = 1.",
+                             "first at t = 1;", "the hardest impact had velocity -2, at t = 1.",
                              "It came to rest at the wall, theta = 0, at t = 3;", "pulled it off the wall forward"}) {
         std::string flat = story;
         std::replace(flat.begin(), flat.end(), '\n', ' ');

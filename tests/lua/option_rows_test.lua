@@ -42,7 +42,8 @@ assert(io.open(record, "w")):write("t,M\n0,1\n1,2\n"):close()
 --- The example in the sentence that refuses a call without a table.
 local function example_of(heading)
     local wrong_calls = { ["run:save"] = 'run:save("x.csv", 1)', ["r:animate"] = "r:animate(run, 1)", ["excitation.scripted"] = "excitation.scripted(f, 1)",
-        ["excitation.samples 2"] = "excitation.samples{}", ["excitation.constant"] = "excitation.constant{}", ["run:continue"] = "run:continue(true)" }
+        ["excitation.samples 2"] = "excitation.samples{}", ["excitation.constant"] = "excitation.constant{}", ["run:continue"] = "run:continue(true)",
+        ["rig_run:save"] = 'rig_run:save("x.csv", 1)', ["rig_run:continue"] = "rig_run:continue(true)" }
     local message = support.raises(assert(load(wrong_calls[heading] or heading .. "(1)", "=call", "t", world)))
     return assert(message:match "for example (.+)$", message):gsub("record.csv", record)
 end
@@ -77,7 +78,7 @@ for heading, options in pairs(calls) do
     test("the options of " .. heading, function()
         local is_plot = heading == "plot"
         local example = example_of(heading)
-        heading = heading:gsub(" 2$", "")
+        heading = heading:gsub(" 2$", ""):gsub("^rig_run:animate", "run:animate")
         refused(example, function(t) t.xyzzy = 1 end, heading .. " has no option 'xyzzy' among ")
         for _, option in ipairs(options) do
             local function give(value)

@@ -108,7 +108,7 @@ class Limits(HardUse):
         session.enter("1 + 1")
         for command in (":save notes.txt", ":record .bashrc"):
             self.assertIn("does not end in .lua", session.enter(command))
-        self.assertIn("is in lab.lua", session.enter(":save lab.lua"))
+        self.assertIn("are in lab.lua", session.enter(":save lab.lua"))
         self.assertEqual([name for name in self.files() if not name.startswith(".")], ["lab.lua"])
 
 

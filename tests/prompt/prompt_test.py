@@ -222,7 +222,7 @@ class Interrupts(PromptTest):
                   "excitation.scripted(function(t) if t > 9 then busy() end return 0 end)"]:
             shown = self.interrupted(session, f"return nd:simulate{{ M = {M}, t_end = 1e6, dt = 1 }}")
             self.assertIn("interrupted at input:1", shown)
-            self.assertIn("the part of the run that was done is in dinal.partial, and in ans\n(ans:continue() goes on):\n", shown)
+            self.assertIn("the finished part of the run is in dinal.partial and in ans (ans:continue()\ncontinues it):\n", shown)
             self.assertEqual(session.enter("#ans > 0 and #ans < 1000001 and #ans.theta == #ans"), "true")
 
     def test_a_run_that_is_stopped_within_M_is_marked_interrupted(self):
@@ -263,7 +263,7 @@ class Interrupts(PromptTest):
         session.enter("M = function(t) if t > 2 then error('broken') end return 0 end")
         shown = session.enter("nondimensional{}:simulate{ M = M, t_end = 10, dt = 0.1 }")
         self.assertIn("input:1: broken", shown)
-        self.assertIn("is in dinal.partial, and in ans", shown)
+        self.assertIn("is in dinal.partial and in ans", shown)
         self.assertEqual(session.enter("ans.t[#ans] > 1.5"), "true")
         self.assertNotIn("ans", session.enter("error('another')"))  # the old run is not announced again
 

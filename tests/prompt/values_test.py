@@ -38,15 +38,15 @@ class Values(PromptTest):
         terminal.enter(SYSTEM)
         card = terminal.enter("sys")
         for piece in ["I θ'' + C θ' + Rd sgn θ' + k θ = M(t)", "omega0     6.32456    natural frequency",
-                      "zeta       0          damping ratio: undamped", "dead_zone  0.05       it can rest"]:
+                      "zeta       0          damping ratio: undamped", "dead_zone  0.05       the mass can rest"]:
             self.assertIn(piece, card)
 
     def test_a_card_says_the_units_and_what_follows_from_them(self):
         terminal = self.start(width=100)
         terminal.enter('block = system{ I = 2, k = 800, C = 3, Rd = 3, units = { theta = "m", t = "s", M = "N" } }')
         card = terminal.enter("block")
-        for piece in ["I          2          inertia, N s^2/m", "stiffness, N/m", "viscous damping, N s/m", "while it moves, N",
-                      "sticking can hold, N", "units      theta in m, t in s, M in N", "natural frequency, rad per s",
+        for piece in ["I          2          inertia, N s^2/m", "stiffness, N/m", "viscous damping, N s/m", "while sliding, N",
+                      "breakaway torque, N", "units      theta in m, t in s, M in N", "natural frequency, rad per s",
                       "natural period, s", "|θ| <= this, m"]:
             self.assertIn(piece, card)
         terminal.enter("run = block:simulate{ theta0 = 1, t_end = 1, dt = 0.1 }")

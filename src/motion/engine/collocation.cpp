@@ -385,7 +385,6 @@ Collocation::Attempt Collocation::iterate(Segment& s, const Mode& mode, const Fr
                 return Attempt::failed;
             }
             double left = 0;
-            bool exact = i > 0;  // what creeps is slow beside what its torques tell
             find_sizes(s);
             scales_.resize(count);
             for (std::size_t k = 0; k < count; ++k) {
@@ -405,11 +404,6 @@ Collocation::Attempt Collocation::iterate(Segment& s, const Mode& mode, const Fr
                     most = std::max(most, std::fabs(rest));
                 }
                 left = std::max(left, s.h * most / scales_[k]);
-                exact = exact && most <= 4 * rounding * greatest(unknown_[k]);
-            }
-            if (exact) {
-                if (i >= many_iterations) slopes_known_ = false;
-                return Attempt::resolved;
             }
             if (slopes == Slopes::none) {
                 step_ = residual_;

@@ -13,7 +13,11 @@ public:
     StretchLeg(const std::vector<Between>& joints, const Kept& kept)
         : joints_(joints), kept_(kept), works_(joints.size()) {}
     [[nodiscard]] double length() const override { return kept_.length; }
-    [[nodiscard]] double since_start(double t) const override { return kept_.start.until(t); }
+    /// A row at the time at which the stretch ends comes after it, as it did in the run.
+    [[nodiscard]] double since_start(double t) const override {
+        const double since = kept_.start.until(t);
+        return t >= kept_.start.later(kept_.length).hi ? std::max(since, kept_.length) : since;
+    }
     [[nodiscard]] Work work(std::size_t joint, double since_start) const override {
         if (!(since_start > 0)) return {};
         if (!works_[joint]) works_[joint] = integrals(joint);

@@ -1209,7 +1209,6 @@ bool Engine::handle(const Ending& ending) {
         case By::release: {
             const Mode before = mode_;
             const double blunt = mode_.friction[j].blunt;
-            mode_.friction[j].blunt = 0;
             if (!decide(true, ending)) return false;
             bool same = mode_.leans == before.leans;
             for (std::size_t i = 0; i < mechanics_.joints() && same; ++i) {
