@@ -399,4 +399,24 @@ test("a contact between a body that a belt carries and one that stands slips, th
     near(e.pad.dry, 0.2 * run.a.theta[6], 1e-12)
 end)
 
+test("what sticks is let go where a capacity that has a corner later on is passed, however long the run", function()
+    local rig = system { bodies = { b = { I = 2, k = 3, Rd = 0.3, normal = function(t) return 1 + 1.135 * math.sin(2.8376 * t) end } } }
+    for _, t_end in ipairs { 1, 2, 2.1, 3 } do
+        local run = rig:simulate { M = { b = excitation.harmonic { amplitude = 0.9, omega = 1.3 } }, t_end = t_end }
+        local t = run.events[1].t
+        equal(run.events[1].kind, "slip")
+        near(0.9 * math.sin(1.3 * t), 0.3 * (1 + 1.135 * math.sin(2.8376 * t)), 1e-12)
+    end
+end)
+
+test("a link between two bodies that different belts hold slips once the belts part", function()
+    local rig = system {
+        bodies = { a = { I = 1, Rd = 1 }, b = { I = 1, Rd = 1 } }, links = { pad = { "a", "b", Rd = 0.2, Re = 0.3 } },
+    }
+    local run = rig:simulate { belt = { a = function(t) return 0.1 * math.sin(t) end, b = 0.05 }, velocity0 = { b = 0.05 }, t_end = 6 }
+    local e = run:energy()
+    assert(e.total.closure < 1e-11, e.total.closure)
+    near(e.pad.dry, run.pad:energy().total.dry, 1e-12)
+end)
+
 support.finish()

@@ -580,6 +580,7 @@ void Collocation::judge(const Segment& s, const Mode& mode, const Frame& frame) 
             const double torques = sizes_[first], lost = lost_in_time(series, late, h, torques);
             unresolved_ = std::max(unresolved_, cheb::tail(series) / ((tolerance_ + 64 * rounding) * torques + lost +
                                                                       blurred_by_belts(s) + smallest));
+            judge_limits(s, mode, joint);
         }
         if (!mechanics_.has_belt(joint)) continue;
         const Series belt = cheb::fit(s.belts[joint]);
@@ -597,6 +598,23 @@ void Collocation::judge(const Segment& s, const Mode& mode, const Frame& frame) 
                                64 * rounding * h * fastest_rate_[k] +
                                lost_in_time(series, late, h, h * fastest_rate_[k]);
         unresolved_ = std::max(unresolved_, cheb::tail(series) / (allowed + smallest));
+    }
+}
+
+/// The limits of a joint that holds, where they change.
+void Collocation::judge_limits(const Segment& s, const Mode& mode, std::size_t joint) {
+    const bool sticks = mechanics_.rubs(joint) && mode.friction[joint].way == model::Motion::stuck;
+    if (!sticks || !mechanics_.varies(joint)) return;
+    const double late = std::max(std::fabs(s.start.hi), std::fabs(s.end));
+    for (const model::Motion way : {model::Motion::forward, model::Motion::backward}) {
+        Nodes limit{};
+        for (std::size_t j = 0; j < node_count; ++j) {
+            limit[j] = mechanics_.holding(joint, way, {s.times[j], s.side(j), points_[j]});
+        }
+        const Series series = cheb::fit(limit);
+        const double most = greatest(limit);
+        const double allowed = (tolerance_ + 64 * rounding) * most + lost_in_time(series, late, s.h, most) + smallest;
+        unresolved_ = std::max(unresolved_, cheb::tail(series) / allowed);
     }
 }
 

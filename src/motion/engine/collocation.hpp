@@ -100,6 +100,7 @@ private:
     Attempt runge_kutta(Segment& segment, const Mode& mode, const Frame& frame, const std::vector<double>& departing);
     Attempt iterate(Segment& segment, const Mode& mode, const Frame& frame, const std::vector<double>& departing);
     void judge(const Segment& segment, const Mode& mode, const Frame& frame);
+    void judge_limits(const Segment& segment, const Mode& mode, std::size_t joint);
     void add_turns(const Segment& segment, std::vector<double>& places) const;
     bool agrees_between(const Segment& segment, const Mode& mode, const Frame& frame);
     void find_sizes_at_start(const Segment& segment, const std::vector<double>& begin);

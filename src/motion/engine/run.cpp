@@ -394,16 +394,24 @@ void Engine::find_belt_slopes(std::optional<double> x) {
     }
 }
 
-/// Others hold its bodies together, so that it does not slip. Two that are held by belts of different velocities slip.
+/// Others hold its bodies together, so that it does not slip, and will not. Two that are held by belts of different
+/// velocities slip.
 bool Engine::moves_as_one(std::size_t joint, const Frame& frame) const {
     const Joint& own = problem_.system.joints[joint];
     if (!frame.together(own)) return false;
     if (!mechanics_.has_belts()) return true;
-    std::vector<double> belts(mechanics_.joints()), offsets;
-    for (std::size_t j = 0; j < belts.size(); ++j) belts[j] = mechanics_.belt(j, now_.hi, side());
-    frame.offsets(belts, mode_, offsets);
-    const double first = offsets[index(own.first)], second = own.second < 0 ? 0 : offsets[index(own.second)];
-    return std::fabs(first - second - belts[joint]) <= 64 * rounding * (std::fabs(first) + std::fabs(second));
+    const auto alike = [&](const std::vector<double>& of_joints, double nearly) {
+        std::vector<double> offsets;
+        frame.offsets(of_joints, mode_, offsets);
+        const double first = offsets[index(own.first)], second = own.second < 0 ? 0 : offsets[index(own.second)];
+        return std::fabs(first - second - of_joints[joint]) <= nearly * (std::fabs(first) + std::fabs(second));
+    };
+    std::vector<double> belts(mechanics_.joints()), rates(mechanics_.joints());
+    for (std::size_t j = 0; j < belts.size(); ++j) {
+        belts[j] = mechanics_.belt(j, now_.hi, side()), rates[j] = belt_slope(j).rate;
+    }
+    constexpr double of_slopes = 1e-6;  // which are differences
+    return alike(belts, 64 * rounding) && alike(rates, of_slopes);
 }
 
 void Engine::slide(std::size_t joint, Motion way, bool leaving) {
