@@ -44,7 +44,8 @@ AssemblyHandle with_functions(const AssemblyHandle& rig, auto&& other) {
         rubs.law = with_functions(rubs.law, other);
         joint.spring = with_functions(joint.spring, other);
         if (rubs.function != nullptr) rubs.function = other(rubs.function);
-        for (auto* value : {&rubs.sliding[0], &rubs.sliding[1], &rubs.holding[0], &rubs.holding[1], &rubs.normal}) {
+        for (auto* value :
+             {rubs.sliding.data(), &rubs.sliding[1], rubs.holding.data(), &rubs.holding[1], &rubs.normal}) {
             if (*value) *value = other(**value);
         }
     }

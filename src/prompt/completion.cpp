@@ -236,8 +236,8 @@ Completion complete(lua_State* L, std::string_view before) {
         const std::string_view word = before.substr(begin);
         const std::size_t last = word.find_last_of(".: ");
         std::vector<std::string> names = help::help_names();
-        const std::vector<std::string> options = help::help_option_names();
-        names.insert(names.end(), options.begin(), options.end());
+        const std::vector<std::string> of_options = help::help_option_names();
+        names.insert(names.end(), of_options.begin(), of_options.end());
         names = fitting(std::move(names), word);
         for (std::string& name : names) {  // the editor replaces only the last word
             name.erase(0, last == std::string_view::npos ? 0 : last + 1);

@@ -18,7 +18,7 @@ static_assert(widest_left < chebyshev::widest_gap);
 /// On panels shorter than this, in units of pace_, nothing hides.
 constexpr double too_short_to_look = 1e-6;
 /// By so much more than its error M must miss its series.
-constexpr double clearly = 64;
+constexpr double clearly_off = 64;
 
 /// Noise is at most this part of the torques; what is rougher is made of steps that can be found.
 constexpr double most_noise = 1e-5;
@@ -63,14 +63,14 @@ PanelSolver::Look PanelSolver::look_between() {
         return Look::failed;
     }
     double allowed = (tolerance_ + 4 * epsilon) * torques() + noise_;
-    if (most <= clearly * allowed) return Look::agrees;
+    if (most <= clearly_off * allowed) return Look::agrees;
     allowed += lost_in_time();
     if (!of_time) {
         const double per_torque = panel_.h * (panel_.h / system_.inertia());
         const double motion = std::max(chebyshev::size(panel_.v), chebyshev::size(panel_.w));
         allowed += (tolerance_ * motion + rounding_of_motion(lost_in_time())) / per_torque;
     }
-    if (most <= clearly * allowed) return Look::agrees;
+    if (most <= clearly_off * allowed) return Look::agrees;
     seen_ = where;
     h_ = panel_.h / 2;
     if (!of_time || !found_breaks_.empty()) return Look::differs;
@@ -104,7 +104,7 @@ PanelSolver::Look PanelSolver::look_at_corners() {
     const double motion = std::max(chebyshev::size(panel_.v), chebyshev::size(panel_.w)), lost = lost_in_time();
     const double allowed = (tolerance_ + 4 * epsilon) * torques() + noise_ + lost +
                            (tolerance_ * motion + rounding_of_motion(lost)) / per_torque;
-    const auto missed = missed_corner(look, clearly * allowed);
+    const auto missed = missed_corner(look, clearly_off * allowed);
     if (!missed) return Look::agrees;
     h_ = panel_.h * shorter_by_corner(*missed);
     return Look::differs;
