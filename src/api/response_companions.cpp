@@ -103,7 +103,7 @@ DataCompanion points_of(const analysis::ResponseCurve& curve, const VariedColumn
                                   column_of("kind", std::move(kind)),
                                   column_of("amplitude", std::move(amplitude), column.theta),
                                   column_of("period", std::move(period)), column_of("branch", std::move(branch))}};
-    return {"points", [points]() -> Data { return points; }};
+    return {"points", [points] { return Data(points); }};
 }
 
 }  // namespace dinal::api
