@@ -1,5 +1,6 @@
 // Friction laws other than one number each for sliding and holding; hybrid_test.cpp and corners_test.cpp have their
 // motions against independent integrators.
+#include <algorithm>
 #include <cmath>
 
 #include "analysis/energy.hpp"
@@ -124,9 +125,10 @@ TEST_CASE("the story names both sides of a friction, and no closed form that doe
         return analysis::explain(must_run(system, M, {2, 0}, {0, 30}, Grid::every(0.1), Spectral{}), system, M,
                                  Spectral{});
     };
-    const std::string asymmetric = story(AsymmetricCoulomb{.forward = {0.1, 0.3}, .backward = {0.35, 0.5}});
+    std::string asymmetric = story(AsymmetricCoulomb{.forward = {0.1, 0.3}, .backward = {0.35, 0.5}});
+    std::replace(asymmetric.begin(), asymmetric.end(), '\n', ' ');
     CHECK_THAT(asymmetric,
-               Catch::Contains("forward and 0.35 backward") && Catch::Contains("breakaway takes Re = 0.3 forward"));
+               Catch::Contains("forward and 0.35 backward") && Catch::Contains("forward and 0.5 backward"));
     CHECK_THAT(asymmetric, !Catch::Contains("2 Rd/k"));
     CHECK_THAT(story(truth::Stribeck{0.1, 0.3, 0.4}), Catch::Contains("friction depends on the speed"));
     CHECK_THAT(story(Coulomb{0.1, 0.3}), Catch::Contains("2 Rd/k"));

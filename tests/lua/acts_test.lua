@@ -96,7 +96,7 @@ test("an act that keeps little of the speed, or none, does not let the mass thro
                     -- about 1 pulls on; Rd changes a bounce by some percent, and the least that can be seen, of the height of
                     -- a rounding, lasts as long as its root
                     local first = run.events[1]
-                    near(last.t - first.t, 2 * first.velocity * kept / (1 - kept), 0.2 * first.velocity * kept + 1e-7 + 4 * math.sqrt(4e-15 * math.abs(place)))
+                    near(last.t - first.t, 2 * first.velocity * kept / (1 - kept), 0.2 * first.velocity * kept + 1e-7 + math.sqrt(4e-15 * math.abs(place)))
                 end
             end
         end

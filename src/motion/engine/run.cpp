@@ -1044,7 +1044,8 @@ bool Engine::advance() {
         if (2 * segment_.h > 1e-7 * pace_) too_short_ = 0;
         const double factor = 0.9 * std::pow(std::max(solver_->unresolved(), 1e-16), -1.0 / 16);
         const double least = segment_.h < short_part * longest_ ? 2 : 0;
-        if (problem_.step == 0) h_ = std::min(longest_ / 2, std::max(h_, segment_.h * std::clamp(factor, least, 8.0)));
+        const double longer = problem_.step > 0 ? longest_ : segment_.h * std::clamp(factor, least, 8.0);
+        h_ = std::min(longest_ / 2, std::max(h_, longer));
     }
     Ending ending;
     watch(ending);
@@ -1337,7 +1338,7 @@ void Engine::watch_slip(std::size_t joint, Ending& ending) {
         may_creep(joint) && fastest * (own.damping + inertia / (2 * segment_.h)) <= 4 * rounding * torques;
     if (crept) {
         crept_[joint] = 1;
-        if (!how.leaving) ending = {1, By::slip, joint};
+        if (!how.leaving && ending.by == By::nobody) ending = {1, By::slip, joint};
         if (!how.leaving) return;
     }
     auto zero = cheb::first_below(curve, -1, how.leaving ? cheb::LeftEnd::leaving : cheb::LeftEnd::anywhere, always);
