@@ -127,8 +127,7 @@ TEST_CASE("the story names both sides of a friction, and no closed form that doe
     };
     std::string asymmetric = story(AsymmetricCoulomb{.forward = {0.1, 0.3}, .backward = {0.35, 0.5}});
     std::replace(asymmetric.begin(), asymmetric.end(), '\n', ' ');
-    CHECK_THAT(asymmetric,
-               Catch::Contains("forward and 0.35 backward") && Catch::Contains("forward and 0.5 backward"));
+    CHECK_THAT(asymmetric, Catch::Contains("forward and 0.35 backward") && Catch::Contains("forward and 0.5 backward"));
     CHECK_THAT(asymmetric, !Catch::Contains("2 Rd/k"));
     CHECK_THAT(story(truth::Stribeck{0.1, 0.3, 0.4}), Catch::Contains("friction depends on the speed"));
     CHECK_THAT(story(Coulomb{0.1, 0.3}), Catch::Contains("2 Rd/k"));

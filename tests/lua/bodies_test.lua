@@ -419,4 +419,32 @@ test("a link between two bodies that different belts hold slips once the belts p
     near(e.pad.dry, run.pad:energy().total.dry, 1e-12)
 end)
 
+test("a body that creeps beside one that swings changes nothing of its motion or events", function()
+    local w, M = 2 * math.pi, excitation.harmonic { amplitude = 1, omega = 1.7 }
+    local swings = { I = 1, k = 4, Rd = 0.1 }
+    local alone = system { bodies = { b = swings } }:simulate { M = { b = M }, t_end = 60, dt = 1 }
+    local creeps = { I = 1, k = w * w, C = 4 * w, Rd = 0.3 * w * w, Re = 0.5 * w * w }
+    for _, name in ipairs { "a", "z" } do
+        local run = system { bodies = { b = swings, [name] = creeps } }:simulate { M = { b = M }, theta0 = { [name] = 1.5 }, t_end = 60, dt = 1 }
+        equal(#run.b.events, #alone.b.events)
+        for i = 1, #alone.b.events do near(run.b.events[i].t, alone.b.events[i].t, 1e-12) end
+        near((run.b.theta - alone.b.theta):abs():max(), 0, 1e-12)
+        equal(#run[name].events, 1)
+    end
+end)
+
+test("a throw leaves the steps of rk4 as long as they were", function()
+    local calls, thrown = 0, false
+    local run = system { I = 1, k = 0 }:simulate {
+        M = function(t) calls = calls + 1 return -1 + 0 * #tostring(t) end, theta0 = 1, t_end = 20, dt = 1, integrator = integrator.rk4 { h = 0.01 },
+        events = { { when = function(_, theta) return theta end, act = function(_, theta, v)
+            if thrown then return theta, v end
+            thrown = true
+            return theta, 0.0005
+        end } },
+    }
+    equal(#run.events, 3)
+    assert(calls < 50000, calls)
+end)
+
 support.finish()

@@ -36,8 +36,8 @@ struct Slipping {
     bool riding = false;    ///< at slip 0 because others hold, while this one gives all that it can
     std::size_t range = 0;  ///< of its law, while it slides
     double blunt = 0;       ///< what the pull must pass its limit by, after it was let go and did not leave
-    /// Which way it creeps, slower than rounding; stuck: it does not. While it creeps `way` is stuck, and the joint holds
-    /// as long as its pull stays within `apart` of what the friction of sliding balances.
+    /// Which way it creeps, slower than rounding; stuck: it does not. While it creeps `way` is stuck, and the joint
+    /// holds as long as its pull stays within `apart` of what the friction of sliding balances.
     model::Motion creeps = model::Motion::stuck;
     double apart = 0;
 };
