@@ -39,14 +39,14 @@ It made 40 half cycles with 1 turn and 39 stops; it was stuck for 6.0645 of 20
 T0 (30.3 %). It turned at theta = -0.89522 (t = 0.9988).
 It stopped at t = 0.052203 at theta = 0.99708 because
 |M - k theta| = 0.67492 <= Re = 0.836; it stuck for 0.42205, until this torque
-exceeded Re and the mass slipped backward.
+exceeded Re and it slipped backward.
 It stopped at t = 1.5 at theta = 0.79402 because
 |M - k theta| = 0.79376 <= Re = 0.836; it stuck for 0.0067246, until this
-torque exceeded Re and the mass slipped backward.
+torque exceeded Re and it slipped backward.
 ... 35 more ...
 It stopped at t = 19.4502 at theta = 0.12917 because
 |M - k theta| = 0.17877 <= Re = 0.836; it stuck for 0.17476, until this torque
-exceeded Re and the mass slipped backward.
+exceeded Re and it slipped backward.
 It stopped at t = 19.9502 at theta = -0.12917 because
 |M - k theta| = 0.17877 <= Re = 0.836, and was still stuck when the run ended
 at t = 20.

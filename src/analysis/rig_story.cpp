@@ -142,7 +142,11 @@ private:
             } else {
                 say("It was stuck {} for {} of the time", to_what, text::percent(stuck / lasted()));
                 spells == 1 ? add(", ") : add(", in {} spells, ", spells);
-                still ? add("since t = {} until the end.", time(from)) : add("the last one from t = {}.", time(from));
+                if (still) {
+                    add("since t = {} until the end.", time(from));
+                } else {
+                    spells == 1 ? add("from t = {}.", time(from)) : add("the last one from t = {}.", time(from));
+                }
             }
         }
         std::size_t impacts = 0;

@@ -328,7 +328,7 @@ std::string Story::slip(const model::Event& event, bool told) const {
         const double vb = motion::belt_from(extras_.belt, event.t), slides = event.velocity - vb;
         constexpr double clearly = 1e-6;
         if (std::fabs(slides) > clearly * (std::fabs(vb) + std::fabs(event.velocity))) {
-            return fmt::format("vb jumped to {:.5g} and the mass slipped {}", vb, slides < 0 ? "backward" : "forward");
+            return fmt::format("vb jumped to {:.5g} and it slipped {}", vb, slides < 0 ? "backward" : "forward");
         }
     }
     const double torque = pull(event);
@@ -338,7 +338,7 @@ std::string Story::slip(const model::Event& event, bool told) const {
     } else if (at_limit(torque, event)) {
         why = fmt::format("{} exceeded Re", told ? "this torque" : fmt::format("|{}|", pull_name()));
     }
-    return fmt::format("{} and the mass slipped {}", why, torque < 0 ? "backward" : "forward");
+    return fmt::format("{} and it slipped {}", why, torque < 0 ? "backward" : "forward");
 }
 
 std::string Story::slip_from_wall(const model::Event& event) const {

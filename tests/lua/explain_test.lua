@@ -130,18 +130,18 @@ test("what a support and a belt do is part of the pull, and named", function()
     local shaken = story(system { I = 2, k = 0, Rd = 0.3, Re = 0.5 }, { base = excitation.half_sine { width = 1 }, t_end = 5, dt = 1 })
     has(shaken, "The support accelerates")
     -- 2 sin(pi t) = Re at asin(.25)/pi
-    has(shaken, "until t = 0.080431, when this torque exceeded Re and the mass slipped backward.")
+    has(shaken, "until t = 0.080431, when this torque exceeded Re and it slipped backward.")
     assert(not shaken:find("jumped", 1, true) and not shaken:find("free", 1, true), shaken)
     -- C vb + k theta = .1 + .2 t is Re at t = 2
     local carried = story(system { I = 1, k = 1, Rd = 0.3, Re = 0.5, C = 0.5 }, { belt = 0.2, velocity0 = 0.2, t_end = 10, dt = 1 })
     has(carried, "belt that moves with velocity vb = 0.2")
-    has(carried, "stuck to the belt until t = 2, when |M - C vb - k theta| exceeded Re and the mass slipped backward.")
+    has(carried, "stuck to the belt until t = 2, when |M - C vb - k theta| exceeded Re and it slipped backward.")
     -- I vb' = .8 at the start
     local rubbed = story(system { I = 1, k = 0, Rd = 0.3, Re = 0.5 },
         { belt = excitation.harmonic { amplitude = 1, omega = 0.8 }, t_end = 20, dt = 1 })
     has(rubbed, "moved off because |M - I vb' - k theta| = 0.8 > Re = 0.5.")
     local jerked = story(system { I = 1, k = 0, Rd = 0.3, Re = 0.5 }, { base = excitation.step { at = 1 }, t_end = 1.5, dt = 0.5 })
-    has(jerked, "until t = 1, when the pull jumped so that |M - I a - k theta| = 1 > Re = 0.5, and the mass slipped backward.")
+    has(jerked, "until t = 1, when the pull jumped so that |M - I a - k theta| = 1 > Re = 0.5, and it slipped backward.")
 end)
 
 test("outputs that are held, and relays of the motion, hide no pulse", function()
@@ -161,7 +161,7 @@ test("a belt that jumps, told or not, is what throws a mass off, and which way",
     for _, belt in ipairs { 0.2 + excitation.step { amplitude = -0.7, at = 1 }, function(t) return t < 1 and 0.2 or -0.5 end } do
         local told = sys:simulate { velocity0 = 0.1, t_end = 10, dt = 0.5, belt = belt }:explain():gsub("%s+", " ")
         assert(told:find("|M - I vb' - C vb - k theta| = 0.078872 <= Re = 0.5", 1, true), told)
-        assert(told:find("until vb jumped to -0.5 and the mass slipped forward", 1, true), told)
+        assert(told:find("until vb jumped to -0.5 and it slipped forward", 1, true), told)
     end
 end)
 
