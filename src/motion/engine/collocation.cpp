@@ -525,6 +525,7 @@ Collocation::Attempt Collocation::solve(Segment& s, const Mode& mode, const Fram
         if (!std::isfinite(greatest(change))) return Attempt::failed;
     }
     find_holding(s, mode, frame);
+    find_limits(s, mode);
     judge(s, mode, frame);
     if (stepping) return Attempt::resolved;
     if (unresolved_ <= 1 && !agrees_between(s, mode, frame)) unresolved_ = 2;
@@ -580,7 +581,13 @@ void Collocation::judge(const Segment& s, const Mode& mode, const Frame& frame) 
             const double torques = sizes_[first], lost = lost_in_time(series, late, h, torques);
             unresolved_ = std::max(unresolved_, cheb::tail(series) / ((tolerance_ + 64 * rounding) * torques + lost +
                                                                       blurred_by_belts(s) + smallest));
-            judge_limits(s, mode, joint);
+            for (std::size_t way = 0; way < 2 && mechanics_.limits_change(joint, mode); ++way) {
+                const Series limit = cheb::fit(s.limits[joint][way]);
+                const double most = greatest(s.limits[joint][way]);
+                const double allowed =
+                    (tolerance_ + 64 * rounding) * most + lost_in_time(limit, late, h, most) + smallest;
+                unresolved_ = std::max(unresolved_, cheb::tail(limit) / allowed);
+            }
         }
         if (!mechanics_.has_belt(joint)) continue;
         const Series belt = cheb::fit(s.belts[joint]);
@@ -601,20 +608,18 @@ void Collocation::judge(const Segment& s, const Mode& mode, const Frame& frame) 
     }
 }
 
-/// The limits of a joint that holds, where they change.
-void Collocation::judge_limits(const Segment& s, const Mode& mode, std::size_t joint) {
-    const bool sticks = mechanics_.rubs(joint) && mode.friction[joint].way == model::Motion::stuck;
-    if (!sticks || !mechanics_.varies(joint)) return;
-    const double late = std::max(std::fabs(s.start.hi), std::fabs(s.end));
-    for (const model::Motion way : {model::Motion::forward, model::Motion::backward}) {
-        Nodes limit{};
+void Collocation::find_limits(Segment& s, const Mode& mode) const {
+    s.limits.resize(mechanics_.joints());
+    std::vector<double> y;
+    for (std::size_t joint = 0; joint < s.limits.size(); ++joint) {
+        if (!mechanics_.limits_change(joint, mode)) continue;
+        y.resize(s.y.size());
         for (std::size_t j = 0; j < node_count; ++j) {
-            limit[j] = mechanics_.holding(joint, way, {s.times[j], s.side(j), points_[j]});
+            for (std::size_t k = 0; k < y.size(); ++k) y[k] = s.y[k][j];
+            const Moment at{s.times[j], s.side(j), y};
+            s.limits[joint][0][j] = mechanics_.holding(joint, model::Motion::backward, at);
+            s.limits[joint][1][j] = mechanics_.holding(joint, model::Motion::forward, at);
         }
-        const Series series = cheb::fit(limit);
-        const double most = greatest(limit);
-        const double allowed = (tolerance_ + 64 * rounding) * most + lost_in_time(series, late, s.h, most) + smallest;
-        unresolved_ = std::max(unresolved_, cheb::tail(series) / allowed);
     }
 }
 

@@ -32,6 +32,8 @@ struct Segment {
     std::vector<Nodes> torques{};              ///< of each body: all but those of what holds
     std::vector<Nodes> belts{}, belt_rates{};  ///< of each joint
     std::vector<Nodes> holding{};              ///< of each joint that holds: the torque on its first body
+    /// Of each joint that sticks and whose limits change: what holds it at most, backward and forward.
+    std::vector<std::array<Nodes, 2>> limits{};
 
     [[nodiscard]] double time(double x) const { return x >= 1 ? end : start.after(h * (1 + x)); }
     [[nodiscard]] double at(std::size_t k, double x) const {
@@ -73,6 +75,8 @@ public:
     [[nodiscard]] double fastest_belt(std::size_t joint) const { return fastest_belt_[joint]; }
     /// The multipliers of what holds, at the nodes.
     void find_holding(Segment& segment, const Mode& mode, const Frame& frame) const;
+    /// The limits of what sticks, where they change.
+    void find_limits(Segment& segment, const Mode& mode) const;
 
 private:
     static constexpr std::size_t inner = node_count - 1;
@@ -100,7 +104,6 @@ private:
     Attempt runge_kutta(Segment& segment, const Mode& mode, const Frame& frame, const std::vector<double>& departing);
     Attempt iterate(Segment& segment, const Mode& mode, const Frame& frame, const std::vector<double>& departing);
     void judge(const Segment& segment, const Mode& mode, const Frame& frame);
-    void judge_limits(const Segment& segment, const Mode& mode, std::size_t joint);
     void add_turns(const Segment& segment, std::vector<double>& places) const;
     bool agrees_between(const Segment& segment, const Mode& mode, const Frame& frame);
     void find_sizes_at_start(const Segment& segment, const std::vector<double>& begin);

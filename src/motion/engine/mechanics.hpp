@@ -148,6 +148,10 @@ public:
     [[nodiscard]] double holding(std::size_t joint, model::Motion way, const Moment& at) const;
     /// The limit of holding depends on more than the way.
     [[nodiscard]] bool varies(std::size_t joint) const { return contacts_[joint].varies; }
+    /// It sticks, and so they do.
+    [[nodiscard]] bool limits_change(std::size_t joint, const Mode& mode) const {
+        return varies(joint) && rubs(joint) && mode.friction[joint].way == model::Motion::stuck;
+    }
     [[nodiscard]] bool has_normal(std::size_t joint) const { return !contacts_[joint].normal.none(); }
     [[nodiscard]] double normal(std::size_t joint, const Moment& at) const { return contacts_[joint].normal.value(at); }
     /// How great torques are at a joint: of its springs and its friction.

@@ -1036,6 +1036,7 @@ bool Engine::advance() {
         2 * segment_.h <= std::max(shortest * pace_, 16 * rounding * late)) {
         if (++too_short_ > most_short) return get_nowhere(Outcome::chattering);
         solver_->pass_over(segment_);
+        solver_->find_limits(segment_, mode_);
         h_ = 64 * segment_.h;
     } else if (attempt != Collocation::Attempt::resolved) {
         again(attempt);
@@ -1382,12 +1383,9 @@ void Engine::watch_release(std::size_t joint, Ending& ending) {
         if (wall * sign > 0) continue;
         const bool rubs = mechanics_.rubs(joint) && mode_.friction[joint].way == Motion::stuck;
         Nodes limit{};
-        if (rubs && mechanics_.varies(joint)) {
-            for (std::size_t j = 0; j < node_count; ++j) {
-                point_.resize(y_.size());
-                for (std::size_t k = 0; k < y_.size(); ++k) point_[k] = segment_.y[k][j];
-                limit[j] = mechanics_.holding(joint, side, {segment_.times[j], segment_.side(j), point_});
-                if (std::isfinite(limit[j])) continue;
+        if (mechanics_.limits_change(joint, mode_)) {
+            limit = segment_.limits[joint][side == Motion::forward ? 1 : 0];
+            if (!std::all_of(limit.begin(), limit.end(), [](double x) { return std::isfinite(x); })) {
                 fail(Outcome::excitation_not_finite);
                 return;
             }
