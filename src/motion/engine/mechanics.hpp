@@ -148,7 +148,7 @@ public:
     [[nodiscard]] double holding(std::size_t joint, model::Motion way, const Moment& at) const;
     /// The limit of holding depends on more than the way.
     [[nodiscard]] bool varies(std::size_t joint) const { return contacts_[joint].varies; }
-    /// It sticks, and so they do.
+    /// The joint sticks, and its limits may change along a stretch.
     [[nodiscard]] bool limits_change(std::size_t joint, const Mode& mode) const {
         return varies(joint) && rubs(joint) && mode.friction[joint].way == model::Motion::stuck;
     }
