@@ -128,9 +128,9 @@ void BranchWalk::differentiate(Spot& spot) {
             good = good && lap.finished;
             return good ? Vector(lap.to - x) : Vector::Zero(n);
         };
-        Vector slope = (at(h) - at(-h)) / (2 * h);
-        if (!sharp_) return slope;
-        return (4 * slope - (at(2 * h) - at(-2 * h)) / (4 * h)) / 3;
+        Vector central = (at(h) - at(-h)) / (2 * h);
+        if (!sharp_) return central;
+        return (4 * central - (at(2 * h) - at(-2 * h)) / (4 * h)) / 3;
     };
     spot.slopes.resize(n, n + 1);
     if (spot.lap.derivative) {
