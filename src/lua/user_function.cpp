@@ -142,10 +142,8 @@ CallState::CallState(lua_State* L)
 
 CallState::~CallState() {
     current = outer_;
-    if (failed()) {
-        lua_pushnil(L_);
-        lua_rawsetp(L_, LUA_REGISTRYINDEX, this);
-    }
+    lua_pushnil(L_);  // an error, be it one that a run got past
+    lua_rawsetp(L_, LUA_REGISTRYINDEX, this);
     for (const int kept : {state_table_, theta_table_, velocity_table_}) luaL_unref(L_, LUA_REGISTRYINDEX, kept);
     for (const int name : names_) luaL_unref(L_, LUA_REGISTRYINDEX, name);
     for (const int name : bodies_) luaL_unref(L_, LUA_REGISTRYINDEX, name);
@@ -562,6 +560,10 @@ bool LuaFunction::may_go_on() {
     current->failed_before_ = current->failed();
     current->failed_ = false;
     return true;
+}
+
+void LuaFunction::forget_failure() {
+    if (current != nullptr) current->failed_before_ = false;
 }
 
 namespace {

@@ -108,6 +108,7 @@ public:
     std::size_t fill(std::span<const double> times, std::span<double> out) override;
     double next_break(double t) override;
     bool may_go_on() override;
+    void forget_failure() override;
     std::shared_ptr<model::terms::Memory> new_memory() override;
     void use(const std::shared_ptr<model::terms::Memory>& memory) override { memory_ = memory; }
 

@@ -21,7 +21,9 @@ public:
 
     /// Outside of a run there is no value.
     double value(double /*t*/, const State& /*state*/) final { return std::numeric_limits<double>::quiet_NaN(); }
-    bool may_go_on() final { return false; }
+    void forget_failure() final {
+        if (function != nullptr) function->forget_failure();
+    }
 };
 
 /// Asked once at each instant at + n every, in order; what it says acts `delay` later and is held until the next.

@@ -173,11 +173,16 @@ bool Excitation::tells_rests() const {
     });
 }
 
+void Excitation::each_function(const std::function<void(UserFunction&)>& call) const {
+    for (const Component& c : components()) {
+        if (const auto* script = std::get_if<Scripted>(&c.term)) call(*script->function);
+    }
+}
+
 bool Excitation::may_go_on() const {
-    return std::all_of(components().begin(), components().end(), [](const Component& c) {
-        const auto* script = std::get_if<Scripted>(&c.term);
-        return script == nullptr || script->function->may_go_on();
-    });
+    bool may = true;
+    each_function([&](UserFunction& function) { may = may && function.may_go_on(); });
+    return may;
 }
 
 template <class Change>

@@ -69,6 +69,8 @@ public:
 
     /// After a value that was not finite: whether the functions in it may be asked again, at other times.
     [[nodiscard]] bool may_go_on() const;
+    /// Calls it with each function of the user's.
+    void each_function(const std::function<void(UserFunction&)>& call) const;
 
     [[nodiscard]] Excitation scaled(double gain) const;
     [[nodiscard]] Excitation delayed(double delay) const;

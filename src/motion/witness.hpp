@@ -38,6 +38,7 @@ public:
     double value_with(double t, const model::State& state, std::span<const double> states) override;
     std::size_t fill(std::span<const double> times, std::span<double> out) override;
     bool may_go_on() override { return !testimony_->found && function_->may_go_on(); }
+    void forget_failure() override { function_->forget_failure(); }
 
     /// Once more at the end of a run, after all the others.
     void conclude();

@@ -50,6 +50,8 @@ public:
     virtual double next_break(double /*t*/) { return never; }
     /// After a failure: whether it may be asked again, at other times. What failed stays known to the owner.
     virtual bool may_go_on() { return true; }
+    /// The run got past where it failed: what failed was asked for a motion that was tried, and was none.
+    virtual void forget_failure() {}
     /// A new memory for a run; none when it wants none, or when that fails.
     virtual std::shared_ptr<Memory> new_memory() { return nullptr; }
     /// The memory of the calls that follow.

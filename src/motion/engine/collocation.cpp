@@ -378,7 +378,10 @@ Collocation::Attempt Collocation::iterate(Segment& s, const Mode& mode, const Fr
         place(s, frame);
         double before = std::numeric_limits<double>::infinity();
         for (int i = 0; i < most_iterations; ++i) {
-            if (!evaluate(s, mode, frame, 1, node_count, nullptr)) return Attempt::failed;
+            if (!evaluate(s, mode, frame, 1, node_count, nullptr)) {
+                slopes_known_ = false;  // they may be those of a state far away
+                return Attempt::failed;
+            }
             if (count == 0) return Attempt::resolved;
             if (slopes != Slopes::none && !slopes_known_ && !find_slopes(s, mode, frame, node_count / 2)) {
                 slopes_known_ = false;

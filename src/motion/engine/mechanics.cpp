@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numeric>
 
+#include "model/springs/user_spring.hpp"
+
 namespace dinal::motion::engine {
 
 namespace {
@@ -346,6 +348,15 @@ double Mechanics::size_of(std::size_t joint, const Moment& at) const {
     const Joint& own = system_.joints[joint];
     const double q = angle(joint, at.y);
     double size = std::fabs(own.stiffness * q) + std::fabs(own.spring.torque(q));
+    if (own.second >= 0) {  // a difference of two angles is known as well as these
+        const double known = std::fabs(at.y[index(own.first)]) + std::fabs(at.y[index(own.second)]);
+        constexpr double ulps = 1024 * rounding;
+        size += own.stiffness * known + own.damping * (std::fabs(at.y[bodies() + index(own.first)]) +
+                                                       std::fabs(at.y[bodies() + index(own.second)]));
+        if (!own.spring.none()) {
+            size += std::fabs(own.spring.torque(q + ulps * known) - own.spring.torque(q - ulps * known)) / (2 * ulps);
+        }
+    }
     if (rubs(joint)) {
         size +=
             std::max(std::fabs(holding(joint, Motion::forward, at)), std::fabs(holding(joint, Motion::backward, at)));
@@ -365,15 +376,23 @@ double Mechanics::view(double t, double spacing) const {
     return least;
 }
 
+void Mechanics::each_function(const std::function<void(model::UserFunction&)>& call) const {
+    for_each_signal([&](const Signal& s) { s.each_function(call); });
+    for (const model::OwnState& state : drive_.states) call(*state.rate);
+    for (const Joint& joint : system_.joints) {
+        if (const auto* spring = joint.spring.as<model::springs::UserSpring>()) call(*spring->function);
+        if (joint.friction.function != nullptr) call(*joint.friction.function);
+    }
+}
+
 bool Mechanics::may_go_on() const {
     bool may = true;
-    for_each_signal([&](const Signal& s) { may = may && s.may_go_on(); });
-    for (const model::OwnState& state : drive_.states) may = may && state.rate->may_go_on();
-    for (const Joint& joint : system_.joints) {
-        may = may && joint.spring.may_go_on();
-        if (joint.friction.function != nullptr) may = may && joint.friction.function->may_go_on();
-    }
+    each_function([&](model::UserFunction& function) { may = may && function.may_go_on(); });
     return may;
+}
+
+void Mechanics::forget_failure() const {
+    each_function([](model::UserFunction& function) { function.forget_failure(); });
 }
 
 bool Mechanics::asks_functions() const {

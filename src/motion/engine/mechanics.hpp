@@ -163,6 +163,7 @@ public:
     [[nodiscard]] double next_break(double t) const;
     [[nodiscard]] double view(double t, double spacing) const;
     [[nodiscard]] bool may_go_on() const;
+    void forget_failure() const;
     [[nodiscard]] bool asks_functions() const;
     /// The greatest natural frequency of a linear system with these groups, rad per time unit; 0 without springs.
     [[nodiscard]] double fastest(const Frame& frame) const;
@@ -197,6 +198,9 @@ private:
         }
         f(self.base_);
     }
+
+    /// Calls it with each function of the user's.
+    void each_function(const std::function<void(model::UserFunction&)>& call) const;
 
     const model::Assembly& system_;
     const Drive& drive_;

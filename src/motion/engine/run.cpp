@@ -89,6 +89,9 @@ private:
     void creep(std::size_t joint, Motion way, double pull);
     [[nodiscard]] bool may_creep(std::size_t joint) const;
     bool share_loops(const std::optional<Ending>& released);
+    struct Box;
+    bool box_of(const std::vector<std::size_t>& held, Box& box);
+    bool decide_together(const std::vector<char>& asked, const Mode& entered, std::size_t full);
     void project(Side when);
     bool look(const Moment& at, const Mode& mode, const Frame& frame, Look& result, std::optional<double> x = {});
     [[nodiscard]] const std::vector<double>& departing() const;
@@ -126,6 +129,7 @@ private:
     };
     [[nodiscard]] std::optional<Bounces> next_bounces(std::size_t joint, int wall, double speed);
     bool hit(std::size_t joint, int wall);
+    void leave_walls();
     bool act_all(const std::vector<std::size_t>& told);
     bool act(std::size_t event, const std::vector<std::size_t>& told);
     void touch_walls();
@@ -138,7 +142,7 @@ private:
     void come_again(std::size_t event);
     void tell(EventKind kind, int where, int user = -1);
     [[nodiscard]] JointEvent event_at(EventKind kind, int where, int user) const;
-    bool too_often();
+    bool too_often(int most = most_at_once);
     void echo(double t, int generation);
     bool put_row(double t, double x);
     [[nodiscard]] double friction(std::size_t joint, const Moment& at, const Look& look) const;
@@ -187,11 +191,11 @@ private:
     std::vector<double> breaks_;                  ///< found, and still ahead
     std::vector<std::pair<double, int>> echoes_;  ///< breaks that delays bring back
     double h_ = 1, bad_time_ = model::never, searched_from_ = model::never, searched_h_ = 0;
-    double attempts_since_ = 0, last_event_ = -model::never, born_ = 0;
+    double attempts_since_ = 0, last_event_ = -model::never, last_full_at_ = -model::never, born_ = 0;
     double shortest_delay_ = model::never, longest_delay_ = 0;
     std::pair<std::size_t, int> last_hit_{0, 0};  ///< the joint and its wall
     int attempts_ = 0, too_short_ = 0, at_once_in_a_row_ = 0;
-    std::size_t next_row_ = 0;
+    std::size_t next_row_ = 0, last_full_ = 0;  ///< the joint of a loop that came to its limit last, at last_full_at_
     Outcome outcome_ = Outcome::reached_end;
     Look look_;
     std::array<std::vector<double>, 6> scratch_;  ///< of look()
@@ -460,14 +464,23 @@ bool Engine::decide(bool told, std::optional<Ending> released) {
         if (released && how.leaving && !how.riding && !arrived) let_go[j] = how.way;
         how.way = Motion::stuck, how.riding = how.leaving = false;
     }
+    const Mode entered = mode_;
     const bool free = std::none_of(asked.begin(), asked.end(), [](char one) { return one != 0; });
     if (free && frame().edges.empty()) return true;
     project(side());
-    if (!frame().closing.empty() && !share_loops(released)) return false;
+    const bool loops = !frame().closing.empty();
+    // One after the other comes to its limit now, or can not go: no sharing holds any longer.
+    const bool all_used = loops && last_full_at_ == now_.hi;
+    if (loops && released) last_full_at_ = now_.hi, last_full_ = released->which;
+    const std::size_t full = released ? released->which : all_used ? last_full_ : joints;
+    if (loops && !all_used && !share_loops(released)) return false;
     Look found;
-    const int most = 8 * static_cast<int>(joints) + 16;
+    const int most = all_used ? -1 : 8 * static_cast<int>(joints) + 16;
     for (int i = 0;; ++i) {
-        if (i > most) return fail(Outcome::chattering);
+        if (i > most) {
+            if (!decide_together(asked, entered, full)) return false;
+            break;
+        }
         const Frame& present = frame();
         bool grown = false;
         for (std::size_t j = 0; j < joints; ++j) {
@@ -535,21 +548,30 @@ bool Engine::decide(bool told, std::optional<Ending> released) {
             }
             continue;
         }
-        bool changed = false;
+        bool changed = false, goes_round = false;
         for (std::size_t j = 0; j < joints && !changed; ++j) {
             Slipping& how = mode_.friction[j];
-            if (!how.leaving || taken_back[j] != 0) continue;
+            const bool lifted = leant[j] != 0 && mode_.leans[j] == 0;
+            if (!how.leaving && !lifted) continue;
             const Joint& joint = problem_.system.joints[j];
             double rate = found.accelerations[index(joint.first)] -
                           (joint.second < 0 ? 0 : found.accelerations[index(joint.second)]);
-            if (mechanics_.has_belt(j)) rate -= belt_slope(j).rate;
             const double I = problem_.system.bodies[index(joint.first)].inertia;
-            if (model::sign_of(how.way) * rate * I >= -64 * rounding * torque_size(j)) continue;
+            const double nothing = 64 * rounding * torque_size(j);
+            goes_round = goes_round || (lifted && leant[j] * rate * I > nothing);
+            if (mechanics_.has_belt(j)) rate -= belt_slope(j).rate;
+            if (!how.leaving || model::sign_of(how.way) * rate * I >= -nothing) continue;
+            if (taken_back[j] != 0) {
+                goes_round = true;
+                continue;
+            }
             taken_back[j] = 1;
             how.way = Motion::stuck, how.leaving = false;
             changed = true;
         }
-        if (!changed) break;
+        if (changed) continue;
+        if (goes_round && !decide_together(asked, entered, full)) return false;
+        break;
     }
     project(side());
     for (std::size_t j = 0; j < joints; ++j) {
@@ -596,61 +618,132 @@ void Engine::creep(std::size_t joint, Motion way, double pull) {
     crept_events_[joint] = event_at(EventKind::stick, static_cast<int>(joint), -1);
 }
 
-/// Where joints that hold close loops, their torques are not known from the motion. What they can hold together they
-/// do: the accelerations are the least that torques within their limits leave (Gauss), and of all such torques they
-/// have the smallest. A joint at its limit rides along, or slides when the others do not hold.
-bool Engine::share_loops(const std::optional<Ending>& released) {
+/// The torques of joints at slip 0 on their first bodies, within their limits, as a problem of least squares: G times
+/// the torques, plus slope, are the accelerations by which the joints slip.
+struct Engine::Box {
+    Eigen::MatrixXd G;
+    Eigen::VectorXd slope, low, high;
+};
+
+/// Of these joints, which hold in the present mode.
+bool Engine::box_of(const std::vector<std::size_t>& held, Box& box) {
     const Frame present = frame();
     Look found;
     if (!look({now_.hi, side(), departing()}, mode_, present, found)) return fail(Outcome::excitation_not_finite);
-    const std::vector<std::size_t>& held = present.sharing_of;
     const auto count = static_cast<Eigen::Index>(held.size());
     Eigen::MatrixXd D = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(n()), count);
-    Eigen::VectorXd low(count), high(count), slope(count);
-    Eigen::Index full = -1;  // the joint that came to its limit
+    box.low.resize(count), box.high.resize(count), box.slope.resize(count);
     for (Eigen::Index c = 0; c < count; ++c) {
         const std::size_t j = held[static_cast<std::size_t>(c)];
         const Joint& joint = problem_.system.joints[j];
         D(joint.first, c) = 1;
         if (joint.second >= 0) D(joint.second, c) = -1;
-        if (released && released->which == j) full = c;
         const bool sticks = mechanics_.rubs(j) && mode_.friction[j].way == Motion::stuck;
-        low(c) = sticks ? -mechanics_.holding(j, Motion::forward, here()) : 0;
-        high(c) = sticks ? mechanics_.holding(j, Motion::backward, here()) : 0;
+        box.low(c) = sticks ? -mechanics_.holding(j, Motion::forward, here()) : 0;
+        box.high(c) = sticks ? mechanics_.holding(j, Motion::backward, here()) : 0;
         constexpr double wall = 1e30;
-        if (mode_.leans[j] > 0) low(c) = -wall;
-        if (mode_.leans[j] < 0) high(c) = wall;
-        slope(c) = mode_.leans[j] == 0 ? -belt_slope(j).rate : 0;
+        if (mode_.leans[j] > 0) box.low(c) = -wall;
+        if (mode_.leans[j] < 0) box.high(c) = wall;
+        box.slope(c) = mode_.leans[j] == 0 ? -belt_slope(j).rate : 0;
     }
     Eigen::VectorXd lightness(static_cast<Eigen::Index>(n())), torques(static_cast<Eigen::Index>(n()));
     for (std::size_t i = 0; i < n(); ++i) {
         lightness(static_cast<Eigen::Index>(i)) = 1 / problem_.system.bodies[i].inertia;
         torques(static_cast<Eigen::Index>(i)) = found.torques[i];
     }
-    Eigen::MatrixXd G = D.transpose() * lightness.asDiagonal() * D;
+    box.G = D.transpose() * lightness.asDiagonal() * D;
     constexpr double little = 1e-10;  // what makes the smallest torques the solution
-    G.diagonal() += little * G.diagonal();
-    slope += D.transpose() * lightness.cwiseProduct(torques);
+    box.G.diagonal() += little * box.G.diagonal();
+    box.slope += D.transpose() * lightness.cwiseProduct(torques);
+    return true;
+}
+
+constexpr double no_motion = 1e-9;    // of the acceleration that the torques at a joint could give
+constexpr double little_more = 1e-7;  // of the torques: what a joint that comes to its limit will be short of next
+
+/// What all joints at slip 0 do where asking one after the other goes round: the torques that solve the whole problem.
+/// What slips at the limit of holding has the torque of sliding, and with that the problem is solved again. The joint
+/// that came to its limit, if one did, is short of a little already.
+bool Engine::decide_together(const std::vector<char>& asked, const Mode& entered, std::size_t full) {
+    mode_ = entered;
+    std::vector<std::size_t> held;
+    for (std::size_t j = 0; j < mechanics_.joints(); ++j) {
+        if (asked[j] != 0 || entered.leans[j] != 0) held.push_back(j);
+    }
+    Box box;
+    if (!box_of(held, box)) return false;
+    for (std::size_t k = 0; k < held.size(); ++k) {
+        if (held[k] != full) continue;
+        const double room = little_more * torque_size(full);
+        box.low(static_cast<Eigen::Index>(k)) += room, box.high(static_cast<Eigen::Index>(k)) -= room;
+    }
+    std::vector<char> slips(held.size(), 0);
+    Eigen::VectorXd torque, rate;
+    for (bool grown = true; grown;) {
+        grown = false;
+        torque = least_in_box(box.G, box.slope, box.low, box.high);
+        rate = box.G * torque + box.slope;
+        for (Eigen::Index c = 0; c < torque.size(); ++c) {
+            const std::size_t k = static_cast<std::size_t>(c), j = held[k];
+            const bool at_limit = torque(c) <= box.low(c) || torque(c) >= box.high(c);
+            if (slips[k] != 0 || !at_limit || !mechanics_.rubs(j) || mode_.friction[j].way != Motion::stuck) continue;
+            if (!(std::fabs(rate(c)) > no_motion * box.G(c, c) * torque_size(j))) continue;  // others hold it, too
+            slips[k] = 1, grown = true;
+            if (mode_.leans[j] <= 0) box.low(c) = -mechanics_.sliding(j, {.way = Motion::forward}, 0, here());
+            if (mode_.leans[j] >= 0) box.high(c) = mechanics_.sliding(j, {.way = Motion::backward}, 0, here());
+        }
+    }
+    std::vector<std::size_t> gone;
+    for (Eigen::Index c = 0; c < torque.size(); ++c) {
+        const std::size_t j = held[static_cast<std::size_t>(c)];
+        const bool at_low = torque(c) <= box.low(c), at_high = torque(c) >= box.high(c);
+        if (!at_low && !at_high) continue;
+        if (mode_.leans[j] != 0) mode_.leans[j] = 0, at_wall_[j] = 1;
+        if (!mechanics_.rubs(j)) continue;
+        if (mode_.friction[j].way == Motion::stuck) {
+            // What can hold nothing is at both of its limits.
+            slide(j, at_low && !(at_high && rate(c) < 0) ? Motion::forward : Motion::backward, true);
+            gone.push_back(j);
+        } else if (mechanics_.belt(j, now_.hi, side()) == 0) {
+            mode_.friction[j].way = Motion::stuck;  // it may go with the belt, which sets off
+        }
+    }
+    for (const std::size_t j : gone) {
+        if (!moves_as_one(j, frame())) continue;
+        mode_.friction[j].riding = true, mode_.friction[j].leaving = false;
+    }
+    return true;
+}
+
+/// Where joints that hold close loops, their torques are not known from the motion. What they can hold together they
+/// do: the accelerations are the least that torques within their limits leave (Gauss), and of all such torques they
+/// have the smallest. A joint at its limit rides along, or slides when the others do not hold.
+bool Engine::share_loops(const std::optional<Ending>& released) {
+    const std::vector<std::size_t> held = frame().sharing_of;
+    Box box;
+    if (!box_of(held, box)) return false;
+    Eigen::Index full = -1;  // the joint that came to its limit
+    for (std::size_t c = 0; released && c < held.size(); ++c) {
+        if (released->which == held[c]) full = static_cast<Eigen::Index>(c);
+    }
     const double size = full < 0 ? 0 : torque_size(held[static_cast<std::size_t>(full)]);
     Eigen::VectorXd torque;
     bool still = false;
     const auto share = [&](double part) {
-        Eigen::VectorXd lower = low, higher = high;
+        Eigen::VectorXd lower = box.low, higher = box.high;
         if (full >= 0) lower(full) += part * size, higher(full) -= part * size;
-        torque = least_in_box(G, slope, lower, higher);
-        constexpr double nothing = 1e-9;
-        still = full >= 0 && (G * torque + slope).cwiseAbs().maxCoeff() <= nothing * G(full, full) * size;
-        if (full >= 0 && torque(full) <= lower(full)) torque(full) = low(full);
-        if (full >= 0 && torque(full) >= higher(full)) torque(full) = high(full);
+        torque = least_in_box(box.G, box.slope, lower, higher);
+        still = full >= 0 && (box.G * torque + box.slope).cwiseAbs().maxCoeff() <= no_motion * box.G(full, full) * size;
+        if (full >= 0 && torque(full) <= lower(full)) torque(full) = box.low(full);
+        if (full >= 0 && torque(full) >= higher(full)) torque(full) = box.high(full);
     };
     // What comes to its limit rides from now on, and the others take the rest. Others may stand at a limit just now and
     // leave it next: when they have room for a little more than the rest, nothing moves, and that little tells which.
-    constexpr double little_more = 1e-7;
     share(little_more);
     if (!still) share(64 * rounding);
-    for (Eigen::Index c = 0; c < count; ++c) {
+    for (Eigen::Index c = 0; c < torque.size(); ++c) {
         const std::size_t j = held[static_cast<std::size_t>(c)];
-        const bool at_low = torque(c) <= low(c), at_high = torque(c) >= high(c);
+        const bool at_low = torque(c) <= box.low(c), at_high = torque(c) >= box.high(c);
         if (!at_low && !at_high) continue;
         if (mode_.leans[j] != 0) mode_.leans[j] = 0, at_wall_[j] = 1;
         if (!mechanics_.rubs(j) || mode_.friction[j].way != Motion::stuck) continue;
@@ -1072,7 +1165,7 @@ bool Engine::end_at(double x) {
     now_ = whole && segment_.to_the_end ? Clock{segment_.end, 0} : segment_.start.later(length);
     after_break_ = whole && segment_.to_break;
     mechanics_.forget_jumps(now_.hi);
-    if (bad_time_ <= now_.hi) bad_time_ = model::never;
+    if (bad_time_ <= now_.hi) bad_time_ = model::never, mechanics_.forget_failure();
     while (!breaks_.empty() && breaks_.front() <= now_.hi) breaks_.erase(breaks_.begin());
     if (length > 0) {
         for (Slipping& how : mode_.friction) how.leaving = false;
@@ -1261,10 +1354,10 @@ bool Engine::handle(const Ending& ending) {
     return true;
 }
 
-bool Engine::too_often() {
+bool Engine::too_often(int most) {
     at_once_in_a_row_ = now_.hi - last_event_ <= at_once * pace_ ? at_once_in_a_row_ + 1 : 0;
     last_event_ = now_.hi;
-    return at_once_in_a_row_ > most_at_once;
+    return at_once_in_a_row_ > most;
 }
 
 void Engine::echo(double t, int generation) {
@@ -1708,7 +1801,9 @@ bool Engine::hit(std::size_t joint, int wall) {
     };
     if (stayed && before == 0) {
         mode_.leans[joint] = wall;
-        mode_.friction[joint].leaving = false;
+        Slipping& how = mode_.friction[joint];
+        how.leaving = false;
+        how.blunt = std::max(2 * how.blunt, 64 * rounding * torque_size(joint));  // it went, and did not get away
         if (!decide(true)) return false;
         stands();
         return !too_often() || fail(Outcome::chattering);
@@ -1756,13 +1851,26 @@ bool Engine::hit(std::size_t joint, int wall) {
             if (how.way != Motion::stuck) arrived_[joint] = how.way;
             how.leaving = false;
         }
+    } else {
+        leave_walls();
     }
     if (!restart_contacts(Because::impact, joint)) return false;
     if (rests) stands();
-    // Bounces at one wall die out; to and fro between others they need not.
+    // Bounces at one wall die out; to and fro between others they need not, and when they do it takes many.
+    constexpr int most_to_and_fro = 5000;
     const bool other = last_hit_ != std::pair(joint, wall);
     last_hit_ = {joint, wall};
-    return !other || !too_often() || fail(Outcome::chattering);
+    return !other || !too_often(most_to_and_fro) || fail(Outcome::chattering);
+}
+
+/// What leans, and was struck, goes: away from its wall, or into it, which is an impact of its own.
+void Engine::leave_walls() {
+    for (std::size_t j = 0; j < mechanics_.joints(); ++j) {
+        const double v = mechanics_.velocity(j, y_);
+        if (mode_.leans[j] == 0 || v == 0) continue;
+        if (leaned_[j] != 0 && mode_.leans[j] * v < 0) tell(EventKind::slip, static_cast<int>(j));
+        mode_.leans[j] = 0, leaned_[j] = 0, at_wall_[j] = 1;
+    }
 }
 
 bool Engine::act_all(const std::vector<std::size_t>& told) {

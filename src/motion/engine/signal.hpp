@@ -65,7 +65,7 @@ public:
     [[nodiscard]] double next_break(double t) const;
     [[nodiscard]] double view(double t, double spacing) const { return excitation_.view(t, spacing); }
     [[nodiscard]] double constant_from() const { return excitation_.constant_from(); }
-    [[nodiscard]] bool may_go_on() const { return excitation_.may_go_on(); }
+    void each_function(const std::function<void(model::UserFunction&)>& call) const { excitation_.each_function(call); }
     [[nodiscard]] const std::vector<double>& delays() const { return delays_; }
 
     // Controllers.

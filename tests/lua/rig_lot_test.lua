@@ -1,0 +1,143 @@
+-- Random rigs with everything that may act in them, and what single decisions of them once got wrong.
+package.path = "tests/lua/?.lua;" .. package.path
+local support = require "support"
+local test, near, equal = support.test, support.near, support.equal
+
+local function uniform(a, b) return a + (b - a) * math.random() end
+local function chance(p) return math.random() < p end
+
+-- Rd and Re, Stribeck's law, or Rd and Re under a normal load, which may fall below zero.
+local function rub(part)
+    local Rd, kind = uniform(0.05, 1), math.random(4)
+    if kind == 1 then
+        part.Rd, part.Re = Rd, Rd * uniform(1, 1.6)
+    elseif kind == 2 then
+        part.Rd = Rd
+    elseif kind == 3 then
+        part.friction = friction.stribeck { Rd = Rd, Re = Rd * uniform(1, 1.6), speed = uniform(0.05, 0.5) }
+    else
+        part.Rd, part.Re = Rd, 1.2 * Rd
+        local mean, swing, omega, phase = uniform(0.5, 2), uniform(0, 1.5), uniform(0.5, 4), uniform(0, 6)
+        part.normal = function(t, theta) return mean * (1 + swing * math.sin(omega * t + phase)) end
+    end
+end
+
+-- A rig, and what acts in it.
+local function random_rig(seed)
+    math.randomseed(seed)
+    local n = math.random(2, 6)
+    local bodies, links = {}, {}
+    local drive = { M = {}, theta0 = {}, velocity0 = {}, belt = {} }
+    for i = 1, n do
+        local name, body = "b" .. i, { I = 10 ^ uniform(-1.5, 1) }
+        if chance(0.6) then body.k = uniform(0.5, 10) end
+        if chance(0.4) then body.C = uniform(0, 0.5) end
+        if chance(0.5) then rub(body) end
+        if chance(0.15) then body.walls = { lower = -uniform(0.3, 1), upper = uniform(0.3, 1), restitution = uniform(0.2, 0.8) } end
+        bodies[name] = body
+        if chance(0.6) then
+            local amplitude, omega, mean = uniform(0.5, 3), uniform(0.5, 4), uniform(-0.5, 0.5)
+            drive.M[name] = function(t) return amplitude * math.sin(omega * t) + mean end
+        end
+        if chance(0.3) and (body.Rd or body.friction) then drive.belt[name] = uniform(-0.5, 0.5) end
+        if chance(0.4) then drive.velocity0[name] = uniform(-1, 1) end
+    end
+    for i = 1, n do
+        for j = i + 1, n do
+            if j == i + 1 or chance(0.15) then
+                local link = { "b" .. i, "b" .. j }
+                if chance(0.6) then link.k = uniform(1, 50) end
+                if chance(0.3) then link.C = uniform(0, 0.5) end
+                if not link.k and not link.C or chance(0.4) then rub(link) end
+                if chance(0.15) then link.walls = { lower = -uniform(0.1, 0.5), upper = uniform(0.1, 0.5), restitution = uniform(0.2, 0.8) } end
+                links["l" .. i .. j] = link
+            end
+        end
+    end
+    return system { bodies = bodies, links = links }, drive
+end
+
+local function with(drive, more)
+    local all = {}
+    for key, value in pairs(drive) do all[key] = value end
+    for key, value in pairs(more) do all[key] = value end
+    return all
+end
+
+test("of random rigs the energy closes, and a run in two parts ends as in one", function()
+    for seed = 1, 40 do
+        local rig, drive = random_rig(seed)
+        local run = rig:simulate(with(drive, { t_end = 12, dt = 12 }))
+        assert(run.status ~= "failed", ("rig %d: %s"):format(seed, run.outcome))
+        local closure = run:energy().total.closure
+        assert(closure < 1e-11, ("rig %d: energy closes to %.3g"):format(seed, closure))
+        local parts = rig:simulate(with(drive, { t_end = 5.1852, dt = 5.1852 })):continue { t_end = 12 }
+        for name in pairs(drive.M) do
+            local theta, velocity = run[name]:at(12)
+            local as_well, fast = parts[name]:at(12)
+            assert(math.abs(theta - as_well) < 1e-8 and math.abs(velocity - fast) < 1e-8,
+                ("rig %d: %s is at %.12g, %.12g or at %.12g, %.12g"):format(seed, name, theta, velocity, as_well, fast))
+        end
+    end
+end)
+
+test("what is struck while it leans at a wall strikes the wall", function()
+    local rig = system { bodies = { a = { I = 1 }, b = { I = 0.5, walls = { upper = 0, restitution = 0.8 } } },
+        links = { gap = { "a", "b", walls = { upper = 0, restitution = 0.5 } } } }
+    local run = rig:simulate { theta0 = { a = -1 }, velocity0 = { a = 1 }, t_end = 2 }
+    -- 1 and 0 become 0.5 and 1; the wall makes that -0.8, these two -0.15 and 0.5, the wall -0.4, and so they end
+    near(run.a.velocity[1001], -0.275, 1e-15)
+    near(run.b.velocity[1001], -0.15, 1e-15)
+    near(run.a.theta[1001], -0.275, 1e-14)
+    local told = {}
+    for _, event in ipairs(run.events) do told[#told + 1] = event.where end
+    equal(table.concat(told, " "), "gap b gap b gap")
+    local energy = run:energy()
+    near(energy.total.impacts, 0.5 * (1 - 0.275 ^ 2) - 0.25 * 0.15 ^ 2, 1e-15)
+    -- away from its wall
+    run = system { bodies = { a = { I = 1 }, b = { I = 0.5, walls = { lower = 0 } } },
+        links = { gap = { "a", "b", walls = { upper = 0, restitution = 0.5 } } } }:simulate { theta0 = { a = -1 }, velocity0 = { a = 1 }, M = { b = -0.1 }, t_end = 1.5 }
+    equal(run.events[1].kind, "impact")
+    equal(run.events[2].kind, "slip")
+    equal(run.events[2].where, "b")
+    near(run.b.velocity[1001], 1 - 0.5 * 0.1 / 0.5, 1e-14)
+end)
+
+test("a loop whose contacts come to their limits one after the other breaks away", function()
+    local rig = system { bodies = { a = { I = 1, Rd = 1 }, b = { I = 2, Rd = 1, normal = function(t) return 1 - t end } },
+        links = { pad = { "a", "b", Rd = 0.5 } } }
+    -- b is held by 1 - t and by the pad; from t = 1 by the pad alone
+    local run = rig:simulate { M = { b = function(t) return 0.9 end }, t_end = 2 }
+    equal(run.events[1].kind, "slip")
+    near(run.events[1].t, 0.6, 1e-12)
+    -- 0.4 less (1 - t) acts on it up to t = 1, then 0.4
+    near(run.b.velocity[1001], (0.16 - 0.08 + 0.4) / 2, 1e-12)
+    -- pulled the other way, by the pad alone from t = 1, until it holds no more
+    run = rig:simulate { M = { b = function(t) return -0.1 - 0.2 * t end }, t_end = 4 }
+    near(run.events[1].t, 2, 1e-12)
+    assert(run.b.velocity[1001] < 0)
+    near(run.b.velocity[1001], (-0.1 * 2 - 0.1 * (16 - 4) + 0.5 * 2) / 2, 1e-12)
+end)
+
+test("what rings about the place at which another sticks comes to rest", function()
+    for _, place in ipairs { 0.05, 3, 1000 } do
+        local rig = system { bodies = { a = { I = 0.1 }, b = { I = 3, Rd = 1 } }, links = { shaft = { "a", "b", k = 15, C = 0.36 } } }
+        local run = rig:simulate { theta0 = { a = place, b = place }, velocity0 = { a = 0.3 }, t_end = 40 }
+        equal(run.status, "end")
+        near(run.a.theta[1001], place, 1e-12 * place)
+        -- 0.3 exp(-1.8 t) sin(w t)/w
+        local w = math.sqrt(150 - 1.8 ^ 2)
+        near(run.a:at(1) - place, 0.3 * math.exp(-1.8) * math.sin(w) / w, 1e-13 * (1 + place))
+    end
+end)
+
+test("a function that fails for a motion that is only tried is no error", function()
+    local sys = system { I = 0.02, k = 0, C = 0.1, Rd = 0.1, spring = function(q) return 900 * q + 1e4 * q ^ 3 end }
+    local run = sys:simulate { M = function(t) return 1.4 * math.sin(t) end, belt = 0.1, t_end = 1000, dt = 1 }
+    equal(run.status, "end")
+    support.raises(function()
+        sys:simulate { M = function(t, theta) return theta > 0.001 and 0 / 0 or 1.4 * math.sin(t) end, belt = 0.1, t_end = 1000, dt = 1 }
+    end, "M returned")
+end)
+
+support.finish()
