@@ -586,7 +586,7 @@ void Collocation::judge(const Segment& s, const Mode& mode, const Frame& frame) 
                                                                       blurred_by_belts(s) + smallest));
             for (std::size_t way = 0; way < 2 && mechanics_.limits_change(joint, mode); ++way) {
                 const Series limit = cheb::fit(s.limits[joint][way]);
-                const double most = greatest(s.limits[joint][way]);
+                const double most = greatest(s.limits[joint][way]) + torques;  // it is compared with these
                 const double allowed =
                     (tolerance_ + 64 * rounding) * most + lost_in_time(limit, late, h, most) + smallest;
                 unresolved_ = std::max(unresolved_, cheb::tail(limit) / allowed);
