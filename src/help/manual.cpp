@@ -155,6 +155,7 @@ std::string manual(Extent extent) {
         writer.text += fmt::format("\n## Options of several calls\n\n{}", fmt::join(writer.shared, ""));
     }
     for (const Section& section : sections()) writer.section(section);
+    if (extent == Extent::page) writer.text += "\nNext: [limits](limits.md).\n";
     return std::move(writer.text);
 }
 

@@ -184,6 +184,24 @@ def links_lead_somewhere():
                 complain(path, number, f"the link {match[1]} names no heading")
 
 
+def documents_make_a_path():
+    """The list of documents names each page, and each page ends with a link to the next one."""
+    with open(os.path.join(ROOT, "docs/README.md"), encoding="utf-8") as file:
+        index = file.read()
+    for path in files((".md",)):
+        if not re.match(r"(docs/(lab/|es/)?|examples/)[\w-]+\.md$", path):
+            continue
+        text = [line for _, line in lines(path) if line]
+        if not re.match(r"(Next|Sigue): .*\]\([^)]+\)", text[-1]):
+            complain(path, len(lines(path)), 'a page ends with "Next: [a title](page.md)."')
+        if re.match(r"docs/[\w-]+\.md$", path) and path != "docs/README.md" and f"]({path[5:]})" not in index:
+            complain(path, 1, "docs/README.md does not name this page")
+    for path, most in (("README.md", 900), ("docs/theory.md", 4000), ("docs/architecture.md", 900)):
+        words = sum(len(line.split()) for _, line in lines(path))
+        if words > most:
+            complain(path, 1, f"{words} words, {most} are the limit: move what belongs elsewhere")
+
+
 def documents_name_what_is_there():
     """Each source that the page of the house names, by its path or the end of it, exists."""
     path = "docs/architecture.md"
@@ -204,7 +222,8 @@ def anchors(goal):
 
 for rule in (includes_point_down, rooms_are_namespaces, forbidden_things_are_absent, headers_say_what_they_hold,
              headers_have_two_users, lua_tests_can_fail, tests_are_namespaces,
-             catch_is_included_once, nothing_is_left_for_later, links_lead_somewhere, documents_name_what_is_there):
+             catch_is_included_once, nothing_is_left_for_later, links_lead_somewhere, documents_make_a_path,
+             documents_name_what_is_there):
     rule()
 if not any(True for _ in files((".hpp",))):
     complaints.append("no headers found: is the folder right?")
