@@ -38,6 +38,7 @@ test("the mass of an SVG is where run:at says, at equal steps of time", function
         support.near(tonumber(mass[i]), right + part * (left - right), 0.11)  -- a digit behind the point
     end
     assert(svg:find('dur="5.000s"', 1, true) and svg:find('role="img"', 1, true))
+    assert(svg:match("<desc>.-</desc>"):find("Below, θ from %S+ to %S+ over t from 0 to 10%."), "the axes in words")
 end)
 
 test("it is another colour while it sticks, from when to when the events say", function()

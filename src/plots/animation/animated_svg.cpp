@@ -17,7 +17,11 @@ namespace {
 // Pixels of the sheet.
 constexpr double sheet_width = 480, sheet_height = 260;
 constexpr double mass_width = 44, mass_top = 56, svg_floor = 100;  // of the mass, and where it slides
-constexpr double graph_left = 40, graph_right = 464, graph_top = 140, graph_bottom = 236;
+
+/// The box in which theta is drawn over t.
+struct Graph {
+    double left, right, top, bottom;
+};
 constexpr double hatch_width = 12;
 
 constexpr const char* grey_ink = "#444444";
@@ -39,7 +43,11 @@ protected:
         add("<svg xmlns=\"http://www.w3.org/2000/svg\" role=\"img\" aria-label=\"{0}\" viewBox=\"0 0 {1} {2}\" "
             "width=\"{1}\" height=\"{2}\" font-family=\"Arial, sans-serif\" font-size=\"11\" fill=\"{3}\">\n<title>{0}</title>\n",
             title, width, height, grey_ink);
-        add("<desc>{}</desc>\n<rect width=\"{}\" height=\"{}\" fill=\"#ffffff\"/>\n", text::html(seen), width, height);
+        const Frame &first = clock_.frames.front(), &last = clock_.frames.back();
+        const std::string axes = fmt::format(" Below, θ from {:.3g} to {:.3g} over t from {:.6g} to {:.6g}.",
+                                             clock_.reach.low, clock_.reach.high, first.t, last.t);
+        add("<desc>{}</desc>\n<rect width=\"{}\" height=\"{}\" fill=\"#ffffff\"/>\n", text::html(seen + axes), width,
+            height);
     }
 
     template <class Value>
@@ -100,6 +108,37 @@ protected:
         return list;
     }
 
+    [[nodiscard]] double graph_x(const Graph& graph, std::size_t frame) const {
+        return graph.left +
+               (graph.right - graph.left) * static_cast<double>(frame) / static_cast<double>(clock_.frames.size() - 1);
+    }
+    [[nodiscard]] static double graph_y(const Graph& graph, const Scene& scene, double theta) {
+        return graph.bottom - scene.at(theta) * (graph.bottom - graph.top);
+    }
+
+    /// With the numbers at their ends and their names.
+    void add_axes(const Graph& graph) {
+        add("<path d=\"M{0},{1} V{2} H{3}\" fill=\"none\" stroke=\"{4}\" stroke-width=\"0.8\"/>\n", graph.left,
+            graph.top - 4, graph.bottom + 4, graph.right, grey_ink);
+        words(graph.left - 4, graph.top + 4, "end", fmt::format("{:.3g}", clock_.reach.high));
+        words(graph.left - 4, graph.bottom + 4, "end", fmt::format("{:.3g}", clock_.reach.low));
+        const double below = graph.bottom + 18;
+        words(graph.left, below, "middle", fmt::format("{:.6g}", clock_.frames.front().t));
+        words(graph.right, below, "end", fmt::format("{:.6g}", clock_.frames.back().t));
+        words((graph.left + graph.right) / 2, below, "middle",
+              clock_.t_unit.empty() ? "t" : fmt::format("t, {}", clock_.t_unit));
+        words(graph.left + 4, graph.top - 8, "start", fmt::format("θ, {}", clock_.theta_unit));
+    }
+
+    void add_curve(const Graph& graph, const Scene& scene, const char* colour) {
+        std::string path;
+        for (std::size_t i = 0; i < scene.frames.size(); ++i) {
+            path += fmt::format("{}{:.1f},{:.1f}", i == 0 ? "M" : " L", graph_x(graph, i),
+                                graph_y(graph, scene, scene.frames[i].theta));
+        }
+        add("<path d=\"{}\" fill=\"none\" stroke=\"{}\" stroke-width=\"1.2\"/>\n", path, colour);
+    }
+
     const Scene& clock_;
     std::string all_;
 };
@@ -111,9 +150,10 @@ public:
 
     std::string text() {
         begin(sheet_width, sheet_height,
-              fmt::format("A mass on {}{}{}; it is orange while it sticks. Below, theta over t.",
+              fmt::format("A mass on {}{}{}: it starts at θ = {:.3g}, ends at {:.3g} and is orange while it sticks.",
                           scene_.belt ? "a moving belt" : "a surface with dry friction",
-                          scene_.spring ? ", with a spring" : "", scene_.walls ? ", between walls" : ""));
+                          scene_.spring ? ", with a spring" : "", scene_.walls ? ", between walls" : "",
+                          scene_.frames.front().theta, scene_.frames.back().theta));
         add_surface();
         add_walls();
         if (scene_.spring) add_spring();
@@ -168,29 +208,13 @@ private:
     }
 
     void add_graph() {
-        const auto graph_x = [&](std::size_t i) {
-            return graph_left +
-                   (graph_right - graph_left) * static_cast<double>(i) / static_cast<double>(scene_.frames.size() - 1);
-        };
-        const auto graph_y = [&](double theta) { return graph_bottom - scene_.at(theta) * (graph_bottom - graph_top); };
-        std::string path;
-        for (std::size_t i = 0; i < scene_.frames.size(); ++i) {
-            path += fmt::format("{}{:.1f},{:.1f}", i == 0 ? "M" : " L", graph_x(i), graph_y(scene_.frames[i].theta));
-        }
-        add("<path d=\"M{0},{1} V{2} H{3}\" fill=\"none\" stroke=\"{4}\" stroke-width=\"0.8\"/>\n", graph_left,
-            graph_top - 4, graph_bottom + 4, graph_right, grey_ink);
-        add("<path d=\"{}\" fill=\"none\" stroke=\"{}\" stroke-width=\"1.2\"/>\n", path, moving_colour);
-        words(graph_left - 4, graph_top + 4, "end", fmt::format("{:.3g}", scene_.reach.high));
-        words(graph_left - 4, graph_bottom + 4, "end", fmt::format("{:.3g}", scene_.reach.low));
-        words(graph_left, sheet_height - 6, "middle", fmt::format("{:.6g}", scene_.frames.front().t));
-        words(graph_right, sheet_height - 6, "end", fmt::format("{:.6g}", scene_.frames.back().t));
-        words((graph_left + graph_right) / 2, sheet_height - 6, "middle",
-              scene_.t_unit.empty() ? "t" : fmt::format("t, {}", scene_.t_unit));
-        words(graph_left + 4, graph_top - 8, "start", fmt::format("θ, {}", scene_.theta_unit));
+        constexpr Graph graph{40, 464, 140, 236};
+        add_axes(graph);
+        add_curve(graph, scene_, moving_colour);
         add("<circle r=\"3.5\" fill=\"{}\">", stuck_colour);
         add_motion("transform", "translate", scene_, [&](const Frame& f) {
-            const auto place = static_cast<std::size_t>(&f - scene_.frames.data());
-            return fmt::format("{:.1f},{:.1f}", graph_x(place), graph_y(f.theta));
+            const auto frame = static_cast<std::size_t>(&f - scene_.frames.data());
+            return fmt::format("{:.1f},{:.1f}", graph_x(graph, frame), graph_y(graph, scene_, f.theta));
         });
         all_ += "</circle>\n";
     }
@@ -209,10 +233,9 @@ public:
           width_(std::max(sheet_width, cell_ * static_cast<double>(rig.bodies.size()) + 2 * margin)) {}
 
     std::string text() {
-        begin(
-            width_, tall,
-            fmt::format("{} bodies {}; each is orange while it sticks, and so is what links them. Below, theta over t.",
-                        rig_.bodies.size(), rig_.discs ? "as discs on one axis" : "side by side"));
+        begin(width_, tall,
+              fmt::format("{} bodies {}; bodies and links are orange while they stick.", rig_.bodies.size(),
+                          rig_.discs ? "as discs on one axis" : "side by side"));
         for (std::size_t i = 0; i < rig_.bodies.size() && !rig_.discs; ++i) add_floor(i);
         for (std::size_t k = 0; k < rig_.links.size(); ++k) add_link(rig_.links[k], k);
         for (std::size_t i = 0; i < rig_.bodies.size(); ++i) rig_.discs ? add_disc(i) : add_block(i);
@@ -223,7 +246,6 @@ public:
 private:
     static constexpr double margin = 20, tall = 330, least_cell = 76, most_cell = 240;
     static constexpr double block = 36, top = 74, floor = 106, middle = 86, radius = 30;
-    static constexpr double graph_low = 306, graph_high = 160;
     static constexpr const char* colours[] = {"#0072B2", "#009E73", "#CC79A7", "#56B4E9", "#E69F00", "#000000"};
 
     [[nodiscard]] const char* colour(std::size_t i) const { return colours[i % std::size(colours)]; }
@@ -316,32 +338,12 @@ private:
     }
 
     void add_graph() {
-        const double right = width_ - 16;
-        const auto graph_x = [&](std::size_t i) {
-            return graph_left +
-                   (right - graph_left) * static_cast<double>(i) / static_cast<double>(clock_.frames.size() - 1);
-        };
-        add("<path d=\"M{0},{1} V{2} H{3}\" fill=\"none\" stroke=\"{4}\" stroke-width=\"0.8\"/>\n", graph_left,
-            graph_high - 4, graph_low + 4, right, grey_ink);
-        for (std::size_t i = 0; i < rig_.bodies.size(); ++i) {
-            const Scene& body = rig_.bodies[i];
-            std::string path;
-            for (std::size_t k = 0; k < body.frames.size(); ++k) {
-                path += fmt::format("{}{:.1f},{:.1f}", k == 0 ? "M" : " L", graph_x(k),
-                                    graph_low - body.at(body.frames[k].theta) * (graph_low - graph_high));
-            }
-            add("<path d=\"{}\" fill=\"none\" stroke=\"{}\" stroke-width=\"1.2\"/>\n", path, colour(i));
-        }
-        words(graph_left - 4, graph_high + 4, "end", fmt::format("{:.3g}", clock_.reach.high));
-        words(graph_left - 4, graph_low + 4, "end", fmt::format("{:.3g}", clock_.reach.low));
-        words(graph_left, tall - 6, "middle", fmt::format("{:.6g}", clock_.frames.front().t));
-        words(right, tall - 6, "end", fmt::format("{:.6g}", clock_.frames.back().t));
-        words((graph_left + right) / 2, tall - 6, "middle",
-              clock_.t_unit.empty() ? "t" : fmt::format("t, {}", clock_.t_unit));
-        words(graph_left + 4, graph_high - 8, "start", fmt::format("θ, {}", clock_.theta_unit));
-        add("<path d=\"M0,{} V{}\" stroke=\"{}\" stroke-width=\"1.2\">", graph_high - 4, graph_low + 4, stuck_colour);
+        const Graph graph{40, width_ - 16, 160, 306};
+        add_axes(graph);
+        for (std::size_t i = 0; i < rig_.bodies.size(); ++i) add_curve(graph, rig_.bodies[i], colour(i));
+        add("<path d=\"M0,{} V{}\" stroke=\"{}\" stroke-width=\"1.2\">", graph.top - 4, graph.bottom + 4, stuck_colour);
         add_motion("transform", "translate", clock_, [&](const Frame& f) {
-            return fmt::format("{:.1f}", graph_x(static_cast<std::size_t>(&f - clock_.frames.data())));
+            return fmt::format("{:.1f}", graph_x(graph, static_cast<std::size_t>(&f - clock_.frames.data())));
         });
         all_ += "</path>\n";
     }
