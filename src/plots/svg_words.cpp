@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "plots/line.hpp"
 #include "plots/shades.hpp"
 #include "text/characters.hpp"
 #include "text/html.hpp"
@@ -18,15 +19,16 @@ std::string name_of(const std::string& label) {
 }
 
 std::string names_of_curves(const Figure& figure) {
-    constexpr std::size_t most = 6;
+    constexpr std::size_t most = 3;  // more of them are described by the axis
     std::string names;
     std::size_t count = 0;
     for (const Curve& curve : figure.curves) {
-        if (curve.label.empty() || ++count > most) continue;
-        names += (names.empty() ? "" : ", ") + curve.label;
+        if (curve.label.empty()) continue;
+        if (++count <= most) names += (names.empty() ? "" : ", ") + curve.label;
     }
-    if (count > most) names += fmt::format(" and {} more", count - most);
-    return names.empty() ? name_of(figure.y.label) : names;
+    const std::string axis = name_of(figure.y.label);
+    if (count > most) return axis.empty() ? names + fmt::format(" and {} more", count - most) : axis;
+    return names.empty() ? axis : names;
 }
 
 std::string what_over_what(const Figure& figure) {
@@ -37,30 +39,126 @@ std::string what_over_what(const Figure& figure) {
     return plane.empty() ? names : names + " over " + plane;
 }
 
-std::string range_text(const Scale& scale) {
-    return fmt::format("{:.4g} to {:.4g}", scale.range().low, scale.range().high);
+// ---- what a curve does, in words
+
+/// The extremes of a curve over x, the first and the last point included; smaller movements than this do not count.
+std::vector<Point> turns_of(const std::vector<Point>& points, double smallest) {
+    std::vector<Point> turns{points.front()};
+    Point extreme = points.front();
+    double direction = 0;
+    for (const Point& point : points) {
+        if (direction == 0 && std::fabs(point.y - extreme.y) > smallest) direction = point.y > extreme.y ? 1 : -1;
+        if ((point.y - extreme.y) * direction > 0) {
+            extreme = point;
+        } else if ((extreme.y - point.y) * direction > smallest) {
+            turns.push_back(extreme);
+            extreme = point;
+            direction = -direction;
+        }
+    }
+    turns.push_back(points.back());
+    return turns;
 }
 
-/// "x, t in s: 0 to 20. y, rad: -1.1 to 1.1. θ: a line of 2001 points. Stuck 3 times."
+/// Of the swings between these extremes, the half swings at both ends left out.
+std::string swings_text(const std::vector<Point>& turns) {
+    constexpr std::size_t fewest = 5;
+    if (turns.size() < fewest) return "";
+    const auto swing = [&turns](std::size_t i) { return std::fabs(turns[i + 1].y - turns[i].y); };
+    const double first = swing(1), last = swing(turns.size() - 3);
+    double largest = 0;
+    for (std::size_t i = 1; i + 2 < turns.size(); ++i) largest = std::max(largest, swing(i));
+    constexpr double clearly = 1.2;
+    const char* trend = largest > clearly * std::max(first, last) ? "that grow and decay"
+                        : last > clearly * first                  ? "that grow"
+                        : last < first / clearly                  ? "that decay"
+                                                                  : "of about equal size";
+    return fmt::format(", {} half swings {}", turns.size() - 1, trend);
+}
+
+std::string course_over_x(const std::vector<Point>& points) {
+    const auto [low, high] =
+        std::minmax_element(points.begin(), points.end(), [](const Point& a, const Point& b) { return a.y < b.y; });
+    const double from = points.front().y, to = points.back().y;
+    if (low->y == high->y) return fmt::format("constant at {:.4g}", from);
+    constexpr double visible = 0.01;  // of the height
+    const std::vector<Point> turns = turns_of(points, visible * (high->y - low->y));
+    if (turns.size() == 2) return fmt::format("{} from {:.4g} to {:.4g}", to > from ? "rises" : "falls", from, to);
+    return fmt::format("from {:.4g} to {:.4g}, greatest {:.4g} at {:.4g}, least {:.4g} at {:.4g}{}", from, to, high->y,
+                       high->x, low->y, low->x, swings_text(turns));
+}
+
+/// What is seen of a curve, from left to right of the picture; of an area both edges.
+std::string course_of(const View& view, const Curve& curve) {
+    std::vector<Point> points;
+    const Interval across = view.x.range();
+    for (std::size_t i = 0; i < curve.size(); ++i) {
+        const double x = curve.x.values[i], y = curve.y.values[i];
+        if (!view.x.has(x) || !view.y.has(y) || x < across.low || x > across.high) continue;
+        points.push_back({x, y});
+        if (curve.style == Style::fill) points.push_back({x, curve.base ? curve.base->values[i] : 0});
+    }
+    if (points.empty()) return "";
+    const auto by_x = [](const Point& a, const Point& b) { return a.x < b.x; };
+    const auto by_y = [](const Point& a, const Point& b) { return a.y < b.y; };
+    const Point from = points.front(), to = points.back();
+    if (points.size() == 1) return fmt::format("a point at ({:.4g}, {:.4g})", from.x, from.y);
+    const auto [left, right] = std::minmax_element(points.begin(), points.end(), by_x);
+    const auto [low, high] = std::minmax_element(points.begin(), points.end(), by_y);
+    const std::string box =
+        fmt::format("across from {:.4g} to {:.4g}, up from {:.4g} to {:.4g}", left->x, right->x, low->y, high->y);
+    if (curve.style == Style::fill) return "an area " + box;
+    if (curve.style == Style::points) return fmt::format("{} points, {}", points.size(), box);
+    if (std::is_sorted(points.begin(), points.end(), by_x)) return course_over_x(points);
+    return fmt::format("a path from ({:.4g}, {:.4g}) to ({:.4g}, {:.4g}), {}", from.x, from.y, to.x, to.y, box);
+}
+
+std::string stuck_text(const std::vector<Interval>& stuck) {
+    if (stuck.empty()) return "";
+    const auto span = [](const Interval& s) { return fmt::format("from {:.4g} to {:.4g}", s.low, s.high); };
+    if (stuck.size() == 1) return fmt::format("Stuck {}. ", span(stuck.front()));
+    return fmt::format("Stuck {} times, first {}, last {}. ", stuck.size(), span(stuck.front()), span(stuck.back()));
+}
+
+std::string map_text(const Shades& shades) {
+    std::size_t low = shades.z.size(), high = low;
+    for (std::size_t i = 0; i < shades.z.size(); ++i) {
+        if (!std::isfinite(shades.z[i])) continue;
+        if (low == shades.z.size() || shades.z[i] < shades.z[low]) low = i;
+        if (high == shades.z.size() || shades.z[i] > shades.z[high]) high = i;
+    }
+    if (low == shades.z.size()) return "";
+    const auto at = [&shades](std::size_t i) {
+        return fmt::format("{:.4g} at ({:.4g}, {:.4g})", shades.z[i], shades.x[i % shades.x.size()],
+                           shades.y[i / shades.x.size()]);
+    };
+    return fmt::format("A map of {}: least {}, greatest {}. ", shades.label.empty() ? "values" : shades.label, at(low),
+                       at(high));
+}
+
+/// "Across: t, s, 0 to 20. Up: θ, rad, -1.1 to 1.1. θ: from 1 to -0.03, greatest 1 at 0, ... Stuck from 5 to 20."
 std::string description_of(const Figure& figure) {
     const View view = view_of(figure);
     const auto axis = [](const char* name, const Axis& a, const Scale& scale) {
-        return fmt::format("{}{}{}: {}{}. ", name, a.label.empty() ? "" : ", ", a.label, range_text(scale),
-                           a.logarithmic ? ", logarithmic" : "");
+        return fmt::format("{}: {}{}{:.4g} to {:.4g}{}. ", name, a.label, a.label.empty() ? "" : ", ",
+                           scale.range().low, scale.range().high, a.logarithmic ? ", logarithmic" : "");
     };
-    std::string text = axis("x", figure.x, view.x) + axis("y", figure.y, view.y);
+    std::string text = axis("Across", figure.x, view.x) + axis("Up", figure.y, view.y);
+    if (figure.shades != nullptr) text += map_text(*figure.shades);
     constexpr std::size_t most = 12;
-    for (std::size_t i = 0; i < std::min(most, figure.curves.size()); ++i) {
-        const Curve& curve = figure.curves[i];
-        constexpr const char* kinds[] = {"a line through", "", "an area of"};
-        text +=
-            fmt::format("{}: {}{}{} points. ", curve.label.empty() ? "Curve" : curve.label,
-                        kinds[static_cast<int>(curve.style)], curve.style == Style::points ? "" : " ", curve.size());
+    std::size_t described = 0;
+    const std::string alone = figure.curves.size() == 1 ? name_of(figure.y.label) : "";
+    for (const Curve& curve : figure.curves) {
+        const std::string course = course_of(view, curve);
+        if (course.empty() || ++described > most) continue;
+        const std::string& name = curve.label.empty() ? alone : curve.label;
+        text += fmt::format("{}: {}. ", name.empty() ? "Curve" : name, course);
     }
-    if (figure.curves.size() > most) text += fmt::format("{} more curves. ", figure.curves.size() - most);
-    if (const std::size_t times = figure.stuck.size(); times > 0) {
-        text += fmt::format("The mass was stuck {} {}. ", times, times == 1 ? "time" : "times");
+    if (described > most) text += fmt::format("{} more curves. ", described - most);
+    if (figure.dead_zone) {
+        text += fmt::format("Dead zone from {:.4g} to {:.4g}. ", figure.dead_zone->low, figure.dead_zone->high);
     }
+    text += stuck_text(figure.stuck);
     text.pop_back();
     return text;
 }
@@ -102,10 +200,16 @@ std::string with_words(std::string svg, std::span<const Figure> figures) {
     std::string description;
     for (const Figure& figure : figures) {
         if (!description.empty()) description += ' ';
+        if (figures.size() > 1) description += fmt::format("Panel {}. ", &figure - figures.data() + 1);
         description += description_of(figure);
     }
     replace_between(svg, "<title>", "</title>", title);
     replace_between(svg, "<desc>", "</desc>", description);
+    // gnuplot knows one font only; a machine without it shall take another one without serifs.
+    constexpr std::string_view font = "font-family=\"Arial\"";
+    for (std::size_t at = svg.find(font); at != std::string::npos; at = svg.find(font, at + font.size())) {
+        svg.insert(at + font.size() - 1, ", Helvetica, sans-serif");
+    }
     if (const std::size_t root = svg.find("<svg"); root != std::string::npos) {
         svg.insert(root + 4, " role=\"img\" aria-label=\"" + text::html(title) + "\"");
     }

@@ -99,10 +99,49 @@ TEST_CASE("a picture says what it shows to those who do not see it", "[gnuplot]"
     const std::string picture = with_words(svg(figure), {&figure, 1});
     CHECK(picture.find("<title>θ over t</title>") != std::string::npos);
     CHECK(picture.find(" role=\"img\" aria-label=\"θ over t\"") != std::string::npos);
-    CHECK(picture.find("θ: a line through 200 points. The mass was stuck 1 time.</desc>") != std::string::npos);
+    CHECK(picture.find("<desc>Across: t, 0 to 99.5. Up: θ, rad, -0.9381 to 1.092. θ: from 1 to ") != std::string::npos);
+    CHECK(picture.find(" half swings that ") != std::string::npos);
+    CHECK(picture.find(". Stuck from 10 to 20.</desc>") != std::string::npos);
     CHECK(picture.find("Gnuplot") == std::string::npos);
     figure.title = "a < b & 'c'";
     CHECK(with_words(svg(figure), {&figure, 1}).find("<title>a &lt; b &amp; ") != std::string::npos);
+}
+
+TEST_CASE("the description of a picture says what each curve does", "[gnuplot]") {
+    const auto described = [](std::vector<double> x, std::vector<double> y, Style style = Style::line) {
+        Figure figure;
+        figure.curves.push_back({Numbers::own(std::move(x)), Numbers::own(std::move(y)), "A", style});
+        const std::string words = with_words("<svg><title></title><desc></desc></svg>", {&figure, 1});
+        const std::size_t from = words.find("A: ");
+        return words.substr(from, words.find("</desc>") - from);
+    };
+    CHECK(described({0, 1, 2}, {1, 2, 5}) == "A: rises from 1 to 5.");
+    CHECK(described({0, 1, 2}, {5, 2, 1}) == "A: falls from 5 to 1.");
+    CHECK(described({0, 1, 2}, {3, 3, 3}) == "A: constant at 3.");
+    CHECK(described({0, 1, 2}, {0, 4, 1}) == "A: from 0 to 1, greatest 4 at 1, least 0 at 0.");
+    CHECK(described({0, 1, 2, 3, 4, 5}, {1, -2, 3, -4, 5, 0}) ==
+          "A: from 1 to 0, greatest 5 at 4, least -4 at 3, 5 half swings that grow.");
+    CHECK(described({0, 1, 2, 3, 4, 5, 6, 7}, {0, 1, -1, 2, -2, 1, -1, 0})
+              .ends_with("7 half swings that grow and decay."));
+    CHECK(described({0, 1, 0}, {1, 0, -1}) == "A: a path from (0, 1) to (0, -1), across from 0 to 1, up from -1 to 1.");
+    CHECK(described({2, 1}, {4, 3}, Style::points) == "A: 2 points, across from 1 to 2, up from 3 to 4.");
+    CHECK(described({1, 2, 3}, {0, std::nan(""), 1}) == "A: rises from 0 to 1.");
+    CHECK(described({1, 2}, {4, 5}, Style::fill) == "A: an area across from 1 to 2, up from 0 to 5.");
+}
+
+TEST_CASE("the title of a picture of many curves names its axes", "[gnuplot]") {
+    Figure figure = wave();
+    figure.curves.assign(4, figure.curves.front());
+    CHECK(title_of({&figure, 1}) == "θ over t");
+    figure.y.label = "";
+    CHECK(title_of({&figure, 1}) == "θ, θ, θ and 1 more over t");
+}
+
+TEST_CASE("an SVG names fonts for machines without Arial", "[gnuplot]") {
+    const Figure figure = wave();
+    const std::string picture = with_words(svg(figure), {&figure, 1});
+    CHECK(picture.find("font-family=\"Arial\"") == std::string::npos);
+    CHECK(picture.find("font-family=\"Arial, Helvetica, sans-serif\"") != std::string::npos);
 }
 
 TEST_CASE("the file to be restyled draws the same picture as the pipe", "[gnuplot]") {
