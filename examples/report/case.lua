@@ -132,13 +132,16 @@ function case.scheme(zeta, h, steps, slip)
 end
 
 -- Figures 10 to 13: the step raised more and more. The numbers of each, and the curves: left what the report saw, right
--- what its printed scheme does.
+-- what its printed scheme does, with the same limits unless chapter 6 diverges too far.
 function case.raised_step(h, steps)
   local zeta = 0.02387
   local slipped, old = case.scheme(zeta, h, steps, true)
   local printed, rk4 = case.scheme(zeta, h, steps, false)
   printed.dashes = "dashed"
   local exact = theory.free_response{ system = case.system(zeta), theta0 = 1, t = old.t }
+  local limit = 1.2
+  local diverged = old.theta:abs():max() > limit
+  local limits = { -limit, limit }
   local slip_factor, rk4_factor = case.growth(zeta, h, true), (case.growth(zeta, h, false))
   return {
     slip = slip_factor, rk4 = rk4_factor, exact = math.exp(-2 * math.pi * zeta * h),
@@ -146,8 +149,8 @@ function case.raised_step(h, steps)
     slip_end = case.row_amplitude(old, 6), rk4_end = case.row_amplitude(rk4, 6),
     exact_end = exact:slice(#exact - 6, #exact):abs():max(),
   }, {
-    case.response{ slipped },
-    case.response{ case.exact(zeta, steps * h), printed, ylim = { -1, 1 } },
+    case.response{ slipped, ylim = not diverged and limits or nil },
+    case.response{ case.exact(zeta, steps * h), printed, ylim = limits, ylabel = diverged and "θ*, enlarged" or nil },
     size = case.page,
   }
 end

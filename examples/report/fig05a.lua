@@ -34,7 +34,7 @@ for i = 1, 40 do
     corner[n], lowest[n], highest[n] = r, edge(r, most, most + step), edge(r, least, least - step)
   end
 end
-picture[1] = { corner, highest, base = lowest, style = "fill", colour = 5, label = "several stops" }
+picture[1] = { corner, highest, base = lowest, style = "fill", colour = 5 }
 
 local r = case.ratios()
 local colours = { [0] = 1, [0.2] = 2, [0.4] = 3, [0.6] = 4, [0.7] = 7, [0.8] = 6 }
@@ -52,6 +52,7 @@ local stopping = case.steady(1, 0.836)
 local moving = theory.den_hartog{ r = 1.35, friction_ratio = 0.5 }
 picture[#picture + 1] = { { 1, 1.35 }, { stopping, moving }, style = "points", colour = 5, label = "figures 24, 25" }
 picture[#picture + 1] = case.dotted "with stops"
+picture[#picture + 1] = { { 0 / 0 }, { 0 / 0 }, style = "fill", colour = 5, label = "several stops" } -- last in the legend
 
 local linear = theory.linearised{ r = 1.35, friction_ratio = 0.5 }
 fig:head("exact", "as viscous")

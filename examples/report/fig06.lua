@@ -30,12 +30,13 @@ fig:line("with velocity/2 pi =", listing[first], text[second], 0)
 fig:quote{ 0.01, listing[first], text[second], t[first], t[second], rest.t, theta[first], theta_text[second], rest.theta }
 local step = math.abs(listing[23] - listing[24]) -- across the first turn
 local x = { 0.205, 0.245 }
-local function band(height) return { x, { height, height }, base = { -height, -height }, style = "fill" } end
-local rules = { band(step), band(step / 2), { run.t, velocity, colour = 1, dashes = "solid", label = "true" },
+local function band(from, to, colour, label)
+  return { x, { to, to }, base = { from, from }, style = "fill", colour = colour, label = label }
+end
+local rules = { band(step / 2, step, 6, "|v| < Δv"), band(-step, -step / 2, 6), -- side by side: none hides another
+  band(-step / 2, step / 2, 3, "|v| < Δv/2"), { run.t, velocity, colour = 1, dashes = "solid", label = "true" },
   { t:slice(20, 27), listing:slice(20, 27), style = "points", colour = 2, label = "steps" },
   xlim = x, ylim = { -0.15, 0.15 }, xticks = 0.01, yticks = 0.05, ylabel = "θ*'/2π", title = "a turn" }
-rules[1].colour, rules[1].label = 6, "|v| < Δv"
-rules[2].colour, rules[2].label = 3, "|v| < Δv/2"
 return fig:draw{
   case.response(rules),
   case.response{

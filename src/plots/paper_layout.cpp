@@ -210,7 +210,9 @@ void place(PaperPanel& panel, double left, double width, double height, double i
     }
     const double whole_width =
         2 * std::min((panel.left + panel.right) / 2 - left, left + width - (panel.left + panel.right) / 2);
-    panel.title = {cut(figure.title, whole_width), (panel.left + panel.right) / 2, panel.top + own_above - 0.7 * em};
+    // Titles side by side stand on one line, whatever their legends need; a square box may be far below that line.
+    const double title_above = figure.equal ? own_above : above;
+    panel.title = {cut(figure.title, whole_width), (panel.left + panel.right) / 2, panel.top + title_above - 0.7 * em};
     panel.x_label.text = cut(with_offset(figure.x.label, panel.x_ticks), whole_width);
     panel.x_label.x = (panel.left + panel.right) / 2;
     panel.x_label.y = panel.bottom - 2.85 * em - bars;

@@ -75,6 +75,15 @@ TEST_CASE("boxes side by side stand on one line and are as high", "[plots]") {
     CHECK(sheet.panels[2].bottom == sheet.panels[0].bottom);
 }
 
+TEST_CASE("titles side by side stand on one line", "[plots]") {
+    std::vector<Figure> figures{decay(100), decay(100)};
+    figures[0].title = "with a long legend";
+    figures[0].curves.assign(9, figures[0].curves.front());
+    figures[1].title = "with a short one";
+    const Sheet sheet = lay_out(figures, {});
+    CHECK(sheet.panels[0].title.y == sheet.panels[1].title.y);
+}
+
 TEST_CASE("many entries of a legend are read downwards, in columns of one length", "[plots]") {
     Figure figure = decay(10);
     figure.curves.assign(10, figure.curves.front());

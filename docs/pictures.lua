@@ -1,0 +1,48 @@
+-- Draws the pictures of the pages, except those of report.md: scripts/dinal docs/pictures.lua [FOLDER]. A test compares
+-- them with docs/pictures. The block diagram governor-loop.svg is written by hand.
+local here = debug.getinfo(1, "S").source:match("^@(.*/)") or ""
+local folder = ... or here .. "pictures"
+local function file(name) return folder .. "/" .. name .. ".svg" end
+local drawn = {}
+local function draw(name, picture)
+  picture.file = file(name)
+  plot(picture)
+  drawn[#drawn + 1] = picture.file
+end
+
+-- tutorial.md: a block pulled through a spring.
+local weight, speed = 10 * 9.81, 0.01
+local block = system{ I = 10, k = 4000, Rd = weight / 5, Re = weight / 3, units = { theta = "m", t = "s", M = "N" } }
+local pulled = block:simulate{ M = excitation.ramp{ slope = block.k * speed }, t_end = 4, dt = 0.001 }
+pulled:plot{ file = file "stick-slip", size = { 12, 6 } }
+drawn[#drawn + 1] = file "stick-slip"
+
+-- governor.md: a load step with Re = 0.06, without and with dither.
+local function governor_speed(dither)
+  local governor = system{ I = 1, k = 1, C = 1.2, Rd = 0.02, Re = 0.06 }
+  return governor:simulate{
+    M = function(t, theta, velocity, z) return 2*z.w + dither*math.sin(20*t) end,
+    states = { w = { start = 0, rate = function(t, theta) return (-theta - (t < 5 and 0 or 0.1))/5 end } },
+    t_end = 150, dt = 0.1 }
+end
+local hunting, shaken = governor_speed(0), governor_speed(0.3)
+draw("hunting", { { hunting.t, hunting.states.w, label = "Re = 0.06" },
+  { shaken.t, shaken.states.w, label = "with dither" },
+  xlabel = "t", ylabel = "speed w", size = { 12, 6 } })
+
+-- bodies.md: a clutch that closes, and a drill string.
+local drive = system{ bodies = { motor = { I = 1 }, load = { I = 3 } },
+  links = { clutch = { "motor", "load", Rd = 2, Re = 2.4, normal = function(t) return math.min(t, 1) end } } }
+local run = drive:simulate{ velocity0 = { motor = 3 }, t_end = 4 }
+draw("clutch", { { run.motor.t, run.motor.velocity, label = "motor" }, { run.load.t, run.load.velocity, label = "load" },
+  xlabel = "t", ylabel = "velocity, rad per time unit", title = "A clutch that closes locks at t = 1.625",
+  size = { 12, 6 } })
+
+local rig = system{
+  bodies = { top = { I = 2 }, bit = { I = 0.1, friction = friction.stribeck{ Rd = 0.5, Re = 1, speed = 0.5 } } },
+  links = { pipe = { "top", "bit", k = 1, C = 0.02 } } }
+local drilling = rig:simulate{ M = { top = function(t, theta, velocity) return 20*(1 - velocity.top) end }, t_end = 20 }
+drilling:plot{ file = file "drill-string", title = "A drill string: the bit sticks and slips", size = { 12, 9 } }
+drawn[#drawn + 1] = file "drill-string"
+
+return drawn
