@@ -14,6 +14,7 @@ import selectors
 import signal
 import subprocess
 import sys
+import uuid
 
 sys.modules["debugpy"] = None  # ipykernel's debugger of Python: a third of the start, and a warning on the terminal
 
@@ -139,6 +140,23 @@ class Output:
             self.kernel.write("stderr", f"\n({self.dropped} more bytes were printed; a cell shows {MOST_OUTPUT})\n")
 
 
+class ProgressLine:
+    """One line of a cell, which changes while a run or a sweep goes on and is empty in the end."""
+
+    def __init__(self, kernel):
+        self.kernel = kernel
+        self.place = None  # its name for the notebook, once it is there
+
+    def show(self, line):
+        if not line and self.place is None:
+            return
+        kind = "update_display_data" if self.place else "display_data"
+        self.place = self.place or str(uuid.uuid4())
+        self.kernel.send_response(self.kernel.iopub_socket, kind,
+                                  {"data": {"text/plain": line}, "metadata": {"dinal": "progress"},
+                                   "transient": {"display_id": self.place}})
+
+
 class DinalKernel(Kernel):
     implementation = "dinal"
     implementation_version = "1"
@@ -169,6 +187,7 @@ class DinalKernel(Kernel):
 
     def do_execute(self, code, silent, store_history=True, user_expressions=None, allow_stdin=False):
         output = Output(self)
+        progress = ProgressLine(self)
 
         def hear(name, piece):
             if not silent:
@@ -177,7 +196,9 @@ class DinalKernel(Kernel):
         def show(message):
             if silent:
                 return
-            if "show" in message:
+            if "progress" in message:
+                progress.show(message["progress"])
+            elif "show" in message:
                 self.send_response(self.iopub_socket, "display_data", {"data": with_image(message["show"]), "metadata": {}})
             else:
                 self.send_response(self.iopub_socket, "execute_result",
@@ -188,6 +209,8 @@ class DinalKernel(Kernel):
             answer = self.dinal.ask({"do": "execute", "code": code}, hear, show)
         except Ended:
             answer = {"ok": False, "error": self.restart_after_end()}
+            if not silent:
+                progress.show("")
         if not silent:
             output.finish()
             if answer.get("notice"):

@@ -29,6 +29,7 @@
 #include "prompt/question.hpp"
 #include "prompt/script.hpp"
 #include "prompt/session.hpp"
+#include "terminal/progress.hpp"
 #include "text/words.hpp"
 
 namespace dinal::notebook {
@@ -178,6 +179,10 @@ void show_animation(const api::Animation& animation, api::Shown where) {
     answer({{"show", {{"text/plain", animation.title}, {"image/svg+xml", animation.svg}}}});
 }
 
+void show_progress(const std::string& line) {
+    answer({{"progress", line}});
+}
+
 int show_values_as_json(lua_State* L) {
     constexpr std::size_t rows_shown = 50;
     Json forms{{"text/plain", prompt::values_text(L)}};
@@ -294,6 +299,7 @@ bool run_kernel(lua_State* L, int answers) {
     take_keyboard_away(L);
     api::show_pictures_by(show_picture);
     api::show_animations_by(show_animation);
+    terminal::show_progress_by(show_progress);
     while (!session.leaving) {
         const auto line = requests.next();
         if (!line) break;
@@ -311,6 +317,7 @@ bool run_kernel(lua_State* L, int answers) {
     }
     api::show_pictures_by(nullptr);
     api::show_animations_by(nullptr);
+    terminal::show_progress_by(nullptr);
     return true;
 }
 

@@ -30,6 +30,7 @@ std::size_t drawn = 0;             // columns of the line that stands there, or 
 bool within_line = false;          // the script has written a part of a line
 std::mutex drawing;                // what threads beside that of the progress write erases the line, too
 thread_local bool hides_progress = false;
+ProgressViewer viewer = nullptr;  // in place of the terminal
 
 /// Some milliseconds coarse and very quick: a stepping loop asks for it.
 long now_ms() {
@@ -44,6 +45,10 @@ void write_line(const std::string& text) {
 }
 
 void erase() {
+    if (drawn > 0 && viewer != nullptr) {
+        viewer("");
+        drawn = 0;
+    }
     if (drawn > 0) {
         write_line(obeys_escapes() ? "\r\x1b[K" : "\r" + std::string(drawn, ' ') + "\r");
         drawn = 0;
@@ -117,8 +122,14 @@ void Progress::advance(double reached) {
     if (now < next_ms || under_way.empty()) {
         return;
     }
-    next_ms = isatty(STDERR_FILENO) != 0 ? now + period_ms : never_ms;
+    next_ms = viewer != nullptr || isatty(STDERR_FILENO) != 0 ? now + period_ms : never_ms;
     const std::lock_guard lock(drawing);
+    if (viewer != nullptr) {
+        constexpr std::size_t page = 79;  // columns that a page shows without wrapping
+        viewer(progress_text(facts(), page, Letters::utf8));
+        drawn = page;
+        return;
+    }
     if (next_ms == never_ms || within_line) {
         return;
     }
@@ -131,11 +142,16 @@ void Progress::advance(double reached) {
     drawn = columns;
 }
 
+void show_progress_by(ProgressViewer new_viewer) {
+    viewer = new_viewer;
+}
+
 void show_no_progress_here() {
     hides_progress = true;
 }
 
 void make_way_for_output(bool ends_line) {
+    if (viewer != nullptr) return;
     const std::lock_guard lock(drawing);
     erase();
     within_line = !ends_line;

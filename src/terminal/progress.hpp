@@ -1,5 +1,5 @@
 // The progress line: on standard error when that is a terminal, after half a second, ten times a second, erased in the
-// end.
+// end. A program that is not a terminal, such as a notebook, gets the same line by a function of its own.
 //
 // What is under way is a stack: a run within a loop within a loop. The line is that of the outermost, and what lies
 // within it counts as the part of a step that is done.
@@ -54,6 +54,11 @@ private:
     long began_ms_;
     bool hidden_;
 };
+
+/// From now on this function gets each line in place of the terminal, and "" when the line goes. It is called on the
+/// thread of the progress, and what scripts print needs no room from it. nullptr: the terminal again.
+using ProgressViewer = void (*)(const std::string& line);
+void show_progress_by(ProgressViewer viewer);
 
 /// From now on nothing that is under way on this thread is shown: it is a part of what another thread waits for.
 void show_no_progress_here();

@@ -51,12 +51,14 @@ class Notebook:
 
     def run(self, code, meanwhile=None):
         """What a cell shows: streams as text, displays and results as lists, the error."""
-        seen = {"stdout": "", "stderr": "", "shown": [], "value": None, "error": None, "order": []}
+        seen = {"stdout": "", "stderr": "", "shown": [], "progress": [], "value": None, "error": None, "order": []}
 
         def hear(message):
             kind, content = message["msg_type"], message["content"]
             if kind == "stream":
                 seen[content["name"]] += content["text"]
+            elif content.get("metadata") == {"dinal": "progress"}:
+                seen["progress"].append((kind, content["transient"]["display_id"], content["data"]["text/plain"]))
             elif kind == "display_data":
                 seen["shown"].append(content["data"])
             elif kind == "execute_result":
@@ -137,12 +139,29 @@ def cells():
         reply = reply["content"]
         check(f"{code} is {state}", reply["status"] == state, reply)
 
+    # 2 s of the process's own time, however busy the machine is.
+    seen = notebook.run("print('first') for i in progress(8, 'eight') do local c = os.clock() while os.clock() < c + 0.25 do end end\n"
+                        "print('last')")
+    lines = seen["progress"]
+    check("a long loop shows its progress", len(lines) > 3 and lines[0][2].startswith("eight ") and "of 8" in lines[0][2], lines)
+    check("in one place that changes", [kind for kind, _, _ in lines] == ["display_data"] + ["update_display_data"]*(len(lines) - 1)
+          and len({place for _, place, _ in lines}) == 1, lines)
+    check("and is empty in the end", lines and lines[-1][2] == "", lines)
+    check("beside what is printed", seen["stdout"] == "first\nlast\n", seen["stdout"])
+    seen = notebook.run("return #sweep{ over = { x = { 1, 2, 3, 4, 5, 6 } }, workers = 2, run = function(p)\n"
+                        "  local c = os.clock() while os.clock() < c + 1 do end return { y = p.x } end }")
+    check("so does a sweep", any(line[2].startswith("sweep ") for line in seen["progress"]) and seen["error"] is None, seen)
+    check("and its line goes", seen["progress"] and seen["progress"][-1][2] == "", seen["progress"])
+    seen = notebook.run("for i = 1, 3 do nondimensional{}:simulate{ theta0 = 1, t_end = 1, dt = 0.1 } end")
+    check("a short run shows none", seen["progress"] == [], seen["progress"])
+
     def interrupt():
         time.sleep(0.3)
         notebook.manager.interrupt_kernel()
 
     seen = notebook.run("print('begun')\nlong = nondimensional{ zeta = 1e-9 }:simulate{ theta0 = 1, t_end = 1e7, dt = 0.1 }", interrupt)
     check("a run is interrupted", seen["error"] and "interrupted" in seen["error"], seen)
+    check("and its progress is gone", all(line[2] == "" for line in seen["progress"][-1:]), seen["progress"])
     seen = notebook.run("#ans > 10, ans.outcome")
     check("and kept", seen["value"] and seen["value"]["text/plain"].startswith("true"), seen)
     seen = notebook.run("print('begun')\nwhile true do end", interrupt)
@@ -182,8 +201,12 @@ def notebooks():
             if old.cell_type == "code":
                 told = ["".join(output.get("text", "")) or output.get("data", {}).get("text/plain", "")
                         for output in old.outputs if not output.get("data", {}).get("image/svg+xml")]
+                # A slow machine shows progress, which leaves an empty line.
+                lines = [output for output in new.outputs if output.get("metadata") == {"dinal": "progress"}]
+                check(f"{name}: progress is gone", all(line["data"]["text/plain"] == "" for line in lines), lines)
                 seen = ["".join(output.get("text", "")) or output.get("data", {}).get("text/plain", "")
-                        for output in new.outputs if not output.get("data", {}).get("image/svg+xml")]
+                        for output in new.outputs
+                        if output not in lines and not output.get("data", {}).get("image/svg+xml")]
                 check(f"{name}, cell {number + 1}", told == seen, seen)
         page = subprocess.run([sys.executable, "-m", "nbconvert", "--to", "html", "--stdout", target],
                               capture_output=True, text=True, cwd=HOME, check=False).stdout
