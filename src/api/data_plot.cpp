@@ -148,6 +148,21 @@ std::string label_of(const Data& data, const std::string& name) {
     return column != nullptr ? model::of_unit(plots::symbol_for(name), column->unit) : name;
 }
 
+constexpr double spectrum_decades = 1e-6;  // of the largest amplitude, that a plot of a spectrum shows
+
+/// The frequencies at which a spectrum is that high, if it is lower at a good part of the others.
+std::optional<plots::Interval> telling_frequencies(const Data& data, const plots::Curve& curve) {
+    if (!data.is_spectrum || curve.size() == 0) return std::nullopt;
+    double greatest = 0, last = 0;
+    for (const double y : curve.y.values) greatest = y > greatest ? y : greatest;
+    for (std::size_t i = 0; i < curve.size(); ++i) {
+        if (curve.y.values[i] > spectrum_decades * greatest) last = curve.x.values[i];
+    }
+    constexpr double room = 1.2, good_part = 0.8;
+    const double end = curve.x.values[curve.size() - 1];
+    return last > 0 && room * last < good_part * end ? std::optional(plots::Interval{0, room * last}) : std::nullopt;
+}
+
 /// What is seen of a curve that says little in its full height: six decades of a spectrum, and of a response no more
 /// than some times what most of it reaches, since near a pole it has no bound.
 std::optional<plots::Interval> telling_limits(const Data& data, const plots::Curve& curve) {
@@ -158,9 +173,8 @@ std::optional<plots::Interval> telling_limits(const Data& data, const plots::Cur
     const auto [least, greatest] = std::minmax_element(values.begin(), values.end());
     const plots::Interval all{*least, *greatest};
     if (data.is_spectrum) {
-        constexpr double decades = 1e-6;
-        return all.high > 0 && all.low < decades * all.high
-                   ? std::optional(plots::Interval{decades * all.high, 2 * all.high})
+        return all.high > 0 && all.low < spectrum_decades * all.high
+                   ? std::optional(plots::Interval{spectrum_decades * all.high, 2 * all.high})
                    : std::nullopt;
     }
     constexpr double most = 0.9, much_higher = 10, shown = 4;
@@ -342,9 +356,13 @@ int plot(lua_State* L) {
         figure.curves.back().dashes = dashes[overlays++ % dashes.size()];
     }
     figure.y.logarithmic = data->is_spectrum;
-    if (y.size() == 1) figure.y.limits = telling_limits(*data, curve);
+    if (y.size() == 1) {
+        figure.x.limits = telling_frequencies(*data, curve);
+        figure.y.limits = telling_limits(*data, curve);
+    }
     apply_options(L, options, figure);
     if (!options.has("ylim") && figure.y.logarithmic != data->is_spectrum) figure.y.limits.reset();
+    if (!options.has("xlim") && figure.x.logarithmic) figure.x.limits.reset();
     std::vector<plots::Figure> figures{std::move(figure)};
     return deliver(L, options, std::move(figures));
 }

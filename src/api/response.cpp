@@ -97,10 +97,11 @@ public:
         const ColumnUnits in(system_.units());
         if (function_) return {.name = varied_, .unit = "", .theta = in.theta};
         return {.name = varied_ == "amplitude" ? "M0" : varied_,
-                .unit = varied_ == "frequency"   ? in.frequency
-                        : varied_ == "amplitude" ? in.M
-                        : varied_ == "period"    ? in.t
-                                                 : "",
+                .unit = varied_ == "frequency"                ? in.frequency
+                        : varied_ == "amplitude"              ? in.M
+                        : varied_ == "period"                 ? in.t
+                        : varied_ == "omega" && !in.t.empty() ? "rad/" + in.t
+                                                              : "",
                 .theta = in.theta};
     }
 

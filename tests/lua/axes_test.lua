@@ -1,7 +1,7 @@
 -- The axes of pictures of a run: one for each unit, with the unit that the user says.
 package.path = "tests/lua/?.lua;" .. package.path
 local support = require "support"
-local test, raises_here = support.test, support.raises_here
+local test, raises_here, equal = support.test, support.raises_here, support.equal
 
 local metres = { theta = "m", t = "s" }
 local sys = system{ I = 1, k = 4, Rd = 0.1 }
@@ -53,6 +53,12 @@ test("a spectrum is drawn over decades, a response near a pole up to where most 
     local picture = drawn(spectrum)
     assert(picture:find "\n1e%-5 %+" and not picture:find "1e%-6 %+", picture)
     assert(not drawn(spectrum, { ylog = false }):find "1e%-", "a user's word counts")
+    -- Beyond the frequencies at which a spectrum is that high there is nothing to see.
+    local smooth = sys:simulate { M = excitation.harmonic { frequency = 0.4 }, theta0 = 1, t_end = 64, dt = 0.005 }:spectrum {}
+    equal(smooth.frequency:max() > 99, true)
+    picture = drawn(smooth)
+    assert(not picture:find "%f[%d]50%f[^%d]" and not picture:find "%f[%d]100%f[^%d]", picture)
+    assert(drawn(smooth, { xlim = { 0, 100 } }):find "%f[%d]100%f[^%d]", "a user's word counts")
     local pole = nondimensional {}:response { over = { frequency = vector.linspace(0.05, 3, 200) } }
     assert(pole.amplitude:max() > 50)
     picture = drawn(pole)
