@@ -1,5 +1,8 @@
 // load(file): whatever dinal has written, or any CSV file. Of anything else it is Lua's own load.
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <initializer_list>
 
 #include "api/classes.hpp"
 #include "api/data.hpp"
@@ -81,20 +84,33 @@ int load_file(lua_State* L, const std::string& file) {
     return push_loaded_run(L, lua::value_or_raise(L, "load", files::table_of(std::move(content))), std::move(units));
 }
 
-/// A text with one of these endings, which is no Lua.
-bool is_name_of_file(lua_State* L, std::string_view name) {
+/// The ending of what is no Lua and may be the name of a file; "" for all else.
+std::string ending_of_file(lua_State* L, std::string_view name) {
     constexpr std::size_t longest = 4096;
     const bool one = lua_gettop(L) == 1 && lua_type(L, 1) == LUA_TSTRING && name.size() < longest;
-    const std::string ending = one ? text::ending_of(name) : "";
-    if (ending != ".csv" && ending != ".dat" && ending != ".txt" && ending != ".tsv") return false;
+    std::string ending = one ? text::ending_of(name) : "";
+    if (ending.empty()) return "";
     const int status = luaL_loadbufferx(L, name.data(), name.size(), "=load", "t");
     lua_pop(L, 1);
-    return status != LUA_OK;
+    return status == LUA_OK ? "" : ending;
+}
+
+bool is_one_of(std::string_view ending, std::initializer_list<std::string_view> known) {
+    return std::find(known.begin(), known.end(), ending) != known.end();
 }
 
 int load(lua_State* L) {
     const std::string name(lua_type(L, 1) == LUA_TSTRING ? lua::text_at(L, 1) : "");
-    if (is_name_of_file(L, name)) return load_file(L, name);
+    const std::string ending = ending_of_file(L, name);
+    if (is_one_of(ending, {".csv", ".dat", ".txt", ".tsv"})) return load_file(L, name);
+    if (is_one_of(ending, {".xlsx", ".xls", ".ods", ".mat", ".npy", ".json", ".h5", ".parquet"})) {
+        lua::raise(L,
+                   {.sentence = fmt::format("load reads CSV files, not {}: save the table as CSV in the program that "
+                                            "made it",
+                                            ending),
+                    .call = "load",
+                    .culprit = name});
+    }
     lua_rawgetp(L, LUA_REGISTRYINDEX, &original_key);
     const lua_CFunction original = lua_tocfunction(L, -1);
     lua_pop(L, 1);
@@ -115,7 +131,7 @@ constexpr lua::Member load_members[] = {
       "are in the first line (without them they are \"1\", \"2\", ...), lines with # are skipped. Numbers may be "
       "among the names, t,100,200, if the first is a word and has only numbers below it. A column with anything "
       "but numbers, nan and empty fields (nan) is one of words. A line of words between the names and the numbers "
-      "has the units of the columns. In a file with semicolons 1,5 is a number, and 1.5D+00 is one everywhere. "
+      "has the units of the columns. In a file with semicolons or tabs 1,5 is a number, and 1.5D+00 is one everywhere. "
       "With other arguments it is Lua's own load.",
       "run = nondimensional{}:simulate{ theta0 = 1, t_end = 1.2, dt = 0.1 }\n"
       "file = os.tmpname() .. \".csv\"\n"

@@ -30,6 +30,15 @@ std::size_t field_end(std::string_view line, Separator separator) {
     return line.size();
 }
 
+/// Whether each comma stands between two digits, as in "0,1\t0,25".
+bool has_decimal_commas_only(std::string_view line) {
+    for (std::size_t at = line.find(','); at != std::string_view::npos; at = line.find(',', at + 1)) {
+        if (at == 0 || at + 1 == line.size() || !text::is_digit(line[at - 1]) || !text::is_digit(line[at + 1]))
+            return false;
+    }
+    return true;
+}
+
 /// The first of these that stands in the line outside of quotes; nothing in a line of one field.
 std::optional<Separator> separator_in(std::string_view line) {
     std::string bare;
@@ -40,6 +49,8 @@ std::optional<Separator> separator_in(std::string_view line) {
             bare += c;
         }
     }
+    if (bare.find(';') == std::string::npos && bare.find('\t') != std::string::npos && has_decimal_commas_only(bare))
+        return Separator::tab;
     for (const Separator candidate : {Separator::semicolon, Separator::comma, Separator::tab, Separator::blanks}) {
         if (bare.find(static_cast<char>(candidate)) != std::string::npos) {
             return candidate;
@@ -100,11 +111,13 @@ public:
 
     text::Expected<ReadColumns> read() {
         if (auto fault = collect_rows()) return *fault;
-        if (rows_.empty()) {
-            return text::Error{file_ + ": the file is empty, it has neither names nor numbers"};
+        const bool says_separator = take_separator_line();
+        if (rows_.empty()) return text::Error{file_ + ": the file is empty, it has neither names nor numbers"};
+        if (!says_separator) {
+            const auto separator = separator_in(rows_[rows_.size() > 1 ? 1 : 0].text);
+            separator_ = separator ? *separator : separator_in(rows_.front().text).value_or(Separator::blanks);
         }
-        const auto separator = separator_in(rows_[rows_.size() > 1 ? 1 : 0].text);
-        separator_ = separator ? *separator : separator_in(rows_.front().text).value_or(Separator::blanks);
+        has_points_ = separator_ == Separator::tab && has_decimal_points();
         split(rows_.front().text, separator_, fields_);
         result_.columns.resize(fields_.size());
         const bool named =
@@ -146,7 +159,36 @@ private:
         return std::nullopt;
     }
 
-    [[nodiscard]] bool decimal_comma() const { return separator_ == Separator::semicolon; }
+    /// "sep=;" is for Excel and no line of names.
+    bool take_separator_line() {
+        if (rows_.empty()) return false;
+        constexpr std::string_view key = "sep=";
+        const std::string_view line = rows_.front().text;
+        if (!line.starts_with(key) || line.size() != key.size() + 1) return false;
+        for (const Separator candidate : {Separator::semicolon, Separator::comma, Separator::tab}) {
+            if (line.back() != static_cast<char>(candidate)) continue;
+            separator_ = candidate;
+            rows_.erase(rows_.begin());
+            return true;
+        }
+        return false;
+    }
+
+    /// In a file of tabs too, unless it has decimal points: then 1,5 is a mistake.
+    [[nodiscard]] bool decimal_comma() const {
+        return separator_ == Separator::semicolon || (separator_ == Separator::tab && !has_points_);
+    }
+
+    [[nodiscard]] bool has_decimal_points() const {
+        return std::any_of(rows_.begin(), rows_.end(), [](const Row& row) {
+            for (std::size_t at = row.text.find('.'); at != std::string_view::npos; at = row.text.find('.', at + 1)) {
+                if (at > 0 && at + 1 < row.text.size() && text::is_digit(row.text[at - 1]) &&
+                    text::is_digit(row.text[at + 1]))
+                    return true;
+            }
+            return false;
+        });
+    }
 
     [[nodiscard]] bool is_number(std::string_view field) const {
         return !field.empty() && parse_field(field, decimal_comma()).has_value();
@@ -229,7 +271,8 @@ private:
         if (fields_.size() != result_.columns.size()) {
             return error_at(file_, row.number,
                             "found " + std::to_string(fields_.size()) + (fields_.size() == 1 ? " field" : " fields") +
-                                ", expected " + std::to_string(result_.columns.size()) + " as in the first line");
+                                ", expected " + std::to_string(result_.columns.size()) +
+                                " as in the first line; put # before lines that are no columns");
         }
         for (std::size_t i = 0; i < fields_.size(); ++i) {
             ReadColumn& column = result_.columns[i];
@@ -264,6 +307,7 @@ private:
     Lines lines_;
     const std::string& file_;
     Separator separator_ = Separator::blanks;
+    bool has_points_ = false;
     std::vector<Row> rows_;
     std::vector<std::string_view> fields_;
     std::vector<double> plain_;

@@ -184,6 +184,19 @@ TEST_CASE("the separator is found in the second line", "[csv]") {
     CHECK(parsed("\"a, b\" c\n1 2\n").names == Strings{"a, b", "c"});
 }
 
+TEST_CASE("a file of tabs may have decimal commas, and Excel's line sep=; is no line of names", "[csv]") {
+    const auto second = [](const char* text) { return parse_columns(text, "x").value().columns.at(1); };
+    CHECK(second("t\tx\n0,0\t0,5\n0,1\t0,25\n").numbers == std::vector<double>{0.5, 0.25});
+    CHECK(second("t\tx\n0,0\t0,5\n0,1\t0,25\n").name == "x");
+    CHECK(second("t\tx\n0\t1.5\n1\t2\n").numbers == std::vector<double>{1.5, 2});
+    CHECK(second("t,x\n0,\t5\n1,\t6\n").numbers == std::vector<double>{5, 6});  // a comma, and a tab as a blank
+    CHECK(second("t\tx\n0\t1\n1\t2,5\n").numbers == std::vector<double>{1, 2.5});
+    CHECK(second("sep=;\nt;x\n0;1,5\n").numbers == std::vector<double>{1.5});
+    CHECK(second("sep=;\nt;x\n0;1,5\n").name == "x");
+    CHECK(second("sep=,\nt,x\n0,1\n").numbers == std::vector<double>{1});
+    CHECK(parse_columns("sep=;\n", "x").error().sentence.find("empty") != std::string::npos);
+}
+
 TEST_CASE("all line ends, a byte order mark and blank lines are understood", "[csv]") {
     check_is_the_pair(parsed("t,theta\r\n0,1.5\r\n0.25,-2e-3\r\n"));
     check_is_the_pair(parsed("t,theta\r0,1.5\r0.25,-2e-3\r"));
@@ -234,12 +247,18 @@ TEST_CASE("a row whose first numbers are plain is read once and as a whole, or r
 }
 
 TEST_CASE("a ragged row is refused with its line", "[csv]") {
-    CHECK(fault("t,theta\n0,1\n0\n") == "x.csv:3: found 1 field, expected 2 as in the first line");
-    CHECK(fault("# c\n\nt,theta\r\n0,1\r\n1,2,3\r\n") == "x.csv:5: found 3 fields, expected 2 as in the first line");
-    CHECK(fault("t,theta\n0\n") == "x.csv:2: found 1 field, expected 2 as in the first line");
-    CHECK(fault("0 1\n0 1 2\n") == "x.csv:2: found 3 fields, expected 2 as in the first line");
-    CHECK(fault("t,theta\n0,1,\n") == "x.csv:2: found 3 fields, expected 2 as in the first line");
-    CHECK(fault("t\ttheta\n0\t1\n\t1\t2\n") == "x.csv:3: found 3 fields, expected 2 as in the first line");
+    CHECK(fault("t,theta\n0,1\n0\n") ==
+          "x.csv:3: found 1 field, expected 2 as in the first line; put # before lines that are no columns");
+    CHECK(fault("# c\n\nt,theta\r\n0,1\r\n1,2,3\r\n") ==
+          "x.csv:5: found 3 fields, expected 2 as in the first line; put # before lines that are no columns");
+    CHECK(fault("t,theta\n0\n") ==
+          "x.csv:2: found 1 field, expected 2 as in the first line; put # before lines that are no columns");
+    CHECK(fault("0 1\n0 1 2\n") ==
+          "x.csv:2: found 3 fields, expected 2 as in the first line; put # before lines that are no columns");
+    CHECK(fault("t,theta\n0,1,\n") ==
+          "x.csv:2: found 3 fields, expected 2 as in the first line; put # before lines that are no columns");
+    CHECK(fault("t\ttheta\n0\t1\n\t1\t2\n") ==
+          "x.csv:3: found 3 fields, expected 2 as in the first line; put # before lines that are no columns");
 }
 
 TEST_CASE("what is no finite number is refused with its line and column", "[csv]") {
@@ -252,7 +271,7 @@ TEST_CASE("what is no finite number is refused with its line and column", "[csv]
     CHECK_THAT(fault("t\n0\n-1e999\n"), Contains("'-1e999', too large for a number in double precision"));
     CHECK(parsed("t;u\n1;2,5\n").values(0, 1) == 2.5);
     CHECK_THAT(fault("t;u\n1;2\n3;4,5,6\n"), Contains("'4,5,6', not a number"));
-    CHECK_THAT(fault("t\tu\n1\t2\n1\t2,5\n"), Contains("'2,5'") && Contains("decimal point instead of the comma"));
+    CHECK_THAT(fault("t\tu\n1\t2.5\n1\t2,5\n"), Contains("'2,5'") && Contains("decimal point instead of the comma"));
     for (const std::string text : {"1.5x", "0x10", "--1", "+-1", "1e", "1.2.3", "+", "-", ".", "\"1.5\"", "15D+00"}) {
         CHECK_THAT(fault("t\n0\n" + text + "\n"), Contains("'" + text + "', not a number"));
     }
