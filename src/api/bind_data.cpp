@@ -70,6 +70,10 @@ int data_other_key(lua_State* L) {
         }
         return push_column(L, data_functions::column_or_fail(L, *data, "", lua_tostring(L, 2)));
     }
+    if (lua_isboolean(L, 2)) {  // d[d.theta > 0]
+        lua::raise(L, {.sentence = "a comparison in brackets selects elements of vectors, as in d.x[d.x > 0]; rows are "
+                                   "selected by d:filter(function(row) return row.x > 0 end)"});
+    }
     int is_integer = 0;
     const lua_Integer i = lua_tointegerx(L, 2, &is_integer);
     if (lua_type(L, 2) != LUA_TNUMBER) return 0;

@@ -9,6 +9,7 @@
 #include "api/bind_excitation.hpp"
 #include "api/classes.hpp"
 #include "api/controller_options.hpp"
+#include "api/data.hpp"
 #include "api/run.hpp"
 #include "files/csv.hpp"
 #include "lua/interrupt.hpp"
@@ -115,7 +116,9 @@ int samples(lua_State* L) {
     }
     if (lua_type(L, 1) != LUA_TTABLE) {
         lua::raise_got(L, 1, file_call.name, "excitation.samples takes the name of a file or a table of points",
-                       fmt::format("; for example {}", file_call.example));
+                       lua::test<DataHandle>(L, 1) != nullptr
+                           ? "; of data d give two columns: excitation.samples{ t = d.t, M = d.M }"
+                           : fmt::format("; for example {}", file_call.example));
     }
     return push_term(
         L, std::make_shared<const model::Samples>(lua::read<model::Samples>(L, 1, model::Polyline::about.call)));

@@ -13,9 +13,10 @@
 namespace dinal::errors {
 namespace {
 
-constexpr std::array<std::pair<std::string_view, std::string_view>, 30> foreign_names = {{
+constexpr std::array<std::pair<std::string_view, std::string_view>, 51> foreign_names = {{
     {"echo", "; did you mean 'print'?"},
     {"disp", "; did you mean 'print'?"},
+    {"display", "; did you mean 'print'?"},
     {"puts", "; did you mean 'print'?"},
     {"println", "; did you mean 'print'?"},
     {"True", "; did you mean 'true'?"},
@@ -44,6 +45,26 @@ constexpr std::array<std::pair<std::string_view, std::string_view>, 30> foreign_
     {"exit", "; os.exit() ends a script, :quit or Ctrl-D a session"},
     {"quit", "; os.exit() ends a script, :quit or Ctrl-D a session"},
     {"bye", "; os.exit() ends a script, :quit or Ctrl-D a session"},
+    {"fprintf", "; a format is filled by string.format: print(string.format(\"%.3f\", x))"},
+    {"zeros", "; n zeros are vector.linspace(0, 0, n)"},
+    {"ones", "; n ones are vector.linspace(1, 1, n)"},
+    {"size", "; the length of x is #x"},
+    {"numel", "; the length of x is #x"},
+    {"lsim", "; a run is made by sys:simulate{ M = M, t_end = 20 }"},
+    {"ode45", "; a run is made by sys:simulate{ M = M, t_end = 20 }"},
+    {"solve_ivp", "; a run is made by sys:simulate{ M = M, t_end = 20 }"},
+    {"odeint", "; a run is made by sys:simulate{ M = M, t_end = 20 }"},
+    {"fft", "; a spectrum is run:spectrum()"},
+    {"bode", "; a response curve is sys:response{ over = { frequency = vector.linspace(0.1, 2, 200) } }"},
+    {"title", "; a title is an option: plot{ { x, y }, title = \"...\" }"},
+    {"xlabel", "; labels are options: plot{ { x, y, label = \"a\" }, xlabel = \"t\", ylabel = \"theta\" }"},
+    {"ylabel", "; labels are options: plot{ { x, y, label = \"a\" }, xlabel = \"t\", ylabel = \"theta\" }"},
+    {"legend", "; labels are options: plot{ { x, y, label = \"a\" }, xlabel = \"t\", ylabel = \"theta\" }"},
+    {"plt", "; a plot is plot(x, y), or run:plot()"},
+    {"pd", "; a CSV file is read by load(\"file.csv\")"},
+    {"tic", "; :time code prints the time that code takes"},
+    {"toc", "; :time code prints the time that code takes"},
+    {"save", "; a run is saved by run:save(\"run.csv\")"},
 }};
 
 /// What tokens say in other languages. A word of a pattern is a token; n stands for any name, 1 for any name or number,
@@ -58,7 +79,21 @@ constexpr std::string_view slice_cure =
 constexpr std::string_view lambda_cure = "; a function is written: function(x) return 2*x end";
 constexpr std::string_view format_cure = "; values go into a text by string.format(\"x = %.3f\", x)";
 constexpr std::string_view append_cure = "; appending is list[#list + 1] = x; vectors are joined by v .. w";
-constexpr std::array<ForeignTokens, 14> foreign = {{
+constexpr std::string_view last_cure = "; the last element of v is v[#v]";
+constexpr std::string_view elements_cure = "; * / and ^ act on each element of a vector";
+constexpr std::string_view conditions_cure =
+    "; in Lua and, or and not are words; several conditions are v[v:find(function(x) return x > 0 and x < 1 end)]";
+constexpr std::array<ForeignTokens, 24> foreign = {{
+    {"1 : 1 : 1", false, "; evenly spaced values are vector.range(0, 1, 0.1) or vector.linspace(0, 1, 11)"},
+    {"^ % %", false, "; dinal has no magic commands; :time code prints the time that code takes"},
+    {"^ % matplotlib", false, "; dinal has no magic commands: run:plot() shows its picture in the page"},
+    {"^ ! n", false, "; dinal has no shell commands"},
+    {"load n .", false, "; write the name of a file in quotes: load \"file.csv\""},
+    {"[ end ]", false, last_cure},
+    {"( end )", false, last_cure},
+    {". *", false, elements_cure},
+    {". /", false, elements_cure},
+    {". ^", false, elements_cure},
     {"[ 1 :", false, slice_cure},
     {"[ : ", false, slice_cure},
     {"[ - 1 :", false, slice_cure},
@@ -222,6 +257,12 @@ std::string running_habit(lua_State* L, const lua::LuaMessage& message, std::str
     const bool of_nil_or_text = message.type == "nil" || message.type == "string";
     if (std::string cure = of_nil_or_text ? foreign_tokens(statement, true) : ""; !cure.empty()) {
         return cure;
+    }
+    if (message.words.starts_with("attempt to perform bitwise operation")) {
+        return std::string(conditions_cure);
+    }
+    if (message.calculates && message.type == "row") {
+        return "; a row has several values, of which one is meant, as in run.events[1].theta";
     }
     if (message.calculates && message.type == "table") {
         const std::string name(message.name.empty() ? "list" : message.name);

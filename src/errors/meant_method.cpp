@@ -147,7 +147,8 @@ std::string meant_method(lua_State* L, const lua::LuaMessage& message, std::stri
         name = message.quoted.front();
     }
     const auto call = name.empty() ? std::nullopt : call_of(statement, name);
-    if (!call || !passes_its_owner(L, name)) return "";
+    const bool text = call && (call->first.front() == '"' || call->first.front() == '\'');  // save("run.mat")
+    if (!call || text || !passes_its_owner(L, name)) return "";
     constexpr std::size_t longest = 60;
     const std::string object = call->simple ? std::string(call->first) : fmt::format("({})", call->first);
     const bool braces = call->rest.starts_with('{') && call->rest.ends_with('}');

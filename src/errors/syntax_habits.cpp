@@ -24,7 +24,7 @@ struct Symptom {
     std::string_view cure;
 };
 
-constexpr std::array<Symptom, 20> symptoms = {{
+constexpr std::array<Symptom, 22> symptoms = {{
     {"", "!", "; in Lua 'not equal' is ~= and 'not' is a word"},
     {"", "+", "; in Lua that is x = x + 1"},
     {"syntax error", "-", "; in Lua that is x = x - 1"},
@@ -36,6 +36,8 @@ constexpr std::array<Symptom, 20> symptoms = {{
     {"", "#", "; a comment begins with --"},
     {"unexpected symbol", "/", "; a comment begins with --"},
     {"unexpected symbol", "//", "; a comment begins with --"},
+    {"unexpected symbol", "%", "; a comment begins with --"},
+    {"unexpected symbol", "@", "; a function is written: function(t) return 2*t end"},
     {"unexpected symbol", ">", "; in Lua 'not equal' is ~="},
     {"unexpected symbol", "[", "; a list is { 1, 2, 3 }"},
     {"'then' expected", "=", "; comparing is =="},
@@ -48,7 +50,7 @@ constexpr std::array<Symptom, 20> symptoms = {{
 }};
 
 /// What stands before a name in other languages: "def f", "var x", "import math".
-constexpr std::array<Cure, 22> leading_words = {{
+constexpr std::array<Cure, 26> leading_words = {{
     {"def", "; a function is written: function f(x) return 2*x end"},
     {"func", "; a function is written: function f(x) return 2*x end"},
     {"fn", "; a function is written: function f(x) return 2*x end"},
@@ -70,6 +72,10 @@ constexpr std::array<Cure, 22> leading_words = {{
     {"DO", "; a loop is: for i = 1, 10 do ... end"},
     {"CALL", "; a call needs parentheses and no word before it: f(x)"},
     {"PRINT", "; a value is shown by print(x)"},
+    {"clear", "; :reset deletes your variables"},
+    {"close", "; nothing needs to be closed: each plot is a picture of its own"},
+    {"hold", "; several curves are one picture: plot{ { x, y }, { x, z } }"},
+    {"save", "; a run is saved by run:save(\"run.csv\"), your inputs by :save lab.lua"},
     {"help", "; write ?name, or help \"name\""},
 }};
 

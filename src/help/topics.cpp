@@ -17,7 +17,7 @@ struct Topic {
 };
 
 // No line is longer than 77 columns. A test looks for every name that stands here.
-constexpr std::array<Topic, 44> topics = {{
+constexpr std::array<Topic, 52> topics = {{
     {"degrees degree deg radians radian angle angles",
      "Angles are in radians: theta, theta0, velocity per time unit. math.rad(90)\nmakes radians of 90 degrees, "
      "math.deg(x) degrees of radians, and of a whole\ncolumn 180/math.pi*run.theta. Lags are in radians as well.\n"},
@@ -60,15 +60,17 @@ constexpr std::array<Topic, 44> topics = {{
      "run:spectrum{ of = \"velocity\", method = \"welch\" } a power density;\n"
      "run:spectrum():plot() draws it.\n",
      "frequency frequencies content analysis"},
-    {"export excel pandas spreadsheet",
+    {"export pandas spreadsheet",
      "run:save \"run.csv\" writes a run, d:save \"d.csv\" data; run:columns{ \"t\", \"theta\" }\n"
      "chooses columns. pandas.read_csv(\"run.csv\", comment=\"#\") reads it\n"
      "(docs/csv-elsewhere.md).\n",
-     "csv save write file disk results columns"},
-    {"import",
+     "csv excel save write file disk results columns"},
+    {"import excel semicolon separator delimiter xlsx",
      "load \"file.csv\" reads columns, or a run that run:save wrote, and\n"
-     "excitation.samples \"force.csv\" an M.\n",
-     "read load open csv file data record measurement measured"},
+     "excitation.samples \"force.csv\" an M. Columns are separated by commas, semicolons\n"
+     "or tabs; with the last two 1,5 is a number. A line of units below the names is\n"
+     "understood. Save a spreadsheet as CSV first.\n",
+     "read load open csv file data record measurement measured decimal comma"},
     {"compare comparison overlay superimpose",
      "Keep both runs in variables, a and b, and plot both:\n"
      "plot{ { a.t, a.theta, label = \"a\" }, { b.t, b.theta, label = \"b\" } }.\n"
@@ -80,7 +82,7 @@ constexpr std::array<Topic, 44> topics = {{
      "xlim, ylim shape it.\n",
      "plot draw save file label axis axes title limits"},
     {"portrait", "run:phase_plot() draws velocity over theta, with the dead zone.\n", "phase plane space"},
-    {"resonance frf",
+    {"resonance frf bode",
      "sys:response{ over = { frequency = vector.linspace(.1, 2, 50) } } finds the steady\n"
      "amplitude for each frequency; :plot() draws it. sys:steady finds one.\n",
      "amplitude frequency response curve harmonic forced"},
@@ -171,6 +173,37 @@ constexpr std::array<Topic, 44> topics = {{
      "help \"simulate\" lists the options of a call with their defaults; Shift-Tab shows them\n"
      "while you type.\n",
      "which list"},
+    {"ode45 solve_ivp odeint lsim ode integrate solver",
+     "sys:simulate{ M = M, theta0 = 1, t_end = 20 } makes a run; no tolerance and no event\n"
+     "function is needed. docs/guide.md has a table of what MATLAB and SciPy call it.\n"},
+    {"initial",
+     "theta0 and velocity0 of sys:simulate{ theta0 = 1, velocity0 = 0, t_end = 20 } are the state\n"
+     "at t_start; run:continue{ t_end = 40 } begins where a run ended.\n",
+     "start condition conditions position velocity value values"},
+    {"conveyor",
+     "sys:simulate{ belt = .2, t_end = 20 } lets the mass rub on a belt of that velocity, and\n"
+     "sys:steady{ belt = .2 } finds its limit cycle; belt may be a function of t.\n",
+     "belt moving speed run"},
+    {"square rectangular",
+     "excitation.square{ amplitude = 1, period = 2 } is a square wave; excitation.sawtooth and\n"
+     "excitation.triangle are others.\n",
+     "wave periodic pulse train"},
+    {"heaviside",
+     "excitation.step{ amplitude = 1, at = 0 } is a step:\n"
+     "sys:simulate{ M = excitation.step{ amplitude = 1 }, t_end = 20 }:plot().\n",
+     "step response jump load sudden"},
+    {"zoom legend",
+     "plot and run:plot have xlim = { 2, 3 } and ylim to show a part, label for the name of a\n"
+     "curve: plot{ { x, y, label = \"a\" }, xlim = { 2, 3 } }.\n",
+     "range part axis curve name label"},
+    {"maximum average rms",
+     "A column is a vector: run.theta:max(), :min(), :mean(), :abs(); run.theta[run.t > 10]:max()\n"
+     "of a part.\n",
+     "max min mean value column peak largest"},
+    {"turning",
+     "run.events lists turns, sticks, slips and rest: run.events[1].t, #run.events, and the\n"
+     "last one is run.events[#run.events]; run.events.kind is a column.\n",
+     "list events event last first count number stops turns when"},
     {"quit exit leave", "Ctrl-D or :quit leaves dinal; os.exit() ends a script.\n", "close program"},
     {"shell ls pwd terminal",
      "dinal has no shell commands: Ctrl-Z suspends it, and fg brings it back. load and\nexcitation.samples read "

@@ -57,7 +57,10 @@ class Dinal:
         self.selector.close()
         os.close(self.answers)
         for pipe in (self.process.stdin, self.process.stdout, self.process.stderr):
-            pipe.close()
+            try:
+                pipe.close()
+            except BrokenPipeError:  # a request that nobody read any more
+                pass
 
     def printed(self, descriptor, hear):
         """All that has come; false at the end of the stream."""

@@ -119,7 +119,11 @@ std::string element_notice(lua_State* L, const Chunk& chunk) {
     lua_settop(L, top);
     const std::vector<std::string_view> views(names.begin(), names.end());
     const std::string hint = text::did_you_mean(all.back().text, views);
-    return hint.empty() ? "" : fmt::format("there is no '{}' in it{}", all.back().text, hint);
+    if (!hint.empty()) return fmt::format("there is no '{}' in it{}", all.back().text, hint);
+    constexpr std::size_t few = 8;
+    return names.empty() || names.size() > few
+               ? ""
+               : fmt::format("there is no '{}' in it: it has {}", all.back().text, fmt::join(names, ", "));
 }
 
 namespace {
@@ -149,12 +153,31 @@ std::string colon_notice(lua_State* L, const std::string& text) {
                              help::signature(found.member->doc));
 }
 
+/// "for i in range(5): print(i)", which begins a method call for Lua. No method stands behind a blank.
+std::string python_block(const std::vector<lua::Token>& all) {
+    for (std::size_t i = 1; i + 1 < all.size(); ++i) {
+        if (!all[i].is(":") || all[i].end() == all[i + 1].at) continue;
+        if (all.front().is("for")) return "a loop is: for i = 1, 10 do ... end";
+        if (all.front().is("while")) return "a loop is: while x < 3 do ... end";
+        if (all.front().is("if")) return "in Lua: if x > 3 then ... end";
+    }
+    return "";
+}
+
 }  // namespace
+
+std::string shell_notice(const std::string& text) {
+    const std::vector<lua::Token> all = lua::tokens(text);
+    return all.size() > 1 && all[0].is("dinal") && all[1].kind == lua::TokenKind::comment
+               ? "that is a command for the shell: leave dinal with :quit first"
+               : "";
+}
 
 std::string unfinished_notice(lua_State* L, const std::string& text) {
     if (std::string notice = colon_notice(L, text); !notice.empty()) return notice;
     if (text.find('\n') != std::string::npos) return "";
     const std::vector<lua::Token> all = lua::tokens(text);
+    if (std::string notice = python_block(all); !notice.empty()) return notice;
     const bool percent = all.size() > 1 && all.back().is("%") && all[all.size() - 2].kind == lua::TokenKind::number &&
                          all[all.size() - 2].end() == all.back().at;
     return percent ? fmt::format("% is the remainder of a division; {0} percent are {0}/100", all[all.size() - 2].text)

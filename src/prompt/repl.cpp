@@ -111,7 +111,8 @@ Reading take(Session& session, TypedLine input, bool copied) {
         return Reading::line;
     }
     Chunk chunk = compile(L, input.text);
-    if (const std::string notice = chunk.result == Compiled::incomplete ? unfinished_notice(L, input.text) : "";
+    const bool incomplete = chunk.result == Compiled::incomplete;
+    if (const std::string notice = incomplete ? unfinished_notice(L, input.text) : shell_notice(input.text);
         !notice.empty()) {
         remember(session, input.text);
         say_notice(notice);

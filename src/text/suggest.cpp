@@ -16,7 +16,7 @@ constexpr int most_slips = 2;
 constexpr int far = 1000;
 
 // What other books and programs call the things here. A word may stand for several: only those that are known count.
-constexpr std::array<std::pair<std::string_view, std::string_view>, 68> synonyms = {{
+constexpr std::array<std::pair<std::string_view, std::string_view>, 69> synonyms = {{
     {"sin", "harmonic"},
     {"sine", "harmonic"},
     {"cos", "harmonic"},
@@ -78,6 +78,7 @@ constexpr std::array<std::pair<std::string_view, std::string_view>, 68> synonyms
     {"average", "mean"},
     {"write", "save"},
     {"export", "save"},
+    {"to_csv", "save"},
     {"describe", "explain"},
     {"draw", "plot"},
     {"level", "amplitude"},

@@ -54,6 +54,18 @@ local questions = {
   { "undo", ":history lists" },
   { "quit", "Ctrl-D" },
   { "dead zone", "sys.dead_zone" },
+  { "ode45", "sys:simulate{ M" },
+  { "bode plot", "sys:response{" },
+  { "read an excel file", 'load "file.csv"' },
+  { "decimal comma", "1,5 is a number" },
+  { "initial conditions", "theta0 and velocity0" },
+  { "moving belt", "belt = .2" },
+  { "square wave", "excitation.square" },
+  { "step response", "excitation.step" },
+  { "zoom in", "xlim" },
+  { "mean value", ":mean()" },
+  { "last event", "run.events[#run.events]" },
+  { "list of events", "run.events lists" },
   { "jupyter", "--jupyter-install" },
 }
 

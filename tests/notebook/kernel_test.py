@@ -176,6 +176,12 @@ def cells():
     seen = notebook.run("x")
     check("is followed by a new one", seen["value"] is None or seen["value"] == {"text/plain": "nil"}, seen)
 
+    notebook.run(":quit")
+    seen = notebook.run("x = 7")
+    check("so is :quit", seen["error"] and "exit code 0" in seen["error"], seen)
+    seen = notebook.run("x = 7\nx")
+    check("which is a new one as well", seen["value"] == {"text/plain": "7"}, seen)
+
     notebook.run("y = 2")
     notebook.manager.restart_kernel(now=False)
     notebook.client.wait_for_ready(timeout=PATIENCE)

@@ -35,6 +35,54 @@ class Lost(unittest.TestCase):
         return terminal
 
 
+class Walked(Lost):
+    """What a student, a MATLAB user and an engineer typed, and where they stuck."""
+
+    CASES = (
+        ("x = 0:0.1:1", "vector.range(0, 1, 0.1)"),
+        ("v = vector{1, 2}", ""),
+        ("v .* v", "act on each element"),
+        ("v.^2", "act on each element"),
+        ("v(end)", "the last element of v is v[#v]"),
+        ("v[v > 0 & v < 1]", "in Lua and, or and not are words"),
+        ("% comment", "a comment begins with --"),
+        ("f = @(t) 2*t", "a function is written: function(t) return 2*t end"),
+        ("%matplotlib inline", "no magic commands"),
+        ("!ls", "dinal has no shell commands"),
+        ("clear all", ":reset deletes your variables"),
+        ("hold on", "several curves are one picture"),
+        ("size(v)", "#x"),
+        ("zeros(3)", "vector.linspace(0, 0, n)"),
+        ("ode45(1, 2)", "sys:simulate"),
+        ("fft(v)", "run:spectrum()"),
+        ("bode(sys)", "sys:response"),
+        ("title('x')", "plot{ { x, y }, title"),
+        ("plt.plot(v)", "plot(x, y)"),
+        ("save('run.mat')", 'run:save("run.csv")'),
+        ("save run.csv", 'run:save("run.csv")'),
+        ("dinal --report 1-4711.lua", "a command for the shell"),
+        ("load de.csv", 'load "file.csv"'),
+        ("load 'table.xlsx'", "save the table as CSV"),
+        ("excitation.samples(data{ t = {0, 1}, M = {0, 1} })", "excitation.samples{ t = d.t, M = d.M }"),
+        ("for i in range(5): print(i)", "a loop is: for i = 1, 10 do ... end"),
+        ("while x < n: print(x)", "a loop is: while x < 3 do ... end"),
+        ("if x > n: print(x)", "in Lua: if x > 3 then ... end"),
+        ("a = { k = 1, C = 2 }", ""),
+        ("a.T0", "there is no 'T0' in it: it has C, k"),
+        ("run = nondimensional{}:simulate{ theta0 = 1, t_end = 2, dt = 0.1 }", ""),
+        ("run:to_csv('x.csv')", "did you mean 'save'?"),
+        ("2*run.events[1]", "as in run.events[1].theta"),
+        ("run.events[run.events.theta > 0]", "rows are selected by d:filter"),
+    )
+
+    def test_each_line_is_answered_with_what_to_type(self):
+        session = self.session()
+        for line, answer in self.CASES:
+            shown = " ".join(session.enter(line).split())
+            self.assertIn(answer, shown, line)
+            self.assertTrue(answer or not shown, f"{line}: {shown}")
+
+
 class Pasted(Lost):
     def test_a_prompt_in_front_is_no_part_of_the_line(self):
         session = self.session()
