@@ -55,16 +55,97 @@ Curve stepped_band(const Curve& curve, const Seen& seen, std::size_t steps) {
     return band;
 }
 
+/// Turns of swings that are a good part of the height: noise on a slow curve has none.
+std::size_t large_turns(const Curve& curve, const Seen& seen) {
+    if (seen.last <= seen.first) return 0;
+    const auto y = curve.y.values.subspan(seen.first, seen.last - seen.first);
+    double least = std::numeric_limits<double>::infinity(), greatest = -least;
+    for (const double value : y) {
+        least = std::min(least, value);
+        greatest = std::max(greatest, value);
+    }
+    constexpr double good_part = 0.1;
+    const double smallest = good_part * (greatest - least);
+    std::size_t turns = 0;
+    double low = y.front(), high = y.front();  // since the last turn
+    int direction = 0;
+    for (const double value : y) {
+        low = std::min(low, value);
+        high = std::max(high, value);
+        const bool down = direction >= 0 && value < high - smallest, up = direction <= 0 && value > low + smallest;
+        if (!down && !up) continue;
+        turns += direction != 0 ? 1 : 0;
+        direction = down ? -1 : 1;
+        low = high = value;
+    }
+    return turns;
+}
+
+/// A line up and down in each place, between the lowest and the highest value from one turn before it to one turn
+/// after.
+Curve envelope(const Curve& curve, const Seen& seen, std::size_t turns, std::size_t places) {
+    const auto x = curve.x.values, y = curve.y.values;
+    const double from = x[seen.first], length = x[seen.last - 1] - from;
+    const double reach = length / static_cast<double>(turns);
+    std::vector<double> across, up;
+    std::size_t begin = seen.first;
+    for (std::size_t place = 0; place < places; ++place) {
+        const double middle = from + length * (static_cast<double>(place) + 0.5) / static_cast<double>(places);
+        const double centre = std::clamp(middle, from + reach, from + length - reach);
+        while (begin < seen.last && x[begin] < centre - reach) ++begin;
+        double low = std::numeric_limits<double>::infinity(), high = -low;
+        for (std::size_t i = begin; i < seen.last && x[i] <= centre + reach; ++i) {
+            low = std::min(low, y[i]);
+            high = std::max(high, y[i]);
+        }
+        if (low > high) low = high = std::nan("");
+        const double drawn_at = place == 0 ? from : place + 1 == places ? from + length : middle;
+        for (const double end : {low, high}) {
+            across.push_back(drawn_at);
+            up.push_back(end);
+        }
+    }
+    Curve all = curve;
+    all.x = Numbers::own(std::move(across));
+    all.y = Numbers::own(std::move(up));
+    return all;
+}
+
+/// What may be drawn otherwise when it is too dense: a line over increasing x.
+bool is_line_over_x(const Curve& curve) {
+    const auto x = curve.x.values.first(curve.size());
+    return curve.style == Style::line && std::is_sorted(x.begin(), x.end());
+}
+
+Seen seen_in(const Figure& figure, const Curve& curve) {
+    constexpr double anywhere = std::numeric_limits<double>::infinity();
+    return seen_of(curve, figure.x.limits.value_or(Interval{-anywhere, anywhere}));
+}
+
 }  // namespace
+
+std::vector<Figure> with_envelopes(std::span<const Figure> figures, double width) {
+    std::vector<Figure> all(figures.begin(), figures.end());
+    for (Figure& figure : all) {
+        for (Curve& curve : figure.curves) {
+            if (!is_line_over_x(curve) || figure.x.logarithmic) continue;
+            constexpr double closest = 2.5;  // places from one turn to the next
+            const Seen seen = seen_in(figure, curve);
+            const std::size_t turns = large_turns(curve, seen);
+            if (static_cast<double>(turns) * closest > width) {
+                curve = envelope(curve, seen, turns, static_cast<std::size_t>(width));
+            }
+        }
+    }
+    return all;
+}
 
 std::vector<Figure> with_bands(std::span<const Figure> figures, double width) {
     std::vector<Figure> all(figures.begin(), figures.end());
     for (Figure& figure : all) {
         for (Curve& curve : figure.curves) {
-            const auto x = curve.x.values.first(curve.size());
-            if (!curve.behind || curve.style != Style::line || !std::is_sorted(x.begin(), x.end())) continue;
-            constexpr double anywhere = std::numeric_limits<double>::infinity();
-            const Seen seen = seen_of(curve, figure.x.limits.value_or(Interval{-anywhere, anywhere}));
+            if (!curve.behind || !is_line_over_x(curve)) continue;
+            const Seen seen = seen_in(figure, curve);
             const auto turns = static_cast<double>(seen.turns);
             if (turns * closest_turns > width) {
                 const double steps = std::clamp(turns / turns_to_a_step, 2.0, width);

@@ -12,6 +12,10 @@ namespace dinal::plots {
 /// can follow on `width`: in places that it parts, such as dots of a text or pixels of a sheet.
 std::vector<Figure> with_bands(std::span<const Figure> figures, double width);
 
+/// The figures with envelopes in place of all curves that turn nearly every second of these places: drawn as they are,
+/// they would be noise.
+std::vector<Figure> with_envelopes(std::span<const Figure> figures, double width);
+
 /// The places of the curves, those behind others first.
 std::vector<std::size_t> drawing_order(const Figure& figure);
 

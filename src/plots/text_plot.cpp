@@ -715,7 +715,8 @@ TextBlock pile_of(std::span<const Figure> figures, TextFormat format) {
 
 std::string text_plot(std::span<const Figure> given, const TextFormat& format) {
     constexpr double dots = 2;  // of a column, in braille
-    const std::vector<Figure> figures = with_bands(given, dots * format.columns);
+    const std::vector<Figure> figures = with_envelopes(with_bands(given, dots * format.columns),
+                                                       (format.charset == Charset::ascii ? 1 : dots) * format.columns);
     TextFormat each = format;
     const auto piles =
         std::count_if(figures.begin(), figures.end(), [](const Figure& figure) { return !figure.below; });

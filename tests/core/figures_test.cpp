@@ -75,6 +75,40 @@ TEST_CASE("boxes side by side stand on one line and are as high", "[plots]") {
     CHECK(sheet.panels[2].bottom == sheet.panels[0].bottom);
 }
 
+TEST_CASE("a curve denser than the columns of a text is drawn as its envelope", "[plots]") {
+    constexpr int columns = 70, points = 8000;
+    for (const int swings : {10, 13, 16, 34, 300}) {  // two turns each
+        std::vector<double> t, y;
+        for (int i = 0; i < points; ++i) {
+            t.push_back(i);
+            y.push_back((1 + static_cast<double>(i) / points) * std::sin(2 * std::numbers::pi * swings * i / points));
+        }
+        Figure figure;
+        figure.curves.push_back({Numbers::own(t), Numbers::own(y)});
+        const Curve drawn = with_envelopes({&figure, 1}, columns)[0].curves[0];
+        CAPTURE(swings);
+        REQUIRE((drawn.size() == 2 * columns) == (swings > 14));
+        for (std::size_t i = 0; i < drawn.size() && drawn.size() == 2 * columns; i += 2) {
+            const double grown = 1 + drawn.x.values[i] / points, near = 0.02 + 1.0 / swings;
+            CHECK(std::fabs(drawn.y.values[i] + grown) < near);
+            CHECK(std::fabs(drawn.y.values[i + 1] - grown) < near);
+        }
+    }
+    // Noise on a slow curve is no swing.
+    std::vector<double> t, y;
+    for (int i = 0; i < points; ++i) {
+        t.push_back(i);
+        y.push_back(i + (i % 2 == 0 ? 100 : -100));
+    }
+    Figure slow;
+    slow.curves.push_back({Numbers::own(t), Numbers::own(y)});
+    CHECK(with_envelopes({&slow, 1}, columns)[0].curves[0].size() == points);
+    // A phase plane goes back in x, and stays what it is.
+    Figure figure;
+    figure.curves.push_back({Numbers::own({0, 1, 0, -1, 0, 1, 0}), Numbers::own({1, 0, -1, 0, 1, 0, -1})});
+    CHECK(with_envelopes({&figure, 1}, 2)[0].curves[0].size() == 7);
+}
+
 TEST_CASE("titles side by side stand on one line", "[plots]") {
     std::vector<Figure> figures{decay(100), decay(100)};
     figures[0].title = "with a long legend";
