@@ -998,9 +998,9 @@ constexpr lua::Member rig_members[] = {
       {&rig_steady_call}}},
     {lua::a_method<response_of_rig>,
      {"rig:response{ OPTIONS } -> data",
-      "The steady motion over a list of values, each searched from the one before. Folds are not followed: where several "
-      "motions exist, give the values upwards and downwards. Columns: the name of what is varied; of "
-      "each body and link amplitude, peak, lag, stops and stuck, as in \"load.amplitude\"; stable and status.",
+      "The steady motion over a list of values, each searched from the one before. Folds are not followed: if several "
+      "motions exist, give the values upwards and downwards. Columns: the varied parameter; amplitude, peak, lag, stops "
+      "and stuck of each body and link, as in \"load.amplitude\"; stable and status.",
       "rig = system{ bodies = { a = { I = 1, k = 1, C = 0.1 }, b = { I = 1, k = 1 } }, links = { rod = { \"a\", \"b\", k = 4 "
       "} } }\n"
       "c = rig:response{ over = { omega = { 0.5, 2 } }, at = function(p)\n"
@@ -1047,8 +1047,8 @@ constexpr lua::Member bodies_run_members[] = {
       {&bodies_plot_call}}},
     {lua::a_method<animate_bodies>,
      {"rig_run:animate{ OPTIONS }",
-      "Shows the bodies in motion, side by side with belts, springs and what sticks, or as discs on one axis where one of "
-      "them goes round: in the terminal until Ctrl-C, in a notebook, or in a file.",
+      "Shows the bodies in motion, side by side with belts and springs, or as discs on one axis if one of them rotates: in "
+      "the terminal until Ctrl-C, in a notebook, or in a file.",
       DINAL_RIG_RUN "file = os.tmpname() .. \".svg\"\n"
                     "run:animate{ file = file }\n"
                     "print(io.open(file):read(\"a\"):match(\"<desc>([^;]*)\"))  --> 2 bodies as discs on one axis\n"

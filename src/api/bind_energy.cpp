@@ -145,11 +145,11 @@ int energy_text(lua_State* L) {
 constexpr lua::Member energy_members[] = {
     {lua::a_field<total>,
      {"energy.total -> table",
-      "The balance of the whole run, torque times rad: input (work of M on the mass) = kinetic + spring (the changes "
-      "of what is stored) + viscous + dry (what the two frictions took) + error (what does not add up); flow is what "
-      "M, the spring and the moving mass gave in all half cycles together, and closure is |error|/flow. What a belt, a "
-      "base and the acts of events gave is belt, base and acts, beside the input; what impacts at walls took is impacts, "
-      "beside the frictions. Of a body or link among several: others, the work of the others on it, in place of error.",
+      "The balance of the whole run, torque times rad: input (work of M) = kinetic + spring (changes of stored energy) "
+      "+ viscous + dry (dissipated by the two frictions) + error. flow is the work of M, spring and inertia in all half "
+      "cycles together, closure is |error|/flow. belt, base and acts are the work of a belt, a base and the acts of "
+      "events, added to the input; impacts is the loss at walls. For a body or link among several, others is the work "
+      "of the others on it and replaces error.",
       DINAL_ENERGY
       "print(string.format(\"%.6f %.6f\", energy.total.dry, energy.total.spring))  --> 0.499200 -0.499200\n"
       "print(energy.total.closure < 1e-12)  --> true"}},

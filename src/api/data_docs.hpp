@@ -77,7 +77,7 @@ inline constexpr lua::Doc length_doc{
     "#d -> integer", "The number of rows. d[1] is the first one, a table with a field for each column; beyond is nil.",
     DINAL_DATA "print(#d, d[2].A)  --> 3\t4.0"};
 inline constexpr lua::Doc pairs_doc{
-    "for i, row in pairs(d)", "The rows one after the other; ipairs does the same.",
+    "for i, row in pairs(d)", "Goes through the rows; ipairs does the same.",
     DINAL_DATA "for i, row in pairs(d) do print(i, row.r) end\n--> 1\t0.5\n--> 2\t1.0\n--> 3\t2.0"};
 inline constexpr lua::Doc to_string_doc{
     "tostring(d) -> string", "The number of rows, and the first rows as a table; columns that do not fit are left out.",

@@ -72,19 +72,19 @@ int response_of_system(lua_State* L);
 
 inline constexpr lua::Doc response_doc{
     "sys:response{ OPTIONS } -> data",
-    "The steady motion over a list of values: of the frequency or the amplitude of a harmonic M, or of anything that `at` "
-    "makes of a value. Columns: the name of what is varied (M0 for the amplitude), amplitude, lag (rad), peak, stops, "
-    "stuck, stable (1 or 0), branch and status. Where the motion grows the amplitude is infinite, where none was found nan. "
-    "If several motions are possible at once, with a spring of its own, feedback, walls, states, or Re > Rd, whole branches "
-    "are followed, round their folds and along their unstable sides, which c:plot() draws dotted: a value then has a row on "
-    "each branch. Limit cycles are followed in the same way, and the sliding rest beside them. c.points lists what happens "
-    "on the way: kind is \"fold\" (the branch turns back), \"doubling\" (a motion of twice the period begins), "
-    "\"pitchfork\" (unsymmetric motions begin), \"torus\" (a second frequency begins) or \"hopf\" (a limit cycle begins at "
-    "a rest, as squeal does), with the place, amplitude, period and branch. What a sweep meets from either end is found, an island beside it only from a start on it. "
-    "c.jumps tells where a sweep leaves a branch: the place, sweep (\"up\" or \"down\"), the amplitudes from and to, "
-    "and status, what it lands on. For a linear spring under a harmonic M c.linearised and c.den_hartog are the curves of "
-    "equivalent viscous damping and of Den Hartog (nan where the motion stops); c:plot{ overlay = \"linearised\" } draws "
-    "them beside c, \"jumps\" as well.",
+    "The steady motion over a list of values: of the frequency or the amplitude of a harmonic M, or of any parameter that "
+    "`at` uses. Columns: the varied parameter (M0 for the amplitude), amplitude, lag (rad), peak, stops, stuck, stable (1 "
+    "or 0), branch and status. The amplitude is infinite where the motion grows, and nan where no motion was found. If "
+    "several motions can exist (with a spring of its own, feedback, walls, states, or Re > Rd), whole branches are "
+    "followed, round their folds and along their unstable sides, which c:plot() draws dotted; a value then has a row for "
+    "each branch. Limit cycles and steady sliding are followed in the same way. c.points lists special points: kind is "
+    "\"fold\" (the branch turns back), \"doubling\" (a motion of twice the period begins), \"pitchfork\" (unsymmetric "
+    "motions begin), \"torus\" (a second frequency begins) or \"hopf\" (a limit cycle begins at a rest, as squeal does), "
+    "with the place, amplitude, period and branch. Branches connected to either end of the list are found; an isolated "
+    "one needs a start on it. c.jumps lists where a sweep leaves a branch: the place, sweep (\"up\" or \"down\"), the "
+    "amplitudes from and to, and the status of the new motion. For a linear spring under a harmonic M, c.linearised and "
+    "c.den_hartog are the curves of equivalent viscous damping and of Den Hartog (nan where the motion stops); "
+    "c:plot{ overlay = \"linearised\" } adds one to the plot, overlay = \"jumps\" the jumps.",
     "c = nondimensional{ friction_ratio = 0.5 }:response{ over = { frequency = { 0.75, 1.5, 2 } } }\n"
     "print(c.amplitude, c.stops[1])  --> vector{ 1.9726, 0.553775, 0.220479 }\t0.0\n"
     "sys = system{ I = 1, k = 1, C = 0.05, Rd = 0.02, spring = spring.polynomial{ [3] = 0.5 } }\n"
