@@ -210,6 +210,10 @@ bool run_text(Session& session, const std::string& text) {
     if (!ready) {
         reject(session, text);
     }
+    if (chunk.result == Compiled::incomplete) {  // which no further line completes here
+        const std::string notice = unfinished_notice(session.L, text);
+        say_notice(notice.empty() ? chunk.waits : notice);
+    }
     const bool fine = ready && run_chunk(session, chunk, text);
     lua_settop(session.L, 0);
     return fine;

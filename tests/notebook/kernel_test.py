@@ -115,6 +115,9 @@ def cells():
     check("and the cell has failed", seen["reply"]["status"] == "error", seen["reply"])
     seen = notebook.run("for i = 1, 3 do")
     check("an open block is an error", seen["error"] and "end" in seen["error"], seen["error"])
+    for code, words in (("1 +", "line 1 goes on"), ("run:plot", "run:plot")):
+        seen = notebook.run(code)
+        check(f"{code} says what is missing", words in seen["error"].split("\n")[-1], seen["error"])
     seen = notebook.run("?t_end")
     check("a question", "run.t_end" in seen["stdout"], seen)
     seen = notebook.run("print(io.popen('cat'):read('a') == '')")
