@@ -47,7 +47,7 @@ LabDesk& desk_of(lua_State* L, const char* call) {
     return desk;
 }
 
-/// The desk of a student who has said who he is.
+/// The desk of a student who has given a number.
 LabDesk& desk_with_number(lua_State* L, const char* call) {
     LabDesk& desk = desk_of(L, call);
     if (desk.number == 0) {
@@ -275,6 +275,13 @@ const lua::Class check_functions = {
     "check",
     {"check(question, value)", "Judges an answer in the lab.", "lab.number(4711)\ncheck(\"0\", 42)"},
     check_members};
+
+std::int64_t lab_number_of(lua_State* L) {
+    lua_rawgetp(L, LUA_REGISTRYINDEX, &desk_key);
+    const auto* desk = lua::test<LabDesk>(L, -1);
+    lua_pop(L, 1);
+    return desk == nullptr ? 0 : desk->number;
+}
 
 void register_lab(lua_State* L) {
     lua::add_class<LabDesk>(L, desk_class);

@@ -31,6 +31,9 @@ private:
     lua::MemoryCharge charge_;  // its allocator is Lua's own, which does not count
 };
 
+/// The student number that the script has set with lab.number; 0: none.
+[[nodiscard]] std::int64_t lab_number_of(lua_State* L);
+
 /// Whether there can be a student of that number.
 [[nodiscard]] bool is_student_number(std::int64_t number) noexcept;
 constexpr std::int64_t greatest_student_number = 999'999'999;

@@ -398,6 +398,14 @@ int fail(const std::string& sentence) {
 
 }  // namespace
 
+std::string other_number(const std::string& file, std::int64_t used) {
+    const std::string name = std::filesystem::path(file).filename().string();
+    const std::set<std::int64_t> named = numbers_in(name);
+    return used == 0 || named.empty() || named.contains(used)
+               ? ""
+               : fmt::format("{} uses number {}, but its name says {}", name, used, *named.begin());
+}
+
 int mark(const Arguments& arguments) {
     std::error_code wrong;
     const std::string shown = text::displayable(arguments.student);

@@ -1,6 +1,7 @@
 // dinal --mark FOLDER: runs the hand-ins of a lab in safe mode and makes a table of their answers.
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <string>
 
@@ -12,6 +13,9 @@ namespace dinal::prompt {
 /// Prints the table and a summary, and writes FOLDER-marked: marks.csv, and the page of each hand-in. Returns the exit
 /// code.
 int mark(const Arguments& arguments);
+
+/// "1-4711.lua uses number 4712, but its name says 4711", for the number that the script has set; "" if they agree.
+std::string other_number(const std::string& file, std::int64_t used);
 
 // What an instructor asks for on the command line: solutions, sheets of his own and their test.
 

@@ -26,6 +26,7 @@
 #include "lua/standard_globals.hpp"
 #include "prompt/call.hpp"
 #include "prompt/line_editor.hpp"
+#include "prompt/marking.hpp"
 #include "prompt/notices.hpp"
 #include "prompt/output.hpp"
 #include "prompt/repl.hpp"
@@ -220,6 +221,7 @@ bool run_reported_script(lua_State* L, const Arguments& arguments) {
         return false;
     }
     say(saved.value() + "\n");
+    if (const std::string note = other_number(script, api::lab_number_of(L)); !note.empty()) say_error(note);
     return fine;
 }
 
