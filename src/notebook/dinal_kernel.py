@@ -117,8 +117,8 @@ def with_image(forms):
     if "image/svg+xml" not in forms or "text/html" in forms:
         return forms
     svg = base64.b64encode(forms["image/svg+xml"].encode()).decode()
-    title = re.search("<title>(.*?)</title>", forms["image/svg+xml"], re.DOTALL)
-    words = title.group(1).replace('"', "&quot;") if title else "a picture"
+    told = [re.search(f"<{name}>(.*?)</{name}>", forms["image/svg+xml"], re.DOTALL) for name in ("title", "desc")]
+    words = ". ".join(part.group(1).replace('"', "&quot;") for part in told if part) or "a picture"
     return {**forms, "text/html": f'<img alt="{words}" style="max-width: 100%" src="data:image/svg+xml;base64,{svg}">'}
 
 

@@ -99,6 +99,8 @@ def cells():
     seen = notebook.run("run = nondimensional{}:simulate{ theta0 = 1, t_end = 3, dt = 0.01 }\nrun:plot()")
     check("a plot is an SVG", "<svg" in seen["shown"][0]["image/svg+xml"] and len(seen["shown"]) == 1, seen["stderr"])
     check("and an image for pages", image_in(seen["shown"][0]["text/html"]) == seen["shown"][0]["image/svg+xml"], seen)
+    check("which is described to those who do not see it", 'alt="θ over t. Across: t, T0, 0 to 3. Up: ' in seen["shown"][0]["text/html"],
+          seen["shown"][0]["text/html"][:300])
     seen = notebook.run("run:animate()")
     check("a run in motion, too", "<animateTransform" in image_in(seen["shown"][0]["text/html"]), seen["stderr"])
     seen = notebook.run("print(('\u00e4'):rep(200000))")
