@@ -65,7 +65,7 @@ local function with(drive, more)
 end
 
 test("of random rigs the energy closes, and a run in two parts ends as in one", function()
-    for seed = 1, 40 do
+    for seed = 1, support.lots(40) do
         local rig, drive = random_rig(seed)
         local run = rig:simulate(with(drive, { t_end = 12, dt = 12 }))
         assert(run.status ~= "failed", ("rig %d: %s"):format(seed, run.outcome))
