@@ -164,14 +164,13 @@ private:
         if (rows_.empty()) return false;
         constexpr std::string_view key = "sep=";
         const std::string_view line = rows_.front().text;
-        if (!line.starts_with(key) || line.size() != key.size() + 1) return false;
-        for (const Separator candidate : {Separator::semicolon, Separator::comma, Separator::tab}) {
-            if (line.back() != static_cast<char>(candidate)) continue;
-            separator_ = candidate;
-            rows_.erase(rows_.begin());
-            return true;
-        }
-        return false;
+        constexpr std::string_view marks = ";,\t";
+        if (!line.starts_with(key) || line.size() != key.size() + 1 ||
+            marks.find(line.back()) == std::string_view::npos)
+            return false;
+        separator_ = static_cast<Separator>(line.back());
+        rows_.erase(rows_.begin());
+        return true;
     }
 
     /// In a file of tabs too, unless it has decimal points: then 1,5 is a mistake.
