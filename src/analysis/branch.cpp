@@ -146,9 +146,16 @@ void BranchWalk::differentiate(Spot& spot) {
     // At an end of the range the question is asked inside only.
     const double h = std::clamp(reach_ / 4, 1e-8, 1e-6) * range_,
                  p = std::clamp(spot.p, values_.front() + h, values_.back() - h);
-    const bool sharp = std::exchange(sharp_, false);
-    spot.slopes.col(n) = slope(h, [&](double step) { return std::pair(spot.x, p + step); });
-    sharp_ = sharp;
+    if (rough_) {
+        const double inside = spot.p + h > values_.back() ? -h : h;
+        const Circuit::Lap lap = circuit_.lap(spot.x, spot.p + inside);
+        good = good && lap.finished;
+        if (good) spot.slopes.col(n) = (lap.to - spot.lap.to) / inside;
+    } else {
+        const bool sharp = std::exchange(sharp_, false);
+        spot.slopes.col(n) = slope(h, [&](double step) { return std::pair(spot.x, p + step); });
+        sharp_ = sharp;
+    }
     if (!good) spot.slopes.resize(0, 0);
 }
 
@@ -439,6 +446,23 @@ BranchPath BranchWalk::walk_aside(double parameter) {
     return followed(*next, tangent(*next, scaled(*next) - scaled(*first)));
 }
 
+BranchWalk::Vector BranchWalk::slope_by_p(const Vector& tangent) const {
+    const Eigen::Index n = units_.size();
+    return tangent.head(n).cwiseProduct(units_) / (tangent[n] * range_);
+}
+
+void BranchWalk::curve_on(Vector& guess, const Passed& before, const Spot& now, const Vector& ahead,
+                          double target) const {
+    const double length = now.p - before.p, t = 1 + (target - now.p) / length;
+    constexpr double farthest = 3, bent = 0.3;
+    if (!(t > 1 && t < farthest)) return;
+    const Vector x = (1 + t * t * (2 * t - 3)) * before.x + t * (1 - t) * (1 - t) * length * before.slope +
+                     t * t * (3 - 2 * t) * now.x + t * t * (t - 1) * length * slope_by_p(ahead);
+    const Eigen::Index n = units_.size();
+    const Vector moved = x.cwiseQuotient(units_) - guess.head(n);
+    if (moved.norm() < bent * (t - 1) * std::fabs(length) / range_) guess.head(n) += moved;
+}
+
 BranchPath BranchWalk::followed(Spot now, Vector ahead) {
     const Spot first = now;
     const Vector first_ahead = ahead;
@@ -446,6 +470,7 @@ BranchPath BranchWalk::followed(Spot now, Vector ahead) {
     const double smallest = units_.maxCoeff();
     int creeps = 0;
     bool recentred = false;
+    std::optional<Passed> passed;
     orientation_ = orientation(now.slopes, ahead);
     specials_before(now, ahead);  // anchors
     const std::size_t most_points = 2000 + 20 * values_.size();
@@ -467,8 +492,13 @@ BranchPath BranchWalk::followed(Spot now, Vector ahead) {
         const double step = reaches ? left / std::fabs(ahead[n]) : longest;
         reach_ = step;
         Vector guess = scaled(now) + step * ahead;
-        if (reaches) guess[n] = target / range_;
+        if (reaches) {
+            if (passed) curve_on(guess, *passed, now, ahead, target);
+            guess[n] = target / range_;
+        }
+        rough_ = true;
         auto spot = correct(guess, reaches ? across() : ahead, now.slopes);
+        rough_ = false;
         if (circuit_.stopped()) {
             path_.end = WalkEnd::stopped;
             return path_;
@@ -481,6 +511,7 @@ BranchPath BranchWalk::followed(Spot now, Vector ahead) {
             const bool stalls = step / 2 <= shortest_step || creeps > most_creeps;
             if ((corner || stalls) && round_corner(now, ahead, step)) {
                 longest = first_step, creeps = 0;
+                passed.reset();
                 continue;
             }
             if (stalls) return path_;
@@ -522,9 +553,11 @@ BranchPath BranchWalk::followed(Spot now, Vector ahead) {
             path_.end = WalkEnd::vanished;
             return path_;
         }
+        passed = Passed{now.x, slope_by_p(ahead), now.p};
         ahead = on;
         if (const auto places = circuit_.recentred(spot->motion, {{now.x, now.p}, {spot->x, spot->p}})) {
             recentred = true;
+            passed.reset();
             anchors_.clear();
             now.x = places->front();
             const Vector before = scaled(now);

@@ -142,6 +142,11 @@ private:
         Spot spot;
         BranchKind kind;
     };
+    /// A point before the present one.
+    struct Passed {
+        Vector x = {}, slope = {};  // by p
+        double p = 0;
+    };
     /// The last point at which a test function was more than rounding.
     struct Anchor {
         Spot spot;
@@ -160,6 +165,9 @@ private:
     [[nodiscard]] Vector across() const { return Vector::Unit(units_.size() + 1, units_.size()); }
 
     BranchPath followed(Spot now, Vector ahead);
+    [[nodiscard]] Vector slope_by_p(const Vector& tangent) const;
+    /// A better guess at this parameter: on the cubic through two points and their slopes, unless it bends away.
+    void curve_on(Vector& guess, const Passed& before, const Spot& now, const Vector& ahead, double target) const;
     std::optional<Spot> begun(double parameter);
     void differentiate(Spot& spot);
     /// The point of the curve nearest to a guess, in the plane through the guess across `normal`.
@@ -196,6 +204,7 @@ private:
     double range_, slack_;
     Vector units_, greatest_;
     bool sharp_ = false;      // differences of a higher order
+    bool rough_ = false;      // a one-sided difference by p will do: it only says where the next guess is
     double orientation_ = 0;  // of the walk
     double reach_ = 1;        // of the present step: differences stay on its side of a corner
     std::vector<std::optional<Anchor>> anchors_;

@@ -354,8 +354,7 @@ std::vector<std::complex<double>> sorted_eigenvalues(const Eigen::MatrixXd& D) {
 }
 
 /// The facts that a run of the motion's period from this moment tells; false when it fails.
-bool tell_period(Runs& runs, const Moment& moment, double start, SteadyMotion& motion) {
-    constexpr double rows = 400;
+bool tell_period(Runs& runs, const Moment& moment, double start, SteadyMotion& motion, double rows = 400) {
     Trajectory run = runs.run(moment, start, start + motion.period, motion::Grid::every(motion.period / rows), true);
     if (!model::is_whole(run.outcome)) return false;
     motion.outcome = run.outcome;
@@ -687,7 +686,8 @@ public:
         motion.periods = periods_;
         motion.period = lap.time;
         period_ = lap.time;
-        if (!tell_period(runs, moment, start(runs), motion)) motion.status = SteadyStatus::none;
+        constexpr double rows = 64;  // they tell how far it goes, and turns are looked for between them
+        if (!tell_period(runs, moment, start(runs), motion, rows)) motion.status = SteadyStatus::none;
         return motion;
     }
 

@@ -44,7 +44,7 @@ private:
     }
     [[nodiscard]] double flat_from() const {
         constexpr double nothing = 38;  // exp(-nothing) < 2^-54
-        return speed * std::pow(nothing, 1 / shape);
+        return speed * (shape == 2 ? std::sqrt(nothing) : std::pow(nothing, 1 / shape));
     }
 };
 
