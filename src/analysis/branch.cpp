@@ -446,6 +446,14 @@ BranchPath BranchWalk::walk_aside(double parameter) {
     return followed(*next, tangent(*next, scaled(*next) - scaled(*first)));
 }
 
+BranchPath BranchWalk::walk_up(double parameter) {
+    const auto first = begun(parameter);
+    if (!first) return path_;
+    // The velocity at the section grows with the cycle.
+    const double away = first->x[0] < 0 ? -1 : 1;
+    return followed(*first, tangent(*first, away * Vector::Unit(units_.size() + 1, 0)));
+}
+
 BranchWalk::Vector BranchWalk::slope_by_p(const Vector& tangent) const {
     const Eigen::Index n = units_.size();
     return tangent.head(n).cwiseProduct(units_) / (tangent[n] * range_);
@@ -536,6 +544,10 @@ BranchPath BranchWalk::followed(Spot now, Vector ahead) {
         bool inside = true;
         const Spot* from = &now;
         for (const Special& special : specials) {
+            if (ahead.dot(scaled(special.spot) - scaled(now)) < 0) {  // it is at the present point, to rounding
+                add(special.spot, special.kind);
+                continue;
+            }
             inside = inside && add_way(*from, special.spot, special.kind);
             from = &special.spot;
         }

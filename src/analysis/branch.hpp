@@ -86,6 +86,11 @@ std::unique_ptr<Circuit> circuit_of_periods(const Family& family, double p, cons
 std::unique_ptr<Circuit> circuit_of_returns(const Family& family, double p, const SteadyMotion& motion, int periods,
                                             const motion::Monitor& monitor);
 
+/// The same of the limit cycles that begin at a Hopf point of a rest: its first place is on one so small that it is
+/// that of the linearised motion. None if the disturbances of the rest do not rotate.
+std::unique_ptr<Circuit> circuit_of_first_cycles(const Family& family, double p, const SteadyMotion& rest,
+                                                 const motion::Monitor& monitor);
+
 /// What happens to the motion at a point of the branch: the branch turns back (fold); a motion of twice the period
 /// begins (doubling), or one that is not symmetric (pitchfork), or one with a second frequency (torus), or of a rest a
 /// limit cycle (hopf).
@@ -121,6 +126,8 @@ public:
     BranchPath walk(double parameter, double way);
     /// From there on to the branch that begins beside it, as at a doubling with a circuit of twice the periods.
     BranchPath walk_aside(double parameter);
+    /// From a limit cycle on to greater ones.
+    BranchPath walk_up(double parameter);
 
 private:
     using Vector = Eigen::VectorXd;

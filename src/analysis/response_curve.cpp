@@ -25,16 +25,16 @@ public:
     ResponseCurve found() {
         sweep();
         for (std::size_t i = 0; i < curve_.jumps.size() && i < most_jumps && !stopped(); ++i) go_on_from(i);
-        follow_doublings();
+        follow_births();
         if (walked_ && !stopped()) look_from_far_end();
-        follow_doublings();
+        follow_births();
         std::stable_sort(curve_.jumps.begin(), curve_.jumps.end(),
                          [](const MotionJump& a, const MotionJump& b) { return a.parameter < b.parameter; });
         return std::move(curve_);
     }
 
 private:
-    static constexpr std::size_t most_jumps = 12, most_doubled = 32;
+    static constexpr std::size_t most_jumps = 12, most_born = 32;
 
     [[nodiscard]] bool stopped() const { return stopped_; }
 
@@ -122,23 +122,53 @@ private:
         if (!row.empty()) curve_.branches.push_back(std::move(row));
     }
 
-    void follow_doublings() {
-        if (!question_.doubled) return;
-        for (; doubled_ < std::min(curve_.branches.size(), most_doubled); ++doubled_) double_at(doubled_);
-    }
-    /// The branches that begin at doublings of this one.
-    void double_at(std::size_t branch) {
-        const std::vector<BranchPoint> points = curve_.branches[branch];
-        for (const BranchPoint& point : points) {
-            if (point.kind != BranchKind::doubling || stopped()) continue;
-            const auto circuit = circuit_of(point.parameter, point.motion, 2 * point.motion.periods);
-            if (!circuit) continue;
-            BranchPath path = BranchWalk(*circuit, sorted_).walk_aside(point.parameter);
-            see(*circuit);
-            if (path.points.size() < 2) continue;
-            path.points.insert(path.points.begin(), {point.parameter, point.motion});
-            curve_.branches.push_back(std::move(path.points));
+    /// The branches that begin at points of others: limit cycles, and where these are asked for doublings.
+    void follow_births() {
+        for (; seen_ < std::min(curve_.branches.size(), most_born); ++seen_) {
+            const std::vector<BranchPoint> points = curve_.branches[seen_];
+            for (const BranchPoint& point : points) {
+                if (stopped()) return;
+                if (point.kind == BranchKind::hopf && !ends_at(point)) {
+                    const auto circuit =
+                        circuit_of_first_cycles(question_.family, point.parameter, point.motion, monitor_);
+                    if (circuit) add_born(point, *circuit, BranchWalk(*circuit, sorted_).walk_up(point.parameter));
+                }
+                if (point.kind == BranchKind::doubling && question_.doubled) {
+                    const auto circuit = circuit_of(point.parameter, point.motion, 2 * point.motion.periods);
+                    if (circuit) add_born(point, *circuit, BranchWalk(*circuit, sorted_).walk_aside(point.parameter));
+                }
+            }
         }
+    }
+    void add_born(const BranchPoint& point, const Circuit& circuit, BranchPath path) {
+        see(circuit);
+        if (path.points.size() < 2) return;
+        // The smallest cycles turn about the Hopf point itself.
+        BranchPoint& first = path.points.front();
+        constexpr double small = 1e-2;
+        if (first.kind == BranchKind::fold && point.kind == BranchKind::hopf) {
+            const double most =
+                std::max_element(path.points.begin(), path.points.end(), [](const auto& a, const auto& b) {
+                    return a.motion.amplitude < b.motion.amplitude;
+                })->motion.amplitude;
+            if (first.motion.amplitude < small * most) path.points.erase(path.points.begin());
+        }
+        path.points.insert(path.points.begin(), {point.parameter, point.motion});
+        if (path.end == WalkEnd::lost) note_end(path.points, path.points.size() - 1, -1);
+        note_folds(path.points);
+        curve_.branches.push_back(std::move(path.points));
+    }
+    /// A branch of limit cycles has come to its end at this Hopf point.
+    [[nodiscard]] bool ends_at(const BranchPoint& hopf) const {
+        constexpr double near = 1e-3, small = 1e-2;
+        return std::any_of(curve_.branches.begin(), curve_.branches.end(), [&](const auto& branch) {
+            double most = 0;
+            for (const BranchPoint& point : branch) most = std::max(most, point.motion.amplitude);
+            return std::any_of(branch.begin(), branch.end(), [&](const BranchPoint& end) {
+                return end.motion.period > 0 && end.motion.amplitude < small * most &&
+                       std::fabs(end.parameter - hopf.parameter) < near * range_;
+            });
+        });
     }
 
     [[nodiscard]] static bool joins(const BranchPoint& a, const BranchPoint& b, double size) {
@@ -165,14 +195,18 @@ private:
             if (on.end == WalkEnd::lost) note_end(branch, branch.size() - 1, -1);
         }
         if (back_end == WalkEnd::lost) note_end(branch, 0, 1);
+        note_folds(branch);
+        curve_.branches.push_back(std::move(branch));
+        return curve_.branches.back();
+    }
+
+    void note_folds(const std::vector<BranchPoint>& branch) {
         for (std::size_t i = 1; i + 1 < branch.size() && !stopped(); ++i) {
             if (branch[i].kind != BranchKind::fold) continue;
             if (branch[i - 1].motion.stable == branch[i + 1].motion.stable) continue;
             const BranchPoint& before = branch[branch[i - 1].motion.stable ? i - 1 : i + 1];
             add_jump(branch[i], branch[i].parameter > before.parameter);
         }
-        curve_.branches.push_back(std::move(branch));
-        return curve_.branches.back();
     }
 
     /// The branch has an end, as where a motion begins to stick and Re is greater than Rd.
@@ -258,7 +292,7 @@ private:
     const motion::Monitor& monitor_;
     std::vector<double> sorted_;
     double way_, range_ = 0;
-    std::size_t doubled_ = 0;  // branches whose doublings were followed
+    std::size_t seen_ = 0;  // branches whose births were followed
     bool walkable_ = true, walked_ = false, stopped_ = false;
     ResponseCurve curve_;
 };

@@ -707,7 +707,9 @@ public:
             const model::Oscillator& system = here_->question.system;
             const double omega = system.stiffness() > 0 ? system.natural_frequency() : 1;
             const double belt = here_->question.extras.belt.value(start(here_->runs));
-            units[0] = std::max(std::fabs(belt) / omega, std::fabs(x[0]));
+            const model::State& asked = here_->question.initial;
+            units[0] = std::max({std::fabs(belt) / omega, std::fabs(x[0]), std::fabs(asked.theta - x[0]),
+                                 std::fabs(asked.velocity) / omega});
             units[1] = units[0] * omega;
         }
         for (Eigen::Index i = 0; i < x.size(); ++i) {
@@ -795,6 +797,45 @@ std::unique_ptr<Circuit> circuit_of_returns(const Family& family, double p, cons
     auto circuit = std::make_unique<ReturnCircuit>(family, p, motion, periods, monitor);
     if (circuit->first().size() == 0) return {};
     return circuit;
+}
+
+std::unique_ptr<Circuit> circuit_of_first_cycles(const Family& family, double p, const SteadyMotion& rest,
+                                                 const motion::Monitor& monitor) {
+    if (!rest.asked) return {};
+    ReturnCircuit still(family, p, rest, 1, monitor);
+    const Vector x = still.first();
+    const Circuit::Lap lap = still.lap(x, p);
+    const Vector units = still.units(x, lap, rest);
+    const Eigen::Index n = x.size();
+    Eigen::MatrixXd D(n, n);  // of the scaled places
+    constexpr double h = 1e-4;
+    for (Eigen::Index i = 0; i < n; ++i) {
+        const Vector step = h * units[i] * Vector::Unit(n, i);
+        const Circuit::Lap up = still.lap(x + step, p), down = still.lap(x - step, p);
+        if (!up.finished || !down.finished) return {};
+        D.col(i) = (up.to - down.to).cwiseQuotient(2 * h * units);
+    }
+    const Eigen::EigenSolver<Eigen::MatrixXd> parts(D);
+    const Eigen::VectorXcd& values = parts.eigenvalues();
+    Eigen::Index best = 0;
+    for (Eigen::Index i = 1; i < n; ++i) {
+        if (std::abs(std::abs(values[i]) - 1) < std::abs(std::abs(values[best]) - 1)) best = i;
+    }
+    const double turn = std::fabs(std::arg(values[best]));
+    if (!(turn > 1e-6)) return {};
+    constexpr double small = 1e-3;  // of the units: the cycle differs from the linearised motion by its square
+    const Eigen::VectorXcd mode = small * parts.eigenvectors().col(best).normalized().cwiseProduct(units);
+    const Vector begin = x + mode.real();
+    SteadyQuestion asked = *rest.asked;
+    asked.initial = {begin[0], begin[1]};
+    for (Eigen::Index i = 2; i < n; ++i) asked.extras.states[static_cast<std::size_t>(i) - 2].start = begin[i];
+    SteadyMotion cycle;
+    cycle.status = SteadyStatus::steady;
+    cycle.period = 2 * std::numbers::pi * lap.time / turn;
+    cycle.low = x[0] - std::abs(mode[0]);
+    cycle.high = x[0] + std::abs(mode[0]);
+    cycle.asked = std::make_shared<const SteadyQuestion>(std::move(asked));
+    return circuit_of_returns(family, p, cycle, 1, monitor);
 }
 
 void tell_of_run(const SteadyQuestion& question, const Trajectory& run, SteadyMotion& motion) {

@@ -272,6 +272,49 @@ test("squeal begins at a Hopf point and ends at a fold, where the sliding of the
     end
 end)
 
+test("limit cycles begin at a Hopf point: those of van der Pol", function()
+    local c = system{ I = 1, k = 1 }:response{ over = { mu = vector.linspace(-0.5, 1, 16) }, between = true,
+        at = function(p) return { M = function(_, theta, velocity) return (p.mu - theta^2) * velocity end, theta0 = 0.1 } end }
+    equal(table.concat(c.points.kind, " "), "hopf")
+    near(c.points.mu[1], 0, 1e-8)
+    local at = c:filter(function(row) return row.mu == 1 end):sort("amplitude")
+    equal(table.concat(at.status, " "), "rest steady")
+    equal(tostring(at.stable), "vector{ 0, 1 }")
+    near(at.amplitude[2], 2.00861986087484, 1e-9)   -- of the textbooks
+    -- Near its beginning the amplitude is 2 sqrt(mu).
+    local near_zero = c:filter(function(row) return row.status == "steady" and row.amplitude > 0.05 and row.amplitude < 0.5 end)
+    assert(#near_zero > 3)
+    for _, row in ipairs(near_zero) do near(row.amplitude, 2 * math.sqrt(row.mu), 1e-3 * row.amplitude) end
+end)
+
+test("at a pitchfork the motion ceases to be symmetric", function()
+    local sys = system{ I = 1, k = 1, C = 0.1, spring = spring.polynomial{ [3] = 1 } }
+    local c = sys:response{ amplitude = 5, over = { omega = vector.linspace(0.5, 1, 26) } }
+    local at = c.points:filter(function(p) return p.kind == "pitchfork" end).omega:table()
+    -- Newton's method on the half period's map and the determinant of its derivative + 1, by Runge and Kutta's method.
+    near(at[1], 0.526373272182, 1e-8)
+    near(at[#at], 0.902505230367, 1e-8)
+end)
+
+test("at a torus point the forced oscillator of van der Pol neither damps nor feeds disturbances, by Liouville's formula", function()
+    local mu, w = 0.5, 1.5
+    local sys = system{ I = 1, k = 1 }
+    local function at(p)
+        return { M = function(t, theta, v) return mu * (1 - theta^2) * v + p.A * math.sin(w * t) end, period = 2*math.pi / w }
+    end
+    local c = sys:response{ over = { A = vector.linspace(4, 1, 13) }, at = at }
+    equal(table.concat(c.points.kind, " "), "torus")
+    local A = c.points.A[1]
+    -- det D = exp of the integral of mu (1 - theta^2): one where the mean of theta^2 is 1.
+    local function mean_square(amplitude)
+        local point = at{ A = amplitude }
+        local theta = sys:steady{ M = point.M, period = point.period }.run.theta
+        return ((theta * theta):sum() - theta[1]^2) / (#theta - 1)
+    end
+    -- Just before it the motion is stable, so that steady finds it.
+    near(2 * mean_square(A + 0.003) - mean_square(A + 0.006), 1, 2e-5)
+end)
+
 test("period doublings are located, and the branches of twice the period followed", function()
     local sys = system{ I = 1, k = 0, C = 0.3, spring = spring.polynomial{ [1] = -1, [3] = 1 } }
     local c = sys:response{ over = { amplitude = vector.linspace(0.25, 0.28, 7) }, omega = 1.2, theta0 = 1, doubled = true }
