@@ -459,7 +459,8 @@ private:
         const auto first = stretch(now, start, period);
         if (!first) return;
         Reach reach = reach_of(*first);
-        std::vector<double> sizes{reach.range()};
+        std::vector<double> sizes;  // of the first batch of returns, and of both halves of the second one
+        const double omega = question_.system.stiffness() > 0 ? question_.system.natural_frequency() : 1;
         const int longest = question_.periods > 0 ? question_.periods : 32;
         for (const auto& counts : {std::vector<int>{3, 8, 24}, std::vector<int>{40, 120, 320}}) {
             ReturnMap map = ReturnMap::of_period(runs_, start, units_of(reach, now));
@@ -472,15 +473,28 @@ private:
                 return;
             }
             const auto& seen = search.seen();
+            const auto largest = [&](std::size_t from, std::size_t until) {
+                double size = 0;
+                for (std::size_t i = from; i < until; ++i) {
+                    const model::State y = map.moment(seen[i].to, seen[i].mode).state;
+                    // A mass that nothing pulls back may drift without an end.
+                    const double theta = question_.system.stiffness() > 0 ? std::fabs(y.theta) : 0;
+                    size = std::max({size, theta, std::fabs(y.velocity) / omega});
+                }
+                return size;
+            };
+            const std::size_t half = sizes.empty() ? seen.size() : seen.size() / 2;
+            sizes.push_back(largest(0, half));
+            if (half < seen.size()) sizes.push_back(largest(half, seen.size()));
             now = map.moment(seen.back().to, seen.back().mode);
             const auto last = stretch(now, start, period);
             if (!last) return;
             reach = reach_of(*last);
-            sizes.push_back(reach.range());
         }
-        if (sizes[2] > 1.3 * sizes[1] && sizes[1] > 1.1 * sizes[0]) {
+        // A motion that beats is as large in one half as in the other.
+        if (sizes[2] > 1.15 * sizes[1] && sizes[1] > 1.1 * sizes[0]) {
             answer_.status = SteadyStatus::grows;
-            answer_.growth = (sizes[2] - sizes[1]) / 640;
+            answer_.growth = (sizes[2] - sizes[1]) / 160;
         }
     }
 

@@ -21,6 +21,10 @@ test("a motion between bounds does not grow, and one of a family is not called t
     local wells = system{ I = 1, k = 0, C = 0.25, spring = spring.polynomial{ [1] = -1, [3] = 1 } }
     local s = wells:steady{ M = excitation.harmonic{ amplitude = 0.34, omega = 1 }, theta0 = 1 }
     assert(s.status ~= "grows", s.status)
+    -- A relay makes another motion beat for hundreds of periods; M has bounds and the system damping.
+    local beats = system{ I = 1.43473, k = 6.25771, C = 0.103388 }:steady{ M = excitation.square{ amplitude = 1.018888, period = 6.222563 }
+        + excitation.relay{ on = 0.0953254, off = -0.0330133, amplitude = -0.458701 } }
+    assert(beats.status ~= "grows", beats.status)
     local sys = system{ I = 1 / (4 * math.pi ^ 2), k = 1, Rd = 0.5854, Re = 0.5854 }
     local M = excitation.square{ period = 1 / 0.1334, duty = 0.333 }
     local at = {} -- two starts that end apart

@@ -100,11 +100,13 @@ public:
             if (const int m = comes_back(settled); m > 0 && tells(m)) return answer_;
         }
         if (const int m = comes_back(alike); m > 0 && tells(m)) return answer_;
-        const std::size_t half = sizes_.size() / 2;
-        constexpr double clearly = 1.3;  // more than a motion that wanders between bounds
-        if (sizes_.back() >= clearly * sizes_[half]) {
+        // A motion that beats is as large in the first half as in the second.
+        const auto half = sizes_.begin() + static_cast<std::ptrdiff_t>(sizes_.size() / 2);
+        const double before = *std::max_element(sizes_.begin(), half + 1), last = *std::max_element(half, sizes_.end());
+        constexpr double clearly = 1.3;
+        if (last >= clearly * before) {
             answer_.status = SteadyStatus::grows;
-            answer_.growth = (sizes_.back() - sizes_[half]) / static_cast<double>(sizes_.size() - 1 - half);
+            answer_.growth = (last - before) / static_cast<double>(sizes_.end() - 1 - half);
         }
         return answer_;
     }
