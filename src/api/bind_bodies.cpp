@@ -999,7 +999,7 @@ constexpr lua::Member rig_members[] = {
     {lua::a_method<response_of_rig>,
      {"rig:response{ OPTIONS } -> data",
       "The steady motion over a list of values, each searched from the one before. Folds are not followed: if several "
-      "motions exist, give the values upwards and downwards. Columns: the varied parameter; amplitude, peak, lag, stops "
+      "motions exist, give the values upwards and downwards. Columns: the varied parameters; amplitude, peak, lag, stops "
       "and stuck of each body and link, as in \"load.amplitude\"; stable and status.",
       "rig = system{ bodies = { a = { I = 1, k = 1, C = 0.1 }, b = { I = 1, k = 1 } }, links = { rod = { \"a\", \"b\", k = 4 "
       "} } }\n"

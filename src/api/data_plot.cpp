@@ -7,6 +7,7 @@
 #include <functional>
 #include <iterator>
 #include <limits>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -23,6 +24,8 @@ namespace dinal::api::data_functions {
 namespace {
 
 // ---- maps: a column in shades over the grid of two others
+
+constexpr int vermilion = 2;  // is seen on the dark and on the bright end
 
 /// Has a place on the axis.
 bool is_drawn(double value, bool logarithmic) {
@@ -99,12 +102,32 @@ plots::Figure figure_of_map(const lua::Options& options, const std::array<std::s
     for (const double level : levels) {
         plots::Curve line = plots::contour(shades, level);
         line.label = fmt::format("{} = {:.6g}", names[2], level);
-        constexpr int vermilion = 2;  // is seen on the dark and on the bright end
         line.colour = vermilion;
         figure.curves.push_back(std::move(line));
     }
     figure.shades = std::make_shared<const plots::Shades>(std::move(shades));
     return figure;
+}
+
+/// Of the branches of a response at one place a map shows the stable one with the greatest z.
+std::array<plots::Numbers, 3> stable_rows(const Data& data, const std::array<plots::Numbers, 3>& columns) {
+    const DataColumn* stable = data.pieces_of.empty() ? nullptr : data.find(data.dotted_of);
+    if (stable == nullptr || stable->numbers() == nullptr) return columns;
+    std::map<std::pair<double, double>, double> shown;
+    for (std::size_t row = 0; row < columns[2].values.size(); ++row) {
+        if (stable->numbers()->begin()[row] == 0) continue;
+        const double z = columns[2].values[row];
+        const auto place = shown.try_emplace({columns[0].values[row], columns[1].values[row]}, z).first;
+        if (z > place->second) place->second = z;
+    }
+    std::array<std::vector<double>, 3> rows;
+    for (const auto& [place, z] : shown) {
+        rows[0].push_back(place.first);
+        rows[1].push_back(place.second);
+        rows[2].push_back(z);
+    }
+    return {plots::Numbers::own(std::move(rows[0])), plots::Numbers::own(std::move(rows[1])),
+            plots::Numbers::own(std::move(rows[2]))};
 }
 
 // ---- curves
@@ -295,7 +318,7 @@ int plot(lua_State* L) {
     std::vector<std::string> z = asked_names(L, options, "z");
     // Points over two parameters are a map, of the first result where none is named, or a curve for each of the first.
     const std::vector<std::string> over = different_parameters(*data);
-    const bool curves = !y.empty() || options.has("style") || options.has("overlay");
+    const bool curves = !y.empty() || options.has("style");
     const bool is_map = over.size() > 1 && (!z.empty() || (x.empty() && !curves));
     if (is_map && z.empty() && over.size() > 2) {
         options.fail(
@@ -310,16 +333,18 @@ int plot(lua_State* L) {
     if (y.empty()) y = {is_map ? over[x.front() == over[1] ? 0 : 1] : results.front()};
     if (data->size() == 0) options.fail({"there are no rows to draw"});
     if (!z.empty()) {
-        for (const char* option : {"style", "overlay"}) {
-            if (options.has(option)) options.fail(option, fmt::format("{} is for curves: leave it out, or z", option));
-        }
+        if (options.has("style")) options.fail("style", "style is for curves: leave it out, or z");
         if (z.size() > 1) options.fail("z", "z must be one column");
         if (options.has("y") && y.size() > 1) options.fail("y", "y must be one column where z is drawn over x and y");
-        std::vector<plots::Figure> map{
-            figure_of_map(options, {x.front(), y.front(), z.front()},
-                          {drawn(L, *data, x.front()), drawn(L, *data, y.front()), drawn(L, *data, z.front())})};
+        std::vector<plots::Figure> map{figure_of_map(
+            options, {x.front(), y.front(), z.front()},
+            stable_rows(*data, {drawn(L, *data, x.front()), drawn(L, *data, y.front()), drawn(L, *data, z.front())}))};
         map.front().x.label = label_of(*data, x.front());
         map.front().y.label = label_of(*data, y.front());
+        for (const std::string& name : asked_names(L, options, "overlay")) {
+            map.front().curves.push_back(overlay_curve(options, *data, name, x.front(), y.front()));
+            map.front().curves.back().colour = vermilion;
+        }
         apply_options(L, options, map.front());
         return deliver(L, options, std::move(map));
     }
@@ -340,7 +365,7 @@ int plot(lua_State* L) {
         curve.x = drawn(L, *data, x.front());
         curve.y = drawn(L, *data, name);
         curve.label = y.size() == 1 ? "" : name;
-        const std::string pieces = over.size() == 2 ? over[0] : data->pieces_of;
+        const std::string pieces = over.size() == 2 && data->pieces_of.empty() ? over[0] : data->pieces_of;
         if (pieces.empty() || curve.style != plots::Style::line) {
             figure.curves.push_back(curve);
         } else {

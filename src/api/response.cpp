@@ -13,7 +13,7 @@
 #include "api/data.hpp"
 #include "api/response_companions.hpp"
 #include "api/steady_answer.hpp"
-#include "lua/vector.hpp"
+#include "api/sweep_parameters.hpp"
 #include "text/sentences.hpp"
 
 namespace dinal::api {
@@ -72,8 +72,19 @@ public:
         if (function_ && !lua::is_callable(L, place_)) options.wrong("at", options.row("at").wanted);
         if (!function_) check_harmonic();
         extras_ = question(values_.front()).extras;
-        if (over_frequency() && !function_ && asked_.between) add_resonance();
+        if (over_frequency() && !function_ && !is_plane() && asked_.between) add_resonance();
     }
+
+    /// Over two parameters: the second one is varied at each value of the first.
+    [[nodiscard]] bool is_plane() const { return parameters_.size() > 1; }
+    /// The values of the first of two parameters; one without a meaning if there is one parameter.
+    [[nodiscard]] std::vector<double> beside_values() const {
+        if (!is_plane()) return {0};
+        const auto values = parameters_.front().numbers()->values();
+        return {values.begin(), values.end()};
+    }
+    /// From now on the first of two parameters is this.
+    void set_beside(double value) { beside_ = value; }
 
     [[nodiscard]] const std::vector<double>& values() const { return values_; }
     [[nodiscard]] const model::Extras& extras() const { return extras_; }
@@ -85,24 +96,31 @@ public:
     [[nodiscard]] bool harmonic() const { return !function_ && (over_frequency() || varied_ == "amplitude"); }
     [[nodiscard]] bool over_frequency() const { return varied_ == "frequency"; }
     [[nodiscard]] double frequency_at(double x) const {
-        if (varied_ == "frequency") return x;
-        if (varied_ == "omega") return x / (2 * std::numbers::pi);
-        if (varied_ == "period") return 1 / x;
-        return asked_.frequency ? *asked_.frequency
-               : asked_.omega   ? *asked_.omega / (2 * std::numbers::pi)
-                                : 1 / asked_.period.value_or(1);
+        const auto given = [&](const char* name, const std::optional<double>& option) {
+            const auto varied = varied_value(name, x);
+            return varied ? varied : option;
+        };
+        if (const auto frequency = given("frequency", asked_.frequency)) return *frequency;
+        if (const auto omega = given("omega", asked_.omega)) return *omega / (2 * std::numbers::pi);
+        return 1 / given("period", asked_.period).value_or(1);
     }
-    [[nodiscard]] double amplitude_at(double x) const { return varied_ == "amplitude" ? x : asked_.amplitude; }
-    [[nodiscard]] VariedColumn column() const {
+    [[nodiscard]] double amplitude_at(double x) const {
+        return varied_value("amplitude", x).value_or(asked_.amplitude);
+    }
+    /// Of each parameter.
+    [[nodiscard]] std::vector<VariedColumn> columns() const {
         const ColumnUnits in(system_.units());
-        if (function_) return {.name = varied_, .unit = "", .theta = in.theta};
-        return {.name = varied_ == "amplitude" ? "M0" : varied_,
-                .unit = varied_ == "frequency"                ? in.frequency
-                        : varied_ == "amplitude"              ? in.M
-                        : varied_ == "period"                 ? in.t
-                        : varied_ == "omega" && !in.t.empty() ? "rad/" + in.t
-                                                              : "",
-                .theta = in.theta};
+        std::vector<VariedColumn> columns;
+        for (const DataColumn& parameter : parameters_) {
+            const std::string& name = parameter.name;
+            VariedColumn column{.name = name, .unit = "", .theta = in.theta};
+            if (!function_ && name == "amplitude") column.name = "M0", column.unit = in.M;
+            if (!function_ && name == "frequency") column.unit = in.frequency;
+            if (!function_ && name == "period") column.unit = in.t;
+            if (!function_ && name == "omega" && !in.t.empty()) column.unit = "rad/" + in.t;
+            columns.push_back(column);
+        }
+        return columns;
     }
 
     [[nodiscard]] analysis::SteadyQuestion question(double x) const {
@@ -116,8 +134,8 @@ public:
         }
         lua_pushvalue(L_, place_);
         lua_newtable(L_);
-        lua_pushnumber(L_, x);
-        lua_setfield(L_, -2, varied_.c_str());
+        if (is_plane()) lua::set_number(L_, parameters_.front().name.c_str(), beside_);
+        lua::set_number(L_, varied_.c_str(), x);
         lua_call(L_, 1, 1);
         if (!lua_istable(L_, -1)) {
             options_.fail("at", fmt::format("at returned {} for {} = {:.6g}; it must return a table of options of "
@@ -169,57 +187,69 @@ private:
         if (contracts(there) && steady_motion(there).status == analysis::SteadyStatus::grows) values_.insert(next, f);
     }
 
-    /// The name under `over`, and its values.
+    /// The value of a parameter of this name where the last one is x; none if it is not varied.
+    [[nodiscard]] std::optional<double> varied_value(std::string_view name, double x) const {
+        if (name == varied_) return x;
+        return is_plane() && name == parameters_.front().name ? std::optional(beside_) : std::nullopt;
+    }
+
+    /// The names under `over`, and their values.
     void choose() {
         options_.push("over");
         if (lua_isnil(L_, -1)) options_.missing("over");
-        if (!lua_istable(L_, -1) || lua_rawlen(L_, -1) > 0) options_.wrong("over", options_.row("over").wanted);
-        const int over = lua_gettop(L_);
-        for (lua_pushnil(L_); lua_next(L_, over) != 0; lua_pop(L_, 1)) {
-            if (lua_type(L_, -2) != LUA_TSTRING) options_.wrong("over", options_.row("over").wanted);
-            if (!varied_.empty()) {
-                options_.fail("over", "over has more than one name: a response varies one, and sweep varies several");
-            }
-            varied_ = lua_tostring(L_, -2);
-            if (!lua_istable(L_, -1) && lua::test<lua::Vector>(L_, -1) == nullptr) {
-                options_.fail("over", fmt::format("over.{} must be a vector or a table of numbers, got {}", varied_,
-                                                  lua::describe(L_, -1)));
-            }
-            values_ = lua::numbers_at(L_, -1, "sys:response", "over." + varied_);
-        }
+        if (!lua_istable(L_, -1)) options_.wrong("over", options_.row("over").wanted);
+        parameters_ = parameters_in(L_, lua_gettop(L_), response_call);
         lua_pop(L_, 1);
-        if (varied_.empty()) options_.wrong("over", options_.row("over").wanted);
-        if (values_.empty()) options_.fail("over", fmt::format("over.{} has no values", varied_));
-        check_name();
+        if (parameters_.empty()) options_.wrong("over", options_.row("over").wanted);
+        if (parameters_.size() > 2) {
+            options_.fail("over", fmt::format("over has {} names: a response varies one or two, and sweep varies more",
+                                              parameters_.size()));
+        }
+        check_parameters(L_, response_call, parameters_);
+        for (const DataColumn& parameter : parameters_) {
+            if (parameter.numbers() == nullptr) {
+                options_.fail("over", fmt::format("over.{} must be a list of numbers", parameter.name));
+            }
+            check_name(parameter.name);
+        }
+        varied_ = parameters_.back().name;
+        const auto values = parameters_.back().numbers()->values();
+        values_.assign(values.begin(), values.end());
+        beside_ = beside_values().front();
     }
 
-    void check_name() const {
+    void check_name(std::string_view name) const {
         for (const char* column : {"lag", "peak", "stops", "stuck", "stable", "branch", "status"}) {
-            if (varied_ != column) continue;
+            if (name != column) continue;
             options_.fail("over",
                           fmt::format("'{}' is a column of the result: give the parameter another name", column));
         }
-        if (varied_ == "amplitude" && options_.has("at")) {
+        if (name == "amplitude" && options_.has("at")) {
             options_.fail("over", "'amplitude' is a column of the result: give the parameter another name");
         }
     }
 
-    /// Of a harmonic M one of the two is varied, and the other given or 1.
+    /// A harmonic M has one frequency, varied or given, and an amplitude.
     void check_harmonic() const {
         const int given = (asked_.frequency ? 1 : 0) + (asked_.omega ? 1 : 0) + (asked_.period ? 1 : 0);
-        const bool in_time = varied_ == "frequency" || varied_ == "omega" || varied_ == "period";
-        if (!in_time && varied_ != "amplitude") {
-            options_.fail("at", fmt::format("over.{} needs at, a function such as {}", varied_, at_call.example));
+        int in_time = 0;
+        for (const DataColumn& parameter : parameters_) {
+            const std::string& name = parameter.name;
+            const bool times = name == "frequency" || name == "omega" || name == "period";
+            if (!times && name != "amplitude") {
+                options_.fail("at", fmt::format("over.{} needs at, a function such as {}", name, at_call.example));
+            }
+            if (!times) continue;
+            ++in_time;
+            if (given > 0) options_.fail("over", fmt::format("{} is varied, and cannot be given as well", name));
+            for (const double x : parameter.numbers()->values()) {
+                if (x > 0) continue;
+                options_.fail({.sentence = fmt::format("{} = {} must be positive", name, x), .option = name});
+            }
         }
-        if (in_time && given > 0)
-            options_.fail("over", fmt::format("{} is varied, and cannot be given as well", varied_));
-        if (!in_time && given != 1) {
+        if (in_time > 1) options_.fail("over", "frequency, omega and period exclude each other; vary one of them");
+        if (in_time == 0 && given != 1) {
             options_.fail("frequency", "if the amplitude is varied give one of frequency, omega and period");
-        }
-        if (!in_time) return;
-        for (const double x : values_) {
-            if (x > 0) continue;
-            options_.fail({.sentence = fmt::format("{} = {} must be positive", varied_, x), .option = varied_});
         }
     }
 
@@ -227,23 +257,27 @@ private:
     const model::Oscillator& system_;
     const lua::Options& options_;
     ResponseOptions asked_;
-    std::string varied_;
-    std::vector<double> values_;
+    std::vector<DataColumn> parameters_;  // one or two
+    std::string varied_;                  // the last of them
+    std::vector<double> values_;          // its values
+    double beside_ = 0;                   // the present value of the first of two
     model::Extras extras_;
     bool function_ = false;
     int place_ = 0;
 };
 
 struct ResponseColumns {
-    std::vector<double> varied, amplitude, lag, peak, stops, stuck, stable, branch;
+    std::vector<double> beside, varied, amplitude, lag, peak, stops, stuck, stable, branch;
     std::vector<std::string> status;
 
-    void add(double x, std::size_t piece, const analysis::SteadyMotion& motion, const std::optional<double>& angle) {
+    void add(double other, double x, std::size_t piece, const analysis::SteadyMotion& motion,
+             const std::optional<double>& angle) {
         using analysis::SteadyStatus;
         const bool found = motion.status == SteadyStatus::steady || motion.status == SteadyStatus::adheres ||
                            motion.status == SteadyStatus::rest;
         const bool grows = motion.status == analysis::SteadyStatus::grows;
         const double otherwise = grows ? std::numeric_limits<double>::infinity() : nan_number;
+        beside.push_back(other);
         varied.push_back(x);
         amplitude.push_back(found ? motion.amplitude : otherwise);
         lag.push_back(angle.value_or(nan_number));
@@ -254,7 +288,8 @@ struct ResponseColumns {
         branch.push_back(static_cast<double>(piece));
         status.emplace_back(analysis::name(motion.status));
     }
-    Data data(const VariedColumn& of) && {
+    Data data(const std::vector<VariedColumn>& over) && {
+        const VariedColumn& of = over.back();
         Data data;
         data.columns = {
             column_of(of.name, std::move(varied), of.unit), column_of("amplitude", std::move(amplitude), of.theta),
@@ -262,6 +297,11 @@ struct ResponseColumns {
             column_of("stops", std::move(stops)),           column_of("stuck", std::move(stuck)),
             column_of("stable", std::move(stable)),         column_of("branch", std::move(branch)),
             column_of("status", std::move(status))};
+        if (over.size() > 1) {
+            data.columns.insert(data.columns.begin(),
+                                column_of(over.front().name, std::move(beside), over.front().unit));
+            data.parameters = {over.front().name, of.name};
+        }
         data.pieces_of = "branch";
         data.dotted_of = "stable";
         return data;
@@ -274,45 +314,51 @@ int response_of_system(lua_State* L) {
     const model::Oscillator system = lua::self<model::Oscillator>(L, 1, response_call.example);
     refuse_old_forms(L);
     const lua::Options options(L, 2, response_call);
-    const ResponseCall call(L, system, options);
+    ResponseCall call(L, system, options);
     const analysis::CurveQuestion question{.family = [&call](double x) { return call.question(x); },
                                            .values = call.values(),
                                            .start = call.start(),
                                            .doubled = call.doubled()};
-    analysis::ResponseCurve curve;
+    std::vector<ResponsePart> parts;
     ResponseColumns columns;
+    std::size_t pieces = 0, jumps = 0;
     asking(L, call.extras(), [&](const motion::Monitor& monitor) {
-        curve = analysis::response_curve(question, monitor);
-        std::size_t piece = 0;
-        for (const auto& branch : curve.branches) {
-            ++piece;
-            for (const analysis::BranchPoint& point : branch) {
-                if (call.is_list() && !point.asked) continue;
-                const auto shape = analysis::shape_of(call.question(point.parameter), point.motion, monitor);
-                columns.add(point.parameter, piece, point.motion, shape.lag);
+        for (const double beside : call.beside_values()) {
+            call.set_beside(beside);
+            parts.push_back({beside, pieces, analysis::response_curve(question, monitor)});
+            const analysis::ResponseCurve& curve = parts.back().curve;
+            if (curve.contradiction) return;
+            jumps += curve.jumps.size();
+            for (const auto& branch : curve.branches) {
+                ++pieces;
+                for (const analysis::BranchPoint& point : branch) {
+                    if (call.is_list() && !point.asked) continue;
+                    const auto shape = analysis::shape_of(call.question(point.parameter), point.motion, monitor);
+                    columns.add(beside, point.parameter, pieces, point.motion, shape.lag);
+                }
             }
         }
     });
-    if (curve.contradiction) options.fail({model::sentence_with_cure(*curve.contradiction)});
-    Data data = std::move(columns).data(call.column());
-    data.companions.push_back(jumps_of(curve, call.column()));
-    data.companions.push_back(points_of(curve, call.column()));
-    if (call.harmonic()) {
+    if (parts.back().curve.contradiction) options.fail({model::sentence_with_cure(*parts.back().curve.contradiction)});
+    const std::vector<VariedColumn> over = call.columns();
+    Data data = std::move(columns).data(over);
+    data.companions.push_back(jumps_of(parts, over));
+    data.companions.push_back(points_of(parts, over));
+    if (call.harmonic() && !call.is_plane()) {
         const auto [low, high] = std::minmax_element(call.values().begin(), call.values().end());
         const HarmonicSweep sweep{
             .system = system,
-            .column = call.column(),
+            .column = over.back(),
             .low = *low,
             .high = *high,
             .frequency = call.over_frequency() ? std::nullopt : std::optional(call.frequency_at(1)),
             .amplitude = call.amplitude_at(1)};
         for (DataCompanion& companion : closed_curves(sweep)) data.companions.push_back(std::move(companion));
     }
-    if (!curve.jumps.empty()) {
+    if (jumps > 0) {
         data.heading =
             fmt::format("response: {} on {}, {} (c.jumps)", text::counted(data.size(), "row"),
-                        curve.branches.size() == 1 ? "1 branch" : fmt::format("{} branches", curve.branches.size()),
-                        text::counted(curve.jumps.size(), "jump"));
+                        pieces == 1 ? "1 branch" : fmt::format("{} branches", pieces), text::counted(jumps, "jump"));
     }
     push_data(L, std::move(data));
     return 1;

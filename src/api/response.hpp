@@ -21,7 +21,8 @@ inline constexpr text::Option response_options[] = {
      .otherwise = text::needed,
      .meaning =
          "the varied parameter and its values: { frequency = values }, also omega, period or amplitude of a harmonic "
-         "M; with `at`, { NAME = values } for any name",
+         "M; with `at`, { NAME = values } for any name. Of two parameters the last in the alphabet is followed at each "
+         "value of the other, or the second of { { \"b\", values }, { \"a\", values } }",
      .wanted = "a name and its values, such as { frequency = vector.linspace(0.05, 3, 200) }"},
     {.name = "at",
      .meaning =
@@ -73,7 +74,7 @@ int response_of_system(lua_State* L);
 inline constexpr lua::Doc response_doc{
     "sys:response{ OPTIONS } -> data",
     "The steady motion over a list of values: of the frequency or the amplitude of a harmonic M, or of any parameter that "
-    "`at` uses. Columns: the varied parameter (M0 for the amplitude), amplitude, lag (rad), peak, stops, stuck, stable (1 "
+    "`at` uses. Two lists give a map. Columns: the varied parameter (M0 for the amplitude), amplitude, lag (rad), peak, stops, stuck, stable (1 "
     "or 0), branch and status. The amplitude is infinite where the motion grows, and nan where no motion was found. If "
     "several motions can exist (with a spring of its own, feedback, walls, states, or Re > Rd), whole branches are "
     "followed, round their folds and along their unstable sides, which c:plot() draws dotted; a value then has a row for "
@@ -84,7 +85,12 @@ inline constexpr lua::Doc response_doc{
     "one needs a start on it. c.jumps lists where a sweep leaves a branch: the place, sweep (\"up\" or \"down\"), the "
     "amplitudes from and to, and the status of the new motion. For a linear spring under a harmonic M, c.linearised and "
     "c.den_hartog are the curves of equivalent viscous damping and of Den Hartog (nan where the motion stops); "
-    "c:plot{ overlay = \"linearised\" } adds one to the plot, overlay = \"jumps\" the jumps.",
+    "c:plot{ overlay = \"linearised\" } adds one to the plot, overlay = \"jumps\" the jumps. Over two parameters the "
+    "branches are followed over the last one in alphabetical order at each value of the other, from the same start. "
+    "c:plot() is then a map of the amplitude, of the greatest one where several motions are stable; c.points has both "
+    "parameters, and its column curve numbers the curves that the points form in their plane, which "
+    "c:plot{ overlay = \"points\" } draws into the map. Give the first parameter so many values that the points of a curve "
+    "are near each other. sweep{ workers = n } with sys:steady makes larger maps.",
     "c = nondimensional{ friction_ratio = 0.5 }:response{ over = { frequency = { 0.75, 1.5, 2 } } }\n"
     "print(c.amplitude, c.stops[1])  --> vector{ 1.9726, 0.553775, 0.220479 }\t0.0\n"
     "sys = system{ I = 1, k = 1, C = 0.05, Rd = 0.02, spring = spring.polynomial{ [3] = 0.5 } }\n"
@@ -100,7 +106,14 @@ inline constexpr lua::Doc response_doc{
     "c = squeal:response{ over = { speed = vector.linspace(0.4, 1, 13) }, at = function(p) return { belt = p.speed } end }\n"
     "for i, point in ipairs(c.points) do print(point.kind, string.format(\"%.6f\", point.speed)) end\n"
     "--> fold\t0.868343\n"
-    "--> hopf\t0.533848",
+    "--> hopf\t0.533848\n"
+    "sys = system{ I = 1, k = 1, C = 0.1, spring = spring.polynomial{ [3] = 0.5 } }\n"
+    "c = sys:response{ over = { amplitude = { 0.3, 0.4 }, omega = vector.linspace(0.8, 2, 25) } }\n"
+    "for i, p in ipairs(c.points) do print(string.format(\"%.0f %s %.1f %.5f\", p.curve, p.kind, p.M0, p.omega)) end\n"
+    "--> 1 fold 0.3 1.55558\n"
+    "--> 1 fold 0.4 1.73797\n"
+    "--> 2 fold 0.3 1.26161\n"
+    "--> 2 fold 0.4 1.31281",
     {&response_call}};
 
 }  // namespace dinal::api

@@ -1,5 +1,6 @@
 #include "api/response_companions.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -47,6 +48,39 @@ Data closed_curve(const HarmonicSweep& sweep, ClosedCurve curve) {
                         column_of("lag", std::move(lag), "rad")}};
 }
 
+struct LocatedPoint {
+    double beside = 0, branch = 0;
+    analysis::BranchPoint at = {};
+    double curve = 0;
+};
+
+/// Numbers the curves that the points form. A point goes on the curve of the nearest point of its kind at the value of
+/// the first parameter before, if that is near and has no nearer one. `points` are in the order of these values.
+void number_curves(std::vector<LocatedPoint>& points, double range) {
+    constexpr double near = 0.5;  // of the range, and of the amplitude
+    const auto distance = [range](const LocatedPoint& a, const LocatedPoint& b) {
+        const double larger = std::max({a.at.motion.amplitude, b.at.motion.amplitude, 1e-300});
+        return a.at.kind != b.at.kind ? std::numeric_limits<double>::infinity()
+                                      : std::fabs(a.at.parameter - b.at.parameter) / range +
+                                            std::fabs(a.at.motion.amplitude - b.at.motion.amplitude) / larger;
+    };
+    const auto nearest = [&](const LocatedPoint& to, auto from, auto until) {
+        return std::min_element(from, until,
+                                [&](const auto& a, const auto& b) { return distance(to, a) < distance(to, b); });
+    };
+    double curves = 0;
+    for (auto begin = points.begin(), before = begin; begin != points.end();) {
+        const auto end = std::find_if(begin, points.end(), [&](const auto& p) { return p.beside != begin->beside; });
+        for (auto point = begin; point != end; ++point) {
+            const auto last = nearest(*point, before, begin);
+            const bool goes_on = last != begin && distance(*point, *last) < near && nearest(*last, begin, end) == point;
+            point->curve = goes_on ? last->curve : ++curves;
+        }
+        before = begin;
+        begin = end;
+    }
+}
+
 }  // namespace
 
 std::vector<DataCompanion> closed_curves(const HarmonicSweep& sweep) {
@@ -59,51 +93,86 @@ std::vector<DataCompanion> closed_curves(const HarmonicSweep& sweep) {
             {"den_hartog", [sweep] { return closed_curve(sweep, den_hartog_at); }}};
 }
 
-DataCompanion jumps_of(const analysis::ResponseCurve& curve, const VariedColumn& column) {
-    const auto made = [jumps = curve.jumps, column] {
-        std::vector<double> varied, from, to;
-        std::vector<std::string> sweep, status;
-        for (const analysis::MotionJump& jump : jumps) {
+DataCompanion jumps_of(const std::vector<ResponsePart>& parts, const std::vector<VariedColumn>& over) {
+    const VariedColumn column = over.back();
+    std::vector<double> beside, varied, from, to;
+    std::vector<std::string> sweep, status;
+    for (const ResponsePart& part : parts) {
+        for (const analysis::MotionJump& jump : part.curve.jumps) {
+            beside.push_back(part.beside);
             varied.push_back(jump.parameter);
             sweep.emplace_back(jump.rising ? "up" : "down");
             from.push_back(jump.from);
             to.push_back(jump.to);
             status.emplace_back(analysis::name(jump.landed.status));
         }
-        return Data{.columns = {column_of(column.name, std::move(varied), column.unit),
-                                column_of("sweep", std::move(sweep)), column_of("from", std::move(from), column.theta),
-                                column_of("to", std::move(to), column.theta), column_of("status", std::move(status))}};
-    };
-    const auto drawn = [jumps = curve.jumps, column] {
-        std::vector<double> varied, amplitude;
-        for (const analysis::MotionJump& jump : jumps) {
-            varied.insert(varied.end(), {jump.parameter, jump.parameter, no_number});
-            amplitude.insert(amplitude.end(), {jump.from, jump.to, no_number});
+    }
+    Data jumps{.columns = {column_of(column.name, varied, column.unit), column_of("sweep", std::move(sweep)),
+                           column_of("from", from, column.theta), column_of("to", to, column.theta),
+                           column_of("status", std::move(status))}};
+    if (over.size() > 1) {
+        jumps.columns.insert(jumps.columns.begin(), column_of(over.front().name, std::move(beside), over.front().unit));
+    }
+    const auto drawn = [varied, from, to, column] {
+        std::vector<double> x, amplitude;
+        for (std::size_t i = 0; i < varied.size(); ++i) {
+            x.insert(x.end(), {varied[i], varied[i], no_number});
+            amplitude.insert(amplitude.end(), {from[i], to[i], no_number});
         }
-        return Data{.columns = {column_of(column.name, std::move(varied), column.unit),
+        return Data{.columns = {column_of(column.name, std::move(x), column.unit),
                                 column_of("amplitude", std::move(amplitude), column.theta)}};
     };
-    return {"jumps", made, drawn};
+    return {"jumps", [jumps] { return Data(jumps); }, drawn};
 }
 
-DataCompanion points_of(const analysis::ResponseCurve& curve, const VariedColumn& column) {
-    std::vector<double> varied, amplitude, period, branch;
-    std::vector<std::string> kind;
-    for (std::size_t i = 0; i < curve.branches.size(); ++i) {
-        for (const analysis::BranchPoint& point : curve.branches[i]) {
-            if (point.kind == analysis::BranchKind::point) continue;
-            varied.push_back(point.parameter);
-            kind.emplace_back(analysis::name(point.kind));
-            amplitude.push_back(point.motion.amplitude);
-            period.push_back(point.motion.period > 0 ? point.motion.period : no_number);
-            branch.push_back(static_cast<double>(i + 1));
+DataCompanion points_of(const std::vector<ResponsePart>& parts, const std::vector<VariedColumn>& over) {
+    std::vector<LocatedPoint> located;
+    double low = std::numeric_limits<double>::infinity(), high = -low;
+    for (const ResponsePart& part : parts) {
+        for (std::size_t i = 0; i < part.curve.branches.size(); ++i) {
+            for (const analysis::BranchPoint& point : part.curve.branches[i]) {
+                low = std::min(low, point.parameter), high = std::max(high, point.parameter);
+                if (point.kind == analysis::BranchKind::point) continue;
+                located.push_back({part.beside, static_cast<double>(part.branches_before + i + 1), point});
+            }
         }
     }
-    const Data points{.columns = {column_of(column.name, std::move(varied), column.unit),
-                                  column_of("kind", std::move(kind)),
-                                  column_of("amplitude", std::move(amplitude), column.theta),
-                                  column_of("period", std::move(period)), column_of("branch", std::move(branch))}};
-    return {"points", [points] { return Data(points); }};
+    const bool is_plane = over.size() > 1;
+    if (is_plane) {
+        number_curves(located, high - low);
+        std::stable_sort(located.begin(), located.end(),
+                         [](const LocatedPoint& a, const LocatedPoint& b) { return a.curve < b.curve; });
+    }
+    std::vector<double> beside, varied, amplitude, period, branch, curve;
+    std::vector<std::string> kind;
+    for (const LocatedPoint& point : located) {
+        const analysis::SteadyMotion& motion = point.at.motion;
+        beside.push_back(point.beside);
+        varied.push_back(point.at.parameter);
+        kind.emplace_back(analysis::name(point.at.kind));
+        amplitude.push_back(motion.amplitude);
+        period.push_back(motion.period > 0 ? motion.period : no_number);
+        branch.push_back(point.branch);
+        curve.push_back(point.curve);
+    }
+    const VariedColumn& column = over.back();
+    Data points{.columns = {column_of(column.name, varied, column.unit), column_of("kind", std::move(kind)),
+                            column_of("amplitude", std::move(amplitude), column.theta),
+                            column_of("period", std::move(period)), column_of("branch", std::move(branch))}};
+    if (!is_plane) return {"points", [points] { return Data(points); }};
+    points.columns.insert(points.columns.begin(), column_of(over.front().name, beside, over.front().unit));
+    points.columns.push_back(column_of("curve", curve));
+    points.pieces_of = "curve";
+    const auto drawn = [over, beside, varied, curve] {
+        std::vector<double> x, y;
+        for (std::size_t i = 0; i < varied.size(); ++i) {
+            if (i > 0 && curve[i] != curve[i - 1]) x.push_back(no_number), y.push_back(no_number);
+            x.push_back(beside[i]);
+            y.push_back(varied[i]);
+        }
+        return Data{.columns = {column_of(over.front().name, std::move(x)), column_of(over.back().name, std::move(y))}};
+    };
+    return {"points", [points] { return Data(points); }, drawn};
 }
 
 }  // namespace dinal::api

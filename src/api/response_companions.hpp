@@ -15,11 +15,18 @@ struct VariedColumn {
     std::string name, unit = {}, theta = {};
 };
 
-/// c.jumps, over what is varied.
-DataCompanion jumps_of(const analysis::ResponseCurve& curve, const VariedColumn& column);
+/// A response over one parameter, which over two is that at a value of the first.
+struct ResponsePart {
+    double beside = 0;
+    std::size_t branches_before = 0;  ///< in the parts before this one
+    analysis::ResponseCurve curve = {};
+};
 
-/// c.points: where a branch turns back, or another one begins.
-DataCompanion points_of(const analysis::ResponseCurve& curve, const VariedColumn& column);
+/// c.jumps, over the one or two parameters.
+DataCompanion jumps_of(const std::vector<ResponsePart>& parts, const std::vector<VariedColumn>& over);
+
+/// c.points: where a branch turns back, or another one begins. Over two parameters they form curves.
+DataCompanion points_of(const std::vector<ResponsePart>& parts, const std::vector<VariedColumn>& over);
 
 /// A sweep of the frequency of a harmonic M, or at one frequency of its amplitude.
 struct HarmonicSweep {

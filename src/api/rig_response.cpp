@@ -5,25 +5,47 @@
 
 #include "api/data.hpp"
 #include "api/steady_answer.hpp"
+#include "api/sweep_parameters.hpp"
 #include "lua/vector.hpp"
 
 namespace dinal::api {
 namespace {
 
-/// The name under `over`, and its values.
-std::pair<std::string, std::vector<double>> varied(lua_State* L, const lua::Options& options) {
+using Point = std::vector<double>;  // a value of each parameter
+
+/// The one or two names under `over`, and their values.
+std::vector<DataColumn> varied(lua_State* L, const lua::Options& options) {
     options.push("over");
     if (!lua_istable(L, -1)) options.wrong("over", options.row("over").wanted);
-    lua_pushnil(L);
-    if (lua_next(L, -2) == 0 || lua_type(L, -2) != LUA_TSTRING) options.wrong("over", options.row("over").wanted);
-    std::string name = lua_tostring(L, -2);
-    std::vector<double> values = lua::numbers_at(L, -1, rig_response_call.name, "over." + name);
+    std::vector<DataColumn> parameters = parameters_in(L, lua_gettop(L), rig_response_call);
     lua_pop(L, 1);
-    if (lua_next(L, -2) != 0) {
-        options.fail("over", "over has more than one name: a response varies one, and sweep varies several");
+    if (parameters.empty()) options.wrong("over", options.row("over").wanted);
+    if (parameters.size() > 2) {
+        options.fail("over", fmt::format("over has {} names: a response varies one or two, and sweep varies more",
+                                         parameters.size()));
     }
-    lua_pop(L, 1);
-    return {std::move(name), std::move(values)};
+    check_parameters(L, rig_response_call, parameters);
+    for (const DataColumn& parameter : parameters) {
+        if (parameter.numbers() == nullptr)
+            options.fail("over", fmt::format("over.{} must be a list of numbers", parameter.name));
+    }
+    return parameters;
+}
+
+/// All of them, the last parameter fastest.
+std::vector<Point> points_of(const std::vector<DataColumn>& parameters) {
+    std::vector<Point> points{{}};
+    for (const DataColumn& parameter : parameters) {
+        std::vector<Point> longer;
+        for (const Point& point : points) {
+            for (const double x : parameter.numbers()->values()) {
+                longer.push_back(point);
+                longer.back().push_back(x);
+            }
+        }
+        points = std::move(longer);
+    }
+    return points;
 }
 
 /// Options theta0 and velocity0 at `options`, from a motion that was found nearby, where the user gives neither.
@@ -44,17 +66,18 @@ void start_near(lua_State* L, int options, const analysis::RigMotion& near, cons
 }
 
 /// What at(point) says, as options of rig:steady, with the system where that is another one: system, options.
-void push_point(lua_State* L, const lua::Options& options, const std::string& name, double x) {
+void push_point(lua_State* L, const lua::Options& options, const std::vector<DataColumn>& parameters,
+                const Point& point) {
     lua_pushvalue(L, 1);
     options.push("at");
-    lua_createtable(L, 0, 1);
-    lua::set_number(L, name.c_str(), x);
+    lua_newtable(L);
+    for (std::size_t i = 0; i < point.size(); ++i) lua::set_number(L, parameters[i].name.c_str(), point[i]);
     lua_call(L, 1, 1);
     if (!lua_istable(L, -1)) {
         options.fail("at",
                      fmt::format("at returned {} for {} = {:.6g}; it must return a table of options of rig:steady, "
                                  "such as {{ belt = {{ load = p.speed }} }}",
-                                 lua::describe(L, -1), name, x));
+                                 lua::describe(L, -1), parameters.back().name, point.back()));
     }
     lua_newtable(L);  // a copy: the user's table stays as it is
     for (lua_pushnil(L); lua_next(L, -3) != 0;) {
@@ -86,17 +109,19 @@ int response_of_rig(lua_State* L) {
         lua_isnil(L, -1) ? options.missing("at") : options.wrong("at", options.row("at").wanted);
     }
     lua_pop(L, 1);
-    const auto [name, values] = varied(L, options);
+    const std::vector<DataColumn> parameters = varied(L, options);
+    const std::vector<Point> points = points_of(parameters);
     if (!first->named) options.fail("over", "a response is of several bodies, or of one with constant Rd and Re");
     constexpr std::array<const char*, 5> kinds{"amplitude", "peak", "lag", "stops", "stuck"};
     std::vector<std::vector<double>> numbers(kinds.size() * first->joints.size());
     std::vector<double> stable;
     std::vector<std::string> status;
     SteadyHandle near;
-    for (const double x : values) {
-        push_point(L, options, name, x);
-        const int point = lua_gettop(L);
-        if (near) start_near(L, point, near->rig->motion, *first);
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        if (i % parameters.back().size() == 0) near = nullptr;
+        push_point(L, options, parameters, points[i]);
+        const int asked = lua_gettop(L);
+        if (near) start_near(L, asked, near->rig->motion, *first);
         lua_pushcfunction(L, lua::guarded<steady_of_rig>);
         lua_insert(L, -3);
         lua_call(L, 2, 1);
@@ -125,7 +150,12 @@ int response_of_rig(lua_State* L) {
     }
     Data data;
     const ColumnUnits in(first->units);
-    data.columns.push_back(column_of(name, values));
+    for (std::size_t k = 0; k < parameters.size(); ++k) {
+        std::vector<double> values;
+        for (const Point& point : points) values.push_back(point[k]);
+        data.columns.push_back(column_of(parameters[k].name, std::move(values)));
+        if (parameters.size() > 1) data.parameters.push_back(parameters[k].name);
+    }
     for (std::size_t j = 0; j < first->joints.size(); ++j) {
         for (std::size_t k = 0; k < kinds.size(); ++k) {
             data.columns.push_back(column_of(fmt::format("{}.{}", first->joints[j].name, kinds[k]),

@@ -78,7 +78,7 @@ inline constexpr text::Call rig_steady_call{"rig:steady", "rig:steady{ belt = { 
 inline constexpr text::Option rig_response_options[] = {
     {.name = "over",
      .otherwise = text::needed,
-     .meaning = "the varied parameter and its values: { NAME = values }",
+     .meaning = "the varied parameter and its values: { NAME = values }, or two of them, which give a map",
      .wanted = "a name and its values, such as { speed = vector.linspace(0.05, 3, 200) }"},
     {.name = "at",
      .otherwise = text::needed,

@@ -98,7 +98,6 @@ std::vector<DataColumn> take_parameters(lua_State* L, const text::Call& call) {
                        .call = call.name});
     }
     refuse_old_form(L, call);
-    std::vector<DataColumn> parameters;
     lua_getfield(L, 1, "over");
     if (!lua_isnoneornil(L, -1) && !lua_istable(L, -1)) {
         fail_sweep(L, call,
@@ -106,27 +105,30 @@ std::vector<DataColumn> take_parameters(lua_State* L, const text::Call& call) {
                     .option = "over",
                     .culprit = lua::written(L, -1)});
     }
-    if (!lua_istable(L, -1)) {
-        lua_pop(L, 1);
-        return parameters;
-    }
-    const auto listed = static_cast<lua_Integer>(lua_rawlen(L, 2));
+    std::vector<DataColumn> parameters;
+    if (lua_istable(L, -1)) parameters = parameters_in(L, lua_gettop(L), call);
+    lua_pop(L, 1);
+    return parameters;
+}
+
+std::vector<DataColumn> parameters_in(lua_State* L, int table, const text::Call& call) {
+    std::vector<DataColumn> parameters;
+    const auto listed = static_cast<lua_Integer>(lua_rawlen(L, table));
     for (lua_Integer i = 1; i <= listed; ++i) {
-        lua_rawgeti(L, 2, i);
+        lua_rawgeti(L, table, i);
         parameters.push_back(listed_parameter(L, call, i));
         lua_pop(L, 1);
     }
     std::set<std::string> names;
-    for (lua_pushnil(L); lua_next(L, 2) != 0; lua_pop(L, 1)) {
+    for (lua_pushnil(L); lua_next(L, table) != 0; lua_pop(L, 1)) {
         if (lua_type(L, -2) == LUA_TSTRING) names.emplace(lua::text_at(L, -2));
     }
     for (const std::string& name : names) {  // lua_next has no order
         lua::push_text(L, name);
-        lua_rawget(L, 2);
+        lua_rawget(L, table);
         parameters.push_back(parameter_on_top(L, call, name));
         lua_pop(L, 1);
     }
-    lua_pop(L, 1);
     return parameters;
 }
 

@@ -44,11 +44,17 @@ test("M may be a function of the frequency, and the amplitude another one", func
     local function empty() return {} end
     raises_here(function() sys:response{} end, "needs over")
     raises_here(function() sys:response{ over = 3 } end, "over must be a name and its values")
-    raises_here(function() sys:response{ over = { 1, 2 } } end, "over must be a name and its values")
-    raises_here(function() sys:response{ over = { frequency = {} } } end, "over.frequency has no values")
+    raises_here(function() sys:response{ over = { 1, 2 } } end, "over[1] must be a name and its values")
+    raises_here(function() sys:response{ over = {} } end, "over must be a name and its values")
+    raises_here(function() sys:response{ over = { frequency = { "a" } } } end, "over.frequency must be a list of numbers")
+    raises_here(function() sys:response{ over = { frequency = {} } } end, "frequency has no values")
     raises_here(function() sys:response{ over = { frequency = 3 } } end, "over.frequency must be a vector or a table")
     raises_here(function() sys:response{ over = { frequency = { 1, -1 } } } end, "frequency = -1 must be positive")
-    raises_here(function() sys:response{ over = { a = { 1 }, b = { 1 } } } end, "sweep varies several")
+    raises_here(function() sys:response{ over = { a = { 1 }, b = { 1 }, c = { 1 } } } end, "varies one or two", "sweep")
+    raises_here(function() sys:response{ over = { a = { 1 }, b = { 1 } } } end, "over.a needs at")
+    raises_here(function() sys:response{ over = { { "a", { 1 } }, { "a", { 2 } } }, at = empty } end, "two parameters 'a'")
+    raises_here(function() sys:response{ over = { omega = { 1 }, period = { 1 } } } end, "exclude each other")
+    raises_here(function() sys:response{ over = { amplitude = { 1 }, omega = { 1 } }, frequency = 1 } end, "omega is varied")
     raises_here(function() sys:response{ over = { a = { 1 } } } end, "over.a needs at")
     raises_here(function() sys:response{ over = { lag = { 1 } }, at = empty } end, "'lag' is a column of the result")
     raises_here(function() sys:response{ over = one } end, "give one of frequency, omega and period")
@@ -270,6 +276,54 @@ test("squeal begins at a Hopf point and ends at a fold, where the sliding of the
         local last = run.theta[run.t:find(function(t) return t > 390 end)]
         near((last:max() - last:min()) / 2, factor < 1 and 0 or cycle.amplitude, 2e-3)
     end
+end)
+
+test("a response over two parameters is a response at each value of the first", function()
+    local sys = system{ I = 1, k = 1, C = 0.1, spring = spring.polynomial{ [3] = 0.5 } }
+    local M0, omega = vector{ 0.05, 0.2, 0.5 }, vector.linspace(0.8, 2.2, 8)
+    local c = sys:response{ over = { amplitude = M0, omega = omega } }
+    equal(table.concat(c.names, " "):sub(1, 18), "M0 omega amplitude")
+    local row = 0
+    for i = 1, 3 do
+        local one = sys:response{ amplitude = M0[i], over = { omega = omega } }
+        for k = 1, #one do
+            row = row + 1
+            equal(c.M0[row], M0[i])
+            for _, name in ipairs{ "omega", "amplitude", "lag", "stable" } do equal(c[name][row], one[name][k]) end
+        end
+    end
+    equal(#c, row)
+    -- Folds: Newton's method on the half period's map and its determinant, by Runge and Kutta's method.
+    local folds = c.points:filter(function(p) return p.kind == "fold" and p.M0 == 0.5 end):sort("omega")
+    near(folds.omega[1], 1.357937998722, 1e-8)
+    near(folds.omega[2], 1.904583750464, 1e-8)
+    -- The order may be given: at each frequency the amplitude is followed.
+    local d = sys:response{ over = { { "omega", { 1.3 } }, { "amplitude", vector.linspace(0.05, 0.5, 10) } } }
+    equal(d.names[2], "M0")
+    equal(table.concat(d.points.kind, " "), "fold fold")
+    for i = 1, 2 do
+        local at = sys:response{ amplitude = d.points.M0[i], over = { omega = vector.linspace(1, 1.6, 7) } }
+        local off = 1
+        for _, p in ipairs(at.points) do off = math.min(off, math.abs(p.omega - 1.3)) end
+        near(off, 0, 1e-7)
+    end
+    local picture = tostring(c:plot{ overlay = "points", show = false })
+    assert(picture:find("amplitude") and picture:find("points"), picture)
+    assert(tostring(c:plot{ x = "omega", y = "amplitude", show = false }):find("unstable"))
+    raises_here(function() c:plot{ overlay = "jumps" } end, "the overlay 'jumps' has no M0")
+end)
+
+test("Hopf points form a curve over two parameters, on which the damping of the sliding is zero", function()
+    local Rd, Re, v0 = 0.3, 0.6, 0.3
+    local squeal = system{ I = 1, k = 4, C = 0.1, friction = friction.stribeck{ Rd = Rd, Re = Re, speed = v0 } }
+    local c = squeal:response{ over = { C = { 0.4, 0.5, 0.6, 0.7 }, speed = { 0.1, 0.5 } },
+        at = function(p) return { belt = p.speed, system = squeal:with{ C = p.C } } end }
+    local hopf = c.points:filter(function(p) return p.kind == "hopf" end)
+    equal(#hopf, 6)
+    for _, p in ipairs(hopf) do near(p.C, (Re - Rd) * 2 * p.speed / v0 ^ 2 * math.exp(-(p.speed / v0) ^ 2), 1e-8) end
+    -- The faster ones form one curve, the slower ones, in the range from C = 0.6 on, another one.
+    for _, p in ipairs(hopf) do equal(p.curve, p.speed > v0 / math.sqrt(2) and hopf.curve[1] or hopf.curve[6]) end
+    assert(hopf.curve[1] ~= hopf.curve[6])
 end)
 
 test("limit cycles begin at a Hopf point: those of van der Pol", function()

@@ -195,6 +195,11 @@ test("the response of a chain has the columns of its bodies, and follows at", fu
     end }
     near(c["a.amplitude"][1], amplitudes(1.3), 1e-10)
     assert(c["a.amplitude"][2] ~= c["a.amplitude"][1])
+    local map = chain():response { over = { M0 = { 1, 2, 3 }, omega = { 0.5, 1.5 } }, at = function(p) return { M = { a = p.M0 * sine(p.omega) } } end }
+    equal(tostring(map.M0), "vector{ 1, 1, 2, 2, 3, 3 }")
+    for i = 1, #map do near(map["b.amplitude"][i], map.M0[i] * select(2, amplitudes(map.omega[i])), 1e-9) end
+    assert(tostring(map:plot { z = "b.amplitude", show = false }):find("M0"))
+    raises_here(function() chain():response { over = { x = { 1 }, y = { 1 }, z = { 1 } }, at = function() return {} end } end, "varies one or two")
     raises_here(function() chain():response { over = { x = { 1 } } } end, "needs at")
     raises_here(function() chain():response { over = { x = { 1 } }, at = function(p) return p.x end } end, "at returned 1")
 end)
