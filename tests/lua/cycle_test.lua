@@ -143,6 +143,16 @@ test("dead times and sampled controllers have the cycles that long runs come to"
     near(run.theta[2001], run.theta[1001], 1e-9)
 end)
 
+test("a motion that a sampled controller lets die out ends at rest, where the springs balance", function()
+    local sys = system{ I = 1.23, k = 5.58, C = 0.64, spring = spring.polynomial{ [3] = 0.88 } }
+    for _, aim in ipairs{ 0, 1 } do
+        local M = excitation.sampled(function(_, theta, velocity) return 0.3 * (aim - theta) - 0.1 * velocity end, { every = 0.486 })
+        local s = sys:steady{ M = M, theta0 = -0.23 }
+        equal(s.status, "rest")
+        near(5.58 * s.rest[1] + 0.88 * s.rest[1]^3, 0.3 * (aim - s.rest[1]), 1e-10)
+    end
+end)
+
 test("belt, base, states and acts stand beside a periodic M", function()
     local sys = system{ I = 1, k = 8, C = 0.6, Rd = 0.15 }
     local wave = excitation.harmonic{ amplitude = 1.2, omega = 4 }

@@ -79,12 +79,14 @@ public:
         std::size_t looks = 64;  // what differs within it is seen
         int longest = 32;
         std::size_t most_periods = 4096;
+        bool timeless = false;  // the period is that of the samples: the motion may die out
     };
     Settling(const SteadyQuestion& question, const motion::Monitor& monitor, const Fineness& fineness)
         : question_(question),
           looks(fineness.looks),
           most_periods(fineness.most_periods),
           longest(fineness.longest),
+          timeless_(fineness.timeless),
           map_(question.system, question.excitation, question.drive.start, question.drive.period, monitor),
           integrator_(motion::integrator_for(question.system, question.excitation, question.extras)),
           monitor_(monitor),
@@ -97,6 +99,7 @@ public:
                                             most_periods, 4 * most_periods);
         for (std::size_t until = least_periods; periods_ < most; until += std::max(least_periods, until / 4)) {
             if (!goes_on_until(std::min(until, most))) return answer_;
+            if (timeless_ && dies_out()) return answer_;
             if (const int m = comes_back(settled); m > 0 && tells(m)) return answer_;
         }
         if (const int m = comes_back(alike); m > 0 && tells(m)) return answer_;
@@ -147,6 +150,26 @@ private:
             answer_.growth = periods_ > 1 ? sizes_[periods_ - 1] - sizes_[periods_ - 2] : 0;
         }
         return whole;
+    }
+
+    /// It creeps or swings towards a rest, ever more slowly.
+    bool dies_out() {
+        constexpr double nothing = 1e-11;  // of the largest motion
+        const double largest = *std::max_element(sizes_.begin(), sizes_.end());
+        const bool alone = question_.extras.states.empty() && run_.motion_at_stop != model::Motion::stuck;
+        if (!alone || seen_.size() < least_periods * looks) return false;
+        for (auto look = seen_.end() - static_cast<std::ptrdiff_t>(least_periods * looks); look != seen_.end();
+             ++look) {
+            if (length_of(*look - Place(seen_.back()[0], 0)) > nothing * largest) return false;
+        }
+        const double theta = seen_.back()[0];
+        answer_.status = SteadyStatus::rest;
+        answer_.period = 0;
+        answer_.start = {theta, 0};
+        answer_.low = answer_.high = theta;
+        answer_.rest = {theta, theta};
+        answer_.stable = true;
+        return true;
     }
 
     bool run(double until, const motion::Grid& rows, bool dense) {
@@ -228,6 +251,7 @@ private:
     const SteadyQuestion& question_;
     std::size_t looks, most_periods;
     int longest;
+    bool timeless_;
     PeriodMap map_;
     motion::Integrator integrator_;
     const motion::Monitor& monitor_;
@@ -395,7 +419,8 @@ SteadyMotion settled_motion(const SteadyQuestion& question, const motion::Monito
     if (!(sampling > 0)) return DelayedCycle(question, monitor).found();
     SteadyQuestion on_grid = question;
     on_grid.drive.period = sampling;
-    SteadyMotion motion = Settling(on_grid, monitor, {.looks = 4, .longest = 2048, .most_periods = 20000}).found();
+    SteadyMotion motion =
+        Settling(on_grid, monitor, {.looks = 4, .longest = 2048, .most_periods = 20000, .timeless = true}).found();
     motion.periods = 1;
     return motion;
 }
