@@ -76,7 +76,8 @@ TEST_CASE("boxes side by side stand on one line and are as high", "[plots]") {
 }
 
 TEST_CASE("a curve denser than the columns of a text is drawn as its envelope", "[plots]") {
-    constexpr int columns = 70, points = 8000;
+    constexpr std::size_t columns = 70;
+    constexpr int points = 8000;
     for (const int swings : {10, 13, 16, 34, 300}) {  // two turns each
         std::vector<double> t, y;
         for (int i = 0; i < points; ++i) {
