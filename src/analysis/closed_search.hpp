@@ -63,21 +63,12 @@ private:
 
     std::optional<Found> closes(double near) {
         const std::size_t last = seen_.size() - 1;
-        int tries = 0;              // chaos comes near to itself again and again
-        std::vector<double> tried;  // how far off it was after so many returns, from which nothing was found; or 0
+        int tries = 0;  // chaos comes near to itself again and again
         for (std::size_t m = 1; tries < 4 && m <= static_cast<std::size_t>(longest_) && 2 * m <= last; ++m) {
-            tried.resize(m + 1);
             if (seen_[last].mode != seen_[last - m].mode) continue;
             const double off = size_of_step(seen_[last].to - seen_[last - m].to);
             if (off > near) continue;
-            // What drifts past a motion that has ceased to exist is no nearer to itself after more returns.
-            bool drifts = false;
-            for (std::size_t fewer = 1; fewer < m; ++fewer) {
-                drifts = drifts || (m % fewer == 0 && tried[fewer] > 0 && 2 * off >= tried[fewer]);
-            }
-            if (drifts) continue;
             ++tries;
-            tried[m] = off;
             auto found = newton(seen_[last], static_cast<int>(m));
             if (found && approaches(found->x, m)) return shortest(*found);
             if (found || off > to_rounding) continue;
