@@ -459,6 +459,7 @@ private:
         const auto first = stretch(now, start, period);
         if (!first) return;
         Reach reach = reach_of(*first);
+        std::vector<double> ranges{reach.range()};  // of single periods
         std::vector<double> sizes;  // of the first batch of returns, and of both halves of the second one
         const double omega = question_.system.stiffness() > 0 ? question_.system.natural_frequency() : 1;
         const int longest = question_.periods > 0 ? question_.periods : 32;
@@ -490,9 +491,11 @@ private:
             const auto last = stretch(now, start, period);
             if (!last) return;
             reach = reach_of(*last);
+            ranges.push_back(reach.range());
         }
-        // A motion that beats is as large in one half as in the other.
-        if (sizes[2] > 1.15 * sizes[1] && sizes[1] > 1.1 * sizes[0]) {
+        // A motion that beats is as large in one half as in the other, and one that creeps has the same range.
+        const bool widens = ranges[2] > 1.3 * ranges[1] && ranges[1] > 1.1 * ranges[0];
+        if (widens && sizes[2] > 1.15 * sizes[1] && sizes[1] > 1.1 * sizes[0]) {
             answer_.status = SteadyStatus::grows;
             answer_.growth = (sizes[2] - sizes[1]) / 160;
         }
