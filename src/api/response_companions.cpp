@@ -94,7 +94,7 @@ std::vector<DataCompanion> closed_curves(const HarmonicSweep& sweep) {
 }
 
 DataCompanion jumps_of(const std::vector<ResponsePart>& parts, const std::vector<VariedColumn>& over) {
-    const VariedColumn column = over.back();
+    const VariedColumn& column = over.back();
     std::vector<double> beside, varied, from, to;
     std::vector<std::string> sweep, status;
     for (const ResponsePart& part : parts) {
@@ -113,7 +113,7 @@ DataCompanion jumps_of(const std::vector<ResponsePart>& parts, const std::vector
     if (over.size() > 1) {
         jumps.columns.insert(jumps.columns.begin(), column_of(over.front().name, std::move(beside), over.front().unit));
     }
-    const auto drawn = [varied, from, to, column] {
+    const auto drawn = [varied, from, to, column = column] {
         std::vector<double> x, amplitude;
         for (std::size_t i = 0; i < varied.size(); ++i) {
             x.insert(x.end(), {varied[i], varied[i], no_number});

@@ -1,6 +1,7 @@
 // rig:response{ over, at }: the steady motion of several bodies over a list of values.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <limits>
 
 #include "api/data.hpp"
@@ -151,8 +152,8 @@ int response_of_rig(lua_State* L) {
     Data data;
     const ColumnUnits in(first->units);
     for (std::size_t k = 0; k < parameters.size(); ++k) {
-        std::vector<double> values;
-        for (const Point& point : points) values.push_back(point[k]);
+        std::vector<double> values(points.size());
+        std::transform(points.begin(), points.end(), values.begin(), [k](const Point& point) { return point[k]; });
         data.columns.push_back(column_of(parameters[k].name, std::move(values)));
         if (parameters.size() > 1) data.parameters.push_back(parameters[k].name);
     }
