@@ -52,27 +52,111 @@ model::Excitation to_excitation(lua_State* L, int index, std::string_view what, 
     return std::move(made).value();
 }
 
+namespace {
+
+constexpr double no_end = 1e300;
+
+/// None when there are none, or when one is not finite.
+std::optional<model::Excitation> sum_of(const std::vector<model::Term>& terms) {
+    model::Excitation sum;
+    for (const model::Term& term : terms) {
+        const auto one = model::Excitation::make(term);
+        if (!one) return {};
+        sum = sum + *one;
+    }
+    return terms.empty() ? std::nullopt : std::optional(sum);
+}
+
+/// A function that is constant on each piece between two breaks, and repeats: the differences from its first piece are
+/// square waves.
+std::optional<model::Excitation> squares(lua::LuaFunction& function, double from, double period) {
+    constexpr int most_pieces = 50;
+    constexpr double least = 1e-9;  // of a period: the last piece may seem to end a little before it
+    const double first = function.next_break(from), end = first + period * (1 - least);
+    std::vector<model::Term> made;
+    double base = 0, offset = 0;
+    for (double t = first; t < end; t = function.next_break(t)) {
+        const double width = std::min(function.next_break(t), first + period) - t;
+        const auto terms = function.formula()->terms(t, t + width / 2);
+        const auto* level = terms.size() == 1 ? std::get_if<model::Constant>(&terms.front()) : nullptr;
+        if (level == nullptr || made.size() > most_pieces) return {};
+        if (t == first) base = offset = level->amplitude;
+        const double half = (level->amplitude - base) / 2;
+        if (half == 0) continue;
+        made.emplace_back(model::Square{.amplitude = half, .period = period, .duty = width / period, .at = t});
+        offset += half;
+    }
+    made.emplace_back(model::Constant{offset});
+    return sum_of(made);
+}
+
+/// The function as native terms from one time to another, piece by piece.
+std::optional<model::Excitation> native_of(lua::LuaFunction& function, double from, double to) {
+    constexpr int most_pieces = 100;
+    if (!(function.next_break(from) < to)) {
+        const auto terms = function.formula()->terms(from, to < no_end ? from + (to - from) / 2 : from);
+        return sum_of(terms);
+    }
+    if (const double period = function.formula()->period(); period > 0) {
+        if (auto waves = squares(function, from, period)) return waves;
+    }
+    if (!(to < no_end)) return {};
+    model::Excitation sum;
+    double t = from;
+    for (int n = 0; t < to; ++n) {
+        const double next = std::min(function.next_break(t), to);
+        if (function.formula() == nullptr || n == most_pieces) return {};
+        const auto piece = sum_of(function.formula()->terms(t, t + (next - t) / 2));
+        if (!piece) return {};
+        sum = sum + piece->windowed(t, next < to ? next : model::never);
+        t = next;
+    }
+    return sum;
+}
+
+/// A function whose breaks nobody has announced, if it is read.
+lua::LuaFunction* read_function(const model::Component& component) {
+    const auto* script = std::get_if<model::Scripted>(&component.term);
+    auto* function = script == nullptr ? nullptr : dynamic_cast<lua::LuaFunction*>(script->function.get());
+    const bool own = function != nullptr && script->breaks.empty() && !(script->period > 0);
+    return own && function->obstacle().empty() && function->formula() != nullptr ? function : nullptr;
+}
+
+}  // namespace
+
 std::optional<model::Excitation> terms_alone(lua_State* L, const model::Oscillator& system, const model::Excitation& M,
-                                             double from, const model::Extras& extras) {
+                                             double from, double to, const model::Extras& extras) {
     if (!M.has_script() || motion::has_functions(system, {}, extras)) return {};
+    lua::CallState call(L);
+    if (to < no_end) call.set_span(to - from);
+    model::Excitation sum;
+    for (const model::Component& component : M.components()) {
+        std::optional<model::Excitation> one;
+        if (const auto* script = std::get_if<model::Scripted>(&component.term)) {
+            lua::LuaFunction* function = read_function(component);
+            if (function == nullptr) return {};
+            one = native_of(*function, from - script->delay, to - script->delay);
+            if (!one || function->formula() == nullptr || function->formula()->gave_up()) return {};
+            one = one->delayed(script->delay);
+        } else if (const auto made = model::Excitation::make(component.term)) {
+            one = *made;
+        }
+        if (one) sum = sum + one->scaled(component.gain).windowed(component.from, component.to);
+    }
+    return sum;
+}
+
+model::Excitation with_periods(lua_State* L, const model::Excitation& M) {
     const lua::CallState call(L);
     model::Excitation sum;
     for (const model::Component& component : M.components()) {
-        std::vector<model::Term> terms{component.term};
-        double delay = 0;
-        if (const auto* script = std::get_if<model::Scripted>(&component.term)) {
-            auto* function = dynamic_cast<lua::LuaFunction*>(script->function.get());
-            delay = script->delay;
-            if (function == nullptr || !function->obstacle().empty() || !script->breaks.empty() || script->period > 0)
-                return {};
-            terms = function->formula()->terms(from - delay);
-            if (terms.empty()) return {};
+        model::Term term = component.term;
+        if (const lua::LuaFunction* function = read_function(component)) {
+            std::get<model::Scripted>(term).period = function->formula()->period();
         }
-        for (model::Term& term : terms) {
-            const auto one = model::Excitation::make(std::move(term));
-            if (!one) return {};
-            sum = sum + one->delayed(delay).scaled(component.gain).windowed(component.from, component.to);
-        }
+        const auto made = model::Excitation::make(std::move(term));
+        if (!made) return M;
+        sum = sum + made->scaled(component.gain).windowed(component.from, component.to);
     }
     return sum;
 }

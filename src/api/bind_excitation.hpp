@@ -13,10 +13,12 @@ namespace dinal::api {
 /// Raises a sentence headed by `what` for anything else, about that option if it is one.
 model::Excitation to_excitation(lua_State* L, int index, std::string_view what, std::string_view option = "");
 
-/// The functions in M as native terms, to rounding, from a time on. None where one is no sum of such terms, or where
-/// something else runs in Lua meanwhile, which may change what M depends on.
+/// The functions in M as native terms, to rounding, from one time to another. None where one is no such sum on each of
+/// its pieces, or where something else runs in Lua meanwhile, which may change what M depends on.
 std::optional<model::Excitation> terms_alone(lua_State* L, const model::Oscillator& system, const model::Excitation& M,
-                                             double from, const model::Extras& extras);
+                                             double from, double to, const model::Extras& extras);
+/// The same M, whose functions have the periods that they are proven to have.
+model::Excitation with_periods(lua_State* L, const model::Excitation& M);
 
 /// Pushes the excitation of one term, or raises what is wrong with it.
 int push_term(lua_State* L, model::Term term);

@@ -57,11 +57,6 @@ source::Task asked_task(lua_State* L, const lua::Options& options, const RunOpti
                       .rows = motion::Grid::at(asked.times),
                       .integrator = {},
                       .extras = read_extras(L, options)};
-    const auto terms =
-        integrator == nullptr ? terms_alone(L, system, task.excitation, asked.t_start, task.extras) : std::nullopt;
-    task.integrator = integrator != nullptr
-                          ? *integrator
-                          : motion::integrator_for(system, terms ? *terms : task.excitation, task.extras);
     lua_pop(L, 1);
     check_relays(options, task.excitation, task.extras);
     if (!asked.t_end && asked.times.empty()) {
@@ -69,6 +64,12 @@ source::Task asked_task(lua_State* L, const lua::Options& options, const RunOpti
     }
     // The latest time and not the last one: times that do not increase are an error of their own.
     task.window.end = asked.t_end ? *asked.t_end : *std::max_element(asked.times.begin(), asked.times.end());
+    const auto terms = integrator == nullptr
+                           ? terms_alone(L, system, task.excitation, asked.t_start, task.window.end, task.extras)
+                           : std::nullopt;
+    task.integrator = integrator != nullptr
+                          ? *integrator
+                          : motion::integrator_for(system, terms ? *terms : task.excitation, task.extras);
     if (!options.has("times") && task.window.end > task.window.start) {
         constexpr double intervals = 1000;
         task.rows = motion::Grid::every(asked.dt.value_or((task.window.end - task.window.start) / intervals));
@@ -205,7 +206,7 @@ int run_task(lua_State* L, const lua::Options& options, source::Origin origin, d
     const motion::Limits limits = limits_of(dense);
     const source::Task& asked = *run->origin;
     if (std::holds_alternative<motion::Exact>(asked.integrator)) {
-        run->terms = terms_alone(L, asked.system, asked.excitation, asked.window.start, asked.extras);
+        run->terms = terms_alone(L, asked.system, asked.excitation, asked.window.start, to, asked.extras);
     }
 
     const Memories memories(L, options, run->origin->excitation, from != run->origin->window.start);

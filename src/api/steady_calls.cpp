@@ -174,6 +174,12 @@ std::optional<double> period_or_fail(const lua::Options& options, const std::opt
     return period;
 }
 
+/// Functions in M that repeat say so, as native terms or by themselves.
+void find_period(lua_State* L, analysis::SteadyQuestion& question) {
+    const auto terms = terms_alone(L, question.system, question.excitation, 0, model::never, question.extras);
+    question.excitation = terms ? *terms : with_periods(L, question.excitation);
+}
+
 int steady_of_system(lua_State* L) {
     const model::Oscillator system = lua::self<model::Oscillator>(L, 1, steady_call.example);
     const lua::Options options(L, 2, steady_call);
@@ -192,10 +198,7 @@ int steady_of_system(lua_State* L) {
                                       .extras = read_extras(L, options)};
     lua_pop(L, 1);
     check_relays(options, question.excitation, question.extras);
-    if (const auto terms =
-            asked.period ? std::nullopt : terms_alone(L, system, question.excitation, 0, question.extras)) {
-        question.excitation = *terms;
-    }
+    if (!asked.period) find_period(L, question);
     question.drive = drive_or_fail(L, options, question, asked.period);
     return push_steady(L, options, std::move(question));
 }
@@ -217,7 +220,7 @@ int steady_of_run(lua_State* L) {
                                       .extras = task.extras};
     const motion::Trajectory& ended = run->trajectory;
     for (std::size_t i = 0; i < ended.state_count(); ++i) question.extras.states[i].start = ended.carried->states[i];
-    if (run->terms && !asked.period) question.excitation = *run->terms;
+    if (!asked.period) find_period(L, question);
     question.drive = drive_or_fail(L, options, question, asked.period);
     if (question.extras.any()) {
         question.drive.start = std::max(question.drive.start, ended.t_stop);

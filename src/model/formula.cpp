@@ -177,6 +177,21 @@ bool apply(Op op, double a, double b, double& to) {
     return operate(op, a, b, to);
 }
 
+double decision_of(Op op, double a, double b, double result) {
+    if (is_comparison(op)) return holds(op, a, b) ? 1 : 0;
+    switch (op) {
+        case Op::abs:
+            return a < 0 ? -1 : 1;
+        case Op::modulo:
+        case Op::fmod:
+            return std::nearbyint((a - result) / b);
+        case Op::floor_divide:
+            return result;
+        default:
+            return static_cast<double>(to_whole(result));
+    }
+}
+
 Formula::Formula(std::vector<Step> steps, std::vector<double> registers, bool motion, std::size_t states,
                  std::size_t state_count)
     : steps_(std::move(steps)),

@@ -71,6 +71,10 @@ enum class Op : std::uint16_t {
 /// The operation on two registers (of one operand: the same twice); false where it fails, as a whole number // 0 does.
 bool apply(Op op, double a, double b, double& to);
 
+/// Which piece of an operation a result lies on: whether a comparison holds, the sign within abs, the whole part of a
+/// quotient.
+double decision_of(Op op, double a, double b, double result);
+
 /// A register holds either; a whole number in its bits.
 inline double from_whole(std::int64_t whole) {
     return std::bit_cast<double>(whole);
@@ -104,8 +108,11 @@ public:
         span_ = span, gave_up_ = false, unfinished_ = 0;
     }
 
-    /// Native terms whose sum it is, to rounding, from a time on; none where it is no such sum.
-    [[nodiscard]] std::vector<Term> terms(double from) const;
+    /// Native terms whose sum it is, to rounding, from a time on, as long as its conditions are what they are at the
+    /// time `inside`; none where it is no such sum.
+    [[nodiscard]] std::vector<Term> terms(double from, double inside) const;
+    /// After which time it is proven to repeat; 0 when that is not known, or when it is constant.
+    [[nodiscard]] double period() const;
 
     /// It compares, rounds or folds at all.
     [[nodiscard]] bool has_conditions() const { return has_conditions_; }

@@ -97,28 +97,184 @@ std::optional<TermSum> result_of(Op op, const TermSum& a, const TermSum& b) {
     }
 }
 
+/// What a value adds in each period: x(t + period) = x(t) + slope period. A period of 0 stands for any.
+struct Repeating {
+    double slope = 0, period = 0;
+    std::optional<double> constant = {};
+    bool operator==(const Repeating&) const = default;
+};
+
+/// The least common period, if the longer one comes a few times in it.
+std::optional<double> common_period(double a, double b) {
+    if (a == 0 || b == 0) return a + b;
+    constexpr int most_beats = 60;
+    for (int n = 1; n <= most_beats; ++n) {
+        const double common = n * std::max(a, b), times = common / std::min(a, b);
+        if (std::fabs(times - std::round(times)) <= 1e-12 * times) return common;
+    }
+    return {};
+}
+
+/// The same with a period in which it grows by a whole number of `steps`.
+std::optional<Repeating> in_steps(Repeating x, double step) {
+    if (x.slope == 0) return x;
+    const auto common = common_period(x.period, std::fabs(step / x.slope));
+    if (!common) return {};
+    x.period = *common;
+    return x;
+}
+
+std::optional<Repeating> repeats(Op op, const Repeating& a, const Repeating& b) {
+    const auto common = common_period(a.period, b.period);
+    if (!common) return {};
+    switch (op) {
+        case Op::move:
+        case Op::to_float:
+        case Op::exact:
+            return a;
+        case Op::add:
+        case Op::add_whole:
+            return Repeating{a.slope + b.slope, *common};
+        case Op::subtract:
+        case Op::subtract_whole:
+            return Repeating{a.slope - b.slope, *common};
+        case Op::negate:
+        case Op::negate_whole:
+            return Repeating{-a.slope, a.period};
+        case Op::multiply:
+        case Op::multiply_whole:
+            if (a.constant) return Repeating{*a.constant * b.slope, b.period};
+            if (b.constant) return Repeating{a.slope * *b.constant, a.period};
+            break;
+        case Op::divide:
+        case Op::floor_divide:
+        case Op::divide_whole: {
+            if (!b.constant || *b.constant == 0) break;
+            const Repeating quotient{a.slope / *b.constant, a.period};
+            return op == Op::divide ? quotient : in_steps(quotient, 1);
+        }
+        case Op::floor:
+        case Op::ceil:
+            return in_steps(a, 1);
+        case Op::modulo:
+        case Op::modulo_whole: {
+            const auto turned = b.constant && *b.constant != 0 ? in_steps(a, *b.constant) : std::nullopt;
+            if (!turned) break;
+            return Repeating{0, turned->period};
+        }
+        case Op::sin:
+        case Op::cos:
+        case Op::tan: {
+            const auto turned = in_steps(a, 2 * std::numbers::pi);
+            if (!turned) return {};
+            return Repeating{0, turned->period};
+        }
+        default:
+            break;
+    }
+    if (a.slope != 0 || b.slope != 0) return {};
+    return Repeating{0, *common};
+}
+
 }  // namespace
 
-std::vector<Term> Formula::terms(double from) const {
-    if (has_conditions_) return {};
+double Formula::period() const {
+    using Registers = std::vector<std::optional<Repeating>>;
+    if (motion_ || state_count_ != 0) return 0;
+    std::map<std::size_t, Registers> ways;  // what comes to a step
+    std::optional<double> all = 0;
+    const auto take = [&all](const std::optional<Repeating>& x) {
+        all = all && x && x->slope == 0 ? common_period(*all, x->period) : std::nullopt;
+    };
+    const auto lead = [&ways](std::size_t to, const Registers& now) {
+        Registers& there = ways.try_emplace(to, now).first->second;
+        for (std::size_t i = 0; i < now.size(); ++i) {
+            if (there[i] == now[i]) continue;
+            const bool alike = there[i] && now[i] && there[i]->slope == now[i]->slope;
+            const auto common = alike ? common_period(there[i]->period, now[i]->period) : std::nullopt;
+            there[i] = common ? std::optional(Repeating{now[i]->slope, *common}) : std::nullopt;
+        }
+    };
+    lead(0, Registers(registers_.size(), Repeating{}));
+    ways[0][0] = Repeating{.slope = 1};
+    // A constant is known by the operation that reads it, as a float or as a whole number.
+    std::vector<char> written(registers_.size(), 0);
+    written[0] = 1;
+    for (const Step& s : steps_) {
+        if (s.op < Op::less) written[s.to] = 1;
+    }
+    while (!ways.empty() && all) {
+        auto [at, now] = std::move(*ways.begin());
+        ways.erase(ways.begin());
+        const Step& s = steps_[at];
+        const auto read = [&](std::size_t i) {
+            if (written[i] != 0) return now[i];
+            const bool whole = (s.op >= Op::add_whole && s.op <= Op::exact) || s.op >= Op::less_whole;
+            const double value = whole ? static_cast<double>(to_whole(registers_[i])) : registers_[i];
+            return std::optional(Repeating{.constant = value});
+        };
+        const auto a = read(s.a), b = read(s.b);
+        if (s.op >= Op::less && s.op < Op::jump) {
+            take(a && b ? repeats(Op::subtract, *a, *b) : std::nullopt);
+            lead(s.yes, now), lead(s.no, now);
+        } else if (s.op == Op::jump) {
+            lead(s.yes, now);
+        } else if (s.op == Op::give || s.op == Op::give_whole) {
+            take(a);
+        } else if (s.op != Op::fail) {
+            now[s.to] = a && b ? repeats(s.op, *a, *b) : std::nullopt;
+            lead(at + 1, now);
+        }
+    }
+    return all.value_or(0);
+}
+
+std::vector<Term> Formula::terms(double from, double inside) const {
+    if (motion_ || state_count_ != 0) return {};
     std::vector<std::optional<TermSum>> registers;
     for (const double x : registers_) registers.push_back(TermSum{.powers = {x}});
     registers[0] = TermSum{.powers = {0, 1}};
-    if (motion_) registers[1] = registers[2] = std::nullopt;
-    if (state_count_ != 0) return {};
+    std::vector<double> r = registers_;
+    r[0] = inside;
     TermSum sum;
-    for (std::size_t at = 0;; ++at) {
+    for (std::size_t at = 0;;) {
         const Step& s = steps_[at];
+        const double x = r[s.a], y = r[s.b];
+        const auto &a = registers[s.a], &b = registers[s.b];
         if (s.op == Op::give_whole) {
-            sum.powers = {static_cast<double>(to_whole(registers_[s.a]))};
+            sum.powers = {static_cast<double>(to_whole(x))};
             break;
         }
-        if (s.op >= Op::less || !registers[s.a] || !registers[s.b]) {
-            if (s.op != Op::give || !registers[s.a]) return {};
-            sum = *registers[s.a];
+        if (s.op == Op::give) {
+            if (!a) return {};
+            sum = *a;
             break;
         }
-        registers[s.to] = result_of(s.op, *registers[s.a], *registers[s.b]);
+        if (s.op == Op::fail) return {};
+        double result = 0;
+        if (s.op >= Op::less) {
+            at = s.op == Op::jump || apply(s.op, x, y, result) ? s.yes : s.no;
+            continue;
+        }
+        if (!apply(s.op, x, y, result)) return {};
+        std::optional<TermSum> made;
+        const bool staircase = s.op == Op::floor || s.op == Op::ceil || s.op == Op::floor_divide;
+        if (staircase || (s.op >= Op::add_whole && s.op <= Op::exact)) {
+            made = TermSum{.powers = {result}};  // a constant of this piece
+        } else if (a && s.op == Op::abs) {
+            made = product_of(*a, {.powers = {x < 0 ? -1.0 : 1.0}});
+        } else if (a && b && (s.op == Op::modulo || s.op == Op::fmod)) {
+            if (!b->is_constant()) return {};
+            made = a;
+            made->add({.powers = {decision_of(s.op, x, y, result) * y}}, -1);
+        } else if (a && b) {
+            made = result_of(s.op, *a, *b);
+        }
+        // What has been calculated from constants keeps the bits that it has.
+        if (!made && a && b && a->is_constant() && b->is_constant()) made = TermSum{.powers = {result}};
+        registers[s.to] = made;
+        r[s.to] = result;
+        ++at;
     }
     std::vector<Term> made;
     if (sum.is_constant()) {

@@ -81,9 +81,9 @@ test("the story says once whether M was read, and which line was the reason wher
         return run:explain():gsub("%s+", " "), run
     end
     local story, run = told { M = function(t) return t > 3.001 and t < 3.002 and 500 or 0 end }
-    assert(story:find("M is read as a formula: the times at which its conditions change are events.", 1, true), story)
+    assert(story:find("M is read as a sum of native terms: the times at which its conditions change are events.", 1, true), story)
     assert(#run.events > 0 and run.gap == nil and not story:find("seen", 1, true), story)
-    assert(select(2, story:gsub("formula", "")) == 1, story)
+    assert(select(2, story:gsub("native terms", "")) == 1, story)
     story = told { M = function(t) return 30 * math.sin(t) end }
     assert(story:find("M is read as a sum of native terms.", 1, true), story)
     story, run = told { M = function(t, theta) return theta > 0 and 1 or 30 * math.cos(t) end }
