@@ -280,16 +280,16 @@ constexpr Standard standard[] = {{"math", "sin", Op::sin},
 class Reader {
 public:
     /// All values from outside come into the table at the index, which is the top.
-    Reader(lua_State* L, std::span<const std::string> states, int values) : L_(L), states_(states), values_(values) {}
+    Reader(lua_State* L, const Arguments& arguments, int values) : L_(L), arguments_(arguments), values_(values) {}
 
-    Reading read(int index, int arguments) {
+    Reading read(int index) {
         Reading reading;
         Way way;
         try {
-            start(way, index, arguments);
+            start(way, index);
             follow(std::move(way), {});
             while (!waiting_.empty()) follow_next();
-            reading.formula = formula(arguments);
+            reading.formula = formula();
         } catch (const Obstacle& obstacle) {
             const auto& [function, at] = place_;
             const bool known = function != nullptr && at < function->code.lines.size();
@@ -297,7 +297,7 @@ public:
                 known ? fmt::format("{}:{}: {}", function->file, function->code.lines[at], obstacle.why) : obstacle.why;
         }
         reading.outside = std::move(outside_);
-        reading.arguments = arguments;
+        reading.arguments = arguments_;
         return reading;
     }
 
@@ -666,7 +666,7 @@ private:
         for (int i = parameters; i < size; ++i) way[base + i] = {};
         way.frames.push_back(std::move(frame));
     }
-    void start(Way& way, int index, int arguments) {
+    void start(Way& way, int index) {
         lua_pushvalue(L_, index);
         lua_insert(L_, values_ + 1);
         lua_settop(L_, values_ + 1);
@@ -674,11 +674,20 @@ private:
             throw Obstacle{"it is not a Lua function"};
         lua_pushvalue(L_, -1);
         const int closure = keep();
-        way.registers.resize(4);
-        for (int i = 0; i < arguments; ++i) {
-            way[i] = i < 3 ? Known{.kind = Known::Kind::number, .constant = false} : Known{.kind = Known::Kind::states};
+        const int before = arguments_.of_speed ? 1 : 0, count = before + arguments_.count;
+        const Known number{.kind = Known::Kind::number, .constant = false};
+        way.registers.resize(5);
+        way[0] = number;
+        for (int i = 0; i < arguments_.count; ++i) {
+            const bool table = i == 3 || (i > 0 && !arguments_.bodies.empty());
+            way[before + i] = table ? Known{.kind = Known::Kind::states, .object = i % 3} : number;
         }
-        enter(way, closure, 0, arguments, 1);
+        if (arguments_.of_speed) {  // t, theta and velocity make room for it
+            used_ = 4;
+            for (const int i : {3, 2, 1}) emit(Op::move, i, i - 1, i - 1);
+            emit(Op::move, 0, first_state, first_state);
+        }
+        enter(way, closure, 0, count, 1);
     }
     /// Puts so many values, from a place on, where the caller of the innermost function wants them.
     void leave(Way& way, int from, int count) {
@@ -1134,33 +1143,40 @@ private:
         }
         push_kept(name.object);
         const char* text = lua_tostring(L_, -1);
-        const auto found = std::find(states_.begin(), states_.end(), text == nullptr ? "" : text);
+        const int table = way[b].object;  // 1: theta, 2: velocity
+        const std::vector<std::string>& names = table == 0 ? arguments_.states : arguments_.bodies;
+        const auto found = std::find(names.begin(), names.end(), text == nullptr ? "" : text);
         lua_pop(L_, 1);
-        if (found == states_.end()) throw Obstacle{"it reads a state that does not exist"};
-        const int state = first_state + static_cast<int>(found - states_.begin());
+        if (found == names.end()) throw Obstacle{"it reads a state or a body that does not exist"};
+        const std::size_t tables_before = table == 0 ? 2 : static_cast<std::size_t>(table - 1);
+        const int state = first_state + (arguments_.of_speed ? 1 : 0) +
+                          static_cast<int>(tables_before * arguments_.bodies.size()) +
+                          static_cast<int>(found - names.begin());
         emit(Op::move, a, state, state);
         way[a] = {.kind = Known::Kind::number, .constant = false};
     }
 
     // ---- the end
 
-    model::Formula formula(int arguments) {
+    model::Formula formula() {
+        const std::size_t states = arguments_.state_count();
+        const bool motion = arguments_.count >= 3 && arguments_.bodies.empty();
         const auto used = static_cast<std::size_t>(std::max(used_, 3));
-        std::vector<double> registers(used + states_.size() + 2);
+        std::vector<double> registers(used + states + 2);
         registers.insert(registers.end(), constants_.begin(), constants_.end());
         const auto placed = [&](std::uint16_t place) -> std::uint16_t {
-            const std::size_t behind_states = used + states_.size();
+            const std::size_t behind_states = used + states;
             if (place >= first_constant) return static_cast<std::uint16_t>(behind_states + 2 + place - first_constant);
             if (place >= first_help) return static_cast<std::uint16_t>(behind_states + place - first_help);
             if (place >= first_state) return static_cast<std::uint16_t>(used + place - first_state);
             return place;
         };
         for (auto& step : steps_) step.to = placed(step.to), step.a = placed(step.a), step.b = placed(step.b);
-        return {std::move(steps_), std::move(registers), arguments >= 3, used, states_.size()};
+        return {std::move(steps_), std::move(registers), motion, used, states};
     }
 
     lua_State* L_;
-    std::span<const std::string> states_;
+    const Arguments& arguments_;
     int values_, count_ = 0;
     std::map<const void*, int> kept_;
     std::vector<OutsideValue> outside_;
@@ -1226,7 +1242,7 @@ void push_table(lua_State* L, const void* key) {
 
 }  // namespace
 
-Shared reading_of(lua_State* L, int index, int arguments, const std::vector<std::string>& states) {
+Shared reading_of(lua_State* L, int index, const Arguments& arguments) {
     luaL_checkstack(L, LUA_MINSTACK, "to read a function");
     const int top = lua_gettop(L), readings = top + 1, made = top + 2, values = top + 3;
     index = lua_absindex(L, index);
@@ -1235,7 +1251,7 @@ Shared reading_of(lua_State* L, int index, int arguments, const std::vector<std:
     if (lua_rawget(L, readings) == LUA_TUSERDATA) {
         Shared known = *static_cast<Shared*>(lua_touserdata(L, made));
         lua_getiuservalue(L, made, 1);
-        if (known->arguments == arguments && known->states == states && still_holds(L, *known, values)) {
+        if (known->arguments == arguments && still_holds(L, *known, values)) {
             lua_settop(L, top);
             return known;
         }
@@ -1246,8 +1262,7 @@ Shared reading_of(lua_State* L, int index, int arguments, const std::vector<std:
     push_table(L, &reading_class_key);
     lua_setmetatable(L, made);
     lua_newtable(L);
-    Shared fresh = std::make_shared<Reading>(Reader(L, states, values).read(index, arguments));
-    fresh->states = states;
+    Shared fresh = std::make_shared<Reading>(Reader(L, arguments, values).read(index));
     *place = fresh;
     lua_settop(L, values);
     lua_setiuservalue(L, made, 1);

@@ -26,16 +26,26 @@ struct OutsideValue {
     int value;         ///< likewise
 };
 
+/// What a function is called with: the first `count` of t, theta, velocity and the table of these states, with
+/// `of_speed` behind a speed. If there are bodies, theta and velocity are tables of them. The speed, the angles and
+/// velocities of the bodies and the states are the states of its formula, in this order.
+struct Arguments {
+    int count = 1;
+    bool of_speed = false;
+    std::vector<std::string> bodies = {}, states = {};
+    bool operator==(const Arguments&) const = default;
+    [[nodiscard]] std::size_t state_count() const { return (of_speed ? 1 : 0) + 2 * bodies.size() + states.size(); }
+};
+
 struct Reading {
     std::optional<model::Formula> formula;
     std::string obstacle;  ///< why there is none: "lab.lua:3: it assigns to a variable outside of it"
-    int arguments = 0;
-    std::vector<std::string> states;
+    Arguments arguments = {.count = 0};
     std::vector<OutsideValue> outside;
 };
 
-/// How the callable value at the index is read when it is called with the first `arguments` of t, theta, velocity and
-/// the table of these states. All who ask share one reading, until something outside is no longer as it was.
-std::shared_ptr<Reading> reading_of(lua_State* L, int index, int arguments, const std::vector<std::string>& states);
+/// How the callable value at the index is read. All who ask share one reading, until something outside is no longer as
+/// it was.
+std::shared_ptr<Reading> reading_of(lua_State* L, int index, const Arguments& arguments);
 
 }  // namespace dinal::lua

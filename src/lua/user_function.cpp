@@ -171,6 +171,7 @@ void CallState::name_bodies(const std::vector<std::string>& names) {
         push_state_table(L_, names, "body");
         *table = luaL_ref(L_, LUA_REGISTRYINDEX);
     }
+    body_names_ = names;
     bodies_ = kept_names(names);
 }
 
@@ -440,18 +441,22 @@ bool LuaFunction::is_allowed(double result) const {
     return std::isfinite(result) && (role_.may_be_negative || result >= 0);
 }
 
-/// How many arguments it is called with in a run that has so many states.
-int LuaFunction::arguments_in(const CallState& call, std::size_t states) const {
-    if (!feedback_) return 1;
-    return states != 0 && states == call.names_.size() ? 4 : 3;
+/// What it is called with in a run.
+Arguments LuaFunction::arguments_in(const CallState& call) const {
+    Arguments given{.count = feedback_ ? call.names_.empty() ? 3 : 4 : 1, .of_speed = role_.of_speed};
+    if (feedback_) given.bodies = call.body_names_, given.states = call.state_names_;
+    return given;
+}
+
+bool LuaFunction::fits(std::span<const double> states) const {
+    const std::size_t count = reading_->arguments.state_count();
+    return count == 0 || states.size() == count;
 }
 
 /// What it was read as, when all that this holds for constant is as it was; null where Lua must be asked: also when a
 /// hook looks on, or is to stop what runs.
 model::Formula* LuaFunction::formula(const CallState& call, std::size_t values) {
     if (lua_gethook(call.L_) != nullptr || start_ != LUA_NOREF) return nullptr;
-    if (role_.of_speed || (feedback_ && !call.bodies_.empty()))
-        return nullptr;  // other arguments than the reader knows
     const bool is_read = formula() != nullptr;
     if (is_read && seen_ == world) return &*reading_->formula;
     if (!is_read && tried_in_ == call.number_) return nullptr;
@@ -466,7 +471,6 @@ model::Formula* LuaFunction::formula(const CallState& call, std::size_t values) 
 void LuaFunction::look_again(const CallState& call) {
     constexpr std::uint64_t few = 8;
     constexpr std::uint64_t longest_pause = 1024;
-    const int arguments = arguments_in(call, call.names_.size());
     const bool new_call = tried_in_ != call.number_;
     pause_ = values_ < few ? std::min(2 * pause_, longest_pause) : 1;
     patience_ = pause_;
@@ -474,7 +478,7 @@ void LuaFunction::look_again(const CallState& call) {
     seen_ = world;
     tried_in_ = call.number_;
     push(call.L_);
-    reading_ = reading_of(call.L_, -1, arguments, arguments == 4 ? call.state_names_ : std::vector<std::string>());
+    reading_ = reading_of(call.L_, -1, arguments_in(call));
     lua_pop(call.L_, 1);
     if (new_call && reading_->formula) {
         reading_->formula->begin(call.span_);
@@ -497,10 +501,8 @@ bool LuaFunction::agrees(double read, CallState& call, double t, const model::St
 double LuaFunction::value_with(double t, const model::State& state, std::span<const double> states) {
     CallState* call = current;
     if (call == nullptr || call->failed_) return failure;
-    const int arguments = arguments_in(*call, states.size());
-    if (model::Formula* read = formula(*call, 1); read != nullptr && arguments == reading_->arguments) {
-        const std::span<const double> given = arguments == 4 ? states : std::span<const double>();
-        const double M = read->value(t, state, given);
+    if (model::Formula* read = formula(*call, 1); read != nullptr && fits(states)) {
+        const double M = read->value(t, state, states.first(reading_->arguments.state_count()));
         if (is_allowed(M) && agrees(M, *call, t, state, states)) return M;
     }
     const double M = ask(*call, t, state, states);
@@ -539,8 +541,7 @@ double LuaFunction::ask(CallState& call, double t, const model::State& state, st
 
 std::string LuaFunction::obstacle() {
     const bool is_read = current != nullptr && !current->failed_ && formula(*current, many) != nullptr;
-    return is_read || !reading_->obstacle.empty() ? reading_->obstacle
-                                                  : "a debug hook is set, or theta and velocity are tables";
+    return is_read || !reading_->obstacle.empty() ? reading_->obstacle : "a debug hook is set";
 }
 
 double LuaFunction::next_break(double t) {
@@ -595,7 +596,7 @@ std::size_t LuaFunction::fill(std::span<const double> times, std::span<double> o
     CallState* call = current;
     if (call == nullptr || call->failed_ || feedback_) return model::UserFunction::fill(times, out);
     std::size_t filled = 0;
-    if (model::Formula* read = formula(*call, times.size())) {
+    if (model::Formula* read = formula(*call, times.size()); read != nullptr && fits({})) {
         for (; filled < times.size(); ++filled) {
             out[filled] = read->value(times[filled], {}, {});
             if (!is_allowed(out[filled]) || !agrees(out[filled], *call, times[filled], {}, {})) break;

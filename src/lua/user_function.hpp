@@ -60,6 +60,7 @@ private:
     int state_table_ = LUA_NOREF;  // kept in the registry, as the names of the states
     std::vector<int> names_;
     int theta_table_ = LUA_NOREF, velocity_table_ = LUA_NOREF;
+    std::vector<std::string> body_names_;
     std::vector<int> bodies_;
     bool failed_ = false;         // and nobody has said that it may go on
     bool failed_before_ = false;  // the error is kept all the same
@@ -136,7 +137,9 @@ private:
     static constexpr std::size_t many = std::size_t{1} << 20U;
     void look_again(const CallState& call);
     bool agrees(double read, CallState& call, double t, const model::State& state, std::span<const double> states);
-    [[nodiscard]] int arguments_in(const CallState& call, std::size_t states) const;
+    [[nodiscard]] Arguments arguments_in(const CallState& call) const;
+    /// The states are those of its formula.
+    [[nodiscard]] bool fits(std::span<const double> states) const;
     double ask(CallState& call, double t, const model::State& state, std::span<const double> states);
     std::size_t ask(CallState& call, std::span<const double> times, std::span<double> out);
     [[nodiscard]] bool is_allowed(double result) const;

@@ -227,6 +227,28 @@ test("theta, velocity and states come in, and a run is the same to the last bit"
     end
 end)
 
+test("functions of several bodies, and of the speed, are read: a run is the same to the last bit", function()
+    local function unread(f) return function(...) return ({ f(...) })[1] end end
+    local M = function(t, theta, velocity, z) return math.sin(2 * t) - 0.3 * theta.b + 0.1 * velocity.a - 0.2 * z.e end
+    local friction = function(speed, t, theta, velocity) return 0.3 + 0.1 * speed + 0.05 * theta.a * velocity.b end
+    local alone = function(speed, t, theta) return 0.3 + 0.1 * speed + 0.05 * math.sin(theta) end
+    local function rig(of)
+        local run = system { bodies = { a = { I = 1, k = 4 }, b = { I = 2, k = 3, friction = of(friction), Re = 0.5 } },
+            links = { l = { "a", "b", k = 2 } } }:simulate { M = { a = of(M) }, theta0 = { b = 0.8 }, t_end = 10, dt = 0.1,
+            states = { e = { start = 0.1, rate = of(function(_, theta, _, z) return theta.a - z.e end) } } }
+        local one = system { I = 1, k = 4, friction = of(alone), Re = 0.5 }:simulate { theta0 = 2, t_end = 10, dt = 0.1 }
+        return run, one
+    end
+    local x, one = rig(function(f) return f end)
+    local y, other = rig(unread)
+    for n = 1, #x.t do
+        assert(same(x.a.theta[n], y.a.theta[n]) and same(x.b.velocity[n], y.b.velocity[n]), n)
+        assert(same(one.theta[n], other.theta[n]), n)
+    end
+    equal(#x.events, #y.events)
+    assert(#x.events > 3 and #one.events > 3)
+end)
+
 test("an error keeps its line, and a hook sees each call", function()
     support.raises_here(function()
         local f = function(t)
