@@ -142,16 +142,17 @@ private:
     bool wanted_, goes_on_;
 };
 
-/// All changes of the function were seen: it was read, and none of its conditions hangs on the motion.
-bool sees_all(const lua::LuaFunction* function) {
+/// All changes of the function were seen: it was read, and conditions of the motion were located, if there are some.
+bool sees_all(const lua::LuaFunction* function, bool locates) {
     const model::Formula* read = function == nullptr ? nullptr : function->formula();
-    return read != nullptr && !read->gave_up() && !read->has_conditions_of_motion();
+    return read != nullptr && !read->gave_up() && (locates || !read->has_conditions_of_motion());
 }
 
 /// Tells of the functions of M, belt and base how they were evaluated. Where the times of all changes are known, no
 /// pulse can have been missed.
 void note_readings(Run& run) {
     const model::Extras& extras = run.origin->extras;
+    const bool locates = run.trajectory.located;
     // Of a state's rate and of an event only values are known to the integrator.
     bool all_seen = extras.states.empty() && extras.events.empty();
     const std::pair<const char*, const model::Excitation&> excitations[] = {
@@ -161,7 +162,7 @@ void note_readings(Run& run) {
             const auto* script = std::get_if<model::Scripted>(&component.term);
             if (script == nullptr) continue;
             const auto* function = dynamic_cast<const lua::LuaFunction*>(script->function.get());
-            all_seen = all_seen && sees_all(function);
+            all_seen = all_seen && sees_all(function, locates);
             if (function == nullptr) continue;
             const model::Formula* read = function->formula();
             std::string told;
@@ -169,12 +170,15 @@ void note_readings(Run& run) {
                 if (function->last_obstacle().empty()) continue;
                 told = fmt::format("{} is evaluated in Lua ({}).", name, function->last_obstacle());
             } else {
-                told =
-                    fmt::format("{} is read as a {}{}{}.", name, run.terms ? "sum of native terms" : "formula",
-                                read->has_conditions() ? ": the times at which its conditions change are events" : "",
-                                read->has_conditions_of_motion()
-                                    ? ", except for conditions on theta, velocity or states, which are sampled"
-                                    : "");
+                const bool of_motion = read->has_conditions_of_motion();
+                const char* conditions =
+                    !read->has_conditions() ? ""
+                    : !of_motion            ? ": the times at which its conditions change are events"
+                    : locates
+                        ? ": the times at which its conditions change, also those on theta, velocity or states, are located"
+                        : ": the times at which its conditions change are events, except for conditions on theta, velocity or states, which are sampled";
+                told = fmt::format("{} is read as a {}{}.", name, run.terms ? "sum of native terms" : "formula",
+                                   conditions);
             }
             if (run.readings.find(told) == std::string::npos) run.readings += (run.readings.empty() ? "" : " ") + told;
         }

@@ -553,6 +553,36 @@ double LuaFunction::next_break(double t) {
     return found;
 }
 
+bool LuaFunction::has_pieces() {
+    if (current == nullptr || current->failed_) return false;
+    const model::Formula* read = formula(*current, many);
+    return read != nullptr && read->has_conditions_of_motion() && !read->gave_up();
+}
+
+void LuaFunction::decide(model::terms::Piece& piece, double t, const model::State& state,
+                         std::span<const double> states, std::uint64_t again) {
+    if (piece.owner != reading_) piece = {};
+    const bool good = has_pieces() && fits(states) && std::isfinite(value_with(t, state, states)) && reading_->formula;
+    if (!good || piece.owner != reading_) piece = {};
+    if (!good) return;
+    piece.owner = reading_;
+    reading_->formula->decide(piece, t, state, states.first(reading_->arguments.state_count()), again);
+}
+
+/// Where the formula has no value beyond its piece, the function itself is called.
+double LuaFunction::value_on(const model::terms::Piece& piece, double t, const model::State& state,
+                             std::span<const double> states, std::vector<double>* margins) {
+    double M = failure;
+    if (piece.owner == reading_ && reading_->formula && fits(states)) {
+        const std::size_t count = reading_->arguments.state_count();
+        M = reading_->formula->value_on(piece, t, state, states.first(count), margins);
+    } else if (margins != nullptr) {
+        margins->clear();
+    }
+    if (margins != nullptr) margins->resize(piece.conditions.size(), model::never);
+    return std::isfinite(M) ? M : value_with(t, state, states);
+}
+
 // Not after Ctrl-C, which means all of it.
 bool LuaFunction::may_go_on() {
     if (current == nullptr || interrupt_requested()) {

@@ -108,6 +108,11 @@ public:
     double value_with(double t, const model::State& state, std::span<const double> states) override;
     std::size_t fill(std::span<const double> times, std::span<double> out) override;
     double next_break(double t) override;
+    bool has_pieces() override;
+    void decide(model::terms::Piece& piece, double t, const model::State& state, std::span<const double> states,
+                std::uint64_t again) override;
+    double value_on(const model::terms::Piece& piece, double t, const model::State& state,
+                    std::span<const double> states, std::vector<double>* margins) override;
     bool may_go_on() override;
     void forget_failure() override;
     std::shared_ptr<model::terms::Memory> new_memory() override;

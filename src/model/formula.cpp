@@ -162,6 +162,8 @@ bool holds(Op op, double a, double b) {
     }
 }
 
+constexpr double failure = std::numeric_limits<double>::quiet_NaN();
+
 bool is_comparison(Op op) {
     return op >= Op::less && op <= Op::equal_whole;
 }
@@ -200,14 +202,18 @@ Formula::Formula(std::vector<Step> steps, std::vector<double> registers, bool mo
       states_(states),
       state_count_(state_count),
       has_conditions_(std::any_of(steps_.begin(), steps_.end(),
-                                  [](const Step& s) { return is_comparison(s.op) || is_fold(s.op); })) {}
+                                  [](const Step& s) { return is_comparison(s.op) || is_fold(s.op); })),
+      of_motion_(has_conditions_ && compares_the_motion()) {}
+
+void Formula::start(double t, const State& state, std::span<const double> states) {
+    registers_[0] = t;
+    if (motion_) registers_[1] = state.theta, registers_[2] = state.velocity;
+    std::copy(states.begin(), states.end(), registers_.begin() + static_cast<std::ptrdiff_t>(states_));
+}
 
 double Formula::value(double t, const State& state, std::span<const double> states) {
-    constexpr double failure = std::numeric_limits<double>::quiet_NaN();
+    start(t, state, states);
     double* const r = registers_.data();
-    r[0] = t;
-    if (motion_) r[1] = state.theta, r[2] = state.velocity;
-    std::copy(states.begin(), states.end(), r + states_);
     const Step* const first = steps_.data();
     for (const Step* s = first;;) {
         const double a = r[s->a], b = r[s->b];
@@ -234,6 +240,175 @@ double Formula::value(double t, const State& state, std::span<const double> stat
             default:
                 if (!operate(s->op, a, b, r[s->to])) return failure;
                 ++s;
+        }
+    }
+}
+
+// ---- conditions of the motion
+
+namespace {
+
+/// Its result is one of a row of constants, whatever it is made of.
+bool is_staircase(Op op) {
+    return op == Op::floor || op == Op::ceil || op == Op::floor_divide;
+}
+
+/// What a result depends on.
+std::uint64_t sources_of(Op op, std::uint64_t a, std::uint64_t b) {
+    return is_staircase(op) ? 0 : a | b;
+}
+
+/// The result on that piece, and beyond it.
+double result_on(Op op, double a, double b, double decision) {
+    switch (op) {
+        case Op::abs:
+            return decision < 0 ? -a : a;
+        case Op::modulo:
+        case Op::fmod:
+            return std::fma(-decision, b, a);  // exact, as the operation itself is
+        case Op::floor_divide:
+            return decision;
+        default:
+            return from_whole(static_cast<std::int64_t>(decision));
+    }
+}
+
+/// How many ends the piece has: one, or one below and one above. What is not equal has none: it is equal for no time.
+int conditions_of(Op op, double decision) {
+    return is_comparison(op) ? (op == Op::equal && decision == 0 ? 0 : 1) : op == Op::abs ? 1 : 2;
+}
+
+/// How far it is to these ends; an equality ends as soon as the two differ.
+std::pair<double, double> margins_of(Op op, double a, double b, double decision) {
+    switch (op) {
+        case Op::less:
+        case Op::less_equal:
+            return {decision != 0 ? b - a : a - b, never};
+        case Op::equal:
+            return {-std::fabs(a - b), never};
+        case Op::abs:
+            return {decision * a, never};
+        case Op::floor:
+            return {a - decision, decision + 1 - a};
+        case Op::ceil:
+            return {a - (decision - 1), decision - a};
+        case Op::fmod:
+            return {a / b - (decision > 0 ? decision : decision - 1), (decision < 0 ? decision : decision + 1) - a / b};
+        default:
+            return {a / b - decision, decision + 1 - a / b};
+    }
+}
+
+}  // namespace
+
+/// What each register depends on at the start.
+std::vector<std::uint64_t> Formula::sources() const {
+    std::vector<std::uint64_t> of(registers_.size());
+    std::uint64_t bit = 1;
+    if (motion_) of[1] = 1, of[2] = 2, bit = 4;
+    for (std::size_t k = 0; k < state_count_; ++k, bit = std::max(bit, bit << 1U)) of[states_ + k] = bit;
+    return of;
+}
+
+bool Formula::compares_the_motion() const {
+    using Sources = std::vector<std::uint64_t>;
+    std::map<std::size_t, Sources> ways;  // what comes to a step
+    const auto lead = [&ways](std::size_t to, const Sources& of) {
+        Sources& there = ways.try_emplace(to, of).first->second;
+        for (std::size_t i = 0; i < of.size(); ++i) there[i] |= of[i];
+    };
+    lead(0, sources());
+    while (!ways.empty()) {
+        auto [at, of] = std::move(*ways.begin());
+        ways.erase(ways.begin());
+        const Step& s = steps_[at];
+        const std::uint64_t both = of[s.a] | of[s.b];
+        if ((is_comparison(s.op) || is_fold(s.op)) && both != 0) return true;
+        if (is_comparison(s.op)) lead(s.no, of);
+        if (is_comparison(s.op) || s.op == Op::jump) {
+            lead(s.yes, of);
+        } else if (s.op < Op::give) {
+            of[s.to] = sources_of(s.op, of[s.a], of[s.b]);
+            lead(at + 1, of);
+        }
+    }
+    return false;
+}
+
+void Formula::decide(terms::Piece& piece, double t, const State& state, std::span<const double> states,
+                     std::uint64_t again) {
+    constexpr double whole_numbers = 0x1p53;
+    terms::Piece made{.decisions = std::vector<double>(steps_.size(), std::numeric_limits<double>::quiet_NaN()),
+                      .owner = piece.owner};
+    start(t, state, states);
+    std::vector<std::uint64_t> of = sources();
+    double* const r = registers_.data();
+    for (std::size_t at = 0; steps_[at].op < Op::give;) {
+        const Step& s = steps_[at];
+        const double a = r[s.a], b = r[s.b];
+        const std::uint64_t both = of[s.a] | of[s.b];
+        const bool compares = is_comparison(s.op);
+        double result = 0;
+        if (!compares && s.op != Op::jump && !operate(s.op, a, b, result)) break;
+        if (both != 0 && (compares || is_fold(s.op))) {
+            double decision = decision_of(s.op, a, b, result);
+            const double before = piece.decisions.empty() ? decision : piece.decisions[at];
+            // What has jumped along with another condition is not where it was.
+            const bool is_beside = s.op == Op::abs || std::fabs(decision - before) <= 1;
+            if ((both & again) == 0 && before == before && is_beside) decision = before;
+            if (std::fabs(decision) < whole_numbers) {
+                made.decisions[at] = decision;
+                const int conditions = conditions_of(s.op, decision);
+                const double below = compares ? 1 - decision : s.op == Op::abs ? -decision : decision - 1;
+                if (conditions > 0) made.conditions.push_back({at, below, both});
+                if (conditions > 1) made.conditions.push_back({at, decision + 1, both});
+                if (!compares) result = result_on(s.op, a, b, decision);
+            }
+        }
+        if (compares) {
+            const double decision = made.decisions[at];
+            at = (decision == decision ? decision != 0 : holds(s.op, a, b)) ? s.yes : s.no;
+        } else if (s.op == Op::jump) {
+            at = s.yes;
+        } else {
+            r[s.to] = result;
+            of[s.to] = sources_of(s.op, of[s.a], of[s.b]);
+            ++at;
+        }
+    }
+    piece = std::move(made);
+}
+
+double Formula::value_on(const terms::Piece& piece, double t, const State& state, std::span<const double> states,
+                         std::vector<double>* margins) {
+    start(t, state, states);
+    double* const r = registers_.data();
+    if (margins != nullptr) margins->clear();
+    for (std::size_t at = 0;;) {
+        const Step& s = steps_[at];
+        const double a = r[s.a], b = r[s.b], decision = piece.decisions[at];
+        const bool decided = decision == decision;
+        if (decided && margins != nullptr) {
+            const auto [below, above] = margins_of(s.op, a, b, decision);
+            const int conditions = conditions_of(s.op, decision);
+            if (conditions > 0) margins->push_back(below);
+            if (conditions > 1) margins->push_back(above);
+        }
+        if (is_comparison(s.op)) {
+            at = (decided ? decision != 0 : holds(s.op, a, b)) ? s.yes : s.no;
+        } else if (decided) {
+            r[s.to] = result_on(s.op, a, b, decision);
+            ++at;
+        } else if (s.op == Op::jump) {
+            at = s.yes;
+        } else if (s.op == Op::give) {
+            return a;
+        } else if (s.op == Op::give_whole) {
+            return static_cast<double>(to_whole(a));
+        } else if (operate(s.op, a, b, r[s.to])) {
+            ++at;
+        } else {
+            return failure;
         }
     }
 }
@@ -277,7 +452,6 @@ public:
     /// After a look that saw several ways: at which part of the interval another one may begin; NaN when nothing is
     /// known.
     [[nodiscard]] double part() const { return part_; }
-    [[nodiscard]] bool of_motion() const { return of_motion_; }
 
 private:
     static constexpr std::uint64_t prime = 0x100000001b3U;
@@ -290,7 +464,6 @@ private:
             if (is_comparison(s.op)) {
                 if (a.of_motion || b.of_motion) {
                     constexpr int most_forks = 64;
-                    of_motion_ = true;
                     std::vector<Range> copy = r;
                     if (++forks_ > most_forks || !follow(s.yes, copy)) return false;
                     at = s.no;
@@ -346,10 +519,7 @@ private:
 
     /// Rounding keeps the order, so what the ends give holds what lies between.
     Range of(Op op, Range a, Range b) {
-        if (a.of_motion || b.of_motion) {
-            of_motion_ = of_motion_ || is_fold(op);
-            return {};
-        }
+        if (a.of_motion || b.of_motion) return {};
         if (a.is_one() && b.is_one()) {
             Range one;
             fails_ = !operate(op, a.lo, b.lo, one.lo);
@@ -534,7 +704,7 @@ private:
     double part_ = 0;
     std::uint64_t seen_ = 0;
     int forks_ = 0;
-    bool of_motion_ = false, fails_ = false;
+    bool fails_ = false;
 };
 
 namespace {
@@ -615,7 +785,6 @@ double Formula::search(double t) {
         const auto [from, to] = parts.back();
         parts.pop_back();
         const auto seen = look.over(from, to);
-        of_motion_ = of_motion_ || look.of_motion();
         if (seen == way) continue;
         if (!seen && ++looks < most_looks && from < to) {
             const double middle = cut(from, to, look.part(), looks);

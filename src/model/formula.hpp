@@ -99,6 +99,11 @@ public:
     /// NaN where the function must be asked.
     [[nodiscard]] double value(double t, const State& state, std::span<const double> states);
 
+    /// See terms::UserFunction. Bits stand for theta and velocity, with `motion`, and then the states.
+    void decide(terms::Piece& piece, double t, const State& state, std::span<const double> states, std::uint64_t again);
+    [[nodiscard]] double value_on(const terms::Piece& piece, double t, const State& state,
+                                  std::span<const double> states, std::vector<double>* margins);
+
     /// The first time after t at which a condition of t changes: a comparison, the sign within abs, the step of floor,
     /// ceil, // or %. It is the very double at which the function itself sees the change.
     [[nodiscard]] double next_break(double t);
@@ -116,7 +121,7 @@ public:
 
     /// It compares, rounds or folds at all.
     [[nodiscard]] bool has_conditions() const { return has_conditions_; }
-    /// Such a condition hangs on theta, velocity or a state, as far as next_break() has met it.
+    /// Such a condition depends on theta, velocity or a state.
     [[nodiscard]] bool has_conditions_of_motion() const { return of_motion_; }
     /// The times of its conditions could not be found in bounded work: next_break() says `never`.
     [[nodiscard]] bool gave_up() const { return gave_up_; }
@@ -125,13 +130,16 @@ private:
     struct Range;
     class Look;
     double search(double t);
+    [[nodiscard]] std::vector<std::uint64_t> sources() const;
+    [[nodiscard]] bool compares_the_motion() const;
+    void start(double t, const State& state, std::span<const double> states);
     bool is_dubious(double t, double found);
 
     std::vector<Step> steps_;
     std::vector<double> registers_;
     bool motion_;
     std::size_t states_, state_count_;
-    bool has_conditions_, of_motion_ = false, gave_up_ = false;
+    bool has_conditions_, of_motion_, gave_up_ = false;
     std::map<double, double> known_;  ///< from a time to the next break
     int unfinished_ = 0;              ///< searches that ended before they found one
     double span_ = 1, greatest_ = 0;  ///< value at some times

@@ -86,6 +86,7 @@ struct Trajectory {
     double gap = 0;    ///< the longest between two looks at a function M, time units; 0 where M tells when it changes
     double noise = 0;  ///< what keeps a function M from being smooth on any scale, torque
     std::size_t jumps = 0;                             ///< of a function M along the motion, each of which was located
+    bool located = false;                              ///< conditions of the motion in functions that were read
     std::optional<Rough> rough = {};                   ///< of Outcome::unresolved, where it is known
     std::vector<std::string> event_names = {};         ///< of the user's events, by Event::user
     std::shared_ptr<const Carried> carried = nullptr;  ///< of a run with more in it

@@ -37,6 +37,16 @@ public:
     double value(double t, const model::State& state) override { return value_with(t, state, {}); }
     double value_with(double t, const model::State& state, std::span<const double> states) override;
     std::size_t fill(std::span<const double> times, std::span<double> out) override;
+    // What is read is nothing but a function.
+    bool has_pieces() override { return function_->has_pieces(); }
+    void decide(model::terms::Piece& piece, double t, const model::State& state, std::span<const double> states,
+                std::uint64_t again) override {
+        function_->decide(piece, t, state, states, again);
+    }
+    double value_on(const model::terms::Piece& piece, double t, const model::State& state,
+                    std::span<const double> states, std::vector<double>* margins) override {
+        return function_->value_on(piece, t, state, states, margins);
+    }
     bool may_go_on() override { return !testimony_->found && function_->may_go_on(); }
     void forget_failure() override { function_->forget_failure(); }
 

@@ -87,8 +87,10 @@ test("the story says once whether M was read, and which line was the reason wher
     story = told { M = function(t) return 30 * math.sin(t) end }
     assert(story:find("M is read as a sum of native terms.", 1, true), story)
     story, run = told { M = function(t, theta) return theta > 0 and 1 or 30 * math.cos(t) end }
-    assert(story:find("is read as a formula: the times at which its conditions change are events, except for conditions on theta", 1, true), story)
-    assert(run.gap > 0)
+    assert(story:find("change, also those on theta, velocity or states, are located.", 1, true), story)
+    assert(run.gap == nil)
+    story = told { M = function(t, theta) return theta > 0 and 1 or 30 * math.cos(t) end, integrator = integrator.rk4 { h = 0.01 } }
+    assert(story:find("except for conditions on theta, velocity or states, which are sampled.", 1, true), story)
     local line = debug.getinfo(1, "l").currentline + 2
     story, run = told { belt = 0.5, M = function(t)
         local points = { t, 2 * t }

@@ -1,6 +1,7 @@
 // excitation.scripted, and every function that stands for M: what a user has written.
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <span>
 #include <vector>
@@ -20,6 +21,21 @@ public:
     /// Another one with the same content, for a run that goes on from here. None when that fails (and its owner knows
     /// why).
     [[nodiscard]] virtual std::shared_ptr<Memory> copy() const = 0;
+};
+
+/// The decisions of a function that was read, by its conditions of the motion: while they stay it is smooth. Bits stand
+/// for theta, velocity and the states.
+struct Piece {
+    struct Condition {
+        std::size_t step;  ///< of its formula
+        double beyond;     ///< the decision on the other side
+        std::uint64_t of;  ///< what it depends on
+    };
+    std::vector<double> decisions{};  ///< of each step; NaN where it has none
+    std::vector<Condition> conditions{};
+    std::shared_ptr<const void> owner{};  ///< what they were decided for
+
+    void cross(std::size_t condition) { decisions[conditions[condition].step] = conditions[condition].beyond; }
 };
 
 /// A user's function of t or of t, theta, velocity. Virtual because the core must not know who wrote it.
@@ -48,6 +64,19 @@ public:
     }
     /// The first time after t at which it is known to jump or kink; `never` when nothing is known.
     virtual double next_break(double /*t*/) { return never; }
+    /// Its conditions of theta, velocity and states are known.
+    virtual bool has_pieces() { return false; }
+    /// The piece at this moment. Decisions that the piece holds already stay, except those that depend on `again`.
+    virtual void decide(Piece& piece, double /*t*/, const State& /*state*/, std::span<const double> /*states*/,
+                        std::uint64_t /*again*/) {
+        piece = {};
+    }
+    /// The value with the decisions of the piece, also beyond it; `margins`, where given, are positive within, one for
+    /// each condition.
+    virtual double value_on(const Piece& /*piece*/, double t, const State& state, std::span<const double> states,
+                            std::vector<double>* /*margins*/) {
+        return value_with(t, state, states);
+    }
     /// After a failure: whether it may be asked again, at other times. What failed stays known to the owner.
     virtual bool may_go_on() { return true; }
     /// The run got past where it failed: what failed was asked for a motion that was tried, and was none.
@@ -126,9 +155,10 @@ inline constexpr TermText Scripted::about{
     "not step across them; with a period they repeat. M may also be the function itself. A "
     "function that is a formula (arithmetic, comparisons, if, for with constant bounds, math, "
     "numbers that it only reads) is read: it runs without Lua, with the same bits, and the "
-    "times at which its conditions change are breaks; see e:obstacle. A sum of constants, "
-    "powers of t, sines and exponentials runs as native terms do, equal to rounding, where the "
-    "run names no integrator.",
+    "times at which its conditions change are breaks; see e:obstacle. Runs with "
+    "integrator.spectral{} also locate its conditions on theta, velocity and states. A function "
+    "that is a sum of constants, powers of t, sines and exponentials between its breaks runs as "
+    "native terms do, equal to rounding, where the run names no integrator.",
     "M = excitation.scripted(function(t) return t % 3 < 2 and 1 or 0 end, { breaks = { 0, 2 }, period = 3 "
     "})\nprint(M(7), M:next_break(7))  --> 1.0\t8.0"};
 

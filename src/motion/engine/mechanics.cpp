@@ -178,6 +178,7 @@ Mechanics::Mechanics(const model::Assembly& system, const Drive& drive, const As
         loads_.emplace_back(load, &asking);
         nonlinear_ |= loads_.back().asks_the_motion();
     }
+    for (const model::OwnState& state : drive.states) rates_.emplace_back(&asking, state.rate.get(), 0);
     nonlinear_ |= !drive.states.empty();
     all_linear_ = !nonlinear_;
     bristles_.reserve(joints());
@@ -246,8 +247,7 @@ double Mechanics::sliding(std::size_t joint, const Slipping& how, double slip, c
             std::vector<double> with_speed(1, of_speed);
             const std::size_t from = asking_.named ? 0 : 2;
             with_speed.insert(with_speed.end(), at.y.begin() + static_cast<std::ptrdiff_t>(from), at.y.end());
-            const model::State state = asking_.named ? model::State{} : model::State{at.y[0], at.y[1]};
-            return friction.function->value_with(towards(at.t, at.side), state, with_speed);
+            return friction.function->value_with(towards(at.t, at.side), asking_.state(at.y), with_speed);
         };
         torque = speed < 0 ? 2 * asked(0) - asked(-speed) : asked(speed);  // with the slope that it has at 0
     } else if (!own.none()) {
@@ -326,7 +326,7 @@ void Mechanics::torques(const Moment& at, const Mode& mode, const std::vector<do
 }
 
 void Mechanics::rates(const Moment& at, double* out) const {
-    for (std::size_t k = 0; k < drive_.states.size(); ++k) out[k] = asking_.ask(*drive_.states[k].rate, at);
+    for (std::size_t k = 0; k < drive_.states.size(); ++k) out[k] = rates_[k].value(at);
     for (std::size_t b = 0; b < bristles_.size(); ++b) {
         const std::size_t joint = bristles_[b], k = drive_.states.size() + b;
         const double slips = velocity(joint, at.y) - belt(joint, at.t, at.side);

@@ -177,6 +177,20 @@ public:
     void for_each_signal(F f) const {
         each_signal(*this, f);
     }
+    /// The user's functions of the motion that are held to pieces at this time.
+    template <class F>
+    void for_each_piecewise(double t, F f) {
+        for_each_signal([&](Signal& s) { s.for_each_piecewise(t, f); });
+        for (Piecewise& rate : rates_) {
+            if (rate.has_pieces()) f(rate);
+        }
+    }
+    /// One of them has no pieces that are known.
+    [[nodiscard]] bool samples_the_motion() const {
+        bool samples = std::any_of(rates_.begin(), rates_.end(), [](const Piecewise& r) { return !r.has_pieces(); });
+        for_each_signal([&](const Signal& s) { samples = samples || s.samples_the_motion(); });
+        return samples;
+    }
     [[nodiscard]] std::vector<Signal>& loads() { return loads_; }
     [[nodiscard]] const std::vector<Signal>& loads() const { return loads_; }
 
@@ -210,7 +224,8 @@ private:
     std::vector<Contact> contacts_;
     std::vector<char> rubs_;
     std::vector<std::size_t> bristles_;
-    std::vector<double> jumps_;  ///< found, of belts
+    std::vector<Piecewise> rates_;  ///< of the states of the user
+    std::vector<double> jumps_;     ///< found, of belts
     bool nonlinear_ = false, all_linear_ = true, has_belts_ = false;
 };
 

@@ -85,6 +85,7 @@ Trajectory run(const Problem& problem, const Cut& cut) {
                                  .longest = cut.longest,
                                  .step = cut.step,
                                  .history_bytes = problem.course_bytes,
+                                 .only_located = cut.only_located,
                                  .joined_elsewhere = true});
     Trajectory trajectory;
     if (!extras.states.empty()) trajectory.own_names = column_names();
@@ -101,6 +102,8 @@ Trajectory run(const Problem& problem, const Cut& cut) {
     trajectory.motion_at_stop = run.motion_at_stop;
     trajectory.began_stuck = run.began_stuck;
     trajectory.rough = run.rough;
+    trajectory.located = run.located;
+    trajectory.jumps = run.jumps;
     trajectory.gap = run.gap;
     for (const model::WantedEvent& wanted : extras.events) trajectory.event_names.push_back(wanted.name);
     auto carried = std::make_shared<Left>();

@@ -9,6 +9,7 @@
 #include <limits>
 #include <map>
 #include <numbers>
+#include <tuple>
 
 #include "model/slide.hpp"
 #include "model/springs/user_spring.hpp"
@@ -50,13 +51,14 @@ public:
     void run();
 
 private:
-    enum class By { nobody, slip, release, wall, corner, relay, user, kink, stays };
+    enum class By { nobody, slip, release, wall, corner, relay, user, kink, stays, condition };
     struct Ending {
         double x = 1;
         By by = By::nobody;
         std::size_t which = 0;                ///< the joint, or the body of a relay
         int side = 0;                         ///< of a wall or corner, or the way of a release; or which relay
         std::vector<std::size_t> users = {};  ///< events of the user at this instant, in the order written
+        std::vector<std::pair<Piecewise*, std::size_t>> conditions = {};  ///< of functions that were read
     };
     /// What an exact look at a moment tells.
     struct Look {
@@ -121,6 +123,10 @@ private:
     void watch_bristles(std::size_t joint, Ending& ending);
     void watch_relays(Ending& ending);
     void watch_users(Ending& ending);
+    void watch_conditions(Ending& ending);
+    bool cross(const Ending& ending);
+    bool ends_before(double x);
+    void decide_conditions(const Moment& at, const Mode& mode);
     void record_turns(double until);
     [[nodiscard]] bool rubs_somewhere(std::size_t body) const;
 
@@ -187,6 +193,18 @@ private:
     std::vector<Half> came_from_;    ///< the events of the user that were told last
     std::vector<BeltSlope> slopes_;  ///< of the belts, now
     bool after_break_ = false, has_walls_ = false;
+    bool has_pieces_ = false;  ///< of a function of the motion whose conditions are known
+    bool samples_ = false;     ///< another function of the motion, whose conditions are not
+    bool has_jumped_ = true;   ///< all conditions are to be decided anew
+    struct {
+        const Piecewise* function = nullptr;
+        std::size_t step = 0;
+        double from = 0, t = -model::never;  ///< the decision that it had until then
+    } crossed_last_;
+    int to_and_fro_ = 0;      ///< crossings of one condition, each soon after the one before
+    int small_in_a_row_ = 0;  ///< jumps at conditions
+    double greatest_crossed_ = 0;
+    std::vector<int> standing_;  ///< of each body: 0 it moves, 1 a contact holds it, 2 and 3 it is about to leave
     Segment segment_;
     std::vector<double> breaks_;                  ///< found, and still ahead
     std::vector<std::pair<double, int>> echoes_;  ///< breaks that delays bring back
@@ -244,6 +262,8 @@ Engine::Engine(const AssemblyProblem& problem, AssemblyRun& result)
         }
     });
     for (const model::Body& body : problem.system.bodies) inertia_ += body.inertia;
+    mechanics_.for_each_piecewise(now_.hi, [this](Piecewise&) { has_pieces_ = true; });
+    samples_ = mechanics_.samples_the_motion();
     born_ = problem.before ? problem.before->born : now_.hi;
     asking_.past = [this](double t, Side side) { return history_->at(t, side); };
     const double run = problem.window.end - problem.window.start;
@@ -327,6 +347,7 @@ const std::vector<double>& Engine::departing() const {
 /// finite.
 bool Engine::look(const Moment& at, const Mode& mode, const Frame& frame, Look& result, std::optional<double> x) {
     const std::size_t joints = mechanics_.joints();
+    if (!x) decide_conditions(at, mode);
     auto& [belts, rates, loads, offsets, of_group, lacking] = scratch_;
     belts.assign(joints, 0), rates.assign(joints, 0);
     result.blurred = x && mechanics_.has_belts() ? solver_->blurred_by_belts(segment_) : 0;
@@ -875,7 +896,7 @@ void Engine::run() {
         }
         alive = advance();
     }
-    if (outcome_ == Outcome::reached_end || outcome_ == Outcome::stopped) {
+    if (outcome_ == Outcome::reached_end || outcome_ == Outcome::stopped || outcome_ == Outcome::chattering) {
         while (next_row_ < problem_.rows.count() && problem_.rows.time(next_row_) <= now_.hi && put_row(now_.hi, -2)) {
         }
     }
@@ -907,6 +928,7 @@ void Engine::run() {
     if (mode_.friction[0].way != Motion::stuck && !mode_.holds(0)) result_.motion_at_stop = mode_.friction[0].way;
     if (!mechanics_.rubs(0) && mode_.leans[0] == 0) result_.motion_at_stop = heading_[0];
     result_.outcome = outcome_;
+    result_.located = has_pieces_;
     keep_within_walls(y_);  // beside a wall its distance has digits that theta has not
     result_.t_start = problem_.window.start;
     result_.t_stop = now_.hi;
@@ -1120,6 +1142,7 @@ bool Engine::advance() {
     choose();
     if (!(segment_.h > 0)) return fail(Outcome::chattering);
     const Frame& present = *frame_;
+    decide_conditions({now_.hi, side(), departing()}, mode_);
     const auto attempt = solver_->solve(segment_, mode_, present, y_, departing());
     const double late = std::max(std::fabs(now_.hi), std::fabs(segment_.end));
     if (problem_.step > 0 && attempt == Collocation::Attempt::resolved && mechanics_.has_belts() && belt_jump_found()) {
@@ -1144,6 +1167,7 @@ bool Engine::advance() {
     Ending ending;
     watch(ending);
     if (outcome_ != Outcome::reached_end) return false;
+    if (ending.by == By::condition && ends_before(ending.x)) return true;
     record_turns(ending.x);
     if (!end_at(ending.x)) return false;
     return handle(ending);
@@ -1164,6 +1188,7 @@ bool Engine::end_at(double x) {
     if (x > -1) go_to(x);
     now_ = whole && segment_.to_the_end ? Clock{segment_.end, 0} : segment_.start.later(length);
     after_break_ = whole && segment_.to_break;
+    has_jumped_ = has_jumped_ || after_break_;
     mechanics_.forget_jumps(now_.hi);
     if (bad_time_ <= now_.hi) bad_time_ = model::never, mechanics_.forget_failure();
     while (!breaks_.empty() && breaks_.front() <= now_.hi) breaks_.erase(breaks_.begin());
@@ -1339,6 +1364,8 @@ bool Engine::handle(const Ending& ending) {
             edge_[j] = -ending.side;
             return !too_often() || fail(Outcome::chattering);
         }
+        case By::condition:
+            return cross(ending) && decide(true);
         case By::relay:
             mechanics_.loads()[j].toggle(index(ending.side));
             tell(EventKind::switched, static_cast<int>(j));
@@ -1399,6 +1426,7 @@ void Engine::watch(Ending& ending) {
         if (mechanics_.bristle(j) != nullptr) watch_bristles(j, ending);
     }
     watch_relays(ending);
+    if (has_pieces_) watch_conditions(ending);
     watch_users(ending);
     if (ending.x > -1 && ending.x < 1 && segment_.time(ending.x) >= segment_.end) ending.x = 1;
 }
@@ -1645,6 +1673,112 @@ void Engine::watch_relays(Ending& ending) {
     }
 }
 
+/// A velocity that a contact holds, or that is about to leave 0, is exact: when that begins, conditions of it are
+/// decided by what it is. Other decisions stay, for rounding would turn over what has just passed zero.
+void Engine::decide_conditions(const Moment& at, const Mode& mode) {
+    if (!has_pieces_) return;
+    std::uint64_t again = has_jumped_ ? ~std::uint64_t{0} : 0;
+    standing_.resize(n());
+    for (std::size_t i = 0; i < n(); ++i) {
+        const Slipping& how = mode.friction[i];
+        const bool leaves = mechanics_.rubs(i) && how.leaving && mode.leans[i] == 0;
+        const int now = leaves ? model::sign_of(how.way) > 0 ? 2 : 3 : mode.holds(i) || how.riding ? 1 : 0;
+        const std::size_t bit = problem_.system.named ? n() + i : 1;
+        if (now != 0 && now != standing_[i] && bit < 64) again |= std::uint64_t{1} << bit;
+        standing_[i] = now;
+    }
+    mechanics_.for_each_piecewise(at.t, [&](Piecewise& function) { function.decide(at, again); });
+    has_jumped_ = false;
+}
+
+/// Where a condition of a function that was read changes.
+void Engine::watch_conditions(Ending& ending) {
+    const bool at_standstill = ending.by == By::slip || ending.by == By::release || ending.by == By::stays;
+    const double before = ending.x - (at_standstill ? beside_standstill : 0);
+    std::vector<std::tuple<double, Piecewise*, std::size_t>> crossings;
+    std::vector<double> y, margins, first;
+    mechanics_.for_each_piecewise(now_.hi, [&](Piecewise& function) {
+        const std::size_t count = function.conditions().size();
+        if (count == 0) return;
+        std::vector<Nodes> values(count);
+        for (std::size_t j = 0; j < node_count; ++j) {
+            y.resize(y_.size());
+            for (std::size_t k = 0; k < y_.size(); ++k) y[k] = segment_.y[k][j];
+            function.margins({segment_.times[j], segment_.side(j), y}, margins);
+            for (std::size_t c = 0; c < count; ++c) values[c][j] = margins[c];
+        }
+        // What some ulps of the motion change in them is rounding.
+        std::vector<double> rounded(count, 0);
+        y = y_;
+        for (std::size_t k = 0; k < asking_.told; ++k) {
+            y[k] = y_[k] * (1 + 4 * rounding);
+            function.margins({segment_.times[0], segment_.side(0), y}, margins);
+            for (std::size_t c = 0; c < count; ++c) rounded[c] += std::fabs(margins[c] - values[c][0]);
+            y[k] = y_[k];
+        }
+        for (std::size_t c = 0; c < count; ++c) {
+            const auto exact = [&](double x) {
+                segment_.state(x, y);
+                function.margins({segment_.time(x), Side::at, y}, margins);
+                return margins[c];
+            };
+            if (!std::all_of(values[c].begin(), values[c].end(), [](double v) { return std::isfinite(v); })) continue;
+            // What M drives back may be on the wrong side already, by no more than rounding.
+            const double beyond = std::max(64 * rounding * greatest(values[c]), 16 * rounded[c]);
+            const auto clear =
+                std::find_if(values[c].begin(), values[c].end(), [beyond](double v) { return std::fabs(v) > beyond; });
+            const bool is_back = values[c][0] < -rounded[c] && clear != values[c].end() && *clear < 0;
+            Half half = 1;
+            const auto x = is_back ? std::optional(-1.0) : Watched(values[c], exact, rounded[c]).leaves(half, -1);
+            if (x && *x < before) crossings.emplace_back(*x, &function, c);
+        }
+    });
+    if (crossings.empty()) return;
+    double earliest = 1;
+    for (const auto& [x, function, condition] : crossings) earliest = std::min(earliest, x);
+    ending = {earliest, By::condition};
+    for (const auto& [x, function, condition] : crossings) {
+        if (x <= earliest + one_instant) ending.conditions.emplace_back(function, condition);
+    }
+}
+
+/// Something that is sampled may jump along with a condition, as a limit that two functions share: then the stretch is
+/// made again, up to there.
+bool Engine::ends_before(double x) {
+    constexpr double beside_end = 1e-6;
+    if (!samples_ || 1 + x < beside_end || 1 - x < beside_end) return false;
+    const double t = segment_.time(x);
+    breaks_.insert(std::lower_bound(breaks_.begin(), breaks_.end(), t), t);
+    return true;
+}
+
+/// Conditions that M drives back each time are let go: M is sampled from there on, and the run ends if that chatters.
+/// Jumps that are next to nothing, one after the other, are digits that somebody has cut off: noise, and no events.
+bool Engine::cross(const Ending& ending) {
+    constexpr double small = 1e-5, nothing = 1e-13;
+    constexpr int most_small = 30, most_to_and_fro = 200;
+    constexpr double soon = 1e-6;
+    bool all_small = true;
+    for (const auto& [function, condition] : ending.conditions) {
+        const auto [step, beyond, of] = function->conditions()[condition];
+        const bool back = crossed_last_.function == function && crossed_last_.step == step &&
+                          crossed_last_.from == beyond && now_.hi - crossed_last_.t <= soon * pace_;
+        to_and_fro_ = back ? to_and_fro_ + 1 : 0;
+        crossed_last_ = {function, step, function->decision(step), now_.hi};
+        const double before = function->value(here());
+        function->cross(condition);
+        const double jump = std::fabs(function->value(here()) - before);
+        greatest_crossed_ = std::max({greatest_crossed_, std::fabs(before), jump});
+        if (jump > nothing * greatest_crossed_) ++result_.jumps;
+        all_small = all_small && jump > nothing * greatest_crossed_ && jump < small * greatest_crossed_;
+    }
+    small_in_a_row_ = all_small ? small_in_a_row_ + 1 : 0;
+    if (!too_often() && to_and_fro_ < most_to_and_fro && small_in_a_row_ < most_small) return true;
+    mechanics_.for_each_piecewise(now_.hi, [](Piecewise& function) { function.let_go(); });
+    has_pieces_ = false;
+    return !problem_.only_located || fail(Outcome::unresolved);
+}
+
 double Engine::watched(std::size_t event, const Moment& at) const {
     return asking_.ask(*problem_.drive.events[event].when, at);
 }
@@ -1821,6 +1955,7 @@ bool Engine::hit(std::size_t joint, int wall) {
         y_[n() + b] = middle - Ia / (Ia + Ib) * relative;
     };
     velocity(-wall * e * before);
+    has_jumped_ = true;
     bool rests = e * before == 0;
     double rest = 0;
     if (!rests) {
@@ -1839,6 +1974,7 @@ bool Engine::hit(std::size_t joint, int wall) {
     }
     if (rests) {
         velocity(0);
+        has_jumped_ = true;
         if (rest > 0 && now_.after(rest) < std::min(mechanics_.next_break(now_.hi), problem_.window.end)) {
             std::vector<double> rates(mechanics_.states());
             mechanics_.rates(here(), rates.data());
@@ -1900,6 +2036,7 @@ bool Engine::act(std::size_t event, const std::vector<std::size_t>& told) {
         }
         if (!named) y_[0] = state.theta, y_[1] = state.velocity;
         keep_within_walls(y_);
+        has_jumped_ = true;
         for (std::size_t i = 0; i < n(); ++i) {
             if (y_[i] != before[i]) low_[i] = 0;
         }

@@ -57,6 +57,8 @@ struct AssemblyRun {
     double gap = 0;  ///< the longest between two looks at a user's function of the time
     model::Motion motion_at_stop = model::Motion::stuck;  ///< of the first body
     bool began_stuck = false;                             ///< the first body
+    bool located = false;                                 ///< conditions of the motion, all that there were
+    std::size_t jumps = 0;                                ///< at these conditions
     std::optional<Rough> rough = {};                      ///< of Outcome::unresolved, where it is known
     std::shared_ptr<const History> history;
     std::shared_ptr<const Carry> carry;
@@ -78,6 +80,7 @@ struct AssemblyProblem {
     double step = 0;                ///< of the classical Runge-Kutta method; 0: collocation
     bool works = false;             ///< integrate them: every function is asked about as often again
     std::size_t history_bytes = limits.memory / 4;
+    bool only_located = false;      ///< it ends where conditions of the motion prove too fine to locate
     bool joined_elsewhere = false;  ///< who asked joins runs that go on, and says what is at rest for good
 };
 

@@ -17,6 +17,11 @@ Signal::Signal(const model::Excitation& excitation, const Asking* asking)
         asks_the_motion_ |= part.of_motion;
         asks_functions_ |= part.function != nullptr || part.delayed != nullptr;
         asks_in_time_ |= (part.function != nullptr && !part.of_motion) || part.delayed != nullptr;
+        if (part.of_motion) {
+            const Piecewise made(asking_, part.function->function.get(), part.function->delay);
+            if (made.has_pieces()) held_.push_back(parts_.size());
+            part.piecewise = made;
+        }
         if (part.relay != nullptr) relays_.push_back(parts_.size());
         if (part.delayed != nullptr) delays_.push_back(part.delayed->by);
         parts_.push_back(part);
@@ -25,6 +30,7 @@ Signal::Signal(const model::Excitation& excitation, const Asking* asking)
 
 double Signal::value_of(std::size_t i, const Moment& at) const {
     const Part& part = parts_[i];
+    if (part.piecewise) return part.piecewise->value(at);
     if (part.function != nullptr) {
         const double t = towards(at.t - part.function->delay, at.side);
         return asking_->ask_at(*part.function->function, t, at.y);

@@ -39,9 +39,49 @@ struct Asking {
     }
     [[nodiscard]] double ask_at(model::UserFunction& function, double t, std::span<const double> y) const {
         if (y.empty()) return function.value(t, {});  // of the time alone
-        if (named) return function.value_with(t, {}, y.first(told));
-        return function.value_with(t, {y[0], y[1]}, y.first(told).subspan(2));
+        return function.value_with(t, state(y), states(y));
     }
+    [[nodiscard]] model::State state(std::span<const double> y) const {
+        return named ? model::State{} : model::State{y[0], y[1]};
+    }
+    [[nodiscard]] std::span<const double> states(std::span<const double> y) const {
+        return y.first(told).subspan(named ? 0 : 2);
+    }
+};
+
+/// A user's function of the motion. If its conditions of the motion are known, it is held to the piece between them.
+class Piecewise {
+public:
+    Piecewise(const Asking* asking, model::UserFunction* function, double delay)
+        : asking_(asking), function_(function), delay_(delay), has_pieces_(function->has_pieces()) {}
+
+    [[nodiscard]] bool has_pieces() const { return has_pieces_; }
+    [[nodiscard]] double value(const Moment& at) const {
+        if (piece_.conditions.empty()) return asking_->ask_at(*function_, time(at), at.y);
+        return function_->value_on(piece_, time(at), asking_->state(at.y), asking_->states(at.y), nullptr);
+    }
+    /// Decides the conditions at this moment; decisions stay, except those that depend on what `again` has bits for.
+    void decide(const Moment& at, std::uint64_t again) {
+        if (!has_pieces_) return;
+        function_->decide(piece_, time(at), asking_->state(at.y), asking_->states(at.y), again);
+    }
+    [[nodiscard]] const std::vector<model::terms::Piece::Condition>& conditions() const { return piece_.conditions; }
+    /// Positive as long as each condition stays as it was decided.
+    void margins(const Moment& at, std::vector<double>& out) const {
+        function_->value_on(piece_, time(at), asking_->state(at.y), asking_->states(at.y), &out);
+    }
+    [[nodiscard]] double decision(std::size_t step) const { return piece_.decisions[step]; }
+    void cross(std::size_t condition) { piece_.cross(condition); }
+    void let_go() { piece_ = {}; }
+
+private:
+    [[nodiscard]] double time(const Moment& at) const { return towards(at.t - delay_, at.side); }
+
+    const Asking* asking_;
+    model::UserFunction* function_;
+    double delay_;
+    bool has_pieces_;
+    model::terms::Piece piece_ = {};
 };
 
 class Signal {
@@ -67,6 +107,23 @@ public:
     [[nodiscard]] double constant_from() const { return excitation_.constant_from(); }
     void each_function(const std::function<void(model::UserFunction&)>& call) const { excitation_.each_function(call); }
     [[nodiscard]] const std::vector<double>& delays() const { return delays_; }
+    /// A function of the motion has no pieces that are known.
+    [[nodiscard]] bool samples_the_motion() const {
+        return std::any_of(parts_.begin(), parts_.end(),
+                           [](const Part& part) { return part.piecewise && !part.piecewise->has_pieces(); });
+    }
+    /// Its functions of the motion that act at this time; the others hold no piece.
+    template <class F>
+    void for_each_piecewise(double t, F f) {
+        for (const std::size_t i : held_) {
+            const model::Component& c = *parts_[i].component;
+            if (c.gain != 0 && t >= c.from && t < c.to) {
+                f(*parts_[i].piecewise);
+            } else {
+                parts_[i].piecewise->let_go();
+            }
+        }
+    }
 
     // Controllers.
     /// At the start of a run.
@@ -101,6 +158,7 @@ private:
         const model::RelayController* relay = nullptr;
         const model::DelayedController* delayed = nullptr;
         bool of_motion = false;
+        std::optional<Piecewise> piecewise = {};
     };
     [[nodiscard]] double sum(const Moment& at, bool of_motion) const;
     [[nodiscard]] double value_of(std::size_t i, const Moment& at) const;
@@ -109,7 +167,7 @@ private:
     const Asking* asking_ = nullptr;
     std::vector<Part> parts_;
     std::vector<Memory> memory_;
-    std::vector<std::size_t> relays_;
+    std::vector<std::size_t> relays_, held_;
     std::vector<double> delays_;
     bool asks_the_motion_ = false, asks_functions_ = false, asks_in_time_ = false;
 };

@@ -7,6 +7,19 @@
 
 namespace dinal::motion::spectral {
 
+namespace {
+
+/// Conditions of the motion that are known are located there.
+bool compares_the_motion(const model::Excitation& excitation) {
+    const auto& components = excitation.components();
+    return std::any_of(components.begin(), components.end(), [](const model::Component& component) {
+        const auto* script = std::get_if<model::Scripted>(&component.term);
+        return script != nullptr && script->feedback && script->function->has_pieces();
+    });
+}
+
+}  // namespace
+
 Resolution Spectral::resolution(const model::Oscillator& system) const {
     constexpr double parts = chebyshev::degree;
     const double own = longest_panel * system.natural_period();
@@ -26,6 +39,11 @@ double Spectral::longest(const Problem& problem) const {
 }
 
 Trajectory Spectral::run(const Problem& problem) const {
+    if (problem.extras != nullptr && compares_the_motion(problem.excitation)) {
+        Trajectory located =
+            engine::run(problem, {.tolerance = tolerance, .longest = longest(problem), .only_located = true});
+        if (located.located) return located;
+    }
     Trajectory trajectory;
     RowWriter rows(problem.system, problem.rows, trajectory);
     std::shared_ptr<Panels> panels;

@@ -1,0 +1,136 @@
+-- Conditions on theta, velocity and states in functions that are read: each change of one is located.
+package.path = "tests/lua/?.lua;" .. package.path
+local support = require "support"
+local test, near, equal = support.test, support.near, support.equal
+
+--- The same function, which is sampled: it calls what cannot be read.
+local function unread(f)
+    return function(...) return ({ f(...) })[1] end
+end
+
+test("feedback of the sign of theta: the period of a bang-bang motion is known", function()
+    local A, a = 0.5, 1.25
+    local run = system { I = 1, k = 0 }:simulate {
+        M = function(_, theta) return theta > 0 and -a or a end, theta0 = A, t_end = 50,
+    }
+    local T = 4 * math.sqrt(2 * A / a)
+    for n = 1, 9 do
+        local theta, velocity = run:at(n * T)
+        near(theta, A, 1e-13)
+        near(velocity, 0, 1e-13)
+        near((run:at((n - 0.5) * T)), -A, 1e-13)
+    end
+    local story = run:explain():gsub("%s+", " ")
+    assert(story:find("also those on theta, velocity or states, are located", 1, true), story)
+    equal(run.gap, nil)
+end)
+
+test("a spring with clearance, by max and min: its period is known", function()
+    local gap, k, v = 0.2, 9, 1
+    local run = system { I = 1, k = 0 }:simulate {
+        M = function(_, theta) return -k * (math.max(theta - gap, 0) + math.min(theta + gap, 0)) end,
+        velocity0 = v, t_end = 60,
+    }
+    local T = 4 * gap / v + 2 * math.pi / math.sqrt(k)
+    local theta, velocity = run:at(20 * T)
+    near(theta, 0, 1e-12)
+    near(velocity, v, 1e-12)
+end)
+
+test("an encoder costs one stretch a step, and its motion is that of its pieces", function()
+    local d, K, theta0, t_end = 0.05, 3, 0.52, 10
+    local f = function(_, theta) return -K * math.floor(theta / d) * d end
+    local run = system { I = 1, k = 1 }:simulate { M = f, theta0 = theta0, t_end = t_end }
+    -- between two steps theta is c + A cos(s - phase)
+    local theta, v, t, n, steps = theta0, 0, 0, 10, 0
+    while true do
+        local c = -K * n * d
+        local A, phase = math.sqrt((theta - c) ^ 2 + v * v), math.atan(v, theta - c)
+        local first, way = math.huge, 0
+        for _, edge in ipairs { { n * d, -1 }, { (n + 1) * d, 1 } } do
+            local r = (edge[1] - c) / A
+            for _, sign in ipairs { 1, -1 } do
+                local s = math.abs(r) <= 1 and (phase + sign * math.acos(r)) % (2 * math.pi) or math.huge
+                if s > 1e-9 and s < first and -A * math.sin(s - phase) * edge[2] > 0 then first, way = s, edge[2] end
+            end
+        end
+        if t + first > t_end then
+            near(run.theta[#run.theta], c + A * math.cos(t_end - t - phase), 1e-11)
+            break
+        end
+        theta, v = c + A * math.cos(first - phase), -A * math.sin(first - phase)
+        t, n, steps = t + first, n + way, steps + 1
+    end
+    assert(steps > 100, steps)
+end)
+
+test("short visits beyond a condition are not missed", function()
+    -- it turns just behind the threshold, for a very short time
+    for _, beyond in ipairs { 1e-2, 1e-4, 1e-6 } do
+        local top = 1
+        local run = system { I = 1, k = 1 }:simulate {
+            M = function(_, theta) return theta > top - beyond and 100 or 0 end, theta0 = 0, velocity0 = 1, t_end = 4,
+        }
+        -- behind it M = 100 pushes it on: theta - 100 = (top - beyond - 100) cos s + v sin s
+        local before, v = math.asin(top - beyond), math.sqrt(1 - (top - beyond) ^ 2)
+        local s = 4 - before
+        near(run.theta[#run.theta], 100 + (top - beyond - 100) * math.cos(s) + v * math.sin(s), 1e-9)
+    end
+end)
+
+test("read and sampled functions make the same motion", function()
+    math.randomseed(3)
+    local r = math.random
+    for _ = 1, 40 do
+        local a, b, c, d, e = r() - 0.5, r() - 0.5, 0.2 + r(), 1 + 2 * r(), 0.3 * r()
+        local functions = {
+            function(t, theta) return theta > a and c or e * math.sin(d * t) end,
+            function(t, theta, velocity) return velocity >= b and -c or math.max(theta, a) end,
+            function(t, theta, velocity) return math.abs(theta - a) * e + (theta * velocity > 0.02 and -c or c) end,
+            function(t, theta, velocity) return math.min(c, -velocity) + (t % 2 < 1 and theta > a and 1 or 0) end,
+        }
+        local f = functions[r(#functions)]
+        local sys = system { I = 1, C = 0.1, k = d, Rd = 0.05, Re = 0.06 + 0.1 * r() }
+        local function go(M) return sys:simulate { M = M, theta0 = 0.6 + a, t_end = 8 } end
+        local x, y = go(f), go(unread(f))
+        equal(x.status, y.status)
+        equal(#x.events, #y.events)
+        near((x.theta - y.theta):abs():max(), 0, 1e-8)
+    end
+end)
+
+test("a jump that drives the motion back from both sides ends the run with a sentence, sampled or read", function()
+    local f = function(_, theta, velocity) return theta + velocity > 0 and -1 or 1 end
+    for _, M in ipairs { f, unread(f) } do
+        local run = system { I = 1, k = 1 }:simulate { M = M, theta0 = 2.7, t_end = 40 }
+        equal(run.status, "failed")
+        assert(run.outcome:find "switched endlessly")
+        near(run.t_end, 4.8154495, 1e-6)
+    end
+end)
+
+test("digits that somebody cuts off are noise, not conditions", function()
+    local run = system { I = 1, k = 1 }:simulate { M = function(_, theta) return -math.floor(theta * 1e9) / 1e9 end, theta0 = 1, t_end = 1 }
+    near(run.theta[#run.theta], math.cos(math.sqrt(2)), 1e-7)
+    assert(run:explain():gsub("%s+", " "):find("which are sampled", 1, true), run:explain())
+end)
+
+test("rates of states and functions of several bodies are read as well", function()
+    local rate = function(_, theta, _, z) return (theta > 0.1 and 1 or -1) - 0.5 * z.z end
+    local function go(f)
+        return system { I = 1, k = 4, C = 0.1 }:simulate {
+            M = function(t, _, _, z) return 0.2 * z.z + math.sin(t) end, t_end = 10, states = { z = { start = 0, rate = f } },
+        }
+    end
+    near((go(rate).theta - go(unread(rate)).theta):abs():max(), 0, 1e-9)
+    local function rig(f)
+        return system { bodies = { a = { I = 1, k = 4 }, b = { I = 2, k = 3, Rd = 0.1, Re = 0.2 } }, links = { l = { "a", "b", k = 2 } } }
+            :simulate { M = { a = f }, theta0 = { b = 0.5 }, t_end = 10 }
+    end
+    local f = function(t, theta, velocity) return theta.b > 0.2 and math.sin(t) or -0.2 * velocity.a end
+    local x, y = rig(f), rig(unread(f))
+    near((x.a.theta - y.a.theta):abs():max(), 0, 1e-9)
+    equal(#x.events, #y.events)
+end)
+
+support.finish()
