@@ -556,6 +556,12 @@ void Collocation::judge(const Segment& s, const Mode& mode, const Frame& frame) 
     allowed_.assign(n_, 0);
     find_sizes(s);
     const double h = s.h, late = std::max(std::fabs(s.start.hi), std::fabs(s.end));
+    lost_by_belts_ = 0;
+    for (std::size_t joint = 0; joint < mechanics_.joints(); ++joint) {
+        if (!mechanics_.has_belt(joint)) continue;
+        const double lost = lost_in_time(cheb::fit(s.belts[joint]), late, h, fastest_belt_[joint]);
+        lost_by_belts_ = std::max(lost_by_belts_, lost);
+    }
     for (std::size_t i = 0; i < n_; ++i) {
         const double torques = sizes_[i];
         const Series load = cheb::fit(s.loads[i]);
@@ -631,7 +637,7 @@ double Collocation::blurred_by_belts(const Segment& s) const {
     double fastest = 0, inertia = 0;
     for (const double belt : fastest_belt_) fastest = std::max(fastest, belt);
     for (const model::Body& body : mechanics_.system().bodies) inertia += body.inertia;
-    return inertia * 256 * rounding * fastest / s.h;
+    return inertia * (256 * rounding * fastest + lost_by_belts_) / s.h;
 }
 
 /// Right before a body turns, where it is farthest: a spring or a law of friction may act there for a short while.

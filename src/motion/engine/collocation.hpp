@@ -113,6 +113,7 @@ private:
     double tolerance_, longest_, step_length_;
     std::size_t n_, m_;
     double bad_time_ = 0, unresolved_ = 0;
+    double lost_by_belts_ = 0;  ///< of the velocities of belts on the last stretch, because t is rounded
     std::vector<double> fastest_belt_, fastest_rate_;
     std::vector<double> allowed_;  ///< of each body's acceleration
     double seen_ = -model::never;  ///< where a load did what its series does not: looked at until it is behind
