@@ -487,7 +487,17 @@ text::Expected<std::string> test_sheet(const std::string& file) {
     auto text = files::read_file(file);
     if (!text) return text.error();
     api::add_lab_sheets({{file, std::move(text).value()}});
-    return api::lab_sheet_test();
+    auto tested = api::lab_sheet_test();
+    if (!tested) return tested.error();
+    std::string seen = std::move(tested).value();
+    const std::string name = fs::path(file).filename().string();
+    const std::string digits = name.substr(0, name.find_first_not_of("0123456789"));
+    const std::string number = seen.substr(6, seen.find(':') - 6);  // "Sheet 8: its title, ..."
+    if (!digits.empty() && digits != number) {
+        seen +=
+            fmt::format("{} holds sheet {}: change the name or the number in sheet({}, ...\n", name, number, number);
+    }
+    return seen;
 }
 
 }  // namespace dinal::prompt

@@ -158,30 +158,31 @@ test("wrong values are counted per student and question, not per process", funct
 end)
 
 test("a sheet of one's own is tested, seen as a student sees it, and marked", function()
-  shell(("mkdir mine; cp '%s/sheets/template.lua' mine/7-own.lua"):format(source))
-  local said = shell "dinal --test-sheet mine/7-own.lua"
-  assert(said:find("^Sheet 7: breaking loose, as student number 1 sees it\nlab.given%(7%) %-%-> { I = ") and
-    said:find('check("7b", ...)  half width of the dead zone, in rad; task 7.2', 1, true) and said:find "All answers are right", said)
-  said = shell "dinal --sheets mine -e 'lab.number(1) print(lab.given(7).k) check(\"7a\", lab.given(7).Rd)'"
-  assert(said:find "^%d+\n7a: this is Rd", said)
-  equal(shell "DINAL_SHEETS=mine dinal -e 'lab.number(1) print(#lab.experiment(7).t > 10)'", "true\n")
-  shell "mkdir own; echo 'lab.number(4711) check(\"7b\", lab.given(7).k)' > own/7-4711.lua"
-  assert(shell("dinal --sheets mine --mark own"):find "\n7%-4711.lua +4711 +%. +%- +0 of 2\n")
+  shell(("mkdir mine; cp '%s/sheets/template.lua' mine/8-own.lua"):format(source))
+  local said = shell "dinal --test-sheet mine/8-own.lua"
+  assert(said:find("^Sheet 8: breaking loose, as student number 1 sees it\nlab.given%(8%) %-%-> { I = ") and
+    said:find('check("8b", ...)  half width of the dead zone, in rad; task 8.2', 1, true) and said:find "All answers are right", said)
+  said = shell "dinal --sheets mine -e 'lab.number(1) print(lab.given(8).k) check(\"8a\", lab.given(8).Rd)'"
+  assert(said:find "^%d+\n8a: this is Rd", said)
+  equal(shell "DINAL_SHEETS=mine dinal -e 'lab.number(1) print(#lab.experiment(8).t > 10)'", "true\n")
+  shell "mkdir own; echo 'lab.number(4711) check(\"8b\", lab.given(8).k)' > own/8-4711.lua"
+  assert(shell("dinal --sheets mine --mark own"):find "\n8%-4711.lua +4711 +%. +%- +0 of 2\n")
   local function faulty(from, to, message)
-    local text = support.read(home .. "/mine/7-own.lua")
+    local text = support.read(home .. "/mine/8-own.lua")
     support.write(home .. "/faulty.lua", (text:gsub(from, to)))
     local answer = shell "dinal --test-sheet faulty.lua; echo $?"
     assert(answer:find(message, 1, true) and answer:find "\n1\n$", answer)
   end
-  faulty("{ given.Rd, ", "{ secret.Re, ", "sheet 7, student number 1, question a: the mistake")
+  faulty("{ given.Rd, ", "{ secret.Re, ", "sheet 8, student number 1, question a: the mistake")
   faulty('how = "Re/k",', "", "question b: needs how =")
   faulty("tolerance = 0.02,", "", "question a: needs tolerance = (relative), within = (absolute) or whole = true")
-  faulty("sheet%(7", "sheet(0", "the number must be a whole number from 1")
-  faulty("questions =", "question =", "sheet 7 needs questions = function(...)")
+  faulty("sheet%(8", "sheet(0", "the number must be a whole number from 1")
+  faulty("questions =", "question =", "sheet 8 needs questions = function(...)")
   faulty("title", "title title", "faulty.lua:8:")
   assert(shell("dinal --sheets hand-ins-nowhere; echo $?"):find "there is no sheet in 'hand%-ins%-nowhere'.*\n2\n$")
-  shell "cp mine/7-own.lua mine/8-own.lua"
-  assert(shell("dinal --sheets mine -e 'lab.number(1)'"):find "sheet 7 exists twice: give one of them another number")
+  shell "cp mine/8-own.lua mine/9-own.lua"
+  assert(shell("dinal --test-sheet mine/9-own.lua"):find("9-own.lua holds sheet 8: change the name or the number in sheet(8, ...", 1, true))
+  assert(shell("dinal --sheets mine -e 'lab.number(1)'"):find "sheet 8 exists twice: give one of them another number")
 end)
 
 test("--lab-marks needs a file that can be written", function()
