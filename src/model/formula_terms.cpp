@@ -204,7 +204,8 @@ double Formula::period() const {
         if (s.op < Op::less) written[s.to] = 1;
     }
     while (!ways.empty() && all) {
-        auto [at, now] = std::move(*ways.begin());
+        const std::size_t at = ways.begin()->first;
+        auto now = std::move(ways.begin()->second);
         ways.erase(ways.begin());
         const Step& s = steps_[at];
         const auto read = [&](std::size_t i) {
