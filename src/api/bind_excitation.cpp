@@ -75,8 +75,11 @@ std::optional<model::Excitation> squares(lua::LuaFunction& function, double from
     const double first = function.next_break(from), end = first + period * (1 - least);
     std::vector<model::Term> made;
     double base = 0, offset = 0;
-    for (double t = first; t < end; t = function.next_break(t)) {
-        const double width = std::min(function.next_break(t), first + period) - t;
+    double next = first;
+    while (next < end) {
+        const double t = next;
+        next = function.next_break(t);
+        const double width = std::min(next, first + period) - t;
         const auto terms = function.formula()->terms(t, t + width / 2);
         const auto* level = terms.size() == 1 ? std::get_if<model::Constant>(&terms.front()) : nullptr;
         if (level == nullptr || made.size() > most_pieces) return {};
@@ -108,7 +111,9 @@ std::optional<model::Excitation> native_of(lua::LuaFunction& function, double fr
         if (function.formula() == nullptr || n == most_pieces) return {};
         const auto piece = sum_of(function.formula()->terms(t, t + (next - t) / 2));
         if (!piece) return {};
-        sum = sum + piece->windowed(t, next < to ? next : model::never);
+        double until = model::never;
+        if (next < to) until = next;
+        sum = sum + piece->windowed(t, until);
         t = next;
     }
     return sum;

@@ -1725,7 +1725,7 @@ void Engine::watch_conditions(Ending& ending) {
             if (!std::all_of(values[c].begin(), values[c].end(), [](double v) { return std::isfinite(v); })) continue;
             // What M drives back may be on the wrong side already, by no more than rounding.
             const double beyond = std::max(64 * rounding * greatest(values[c]), 16 * rounded[c]);
-            const auto clear =
+            const auto* const clear =
                 std::find_if(values[c].begin(), values[c].end(), [beyond](double v) { return std::fabs(v) > beyond; });
             const bool is_back = values[c][0] < -rounded[c] && clear != values[c].end() && *clear < 0;
             Half half = 1;
