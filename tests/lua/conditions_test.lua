@@ -1,12 +1,7 @@
 -- Conditions on theta, velocity and states in functions that are read: each change of one is located.
 package.path = "tests/lua/?.lua;" .. package.path
 local support = require "support"
-local test, near, equal = support.test, support.near, support.equal
-
---- The same function, which is sampled: it calls what cannot be read.
-local function unread(f)
-    return function(...) return ({ f(...) })[1] end
-end
+local test, near, equal, unread = support.test, support.near, support.equal, support.unread
 
 test("feedback of the sign of theta: the period of a bang-bang motion is known", function()
     local A, a = 0.5, 1.25

@@ -1,12 +1,7 @@
 -- Functions of t whose pieces are sums of native terms.
 package.path = "tests/lua/?.lua;" .. package.path
 local support = require "support"
-local test, near, equal = support.test, support.near, support.equal
-
---- The same function, which is sampled: it calls what cannot be read.
-local function unread(f)
-    return function(...) return ({ f(...) })[1] end
-end
+local test, near, equal, unread = support.test, support.near, support.equal, support.unread
 
 test("pieces that are sums of native terms run by exact, and what repeats knows its period", function()
     local sys = system { I = 1, k = 5, Rd = 0.3, Re = 0.35 }

@@ -63,6 +63,11 @@ function support.raises_here(body, ...)
     return message
 end
 
+--- The same function, which is sampled: it calls what cannot be read.
+function support.unread(f)
+    return function(...) return ({ f(...) })[1] end
+end
+
 --- How many of n cases by lot are looked at: fewer where a sanitizer makes them slow, or somebody says so.
 function support.lots(n)
     return math.min(n, tonumber(os.getenv "DINAL_ORACLE_CASES") or n)

@@ -622,10 +622,8 @@ void Collocation::find_limits(Segment& s, const Mode& mode) const {
     std::vector<double> y;
     for (std::size_t joint = 0; joint < s.limits.size(); ++joint) {
         if (!mechanics_.limits_change(joint, mode)) continue;
-        y.resize(s.y.size());
         for (std::size_t j = 0; j < node_count; ++j) {
-            for (std::size_t k = 0; k < y.size(); ++k) y[k] = s.y[k][j];
-            const Moment at{s.times[j], s.side(j), y};
+            const Moment at = s.moment(j, y);
             s.limits[joint][0][j] = mechanics_.holding(joint, model::Motion::backward, at);
             s.limits[joint][1][j] = mechanics_.holding(joint, model::Motion::forward, at);
         }

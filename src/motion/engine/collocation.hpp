@@ -47,6 +47,12 @@ struct Segment {
         out.resize(y.size());
         for (std::size_t k = 0; k < y.size(); ++k) out[k] = at(k, x);
     }
+    /// At a node, with its y in `out`.
+    Moment moment(std::size_t node, std::vector<double>& out) const {
+        out.resize(y.size());
+        for (std::size_t k = 0; k < y.size(); ++k) out[k] = y[k][node];
+        return {times[node], side(node), out};
+    }
 };
 
 class Collocation {

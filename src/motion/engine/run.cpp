@@ -36,7 +36,9 @@ constexpr double at_once = 1e-9;       // events that follow each other within i
 constexpr int most_at_once = 200, most_short = 2000, most_attempts = 20000;
 constexpr double short_part = 1e-3;  // shorter than this part of the longest stretch is short
 constexpr double last_bounces = 1e-7, shortest_bounce = 1e-10;
-constexpr double most_blunt = 1e-9;  // of the torques: what passes its limit by more is no rounding
+constexpr double most_blunt = 1e-9;   // of the torques: what passes its limit by more is no rounding
+constexpr double no_motion = 1e-9;    // of the acceleration that the torques at a joint could give
+constexpr double little_more = 1e-7;  // of the torques: what a joint that comes to its limit will be short of next
 constexpr int most_echoes = 8;
 constexpr std::size_t most_found_breaks = 50;
 constexpr std::size_t most_passages = 200;
@@ -93,7 +95,7 @@ private:
     bool share_loops(const std::optional<Ending>& released);
     struct Box;
     bool box_of(const std::vector<std::size_t>& held, Box& box);
-    bool decide_together(const std::vector<char>& asked, const Mode& entered, std::size_t full);
+    bool decide_together(const std::vector<char>& asked, std::size_t full);
     void project(Side when);
     bool look(const Moment& at, const Mode& mode, const Frame& frame, Look& result, std::optional<double> x = {});
     [[nodiscard]] const std::vector<double>& departing() const;
@@ -180,8 +182,8 @@ private:
     Clock now_;
     std::vector<double> y_, low_;         ///< what the angles have rounded off
     std::vector<double> origin_, reach_;  ///< of each joint: the wall that it hit last, and how far it went from there
-    Mode mode_;
-    std::vector<char> crept_;                         ///< of each joint: it has come down to rounding, and may creep
+    Mode mode_, entered_;                 ///< now, and when the decision in progress began
+    std::vector<char> crept_;             ///< of each joint: it has come down to rounding, and may creep
     std::map<std::size_t, JointEvent> crept_events_;  ///< the sticking of what creeps, told when nothing moves it
     std::vector<Motion> arrived_;                     ///< of each joint: which way it slid until now; stuck: it did not
     std::vector<int> edge_;          ///< of each joint: the corner that its speed is at, 1 the upper one of its range
@@ -485,7 +487,7 @@ bool Engine::decide(bool told, std::optional<Ending> released) {
         if (released && how.leaving && !how.riding && !arrived) let_go[j] = how.way;
         how.way = Motion::stuck, how.riding = how.leaving = false;
     }
-    const Mode entered = mode_;
+    entered_ = mode_;
     const bool free = std::none_of(asked.begin(), asked.end(), [](char one) { return one != 0; });
     if (free && frame().edges.empty()) return true;
     project(side());
@@ -496,10 +498,10 @@ bool Engine::decide(bool told, std::optional<Ending> released) {
     const std::size_t full = released ? released->which : all_used ? last_full_ : joints;
     if (loops && !all_used && !share_loops(released)) return false;
     Look found;
-    const int most = all_used ? -1 : 8 * static_cast<int>(joints) + 16;
+    const int most = 8 * static_cast<int>(joints) + 16;
     for (int i = 0;; ++i) {
-        if (i > most) {
-            if (!decide_together(asked, entered, full)) return false;
+        if (all_used || i > most) {
+            if (!decide_together(asked, full)) return false;
             break;
         }
         const Frame& present = frame();
@@ -591,7 +593,7 @@ bool Engine::decide(bool told, std::optional<Ending> released) {
             changed = true;
         }
         if (changed) continue;
-        if (goes_round && !decide_together(asked, entered, full)) return false;
+        if (goes_round && !decide_together(asked, full)) return false;
         break;
     }
     project(side());
@@ -679,17 +681,14 @@ bool Engine::box_of(const std::vector<std::size_t>& held, Box& box) {
     return true;
 }
 
-constexpr double no_motion = 1e-9;    // of the acceleration that the torques at a joint could give
-constexpr double little_more = 1e-7;  // of the torques: what a joint that comes to its limit will be short of next
-
 /// What all joints at slip 0 do where asking one after the other goes round: the torques that solve the whole problem.
 /// What slips at the limit of holding has the torque of sliding, and with that the problem is solved again. The joint
 /// that came to its limit, if one did, is short of a little already.
-bool Engine::decide_together(const std::vector<char>& asked, const Mode& entered, std::size_t full) {
-    mode_ = entered;
+bool Engine::decide_together(const std::vector<char>& asked, std::size_t full) {
+    mode_ = entered_;
     std::vector<std::size_t> held;
     for (std::size_t j = 0; j < mechanics_.joints(); ++j) {
-        if (asked[j] != 0 || entered.leans[j] != 0) held.push_back(j);
+        if (asked[j] != 0 || mode_.leans[j] != 0) held.push_back(j);
     }
     Box box;
     if (!box_of(held, box)) return false;
@@ -1278,9 +1277,7 @@ std::vector<Kept::Acting> Engine::acting() {
             all[j].friction[0] = mechanics_.constant_friction(j, mode_);
         } else if (mechanics_.rubs(j) || mechanics_.bristle(j) != nullptr) {
             for (std::size_t node = 0; node < node_count; ++node) {
-                point_.resize(y_.size());
-                for (std::size_t k = 0; k < y_.size(); ++k) point_[k] = segment_.y[k][node];
-                const Moment at{segment_.times[node], segment_.side(node), point_};
+                const Moment at = segment_.moment(node, point_);
                 values[node] = mechanics_.friction(j, at, mode_, segment_.belts[j][node]);
             }
             all[j].friction = cheb::fit(values);
@@ -1631,9 +1628,7 @@ void Engine::watch_bristles(std::size_t joint, Ending& ending) {
 void Engine::watch_normal(std::size_t joint, Ending& ending) {
     Nodes values{};
     for (std::size_t j = 0; j < node_count; ++j) {
-        point_.resize(y_.size());
-        for (std::size_t k = 0; k < y_.size(); ++k) point_[k] = segment_.y[k][j];
-        values[j] = mechanics_.normal(joint, {segment_.times[j], segment_.side(j), point_});
+        values[j] = mechanics_.normal(joint, segment_.moment(j, point_));
     }
     std::vector<double> y;
     const auto exact = [&](double x) {
@@ -1657,9 +1652,7 @@ void Engine::watch_relays(Ending& ending) {
         for (std::size_t r = 0; r < load.relays(); ++r) {
             Nodes values{};
             for (std::size_t j = 0; j < node_count; ++j) {
-                point_.resize(y_.size());
-                for (std::size_t k = 0; k < y_.size(); ++k) point_[k] = segment_.y[k][j];
-                values[j] = load.until_switch(r, {segment_.times[j], segment_.side(j), point_});
+                values[j] = load.until_switch(r, segment_.moment(j, point_));
             }
             std::vector<double> y;
             const auto exact = [&](double x) {
@@ -1696,15 +1689,13 @@ void Engine::watch_conditions(Ending& ending) {
     const bool at_standstill = ending.by == By::slip || ending.by == By::release || ending.by == By::stays;
     const double before = ending.x - (at_standstill ? beside_standstill : 0);
     std::vector<std::tuple<double, Piecewise*, std::size_t>> crossings;
-    std::vector<double> y, margins, first;
+    std::vector<double> y, margins;
     mechanics_.for_each_piecewise(now_.hi, [&](Piecewise& function) {
         const std::size_t count = function.conditions().size();
         if (count == 0) return;
         std::vector<Nodes> values(count);
         for (std::size_t j = 0; j < node_count; ++j) {
-            y.resize(y_.size());
-            for (std::size_t k = 0; k < y_.size(); ++k) y[k] = segment_.y[k][j];
-            function.margins({segment_.times[j], segment_.side(j), y}, margins);
+            function.margins(segment_.moment(j, y), margins);
             for (std::size_t c = 0; c < count; ++c) values[c][j] = margins[c];
         }
         // What some ulps of the motion change in them is rounding.
@@ -1794,9 +1785,7 @@ void Engine::watch_users(Ending& ending) {
         Watch& watch = watches_[e];
         Nodes values{};
         for (std::size_t j = 0; j < node_count; ++j) {
-            point_.resize(y_.size());
-            for (std::size_t k = 0; k < y_.size(); ++k) point_[k] = segment_.y[k][j];
-            values[j] = watched(e, {segment_.times[j], segment_.side(j), point_});
+            values[j] = watched(e, segment_.moment(j, point_));
             if (std::isfinite(values[j])) continue;
             fail(Outcome::excitation_not_finite);
             return;
