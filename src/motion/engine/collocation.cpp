@@ -17,8 +17,6 @@ constexpr double gross = 1e3;            // not resolved by more than this facto
 constexpr std::size_t most_factors = 24;
 const double smallest = std::numeric_limits<double>::min() / rounding;
 
-using NodeVector = Eigen::Matrix<double, node_count, 1>;
-
 /// Row i: the integral from -1 to node i of the polynomial through values at the nodes.
 using Integration = Eigen::Matrix<double, node_count, node_count>;
 const Integration& integration() {
@@ -37,14 +35,52 @@ const Integration& integration() {
     return weights;
 }
 
-/// The integral from the first node to each, of what has these values.
-void integrate(const Nodes& values, double h, Nodes& sums) {
-    const Eigen::Map<const NodeVector> f(values.data());
-    Eigen::Map<NodeVector> F(sums.data());
-    F.noalias() = h * (integration() * f);
+/// The eigenvalues of the integration to the nodes but the first, one of each conjugate pair, and their coefficients in
+/// what has given values at the nodes: real and imaginary parts.
+struct IntegrationModes {
+    using Matrix = Eigen::Matrix<double, node_count - 1, node_count - 1>;
+    std::vector<std::complex<double>> values{};
+    std::vector<std::pair<int, int>> places{};  ///< of the parts of a coefficient; -1 where it is real
+    Matrix from_nodes, to_nodes;
+};
+const IntegrationModes& integration_modes() {
+    static const IntegrationModes modes = [] {
+        IntegrationModes made;
+        const IntegrationModes::Matrix once = integration().bottomRightCorner<node_count - 1, node_count - 1>();
+        const Eigen::EigenSolver<IntegrationModes::Matrix> solver(once);
+        int column = 0;
+        for (int i = 0; i < once.rows(); ++i) {
+            const std::complex<double> value = solver.eigenvalues()(i);
+            if (value.imag() < 0) continue;
+            made.values.push_back(value);
+            made.places.emplace_back(column, value.imag() > 0 ? column + 1 : -1);
+            made.to_nodes.col(column++) = solver.eigenvectors().col(i).real();
+            if (value.imag() > 0) made.to_nodes.col(column++) = -solver.eigenvectors().col(i).imag();
+        }
+        made.from_nodes = made.to_nodes.inverse();
+        return made;
+    }();
+    return modes;
 }
 
 }  // namespace
+
+/// A matrix of `inner` rows, column after column, times a vector.
+void Collocation::multiply(const double* matrix, const double* vector, std::size_t columns, double* product) {
+    using Column = Eigen::Matrix<double, inner, 1>;
+    Column sums = Column::Zero();
+    for (std::size_t j = 0; j < columns; ++j) sums += vector[j] * Eigen::Map<const Column>(matrix + j * inner);
+    Eigen::Map<Column> result(product);
+    result = sums;
+}
+
+/// The integral from the first node to each, of what has these values.
+void Collocation::integrate(const Nodes& values, double h, Nodes& sums) {
+    static const Eigen::Matrix<double, inner, node_count> rows = integration().bottomRows<inner>();
+    multiply(rows.data(), values.data(), node_count, sums.data() + 1);
+    sums[0] = 0;
+    for (double& sum : sums) sum *= h;
+}
 
 Collocation::Collocation(const Mechanics& mechanics, double tolerance, double longest, double step)
     : mechanics_(mechanics),
@@ -63,21 +99,27 @@ Collocation::Collocation(const Mechanics& mechanics, double tolerance, double lo
 /// All that depends on the time alone. False when one of the user's functions has failed.
 bool Collocation::sample(Segment& s, const Mode& mode, const Frame& frame, const std::vector<double>& begin) {
     const std::size_t joints = mechanics_.joints();
-    s.y.resize(2 * n_ + m_), s.f.resize(2 * n_ + m_), s.series.resize(2 * n_ + m_);
-    s.moved.assign(n_, {}), s.loads.resize(n_), s.driven.resize(n_), s.torques.resize(n_);
-    s.belts.resize(joints), s.belt_rates.resize(joints), s.holding.resize(joints);
-    for (std::size_t j = 0; j + 1 < node_count; ++j) s.times[j] = s.time(cheb::nodes[j]);
-    s.times[node_count - 1] = s.end;
+    if (s.y.empty()) {
+        for (auto of : {&Segment::y, &Segment::f, &Segment::series, &Segment::rates}) (s.*of).resize(2 * n_ + m_);
+        for (auto of : {&Segment::moved, &Segment::loads, &Segment::driven, &Segment::torques}) (s.*of).resize(n_);
+        for (auto of : {&Segment::belts, &Segment::belt_rates, &Segment::holding}) (s.*of).resize(joints);
+    }
+    for (Nodes& way : s.moved) way.fill(0);
+    for (std::size_t j = 0; j < node_count; ++j) {
+        s.times[j] = s.time(cheb::nodes[j]);
+        s.rests[j] = s.h * (1 + cheb::nodes[j]) - s.start.until(s.times[j]);
+    }
     for (std::size_t k = 0; k < s.y.size(); ++k) s.y[k].fill(begin[k]);
     for (std::size_t i = 0; i < n_; ++i) offset_[i] = {}, offset_rate_[i] = {}, offset_way_[i] = {};
-    for (std::size_t j = 0; j < node_count; ++j) {
-        mechanics_.loads_of_time(s.times[j], s.side(j), load_);
-        for (std::size_t i = 0; i < n_; ++i) {
-            s.loads[i][j] = load_[i];
-            if (std::isfinite(load_[i])) continue;
-            bad_time_ = s.times[j];
-            return false;
-        }
+    mechanics_.sample_loads(s, s.loads);
+    std::size_t good = node_count;
+    for (const Nodes& load : s.loads) {
+        const auto* const bad = std::find_if(load.begin(), load.end(), [](double M) { return !std::isfinite(M); });
+        good = std::min(good, static_cast<std::size_t>(bad - load.begin()));
+    }
+    if (good < node_count) {
+        bad_time_ = s.times[good];
+        return false;
     }
     if (!mechanics_.has_belts()) {
         for (std::size_t joint = 0; joint < joints; ++joint) s.belts[joint] = s.belt_rates[joint] = {};
@@ -122,65 +164,58 @@ bool Collocation::sample(Segment& s, const Mode& mode, const Frame& frame, const
 bool Collocation::evaluate(Segment& s, const Mode& mode, const Frame& frame, std::size_t first, std::size_t end,
                            const std::vector<double>* departing) {
     bool good = true;
+    bool placed = false;
     const auto each_node = [&](auto&& at_node) {
-        for (std::size_t j = first; j < end; ++j) at_node(j, Moment{s.times[j], s.side(j), points_[j]});
-    };
-    if (!mechanics_.all_linear()) {
-        for (std::size_t j = first; j < end; ++j) {
+        for (std::size_t j = first; j < end && !placed; ++j) {
             points_[j].resize(s.y.size());
             for (std::size_t k = 0; k < s.y.size(); ++k) points_[j][k] = departing ? (*departing)[k] : s.y[k][j];
         }
-    }
+        placed = true;
+        for (std::size_t j = first; j < end; ++j) at_node(j, Moment{s.times[j], s.side(j), points_[j]});
+    };
     for (std::size_t i = 0; i < n_; ++i) {
-        for (std::size_t j = first; j < end; ++j) s.driven[i][j] = s.loads[i][j];
+        std::copy(&s.loads[i][first], &s.loads[i][0] + end, &s.driven[i][first]);
         const Signal& load = mechanics_.loads()[i];
         if (load.asks_the_motion()) {
             each_node([&](std::size_t j, const Moment& at) { s.driven[i][j] += load.of_motion(at); });
         }
-        for (std::size_t j = first; j < end; ++j) s.torques[i][j] = s.driven[i][j];
+        std::copy(&s.driven[i][first], &s.driven[i][0] + end, &s.torques[i][first]);
     }
     for (std::size_t joint = 0; joint < mechanics_.joints(); ++joint) {
         const model::Joint& own = mechanics_.system().joints[joint];
-        Nodes torque{};
-        if (mechanics_.is_linear(joint)) {
-            const double friction = mechanics_.constant_friction(joint, mode);
-            const Nodes none{};
-            const Nodes &p = s.y[index(own.first)], &v = s.y[n_ + index(own.first)];
-            const Nodes &q = own.second < 0 ? none : s.y[index(own.second)],
-                        &w = own.second < 0 ? none : s.y[n_ + index(own.second)];
-            for (std::size_t j = first; j < end; ++j) {
-                torque[j] = -friction + own.damping * (v[j] - w[j]) + own.stiffness * (p[j] - q[j]);
-            }
+        Nodes torque;
+        if (mechanics_.is_native(joint) && mode.leans[joint] == 0) {
+            mechanics_.native_torques(joint, mode, s.y, s.belts[joint], first, end, torque);
         } else {
             each_node([&](std::size_t j, const Moment& at) {
                 torque[j] = mechanics_.joint_torque(joint, at, mode, s.belts[joint][j]);
             });
         }
-        for (std::size_t j = first; j < end; ++j) s.torques[index(own.first)][j] -= torque[j];
+        Nodes& on_first = s.torques[index(own.first)];
+        for (std::size_t j = first; j < end; ++j) on_first[j] -= torque[j];
         if (own.second < 0) continue;
         for (std::size_t j = first; j < end; ++j) s.torques[index(own.second)][j] += torque[j];
     }
-    for (std::size_t g = 0; g < frame.groups(); ++g) {
-        for (std::size_t j = first; j < end; ++j) found_[g][j] = 0;
-    }
+    for (std::size_t g = 0; g < frame.groups(); ++g) std::fill(&found_[g][first], &found_[g][0] + end, 0.0);
     for (std::size_t i = 0; i < n_; ++i) {
+        const Nodes& torque = s.torques[i];
         double sum = 0;
-        for (std::size_t j = first; j < end; ++j) sum += s.torques[i][j];
+        for (std::size_t j = first; j < end; ++j) sum += torque[j];
         good = good && std::isfinite(sum);
         if (frame.group[i] < 0) continue;
-        Nodes& found = found_[index(frame.group[i])];
-        const double inertia = mechanics_.system().bodies[i].inertia;
-        for (std::size_t j = first; j < end; ++j) found[j] += s.torques[i][j] - inertia * offset_rate_[i][j];
+        const auto g = index(frame.group[i]);
+        Nodes& found = found_[g];
+        const double share = 1 / frame.inertia[g], inertia = mechanics_.system().bodies[i].inertia;
+        for (std::size_t j = first; j < end; ++j) found[j] += share * (torque[j] - inertia * offset_rate_[i][j]);
     }
-    for (std::size_t g = 0; g < frame.groups(); ++g) {
-        for (std::size_t j = first; j < end; ++j) found_[g][j] /= frame.inertia[g];
-    }
-    for (std::size_t j = first; j < end && m_ > 0; ++j) {
-        mechanics_.rates({s.times[j], s.side(j), points_[j]}, rate_.data());
-        for (std::size_t k = 0; k < m_; ++k) {
-            found_[frame.groups() + k][j] = rate_[k];
-            good = good && std::isfinite(rate_[k]);
-        }
+    if (m_ > 0) {
+        each_node([&](std::size_t j, const Moment& at) {
+            mechanics_.rates(at, rate_.data());
+            for (std::size_t k = 0; k < m_; ++k) {
+                found_[frame.groups() + k][j] = rate_[k];
+                good = good && std::isfinite(rate_[k]);
+            }
+        });
     }
     for (std::size_t j = first; j < end && !good; ++j) {
         bool here = true;
@@ -190,6 +225,26 @@ bool Collocation::evaluate(Segment& s, const Mode& mode, const Frame& frame, std
         if (!here) break;
     }
     return good;
+}
+
+/// The same where these stay as they are at the first node.
+void Collocation::guess(Segment& s, const Frame& frame) {
+    const auto since = [&s](std::size_t j) { return s.h * (1 + cheb::nodes[j]); };
+    for (std::size_t i = 0; i < n_; ++i) {
+        const int g = frame.group[i];
+        Nodes &way = s.moved[i], &p = s.y[i], &v = s.y[n_ + i];
+        const Nodes &offset = offset_[i], &offset_way = offset_way_[i];
+        const double v0 = g < 0 ? 0 : v[0] - offset[0], a = g < 0 ? 0 : unknown_[index(g)][0], p0 = p[0];
+        for (std::size_t j = 1; j < node_count; ++j) {
+            way[j] = since(j) * (v0 + since(j) * a / 2) + offset_way[j];
+            p[j] = p0 + way[j];
+            v[j] = v0 + since(j) * a + offset[j];
+        }
+    }
+    for (std::size_t k = 0; k < m_; ++k) {
+        Nodes& z = s.y[2 * n_ + k];
+        for (std::size_t j = 1; j < node_count; ++j) z[j] = z[0] + since(j) * unknown_[frame.groups() + k][0];
+    }
 }
 
 /// Velocities and angles from the accelerations of the groups, states from their rates.
@@ -228,7 +283,7 @@ void Collocation::place(Segment& s, const Frame& frame) {
 bool Collocation::find_slopes(const Segment& s, const Mode& mode, const Frame& frame, std::size_t node) {
     const std::size_t groups = frame.groups(), rows = groups + m_, columns = 2 * groups + m_;
     slopes_.setZero(static_cast<Eigen::Index>(rows), static_cast<Eigen::Index>(columns));
-    factors_.clear();
+    factors_.clear(), last_factors_ = nullptr;
     slopes_known_ = true;
     if (!mechanics_.nonlinear()) {
         for (const model::Joint& joint : mechanics_.system().joints) {
@@ -294,9 +349,52 @@ bool Collocation::find_slopes(const Segment& s, const Mode& mode, const Frame& f
     return true;
 }
 
+void Collocation::Factors::solve(const Eigen::VectorXd& right, Eigen::VectorXd& left) const {
+    left.resize(right.size());
+    if (inverse.rows() == static_cast<Eigen::Index>(inner)) {
+        multiply(inverse.data(), right.data(), inner, left.data());
+        return;
+    }
+    if (inverse.size() > 0) {
+        left.noalias() = inverse * right;
+        return;
+    }
+    if (sparse != nullptr) {
+        left = sparse->solve(right);
+        return;
+    }
+    const IntegrationModes& each = integration_modes();
+    constexpr auto size = static_cast<Eigen::Index>(inner);
+    const Eigen::Index rows = right.size() / size;
+    for (Eigen::Index r = 0; r < rows; ++r) {
+        multiply(each.from_nodes.data(), right.data() + r * size, inner, left.data() + r * size);
+    }
+    Eigen::VectorXcd of_mode(rows);
+    for (std::size_t i = 0; i < each.values.size(); ++i) {
+        const Eigen::Index real = each.places[i].first, imaginary = each.places[i].second;
+        for (Eigen::Index r = 0; r < rows; ++r) {
+            of_mode(r) = {left(r * size + real), imaginary < 0 ? 0 : left(r * size + imaginary)};
+        }
+        if (rows == 1) {
+            of_mode(0) *= reciprocals[i];
+        } else {
+            of_mode = modes[i].solve(of_mode);
+        }
+        for (Eigen::Index r = 0; r < rows; ++r) {
+            left(r * size + real) = of_mode(r).real();
+            if (imaginary >= 0) left(r * size + imaginary) = of_mode(r).imag();
+        }
+    }
+    for (Eigen::Index r = 0; r < rows; ++r) {
+        multiply(each.to_nodes.data(), left.data() + r * size, inner, left.data() + r * size);
+    }
+}
+
 const Collocation::Factors& Collocation::newton_matrix(double h, const Frame& frame) {
-    for (auto found = factors_.lower_bound(h * (1 - 1e-6)); found != factors_.end(); ++found) {
-        if (found->first > h * (1 + 1e-6)) break;
+    const auto serves = [h](double of) { return std::fabs(of - h) <= 1e-6 * h; };
+    if (last_factors_ != nullptr && serves(last_factors_->first)) return last_factors_->second;
+    if (const auto found = factors_.lower_bound(h * (1 - 1e-6)); found != factors_.end() && serves(found->first)) {
+        last_factors_ = &*found;
         return found->second;
     }
     using Inner = Eigen::Matrix<double, inner, inner>;
@@ -315,18 +413,28 @@ const Collocation::Factors& Collocation::newton_matrix(double h, const Frame& fr
     };
     if (factors_.size() >= most_factors) factors_.clear();
     Factors& made = factors_[h];
+    last_factors_ = &*factors_.find(h);
     constexpr Eigen::Index few = 3, many = 8;
-    if (rows < many) {
+    if (rows <= few && !mechanics_.nonlinear()) {
         Eigen::MatrixXd A = Eigen::MatrixXd::Zero(size * rows, size * rows);
         for (Eigen::Index r = 0; r < rows; ++r) {
             for (Eigen::Index c = 0; c < rows; ++c) {
                 if (!empty(r, c)) A.block<inner, inner>(r * size, c * size) = block(r, c);
             }
         }
-        if (rows <= few) {
-            made.inverse = A.inverse();
-        } else {
-            made.dense.compute(A);
+        made.inverse = A.inverse();
+        return made;
+    }
+    if (rows < many) {
+        for (const std::complex<double>& value : integration_modes().values) {
+            const std::complex<double> once_by = h * value, twice_by = once_by * once_by;
+            if (rows == 1) {
+                made.reciprocals.push_back(1.0 / (1.0 - once_by * slopes_(0, groups) - twice_by * slopes_(0, 0)));
+                continue;
+            }
+            Eigen::MatrixXcd A = Eigen::MatrixXcd::Identity(rows, rows) - once_by * slopes_.rightCols(rows);
+            A.leftCols(groups) -= twice_by * slopes_.leftCols(groups);
+            made.modes.emplace_back(A);
         }
         return made;
     }
@@ -375,7 +483,7 @@ Collocation::Attempt Collocation::iterate(Segment& s, const Mode& mode, const Fr
         for (std::size_t k = 0; k < count; ++k) unknown_[k].fill(found_[k][0]);
         for (std::size_t i = 0; i < n_; ++i) s.f[n_ + i].fill(0);
         for (std::size_t k = 0; k < m_; ++k) s.f[2 * n_ + k].fill(found_[groups + k][0]);
-        place(s, frame);
+        guess(s, frame);
         double before = std::numeric_limits<double>::infinity();
         for (int i = 0; i < most_iterations; ++i) {
             if (!evaluate(s, mode, frame, 1, node_count, nullptr)) {
@@ -408,6 +516,7 @@ Collocation::Attempt Collocation::iterate(Segment& s, const Mode& mode, const Fr
                 }
                 left = std::max(left, s.h * most / scales_[k]);
             }
+            if (left <= 4 * rounding) return Attempt::resolved;
             if (slopes == Slopes::none) {
                 step_ = residual_;
             } else {
@@ -521,11 +630,9 @@ Collocation::Attempt Collocation::solve(Segment& s, const Mode& mode, const Fram
         }
     }
     for (std::size_t k = 0; k < m_; ++k) s.f[2 * n_ + k] = unknown_[groups + k];
-    for (std::size_t k = 0; k < s.y.size(); ++k) {
-        Nodes change{};
-        for (std::size_t j = 0; j < node_count; ++j) change[j] = k < n_ ? s.moved[k][j] : s.y[k][j] - begin[k];
-        s.series[k] = cheb::fit(change);
-        if (!std::isfinite(greatest(change))) return Attempt::failed;
+    fit_series(s, frame, begin);
+    for (const Series& series : s.series) {
+        if (!std::isfinite(cheb::size(series))) return Attempt::failed;
     }
     find_holding(s, mode, frame);
     find_limits(s, mode);
@@ -533,6 +640,26 @@ Collocation::Attempt Collocation::solve(Segment& s, const Mode& mode, const Fram
     if (stepping) return Attempt::resolved;
     if (unresolved_ <= 1 && !agrees_between(s, mode, frame)) unresolved_ = 2;
     return unresolved_ <= 1 ? Attempt::resolved : Attempt::shorten;
+}
+
+/// What is integrated is so as a series, too: what goes beyond its last term looks like lower ones at the nodes.
+void Collocation::fit_series(Segment& s, const Frame& frame, const std::vector<double>& begin) {
+    for (std::size_t k = n_; k < s.f.size(); ++k) s.rates[k] = cheb::fit(s.f[k]);
+    const bool integrated = step_length_ == 0 && !mechanics_.has_belts();
+    for (std::size_t i = 0; i < n_ && integrated; ++i) {
+        auto w = s.rates[n_ + i];
+        for (double& c : w) c *= s.h;
+        auto v = cheb::integral(w, 0.0);
+        s.series[n_ + i] = cheb::folded(v);
+        v[0] += begin[n_ + i];
+        for (double& c : v) c *= s.h;
+        s.series[i] = frame.group[i] < 0 ? Series{} : cheb::folded(cheb::integral(v, 0.0));
+    }
+    for (std::size_t k = integrated ? 2 * n_ : 0; k < s.y.size(); ++k) {
+        Nodes change{};
+        for (std::size_t j = 0; j < node_count; ++j) change[j] = k < n_ ? s.moved[k][j] : s.y[k][j] - begin[k];
+        s.series[k] = cheb::fit(change);
+    }
 }
 
 void Collocation::find_holding(Segment& s, const Mode& mode, const Frame& frame) const {
@@ -564,22 +691,21 @@ void Collocation::judge(const Segment& s, const Mode& mode, const Frame& frame) 
     }
     for (std::size_t i = 0; i < n_; ++i) {
         const double torques = sizes_[i];
-        const Series load = cheb::fit(s.loads[i]);
-        const double lost = lost_in_time(load, late, h, torques);
+        const auto lost = [&] { return lost_in_time(cheb::fit(s.loads[i]), late, h, torques); };
         if (frame.group[i] >= 0) {
-            const double per_torque = h * (h / frame.inertia[static_cast<std::size_t>(frame.group[i])]);
-            Nodes w{};
-            for (std::size_t j = 0; j < node_count; ++j) w[j] = h * h * s.f[n_ + i][j];
-            const Series series = cheb::fit(w);
-            const double size = cheb::size(series);
-            const double allowed = tolerance_ * std::max(h * greatest(s.y[n_ + i]), size) +
-                                   64 * rounding * (size + per_torque * torques) + per_torque * lost + smallest;
-            unresolved_ = std::max(unresolved_, cheb::tail(series) / allowed);
-            allowed_[i] = allowed / (h * h);
+            const double per_torque = h / frame.inertia[static_cast<std::size_t>(frame.group[i])];
+            const Series& series = s.rates[n_ + i];
+            const double size = h * cheb::size(series), tail = h * cheb::tail(series);
+            double allowed = tolerance_ * std::max(greatest(s.y[n_ + i]), size) +
+                             64 * rounding * (size + per_torque * torques) + smallest / h;
+            if (tail > allowed || mechanics_.nonlinear()) allowed += per_torque * lost();
+            unresolved_ = std::max(unresolved_, tail / allowed);
+            allowed_[i] = allowed / h;
         } else {
-            const Series series = cheb::fit(s.torques[i]);
-            unresolved_ =
-                std::max(unresolved_, cheb::tail(series) / ((tolerance_ + 16 * rounding) * torques + lost + smallest));
+            const double tail = cheb::tail(cheb::fit(s.torques[i]));
+            double allowed = (tolerance_ + 16 * rounding) * torques + smallest;
+            if (tail > allowed) allowed += lost();
+            unresolved_ = std::max(unresolved_, tail / allowed);
         }
     }
     for (std::size_t joint = 0; joint < mechanics_.joints(); ++joint) {
@@ -606,9 +732,8 @@ void Collocation::judge(const Segment& s, const Mode& mode, const Frame& frame) 
         unresolved_ = std::max(unresolved_, cheb::tail(belt) / allowed);
     }
     for (std::size_t k = 0; k < m_; ++k) {
-        Nodes rate{};
-        for (std::size_t j = 0; j < node_count; ++j) rate[j] = h * s.f[2 * n_ + k][j];
-        const Series series = cheb::fit(rate);
+        Series series = s.rates[2 * n_ + k];
+        for (double& c : series) c *= h;
         fastest_rate_[k] = std::max(fastest_rate_[k], greatest(s.f[2 * n_ + k]));
         const double allowed = (tolerance_ + 64 * rounding) * std::max(greatest(s.y[2 * n_ + k]), cheb::size(series)) +
                                64 * rounding * h * fastest_rate_[k] +
@@ -672,7 +797,7 @@ bool Collocation::agrees_between(const Segment& s, const Mode& mode, const Frame
     std::vector<Series> loads(n_);
     std::vector<Series> accelerations(mechanics_.nonlinear() ? n_ : 0);
     for (std::size_t i = 0; i < n_; ++i) loads[i] = cheb::fit(s.loads[i]);
-    for (std::size_t i = 0; i < accelerations.size(); ++i) accelerations[i] = cheb::fit(s.f[n_ + i]);
+    for (std::size_t i = 0; i < accelerations.size(); ++i) accelerations[i] = s.rates[n_ + i];
     std::vector<double> y, belts(mechanics_.joints()), torques;
     std::vector<double> places;
     if (s.start.until(seen_) > 0 && seen_ < s.end) places.push_back(s.start.until(seen_) / s.h - 1);

@@ -4,6 +4,7 @@
 #include <Eigen/Dense>
 #include <Eigen/Sparse>
 #include <array>
+#include <complex>
 #include <map>
 #include <memory>
 #include <optional>
@@ -16,20 +17,18 @@
 namespace dinal::motion::engine {
 
 /// What a stepper yields, and all else reads: angles, velocities and states over a stretch without a jump.
-struct Segment {
+struct Segment : NodeTimes {
     Clock start;
-    double h = 0;    ///< half its length
-    double end = 0;  ///< exactly
-    bool from_break = false, to_break = false;
-    bool to_the_end = false;  ///< it ends at `end` to the letter, be that a little earlier or later than 2 h
-    Nodes times{};
-    std::vector<Nodes> y{};                    ///< angles, velocities, states at the nodes
-    std::vector<Nodes> f{};                    ///< their rates: of the angles without meaning
-    std::vector<Nodes> moved{};                ///< angles less their first, which have digits that these have not
-    std::vector<Series> series{};              ///< of y, each less its first
-    std::vector<Nodes> loads{};                ///< of each body: what depends on the time alone
-    std::vector<Nodes> driven{};               ///< of each body: all of its load, and the push of the base
-    std::vector<Nodes> torques{};              ///< of each body: all but those of what holds
+    double end = 0;                ///< exactly
+    bool to_the_end = false;       ///< it ends at `end` to the letter, be that a little earlier or later than 2 h
+    std::vector<Nodes> y{};        ///< angles, velocities, states at the nodes
+    std::vector<Nodes> f{};        ///< their rates: of the angles without meaning
+    std::vector<Nodes> moved{};    ///< angles less their first, which have digits that these have not
+    std::vector<Series> series{};  ///< of y, each less its first
+    std::vector<Series> rates{};   ///< of f, but for those of the angles
+    std::vector<Nodes> loads{};    ///< of each body: what depends on the time alone
+    std::vector<Nodes> driven{};   ///< of each body: all of its load, and the push of the base
+    std::vector<Nodes> torques{};  ///< of each body: all but those of what holds
     std::vector<Nodes> belts{}, belt_rates{};  ///< of each joint
     std::vector<Nodes> holding{};              ///< of each joint that holds: the torque on its first body
     /// Of each joint that sticks and whose limits change: what holds it at most, backward and forward.
@@ -38,9 +37,6 @@ struct Segment {
     [[nodiscard]] double time(double x) const { return x >= 1 ? end : start.after(h * (1 + x)); }
     [[nodiscard]] double at(std::size_t k, double x) const {
         return x >= 1 ? y[k][node_count - 1] : x <= -1 ? y[k][0] : y[k][0] + cheb::value(series[k], x);
-    }
-    [[nodiscard]] Side side(std::size_t node) const {
-        return node == 0 && from_break ? Side::after : node + 1 == node_count && to_break ? Side::before : Side::at;
     }
     /// All of y.
     void state(double x, std::vector<double>& out) const {
@@ -86,25 +82,24 @@ public:
 
 private:
     static constexpr std::size_t inner = node_count - 1;
+    static void multiply(const double* matrix, const double* vector, std::size_t columns, double* product);
+    static void integrate(const Nodes& values, double h, Nodes& sums);
     bool sample(Segment& segment, const Mode& mode, const Frame& frame, const std::vector<double>& begin);
     bool evaluate(Segment& segment, const Mode& mode, const Frame& frame, std::size_t first, std::size_t end,
                   const std::vector<double>* departing);
     void place(Segment& segment, const Frame& frame);
+    void guess(Segment& segment, const Frame& frame);
+    void fit_series(Segment& segment, const Frame& frame, const std::vector<double>& begin);
     bool find_slopes(const Segment& segment, const Mode& mode, const Frame& frame, std::size_t node);
-    /// Newton's matrix for a length: of very few groups inverted, of a few factored, of many sparse.
+    /// Newton's matrix for a length. Of a few linear groups it serves many stretches, and is inverted. Of many it is
+    /// sparse. Otherwise it falls into one complex matrix, of the groups and states, for each eigenvalue of the
+    /// integration, of conjugate ones for one (Butcher 1976); steps by these are right to ten digits.
     struct Factors {
         Eigen::MatrixXd inverse;
-        Eigen::PartialPivLU<Eigen::MatrixXd> dense;
         std::unique_ptr<Eigen::SparseLU<Eigen::SparseMatrix<double>>> sparse;
-        void solve(const Eigen::VectorXd& right, Eigen::VectorXd& left) const {
-            if (inverse.size() > 0) {
-                left.noalias() = inverse * right;
-            } else if (sparse != nullptr) {
-                left = sparse->solve(right);
-            } else {
-                left = dense.solve(right);
-            }
-        }
+        std::vector<std::complex<double>> reciprocals;  ///< of one row
+        std::vector<Eigen::PartialPivLU<Eigen::MatrixXcd>> modes;
+        void solve(const Eigen::VectorXd& right, Eigen::VectorXd& left) const;
     };
     const Factors& newton_matrix(double h, const Frame& frame);
     Attempt runge_kutta(Segment& segment, const Mode& mode, const Frame& frame, const std::vector<double>& departing);
@@ -132,6 +127,7 @@ private:
     std::vector<int> slopes_of_;  ///< the groups that they belong to
     bool slopes_known_ = false;
     std::map<double, Factors> factors_;
+    const std::pair<const double, Factors>* last_factors_ = nullptr;
     std::vector<double> sizes_, sizes_at_start_;  ///< of each body: how great the torques on it are
     Eigen::VectorXd residual_, step_;
 };

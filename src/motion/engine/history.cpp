@@ -44,7 +44,8 @@ private:
             ++bodies;
         }
         const Between& own = joints_[joint];
-        const Kept::Acting& acts = kept_.acting[joint];
+        const Kept::Acting& at_nodes = kept_.acting[joint];
+        const Series friction = cheb::fit(at_nodes.friction), belt = cheb::fit(at_nodes.belt);
         Series v = whole(bodies + static_cast<std::size_t>(own.first));
         Integrals sums;
         const auto work = [&](const Series& torque, const Series& speed) {
@@ -52,19 +53,18 @@ private:
             for (double& c : sum) c *= kept_.h;
             return sum;
         };
-        if (joint < bodies) sums.input = work(acts.M, v), sums.base = work(acts.push, v);
+        if (joint < bodies) {
+            sums.input = work(cheb::fit(at_nodes.M), v), sums.base = work(cheb::fit(at_nodes.push), v);
+        }
         if (own.second >= 0) {
             const Series second = whole(bodies + static_cast<std::size_t>(own.second));
-            for (std::size_t k = 0; k < v.size(); ++k) v[k] -= second[k];
+            v = difference(v, second);
         }
         Series damping = v;
         for (double& c : damping) c *= own.damping;
         sums.viscous = work(damping, v);
-        sums.belt = work(acts.friction, acts.belt);
-        if (acts.holds) return sums;
-        Series against = acts.belt;
-        for (std::size_t k = 0; k < v.size(); ++k) against[k] -= v[k];
-        sums.dry = work(acts.friction, against);
+        sums.belt = work(friction, belt);
+        if (!at_nodes.holds) sums.dry = work(friction, difference(belt, v));
         return sums;
     }
 

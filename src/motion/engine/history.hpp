@@ -20,11 +20,12 @@ struct Kept {
     double length = 0;  ///< how much of it was used, at most 2 h
     std::vector<double> begin{};
     std::vector<Series> series{};  ///< of each angle, velocity and state, less its first
-    /// What acts at a joint. Those of the bodies with the ground have M and the push of the base on their body, too.
+    /// What acts at a joint, at the nodes. Those of the bodies with the ground have M and the push of the base on their
+    /// body, too.
     struct Acting {
-        Series M{}, push{};
-        Series friction{}, belt{};  ///< torque on its first body
-        bool holds = false;         ///< friction does not slip
+        Nodes M{}, push{};
+        Nodes friction{}, belt{};  ///< torque on its first body
+        bool holds = false;        ///< friction does not slip
     };
     std::vector<Acting> acting{};
 

@@ -198,14 +198,25 @@ Mechanics::Mechanics(const model::Assembly& system, const Drive& drive, const As
                       friction.law.depends_on_speed() || !joint.spring.none();
         contact.bristle = friction.bristle();
         const bool bends = contact.bristle != nullptr;
-        contact.linear = friction.is_constant() && !friction.law.depends_on_speed() && joint.spring.none();
-        all_linear_ = all_linear_ && contact.linear;
+        contact.native = friction.is_constant();
+        all_linear_ = all_linear_ && contact.native && !friction.law.depends_on_speed() && joint.spring.none();
         contacts_.push_back(std::move(contact));
         if (bends) bristles_.push_back(j);
         rubs_.push_back(friction.none() || bends ? 0 : 1);
         belts_.emplace_back(rubs_.back() != 0 || bends ? drive.belts[j] : model::Excitation(), &asking);
         has_belts_ |= !belts_.back().none();
     }
+    const auto add = [this](Signal& s) {
+        if (!s.none()) signals_.push_back(&s);
+    };
+    for (Signal& s : loads_) add(s);
+    for (Signal& s : belts_) add(s);
+    for (Contact& c : contacts_) {
+        for (Signal& s : c.sliding) add(s);
+        for (Signal& s : c.holding) add(s);
+        add(c.normal);
+    }
+    add(base_);
 }
 
 /// Where it does not break it is asked at t itself: a hair beside that it may be off by less than any rounding, and a
@@ -224,6 +235,20 @@ void Mechanics::loads_of_time(double t, Side side, std::vector<double>& loads) c
     for (std::size_t i = 0; i < bodies(); ++i) {
         loads[i] = loads_[i].of_time(at);
         if (!base_.none()) loads[i] += -system_.bodies[i].inertia * push;
+    }
+}
+
+void Mechanics::sample_loads(const NodeTimes& when, std::vector<Nodes>& loads) const {
+    Nodes push{};
+    if (!base_.none()) base_.sample(when, push);
+    for (std::size_t i = 0; i < bodies(); ++i) {
+        if (loads_[i].none()) {
+            loads[i].fill(0);
+        } else {
+            loads_[i].sample(when, loads[i]);
+        }
+        for (std::size_t j = 0; j < node_count && !base_.none(); ++j)
+            loads[i][j] -= system_.bodies[i].inertia * push[j];
     }
 }
 
@@ -294,13 +319,6 @@ double Mechanics::friction(std::size_t joint, const Moment& at, const Mode& mode
     return -model::sign_of(how.way) * sliding(joint, present, velocity(joint, at.y) - belt, at);
 }
 
-double Mechanics::constant_friction(std::size_t joint, const Mode& mode) const {
-    const Slipping& how = mode.friction[joint];
-    if (how.way == Motion::stuck || !rubs(joint)) return 0;
-    const model::Friction& law = system_.joints[joint].friction.law;
-    return -model::sign_of(how.way) * (how.riding ? law.holding(how.way) : law.sliding(how.way, 0));
-}
-
 double Mechanics::joint_torque(std::size_t joint, const Moment& at, const Mode& mode, double belt) const {
     const Joint& own = system_.joints[joint];
     const double q = angle(joint, at.y), s = velocity(joint, at.y);
@@ -309,6 +327,40 @@ double Mechanics::joint_torque(std::size_t joint, const Moment& at, const Mode& 
     if (own.stiffness != 0) torque += own.stiffness * q;
     if (!own.spring.none()) torque += own.spring.torque(q);
     return torque;
+}
+
+void Mechanics::native_torques(std::size_t joint, const Mode& mode, const std::vector<Nodes>& y, const Nodes& belt,
+                               std::size_t first, std::size_t end, Nodes& out) const {
+    const Joint& own = system_.joints[joint];
+    const double C = own.damping, k = own.stiffness;
+    Nodes angle = y[index(own.first)], slip = y[bodies() + index(own.first)];
+    if (own.second >= 0) {
+        angle = difference(angle, y[index(own.second)]), slip = difference(slip, y[bodies() + index(own.second)]);
+    }
+    for (std::size_t j = first; j < end; ++j) out[j] = C * slip[j] + k * angle[j];
+    if (!own.spring.none()) {
+        for (std::size_t j = first; j < end; ++j) out[j] += own.spring.torque(angle[j]);
+    }
+    if (has_belt(joint)) slip = difference(slip, belt);
+    add_native_friction(joint, mode, slip, first, end, out);
+}
+
+void Mechanics::add_native_friction(std::size_t joint, const Mode& mode, const Nodes& slip, std::size_t first,
+                                    std::size_t end, Nodes& out) const {
+    const Slipping& how = mode.friction[joint];
+    if (how.way == Motion::stuck || !rubs(joint)) return;
+    const model::Friction& law = system_.joints[joint].friction.law;
+    const double sign = model::sign_of(how.way);
+    if (how.riding || !law.depends_on_speed()) {
+        const double torque = sign * (how.riding ? law.holding(how.way) : law.sliding(how.way, 0));
+        for (std::size_t j = first; j < end; ++j) out[j] += torque;
+        return;
+    }
+    const model::SpeedRange range = law.ranges() > 0 ? law.range(how.range) : model::SpeedRange{};
+    for (std::size_t j = first; j < end; ++j) {
+        const double speed = sign * slip[j];
+        out[j] += sign * (range.straight ? range.at(speed) : law.sliding(how.way, speed));
+    }
 }
 
 void Mechanics::torques(const Moment& at, const Mode& mode, const std::vector<double>& belts,

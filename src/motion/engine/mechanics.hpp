@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <string>
+#include <type_traits>
 #include <vector>
 
 #include "model/assembly.hpp"
@@ -88,6 +89,9 @@ Eigen::VectorXd least_in_box(const Eigen::MatrixXd& G, const Eigen::VectorXd& g,
 class Mechanics {
 public:
     Mechanics(const model::Assembly& system, const Drive& drive, const Asking& asking);
+    Mechanics(const Mechanics&) = delete;
+    Mechanics& operator=(const Mechanics&) = delete;
+    ~Mechanics() = default;
 
     [[nodiscard]] const model::Assembly& system() const { return system_; }
     [[nodiscard]] std::size_t bodies() const { return system_.bodies.size(); }
@@ -104,10 +108,10 @@ public:
     [[nodiscard]] std::size_t size() const { return 2 * bodies() + states(); }
     /// Torques or rates depend on the motion otherwise than by constants.
     [[nodiscard]] bool nonlinear() const { return nonlinear_; }
-    /// The torque of a joint is a sum of terms in its angle and velocity, and a friction that nothing but its way
-    /// changes.
-    [[nodiscard]] bool is_linear(std::size_t joint) const { return contacts_[joint].linear; }
-    /// All joints are, and nothing else asks for the motion.
+    /// It has a law of friction that is ours, and nothing else of it changes.
+    [[nodiscard]] bool is_native(std::size_t joint) const { return contacts_[joint].native; }
+    /// The torques of all joints are sums of terms in angle and velocity, and of a friction that only its way changes,
+    /// and nothing else asks for the motion.
     [[nodiscard]] bool all_linear() const { return all_linear_; }
     [[nodiscard]] bool rubs(std::size_t joint) const { return rubs_[joint] != 0; }
     [[nodiscard]] const std::vector<char>& rubbing() const { return rubs_; }
@@ -122,8 +126,6 @@ public:
     [[nodiscard]] bool has_base() const { return !base_.none(); }
     /// What friction does to its first body where it does not hold.
     [[nodiscard]] double friction(std::size_t joint, const Moment& at, const Mode& mode, double belt) const;
-    /// The same of a linear joint, at any time.
-    [[nodiscard]] double constant_friction(std::size_t joint, const Mode& mode) const;
     /// At this time somebody found a jump that nobody announced.
     void jumps_at(double t) { jumps_.insert(std::upper_bound(jumps_.begin(), jumps_.end(), t), t); }
     /// Jumps before this time are behind.
@@ -132,6 +134,7 @@ public:
 
     /// The loads that depend on the time alone, the push of the base among them, on each body.
     void loads_of_time(double t, Side side, std::vector<double>& loads) const;
+    void sample_loads(const NodeTimes& when, std::vector<Nodes>& loads) const;
     /// M of each body.
     [[nodiscard]] double load(std::size_t body, const Moment& at) const { return loads_[body].value(at); }
     /// All torques on each body but those of what holds; `belts` are the velocities of each joint's. What of the loads
@@ -141,6 +144,13 @@ public:
     void rates(const Moment& at, double* out) const;
     /// Of each joint, without what holds.
     [[nodiscard]] double joint_torque(std::size_t joint, const Moment& at, const Mode& mode, double belt) const;
+    /// The same at nodes, of a native joint that does not lean, with these angles and velocities of bodies (and states)
+    /// and this velocity of its belt.
+    void native_torques(std::size_t joint, const Mode& mode, const std::vector<Nodes>& y, const Nodes& belt,
+                        std::size_t first, std::size_t end, Nodes& out) const;
+    /// What of it is friction.
+    void add_native_friction(std::size_t joint, const Mode& mode, const Nodes& slip, std::size_t first, std::size_t end,
+                             Nodes& out) const;
     /// What friction takes while it slides, without sign.
     [[nodiscard]] double sliding(std::size_t joint, const Slipping& how, double slip, const Moment& at) const;
     [[nodiscard]] std::size_t range_of(std::size_t joint, double speed) const;
@@ -199,18 +209,12 @@ private:
         std::array<Signal, 2> sliding, holding;
         Signal normal;
         const model::laws::Bristle* bristle = nullptr;
-        bool varies = false, linear = false;
+        bool varies = false, native = false;
     };
     template <class Self, class F>
     static void each_signal(Self& self, F& f) {
-        for (auto& s : self.loads_) f(s);
-        for (auto& s : self.belts_) f(s);
-        for (auto& c : self.contacts_) {
-            for (auto& s : c.sliding) f(s);
-            for (auto& s : c.holding) f(s);
-            f(c.normal);
-        }
-        f(self.base_);
+        for (Signal* s : self.signals_)
+            f(static_cast<std::conditional_t<std::is_const_v<Self>, const Signal&, Signal&>>(*s));
     }
 
     /// Calls it with each function of the user's.
@@ -222,6 +226,7 @@ private:
     std::vector<Signal> loads_, belts_;
     Signal base_;
     std::vector<Contact> contacts_;
+    std::vector<Signal*> signals_;  ///< all that are there
     std::vector<char> rubs_;
     std::vector<std::size_t> bristles_;
     std::vector<Piecewise> rates_;  ///< of the states of the user

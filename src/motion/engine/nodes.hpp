@@ -21,8 +21,25 @@ inline double greatest(const Nodes& values) {
     return most;
 }
 
+inline Series difference(const Series& a, const Series& b) {
+    Series c{};
+    for (std::size_t k = 0; k < node_count; ++k) c[k] = a[k] - b[k];
+    return c;
+}
+
 /// Of a break: the limits from the left and from the right differ there.
 enum class Side { before, at, after };
+
+/// The nodes of a stretch.
+struct NodeTimes {
+    Nodes times{}, rests{};  ///< and what is rounded off these
+    double h = 0;            ///< half its length
+    bool from_break = false, to_break = false;
+
+    [[nodiscard]] Side side(std::size_t node) const {
+        return node == 0 && from_break ? Side::after : node + 1 == node_count && to_break ? Side::before : Side::at;
+    }
+};
 
 /// A step to the side that a user's arithmetic cannot swallow (see model/excitation.cpp).
 inline double towards(double t, Side side) {

@@ -95,7 +95,7 @@ private:
     bool share_loops(const std::optional<Ending>& released);
     struct Box;
     bool box_of(const std::vector<std::size_t>& held, Box& box);
-    bool decide_together(const std::vector<char>& asked, std::size_t full);
+    bool decide_together(std::size_t full);
     void project(Side when);
     bool look(const Moment& at, const Mode& mode, const Frame& frame, Look& result, std::optional<double> x = {});
     [[nodiscard]] const std::vector<double>& departing() const;
@@ -182,8 +182,16 @@ private:
     Clock now_;
     std::vector<double> y_, low_;         ///< what the angles have rounded off
     std::vector<double> origin_, reach_;  ///< of each joint: the wall that it hit last, and how far it went from there
-    Mode mode_, entered_;                 ///< now, and when the decision in progress began
-    std::vector<char> crept_;             ///< of each joint: it has come down to rounding, and may creep
+    Mode mode_, entered_, left_;          ///< now, when the decision in progress began, and before a release
+    /// What a decision asks each joint at slip 0.
+    struct Asked {
+        bool asked = false, taken_back = false, was_held = false, was_creeping = false;
+        Motion slid = Motion::stuck;    ///< which way it slid until now; stuck: it did not
+        Motion let_go = Motion::stuck;  ///< the way of what came to its limit at this instant, too
+        int leant = 0;
+    };
+    std::vector<Asked> asked_;
+    std::vector<char> crept_;                         ///< of each joint: it has come down to rounding, and may creep
     std::map<std::size_t, JointEvent> crept_events_;  ///< the sticking of what creeps, told when nothing moves it
     std::vector<Motion> arrived_;                     ///< of each joint: which way it slid until now; stuck: it did not
     std::vector<int> edge_;          ///< of each joint: the corner that its speed is at, 1 the upper one of its range
@@ -217,8 +225,10 @@ private:
     int attempts_ = 0, too_short_ = 0, at_once_in_a_row_ = 0;
     std::size_t next_row_ = 0, last_full_ = 0;  ///< the joint of a loop that came to its limit last, at last_full_at_
     Outcome outcome_ = Outcome::reached_end;
-    Look look_;
-    std::array<std::vector<double>, 6> scratch_;  ///< of look()
+    Look look_, decided_;
+    std::array<std::vector<double>, 6> scratch_;    ///< of look()
+    std::array<std::vector<double>, 4> projected_;  ///< of project()
+    std::vector<char> seen_, alike_;                ///< of project()
     mutable std::vector<double> point_, departing_;
     mutable std::vector<double> sizes_;  ///< of each body: how great the torques on it are, at a time
     mutable double sizes_at_ = -model::never;
@@ -459,12 +469,9 @@ void Engine::slide(std::size_t joint, Motion way, bool leaving) {
 bool Engine::decide(bool told, std::optional<Ending> released) {
     told = told && begun();
     const std::size_t joints = mechanics_.joints();
-    std::vector<char> asked(joints, 0), taken_back(joints, 0);
-    std::vector<Motion> before(joints, Motion::stuck);  // which way it slid; stuck: it did not
-    std::vector<char> was_held(joints, 0), was_creeping(joints, 0);
-    std::vector<Motion> let_go(joints, Motion::stuck);  // the way of what came to its limit at this instant, too
-    const std::vector<int> leant = mode_.leans;
+    asked_.assign(joints, {});
     for (std::size_t j = 0; j < joints; ++j) {
+        asked_[j].leant = mode_.leans[j];
         if (!mechanics_.rubs(j)) continue;
         Slipping& how = mode_.friction[j];
         if (mode_.leans[j] != 0 && how.leaving) continue;
@@ -480,15 +487,15 @@ bool Engine::decide(bool told, std::optional<Ending> released) {
         }
         const bool arrived = arrived_[j] != Motion::stuck;
         if (how.way != Motion::stuck && !how.riding && !arrived && !how.leaving) continue;
-        before[j] = arrived ? arrived_[j] : Motion::stuck;
-        was_held[j] = !arrived && !(how.leaving && !how.riding) ? 1 : 0;
-        was_creeping[j] = how.creeps != Motion::stuck ? 1 : 0;
-        asked[j] = 1;
-        if (released && how.leaving && !how.riding && !arrived) let_go[j] = how.way;
+        asked_[j] = {.asked = true,
+                     .was_held = !arrived && !(how.leaving && !how.riding),
+                     .was_creeping = how.creeps != Motion::stuck,
+                     .slid = arrived ? arrived_[j] : Motion::stuck,
+                     .let_go = released && how.leaving && !how.riding && !arrived ? how.way : Motion::stuck};
         how.way = Motion::stuck, how.riding = how.leaving = false;
     }
     entered_ = mode_;
-    const bool free = std::none_of(asked.begin(), asked.end(), [](char one) { return one != 0; });
+    const bool free = std::none_of(asked_.begin(), asked_.end(), [](const Asked& one) { return one.asked; });
     if (free && frame().edges.empty()) return true;
     project(side());
     const bool loops = !frame().closing.empty();
@@ -497,11 +504,11 @@ bool Engine::decide(bool told, std::optional<Ending> released) {
     if (loops && released) last_full_at_ = now_.hi, last_full_ = released->which;
     const std::size_t full = released ? released->which : all_used ? last_full_ : joints;
     if (loops && !all_used && !share_loops(released)) return false;
-    Look found;
+    Look& found = decided_;
     const int most = 8 * static_cast<int>(joints) + 16;
     for (int i = 0;; ++i) {
         if (all_used || i > most) {
-            if (!decide_together(asked, full)) return false;
+            if (!decide_together(full)) return false;
             break;
         }
         const Frame& present = frame();
@@ -514,7 +521,7 @@ bool Engine::decide(bool told, std::optional<Ending> released) {
             const bool slides = mechanics_.rubs(j) && how.way != Motion::stuck && !how.riding && mode_.leans[j] == 0;
             if (slides && together && how.leaving) how.riding = true, how.leaving = false;
             if (!slides || !together || how.riding || mechanics_.belt(j, now_.hi, side()) != 0) continue;
-            before[j] = how.way, asked[j] = 1, grown = true;
+            asked_[j].slid = how.way, asked_[j].asked = true, grown = true;
             how.way = Motion::stuck;
         }
         if (grown) {
@@ -523,7 +530,8 @@ bool Engine::decide(bool told, std::optional<Ending> released) {
         }
         if (!look({now_.hi, side(), departing()}, mode_, present, found)) return fail(Outcome::excitation_not_finite);
         for (std::size_t j = 0; j < joints; ++j) {
-            if (crept_[j] != 0 && before[j] != Motion::stuck && mode_.holds(j)) creep(j, before[j], -found.holding[j]);
+            if (crept_[j] != 0 && asked_[j].slid != Motion::stuck && mode_.holds(j))
+                creep(j, asked_[j].slid, -found.holding[j]);
         }
         constexpr double nearly = 1e-10;  // of the torques: what differences tell of a belt is known no better
         std::size_t worst = joints;
@@ -536,9 +544,10 @@ bool Engine::decide(bool told, std::optional<Ending> released) {
             if (std::isnan(beyond)) return fail(Outcome::excitation_not_finite);
             const double size = n() > 1 ? 8 * rounding * torque_size(j) : 0;
             const bool own = released && released->which == j;
-            if ((own || let_go[j] != Motion::stuck) &&
+            if ((own || asked_[j].let_go != Motion::stuck) &&
                 std::fabs(beyond) <= nearly * torque_size(j) + 2 * found.blurred) {
-                worst = j, most_beyond = model::never, way = own ? static_cast<Motion>(released->side) : let_go[j];
+                worst = j, most_beyond = model::never,
+                way = own ? static_cast<Motion>(released->side) : asked_[j].let_go;
                 continue;
             }
             if (!(beyond > size)) continue;
@@ -547,13 +556,13 @@ bool Engine::decide(bool told, std::optional<Ending> released) {
         }
         if (worst < joints) {
             if (released && released->which == worst) released.reset();
-            let_go[worst] = Motion::stuck;
+            asked_[worst].let_go = Motion::stuck;
             if (Slipping& how = mode_.friction[worst]; how.creeps != Motion::stuck && way != how.creeps) {
                 how.creeps = Motion::stuck;
                 if (told) tell(EventKind::stick, static_cast<int>(worst));
                 continue;
             }
-            if (mode_.friction[worst].creeps != Motion::stuck) was_held[worst] = 0;
+            if (mode_.friction[worst].creeps != Motion::stuck) asked_[worst].was_held = false;
             if (mode_.leans[worst] != 0) {
                 mode_.leans[worst] = 0, at_wall_[worst] = 1;
                 const Motion slides = mode_.friction[worst].way;
@@ -574,37 +583,37 @@ bool Engine::decide(bool told, std::optional<Ending> released) {
         bool changed = false, goes_round = false;
         for (std::size_t j = 0; j < joints && !changed; ++j) {
             Slipping& how = mode_.friction[j];
-            const bool lifted = leant[j] != 0 && mode_.leans[j] == 0;
+            const bool lifted = asked_[j].leant != 0 && mode_.leans[j] == 0;
             if (!how.leaving && !lifted) continue;
             const Joint& joint = problem_.system.joints[j];
             double rate = found.accelerations[index(joint.first)] -
                           (joint.second < 0 ? 0 : found.accelerations[index(joint.second)]);
             const double I = problem_.system.bodies[index(joint.first)].inertia;
             const double nothing = 64 * rounding * torque_size(j);
-            goes_round = goes_round || (lifted && leant[j] * rate * I > nothing);
+            goes_round = goes_round || (lifted && asked_[j].leant * rate * I > nothing);
             if (mechanics_.has_belt(j)) rate -= belt_slope(j).rate;
             if (!how.leaving || model::sign_of(how.way) * rate * I >= -nothing) continue;
-            if (taken_back[j] != 0) {
+            if (asked_[j].taken_back) {
                 goes_round = true;
                 continue;
             }
-            taken_back[j] = 1;
+            asked_[j].taken_back = true;
             how.way = Motion::stuck, how.leaving = false;
             changed = true;
         }
         if (changed) continue;
-        if (goes_round && !decide_together(asked, full)) return false;
+        if (goes_round && !decide_together(full)) return false;
         break;
     }
     project(side());
     for (std::size_t j = 0; j < joints; ++j) {
-        if (leant[j] != 0 || mode_.leans[j] != 0) {
+        if (asked_[j].leant != 0 || mode_.leans[j] != 0) {
             if (told && leaned_[j] != 0 && mode_.leans[j] == 0) tell(EventKind::slip, static_cast<int>(j));
             if (mode_.leans[j] == 0) leaned_[j] = 0;
             arrived_[j] = Motion::stuck;
             continue;
         }
-        if (asked[j] == 0) continue;
+        if (!asked_[j].asked) continue;
         const Slipping& how = mode_.friction[j];
         const bool slides = how.way != Motion::stuck && !how.riding;
         crept_[j] = 0;
@@ -612,15 +621,15 @@ bool Engine::decide(bool told, std::optional<Ending> released) {
             arrived_[j] = Motion::stuck;
             continue;
         }
-        if (told && before[j] != Motion::stuck) {
+        if (told && asked_[j].slid != Motion::stuck) {
             if (!slides) {
                 tell(EventKind::stick, static_cast<int>(j));
-            } else if (how.way != before[j]) {
+            } else if (how.way != asked_[j].slid) {
                 tell(EventKind::turn, static_cast<int>(j));
             }
-        } else if (told && was_held[j] != 0 && slides) {
+        } else if (told && asked_[j].was_held && slides) {
             tell(EventKind::slip, static_cast<int>(j));
-        } else if (told && was_held[j] == 0 && was_creeping[j] == 0 && !slides && !take_back_slip(j)) {
+        } else if (told && !asked_[j].was_held && !asked_[j].was_creeping && !slides && !take_back_slip(j)) {
             tell(EventKind::stick, static_cast<int>(j));
         }
         arrived_[j] = Motion::stuck;
@@ -684,11 +693,11 @@ bool Engine::box_of(const std::vector<std::size_t>& held, Box& box) {
 /// What all joints at slip 0 do where asking one after the other goes round: the torques that solve the whole problem.
 /// What slips at the limit of holding has the torque of sliding, and with that the problem is solved again. The joint
 /// that came to its limit, if one did, is short of a little already.
-bool Engine::decide_together(const std::vector<char>& asked, std::size_t full) {
+bool Engine::decide_together(std::size_t full) {
     mode_ = entered_;
     std::vector<std::size_t> held;
     for (std::size_t j = 0; j < mechanics_.joints(); ++j) {
-        if (asked[j] != 0 || mode_.leans[j] != 0) held.push_back(j);
+        if (asked_[j].asked || mode_.leans[j] != 0) held.push_back(j);
     }
     Box box;
     if (!box_of(held, box)) return false;
@@ -777,11 +786,12 @@ bool Engine::share_loops(const std::optional<Ending>& released) {
 void Engine::project(Side when) {
     const Frame& present = frame();
     if (present.edges.empty()) return;
-    std::vector<double> belts(mechanics_.joints()), offsets;
+    auto& [belts, offsets, momentum, first] = projected_;
+    belts.resize(mechanics_.joints());
     for (std::size_t j = 0; j < belts.size(); ++j) belts[j] = mechanics_.belt(j, now_.hi, when);
     present.offsets(belts, mode_, offsets);
-    std::vector<double> momentum(present.groups(), 0), first(present.groups(), 0);
-    std::vector<char> seen(present.groups(), 0), alike(present.groups(), 1);
+    momentum.assign(present.groups(), 0), first.resize(present.groups());
+    seen_.assign(present.groups(), 0), alike_.assign(present.groups(), 1);
     for (std::size_t i = 0; i < n(); ++i) {
         const int g = present.group[i];
         const double v = y_[n() + i] - offsets[i];
@@ -790,12 +800,12 @@ void Engine::project(Side when) {
             continue;
         }
         momentum[index(g)] += problem_.system.bodies[i].inertia * v;
-        if (seen[index(g)] == 0) first[index(g)] = v, seen[index(g)] = 1;
-        if (v != first[index(g)]) alike[index(g)] = 0;
+        if (seen_[index(g)] == 0) first[index(g)] = v, seen_[index(g)] = 1;
+        if (v != first[index(g)]) alike_[index(g)] = 0;
     }
     for (std::size_t i = 0; i < n(); ++i) {
         const int g = present.group[i];
-        if (g < 0 || alike[index(g)] != 0) continue;
+        if (g < 0 || alike_[index(g)] != 0) continue;
         y_[n() + i] = momentum[index(g)] / present.inertia[index(g)] + offsets[i];
     }
     for (const Frame::Edge& edge : present.edges) {
@@ -1254,33 +1264,30 @@ void Engine::keep(double length) {
 /// What acts at each joint on the stretch.
 std::vector<Kept::Acting> Engine::acting() {
     std::vector<Kept::Acting> all(mechanics_.joints());
-    Nodes values{};
     for (std::size_t j = 0; j < all.size(); ++j) {
         if (j < n()) {
-            values = segment_.driven[j];
-            if (mechanics_.has_base()) {
-                Nodes push{};
-                for (std::size_t node = 0; node < node_count; ++node) {
-                    push[node] =
-                        -problem_.system.bodies[j].inertia * mechanics_.base(segment_.times[node], segment_.side(node));
-                    values[node] -= push[node];
-                }
-                all[j].push = cheb::fit(push);
+            all[j].M = segment_.driven[j];
+            for (std::size_t node = 0; node < node_count && mechanics_.has_base(); ++node) {
+                double& push = all[j].push[node];
+                push = -problem_.system.bodies[j].inertia * mechanics_.base(segment_.times[node], segment_.side(node));
+                all[j].M[node] -= push;
             }
-            all[j].M = cheb::fit(values);
         }
         all[j].holds = mechanics_.rubs(j) && mode_.leans[j] == 0 && mode_.friction[j].way == Motion::stuck;
-        if (mechanics_.has_belt(j)) all[j].belt = cheb::fit(segment_.belts[j]);
+        all[j].belt = segment_.belts[j];
         if (all[j].holds) {
-            all[j].friction = cheb::fit(segment_.holding[j]);
-        } else if (mechanics_.is_linear(j)) {
-            all[j].friction[0] = mechanics_.constant_friction(j, mode_);
+            all[j].friction = segment_.holding[j];
+        } else if (mechanics_.is_native(j) && mechanics_.rubs(j) && mode_.leans[j] == 0) {
+            const Joint& own = problem_.system.joints[j];
+            Nodes slip = difference(segment_.y[n() + index(own.first)], segment_.belts[j]);
+            if (own.second >= 0) slip = difference(slip, segment_.y[n() + index(own.second)]);
+            mechanics_.add_native_friction(j, mode_, slip, 0, node_count, all[j].friction);
+            for (double& torque : all[j].friction) torque = -torque;
         } else if (mechanics_.rubs(j) || mechanics_.bristle(j) != nullptr) {
             for (std::size_t node = 0; node < node_count; ++node) {
                 const Moment at = segment_.moment(node, point_);
-                values[node] = mechanics_.friction(j, at, mode_, segment_.belts[j][node]);
+                all[j].friction[node] = mechanics_.friction(j, at, mode_, segment_.belts[j][node]);
             }
-            all[j].friction = cheb::fit(values);
         }
     }
     return all;
@@ -1332,14 +1339,14 @@ bool Engine::handle(const Ending& ending) {
             return decide(true) && (!too_often() || fail(Outcome::chattering));
         }
         case By::release: {
-            const Mode before = mode_;
+            left_ = mode_;
             const double blunt = mode_.friction[j].blunt;
             if (!decide(true, ending)) return false;
-            bool same = mode_.leans == before.leans;
+            bool same = mode_.leans == left_.leans;
             for (std::size_t i = 0; i < mechanics_.joints() && same; ++i) {
-                same = mode_.friction[i].way == before.friction[i].way &&
-                       mode_.friction[i].riding == before.friction[i].riding &&
-                       mode_.friction[i].creeps == before.friction[i].creeps;
+                same = mode_.friction[i].way == left_.friction[i].way &&
+                       mode_.friction[i].riding == left_.friction[i].riding &&
+                       mode_.friction[i].creeps == left_.friction[i].creeps;
             }
             // What only touched its limit must pass it clearly the next time.
             if (same) {
@@ -1438,15 +1445,22 @@ void Engine::watch_slip(std::size_t joint, Ending& ending) {
     const Nodes& belt = segment_.belts[joint];
     const bool leans = mode_.leans[joint] != 0;
     const double first = how.leaving ? 0 : (leans ? 0 : a[0] - b[0]) - belt[0];
-    Nodes change{};
-    for (std::size_t j = 0; j < node_count; ++j) {
-        change[j] = (leans ? 0 : (a[j] - a[0]) - (b[j] - b[0])) - (belt[j] - belt[0]);
+    Series series{};
+    if (!leans) series = segment_.series[n() + index(own.first)];
+    if (!leans && own.second >= 0) series = difference(series, segment_.series[n() + index(own.second)]);
+    if (mechanics_.has_belt(joint)) {
+        Nodes change{};
+        for (std::size_t j = 0; j < node_count; ++j) change[j] = belt[j] - belt[0];
+        series = difference(series, cheb::fit(change));
     }
-    Series series = cheb::fit(change);
     series[0] += first;
     const double fastest = greatest(a) + greatest(b) + greatest(belt);
     if (!how.leaving && stays_above_zero(sign, series, fastest)) return;
-    cheb::Bounded<node_count> curve(sign, series, cheb::derivative(series));
+    Nodes slips{};
+    for (std::size_t j = 0; j < node_count; ++j) {
+        slips[j] = sign * (first + ((leans ? 0 : (a[j] - a[0]) - (b[j] - b[0])) - (belt[j] - belt[0])));
+    }
+    cheb::Bounded<node_count> curve(sign, series, cheb::derivative(series), slips);
     if (own.second >= 0 || mechanics_.has_belt(joint)) curve.raise_floor(16 * rounding * fastest);
     double torques = torque_size(joint), inertia = problem_.system.bodies[index(own.first)].inertia;
     if (own.second >= 0) inertia = std::min(inertia, problem_.system.bodies[index(own.second)].inertia);

@@ -24,6 +24,7 @@ Signal::Signal(const model::Excitation& excitation, const Asking* asking)
         }
         if (part.relay != nullptr) relays_.push_back(parts_.size());
         if (part.delayed != nullptr) delays_.push_back(part.delayed->by);
+        of_time_only_ = of_time_only_ && !controller && !part.of_motion;
         parts_.push_back(part);
     }
 }
@@ -65,6 +66,24 @@ double Signal::sum(const Moment& at, bool of_motion) const {
         sum += c.gain * value;
     }
     return sum;
+}
+
+void Signal::sample(const NodeTimes& when, Nodes& out) const {
+    const auto at_node = [&](std::size_t j) { return of_time({when.times[j], when.side(j), {}}); };
+    if (!of_time_only_) {
+        for (std::size_t j = 0; j < node_count; ++j) out[j] = at_node(j);
+        return;
+    }
+    const std::size_t first = when.from_break ? 1 : 0, end = when.to_break ? node_count - 1 : node_count;
+    if (first > 0) out[0] = at_node(0);
+    if (end < node_count) out[end] = at_node(end);
+    spread_.first = first;
+    spread_.rests = std::span(when.rests).subspan(first, end - first);
+    spread_.middle = when.times[node_count / 2], spread_.rest = when.rests[node_count / 2], spread_.half = when.h;
+    const std::size_t good = excitation_.fill(std::span(when.times).subspan(first, end - first),
+                                              std::span(out).subspan(first, end - first), &spread_);
+    std::fill(out.begin() + static_cast<std::ptrdiff_t>(first + good), out.begin() + static_cast<std::ptrdiff_t>(end),
+              std::numeric_limits<double>::quiet_NaN());
 }
 
 double Signal::next_break(double t) const {

@@ -101,6 +101,8 @@ public:
     /// What depends on the time alone, controllers that hold a value among it.
     [[nodiscard]] double of_time(const Moment& at) const { return sum(at, false); }
     [[nodiscard]] double of_motion(const Moment& at) const { return asks_the_motion_ ? sum(at, true) : 0; }
+    /// of_time() at all nodes of a stretch. What is not finite ends them: from there on they are no numbers.
+    void sample(const NodeTimes& when, Nodes& out) const;
 
     [[nodiscard]] double next_break(double t) const;
     [[nodiscard]] double view(double t, double spacing) const { return excitation_.view(t, spacing); }
@@ -169,7 +171,8 @@ private:
     std::vector<Memory> memory_;
     std::vector<std::size_t> relays_, held_;
     std::vector<double> delays_;
-    bool asks_the_motion_ = false, asks_functions_ = false, asks_in_time_ = false;
+    bool asks_the_motion_ = false, asks_functions_ = false, asks_in_time_ = false, of_time_only_ = true;
+    mutable model::Spread spread_{.places = cheb::nodes};
 };
 
 }  // namespace dinal::motion::engine

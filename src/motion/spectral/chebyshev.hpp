@@ -47,14 +47,18 @@ Series<points> fit(const Samples& f);
 /// The values at the nodes.
 Samples at_nodes(const Series<points>& c);
 
-/// The same for a longer series, whose last terms look like lower ones there: T17 like T15, T18 like T14.
+/// A longer series as it looks at the nodes, where its last terms are like lower ones: T17 like T15, T18 like T14.
+template <std::size_t n>
+Series<points> folded(const Series<n>& c) {
+    static_assert(n > points && n <= 2 * degree);
+    Series<points> low{};
+    for (std::size_t k = 0; k < points; ++k) low[k] = c[k];
+    for (std::size_t k = points; k < n; ++k) low[2 * degree - k] += c[k];
+    return low;
+}
 template <std::size_t n>
 Samples at_nodes(const Series<n>& c) {
-    static_assert(n > points && n <= 2 * degree);
-    Series<points> folded{};
-    for (std::size_t k = 0; k < points; ++k) folded[k] = c[k];
-    for (std::size_t k = points; k < n; ++k) folded[2 * degree - k] += c[k];
-    return at_nodes(folded);
+    return at_nodes(folded(c));
 }
 
 /// Clenshaw's sum, of the even and of the odd terms by themselves: T(2k) = Tk(y) and T(2k+1) = x Pk(y) with y = 2 x^2 -
