@@ -375,14 +375,12 @@ void Collocation::Factors::solve(const Eigen::VectorXd& right, Eigen::VectorXd& 
         for (Eigen::Index r = 0; r < rows; ++r) {
             of_mode(r) = {left(r * size + real), imaginary < 0 ? 0 : left(r * size + imaginary)};
         }
-        if (rows == 1) {
-            of_mode(0) *= reciprocals[i];
-        } else {
-            of_mode = modes[i].solve(of_mode);
-        }
+        const std::complex<double>* matrix = of_modes.data() + static_cast<Eigen::Index>(i) * rows * rows;
         for (Eigen::Index r = 0; r < rows; ++r) {
-            left(r * size + real) = of_mode(r).real();
-            if (imaginary >= 0) left(r * size + imaginary) = of_mode(r).imag();
+            std::complex<double> sum = 0;
+            for (Eigen::Index c = 0; c < rows; ++c) sum += matrix[c * rows + r] * of_mode(c);
+            left(r * size + real) = sum.real();
+            if (imaginary >= 0) left(r * size + imaginary) = sum.imag();
         }
     }
     for (Eigen::Index r = 0; r < rows; ++r) {
@@ -428,13 +426,14 @@ const Collocation::Factors& Collocation::newton_matrix(double h, const Frame& fr
     if (rows < many) {
         for (const std::complex<double>& value : integration_modes().values) {
             const std::complex<double> once_by = h * value, twice_by = once_by * once_by;
-            if (rows == 1) {
-                made.reciprocals.push_back(1.0 / (1.0 - once_by * slopes_(0, groups) - twice_by * slopes_(0, 0)));
+            if (rows == 1 && groups == 1) {
+                made.of_modes.push_back(1.0 / (1.0 - once_by * slopes_(0, 1) - twice_by * slopes_(0, 0)));
                 continue;
             }
             Eigen::MatrixXcd A = Eigen::MatrixXcd::Identity(rows, rows) - once_by * slopes_.rightCols(rows);
             A.leftCols(groups) -= twice_by * slopes_.leftCols(groups);
-            made.modes.emplace_back(A);
+            A = A.inverse().eval();
+            made.of_modes.insert(made.of_modes.end(), A.data(), A.data() + rows * rows);
         }
         return made;
     }

@@ -93,12 +93,11 @@ private:
     bool find_slopes(const Segment& segment, const Mode& mode, const Frame& frame, std::size_t node);
     /// Newton's matrix for a length. Of a few linear groups it serves many stretches, and is inverted. Of many it is
     /// sparse. Otherwise it falls into one complex matrix, of the groups and states, for each eigenvalue of the
-    /// integration, of conjugate ones for one (Butcher 1976); steps by these are right to ten digits.
+    /// integration, of two conjugate ones for one (Butcher 1976); steps by these are right to ten digits.
     struct Factors {
         Eigen::MatrixXd inverse;
         std::unique_ptr<Eigen::SparseLU<Eigen::SparseMatrix<double>>> sparse;
-        std::vector<std::complex<double>> reciprocals;  ///< of one row
-        std::vector<Eigen::PartialPivLU<Eigen::MatrixXcd>> modes;
+        std::vector<std::complex<double>> of_modes;  ///< their inverses, column after column
         void solve(const Eigen::VectorXd& right, Eigen::VectorXd& left) const;
     };
     const Factors& newton_matrix(double h, const Frame& frame);
