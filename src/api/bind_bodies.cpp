@@ -493,6 +493,7 @@ motion::Trajectory trajectory_of(const BodiesRunHandle& whole, std::size_t joint
     part.t_start = run.run.t_start, part.t_stop = run.run.t_stop;
     part.gap = run.run.gap;
     part.rough = run.run.rough;
+    part.noise = run.run.noise;
     if (part.rough) part.rough->other_integrators = false;
     const auto first = static_cast<std::size_t>(system.joints[joint].first);
     part.initial = {run.drive.theta0[first], run.drive.velocity0[first]};

@@ -19,12 +19,6 @@ local noisy = {
     ["the base"] = function(size)
         return { M = 0.2, velocity0 = 1, base = function(t) return 0.9 * math.sin(0.7 * t) + size * noise(t) end }
     end,
-    ["M"] = function(size)
-        return {
-            M = function(t, _, _, z) return math.sin(0.7 * t) - 0.1 * z.u + size * noise(t) end, velocity0 = 1,
-            states = { u = { rate = function(_, theta, _, z) return theta - z.u end } },
-        }
-    end,
     ["the rate of u"] = function(size)
         return {
             M = function(t, _, _, z) return math.sin(0.7 * t) - 0.1 * z.u end, velocity0 = 1,
@@ -55,6 +49,48 @@ for who, options in pairs(noisy) do
             near((found.theta - clean.theta):abs():max(), 0, 100 * size)
         end
         assert(sentences >= 1, sentences)
+    end)
+end
+
+-- Runs whose M has this much noise.
+local followed = {
+    ["a state"] = function(size)
+        return sys:simulate {
+            M = function(t, _, _, z) return math.sin(0.7 * t) - 0.1 * z.u + size * noise(t) end, velocity0 = 1,
+            states = { u = { rate = function(_, theta, _, z) return theta - z.u end } }, t_end = 12, dt = 0.5,
+        }
+    end,
+    ["an idle event"] = function(size)
+        return sys:simulate {
+            M = function(t) return math.sin(0.7 * t) + size * noise(t) end, velocity0 = 1, t_end = 12, dt = 0.5,
+            events = { { when = function(_, theta) return theta - 100 end } },
+        }
+    end,
+    ["two bodies"] = function(size)
+        local rig = system {
+            bodies = { a = { I = 1, k = 1, C = 0.1, Rd = 0.3, Re = 0.5 }, b = { I = 1, k = 2, Rd = 0.1 } },
+            links = { c = { "a", "b", k = 0.5 } },
+        }
+        local run = rig:simulate {
+            M = { a = function(t) return math.sin(0.7 * t) + size * noise(t) end }, velocity0 = { a = 1 },
+            t_end = 12, dt = 0.5,
+        }
+        return setmetatable({ theta = run.a.theta }, { __index = run, __len = function() return #run end })
+    end,
+}
+
+for what, run in pairs(followed) do
+    test("noise in M is followed as exactly as it can be, with " .. what, function()
+        local clean = run(0)
+        assert(clean.outcome == "reached the end", clean.outcome)
+        for _, size in ipairs { 1e-11, 1e-9, 1e-8 } do
+            local found = run(size)
+            assert(#found == #clean, found.outcome)
+            local said = tonumber(found.outcome:match("within the noise of M, (%S+)"))
+            assert(said and said > size / 30 and said < 10 * size, found.outcome)
+            -- A constant error of that size would move the mass by its own size over k.
+            near((found.theta - clean.theta):abs():max(), 0, size)
+        end
     end)
 end
 

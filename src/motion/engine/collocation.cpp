@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "motion/interpolation.hpp"
+#include "motion/roughness.hpp"
 #include "motion/spectral/break_search.hpp"
 
 namespace dinal::motion::engine {
@@ -91,6 +93,8 @@ Collocation::Collocation(const Mechanics& mechanics, double tolerance, double lo
       m_(mechanics.states()),
       fastest_belt_(mechanics.joints()),
       fastest_rate_(m_),
+      noise_(n_),
+      stalled_(n_),
       offset_(n_),
       offset_rate_(n_),
       offset_way_(n_),
@@ -494,7 +498,7 @@ Collocation::Attempt Collocation::iterate(Segment& s, const Mode& mode, const Fr
                 slopes_known_ = false;
                 return Attempt::failed;
             }
-            double left = 0;
+            double left = 0, stalls = 1e-12;
             find_sizes(s);
             scales_.resize(count);
             for (std::size_t k = 0; k < count; ++k) {
@@ -508,6 +512,7 @@ Collocation::Attempt Collocation::iterate(Segment& s, const Mode& mode, const Fr
                     moves = greatest(s.y[2 * n_ + (k - groups)]) + s.h * greatest(unknown_[k]);
                 }
                 scales_[k] = moves + smallest;
+                if (k < groups) stalls = std::max(stalls, s.h / frame.inertia[k] * noise() / scales_[k]);
                 for (std::size_t j = 1; j < node_count; ++j) {
                     const double rest = found_[k][j] - unknown_[k][j];
                     residual_(static_cast<Eigen::Index>(k * inner + j - 1)) = rest;
@@ -515,7 +520,7 @@ Collocation::Attempt Collocation::iterate(Segment& s, const Mode& mode, const Fr
                 }
                 left = std::max(left, s.h * most / scales_[k]);
             }
-            if (left <= 4 * rounding) return Attempt::resolved;
+            if (i > 0 && left <= 4 * rounding) return Attempt::resolved;
             if (slopes == Slopes::none) {
                 step_ = residual_;
             } else {
@@ -535,7 +540,7 @@ Collocation::Attempt Collocation::iterate(Segment& s, const Mode& mode, const Fr
             if (!std::isfinite(change + left)) break;
             const double rate = before < std::numeric_limits<double>::infinity() ? change / before : 1;
             const bool converged = change <= 16 * rounding || (i >= 1 && change * rate <= 4 * rounding) ||
-                                   (i >= 2 && change <= 1e-12 && rate > 0.3);
+                                   (i >= 2 && change <= stalls && rate > 0.3);
             if (converged && left <= most_left_over) {
                 if (i >= many_iterations) slopes_known_ = false;
                 return Attempt::resolved;
@@ -698,11 +703,12 @@ void Collocation::judge(const Segment& s, const Mode& mode, const Frame& frame) 
             double allowed = tolerance_ * std::max(greatest(s.y[n_ + i]), size) +
                              64 * rounding * (size + per_torque * torques) + smallest / h;
             if (tail > allowed || mechanics_.nonlinear()) allowed += per_torque * lost();
+            allowed += per_torque * noise();
             unresolved_ = std::max(unresolved_, tail / allowed);
             allowed_[i] = allowed / h;
         } else {
             const double tail = cheb::tail(cheb::fit(s.torques[i]));
-            double allowed = (tolerance_ + 16 * rounding) * torques + smallest;
+            double allowed = (tolerance_ + 16 * rounding) * torques + noise() + smallest;
             if (tail > allowed) allowed += lost();
             unresolved_ = std::max(unresolved_, tail / allowed);
         }
@@ -712,7 +718,7 @@ void Collocation::judge(const Segment& s, const Mode& mode, const Frame& frame) 
         if (mode.holds(joint)) {
             const Series series = cheb::fit(s.holding[joint]);
             const auto first = static_cast<std::size_t>(mechanics_.system().joints[joint].first);
-            const double torques = sizes_[first], lost = lost_in_time(series, late, h, torques);
+            const double torques = sizes_[first], lost = lost_in_time(series, late, h, torques) + noise();
             unresolved_ = std::max(unresolved_, cheb::tail(series) / ((tolerance_ + 64 * rounding) * torques + lost +
                                                                       blurred_by_belts(s) + smallest));
             for (std::size_t way = 0; way < 2 && mechanics_.limits_change(joint, mode); ++way) {
@@ -730,13 +736,15 @@ void Collocation::judge(const Segment& s, const Mode& mode, const Frame& frame) 
                                lost_in_time(belt, late, h, fastest_belt_[joint]) + smallest;
         unresolved_ = std::max(unresolved_, cheb::tail(belt) / allowed);
     }
+    double rough = 0;  // what noise in M may be of what it moves
+    for (std::size_t i = 0; i < n_; ++i) rough = std::max(rough, noise_[i] / (sizes_[i] + smallest));
     for (std::size_t k = 0; k < m_; ++k) {
         Series series = s.rates[2 * n_ + k];
         for (double& c : series) c *= h;
         fastest_rate_[k] = std::max(fastest_rate_[k], greatest(s.f[2 * n_ + k]));
-        const double allowed = (tolerance_ + 64 * rounding) * std::max(greatest(s.y[2 * n_ + k]), cheb::size(series)) +
-                               64 * rounding * h * fastest_rate_[k] +
-                               lost_in_time(series, late, h, h * fastest_rate_[k]);
+        const double allowed =
+            (tolerance_ + rough + 64 * rounding) * std::max(greatest(s.y[2 * n_ + k]), cheb::size(series)) +
+            64 * rounding * h * fastest_rate_[k] + lost_in_time(series, late, h, h * fastest_rate_[k]);
         unresolved_ = std::max(unresolved_, cheb::tail(series) / (allowed + smallest));
     }
 }
@@ -807,8 +815,8 @@ bool Collocation::agrees_between(const Segment& s, const Mode& mode, const Frame
         mechanics_.loads_of_time(t, Side::at, load_);
         for (std::size_t i = 0; i < n_; ++i) {
             if (!mechanics_.loads()[i].asks_in_time()) continue;
-            const double allowed =
-                (tolerance_ + 4 * rounding) * sizes_[i] + lost_in_time(loads[i], std::fabs(s.end), s.h, sizes_[i]);
+            const double allowed = (tolerance_ + 4 * rounding) * sizes_[i] + noise_[i] +
+                                   lost_in_time(loads[i], std::fabs(s.end), s.h, sizes_[i]);
             if (std::fabs(load_[i] - cheb::value(loads[i], x)) <= clearly * allowed) continue;
             seen_ = t;
             return false;
@@ -830,6 +838,38 @@ bool Collocation::agrees_between(const Segment& s, const Mode& mode, const Frame
         }
     }
     return true;
+}
+
+bool Collocation::found_noise(const Segment& s) {
+    // What is rougher is made of steps that can be found; of what depends on the motion, if single precision is not.
+    constexpr double most_noise = 1e-5, most_noise_of_motion = 1.2e-7, stays = 0.3, alike = 0.1, varies = 8, above = 3;
+    bool found = false;
+    std::vector<double> y, loads;
+    for (std::size_t i = 0; i < n_; ++i) {
+        const Signal& load = mechanics_.loads()[i];
+        if (!load.asks_functions()) continue;
+        const double tail = cheb::tail(cheb::fit(s.driven[i]));
+        const Stalled before = std::exchange(stalled_[i], {s.start.hi, s.h, tail});
+        const double most =
+            load.asks_the_motion() ? most_noise_of_motion * greatest(s.driven[i]) : most_noise * sizes_[i];
+        if (!(tail > tolerance_ * sizes_[i]) || !(tail <= most)) continue;
+        if (noise_[i] > 0 && tail <= varies * noise_[i]) {
+            found = found || 2 * tail > noise_[i];
+            noise_[i] = std::max(noise_[i], 2 * tail);
+            continue;
+        }
+        if (before.from != s.start.hi || !(s.h < 0.95 * before.h) || !(tail > stays * before.tail)) continue;
+        const auto here = [&](double t) {
+            s.state(s.start.until(t) / s.h - 1, y);
+            mechanics_.loads_of_time(t, Side::at, loads);
+            return loads[i] + load.of_motion({t, Side::at, y});
+        };
+        const Roughness rough = roughness(here, s.start.hi, rough_stretch * s.h);
+        if (!rough.is_noise() || !(rough.usual > alike * tail)) continue;
+        noise_[i] = above * std::max(tail, rough.most);
+        found = true;
+    }
+    return found;
 }
 
 std::optional<double> Collocation::found_break(const Segment& s) const {

@@ -3,6 +3,7 @@
 
 #include <Eigen/Dense>
 #include <Eigen/Sparse>
+#include <algorithm>
 #include <array>
 #include <complex>
 #include <map>
@@ -64,6 +65,11 @@ public:
     [[nodiscard]] double bad_time() const { return bad_time_; }
     /// Over 1: by how much the last one was not resolved.
     [[nodiscard]] double unresolved() const { return unresolved_; }
+    /// The last one was not resolved, nor a longer one, and the load of a body is as rough on far shorter stretches, at
+    /// one place as at another. From now on it need not be smoother than that.
+    bool found_noise(const Segment& segment);
+    /// That of the body where it is greatest, torque.
+    [[nodiscard]] double noise() const { return *std::max_element(noise_.begin(), noise_.end()); }
     /// Where a function of the time breaks in the last one; none when none does.
     [[nodiscard]] std::optional<double> found_break(const Segment& segment) const;
     /// The belt of a joint has clearly different velocities before and at this time.
@@ -116,7 +122,12 @@ private:
     double lost_by_belts_ = 0;  ///< of the velocities of belts on the last stretch, because t is rounded
     std::vector<double> fastest_belt_, fastest_rate_;
     std::vector<double> allowed_;  ///< of each body's acceleration
-    double seen_ = -model::never;  ///< where a load did what its series does not: looked at until it is behind
+    std::vector<double> noise_;    ///< of each body's load
+    struct Stalled {
+        double from = -model::never, h = 0, tail = 0;
+    };
+    std::vector<Stalled> stalled_;  ///< of each body: the last stretch that its load made too long
+    double seen_ = -model::never;   ///< where a load did what its series does not: looked at until it is behind
     std::vector<Nodes> offset_, offset_rate_, offset_way_;  ///< of each body against its group
     std::vector<Nodes> unknown_, found_;                    ///< accelerations of the groups and rates, and new ones
     std::array<std::vector<double>, node_count> points_;    ///< all of y at a node

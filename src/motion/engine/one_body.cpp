@@ -104,6 +104,7 @@ Trajectory run(const Problem& problem, const Cut& cut) {
     trajectory.rough = run.rough;
     trajectory.located = run.located;
     trajectory.jumps = run.jumps;
+    trajectory.noise = run.noise;
     trajectory.gap = run.gap;
     for (const model::WantedEvent& wanted : extras.events) trajectory.event_names.push_back(wanted.name);
     auto carried = std::make_shared<Left>();

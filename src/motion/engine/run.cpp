@@ -938,6 +938,8 @@ void Engine::run() {
     if (!mechanics_.rubs(0) && mode_.leans[0] == 0) result_.motion_at_stop = heading_[0];
     result_.outcome = outcome_;
     result_.located = has_pieces_;
+    const bool lost = outcome_ == Outcome::unresolved || outcome_ == Outcome::chattering;
+    result_.noise = lost ? 0 : solver_->noise();
     keep_within_walls(y_);  // beside a wall its distance has digits that theta has not
     result_.t_start = problem_.window.start;
     result_.t_stop = now_.hi;
@@ -1068,6 +1070,7 @@ void Engine::again(Collocation::Attempt attempt) {
             }
         }
     }
+    if (solver_->found_noise(segment_)) return;
     const double unresolved = solver_->unresolved();
     const double factor = unresolved < model::never ? 0.9 * std::pow(unresolved, -1.0 / 16) : 0;
     h_ = segment_.h * std::clamp(factor, 0.5, 0.9);

@@ -59,6 +59,7 @@ struct AssemblyRun {
     bool began_stuck = false;                             ///< the first body
     bool located = false;                                 ///< conditions of the motion, all that there were
     std::size_t jumps = 0;                                ///< at these conditions
+    double noise = 0;                                     ///< of the load that is roughest, torque
     std::optional<Rough> rough = {};                      ///< of Outcome::unresolved, where it is known
     std::shared_ptr<const History> history;
     std::shared_ptr<const Carry> carry;
