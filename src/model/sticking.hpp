@@ -8,19 +8,23 @@
 
 namespace dinal::model {
 
+/// side (M - k theta) - limit, where the limit is a razor's edge: M -+ limit is kept in two parts and the product is
+/// fused, so what is left near the limit is the exact difference, rounded once.
+inline double excess_over(double limit, double k, double M, double theta, double side) {
+    const double m = side * M;
+    const double sum = m - limit;
+    const double part = sum - m;
+    const double rest = (m - (sum - part)) - (limit + part);
+    return std::fma(-k, side * theta, sum) + rest;
+}
+
 /// How far the torque on a mass at velocity zero is past what sticking can hold: |M - k theta| - Re. A spring of its
-/// own is part of M here. The limit is a razor's edge, so M -+ Re is kept in two parts and the product is fused: what
-/// is left near the limit is the exact difference, rounded once.
+/// own is part of M here.
 inline double breakaway_excess(const Lowered& system, double M, double theta) {
     const double k = system.stiffness();
     M -= system.spring(theta);
     const bool back = std::fma(-k, theta, M) < 0;
-    const double side = back ? -1 : 1, Re = system.holding(back ? Motion::backward : Motion::forward);
-    const double m = side * M;
-    const double sum = m - Re;
-    const double part = sum - m;
-    const double rest = (m - (sum - part)) - (Re + part);
-    return std::fma(-k, side * theta, sum) + rest;
+    return excess_over(system.holding(back ? Motion::backward : Motion::forward), k, M, theta, back ? -1 : 1);
 }
 
 /// However M changes while |M| is at most this, it cannot move a mass that is stuck there.

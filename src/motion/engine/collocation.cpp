@@ -484,7 +484,9 @@ Collocation::Attempt Collocation::iterate(Segment& s, const Mode& mode, const Fr
     for (const Slopes slopes : {Slopes::known, Slopes::here, Slopes::none}) {
         if (!evaluate(s, mode, frame, 0, 1, &departing)) return Attempt::failed;
         for (std::size_t k = 0; k < count; ++k) unknown_[k].fill(found_[k][0]);
-        for (std::size_t i = 0; i < n_; ++i) s.f[n_ + i].fill(0);
+        for (std::size_t i = 0; i < n_; ++i) {
+            s.f[n_ + i].fill(frame.group[i] < 0 ? 0 : unknown_[index(frame.group[i])][0]);
+        }
         for (std::size_t k = 0; k < m_; ++k) s.f[2 * n_ + k].fill(found_[groups + k][0]);
         guess(s, frame);
         double before = std::numeric_limits<double>::infinity();
@@ -815,8 +817,8 @@ bool Collocation::agrees_between(const Segment& s, const Mode& mode, const Frame
         mechanics_.loads_of_time(t, Side::at, load_);
         for (std::size_t i = 0; i < n_; ++i) {
             if (!mechanics_.loads()[i].asks_in_time()) continue;
-            const double allowed = (tolerance_ + 4 * rounding) * sizes_[i] + noise_[i] +
-                                   lost_in_time(loads[i], std::fabs(s.end), s.h, sizes_[i]);
+            const double lost = lost_in_time(loads[i], std::fabs(s.end), s.h, sizes_[i]);
+            const double allowed = (tolerance_ + 4 * rounding) * sizes_[i] + noise_[i] + lost + smallest;
             if (std::fabs(load_[i] - cheb::value(loads[i], x)) <= clearly * allowed) continue;
             seen_ = t;
             return false;

@@ -10,9 +10,11 @@
 #include <map>
 #include <numbers>
 #include <tuple>
+#include <utility>
 
 #include "model/slide.hpp"
 #include "model/springs/user_spring.hpp"
+#include "model/sticking.hpp"
 #include "motion/engine/collocation.hpp"
 #include "motion/engine/crossing.hpp"
 #include "motion/engine/history.hpp"
@@ -64,7 +66,7 @@ private:
     };
     /// What an exact look at a moment tells.
     struct Look {
-        std::vector<double> torques, accelerations, holding;
+        std::vector<double> loads, torques, accelerations, holding;
         double blurred = 0;  ///< what torques may be off by because the slopes of belts are differences
     };
 
@@ -79,6 +81,7 @@ private:
     bool belt_jump_found();
     bool get_nowhere(Outcome outcome);
     bool end_at(double x);
+    bool ask_after_break();
     void go_to(double x);
     [[nodiscard]] double gap(std::size_t joint, double place) const;
     void keep(double length);
@@ -118,6 +121,8 @@ private:
     void watch(Ending& ending);
     void watch_slip(std::size_t joint, Ending& ending);
     bool take_back_slip(std::size_t joint);
+    void settle_at_limit(std::size_t joint);
+    bool only_touched(std::size_t joint, Motion way);
     void watch_release(std::size_t joint, Ending& ending);
     void watch_walls(std::size_t joint, Ending& ending) const;
     void watch_corner(std::size_t joint, Ending& ending) const;
@@ -189,8 +194,16 @@ private:
         Motion slid = Motion::stuck;    ///< which way it slid until now; stuck: it did not
         Motion let_go = Motion::stuck;  ///< the way of what came to its limit at this instant, too
         int leant = 0;
+        double pull = 0;  ///< what it was let go by
     };
     std::vector<Asked> asked_;
+    /// How a joint came to stick, the last time: which way it slid, and what pulled it then.
+    struct Arrival {
+        Motion slid = Motion::stuck;
+        double pull = 0;
+    };
+    std::vector<Arrival> arrivals_;
+    double size_at_stop_ = 0;                         ///< of the torques, where a joint came to slip 0 the last time
     std::vector<char> crept_;                         ///< of each joint: it has come down to rounding, and may creep
     std::map<std::size_t, JointEvent> crept_events_;  ///< the sticking of what creeps, told when nothing moves it
     std::vector<Motion> arrived_;                     ///< of each joint: which way it slid until now; stuck: it did not
@@ -226,7 +239,7 @@ private:
     std::size_t next_row_ = 0, last_full_ = 0;  ///< the joint of a loop that came to its limit last, at last_full_at_
     Outcome outcome_ = Outcome::reached_end;
     Look look_, decided_;
-    std::array<std::vector<double>, 6> scratch_;    ///< of look()
+    std::array<std::vector<double>, 5> scratch_;    ///< of look()
     std::array<std::vector<double>, 4> projected_;  ///< of project()
     std::vector<char> seen_, alike_;                ///< of project()
     mutable std::vector<double> point_, departing_;
@@ -251,7 +264,7 @@ Engine::Engine(const AssemblyProblem& problem, AssemblyRun& result)
     arrived_.assign(joints, Motion::stuck), crept_.assign(joints, 0);
     edge_.assign(joints, 0), at_wall_.assign(joints, 0), leaned_.assign(joints, 0), normal_half_.assign(joints, 0);
     heading_.assign(n(), Motion::stuck);
-    watches_.resize(problem.drive.events.size());
+    watches_.resize(problem.drive.events.size()), arrivals_.resize(joints);
     if (problem.before != nullptr) {
         y_ = problem.before->y;
         mode_ = problem.before->mode;
@@ -360,7 +373,8 @@ const std::vector<double>& Engine::departing() const {
 bool Engine::look(const Moment& at, const Mode& mode, const Frame& frame, Look& result, std::optional<double> x) {
     const std::size_t joints = mechanics_.joints();
     if (!x) decide_conditions(at, mode);
-    auto& [belts, rates, loads, offsets, of_group, lacking] = scratch_;
+    auto& [belts, rates, offsets, of_group, lacking] = scratch_;
+    auto& loads = result.loads;
     belts.assign(joints, 0), rates.assign(joints, 0);
     result.blurred = x && mechanics_.has_belts() ? solver_->blurred_by_belts(segment_) : 0;
     for (std::size_t j = 0; j < joints; ++j) {
@@ -409,7 +423,18 @@ double Engine::excess(std::size_t joint, const Look& look, const Mode& mode, con
         return std::fabs(off) - how.apart;
     }
     towards = pull > 0 ? Motion::forward : Motion::backward;
-    return std::fabs(pull) - look.blurred - mechanics_.holding(joint, towards, at) - mode.friction[joint].blunt;
+    const double holding = mechanics_.holding(joint, towards, at) + mode.friction[joint].blunt;
+    if (n() > 1 || !mechanics_.is_native(joint) || mechanics_.has_belts() || mechanics_.states() > 0) {
+        return std::fabs(pull) - look.blurred - holding;
+    }
+    // The limit is a razor's edge. The angle stands for all that are within half a unit of its last place.
+    const Joint& own = problem_.system.joints[joint];
+    const double theta = at.y[0], spring = own.spring.torque(theta);
+    const double beyond =
+        model::excess_over(holding, own.stiffness, look.loads[0] - spring, theta, model::sign_of(towards));
+    constexpr double few = 8;  // roundings that a formula of the user makes
+    const double grace = rounding / 2 * (std::fabs(own.stiffness * theta) + few * std::fabs(spring));
+    return beyond < grace ? std::min(beyond, 0.0) : beyond;
 }
 
 /// The velocity of the belt; where it passes zero, a hair of velocity that way on which it goes.
@@ -504,6 +529,9 @@ bool Engine::decide(bool told, std::optional<Ending> released) {
     if (loops && released) last_full_at_ = now_.hi, last_full_ = released->which;
     const std::size_t full = released ? released->which : all_used ? last_full_ : joints;
     if (loops && !all_used && !share_loops(released)) return false;
+    for (std::size_t j = 0; j < joints && told; ++j) {
+        if (asked_[j].slid != Motion::stuck) settle_at_limit(j);
+    }
     Look& found = decided_;
     const int most = 8 * static_cast<int>(joints) + 16;
     for (int i = 0;; ++i) {
@@ -556,6 +584,7 @@ bool Engine::decide(bool told, std::optional<Ending> released) {
         }
         if (worst < joints) {
             if (released && released->which == worst) released.reset();
+            asked_[worst].pull = -found.holding[worst];
             asked_[worst].let_go = Motion::stuck;
             if (Slipping& how = mode_.friction[worst]; how.creeps != Motion::stuck && way != how.creeps) {
                 how.creeps = Motion::stuck;
@@ -624,15 +653,54 @@ bool Engine::decide(bool told, std::optional<Ending> released) {
         if (told && asked_[j].slid != Motion::stuck) {
             if (!slides) {
                 tell(EventKind::stick, static_cast<int>(j));
+                arrivals_[j] = {asked_[j].slid, -found.holding[j]};
             } else if (how.way != asked_[j].slid) {
                 tell(EventKind::turn, static_cast<int>(j));
             }
         } else if (told && asked_[j].was_held && slides) {
-            tell(EventKind::slip, static_cast<int>(j));
+            if (!only_touched(j, how.way)) tell(EventKind::slip, static_cast<int>(j));
         } else if (told && !asked_[j].was_held && !asked_[j].was_creeping && !slides && !take_back_slip(j)) {
             tell(EventKind::stick, static_cast<int>(j));
         }
         arrived_[j] = Motion::stuck;
+    }
+    return true;
+}
+
+/// A mass that comes to a stop beyond the limit of sticking by no more than the roundings of its way is at the limit.
+void Engine::settle_at_limit(std::size_t joint) {
+    const Joint& own = problem_.system.joints[joint];
+    const double before = std::exchange(size_at_stop_, torque_size(joint));
+    const bool alone = n() == 1 && mechanics_.all_linear() && !mechanics_.has_belts() && mode_.leans[joint] == 0;
+    if (!alone || own.stiffness == 0) return;
+    if (!look({now_.hi, side(), departing()}, mode_, frame(), decided_)) return;
+    constexpr double roundings = 1024 * rounding;
+    Motion towards = Motion::stuck;
+    const double beyond = excess(joint, decided_, mode_, here(), towards);
+    if (!(beyond > 0) || beyond > roundings * std::max(size_at_stop_, before)) return;
+    const double way = model::sign_of(towards), limit = mechanics_.holding(joint, towards, here());
+    double place = (decided_.loads[0] - way * limit) / own.stiffness;
+    while (model::excess_over(limit, own.stiffness, decided_.loads[0], place, way) > 0) {
+        place = std::nextafter(place, way * model::never);
+    }
+    y_[0] = place, low_[0] = 0;
+}
+
+/// Whether the stick that ends now was none: the joint came to slip 0 right at the limit, and friction withheld an
+/// impulse below rounding while the pull passed it. Which side of the limit it was on is for rounding to say. Then it
+/// is told no more, or is a turn.
+bool Engine::only_touched(std::size_t joint, Motion way) {
+    constexpr double briefly = 1e-3, withheld = 64 * rounding;
+    if (result_.events.empty() || arrivals_[joint].slid == Motion::stuck) return false;
+    JointEvent& last = result_.events.back();
+    const double part = (now_.hi - last.t) / pace_;
+    if (last.kind != EventKind::stick || last.where != static_cast<int>(joint) || part > briefly) return false;
+    const double impulse = std::fabs(asked_[joint].pull - arrivals_[joint].pull) * (2 * std::numbers::pi * part);
+    if (!(impulse <= withheld * torque_size(joint))) return false;
+    if (way == arrivals_[joint].slid) {
+        result_.events.pop_back();
+    } else {
+        last.kind = EventKind::turn;
     }
     return true;
 }
@@ -828,8 +896,8 @@ bool Engine::restart_contacts(Because why, std::size_t at) {
         double corner = 4 * rounding * (std::fabs(mechanics_.velocity(j, y_)) + std::fabs(belt));
         if (why == Because::belt && mechanics_.has_belt(j)) {
             // Where it only turns a corner its values differ by rounding, and by what it does in a hair of time.
-            const double rate =
-                std::max(std::fabs(segment_.belt_rates[j][node_count - 1]), std::fabs(belt_slope(j).rate));
+            double rate = std::fabs(belt_slope(j).rate);
+            if (!segment_.belt_rates.empty()) rate = std::max(rate, std::fabs(segment_.belt_rates[j][node_count - 1]));
             corner = 16 * corner + rate * 64 * rounding * std::fabs(now_.hi);
         }
         if (std::fabs(s) <= corner) {
@@ -887,6 +955,11 @@ void Engine::begin() {
         for (std::size_t j = 0; j < mechanics_.joints(); ++j) leaned_[j] = mode_.leans[j] != 0 ? 1 : 0;
     } else {
         project(side());
+        for (std::size_t j = 0; j < mechanics_.joints(); ++j) {
+            if (mode_.friction[j].creeps == Motion::stuck) continue;
+            crept_events_[j] = event_at(EventKind::stick, static_cast<int>(j), -1);
+        }
+        if (after_break_) ask_after_break();
     }
     result_.began_stuck = mode_.holds(0);
     for (std::size_t j = 0; j < mechanics_.joints(); ++j) reach_[j] = std::fabs(mechanics_.angle(j, y_));
@@ -905,7 +978,8 @@ void Engine::run() {
         }
         alive = advance();
     }
-    if (outcome_ == Outcome::reached_end || outcome_ == Outcome::stopped || outcome_ == Outcome::chattering) {
+    const bool stands_at_now = outcome_ != Outcome::excitation_not_finite && outcome_ != Outcome::unresolved;
+    if (stands_at_now) {
         while (next_row_ < problem_.rows.count() && problem_.rows.time(next_row_) <= now_.hi && put_row(now_.hi, -2)) {
         }
     }
@@ -936,6 +1010,7 @@ void Engine::run() {
     }
     if (mode_.friction[0].way != Motion::stuck && !mode_.holds(0)) result_.motion_at_stop = mode_.friction[0].way;
     if (!mechanics_.rubs(0) && mode_.leans[0] == 0) result_.motion_at_stop = heading_[0];
+    if (mode_.friction[0].creeps != Motion::stuck) result_.motion_at_stop = mode_.friction[0].creeps;
     result_.outcome = outcome_;
     result_.located = has_pieces_;
     const bool lost = outcome_ == Outcome::unresolved || outcome_ == Outcome::chattering;
@@ -1199,7 +1274,7 @@ bool Engine::end_at(double x) {
     if (problem_.works && length > 0) add_works(x);
     if (x > -1) go_to(x);
     now_ = whole && segment_.to_the_end ? Clock{segment_.end, 0} : segment_.start.later(length);
-    after_break_ = whole && segment_.to_break;
+    after_break_ = whole && segment_.to_break && now_.hi < problem_.window.end;
     has_jumped_ = has_jumped_ || after_break_;
     mechanics_.forget_jumps(now_.hi);
     if (bad_time_ <= now_.hi) bad_time_ = model::never, mechanics_.forget_failure();
@@ -1224,12 +1299,12 @@ bool Engine::end_at(double x) {
     bool good = true;
     mechanics_.for_each_signal([&](Signal& s) { good = good && s.arrive(here()); });
     if (!good) return fail(Outcome::excitation_not_finite);
-    if (!after_break_) return true;
-    // Loads, limits and belts may have jumped: what holds is asked again.
-    for (std::size_t j = 0; j < mechanics_.joints(); ++j) {
-        if (mechanics_.has_belt(j)) return restart_contacts(Because::belt);
-    }
-    return decide(true);
+    return !after_break_ || ask_after_break();
+}
+
+/// Loads, limits and belts may have jumped: what holds is asked again.
+bool Engine::ask_after_break() {
+    return mechanics_.has_belts() ? restart_contacts(Because::belt) : decide(true);
 }
 
 /// The present is at x of the stretch. What is rounded off the angles is kept: beside a wall it is seen.
