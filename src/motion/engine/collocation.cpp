@@ -17,6 +17,10 @@ constexpr int many_iterations = 4;       // slopes that need so many no longer s
 constexpr double most_left_over = 1e-6;  // of the equation; a stiff rate multiplies the rounding of its steps
 constexpr double gross = 1e3;            // not resolved by more than this factor: it may be a break
 constexpr std::size_t most_factors = 24;
+/// The widest gaps between nodes, by the node before: in the middle of these functions are asked once more, but on
+/// stretches so short nothing hides.
+constexpr std::array<std::size_t, 3> looked_into{7, 8, 9};
+constexpr double too_short_to_look = 1e-6;
 const double smallest = std::numeric_limits<double>::min() / rounding;
 
 /// Row i: the integral from -1 to node i of the polynomial through values at the nodes.
@@ -796,10 +800,16 @@ void Collocation::add_turns(const Segment& s, std::vector<double>& places) const
     }
 }
 
+double Collocation::gap(const Segment& s) const {
+    constexpr double widest_left = (cheb::nodes[7] - cheb::nodes[6]) / 2;
+    if (step_length_ > 0) return s.h;
+    return 2 * s.h * (2 * s.h > too_short_to_look * longest_ ? widest_left : cheb::widest_gap);
+}
+
 /// Asks between the nodes. A pulse of a function may be there that no node has met, or a bend of a law.
 bool Collocation::agrees_between(const Segment& s, const Mode& mode, const Frame& frame) {
-    constexpr double clearly = 64, too_short = 1e-6;
-    if (2 * s.h <= too_short * longest_) return true;
+    constexpr double clearly = 64;
+    if (2 * s.h <= too_short_to_look * longest_) return true;
     const bool scripts = std::any_of(mechanics_.loads().begin(), mechanics_.loads().end(),
                                      [](const Signal& load) { return load.asks_in_time(); });
     if (!scripts && !mechanics_.nonlinear()) return true;
@@ -810,7 +820,7 @@ bool Collocation::agrees_between(const Segment& s, const Mode& mode, const Frame
     std::vector<double> y, belts(mechanics_.joints()), torques;
     std::vector<double> places;
     if (s.start.until(seen_) > 0 && seen_ < s.end) places.push_back(s.start.until(seen_) / s.h - 1);
-    for (const std::size_t j : {0U, 7U, 8U, 9U, 15U}) places.push_back((cheb::nodes[j] + cheb::nodes[j + 1]) / 2);
+    for (const std::size_t j : looked_into) places.push_back((cheb::nodes[j] + cheb::nodes[j + 1]) / 2);
     add_turns(s, places);
     for (const double x : places) {
         const double t = s.time(x);

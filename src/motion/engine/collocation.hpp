@@ -70,6 +70,8 @@ public:
     bool found_noise(const Segment& segment);
     /// That of the body where it is greatest, torque.
     [[nodiscard]] double noise() const { return *std::max_element(noise_.begin(), noise_.end()); }
+    /// The longest time between two looks at a function of the time in a stretch.
+    [[nodiscard]] double gap(const Segment& segment) const;
     /// Where a function of the time breaks in the last one; none when none does.
     [[nodiscard]] std::optional<double> found_break(const Segment& segment) const;
     /// The belt of a joint has clearly different velocities before and at this time.

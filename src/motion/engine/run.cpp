@@ -1268,9 +1268,7 @@ bool Engine::end_at(double x) {
         return fail(Outcome::excitation_not_finite);
     }
     keep(length);
-    if (mechanics_.asks_functions())
-        result_.gap =
-            std::max(result_.gap, std::min(length, (problem_.step > 0 ? 1 : 2 * cheb::widest_gap) * segment_.h));
+    if (mechanics_.asks_functions()) result_.gap = std::max(result_.gap, std::min(length, solver_->gap(segment_)));
     if (problem_.works && length > 0) add_works(x);
     if (x > -1) go_to(x);
     now_ = whole && segment_.to_the_end ? Clock{segment_.end, 0} : segment_.start.later(length);

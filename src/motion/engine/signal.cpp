@@ -74,9 +74,12 @@ void Signal::sample(const NodeTimes& when, Nodes& out) const {
         for (std::size_t j = 0; j < node_count; ++j) out[j] = at_node(j);
         return;
     }
-    const std::size_t first = when.from_break ? 1 : 0, end = when.to_break ? node_count - 1 : node_count;
-    if (first > 0) out[0] = at_node(0);
-    if (end < node_count) out[end] = at_node(end);
+    std::size_t first = 0, end = node_count;
+    if (when.from_break) out[0] = at_node(0), first = 1;
+    for (const auto& [t, M] : known_) {
+        if (first == 0 && t == when.times[0]) out[0] = M, first = 1;
+    }
+    if (when.to_break) out[--end] = at_node(node_count - 1);
     spread_.first = first;
     spread_.rests = std::span(when.rests).subspan(first, end - first);
     spread_.middle = when.times[node_count / 2], spread_.rest = when.rests[node_count / 2], spread_.half = when.h;
@@ -84,6 +87,8 @@ void Signal::sample(const NodeTimes& when, Nodes& out) const {
                                               std::span(out).subspan(first, end - first), &spread_);
     std::fill(out.begin() + static_cast<std::ptrdiff_t>(first + good), out.begin() + static_cast<std::ptrdiff_t>(end),
               std::numeric_limits<double>::quiet_NaN());
+    known_ = {{{when.from_break ? nowhen : when.times[0], out[0]},
+               {when.to_break ? nowhen : when.times[node_count - 1], out[node_count - 1]}}};
 }
 
 double Signal::next_break(double t) const {

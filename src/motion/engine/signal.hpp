@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <deque>
@@ -173,6 +174,9 @@ private:
     std::vector<double> delays_;
     bool asks_the_motion_ = false, asks_functions_ = false, asks_in_time_ = false, of_time_only_ = true;
     mutable model::Spread spread_{.places = cheb::nodes};
+    /// Of the last stretch: of_time() at both ends, where the next one begins at one of these.
+    static constexpr double nowhen = std::numeric_limits<double>::quiet_NaN();
+    mutable std::array<std::pair<double, double>, 2> known_{{{nowhen, 0}, {nowhen, 0}}};
 };
 
 }  // namespace dinal::motion::engine
