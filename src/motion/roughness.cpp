@@ -1,22 +1,21 @@
 #include "motion/roughness.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "motion/spectral/chebyshev.hpp"
 
 namespace dinal::motion {
 
-Roughness roughness(const std::function<double(double)>& function, double from, double length) {
+Roughness roughness(const std::function<double(double)>& function, const std::array<double, 3>& starts, double length) {
     namespace cheb = spectral::chebyshev;
     Roughness found;
     std::array<double, 3> tails{};
     std::size_t stretch = 0;
-    for (const double begin : {0.0, 2.0, 5.0}) {
+    for (const double start : starts) {
         cheb::Samples values{};
         for (std::size_t j = 0; j < cheb::points; ++j) {
-            values[j] = function(from + length * (begin + (1 + cheb::nodes[j]) / 2));
+            values[j] = function(start + length * (1 + cheb::nodes[j]) / 2);
             if (!std::isfinite(values[j])) return {};
             found.size = std::max(found.size, std::fabs(values[j]));
         }

@@ -1,6 +1,7 @@
 // How rough a function is at a time: noise is as rough on every scale, and ends a run that gets nowhere.
 #pragma once
 
+#include <array>
 #include <functional>
 
 namespace dinal::motion {
@@ -19,7 +20,8 @@ struct Roughness {
 /// A stretch is this part of the time scale of a motion.
 inline constexpr double rough_stretch = 1e-3;
 
-/// Nothing where the function has a value that is no number.
-[[nodiscard]] Roughness roughness(const std::function<double(double)>& function, double from, double length);
+/// On stretches of this length that begin at these times. Nothing where the function has a value that is no number.
+[[nodiscard]] Roughness roughness(const std::function<double(double)>& function, const std::array<double, 3>& starts,
+                                  double length);
 
 }  // namespace dinal::motion

@@ -876,7 +876,7 @@ bool Collocation::found_noise(const Segment& s) {
             mechanics_.loads_of_time(t, Side::at, loads);
             return loads[i] + load.of_motion({t, Side::at, y});
         };
-        const Roughness rough = roughness(here, s.start.hi, rough_stretch * s.h);
+        const Roughness rough = roughness(here, {s.time(-0.9), s.time(0.1), s.time(0.8)}, rough_stretch * s.h);
         if (!rough.is_noise() || !(rough.usual > alike * tail)) continue;
         noise_[i] = above * std::max(tail, rough.most);
         found = true;

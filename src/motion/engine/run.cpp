@@ -1133,6 +1133,7 @@ void Engine::again(Collocation::Attempt attempt) {
         h_ = segment_.h / 2;
         return;
     }
+    if (solver_->found_noise(segment_)) return;
     const bool searched = searched_from_ == now_.hi && segment_.h > 0.1 * searched_h_;
     if (!searched && breaks_.size() < most_found_breaks) {
         searched_from_ = now_.hi, searched_h_ = segment_.h;
@@ -1145,7 +1146,6 @@ void Engine::again(Collocation::Attempt attempt) {
             }
         }
     }
-    if (solver_->found_noise(segment_)) return;
     const double unresolved = solver_->unresolved();
     const double factor = unresolved < model::never ? 0.9 * std::pow(unresolved, -1.0 / 16) : 0;
     h_ = segment_.h * std::clamp(factor, 0.5, 0.9);
@@ -1215,7 +1215,7 @@ bool Engine::get_nowhere(Outcome outcome) {
     }
     double worst = 64 * rounding;
     for (const Source& source : sources) {
-        const Roughness look = roughness(source.value, from, length);
+        const Roughness look = roughness(source.value, {from, from + 2 * length, from + 5 * length}, length);
         const double part = look.most / (look.size + source.beside);
         if (!look.is_noise() || !(part > worst)) continue;
         worst = part;
