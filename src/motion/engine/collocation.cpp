@@ -901,12 +901,11 @@ std::optional<double> Collocation::found_break(const Segment& s) const {
             return loads[i];
         });
     }
-    for (std::size_t joint = 0; joint < mechanics_.joints(); ++joint) {
-        if (!mechanics_.has_belt(joint) || !mechanics_.belt_of(joint).has_script()) continue;
-        look(s.belts[joint], fastest_belt_[joint], [&](double t) { return mechanics_.belt(joint, t, Side::at); });
-    }
     mechanics_.for_each_signal([&](const Signal& signal) {
-        if (!signal.has_script() || signal.asks_the_motion()) return;
+        const auto& of_bodies = mechanics_.loads();
+        const bool looked =
+            std::any_of(of_bodies.begin(), of_bodies.end(), [&](const Signal& load) { return &load == &signal; });
+        if (looked || !signal.has_script() || signal.asks_the_motion()) return;
         Nodes values{};
         for (std::size_t j = 0; j < node_count; ++j) values[j] = signal.of_time({s.times[j], s.side(j), {}});
         look(values, greatest(values), [&](double t) { return signal.of_time({t, Side::at, {}}); });

@@ -130,7 +130,6 @@ public:
     void jumps_at(double t) { jumps_.insert(std::upper_bound(jumps_.begin(), jumps_.end(), t), t); }
     /// Jumps before this time are behind.
     void forget_jumps(double t) { jumps_.erase(jumps_.begin(), std::lower_bound(jumps_.begin(), jumps_.end(), t)); }
-    [[nodiscard]] const model::Excitation& belt_of(std::size_t joint) const { return drive_.belts[joint]; }
 
     /// The loads that depend on the time alone, the push of the base among them, on each body.
     void loads_of_time(double t, Side side, std::vector<double>& loads) const;

@@ -19,6 +19,7 @@
 #include "motion/engine/crossing.hpp"
 #include "motion/engine/history.hpp"
 #include "motion/roughness.hpp"
+#include "motion/spectral/break_search.hpp"
 #include "motion/spectral/first_below.hpp"
 #include "motion/witness.hpp"
 
@@ -82,6 +83,7 @@ private:
     bool get_nowhere(Outcome outcome);
     bool end_at(double x);
     bool ask_after_break();
+    void foresee_break();
     void go_to(double x);
     [[nodiscard]] double gap(std::size_t joint, double place) const;
     void keep(double length);
@@ -229,7 +231,8 @@ private:
     double greatest_crossed_ = 0;
     std::vector<int> standing_;  ///< of each body: 0 it moves, 1 a contact holds it, 2 and 3 it is about to leave
     Segment segment_;
-    std::vector<double> breaks_;                  ///< found, and still ahead
+    std::vector<double> breaks_;  ///< found, and still ahead
+    spectral::PassedBreaks passed_breaks_;
     std::vector<std::pair<double, int>> echoes_;  ///< breaks that delays bring back
     double h_ = 1, bad_time_ = model::never, searched_from_ = model::never, searched_h_ = 0;
     double attempts_since_ = 0, last_event_ = -model::never, last_full_at_ = -model::never, born_ = 0;
@@ -1276,7 +1279,12 @@ bool Engine::end_at(double x) {
     has_jumped_ = has_jumped_ || after_break_;
     mechanics_.forget_jumps(now_.hi);
     if (bad_time_ <= now_.hi) bad_time_ = model::never, mechanics_.forget_failure();
-    while (!breaks_.empty() && breaks_.front() <= now_.hi) breaks_.erase(breaks_.begin());
+    const std::size_t ahead = breaks_.size();
+    while (!breaks_.empty() && breaks_.front() <= now_.hi) {
+        passed_breaks_.pass(breaks_.front());
+        breaks_.erase(breaks_.begin());
+    }
+    if (ahead > 0 && breaks_.empty()) foresee_break();
     if (length > 0) {
         for (Slipping& how : mode_.friction) how.leaving = false;
         if (whole) {
@@ -1303,6 +1311,15 @@ bool Engine::end_at(double x) {
 /// Loads, limits and belts may have jumped: what holds is asked again.
 bool Engine::ask_after_break() {
     return mechanics_.has_belts() ? restart_contacts(Because::belt) : decide(true);
+}
+
+/// Where a function of the time has jumped evenly, its next jump is known before it is met.
+void Engine::foresee_break() {
+    for (const Signal& load : mechanics_.loads()) {
+        if (!load.asks_in_time() || !breaks_.empty()) continue;
+        const auto value = [&](double t) { return load.of_time({t, Side::at, {}}); };
+        if (const auto next = passed_breaks_.next(problem_.window.end, value)) breaks_.push_back(*next);
+    }
 }
 
 /// The present is at x of the stretch. What is rounded off the angles is kept: beside a wall it is seen.
