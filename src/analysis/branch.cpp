@@ -1,8 +1,9 @@
 #include "analysis/branch.hpp"
 
-#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+
+#include "algebra/decompositions.hpp"
 
 namespace dinal::analysis {
 namespace {
@@ -22,11 +23,11 @@ constexpr double boundless = 1e8;     // a motion so many times as large comes t
 
 /// Zero where a multiplier is -1, and where a pair of them is on the unit circle.
 double doubling_test(const Eigen::MatrixXd& D) {
-    return (D + Eigen::MatrixXd::Identity(D.rows(), D.cols())).determinant();
+    return algebra::determinant(D + Eigen::MatrixXd::Identity(D.rows(), D.cols()));
 }
 double pair_test(const Eigen::MatrixXd& D) {
-    if (D.rows() == 2) return D.determinant() - 1;
-    const Eigen::VectorXcd m = D.eigenvalues();
+    if (D.rows() == 2) return algebra::determinant(D) - 1;
+    const Eigen::VectorXcd m = algebra::eigenvalues(D);
     std::complex<double> product = 1;
     for (Eigen::Index i = 0; i < m.size(); ++i) {
         for (Eigen::Index j = 0; j < i; ++j) product *= m[i] * m[j] - 1.0;
@@ -36,7 +37,7 @@ double pair_test(const Eigen::MatrixXd& D) {
 
 /// The pair whose product is nearest to 1 is complex: two real ones change nothing.
 bool has_complex_pair(const Eigen::MatrixXd& D) {
-    const Eigen::VectorXcd m = D.eigenvalues();
+    const Eigen::VectorXcd m = algebra::eigenvalues(D);
     double least = 0.1;
     bool complex = false;
     for (Eigen::Index i = 0; i < m.size(); ++i) {
@@ -162,11 +163,11 @@ void BranchWalk::differentiate(Spot& spot) {
 BranchWalk::Vector BranchWalk::tangent(const Spot& spot, const Vector& before) const {
     Slopes slopes = scaled(spot.slopes);
     for (Eigen::Index i = 0; i < slopes.rows(); ++i) slopes.row(i) /= std::max(slopes.row(i).norm(), 1e-300);
-    const Eigen::ColPivHouseholderQR<Slopes> parts(slopes.transpose());
+    const algebra::FreeDirection free = algebra::free_direction(slopes);
     const Eigen::Index n = slopes.rows();
     // Where the mass may rest anywhere there is a surface of fixed points: stay where it is.
-    if (!(std::fabs(parts.matrixR()(n - 1, n - 1)) > 1e-12)) return across() * (before[n] < 0 ? -1 : 1);
-    const Vector t = parts.householderQ() * Vector::Unit(n + 1, n);
+    if (!(std::fabs(free.last_pivot) > 1e-12)) return across() * (before[n] < 0 ? -1 : 1);
+    const Vector& t = free.direction;
     return t * (t.dot(before) < 0 ? -1 : 1);
 }
 
@@ -200,9 +201,7 @@ std::optional<BranchWalk::Spot> BranchWalk::correct(const Vector& guess, const V
         all << slopes, normal.transpose();
         Vector rest(n + 1);
         rest << -off, normal.dot(guess - y);
-        Eigen::JacobiSVD<Slopes> parts(all, Eigen::ComputeFullU | Eigen::ComputeFullV);
-        parts.setThreshold(1e-10);
-        last = parts.solve(rest);
+        last = algebra::solve_by_singular_values(all, rest, 1e-10);
         y += last;
         if ((y - guess).norm() > 0.5) return {};
     }
@@ -250,7 +249,7 @@ double BranchWalk::orientation(const Slopes& slopes, const Vector& tangent) cons
     const Eigen::Index n = units_.size();
     Slopes all(n + 1, n + 1);
     all << scaled(slopes), tangent.transpose();
-    return all.determinant();
+    return algebra::determinant(all);
 }
 
 std::optional<BranchWalk::Spot> BranchWalk::spot_at(const Vector& y) {
@@ -303,7 +302,7 @@ std::optional<BranchWalk::Spot> BranchWalk::corner_between(const Spot& a, const 
                                                            const Vector& on_b) {
     Slopes ways(units_.size() + 1, 2);
     ways << on_a, on_b;
-    const Vector parts = ways.colPivHouseholderQr().solve(scaled(b) - scaled(a));
+    const Vector parts = algebra::solve_least_squares(ways, scaled(b) - scaled(a));
     auto corner = spot_at(scaled(a) + parts[0] * on_a);
     if (corner) tell(*corner);
     return corner;
@@ -432,7 +431,7 @@ BranchPath BranchWalk::walk_aside(double parameter) {
     const Eigen::Index n = units_.size();
     const Slopes slopes = scaled(first->slopes).leftCols(n);
     Vector aside = Vector::Zero(n + 1);
-    aside.head(n) = Eigen::JacobiSVD<Slopes>(slopes, Eigen::ComputeFullV).matrixV().col(n - 1);
+    aside.head(n) = algebra::most_shortened(slopes);
     constexpr double away = 1e-2;
     const Vector guess = scaled(*first) + away * aside;
     const auto there = spot_at(guess);  // of the branch itself the slopes say nothing of the other one

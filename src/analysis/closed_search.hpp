@@ -1,7 +1,7 @@
 // A motion that comes back to itself: found from the returns that it makes, by Newton's method where these lead near.
 #pragma once
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "algebra/decompositions.hpp"
 #include "model/outcome.hpp"
 
 namespace dinal::analysis {
@@ -129,7 +130,7 @@ private:
                 if (!D) return good(best);
             }
             const Eigen::MatrixXd left = Eigen::MatrixXd::Identity(x.size(), x.size()) - *D;
-            const Eigen::VectorXd step = left.completeOrthogonalDecomposition().solve(off);
+            const Eigen::VectorXd step = algebra::solve_shortest(left, off);
             if (!step.allFinite()) return good(best);
             constexpr double farthest = 1;
             x += step * std::min(1.0, farthest / std::max(size_of_step(step), 1e-300));

@@ -1,8 +1,9 @@
 #include "analysis/fixed_point.hpp"
 
-#include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
+
+#include "algebra/decompositions.hpp"
 
 namespace dinal::analysis {
 namespace {
@@ -50,9 +51,7 @@ Place FixedPointSearch::step(const Try& now) const {
                      matrix(0, 0) * now.off[1] - matrix(1, 0) * now.off[0]) /
                determinant;
     }
-    Eigen::JacobiSVD<Eigen::Matrix2d> parts(matrix, Eigen::ComputeFullU | Eigen::ComputeFullV);
-    parts.setThreshold(1e-9);
-    return parts.solve(now.off);
+    return algebra::solve_by_singular_values(matrix, now.off, 1e-9);
 }
 
 std::optional<FixedPointSearch::Try> FixedPointSearch::newton(const Try& now) const {

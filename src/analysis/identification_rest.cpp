@@ -6,9 +6,9 @@
 // move at the turn before and holds it at this one. What the sum of squares says for a way to come to rest is not all:
 // one that is possible in a tiny part of the space of parameters only was a tiny part as likely before, so each counts
 // by exp(-sum / 2 noise^2) times the volume that its errors leave open.
-#include <Eigen/QR>
 #include <optional>
 
+#include "algebra/decompositions.hpp"
 #include "analysis/identification_search.hpp"
 #include "theory/theory_free.hpp"
 
@@ -263,7 +263,7 @@ bool Identification::try_beyond_steps() {
                               best_->parameters, best_scale_, noise);
     if (!J || count() == 0) return false;
     const auto units = best_scale_.whole.asDiagonal();
-    const Eigen::VectorXd way = units * (*J * units).colPivHouseholderQr().solve(best_->residual);
+    const Eigen::VectorXd way = units * algebra::solve_least_squares(*J * units, best_->residual);
     if (!way.allFinite()) return false;
     for (const double part : {1.0, 0.5, 0.25}) {
         const Eigen::VectorXd p = (best_->parameters + part * way).cwiseMax(best_scale_.least);

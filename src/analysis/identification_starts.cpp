@@ -1,6 +1,5 @@
 // Where the search of identify() starts: from the extremes of a free decay, or by the weak form of the driven equation.
-#include <Eigen/QR>
-
+#include "algebra/decompositions.hpp"
 #include "analysis/drive.hpp"
 #include "analysis/identification_search.hpp"
 
@@ -16,7 +15,7 @@ std::pair<double, double> line_through(const std::vector<double>& swings) {
         A.row(i) << swings[static_cast<std::size_t>(i)], -swings.front();
         b[i] = swings[static_cast<std::size_t>(i) + 1];
     }
-    const Eigen::VectorXd x = A.colPivHouseholderQr().solve(b);
+    const Eigen::VectorXd x = algebra::solve_least_squares(A, b);
     return {x[0], x[1] * swings.front()};
 }
 
@@ -192,7 +191,7 @@ Parameters Identification::weak_form() const {
         }
         // Of one length each: which of them says nothing is not for the units to decide.
         const Eigen::VectorXd lengths = A.colwise().norm().cwiseMax(1e-300);
-        const Eigen::VectorXd solved = (A * lengths.cwiseInverse().asDiagonal()).colPivHouseholderQr().solve(b);
+        const Eigen::VectorXd solved = algebra::solve_least_squares(A * lengths.cwiseInverse().asDiagonal(), b);
         for (Eigen::Index j = 0; j < m; ++j) x[columns[static_cast<std::size_t>(j)]] = solved[j] / lengths[j];
     }
     const double omega = turns_.size() >= 2 ? std::numbers::pi * static_cast<double>(turns_.size() - 1) /

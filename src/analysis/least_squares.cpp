@@ -1,9 +1,9 @@
 #include "analysis/least_squares.hpp"
 
-#include <Eigen/Cholesky>
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
+
+#include "algebra/decompositions.hpp"
 
 namespace dinal::analysis {
 namespace {
@@ -121,7 +121,7 @@ std::optional<LeastSquares> least_squares(const Prediction& model, const Eigen::
             damping *= 4;
             Eigen::MatrixXd damped = normal;
             damped.diagonal() *= 1 + damping;
-            const Eigen::VectorXd way = damped.ldlt().solve(gradient).cwiseProduct(size);
+            const Eigen::VectorXd way = algebra::solve_symmetric(damped, gradient).cwiseProduct(size);
             Eigen::VectorXd next = (now.parameters + way).cwiseMax(scale.least);
             for (Eigen::Index i = 0; i < next.size(); ++i) {
                 // What must stay above 0 comes nearer to it by factors: one long step there would not come back.
@@ -156,8 +156,8 @@ Covariance covariance_of(Eigen::MatrixXd J, const Eigen::VectorXd& whole, double
     const double known = std::max(noise / widest, rounding * std::max(J.colwise().norm().maxCoeff(), 1e-300));
     J.conservativeResize(rows + n, n);
     J.bottomRows(n) = Eigen::MatrixXd::Identity(n, n) * known;
-    const Eigen::MatrixXd R = Eigen::HouseholderQR<Eigen::MatrixXd>(J).matrixQR().topRows(n);
-    const Eigen::MatrixXd inverse = R.triangularView<Eigen::Upper>().solve(Eigen::MatrixXd::Identity(n, n));
+    const Eigen::MatrixXd R = algebra::triangular_factor(J);
+    const Eigen::MatrixXd inverse = algebra::inverse_of_triangular(R);
     result.matrix = inverse * inverse.transpose();
     for (Eigen::Index i = 0; i < n; ++i) {
         result.silent[static_cast<std::size_t>(i)] = known * std::sqrt(result.matrix(i, i)) > 1 / widest;

@@ -2,13 +2,13 @@
 // or a base, and limit cycles, whose period nothing prescribes. They are fixed points of a return map of theta,
 // velocity and the states: from one period to the next, or from one passage of theta through a section to the next.
 // docs/theory.md, section 10.
-#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
 #include <vector>
 
+#include "algebra/decompositions.hpp"
 #include "analysis/branch.hpp"
 #include "analysis/closed_search.hpp"
 #include "analysis/steady_facts.hpp"
@@ -347,7 +347,7 @@ constexpr double largest_stable = 1 + 1e-5;  // multiplier
 
 /// The greatest one first.
 std::vector<std::complex<double>> sorted_eigenvalues(const Eigen::MatrixXd& D) {
-    const Eigen::VectorXcd values = D.eigenvalues();
+    const Eigen::VectorXcd values = algebra::eigenvalues(D);
     std::vector<std::complex<double>> sorted(values.data(), values.data() + values.size());
     std::sort(sorted.begin(), sorted.end(), [](const auto& a, const auto& b) { return std::abs(a) > std::abs(b); });
     return sorted;
@@ -832,8 +832,7 @@ std::unique_ptr<Circuit> circuit_of_first_cycles(const Family& family, double p,
         if (!up.finished || !down.finished) return {};
         D.col(i) = (up.to - down.to).cwiseQuotient(2 * h * units);
     }
-    const Eigen::EigenSolver<Eigen::MatrixXd> parts(D);
-    const Eigen::VectorXcd& values = parts.eigenvalues();
+    const auto [values, vectors] = algebra::eigenpairs(D);
     Eigen::Index best = 0;
     for (Eigen::Index i = 1; i < n; ++i) {
         if (std::abs(std::abs(values[i]) - 1) < std::abs(std::abs(values[best]) - 1)) best = i;
@@ -841,7 +840,7 @@ std::unique_ptr<Circuit> circuit_of_first_cycles(const Family& family, double p,
     const double turn = std::fabs(std::arg(values[best]));
     if (!(turn > 1e-6)) return {};
     constexpr double small = 1e-3;  // of the units: the cycle differs from the linearised motion by its square
-    const Eigen::VectorXcd mode = small * parts.eigenvectors().col(best).normalized().cwiseProduct(units);
+    const Eigen::VectorXcd mode = small * vectors.col(best).normalized().cwiseProduct(units);
     const Vector begin = x + mode.real();
     SteadyQuestion asked = *rest.asked;
     asked.initial = {begin[0], begin[1]};

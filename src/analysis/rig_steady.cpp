@@ -2,12 +2,12 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
 
+#include "algebra/decompositions.hpp"
 #include "analysis/closed_search.hpp"
 #include "analysis/steady_facts.hpp"
 #include "model/controller.hpp"
@@ -137,9 +137,8 @@ public:
         if (fixed.empty()) return Eigen::MatrixXd::Identity(size, size);
         Eigen::MatrixXd across(size, static_cast<Eigen::Index>(fixed.size()));
         for (std::size_t k = 0; k < fixed.size(); ++k) across.col(static_cast<Eigen::Index>(k)) = fixed[k];
-        const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> turned(across);
-        const Eigen::MatrixXd all = turned.householderQ() * Eigen::MatrixXd::Identity(size, size);
-        return all.rightCols(size - turned.rank());
+        const algebra::Basis basis = algebra::orthonormal_basis(across);
+        return basis.columns.rightCols(size - basis.rank);
     }
 
 private:
@@ -292,10 +291,8 @@ public:
 
 private:
     static Eigen::MatrixXd kept(const Eigen::MatrixXd& directions) {
-        const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> turned(directions);
-        const Eigen::MatrixXd all =
-            turned.householderQ() * Eigen::MatrixXd::Identity(directions.rows(), directions.rows());
-        return all.leftCols(turned.rank());
+        const algebra::Basis basis = algebra::orthonormal_basis(directions);
+        return basis.columns.leftCols(basis.rank);
     }
 
     void once(const RigMoment& from, Return& sum) {
@@ -657,7 +654,7 @@ private:
         facts.maps += 4 * found.returns * static_cast<int>(found.x.size());
         std::vector<std::complex<double>> multipliers;
         if (D) {
-            const Eigen::VectorXcd values = D->eigenvalues();
+            const Eigen::VectorXcd values = algebra::eigenvalues(*D);
             multipliers.assign(values.data(), values.data() + values.size());
             std::sort(multipliers.begin(), multipliers.end(),
                       [](const auto& a, const auto& b) { return std::abs(a) > std::abs(b); });

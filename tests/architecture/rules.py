@@ -14,8 +14,8 @@ MOST_ONE_USER_HEADERS = 56
 # The floors of the house, from the top: a room includes itself and rooms below it. Rooms within a room (motion/rk4) stand
 # on the same floor as the room around them.
 FLOORS = ["main", "notebook", "prompt", "python", "help", "api", "errors", "source", "lua", "plots", "files", "analysis", "theory",
-          "motion", "model", "terminal", "text"]
-MATHEMATICS = ("text", "model", "motion", "theory", "analysis")  # know neither Lua nor the world around them
+          "motion", "model", "algebra", "terminal", "text"]
+MATHEMATICS = ("text", "algebra", "model", "motion", "theory", "analysis")  # know neither Lua nor the world around them
 WITHOUT_LUA = MATHEMATICS + ("terminal", "files", "plots")
 
 SOURCES = (".cpp", ".hpp")
@@ -107,6 +107,16 @@ def forbidden_things_are_absent():
         if "readline/" in "".join(l for _, l in lines(path)) and os.path.basename(path) not in (
                 "line_editor.cpp", "history.cpp"):
             complain(path, 1, "only prompt/line_editor.cpp and history.cpp know readline")
+
+
+def decompositions_are_compiled_once():
+    """Each of them takes seconds to compile in each file that uses it."""
+    for path in files(SOURCES):
+        if not path.startswith("src/") or path == "src/algebra/decompositions.cpp":
+            continue
+        for number, line in lines(path):
+            if re.match(r"\s*#\s*include <Eigen/(?!Core>)", line):
+                complain(path, number, "only src/algebra/decompositions.cpp includes more of Eigen than Core")
 
 
 def headers_say_what_they_hold():
@@ -220,8 +230,8 @@ def anchors(goal):
     return set(explicit) | {re.sub(r"[^\w\- ]", "", h.lower()).strip().replace(" ", "-") for h in headings}
 
 
-for rule in (includes_point_down, rooms_are_namespaces, forbidden_things_are_absent, headers_say_what_they_hold,
-             headers_have_two_users, lua_tests_can_fail, tests_are_namespaces,
+for rule in (includes_point_down, rooms_are_namespaces, forbidden_things_are_absent, decompositions_are_compiled_once,
+             headers_say_what_they_hold, headers_have_two_users, lua_tests_can_fail, tests_are_namespaces,
              catch_is_included_once, nothing_is_left_for_later, links_lead_somewhere, documents_make_a_path,
              documents_name_what_is_there):
     rule()

@@ -53,17 +53,17 @@ const IntegrationModes& integration_modes() {
     static const IntegrationModes modes = [] {
         IntegrationModes made;
         const IntegrationModes::Matrix once = integration().bottomRightCorner<node_count - 1, node_count - 1>();
-        const Eigen::EigenSolver<IntegrationModes::Matrix> solver(once);
+        const algebra::Eigenpairs pairs = algebra::eigenpairs(once);
         int column = 0;
         for (int i = 0; i < once.rows(); ++i) {
-            const std::complex<double> value = solver.eigenvalues()(i);
+            const std::complex<double> value = pairs.values(i);
             if (value.imag() < 0) continue;
             made.values.push_back(value);
             made.places.emplace_back(column, value.imag() > 0 ? column + 1 : -1);
-            made.to_nodes.col(column++) = solver.eigenvectors().col(i).real();
-            if (value.imag() > 0) made.to_nodes.col(column++) = -solver.eigenvectors().col(i).imag();
+            made.to_nodes.col(column++) = pairs.vectors.col(i).real();
+            if (value.imag() > 0) made.to_nodes.col(column++) = -pairs.vectors.col(i).imag();
         }
-        made.from_nodes = made.to_nodes.inverse();
+        made.from_nodes = algebra::inverse(Eigen::MatrixXd(made.to_nodes));
         return made;
     }();
     return modes;
@@ -368,7 +368,7 @@ void Collocation::Factors::solve(const Eigen::VectorXd& right, Eigen::VectorXd& 
         return;
     }
     if (sparse != nullptr) {
-        left = sparse->solve(right);
+        sparse->solve(right, left);
         return;
     }
     const IntegrationModes& each = integration_modes();
@@ -428,7 +428,7 @@ const Collocation::Factors& Collocation::newton_matrix(double h, const Frame& fr
                 if (!empty(r, c)) A.block<inner, inner>(r * size, c * size) = block(r, c);
             }
         }
-        made.inverse = A.inverse();
+        made.inverse = algebra::inverse(A);
         return made;
     }
     if (rows < many) {
@@ -440,25 +440,22 @@ const Collocation::Factors& Collocation::newton_matrix(double h, const Frame& fr
             }
             Eigen::MatrixXcd A = Eigen::MatrixXcd::Identity(rows, rows) - once_by * slopes_.rightCols(rows);
             A.leftCols(groups) -= twice_by * slopes_.leftCols(groups);
-            A = A.inverse().eval();
-            made.of_modes.insert(made.of_modes.end(), A.data(), A.data() + rows * rows);
+            const Eigen::MatrixXcd inverse = algebra::inverse(A);
+            made.of_modes.insert(made.of_modes.end(), inverse.data(), inverse.data() + rows * rows);
         }
         return made;
     }
-    std::vector<Eigen::Triplet<double>> entries;
+    std::vector<algebra::Entry> entries;
     for (Eigen::Index r = 0; r < rows; ++r) {
         for (Eigen::Index c = 0; c < rows; ++c) {
             if (empty(r, c)) continue;
             const Inner own = block(r, c);
             for (Eigen::Index i = 0; i < size; ++i) {
-                for (Eigen::Index k = 0; k < size; ++k) entries.emplace_back(r * size + i, c * size + k, own(i, k));
+                for (Eigen::Index k = 0; k < size; ++k) entries.push_back({r * size + i, c * size + k, own(i, k)});
             }
         }
     }
-    Eigen::SparseMatrix<double> A(size * rows, size * rows);
-    A.setFromTriplets(entries.begin(), entries.end());
-    made.sparse = std::make_unique<Eigen::SparseLU<Eigen::SparseMatrix<double>>>();
-    made.sparse->compute(A);
+    made.sparse = algebra::factored_sparse(size * rows, entries);
     return made;
 }
 

@@ -1,8 +1,7 @@
 // A stretch of the motion of an assembly in one mode, by collocation at Chebyshev points.
 #pragma once
 
-#include <Eigen/Dense>
-#include <Eigen/Sparse>
+#include <Eigen/Core>
 #include <algorithm>
 #include <array>
 #include <complex>
@@ -11,6 +10,7 @@
 #include <optional>
 #include <vector>
 
+#include "algebra/decompositions.hpp"
 #include "motion/clock.hpp"
 #include "motion/engine/mechanics.hpp"
 #include "motion/engine/nodes.hpp"
@@ -104,7 +104,7 @@ private:
     /// integration, of two conjugate ones for one (Butcher 1976); steps by these are right to ten digits.
     struct Factors {
         Eigen::MatrixXd inverse;
-        std::unique_ptr<Eigen::SparseLU<Eigen::SparseMatrix<double>>> sparse;
+        std::unique_ptr<const algebra::Factored> sparse;
         std::vector<std::complex<double>> of_modes;  ///< their inverses, column after column
         void solve(const Eigen::VectorXd& right, Eigen::VectorXd& left) const;
     };

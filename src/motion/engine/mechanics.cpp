@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "algebra/decompositions.hpp"
 #include "model/springs/user_spring.hpp"
 
 namespace dinal::motion::engine {
@@ -99,7 +100,7 @@ Frame::Frame(const model::Assembly& system, const Mode& mode) : group(system.bod
         on_bodies(joint.first, c) = weakness(c);
         if (joint.second >= 0) on_bodies(joint.second, c) = -weakness(c);
     }
-    sharing = weakness.asDiagonal() * on_bodies.completeOrthogonalDecomposition().pseudoInverse();
+    sharing = weakness.asDiagonal() * algebra::pseudo_inverse(on_bodies);
 }
 
 void Frame::offsets(const std::vector<double>& of_joints, const Mode& mode, std::vector<double>& of_bodies) const {
@@ -149,7 +150,7 @@ Eigen::VectorXd least_in_box(const Eigen::MatrixXd& G, const Eigen::VectorXd& g,
             const Eigen::VectorXd rest = -(g + G * x);
             const Eigen::VectorXd of_free = rest(free);
             const Eigen::MatrixXd among = G(free, free);
-            const Eigen::VectorXd found = among.ldlt().solve(of_free);
+            const Eigen::VectorXd found = algebra::solve_symmetric(among, of_free);
             x(free) = found;
         }
         const Eigen::VectorXd slope = G * x + g;
@@ -470,8 +471,7 @@ double Mechanics::fastest(const Frame& frame) const {
         if (a >= 0 && b >= 0) K(a, b) -= scaled(a, b), K(b, a) -= scaled(a, b);
     }
     if (n == 1) return std::sqrt(K(0, 0));
-    const double most = Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(K, Eigen::EigenvaluesOnly).eigenvalues()(n - 1);
-    return std::sqrt(std::max(0.0, most));
+    return std::sqrt(std::max(0.0, algebra::largest_eigenvalue_of_symmetric(K)));
 }
 
 }  // namespace dinal::motion::engine

@@ -1,7 +1,7 @@
 // The torques on each body of an assembly, the modes of its contacts, and what these decide where nothing slips.
 #pragma once
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <algorithm>
 #include <array>
 #include <string>
