@@ -26,9 +26,9 @@ namespace {
 // Whoever has Python's lock (the GIL) may use what follows, apart from the signal handler.
 lua_State* running = nullptr;
 std::vector<int> released;
-unsigned long owner = 0;  // the thread whose call Lua is in; 0: none
-int depth = 0;            // of its calls within each other
-bool is_torn = false;     // this process was forked while another thread was in a call
+unsigned long owner_thread = 0;  // the thread whose call Lua is in; 0: none
+int calls_within = 0;            // of its calls within each other
+bool is_torn = false;            // this process was forked while another thread was in a call
 unsigned long main_thread = 0;
 auto* const last_exception = new py::object();  // that a function raised during the present call
 std::mutex waiting;
@@ -58,20 +58,20 @@ class Turn {
 public:
     Turn() {
         const unsigned long self = PyThread_get_thread_ident();
-        while (owner != 0 && owner != self) wait();
-        owner = self;
-        if (++depth > 1) return;
+        while (owner_thread != 0 && owner_thread != self) wait();
+        owner_thread = self;
+        if (++calls_within > 1) return;
         if (self == main_thread) watch_interrupts();
         main_is_in_lua = self == main_thread;
         scope_.emplace(running);
     }
     ~Turn() {
-        if (--depth > 0) return;
+        if (--calls_within > 0) return;
         const py::object dropped = std::move(*last_exception);  // and the frames that it keeps
         flush_output();
         scope_.reset();
         main_is_in_lua = false;
-        owner = 0;
+        owner_thread = 0;
         left.notify_one();
     }
     Turn(const Turn&) = delete;
@@ -210,7 +210,7 @@ void open_state() {
 }
 
 void after_fork() {
-    is_torn = owner != 0 && owner != PyThread_get_thread_ident();
+    is_torn = owner_thread != 0 && owner_thread != PyThread_get_thread_ident();
     new (&waiting) std::mutex;  // whoever held them is not in this process
     new (&left) std::condition_variable;
 }
